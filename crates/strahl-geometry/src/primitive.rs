@@ -1,0 +1,201 @@
+use crate::Crossings;
+use strahl_math::{Aabb, DVec2, DVec3, Interval, Ray};
+
+/// Names one smooth piece of a primitive's surface.
+///
+/// `element` counts the parts that primitives made of parts have: the triangles of a mesh, the leaves of a CSG tree (a mesh
+/// inside a tree takes as many numbers as it has triangles). Simple shapes have the one element 0. `facet` tells
+/// the smooth pieces of an element apart, as its documentation says: the side and the caps of a cylinder, the six faces of
+/// a box.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct SurfaceId {
+    /// The part, `0..primitive.elements()`.
+    pub element: u32,
+    /// The smooth piece of that part.
+    pub facet: u32,
+}
+
+/// What an intersection test reports: small, `Copy`, no more than is needed to find the rest later.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PrimHit {
+    /// Ray parameter, in units of the ray's direction.
+    pub t: f64,
+    /// The piece of surface that was hit.
+    pub surface: SurfaceId,
+    /// Two numbers of the primitive's own choice for [`Primitive::surface_at`]; barycentric coordinates of vertices 1
+    /// and 2 on triangles.
+    pub uv: [f64; 2],
+}
+
+impl PrimHit {
+    /// A hit on facet `facet` of element 0.
+    pub const fn simple(t: f64, facet: u32) -> Self {
+        Self { t, surface: SurfaceId { element: 0, facet }, uv: [0.0; 2] }
+    }
+}
+
+/// Everything about a point on a surface, in the space of the ray that found it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SurfacePoint {
+    /// The point, moved onto the surface as exactly as f64 allows (not merely `ray.at(t)`).
+    pub position: DVec3,
+    /// Bound on the absolute error of `position`, coordinate by coordinate.
+    pub position_error: DVec3,
+    /// Unit normal of the true surface. On solids it points outwards, on open surfaces to the front.
+    pub n_geom: DVec3,
+    /// Unit normal for shading: `n_geom`, or the interpolated normal of a smooth triangle.
+    pub n_shade: DVec3,
+    /// Texture coordinates.
+    pub uv: DVec2,
+    /// Derivative of the position with respect to `uv.x`; zero where there is none.
+    pub dpdu: DVec3,
+    /// Derivative of the position with respect to `uv.y`; zero where there is none.
+    pub dpdv: DVec3,
+}
+
+/// Working memory of intersection tests, one per thread: primitives are immutable.
+#[derive(Debug, Default)]
+pub struct Scratch {
+    pool: Vec<Crossings>,
+}
+
+impl Scratch {
+    /// Borrows an empty list of crossings; give it back with [`Scratch::give`].
+    pub fn take(&mut self) -> Crossings {
+        self.pool.pop().unwrap_or_default()
+    }
+
+    /// Returns a list, so that its memory is used again.
+    pub fn give(&mut self, mut list: Crossings) {
+        list.clear();
+        self.pool.push(list);
+    }
+}
+
+/// A surface that a ray can meet.
+///
+/// # Contract
+/// * A result depends on `(self, ray, range, from)` only: not on earlier calls, neighbours or the thread.
+/// * The ray's direction may have any length; `t` is never rescaled.
+/// * A hit `t` satisfies [`Interval::accepts`]. Rays with a NaN or a zero direction hit nothing.
+/// * Only `+ - * /`, square root, comparisons and [`strahl_math::det`] decide the result, never a fused multiply-add.
+/// * **Root identity**: `from` names the piece of this primitive's surface on which the ray starts. On a planar piece it
+///   is not hit again; on a curved one the root at `t = 0` is removed exactly (the constant term of the polynomial is
+///   taken as zero), so no tolerance is needed and the far side of the same surface is still found.
+pub trait Primitive: Send + Sync + std::fmt::Debug {
+    /// The field's word for this kind of thing, lower case: `sphere`, `torus`.
+    fn kind(&self) -> &'static str;
+
+    /// Checks the parameters. Constructors named `new` accept anything; scenes are validated when they are compiled.
+    ///
+    /// # Errors
+    /// What is wrong with which parameter. Nothing is promised about queries on a primitive that is not valid, except
+    /// that they don't panic.
+    fn validate(&self) -> Result<(), GeometryError>;
+
+    /// A box around the surface; may be unbounded. Conservative: contains every point `ray.at(t)` of a hit up to the
+    /// rounding of that expression.
+    fn bounds(&self) -> Aabb;
+
+    /// How many elements [`SurfaceId::element`] distinguishes; at least 1.
+    fn elements(&self) -> u32 {
+        1
+    }
+
+    /// The hit with the smallest `t` in `range`; at equal `t` that with the smaller element, then the smaller facet.
+    fn closest_hit(
+        &self,
+        ray: &Ray,
+        range: Interval,
+        from: Option<SurfaceId>,
+        scratch: &mut Scratch,
+    ) -> Option<PrimHit>;
+
+    /// Whether there is a hit in `range`: the same answer as `closest_hit(..).is_some()`, possibly sooner.
+    fn any_hit(
+        &self,
+        ray: &Ray,
+        range: Interval,
+        from: Option<SurfaceId>,
+        scratch: &mut Scratch,
+    ) -> bool {
+        self.closest_hit(ray, range, from, scratch).is_some()
+    }
+
+    /// The surface at a hit that this primitive reported for this ray.
+    fn surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint;
+
+    /// The primitive as a solid, if it encloses a volume.
+    fn as_solid(&self) -> Option<&dyn Solid> {
+        None
+    }
+}
+
+/// A primitive that encloses a volume: it has an inside.
+pub trait Solid: Primitive {
+    /// Appends all crossings of the surface with `range.min < t <= range.max`, ascending in `t`, and sets
+    /// [`Crossings::inside_at_start`] to whether the ray just behind `range.min` is inside.
+    ///
+    /// `out` is empty on entry. Every change from outside to inside is there, so entering and leaving alternate.
+    /// Touching the surface without getting inside is no crossing. `from` as in [`Primitive`]: the root at the start is
+    /// not listed, and `inside_at_start` tells the side that the ray leaves towards.
+    fn crossings(
+        &self,
+        ray: &Ray,
+        range: Interval,
+        from: Option<SurfaceId>,
+        scratch: &mut Scratch,
+        out: &mut Crossings,
+    );
+
+    /// Whether the point is inside or on the boundary.
+    fn contains(&self, point: DVec3) -> bool;
+}
+
+/// Parameters that don't describe a shape.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum GeometryError {
+    /// A value is NaN or infinite.
+    #[error("{what} is not a finite number")]
+    NotFinite {
+        /// The parameter.
+        what: &'static str,
+    },
+    /// A length, radius or direction that must not vanish is zero, or one that must be positive is negative.
+    #[error("{what} must be {expected}, found {found}")]
+    OutOfRange {
+        /// The parameter.
+        what: &'static str,
+        /// What would be right, in words.
+        expected: &'static str,
+        /// The value given.
+        found: f64,
+    },
+    /// The shape has no surface (all corners on a line, base and apex equal, ...).
+    #[error("the {what} is degenerate: {why}")]
+    Degenerate {
+        /// The kind of shape.
+        what: &'static str,
+        /// What is wrong, in words.
+        why: &'static str,
+    },
+    /// An index of a mesh points outside of its list.
+    #[error("{what} index {index} is out of range: there are {count}")]
+    IndexOutOfRange {
+        /// The kind of index.
+        what: &'static str,
+        /// The index given, counted from 0.
+        index: u64,
+        /// The number of entries.
+        count: u64,
+    },
+    /// A mesh or tree that should enclose a volume doesn't.
+    #[error("{what} is not closed: {why}")]
+    NotClosed {
+        /// The object.
+        what: &'static str,
+        /// What is open, in words.
+        why: String,
+    },
+}

@@ -1,0 +1,154 @@
+use crate::{DVec3, Interval, Ray};
+
+/// An axis-aligned bounding box in f64, possibly empty (`min > max`) or unbounded (infinite coordinates).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Aabb {
+    /// The corner with the smallest coordinates.
+    pub min: DVec3,
+    /// The corner with the largest coordinates.
+    pub max: DVec3,
+}
+
+impl Aabb {
+    /// The box that contains nothing: the neutral element of [`Aabb::union`].
+    pub const EMPTY: Self = Self { min: DVec3::INFINITY, max: DVec3::NEG_INFINITY };
+    /// All of space.
+    pub const EVERYTHING: Self = Self { min: DVec3::NEG_INFINITY, max: DVec3::INFINITY };
+
+    /// The box between two corners; each coordinate of `min` must not exceed that of `max`.
+    pub const fn new(min: DVec3, max: DVec3) -> Self {
+        Self { min, max }
+    }
+
+    /// The smallest box around some points; empty for no points.
+    pub fn from_points(points: impl IntoIterator<Item = DVec3>) -> Self {
+        points.into_iter().fold(Self::EMPTY, |b, p| Self::new(b.min.min(p), b.max.max(p)))
+    }
+
+    /// The smallest box around both.
+    #[must_use]
+    pub fn union(&self, other: &Self) -> Self {
+        Self::new(self.min.min(other.min), self.max.max(other.max))
+    }
+
+    /// What both boxes have in common; empty if they are apart.
+    #[must_use]
+    pub fn intersection(&self, other: &Self) -> Self {
+        let b = Self::new(self.min.max(other.min), self.max.min(other.max));
+        if b.is_empty() { Self::EMPTY } else { b }
+    }
+
+    /// Whether no point is inside.
+    pub fn is_empty(&self) -> bool {
+        !(self.min.x <= self.max.x && self.min.y <= self.max.y && self.min.z <= self.max.z)
+    }
+
+    /// Whether the box is non-empty and all its coordinates are finite.
+    pub fn is_bounded(&self) -> bool {
+        !self.is_empty() && self.min.is_finite() && self.max.is_finite()
+    }
+
+    /// Whether the point is inside or on the boundary.
+    pub fn contains(&self, p: DVec3) -> bool {
+        self.min.cmple(p).all() && self.max.cmpge(p).all()
+    }
+
+    /// The box grown by `margin` on every side.
+    #[must_use]
+    pub fn padded(&self, margin: DVec3) -> Self {
+        Self::new(self.min - margin, self.max + margin)
+    }
+
+    /// The centre; meaningful for bounded boxes.
+    pub fn center(&self) -> DVec3 {
+        self.min * 0.5 + self.max * 0.5
+    }
+
+    /// The edge lengths; negative if empty.
+    pub fn size(&self) -> DVec3 {
+        self.max - self.min
+    }
+
+    /// Half the surface area; 0 for an empty box.
+    pub fn half_area(&self) -> f64 {
+        if self.is_empty() {
+            return 0.0;
+        }
+        let s = self.size();
+        s.x * s.y + s.y * s.z + s.z * s.x
+    }
+
+    /// The largest absolute coordinate; 0 for an empty box.
+    pub fn max_abs(&self) -> f64 {
+        if self.is_empty() { 0.0 } else { self.min.abs().max(self.max.abs()).max_element() }
+    }
+
+    /// The eight corners.
+    pub fn corners(&self) -> [DVec3; 8] {
+        std::array::from_fn(|i| {
+            let pick = |axis: usize| if i >> axis & 1 == 0 { self.min[axis] } else { self.max[axis] };
+            DVec3::new(pick(0), pick(1), pick(2))
+        })
+    }
+
+    /// The range of parameters for which the ray is inside the box, conservatively widened by the rounding of this very
+    /// computation; `None` if the ray misses.
+    ///
+    /// This is the f64 clip that re-bases rays (engine design 4.2), not the culling test of the accelerators.
+    pub fn clip(&self, ray: &Ray, range: Interval) -> Option<Interval> {
+        let (mut lo, mut hi) = (range.min, range.max);
+        for axis in 0..3 {
+            let (o, d) = (ray.origin[axis], ray.direction[axis]);
+            if d == 0.0 {
+                if o < self.min[axis] || o > self.max[axis] {
+                    return None;
+                }
+                continue;
+            }
+            let (a, b) = ((self.min[axis] - o) / d, (self.max[axis] - o) / d);
+            let (near, far) = if a < b { (a, b) } else { (b, a) };
+            // Two roundings (difference, quotient), each within half an ulp: widen by two ulps.
+            let near = near - near.abs() * f64::EPSILON * 2.0;
+            let far = far + far.abs() * f64::EPSILON * 2.0;
+            if near > lo {
+                lo = near;
+            }
+            if far < hi {
+                hi = far;
+            }
+        }
+        (lo <= hi).then_some(Interval::new(lo, hi))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_empty_box_is_the_neutral_element() {
+        let b = Aabb::new(DVec3::ZERO, DVec3::ONE);
+        assert_eq!(Aabb::EMPTY.union(&b), b);
+        assert!(Aabb::EMPTY.is_empty() && !Aabb::EMPTY.is_bounded() && Aabb::EMPTY.half_area() == 0.0);
+        assert!(!Aabb::EVERYTHING.is_bounded());
+    }
+
+    #[test]
+    fn clip_handles_rays_in_a_face_and_parallel_rays() {
+        let b = Aabb::new(DVec3::ZERO, DVec3::ONE);
+        let in_face = Ray::new(DVec3::new(0.0, 0.5, -1.0), DVec3::Z);
+        let clipped = b.clip(&in_face, Interval::FORWARD).expect("touches");
+        assert!((clipped.min - 1.0).abs() < 1e-12 && (clipped.max - 2.0).abs() < 1e-12);
+        let outside = Ray::new(DVec3::new(-0.1, 0.5, -1.0), DVec3::Z);
+        assert_eq!(b.clip(&outside, Interval::FORWARD), None);
+        assert!(Aabb::EVERYTHING.clip(&outside, Interval::FORWARD).is_some());
+    }
+
+    #[test]
+    fn corners_are_all_different() {
+        let corners = Aabb::new(DVec3::ZERO, DVec3::ONE).corners();
+        for (i, a) in corners.iter().enumerate() {
+            assert!(corners[..i].iter().all(|b| a != b));
+        }
+    }
+}

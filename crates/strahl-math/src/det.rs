@@ -1,0 +1,76 @@
+//! Elementary functions that give the same bits on every machine.
+//!
+//! The platform's libm differs between systems and picks FMA variants at run time; results that reach a pixel use these
+//! software implementations instead (the `libm` crate, a port of musl's).
+
+/// Sine of `x` radians.
+pub fn sin(x: f64) -> f64 {
+    libm::sin(x)
+}
+
+/// Cosine of `x` radians.
+pub fn cos(x: f64) -> f64 {
+    libm::cos(x)
+}
+
+/// Tangent of `x` radians.
+pub fn tan(x: f64) -> f64 {
+    libm::tan(x)
+}
+
+/// Arc cosine in radians, `0..=pi`; NaN outside of `-1..=1`.
+pub fn acos(x: f64) -> f64 {
+    libm::acos(x)
+}
+
+/// Angle of the point `(x, y)` in radians, `-pi..=pi`.
+pub fn atan2(y: f64, x: f64) -> f64 {
+    libm::atan2(y, x)
+}
+
+/// `e` to the power of `x`.
+pub fn exp(x: f64) -> f64 {
+    libm::exp(x)
+}
+
+/// Natural logarithm.
+pub fn ln(x: f64) -> f64 {
+    libm::log(x)
+}
+
+/// `base` to the power of `exponent`.
+///
+/// Small whole exponents, the usual case of highlights, are computed by repeated squaring.
+pub fn pow(base: f64, exponent: f64) -> f64 {
+    let whole = exponent as u32;
+    if f64::from(whole) == exponent && whole <= 64 {
+        let (mut result, mut square, mut bits) = (1.0, base, whole);
+        while bits > 0 {
+            if bits & 1 == 1 {
+                result *= square;
+            }
+            square *= square;
+            bits >>= 1;
+        }
+        return result;
+    }
+    libm::pow(base, exponent)
+}
+
+/// Cube root.
+pub fn cbrt(x: f64) -> f64 {
+    libm::cbrt(x)
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn whole_powers_agree_with_the_general_function() {
+        for n in 0..=64 {
+            let (a, b) = (super::pow(0.93, f64::from(n)), libm::pow(0.93, f64::from(n)));
+            assert!((a - b).abs() <= b * 1e-14, "{n}");
+        }
+        assert_eq!(super::pow(0.0, 0.0), 1.0);
+        assert!((super::pow(0.5, 11.1434) - 0.000_442).abs() < 1e-6);
+    }
+}

@@ -1,0 +1,71 @@
+//! The only home of tolerances: bounds on rounding errors, all of them multiples of the unit roundoff times a
+//! magnitude. Nothing here is an absolute distance, so scenes may be 1e-6 or 1e9 units large.
+
+use crate::DVec3;
+
+/// The unit roundoff of f64: the relative error of one correctly rounded operation.
+pub const ROUNDOFF: f64 = f64::EPSILON / 2.0;
+
+/// Higham's bound on the relative error of `n` chained operations, `n u / (1 - n u)`.
+///
+/// Accuracy and Stability of Numerical Algorithms, section 3.1.
+pub const fn gamma(n: u32) -> f64 {
+    let nu = n as f64 * ROUNDOFF;
+    nu / (1.0 - nu)
+}
+
+/// The largest f32 not above `x` (`-inf` if `x` is below every finite f32; NaN stays NaN).
+#[inline]
+pub fn round_down_f32(x: f64) -> f32 {
+    let y = x as f32;
+    if f64::from(y) > x { y.next_down() } else { y }
+}
+
+/// The smallest f32 not below `x` (`inf` if `x` is above every finite f32; NaN stays NaN).
+#[inline]
+pub fn round_up_f32(x: f64) -> f32 {
+    let y = x as f32;
+    if f64::from(y) < x { y.next_up() } else { y }
+}
+
+/// Moves a point off the surface it lies on, just far enough that it is certainly on the chosen side.
+///
+/// `error` bounds the distance of `position` from the true surface, coordinate by coordinate; `normal` is the unit normal
+/// of the side to end up on. The result is rounded away from the surface. (Pharr, Jakob, Humphreys: Physically Based
+/// Rendering, 4th ed., section 6.8.6, in f64.)
+pub fn offset_origin(position: DVec3, error: DVec3, normal: DVec3) -> DVec3 {
+    let distance = normal.abs().dot(error);
+    let moved = position + normal * distance;
+    let round = |x: f64, n: f64| {
+        if n > 0.0 {
+            x.next_up()
+        } else if n < 0.0 {
+            x.next_down()
+        } else {
+            x
+        }
+    };
+    DVec3::new(round(moved.x, normal.x), round(moved.y, normal.y), round(moved.z, normal.z))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn outward_rounding_brackets() {
+        for x in [0.1, -0.1, 1e300, -1e300, 1.0, 0.0, 1e-50] {
+            assert!(f64::from(round_down_f32(x)) <= x && x <= f64::from(round_up_f32(x)), "{x}");
+        }
+        assert_eq!(round_up_f32(1.0), 1.0);
+    }
+
+    #[test]
+    fn an_offset_origin_is_strictly_on_its_side() {
+        let p = DVec3::new(1e9, -3.0, 0.1);
+        let n = DVec3::new(0.0, 0.6, -0.8);
+        let moved = offset_origin(p, DVec3::splat(1e-15), n);
+        assert!((moved - p).dot(n) > 0.0);
+        assert_eq!(moved.x, p.x);
+    }
+}
