@@ -1,11 +1,14 @@
 //! Surfaces and solids: what a ray can meet, exactly.
 //!
 //! * [`Primitive`]: anything a ray can hit. [`Solid`]: a primitive with an inside; what CSG combines.
-//! * [`shape::Shape`]: the table of all shapes, one enum generated from it.
-//! * [`mod@conformance`]: the battery of tests every primitive must pass.
+//! * [`Shape`]: the table of all shapes, one enum generated from it.
 
 mod primitive;
+pub mod primitives;
+mod shape;
 mod spans;
 
 pub use primitive::{GeometryError, PrimHit, Primitive, Scratch, Solid, SurfaceId, SurfacePoint};
+pub use primitives::{Cuboid, Sphere};
+pub use shape::Shape;
 pub use spans::{Crossing, Crossings, Side};

@@ -1,5 +1,6 @@
-use crate::Crossings;
-use strahl_math::{Aabb, DVec2, DVec3, Interval, Ray};
+use crate::{Crossings, Shape};
+use std::sync::Arc;
+use strahl_math::{Aabb, DVec2, DVec3, Interval, Ray, Transform};
 
 /// Names one smooth piece of a primitive's surface.
 ///
@@ -30,7 +31,11 @@ pub struct PrimHit {
 impl PrimHit {
     /// A hit on facet `facet` of element 0.
     pub const fn simple(t: f64, facet: u32) -> Self {
-        Self { t, surface: SurfaceId { element: 0, facet }, uv: [0.0; 2] }
+        Self {
+            t,
+            surface: SurfaceId { element: 0, facet },
+            uv: [0.0; 2],
+        }
     }
 }
 
@@ -129,16 +134,26 @@ pub trait Primitive: Send + Sync + std::fmt::Debug {
     fn as_solid(&self) -> Option<&dyn Solid> {
         None
     }
+
+    /// The primitive with a map applied, if the result is again a shape of its kind: same points, same side in front,
+    /// same facets, same texture coordinates, up to rounding. `None` where that is not so; the renderer then takes rays
+    /// into the primitive's own space.
+    fn baked(&self, _map: &Transform) -> Option<Shape> {
+        None
+    }
 }
 
 /// A primitive that encloses a volume: it has an inside.
+///
+/// Its [`Primitive::bounds`] hold the inside, not the surface alone (they differ for solids like half-spaces).
 pub trait Solid: Primitive {
     /// Appends all crossings of the surface with `range.min < t <= range.max`, ascending in `t`, and sets
     /// [`Crossings::inside_at_start`] to whether the ray just behind `range.min` is inside.
     ///
     /// `out` is empty on entry. Every change from outside to inside is there, so entering and leaving alternate.
     /// Touching the surface without getting inside is no crossing. `from` as in [`Primitive`]: the root at the start is
-    /// not listed, and `inside_at_start` tells the side that the ray leaves towards.
+    /// not listed, and `inside_at_start` tells the side that the ray leaves towards; nothing behind the start counts
+    /// then (a negative `range.min` is taken as 0).
     fn crossings(
         &self,
         ray: &Ray,
@@ -150,6 +165,57 @@ pub trait Solid: Primitive {
 
     /// Whether the point is inside or on the boundary.
     fn contains(&self, point: DVec3) -> bool;
+}
+
+/// A shared primitive is a primitive: large ones (meshes, trees) are held this way.
+impl<P: Primitive + ?Sized> Primitive for Arc<P> {
+    fn kind(&self) -> &'static str {
+        (**self).kind()
+    }
+
+    fn validate(&self) -> Result<(), GeometryError> {
+        (**self).validate()
+    }
+
+    fn bounds(&self) -> Aabb {
+        (**self).bounds()
+    }
+
+    fn elements(&self) -> u32 {
+        (**self).elements()
+    }
+
+    fn closest_hit(
+        &self,
+        ray: &Ray,
+        range: Interval,
+        from: Option<SurfaceId>,
+        scratch: &mut Scratch,
+    ) -> Option<PrimHit> {
+        (**self).closest_hit(ray, range, from, scratch)
+    }
+
+    fn any_hit(
+        &self,
+        ray: &Ray,
+        range: Interval,
+        from: Option<SurfaceId>,
+        scratch: &mut Scratch,
+    ) -> bool {
+        (**self).any_hit(ray, range, from, scratch)
+    }
+
+    fn surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
+        (**self).surface_at(ray, hit)
+    }
+
+    fn as_solid(&self) -> Option<&dyn Solid> {
+        (**self).as_solid()
+    }
+
+    fn baked(&self, map: &Transform) -> Option<Shape> {
+        (**self).baked(map)
+    }
 }
 
 /// Parameters that don't describe a shape.

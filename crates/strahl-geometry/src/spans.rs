@@ -28,7 +28,12 @@ pub struct Crossing {
 impl Crossing {
     /// A visible crossing.
     pub const fn new(hit: PrimHit, t_error: f64, side: Side) -> Self {
-        Self { hit, t_error, side, visible: true }
+        Self {
+            hit,
+            t_error,
+            side,
+            visible: true,
+        }
     }
 
     /// The piece of surface crossed.

@@ -1,0 +1,204 @@
+use super::convex::{End, Span};
+use super::{check_finite, point_error};
+use crate::{
+    Crossings, GeometryError, PrimHit, Primitive, Scratch, Shape, Solid, SurfaceId, SurfacePoint,
+};
+use strahl_math::error::gamma;
+use strahl_math::{Aabb, DMat3, DVec2, DVec3, Interval, Ray, Transform};
+
+/// A box whose faces are perpendicular to the coordinate axes, called `box` in scenes.
+///
+/// Facets: 0 and 1 are the faces at the smallest and the largest x, 2 and 3 those of y, 4 and 5 those of z. An edge belongs
+/// to the face of the earlier axis. Texture coordinates run from 0 to 1 over each face: `uv` is `(z, y)` on the faces of
+/// x, `(x, z)` on those of y and `(x, y)` on those of z, measured from the smallest corner.
+///
+/// Rays are cut by the three pairs of planes (Kay and Kajiya, "Ray Tracing Complex Scenes", SIGGRAPH 1986), in f64 with real
+/// divisions. A ray that runs within a face or touches an edge or a corner only does not hit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cuboid {
+    min: DVec3,
+    max: DVec3,
+}
+
+impl Cuboid {
+    /// The box between two corners; every coordinate of `min` must be less than that of `max`.
+    pub const fn new(min: DVec3, max: DVec3) -> Self {
+        Self { min, max }
+    }
+
+    /// The box with any two opposite corners, in any order.
+    pub fn from_corners(a: DVec3, b: DVec3) -> Self {
+        Self::new(a.min(b), a.max(b))
+    }
+
+    /// Like [`Cuboid::new`], checked.
+    ///
+    /// # Errors
+    /// A corner is not finite, or `min` is not less than `max` on some axis.
+    pub fn try_new(min: DVec3, max: DVec3) -> Result<Self, GeometryError> {
+        let cuboid = Self::new(min, max);
+        cuboid.validate().map(|()| cuboid)
+    }
+
+    /// The corner with the smallest coordinates.
+    pub const fn min(&self) -> DVec3 {
+        self.min
+    }
+
+    /// The corner with the largest coordinates.
+    pub const fn max(&self) -> DVec3 {
+        self.max
+    }
+
+    /// The span in which the line is inside. The face the ray starts on is at exactly `t = 0`.
+    #[inline]
+    fn span(&self, ray: &Ray, from: Option<SurfaceId>) -> Option<Span> {
+        let mut span = Span::LINE;
+        for axis in 0..3 {
+            let (o, d) = (ray.origin[axis], ray.direction[axis]);
+            let (low, high) = (2 * axis as u32, 2 * axis as u32 + 1);
+            let starts_on = |facet| from.is_some_and(|surface| surface.facet == facet);
+            if d == 0.0 {
+                // Within a face is outside; NaN is nowhere.
+                let between = self.min[axis] < o && o < self.max[axis];
+                if !between || starts_on(low) || starts_on(high) {
+                    return None;
+                }
+                continue;
+            }
+            let end = |facet, plane: f64| End {
+                t: if starts_on(facet) {
+                    0.0
+                } else {
+                    (plane - o) / d
+                },
+                facet,
+            };
+            let (at_min, at_max) = (end(low, self.min[axis]), end(high, self.max[axis]));
+            let (enter, exit) = if d > 0.0 {
+                (at_min, at_max)
+            } else {
+                (at_max, at_min)
+            };
+            span = span.cut(enter, exit)?;
+        }
+        // Without a direction nothing was cut.
+        span.enter.t.is_finite().then_some(span)
+    }
+}
+
+impl Primitive for Cuboid {
+    fn kind(&self) -> &'static str {
+        "box"
+    }
+
+    fn validate(&self) -> Result<(), GeometryError> {
+        check_finite("first corner of the box", self.min)?;
+        check_finite("second corner of the box", self.max)?;
+        if self.min.cmplt(self.max).all() {
+            return Ok(());
+        }
+        Err(GeometryError::Degenerate {
+            what: "box",
+            why: "its first corner is not below its second on every axis",
+        })
+    }
+
+    fn bounds(&self) -> Aabb {
+        Aabb::new(self.min, self.max)
+    }
+
+    #[inline]
+    fn closest_hit(
+        &self,
+        ray: &Ray,
+        range: Interval,
+        from: Option<SurfaceId>,
+        _scratch: &mut Scratch,
+    ) -> Option<PrimHit> {
+        self.span(ray, from)?.closest(range, from)
+    }
+
+    fn surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
+        let axis = (hit.surface.facet / 2).min(2) as usize;
+        let at_max = hit.surface.facet % 2 == 1;
+        // Exactly on the plane; the other coordinates are kept from leaving the face by rounding.
+        let mut position = ray.at(hit.t).clamp(self.min, self.max);
+        position[axis] = if at_max {
+            self.max[axis]
+        } else {
+            self.min[axis]
+        };
+        let mut n = DVec3::ZERO;
+        n[axis] = if at_max { 1.0 } else { -1.0 };
+
+        let size = self.max - self.min;
+        let part = (position - self.min) / size;
+        let (uv, dpdu, dpdv) = match axis {
+            0 => (
+                DVec2::new(part.z, part.y),
+                DVec3::Z * size.z,
+                DVec3::Y * size.y,
+            ),
+            1 => (
+                DVec2::new(part.x, part.z),
+                DVec3::X * size.x,
+                DVec3::Z * size.z,
+            ),
+            _ => (
+                DVec2::new(part.x, part.y),
+                DVec3::X * size.x,
+                DVec3::Y * size.y,
+            ),
+        };
+        SurfacePoint {
+            position,
+            position_error: point_error(position, 0.0, 1),
+            n_geom: n,
+            n_shade: n,
+            uv,
+            dpdu,
+            dpdv,
+        }
+    }
+
+    fn as_solid(&self) -> Option<&dyn Solid> {
+        Some(self)
+    }
+
+    /// A shift or a scaling along the axes makes a box of a box. A mirror would exchange facets and turn the texture
+    /// round, so it does not count.
+    fn baked(&self, map: &Transform) -> Option<Shape> {
+        let m = map.linear();
+        let scale = DVec3::new(m.x_axis.x, m.y_axis.y, m.z_axis.z);
+        let along_the_axes = m == DMat3::from_diagonal(scale) && scale.cmpgt(DVec3::ZERO).all();
+        along_the_axes
+            .then(|| Self::new(map.point_to_world(self.min), map.point_to_world(self.max)).into())
+    }
+}
+
+impl Solid for Cuboid {
+    fn crossings(
+        &self,
+        ray: &Ray,
+        range: Interval,
+        from: Option<SurfaceId>,
+        _scratch: &mut Scratch,
+        out: &mut Crossings,
+    ) {
+        let Some(span) = self.span(ray, from) else {
+            return;
+        };
+        let t_error = |end: End| {
+            let axis = (end.facet / 2).min(2) as usize;
+            let (o, d) = (ray.origin[axis], ray.direction[axis]);
+            let plane = self.min[axis].abs() + self.max[axis].abs();
+            gamma(8) * ((o.abs() + plane) / d.abs() + end.t.abs())
+        };
+        span.list(range, from, t_error, out);
+    }
+
+    fn contains(&self, point: DVec3) -> bool {
+        self.bounds().contains(point)
+    }
+}

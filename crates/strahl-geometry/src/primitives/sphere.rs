@@ -1,0 +1,224 @@
+use super::convex::{End, Span};
+use super::frame::{UvFrame, similarity, turn};
+use super::{check_finite, point_error};
+use crate::{
+    Crossings, GeometryError, PrimHit, Primitive, Scratch, Shape, Solid, SurfaceId, SurfacePoint,
+};
+use std::f64::consts::PI;
+use strahl_math::error::gamma;
+use strahl_math::{Aabb, DVec2, DVec3, Interval, Ray, Transform, det};
+
+/// A sphere.
+///
+/// A **negative radius** makes a sphere that is looked at from within, as NFF has it: the same points, but `n_geom` points
+/// to the centre, and it is an open surface, no [`Solid`].
+///
+/// Texture coordinates: `u` is the longitude, 0 on the side of +x, growing towards -z (to the right as seen from
+/// outside with +y up); `v` is the latitude, 0 at the pole -y, 1 at the pole +y; both run from 0 to 1. Facets: one, 0.
+///
+/// The ray is solved by the closest approach to the centre instead of by `b² - 4ac`, which loses all digits of small
+/// spheres far away (Haines, Günther, Akenine-Möller: "Precision Improvements for Ray/Sphere Intersection", Ray Tracing
+/// Gems, 2019). A ray that touches the sphere in a single point does not hit it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sphere {
+    center: DVec3,
+    radius: f64,
+    frame: UvFrame,
+}
+
+impl Sphere {
+    /// The sphere of a centre and a radius. A negative radius turns the normal inwards.
+    pub fn new(center: DVec3, radius: f64) -> Self {
+        Self {
+            center,
+            radius,
+            frame: UvFrame::default(),
+        }
+    }
+
+    /// Like [`Sphere::new`], checked.
+    ///
+    /// # Errors
+    /// The centre or the radius is not finite, or the radius is zero.
+    pub fn try_new(center: DVec3, radius: f64) -> Result<Self, GeometryError> {
+        let sphere = Self::new(center, radius);
+        sphere.validate().map(|()| sphere)
+    }
+
+    /// The centre.
+    pub fn center(&self) -> DVec3 {
+        self.center
+    }
+
+    /// The radius as given, negative for a sphere looked at from within.
+    pub fn radius(&self) -> f64 {
+        self.radius
+    }
+
+    /// The two parameters at which the line crosses the sphere, `near < far`.
+    ///
+    /// With `f = origin - center` and `F(t) = |f + t d|² - r² = a t² - 2 b t + c`: the discriminant `b² - a c` is
+    /// `a (r² - |f + (b/a) d|²)`, the roots are `c / q` and `q / a` with `q = b ± √(b² - a c)` of the larger magnitude.
+    #[inline(always)]
+    fn roots(&self, ray: &Ray, on_surface: bool) -> Option<(f64, f64)> {
+        let (d, r) = (ray.direction, self.radius.abs());
+        let f = ray.origin - self.center;
+        let a = d.dot(d);
+        let b = -f.dot(d);
+        let closest_t = b / a;
+        if on_surface {
+            // c is zero: the roots are 0 and 2b/a. Below its own rounding error the sign of b says nothing: a tangent.
+            let other = 2.0 * closest_t;
+            let certain = b.abs() > gamma(4) * f.abs().dot(d.abs());
+            return (certain && other.is_finite()).then_some(if b > 0.0 {
+                (0.0, other)
+            } else {
+                (other, 0.0)
+            });
+        }
+        let closest = f + d * closest_t;
+        let discriminant = a * (r * r - closest.dot(closest));
+        // Also false if the ray has a NaN, no direction or an infinite coordinate.
+        if !(discriminant > 0.0) {
+            return None;
+        }
+        let s = discriminant.sqrt();
+        let distance = f.length();
+        let c = (distance - r) * (distance + r);
+        Some(if b >= 0.0 {
+            let q = b + s;
+            (c / q, q / a)
+        } else {
+            let q = b - s;
+            (q / a, c / q)
+        })
+    }
+
+    /// How far the parameter of a hit may be off: the error of the point on the ray, divided by the speed at which the
+    /// ray crosses the surface; near a tangent the error grows to the square root.
+    fn t_error(&self, ray: &Ray, t: f64) -> f64 {
+        let r = self.radius.abs();
+        let f = ray.origin - self.center;
+        let speed = ray.direction.length();
+        let point = gamma(8) * (ray.origin.length() + self.center.length() + f.length() + r);
+        let across = (f + ray.direction * t).dot(ray.direction).abs();
+        let straight = point * r / across;
+        let tangent = (2.0 * r * point).sqrt() / speed;
+        gamma(2) * t.abs()
+            + if straight < tangent {
+                straight
+            } else {
+                tangent
+            }
+    }
+}
+
+impl Primitive for Sphere {
+    fn kind(&self) -> &'static str {
+        "sphere"
+    }
+
+    fn validate(&self) -> Result<(), GeometryError> {
+        check_finite("center of the sphere", self.center)?;
+        let what = "radius of the sphere";
+        if !self.radius.is_finite() {
+            return Err(GeometryError::NotFinite { what });
+        }
+        if self.radius == 0.0 {
+            return Err(GeometryError::OutOfRange {
+                what,
+                expected: "different from 0",
+                found: 0.0,
+            });
+        }
+        Ok(())
+    }
+
+    fn bounds(&self) -> Aabb {
+        let r = DVec3::splat(self.radius.abs());
+        let tight = Aabb::new(self.center - r, self.center + r);
+        tight.padded(point_error(self.center.abs() + r, self.radius.abs(), 8))
+    }
+
+    #[inline]
+    fn closest_hit(
+        &self,
+        ray: &Ray,
+        range: Interval,
+        from: Option<SurfaceId>,
+        _scratch: &mut Scratch,
+    ) -> Option<PrimHit> {
+        let (near, far) = self.roots(ray, from.is_some())?;
+        if range.accepts(near) && (from.is_none() || near != 0.0) {
+            return Some(PrimHit::simple(near, 0));
+        }
+        (range.accepts(far) && (from.is_none() || far != 0.0)).then(|| PrimHit::simple(far, 0))
+    }
+
+    fn surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
+        let r = self.radius.abs();
+        let outward = ((ray.origin - self.center) + ray.direction * hit.t).normalize_or(DVec3::Y);
+        let position = self.center + outward * r;
+        let n = if self.radius < 0.0 { -outward } else { outward };
+
+        let axes = self.frame.axes(DVec3::Y);
+        let local = axes.transpose() * outward;
+        let ring = DVec2::new(local.x, local.y).length();
+        let height = local.z.clamp(-1.0, 1.0);
+        // At a pole every longitude is right; the seam's is taken.
+        let (east_x, east_y) = if ring > 0.0 {
+            (local.x / ring, local.y / ring)
+        } else {
+            (1.0, 0.0)
+        };
+        let east = axes.y_axis * east_x - axes.x_axis * east_y;
+        let north = axes.z_axis * ring - (axes.x_axis * east_x + axes.y_axis * east_y) * height;
+        SurfacePoint {
+            position,
+            position_error: point_error(position, r, 8),
+            n_geom: n,
+            n_shade: n,
+            uv: DVec2::new(turn(local.y, local.x), 1.0 - det::acos(height) / PI),
+            dpdu: east * (2.0 * PI * r * ring),
+            dpdv: north * (PI * r),
+        }
+    }
+
+    fn as_solid(&self) -> Option<&dyn Solid> {
+        if self.radius < 0.0 { None } else { Some(self) }
+    }
+
+    /// Any similarity makes a sphere of a sphere.
+    fn baked(&self, map: &Transform) -> Option<Shape> {
+        let (scale, orthogonal) = similarity(map)?;
+        Some(Shape::Sphere(Self {
+            center: map.point_to_world(self.center),
+            radius: self.radius * scale,
+            frame: self.frame.turned(DVec3::Y, orthogonal),
+        }))
+    }
+}
+
+impl Solid for Sphere {
+    fn crossings(
+        &self,
+        ray: &Ray,
+        range: Interval,
+        from: Option<SurfaceId>,
+        _scratch: &mut Scratch,
+        out: &mut Crossings,
+    ) {
+        if let Some((near, far)) = self.roots(ray, from.is_some()) {
+            let end = |t| End { t, facet: 0 };
+            Span {
+                enter: end(near),
+                exit: end(far),
+            }
+            .list(range, from, |end| self.t_error(ray, end.t), out);
+        }
+    }
+
+    fn contains(&self, point: DVec3) -> bool {
+        (point - self.center).length() <= self.radius.abs()
+    }
+}

@@ -1,0 +1,122 @@
+use crate::primitives::{Cuboid, Sphere};
+use crate::{GeometryError, PrimHit, Primitive, Scratch, Solid, SurfaceId, SurfacePoint};
+use std::sync::Arc;
+use strahl_math::{Aabb, Interval, Ray, Transform};
+
+/// Makes the enum of all shapes from the table below: the variants, the dispatch without virtual calls, the conversions.
+macro_rules! shapes {
+    ($($(#[$doc:meta])* $variant:ident($type:ty),)+) => {
+        /// Any shape: what scenes store.
+        ///
+        /// It is itself a [`Primitive`] and passes every question on to the shape within.
+        #[derive(Clone, Debug)]
+        #[non_exhaustive]
+        pub enum Shape {
+            $($(#[$doc])* $variant($type),)+
+        }
+
+        impl Primitive for Shape {
+            fn kind(&self) -> &'static str {
+                match self { $(Self::$variant(shape) => shape.kind(),)+ }
+            }
+
+            fn validate(&self) -> Result<(), GeometryError> {
+                match self { $(Self::$variant(shape) => shape.validate(),)+ }
+            }
+
+            fn bounds(&self) -> Aabb {
+                match self { $(Self::$variant(shape) => shape.bounds(),)+ }
+            }
+
+            fn elements(&self) -> u32 {
+                match self { $(Self::$variant(shape) => shape.elements(),)+ }
+            }
+
+            #[inline]
+            fn closest_hit(
+                &self,
+                ray: &Ray,
+                range: Interval,
+                from: Option<SurfaceId>,
+                scratch: &mut Scratch,
+            ) -> Option<PrimHit> {
+                match self { $(Self::$variant(shape) => shape.closest_hit(ray, range, from, scratch),)+ }
+            }
+
+            #[inline]
+            fn any_hit(
+                &self,
+                ray: &Ray,
+                range: Interval,
+                from: Option<SurfaceId>,
+                scratch: &mut Scratch,
+            ) -> bool {
+                match self { $(Self::$variant(shape) => shape.any_hit(ray, range, from, scratch),)+ }
+            }
+
+            fn surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
+                match self { $(Self::$variant(shape) => shape.surface_at(ray, hit),)+ }
+            }
+
+            fn as_solid(&self) -> Option<&dyn Solid> {
+                match self { $(Self::$variant(shape) => shape.as_solid(),)+ }
+            }
+
+            fn baked(&self, map: &Transform) -> Option<Shape> {
+                match self { $(Self::$variant(shape) => shape.baked(map),)+ }
+            }
+        }
+
+        $(impl From<$type> for Shape {
+            fn from(shape: $type) -> Self {
+                Self::$variant(shape)
+            }
+        })+
+    };
+}
+
+// THE table of shapes: a new one is one line here. Large shapes are held in an `Arc`, so that the enum stays small.
+shapes! {
+    /// A sphere.
+    Sphere(Sphere),
+    /// A box with faces along the axes.
+    Cuboid(Cuboid),
+    /// A primitive from outside of this crate.
+    Custom(Arc<dyn Primitive>),
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use strahl_math::DVec3;
+
+    #[test]
+    fn a_shape_answers_like_the_primitive_within() {
+        let sphere = Sphere::new(DVec3::ZERO, 2.0);
+        let custom: Arc<dyn Primitive> = Arc::new(sphere.clone());
+        let ray = Ray::new(DVec3::new(0.0, 0.5, -9.0), DVec3::Z);
+        let scratch = &mut Scratch::default();
+        let expected = sphere.closest_hit(&ray, Interval::FORWARD, None, scratch);
+        assert!(expected.is_some());
+        for shape in [Shape::from(sphere), Shape::from(custom)] {
+            assert_eq!(shape.kind(), "sphere");
+            assert_eq!(
+                shape.closest_hit(&ray, Interval::FORWARD, None, scratch),
+                expected
+            );
+            assert!(shape.any_hit(&ray, Interval::FORWARD, None, scratch));
+            assert!(
+                shape.as_solid().is_some() && shape.validate().is_ok() && shape.elements() == 1
+            );
+        }
+    }
+
+    #[test]
+    fn shapes_stay_small() {
+        assert!(
+            size_of::<Shape>() <= 128,
+            "{}: put the largest shape into an Arc",
+            size_of::<Shape>()
+        );
+    }
+}
