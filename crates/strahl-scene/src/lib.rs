@@ -1,1 +1,22 @@
-//! x
+//! The scene description: plain data with source spans, and the builder that programs use.
+//!
+//! Readers of file formats produce a [`Scene`], the renderer compiles it; neither knows the other. Everything in a
+//! scene is in world units; angles are in radians; colours are linear Rec. 709.
+
+mod background;
+mod builder;
+mod camera;
+mod diagnostic;
+mod object;
+mod scene;
+mod settings;
+mod span;
+
+pub use background::Background;
+pub use builder::ObjectExt;
+pub use camera::{Camera, Projection};
+pub use diagnostic::{Diagnostic, Severity, SourceLine};
+pub use object::{Children, CsgOp, Group, GroupId, Object, ObjectKind, Visibility};
+pub use scene::{Scene, SceneLight};
+pub use settings::Settings;
+pub use span::{FileId, Location, SourceMap, Span};

@@ -1,1 +1,20 @@
-//! x
+//! What light does at a point: colours, materials, lights and the selectable shading models.
+//!
+//! Materials don't know shapes: everything here works on directions, normals and numbers.
+
+mod color;
+mod fresnel;
+pub mod image_texture;
+mod light;
+mod material;
+mod pbr;
+mod reflectance;
+mod refraction;
+
+pub use color::Color;
+pub use fresnel::fresnel_dielectric;
+pub use light::{Falloff, Light, LightKind, LightSample};
+pub use material::{Finish, Material, MaterialId, MaterialPoint, Sides};
+pub use pbr::{Pbr, TextureRef, Textures};
+pub use reflectance::{ShadingModel, UnknownShadingModel};
+pub use refraction::{Refracted, reflect, refract};

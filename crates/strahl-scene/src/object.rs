@@ -1,0 +1,145 @@
+use crate::Span;
+use std::sync::Arc;
+use strahl_geometry::Shape;
+use strahl_math::Transform;
+use strahl_shade::Material;
+
+/// Index of a group of objects in [`Scene::groups`](crate::Scene::groups), to be instanced.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct GroupId(pub u32);
+
+/// How children are combined to one object: POV-Ray's meanings.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum CsgOp {
+    /// All children together; surfaces inside of other children stay (and show if the outer ones are transparent). Children
+    /// may be open surfaces.
+    Union,
+    /// All children together as one solid without inner surfaces.
+    Merge,
+    /// What is inside of every child.
+    Intersection,
+    /// The first child without the others.
+    Difference,
+    /// Everything that is outside of the one child.
+    Inverse,
+    /// The surface of the first child as far as it is inside of the others; the cut is not closed by a cap.
+    Clip,
+}
+
+impl CsgOp {
+    /// The word for it.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Union => "union",
+            Self::Merge => "merge",
+            Self::Intersection => "intersection",
+            Self::Difference => "difference",
+            Self::Inverse => "inverse",
+            Self::Clip => "clipped-by",
+        }
+    }
+}
+
+/// A list of objects that can be nested arbitrarily deep: dropping it takes no stack.
+#[derive(Clone, Debug, Default)]
+pub struct Children(pub Vec<Object>);
+
+impl Drop for Children {
+    fn drop(&mut self) {
+        let mut waiting = std::mem::take(&mut self.0);
+        while let Some(mut object) = waiting.pop() {
+            if let ObjectKind::Csg { children, .. } = &mut object.kind {
+                waiting.append(&mut children.0);
+            }
+        }
+    }
+}
+
+/// What an object is.
+#[derive(Clone, Debug)]
+pub enum ObjectKind {
+    /// A surface or solid.
+    Shape(Shape),
+    /// Children combined to one object.
+    Csg {
+        /// How.
+        op: CsgOp,
+        /// What; material, name and span of the parent hold for children that have none.
+        children: Children,
+    },
+    /// A group of objects once more, without copying it.
+    Instance(GroupId),
+}
+
+/// To which kinds of rays an object shows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Visibility {
+    /// Rays from the eye.
+    pub camera: bool,
+    /// Reflection and transparency rays.
+    pub secondary: bool,
+    /// Shadow rays.
+    pub shadow: bool,
+}
+
+impl Default for Visibility {
+    fn default() -> Self {
+        Self { camera: true, secondary: true, shadow: true }
+    }
+}
+
+/// One object of a scene.
+#[derive(Clone, Debug)]
+pub struct Object {
+    /// Name for ray trees and messages.
+    pub name: Option<Arc<str>>,
+    /// The place in the scene that made it.
+    pub span: Span,
+    /// What it is made of; `None` takes the parent's, or the default material.
+    pub material: Option<Arc<Material>>,
+    /// Where it is in its parent's space; `None` is the identity.
+    pub transform: Option<Box<Transform>>,
+    /// To which rays it shows.
+    pub visibility: Visibility,
+    /// What it is.
+    pub kind: ObjectKind,
+}
+
+/// A list of objects that instances refer to.
+#[derive(Clone, Debug, Default)]
+pub struct Group {
+    /// Name for messages.
+    pub name: Option<Arc<str>>,
+    /// The objects, in the group's own space.
+    pub objects: Children,
+}
+
+impl Object {
+    /// An object of this kind: no name, no place, default material.
+    pub fn new(kind: ObjectKind) -> Self {
+        Self {
+            name: None,
+            span: Span::NONE,
+            material: None,
+            transform: None,
+            visibility: Visibility::default(),
+            kind,
+        }
+    }
+
+    /// Combines objects.
+    pub fn csg(op: CsgOp, children: Vec<Self>) -> Self {
+        Self::new(ObjectKind::Csg { op, children: Children(children) })
+    }
+
+    /// A group once more.
+    pub fn instance(group: GroupId) -> Self {
+        Self::new(ObjectKind::Instance(group))
+    }
+}
+
+impl<T: Into<Shape>> From<T> for Object {
+    fn from(shape: T) -> Self {
+        Self::new(ObjectKind::Shape(shape.into()))
+    }
+}

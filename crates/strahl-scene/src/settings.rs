@@ -1,0 +1,26 @@
+use strahl_shade::ShadingModel;
+
+/// What a scene asks of the renderer; the caller may override each.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settings {
+    /// Picture size in pixels, if the scene names one.
+    pub size: Option<(u32, u32)>,
+    /// Deepest level of the ray tree, the primary ray being level 1; at least 1.
+    pub max_depth: u32,
+    /// Rays whose weight (the largest channel of the product of all coefficients on the way) is below this are not
+    /// followed; 0 follows all.
+    pub adc_bailout: f64,
+    /// Shading model of materials that name none.
+    pub shading: ShadingModel,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            size: None,
+            max_depth: 10,
+            adc_bailout: 1.0 / 255.0,
+            shading: ShadingModel::BlinnPhong,
+        }
+    }
+}

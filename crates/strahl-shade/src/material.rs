@@ -1,0 +1,215 @@
+use crate::{Color, Pbr, ShadingModel};
+use strahl_math::DVec2;
+
+/// Index of a material in the scene's list.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct MaterialId(pub u32);
+
+/// From which sides a surface exists.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Sides {
+    /// Seen from both sides; the normal is turned towards the viewer.
+    #[default]
+    Two,
+    /// Rays that meet the back (d·n > 0) pass as if nothing were there.
+    Front,
+}
+
+/// The coefficients of the classical model at one point (method: sections 2 and 3).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Finish {
+    /// ka: what is reflected of the ambient light.
+    pub ambient: Color,
+    /// kd: diffuse reflectance.
+    pub diffuse: Color,
+    /// ks: strength of the highlight.
+    pub specular: Color,
+    /// p: exponent of the highlight, `>= 0`.
+    pub shininess: f64,
+    /// kr: share of the light from the reflected direction.
+    pub reflection: Color,
+    /// kt: share of the light from the transparency direction; also what a shadow ray keeps when it passes.
+    pub transmission: Color,
+    /// Light the surface emits itself.
+    pub emission: Color,
+}
+
+impl Finish {
+    /// Black, reflecting nothing.
+    pub const BLACK: Self = Self {
+        ambient: Color::BLACK,
+        diffuse: Color::BLACK,
+        specular: Color::BLACK,
+        shininess: 1.0,
+        reflection: Color::BLACK,
+        transmission: Color::BLACK,
+        emission: Color::BLACK,
+    };
+}
+
+/// What an object is made of.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Material {
+    /// Name for messages and ray trees; may be empty.
+    pub name: String,
+    /// Shading model; `None` takes the scene's.
+    pub model: Option<ShadingModel>,
+    /// The coefficients, unless `pbr` replaces them point by point.
+    pub finish: Finish,
+    /// η, the index of refraction of the inside; 1 lets rays pass straight.
+    pub eta: f64,
+    /// Absorption inside per unit length (Beer-Lambert): a path of length s keeps `exp(-absorption s)`.
+    pub absorption: Color,
+    /// Whether Fresnel's equations divide the light between reflection and transparency: `kr` and `kt` are then scaled by
+    /// F and 1-F.
+    pub fresnel: bool,
+    /// From which sides the surface exists.
+    pub sides: Sides,
+    /// A physically based description (glTF's) from which the coefficients follow, possibly by textures.
+    pub pbr: Option<Box<Pbr>>,
+}
+
+/// A material evaluated at a point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MaterialPoint {
+    /// The coefficients; `reflection` is the part of kr that does not depend on the angle.
+    pub finish: Finish,
+    /// The part of kr that Fresnel's F scales.
+    pub fresnel_reflection: Color,
+    /// Whether Fresnel's equations apply: kt is scaled by 1-F.
+    pub fresnel: bool,
+    /// What stays of the alpha channel: below 1/2 in alpha-mask mode there is no surface at all.
+    pub opacity: f64,
+}
+
+impl MaterialPoint {
+    /// The coefficients as they are; with `fresnel`, all of kr depends on the angle.
+    #[inline]
+    pub fn classical(finish: Finish, fresnel: bool) -> Self {
+        if !fresnel {
+            return Self {
+                finish,
+                fresnel_reflection: Color::BLACK,
+                fresnel,
+                opacity: 1.0,
+            };
+        }
+        let fresnel_reflection = finish.reflection;
+        let finish = Finish {
+            reflection: Color::BLACK,
+            ..finish
+        };
+        Self {
+            finish,
+            fresnel_reflection,
+            fresnel,
+            opacity: 1.0,
+        }
+    }
+}
+
+impl Default for Material {
+    /// Matte light grey.
+    fn default() -> Self {
+        Self::matte(Color::gray(0.8))
+    }
+}
+
+impl Material {
+    /// A diffuse surface of the given colour, without highlight: kd = ka = colour.
+    pub fn matte(color: Color) -> Self {
+        Self {
+            name: String::new(),
+            model: None,
+            finish: Finish {
+                ambient: color,
+                diffuse: color,
+                ..Finish::BLACK
+            },
+            eta: 1.0,
+            absorption: Color::BLACK,
+            fresnel: false,
+            sides: Sides::Two,
+            pbr: None,
+        }
+    }
+
+    /// A diffuse surface with a white highlight of strength `ks` and exponent `shininess`.
+    pub fn shiny(color: Color, ks: f64, shininess: f64) -> Self {
+        let matte = Self::matte(color);
+        let finish = Finish {
+            specular: Color::gray(ks),
+            shininess,
+            ..matte.finish
+        };
+        Self { finish, ..matte }
+    }
+
+    /// A mirror that reflects `kr` of the light, with a sharp highlight.
+    pub fn mirror(kr: Color) -> Self {
+        let finish = Finish {
+            reflection: kr,
+            specular: kr,
+            shininess: 200.0,
+            ..Finish::BLACK
+        };
+        Self {
+            finish,
+            ..Self::matte(Color::BLACK)
+        }
+    }
+
+    /// Clear glass of index `eta` with Fresnel reflection.
+    pub fn glass(eta: f64) -> Self {
+        let finish = Finish {
+            reflection: Color::WHITE,
+            transmission: Color::WHITE,
+            specular: Color::gray(0.5),
+            shininess: 200.0,
+            ..Finish::BLACK
+        };
+        Self {
+            finish,
+            eta,
+            fresnel: true,
+            ..Self::matte(Color::BLACK)
+        }
+    }
+
+    /// The same material under a name.
+    #[must_use]
+    pub fn named(self, name: impl Into<String>) -> Self {
+        Self {
+            name: name.into(),
+            ..self
+        }
+    }
+
+    /// Sets kr, the share of reflected light.
+    #[must_use]
+    pub fn with_reflection(mut self, kr: Color) -> Self {
+        self.finish.reflection = kr;
+        self
+    }
+
+    /// Makes the material transparent in POV-Ray's terms: of the light from behind, `filter` passes tinted by `pigment`
+    /// and `transmit` passes unchanged; kd and ka are weakened by what passes.
+    #[must_use]
+    pub fn with_transparency(mut self, pigment: Color, filter: f64, transmit: f64) -> Self {
+        self.finish.transmission = pigment * filter + Color::gray(transmit);
+        let rest = 1.0 - filter - transmit;
+        let rest = if rest > 0.0 { rest } else { 0.0 };
+        self.finish.diffuse = self.finish.diffuse * rest;
+        self.finish.ambient = self.finish.ambient * rest;
+        self
+    }
+
+    /// The coefficients at texture coordinates `uv`.
+    #[inline]
+    pub fn at(&self, uv: DVec2) -> MaterialPoint {
+        match &self.pbr {
+            None => MaterialPoint::classical(self.finish, self.fresnel),
+            Some(pbr) => pbr.at(uv),
+        }
+    }
+}
