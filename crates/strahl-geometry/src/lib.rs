@@ -2,7 +2,9 @@
 //!
 //! * [`Primitive`]: anything a ray can hit. [`Solid`]: a primitive with an inside; what CSG combines.
 //! * [`Shape`]: the table of all shapes, one enum generated from it.
+//! * [`mod@conformance`]: the battery of tests every primitive must pass.
 
+pub mod conformance;
 mod primitive;
 pub mod primitives;
 mod shape;

@@ -202,3 +202,87 @@ impl Solid for Cuboid {
         self.bounds().contains(point)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    crate::primitive_tests!(unit, || Cuboid::new(DVec3::ZERO, DVec3::ONE));
+    crate::primitive_tests!(slab, || Cuboid::new(
+        DVec3::new(-9.0, 2.0, 1.0),
+        DVec3::new(7.0, 2.01, 3.0)
+    ));
+
+    fn closest(ray: &Ray, from: Option<u32>) -> Option<(f64, u32)> {
+        let from = from.map(|facet| SurfaceId { element: 0, facet });
+        Cuboid::new(DVec3::ZERO, DVec3::ONE)
+            .closest_hit(ray, Interval::FORWARD, from, &mut Scratch::default())
+            .map(|hit| (hit.t, hit.surface.facet))
+    }
+
+    #[test]
+    fn each_face_has_its_number() {
+        let center = DVec3::splat(0.5);
+        for (facet, axis) in [DVec3::X, DVec3::Y, DVec3::Z].into_iter().enumerate() {
+            let facet = 2 * facet as u32;
+            assert_eq!(closest(&Ray::new(center, -axis), None), Some((0.5, facet)));
+            assert_eq!(
+                closest(&Ray::new(center, axis), None),
+                Some((0.5, facet + 1))
+            );
+            assert_eq!(
+                closest(&Ray::new(center - axis * 2.5, axis), None),
+                Some((2.0, facet))
+            );
+        }
+    }
+
+    #[test]
+    fn a_ray_within_a_face_misses() {
+        assert_eq!(
+            closest(&Ray::new(DVec3::new(-1.0, 1.0, 0.5), DVec3::X), None),
+            None
+        );
+        assert_eq!(
+            closest(&Ray::new(DVec3::new(-1.0, 0.0, 0.0), DVec3::X), None),
+            None
+        );
+    }
+
+    #[test]
+    fn the_face_a_ray_starts_on_is_not_hit_again() {
+        // The origin is a little off the face, on the wrong side.
+        let origin = DVec3::new(1.0 + 1e-15, 0.5, 0.5);
+        assert_eq!(
+            closest(&Ray::new(origin, -DVec3::X), Some(1)).map(|hit| hit.1),
+            Some(0)
+        );
+        assert_eq!(
+            closest(
+                &Ray::new(DVec3::new(1.0 - 1e-15, 0.5, 0.5), DVec3::X),
+                Some(1)
+            ),
+            None
+        );
+    }
+
+    #[test]
+    fn turned_boxes_are_not_baked() {
+        let cuboid = Cuboid::new(DVec3::ZERO, DVec3::ONE);
+        assert!(cuboid.baked(&Transform::rotate(DVec3::Z, 0.5)).is_none());
+        assert!(cuboid.baked(&Transform::translate(DVec3::X)).is_some());
+    }
+
+    #[test]
+    fn impossible_boxes_are_refused() {
+        assert!(matches!(
+            Cuboid::try_new(DVec3::ZERO, DVec3::X),
+            Err(GeometryError::Degenerate { .. })
+        ));
+        assert!(
+            Cuboid::from_corners(DVec3::ONE, DVec3::ZERO)
+                .validate()
+                .is_ok()
+        );
+    }
+}

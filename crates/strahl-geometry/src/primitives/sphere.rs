@@ -222,3 +222,86 @@ impl Solid for Sphere {
         (point - self.center).length() <= self.radius.abs()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    crate::primitive_tests!(unit, || Sphere::new(DVec3::ZERO, 1.0));
+    crate::primitive_tests!(elsewhere, || Sphere::new(DVec3::new(5.0, -3.0, 2.0), 0.3));
+    crate::primitive_tests!(from_within, || Sphere::new(DVec3::ZERO, -2.0));
+
+    /// The textbook solution: `b² - 4ac` of the expanded square.
+    fn textbook(ray: &Ray, center: DVec3, radius: f64) -> Option<f64> {
+        let (d, f) = (ray.direction, ray.origin - center);
+        let (a, b, c) = (d.dot(d), 2.0 * f.dot(d), f.dot(f) - radius * radius);
+        let discriminant = b * b - 4.0 * a * c;
+        (discriminant >= 0.0).then(|| (-b - discriminant.sqrt()) / (2.0 * a))
+    }
+
+    #[test]
+    fn a_million_radii_away_the_textbook_form_loses_its_digits() {
+        let (mut robust_error, mut textbook_error) = (0.0f64, 0.0f64);
+        let mut random = crate::conformance::Random::new(1);
+        let sphere = Sphere::new(DVec3::ZERO, 1.0);
+        for _ in 0..1000 {
+            let target = random.direction() * random.unit();
+            let toward = random.direction();
+            let ray = Ray::new(target - toward * 1e6, toward);
+            let off = |t: f64| (ray.at(t).length() - 1.0).abs();
+            let hit = sphere
+                .closest_hit(&ray, Interval::FORWARD, None, &mut Scratch::default())
+                .expect("aimed at it");
+            robust_error = robust_error.max(off(hit.t));
+            textbook_error = textbook_error.max(textbook(&ray, DVec3::ZERO, 1.0).map_or(1.0, off));
+        }
+        assert!(robust_error < 1e-9, "{robust_error}");
+        assert!(
+            textbook_error > 1e-5,
+            "{textbook_error}: the textbook form is better than its reputation"
+        );
+    }
+
+    #[test]
+    fn a_start_on_the_surface_finds_the_far_side_exactly() {
+        let sphere = Sphere::new(DVec3::ZERO, 1.0);
+        let from = Some(SurfaceId {
+            element: 0,
+            facet: 0,
+        });
+        let hit =
+            |ray: &Ray| sphere.closest_hit(ray, Interval::FORWARD, from, &mut Scratch::default());
+        let inward = Ray::new(DVec3::X, DVec3::new(-1.0, 1.0, 0.0));
+        assert_eq!(hit(&inward).map(|hit| hit.t), Some(1.0));
+        assert_eq!(hit(&Ray::new(DVec3::X, DVec3::X)), None);
+        assert_eq!(hit(&Ray::new(DVec3::X, DVec3::Y)), None);
+    }
+
+    #[test]
+    fn a_negative_radius_turns_the_normal_and_is_no_solid() {
+        let hollow = Sphere::new(DVec3::ZERO, -2.0);
+        let ray = Ray::new(DVec3::ZERO, DVec3::Z);
+        let hit = hollow
+            .closest_hit(&ray, Interval::FORWARD, None, &mut Scratch::default())
+            .expect("surrounded");
+        assert_eq!(hit.t, 2.0);
+        assert_eq!(hollow.surface_at(&ray, &hit).n_geom, -DVec3::Z);
+        assert!(hollow.as_solid().is_none() && hollow.validate().is_ok());
+    }
+
+    #[test]
+    fn impossible_spheres_are_refused() {
+        assert!(matches!(
+            Sphere::try_new(DVec3::ZERO, 0.0),
+            Err(GeometryError::OutOfRange { .. })
+        ));
+        assert!(matches!(
+            Sphere::try_new(DVec3::ZERO, f64::NAN),
+            Err(GeometryError::NotFinite { .. })
+        ));
+        assert!(matches!(
+            Sphere::try_new(DVec3::INFINITY, 1.0),
+            Err(GeometryError::NotFinite { .. })
+        ));
+    }
+}
