@@ -10,6 +10,7 @@ mod material;
 mod pbr;
 mod reflectance;
 mod refraction;
+pub mod srgb;
 
 pub use color::Color;
 pub use fresnel::fresnel_dielectric;

@@ -1,0 +1,123 @@
+//! The sRGB transfer function of IEC 61966-2-1:1999: between linear light and the codes pictures are stored in.
+//!
+//! With linear light `L` and encoded value `V`, both in `0..=1`:
+//! `V = 12.92 L` for `L <= 0.0031308`, else `V = 1.055 L^(1/2.4) - 0.055`, and
+//! `L = V / 12.92` for `V <= 0.04045`, else `L = ((V + 0.055) / 1.055)^2.4`.
+//! The powers are [`strahl_math::det::pow`], so that a code is the same on every machine.
+
+use std::sync::LazyLock;
+
+use strahl_math::det;
+
+/// The encoded value of linear light; below zero the function continues with its straight line, above one with its curve.
+pub fn encode(linear: f64) -> f64 {
+    if linear <= 0.003_130_8 {
+        12.92 * linear
+    } else {
+        1.055 * det::pow(linear, 1.0 / 2.4) - 0.055
+    }
+}
+
+/// The linear light of an encoded value: the inverse of [`encode`].
+///
+/// The standard's rounded constants leave a step of about 1e-7 where line and curve meet.
+pub fn decode(encoded: f64) -> f64 {
+    if encoded <= 0.040_45 {
+        encoded / 12.92
+    } else {
+        det::pow((encoded + 0.055) / 1.055, 2.4)
+    }
+}
+
+/// The 8-bit code of linear light: clamped to `0..=1`, encoded, rounded half up; NaN is 0.
+pub fn encode_u8(linear: f64) -> u8 {
+    quantize(linear, 255.0) as u8
+}
+
+/// The 16-bit code of linear light: clamped to `0..=1`, encoded, rounded half up; NaN is 0.
+pub fn encode_u16(linear: f64) -> u16 {
+    quantize(linear, 65_535.0) as u16
+}
+
+/// The linear light of an 8-bit code.
+pub fn decode_u8(code: u8) -> f32 {
+    static TABLE: LazyLock<[f32; 256]> =
+        LazyLock::new(|| std::array::from_fn(|code| decode(code as f64 / 255.0) as f32));
+    TABLE[usize::from(code)]
+}
+
+/// The linear light of a 16-bit code.
+pub fn decode_u16(code: u16) -> f32 {
+    static TABLE: LazyLock<Vec<f32>> = LazyLock::new(|| {
+        (0..=u16::MAX)
+            .map(|code| decode(f64::from(code) / 65_535.0) as f32)
+            .collect()
+    });
+    TABLE[usize::from(code)]
+}
+
+/// `floor(encode(linear) * largest + 1/2)` within `0..=largest`.
+fn quantize(linear: f64, largest: f64) -> f64 {
+    // The comparisons are arranged so that NaN takes the first way out.
+    if linear > 0.0 {
+        if linear < 1.0 {
+            (encode(linear) * largest + 0.5).floor()
+        } else {
+            largest
+        }
+    } else {
+        0.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_code_survives_decoding_and_encoding() {
+        for code in 0..=u8::MAX {
+            assert_eq!(encode_u8(f64::from(decode_u8(code))), code);
+        }
+        for code in 0..=u16::MAX {
+            assert_eq!(encode_u16(f64::from(decode_u16(code))), code);
+        }
+    }
+
+    #[test]
+    fn known_values() {
+        // 50 % code value is 21.4 % light; 18 % gray is code 118; both standard figures of the sRGB curve.
+        assert!((decode(0.5) - 0.214_041_140_482_232_55).abs() < 1e-15);
+        assert_eq!(encode_u8(0.18), 118);
+        assert_eq!(encode_u8(0.5), 188);
+        assert_eq!(decode_u8(255), 1.0);
+        assert_eq!(decode_u8(0), 0.0);
+        assert_eq!(decode_u8(10), (10.0 / 255.0 / 12.92) as f32);
+    }
+
+    #[test]
+    fn codes_switch_half_way_between_their_encoded_values() {
+        for code in 0..u8::MAX {
+            let boundary = decode((f64::from(code) + 0.5) / 255.0);
+            assert_eq!(encode_u8(boundary - 1e-9), code);
+            assert_eq!(encode_u8(boundary + 1e-9), code + 1);
+        }
+    }
+
+    #[test]
+    fn hostile_values_are_clamped() {
+        for (linear, code) in [
+            (f64::NAN, 0),
+            (-0.0, 0),
+            (-1.0, 0),
+            (f64::NEG_INFINITY, 0),
+            (f64::MIN_POSITIVE, 0),
+            (1.0, 65_535),
+            (1e300, 65_535),
+            (f64::INFINITY, 65_535),
+        ] {
+            assert_eq!(encode_u16(linear), code, "{linear}");
+            assert_eq!(u16::from(encode_u8(linear)), code / 257, "{linear}");
+        }
+    }
+}
