@@ -5,6 +5,13 @@
 //! if that box certainly starts behind `t_max` (a box that starts exactly at `t_max` is visited: ties are decided by
 //! ids, not by the order of visits). Hence the choice of structure changes the speed, never the picture.
 
+mod any;
+mod boxes;
+mod bvh;
+mod list;
 mod traversal;
 
+pub use any::{AcceleratorKind, AnyAccelerator, UnknownAccelerator};
+pub use bvh::Bvh2;
+pub use list::List;
 pub use traversal::{Accelerator, TraversalStats, Visitor};

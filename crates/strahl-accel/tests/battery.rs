@@ -1,0 +1,390 @@
+//! Every accelerator gives the answers of the list, to the last bit.
+//!
+//! The primitives are boxes, hit exactly by f64 slabs: the hardest shapes for conservative culling, because every hit lies on a
+//! plane that the culling tests compare with.
+
+use proptest::prelude::*;
+use strahl_accel::{
+    Accelerator, AcceleratorKind, AnyAccelerator, Bvh2, List, TraversalStats, Visitor,
+};
+use strahl_math::{Aabb, DVec3, Interval, Ray};
+
+/// SplitMix64.
+struct Rng(u64);
+
+impl Rng {
+    fn bits(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    }
+
+    /// In `-1..1`.
+    fn signed(&mut self) -> f64 {
+        (self.bits() >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    }
+
+    fn point(&mut self) -> DVec3 {
+        DVec3::new(self.signed(), self.signed(), self.signed())
+    }
+
+    fn below(&mut self, n: usize) -> usize {
+        (self.bits() % n as u64) as usize
+    }
+}
+
+/// Where a ray enters a box, or leaves it if it starts inside: exact up to f64 rounding, no tolerance.
+fn hit_box(b: &Aabb, ray: &Ray, range: Interval) -> Option<f64> {
+    let (mut near, mut far) = (f64::NEG_INFINITY, f64::INFINITY);
+    for axis in 0..3 {
+        let (o, d) = (ray.origin[axis], ray.direction[axis]);
+        if d == 0.0 {
+            if !(b.min[axis] <= o && o <= b.max[axis]) {
+                return None;
+            }
+            continue;
+        }
+        let (a, c) = ((b.min[axis] - o) / d, (b.max[axis] - o) / d);
+        let (first, last) = if d > 0.0 { (a, c) } else { (c, a) };
+        near = if first > near { first } else { near };
+        far = if last < far { last } else { far };
+    }
+    if !(near <= far) {
+        return None;
+    }
+    [near, far].into_iter().find(|t| range.accepts(*t))
+}
+
+struct Closest<'a> {
+    boxes: &'a [Aabb],
+    ray: Ray,
+    t_min: f64,
+    best: Option<(f64, u32)>,
+}
+
+impl Visitor for Closest<'_> {
+    fn visit(&mut self, id: u32, t_max: f64) -> f64 {
+        let range = Interval::new(self.t_min, t_max);
+        let Some(t) = hit_box(&self.boxes[id as usize], &self.ray, range) else {
+            return t_max;
+        };
+        if self
+            .best
+            .is_none_or(|(best, of)| t < best || (t == best && id < of))
+        {
+            self.best = Some((t, id));
+        }
+        t
+    }
+}
+
+struct Any<'a> {
+    boxes: &'a [Aabb],
+    ray: Ray,
+    range: Interval,
+    found: bool,
+}
+
+impl Visitor for Any<'_> {
+    fn visit(&mut self, id: u32, t_max: f64) -> f64 {
+        if hit_box(&self.boxes[id as usize], &self.ray, self.range).is_some() {
+            assert!(!self.found, "visited after the end");
+            self.found = true;
+            return f64::NEG_INFINITY;
+        }
+        t_max
+    }
+}
+
+fn answers(
+    accelerator: &impl Accelerator,
+    boxes: &[Aabb],
+    ray: &Ray,
+    range: Interval,
+) -> (Option<(f64, u32)>, bool) {
+    let stats = &mut TraversalStats::default();
+    let mut closest = Closest {
+        boxes,
+        ray: *ray,
+        t_min: range.min,
+        best: None,
+    };
+    accelerator.traverse(ray, range, &mut closest, stats);
+    let mut any = Any {
+        boxes,
+        ray: *ray,
+        range,
+        found: false,
+    };
+    accelerator.traverse(ray, range, &mut any, stats);
+    (closest.best, any.found)
+}
+
+/// Boxes of all sizes, some flat, some points, some sharing planes, some equal, a few unbounded or empty.
+fn boxes(rng: &mut Rng, count: usize, offset: DVec3, scale: f64) -> Vec<Aabb> {
+    let mut all: Vec<Aabb> = Vec::new();
+    for index in 0..count {
+        let b = match rng.below(12) {
+            0 if index > 0 => all[rng.below(index)],
+            1 => Aabb::new(DVec3::new(-1.0, -1.0, 0.25), DVec3::new(1.0, 1.0, 0.25)),
+            2 => {
+                let p = rng.point();
+                Aabb::new(p, p)
+            }
+            3 => {
+                // On a coarse grid: many shared planes, edges and corners.
+                let corner = (rng.point() * 4.0).floor() / 4.0;
+                Aabb::new(corner, corner + DVec3::splat(0.25))
+            }
+            _ => {
+                let p = rng.point();
+                let size = 10f64.powf(-4.0 * rng.signed().abs());
+                Aabb::from_points([p, p + rng.point() * size])
+            }
+        };
+        all.push(b);
+    }
+    for b in &mut all {
+        *b = Aabb::new(b.min * scale + offset, b.max * scale + offset);
+    }
+    if count > 20 {
+        all[7] = Aabb::EMPTY;
+        all[11] = Aabb::new(
+            DVec3::new(f64::NEG_INFINITY, offset.y, offset.z),
+            DVec3::new(f64::INFINITY, offset.y, offset.z),
+        );
+    }
+    all
+}
+
+/// Rays of every nastiness: at corners, edges and faces, along axes, in planes, from inside, far and near, long and short.
+fn ray(rng: &mut Rng, boxes: &[Aabb], offset: DVec3, scale: f64) -> Ray {
+    let b = loop {
+        let b = boxes[rng.below(boxes.len())];
+        if b.is_bounded() {
+            break b;
+        }
+    };
+    let target = match rng.below(4) {
+        0 => b.corners()[rng.below(8)],
+        1 => b.corners()[rng.below(8)] * 0.5 + b.corners()[rng.below(8)] * 0.5,
+        2 => b.center(),
+        _ => offset + rng.point() * scale,
+    };
+    let distance = [1e-3, 1.0, 3.0, 1e3, 1e6][rng.below(5)];
+    let mut origin = target + rng.point() * (scale * distance);
+    if rng.below(8) == 0 {
+        origin = b.corners()[rng.below(8)];
+    }
+    let mut direction = target - origin;
+    if rng.below(4) == 0 {
+        // Exactly along an axis, through the target.
+        let axis = rng.below(3);
+        let mut along = DVec3::ZERO;
+        along[axis] = direction[axis];
+        origin = target - along;
+        direction = along;
+    }
+    if rng.below(6) == 0 {
+        direction[rng.below(3)] = -0.0;
+    }
+    direction *= [1.0, 1.0, 1e-30, 1e30, 0.37][rng.below(5)];
+    Ray::new(origin, direction)
+}
+
+#[test]
+fn all_accelerators_agree_with_the_list() {
+    let mut rng = Rng(1);
+    let (mut rays, mut hits) = (0, 0);
+    for round in 0..60 {
+        let scale = [1.0, 1e-6, 1e6][round % 3];
+        let offset = [
+            DVec3::ZERO,
+            DVec3::new(1e3, -50.0, 7.0),
+            DVec3::new(1e9, -1e9, 1e9),
+        ][round / 3 % 3]
+            * scale;
+        let count = [1, 2, 30, 100, 300][round % 5];
+        let boxes = boxes(&mut rng, count, offset, scale);
+        if boxes.iter().all(|b| !b.is_bounded()) {
+            continue;
+        }
+        let list = List::build(&boxes);
+        let others: Vec<AnyAccelerator> = AcceleratorKind::ALL
+            .iter()
+            .map(|kind| AnyAccelerator::build(*kind, &boxes))
+            .collect();
+        for _ in 0..25_000 {
+            let ray = ray(&mut rng, &boxes, offset, scale);
+            if ray.direction == DVec3::ZERO {
+                continue;
+            }
+            let range = match rng.below(4) {
+                0 => Interval::UNTIL_LIGHT,
+                1 => Interval::new(0.5, 1.0),
+                _ => Interval::FORWARD,
+            };
+            let expected = answers(&list, &boxes, &ray, range);
+            hits += usize::from(expected.1);
+            rays += 1;
+            for other in &others {
+                let got = answers(other, &boxes, &ray, range);
+                assert_eq!(
+                    got,
+                    expected,
+                    "{} round {round} {ray:?} {range:?}",
+                    other.name()
+                );
+            }
+        }
+    }
+    assert!(rays > 1_000_000 && hits > rays / 4, "{rays} {hits}");
+}
+
+#[test]
+fn hostile_rays_are_harmless() {
+    let mut rng = Rng(2);
+    let boxes = boxes(&mut rng, 100, DVec3::ZERO, 1.0);
+    let values = [
+        0.0,
+        -0.0,
+        1.0,
+        f64::NAN,
+        f64::INFINITY,
+        f64::NEG_INFINITY,
+        1e308,
+        5e-324,
+    ];
+    for kind in AcceleratorKind::ALL {
+        let accelerator = AnyAccelerator::build(*kind, &boxes);
+        for _ in 0..25_000 {
+            let mut any = || {
+                DVec3::new(
+                    values[rng.below(8)],
+                    values[rng.below(8)],
+                    values[rng.below(8)],
+                )
+            };
+            let ray = Ray::new(any(), any());
+            // No panic, and no hit that the list does not have.
+            let found = answers(&accelerator, &boxes, &ray, Interval::FORWARD);
+            if let Some((t, _)) = found.0 {
+                assert!(t > 0.0);
+            }
+        }
+    }
+}
+
+#[test]
+fn degenerate_builds_are_valid() {
+    let point = Aabb::new(DVec3::ONE, DVec3::ONE);
+    let same = vec![point; 100_000];
+    let line: Vec<Aabb> = (0..5000)
+        .map(|i| {
+            let p = DVec3::X * 2f64.powi(i % 250 - 125);
+            Aabb::new(p, p)
+        })
+        .collect();
+    for boxes in [
+        vec![],
+        vec![Aabb::EMPTY; 3],
+        vec![Aabb::EVERYTHING; 3],
+        vec![point],
+        same,
+        line,
+    ] {
+        let bvh = Bvh2::build(&boxes);
+        assert_eq!(bvh.validate(&boxes), Ok(()));
+        assert_eq!(
+            bvh.references(),
+            boxes.iter().filter(|b| !b.is_empty()).count()
+        );
+    }
+}
+
+#[test]
+fn the_tree_does_not_depend_on_the_number_of_threads() {
+    let boxes = boxes(&mut Rng(3), 30_000, DVec3::ZERO, 1.0);
+    let build = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .expect("threads");
+        pool.install(|| Bvh2::build(&boxes))
+    };
+    let one = build(1);
+    assert_eq!(one.validate(&boxes), Ok(()));
+    assert!(one.nodes() > 10_000);
+    for threads in [2, 7] {
+        assert_eq!(build(threads), one);
+    }
+}
+
+#[test]
+fn the_hierarchy_saves_work() {
+    let mut rng = Rng(4);
+    let boxes: Vec<Aabb> = (0..10_000)
+        .map(|_| {
+            let p = rng.point();
+            Aabb::new(p, p + DVec3::splat(0.01))
+        })
+        .collect();
+    let bvh = Bvh2::build(&boxes);
+    let mut stats = TraversalStats::default();
+    let rays = 1000;
+    for _ in 0..rays {
+        let ray = Ray::new(rng.point() * 3.0, rng.point());
+        let mut closest = Closest {
+            boxes: &boxes,
+            ray,
+            t_min: 0.0,
+            best: None,
+        };
+        bvh.traverse(&ray, Interval::FORWARD, &mut closest, &mut stats);
+    }
+    assert!(
+        stats.primitive_tests < 20 * rays && stats.node_visits < 60 * rays,
+        "{stats:?}"
+    );
+}
+
+#[test]
+fn unknown_names_are_answered_with_all_names() {
+    let error = "kdtree"
+        .parse::<AcceleratorKind>()
+        .expect_err("unknown")
+        .to_string();
+    for kind in AcceleratorKind::ALL {
+        assert!(error.contains(kind.name()));
+        assert_eq!(kind.to_string().parse(), Ok(*kind));
+    }
+}
+
+fn coordinate() -> impl Strategy<Value = f64> {
+    prop_oneof![-2.0..2.0f64, (-8i32..8).prop_map(|i| f64::from(i) / 4.0)]
+}
+
+fn point() -> impl Strategy<Value = DVec3> {
+    (coordinate(), coordinate(), coordinate()).prop_map(|(x, y, z)| DVec3::new(x, y, z))
+}
+
+proptest! {
+    /// The same with shrinking, on small scenes.
+    #[test]
+    fn small_scenes_agree_with_the_list(
+        corners in prop::collection::vec((point(), point()), 1..12),
+        origin in point(),
+        direction in point(),
+    ) {
+        let boxes: Vec<Aabb> = corners.into_iter().map(|(a, b)| Aabb::from_points([a, b])).collect();
+        let ray = Ray::new(origin, direction);
+        prop_assume!(direction != DVec3::ZERO);
+        let expected = answers(&List::build(&boxes), &boxes, &ray, Interval::FORWARD);
+        for kind in AcceleratorKind::ALL {
+            let got = answers(&AnyAccelerator::build(*kind, &boxes), &boxes, &ray, Interval::FORWARD);
+            prop_assert_eq!(got, expected);
+        }
+    }
+}
