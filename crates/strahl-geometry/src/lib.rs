@@ -5,11 +5,13 @@
 //! * [`mod@conformance`]: the battery of tests every primitive must pass.
 
 pub mod conformance;
+pub mod mesh;
 mod primitive;
 pub mod primitives;
 mod shape;
 mod spans;
 
+pub use mesh::{MeshData, RayShear, SmoothTriangle, Triangle, TriangleMesh};
 pub use primitive::{GeometryError, PrimHit, Primitive, Scratch, Solid, SurfaceId, SurfacePoint};
 pub use primitives::{Cuboid, Sphere};
 pub use shape::Shape;

@@ -256,6 +256,24 @@ pub enum GeometryError {
         /// The number of entries.
         count: u64,
     },
+    /// An entry of a list has a NaN or an infinity in it.
+    #[error("{what} {index} is not finite")]
+    NotFiniteAt {
+        /// The kind of entry.
+        what: &'static str,
+        /// Its place in the list, counted from 0.
+        index: u64,
+    },
+    /// Lists that belong together differ in length.
+    #[error("{found} {what} given, {expected} expected")]
+    WrongCount {
+        /// What the list holds.
+        what: &'static str,
+        /// The length it should have.
+        expected: u64,
+        /// The length it has.
+        found: u64,
+    },
     /// A mesh or tree that should enclose a volume doesn't.
     #[error("{what} is not closed: {why}")]
     NotClosed {

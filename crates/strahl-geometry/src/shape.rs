@@ -1,3 +1,4 @@
+use crate::mesh::{SmoothTriangle, Triangle, TriangleMesh};
 use crate::primitives::{Cuboid, Sphere};
 use crate::{GeometryError, PrimHit, Primitive, Scratch, Solid, SurfaceId, SurfacePoint};
 use std::sync::Arc;
@@ -81,6 +82,12 @@ shapes! {
     Sphere(Sphere),
     /// A box with faces along the axes.
     Cuboid(Cuboid),
+    /// A flat triangle.
+    Triangle(Triangle),
+    /// A triangle with a normal at each corner.
+    SmoothTriangle(Arc<SmoothTriangle>),
+    /// Triangles that share their vertices.
+    TriangleMesh(Arc<TriangleMesh>),
     /// A primitive from outside of this crate.
     Custom(Arc<dyn Primitive>),
 }

@@ -1,0 +1,16 @@
+//! Things made of flat pieces: triangles, polygons, meshes, and solids bounded by them.
+//!
+//! All of them decide hit or miss in the ray's own projection ([`RayShear`]), where a corner that several pieces share has
+//! one and the same image. No ray slips through between two pieces.
+
+#[cfg(test)]
+mod crack_tests;
+mod indexed;
+#[cfg(test)]
+mod samples;
+mod shear;
+mod triangle;
+
+pub use indexed::{MeshData, TriangleMesh};
+pub use shear::{RayShear, TriangleHit, intersect_triangle};
+pub use triangle::{SmoothTriangle, Triangle};
