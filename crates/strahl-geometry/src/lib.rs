@@ -11,7 +11,7 @@ pub mod primitives;
 mod shape;
 mod spans;
 
-pub use mesh::{MeshData, RayShear, SmoothTriangle, Triangle, TriangleMesh};
+pub use mesh::{MeshData, Polygon, RayShear, SmoothTriangle, Triangle, TriangleMesh};
 pub use primitive::{GeometryError, PrimHit, Primitive, Scratch, Solid, SurfaceId, SurfacePoint};
 pub use primitives::{Cuboid, Sphere};
 pub use shape::Shape;

@@ -1,4 +1,4 @@
-use crate::mesh::{SmoothTriangle, Triangle, TriangleMesh};
+use crate::mesh::{Polygon, SmoothTriangle, Triangle, TriangleMesh};
 use crate::primitives::{Cuboid, Sphere};
 use crate::{GeometryError, PrimHit, Primitive, Scratch, Solid, SurfaceId, SurfacePoint};
 use std::sync::Arc;
@@ -86,6 +86,8 @@ shapes! {
     Triangle(Triangle),
     /// A triangle with a normal at each corner.
     SmoothTriangle(Arc<SmoothTriangle>),
+    /// A flat polygon, possibly with holes.
+    Polygon(Polygon),
     /// Triangles that share their vertices.
     TriangleMesh(Arc<TriangleMesh>),
     /// A primitive from outside of this crate.

@@ -5,12 +5,17 @@
 
 #[cfg(test)]
 mod crack_tests;
+mod edge_bins;
 mod indexed;
+mod polygon;
+#[cfg(test)]
+mod polygon_tests;
 #[cfg(test)]
 mod samples;
 mod shear;
 mod triangle;
 
 pub use indexed::{MeshData, TriangleMesh};
+pub use polygon::{Polygon, fan_triangles};
 pub use shear::{RayShear, TriangleHit, intersect_triangle};
 pub use triangle::{SmoothTriangle, Triangle};

@@ -1,0 +1,359 @@
+use super::edge_bins::EdgeBins;
+use super::shear::RayShear;
+use crate::{GeometryError, PrimHit, Primitive, Scratch, Shape, SurfaceId, SurfacePoint};
+use strahl_math::error::{ROUNDOFF, gamma};
+use strahl_math::{Aabb, DVec2, DVec3, Interval, Ray, Transform};
+
+/// How far corners may be off the polygon's plane, as a part of the largest coordinate: 2⁻¹⁶, some thirty times
+/// what coordinates printed with six digits are off.
+const PLANARITY: f64 = 1.0 / 65_536.0;
+
+/// With more edges than this, edges are looked up in bins.
+const MANY_EDGES: usize = 32;
+
+/// A flat polygon with any number of corners, concave or touching itself if need be, possibly with holes.
+///
+/// What is inside follows from the even-odd rule: an outer ring and hole rings, which may run either way, islands in
+/// holes too. The front is the side from which the first ring runs counter-clockwise; rays hit it from both sides.
+///
+/// The plane gives `t`; the corners are then projected *along the ray*, and the edges that cross a half-line from the
+/// ray's image are counted, by comparing products. A corner that two polygons share has the same image for both, so exactly one of two
+/// neighbours gets a ray along their common edge, whether they lie in one plane or not: there is no crack (where edges
+/// meet corner to corner). Polygons with more than 32 edges first project the hit on the principal plane, where the
+/// edges at its height are known; the first method still decides what is too near an edge to tell there.
+///
+/// Corners need not be in the plane exactly (see [`Polygon::try_new`]); the plane goes through the first one with the normal
+/// of Newell's method, and `position_error` covers how far the others are off it.
+///
+/// Texture coordinates: the first corner is `(0, 0)`, the second `(1, 0)`, and the last one of the first ring `(0, 1)`, so that they
+/// cover a parallelogram once. (Not the last one itself, if it is much closer to the line through the first two than others.)
+#[derive(Clone, Debug, PartialEq)]
+pub struct Polygon {
+    /// All rings, one after the other.
+    corners: Box<[DVec3]>,
+    /// Where each ring but the last ends.
+    ring_ends: Box<[u32]>,
+    /// Unit normal of the front.
+    normal: DVec3,
+    /// The largest distance of a corner from the plane.
+    deviation: f64,
+    /// The corner that is `(0, 1)` in the texture.
+    up: u32,
+    /// Whether the first ring runs clockwise as seen from the front, as it does after a mirroring transform.
+    flipped: bool,
+    pub(super) bins: Option<Box<EdgeBins>>,
+}
+
+impl Polygon {
+    /// A polygon without holes. The last corner may repeat the first.
+    ///
+    /// # Errors
+    /// A corner is not finite; fewer than three are different; there is no area (or the polygon crosses itself so that
+    /// its parts cancel); a corner is off the plane by more than 2⁻¹⁶ of the largest coordinate, which leaves room for numbers
+    /// printed with six digits.
+    pub fn try_new(corners: &[DVec3]) -> Result<Self, GeometryError> {
+        Self::try_with_holes(corners, &[])
+    }
+
+    /// A polygon with holes: rings in the same plane, of either orientation.
+    ///
+    /// # Errors
+    /// As [`Polygon::try_new`], for each ring.
+    pub fn try_with_holes(outer: &[DVec3], holes: &[Vec<DVec3>]) -> Result<Self, GeometryError> {
+        let mut corners = Vec::with_capacity(outer.len());
+        let mut ring_ends = Vec::with_capacity(holes.len());
+        for ring in std::iter::once(outer).chain(holes.iter().map(Vec::as_slice)) {
+            if !corners.is_empty() {
+                ring_ends.push(corners.len() as u32);
+            }
+            append_ring(ring, &mut corners)?;
+        }
+        if corners.len() as u64 > u64::from(u32::MAX) {
+            return Err(GeometryError::IndexOutOfRange {
+                what: "corner",
+                index: corners.len() as u64 - 1,
+                count: u64::from(u32::MAX),
+            });
+        }
+        let (corners, ring_ends) = (corners.into_boxed_slice(), ring_ends.into_boxed_slice());
+        let first_ring = corners
+            .len()
+            .min(ring_ends.first().map_or(usize::MAX, |&end| end as usize));
+        let up = texture_corner(&corners[..first_ring]);
+        let polygon = Self::from_parts(corners, ring_ends, up, false).ok_or(GeometryError::Degenerate {
+            what: "polygon",
+            why: "it has no area: its corners lie on a line, or it crosses itself and its parts cancel",
+        })?;
+        if polygon.deviation > PLANARITY * polygon.bounds().max_abs() {
+            return Err(GeometryError::OutOfRange {
+                what: "distance of a corner from the polygon's plane",
+                expected: "within 1/65536 of the largest coordinate (split the polygon into triangles)",
+                found: polygon.deviation,
+            });
+        }
+        Ok(polygon)
+    }
+
+    /// Works out the plane and the bins; `None` if there is no plane.
+    fn from_parts(
+        corners: Box<[DVec3]>,
+        ring_ends: Box<[u32]>,
+        up: u32,
+        flipped: bool,
+    ) -> Option<Self> {
+        let mut polygon = Self {
+            corners,
+            ring_ends,
+            normal: DVec3::ZERO,
+            deviation: 0.0,
+            up,
+            flipped,
+            bins: None,
+        };
+        let front = newell_normal(polygon.rings().next()?)?;
+        polygon.normal = if flipped { -front } else { front };
+        let off_plane = |p: &DVec3| polygon.normal.dot(*p - polygon.corners[0]).abs();
+        polygon.deviation = polygon.corners.iter().map(off_plane).fold(0.0, f64::max);
+        if polygon.corners.len() > MANY_EDGES {
+            polygon.bins = Some(Box::new(EdgeBins::build(polygon.rings(), polygon.normal)));
+        }
+        Some(polygon)
+    }
+
+    /// The corners of all rings, one ring after the other.
+    pub fn corners(&self) -> &[DVec3] {
+        &self.corners
+    }
+
+    /// The rings: the outer one, then the holes.
+    pub fn rings(&self) -> impl Iterator<Item = &[DVec3]> {
+        let all = self.corners.len();
+        let ends = self.ring_ends.iter().map(|&end| end as usize);
+        let starts = std::iter::once(0).chain(ends.clone());
+        // Ends ascend and are no more than `all`.
+        starts
+            .zip(ends.chain([all]))
+            .map(|(start, end)| &self.corners[start..end])
+    }
+
+    /// The unit normal of the front.
+    pub const fn normal(&self) -> DVec3 {
+        self.normal
+    }
+
+    /// The ray parameter of the hit, if the ray's line passes through the polygon.
+    #[inline]
+    fn pierced_at(&self, ray: &Ray) -> Option<f64> {
+        let along = self.normal.dot(ray.direction);
+        let first = self.corners[0];
+        let t = self.normal.dot(first - ray.origin) / along;
+        if !t.is_finite() {
+            return None; // Edge-on.
+        }
+        if let Some(bins) = &self.bins {
+            // The projections along the ray and on the principal plane differ by less than this.
+            let speed = l1(ray.direction);
+            let reach = l1(ray.origin) + t.abs() * speed + bins.reach();
+            let error = (self.deviation + gamma(64) * reach) * (speed / along.abs());
+            if let Some(inside) = bins.locate(ray.at(t), error) {
+                return inside.then_some(t);
+            }
+        }
+        if !self.surrounds(&RayShear::new(ray)) {
+            return None;
+        }
+        // Seen nearly edge-on the plane's `t` is vague. That the hit is within the bounds is certain.
+        let span = self.bounds().clip(ray, Interval::LINE)?;
+        Some(t.clamp(span.min, span.max))
+    }
+
+    /// Whether the ray's line passes through the polygon, told in the ray's projection.
+    #[inline]
+    fn surrounds(&self, shear: &RayShear) -> bool {
+        let mut odd = false;
+        for ring in self.rings() {
+            let Some(last) = ring.last() else { continue };
+            let mut a = shear.apply(*last);
+            for corner in ring {
+                let b = shear.apply(*corner);
+                odd ^= crosses_half_axis(a, b);
+                a = b;
+            }
+        }
+        odd
+    }
+}
+
+impl Primitive for Polygon {
+    fn kind(&self) -> &'static str {
+        "polygon"
+    }
+
+    /// Nothing is left to check: [`Polygon::try_new`] has done so.
+    fn validate(&self) -> Result<(), GeometryError> {
+        Ok(())
+    }
+
+    fn bounds(&self) -> Aabb {
+        Aabb::from_points(self.corners.iter().copied())
+    }
+
+    #[inline]
+    fn closest_hit(
+        &self,
+        ray: &Ray,
+        range: Interval,
+        from: Option<SurfaceId>,
+        _scratch: &mut Scratch,
+    ) -> Option<PrimHit> {
+        if from.is_some() {
+            return None; // A ray does not come back to the plane it starts from.
+        }
+        let t = self.pierced_at(ray)?;
+        range.accepts(t).then_some(PrimHit::simple(t, 0))
+    }
+
+    fn surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
+        let (n, origin) = (self.normal, self.corners[0]);
+        let at = ray.at(hit.t);
+        let aside = at - origin;
+        let position = at - n * n.dot(aside);
+        let noise = gamma(8) * n.abs().dot(aside.abs()) + self.deviation;
+
+        // Coordinates with respect to two sides, solved in the principal plane.
+        let (i, j) = other_axes(largest_axis(n));
+        let (right, up) = (
+            self.corners[1] - origin,
+            self.corners[self.up as usize] - origin,
+        );
+        let area = right[i] * up[j] - right[j] * up[i];
+        let p = position - origin;
+        let uv = DVec2::new(
+            p[i] * up[j] - p[j] * up[i],
+            right[i] * p[j] - right[j] * p[i],
+        ) / area;
+        SurfacePoint {
+            position,
+            position_error: n.abs() * noise + position.abs() * (2.0 * ROUNDOFF),
+            n_geom: n,
+            n_shade: n,
+            uv,
+            dpdu: right,
+            dpdv: up,
+        }
+    }
+
+    fn baked(&self, map: &Transform) -> Option<Shape> {
+        let corners = self
+            .corners
+            .iter()
+            .map(|&p| map.point_to_world(p))
+            .collect();
+        let flipped = self.flipped != map.mirrors();
+        Self::from_parts(corners, self.ring_ends.clone(), self.up, flipped).map(Into::into)
+    }
+}
+
+/// The triangles `0 1 2`, `0 2 3`, ... of a ring of `n` corners, as NFF patches with normals are split.
+///
+/// Right for convex rings, and for those that are seen as a whole from corner 0. Of other concave rings the triangles
+/// overlap or reach outside.
+pub fn fan_triangles(n: u32) -> impl Iterator<Item = [u32; 3]> {
+    (1..n.saturating_sub(1)).map(|i| [0, i, i + 1])
+}
+
+/// Whether an edge crosses the positive half of the x axis. The same for both directions of the edge.
+///
+/// Ends with `y = 0` count as below, and an edge through the origin does not cross: so a point on an edge belongs to
+/// one side of it only.
+#[inline]
+fn crosses_half_axis(a: DVec3, b: DVec3) -> bool {
+    if (a.y > 0.0) == (b.y > 0.0) {
+        return false;
+    }
+    let (p, q) = (a.x * b.y, a.y * b.x);
+    if b.y > a.y { p > q } else { q > p }
+}
+
+/// Appends a ring, without repetitions of a corner in a row.
+fn append_ring(ring: &[DVec3], corners: &mut Vec<DVec3>) -> Result<(), GeometryError> {
+    let start = corners.len();
+    for (index, &corner) in ring.iter().enumerate() {
+        if !corner.is_finite() {
+            return Err(GeometryError::NotFiniteAt {
+                what: "corner of the polygon",
+                index: index as u64,
+            });
+        }
+        if corners.len() == start || corners.last() != Some(&corner) {
+            corners.push(corner);
+        }
+    }
+    while corners.len() > start + 1 && corners.last() == corners.get(start) {
+        corners.pop();
+    }
+    if corners.len() < start + 3 {
+        return Err(GeometryError::Degenerate {
+            what: "polygon",
+            why: "a ring has fewer than three different corners",
+        });
+    }
+    Ok(())
+}
+
+/// The unit normal of a ring by Newell's method (Sutherland, Sproull, Schumacker 1974): the sum of the triangles with corner 0.
+fn newell_normal(ring: &[DVec3]) -> Option<DVec3> {
+    let first = *ring.first()?;
+    let size = ring
+        .iter()
+        .fold(0.0, |m: f64, p| m.max((*p - first).abs().max_element()));
+    if !(size > 0.0 && size.is_finite()) {
+        return None;
+    }
+    let (mut sum, mut magnitude) = (DVec3::ZERO, 0.0);
+    for pair in ring.windows(2) {
+        let (a, b) = ((pair[0] - first) / size, (pair[1] - first) / size);
+        sum += a.cross(b);
+        magnitude += l1(a) * l1(b);
+    }
+    let length = sum.length();
+    // Less area than the coordinates' own rounding could make.
+    let coordinate = ring
+        .iter()
+        .fold(0.0, |m: f64, p| m.max(p.abs().max_element()))
+        / size;
+    let noise = gamma(4) * (magnitude + coordinate * ring.len() as f64);
+    (length > noise).then(|| sum / length)
+}
+
+/// The last corner that is at least half as far from the line through the first two as the farthest.
+fn texture_corner(ring: &[DVec3]) -> u32 {
+    let &[first, second, ..] = ring else { return 0 };
+    let height = |p: &DVec3| (second - first).cross(*p - first).length();
+    let highest = ring.iter().map(height).fold(0.0, f64::max);
+    ring.iter()
+        .rposition(|p| height(p) >= 0.5 * highest)
+        .unwrap_or(0) as u32
+}
+
+fn l1(v: DVec3) -> f64 {
+    let v = v.abs();
+    v.x + v.y + v.z
+}
+
+/// The axis along which a vector is longest.
+pub(super) fn largest_axis(v: DVec3) -> usize {
+    let v = v.abs();
+    if v.x >= v.y && v.x >= v.z {
+        0
+    } else if v.y >= v.z {
+        1
+    } else {
+        2
+    }
+}
+
+/// The two axes after `axis`, in cyclic order.
+pub(super) const fn other_axes(axis: usize) -> (usize, usize) {
+    ((axis + 1) % 3, (axis + 2) % 3)
+}
