@@ -2,15 +2,18 @@
 //!
 //! * [`Primitive`]: anything a ray can hit. [`Solid`]: a primitive with an inside; what CSG combines.
 //! * [`Shape`]: the table of all shapes, one enum generated from it.
+//! * [`Csg`]: solids combined to one, by trees of any depth.
 //! * [`mod@conformance`]: the battery of tests every primitive must pass.
 
 pub mod conformance;
+pub mod csg;
 pub mod mesh;
 mod primitive;
 pub mod primitives;
 mod shape;
 mod spans;
 
+pub use csg::{Csg, CsgNode, Operands};
 pub use mesh::{MeshData, Polygon, RayShear, SmoothTriangle, Triangle, TriangleMesh};
 pub use primitive::{GeometryError, PrimHit, Primitive, Scratch, Solid, SurfaceId, SurfacePoint};
 pub use primitives::{Cuboid, Sphere};

@@ -1,3 +1,4 @@
+use crate::csg::Workspace;
 use crate::{Crossings, Shape};
 use std::sync::Arc;
 use strahl_math::{Aabb, DVec2, DVec3, Interval, Ray, Transform};
@@ -62,6 +63,7 @@ pub struct SurfacePoint {
 #[derive(Debug, Default)]
 pub struct Scratch {
     pool: Vec<Crossings>,
+    csg: Vec<Workspace>,
 }
 
 impl Scratch {
@@ -74,6 +76,16 @@ impl Scratch {
     pub fn give(&mut self, mut list: Crossings) {
         list.clear();
         self.pool.push(list);
+    }
+
+    /// Borrows the stacks that CSG trees are evaluated with; several when a tree is a leaf of another.
+    pub(crate) fn take_csg(&mut self) -> Workspace {
+        self.csg.pop().unwrap_or_default()
+    }
+
+    /// Returns them.
+    pub(crate) fn give_csg(&mut self, workspace: Workspace) {
+        self.csg.push(workspace);
     }
 }
 

@@ -1,6 +1,6 @@
 use crate::mesh::{Polygon, SmoothTriangle, Triangle, TriangleMesh};
 use crate::primitives::{Cuboid, Sphere};
-use crate::{GeometryError, PrimHit, Primitive, Scratch, Solid, SurfaceId, SurfacePoint};
+use crate::{Csg, GeometryError, PrimHit, Primitive, Scratch, Solid, SurfaceId, SurfacePoint};
 use std::sync::Arc;
 use strahl_math::{Aabb, Interval, Ray, Transform};
 
@@ -90,6 +90,8 @@ shapes! {
     Polygon(Polygon),
     /// Triangles that share their vertices.
     TriangleMesh(Arc<TriangleMesh>),
+    /// A tree of solids, combined.
+    Csg(Arc<Csg>),
     /// A primitive from outside of this crate.
     Custom(Arc<dyn Primitive>),
 }

@@ -1,0 +1,357 @@
+use super::leaf::{Leaf, Next, Placement};
+use super::solid::{Kind, Node};
+use super::sweep::Rule;
+use super::tree::CsgNode;
+use super::{Csg, Operands};
+use crate::{GeometryError, Primitive, Shape};
+use std::cmp::Ordering;
+use strahl_accel::Bvh2;
+use strahl_math::{Aabb, Transform};
+
+/// Up to this many operands their boxes are looked at one by one.
+const FEW: usize = 8;
+
+/// What the nodes above say about a node.
+#[derive(Clone, Copy)]
+struct Context {
+    /// The compiled operation it is an operand of; `None` at the root.
+    parent: Option<u32>,
+    /// Whether its complement is wanted.
+    negative: bool,
+    /// Whether its surface can be seen.
+    visible: bool,
+    /// Whether inner surfaces of unions are kept.
+    keeps_inner: bool,
+    /// From its space to the tree's.
+    map: Option<Transform>,
+}
+
+impl Context {
+    fn inverted(self) -> Self {
+        Self {
+            negative: !self.negative,
+            keeps_inner: false,
+            ..self
+        }
+    }
+
+    fn invisible(self) -> Self {
+        Self {
+            visible: false,
+            keeps_inner: false,
+            ..self
+        }
+    }
+
+    fn mapped(self, inner: &Transform) -> Self {
+        let map = self.map.map_or(*inner, |outer| inner.then(&outer));
+        Self {
+            map: Some(map),
+            ..self
+        }
+    }
+
+    /// The operation itself or, for a complement, its counterpart by De Morgan's laws.
+    fn rule(self, rule: Rule) -> Rule {
+        match (rule, self.negative) {
+            (Rule::Intersection, true) => Rule::Merge,
+            (Rule::Intersection, false) | (_, true) => Rule::Intersection,
+            (Rule::Union, false) if self.keeps_inner => Rule::Union,
+            (_, false) => Rule::Merge,
+        }
+    }
+}
+
+/// A node under construction.
+struct Proto {
+    kind: Kind,
+    operands: Vec<u32>,
+}
+
+/// The passes from description to compiled tree. None recurses: trees may be deeper than the stack.
+#[derive(Default)]
+pub(super) struct Compiler {
+    /// Parents stand before their operands.
+    nodes: Vec<Proto>,
+    leaves: Vec<Leaf>,
+    elements: u32,
+}
+
+impl Compiler {
+    /// First pass: numbers the leaves in the order of the description, pushes inversions and maps down to them, merges nested
+    /// operations of one kind and drops operations of one operand.
+    pub(super) fn read(&mut self, root: CsgNode) -> Result<(), GeometryError> {
+        let context = Context {
+            parent: None,
+            negative: false,
+            visible: true,
+            keeps_inner: true,
+            map: None,
+        };
+        let mut waiting = vec![(root, context)];
+        while let Some((node, context)) = waiting.pop() {
+            let (what, rule, operands) = match node {
+                CsgNode::Leaf {
+                    shape,
+                    transform,
+                    tag,
+                } => {
+                    let context = transform.map_or(context, |map| context.mapped(&map));
+                    self.add_leaf(shape, tag, context)?;
+                    continue;
+                }
+                CsgNode::Union(operands) => ("union", Rule::Union, operands),
+                CsgNode::Merge(operands) => ("merge", Rule::Merge, operands),
+                CsgNode::Intersection(operands) => ("intersection", Rule::Intersection, operands),
+                CsgNode::Difference(operands) => {
+                    let rest = |c: Context| c.inverted();
+                    let rule = context.rule(Rule::Intersection);
+                    self.expand("difference", rule, operands, context, rest, &mut waiting)?;
+                    continue;
+                }
+                CsgNode::Clip(operands) => {
+                    let rest = |c: Context| c.invisible();
+                    let rule = context.rule(Rule::Intersection);
+                    self.expand(
+                        "clipped object",
+                        rule,
+                        operands,
+                        context,
+                        rest,
+                        &mut waiting,
+                    )?;
+                    continue;
+                }
+                CsgNode::Inverse(operands) => {
+                    let context = context.inverted();
+                    let rule = context.rule(Rule::Merge);
+                    self.expand("inverse", rule, operands, context, |c| c, &mut waiting)?;
+                    continue;
+                }
+                CsgNode::Transformed {
+                    operands,
+                    transform,
+                } => {
+                    let context = context.mapped(&transform);
+                    let rule = context.rule(Rule::Union);
+                    self.expand("moved group", rule, operands, context, |c| c, &mut waiting)?;
+                    continue;
+                }
+            };
+            self.expand(
+                what,
+                context.rule(rule),
+                operands,
+                context,
+                |c| c,
+                &mut waiting,
+            )?;
+        }
+        Ok(())
+    }
+
+    /// Puts an operation's operands on the list; `rest` changes the context of all but the first.
+    fn expand(
+        &mut self,
+        what: &'static str,
+        rule: Rule,
+        operands: Operands,
+        context: Context,
+        rest: impl Fn(Context) -> Context,
+        waiting: &mut Vec<(CsgNode, Context)>,
+    ) -> Result<(), GeometryError> {
+        let operands = operands.into_vec();
+        if operands.is_empty() {
+            return Err(GeometryError::Degenerate {
+                what,
+                why: "it has no operands; give at least one",
+            });
+        }
+        let kind = Kind::Operation(rule);
+        let continues = context
+            .parent
+            .and_then(|parent| self.nodes.get(parent as usize))
+            .is_some_and(|parent| parent.kind == kind);
+        let parent = if continues || operands.len() == 1 {
+            context.parent
+        } else {
+            Some(self.add_node(kind, context.parent)?)
+        };
+        let context = Context { parent, ..context };
+        // The list is worked off from its end.
+        let numbered = operands.into_iter().enumerate().rev();
+        waiting
+            .extend(numbered.map(|(i, node)| (node, if i == 0 { context } else { rest(context) })));
+        Ok(())
+    }
+
+    fn add_node(&mut self, kind: Kind, parent: Option<u32>) -> Result<u32, GeometryError> {
+        let index = count(self.nodes.len(), "number of nodes of the CSG tree")?;
+        self.nodes.push(Proto {
+            kind,
+            operands: Vec::new(),
+        });
+        if let Some(parent) = parent.and_then(|parent| self.nodes.get_mut(parent as usize)) {
+            parent.operands.push(index);
+        }
+        Ok(index)
+    }
+
+    fn add_leaf(&mut self, shape: Shape, tag: u32, context: Context) -> Result<(), GeometryError> {
+        shape.validate()?;
+        let leaf = count(self.leaves.len(), "number of leaves of the CSG tree")?;
+        self.add_node(Kind::Leaf(leaf), context.parent)?;
+        let baked = context.map.and_then(|map| shape.baked(&map));
+        let map = if baked.is_some() { None } else { context.map };
+        let shape = baked.unwrap_or(shape);
+        let bounds = map.map_or(shape.bounds(), |map| map.bounds_to_world(&shape.bounds()));
+        let first_element = self.elements;
+        self.elements = first_element.checked_add(shape.elements()).ok_or({
+            GeometryError::OutOfRange {
+                what: "number of surface elements of the CSG tree",
+                expected: "less than 2^32",
+                found: f64::from(first_element) + f64::from(shape.elements()),
+            }
+        })?;
+        self.leaves.push(Leaf {
+            shape,
+            placement: map.map(|map| Box::new(Placement::new(map))),
+            tag,
+            first_element,
+            negative: context.negative,
+            visible: context.visible,
+            bounds,
+            if_inside: Next::Answer(!context.negative),
+            if_outside: Next::Answer(context.negative),
+        });
+        Ok(())
+    }
+
+    /// The other passes.
+    pub(super) fn finish(mut self) -> Csg {
+        self.compile_jumps();
+        let boxes = self.boxes();
+        let mut nodes = Vec::with_capacity(self.nodes.len());
+        let mut operands = Vec::new();
+        for (proto, (bounds, far)) in self.nodes.iter().zip(&boxes) {
+            let first = operands.len();
+            let mut core = 0;
+            if let Kind::Operation(rule) = proto.kind {
+                let far_of = |operand: &u32| boxes.get(*operand as usize).is_some_and(|b| b.1);
+                let is_core = |operand: &u32| far_of(operand) != rule.neutral();
+                operands.extend(proto.operands.iter().copied().filter(is_core));
+                core = operands.len() - first;
+                // An intersection is done as soon as nothing is left: start with the smallest boxes.
+                if let Some(core) = operands.get_mut(first..) {
+                    let area = |i: &u32| boxes.get(*i as usize).map_or(0.0, |b| b.0.half_area());
+                    core.sort_by(|a, b| area(a).partial_cmp(&area(b)).unwrap_or(Ordering::Equal));
+                }
+                operands.extend(proto.operands.iter().copied().filter(|o| !is_core(o)));
+            }
+            let rest = operands.get(first + core..).unwrap_or_default();
+            let hierarchy = (rest.len() > FEW).then(|| {
+                let bounds = rest.iter().filter_map(|i| boxes.get(*i as usize));
+                Box::new(Bvh2::build(&bounds.map(|b| b.0).collect::<Vec<_>>()))
+            });
+            nodes.push(Node {
+                kind: proto.kind,
+                bounds: *bounds,
+                far: *far,
+                first: first as u32,
+                core: (first + core) as u32,
+                end: operands.len() as u32,
+                hierarchy,
+            });
+        }
+        let closed = self.leaves.iter().all(|leaf| leaf.solid().is_some());
+        Csg::from_parts(nodes, operands, self.leaves, self.elements, closed)
+    }
+
+    /// For each node a box, and whether what lies outside of that box is inside of the node. All surfaces are in
+    /// the box.
+    fn boxes(&self) -> Vec<(Aabb, bool)> {
+        let mut boxes = vec![(Aabb::EMPTY, false); self.nodes.len()];
+        for (index, node) in self.nodes.iter().enumerate().rev() {
+            let operands = || node.operands.iter().filter_map(|i| boxes.get(*i as usize));
+            let result = match node.kind {
+                Kind::Leaf(leaf) => self
+                    .leaves
+                    .get(leaf as usize)
+                    .map_or((Aabb::EMPTY, false), |leaf| (leaf.bounds, leaf.negative)),
+                Kind::Operation(rule) => {
+                    // An operand whose outside decides (false under intersections, true under unions) leaves nothing to
+                    // happen beyond its box.
+                    let mut decisive = operands()
+                        .filter(|(_, far)| *far != rule.neutral())
+                        .peekable();
+                    let far = rule.neutral() != decisive.peek().is_some();
+                    let bounds = if decisive.peek().is_some() && rule != Rule::Union {
+                        decisive.fold(Aabb::EVERYTHING, |b, (other, _)| b.intersection(other))
+                    } else {
+                        operands().fold(Aabb::EMPTY, |b, (other, _)| b.union(other))
+                    };
+                    (bounds, far)
+                }
+            };
+            if let Some(place) = boxes.get_mut(index) {
+                *place = result;
+            }
+        }
+        boxes
+    }
+
+    /// Short-circuit evaluation of `contains` as jumps from leaf to leaf: within `a or b`, "inside of a" goes on where "inside of b"
+    /// would, "outside of a" goes to b.
+    fn compile_jumps(&mut self) {
+        // The leaf each node starts with: parents stand before operands, so the last node comes first.
+        let mut entry = vec![Next::Answer(false); self.nodes.len()];
+        for (index, node) in self.nodes.iter().enumerate().rev() {
+            let first = match node.kind {
+                Kind::Leaf(leaf) => Some(Next::Leaf(leaf)),
+                Kind::Operation(_) => node
+                    .operands
+                    .first()
+                    .and_then(|operand| entry.get(*operand as usize))
+                    .copied(),
+            };
+            if let (Some(place), Some(first)) = (entry.get_mut(index), first) {
+                *place = first;
+            }
+        }
+        let mut jumps = vec![(Next::Answer(true), Next::Answer(false)); self.nodes.len()];
+        for (index, node) in self.nodes.iter().enumerate() {
+            let Some(&(inside, outside)) = jumps.get(index) else {
+                continue;
+            };
+            match node.kind {
+                Kind::Leaf(leaf) => {
+                    if let Some(leaf) = self.leaves.get_mut(leaf as usize) {
+                        (leaf.if_inside, leaf.if_outside) = (inside, outside);
+                    }
+                }
+                Kind::Operation(rule) => {
+                    let followers = node.operands.iter().skip(1).map(Some).chain([None]);
+                    for (operand, follower) in node.operands.iter().zip(followers) {
+                        let next = follower.and_then(|f| entry.get(*f as usize)).copied();
+                        let jump = match rule {
+                            Rule::Intersection => (next.unwrap_or(inside), outside),
+                            Rule::Union | Rule::Merge => (inside, next.unwrap_or(outside)),
+                        };
+                        if let Some(place) = jumps.get_mut(*operand as usize) {
+                            *place = jump;
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// A count as a 32-bit index.
+fn count(n: usize, what: &'static str) -> Result<u32, GeometryError> {
+    u32::try_from(n).map_err(|_| GeometryError::OutOfRange {
+        what,
+        expected: "less than 2^32",
+        found: n as f64,
+    })
+}

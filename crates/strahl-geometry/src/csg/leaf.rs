@@ -1,0 +1,195 @@
+use super::sweep::Fusing;
+use crate::{
+    Crossing, Crossings, PrimHit, Primitive, Scratch, Shape, Side, Solid, SurfaceId, SurfacePoint,
+};
+use strahl_math::error::{ROUNDOFF, gamma};
+use strahl_math::{Aabb, DVec3, Interval, Ray, Transform};
+
+/// A shape of a compiled tree, with all that the operations above have decided about it.
+#[derive(Clone, Debug)]
+pub(super) struct Leaf {
+    pub(super) shape: Shape,
+    pub(super) placement: Option<Box<Placement>>,
+    pub(super) tag: u32,
+    /// The first of the element numbers this leaf takes.
+    pub(super) first_element: u32,
+    /// Whether the tree combines the complement of the shape.
+    pub(super) negative: bool,
+    /// False for what only clips.
+    pub(super) visible: bool,
+    /// The box around the shape's inside, in the tree's space.
+    pub(super) bounds: Aabb,
+    /// Which leaf decides whether a point is inside of the tree, once this one is known to contain it ...
+    pub(super) if_inside: Next,
+    /// ... or not to contain it.
+    pub(super) if_outside: Next,
+}
+
+/// A ray as a leaf meets it.
+pub(super) struct Query<'a> {
+    /// In the tree's space.
+    pub(super) ray: &'a Ray,
+    pub(super) range: Interval,
+    /// The surface the ray starts on, if it is this leaf's.
+    pub(super) from: Option<SurfaceId>,
+    /// Whether the ray starts on some surface of the tree.
+    pub(super) leaving: bool,
+    pub(super) fusing: &'a Fusing,
+}
+
+/// What follows from an answer when a point is classified: the tree's logic, compiled to jumps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Next {
+    /// Ask this leaf.
+    Leaf(u32),
+    /// The answer for the whole tree.
+    Answer(bool),
+}
+
+/// The map of a leaf that has a space of its own, both ways.
+#[derive(Clone, Debug)]
+pub(super) struct Placement {
+    map: Transform,
+    back: Transform,
+}
+
+impl Placement {
+    pub(super) fn new(map: Transform) -> Self {
+        Self {
+            map,
+            back: map.inverted(),
+        }
+    }
+
+    /// By how much the rounding of `ray_to_object` may move the parameter at which a surface with normal `n` (object space)
+    /// is met: the error of the point on the ray, across the surface, over the speed across the surface.
+    fn t_error(&self, outer: &Ray, inner: &Ray, t: f64, n: DVec3) -> f64 {
+        let reach = (outer.origin - self.map.translation()).abs() + (outer.direction * t).abs();
+        // A difference, three products and two sums each for origin and direction, and the entries of the inverse.
+        let point = abs_image(&self.back, reach) * gamma(10);
+        n.abs().dot(point) / n.dot(inner.direction).abs()
+    }
+}
+
+/// `|L| v` for `v >= 0`.
+fn abs_image(map: &Transform, v: DVec3) -> DVec3 {
+    map.error_to_world(v)
+}
+
+impl Leaf {
+    pub(super) fn solid(&self) -> Option<&dyn Solid> {
+        self.shape.as_solid()
+    }
+
+    fn ray_to_object(&self, ray: &Ray) -> Ray {
+        self.placement
+            .as_ref()
+            .map_or(*ray, |placement| placement.map.ray_to_object(ray))
+    }
+
+    /// Whether the tree's space at `point` belongs to what this leaf contributes: the shape or its complement.
+    pub(super) fn contains(&self, point: DVec3) -> bool {
+        let inside = || {
+            let local = self
+                .placement
+                .as_ref()
+                .map_or(point, |placement| placement.map.point_to_object(point));
+            self.solid().is_some_and(|solid| solid.contains(local))
+        };
+        (self.bounds.contains(point) && inside()) != self.negative
+    }
+
+    /// Appends the crossings of a ray with this leaf's contribution, with the tree's element numbers.
+    pub(super) fn crossings(&self, query: &Query<'_>, scratch: &mut Scratch, out: &mut Crossings) {
+        let Query {
+            ray, range, from, ..
+        } = *query;
+        let inner = self.ray_to_object(ray);
+        match self.solid() {
+            Some(solid) => solid.crossings(&inner, range, from, scratch, out),
+            None => self.list_hits(&inner, range, from, scratch, out),
+        }
+        if self.negative {
+            out.inside_at_start = !out.inside_at_start;
+            if self.solid().is_some() {
+                // Inner surfaces of the shape are outside of its complement.
+                out.list.retain(|crossing| crossing.side != Side::Inner);
+            }
+        }
+        for crossing in &mut out.list {
+            let t = crossing.hit.t;
+            if let Some(placement) = &self.placement {
+                let n = self.shape.surface_at(&inner, &crossing.hit).n_geom;
+                let error = placement.t_error(ray, &inner, t, n);
+                // Infinite where the ray runs along the surface; nothing is fused over more than the margin anyway.
+                let margin = query.fusing.margin(t);
+                crossing.t_error += if error < margin { error } else { margin };
+            }
+            if query.leaving && from.is_none() && t > 0.0 && t <= query.fusing.reach(crossing) {
+                // This surface and the one the ray starts on are one: it has been crossed.
+                crossing.hit.t = 0.0;
+            }
+            let element = crossing.hit.surface.element;
+            crossing.hit.surface.element = self.first_element.saturating_add(element);
+            crossing.visible &= self.visible;
+            if self.negative {
+                crossing.side = match crossing.side {
+                    Side::Enter => Side::Exit,
+                    Side::Exit => Side::Enter,
+                    Side::Inner => Side::Inner,
+                };
+            }
+        }
+    }
+
+    /// The hits of an open surface, as crossings that change nothing.
+    fn list_hits(
+        &self,
+        inner: &Ray,
+        mut range: Interval,
+        from: Option<SurfaceId>,
+        scratch: &mut Scratch,
+        out: &mut Crossings,
+    ) {
+        while let Some(hit) = self.shape.closest_hit(inner, range, from, scratch) {
+            if !range.accepts(hit.t) {
+                // Against the contract; without progress this would not end.
+                return;
+            }
+            range.min = hit.t;
+            out.list.push(Crossing::new(hit, 0.0, Side::Inner));
+        }
+    }
+
+    /// The surface at a hit, in the tree's space, with normals that point out of the tree's solid.
+    pub(super) fn surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
+        let local = PrimHit {
+            surface: SurfaceId {
+                element: hit.surface.element.saturating_sub(self.first_element),
+                ..hit.surface
+            },
+            ..*hit
+        };
+        let mut surface = self.shape.surface_at(&self.ray_to_object(ray), &local);
+        if let Some(placement) = &self.placement {
+            let map = &placement.map;
+            let position = map.point_to_world(surface.position);
+            surface = SurfacePoint {
+                position,
+                position_error: map.error_to_world(surface.position_error)
+                    + abs_image(map, surface.position.abs()) * gamma(4)
+                    + position.abs() * (2.0 * ROUNDOFF),
+                n_geom: map.normal_to_world(surface.n_geom).normalize(),
+                n_shade: map.normal_to_world(surface.n_shade).normalize(),
+                uv: surface.uv,
+                dpdu: map.vector_to_world(surface.dpdu),
+                dpdv: map.vector_to_world(surface.dpdv),
+            };
+        }
+        if self.negative {
+            surface.n_geom = -surface.n_geom;
+            surface.n_shade = -surface.n_shade;
+        }
+        surface
+    }
+}

@@ -1,0 +1,26 @@
+//! Constructive solid geometry: trees of solids, of any depth.
+//!
+//! A ray sees a solid as a list of spans (Roth, "Ray casting for modeling solids", 1982). A tree asks its leaves for their
+//! [`Crossings`](crate::Crossings), and every operation combines the sorted lists of its operands in one sweep; no hit is
+//! ever tested against the other operands point by point.
+//!
+//! * [`CsgNode`] describes a tree, [`Csg`] is the tree compiled: inversions pushed down to the leaves, nested equal
+//!   operations flattened, everything in flat lists that are walked without recursion.
+//! * `compile` makes the one from the other, `evaluate` walks the tree along a ray, `sweep` combines lists.
+
+mod compile;
+mod evaluate;
+mod leaf;
+mod solid;
+mod sweep;
+mod tree;
+
+pub use solid::Csg;
+pub use tree::{CsgNode, Operands};
+
+pub(crate) use evaluate::Workspace;
+
+#[cfg(test)]
+mod fuzz_tests;
+#[cfg(test)]
+mod tests;

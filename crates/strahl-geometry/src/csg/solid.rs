@@ -1,0 +1,222 @@
+use super::CsgNode;
+use super::compile::Compiler;
+use super::evaluate::Evaluation;
+use super::leaf::{Leaf, Next};
+use super::sweep::Rule;
+use crate::{
+    Crossings, GeometryError, PrimHit, Primitive, Scratch, Shape, Solid, SurfaceId, SurfacePoint,
+};
+use strahl_accel::Bvh2;
+use strahl_math::{Aabb, DVec3, Interval, Ray};
+
+/// A compiled CSG tree: solids combined to one.
+///
+/// Surface elements: each leaf takes as many numbers as its shape has elements, in the order of the description;
+/// [`Csg::leaf_of`] leads back. Facets and `uv` of a hit are the leaf's own. Where surfaces of several leaves coincide, the
+/// smallest element number shows, whatever the direction.
+///
+/// `n_geom` points out of the combined solid: the normals of what is subtracted are turned round. On inner surfaces it is
+/// the leaf's.
+///
+/// Limits: crossings of different leaves are fused where their error bounds overlap, so spans thinner than rounding vanish;
+/// and `contains` asks the leaves point by point, so on the boundary of a subtracted leaf it says "outside".
+#[derive(Clone, Debug)]
+pub struct Csg {
+    /// The root is the first.
+    nodes: Vec<Node>,
+    /// The operands of all nodes.
+    operands: Vec<u32>,
+    leaves: Vec<Leaf>,
+    elements: u32,
+    /// Whether all leaves are solids.
+    closed: bool,
+}
+
+/// What a compiled node is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Kind {
+    /// The leaf of this index.
+    Leaf(u32),
+    /// Operands combined.
+    Operation(Rule),
+}
+
+/// A compiled node.
+#[derive(Clone, Debug)]
+pub(super) struct Node {
+    pub(super) kind: Kind,
+    /// Holds all surfaces of the node ...
+    pub(super) bounds: Aabb,
+    /// ... and beyond it everything is inside, or nothing.
+    pub(super) far: bool,
+    /// Operands: `first..core` decide the result where a ray misses their boxes (the positive ones of an intersection),
+    /// `core..end` don't matter there (the subtracted ones).
+    pub(super) first: u32,
+    pub(super) core: u32,
+    pub(super) end: u32,
+    /// Over the boxes of `core..end`, numbered from 0, if they are many.
+    pub(super) hierarchy: Option<Box<Bvh2>>,
+}
+
+impl Csg {
+    /// Compiles a tree.
+    ///
+    /// # Errors
+    /// An operation without operands, a leaf with invalid parameters, more than 2³² elements.
+    pub fn try_new(tree: CsgNode) -> Result<Self, GeometryError> {
+        let mut compiler = Compiler::default();
+        compiler.read(tree)?;
+        Ok(compiler.finish())
+    }
+
+    pub(super) fn from_parts(
+        nodes: Vec<Node>,
+        operands: Vec<u32>,
+        leaves: Vec<Leaf>,
+        elements: u32,
+        closed: bool,
+    ) -> Self {
+        Self {
+            nodes,
+            operands,
+            leaves,
+            elements,
+            closed,
+        }
+    }
+
+    /// The number of leaves, counted in the order of the description.
+    pub fn leaves(&self) -> usize {
+        self.leaves.len()
+    }
+
+    /// The leaf that an element number of a hit belongs to, and the element's number within that leaf's shape.
+    pub fn leaf_of(&self, element: u32) -> (usize, u32) {
+        let after = self
+            .leaves
+            .partition_point(|leaf| leaf.first_element <= element);
+        let index = after.saturating_sub(1);
+        let first = self.leaves.get(index).map_or(0, |leaf| leaf.first_element);
+        (index, element - first)
+    }
+
+    /// The caller's number for a leaf; 0 if there is no such leaf.
+    pub fn leaf_tag(&self, leaf: usize) -> u32 {
+        self.leaves.get(leaf).map_or(0, |leaf| leaf.tag)
+    }
+
+    /// The shape of a leaf.
+    pub fn leaf_shape(&self, leaf: usize) -> Option<&Shape> {
+        self.leaves.get(leaf).map(|leaf| &leaf.shape)
+    }
+
+    pub(super) fn node(&self, index: u32) -> Option<&Node> {
+        self.nodes.get(index as usize)
+    }
+
+    pub(super) fn operand(&self, index: u32) -> Option<u32> {
+        self.operands.get(index as usize).copied()
+    }
+
+    pub(super) fn leaf(&self, index: u32) -> Option<&Leaf> {
+        self.leaves.get(index as usize)
+    }
+
+    /// Whether the point is inside by the logic of the tree; open leaves have no inside.
+    fn contains_point(&self, point: DVec3) -> bool {
+        if point.is_nan() {
+            return false;
+        }
+        let mut next = Next::Leaf(0);
+        loop {
+            let index = match next {
+                Next::Answer(answer) => return answer,
+                Next::Leaf(index) => index,
+            };
+            let Some(leaf) = self.leaf(index) else {
+                return false;
+            };
+            next = if leaf.contains(point) {
+                leaf.if_inside
+            } else {
+                leaf.if_outside
+            };
+        }
+    }
+}
+
+impl Primitive for Csg {
+    fn kind(&self) -> &'static str {
+        "csg"
+    }
+
+    /// Leaves have been checked by [`Csg::try_new`].
+    fn validate(&self) -> Result<(), GeometryError> {
+        Ok(())
+    }
+
+    /// What the boxes of the leaves leave over: those of intersections are intersected, what is subtracted does not count.
+    fn bounds(&self) -> Aabb {
+        match self.node(0) {
+            Some(root) if !(self.closed && root.far) => root.bounds,
+            _ => Aabb::EVERYTHING,
+        }
+    }
+
+    fn elements(&self) -> u32 {
+        self.elements
+    }
+
+    fn closest_hit(
+        &self,
+        ray: &Ray,
+        range: Interval,
+        from: Option<SurfaceId>,
+        scratch: &mut Scratch,
+    ) -> Option<PrimHit> {
+        let mut list = scratch.take();
+        Evaluation::run(self, ray, range, from, scratch, &mut list);
+        let first = list.list.iter().find(|crossing| crossing.visible);
+        let hit = first.map(|crossing| crossing.hit);
+        scratch.give(list);
+        hit
+    }
+
+    fn surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
+        let (leaf, _) = self.leaf_of(hit.surface.element);
+        match self.leaves.get(leaf) {
+            Some(leaf) => leaf.surface_at(ray, hit),
+            // A compiled tree has a leaf.
+            None => SurfacePoint {
+                position: ray.at(hit.t),
+                position_error: DVec3::ZERO,
+                n_geom: DVec3::Z,
+                n_shade: DVec3::Z,
+                uv: strahl_math::DVec2::ZERO,
+                dpdu: DVec3::ZERO,
+                dpdv: DVec3::ZERO,
+            },
+        }
+    }
+
+    fn as_solid(&self) -> Option<&dyn Solid> {
+        if self.closed { Some(self) } else { None }
+    }
+}
+
+impl Solid for Csg {
+    fn crossings(
+        &self,
+        ray: &Ray,
+        range: Interval,
+        from: Option<SurfaceId>,
+        scratch: &mut Scratch,
+        out: &mut Crossings,
+    ) {
+        Evaluation::run(self, ray, range, from, scratch, out);
+    }
+
+    fn contains(&self, point: DVec3) -> bool {
+        self.contains_point(point)
+    }
+}

@@ -1,0 +1,212 @@
+use crate::{Crossing, Crossings, Side};
+use strahl_math::Ray;
+
+/// How a node combines its operands. There is no difference and no inverse: those have been pushed down to the leaves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Rule {
+    /// Inside of any; inner surfaces stay.
+    Union,
+    /// Inside of any.
+    Merge,
+    /// Inside of all.
+    Intersection,
+}
+
+impl Rule {
+    /// The operand that changes nothing: true (everything) for intersections, false (nothing) for unions.
+    pub(super) fn neutral(self) -> bool {
+        self == Self::Intersection
+    }
+}
+
+/// Decides which crossings are one: coincident surfaces are found at parameters that differ by rounding.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Fusing {
+    /// The parameter at which the ray is as far from its origin as its origin is from that of space.
+    scale: f64,
+}
+
+impl Fusing {
+    /// The largest gap ever closed, relative to the magnitudes in play. Error bounds are far below (some 1e-15), except where a
+    /// ray grazes a surface; the limit is what makes lists independent of the range asked for, see
+    /// [`Fusing::margin`].
+    const LIMIT: f64 = 1.0 / (1u64 << 20) as f64;
+
+    pub(super) fn new(ray: &Ray) -> Self {
+        let scale = ray.origin.abs().max_element() / ray.direction.abs().max_element();
+        Self {
+            scale: if scale.is_finite() { scale } else { 0.0 },
+        }
+    }
+
+    /// What may be fused with a crossing at `t` lies within this distance of it. Lists made for a range that is wider by a few
+    /// margins are those of the whole line, cut.
+    pub(super) fn margin(&self, t: f64) -> f64 {
+        Self::LIMIT * (t.abs() + self.scale)
+    }
+
+    /// The crossing's error, as far as it is honoured.
+    pub(super) fn reach(&self, crossing: &Crossing) -> f64 {
+        let margin = self.margin(crossing.hit.t);
+        if crossing.t_error < margin {
+            crossing.t_error
+        } else {
+            margin
+        }
+    }
+
+    fn coincide(&self, a: &Crossing, b: &Crossing) -> bool {
+        (b.hit.t - a.hit.t).abs() <= self.reach(a) + self.reach(b)
+    }
+}
+
+/// A crossing of one operand.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Event {
+    pub(super) crossing: Crossing,
+    /// Which operand.
+    pub(super) slot: u32,
+}
+
+/// An operand during a sweep.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Slot {
+    /// Whether the ray is inside of it.
+    pub(super) inside: bool,
+    /// The group of coincident crossings it took part in last; 0 for none.
+    group: u32,
+}
+
+impl Slot {
+    pub(super) fn new(inside: bool) -> Self {
+        Self { inside, group: 0 }
+    }
+}
+
+/// Sorts the crossings of all operands along the ray.
+pub(super) fn sort(events: &mut [Event]) {
+    events.sort_unstable_by(|a, b| {
+        let (s, t) = (&a.crossing.hit, &b.crossing.hit);
+        s.t.total_cmp(&t.t)
+            .then_with(|| a.slot.cmp(&b.slot))
+            .then_with(|| s.surface.element.cmp(&t.surface.element))
+            .then_with(|| s.surface.facet.cmp(&t.surface.facet))
+    });
+}
+
+/// Combines the operands' sorted crossings to those of the node. `always_inside` tells that there is one more operand, with
+/// the ray inside of it all along.
+///
+/// Crossings of different operands that coincide are one event: all operands change their states, then the result is looked
+/// at. So spans without thickness vanish, and where faces coincide the one with the smallest element number shows.
+pub(super) fn sweep(
+    rule: Rule,
+    events: &[Event],
+    slots: &mut [Slot],
+    always_inside: bool,
+    fusing: &Fusing,
+    out: &mut Crossings,
+) {
+    let total = slots.len() + usize::from(always_inside);
+    let holds = |count: usize| match rule {
+        Rule::Union | Rule::Merge => count > 0,
+        Rule::Intersection => count == total,
+    };
+    let mut count = usize::from(always_inside) + slots.iter().filter(|slot| slot.inside).count();
+    out.inside_at_start = holds(count);
+
+    let (mut rest, mut group) = (events, 0);
+    while let Some(first) = rest.first() {
+        // The group: what coincides with its first crossing, one crossing per operand (an operand's own list is in
+        // order already, however close its crossings are).
+        group += 1;
+        let before = count;
+        let mut length = 0;
+        for event in rest {
+            let Some(slot) = slots.get_mut(event.slot as usize) else {
+                break;
+            };
+            if slot.group == group || !fusing.coincide(&first.crossing, &event.crossing) {
+                break;
+            }
+            slot.group = group;
+            length += 1;
+            match event.crossing.side {
+                Side::Enter if !slot.inside => {
+                    slot.inside = true;
+                    count += 1;
+                }
+                Side::Exit if slot.inside => {
+                    slot.inside = false;
+                    count -= 1;
+                }
+                _ => {}
+            }
+        }
+        // A group is never empty; the bound only guards against an event of an unknown operand.
+        let (members, later) = rest.split_at(if length > 0 { length } else { 1 });
+        rest = later;
+
+        let chosen = match (holds(before), holds(count)) {
+            (false, true) => choose(members, Side::Enter),
+            (true, false) => choose(members, Side::Exit),
+            (_, _) => choose_inner(rule, members, slots, before, count, total),
+        };
+        out.list.extend(chosen);
+    }
+}
+
+/// The crossing that shows where the result changes: one that changes the same way, visible if there is one, of
+/// the smallest element.
+fn choose(members: &[Event], side: Side) -> Option<Crossing> {
+    members
+        .iter()
+        .map(|event| &event.crossing)
+        .min_by_key(|c| {
+            (
+                c.side != side,
+                !c.visible,
+                c.surface().element,
+                c.surface().facet,
+            )
+        })
+        .map(|c| Crossing { side, ..*c })
+}
+
+/// The inner surface that stays where the result does not change, if any.
+fn choose_inner(
+    rule: Rule,
+    members: &[Event],
+    slots: &[Slot],
+    before: usize,
+    after: usize,
+    total: usize,
+) -> Option<Crossing> {
+    let stays = |event: &&Event| {
+        let inner = event.crossing.side == Side::Inner;
+        let own = slots
+            .get(event.slot as usize)
+            .is_some_and(|slot| slot.inside);
+        // How many of the *other* operands the ray is inside of, on either side.
+        let others_before = before.saturating_sub(usize::from(inner && own));
+        let others_after = after.saturating_sub(usize::from(inner && own));
+        event.crossing.visible
+            && match rule {
+                Rule::Union => true,
+                Rule::Merge => inner && others_before == 0 && others_after == 0,
+                // Inside or on the boundary of all others.
+                Rule::Intersection => {
+                    inner && (others_before + 1 == total || others_after + 1 == total)
+                }
+            }
+    };
+    members
+        .iter()
+        .filter(stays)
+        .map(|event| &event.crossing)
+        .min_by_key(|c| (c.surface().element, c.surface().facet))
+        .map(|c| Crossing {
+            side: Side::Inner,
+            ..*c
+        })
+}
