@@ -1,4 +1,4 @@
-use super::{Bvh2, MAX_DEPTH, Node};
+use super::{Bvh2, Child, MAX_DEPTH, Node};
 use crate::boxes::Box32;
 use strahl_math::Aabb;
 
@@ -44,33 +44,47 @@ impl Bvh2 {
                 unbounded.push(id);
             }
         }
-        let tree = if refs.is_empty() {
-            Subtree::default()
-        } else {
-            Subtree::build(&mut refs, 0)
-        };
-        let mut bvh = Self {
+        let tree = (!refs.is_empty())
+            .then(|| Subtree::build(&mut refs, 0))
+            .unwrap_or_default();
+        let bvh = Self {
+            root: (!refs.is_empty()).then_some(tree.root),
             nodes: tree.nodes,
             ids: tree.ids,
             unbounded,
-            bounds: Aabb::EMPTY,
-            max_abs: 0.0,
+            bounds: if refs.is_empty() {
+                Aabb::EMPTY
+            } else {
+                tree.bounds.to_f64()
+            },
+            max_abs: if refs.is_empty() {
+                0.0
+            } else {
+                tree.bounds.max_abs()
+            },
         };
-        let root = bvh.root_box();
-        if !bvh.nodes.is_empty() {
-            bvh.bounds = root.to_f64();
-            bvh.max_abs = root.max_abs();
-        }
         debug_assert_eq!(bvh.validate(bounds), Ok(()));
         bvh
     }
 }
 
-/// A tree with indices of its own: node 0 is its root, its children come after it.
-#[derive(Default)]
+/// A tree with indices of its own; if it has nodes, its root is the first.
 struct Subtree {
+    bounds: Box32,
+    root: Child,
     nodes: Vec<Node>,
     ids: Vec<u32>,
+}
+
+impl Default for Subtree {
+    fn default() -> Self {
+        Self {
+            bounds: Box32::EMPTY,
+            root: Child::default(),
+            nodes: vec![],
+            ids: vec![],
+        }
+    }
 }
 
 impl Subtree {
@@ -80,7 +94,7 @@ impl Subtree {
             bounds.grow(&r.bounds);
         }
         let Some(middle) = split(refs, &bounds, depth) else {
-            return Self::leaf(refs, &bounds);
+            return Self::leaf(refs, bounds);
         };
         let parallel = refs.len() >= PARALLEL;
         let (left, right) = refs.split_at_mut(middle);
@@ -92,51 +106,53 @@ impl Subtree {
         } else {
             (Self::build(left, depth + 1), Self::build(right, depth + 1))
         };
-        Self::join(&bounds, left, right)
+        Self::join(bounds, left, right)
     }
 
-    fn leaf(refs: &[Ref], bounds: &Box32) -> Self {
+    fn leaf(refs: &[Ref], bounds: Box32) -> Self {
         let mut ids: Vec<u32> = refs.iter().map(|r| r.id).collect();
         ids.sort_unstable();
         Self {
-            nodes: vec![Node {
-                lo: bounds.lo,
+            bounds,
+            root: Child {
                 first: 0,
-                hi: bounds.hi,
                 count: ids.len() as u32,
-            }],
+            },
+            nodes: vec![],
             ids,
         }
     }
 
-    /// Root, both children next to each other, then what is below the left child, then what is below the right one.
-    fn join(bounds: &Box32, left: Self, right: Self) -> Self {
+    /// The root first, then the left subtree, then the right one: depth first, as rays that go left walk it.
+    fn join(bounds: Box32, left: Self, right: Self) -> Self {
+        let right_node = 1 + left.nodes.len() as u32;
+        let right_id = left.ids.len() as u32;
+        let moved = |child: Child, nodes_by: u32, ids_by: u32| Child {
+            first: child.first + if child.count == 0 { nodes_by } else { ids_by },
+            ..child
+        };
         let mut nodes = Vec::with_capacity(1 + left.nodes.len() + right.nodes.len());
         nodes.push(Node {
-            lo: bounds.lo,
-            first: 1,
-            hi: bounds.hi,
-            count: 0,
+            boxes: Box32::pair(&left.bounds, &right.bounds),
+            children: [
+                moved(left.root, 1, 0),
+                moved(right.root, right_node, right_id),
+            ],
         });
-        // The left subtree's node 1 goes to place 3, the right's behind the left's.
-        let left_shift = 2;
-        let right_shift = 1 + left.nodes.len() as u32;
-        let right_ids = left.ids.len() as u32;
-        let moved = |mut node: Node, nodes_by: u32, ids_by: u32| {
-            node.first += if node.count == 0 { nodes_by } else { ids_by };
-            node
+        let shifted = |node: &Node, nodes_by: u32, ids_by: u32| Node {
+            children: node.children.map(|c| moved(c, nodes_by, ids_by)),
+            ..*node
         };
-        nodes.push(moved(left.nodes[0], left_shift, 0));
-        nodes.push(moved(right.nodes[0], right_shift, right_ids));
-        nodes.extend(left.nodes[1..].iter().map(|n| moved(*n, left_shift, 0)));
-        nodes.extend(
-            right.nodes[1..]
-                .iter()
-                .map(|n| moved(*n, right_shift, right_ids)),
-        );
+        nodes.extend(left.nodes.iter().map(|n| shifted(n, 1, 0)));
+        nodes.extend(right.nodes.iter().map(|n| shifted(n, right_node, right_id)));
         let mut ids = left.ids;
         ids.extend(right.ids);
-        Self { nodes, ids }
+        Self {
+            bounds,
+            root: Child { first: 0, count: 0 },
+            nodes,
+            ids,
+        }
     }
 }
 

@@ -6,18 +6,33 @@ mod build;
 mod traverse;
 mod validate;
 
-use crate::boxes::Box32;
+use crate::boxes::{Box32, BoxPair};
 use strahl_math::Aabb;
 
-/// A node: an inner node with two children next to each other, or a leaf. 32 bytes, two to a cache line.
+/// A node: two children with their boxes, one cache line.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C, align(64))]
 pub(crate) struct Node {
-    pub(crate) lo: [f32; 3],
-    /// Inner node: index of the first child, the second follows. Leaf: index of the first id.
+    pub(crate) boxes: BoxPair,
+    pub(crate) children: [Child; 2],
+}
+
+/// What is in a box.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Child {
+    /// Leaf: index of its first id. Otherwise: index of the node.
     pub(crate) first: u32,
-    pub(crate) hi: [f32; 3],
-    /// 0 for an inner node, else the number of ids.
+    /// Leaf: number of its ids, at least 1. Otherwise 0.
     pub(crate) count: u32,
+}
+
+impl Node {
+    pub(crate) fn bounds(&self, child: usize) -> Box32 {
+        Box32 {
+            lo: self.boxes.map(|planes| planes[child]),
+            hi: self.boxes.map(|planes| planes[child + 2]),
+        }
+    }
 }
 
 /// A binary bounding volume hierarchy built by the surface area heuristic.
@@ -25,6 +40,8 @@ pub(crate) struct Node {
 /// Boxes are f32, rounded outwards. Primitives without bounds are kept in a list beside the tree and always visited.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bvh2 {
+    /// What holds all bounded primitives; `None` if there are none.
+    root: Option<Child>,
     nodes: Vec<Node>,
     /// The primitives of the leaves, leaf by leaf.
     ids: Vec<u32>,
@@ -37,11 +54,3 @@ pub struct Bvh2 {
 
 /// Levels of the tree: the depth of the traversal's stack.
 pub(crate) const MAX_DEPTH: usize = 64;
-
-impl Bvh2 {
-    fn root_box(&self) -> Box32 {
-        self.nodes
-            .first()
-            .map_or(Box32::EMPTY, |n| Box32 { lo: n.lo, hi: n.hi })
-    }
-}

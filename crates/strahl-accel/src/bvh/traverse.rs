@@ -1,4 +1,4 @@
-use super::{Bvh2, MAX_DEPTH, Node};
+use super::{Bvh2, Child, MAX_DEPTH};
 use crate::boxes::CullRay;
 use crate::{Accelerator, TraversalStats, Visitor};
 use strahl_math::{Interval, Ray};
@@ -24,10 +24,10 @@ impl Accelerator for Bvh2 {
                 return;
             }
         }
-        if !self.nodes.is_empty()
+        if let Some(root) = self.root
             && let Some(cull) = CullRay::new(ray, range, &self.bounds, self.max_abs)
         {
-            self.walk(&cull, t_max, visitor, stats);
+            self.walk(root, &cull, t_max, visitor, stats);
         }
     }
 
@@ -51,55 +51,44 @@ impl Bvh2 {
     #[inline]
     fn walk<V: Visitor>(
         &self,
+        root: Child,
         cull: &CullRay,
         mut t_max: f64,
         visitor: &mut V,
         stats: &mut TraversalStats,
     ) {
         let mut far = cull.t_max(t_max);
-        let mut node = &self.nodes[0];
-        let (near, leave) = cull.slab(&node.lo, &node.hi, far);
-        stats.node_visits += 1;
-        if near > leave {
-            return;
-        }
+        let mut current = root;
         // What is left to visit, with the parameter at which the ray gets there.
-        let mut stack = [(0u32, 0.0f32); MAX_DEPTH];
+        let mut stack = [(Child::default(), 0.0f32); MAX_DEPTH];
         let mut depth = 0;
         loop {
-            if node.count == 0 {
+            if current.count == 0 {
                 stats.node_visits += 1;
-                let first = node.first as usize;
-                let pair: &[Node] = &self.nodes[first..first + 2];
-                let (a, b) = (&pair[0], &pair[1]);
-                let (near_a, leave_a) = cull.slab(&a.lo, &a.hi, far);
-                let (near_b, leave_b) = cull.slab(&b.lo, &b.hi, far);
-                match (near_a <= leave_a, near_b <= leave_b) {
-                    (true, true) => {
-                        let (next, later, later_near) = if near_b < near_a {
-                            (b, first, near_a)
-                        } else {
-                            (a, first + 1, near_b)
-                        };
-                        stack[depth] = (later as u32, later_near);
+                let node = &self.nodes[current.first as usize];
+                let (near, hit) = cull.enter(&node.boxes, far);
+                match hit {
+                    0 => {}
+                    1 => {
+                        current = node.children[0];
+                        continue;
+                    }
+                    2 => {
+                        current = node.children[1];
+                        continue;
+                    }
+                    _ => {
+                        let later = usize::from(near[0] <= near[1]);
+                        stack[depth] = (node.children[later], near[later]);
                         depth += 1;
-                        node = next;
+                        current = node.children[1 - later];
                         continue;
                     }
-                    (true, false) => {
-                        node = a;
-                        continue;
-                    }
-                    (false, true) => {
-                        node = b;
-                        continue;
-                    }
-                    (false, false) => {}
                 }
             } else {
-                let first = node.first as usize;
+                let first = current.first as usize;
                 let before = t_max;
-                for id in &self.ids[first..first + node.count as usize] {
+                for id in &self.ids[first..first + current.count as usize] {
                     stats.primitive_tests += 1;
                     t_max = visitor.visit(*id, t_max);
                     if t_max == f64::NEG_INFINITY {
@@ -116,9 +105,9 @@ impl Bvh2 {
                     return;
                 }
                 depth -= 1;
-                let (index, near) = stack[depth];
+                let (child, near) = stack[depth];
                 if near <= far {
-                    node = &self.nodes[index as usize];
+                    current = child;
                     break;
                 }
             }

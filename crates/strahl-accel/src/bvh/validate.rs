@@ -1,4 +1,4 @@
-use super::{Bvh2, MAX_DEPTH};
+use super::{Bvh2, Child, MAX_DEPTH};
 use crate::boxes::Box32;
 use strahl_math::Aabb;
 
@@ -20,48 +20,43 @@ impl Bvh2 {
         for id in &self.unbounded {
             note(*id)?;
         }
-        let mut waiting = if self.nodes.is_empty() {
-            vec![]
-        } else {
-            vec![(0usize, 1usize)]
+        let whole = Box32 {
+            lo: self.bounds.min.to_array().map(|x| x as f32),
+            hi: self.bounds.max.to_array().map(|x| x as f32),
         };
+        let mut waiting: Vec<(Child, Box32, usize)> =
+            self.root.map(|root| (root, whole, 1)).into_iter().collect();
         let mut visited = 0;
-        while let Some((index, depth)) = waiting.pop() {
-            visited += 1;
-            if depth > MAX_DEPTH || visited > self.nodes.len() {
-                return Err(format!("node {index} is on level {depth}"));
-            }
-            let node = &self.nodes[index];
-            let own = Box32 {
-                lo: node.lo,
-                hi: node.hi,
-            };
-            let first = node.first as usize;
-            if node.count == 0 {
-                let pair = self
-                    .nodes
-                    .get(first..first + 2)
-                    .ok_or(format!("node {index} has no children"))?;
-                for (offset, child) in pair.iter().enumerate() {
-                    if !own.contains(&Box32 {
-                        lo: child.lo,
-                        hi: child.hi,
-                    }) {
-                        return Err(format!("a child of node {index} sticks out"));
+        while let Some((child, own, depth)) = waiting.pop() {
+            let first = child.first as usize;
+            if child.count > 0 {
+                let end = first + child.count as usize;
+                let ids = self
+                    .ids
+                    .get(first..end)
+                    .ok_or(format!("ids {first}..{end} do not exist"))?;
+                for id in ids {
+                    note(*id)?;
+                    if !own.contains(&Box32::new(&bounds[*id as usize])) {
+                        return Err(format!("primitive {id} sticks out of its leaf"));
                     }
-                    waiting.push((first + offset, depth + 1));
                 }
                 continue;
             }
-            let ids = self
-                .ids
-                .get(first..first + node.count as usize)
-                .ok_or(format!("leaf {index} is out of range"))?;
-            for id in ids {
-                note(*id)?;
-                if !own.contains(&Box32::new(&bounds[*id as usize])) {
-                    return Err(format!("primitive {id} sticks out of its leaf"));
+            visited += 1;
+            if depth >= MAX_DEPTH || visited > self.nodes.len() {
+                return Err(format!("node {first} is on level {depth}"));
+            }
+            let node = self
+                .nodes
+                .get(first)
+                .ok_or(format!("node {first} does not exist"))?;
+            for (side, child) in node.children.iter().enumerate() {
+                let inner = node.bounds(side);
+                if !own.contains(&inner) {
+                    return Err(format!("a child of node {first} sticks out"));
                 }
+                waiting.push((*child, inner, depth + 1));
             }
         }
         for (id, (count, b)) in seen.iter().zip(bounds).enumerate() {
