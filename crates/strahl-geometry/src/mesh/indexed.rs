@@ -202,6 +202,28 @@ impl TriangleMesh {
         self.face_lines.as_ref()?.get(triangle as usize).copied()
     }
 
+    /// The normals given for the corners of a triangle, if the mesh has normals.
+    pub fn corner_normals(&self, triangle: u32) -> Option<[DVec3; 3]> {
+        let normals = self.normals.as_ref()?;
+        Some(
+            self.triangle(triangle)
+                .map(|v| DVec3::from(normals[v as usize].map(f64::from))),
+        )
+    }
+
+    /// Bytes of the vertices, the triangles and what belongs to them.
+    pub fn bytes(&self) -> usize {
+        fn of<T>(list: Option<&[T]>) -> usize {
+            list.map_or(0, size_of_val)
+        }
+        of(Some(&self.positions[..]))
+            + of(Some(&self.indices[..]))
+            + of(self.normals.as_deref())
+            + of(self.uvs.as_deref())
+            + of(self.face_materials.as_deref())
+            + of(self.face_lines.as_deref())
+    }
+
     /// How many triangles have no area (loaders warn of them).
     pub fn degenerate_count(&self) -> u32 {
         (0..self.triangle_count())
