@@ -1,1 +1,40 @@
-//! x
+//! From a scene description to pixels.
+//!
+//! ```text
+//! Scene --compile--> RenderScene --render--> Film
+//! ```
+//!
+//! [`compile()`] is a list of passes from value to value; [`render()`] sends the rays. The heart is [`trace`], the one trace loop
+//! there is: ray trees, counters and pictures all come from it, by way of a [`TraceObserver`]. Nothing here does I/O, reads
+//! the clock or prints.
+//!
+//! A pixel depends on the scene, its position and its samples only, so a film has the same bits for every accelerator,
+//! number of threads, order of tiles and split into regions.
+
+mod camera;
+mod compile;
+mod film;
+mod hit;
+mod media;
+mod observer;
+mod query;
+mod render;
+mod sampling;
+mod scene;
+mod shadow;
+mod tiles;
+pub mod trace;
+mod tree;
+
+pub use camera::PrimaryRays;
+pub use compile::{CompileOptions, Prepared, compile};
+pub use film::{Film, FilmError, PixelInfo, Region};
+pub use hit::{Hit, Origin, RayClass};
+pub use observer::{BranchEnd, HitReport, LightTerm, RayKind, RayReport, TraceObserver};
+pub use query::Tracer;
+pub use render::{Progress, RenderError, RenderOptions, Rendered, render};
+pub use sampling::{Sampling, UnknownSampling};
+pub use scene::{ObjectInfo, RenderScene, SceneStats};
+pub use tiles::TileOrder;
+pub use trace::{RayCounts, SampleResult, TraceSettings};
+pub use tree::{PixelTree, RayNode, RayTree, explain};

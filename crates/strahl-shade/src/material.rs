@@ -63,6 +63,9 @@ pub struct Material {
     /// Whether Fresnel's equations divide the light between reflection and transparency: `kr` and `kt` are then scaled by
     /// F and 1-F.
     pub fresnel: bool,
+    /// Whether the surface is a sheet without an inside: transparency rays pass straight, and `eta` only sets what Fresnel's
+    /// equations reflect.
+    pub thin: bool,
     /// From which sides the surface exists.
     pub sides: Sides,
     /// A physically based description (glTF's) from which the coefficients follow, possibly by textures.
@@ -129,6 +132,7 @@ impl Material {
             eta: 1.0,
             absorption: Color::BLACK,
             fresnel: false,
+            thin: false,
             sides: Sides::Two,
             pbr: None,
         }

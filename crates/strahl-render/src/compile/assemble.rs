@@ -1,0 +1,181 @@
+use super::flatten::FlatGroup;
+use crate::scene::{InstanceUse, MeshUse, Prim, PrimKind, ShapeUse};
+use strahl_geometry::Primitive;
+use strahl_math::Aabb;
+use strahl_scene::{Diagnostic, Scene};
+
+/// A group with its element numbers and bounds.
+#[derive(Debug)]
+pub(super) struct Assembled {
+    pub(super) prims: Vec<Prim>,
+    pub(super) shapes: Vec<ShapeUse>,
+    pub(super) meshes: Vec<MeshUse>,
+    pub(super) instances: Vec<InstanceUse>,
+    pub(super) first_ids: Option<Vec<u64>>,
+    pub(super) count: u64,
+    pub(super) bounds: Aabb,
+    pub(super) prim_bounds: Vec<Aabb>,
+}
+
+/// Deepest nesting of instances.
+const MOST_LEVELS: u32 = 64;
+
+/// Orders the groups so that each comes after those it instances (the world, last on entry, stays last), drops those that are
+/// not used, and computes numbers and bounds.
+pub(super) fn assemble(
+    groups: Vec<FlatGroup>,
+    scene: &Scene,
+) -> Result<Vec<Assembled>, Vec<Diagnostic>> {
+    let order = order(&groups, scene)?;
+    let mut place = vec![u32::MAX; groups.len()];
+    let mut groups: Vec<Option<FlatGroup>> = groups.into_iter().map(Some).collect();
+    let mut done: Vec<Assembled> = Vec::with_capacity(order.len());
+    for index in order {
+        let Some(mut group) = groups[index].take() else {
+            continue;
+        };
+        for instance in &mut group.instances {
+            instance.group = place[instance.group as usize];
+        }
+        place[index] = done.len() as u32;
+        done.push(number(group, &done)?);
+    }
+    Ok(done)
+}
+
+/// The groups the world needs, each after those it instances itself.
+fn order(groups: &[FlatGroup], scene: &Scene) -> Result<Vec<usize>, Vec<Diagnostic>> {
+    #[derive(Clone, Copy, PartialEq)]
+    enum State {
+        New,
+        Open,
+        Done,
+    }
+    let Some(world) = groups.len().checked_sub(1) else {
+        return Ok(vec![]);
+    };
+    let mut states = vec![State::New; groups.len()];
+    let mut levels = vec![0u32; groups.len()];
+    let mut order = Vec::new();
+    let mut path = vec![(world, 0)];
+    states[world] = State::Open;
+    while let Some((group, next)) = path.last_mut() {
+        let (group, instances) = (*group, &groups[*group].instances);
+        if let Some(instance) = instances.get(*next) {
+            *next += 1;
+            let inner = instance.group as usize;
+            match states[inner] {
+                State::Done => levels[group] = levels[group].max(levels[inner] + 1),
+                State::New => {
+                    states[inner] = State::Open;
+                    path.push((inner, 0));
+                }
+                State::Open => {
+                    let name = scene
+                        .groups
+                        .get(inner)
+                        .and_then(|g| g.name.as_deref())
+                        .unwrap_or("(unnamed)");
+                    let message = format!("group {inner} {name} contains an instance of itself");
+                    return Err(vec![Diagnostic::error(message)]);
+                }
+            }
+            continue;
+        }
+        if levels[group] > MOST_LEVELS {
+            let message = format!("instances are nested more than {MOST_LEVELS} levels deep");
+            return Err(vec![Diagnostic::error(message)]);
+        }
+        states[group] = State::Done;
+        order.push(group);
+        path.pop();
+        if let Some((parent, _)) = path.last() {
+            levels[*parent] = levels[*parent].max(levels[group] + 1);
+        }
+    }
+    Ok(order)
+}
+
+/// Element numbers and bounds of a group whose instances refer to groups already done.
+fn number(group: FlatGroup, done: &[Assembled]) -> Result<Assembled, Vec<Diagnostic>> {
+    let FlatGroup {
+        prims,
+        shapes,
+        meshes,
+        instances,
+    } = group;
+    let too_many = |kind: &str| {
+        vec![Diagnostic::error(format!(
+            "the scene has too many {kind}: more than 2^32"
+        ))]
+    };
+    if prims.len() >= u32::MAX as usize {
+        return Err(too_many("primitives"));
+    }
+    let mut prim_bounds = Vec::with_capacity(prims.len());
+    let mut first_ids = Vec::new();
+    let mut simple = true;
+    let (mut count, mut bounds) = (0u64, Aabb::EMPTY);
+    for (index, prim) in prims.iter().enumerate() {
+        let (elements, own) = match prim.kind {
+            PrimKind::Triangle(mesh, triangle) => {
+                (1, meshes[mesh as usize].mesh.element_bounds(triangle))
+            }
+            PrimKind::Shape(shape) => {
+                let shape = &shapes[shape as usize].shape;
+                (u64::from(shape.elements()), shape.bounds())
+            }
+            PrimKind::Placed(shape) => {
+                let used = &shapes[shape as usize];
+                let bounds = used.shape.bounds();
+                let bounds = used
+                    .transform
+                    .as_ref()
+                    .map_or(bounds, |m| m.bounds_to_world(&bounds));
+                (u64::from(used.shape.elements()), bounds)
+            }
+            PrimKind::Instance(instance) => {
+                let instance = &instances[instance as usize];
+                let inner = &done[instance.group as usize];
+                // An instance of an empty group has no elements and is never visited.
+                (
+                    inner.count,
+                    instance.transform.bounds_to_world(&inner.bounds),
+                )
+            }
+        };
+        if elements != 1 && simple {
+            simple = false;
+            first_ids.extend(0..index as u64);
+        }
+        if !simple {
+            first_ids.push(count);
+        }
+        count = match count.checked_add(elements) {
+            Some(count) if count < u64::MAX / 2 => count,
+            _ => {
+                return Err(vec![Diagnostic::error(
+                    "the scene has too many instanced elements: more than 2^63",
+                )]);
+            }
+        };
+        bounds = bounds.union(&finite_part(&own));
+        prim_bounds.push(own);
+    }
+    let first_ids = (!simple).then_some(first_ids);
+    Ok(Assembled {
+        prims,
+        shapes,
+        meshes,
+        instances,
+        first_ids,
+        count,
+        bounds,
+        prim_bounds,
+    })
+}
+
+/// Unbounded things do not count for the size of a scene.
+fn finite_part(b: &Aabb) -> Aabb {
+    if b.is_bounded() { *b } else { Aabb::EMPTY }
+}

@@ -1,0 +1,356 @@
+use super::materials::{
+    MaterialTable, material_filters, material_of, material_problem, material_transmits,
+};
+use crate::hit::RayClass;
+use crate::scene::{InstanceUse, Look, Looks, MeshUse, ObjectInfo, Prim, PrimKind, ShapeUse};
+use std::collections::HashSet;
+use std::sync::Arc;
+use strahl_geometry::{Csg, CsgNode, GeometryError, Primitive, Shape};
+use strahl_math::Transform;
+use strahl_scene::{CsgOp, Diagnostic, Object, ObjectKind, Scene, Span, Visibility};
+use strahl_shade::{Material, MaterialId};
+
+/// The lists of one group.
+#[derive(Debug, Default)]
+pub(super) struct FlatGroup {
+    pub(super) prims: Vec<Prim>,
+    pub(super) shapes: Vec<ShapeUse>,
+    pub(super) meshes: Vec<MeshUse>,
+    pub(super) instances: Vec<InstanceUse>,
+}
+
+/// The scene as lists: the scene's groups in their order, the world last.
+#[derive(Debug, Default)]
+pub(super) struct Flat {
+    pub(super) groups: Vec<FlatGroup>,
+    pub(super) objects: Vec<ObjectInfo>,
+    pub(super) materials: MaterialTable,
+    /// Warnings.
+    pub(super) diagnostics: Vec<Diagnostic>,
+}
+
+/// Most errors reported in one run.
+const MOST_ERRORS: usize = 20;
+
+/// Makes the lists, or tells everything that is wrong.
+pub(super) fn flatten(scene: &Scene) -> Result<Flat, Vec<Diagnostic>> {
+    let mut pass = Pass {
+        flat: Flat::default(),
+        errors: vec![],
+        checked: HashSet::new(),
+    };
+    let world = std::iter::once(&scene.objects);
+    for objects in scene.groups.iter().map(|g| &g.objects).chain(world) {
+        let mut group = FlatGroup::default();
+        pass.objects(&objects.0, scene, &mut group);
+        pass.flat.groups.push(group);
+    }
+    if pass.errors.is_empty() {
+        return Ok(pass.flat);
+    }
+    let more = pass.errors.len().saturating_sub(MOST_ERRORS);
+    pass.errors.truncate(MOST_ERRORS);
+    if more > 0 {
+        pass.errors.push(Diagnostic::error(format!(
+            "and {more} more errors of this kind"
+        )));
+    }
+    Err(pass.errors)
+}
+
+struct Pass {
+    flat: Flat,
+    errors: Vec<Diagnostic>,
+    /// Materials already found to be right.
+    checked: HashSet<MaterialId>,
+}
+
+/// An object with what it inherits.
+#[derive(Clone)]
+struct Todo<'a> {
+    object: &'a Object,
+    transform: Transform,
+    material: Option<&'a Arc<Material>>,
+    name: Option<&'a Arc<str>>,
+    span: Span,
+    visibility: Visibility,
+}
+
+impl<'a> Todo<'a> {
+    fn new(object: &'a Object, parent: Option<&Self>) -> Self {
+        let own = object.transform.as_deref().copied().unwrap_or_default();
+        let Some(p) = parent else {
+            return Self {
+                object,
+                transform: own,
+                material: object.material.as_ref(),
+                name: object.name.as_ref(),
+                span: object.span,
+                visibility: object.visibility,
+            };
+        };
+        let (a, b) = (object.visibility, p.visibility);
+        Self {
+            object,
+            transform: own.then(&p.transform),
+            material: material_of(object, p.material),
+            name: object.name.as_ref().or(p.name),
+            span: if object.span.is_some() {
+                object.span
+            } else {
+                p.span
+            },
+            visibility: Visibility {
+                camera: a.camera && b.camera,
+                secondary: a.secondary && b.secondary,
+                shadow: a.shadow && b.shadow,
+            },
+        }
+    }
+}
+
+impl Pass {
+    fn objects(&mut self, objects: &[Object], scene: &Scene, group: &mut FlatGroup) {
+        // A stack instead of recursion: unions may be nested arbitrarily deep.
+        let mut waiting: Vec<Todo<'_>> = objects.iter().rev().map(|o| Todo::new(o, None)).collect();
+        while let Some(todo) = waiting.pop() {
+            match &todo.object.kind {
+                ObjectKind::Csg {
+                    op: CsgOp::Union,
+                    children,
+                } => {
+                    waiting.extend(children.0.iter().rev().map(|c| Todo::new(c, Some(&todo))));
+                }
+                ObjectKind::Csg { .. } => self.csg(&todo, group),
+                ObjectKind::Shape(shape) => self.shape(shape, &todo, group),
+                ObjectKind::Instance(id) if (id.0 as usize) < scene.groups.len() => {
+                    group.instances.push(InstanceUse {
+                        group: id.0,
+                        transform: todo.transform,
+                    });
+                    let index = group.instances.len() as u32 - 1;
+                    group.prims.push(Prim {
+                        kind: PrimKind::Instance(index),
+                        visible: visible(todo.visibility),
+                        flags: Prim::STOPS | Prim::TRANSMITS,
+                    });
+                }
+                ObjectKind::Instance(id) => {
+                    let message = format!(
+                        "instance of group {}, but the scene has {} groups",
+                        id.0,
+                        scene.groups.len()
+                    );
+                    self.errors.push(Diagnostic::error(message).at(todo.span));
+                }
+            }
+        }
+    }
+
+    /// Registers object and material.
+    fn look(&mut self, todo: &Todo<'_>, kind: &'static str) -> Look {
+        let material = self.flat.materials.id(todo.material);
+        if self.checked.insert(material)
+            && let Some(problem) = material_problem(self.flat.materials.get(material))
+        {
+            self.errors.push(Diagnostic::error(problem).at(todo.span));
+        }
+        self.flat.objects.push(ObjectInfo {
+            name: todo.name.cloned(),
+            kind,
+            span: todo.span,
+        });
+        Look {
+            object: self.flat.objects.len() as u32 - 1,
+            material,
+        }
+    }
+
+    fn flags(&self, material: MaterialId) -> u8 {
+        let material = self.flat.materials.get(material);
+        let light = if material_transmits(material) {
+            Prim::TRANSMITS
+        } else {
+            Prim::STOPS
+        };
+        if material_filters(material) {
+            light | Prim::FILTERED
+        } else {
+            light
+        }
+    }
+
+    fn invalid(&mut self, todo: &Todo<'_>, kind: &str, error: &GeometryError) {
+        let name = todo.name.map_or_else(String::new, |n| format!(" `{n}`"));
+        self.errors
+            .push(Diagnostic::error(format!("{kind}{name}: {error}")).at(todo.span));
+    }
+
+    fn shape(&mut self, shape: &Shape, todo: &Todo<'_>, group: &mut FlatGroup) {
+        if let Err(error) = shape.validate() {
+            self.invalid(todo, shape.kind(), &error);
+            return;
+        }
+        let look = self.look(todo, shape.kind());
+        let flags = self.flags(look.material);
+        let visible = visible(todo.visibility);
+        let identity = todo.transform.is_identity();
+        let baked = if identity {
+            Some(shape.clone())
+        } else {
+            shape.baked(&todo.transform)
+        };
+        // Meshes become one primitive per triangle.
+        if let Some(Shape::TriangleMesh(mesh)) = &baked {
+            let index = group.meshes.len() as u32;
+            let count = mesh.triangle_count();
+            group.meshes.push(MeshUse {
+                mesh: Arc::clone(mesh),
+                look,
+            });
+            group.prims.extend((0..count).map(|t| Prim {
+                kind: PrimKind::Triangle(index, t),
+                visible,
+                flags,
+            }));
+            return;
+        }
+        let index = group.shapes.len() as u32;
+        let (shape, transform, kind) = match baked {
+            Some(baked) => (baked, None, PrimKind::Shape(index)),
+            None => (
+                shape.clone(),
+                Some(Box::new(todo.transform)),
+                PrimKind::Placed(index),
+            ),
+        };
+        group.shapes.push(ShapeUse {
+            shape,
+            transform,
+            look: Looks::One(look),
+        });
+        group.prims.push(Prim {
+            kind,
+            visible,
+            flags,
+        });
+    }
+
+    /// A CSG tree becomes one primitive whose leaves know their objects and materials.
+    fn csg(&mut self, todo: &Todo<'_>, group: &mut FlatGroup) {
+        let errors_before = self.errors.len();
+        let mut looks = Vec::new();
+        let Some(node) = self.csg_node(todo, &mut looks) else {
+            return;
+        };
+        if self.errors.len() > errors_before {
+            return;
+        }
+        match Csg::try_new(node) {
+            Err(error) => self.invalid(todo, "CSG object", &error),
+            Ok(csg) => {
+                let flags = looks
+                    .iter()
+                    .fold(0, |f, look| f | self.flags(look.material));
+                let index = group.shapes.len() as u32;
+                let look = Looks::Leaves(looks.into());
+                group.shapes.push(ShapeUse {
+                    shape: Arc::new(csg).into(),
+                    transform: None,
+                    look,
+                });
+                let kind = PrimKind::Shape(index);
+                group.prims.push(Prim {
+                    kind,
+                    visible: visible(todo.visibility),
+                    flags,
+                });
+            }
+        }
+    }
+
+    /// Translates a tree of objects, bottom-up with a stack of its own.
+    fn csg_node(&mut self, root: &Todo<'_>, looks: &mut Vec<Look>) -> Option<CsgNode> {
+        enum Step<'a> {
+            Visit(Todo<'a>),
+            Combine(CsgOp, usize),
+        }
+        let mut steps = vec![Step::Visit(root.clone())];
+        let mut done: Vec<CsgNode> = Vec::new();
+        while let Some(step) = steps.pop() {
+            match step {
+                Step::Combine(op, count) => {
+                    let children = done.split_off(done.len() - count);
+                    done.push(combine(op, children));
+                }
+                Step::Visit(todo) => match &todo.object.kind {
+                    ObjectKind::Csg { op, children } => {
+                        if let Some(problem) = wrong_count(*op, children.0.len()) {
+                            self.errors.push(Diagnostic::error(problem).at(todo.span));
+                            return None;
+                        }
+                        steps.push(Step::Combine(*op, children.0.len()));
+                        steps.extend(
+                            children
+                                .0
+                                .iter()
+                                .rev()
+                                .map(|c| Step::Visit(Todo::new(c, Some(&todo)))),
+                        );
+                    }
+                    ObjectKind::Shape(shape) => {
+                        if let Err(error) = shape.validate() {
+                            self.invalid(&todo, shape.kind(), &error);
+                        }
+                        looks.push(self.look(&todo, shape.kind()));
+                        let tag = looks.len() as u32 - 1;
+                        let transform =
+                            (!todo.transform.is_identity()).then(|| Box::new(todo.transform));
+                        done.push(CsgNode::Leaf {
+                            shape: shape.clone(),
+                            transform,
+                            tag,
+                        });
+                    }
+                    ObjectKind::Instance(_) => {
+                        let message = "a group cannot be instanced inside of a CSG object other than a union; \
+                                       repeat its objects instead";
+                        self.errors.push(Diagnostic::error(message).at(todo.span));
+                        return None;
+                    }
+                },
+            }
+        }
+        done.pop()
+    }
+}
+
+fn visible(v: Visibility) -> u8 {
+    let bit = |seen: bool, class: RayClass| if seen { class.bit() } else { 0 };
+    bit(v.camera, RayClass::Camera)
+        | bit(v.secondary, RayClass::Secondary)
+        | bit(v.shadow, RayClass::Shadow)
+}
+
+fn wrong_count(op: CsgOp, count: usize) -> Option<String> {
+    let (right, expected) = match op {
+        CsgOp::Inverse => (count == 1, "exactly one object"),
+        CsgOp::Clip => (count >= 2, "an object and at least one to clip it by"),
+        CsgOp::Union | CsgOp::Merge | CsgOp::Intersection | CsgOp::Difference => {
+            (count >= 1, "at least one object")
+        }
+    };
+    (!right).then(|| format!("{} takes {expected}, found {count}", op.name()))
+}
+
+fn combine(op: CsgOp, children: Vec<CsgNode>) -> CsgNode {
+    let operands = children.into_iter().collect();
+    match op {
+        CsgOp::Union => CsgNode::Union(operands),
+        CsgOp::Merge => CsgNode::Merge(operands),
+        CsgOp::Intersection => CsgNode::Intersection(operands),
+        CsgOp::Difference => CsgNode::Difference(operands),
+        CsgOp::Inverse => CsgNode::Inverse(operands),
+        CsgOp::Clip => CsgNode::Clip(operands),
+    }
+}

@@ -1,0 +1,96 @@
+use std::collections::HashMap;
+use std::sync::Arc;
+use strahl_scene::Object;
+use strahl_shade::{Material, MaterialId, Sides};
+
+/// The materials met so far, each `Arc` once.
+#[derive(Debug, Default)]
+pub(super) struct MaterialTable {
+    list: Vec<Arc<Material>>,
+    known: HashMap<*const Material, MaterialId>,
+    default: Option<Arc<Material>>,
+}
+
+// The pointers are keys only, of `Arc`s that the list keeps alive; they are never followed.
+impl MaterialTable {
+    /// The number of a material; `None` is the default material.
+    pub(super) fn id(&mut self, material: Option<&Arc<Material>>) -> MaterialId {
+        let material = match material {
+            Some(material) => material,
+            None => self
+                .default
+                .get_or_insert_with(|| Arc::new(Material::default().named("default"))),
+        };
+        let list = &mut self.list;
+        *self.known.entry(Arc::as_ptr(material)).or_insert_with(|| {
+            list.push(Arc::clone(material));
+            MaterialId(list.len() as u32 - 1)
+        })
+    }
+
+    pub(super) fn get(&self, id: MaterialId) -> &Material {
+        &self.list[id.0 as usize]
+    }
+
+    pub(super) fn into_list(self) -> Vec<Arc<Material>> {
+        self.list
+    }
+}
+
+/// Whether shadow rays pass the material at all.
+pub(crate) fn material_transmits(material: &Material) -> bool {
+    match &material.pbr {
+        None => !material.finish.transmission.is_black(),
+        Some(pbr) => pbr.transmission > 0.0 || pbr.alpha_blend,
+    }
+}
+
+/// Whether hits must be looked at one by one: one-sided surfaces, holes by alpha mask.
+pub(super) fn material_filters(material: &Material) -> bool {
+    material.sides == Sides::Front
+        || material
+            .pbr
+            .as_ref()
+            .is_some_and(|p| p.alpha_cutoff.is_some())
+}
+
+/// What is wrong with a material's numbers, if anything.
+pub(super) fn material_problem(material: &Material) -> Option<String> {
+    let f = &material.finish;
+    let colors = [
+        ("ambient", f.ambient),
+        ("diffuse", f.diffuse),
+        ("specular", f.specular),
+        ("reflection", f.reflection),
+        ("transmission", f.transmission),
+        ("emission", f.emission),
+        ("absorption", material.absorption),
+    ];
+    let named = |what: &str| format!("material `{}`: {what}", material.name);
+    if let Some((name, _)) = colors.iter().find(|(_, c)| !c.is_finite()) {
+        return Some(named(&format!(
+            "{name} has a value that is not a finite number"
+        )));
+    }
+    if !(material.eta > 0.0 && material.eta.is_finite()) {
+        return Some(named(&format!(
+            "the index of refraction must be positive, found {}",
+            material.eta
+        )));
+    }
+    if !(f.shininess >= 0.0) {
+        return Some(named(&format!(
+            "the exponent of the highlight must be 0 or more, found {}",
+            f.shininess
+        )));
+    }
+    None
+}
+
+/// The material an object has by itself or by inheritance.
+pub(super) fn material_of<'a>(
+    object: &'a Object,
+    inherited: Option<&'a Arc<Material>>,
+) -> Option<&'a Arc<Material>> {
+    object.material.as_ref().or(inherited)
+}

@@ -1,0 +1,136 @@
+//! From the description to a scene ready to be traced: passes from value to value.
+//!
+//! 1. [`flatten`]: the tree of objects becomes lists of primitives per group; unions are dissolved, transformations
+//!    baked where that is exact, CSG trees built, everything validated.
+//! 2. [`spaces`]: small things far from the origin move into spaces of their own.
+//! 3. [`assemble`]: groups in order of dependence, with element numbers and bounds.
+//! 4. [`view`]: camera and lights, where the scene has none.
+//! 5. the acceleration structures ([`Prepared::build`]).
+
+mod assemble;
+mod flatten;
+mod materials;
+mod spaces;
+mod view;
+
+use crate::scene::{ObjectInfo, RenderGroup, RenderScene};
+use assemble::Assembled;
+pub(crate) use materials::material_transmits;
+use std::sync::Arc;
+use strahl_accel::{AcceleratorKind, AnyAccelerator};
+use strahl_math::Aabb;
+use strahl_scene::{Background, Camera, Diagnostic, Scene, SceneLight, Settings, SourceMap};
+use strahl_shade::{Color, Material};
+
+/// How to compile a scene.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct CompileOptions {
+    /// The acceleration structure.
+    pub accelerator: AcceleratorKind,
+}
+
+/// A scene after all passes but the last: everything except the acceleration structures.
+#[derive(Debug)]
+pub struct Prepared {
+    groups: Vec<Assembled>,
+    objects: Vec<ObjectInfo>,
+    materials: Vec<Arc<Material>>,
+    lights: Vec<SceneLight>,
+    ambient: Color,
+    background: Background,
+    camera: Camera,
+    settings: Settings,
+    sources: SourceMap,
+    warnings: Vec<Diagnostic>,
+}
+
+/// Compiles a scene.
+///
+/// # Errors
+/// Everything that is wrong with it, each with its place.
+pub fn compile(scene: &Scene, options: &CompileOptions) -> Result<RenderScene, Vec<Diagnostic>> {
+    Ok(Prepared::new(scene)?.build(options.accelerator))
+}
+
+impl Prepared {
+    /// All passes but the last.
+    ///
+    /// # Errors
+    /// Everything that is wrong with the scene, each with its place.
+    pub fn new(scene: &Scene) -> Result<Self, Vec<Diagnostic>> {
+        let mut flat = flatten::flatten(scene)?;
+        spaces::open_spaces(&mut flat);
+        let groups = assemble::assemble(flat.groups, scene)?;
+        let bounds = groups.last().map_or(Aabb::EMPTY, |world| world.bounds);
+        let mut warnings = flat.diagnostics;
+        let camera = match &scene.camera {
+            Some(camera) => match camera.problem() {
+                None => *camera,
+                Some(problem) => return Err(vec![Diagnostic::error(problem).at(camera.span)]),
+            },
+            None => view::frame(bounds),
+        };
+        if groups.last().is_none_or(|world| world.prims.is_empty()) {
+            warnings.push(Diagnostic::warning(
+                "the scene has no objects: the picture shows the background only",
+            ));
+        }
+        let (lights, ambient) = view::lights(scene, &camera, bounds);
+        Ok(Self {
+            groups,
+            objects: flat.objects,
+            materials: flat.materials.into_list(),
+            lights,
+            ambient,
+            background: scene
+                .background
+                .unwrap_or_else(|| view::background(scene, &camera)),
+            camera,
+            settings: scene.settings,
+            sources: scene.sources.clone(),
+            warnings,
+        })
+    }
+
+    /// What deserves attention.
+    pub fn warnings(&self) -> &[Diagnostic] {
+        &self.warnings
+    }
+
+    /// Builds the acceleration structures.
+    pub fn build(self, kind: AcceleratorKind) -> RenderScene {
+        // The world was assembled last, after everything it refers to; the scene wants it first.
+        let last = self.groups.len().saturating_sub(1) as u32;
+        let renumber = |group: u32| last - group;
+        let groups = self.groups.into_iter().rev().map(|g| {
+            let accelerator = AnyAccelerator::build(kind, &g.prim_bounds);
+            let mut instances = g.instances;
+            for instance in &mut instances {
+                instance.group = renumber(instance.group);
+            }
+            RenderGroup {
+                prims: g.prims,
+                shapes: g.shapes,
+                meshes: g.meshes,
+                instances,
+                first_ids: g.first_ids,
+                count: g.count,
+                bounds: g.bounds,
+                accelerator,
+            }
+        });
+        let transmits = self.materials.iter().any(|m| material_transmits(m));
+        RenderScene {
+            groups: groups.collect(),
+            objects: self.objects,
+            materials: self.materials,
+            lights: self.lights,
+            ambient: self.ambient,
+            background: self.background,
+            camera: self.camera,
+            settings: self.settings,
+            sources: self.sources,
+            transmits,
+        }
+    }
+}

@@ -1,0 +1,156 @@
+use super::flatten::{Flat, FlatGroup};
+use crate::scene::{InstanceUse, Prim, PrimKind, ShapeUse};
+use strahl_geometry::Primitive;
+use strahl_math::{Aabb, DVec3, Transform};
+
+/// A thing is small and far if its extent is below this fraction of its largest coordinate: f32 boxes (24 bits) would then
+/// leave it fewer than 7 bits (engine design 1.1).
+const SMALL_AND_FAR: f64 = 1.0 / (1 << 17) as f64;
+
+/// Moves clusters of small things far from the origin into spaces of their own: groups whose origin is near them.
+///
+/// Positions relative to the space's anchor keep all their digits, the f32 boxes of its accelerator are tight, and rays that
+/// start in it keep an origin finer than world coordinates can express. The anchor is a coordinate of the things
+/// themselves, so that moving them is exact.
+pub(super) fn open_spaces(flat: &mut Flat) {
+    let groups = flat.groups.len();
+    for index in 0..groups {
+        let clusters = clusters(&flat.groups[index]);
+        if clusters.is_empty() {
+            continue;
+        }
+        let mut moved = vec![None; flat.groups[index].prims.len()];
+        let mut inner_groups = Vec::new();
+        for cluster in clusters {
+            let (inner, anchor) = extract(&mut flat.groups[index], &cluster);
+            for (position, prim) in cluster.iter().enumerate() {
+                moved[*prim as usize] = Some((inner_groups.len(), position == 0));
+            }
+            inner_groups.push((inner, anchor));
+        }
+        let first = flat.groups.len() as u32;
+        let group = &mut flat.groups[index];
+        let mut prims = Vec::with_capacity(group.prims.len());
+        for (prim, moved) in group.prims.iter().zip(&moved) {
+            match moved {
+                None => prims.push(*prim),
+                // The cluster takes the place of its first member.
+                Some((cluster, true)) => {
+                    let transform = Transform::translate(inner_groups[*cluster].1);
+                    group.instances.push(InstanceUse {
+                        group: first + *cluster as u32,
+                        transform,
+                    });
+                    let kind = PrimKind::Instance(group.instances.len() as u32 - 1);
+                    prims.push(Prim {
+                        kind,
+                        visible: u8::MAX,
+                        flags: Prim::STOPS | Prim::TRANSMITS,
+                    });
+                }
+                Some((_, false)) => {}
+            }
+        }
+        group.prims = prims;
+        flat.groups
+            .extend(inner_groups.into_iter().map(|(inner, _)| inner));
+    }
+    keep_world_last(flat, groups - 1);
+}
+
+/// The world must be the last group: it changes places with the last of the new ones.
+fn keep_world_last(flat: &mut Flat, world: usize) {
+    let last = flat.groups.len() - 1;
+    flat.groups.swap(world, last);
+    for instance in flat.groups.iter_mut().flat_map(|g| &mut g.instances) {
+        if instance.group as usize == last {
+            instance.group = world as u32;
+        }
+    }
+}
+
+/// The shapes that are small and far, by neighbourhood. Triangles of meshes are anchored by their mesh already.
+fn clusters(group: &FlatGroup) -> Vec<Vec<u32>> {
+    let mut small: Vec<(u32, Aabb)> = Vec::new();
+    for (index, prim) in group.prims.iter().enumerate() {
+        let PrimKind::Shape(shape) = prim.kind else {
+            continue;
+        };
+        let shape = &group.shapes[shape as usize].shape;
+        let bounds = shape.bounds();
+        let far = bounds.max_abs() * SMALL_AND_FAR;
+        if bounds.is_bounded()
+            && bounds.size().max_element() < far
+            && shape.baked(&Transform::translate(DVec3::ONE)).is_some()
+        {
+            small.push((index as u32, bounds));
+        }
+    }
+    // Sweep along x, then y, then z: things closer than the threshold of their coordinates belong together.
+    let mut clusters = vec![small];
+    for axis in 0..3 {
+        clusters = clusters
+            .into_iter()
+            .flat_map(|c| split_at_gaps(c, axis))
+            .collect();
+    }
+    let members = |c: Vec<(u32, Aabb)>| {
+        let mut ids: Vec<u32> = c.into_iter().map(|(id, _)| id).collect();
+        ids.sort_unstable();
+        ids
+    };
+    let mut lists: Vec<Vec<u32>> = clusters
+        .into_iter()
+        .map(members)
+        .filter(|ids| !ids.is_empty())
+        .collect();
+    lists.sort();
+    lists
+}
+
+/// Splits a list where the next thing along an axis would make the cluster too large for one space.
+fn split_at_gaps(mut list: Vec<(u32, Aabb)>, axis: usize) -> Vec<Vec<(u32, Aabb)>> {
+    list.sort_by(|a, b| a.1.min[axis].total_cmp(&b.1.min[axis]).then(a.0.cmp(&b.0)));
+    let mut parts: Vec<Vec<(u32, Aabb)>> = Vec::new();
+    let mut start = 0.0;
+    for item in list {
+        let limit = item.1.max_abs() * SMALL_AND_FAR;
+        match parts.last_mut() {
+            Some(part) if item.1.max[axis] - start < limit => part.push(item),
+            _ => {
+                start = item.1.min[axis];
+                parts.push(vec![item]);
+            }
+        }
+    }
+    parts
+}
+
+/// Takes shapes out of a group into one of their own around an anchor.
+fn extract(group: &mut FlatGroup, cluster: &[u32]) -> (FlatGroup, DVec3) {
+    let mut inner = FlatGroup::default();
+    let mut anchor = None;
+    for id in cluster {
+        let prim = group.prims[*id as usize];
+        let PrimKind::Shape(index) = prim.kind else {
+            continue;
+        };
+        let used = &group.shapes[index as usize];
+        let anchor = *anchor.get_or_insert_with(|| used.shape.bounds().center());
+        let home = Transform::translate(-anchor);
+        let shape = used
+            .shape
+            .baked(&home)
+            .unwrap_or_else(|| used.shape.clone());
+        inner.shapes.push(ShapeUse {
+            shape,
+            transform: None,
+            look: used.look.clone(),
+        });
+        inner.prims.push(Prim {
+            kind: PrimKind::Shape(inner.shapes.len() as u32 - 1),
+            ..prim
+        });
+    }
+    (inner, anchor.unwrap_or_default())
+}

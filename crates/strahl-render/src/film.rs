@@ -1,0 +1,284 @@
+use crate::trace::SampleResult;
+use sha2::{Digest, Sha256};
+use strahl_shade::Color;
+
+/// A rectangle of pixels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Region {
+    /// Left edge.
+    pub x: u32,
+    /// Top edge.
+    pub y: u32,
+    /// Width, at least 1.
+    pub width: u32,
+    /// Height, at least 1.
+    pub height: u32,
+}
+
+impl Region {
+    /// A whole picture.
+    pub const fn full(width: u32, height: u32) -> Self {
+        Self {
+            x: 0,
+            y: 0,
+            width,
+            height,
+        }
+    }
+
+    /// Number of pixels.
+    pub const fn pixels(&self) -> u64 {
+        self.width as u64 * self.height as u64
+    }
+
+    /// The region grown by `margin` pixels as far as a picture of that size allows.
+    pub(crate) fn grown(&self, margin: u32, width: u32, height: u32) -> Self {
+        let (x, y) = (self.x.saturating_sub(margin), self.y.saturating_sub(margin));
+        let right = (self.x + self.width).saturating_add(margin).min(width);
+        let bottom = (self.y + self.height).saturating_add(margin).min(height);
+        Self {
+            x,
+            y,
+            width: right - x,
+            height: bottom - y,
+        }
+    }
+
+    /// Index of a pixel of the picture in the row-major order of this region, which must contain it.
+    pub(crate) fn index(&self, x: u32, y: u32) -> usize {
+        (y - self.y) as usize * self.width as usize + (x - self.x) as usize
+    }
+}
+
+/// What is known of a pixel besides its colour, from its first sample.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PixelInfo {
+    /// Distance from the ray's origin; infinite for the background.
+    pub depth: f32,
+    /// Shading normal towards the viewer; zero for the background.
+    pub normal: [f32; 3],
+    /// World position; zero for the background.
+    pub position: [f32; 3],
+    /// Number of the object plus one; 0 for the background.
+    pub object: u32,
+    /// Number of the material plus one; 0 for the background.
+    pub material: u32,
+    /// Deepest level of the ray tree.
+    pub tree_depth: u32,
+    /// Primitive tests of the ray tree.
+    pub tests: u32,
+}
+
+impl PixelInfo {
+    pub(crate) fn new(sample: &SampleResult, tests: u64) -> Self {
+        let (tree_depth, tests) = (sample.depth, u32::try_from(tests).unwrap_or(u32::MAX));
+        match &sample.first {
+            None => Self {
+                depth: f32::INFINITY,
+                normal: [0.0; 3],
+                position: [0.0; 3],
+                object: 0,
+                material: 0,
+                tree_depth,
+                tests,
+            },
+            Some(hit) => Self {
+                depth: hit.distance as f32,
+                normal: hit.normal.as_vec3().to_array(),
+                position: hit.position.as_vec3().to_array(),
+                object: hit.object + 1,
+                material: hit.material.0 + 1,
+                tree_depth,
+                tests,
+            },
+        }
+    }
+}
+
+/// The linear picture: colours rounded to f32 once.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Film {
+    /// Width of the whole picture in pixels.
+    pub width: u32,
+    /// Height of the whole picture in pixels.
+    pub height: u32,
+    /// The part of it that this film holds.
+    pub region: Region,
+    /// Linear Rec. 709 RGB of the region, row by row from the top.
+    pub pixels: Vec<[f32; 3]>,
+    /// More about each pixel, if asked for.
+    pub info: Option<Vec<PixelInfo>>,
+}
+
+/// There is no such picture.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum FilmError {
+    /// Width or height is zero.
+    #[error(
+        "a picture of {width} x {height} pixels has no pixels; both numbers must be at least 1"
+    )]
+    Empty {
+        /// Width asked for.
+        width: u32,
+        /// Height asked for.
+        height: u32,
+    },
+    /// The region is not within the picture.
+    #[error(
+        "the region {x},{y} {width}x{height} is not within the picture of {of_width} x {of_height} pixels"
+    )]
+    RegionOutside {
+        /// Left edge.
+        x: u32,
+        /// Top edge.
+        y: u32,
+        /// Width.
+        width: u32,
+        /// Height.
+        height: u32,
+        /// Width of the picture.
+        of_width: u32,
+        /// Height of the picture.
+        of_height: u32,
+    },
+    /// There is not enough memory for the film.
+    #[error(
+        "a picture of {width} x {height} pixels needs {gib:.1} GiB of memory, more than there is; \
+         render it in parts with --region"
+    )]
+    OutOfMemory {
+        /// Width of the region.
+        width: u32,
+        /// Height of the region.
+        height: u32,
+        /// Memory needed.
+        gib: f64,
+    },
+}
+
+impl Film {
+    /// A black film, or why there can't be one.
+    ///
+    /// # Errors
+    /// [`FilmError`]: no pixels, a region outside, or not enough memory.
+    pub fn try_new(
+        width: u32,
+        height: u32,
+        region: Option<Region>,
+        info: bool,
+    ) -> Result<Self, FilmError> {
+        if width == 0 || height == 0 {
+            return Err(FilmError::Empty { width, height });
+        }
+        let region = region.unwrap_or(Region::full(width, height));
+        let inside = |start: u32, length: u32, of: u32| {
+            length > 0 && u64::from(start) + u64::from(length) <= u64::from(of)
+        };
+        if !inside(region.x, region.width, width) || !inside(region.y, region.height, height) {
+            let Region {
+                x,
+                y,
+                width: w,
+                height: h,
+            } = region;
+            return Err(FilmError::RegionOutside {
+                x,
+                y,
+                width: w,
+                height: h,
+                of_width: width,
+                of_height: height,
+            });
+        }
+        let none = PixelInfo::new(
+            &SampleResult {
+                color: Color::BLACK,
+                first: None,
+                depth: 0,
+                rays: 0,
+            },
+            0,
+        );
+        let pixels = try_filled(region, [0.0; 3])?;
+        let info = if info {
+            Some(try_filled(region, none)?)
+        } else {
+            None
+        };
+        Ok(Self {
+            width,
+            height,
+            region,
+            pixels,
+            info,
+        })
+    }
+
+    /// The colour of a pixel of the picture; `None` outside of the region.
+    pub fn pixel(&self, x: u32, y: u32) -> Option<[f32; 3]> {
+        let r = &self.region;
+        let inside = x >= r.x && y >= r.y && x - r.x < r.width && y - r.y < r.height;
+        inside.then(|| self.pixels[r.index(x, y)])
+    }
+
+    /// SHA-256 of the pixels (three little-endian f32 each, row by row), in hexadecimal digits: equal exactly if all bits
+    /// are.
+    pub fn sha256(&self) -> String {
+        let mut hasher = Sha256::new();
+        let mut row = Vec::with_capacity(self.region.width as usize * 12);
+        for pixels in self.pixels.chunks(self.region.width as usize) {
+            row.clear();
+            row.extend(pixels.iter().flatten().flat_map(|v| v.to_le_bytes()));
+            hasher.update(&row);
+        }
+        hasher
+            .finalize()
+            .iter()
+            .map(|byte| format!("{byte:02x}"))
+            .collect()
+    }
+}
+
+/// A list with one value for each pixel, or the error that there is no memory for it.
+pub(crate) fn try_filled<T: Clone>(region: Region, value: T) -> Result<Vec<T>, FilmError> {
+    let mut list = Vec::new();
+    let out_of_memory = || FilmError::OutOfMemory {
+        width: region.width,
+        height: region.height,
+        gib: region.pixels() as f64 * size_of::<T>() as f64 / (1u64 << 30) as f64,
+    };
+    let count = usize::try_from(region.pixels()).map_err(|_| out_of_memory())?;
+    list.try_reserve_exact(count).map_err(|_| out_of_memory())?;
+    list.resize(count, value);
+    Ok(list)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn impossible_pictures_are_named() {
+        let message = |r: Result<Film, FilmError>| r.expect_err("impossible").to_string();
+        assert!(message(Film::try_new(0, 5, None, false)).contains("0 x 5"));
+        let outside = Region {
+            x: 5,
+            y: 0,
+            width: 6,
+            height: 1,
+        };
+        assert!(message(Film::try_new(10, 10, Some(outside), false)).contains("5,0 6x1"));
+        let huge = message(Film::try_new(u32::MAX, u32::MAX, None, false));
+        assert!(huge.contains("GiB") && huge.contains("--region"));
+    }
+
+    #[test]
+    fn the_hash_sees_every_bit() {
+        let mut film = Film::try_new(3, 2, None, false).expect("small");
+        let before = film.sha256();
+        assert_eq!(before.len(), 64);
+        film.pixels[5][2] = f32::from_bits(1);
+        assert_ne!(film.sha256(), before);
+    }
+}

@@ -1,0 +1,158 @@
+use crate::hit::Hit;
+use std::fmt;
+use strahl_math::{DVec3, Ray};
+use strahl_shade::{Color, MaterialId};
+
+/// The rays of a tree that see something (shadow rays belong to the node they start from).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum RayKind {
+    /// From the eye.
+    Primary,
+    /// In the mirror direction.
+    Reflection,
+    /// In the transparency direction.
+    Refraction,
+}
+
+impl fmt::Display for RayKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Primary => "primary",
+            Self::Reflection => "reflection",
+            Self::Refraction => "transparency",
+        })
+    }
+}
+
+/// Why a branch of the tree that the surface would allow was not followed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BranchEnd {
+    /// The tree is as deep as allowed.
+    DepthLimit,
+    /// The branch's weight is below the cutoff.
+    WeightCutoff,
+    /// Snell's law has no solution: everything is reflected.
+    TotalReflection,
+    /// The tree has as many rays as allowed.
+    TreeLimit,
+}
+
+impl fmt::Display for BranchEnd {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::DepthLimit => "depth limit",
+            Self::WeightCutoff => "weight below the cutoff",
+            Self::TotalReflection => "total internal reflection",
+            Self::TreeLimit => "limit of rays per sample",
+        })
+    }
+}
+
+/// A ray of the tree and what became of it.
+#[derive(Clone, Debug)]
+pub struct RayReport {
+    /// Number of the ray in its tree, in the order of tracing; 0 is the primary ray.
+    pub node: u32,
+    /// The ray that sent it (itself for the primary ray).
+    pub parent: u32,
+    /// What it is.
+    pub kind: RayKind,
+    /// Level in the tree, 1 for the primary ray.
+    pub depth: u32,
+    /// Largest channel of the product of all coefficients on the way to it.
+    pub weight: f64,
+    /// The ray.
+    pub ray: Ray,
+    /// What it hit, or `None` for the background.
+    pub hit: Option<HitReport>,
+    /// The background's colour, if it hit nothing.
+    pub background: Option<Color>,
+    /// What the medium it ran through kept of the light.
+    pub attenuation: Color,
+}
+
+/// The surface a ray of the tree hit.
+#[derive(Clone, Copy, Debug)]
+pub struct HitReport {
+    /// The hit.
+    pub hit: Hit,
+    /// Number of the object.
+    pub object: u32,
+    /// Number of the material.
+    pub material: MaterialId,
+    /// The line of the scene file that made this face, where faces of a mesh know it.
+    pub line: Option<u32>,
+    /// Whether the shading model shows a property of the hit, so that there are no terms of light.
+    pub diagnostic: bool,
+    /// World position.
+    pub position: DVec3,
+    /// Unit normal of the surface, on the side of the ray.
+    pub n_geom: DVec3,
+    /// Unit normal for shading, on the side of the ray.
+    pub n_shade: DVec3,
+    /// Index of refraction on the side of the ray.
+    pub eta_1: f64,
+    /// Index of refraction behind the surface.
+    pub eta_2: f64,
+    /// Cosine of the angle of incidence.
+    pub cos_1: f64,
+    /// Cosine of the angle of refraction, if the surface transmits and does not reflect totally.
+    pub cos_2: Option<f64>,
+    /// Fresnel's F, where it is used.
+    pub fresnel: Option<f64>,
+    /// ka·Ia.
+    pub ambient: Color,
+    /// Emitted light.
+    pub emission: Color,
+    /// kd.
+    pub diffuse: Color,
+    /// ks.
+    pub specular: Color,
+    /// p.
+    pub shininess: f64,
+    /// kr as it was applied (Fresnel and total reflection included).
+    pub reflection: Color,
+    /// kt as it was applied.
+    pub transmission: Color,
+}
+
+/// One light at one hit.
+#[derive(Clone, Copy, Debug)]
+pub struct LightTerm {
+    /// Index of the light.
+    pub light: u32,
+    /// n·l.
+    pub n_dot_l: f64,
+    /// The shadow ray; `None` if none was sent because the surface faces away or the light does not shine here.
+    pub shadow_ray: Option<Ray>,
+    /// What arrives through whatever is in between: 0 in full shadow, 1 without any.
+    pub visible: Color,
+    /// The light's colour at the point.
+    pub color: Color,
+    /// kd (n·l), times colour and visibility.
+    pub diffuse: Color,
+    /// ks (h·n)^p, times colour and visibility.
+    pub specular: Color,
+}
+
+/// Watches the trace loop: ray trees, counters and heat maps are observers, `()` costs nothing.
+pub trait TraceObserver {
+    /// Whether reports are wanted; they are not even made otherwise.
+    const ACTIVE: bool = true;
+
+    /// A ray was traced (before its lights and branches are).
+    fn ray(&mut self, _report: RayReport) {}
+
+    /// A light was looked at from the hit of a ray.
+    fn light(&mut self, _node: u32, _term: LightTerm) {}
+
+    /// A branch was not followed.
+    fn ended(&mut self, _node: u32, _kind: RayKind, _weight: f64, _end: BranchEnd) {}
+
+    /// A ray's colour is known: `local` is what the hit itself sends, `total` all of it. Children come before parents.
+    fn combined(&mut self, _node: u32, _local: Color, _total: Color) {}
+}
+
+impl TraceObserver for () {
+    const ACTIVE: bool = false;
+}

@@ -1,0 +1,418 @@
+use crate::hit::{Hit, Origin, RayClass};
+use crate::scene::{Prim, PrimKind, RenderGroup, RenderScene};
+use strahl_accel::{Accelerator, TraversalStats, Visitor};
+use strahl_geometry::{PrimHit, Primitive, RayShear, Scratch, SurfaceId};
+use strahl_math::{Interval, Ray};
+use strahl_shade::Sides;
+
+/// Asks a scene what its rays meet; owns the working memory of one thread.
+#[derive(Debug)]
+pub struct Tracer<'s> {
+    pub(crate) scene: &'s RenderScene,
+    pub(crate) scratch: Scratch,
+    /// What the queries so far have cost.
+    pub stats: TraversalStats,
+    /// Per light the primitive of the world that was last found in the way: likely to be in the way again.
+    occluders: Vec<u32>,
+}
+
+/// No primitive.
+const NONE: u32 = u32::MAX;
+
+impl<'s> Tracer<'s> {
+    /// For one scene and one thread.
+    pub fn new(scene: &'s RenderScene) -> Self {
+        Self {
+            scene,
+            scratch: Scratch::default(),
+            stats: TraversalStats::default(),
+            occluders: vec![NONE; scene.lights.len()],
+        }
+    }
+
+    /// The nearest hit in `range`; of several at the same `t` the one with the smallest id.
+    #[inline]
+    pub fn closest_hit(
+        &mut self,
+        ray: &Ray,
+        range: Interval,
+        from: Option<&Origin>,
+        class: RayClass,
+    ) -> Option<Hit> {
+        let mut query = Closest { best: None };
+        self.search(ray, range, from, class, NONE, &mut query);
+        query.best
+    }
+
+    /// Whether something that lets no light through is in `range`.
+    #[inline]
+    pub fn any_opaque(&mut self, ray: &Ray, range: Interval, from: Option<&Origin>) -> bool {
+        let mut query = AnyOpaque { found: None };
+        self.search(ray, range, from, RayClass::Shadow, NONE, &mut query);
+        query.found.is_some()
+    }
+
+    /// The same for a ray to a light, looking first at what was in the way of that light before: the answer is the same,
+    /// sooner.
+    #[inline]
+    pub(crate) fn occluded(
+        &mut self,
+        ray: &Ray,
+        range: Interval,
+        from: &Origin,
+        light: usize,
+    ) -> bool {
+        let mut query = AnyOpaque { found: None };
+        self.search(
+            ray,
+            range,
+            Some(from),
+            RayClass::Shadow,
+            self.occluders[light],
+            &mut query,
+        );
+        if let Some(id) = query.found {
+            self.occluders[light] = self.scene.groups[0].prim_of(id);
+        }
+        query.found.is_some()
+    }
+
+    /// Forgets what was in the way, so that the cost of what follows does not depend on what came before.
+    pub(crate) fn forget_occluders(&mut self) {
+        self.occluders.fill(NONE);
+    }
+
+    /// All hits in `range` on things that may let light through, in no particular order.
+    pub(crate) fn transmitting_hits(
+        &mut self,
+        ray: &Ray,
+        range: Interval,
+        from: Option<&Origin>,
+        hits: &mut Vec<Hit>,
+    ) {
+        self.search(
+            ray,
+            range,
+            from,
+            RayClass::Shadow,
+            NONE,
+            &mut Transmitting { hits },
+        );
+    }
+
+    #[inline]
+    fn search<Q: Query>(
+        &mut self,
+        ray: &Ray,
+        range: Interval,
+        from: Option<&Origin>,
+        class: RayClass,
+        first: u32,
+        query: &mut Q,
+    ) {
+        let mut search = Search {
+            scene: self.scene,
+            scratch: &mut self.scratch,
+            stats: TraversalStats::default(),
+            class: class.bit(),
+            query,
+        };
+        let from = from.map(|o| (o, o.id));
+        search.group(&self.scene.groups[0], ray, range, from, 0, first);
+        self.stats += search.stats;
+    }
+}
+
+/// What a search does with the primitives that rays may meet.
+trait Query {
+    /// Whether primitives with these flags are of interest.
+    fn wants(flags: u8) -> bool;
+
+    /// Takes a hit and returns the new upper end of the range, `-inf` to end the search.
+    fn take(&mut self, hit: Hit, t_max: f64) -> f64;
+
+    /// Whether the hits behind the first one on the same primitive matter too.
+    const ALL: bool;
+
+    /// Whether a hit on an element of a material that lets light through (or not) is of interest; asked only on
+    /// primitives with both kinds.
+    fn wants_hit(transmits: bool) -> bool;
+}
+
+struct Closest {
+    best: Option<Hit>,
+}
+
+impl Query for Closest {
+    const ALL: bool = false;
+
+    fn wants(_: u8) -> bool {
+        true
+    }
+
+    #[inline]
+    fn take(&mut self, hit: Hit, t_max: f64) -> f64 {
+        if self.best.is_none_or(|best| hit.beats(&best)) {
+            self.best = Some(hit);
+            hit.t
+        } else {
+            t_max
+        }
+    }
+
+    fn wants_hit(_: bool) -> bool {
+        true
+    }
+}
+
+struct AnyOpaque {
+    /// The element found.
+    found: Option<u64>,
+}
+
+impl Query for AnyOpaque {
+    const ALL: bool = false;
+
+    fn wants(flags: u8) -> bool {
+        flags & Prim::STOPS != 0
+    }
+
+    fn take(&mut self, hit: Hit, _: f64) -> f64 {
+        self.found = Some(hit.id);
+        f64::NEG_INFINITY
+    }
+
+    fn wants_hit(transmits: bool) -> bool {
+        !transmits
+    }
+}
+
+struct Transmitting<'h> {
+    hits: &'h mut Vec<Hit>,
+}
+
+impl Query for Transmitting<'_> {
+    const ALL: bool = true;
+
+    fn wants(flags: u8) -> bool {
+        flags & Prim::TRANSMITS != 0
+    }
+
+    fn take(&mut self, hit: Hit, t_max: f64) -> f64 {
+        self.hits.push(hit);
+        t_max
+    }
+
+    fn wants_hit(transmits: bool) -> bool {
+        transmits
+    }
+}
+
+/// Where the ray started, and the number of that element relative to the group being searched.
+type From<'o> = Option<(&'o Origin, u64)>;
+
+struct Search<'a, 's, Q> {
+    scene: &'s RenderScene,
+    scratch: &'a mut Scratch,
+    stats: TraversalStats,
+    class: u8,
+    query: &'a mut Q,
+}
+
+impl<Q: Query> Search<'_, '_, Q> {
+    /// Searches a group, looking at primitive `first` before all others if there is one; `base` is the number of the
+    /// group's first element. Returns the new upper end of the range.
+    #[inline]
+    fn group(
+        &mut self,
+        group: &RenderGroup,
+        ray: &Ray,
+        range: Interval,
+        from: From<'_>,
+        base: u64,
+        first: u32,
+    ) -> f64 {
+        let from_prim = from.map_or(u32::MAX, |(_, id)| group.prim_of(id));
+        let mut stats = TraversalStats::default();
+        let shear = (!group.meshes.is_empty()).then(|| RayShear::new(ray));
+        let mut visitor = GroupVisitor {
+            search: self,
+            group,
+            ray,
+            shear,
+            range_min: range.min,
+            from,
+            from_prim,
+            base,
+            t_max: range.max,
+        };
+        if first != NONE {
+            stats.primitive_tests += 1;
+            visitor.visit(first, range.max);
+        }
+        if visitor.t_max != f64::NEG_INFINITY {
+            group
+                .accelerator
+                .traverse(ray, range, &mut visitor, &mut stats);
+        }
+        let t_max = visitor.t_max;
+        self.stats += stats;
+        t_max
+    }
+}
+
+struct GroupVisitor<'v, 'a, 's, Q> {
+    search: &'v mut Search<'a, 's, Q>,
+    group: &'v RenderGroup,
+    ray: &'v Ray,
+    shear: Option<RayShear>,
+    range_min: f64,
+    from: From<'v>,
+    /// The primitive the ray starts on, or `u32::MAX`.
+    from_prim: u32,
+    base: u64,
+    t_max: f64,
+}
+
+impl<Q: Query> Visitor for GroupVisitor<'_, '_, '_, Q> {
+    #[inline]
+    fn visit(&mut self, id: u32, t_max: f64) -> f64 {
+        let prim = self.group.prims[id as usize];
+        if prim.visible & self.search.class == 0 || !Q::wants(prim.flags) {
+            return t_max;
+        }
+        let first = self.group.first_id(id);
+        let from = if id == self.from_prim {
+            self.from.map(|(origin, number)| (origin, number - first))
+        } else {
+            None
+        };
+        self.t_max = match prim.kind {
+            PrimKind::Instance(index) => self.instance(index, t_max, from, first),
+            _ => self.simple(id, prim, t_max, from, first),
+        };
+        self.t_max
+    }
+}
+
+impl<Q: Query> GroupVisitor<'_, '_, '_, Q> {
+    fn instance(&mut self, index: u32, t_max: f64, from: From<'_>, first: u64) -> f64 {
+        let instance = &self.group.instances[index as usize];
+        let inner = &self.search.scene.groups[instance.group as usize];
+        let mut ray = instance.transform.ray_to_object(self.ray);
+        if let Some((origin, number)) = from {
+            // The ray starts in this space, not in one further inside: its origin is known exactly here.
+            let prim = inner.prims[inner.prim_of(number) as usize];
+            if !matches!(prim.kind, PrimKind::Instance(_)) {
+                ray.origin = origin.local;
+            }
+        }
+        let range = Interval::new(self.range_min, t_max);
+        self.search
+            .group(inner, &ray, range, from, self.base + first, NONE)
+    }
+
+    #[inline]
+    fn simple(&mut self, id: u32, prim: Prim, t_max: f64, from: From<'_>, first: u64) -> f64 {
+        let from = from.map(|(origin, number)| SurfaceId {
+            element: number as u32,
+            facet: origin.facet,
+        });
+        let mixed = prim.flags & (Prim::TRANSMITS | Prim::STOPS) == Prim::TRANSMITS | Prim::STOPS;
+        let (mut min, mut t_max) = (self.range_min, t_max);
+        loop {
+            let Some(found) = self.test(prim.kind, Interval::new(min, t_max), from) else {
+                return t_max;
+            };
+            let hit = Hit {
+                t: found.t,
+                id: self.base + first + u64::from(found.surface.element),
+                facet: found.surface.facet,
+                uv: found.uv,
+            };
+            let exists = prim.flags & Prim::FILTERED == 0 || self.exists(id, &hit, found.surface);
+            let wanted = !mixed
+                || Q::wants_hit(
+                    self.search
+                        .scene
+                        .transmits(self.group.look(id, found.surface.element)),
+                );
+            if exists && wanted {
+                t_max = self.search.query.take(hit, t_max);
+                if !Q::ALL {
+                    return t_max;
+                }
+            }
+            // Go on behind this hit; the lower end of a range is open.
+            min = found.t;
+            if min >= t_max {
+                return t_max;
+            }
+        }
+    }
+
+    #[inline]
+    fn test(
+        &mut self,
+        kind: PrimKind,
+        range: Interval,
+        from: Option<SurfaceId>,
+    ) -> Option<PrimHit> {
+        match kind {
+            PrimKind::Triangle(mesh, triangle) => {
+                if from.is_some() {
+                    return None;
+                }
+                let mesh = &self.group.meshes[mesh as usize].mesh;
+                let hit = mesh.hit_element(triangle, self.shear.as_ref()?, range)?;
+                // Seen from outside the mesh every triangle is a primitive of one element.
+                Some(PrimHit {
+                    surface: SurfaceId {
+                        element: 0,
+                        ..hit.surface
+                    },
+                    ..hit
+                })
+            }
+            PrimKind::Shape(index) => {
+                let shape = &self.group.shapes[index as usize].shape;
+                shape.closest_hit(self.ray, range, from, self.search.scratch)
+            }
+            PrimKind::Placed(index) => {
+                let used = &self.group.shapes[index as usize];
+                let ray = used
+                    .transform
+                    .as_ref()
+                    .map_or(*self.ray, |m| m.ray_to_object(self.ray));
+                used.shape
+                    .closest_hit(&ray, range, from, self.search.scratch)
+            }
+            PrimKind::Instance(_) => unreachable!("instances are searched, not tested"),
+        }
+    }
+
+    /// Whether there is a surface at this hit: not on the back of a one-sided one, nor in a hole of an alpha mask.
+    fn exists(&self, prim: u32, hit: &Hit, surface: SurfaceId) -> bool {
+        let material = {
+            let look = self.group.look(prim, surface.element);
+            &self.search.scene.materials[look.material.0 as usize]
+        };
+        let point = self.group.surface_at(prim, self.ray, hit, surface.element);
+        let front = point.n_geom.dot(self.ray.direction) < 0.0;
+        if material.sides == Sides::Front && !front {
+            return false;
+        }
+        let masked = material
+            .pbr
+            .as_ref()
+            .is_some_and(|p| p.alpha_cutoff.is_some());
+        !masked || material.at(point.uv).opacity > 0.0
+    }
+}
+
+impl RenderScene {
+    /// Whether the material of an element lets light through.
+    pub(crate) fn transmits(&self, look: crate::scene::Look) -> bool {
+        crate::compile::material_transmits(&self.materials[look.material.0 as usize])
+    }
+}

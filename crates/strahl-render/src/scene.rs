@@ -1,0 +1,416 @@
+use crate::hit::Hit;
+use std::sync::Arc;
+use strahl_accel::{Accelerator, AnyAccelerator};
+use strahl_geometry::{PrimHit, Primitive, Shape, SurfaceId, SurfacePoint, TriangleMesh};
+use strahl_math::{Aabb, Ray, Transform};
+use strahl_scene::{Background, Camera, SceneLight, Settings, SourceMap, Span};
+use strahl_shade::{Color, Material, MaterialId};
+
+/// What is known of an object of the scene, for ray trees and layers.
+#[derive(Clone, Debug)]
+pub struct ObjectInfo {
+    /// Name given in the scene.
+    pub name: Option<Arc<str>>,
+    /// The field's word for it: `sphere`, `mesh`, ...
+    pub kind: &'static str,
+    /// The place in the scene that made it.
+    pub span: Span,
+}
+
+/// What the accelerator's ids stand for.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Prim {
+    pub(crate) kind: PrimKind,
+    /// Which rays see it (bits of [`crate::RayClass`]).
+    pub(crate) visible: u8,
+    /// Bits of `Prim::*`.
+    pub(crate) flags: u8,
+}
+
+impl Prim {
+    /// Exists from the front only, or has holes by alpha: each hit must be looked at.
+    pub(crate) const FILTERED: u8 = 1;
+    /// May let light through (its material transmits, or one of its leaves' does).
+    pub(crate) const TRANSMITS: u8 = 2;
+    /// May stop light.
+    pub(crate) const STOPS: u8 = 4;
+}
+
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum PrimKind {
+    /// Triangle `1` of mesh use `0`.
+    Triangle(u32, u32),
+    /// A shape in the group's own space.
+    Shape(u32),
+    /// A shape with a transformation.
+    Placed(u32),
+    /// A group once more.
+    Instance(u32),
+}
+
+#[derive(Clone, Debug)]
+pub(crate) struct ShapeUse {
+    pub(crate) shape: Shape,
+    pub(crate) transform: Option<Box<Transform>>,
+    /// Object and material; CSG trees have one per leaf instead.
+    pub(crate) look: Looks,
+}
+
+/// Which object and material an element belongs to.
+#[derive(Clone, Debug)]
+pub(crate) enum Looks {
+    One(Look),
+    /// Indexed by the tags of a CSG tree's leaves.
+    Leaves(Box<[Look]>),
+}
+
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Look {
+    pub(crate) object: u32,
+    pub(crate) material: MaterialId,
+}
+
+#[derive(Clone, Debug)]
+pub(crate) struct MeshUse {
+    pub(crate) mesh: Arc<TriangleMesh>,
+    pub(crate) look: Look,
+}
+
+#[derive(Clone, Debug)]
+pub(crate) struct InstanceUse {
+    pub(crate) group: u32,
+    pub(crate) transform: Transform,
+}
+
+/// A list of primitives with its accelerator: the world, an instanced group, or a space of its own for small far things.
+#[derive(Debug)]
+pub(crate) struct RenderGroup {
+    pub(crate) prims: Vec<Prim>,
+    pub(crate) shapes: Vec<ShapeUse>,
+    pub(crate) meshes: Vec<MeshUse>,
+    pub(crate) instances: Vec<InstanceUse>,
+    /// First element number of each primitive, if some primitive has more than one element.
+    pub(crate) first_ids: Option<Vec<u64>>,
+    /// Number of elements, instances expanded.
+    pub(crate) count: u64,
+    pub(crate) bounds: Aabb,
+    pub(crate) accelerator: AnyAccelerator,
+}
+
+impl RenderGroup {
+    /// The first element number of a primitive, relative to the group.
+    #[inline]
+    pub(crate) fn first_id(&self, prim: u32) -> u64 {
+        match &self.first_ids {
+            None => u64::from(prim),
+            Some(first) => first[prim as usize],
+        }
+    }
+
+    /// The primitive an element belongs to; the number must be below `count`.
+    #[inline]
+    pub(crate) fn prim_of(&self, id: u64) -> u32 {
+        match &self.first_ids {
+            None => id as u32,
+            Some(first) => (first.partition_point(|f| *f <= id) - 1) as u32,
+        }
+    }
+}
+
+/// A scene ready to be traced: immutable, `Sync`, ids instead of references.
+#[derive(Debug)]
+pub struct RenderScene {
+    /// Group 0 is the world.
+    pub(crate) groups: Vec<RenderGroup>,
+    pub(crate) objects: Vec<ObjectInfo>,
+    pub(crate) materials: Vec<Arc<Material>>,
+    pub(crate) lights: Vec<SceneLight>,
+    pub(crate) ambient: Color,
+    pub(crate) background: Background,
+    pub(crate) camera: Camera,
+    pub(crate) settings: Settings,
+    pub(crate) sources: SourceMap,
+    /// Whether any material lets shadow rays pass.
+    pub(crate) transmits: bool,
+}
+
+/// Sizes of a compiled scene.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct SceneStats {
+    /// Objects of the description that ended up in the scene.
+    pub objects: usize,
+    /// Primitives stored, instances not expanded.
+    pub primitives: usize,
+    /// Primitive elements, instances expanded.
+    pub elements: u64,
+    /// Instances, including the spaces opened for small far things.
+    pub instances: usize,
+    /// Materials.
+    pub materials: usize,
+    /// Lights.
+    pub lights: usize,
+    /// Bytes of the acceleration structures.
+    pub accelerator_bytes: usize,
+    /// Nodes of the acceleration structures.
+    pub nodes: usize,
+    /// References from leaves to primitives.
+    pub references: usize,
+    /// Bytes of primitives and meshes.
+    pub geometry_bytes: usize,
+}
+
+/// Where an element of the scene is: the chain of instances and the primitive.
+pub(crate) struct Located<'s> {
+    pub(crate) group: &'s RenderGroup,
+    pub(crate) prim: u32,
+    pub(crate) element: u32,
+    /// From the group's space to the world; `None` for the world itself.
+    pub(crate) to_world: Option<Transform>,
+}
+
+/// Everything about a hit, in world space.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Resolved {
+    pub(crate) point: SurfacePoint,
+    /// The same position and its error in the innermost space.
+    pub(crate) local_position: strahl_math::DVec3,
+    pub(crate) local_error: strahl_math::DVec3,
+    /// `n_geom` in the innermost space (unit).
+    pub(crate) local_normal: strahl_math::DVec3,
+    pub(crate) look: Look,
+}
+
+impl RenderScene {
+    /// The camera in use (the scene's, or one that frames the objects).
+    pub fn camera(&self) -> &Camera {
+        &self.camera
+    }
+
+    /// The lights in use.
+    pub fn lights(&self) -> &[SceneLight] {
+        &self.lights
+    }
+
+    /// The ambient light Ia.
+    pub fn ambient(&self) -> Color {
+        self.ambient
+    }
+
+    /// The settings the scene asks for.
+    pub fn settings(&self) -> &Settings {
+        &self.settings
+    }
+
+    /// The files the scene was made from.
+    pub fn sources(&self) -> &SourceMap {
+        &self.sources
+    }
+
+    /// The objects, indexed by object number.
+    pub fn objects(&self) -> &[ObjectInfo] {
+        &self.objects
+    }
+
+    /// The materials, indexed by material number.
+    pub fn materials(&self) -> &[Arc<Material>] {
+        &self.materials
+    }
+
+    /// A box around everything bounded.
+    pub fn bounds(&self) -> Aabb {
+        self.groups[0].bounds
+    }
+
+    /// Length of the diagonal of [`RenderScene::bounds`]; 1 for a scene without extent.
+    pub fn diagonal(&self) -> f64 {
+        let length = self.bounds().size().length();
+        if length > 0.0 && length.is_finite() {
+            length
+        } else {
+            1.0
+        }
+    }
+
+    /// Name of the acceleration structure.
+    pub fn accelerator_name(&self) -> &'static str {
+        self.groups[0].accelerator.name()
+    }
+
+    /// Sizes.
+    pub fn stats(&self) -> SceneStats {
+        let mut s = SceneStats {
+            objects: self.objects.len(),
+            elements: self.groups[0].count,
+            materials: self.materials.len(),
+            lights: self.lights.len(),
+            ..SceneStats::default()
+        };
+        for g in &self.groups {
+            s.primitives += g.prims.len();
+            s.instances += g.instances.len();
+            s.accelerator_bytes += g.accelerator.bytes();
+            s.nodes += g.accelerator.nodes();
+            s.references += g.accelerator.references();
+            s.geometry_bytes += size_of_val(g.prims.as_slice())
+                + size_of_val(g.shapes.as_slice())
+                + size_of_val(g.instances.as_slice())
+                + g.meshes.iter().map(|m| m.mesh.bytes()).sum::<usize>();
+        }
+        s
+    }
+
+    /// Finds an element by its number; the number must come from a hit in this scene.
+    pub(crate) fn locate(&self, id: u64) -> Located<'_> {
+        let (mut group, mut rest, mut to_world) = (&self.groups[0], id, None::<Transform>);
+        loop {
+            let prim = group.prim_of(rest);
+            rest -= group.first_id(prim);
+            let PrimKind::Instance(index) = group.prims[prim as usize].kind else {
+                return Located {
+                    group,
+                    prim,
+                    element: rest as u32,
+                    to_world,
+                };
+            };
+            let instance = &group.instances[index as usize];
+            to_world = Some(match to_world {
+                None => instance.transform,
+                Some(outer) => instance.transform.then(&outer),
+            });
+            group = &self.groups[instance.group as usize];
+        }
+    }
+
+    /// The line of the scene file that made the triangle with this number, if its mesh knows.
+    pub(crate) fn face_line(&self, id: u64) -> Option<u32> {
+        let at = self.locate(id);
+        match at.group.prims[at.prim as usize].kind {
+            PrimKind::Triangle(mesh, triangle) => {
+                at.group.meshes[mesh as usize].mesh.face_line(triangle)
+            }
+            _ => None,
+        }
+    }
+
+    /// The surface at a hit: `ray` is the world ray that found it, `origin` where it started.
+    pub(crate) fn resolve(&self, ray: &Ray, origin: Option<&crate::Origin>, hit: &Hit) -> Resolved {
+        let at = self.locate(hit.id);
+        let local_ray = match &at.to_world {
+            None => *ray,
+            Some(m) => {
+                let entered = m.ray_to_object(ray);
+                // A ray that starts in this very space keeps the origin it has there.
+                match origin {
+                    Some(o) if self.same_space(o.id, hit.id) => {
+                        Ray::new(o.local, entered.direction)
+                    }
+                    _ => entered,
+                }
+            }
+        };
+        let local = at.group.surface_at(at.prim, &local_ray, hit, at.element);
+        let look = at.group.look(at.prim, at.element);
+        let point = match &at.to_world {
+            None => local,
+            Some(m) => surface_to_world(m, &local),
+        };
+        Resolved {
+            point,
+            local_position: local.position,
+            local_error: local.position_error,
+            local_normal: local.n_geom,
+            look,
+        }
+    }
+
+    /// Whether two elements lie in the same innermost space (the same chain of instances).
+    fn same_space(&self, a: u64, b: u64) -> bool {
+        let (mut group, mut a, mut b) = (&self.groups[0], a, b);
+        loop {
+            let (prim_a, prim_b) = (group.prim_of(a), group.prim_of(b));
+            let kinds = (
+                group.prims[prim_a as usize].kind,
+                group.prims[prim_b as usize].kind,
+            );
+            match kinds {
+                (PrimKind::Instance(index), PrimKind::Instance(_)) if prim_a == prim_b => {
+                    a -= group.first_id(prim_a);
+                    b -= group.first_id(prim_b);
+                    group = &self.groups[group.instances[index as usize].group as usize];
+                }
+                (PrimKind::Instance(_), _) | (_, PrimKind::Instance(_)) => return false,
+                _ => return true,
+            }
+        }
+    }
+}
+
+impl RenderGroup {
+    /// Object and material of an element of a primitive that is no instance.
+    pub(crate) fn look(&self, prim: u32, element: u32) -> Look {
+        match self.prims[prim as usize].kind {
+            PrimKind::Triangle(mesh, _) => self.meshes[mesh as usize].look,
+            PrimKind::Shape(index) | PrimKind::Placed(index) => {
+                let used = &self.shapes[index as usize];
+                match (&used.look, &used.shape) {
+                    (Looks::One(look), _) => *look,
+                    (Looks::Leaves(looks), Shape::Csg(csg)) => {
+                        looks[csg.leaf_tag(csg.leaf_of(element).0) as usize]
+                    }
+                    (Looks::Leaves(looks), _) => looks[0],
+                }
+            }
+            PrimKind::Instance(_) => unreachable!("locate ends at a primitive that is no instance"),
+        }
+    }
+
+    /// The surface at a hit, in this group's space.
+    pub(crate) fn surface_at(&self, prim: u32, ray: &Ray, hit: &Hit, element: u32) -> SurfacePoint {
+        let surface = SurfaceId {
+            element,
+            facet: hit.facet,
+        };
+        let hit = PrimHit {
+            t: hit.t,
+            surface,
+            uv: hit.uv,
+        };
+        match self.prims[prim as usize].kind {
+            PrimKind::Triangle(mesh, triangle) => self.meshes[mesh as usize]
+                .mesh
+                .surface_at_element(triangle, hit.uv),
+            PrimKind::Shape(index) => self.shapes[index as usize].shape.surface_at(ray, &hit),
+            PrimKind::Placed(index) => {
+                let used = &self.shapes[index as usize];
+                match &used.transform {
+                    None => used.shape.surface_at(ray, &hit),
+                    Some(m) => {
+                        let local = used.shape.surface_at(&m.ray_to_object(ray), &hit);
+                        surface_to_world(m, &local)
+                    }
+                }
+            }
+            PrimKind::Instance(_) => unreachable!("locate ends at a primitive that is no instance"),
+        }
+    }
+}
+
+/// A surface point of object space, in the space around it.
+pub(crate) fn surface_to_world(m: &Transform, p: &SurfacePoint) -> SurfacePoint {
+    let position = m.point_to_world(p.position);
+    // The map itself rounds: three products and three sums per coordinate.
+    let magnitude = m.error_to_world(p.position.abs()) + m.translation().abs();
+    let position_error =
+        m.error_to_world(p.position_error) + magnitude * strahl_math::error::gamma(8);
+    let unit = |n| m.normal_to_world(n).normalize_or(n);
+    SurfacePoint {
+        position,
+        position_error,
+        n_geom: unit(p.n_geom),
+        n_shade: unit(p.n_shade),
+        uv: p.uv,
+        dpdu: m.vector_to_world(p.dpdu),
+        dpdv: m.vector_to_world(p.dpdv),
+    }
+}

@@ -1,0 +1,84 @@
+use crate::hit::{Hit, Origin};
+use crate::media::{MediaArena, MediaStack, transmittance};
+use crate::query::Tracer;
+use strahl_math::{DVec3, Interval, Ray};
+use strahl_shade::Color;
+
+/// What of a light reaches a point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Shadow {
+    /// The share that arrives, per channel.
+    pub(crate) visible: Color,
+    /// Whether anything was in between.
+    pub(crate) hit: bool,
+}
+
+impl Tracer<'_> {
+    /// Follows a shadow ray: nothing in between lets all light pass, something opaque none, transparent surfaces filter
+    /// by their kt and their insides by Beer-Lambert.
+    ///
+    /// The filters are multiplied in the order of the hits along the ray, so the order in which the accelerator found them
+    /// does not matter.
+    pub(crate) fn shadow(
+        &mut self,
+        ray: &Ray,
+        range: Interval,
+        from: &Origin,
+        light: usize,
+        media: MediaStack,
+        arena: &mut MediaArena,
+        hits: &mut Vec<Hit>,
+    ) -> Shadow {
+        if self.occluded(ray, range, from, light) {
+            return Shadow {
+                visible: Color::BLACK,
+                hit: true,
+            };
+        }
+        if !self.scene.transmits {
+            return Shadow {
+                visible: Color::WHITE,
+                hit: false,
+            };
+        }
+        hits.clear();
+        self.transmitting_hits(ray, range, Some(from), hits);
+        hits.sort_unstable_by(|a, b| a.t.total_cmp(&b.t).then(a.id.cmp(&b.id)));
+        let mut visible = Color::WHITE;
+        let (mut inside, mut entered_at) = (media, 0.0);
+        for hit in hits.iter() {
+            let resolved = self.scene.resolve(ray, Some(from), hit);
+            let id = resolved.look.material;
+            let material = &self.scene.materials[id.0 as usize];
+            visible *= material.at(resolved.point.uv).finish.transmission;
+            visible *= self.absorbed(arena, inside, ray.direction, hit.t - entered_at);
+            entered_at = hit.t;
+            inside = if resolved.point.n_geom.dot(ray.direction) < 0.0 {
+                arena.entered(inside, id)
+            } else {
+                arena.left(inside, id)
+            };
+        }
+        if range.max.is_finite() {
+            visible *= self.absorbed(arena, inside, ray.direction, range.max - entered_at);
+        }
+        Shadow {
+            visible,
+            hit: !hits.is_empty(),
+        }
+    }
+
+    /// What the medium keeps of the light on a stretch of the ray, in units of `t`.
+    fn absorbed(
+        &self,
+        arena: &MediaArena,
+        inside: MediaStack,
+        direction: DVec3,
+        stretch: f64,
+    ) -> Color {
+        arena.top(inside).map_or(Color::WHITE, |id| {
+            let absorption = self.scene.materials[id.0 as usize].absorption;
+            transmittance(absorption, stretch * direction.length())
+        })
+    }
+}

@@ -1,0 +1,702 @@
+//! The trace loop, the heart of the program: it exists once.
+//!
+//! ```text
+//! for every primary ray
+//!   1. find the nearest hit
+//!   2. for every light the surface faces: follow a shadow ray; what arrives adds kd (n·l) + ks (h·n)^p
+//!   3. if the surface reflects:    follow the reflection ray, which adds kr·Xr
+//!   4. if the surface transmits:   follow the transparency ray, which adds kt·Xt
+//! ```
+//!
+//! All rays but shadow rays are equal: what happens at a hit does not depend on whether the ray was primary or
+//! secondary. The tree is walked with a stack of its own, so its depth is not limited by the machine's stack, and combined
+//! bottom-up in the order reflection, transparency, so the sum does not depend on the order of tracing.
+
+use crate::hit::{Hit, Origin, RayClass};
+use crate::media::{MediaArena, MediaStack, transmittance};
+use crate::observer::{BranchEnd, HitReport, LightTerm, RayKind, RayReport, TraceObserver};
+use crate::query::Tracer;
+use crate::scene::{RenderScene, Resolved};
+use strahl_math::{DVec3, Interval, Ray, error};
+use strahl_shade::{Color, MaterialId, ShadingModel, fresnel_dielectric, reflect, refract};
+
+/// How trees are grown.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TraceSettings {
+    /// Deepest level of the tree; the primary ray is level 1.
+    pub max_depth: u32,
+    /// Branches of a smaller weight are not followed; 0 follows all.
+    pub adc_bailout: f64,
+    /// Shading model of materials that name none.
+    pub shading: ShadingModel,
+    /// Shading model of all materials, whatever they name.
+    pub force_shading: Option<ShadingModel>,
+    /// Most rays of one tree, shadow rays not counted: glass that reflects and refracts at every level grows trees of 2ⁿ
+    /// rays. Trees that were cut are counted in [`RayCounts::cut_trees`].
+    pub max_tree_rays: u32,
+}
+
+impl TraceSettings {
+    /// Default of `max_tree_rays`.
+    pub const MAX_TREE_RAYS: u32 = 1 << 18;
+
+    /// What a scene asks for.
+    pub fn of(scene: &RenderScene) -> Self {
+        let s = scene.settings();
+        Self {
+            max_depth: s.max_depth,
+            adc_bailout: s.adc_bailout,
+            shading: s.shading,
+            force_shading: None,
+            max_tree_rays: Self::MAX_TREE_RAYS,
+        }
+    }
+}
+
+/// Rays followed, by kind, and how many of them hit something.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct RayCounts {
+    /// Rays from the eye.
+    pub primary: u64,
+    /// Those that hit an object.
+    pub primary_hit: u64,
+    /// Rays to lights.
+    pub shadow: u64,
+    /// Those that met something before the light, transparent or not.
+    pub shadow_hit: u64,
+    /// Reflection rays.
+    pub reflection: u64,
+    /// Those that hit an object.
+    pub reflection_hit: u64,
+    /// Transparency rays.
+    pub refraction: u64,
+    /// Those that hit an object.
+    pub refraction_hit: u64,
+    /// Trees that reached the limit of rays.
+    pub cut_trees: u64,
+}
+
+impl RayCounts {
+    /// All rays.
+    pub fn total(&self) -> u64 {
+        self.primary + self.shadow + self.reflection + self.refraction
+    }
+
+    fn count(&mut self, kind: RayKind, hit: bool) {
+        let (rays, hits) = match kind {
+            RayKind::Primary => (&mut self.primary, &mut self.primary_hit),
+            RayKind::Reflection => (&mut self.reflection, &mut self.reflection_hit),
+            RayKind::Refraction => (&mut self.refraction, &mut self.refraction_hit),
+        };
+        *rays += 1;
+        *hits += u64::from(hit);
+    }
+}
+
+impl std::ops::AddAssign for RayCounts {
+    fn add_assign(&mut self, o: Self) {
+        self.primary += o.primary;
+        self.primary_hit += o.primary_hit;
+        self.shadow += o.shadow;
+        self.shadow_hit += o.shadow_hit;
+        self.reflection += o.reflection;
+        self.reflection_hit += o.reflection_hit;
+        self.refraction += o.refraction;
+        self.refraction_hit += o.refraction_hit;
+        self.cut_trees += o.cut_trees;
+    }
+}
+
+/// What a primary ray hit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FirstHit {
+    /// Distance from the ray's origin.
+    pub distance: f64,
+    /// World position.
+    pub position: DVec3,
+    /// Unit shading normal on the side of the viewer.
+    pub normal: DVec3,
+    /// Number of the object.
+    pub object: u32,
+    /// Number of the material.
+    pub material: MaterialId,
+}
+
+/// The outcome of one primary ray.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SampleResult {
+    /// Linear colour.
+    pub color: Color,
+    /// What was hit first.
+    pub first: Option<FirstHit>,
+    /// Deepest level of the tree reached.
+    pub depth: u32,
+    /// Rays of the tree, shadow rays included.
+    pub rays: u32,
+}
+
+/// Grows ray trees; owns the working memory of one thread.
+#[derive(Debug)]
+pub struct TreeTracer<'s> {
+    /// The queries.
+    pub tracer: Tracer<'s>,
+    /// Rays followed so far.
+    pub counts: RayCounts,
+    settings: TraceSettings,
+    media: MediaArena,
+    waiting: Vec<Branch>,
+    nodes: Vec<Node>,
+    shadow_hits: Vec<Hit>,
+}
+
+/// A ray still to be traced.
+#[derive(Clone, Copy, Debug)]
+struct Branch {
+    ray: Ray,
+    origin: Option<Origin>,
+    kind: RayKind,
+    parent: u32,
+    depth: u32,
+    weight: f64,
+    media: MediaStack,
+}
+
+/// A ray that was traced, waiting for its branches.
+#[derive(Clone, Copy, Debug)]
+struct Node {
+    parent: u32,
+    kind: RayKind,
+    /// What the hit sends by itself, or the background.
+    local: Color,
+    kr: Color,
+    kt: Color,
+    reflected: Color,
+    transmitted: Color,
+    /// What the medium in front of the hit keeps of all this.
+    attenuation: Color,
+}
+
+impl<'s> TreeTracer<'s> {
+    /// For one scene and one thread.
+    pub fn new(scene: &'s RenderScene, settings: TraceSettings) -> Self {
+        Self {
+            tracer: Tracer::new(scene),
+            counts: RayCounts::default(),
+            settings,
+            media: MediaArena::default(),
+            waiting: Vec::new(),
+            nodes: Vec::new(),
+            shadow_hits: Vec::new(),
+        }
+    }
+
+    /// Follows a primary ray with everything that comes of it.
+    pub fn trace<O: TraceObserver>(&mut self, primary: &Ray, observer: &mut O) -> SampleResult {
+        let shadow_before = self.counts.shadow;
+        let mut first = None;
+        let mut deepest = 1;
+        self.media.clear();
+        self.nodes.clear();
+        self.waiting.clear();
+        self.waiting.push(Branch {
+            ray: *primary,
+            origin: None,
+            kind: RayKind::Primary,
+            parent: 0,
+            depth: 1,
+            weight: 1.0,
+            media: MediaStack::VACUUM,
+        });
+        while let Some(branch) = self.waiting.pop() {
+            let found = self.follow(&branch, observer);
+            deepest = if branch.depth > deepest {
+                branch.depth
+            } else {
+                deepest
+            };
+            if branch.kind == RayKind::Primary {
+                first = found;
+            }
+        }
+        let color = self.combine(observer);
+        let rays = self.nodes.len() as u64 + self.counts.shadow - shadow_before;
+        SampleResult {
+            color,
+            first,
+            depth: deepest,
+            rays: rays as u32,
+        }
+    }
+
+    /// Adds the tree up from its leaves: every ray sends its hit's own light, plus kr times what its reflection ray
+    /// brought, plus kt times what its transparency ray brought.
+    fn combine<O: TraceObserver>(&mut self, observer: &mut O) -> Color {
+        for index in (0..self.nodes.len()).rev() {
+            let node = self.nodes[index];
+            let sum = node.local + node.kr * node.reflected + node.kt * node.transmitted;
+            let total = sum * node.attenuation;
+            if O::ACTIVE {
+                observer.combined(index as u32, node.local, total);
+            }
+            let parent = &mut self.nodes[node.parent as usize];
+            match node.kind {
+                RayKind::Primary => return total,
+                RayKind::Reflection => parent.reflected = total,
+                RayKind::Refraction => parent.transmitted = total,
+            }
+        }
+        Color::BLACK
+    }
+
+    /// Traces one ray, shades its hit and queues its branches.
+    fn follow<O: TraceObserver>(&mut self, branch: &Branch, observer: &mut O) -> Option<FirstHit> {
+        let scene = self.tracer.scene;
+        let class = if branch.kind == RayKind::Primary {
+            RayClass::Camera
+        } else {
+            RayClass::Secondary
+        };
+        let hit = self.tracer.closest_hit(
+            &branch.ray,
+            Interval::FORWARD,
+            branch.origin.as_ref(),
+            class,
+        );
+        self.counts.count(branch.kind, hit.is_some());
+
+        let index = self.nodes.len() as u32;
+        let length = hit.map_or(f64::INFINITY, |h| h.t * branch.ray.direction.length());
+        let attenuation = self.media.top(branch.media).map_or(Color::WHITE, |id| {
+            transmittance(scene.materials[id.0 as usize].absorption, length)
+        });
+        let mut node = Node {
+            parent: branch.parent,
+            kind: branch.kind,
+            local: Color::BLACK,
+            kr: Color::BLACK,
+            kt: Color::BLACK,
+            reflected: Color::BLACK,
+            transmitted: Color::BLACK,
+            attenuation,
+        };
+        let report = |hit, background| RayReport {
+            node: index,
+            parent: branch.parent,
+            kind: branch.kind,
+            depth: branch.depth,
+            weight: branch.weight,
+            ray: branch.ray,
+            hit,
+            background,
+            attenuation,
+        };
+        let Some(hit) = hit else {
+            node.local = scene.background.along(branch.ray.direction);
+            if O::ACTIVE {
+                observer.ray(report(None, Some(node.local)));
+            }
+            self.nodes.push(node);
+            return None;
+        };
+
+        let surface = Surface::at(scene, branch, &hit, &self.media);
+        let first = FirstHit {
+            distance: length,
+            position: surface.resolved.point.position,
+            normal: surface.n_shade,
+            object: surface.resolved.look.object,
+            material: surface.resolved.look.material,
+        };
+        let model = self.model_of(&surface);
+        if model.is_diagnostic() {
+            node.local = surface.diagnose(scene, model, &first);
+            if O::ACTIVE {
+                let mut seen = surface.report(scene, &hit, Split::NONE);
+                seen.diagnostic = true;
+                observer.ray(report(Some(seen), None));
+            }
+            self.nodes.push(node);
+            return Some(first);
+        }
+
+        let split = surface.split(&branch.ray);
+        if O::ACTIVE {
+            observer.ray(report(Some(surface.report(scene, &hit, split)), None));
+        }
+        let finish = &surface.material.finish;
+        node.local = finish.ambient * scene.ambient + finish.emission;
+        for light in 0..scene.lights.len() {
+            let term = self.light(&surface, &hit, model, light, branch);
+            node.local += term.diffuse + term.specular;
+            if O::ACTIVE {
+                observer.light(index, term);
+            }
+        }
+        node.kr = split.kr;
+        node.kt = split.kt;
+        self.nodes.push(node);
+        self.queue_branches(branch, index, &surface, &hit, &split, observer);
+        Some(first)
+    }
+
+    fn model_of(&self, surface: &Surface) -> ShadingModel {
+        let material = &self.tracer.scene.materials[surface.resolved.look.material.0 as usize];
+        self.settings
+            .force_shading
+            .or(material.model)
+            .unwrap_or(self.settings.shading)
+    }
+
+    /// One light's contribution: no shadow ray if the surface faces away.
+    fn light(
+        &mut self,
+        surface: &Surface,
+        hit: &Hit,
+        model: ShadingModel,
+        light: usize,
+        branch: &Branch,
+    ) -> LightTerm {
+        let scene_light = &self.tracer.scene.lights[light].light;
+        let mut term = LightTerm {
+            light: light as u32,
+            n_dot_l: 0.0,
+            shadow_ray: None,
+            visible: Color::BLACK,
+            color: Color::BLACK,
+            diffuse: Color::BLACK,
+            specular: Color::BLACK,
+        };
+        let Some(sample) = scene_light.illuminate(surface.resolved.point.position) else {
+            return term;
+        };
+        term.n_dot_l = surface.n_shade.dot(sample.l);
+        term.color = sample.color;
+        if !(term.n_dot_l > 0.0) {
+            return term;
+        }
+        term.visible = Color::WHITE;
+        if scene_light.casts_shadows {
+            let (origin_point, origin) = surface.start(hit, sample.shadow_direction);
+            let ray = Ray::new(origin_point, sample.shadow_direction);
+            let shadow = self.tracer.shadow(
+                &ray,
+                sample.range,
+                &origin,
+                light,
+                branch.media,
+                &mut self.media,
+                &mut self.shadow_hits,
+            );
+            self.counts.shadow += 1;
+            self.counts.shadow_hit += u64::from(shadow.hit);
+            term.shadow_ray = Some(ray);
+            term.visible = shadow.visible;
+        }
+        if !term.visible.is_black() {
+            let finish = &surface.material.finish;
+            let arriving = sample.color * term.visible;
+            term.diffuse = finish.diffuse * arriving * term.n_dot_l;
+            let highlight = model.highlight(surface.n_shade, sample.l, surface.v, finish.shininess);
+            term.specular = finish.specular * arriving * highlight;
+        }
+        term
+    }
+
+    /// Queues what the surface reflects and transmits; the reflection ray is traced first.
+    fn queue_branches<O: TraceObserver>(
+        &mut self,
+        branch: &Branch,
+        index: u32,
+        surface: &Surface,
+        hit: &Hit,
+        split: &Split,
+        observer: &mut O,
+    ) {
+        if split.total_reflection && O::ACTIVE {
+            observer.ended(index, RayKind::Refraction, 0.0, BranchEnd::TotalReflection);
+        }
+        let refraction = split.refracted.map(|d| (RayKind::Refraction, split.kt, d));
+        let reflection = split.reflected.map(|d| (RayKind::Reflection, split.kr, d));
+        for (kind, coefficient, direction) in [refraction, reflection].into_iter().flatten() {
+            let weight = branch.weight * coefficient.max_component();
+            let end = if branch.depth >= self.settings.max_depth {
+                Some(BranchEnd::DepthLimit)
+            } else if weight < self.settings.adc_bailout {
+                Some(BranchEnd::WeightCutoff)
+            } else if self.nodes.len() + self.waiting.len() >= self.settings.max_tree_rays as usize
+            {
+                Some(BranchEnd::TreeLimit)
+            } else {
+                None
+            };
+            if let Some(end) = end {
+                self.counts.cut_trees += u64::from(end == BranchEnd::TreeLimit);
+                if O::ACTIVE {
+                    observer.ended(index, kind, weight, end);
+                }
+                continue;
+            }
+            let media = match kind {
+                RayKind::Refraction => surface.media_behind(branch.media, &mut self.media),
+                _ => branch.media,
+            };
+            let (point, origin) = surface.start(hit, direction);
+            self.waiting.push(Branch {
+                ray: Ray::new(point, direction),
+                origin: Some(origin),
+                kind,
+                parent: index,
+                depth: branch.depth + 1,
+                weight,
+                media,
+            });
+        }
+    }
+}
+
+/// How a surface divides light between reflection and transparency.
+#[derive(Clone, Copy, Debug)]
+struct Split {
+    kr: Color,
+    kt: Color,
+    /// Unit direction of the reflection ray, if the surface reflects (or transmits: then with kr = 0 unless Fresnel or
+    /// total reflection make it more; the cutoff decides).
+    reflected: Option<DVec3>,
+    refracted: Option<DVec3>,
+    cos_2: Option<f64>,
+    fresnel: Option<f64>,
+    total_reflection: bool,
+}
+
+impl Split {
+    const NONE: Self = Self {
+        kr: Color::BLACK,
+        kt: Color::BLACK,
+        reflected: None,
+        refracted: None,
+        cos_2: None,
+        fresnel: None,
+        total_reflection: false,
+    };
+}
+
+/// Everything at a hit that shading needs, turned to the side of the ray.
+struct Surface {
+    resolved: Resolved,
+    material: strahl_shade::MaterialPoint,
+    /// Unit vector towards the viewer.
+    v: DVec3,
+    n_geom: DVec3,
+    n_shade: DVec3,
+    /// Whether the ray meets the front (or outside).
+    entering: bool,
+    /// Whether the material is a sheet without an inside.
+    thin: bool,
+    eta_1: f64,
+    eta_2: f64,
+}
+
+impl Surface {
+    fn at(scene: &RenderScene, branch: &Branch, hit: &Hit, media: &MediaArena) -> Self {
+        let resolved = scene.resolve(&branch.ray, branch.origin.as_ref(), hit);
+        let point = &resolved.point;
+        let material = &scene.materials[resolved.look.material.0 as usize];
+        let v = -branch.ray.direction.normalize();
+        let entering = point.n_geom.dot(v) >= 0.0;
+        let side = if entering { 1.0 } else { -1.0 };
+        let n_shade = match &material.pbr {
+            None => point.n_shade,
+            Some(pbr) => pbr.shading_normal(point.uv, point.n_shade, point.dpdu, point.dpdv),
+        };
+        let index = |id: Option<MaterialId>| id.map_or(1.0, |m| scene.materials[m.0 as usize].eta);
+        let (eta_1, eta_2) = if entering {
+            (index(media.top(branch.media)), material.eta)
+        } else {
+            // Without a known medium the ray must be inside of the material whose back it sees.
+            let inside = media.top(branch.media).or(Some(resolved.look.material));
+            (
+                index(inside),
+                index(media.top_without(branch.media, resolved.look.material)),
+            )
+        };
+        // A thin sheet has the same medium on both sides and is met from outside.
+        let (eta_1, eta_2) = if material.thin {
+            (index(media.top(branch.media)), material.eta)
+        } else {
+            (eta_1, eta_2)
+        };
+        Self {
+            material: material.at(point.uv),
+            v,
+            n_geom: point.n_geom * side,
+            n_shade: n_shade * side,
+            entering,
+            thin: material.thin,
+            eta_1,
+            eta_2,
+            resolved,
+        }
+    }
+
+    /// The media a ray is in after passing the surface.
+    fn media_behind(&self, before: MediaStack, arena: &mut MediaArena) -> MediaStack {
+        let material = self.resolved.look.material;
+        if self.thin {
+            return before;
+        }
+        if self.entering {
+            arena.entered(before, material)
+        } else {
+            arena.left(before, material)
+        }
+    }
+
+    /// Where a ray in this direction starts: certainly on its side of the surface.
+    fn start(&self, hit: &Hit, direction: DVec3) -> (DVec3, Origin) {
+        let outwards = self.n_geom.dot(direction) >= 0.0;
+        let r = &self.resolved;
+        // Both normals point to the same side of the surface in their spaces.
+        let same = if self.entering { outwards } else { !outwards };
+        let toward = |n: DVec3| if same { n } else { -n };
+        let point = error::offset_origin(
+            r.point.position,
+            r.point.position_error,
+            toward(r.point.n_geom),
+        );
+        let local = error::offset_origin(r.local_position, r.local_error, toward(r.local_normal));
+        (
+            point,
+            Origin {
+                id: hit.id,
+                facet: hit.facet,
+                local,
+            },
+        )
+    }
+
+    /// Divides the light: reflection, transparency by Snell's law, Fresnel's equations on request. On total reflection kt is
+    /// added to kr.
+    fn split(&self, ray: &Ray) -> Split {
+        let finish = &self.material.finish;
+        let transmits = !finish.transmission.is_black();
+        let dielectric = self.material.fresnel && !self.material.fresnel_reflection.is_black();
+        if !transmits && !dielectric && finish.reflection.is_black() {
+            return Split::NONE;
+        }
+        let mut split = Split {
+            kr: finish.reflection,
+            ..Split::NONE
+        };
+        let refracted = if transmits || dielectric {
+            refract(self.n_shade, self.v, self.eta_1 / self.eta_2)
+        } else {
+            None
+        };
+        split.cos_2 = refracted.map(|r| r.cos_2);
+        if self.material.fresnel {
+            let f = refracted.map_or(1.0, |r| {
+                fresnel_dielectric(self.eta_1, r.cos_1, self.eta_2, r.cos_2)
+            });
+            split.fresnel = Some(f);
+            split.kr += self.material.fresnel_reflection * f;
+            split.kt = finish.transmission * (1.0 - f);
+        } else {
+            split.kt = finish.transmission;
+        }
+        if transmits {
+            match refracted {
+                Some(r) => {
+                    // A shading normal may bend the ray to the wrong side: then the true normal decides, and without
+                    // refraction the ray goes straight on, to the last bit.
+                    let straight = self.thin || self.eta_1 == self.eta_2;
+                    let wrong = r.direction.dot(self.n_geom) >= 0.0;
+                    split.refracted = if straight {
+                        Some(ray.direction)
+                    } else if wrong {
+                        refract(self.n_geom, self.v, self.eta_1 / self.eta_2).map(|r| r.direction)
+                    } else {
+                        Some(r.direction)
+                    };
+                }
+                None => {
+                    split.total_reflection = true;
+                    if !self.material.fresnel {
+                        split.kr += split.kt;
+                    }
+                    split.kt = Color::BLACK;
+                }
+            }
+        }
+        let r = reflect(self.n_shade, self.v);
+        let under = r.dot(self.n_geom) <= 0.0;
+        split.reflected = Some(if under {
+            reflect(self.n_geom, self.v)
+        } else {
+            r
+        });
+        split
+    }
+
+    fn report(&self, scene: &RenderScene, hit: &Hit, split: Split) -> HitReport {
+        let finish = &self.material.finish;
+        HitReport {
+            hit: *hit,
+            object: self.resolved.look.object,
+            material: self.resolved.look.material,
+            line: scene.face_line(hit.id),
+            diagnostic: false,
+            position: self.resolved.point.position,
+            n_geom: self.n_geom,
+            n_shade: self.n_shade,
+            eta_1: self.eta_1,
+            eta_2: self.eta_2,
+            cos_1: self.n_shade.dot(self.v),
+            cos_2: split.cos_2,
+            fresnel: split.fresnel,
+            ambient: finish.ambient * scene.ambient,
+            emission: finish.emission,
+            diffuse: finish.diffuse,
+            specular: finish.specular,
+            shininess: finish.shininess,
+            reflection: split.kr,
+            transmission: split.kt,
+        }
+    }
+
+    /// The colour of a diagnostic model.
+    fn diagnose(&self, scene: &RenderScene, model: ShadingModel, first: &FirstHit) -> Color {
+        match model {
+            ShadingModel::Normals => {
+                let n = self.n_shade * 0.5 + DVec3::splat(0.5);
+                Color::new(n.x, n.y, n.z)
+            }
+            ShadingModel::Depth => {
+                let diagonal = scene.diagonal();
+                Color::gray(first.distance / (first.distance + diagonal))
+            }
+            ShadingModel::ObjectId => id_color(first.object),
+            _ => {
+                let uv = self.resolved.point.uv;
+                Color::new(uv.x - uv.x.floor(), uv.y - uv.y.floor(), 0.0)
+            }
+        }
+    }
+}
+
+/// A colour of its own for every number: hues by the golden ratio, three levels of brightness.
+fn id_color(id: u32) -> Color {
+    let hue = (f64::from(id) * 0.618_033_988_749_895).fract() * 6.0;
+    let ramp = |shift: f64| {
+        let h = (hue + shift) % 6.0;
+        let distance = (h - 3.0).abs() - 1.0;
+        if distance < 0.0 {
+            0.0
+        } else if distance > 1.0 {
+            1.0
+        } else {
+            distance
+        }
+    };
+    let level = 0.35 + 0.25 * f64::from(id % 3);
+    Color::new(ramp(0.0), ramp(4.0), ramp(2.0)) * level + Color::gray(0.05)
+}

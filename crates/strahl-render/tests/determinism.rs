@@ -1,0 +1,119 @@
+//! The film has the same bits whatever accelerator, threads, tile order and regions made it.
+
+mod common;
+
+use common::{compiled, glass_and_mirrors, rendered};
+use strahl_accel::AcceleratorKind;
+use strahl_render::{CompileOptions, Region, Sampling, TileOrder, compile};
+
+const SAMPLINGS: [Sampling; 4] = [
+    Sampling::Center,
+    Sampling::Corners,
+    Sampling::Grid(2),
+    Sampling::Adaptive {
+        threshold: 0.05,
+        passes: 2,
+    },
+];
+
+#[test]
+fn list_and_bvh_give_the_same_bits() {
+    let scene = glass_and_mirrors();
+    let mut hashes = Vec::new();
+    for accelerator in AcceleratorKind::ALL.iter().copied() {
+        let scene = compile(&scene, &CompileOptions { accelerator }).expect("valid");
+        let picture = rendered(&scene, |o| o.sampling = Sampling::Grid(2));
+        hashes.push((accelerator.to_string(), picture.film.sha256(), picture.rays));
+    }
+    assert!(hashes.len() >= 2);
+    for other in &hashes[1..] {
+        assert_eq!(
+            (&hashes[0].1, hashes[0].2),
+            (&other.1, other.2),
+            "{} and {}",
+            hashes[0].0,
+            other.0
+        );
+    }
+}
+
+#[test]
+fn threads_and_tile_orders_give_the_same_bits() {
+    let scene = compiled(&glass_and_mirrors());
+    for sampling in SAMPLINGS {
+        let reference = rendered(&scene, |o| o.sampling = sampling);
+        for threads in [1, 2, 5] {
+            for order in [TileOrder::Rows, TileOrder::Reverse, TileOrder::Center] {
+                let other = rendered(&scene, |o| {
+                    o.sampling = sampling;
+                    o.threads = threads;
+                    o.tile_order = order;
+                    o.info = true;
+                });
+                assert_eq!(
+                    other.film.sha256(),
+                    reference.film.sha256(),
+                    "{sampling} {threads} {order:?}"
+                );
+                assert_eq!(other.rays, reference.rays);
+                assert_eq!(other.traversal, reference.traversal);
+            }
+        }
+    }
+}
+
+#[test]
+fn regions_are_cut_out_of_the_whole_picture() {
+    let scene = compiled(&glass_and_mirrors());
+    for sampling in SAMPLINGS {
+        let whole = rendered(&scene, |o| o.sampling = sampling).film;
+        for region in [
+            Region {
+                x: 0,
+                y: 0,
+                width: 96,
+                height: 31,
+            },
+            Region {
+                x: 37,
+                y: 11,
+                width: 40,
+                height: 50,
+            },
+            Region {
+                x: 95,
+                y: 63,
+                width: 1,
+                height: 1,
+            },
+        ] {
+            let part = rendered(&scene, |o| {
+                o.sampling = sampling;
+                o.region = Some(region);
+            });
+            for y in region.y..region.y + region.height {
+                for x in region.x..region.x + region.width {
+                    assert_eq!(
+                        part.film.pixel(x, y),
+                        whole.pixel(x, y),
+                        "{sampling} {region:?} {x},{y}"
+                    );
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn another_seed_is_another_picture() {
+    let scene = compiled(&glass_and_mirrors());
+    let hash = |seed| {
+        rendered(&scene, |o| {
+            o.sampling = Sampling::Grid(2);
+            o.seed = seed;
+        })
+        .film
+        .sha256()
+    };
+    assert_ne!(hash(1), hash(2));
+}

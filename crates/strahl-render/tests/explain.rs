@@ -1,0 +1,95 @@
+//! A pixel's ray tree adds up to the pixel.
+
+mod common;
+
+use common::{compiled, glass_and_mirrors, rendered};
+use strahl_render::{BranchEnd, RayKind, RenderOptions, Sampling, explain};
+use strahl_shade::Color;
+
+#[test]
+fn the_sum_of_the_tree_is_the_pixel_to_the_last_bit() {
+    let scene = compiled(&glass_and_mirrors());
+    for sampling in [
+        Sampling::Center,
+        Sampling::Corners,
+        Sampling::Grid(3),
+        Sampling::Adaptive {
+            threshold: 0.02,
+            passes: 2,
+        },
+    ] {
+        let picture = rendered(&scene, |o| o.sampling = sampling).film;
+        let options = RenderOptions {
+            sampling,
+            ..RenderOptions::new(&scene, 96, 64)
+        };
+        let mut rays = 0;
+        for (x, y) in [
+            (0, 0),
+            (48, 32),
+            (40, 30),
+            (20, 35),
+            (60, 40),
+            (70, 44),
+            (95, 63),
+            (47, 20),
+        ] {
+            let pixel = explain(&scene, &options, x, y).expect("exists");
+            assert_eq!(Some(pixel.film), picture.pixel(x, y), "{sampling} {x},{y}");
+            for (_, tree) in &pixel.samples {
+                rays += tree.nodes.len();
+                for node in &tree.nodes {
+                    let (mut reflected, mut transmitted) = (Color::BLACK, Color::BLACK);
+                    for child in &node.children {
+                        let child = &tree.nodes[*child as usize];
+                        match child.report.kind {
+                            RayKind::Reflection => reflected = child.total,
+                            _ => transmitted = child.total,
+                        }
+                    }
+                    let mut total = node.local;
+                    if let Some(hit) = &node.report.hit {
+                        let mut local = hit.ambient + hit.emission;
+                        for term in &node.lights {
+                            local += term.diffuse + term.specular;
+                        }
+                        assert_eq!(local, node.local);
+                        total = local + hit.reflection * reflected + hit.transmission * transmitted;
+                    }
+                    assert_eq!(total * node.report.attenuation, node.total);
+                }
+            }
+        }
+        assert!(rays > 40, "the scene has deep trees: {rays}");
+    }
+}
+
+#[test]
+fn branches_that_end_say_why() {
+    let scene = compiled(&glass_and_mirrors());
+    let mut options = RenderOptions::new(&scene, 96, 64);
+    let ends = |options: &RenderOptions| {
+        let pixel = explain(&scene, options, 46, 33).expect("exists");
+        let nodes = pixel.samples.into_iter().flat_map(|(_, tree)| tree.nodes);
+        nodes
+            .flat_map(|n| n.ended)
+            .map(|(_, _, end)| end)
+            .collect::<Vec<_>>()
+    };
+    options.trace.max_depth = 2;
+    options.trace.adc_bailout = 0.0;
+    assert!(ends(&options).contains(&BranchEnd::DepthLimit));
+    options.trace.max_depth = 100;
+    options.trace.adc_bailout = 0.5;
+    assert!(ends(&options).contains(&BranchEnd::WeightCutoff));
+    options.trace.adc_bailout = 0.0;
+    options.trace.max_tree_rays = 50;
+    assert!(ends(&options).contains(&BranchEnd::TreeLimit));
+}
+
+#[test]
+fn a_pixel_outside_of_the_picture_is_an_error() {
+    let scene = compiled(&glass_and_mirrors());
+    let error = explain(&scene, &RenderOptions::new(&scene, 96, 64), 96, 0).expect_err("outside");
+    assert!(error.to_string().contains("96 x 64"), "{error}");
+}
