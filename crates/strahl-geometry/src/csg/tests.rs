@@ -176,6 +176,33 @@ fn faces_that_coincide_up_to_rounding_leave_no_skin() {
 }
 
 #[test]
+fn rounding_of_maps_counts_for_coincidence() {
+    // Rays that come in flat from far away: what rounding does to their origins, taken into the two spaces, moves `t`
+    // by more than the boxes' own error bounds.
+    let mut random = Random::new(4);
+    let thrice = Transform::try_scale(DVec3::new(3.0, 1.0, 1.0)).expect("regular");
+    for _ in 0..2000 {
+        let everything = Transform::rotate(random.direction(), random.between(0.0, 6.0));
+        let csg = compiled(
+            CsgNode::difference([
+                slab(0.0, 1.0, 2.0, 1),
+                slab(0.0, 0.2, 1.5, 2).transformed(thrice),
+            ])
+            .transformed(everything),
+        );
+        let target = DVec3::new(0.0, random.between(-1.4, 1.4), random.between(-1.4, 1.4));
+        let origin = target + DVec3::new(-1e-3, 1e3, 0.0);
+        let ray = Ray::new(
+            everything.point_to_world(origin),
+            everything.vector_to_world(target - origin),
+        );
+        let range = Interval::new(0.999, 1.0001);
+        let hit = csg.closest_hit(&ray, range, None, &mut Scratch::default());
+        assert!(hit.is_none(), "a skin: {hit:?}");
+    }
+}
+
+#[test]
 fn of_coincident_faces_the_smaller_element_shows() {
     for (a, b) in [(1, 2), (2, 1)] {
         let same = CsgNode::intersection([cube(-1.0, 1.0, a), cube(-1.0, 1.0, b)]);
