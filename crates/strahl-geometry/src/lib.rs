@@ -14,7 +14,7 @@ mod shape;
 mod spans;
 
 pub use csg::{Csg, CsgNode, Operands};
-pub use mesh::{MeshData, Polygon, RayShear, SmoothTriangle, Triangle, TriangleMesh};
+pub use mesh::{Brep, MeshData, Polygon, RayShear, SmoothTriangle, Triangle, TriangleMesh};
 pub use primitive::{GeometryError, PrimHit, Primitive, Scratch, Solid, SurfaceId, SurfacePoint};
 pub use primitives::{Cuboid, Sphere};
 pub use shape::Shape;

@@ -1,4 +1,4 @@
-use crate::mesh::{Polygon, SmoothTriangle, Triangle, TriangleMesh};
+use crate::mesh::{Brep, Polygon, SmoothTriangle, Triangle, TriangleMesh};
 use crate::primitives::{Cuboid, Sphere};
 use crate::{Csg, GeometryError, PrimHit, Primitive, Scratch, Solid, SurfaceId, SurfacePoint};
 use std::sync::Arc;
@@ -92,6 +92,8 @@ shapes! {
     TriangleMesh(Arc<TriangleMesh>),
     /// A tree of solids, combined.
     Csg(Arc<Csg>),
+    /// A closed mesh with an inside.
+    Brep(Arc<Brep>),
     /// A primitive from outside of this crate.
     Custom(Arc<dyn Primitive>),
 }

@@ -329,6 +329,13 @@ impl TriangleMesh {
         Ok(copy)
     }
 
+    /// The same surface with fronts and backs exchanged.
+    #[must_use]
+    pub(super) fn turned_inside_out(mut self) -> Self {
+        self.flipped = !self.flipped;
+        self
+    }
+
     #[inline]
     fn triangle(&self, triangle: u32) -> [u32; 3] {
         let found = self.indices.get(triangle as usize);
@@ -451,7 +458,7 @@ fn map_normals(normals: &[[f32; 3]], map: &Transform) -> Box<[[f32; 3]]> {
 mod tests {
     use super::*;
     use crate::conformance::Random;
-    use crate::mesh::samples::{cube, torus};
+    use crate::mesh::samples::{Unbaked, cube, torus};
 
     fn closest(mesh: &impl Primitive, ray: &Ray) -> Option<(PrimHit, SurfacePoint)> {
         let hit = mesh.closest_hit(ray, Interval::FORWARD, None, &mut Scratch::default())?;
@@ -667,54 +674,8 @@ mod tests {
         );
     }
 
-    /// A mesh that is not baked: the battery allows only for the rounding of f64.
-    #[derive(Debug)]
-    struct Unbaked(TriangleMesh);
-
-    impl Primitive for Unbaked {
-        fn kind(&self) -> &'static str {
-            self.0.kind()
-        }
-
-        fn validate(&self) -> Result<(), GeometryError> {
-            self.0.validate()
-        }
-
-        fn bounds(&self) -> Aabb {
-            self.0.bounds()
-        }
-
-        fn elements(&self) -> u32 {
-            self.0.elements()
-        }
-
-        fn closest_hit(
-            &self,
-            ray: &Ray,
-            range: Interval,
-            from: Option<SurfaceId>,
-            scratch: &mut Scratch,
-        ) -> Option<PrimHit> {
-            self.0.closest_hit(ray, range, from, scratch)
-        }
-
-        fn any_hit(
-            &self,
-            ray: &Ray,
-            range: Interval,
-            from: Option<SurfaceId>,
-            scratch: &mut Scratch,
-        ) -> bool {
-            self.0.any_hit(ray, range, from, scratch)
-        }
-
-        fn surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
-            self.0.surface_at(ray, hit)
-        }
-    }
-
     fn tried(data: MeshData) -> Unbaked {
-        Unbaked(TriangleMesh::try_new(data).expect("a mesh"))
+        Unbaked(Arc::new(TriangleMesh::try_new(data).expect("a mesh")))
     }
 
     crate::primitive_tests!(cube_mesh, || tried(cube()));

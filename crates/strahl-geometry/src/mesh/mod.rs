@@ -3,10 +3,15 @@
 //! All of them decide hit or miss in the ray's own projection ([`RayShear`]), where a corner that several pieces share has
 //! one and the same image. No ray slips through between two pieces.
 
+mod brep;
+#[cfg(test)]
+mod brep_tests;
+mod closed;
 #[cfg(test)]
 mod crack_tests;
 mod edge_bins;
 mod indexed;
+mod pass;
 mod polygon;
 #[cfg(test)]
 mod polygon_tests;
@@ -14,8 +19,11 @@ mod polygon_tests;
 mod samples;
 mod shear;
 mod triangle;
+mod triangulate;
 
+pub use brep::Brep;
 pub use indexed::{MeshData, TriangleMesh};
 pub use polygon::{Polygon, fan_triangles};
 pub use shear::{RayShear, TriangleHit, intersect_triangle};
 pub use triangle::{SmoothTriangle, Triangle};
+pub use triangulate::triangulate;

@@ -257,7 +257,7 @@ impl Primitive for Polygon {
 /// The triangles `0 1 2`, `0 2 3`, ... of a ring of `n` corners, as NFF patches with normals are split.
 ///
 /// Right for convex rings, and for those that are seen as a whole from corner 0. Of other concave rings the triangles
-/// overlap or reach outside.
+/// overlap or reach outside; [`triangulate`](super::triangulate) is for those.
 pub fn fan_triangles(n: u32) -> impl Iterator<Item = [u32; 3]> {
     (1..n.saturating_sub(1)).map(|i| [0, i, i + 1])
 }

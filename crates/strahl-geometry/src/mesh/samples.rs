@@ -1,9 +1,13 @@
-//! Meshes for the tests of this folder.
+//! Meshes for the tests of this folder, and what their batteries need.
 
 use super::MeshData;
 use crate::conformance::Random;
+use crate::{
+    Crossings, GeometryError, PrimHit, Primitive, Scratch, Solid, SurfaceId, SurfacePoint,
+};
 use std::collections::HashMap;
-use strahl_math::{DVec3, det};
+use std::sync::Arc;
+use strahl_math::{Aabb, DVec3, Interval, Ray, det};
 
 /// The box from -1 to 1, outward.
 pub(super) fn cube() -> MeshData {
@@ -113,4 +117,74 @@ pub(super) fn height_field(n: u32, height: f64) -> MeshData {
         })
         .collect();
     MeshData::from_f64(&vertices, faces)
+}
+
+/// A shape that is never baked. Meshes round to f32 when they are baked, but the battery allows only for the rounding
+/// of f64.
+#[derive(Debug)]
+pub(super) struct Unbaked(pub(super) Arc<dyn Primitive>);
+
+impl Primitive for Unbaked {
+    fn kind(&self) -> &'static str {
+        self.0.kind()
+    }
+
+    fn validate(&self) -> Result<(), GeometryError> {
+        self.0.validate()
+    }
+
+    fn bounds(&self) -> Aabb {
+        self.0.bounds()
+    }
+
+    fn elements(&self) -> u32 {
+        self.0.elements()
+    }
+
+    fn closest_hit(
+        &self,
+        ray: &Ray,
+        range: Interval,
+        from: Option<SurfaceId>,
+        scratch: &mut Scratch,
+    ) -> Option<PrimHit> {
+        self.0.closest_hit(ray, range, from, scratch)
+    }
+
+    fn any_hit(
+        &self,
+        ray: &Ray,
+        range: Interval,
+        from: Option<SurfaceId>,
+        scratch: &mut Scratch,
+    ) -> bool {
+        self.0.any_hit(ray, range, from, scratch)
+    }
+
+    fn surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
+        self.0.surface_at(ray, hit)
+    }
+
+    fn as_solid(&self) -> Option<&dyn Solid> {
+        self.0.as_solid().map(|_| self as &dyn Solid)
+    }
+}
+
+impl Solid for Unbaked {
+    fn crossings(
+        &self,
+        ray: &Ray,
+        range: Interval,
+        from: Option<SurfaceId>,
+        scratch: &mut Scratch,
+        out: &mut Crossings,
+    ) {
+        if let Some(solid) = self.0.as_solid() {
+            solid.crossings(ray, range, from, scratch, out);
+        }
+    }
+
+    fn contains(&self, point: DVec3) -> bool {
+        self.0.as_solid().is_some_and(|solid| solid.contains(point))
+    }
 }

@@ -83,6 +83,14 @@ impl RayShear {
     pub fn parameter(&self, z: f64) -> f64 {
         z / self.direction_z
     }
+
+    /// Whether a triangle of counter-clockwise (`true`) or clockwise image shows its front: the side its normal by the
+    /// right-hand rule points to.
+    #[inline]
+    pub(crate) fn shows_front(&self, counter_clockwise: bool) -> bool {
+        // Looking up the z axis one sees the picture's back, so its fronts turn clockwise.
+        counter_clockwise != (self.direction_z > 0.0)
+    }
 }
 
 /// Where a ray meets a triangle.
