@@ -1,1 +1,4 @@
-//! x
+//! Files of other programs: bytes to scenes.
+
+mod mesh;
+pub mod scene;

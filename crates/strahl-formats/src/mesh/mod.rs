@@ -1,0 +1,16 @@
+//! Formats that describe surfaces (OBJ, PLY, STL), and what turns their faces into meshes.
+
+mod builder;
+pub(crate) mod ply;
+mod polygon;
+pub(crate) mod stl;
+
+use std::sync::Arc;
+
+pub(crate) use builder::{MeshBuilder, Vertex};
+pub(crate) use polygon::{Triangulator, polygon_normal};
+
+/// The name of an object that is a whole file: the file's, without folders.
+pub(crate) fn object_name(file: &str) -> Arc<str> {
+    Arc::from(file.rsplit(['/', '\\']).next().unwrap_or(file))
+}

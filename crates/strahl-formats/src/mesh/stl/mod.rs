@@ -1,0 +1,278 @@
+//! Stereolithography triangles, ASCII and binary.
+//!
+//! A file is binary if its size is what the number of triangles in it demands, whatever it begins with (many binary files begin
+//! with `solid`); of the others, those that begin with `solid` and are text are ASCII. Corners with the same coordinates are
+//! welded to one vertex, exactly: no tolerance joins what is merely close. The normals in the file are ignored in favour of
+//! the corners' order (they agree, or the file is wrong), so is the attribute that some programs keep colours in.
+//! Every `solid` of an ASCII file becomes a mesh of its own name.
+
+use crate::mesh::{object_name, polygon_normal};
+use crate::scene::Input;
+use crate::scene::report::Report;
+use crate::scene::text::{Text, Word, Words, parse_f32};
+use std::collections::HashMap;
+use std::sync::Arc;
+use strahl_geometry::{MeshData, TriangleMesh};
+use strahl_math::DVec3;
+use strahl_scene::{Diagnostic, Object, Scene, Span};
+
+/// Bytes before the triangles, and of a triangle.
+const HEADER: usize = 84;
+const TRIANGLE: usize = 50;
+
+/// An error already placed; boxed, because it is rare and large.
+type Fallible<T> = Result<T, Box<Diagnostic>>;
+
+/// Reads the triangles; what is wrong goes to the report.
+pub(crate) fn read(input: &Input<'_>, report: &mut Report) -> Scene {
+    let mut scene = Scene::default();
+    let text = Text {
+        bytes: input.bytes,
+        name: input.name,
+        file: scene.sources.add(input.name),
+    };
+    let expected = input.bytes[..HEADER.min(input.bytes.len())]
+        .last_chunk::<4>()
+        .filter(|_| input.bytes.len() >= HEADER);
+    let expected = expected
+        .map(|count| HEADER as u64 + TRIANGLE as u64 * u64::from(u32::from_le_bytes(*count)));
+    let size = input.bytes.len() as u64;
+    let is_ascii = expected != Some(size) && begins_with_solid(input.bytes) && !text.is_binary();
+    match expected {
+        _ if is_ascii => ascii(text, &mut scene, report),
+        Some(expected) if size >= expected => {
+            if size > expected {
+                report.warning(|| {
+                    let extra = size - expected;
+                    Diagnostic::warning(format!("`{}`: {extra} bytes behind the last triangle are ignored", input.name))
+                });
+            }
+            // Not more than the file has, so it fits.
+            binary(input, &input.bytes[HEADER..expected as usize], &mut scene, report);
+        }
+        Some(expected) => report.error(|| {
+            let promised = (expected - HEADER as u64) / TRIANGLE as u64;
+            let there = (size - HEADER as u64) / TRIANGLE as u64;
+            Diagnostic::error(format!(
+                "`{}` is no STL file, or it is cut off: the header promises {promised} triangles, there is room for {there}",
+                input.name
+            ))
+        }),
+        None => report.error(|| {
+            Diagnostic::error(format!(
+                "`{}` is no STL file: it does not begin with `solid`, and for a binary file it is too short ({size} bytes)",
+                input.name
+            ))
+        }),
+    }
+    scene
+}
+
+fn begins_with_solid(bytes: &[u8]) -> bool {
+    bytes
+        .trim_ascii_start()
+        .get(..5)
+        .is_some_and(|word| word.eq_ignore_ascii_case(b"solid"))
+}
+
+/// Triangles with welded corners.
+#[derive(Debug, Default)]
+struct Weld {
+    known: HashMap<[u32; 3], u32>,
+    data: MeshData,
+}
+
+impl Weld {
+    /// Adds a triangle; says whether it has an area.
+    fn add(&mut self, corners: [[f32; 3]; 3]) -> bool {
+        if polygon_normal(&corners.map(|p| DVec3::from_array(p.map(f64::from)))).is_none() {
+            return false;
+        }
+        let triangle = corners.map(|p| {
+            let next = self.data.positions.len() as u32;
+            // -0 + 0 is +0: the two zeros are one value.
+            *self
+                .known
+                .entry(p.map(|x| (x + 0.0).to_bits()))
+                .or_insert_with(|| {
+                    self.data.positions.push(p);
+                    next
+                })
+        });
+        self.data.indices.push(triangle);
+        true
+    }
+
+    fn finish(self, name: Arc<str>, span: Span, scene: &mut Scene, report: &mut Report) {
+        if self.data.indices.is_empty() {
+            return;
+        }
+        match TriangleMesh::try_new(self.data) {
+            Ok(mesh) => scene.objects.0.push(Object {
+                name: Some(name),
+                span,
+                ..Arc::new(mesh).into()
+            }),
+            Err(problem) => {
+                report.error(|| Diagnostic::error(format!("`{name}`: {problem}")).at(span))
+            }
+        }
+    }
+}
+
+fn binary(input: &Input<'_>, triangles: &[u8], scene: &mut Scene, report: &mut Report) {
+    let name = input.name;
+    let mut weld = Weld::default();
+    weld.data.indices.reserve_exact(triangles.len() / TRIANGLE);
+    for (number, bytes) in triangles.as_chunks::<TRIANGLE>().0.iter().enumerate() {
+        let number = number + 1;
+        // The normal comes first, then three corners of three numbers.
+        let mut numbers = bytes
+            .as_chunks::<4>()
+            .0
+            .iter()
+            .skip(3)
+            .map(|x| f32::from_le_bytes(*x));
+        let corners = [[0; 3]; 3].map(|corner| corner.map(|_| numbers.next().unwrap_or(f32::NAN)));
+        if !corners.as_flattened().iter().all(|x| x.is_finite()) {
+            report.error(|| {
+                let problem = format!(
+                    "`{name}`: triangle {number} has a coordinate that is not a finite number"
+                );
+                Diagnostic::error(problem)
+            });
+            if report.is_hopeless() {
+                return;
+            }
+        } else if !weld.add(corners) {
+            report.count("degenerate", || {
+                Diagnostic::warning(format!(
+                    "`{name}`: triangle {number} has no area and is left out"
+                ))
+            });
+        }
+    }
+    weld.finish(object_name(name), Span::NONE, scene, report);
+    nothing(input.name, scene, report);
+}
+
+fn nothing(name: &str, scene: &Scene, report: &mut Report) {
+    if scene.objects.0.is_empty() && !report.has_errors() {
+        report.error(|| Diagnostic::error(format!("`{name}` has no triangles")));
+    }
+}
+
+fn ascii(text: Text<'_>, scene: &mut Scene, report: &mut Report) {
+    let mut reader = Ascii {
+        text,
+        words: text.words(0, 1).without_comments(),
+        weld: Weld::default(),
+    };
+    while let Some(word) = reader.words.next() {
+        if !is(&word, "solid") {
+            report.error(|| wrong(text, &word, "`solid`"));
+            return;
+        }
+        let name = String::from_utf8_lossy(reader.words.skip_line().trim_ascii()).into_owned();
+        let name = if name.is_empty() {
+            object_name(text.name)
+        } else {
+            Arc::from(name)
+        };
+        if let Err(problem) = reader.solid(report) {
+            report.error(|| *problem);
+            return;
+        }
+        std::mem::take(&mut reader.weld).finish(
+            name,
+            Span::line(text.file, word.line),
+            scene,
+            report,
+        );
+    }
+    nothing(text.name, scene, report);
+}
+
+struct Ascii<'a> {
+    text: Text<'a>,
+    words: Words<'a>,
+    weld: Weld,
+}
+
+impl<'a> Ascii<'a> {
+    /// Reads facets until `endsolid`.
+    fn solid(&mut self, report: &mut Report) -> Fallible<()> {
+        loop {
+            let Some(word) = self.words.next() else {
+                return Err(Box::new(self.words.expected("`facet` or `endsolid`")));
+            };
+            if is(&word, "endsolid") {
+                self.words.skip_line();
+                return Ok(());
+            }
+            if !is(&word, "facet") {
+                return Err(Box::new(wrong(self.text, &word, "`facet` or `endsolid`")));
+            }
+            // The normal may be anything, even `nan`.
+            self.words.skip_line();
+            self.expect("outer")?;
+            self.expect("loop")?;
+            let mut corners = [[0.0; 3]; 3];
+            for corner in &mut corners {
+                self.expect("vertex")?;
+                for coordinate in corner {
+                    *coordinate = self.number()?;
+                }
+            }
+            self.expect("endloop")?;
+            self.expect("endfacet")?;
+            if self.weld.add(corners) {
+                self.weld
+                    .data
+                    .face_lines
+                    .get_or_insert_default()
+                    .push(word.line);
+            } else {
+                let text = self.text;
+                report.count("degenerate", || {
+                    text.at(
+                        &word,
+                        Diagnostic::warning("the triangle has no area and is left out"),
+                    )
+                });
+            }
+        }
+    }
+
+    fn expect(&mut self, keyword: &str) -> Fallible<()> {
+        let what = format!("`{keyword}`");
+        match self.words.next() {
+            Some(word) if is(&word, keyword) => Ok(()),
+            Some(word) => Err(Box::new(wrong(self.text, &word, &what))),
+            None => Err(Box::new(self.words.expected(&what))),
+        }
+    }
+
+    fn number(&mut self) -> Fallible<f32> {
+        let what = "a coordinate";
+        let word: Word<'a> = self
+            .words
+            .next()
+            .ok_or_else(|| Box::new(self.words.expected(what)))?;
+        parse_f32(word.bytes).map_err(|e| Box::new(self.text.at(&word, e.describe(&word, what))))
+    }
+}
+
+fn is(word: &Word<'_>, keyword: &str) -> bool {
+    word.bytes.eq_ignore_ascii_case(keyword.as_bytes())
+}
+
+fn wrong(text: Text<'_>, word: &Word<'_>, expected: &str) -> Diagnostic {
+    text.at(
+        word,
+        Diagnostic::error(format!("expected {expected}, found `{}`", word.shown())),
+    )
+}
+
+#[cfg(test)]
+mod tests;

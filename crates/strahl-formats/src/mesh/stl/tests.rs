@@ -1,0 +1,146 @@
+use crate::scene::{Loaded, SceneFormat, load_bytes};
+use std::sync::Arc;
+use strahl_geometry::{Shape, TriangleMesh};
+use strahl_scene::ObjectKind;
+
+fn load(bytes: impl Into<Vec<u8>>) -> Loaded {
+    load_bytes(bytes.into(), "part.stl", SceneFormat::Stl, None)
+}
+
+fn meshes(loaded: &Loaded) -> Vec<(String, Arc<TriangleMesh>)> {
+    let scene = loaded
+        .scene
+        .as_ref()
+        .unwrap_or_else(|| panic!("{:?}", loaded.diagnostics));
+    let mesh = |o: &strahl_scene::Object| match &o.kind {
+        ObjectKind::Shape(Shape::TriangleMesh(mesh)) => mesh.clone(),
+        other => panic!("{other:?}"),
+    };
+    scene
+        .objects
+        .0
+        .iter()
+        .map(|o| (o.name.as_deref().unwrap_or("").to_owned(), mesh(o)))
+        .collect()
+}
+
+fn messages(loaded: &Loaded) -> Vec<String> {
+    loaded.diagnostics.iter().map(ToString::to_string).collect()
+}
+
+/// The tetrahedron at the origin, as binary STL under any 80 bytes of header.
+fn binary(start: &str, corners: &[[[f32; 3]; 3]]) -> Vec<u8> {
+    let mut bytes = start.as_bytes().to_vec();
+    bytes.resize(80, b' ');
+    bytes.extend((corners.len() as u32).to_le_bytes());
+    for triangle in corners {
+        bytes.extend([0; 12]);
+        bytes.extend(triangle.as_flattened().iter().flat_map(|x| x.to_le_bytes()));
+        bytes.extend([0; 2]);
+    }
+    bytes
+}
+
+const O: [f32; 3] = [0.0; 3];
+const X: [f32; 3] = [1.0, 0.0, 0.0];
+const Y: [f32; 3] = [0.0, 1.0, 0.0];
+const Z: [f32; 3] = [0.0, 0.0, 1.0];
+const TETRAHEDRON: [[[f32; 3]; 3]; 4] = [[O, Y, X], [O, X, Z], [O, Z, Y], [X, Y, Z]];
+
+#[test]
+fn binary_files_are_welded_even_if_they_begin_with_solid() {
+    for start in ["made by a test", "solid but binary", ""] {
+        let loaded = load(binary(start, &TETRAHEDRON));
+        let [(name, mesh)] = &meshes(&loaded)[..] else {
+            panic!("one mesh")
+        };
+        assert_eq!(
+            (name.as_str(), mesh.triangle_count(), mesh.positions().len()),
+            ("part.stl", 4, 4)
+        );
+        assert!(loaded.diagnostics.is_empty());
+    }
+}
+
+#[test]
+fn the_two_zeros_are_one_corner() {
+    let turned = [[[-0.0, 0.0, -0.0], [1.0, 0.0, -0.0], Z]];
+    let loaded = load(binary("", &[TETRAHEDRON[0], turned[0]]));
+    assert_eq!(meshes(&loaded)[0].1.positions().len(), 4);
+}
+
+#[test]
+fn ascii_files_have_solids_with_names_and_lines() {
+    let facet = |z: &str| {
+        format!(
+            "  facet normal nan 0 {z}\n outer loop\n vertex 0 0 {z}\n vertex 1 0 {z}\n vertex 0 1e0 {z}\n endloop\n endfacet\n"
+        )
+    };
+    let text = format!(
+        "solid first one\n{}{}endsolid first one\nSOLID\n{}endsolid\n",
+        facet("0"),
+        facet("1"),
+        facet("2")
+    );
+    let loaded = load(text);
+    let all = meshes(&loaded);
+    assert_eq!(all[0].0, "first one");
+    assert_eq!(
+        (all[0].1.triangle_count(), all[0].1.face_line(1)),
+        (2, Some(9))
+    );
+    assert_eq!(
+        (all[1].0.as_str(), all[1].1.triangle_count()),
+        ("part.stl", 1)
+    );
+}
+
+#[test]
+fn errors_of_ascii_files_have_a_caret() {
+    let loaded = load("solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 zero\n");
+    assert!(loaded.scene.is_none());
+    let expected = "error: expected a coordinate, found `zero`\n --> part.stl:4:12\n  |\n4 | vertex 0 0 zero\n  |            ^^^^\n  = help: numbers are written like `-1`, `0.5` or `2.5e-3`";
+    assert_eq!(messages(&loaded), [expected]);
+    let cut = load("solid a\nfacet normal 0 0 1\nouter");
+    assert!(
+        messages(&cut)[0]
+            .starts_with("error: expected `loop`, found the end of the file\n --> part.stl:3:6")
+    );
+    assert!(messages(&load("solid a\nendsolid"))[0].contains("`part.stl` has no triangles"));
+    assert!(
+        messages(&load("solid a\nvertex"))[0]
+            .contains("expected `facet` or `endsolid`, found `vertex`")
+    );
+}
+
+#[test]
+fn damaged_binary_files_are_named() {
+    let mut cut = binary("", &TETRAHEDRON);
+    cut.truncate(cut.len() - 60);
+    assert_eq!(
+        messages(&load(cut)),
+        [
+            "error: `part.stl` is no STL file, or it is cut off: the header promises 4 triangles, there is room for 2"
+        ]
+    );
+    let mut long = binary("", &TETRAHEDRON);
+    long.extend([0; 7]);
+    assert_eq!(
+        messages(&load(long)),
+        ["warning: `part.stl`: 7 bytes behind the last triangle are ignored"]
+    );
+    let nan = load(binary("", &[TETRAHEDRON[0], [O, X, [f32::NAN; 3]]]));
+    assert_eq!(
+        messages(&nan),
+        ["error: `part.stl`: triangle 2 has a coordinate that is not a finite number"]
+    );
+    assert!(messages(&load(vec![1, 2, 3]))[0].contains("too short (3 bytes)"));
+    let flat = load(binary("", &[[O, X, X], [O, O, O], TETRAHEDRON[0]]));
+    assert_eq!(meshes(&flat)[0].1.triangle_count(), 1);
+    assert_eq!(
+        messages(&flat),
+        [
+            "warning: `part.stl`: triangle 1 has no area and is left out (2 times, this is the first)"
+        ]
+    );
+}

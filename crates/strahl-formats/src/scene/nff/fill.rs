@@ -1,0 +1,154 @@
+use crate::mesh::{MeshBuilder, Vertex};
+use crate::scene::Report;
+use std::sync::Arc;
+use strahl_math::DVec3;
+use strahl_scene::{Diagnostic, FileId, Object, Span};
+use strahl_shade::{Color, Finish, Material, Sides};
+
+/// A point or vector for comparison, bit by bit.
+type PointKey = [u64; 3];
+
+fn key(v: DVec3) -> PointKey {
+    // -0 + 0 is +0: the two zeros are one value.
+    v.to_array().map(|x| (x + 0.0).to_bits())
+}
+
+/// A fill: its material, seen from one side or both, and the triangles that wait to become one mesh.
+#[derive(Debug, Default)]
+pub(super) struct Fill {
+    /// 1 for the first `f` statement; 0 before it.
+    number: usize,
+    line: u32,
+    base: Material,
+    two_sided: Option<Arc<Material>>,
+    one_sided: Option<Arc<Material>>,
+    flat: MeshBuilder<PointKey>,
+    smooth: MeshBuilder<(PointKey, PointKey)>,
+}
+
+/// The numbers of an `f` statement.
+pub(super) struct FillNumbers {
+    pub(super) color: Color,
+    pub(super) kd: f64,
+    pub(super) ks: f64,
+    pub(super) shine: f64,
+    pub(super) t: f64,
+    pub(super) ior: f64,
+}
+
+impl Fill {
+    pub(super) fn new(number: usize, line: u32, n: &FillNumbers) -> Self {
+        let diffuse = n.color * n.kd;
+        let finish = Finish {
+            ambient: diffuse,
+            diffuse,
+            specular: Color::gray(n.ks),
+            shininess: n.shine,
+            reflection: Color::gray(n.ks),
+            transmission: Color::gray(n.t),
+            emission: Color::BLACK,
+        };
+        let eta = if n.ior > 0.0 { n.ior } else { 1.0 };
+        let base = Material {
+            name: format!("fill {number} (line {line})"),
+            finish,
+            eta,
+            ..Material::matte(Color::BLACK)
+        };
+        Self {
+            number,
+            line,
+            base,
+            ..Self::default()
+        }
+    }
+
+    /// Whether an `f` statement has made it.
+    pub(super) fn is_explicit(&self) -> bool {
+        self.number > 0
+    }
+
+    /// The material of spheres and cones that have their usual side outside.
+    pub(super) fn two_sided(&mut self) -> Arc<Material> {
+        Arc::clone(
+            self.two_sided
+                .get_or_insert_with(|| Arc::new(self.base.clone())),
+        )
+    }
+
+    /// The material of what is seen from the front only, transmitting or not.
+    pub(super) fn one_sided(&mut self) -> Arc<Material> {
+        let make = || {
+            Arc::new(Material {
+                sides: Sides::Front,
+                ..self.base.clone()
+            })
+        };
+        Arc::clone(self.one_sided.get_or_insert_with(make))
+    }
+
+    /// The material of polygons.
+    pub(super) fn of_polygons(&mut self) -> Arc<Material> {
+        if self.base.finish.transmission.is_black() {
+            self.one_sided()
+        } else {
+            self.two_sided()
+        }
+    }
+
+    /// Adds a flat triangle. Corners with the same coordinates become one vertex.
+    pub(super) fn add_flat(&mut self, corners: [DVec3; 3], line: u32) {
+        let mesh = &mut self.flat;
+        let vertices = corners.map(|p| mesh.vertex(key(p), || Vertex::at(p)));
+        mesh.triangle(vertices, line);
+    }
+
+    /// Adds the triangles of a smooth polygon; corners with the same coordinates and normal become one vertex.
+    pub(super) fn add_patch(
+        &mut self,
+        corners: &[DVec3],
+        normals: &[DVec3],
+        triangles: &[[u32; 3]],
+        line: u32,
+    ) {
+        let mesh = &mut self.smooth;
+        for triangle in triangles {
+            let vertices = triangle.map(|i| {
+                let (p, n) = (corners[i as usize], normals[i as usize]);
+                mesh.vertex((key(p), key(n)), || Vertex {
+                    normal: Some(n),
+                    ..Vertex::at(p)
+                })
+            });
+            mesh.triangle(vertices, line);
+        }
+    }
+
+    /// The triangles gathered, as objects.
+    pub(super) fn take_meshes(&mut self, file: FileId, report: &mut Report) -> Vec<Object> {
+        let mut objects = vec![];
+        let flat = std::mem::take(&mut self.flat).finish();
+        let smooth = std::mem::take(&mut self.smooth).finish();
+        for (mesh, what) in [(flat, "triangles"), (smooth, "patches")] {
+            let Some((line, mesh)) = mesh else { continue };
+            let name = if self.is_explicit() {
+                format!("{what} of fill {}", self.number)
+            } else {
+                what.to_owned()
+            };
+            match mesh {
+                Ok(shape) => objects.push(Object {
+                    name: Some(name.into()),
+                    span: Span::line(file, line),
+                    material: Some(self.of_polygons()),
+                    ..shape.into()
+                }),
+                Err(problem) => report.error(|| {
+                    Diagnostic::error(format!("{name} (fill of line {}): {problem}", self.line))
+                        .at(Span::line(file, line))
+                }),
+            }
+        }
+        objects
+    }
+}

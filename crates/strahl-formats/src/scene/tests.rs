@@ -1,0 +1,142 @@
+use super::{Loaded, SceneFormat, formats, load_bytes, load_path};
+use flate2::{Compression, write::GzEncoder};
+use std::io::Write;
+use std::path::Path;
+
+const BALL: &[u8] = b"v\nfrom 0 0 5\nat 0 0 0\nup 0 1 0\nangle 90\nhither 1\nresolution 64 32\nf 1 1 1 1 0 0 0 0\ns 0 0 0 1\n";
+
+fn gzip(bytes: &[u8]) -> Vec<u8> {
+    let mut encoder = GzEncoder::new(vec![], Compression::default());
+    encoder.write_all(bytes).expect("in memory");
+    encoder.finish().expect("in memory")
+}
+
+fn only_message(loaded: &Loaded) -> String {
+    assert!(loaded.scene.is_none());
+    assert_eq!(loaded.diagnostics.len(), 1);
+    loaded.diagnostics[0].to_string()
+}
+
+fn nff(bytes: &[u8]) -> Loaded {
+    load_bytes(bytes, "a.nff", SceneFormat::Nff, None)
+}
+
+#[test]
+fn every_format_is_found_by_name_and_by_extension() {
+    for info in formats() {
+        assert_eq!(info.name.parse(), Ok(info.format));
+        assert_eq!(info.format.to_string(), info.name);
+        for extension in info.extensions {
+            assert_eq!(
+                SceneFormat::of_extension(&extension.to_uppercase()),
+                Some(info.format)
+            );
+            assert_eq!(extension.parse(), Ok(info.format));
+        }
+    }
+    let error = "vrml"
+        .parse::<SceneFormat>()
+        .expect_err("unknown")
+        .to_string();
+    assert_eq!(
+        error,
+        "unknown scene format `vrml`; there are: nff, obj, ply, stl, gltf"
+    );
+}
+
+#[test]
+fn contents_show_their_format() {
+    let sniffed = |bytes: &[u8]| SceneFormat::sniff(bytes);
+    assert_eq!(sniffed(b"# c\n\nv\nfrom 1 2 3"), Some(SceneFormat::Nff));
+    assert_eq!(sniffed(b"b 0.1 0.2 0.3\nv\n"), Some(SceneFormat::Nff));
+    assert_eq!(sniffed(b"# c\r\nv 1 2 3\r\n"), Some(SceneFormat::Obj));
+    assert_eq!(sniffed(b"mtllib a.mtl\n"), Some(SceneFormat::Obj));
+    assert_eq!(sniffed(b"ply\r\nformat ascii 1.0"), Some(SceneFormat::Ply));
+    assert_eq!(sniffed(b"solid cube\n"), Some(SceneFormat::Stl));
+    assert_eq!(sniffed(b" {\"asset\":{}}"), Some(SceneFormat::Gltf));
+    assert_eq!(sniffed(b"glTF\x02\0\0\0"), Some(SceneFormat::Gltf));
+    assert_eq!(sniffed(b"GIF89a"), None);
+    assert_eq!(sniffed(b""), None);
+}
+
+#[test]
+fn compressed_bytes_are_recognised_by_themselves() {
+    assert!(nff(BALL).scene.is_some());
+    assert!(nff(&gzip(BALL)).scene.is_some());
+}
+
+#[test]
+fn damaged_compressed_files_are_one_error() {
+    let whole = gzip(BALL);
+    let cut = only_message(&nff(&whole[..whole.len() - 20]));
+    assert!(
+        cut.starts_with("error: `a.nff`: the gzip data ends too early"),
+        "{cut}"
+    );
+    let mut broken = whole.clone();
+    broken[12] ^= 0xff;
+    let broken = only_message(&nff(&broken));
+    assert!(
+        broken.starts_with("error: `a.nff`: the gzip data "),
+        "{broken}"
+    );
+    assert!(only_message(&nff(&[0x1f, 0x8b])).contains("ends too early"));
+}
+
+#[test]
+fn a_compressed_bomb_does_not_explode() {
+    // 200 MiB of blanks in 200 KiB.
+    let bomb = gzip(&vec![b' '; 200 << 20]);
+    let message = only_message(&nff(&bomb));
+    assert!(
+        message.contains("compressed bytes expand to more than"),
+        "{message}"
+    );
+}
+
+#[test]
+fn files_that_cannot_be_read_are_one_error() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = |name: &str| folder.path().join(name);
+    let load = |p: &Path| only_message(&load_path(p, None));
+    assert!(load(&path("missing.nff")).starts_with("error: there is no file `"));
+    assert!(load(folder.path()).ends_with("is a folder, not a scene file"));
+    std::fs::write(path("empty.nff"), "").expect("written");
+    assert!(load(&path("empty.nff")).ends_with("empty.nff` is empty"));
+    std::fs::write(path("empty.nff.gz"), gzip(b"")).expect("written");
+    assert!(load(&path("empty.nff.gz")).ends_with("empty.nff.gz` is empty"));
+    std::fs::write(path("what.xyz"), "hello").expect("written");
+    let unknown = load(&path("what.xyz"));
+    assert!(
+        unknown.contains("unknown ending `.xyz`, and the content does not show its format"),
+        "{unknown}"
+    );
+    assert!(
+        unknown.contains(
+            "= help: name the format with `--format`; there are: nff, obj, ply, stl, gltf"
+        )
+    );
+    std::fs::write(path("noise.nff"), [0u8, 255, 3, 9, 200, 17]).expect("written");
+    assert!(
+        load(&path("noise.nff")).contains("noise.nff` is not an NFF scene: it is a binary file")
+    );
+}
+
+#[test]
+fn the_name_decides_before_the_content_and_the_caller_before_both() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for name in ["ball.nff", "ball.NFF.gz", "ball.gz", "ball", "ball.txt"] {
+        let path = folder.path().join(name);
+        let bytes = if name.ends_with("gz") {
+            gzip(BALL)
+        } else {
+            BALL.to_vec()
+        };
+        std::fs::write(&path, bytes).expect("written");
+        assert!(load_path(&path, None).scene.is_some(), "{name}");
+        assert!(
+            load_path(&path, Some(SceneFormat::Ply)).scene.is_none(),
+            "{name}"
+        );
+    }
+}
