@@ -66,14 +66,9 @@ impl Placement {
     fn t_error(&self, outer: &Ray, inner: &Ray, t: f64, n: DVec3) -> f64 {
         let reach = (outer.origin - self.map.translation()).abs() + (outer.direction * t).abs();
         // A difference, three products and two sums each for origin and direction, and the entries of the inverse.
-        let point = abs_image(&self.back, reach) * gamma(10);
+        let point = self.back.error_to_world(reach) * gamma(10);
         n.abs().dot(point) / n.dot(inner.direction).abs()
     }
-}
-
-/// `|L| v` for `v >= 0`.
-fn abs_image(map: &Transform, v: DVec3) -> DVec3 {
-    map.error_to_world(v)
 }
 
 impl Leaf {
@@ -177,7 +172,7 @@ impl Leaf {
             surface = SurfacePoint {
                 position,
                 position_error: map.error_to_world(surface.position_error)
-                    + abs_image(map, surface.position.abs()) * gamma(4)
+                    + map.error_to_world(surface.position.abs()) * gamma(4)
                     + position.abs() * (2.0 * ROUNDOFF),
                 n_geom: map.normal_to_world(surface.n_geom).normalize(),
                 n_shade: map.normal_to_world(surface.n_shade).normalize(),
