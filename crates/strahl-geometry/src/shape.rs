@@ -1,5 +1,5 @@
 use crate::mesh::{Brep, Polygon, SmoothTriangle, Triangle, TriangleMesh};
-use crate::primitives::{Cuboid, Sphere};
+use crate::primitives::{Cone, Cuboid, Cylinder, Disc, Plane, Quadric, Sphere};
 use crate::{Csg, GeometryError, PrimHit, Primitive, Scratch, Solid, SurfaceId, SurfacePoint};
 use std::sync::Arc;
 use strahl_math::{Aabb, Interval, Ray, Transform};
@@ -80,8 +80,18 @@ macro_rules! shapes {
 shapes! {
     /// A sphere.
     Sphere(Sphere),
+    /// An infinite plane.
+    Plane(Plane),
     /// A box with faces along the axes.
     Cuboid(Cuboid),
+    /// A flat round disc, perhaps with a hole.
+    Disc(Disc),
+    /// A cylinder, closed or open.
+    Cylinder(Cylinder),
+    /// A cone or truncated cone, closed or open.
+    Cone(Cone),
+    /// A surface of degree 2.
+    Quadric(Arc<Quadric>),
     /// A flat triangle.
     Triangle(Triangle),
     /// A triangle with a normal at each corner.

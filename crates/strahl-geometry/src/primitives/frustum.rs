@@ -1,0 +1,385 @@
+//! The right circular frustum: what cylinder and cone are made of.
+
+use super::convex::{End, Span};
+use super::disc::circle_bounds;
+use super::frame::{UvFrame, similarity, turn};
+use super::{check_finite, check_length, plane_t_error, point_error, unit_vector};
+use crate::{Crossings, GeometryError, PrimHit, SurfaceId, SurfacePoint};
+use std::f64::consts::PI;
+use strahl_math::error::gamma;
+use strahl_math::{Aabb, DVec2, DVec3, Interval, Ray, Transform};
+
+/// The curved side.
+pub(super) const SIDE: u32 = 0;
+/// The cap at the base.
+pub(super) const BASE: u32 = 1;
+/// The cap at the apex.
+pub(super) const APEX: u32 = 2;
+
+/// The points within a radius that changes linearly along an axis, between two planes perpendicular to it.
+///
+/// The solid is the intersection of two convex sets, a (one-sided, endless) cone and a slab. A ray's span in it is the
+/// intersection of its spans in the two, so that side and caps join without gaps and entering and leaving
+/// alternate whatever the rounding.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Frustum {
+    pub(super) base: DVec3,
+    /// Unit vector from the base to the apex.
+    pub(super) axis: DVec3,
+    pub(super) height: f64,
+    pub(super) base_radius: f64,
+    /// How much the radius grows per unit of height.
+    pub(super) slope: f64,
+    pub(super) capped: bool,
+    frame: UvFrame,
+}
+
+/// A ray in terms of height above the base and distance from the axis.
+struct AxisRay {
+    height: f64,
+    climb: f64,
+    across: DVec3,
+    sideways: DVec3,
+}
+
+impl Frustum {
+    pub(super) fn new(
+        base: DVec3,
+        base_radius: f64,
+        apex: DVec3,
+        apex_radius: f64,
+        capped: bool,
+    ) -> Self {
+        let axis = unit_vector(apex - base);
+        // Along the unit vector instead of by squares, which under- or overflow.
+        let height = (apex - base).dot(axis);
+        let slope = (apex_radius - base_radius) / height;
+        Self {
+            base,
+            axis,
+            height,
+            base_radius,
+            slope,
+            capped,
+            frame: UvFrame::default(),
+        }
+    }
+
+    pub(super) fn apex(&self) -> DVec3 {
+        self.base + self.axis * self.height
+    }
+
+    pub(super) fn apex_radius(&self) -> f64 {
+        self.base_radius + self.slope * self.height
+    }
+
+    /// Checks everything but the radii against each other; `what` names the kind of shape.
+    pub(super) fn validate(&self, what: &'static str) -> Result<(), GeometryError> {
+        if self.axis == DVec3::ZERO {
+            return Err(GeometryError::Degenerate {
+                what,
+                why: "its base and its apex are the same point",
+            });
+        }
+        check_finite("base point of the shape", self.base)?;
+        check_finite("axis of the shape", self.axis * self.height)?;
+        check_length("radius at the base", self.base_radius)?;
+        // The rounding of the slope must not turn a pointed cone's zero into a negative radius.
+        let apex_radius = self.apex_radius();
+        let rounding = gamma(4) * self.base_radius;
+        check_length(
+            "radius at the apex",
+            if apex_radius.abs() <= rounding {
+                0.0
+            } else {
+                apex_radius
+            },
+        )?;
+        if self.base_radius == 0.0 && apex_radius <= rounding {
+            return Err(GeometryError::Degenerate {
+                what,
+                why: "both of its radii are 0",
+            });
+        }
+        Ok(())
+    }
+
+    pub(super) fn bounds(&self) -> Aabb {
+        let apex_radius = self.apex_radius().abs();
+        let tight = circle_bounds(self.base, self.axis, self.base_radius).union(&circle_bounds(
+            self.apex(),
+            self.axis,
+            apex_radius,
+        ));
+        let extent = self.height + self.base_radius + apex_radius;
+        tight.padded(point_error(self.base.abs() + extent, extent, 16))
+    }
+
+    #[inline]
+    fn axis_ray(&self, ray: &Ray) -> AxisRay {
+        let f = ray.origin - self.base;
+        let (height, climb) = (f.dot(self.axis), ray.direction.dot(self.axis));
+        AxisRay {
+            height,
+            climb,
+            across: f - self.axis * height,
+            sideways: ray.direction - self.axis * climb,
+        }
+    }
+
+    /// The span within the endless one-sided cone.
+    ///
+    /// With `x` the vector from the axis and `R` the radius at the ray's height, `F = |x|² - R² = a t² - 2 b t + c` is the square
+    /// of the vector `(x, R)` in a Minkowski metric, and the discriminant `b² - a c` is the negative square of the plane
+    /// it spans with the direction `(x', R')`: `|R' x - R x'|² - (x × x')²`. None of the large terms of `b²` and
+    /// `a c` appear in it.
+    #[inline]
+    fn side_span(&self, r: &AxisRay, starts_on_side: bool) -> Option<(f64, f64)> {
+        let radius = self.base_radius + self.slope * r.height;
+        let growth = self.slope * r.climb;
+        let a = r.sideways.dot(r.sideways) - growth * growth;
+        let b = radius * growth - r.across.dot(r.sideways);
+        let distance = r.across.length();
+
+        let (first, second) = if starts_on_side {
+            // c is zero: the roots are 0 and 2b/a. Below its own rounding error the sign of b says nothing: a tangent.
+            let magnitude = distance * r.sideways.length() + (radius * growth).abs();
+            if !(b.abs() > gamma(8) * magnitude) {
+                return None;
+            }
+            (0.0, 2.0 * b / a)
+        } else {
+            let spread = r.across * growth - r.sideways * radius;
+            let twist = self.axis.dot(r.across.cross(r.sideways));
+            let discriminant = spread.dot(spread) - twist * twist;
+            if a > 0.0 && !(discriminant > 0.0) {
+                return None;
+            }
+            // A line steeper than the side always meets it; through the very tip rounding may say otherwise.
+            let s = if discriminant > 0.0 {
+                discriminant.sqrt()
+            } else {
+                0.0
+            };
+            let q = if b >= 0.0 { b + s } else { b - s };
+            let c = (distance - radius) * (distance + radius);
+            if q == 0.0 && a == 0.0 {
+                // Along the axis of a cylinder.
+                return (c < 0.0).then_some((f64::NEG_INFINITY, f64::INFINITY));
+            }
+            if q == 0.0 { (0.0, 0.0) } else { (c / q, q / a) }
+        };
+        if a > 0.0 {
+            // Both ends are on the same half of the double cone: ours if the radius in the middle is not negative.
+            let ours = radius + growth * (b / a) >= 0.0;
+            return ours.then_some(if first <= second {
+                (first, second)
+            } else {
+                (second, first)
+            });
+        }
+        // Steeper than the side: inside from the one crossing with our half on, the way the radius grows.
+        if growth > 0.0 {
+            let start = if a == 0.0 || first >= second {
+                first
+            } else {
+                second
+            };
+            (a < 0.0 || b > 0.0).then_some((start, f64::INFINITY))
+        } else {
+            let end = if a == 0.0 || first <= second {
+                first
+            } else {
+                second
+            };
+            (a < 0.0 || b < 0.0).then_some((f64::NEG_INFINITY, end))
+        }
+    }
+
+    /// The span between the two planes.
+    #[inline]
+    fn slab(&self, r: &AxisRay, from: Option<u32>) -> Option<(End, End)> {
+        if r.climb == 0.0 {
+            let between = 0.0 < r.height && r.height < self.height;
+            let on_cap = self.capped && matches!(from, Some(BASE | APEX));
+            let end = |t| End { t, facet: BASE };
+            return (between && !on_cap).then_some((end(f64::NEG_INFINITY), end(f64::INFINITY)));
+        }
+        let end = |facet, height: f64| End {
+            t: if from == Some(facet) {
+                0.0
+            } else {
+                (height - r.height) / r.climb
+            },
+            facet,
+        };
+        let (low, high) = (end(BASE, 0.0), end(APEX, self.height));
+        Some(if r.climb > 0.0 {
+            (low, high)
+        } else {
+            (high, low)
+        })
+    }
+
+    /// The span within the solid.
+    #[inline]
+    fn span(&self, ray: &Ray, from: Option<SurfaceId>) -> Option<Span> {
+        let from = from.map(|surface| surface.facet);
+        let r = self.axis_ray(ray);
+        let (first, second) = self.side_span(&r, from == Some(SIDE))?;
+        let (enter, exit) = self.slab(&r, from)?;
+        let side = |t| End { t, facet: SIDE };
+        let span = Span::LINE
+            .cut(side(first), side(second))?
+            .cut(enter, exit)?;
+        // Without a direction nothing was cut.
+        (span.enter.t.is_finite() || span.exit.t.is_finite()).then_some(span)
+    }
+
+    #[inline]
+    pub(super) fn closest_hit(
+        &self,
+        ray: &Ray,
+        range: Interval,
+        from: Option<SurfaceId>,
+    ) -> Option<PrimHit> {
+        if self.capped {
+            return self.span(ray, from)?.closest(range, from);
+        }
+        // The open surface: those ends of the side's span that lie between the planes.
+        let on_side = from.is_some();
+        let r = self.axis_ray(ray);
+        let (first, second) = self.side_span(&r, on_side)?;
+        let (enter, exit) = self.slab(&r, None)?;
+        let counts = |t: f64| {
+            range.accepts(t)
+                && t.is_finite()
+                && enter.t <= t
+                && t <= exit.t
+                && !(on_side && t == 0.0)
+        };
+        [first, second]
+            .into_iter()
+            .find(|t| counts(*t))
+            .map(|t| PrimHit::simple(t, SIDE))
+    }
+
+    pub(super) fn crossings(
+        &self,
+        ray: &Ray,
+        range: Interval,
+        from: Option<SurfaceId>,
+        out: &mut Crossings,
+    ) {
+        if let Some(span) = self.span(ray, from) {
+            span.list(range, from, |end| self.t_error(ray, end), out);
+        }
+    }
+
+    /// How far the parameter of a hit may be off: as for the plane, or as for the sphere across the side.
+    fn t_error(&self, ray: &Ray, end: End) -> f64 {
+        match end.facet {
+            BASE => plane_t_error(ray, end.t, self.base, self.axis),
+            APEX => plane_t_error(ray, end.t, self.apex(), self.axis),
+            _ => {
+                let r = self.axis_ray(ray);
+                let radius = self.base_radius + self.slope * (r.height + r.climb * end.t);
+                let across = r.across + r.sideways * end.t;
+                let speed = across.dot(r.sideways) - radius * self.slope * r.climb;
+                let steepness = 1.0 + self.slope.abs();
+                let magnitude =
+                    ray.origin.length() + self.base.length() + (ray.direction * end.t).length();
+                let point = gamma(16) * (magnitude + self.base_radius) * steepness;
+                let extent = radius.abs() + point;
+                let straight = point * extent / speed.abs();
+                let tangent = (2.0 * extent * point).sqrt() / r.sideways.length();
+                // A line steeper than the side can't graze it, not even at the tip.
+                let steeper = (self.slope * r.climb).abs() - r.sideways.length();
+                let steep = if steeper > 0.0 {
+                    point / steeper
+                } else {
+                    f64::INFINITY
+                };
+                let smallest = [tangent, steep]
+                    .into_iter()
+                    .fold(straight, |a, b| if b < a { b } else { a });
+                gamma(2) * end.t.abs() + smallest
+            }
+        }
+    }
+
+    pub(super) fn contains(&self, point: DVec3) -> bool {
+        let f = point - self.base;
+        let height = f.dot(self.axis);
+        let distance = (f - self.axis * height).length();
+        0.0 <= height && height <= self.height && distance <= self.base_radius + self.slope * height
+    }
+
+    pub(super) fn surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
+        let f = ray.origin - self.base;
+        let local = f + ray.direction * hit.t;
+        let height = local.dot(self.axis);
+        let across = local - self.axis * height;
+        let distance = across.length();
+        let axes = self.frame.axes(self.axis);
+        let out = if distance > 0.0 {
+            across / distance
+        } else {
+            axes.x_axis
+        };
+        let (x, y) = (out.dot(axes.x_axis), out.dot(axes.y_axis));
+        let round = axes.y_axis * x - axes.x_axis * y;
+
+        let (local, n, v, dpdv) = match hit.surface.facet {
+            BASE | APEX => {
+                let (level, radius, n) = if hit.surface.facet == BASE {
+                    (0.0, self.base_radius, -self.axis)
+                } else {
+                    (self.height, self.apex_radius(), self.axis)
+                };
+                (
+                    across + self.axis * level,
+                    n,
+                    distance / radius,
+                    out * radius,
+                )
+            }
+            _ => {
+                // Back onto the side along its normal, in the plane of axis and point.
+                let per_length = 1.0 / (1.0 + self.slope * self.slope).sqrt();
+                let off = (distance - (self.base_radius + self.slope * height)) * per_length;
+                let n = (out - self.axis * self.slope) * per_length;
+                (
+                    local - n * off,
+                    n,
+                    height / self.height,
+                    (self.axis + out * self.slope) * self.height,
+                )
+            }
+        };
+        let position = self.base + local;
+        SurfacePoint {
+            position,
+            position_error: point_error(position, local.length() + self.base_radius, 16),
+            n_geom: n,
+            n_shade: n,
+            uv: DVec2::new(turn(y, x), v),
+            dpdu: round * (2.0 * PI * distance),
+            dpdv,
+        }
+    }
+
+    /// Any similarity makes a frustum of a frustum.
+    pub(super) fn baked(&self, map: &Transform) -> Option<Self> {
+        let (scale, orthogonal) = similarity(map)?;
+        Some(Self {
+            base: map.point_to_world(self.base),
+            axis: unit_vector(orthogonal * self.axis),
+            height: self.height * scale,
+            base_radius: self.base_radius * scale,
+            slope: self.slope,
+            capped: self.capped,
+            frame: self.frame.turned(self.axis, orthogonal),
+        })
+    }
+}
