@@ -1,5 +1,3 @@
-//! Real roots of polynomials.
-
 /// The real roots of `a t² + 2 h t + c`, ascending, from its *reduced* discriminant `h² - a c`.
 ///
 /// The caller passes the discriminant because geometry can often compute it without cancellation. The root of larger

@@ -1,0 +1,14 @@
+//! Real roots of polynomials.
+//!
+//! * [`quadratic`]: both roots without cancellation.
+//! * [`Bernstein`]: all roots of a polynomial of any small degree on an interval, by sign variations in Bernstein
+//!   form; no allocation, ascending, with rounding errors accounted for.
+//! * [`find_root`]: the root of any function in a bracket, to the last bit.
+
+mod bernstein;
+mod bracket;
+mod quadratic;
+
+pub use bernstein::{Bernstein, Isolated, Roots};
+pub use bracket::find_root;
+pub use quadratic::quadratic;
