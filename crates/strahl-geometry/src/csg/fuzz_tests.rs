@@ -2,7 +2,10 @@
 
 use super::{Csg, CsgNode};
 use crate::conformance::Random;
-use crate::{Crossings, Cuboid, Primitive, Scratch, Shape, Side, Solid, Sphere};
+use crate::{
+    Cone, Crossings, Cuboid, Cylinder, Plane, Primitive, Quadric, Scratch, Shape, Side, Solid,
+    Sphere,
+};
 use std::sync::Arc;
 use strahl_math::{DVec3, Interval, Ray, Transform};
 
@@ -188,16 +191,13 @@ fn random_map(random: &mut Random) -> Transform {
 
 fn random_leaf(random: &mut Random) -> Placed {
     let map = random_map(random);
-    let shape = match random.below(4) {
+    let shape = match random.below(7) {
         0 => Cuboid::new(
             random.cube() - DVec3::splat(1.1),
             random.cube() + DVec3::splat(1.1),
         )
         .into(),
-        1 => Shape::Custom(Arc::new(half_space::HalfSpace::new(
-            random.direction(),
-            random.unit(),
-        ))),
+        1 => Plane::new(random.cube(), random.direction()).into(),
         2 => {
             // A leaf with several spans.
             let shell = CsgNode::difference([
@@ -205,6 +205,17 @@ fn random_leaf(random: &mut Random) -> Placed {
                 CsgNode::leaf(Sphere::new(random.cube() * 0.2, 0.9), 1),
             ]);
             Arc::new(Csg::try_new(shell).expect("valid")).into()
+        }
+        3 => Cylinder::new(random.cube(), random.cube(), random.between(0.2, 1.0)).into(),
+        4 => {
+            let (base, apex) = (random.between(0.2, 1.0), random.between(0.0, 0.5));
+            Cone::new(random.cube(), base, random.cube(), apex).into()
+        }
+        5 => {
+            // Indefinite, so that there is a surface: hyperboloids and cones, unbounded inside and out.
+            let mut coefficients = std::array::from_fn(|_| random.between(-1.0, 1.0));
+            (coefficients[0], coefficients[2]) = (1.0, -1.0);
+            Arc::new(Quadric::new(coefficients)).into()
         }
         _ => Sphere::new(random.cube(), random.between(0.3, 1.5)).into(),
     };
@@ -549,5 +560,3 @@ fn fuzz_millions() {
         );
     }
 }
-
-mod half_space;

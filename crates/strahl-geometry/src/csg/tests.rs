@@ -1,8 +1,8 @@
 use super::{Csg, CsgNode};
 use crate::conformance::Random;
 use crate::{
-    Crossings, Cuboid, GeometryError, PrimHit, Primitive, Scratch, Shape, Side, Solid, Sphere,
-    SurfaceId, SurfacePoint,
+    Crossings, Cuboid, Cylinder, GeometryError, Plane, PrimHit, Primitive, Scratch, Shape, Side,
+    Solid, Sphere, SurfaceId, SurfacePoint,
 };
 use std::sync::Arc;
 use strahl_math::{Aabb, DVec2, DVec3, Interval, Ray, Transform};
@@ -530,5 +530,21 @@ mod conformance {
     crate::primitive_tests!(clipped, || compiled(CsgNode::clip(
         ball(0.0, 1.0, 1),
         [slab(-2.0, 0.3, 2.0, 2)]
+    )));
+    crate::primitive_tests!(bored_and_cut, || compiled(CsgNode::difference([
+        ball(0.0, 1.0, 1),
+        CsgNode::leaf(Cylinder::new(DVec3::NEG_Z * 2.0, DVec3::Z * 2.0, 0.4), 2),
+        CsgNode::leaf(Plane::new(DVec3::Y * -0.3, DVec3::new(0.0, 1.0, 0.2)), 3),
+    ])));
+    crate::primitive_tests!(between_planes, || compiled(CsgNode::intersection(
+        [
+            DVec3::X,
+            DVec3::new(-1.0, 0.3, 0.0),
+            DVec3::Y,
+            DVec3::NEG_Y,
+            DVec3::Z,
+            DVec3::NEG_Z
+        ]
+        .map(|n| CsgNode::leaf(Plane::new(n, n), 0))
     )));
 }
