@@ -17,9 +17,8 @@ use strahl_math::{Aabb, DVec3, Interval, Ray, Transform};
 /// whole is turned. A point is inside if the surface winds round it, so parts may overlap, and shells that are
 /// oriented the other way are cavities.
 ///
-/// Elements are the triangles. A ray passes through the surface where it would if it were shifted by a hair (see
-/// `pass_triangle`), hence through one of the triangles that meet in an edge or a corner, not through all of
-/// them, and what enters leaves. Surfaces within the solid (where parts overlap) are [`Side::Inner`]. Where a ray grazes an
+/// Elements are the triangles. A ray passes through the surface where it would if it were shifted by a hair, hence
+/// through one of the triangles that meet in an edge or a corner, not through all of them, and what enters leaves. Surfaces within the solid (where parts overlap) are [`Side::Inner`]. Where a ray grazes an
 /// edge, entry and exit may be so near that rounding exchanges them; they are `Inner` then too, there being no inside between them.
 #[derive(Clone, Debug)]
 pub struct Brep {
@@ -323,7 +322,7 @@ impl Visitor for Count<'_> {
             self.on_surface = true;
             return f64::NEG_INFINITY;
         }
-        let [a, b, c] = [a, b, c].map(|p| self.shear.apply(p));
+        let [a, b, c] = [a, b, c].map(|p| self.shear.apply(&p));
         match pass_triangle(&self.shear, a, b, c) {
             Some((hit, front)) if hit.t > 0.0 => {
                 let enters = front != self.mesh.fronts_are_clockwise();

@@ -269,7 +269,7 @@ impl TriangleMesh {
     #[inline]
     pub(super) fn sheared_corners(&self, triangle: u32, shear: &RayShear) -> [DVec3; 3] {
         self.triangle(triangle)
-            .map(|v| shear.apply_f32(self.positions[v as usize]))
+            .map(|v| shear.apply_f32(&self.positions[v as usize]))
     }
 
     /// The surface of one triangle at barycentric coordinates, as reported in [`PrimHit::uv`].

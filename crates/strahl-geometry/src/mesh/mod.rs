@@ -9,7 +9,7 @@ mod brep_tests;
 mod closed;
 #[cfg(test)]
 mod crack_tests;
-mod edge_bins;
+mod edge_runs;
 mod indexed;
 mod pass;
 mod polygon;

@@ -14,17 +14,22 @@ pub(crate) fn pass_triangle(
     b: DVec3,
     c: DVec3,
 ) -> Option<(TriangleHit, bool)> {
+    let (u0, u1) = (b.x * c.y, b.y * c.x);
+    let (v0, v1) = (c.x * a.y, c.y * a.x);
+    let (w0, w1) = (a.x * b.y, a.y * b.x);
+    // Most rays pass some edge on the left and some on the right for certain.
+    let left = (u0 > u1) | (v0 > v1) | (w0 > w1);
+    let right = (u0 < u1) | (v0 < v1) | (w0 < w1);
+    if left & right {
+        return None;
+    }
     let turn = edge_side(a, b);
     if turn == 0 || edge_side(b, c) != turn || edge_side(c, a) != turn {
         return None;
     }
-    let weights = DVec3::new(
-        b.x * c.y - b.y * c.x,
-        c.x * a.y - c.y * a.x,
-        a.x * b.y - a.y * b.x,
-    );
-    let products = (b.x * c.y).abs() + (c.x * a.y).abs() + (a.x * b.y).abs();
-    let hit = place(shear, [a, b, c], weights, 2.0 * products)?;
+    let weights = DVec3::new(u0 - u1, v0 - v1, w0 - w1);
+    let products = (u0.abs() + u1.abs()) + (v0.abs() + v1.abs()) + (w0.abs() + w1.abs());
+    let hit = place(shear, [a, b, c], weights, products)?;
     Some((hit, shear.shows_front(turn > 0)))
 }
 
@@ -85,7 +90,7 @@ mod tests {
         {
             let ray = Ray::new(DVec3::new(target.x, target.y, 0.0), DVec3::Z);
             let shear = RayShear::new(&ray);
-            let image = |p: DVec3| shear.apply(p);
+            let image = |p: DVec3| shear.apply(&p);
             let passes = (0..rim.len())
                 .filter(|&k| {
                     let (b, c) = (rim[k], rim[(k + 1) % rim.len()]);
@@ -102,7 +107,7 @@ mod tests {
         for (z, front) in [(1.0, false), (-1.0, true)] {
             let ray = Ray::new(DVec3::new(1.0, 0.5, 5.0 - 3.0 * z), DVec3::Z * z);
             let shear = RayShear::new(&ray);
-            let pass = pass_triangle(&shear, shear.apply(a), shear.apply(b), shear.apply(c));
+            let pass = pass_triangle(&shear, shear.apply(&a), shear.apply(&b), shear.apply(&c));
             assert_eq!(pass.map(|(hit, front)| (hit.t, front)), Some((3.0, front)));
         }
     }

@@ -191,7 +191,25 @@ fn large_polygons_agree_with_the_winding_number() {
 }
 
 #[test]
-fn bins_and_projection_along_the_ray_agree() {
+fn a_plate_with_many_holes() {
+    let square = |x: i32, y: i32, size: i32| {
+        vec![(x, y), (x + size, y), (x + size, y + size), (x, y + size)]
+    };
+    let mut rings = vec![square(0, 0, 101)];
+    rings.extend((0..25).map(|i| square(i % 5 * 20 + 5, i / 5 * 20 + 5, 10)));
+    let holes: Vec<_> = rings[1..].iter().map(|ring| flat(ring)).collect();
+    let polygon = Polygon::try_with_holes(&flat(&rings[0]), &holes).expect("flat");
+    assert!(polygon.runs.is_some());
+    for (x, y) in (-1..=102).flat_map(|x| (-1..=102).map(move |y| (x, y))) {
+        let found = hit(&polygon, &down(f64::from(x), f64::from(y))).is_some();
+        if let Some(inside) = oracle(&rings, (x, y)) {
+            assert_eq!(found, inside, "({x}, {y})");
+        }
+    }
+}
+
+#[test]
+fn runs_and_projection_along_the_ray_agree() {
     // Slanted, with corners off the plane by as much as six digits leave them.
     let turn = Transform::rotate(DVec3::new(1.0, 2.0, 3.0), 1.1);
     let mut random = Random::new(5);
@@ -203,10 +221,10 @@ fn bins_and_projection_along_the_ray_agree() {
             )
         })
         .collect();
-    let binned = Polygon::try_new(&corners).expect("flat enough");
-    assert!(binned.bins.is_some());
-    let mut plain = binned.clone();
-    plain.bins = None;
+    let long = Polygon::try_new(&corners).expect("flat enough");
+    assert!(long.runs.is_some());
+    let mut plain = long.clone();
+    plain.runs = None;
     let mut hits = 0;
     for i in 0..40_000 {
         let k = random.below(80) as usize;
@@ -218,7 +236,7 @@ fn bins_and_projection_along_the_ray_agree() {
         };
         let origin = target + random.direction() * random.magnitude(-1.0, 4.0);
         let ray = Ray::new(origin, target - origin);
-        let (fast, slow) = (hit(&binned, &ray), hit(&plain, &ray));
+        let (fast, slow) = (hit(&long, &ray), hit(&plain, &ray));
         assert_eq!(fast.is_some(), slow.is_some(), "{ray:?}");
         hits += usize::from(fast.is_some());
     }
@@ -289,5 +307,5 @@ crate::primitive_tests!(concave, || Polygon::try_with_holes(
     &[slanted(&[(1, 1), (2, 1), (1, 2)], 0.2)],
 )
 .expect("flat"));
-crate::primitive_tests!(binned_star, || Polygon::try_new(&slanted(&star(72), 3e-5))
+crate::primitive_tests!(spiky_star, || Polygon::try_new(&slanted(&star(72), 3e-5))
     .expect("flat"));

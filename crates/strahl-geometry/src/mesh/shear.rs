@@ -57,19 +57,21 @@ impl RayShear {
 
     /// The image of a corner: x and y across the ray, z along it, unscaled.
     #[inline]
-    pub fn apply(&self, corner: DVec3) -> DVec3 {
-        self.apply_array(corner.to_array())
+    pub fn apply(&self, corner: &DVec3) -> DVec3 {
+        let corner: &[f64; 3] = corner.as_ref();
+        self.sheared(|k| corner[self.axes[k]])
     }
 
     /// The image of a corner that is stored in f32; the conversion is exact.
     #[inline]
-    pub fn apply_f32(&self, corner: [f32; 3]) -> DVec3 {
-        self.apply_array(corner.map(f64::from))
+    pub fn apply_f32(&self, corner: &[f32; 3]) -> DVec3 {
+        self.sheared(|k| f64::from(corner[self.axes[k]]))
     }
 
+    /// Coordinates are picked from memory one by one: a branch on the axis would be mispredicted at every change of ray.
     #[inline]
-    fn apply_array(&self, corner: [f64; 3]) -> DVec3 {
-        let along = |k: usize| corner[self.axes[k]] - self.origin[k];
+    fn sheared(&self, corner: impl Fn(usize) -> f64) -> DVec3 {
+        let along = |k: usize| corner(k) - self.origin[k];
         let z = along(2);
         DVec3::new(
             along(0) - self.shear[0] * z,
@@ -112,7 +114,8 @@ pub struct TriangleHit {
 /// A triangle seen edge-on, without any area in the ray's projection, is missed.
 #[inline]
 pub fn intersect_triangle(shear: &RayShear, a: DVec3, b: DVec3, c: DVec3) -> Option<TriangleHit> {
-    intersect_sheared(shear, shear.apply(a), shear.apply(b), shear.apply(c))
+    let [a, b, c] = [a, b, c].map(|p| shear.apply(&p));
+    intersect_sheared(shear, a, b, c)
 }
 
 /// [`intersect_triangle`] on the images of the corners.
@@ -126,9 +129,10 @@ pub(crate) fn intersect_sheared(
     let (u0, u1) = (b.x * c.y, b.y * c.x);
     let (v0, v1) = (c.x * a.y, c.y * a.x);
     let (w0, w1) = (a.x * b.y, a.y * b.x);
-    let counter_clockwise = u0 >= u1 && v0 >= v1 && w0 >= w1;
-    let clockwise = u0 <= u1 && v0 <= v1 && w0 <= w1;
-    if !(counter_clockwise || clockwise) {
+    // No short cuts: which comparison fails first can't be predicted, that one does can.
+    let counter_clockwise = (u0 >= u1) & (v0 >= v1) & (w0 >= w1);
+    let clockwise = (u0 <= u1) & (v0 <= v1) & (w0 <= w1);
+    if !(counter_clockwise | clockwise) {
         return None;
     }
     let weights = DVec3::new(u0 - u1, v0 - v1, w0 - w1);
