@@ -3,7 +3,7 @@ use super::{Fallible, LightLine, Reader, is_view_word};
 use crate::mesh::polygon_normal;
 use crate::scene::text::{Word, parse_f64, parse_integer};
 use std::f64::consts::PI;
-use strahl_geometry::{Polygon, Sphere};
+use strahl_geometry::{Cone, Cylinder, Polygon, Primitive, Shape, Sphere};
 use strahl_math::DVec3;
 use strahl_scene::{Background, Camera, Diagnostic, Span};
 use strahl_shade::Color;
@@ -166,8 +166,35 @@ impl Reader<'_, '_> {
         let apex = self.point("the centre of the cone's apex")?;
         let apex_radius = self.number("the radius of the apex")?;
         self.cones += 1;
-        let _ = (base, base_radius, apex, apex_radius);
-        Err(self.fault(start, "cones are not read yet".into()))
+        let inside_only =
+            base_radius <= 0.0 && apex_radius <= 0.0 && base_radius + apex_radius < 0.0;
+        let (r0, r1) = if inside_only {
+            (-base_radius, -apex_radius)
+        } else {
+            (base_radius, apex_radius)
+        };
+        let (shape, what): (Shape, _) = if r0 == r1 {
+            (Cylinder::open(base, apex, r0).into(), "cylinder")
+        } else {
+            (Cone::open(base, r0, apex, r1).into(), "cone")
+        };
+        shape
+            .validate()
+            .map_err(|e| self.fault(start, e.to_string()))?;
+        if inside_only {
+            self.report.count("inside-only cone", || {
+                let problem = Diagnostic::warning("a cone with negative radii is seen from the inside only; here it is seen from both sides");
+                self.text.at(start, problem)
+            });
+        }
+        let material = self.fill.two_sided();
+        self.add(
+            shape,
+            format!("{what} {}", self.cones),
+            start.line,
+            material,
+        );
+        Ok(())
     }
 
     pub(super) fn polygon(&mut self, start: &Word<'_>, smooth: bool) -> Fallible<()> {

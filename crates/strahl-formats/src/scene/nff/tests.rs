@@ -75,7 +75,7 @@ fn lights_share_the_strength_of_the_document() {
 fn a_fill_is_one_shared_material_per_side() {
     let scene = scene(
         "f 1 0.5 0 0.5 0.25 30 0 0\ns 0 0 0 1\ns 3 0 0 -1\np 4\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n\
-         f 1 1 1 0 0.1 100 0.9 1.5\ns 1 1 1 2\np 4 0 0 0 1 0 0 1 1 0 0 1 0\n",
+         f 1 1 1 0 0.1 100 0.9 1.5\ns 1 1 1 2\np 4 0 0 0 1 0 0 1 1 0 0 1 0\nc 0 0 0 1 0 0 2 0.5\nc 0 0 0 1\n0 0 2 1",
     );
     let objects = &scene.objects.0;
     let material = |i: usize| objects[i].material.as_ref().expect("filled");
@@ -104,16 +104,26 @@ fn a_fill_is_one_shared_material_per_side() {
         Sides::Two,
         "transmitters are seen from both sides"
     );
-    assert!((3..=4).all(|i| std::sync::Arc::ptr_eq(glass, material(i))));
+    assert!((3..=6).all(|i| std::sync::Arc::ptr_eq(glass, material(i))));
     let names: Vec<_> = objects
         .iter()
         .map(|o| o.name.as_deref().expect("named"))
         .collect();
     assert_eq!(
         names,
-        ["sphere 1", "sphere 2", "polygon 1", "sphere 3", "polygon 2",]
+        [
+            "sphere 1",
+            "sphere 2",
+            "polygon 1",
+            "sphere 3",
+            "polygon 2",
+            "cone 1",
+            "cylinder 2"
+        ]
     );
     assert_eq!(objects[2].span.line, 11);
+    assert!(matches!(shape(&objects[5]), Shape::Cone(c) if !c.is_capped()));
+    assert!(matches!(shape(&objects[6]), Shape::Cylinder(c) if !c.is_capped()));
 }
 
 #[test]
@@ -180,6 +190,7 @@ fn impossible_values_are_refused() {
         error_of("s 0 0 0 0")
             .contains("error: radius of the sphere must be different from 0, found 0")
     );
+    assert!(error_of("c 0 0 0 1 0 0 0 1").starts_with("error: "));
     assert!(error_of("f 1 1 -1 1 0 0 0 0").contains("must not be negative, found `-1`"));
     assert!(
         error_of("f 1 1 1 1 0 0 2 0")
