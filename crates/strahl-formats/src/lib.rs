@@ -1,4 +1,5 @@
-//! Files of other programs: bytes to scenes.
+//! Files of other programs: bytes to scenes and textures, pictures to bytes.
 
+pub mod image;
 mod mesh;
 pub mod scene;

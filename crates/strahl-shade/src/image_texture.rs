@@ -124,8 +124,8 @@ impl std::error::Error for TexelCountMismatch {}
 
 /// A picture that surfaces can be covered with.
 ///
-/// Coordinates follow glTF 2.0 (section 3.8.3): `uv = (0, 0)` is the top left corner of the top left texel, `(1, 1)` the bottom right
-/// corner of the bottom right one. Alpha is straight, not premultiplied, and is interpolated independently of the colour.
+/// Coordinates follow glTF 2.0 (section 3.8.3): `uv = (0, 0)` is the top left corner of the top left texel, `(1, 1)` the
+/// bottom right corner of the bottom right one. Alpha is straight, not premultiplied, and is interpolated independently of the colour.
 ///
 /// There are no mip levels: a picture seen much smaller than it is needs many samples per pixel.
 #[derive(Clone, PartialEq)]

@@ -1,0 +1,40 @@
+//! Pictures out, textures in.
+//!
+//! [`write_picture`] writes a rendered [`Picture`] in the format its file name asks for; [`formats`] is the table of formats,
+//! one line each. [`read_texture`] reads picture files as textures. [`compare`] tells how far two pictures are apart.
+//!
+//! The same picture gives the same bytes, on every machine.
+//!
+//! # Example
+//!
+//! ```
+//! use strahl_formats::image::{ImageFormat, Picture, WriteOptions, encode_picture};
+//!
+//! let rgb = [[0.0, 0.2, 1.0]; 6];
+//! let picture = Picture::new(3, 2, &rgb);
+//! let format = ImageFormat::from_path("sky.png")?;
+//! let mut bytes = Vec::new();
+//! encode_picture(&mut bytes, format, &picture, &WriteOptions::default())?;
+//! assert!(bytes.starts_with(b"\x89PNG"));
+//! # Ok::<(), strahl_formats::image::ImageError>(())
+//! ```
+
+mod diff;
+mod error;
+mod exr;
+mod format;
+mod hdr;
+mod picture;
+mod png;
+mod ppm;
+#[cfg(test)]
+mod tests;
+mod texture;
+mod write;
+
+pub use diff::{Difference, compare};
+pub use error::ImageError;
+pub use format::{FormatInfo, ImageFormat, formats};
+pub use picture::{BitDepth, Layer, LayerData, Picture, Window, WriteOptions};
+pub use texture::{MAX_TEXELS, TextureUse, decode_texture, read_texture};
+pub use write::{encode_picture, write_picture};

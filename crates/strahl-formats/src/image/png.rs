@@ -1,0 +1,99 @@
+//! Portable Network Graphics (W3C PNG, third edition): 8 or 16 bit sRGB.
+
+use std::io::{self, Write};
+
+use ::png::chunk::ChunkType;
+use ::png::{ColorType, Encoder, EncodingError, SrgbRenderingIntent};
+use strahl_shade::srgb;
+
+use super::{BitDepth, Picture, WriteOptions};
+
+/// Offset of the picture on a page, a chunk of the PNG extensions 1.5: a region's place in the full picture.
+const OFFSET_CHUNK: ChunkType = ChunkType(*b"oFFs");
+
+pub(super) fn encode(
+    writer: &mut dyn Write,
+    picture: &Picture<'_>,
+    options: &WriteOptions,
+) -> io::Result<()> {
+    encode_png(writer, picture, options).map_err(|error| match error {
+        EncodingError::IoError(error) => error,
+        other => io::Error::other(other),
+    })
+}
+
+fn encode_png(
+    writer: &mut dyn Write,
+    picture: &Picture<'_>,
+    options: &WriteOptions,
+) -> Result<(), EncodingError> {
+    let window = picture.window;
+    let mut encoder = Encoder::new(writer, window.width, window.height);
+    encoder.set_color(ColorType::Rgb);
+    encoder.set_depth(match options.bit_depth {
+        BitDepth::Eight => ::png::BitDepth::Eight,
+        BitDepth::Sixteen => ::png::BitDepth::Sixteen,
+    });
+    encoder.set_source_srgb(SrgbRenderingIntent::Perceptual);
+    for (key, value) in picture.metadata_with_region() {
+        let keyword = keyword(key);
+        if value.is_ascii() {
+            encoder.add_text_chunk(keyword, value)?;
+        } else {
+            encoder.add_itxt_chunk(keyword, value)?;
+        }
+    }
+    let mut writer = encoder.write_header()?;
+    if picture.is_region() {
+        let mut offset = Vec::with_capacity(9);
+        offset.extend(window.x.to_be_bytes());
+        offset.extend(window.y.to_be_bytes());
+        offset.push(0); // in pixels
+        writer.write_chunk(OFFSET_CHUNK, &offset)?;
+    }
+
+    // Row by row: the codes of a large picture need no memory of their own.
+    let mut rows = writer.stream_writer()?;
+    let mut codes = Vec::new();
+    for row in picture.rgb.chunks_exact(window.width as usize) {
+        codes.clear();
+        push_codes(row, options.bit_depth, &mut codes);
+        rows.write_all(&codes)?;
+    }
+    rows.finish()?;
+    writer.finish()
+}
+
+/// Appends the sRGB codes of pixels, those of 16 bit with the high byte first, as PNG and PPM store them.
+pub(super) fn push_codes(pixels: &[[f32; 3]], depth: BitDepth, codes: &mut Vec<u8>) {
+    let samples = pixels
+        .as_flattened()
+        .iter()
+        .map(|&sample| f64::from(sample));
+    match depth {
+        BitDepth::Eight => codes.extend(samples.map(srgb::encode_u8)),
+        BitDepth::Sixteen => {
+            codes.extend(samples.flat_map(|sample| srgb::encode_u16(sample).to_be_bytes()));
+        }
+    }
+}
+
+/// PNG's registered keywords are capitalised.
+fn keyword(key: &str) -> String {
+    const REGISTERED: [&str; 9] = [
+        "Title",
+        "Author",
+        "Description",
+        "Copyright",
+        "Software",
+        "Disclaimer",
+        "Warning",
+        "Source",
+        "Comment",
+    ];
+    REGISTERED
+        .into_iter()
+        .find(|registered| registered.eq_ignore_ascii_case(key))
+        .unwrap_or(key)
+        .to_owned()
+}
