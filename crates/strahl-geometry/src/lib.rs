@@ -16,6 +16,6 @@ mod spans;
 pub use csg::{Csg, CsgNode, Operands};
 pub use mesh::{Brep, MeshData, Polygon, RayShear, SmoothTriangle, Triangle, TriangleMesh};
 pub use primitive::{GeometryError, PrimHit, Primitive, Scratch, Solid, SurfaceId, SurfacePoint};
-pub use primitives::{Cone, Cuboid, Cylinder, Disc, Plane, Quadric, Sphere};
+pub use primitives::{Cone, Cuboid, Cylinder, Disc, Plane, Quadric, Sphere, Torus};
 pub use shape::Shape;
 pub use spans::{Crossing, Crossings, Side};

@@ -1,5 +1,5 @@
 use crate::mesh::{Brep, Polygon, SmoothTriangle, Triangle, TriangleMesh};
-use crate::primitives::{Cone, Cuboid, Cylinder, Disc, Plane, Quadric, Sphere};
+use crate::primitives::{Cone, Cuboid, Cylinder, Disc, Plane, Quadric, Sphere, Torus};
 use crate::{Csg, GeometryError, PrimHit, Primitive, Scratch, Solid, SurfaceId, SurfacePoint};
 use std::sync::Arc;
 use strahl_math::{Aabb, Interval, Ray, Transform};
@@ -90,6 +90,8 @@ shapes! {
     Cylinder(Cylinder),
     /// A cone or truncated cone, closed or open.
     Cone(Cone),
+    /// A torus.
+    Torus(Torus),
     /// A surface of degree 2.
     Quadric(Arc<Quadric>),
     /// A flat triangle.

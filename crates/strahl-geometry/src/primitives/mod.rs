@@ -10,6 +10,7 @@ mod frustum;
 mod plane;
 mod quadric;
 mod sphere;
+mod torus;
 
 pub use cone::Cone;
 pub use cuboid::Cuboid;
@@ -18,6 +19,7 @@ pub use disc::Disc;
 pub use plane::Plane;
 pub use quadric::Quadric;
 pub use sphere::Sphere;
+pub use torus::Torus;
 
 use crate::GeometryError;
 use strahl_math::error::{ROUNDOFF, gamma};

@@ -19,16 +19,27 @@ pub struct Bernstein<const N: usize> {
     high: f64,
 }
 
-/// A part of the interval in which a polynomial changes sign, found by [`Bernstein::isolate`].
+/// A part of the interval in which a polynomial is or may be zero, found by [`Bernstein::isolate`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Isolated<const N: usize> {
     /// The polynomial on that part.
     piece: Bernstein<N>,
     /// Whether the polynomial is negative at the lower end and positive at the upper; otherwise it is the other way round.
     pub rising: bool,
-    /// Whether there is certainly exactly one root. If not, there is an odd number of roots so close together that
-    /// rounding can't tell them apart.
-    pub simple: bool,
+    /// How many roots there are.
+    pub count: RootCount,
+}
+
+/// What is known about the number of roots in an [`Isolated`] part.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RootCount {
+    /// Certainly exactly one.
+    One,
+    /// An odd number, so close together that rounding can't tell them apart: the polynomial changes its sign.
+    Odd,
+    /// An even number, perhaps none, so close together that rounding can't tell them apart: the polynomial comes as
+    /// near to zero as its error bound and keeps its sign.
+    Even,
 }
 
 impl<const N: usize> Isolated<N> {
@@ -42,7 +53,7 @@ impl<const N: usize> Isolated<N> {
         self.piece.high
     }
 
-    /// The root, as exactly as the coefficients allow.
+    /// The root, as exactly as the coefficients allow; of an even number of roots, a point near them.
     pub fn root(&self) -> f64 {
         let Bernstein { low, high, .. } = self.piece;
         let width = high - low;
@@ -131,6 +142,9 @@ impl<const N: usize> Bernstein<N> {
             count: 0,
         };
         let _ = self.isolate(&mut |isolated| {
+            if isolated.count == RootCount::Even {
+                return ControlFlow::Continue(());
+            }
             let Some(slot) = roots.t.get_mut(roots.count) else {
                 return ControlFlow::Break(());
             };
@@ -141,7 +155,8 @@ impl<const N: usize> Bernstein<N> {
         roots
     }
 
-    /// Finds the parts of the interval in which the polynomial changes its sign, in ascending order; `visit` may end the search.
+    /// Finds the parts of the interval in which the polynomial is or may be zero, in ascending order; `visit` may end the
+    /// search.
     ///
     /// # Errors
     /// `Break` if the visitor said so.
@@ -169,25 +184,29 @@ impl<const N: usize> Bernstein<N> {
         if most == 0 {
             return ControlFlow::Continue(());
         }
-        let isolated = |simple| Isolated {
+        let isolated = |count| Isolated {
             piece: *self,
             rising: last,
-            simple,
+            count,
         };
         if fewest == 1 && most == 1 {
-            return visit(&isolated(true));
+            return visit(&isolated(RootCount::One));
         }
         let middle = 0.5 * (self.low + self.high);
         let undecidable = self.coefficients.iter().all(|c| c.abs() <= self.error);
         let splits = depth < MAX_DEPTH && self.low < middle && middle < self.high;
         // Nothing is to be found where nothing is known.
         let finite = self.error.is_finite();
-        if undecidable || !splits || !finite {
-            return if first != last && finite {
-                visit(&isolated(false))
+        if !finite {
+            return ControlFlow::Continue(());
+        }
+        if undecidable || !splits {
+            let count = if first == last {
+                RootCount::Even
             } else {
-                ControlFlow::Continue(())
+                RootCount::Odd
             };
+            return visit(&isolated(count));
         }
         let (left, right) = self.halves(middle);
         let between = right
@@ -362,7 +381,7 @@ mod tests {
         let polynomial = Bernstein::from_power(&expand::<4>(&[0.1, 0.5, 0.8]), 0.0, 1.0);
         let mut found = Vec::new();
         let end = polynomial.isolate(&mut |isolated| {
-            assert!(isolated.simple && isolated.low() < isolated.high());
+            assert!(isolated.count == RootCount::One && isolated.low() < isolated.high());
             found.push((isolated.root(), isolated.rising));
             ControlFlow::Break(())
         });

@@ -1,0 +1,560 @@
+use super::convex::start_of;
+use super::disc::circle_bounds;
+use super::frame::{UvFrame, similarity, turn};
+use super::{check_direction, check_finite, check_positive, point_error, unit_vector};
+use crate::{
+    Crossing, Crossings, GeometryError, PrimHit, Primitive, Scratch, Shape, Side, Solid, SurfaceId,
+    SurfacePoint,
+};
+use std::f64::consts::PI;
+use std::ops::ControlFlow;
+use strahl_math::error::gamma;
+use strahl_math::roots::{Bernstein, Isolated, RootCount, find_root};
+use strahl_math::{Aabb, DVec2, DVec3, Interval, Ray, Transform};
+
+/// A torus: a tube of the minor radius around a circle of the major radius.
+///
+/// If the minor radius is the larger one (a *spindle* torus) the tube overlaps itself: the shape is then the body that the tube
+/// sweeps, like an apple, without the lemon-shaped surface within.
+///
+/// Texture coordinates: `u` is the angle around the axis, `v` the angle around the tube, 0 at the outer equator and
+/// growing towards the axis' tip; both run from 0 to 1. Facets: one, 0. A ray that touches the torus does not hit it.
+///
+/// A ray is clipped to the torus' own surroundings and measured from there, so that its distance plays no role. The roots of the
+/// polynomial of degree 4 are isolated in Bernstein form and then refined on the distance from the circle, which keeps the
+/// digits that the polynomial of a thin torus loses.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Torus {
+    center: DVec3,
+    axis: DVec3,
+    major: f64,
+    minor: f64,
+    frame: UvFrame,
+}
+
+/// The part of a ray near the torus: the point at `s` is `start + s along`, relative to the centre, and its parameter is
+/// `t + s t_per_s`; `s` runs over `low..high`.
+struct Segment {
+    start: DVec3,
+    along: DVec3,
+    t: f64,
+    t_per_s: f64,
+    low: f64,
+    high: f64,
+}
+
+/// Where a ray changes between inside and outside, ascending in `s`: at most the four roots and, for a ray that starts on
+/// the surface, the start.
+#[derive(Default)]
+struct Changes {
+    /// Ray parameter, and whether the ray gets inside there.
+    list: [(f64, bool); 8],
+    count: usize,
+    /// Whether the ray is inside just behind its start; only of interest if it starts on the surface.
+    starts_inside: bool,
+}
+
+impl Changes {
+    fn iter(&self) -> impl Iterator<Item = (f64, bool)> {
+        self.list.into_iter().take(self.count)
+    }
+}
+
+impl Torus {
+    /// The torus of a centre, an axis of any length, and two radii.
+    pub fn new(center: DVec3, axis: DVec3, major: f64, minor: f64) -> Self {
+        Self {
+            center,
+            axis: unit_vector(axis),
+            major,
+            minor,
+            frame: UvFrame::default(),
+        }
+    }
+
+    /// Like [`Torus::new`], checked.
+    ///
+    /// # Errors
+    /// A value is not finite, the axis is zero, or a radius is not positive.
+    pub fn try_new(
+        center: DVec3,
+        axis: DVec3,
+        major: f64,
+        minor: f64,
+    ) -> Result<Self, GeometryError> {
+        let torus = Self::new(center, axis, major, minor);
+        torus.validate().map(|()| torus)
+    }
+
+    /// The centre.
+    pub fn center(&self) -> DVec3 {
+        self.center
+    }
+
+    /// The unit vector along the axis.
+    pub fn axis(&self) -> DVec3 {
+        self.axis
+    }
+
+    /// The radius of the circle in the middle of the tube.
+    pub fn major(&self) -> f64 {
+        self.major
+    }
+
+    /// The radius of the tube.
+    pub fn minor(&self) -> f64 {
+        self.minor
+    }
+
+    /// The squared distance of a point (relative to the centre) from the circle, less the squared minor radius, and its derivative
+    /// along a direction. Negative inside.
+    #[inline]
+    fn value_and_slope(&self, p: DVec3, d: DVec3) -> (f64, f64) {
+        let (height, climb) = (p.dot(self.axis), d.dot(self.axis));
+        let across = p - self.axis * height;
+        let distance = across.length();
+        let outward = if distance > 0.0 {
+            across.dot(d) / distance
+        } else {
+            0.0
+        };
+        let off = distance - self.major;
+        (
+            off * off + height * height - self.minor * self.minor,
+            2.0 * (off * outward + height * climb),
+        )
+    }
+
+    fn value(&self, p: DVec3) -> f64 {
+        self.value_and_slope(p, DVec3::ZERO).0
+    }
+
+    /// Clips a ray to the sphere around the torus and to the slab it lies in, both a little larger than needed: outside of the
+    /// segment there certainly is no surface.
+    fn segment(&self, ray: &Ray, on_surface: bool) -> Option<Segment> {
+        let d = ray.direction;
+        let f = ray.origin - self.center;
+        let a = d.dot(d);
+        // From the closest approach to the centre on, every length is of the size of the torus.
+        let shift = if on_surface { 0.0 } else { -f.dot(d) / a };
+        let p = f + d * shift;
+        let reach = (self.major + self.minor) * MARGIN;
+        let middle = -p.dot(d) / a;
+        let nearest = p + d * middle;
+        let half = (reach * reach - nearest.dot(nearest)) / a;
+        // Also refuses NaN, infinite and zero directions.
+        if !(half > 0.0 && half.is_finite()) {
+            return None;
+        }
+        let half = half.sqrt();
+        let (mut low, mut high) = (middle - half, middle + half);
+
+        let (height, climb) = (p.dot(self.axis), d.dot(self.axis));
+        let lid = self.minor * MARGIN;
+        if climb == 0.0 {
+            if height.abs() > lid {
+                return None;
+            }
+        } else {
+            let (t0, t1) = ((-lid - height) / climb, (lid - height) / climb);
+            let (enter, exit) = if t0 < t1 { (t0, t1) } else { (t1, t0) };
+            low = if enter > low { enter } else { low };
+            high = if exit < high { exit } else { high };
+        }
+        let length = high - low;
+        if !(length > 0.0) {
+            return None;
+        }
+        // A ray that starts on the surface keeps its origin as s = 0, where the known root is.
+        let base = if on_surface { 0.0 } else { low };
+        Some(Segment {
+            start: p + d * base,
+            along: d * length,
+            t: shift + base,
+            t_per_s: length,
+            low: (low - base) / length,
+            high: (high - base) / length,
+        })
+    }
+
+    /// The polynomial whose roots are the crossings: `(|p|² + R² - r²)² - 4 R² (|p|² - h²)` at `p = start + s along`, with a
+    /// bound on the errors of its coefficients.
+    fn polynomial(&self, segment: &Segment) -> ([f64; 5], f64) {
+        let (p, e) = (segment.start, segment.along);
+        let (height, climb) = (p.dot(self.axis), e.dot(self.axis));
+        let (p_flat, e_flat) = (p - self.axis * height, e - self.axis * climb);
+        let (r2, big) = (self.minor * self.minor, self.major * self.major);
+        let (square, mixed) = (e.dot(e), p.dot(e));
+        // (R - r)(R + r) keeps the digits of a horn torus' small difference.
+        let k = p.dot(p) + (self.major - self.minor) * (self.major + self.minor);
+        let coefficients = [
+            k * k - 4.0 * big * p_flat.dot(p_flat),
+            4.0 * mixed * k - 8.0 * big * p_flat.dot(e_flat),
+            4.0 * mixed * mixed + 2.0 * square * k - 4.0 * big * e_flat.dot(e_flat),
+            4.0 * square * mixed,
+            square * square,
+        ];
+        let far = p.length() + e.length() * segment.low.abs().max(segment.high.abs());
+        let q = far * far;
+        let magnitude = (q + big + r2) * (q + big + r2) + 4.0 * big * q;
+        (coefficients, gamma(16) * magnitude)
+    }
+
+    /// All changes between inside and outside.
+    ///
+    /// The roots only say where the sign *may* change. Whether it does is decided between them, so entering and leaving
+    /// alternate even where rounding has lost or made up a root, and the inner surface of a spindle torus, which has
+    /// roots too, does not count.
+    fn changes(&self, ray: &Ray, on_surface: bool) -> Option<Changes> {
+        let segment = self.segment(ray, on_surface)?;
+        let (coefficients, error) = self.polynomial(&segment);
+        let mut roots = [0.0; 6];
+        let mut count = 0;
+        let mut found = |s: f64| {
+            if let Some(slot) = roots.get_mut(count) {
+                *slot = s;
+                count += 1;
+            }
+        };
+        let Segment { low, high, .. } = segment;
+        if on_surface {
+            // The root at s = 0 is known: without it the polynomial is a cubic.
+            let [_, c1, c2, c3, c4] = coefficients;
+            let cubic = Bernstein::from_power(&[c1, c2, c3, c4], low, high).with_error(error);
+            let mut passed_start = false;
+            let _ = cubic.isolate(&mut |part| {
+                if let Some(s) = self.refine(&segment, part) {
+                    if s > 0.0 && !passed_start {
+                        passed_start = true;
+                        found(0.0);
+                    }
+                    found(s);
+                }
+                ControlFlow::Continue(())
+            });
+            if !passed_start {
+                found(0.0);
+            }
+        } else {
+            let quartic = Bernstein::from_power(&coefficients, low, high).with_error(error);
+            let _ = quartic.isolate(&mut |part| {
+                if let Some(s) = self.refine(&segment, part) {
+                    found(s);
+                }
+                ControlFlow::Continue(())
+            });
+        }
+
+        let mut changes = Changes::default();
+        let mut inside = false;
+        let roots = roots.get(..count).unwrap_or_default();
+        let rounding = gamma(8) * if high > -low { high } else { -low };
+        for (i, s) in roots.iter().enumerate() {
+            let is_start = on_surface && *s == 0.0;
+            // Behind the last root is outside; a gap no wider than rounding is none.
+            let inside_next = match roots.get(i + 1) {
+                Some(next) if next - s <= rounding => inside,
+                Some(next) => self.value(segment.start + segment.along * (0.5 * (s + next))) < 0.0,
+                None => false,
+            };
+            if is_start {
+                changes.starts_inside = inside_next;
+            } else if inside_next != inside
+                && let Some(slot) = changes.list.get_mut(changes.count)
+            {
+                *slot = (segment.t + s * segment.t_per_s, inside_next);
+                changes.count += 1;
+            }
+            inside = inside_next;
+        }
+        Some(changes)
+    }
+
+    /// The root in an isolating interval: by the distance from the circle if that changes its sign there, else by the
+    /// polynomial if that does.
+    ///
+    /// At the poles of a spindle torus outer and inner surface meet in a double root, where only the former does.
+    fn refine<const N: usize>(&self, segment: &Segment, part: &Isolated<N>) -> Option<f64> {
+        let at = |s: f64| segment.start + segment.along * s;
+        let (low, high) = (part.low(), part.high());
+        let (first, last) = (self.value(at(low)) < 0.0, self.value(at(high)) < 0.0);
+        if first != last {
+            return Some(find_root(low, high, first, |s| {
+                self.value_and_slope(at(s), segment.along)
+            }));
+        }
+        (part.count != RootCount::Even).then(|| part.root())
+    }
+
+    /// How far the parameter of a crossing may be off.
+    fn t_error(&self, ray: &Ray, t: f64) -> f64 {
+        let p = (ray.origin - self.center) + ray.direction * t;
+        let size = self.major + self.minor;
+        let reach = ray.origin.length() + self.center.length() + (ray.direction * t).length();
+        let point = gamma(16) * (reach + size);
+        let slope = self.value_and_slope(p, ray.direction).1.abs();
+        let straight = 2.0 * self.minor * point / slope;
+        let tangent = (2.0 * size * point).sqrt() / ray.direction.length();
+        gamma(4) * t.abs()
+            + if straight < tangent {
+                straight
+            } else {
+                tangent
+            }
+    }
+}
+
+/// How much larger than the torus the volume is that rays are clipped to. It only has to cover the rounding of the clipping
+/// itself; what lies between is empty.
+const MARGIN: f64 = 1.0 + 1.0 / 1024.0;
+
+impl Primitive for Torus {
+    fn kind(&self) -> &'static str {
+        "torus"
+    }
+
+    fn validate(&self) -> Result<(), GeometryError> {
+        check_finite("center of the torus", self.center)?;
+        check_direction("axis of the torus", "torus", self.axis)?;
+        check_positive("major radius of the torus", self.major)?;
+        check_positive("minor radius of the torus", self.minor)
+    }
+
+    fn bounds(&self) -> Aabb {
+        let circle = circle_bounds(self.center, self.axis, self.major);
+        let size = self.major.abs() + self.minor.abs();
+        let rounding = point_error(self.center.abs() + size, size, 16);
+        circle.padded(DVec3::splat(self.minor.abs()) + rounding)
+    }
+
+    fn closest_hit(
+        &self,
+        ray: &Ray,
+        range: Interval,
+        from: Option<SurfaceId>,
+        _scratch: &mut Scratch,
+    ) -> Option<PrimHit> {
+        let changes = self.changes(ray, from.is_some())?;
+        changes
+            .iter()
+            .find(|(t, _)| range.accepts(*t))
+            .map(|(t, _)| PrimHit::simple(t, 0))
+    }
+
+    fn surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
+        let p = (ray.origin - self.center) + ray.direction * hit.t;
+        let axes = self.frame.axes(self.axis);
+        let height = p.dot(self.axis);
+        let across = p - self.axis * height;
+        let distance = across.length();
+        let outward = if distance > 0.0 {
+            across / distance
+        } else {
+            axes.x_axis
+        };
+        // From the nearest point of the circle straight to the surface.
+        let n = (outward * (distance - self.major) + self.axis * height).normalize_or(outward);
+        let local = outward * self.major + n * self.minor;
+        let position = self.center + local;
+
+        let (x, y) = (outward.dot(axes.x_axis), outward.dot(axes.y_axis));
+        let (cos, sin) = (n.dot(outward), n.dot(self.axis));
+        SurfacePoint {
+            position,
+            position_error: point_error(position, self.major + self.minor, 16),
+            n_geom: n,
+            n_shade: n,
+            uv: DVec2::new(turn(y, x), turn(sin, cos)),
+            dpdu: (axes.y_axis * x - axes.x_axis * y)
+                * (2.0 * PI * (self.major + self.minor * cos)),
+            dpdv: (self.axis * cos - outward * sin) * (2.0 * PI * self.minor),
+        }
+    }
+
+    fn as_solid(&self) -> Option<&dyn Solid> {
+        Some(self)
+    }
+
+    /// Any similarity makes a torus of a torus.
+    fn baked(&self, map: &Transform) -> Option<Shape> {
+        let (scale, orthogonal) = similarity(map)?;
+        Some(Shape::Torus(Self {
+            center: map.point_to_world(self.center),
+            axis: unit_vector(orthogonal * self.axis),
+            major: self.major * scale,
+            minor: self.minor * scale,
+            frame: self.frame.turned(self.axis, orthogonal),
+        }))
+    }
+}
+
+impl Solid for Torus {
+    fn crossings(
+        &self,
+        ray: &Ray,
+        range: Interval,
+        from: Option<SurfaceId>,
+        _scratch: &mut Scratch,
+        out: &mut Crossings,
+    ) {
+        let Some(changes) = self.changes(ray, from.is_some()) else {
+            return;
+        };
+        let start = start_of(range, from);
+        out.inside_at_start = from.is_some() && changes.starts_inside;
+        for (t, enters) in changes.iter() {
+            if t <= start {
+                // What lies behind a start on the surface says nothing about the way ahead, unless the start does too.
+                if from.is_none() || t > 0.0 {
+                    out.inside_at_start = enters;
+                }
+            } else if t <= range.max {
+                let side = if enters { Side::Enter } else { Side::Exit };
+                out.list.push(Crossing::new(
+                    PrimHit::simple(t, 0),
+                    self.t_error(ray, t),
+                    side,
+                ));
+            }
+        }
+    }
+
+    fn contains(&self, point: DVec3) -> bool {
+        self.value(point - self.center) <= 0.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    crate::primitive_tests!(lying, || Torus::new(DVec3::ZERO, DVec3::Y, 1.0, 0.25));
+    crate::primitive_tests!(tilted, || Torus::new(
+        DVec3::new(3.0, 1.0, -2.0),
+        DVec3::new(0.4, 1.0, -0.7),
+        2.0,
+        0.9
+    ));
+    crate::primitive_tests!(thin, || Torus::new(
+        DVec3::ZERO,
+        DVec3::new(0.1, 0.2, 1.0),
+        1.0,
+        0.02
+    ));
+    crate::primitive_tests!(horn, || Torus::new(DVec3::ZERO, DVec3::Y, 1.0, 1.0));
+    crate::primitive_tests!(spindle, || Torus::new(
+        DVec3::ZERO,
+        DVec3::new(1.0, 1.0, 0.0),
+        0.6,
+        1.0
+    ));
+
+    fn crossings(torus: &Torus, ray: &Ray) -> Vec<f64> {
+        let mut out = Crossings::default();
+        torus.crossings(ray, Interval::LINE, None, &mut Scratch::default(), &mut out);
+        out.list.iter().map(|c| c.hit.t).collect()
+    }
+
+    fn close(found: &[f64], expected: &[f64]) -> bool {
+        found.len() == expected.len()
+            && found
+                .iter()
+                .zip(expected)
+                .all(|(a, b)| (a - b).abs() < 1e-14)
+    }
+
+    #[test]
+    fn four_two_and_no_crossings() {
+        let torus = Torus::new(DVec3::ZERO, DVec3::Y, 1.0, 0.25);
+        let through_both_tubes = crossings(&torus, &Ray::new(DVec3::new(-2.0, 0.0, 0.0), DVec3::X));
+        assert!(
+            close(&through_both_tubes, &[0.75, 1.25, 2.75, 3.25]),
+            "{through_both_tubes:?}"
+        );
+        let from_above = crossings(&torus, &Ray::new(DVec3::new(1.0, 3.0, 0.0), -DVec3::Y));
+        assert!(close(&from_above, &[2.75, 3.25]), "{from_above:?}");
+        assert_eq!(
+            crossings(&torus, &Ray::new(DVec3::Y * 3.0, -DVec3::Y)),
+            [],
+            "through the hole"
+        );
+        assert_eq!(
+            crossings(&torus, &Ray::new(DVec3::new(-2.0, 0.26, 0.0), DVec3::X)),
+            [],
+            "above"
+        );
+    }
+
+    #[test]
+    fn a_spindle_torus_has_no_surface_within() {
+        let torus = Torus::new(DVec3::ZERO, DVec3::Y, 0.6, 1.0);
+        let across = crossings(&torus, &Ray::new(DVec3::new(-3.0, 0.0, 0.0), DVec3::X));
+        assert!(close(&across, &[1.4, 4.6]), "{across:?}");
+        assert!(torus.contains(DVec3::ZERO));
+        let along_the_axis = crossings(&torus, &Ray::new(DVec3::Y * 3.0, -DVec3::Y));
+        assert!(close(&along_the_axis, &[2.2, 3.8]), "{along_the_axis:?}");
+    }
+
+    #[test]
+    fn distance_does_not_cost_digits_of_the_shape() {
+        let torus = Torus::new(DVec3::ZERO, DVec3::Y, 1.0, 1e-3);
+        for distance in [1e1, 1e3, 1e5, 1e7] {
+            let ray = Ray::new(DVec3::new(-distance, 0.0, 0.0), DVec3::X);
+            let hit = torus.closest_hit(&ray, Interval::FORWARD, None, &mut Scratch::default());
+            let error = hit.map_or(1.0, |hit| (hit.t - (distance - 1.001)).abs());
+            assert!(
+                error <= distance * 2.0 * f64::EPSILON,
+                "{distance}: {error}"
+            );
+        }
+    }
+
+    #[test]
+    fn a_start_on_the_surface_sees_the_other_crossings() {
+        let torus = Torus::new(DVec3::ZERO, DVec3::Y, 1.0, 0.25);
+        let from = Some(SurfaceId {
+            element: 0,
+            facet: 0,
+        });
+        let ray = Ray::new(DVec3::new(-1.25, 0.0, 0.0), DVec3::X);
+        let mut out = Crossings::default();
+        torus.crossings(
+            &ray,
+            Interval::FORWARD,
+            from,
+            &mut Scratch::default(),
+            &mut out,
+        );
+        assert!(out.inside_at_start);
+        let found: Vec<_> = out.list.iter().map(|c| c.hit.t).collect();
+        assert!(close(&found, &[0.5, 2.0, 2.5]), "{found:?}");
+        let outward = Ray::new(DVec3::new(-1.25, 0.0, 0.0), -DVec3::X);
+        assert!(
+            torus
+                .closest_hit(&outward, Interval::FORWARD, from, &mut Scratch::default())
+                .is_none()
+        );
+    }
+
+    #[test]
+    fn impossible_tori_are_refused() {
+        let torus = |axis, major, minor| Torus::try_new(DVec3::ZERO, axis, major, minor);
+        assert!(matches!(
+            torus(DVec3::ZERO, 1.0, 0.5),
+            Err(GeometryError::Degenerate { .. })
+        ));
+        assert!(matches!(
+            torus(DVec3::X, 0.0, 0.5),
+            Err(GeometryError::OutOfRange { .. })
+        ));
+        assert!(matches!(
+            torus(DVec3::X, 1.0, -0.5),
+            Err(GeometryError::OutOfRange { .. })
+        ));
+        assert!(matches!(
+            torus(DVec3::X, f64::NAN, 0.5),
+            Err(GeometryError::NotFinite { .. })
+        ));
+        assert!(torus(DVec3::X, 0.5, 1.0).is_ok());
+    }
+}
