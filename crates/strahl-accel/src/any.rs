@@ -4,12 +4,12 @@ use strahl_math::{Aabb, Interval, Ray};
 
 /// Makes the enum of all structures from the table below.
 macro_rules! accelerators {
-    ($($(#[$doc:meta])* $name:literal $variant:ident,)+) => {
+    ($($(#[$doc:meta])* $name:literal $variant:ident $(#[$default:meta])?,)+) => {
         /// Which acceleration structure.
-        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+        #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
         #[non_exhaustive]
         pub enum AcceleratorKind {
-            $($(#[$doc])* $variant,)+
+            $($(#[$doc])* $(#[$default])? $variant,)+
         }
 
         impl AcceleratorKind {
@@ -72,13 +72,7 @@ accelerators! {
     /// No structure: every primitive for every ray.
     "list" List,
     /// The binary bounding volume hierarchy.
-    "bvh" Bvh2,
-}
-
-impl Default for AcceleratorKind {
-    fn default() -> Self {
-        Self::Bvh2
-    }
+    "bvh" Bvh2 #[default],
 }
 
 impl fmt::Display for AcceleratorKind {

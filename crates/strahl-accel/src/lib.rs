@@ -8,10 +8,11 @@
 mod any;
 mod boxes;
 mod bvh;
+mod cull;
 mod list;
 mod traversal;
 
 pub use any::{AcceleratorKind, AnyAccelerator, UnknownAccelerator};
-pub use bvh::Bvh2;
+pub use bvh::{BuildOptions, Bvh2};
 pub use list::List;
 pub use traversal::{Accelerator, TraversalStats, Visitor};

@@ -2,17 +2,44 @@ use crate::{Accelerator, TraversalStats, Visitor};
 use strahl_math::{Aabb, Interval, Ray};
 
 /// No acceleration at all: looks at every primitive for every ray. The reference all others are compared with.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct List {
     ids: Vec<u32>,
 }
 
 impl List {
-    /// The list of all primitives whose box is not empty.
+    /// The list of all primitives whose box is not empty, of at most 2³² boxes.
     pub fn build(bounds: &[Aabb]) -> Self {
-        let ids = (0..bounds.len() as u32).filter(|id| !bounds[*id as usize].is_empty());
-        Self { ids: ids.collect() }
+        let ids = (0..).zip(bounds).filter(|(_, b)| !b.is_empty());
+        Self::of(ids.map(|(id, _)| id).collect())
     }
+
+    /// The list of some primitives: for what a structure cannot sort, as the unbounded ones.
+    pub(crate) fn of(ids: Vec<u32>) -> Self {
+        Self { ids }
+    }
+
+    pub(crate) fn ids(&self) -> &[u32] {
+        &self.ids
+    }
+}
+
+/// Shows primitives to the visitor one by one and returns the new `t_max`; `f64::NEG_INFINITY` if the visitor wants no more.
+#[inline(always)]
+pub(crate) fn visit_all<V: Visitor>(
+    ids: &[u32],
+    mut t_max: f64,
+    visitor: &mut V,
+    stats: &mut TraversalStats,
+) -> f64 {
+    for id in ids {
+        stats.primitive_tests += 1;
+        t_max = visitor.visit(*id, t_max);
+        if t_max == f64::NEG_INFINITY {
+            break;
+        }
+    }
+    t_max
 }
 
 impl Accelerator for List {
@@ -20,6 +47,7 @@ impl Accelerator for List {
         "list"
     }
 
+    #[inline]
     fn traverse<V: Visitor>(
         &self,
         _: &Ray,
@@ -27,14 +55,7 @@ impl Accelerator for List {
         visitor: &mut V,
         stats: &mut TraversalStats,
     ) {
-        let mut t_max = range.max;
-        for id in &self.ids {
-            stats.primitive_tests += 1;
-            t_max = visitor.visit(*id, t_max);
-            if t_max == f64::NEG_INFINITY {
-                return;
-            }
-        }
+        visit_all(&self.ids, range.max, visitor, stats);
     }
 
     fn bytes(&self) -> usize {

@@ -31,6 +31,9 @@ impl std::ops::AddAssign for TraversalStats {
 /// [`Accelerator::traverse`] visits every primitive whose box the ray may meet with `range.min < t <= t_max`, in any
 /// order, each at most once unless the structure says otherwise, where `t_max` starts at `range.max` and becomes what
 /// the visitor returns. It skips others as it can. Boxes may be unbounded; an empty box is never visited.
+///
+/// Directions may have any finite length but zero. A ray that is none (a coordinate that is not finite, no direction) does no
+/// harm: some primitives are visited, perhaps none.
 pub trait Accelerator: Send + Sync {
     /// The name used on the command line and in the statistics.
     fn name(&self) -> &'static str;

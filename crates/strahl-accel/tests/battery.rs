@@ -1,11 +1,11 @@
 //! Every accelerator gives the answers of the list, to the last bit.
 //!
 //! The primitives are boxes, hit exactly by f64 slabs: the hardest shapes for conservative culling, because every hit lies on a
-//! plane that the culling tests compare with.
+//! plane that the culling tests compare with. Spheres inside of the boxes check it with shapes that only touch them.
 
 use proptest::prelude::*;
 use strahl_accel::{
-    Accelerator, AcceleratorKind, AnyAccelerator, Bvh2, List, TraversalStats, Visitor,
+    Accelerator, AcceleratorKind, AnyAccelerator, BuildOptions, Bvh2, List, TraversalStats, Visitor,
 };
 use strahl_math::{Aabb, DVec3, Interval, Ray};
 
@@ -57,7 +57,25 @@ fn hit_box(b: &Aabb, ray: &Ray, range: Interval) -> Option<f64> {
     [near, far].into_iter().find(|t| range.accepts(*t))
 }
 
+/// The first crossing of the ball inside of a box, which touches it where the box is a cube.
+fn hit_sphere(b: &Aabb, ray: &Ray, range: Interval) -> Option<f64> {
+    let radius = b.size().min_element() * 0.5;
+    let to_center = b.center() - ray.origin;
+    let length = ray.direction.length();
+    let along = ray.direction / length;
+    let middle = along.dot(to_center);
+    let aside = to_center - along * middle;
+    let half = (radius * radius - aside.length_squared()).sqrt();
+    [(middle - half) / length, (middle + half) / length]
+        .into_iter()
+        .find(|t| range.accepts(*t))
+}
+
+/// How a primitive is hit, known its box.
+type Hit = fn(&Aabb, &Ray, Interval) -> Option<f64>;
+
 struct Closest<'a> {
+    hit: Hit,
     boxes: &'a [Aabb],
     ray: Ray,
     t_min: f64,
@@ -67,7 +85,7 @@ struct Closest<'a> {
 impl Visitor for Closest<'_> {
     fn visit(&mut self, id: u32, t_max: f64) -> f64 {
         let range = Interval::new(self.t_min, t_max);
-        let Some(t) = hit_box(&self.boxes[id as usize], &self.ray, range) else {
+        let Some(t) = (self.hit)(&self.boxes[id as usize], &self.ray, range) else {
             return t_max;
         };
         if self
@@ -81,6 +99,7 @@ impl Visitor for Closest<'_> {
 }
 
 struct Any<'a> {
+    hit: Hit,
     boxes: &'a [Aabb],
     ray: Ray,
     range: Interval,
@@ -89,7 +108,7 @@ struct Any<'a> {
 
 impl Visitor for Any<'_> {
     fn visit(&mut self, id: u32, t_max: f64) -> f64 {
-        if hit_box(&self.boxes[id as usize], &self.ray, self.range).is_some() {
+        if (self.hit)(&self.boxes[id as usize], &self.ray, self.range).is_some() {
             assert!(!self.found, "visited after the end");
             self.found = true;
             return f64::NEG_INFINITY;
@@ -98,14 +117,17 @@ impl Visitor for Any<'_> {
     }
 }
 
+/// The closest hit, and whether there is any.
 fn answers(
     accelerator: &impl Accelerator,
+    hit: Hit,
     boxes: &[Aabb],
     ray: &Ray,
     range: Interval,
 ) -> (Option<(f64, u32)>, bool) {
     let stats = &mut TraversalStats::default();
     let mut closest = Closest {
+        hit,
         boxes,
         ray: *ray,
         t_min: range.min,
@@ -113,6 +135,7 @@ fn answers(
     };
     accelerator.traverse(ray, range, &mut closest, stats);
     let mut any = Any {
+        hit,
         boxes,
         ray: *ray,
         range,
@@ -190,8 +213,53 @@ fn ray(rng: &mut Rng, boxes: &[Aabb], offset: DVec3, scale: f64) -> Ray {
     if rng.below(6) == 0 {
         direction[rng.below(3)] = -0.0;
     }
-    direction *= [1.0, 1.0, 1e-30, 1e30, 0.37][rng.below(5)];
+    direction *= [1.0, 0.37, 1e-30, 1e30, 1e-290, 1e280][rng.below(6)];
     Ray::new(origin, direction)
+}
+
+/// Compares every accelerator with the list for many rays; returns the numbers of rays and of hits.
+fn compare(
+    rng: &mut Rng,
+    hit: Hit,
+    count: usize,
+    offset: DVec3,
+    scale: f64,
+    rays: usize,
+) -> (usize, usize) {
+    let boxes = boxes(rng, count, offset, scale);
+    if boxes.iter().all(|b| !b.is_bounded()) {
+        return (0, 0);
+    }
+    let list = List::build(&boxes);
+    let others: Vec<AnyAccelerator> = AcceleratorKind::ALL
+        .iter()
+        .map(|kind| AnyAccelerator::build(*kind, &boxes))
+        .collect();
+    let (mut compared, mut hits) = (0, 0);
+    for _ in 0..rays {
+        let ray = ray(rng, &boxes, offset, scale);
+        if ray.direction == DVec3::ZERO || !ray.direction.is_finite() {
+            continue;
+        }
+        let range = match rng.below(5) {
+            0 => Interval::UNTIL_LIGHT,
+            1 => Interval::new(0.5, 1.0),
+            2 => Interval::LINE,
+            _ => Interval::FORWARD,
+        };
+        let expected = answers(&list, hit, &boxes, &ray, range);
+        hits += usize::from(expected.1);
+        compared += 1;
+        for other in &others {
+            let got = answers(other, hit, &boxes, &ray, range);
+            let name = other.name();
+            assert_eq!(
+                got, expected,
+                "{name} {count} {offset} {scale} {ray:?} {range:?}"
+            );
+        }
+    }
+    (compared, hits)
 }
 
 #[test]
@@ -207,40 +275,101 @@ fn all_accelerators_agree_with_the_list() {
         ][round / 3 % 3]
             * scale;
         let count = [1, 2, 30, 100, 300][round % 5];
-        let boxes = boxes(&mut rng, count, offset, scale);
-        if boxes.iter().all(|b| !b.is_bounded()) {
-            continue;
-        }
-        let list = List::build(&boxes);
-        let others: Vec<AnyAccelerator> = AcceleratorKind::ALL
-            .iter()
-            .map(|kind| AnyAccelerator::build(*kind, &boxes))
-            .collect();
-        for _ in 0..25_000 {
-            let ray = ray(&mut rng, &boxes, offset, scale);
-            if ray.direction == DVec3::ZERO {
-                continue;
-            }
-            let range = match rng.below(4) {
-                0 => Interval::UNTIL_LIGHT,
-                1 => Interval::new(0.5, 1.0),
-                _ => Interval::FORWARD,
-            };
-            let expected = answers(&list, &boxes, &ray, range);
+        let (r, h) = compare(&mut rng, hit_box, count, offset, scale, 20_000);
+        rays += r;
+        hits += h;
+    }
+    assert!(rays > 1_000_000 && hits > rays / 4, "{rays} {hits}");
+}
+
+#[test]
+fn they_agree_on_spheres_inside_the_boxes() {
+    let mut rng = Rng(5);
+    let (mut rays, mut hits) = (0, 0);
+    for round in 0..10 {
+        let scale = [1.0, 1e-6, 1e6][round % 3];
+        let (r, h) = compare(&mut rng, hit_sphere, 100, DVec3::ZERO, scale, 10_000);
+        rays += r;
+        hits += h;
+    }
+    assert!(rays > 50_000 && hits > rays / 8, "{rays} {hits}");
+}
+
+/// Where f32 underflows, where products of coordinates overflow it, and where it ends.
+#[test]
+fn they_agree_on_scenes_at_the_ends_of_f32() {
+    let mut rng = Rng(6);
+    let (mut rays, mut hits) = (0, 0);
+    for scale in [
+        1e-50, 1e-44, 1e-40, 1e-37, 1e-30, 1e-20, 1e15, 1.5e19, 1e25, 1e37, 3e38, 1e50,
+    ] {
+        let (r, h) = compare(&mut rng, hit_box, 50, DVec3::ZERO, scale, 4000);
+        rays += r;
+        hits += h;
+    }
+    assert!(rays > 30_000 && hits > rays / 8, "{rays} {hits}");
+}
+
+/// Every power of two as the length of the direction, subnormal numbers too.
+#[test]
+fn they_agree_on_directions_of_any_length() {
+    let boxes: Vec<Aabb> = (0..20)
+        .map(|i| {
+            let corner = DVec3::new(f64::from(i % 5), f64::from(i / 5), 0.0);
+            Aabb::new(corner, corner + DVec3::splat(0.75))
+        })
+        .collect();
+    let list = List::build(&boxes);
+    let mut hits = 0;
+    for exponent in -1070..1023 {
+        let length = 2f64.powi(exponent.max(-1000)) * 2f64.powi(exponent.min(-1000) + 1000);
+        let ray = Ray::new(
+            DVec3::new(-1.0, 0.5, 0.5) * 0.01,
+            DVec3::new(1.0, 0.5, 0.125) * length,
+        );
+        for range in [Interval::FORWARD, Interval::new(0.0, 2.0 / length)] {
+            let expected = answers(&list, hit_box, &boxes, &ray, range);
             hits += usize::from(expected.1);
-            rays += 1;
-            for other in &others {
-                let got = answers(other, &boxes, &ray, range);
-                assert_eq!(
-                    got,
-                    expected,
-                    "{} round {round} {ray:?} {range:?}",
-                    other.name()
-                );
+            for kind in AcceleratorKind::ALL {
+                let accelerator = AnyAccelerator::build(*kind, &boxes);
+                let got = answers(&accelerator, hit_box, &boxes, &ray, range);
+                assert_eq!(got, expected, "{kind} 2^{exponent} {range:?}");
             }
         }
     }
-    assert!(rays > 1_000_000 && hits > rays / 4, "{rays} {hits}");
+    assert!(hits > 4000, "{hits}");
+}
+
+#[test]
+fn options_change_the_tree_and_not_the_answers() {
+    let mut rng = Rng(8);
+    let boxes = boxes(&mut rng, 2000, DVec3::ZERO, 1.0);
+    let list = List::build(&boxes);
+    let rays: Vec<Ray> = (0..500)
+        .map(|_| ray(&mut rng, &boxes, DVec3::ZERO, 1.0))
+        .collect();
+    let mut nodes = Vec::new();
+    for (max_leaf_size, primitive_cost) in
+        [(0, 1.0), (1, 1.0), (4, 0.1), (1000, 0.01), (8, f64::NAN)]
+    {
+        let options = BuildOptions {
+            max_leaf_size,
+            primitive_cost,
+        };
+        let bvh = Bvh2::build_with(&boxes, &options);
+        assert_eq!(bvh.validate(&boxes), Ok(()));
+        nodes.push(bvh.nodes());
+        for ray in rays.iter().filter(|r| r.direction != DVec3::ZERO) {
+            let [expected, got] = [
+                answers(&list, hit_box, &boxes, ray, Interval::FORWARD),
+                answers(&bvh, hit_box, &boxes, ray, Interval::FORWARD),
+            ];
+            assert_eq!(got, expected, "{options:?} {ray:?}");
+        }
+    }
+    // Leaves of one primitive: a node for every two subtrees.
+    assert_eq!(nodes[..2], [1997, 1997]);
+    assert!(nodes[2] < 1997 / 2 && nodes[3] < 50, "{nodes:?}");
 }
 
 #[test]
@@ -269,7 +398,7 @@ fn hostile_rays_are_harmless() {
             };
             let ray = Ray::new(any(), any());
             // No panic, and no hit that the list does not have.
-            let found = answers(&accelerator, &boxes, &ray, Interval::FORWARD);
+            let found = answers(&accelerator, hit_box, &boxes, &ray, Interval::FORWARD);
             if let Some((t, _)) = found.0 {
                 assert!(t > 0.0);
             }
@@ -337,6 +466,7 @@ fn the_hierarchy_saves_work() {
     for _ in 0..rays {
         let ray = Ray::new(rng.point() * 3.0, rng.point());
         let mut closest = Closest {
+            hit: hit_box,
             boxes: &boxes,
             ray,
             t_min: 0.0,
@@ -381,9 +511,9 @@ proptest! {
         let boxes: Vec<Aabb> = corners.into_iter().map(|(a, b)| Aabb::from_points([a, b])).collect();
         let ray = Ray::new(origin, direction);
         prop_assume!(direction != DVec3::ZERO);
-        let expected = answers(&List::build(&boxes), &boxes, &ray, Interval::FORWARD);
+        let expected = answers(&List::build(&boxes), hit_box, &boxes, &ray, Interval::FORWARD);
         for kind in AcceleratorKind::ALL {
-            let got = answers(&AnyAccelerator::build(*kind, &boxes), &boxes, &ray, Interval::FORWARD);
+            let got = answers(&AnyAccelerator::build(*kind, &boxes), hit_box, &boxes, &ray, Interval::FORWARD);
             prop_assert_eq!(got, expected);
         }
     }

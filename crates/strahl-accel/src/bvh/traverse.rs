@@ -1,5 +1,7 @@
-use super::{Bvh2, Child, MAX_DEPTH};
-use crate::boxes::CullRay;
+use super::node::Child;
+use super::{Bvh2, MAX_DEPTH, Tree};
+use crate::cull::CullRay;
+use crate::list::visit_all;
 use crate::{Accelerator, TraversalStats, Visitor};
 use strahl_math::{Interval, Ray};
 
@@ -16,54 +18,48 @@ impl Accelerator for Bvh2 {
         visitor: &mut V,
         stats: &mut TraversalStats,
     ) {
-        let mut t_max = range.max;
-        for id in &self.unbounded {
-            stats.primitive_tests += 1;
-            t_max = visitor.visit(*id, t_max);
-            if t_max == f64::NEG_INFINITY {
-                return;
-            }
-        }
-        if let Some(root) = self.root
-            && let Some(cull) = CullRay::new(ray, range, &self.bounds, self.max_abs)
+        let t_max = visit_all(self.unbounded.ids(), range.max, visitor, stats);
+        if t_max > f64::NEG_INFINITY
+            && let Some(tree) = &self.tree
+            && let Some(cull) = CullRay::new(ray, range, &tree.bounds)
         {
-            self.walk(root, &cull, t_max, visitor, stats);
+            tree.walk(&cull, t_max, visitor, stats);
         }
     }
 
     fn bytes(&self) -> usize {
-        size_of_val(self.nodes.as_slice())
-            + size_of_val(self.ids.as_slice())
-            + size_of_val(self.unbounded.as_slice())
+        let tree = self.tree.as_ref().map_or(0, |t| {
+            size_of_val(t.nodes.as_slice()) + size_of_val(t.ids.as_slice())
+        });
+        tree + self.unbounded.bytes()
     }
 
     fn nodes(&self) -> usize {
-        self.nodes.len()
+        self.tree.as_ref().map_or(0, |t| t.nodes.len())
     }
 
     fn references(&self) -> usize {
-        self.ids.len() + self.unbounded.len()
+        self.tree.as_ref().map_or(0, |t| t.ids.len()) + self.unbounded.references()
     }
 }
 
-impl Bvh2 {
+impl Tree {
     /// Walks the tree, the nearer child first.
     #[inline]
     fn walk<V: Visitor>(
         &self,
-        root: Child,
         cull: &CullRay,
         mut t_max: f64,
         visitor: &mut V,
         stats: &mut TraversalStats,
     ) {
         let mut far = cull.t_max(t_max);
-        let mut current = root;
-        // What is left to visit, with the parameter at which the ray gets there.
+        let mut current = self.root;
+        // What is left to visit, with the parameter at which the ray gets there: at most one child of each level.
         let mut stack = [(Child::default(), 0.0f32); MAX_DEPTH];
         let mut depth = 0;
         loop {
-            if current.count == 0 {
+            if !current.is_leaf() {
                 stats.node_visits += 1;
                 let node = &self.nodes[current.first as usize];
                 let (near, hit) = cull.enter(&node.boxes, far);
@@ -87,19 +83,17 @@ impl Bvh2 {
                 }
             } else {
                 let first = current.first as usize;
-                let before = t_max;
-                for id in &self.ids[first..first + current.count as usize] {
-                    stats.primitive_tests += 1;
-                    t_max = visitor.visit(*id, t_max);
-                    if t_max == f64::NEG_INFINITY {
+                let ids = &self.ids[first..first + current.count as usize];
+                let closest = visit_all(ids, t_max, visitor, stats);
+                if closest < t_max {
+                    if closest == f64::NEG_INFINITY {
                         return;
                     }
-                }
-                if t_max < before {
+                    t_max = closest;
                     far = cull.t_max(t_max);
                 }
             }
-            // A box that starts exactly at the best hit is still visited: ids decide ties.
+            // A box that starts exactly at the closest hit is still visited: ids decide ties.
             loop {
                 if depth == 0 {
                     return;

@@ -1,4 +1,4 @@
-use super::{Bvh2, Child, MAX_DEPTH};
+use super::{Bvh2, MAX_DEPTH, Tree};
 use crate::boxes::Box32;
 use strahl_math::Aabb;
 
@@ -17,47 +17,11 @@ impl Bvh2 {
             }
             None => Err(format!("primitive {id} does not exist")),
         };
-        for id in &self.unbounded {
+        for id in self.unbounded.ids() {
             note(*id)?;
         }
-        let whole = Box32 {
-            lo: self.bounds.min.to_array().map(|x| x as f32),
-            hi: self.bounds.max.to_array().map(|x| x as f32),
-        };
-        let mut waiting: Vec<(Child, Box32, usize)> =
-            self.root.map(|root| (root, whole, 1)).into_iter().collect();
-        let mut visited = 0;
-        while let Some((child, own, depth)) = waiting.pop() {
-            let first = child.first as usize;
-            if child.count > 0 {
-                let end = first + child.count as usize;
-                let ids = self
-                    .ids
-                    .get(first..end)
-                    .ok_or(format!("ids {first}..{end} do not exist"))?;
-                for id in ids {
-                    note(*id)?;
-                    if !own.contains(&Box32::new(&bounds[*id as usize])) {
-                        return Err(format!("primitive {id} sticks out of its leaf"));
-                    }
-                }
-                continue;
-            }
-            visited += 1;
-            if depth >= MAX_DEPTH || visited > self.nodes.len() {
-                return Err(format!("node {first} is on level {depth}"));
-            }
-            let node = self
-                .nodes
-                .get(first)
-                .ok_or(format!("node {first} does not exist"))?;
-            for (side, child) in node.children.iter().enumerate() {
-                let inner = node.bounds(side);
-                if !own.contains(&inner) {
-                    return Err(format!("a child of node {first} sticks out"));
-                }
-                waiting.push((*child, inner, depth + 1));
-            }
+        if let Some(tree) = &self.tree {
+            tree.validate(bounds, &mut note)?;
         }
         for (id, (count, b)) in seen.iter().zip(bounds).enumerate() {
             let expected = u32::from(!b.is_empty());
@@ -68,5 +32,133 @@ impl Bvh2 {
             }
         }
         Ok(())
+    }
+}
+
+impl Tree {
+    /// The part of the proof that is about the tree; tells `note` of every primitive it comes across.
+    fn validate(
+        &self,
+        bounds: &[Aabb],
+        mut note: impl FnMut(u32) -> Result<(), String>,
+    ) -> Result<(), String> {
+        let whole = Box32::try_new(self.bounds.bounds()).ok_or("the tree has no bounds")?;
+        let mut waiting = vec![(self.root, whole, 0)];
+        let mut visited = 0;
+        while let Some((child, own, depth)) = waiting.pop() {
+            let first = child.first as usize;
+            if child.is_leaf() {
+                let end = first + child.count as usize;
+                let ids = self
+                    .ids
+                    .get(first..end)
+                    .ok_or_else(|| format!("ids {first}..{end} do not exist"))?;
+                for id in ids {
+                    note(*id)?;
+                    let inside =
+                        Box32::try_new(&bounds[*id as usize]).is_some_and(|b| own.contains(&b));
+                    if !inside {
+                        return Err(format!("primitive {id} sticks out of its leaf"));
+                    }
+                }
+                continue;
+            }
+            visited += 1;
+            if visited > self.nodes.len() {
+                return Err(format!("node {first} is in a circle or has two parents"));
+            }
+            if depth >= MAX_DEPTH {
+                return Err(format!("node {first} is on level {depth}"));
+            }
+            let node = self
+                .nodes
+                .get(first)
+                .ok_or_else(|| format!("node {first} does not exist"))?;
+            for (side, child) in node.children.iter().enumerate() {
+                let inner = node.bounds(side);
+                if !own.contains(&inner) {
+                    return Err(format!("a child of node {first} sticks out"));
+                }
+                waiting.push((*child, inner, depth + 1));
+            }
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::node::Child;
+    use super::*;
+    use strahl_math::DVec3;
+
+    fn row(n: u32) -> (Vec<Aabb>, Bvh2) {
+        let boxes: Vec<Aabb> = (0..n)
+            .map(|i| {
+                let corner = DVec3::X * f64::from(2 * i);
+                Aabb::new(corner, corner + DVec3::ONE)
+            })
+            .collect();
+        let bvh = Bvh2::build(&boxes);
+        (boxes, bvh)
+    }
+
+    /// The complaint about a tree after one thing in it was changed.
+    fn complaint(spoil: impl FnOnce(&mut Tree)) -> String {
+        let (boxes, mut bvh) = row(100);
+        assert_eq!(bvh.validate(&boxes), Ok(()));
+        spoil(bvh.tree.as_mut().expect("bounded boxes"));
+        bvh.validate(&boxes).expect_err("spoiled")
+    }
+
+    #[test]
+    fn every_kind_of_damage_is_found() {
+        let leaf = |t: &Tree| {
+            (0..t.nodes.len())
+                .find(|n| t.nodes[*n].children[0].is_leaf())
+                .expect("a leaf")
+        };
+        for (expected, found) in [
+            ("does not exist", complaint(|t| t.ids[3] = 100)),
+            ("sticks out of its leaf", complaint(|t| t.ids.swap(0, 99))),
+            ("sticks out", complaint(|t| t.nodes[0].boxes[0][0] -= 1.0)),
+            ("sticks out", complaint(|t| t.nodes[1].boxes[1][3] += 1.0)),
+            (
+                "is on level",
+                complaint(|t| {
+                    let whole = Box32::try_new(t.bounds.bounds()).expect("bounded");
+                    t.nodes[0].boxes = Box32::pair(&whole, &whole);
+                    t.nodes[0].children = [Child::inner(0); 2];
+                }),
+            ),
+            (
+                "do not exist",
+                complaint(|t| {
+                    let n = leaf(t);
+                    t.nodes[n].children[0].count = 1000;
+                }),
+            ),
+            (
+                "places",
+                complaint(|t| {
+                    let n = leaf(t);
+                    t.nodes[n].children[1] = t.nodes[n].children[0];
+                    let own = t.nodes[n].boxes.map(|p| [p[0], p[0], p[2], p[2]]);
+                    t.nodes[n].boxes = own;
+                }),
+            ),
+        ] {
+            assert!(
+                found.contains(expected),
+                "expected `{expected}`, found `{found}`"
+            );
+        }
+    }
+
+    #[test]
+    fn boxes_of_another_scene_do_not_fit() {
+        let (_, bvh) = row(100);
+        assert!(bvh.validate(&row(99).0).is_err());
+        assert!(bvh.validate(&row(101).0).is_err());
     }
 }

@@ -1,0 +1,201 @@
+use crate::boxes::BoxPair;
+use strahl_math::{Aabb, DVec3, Interval, Ray, Vec4, Vec4Swizzles};
+
+/// What the culling tests must know about a structure: its box, and the margin of their error bound.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct CullBounds {
+    /// The box around everything bounded.
+    bounds: Aabb,
+    /// B: no plane of the structure is further from the coordinate planes.
+    max_abs: f64,
+}
+
+impl CullBounds {
+    /// The constants of a structure whose boxes all lie inside of `bounds`, which must be bounded.
+    pub(crate) fn new(bounds: Aabb) -> Self {
+        // A floor keeps the margins far above f32's subnormal numbers, whose absolute rounding the derivation leaves out.
+        let max_abs = bounds.max_abs();
+        Self {
+            bounds,
+            max_abs: if max_abs > SMALLEST_EXTENT {
+                max_abs
+            } else {
+                SMALLEST_EXTENT
+            },
+        }
+    }
+
+    /// The box around everything bounded.
+    pub(crate) fn bounds(&self) -> &Aabb {
+        &self.bounds
+    }
+}
+
+/// A ray as the culling tests see it: in f32, with all rounding folded into two constants per axis.
+///
+/// # Why no box is lost
+/// The parameter at which the ray crosses the plane `x = b` is `b r - c` with `r = 1/d` and `c = o r`. Let u = 2⁻²⁴. The loop
+/// computes `fl(fl(b rd) - ĉ)` with `rd = fl(r)` (error u|br|), one product (u|br|) and one difference (u(|br| + |c|)), and ĉ
+/// itself is rounded (u|c|): altogether at most `3u|r|(|b| + |o|)` to first order, `b` being exact; the f64 roundings of r and c
+/// are 2⁻²⁹ of that. So with `E = 8u|r|(B + |o|)`, B the largest coordinate of any plane, `ĉ = c + E` makes the computed near
+/// crossing never later than the true one, and `ĉ = c - E` the far crossing never earlier. The factor 8 instead of 3 also covers
+/// hits that a primitive's own rounding puts just outside of its box. (Engine design, section 3.1; there with a fused
+/// multiply-add, which the baseline processor does not have.)
+///
+/// E grows with |o|, so a ray that starts far away is first moved to where it enters the structure, in f64. Directions are scaled
+/// by a power of two so that their largest component is in `1..2`, which is exact; `t` is scaled with them.
+///
+/// Boxes end at 2⁶⁴ and scaled directions at 2⁻⁶⁰, so no product overflows and no difference is a NaN: the minima and maxima of
+/// the loop mean the same on every processor.
+pub(crate) struct CullRay {
+    axes: [CullAxis; 3],
+    /// What was taken off `t`.
+    offset: f64,
+    /// The power of two that `t - offset` is multiplied by.
+    scale: f64,
+    t_min: f32,
+}
+
+/// Constants of one axis, the same in all lanes.
+#[derive(Clone, Copy, Default)]
+struct CullAxis {
+    /// 1/d, rounded.
+    rd: Vec4,
+    /// `c + E`: subtracted for the plane the ray meets first.
+    near: Vec4,
+    /// `c - E`: subtracted for the plane the ray meets last.
+    far: Vec4,
+}
+
+/// Components of a direction smaller than this part of the largest one are replaced by it. While it crosses the structure such
+/// a ray moves by less than 2⁻⁵⁷(B + |o|) along that axis, far less than E: it stays in the slab it is in, and so the test sees it.
+const SMALLEST_DIRECTION: f64 = 1.0 / (1u64 << 60) as f64;
+
+/// The least B: 2⁻⁹⁶.
+const SMALLEST_EXTENT: f64 = 1.0 / (1u128 << 96) as f64;
+
+/// The factor 8u of the error bound.
+const SLACK: f64 = 8.0 / (1u64 << 24) as f64;
+
+/// Origins further away than this many times B are moved to the structure.
+const FAR: f64 = 4.0;
+
+/// Rounding errors of a ray that is moved from far away, per |o|: those of the move (a product and a sum per coordinate), and
+/// those that a primitive makes that does not move the ray.
+const FAR_SLACK: f64 = 32.0 * f64::EPSILON;
+
+impl CullRay {
+    /// The constants for a structure, or `None` if the ray certainly misses it in `range`.
+    ///
+    /// A ray with a coordinate that is not finite, or without a direction, meets nothing.
+    #[inline]
+    pub(crate) fn new(ray: &Ray, range: Interval, structure: &CullBounds) -> Option<Self> {
+        let distance = largest(ray.origin);
+        let (direction, scale) = scaled(ray.direction)?;
+        let (mut origin, mut offset) = (ray.origin, 0.0);
+        let mut margin = SLACK * structure.max_abs;
+        if distance > FAR * structure.max_abs {
+            if distance == f64::INFINITY {
+                return None;
+            }
+            margin += FAR_SLACK * distance;
+            let padded = structure.bounds.padded(DVec3::splat(margin));
+            offset = padded.clip(ray, range)?.min;
+            origin = ray.at(offset);
+            if !(largest(origin) <= FAR * (structure.max_abs + margin)) {
+                // The way to the structure has overflowed: no finite t reaches it.
+                return None;
+            }
+        }
+        let mut axes = [CullAxis::default(); 3];
+        for (axis, constants) in axes.iter_mut().enumerate() {
+            let mut d = direction[axis];
+            if d.abs() < SMALLEST_DIRECTION {
+                d = SMALLEST_DIRECTION.copysign(d);
+            }
+            let (r, o) = (1.0 / d, origin[axis]);
+            let (c, e) = (o * r, r.abs() * (margin + SLACK * o.abs()));
+            *constants = CullAxis {
+                rd: Vec4::splat(r as f32),
+                near: Vec4::splat((c + e) as f32),
+                far: Vec4::splat((c - e) as f32),
+            };
+        }
+        let (t_min, error) = rounded((range.min - offset) * scale);
+        Some(Self {
+            axes,
+            offset,
+            scale,
+            t_min: t_min - error,
+        })
+    }
+
+    /// An upper end of the range as the culling tests compare it: rounded up.
+    #[inline]
+    pub(crate) fn t_max(&self, t_max: f64) -> f32 {
+        let (t_max, error) = rounded((t_max - self.offset) * self.scale);
+        t_max + error
+    }
+
+    /// Where the ray enters two boxes, and which of them it may meet (bits 0 and 1).
+    #[inline(always)]
+    pub(crate) fn enter(&self, pair: &BoxPair, t_max: f32) -> ([f32; 2], u32) {
+        let (mut near, mut far) = (Vec4::splat(self.t_min), Vec4::splat(t_max));
+        for (planes, axis) in pair.iter().zip(&self.axes) {
+            let crossed = Vec4::from_array(*planes) * axis.rd;
+            let other = crossed.zwxy();
+            near = (crossed.min(other) - axis.near).max(near);
+            far = (crossed.max(other) - axis.far).min(far);
+        }
+        ([near.x, near.y], near.cmple(far).bitmask() & 3)
+    }
+}
+
+/// The largest absolute component; infinite if any is infinite or NaN.
+#[inline]
+fn largest(v: DVec3) -> f64 {
+    let v = v.abs();
+    let m = if v.y > v.x { v.y } else { v.x };
+    let m = if v.z > m { v.z } else { m };
+    // Positive numbers make no NaN of their own.
+    if (v.x + v.y + v.z).is_nan() {
+        f64::INFINITY
+    } else {
+        m
+    }
+}
+
+/// The direction divided by a power of two that brings its largest component into `1..2`, and that power; `None` for zero
+/// and for what is not finite.
+#[inline]
+fn scaled(direction: DVec3) -> Option<(DVec3, f64)> {
+    let length = largest(direction);
+    if !(length > 0.0 && length < f64::INFINITY) {
+        return None;
+    }
+    if length >= f64::MIN_POSITIVE {
+        // Both the power and its inverse are exact, and so is the product but for components that are replaced anyway.
+        let power = power_of_two(length);
+        Some((direction * (1.0 / power), power))
+    } else {
+        // Subnormal numbers are lifted into the normal range first, exactly.
+        let power = power_of_two(length * LIFT);
+        Some((direction * LIFT * (1.0 / power), power / LIFT))
+    }
+}
+
+const LIFT: f64 = (1u64 << 54) as f64;
+
+/// The largest power of two that is not above a normal number: its exponent alone.
+#[inline]
+fn power_of_two(x: f64) -> f64 {
+    f64::from_bits(x.to_bits() & f64::INFINITY.to_bits())
+}
+
+/// A bound of `t` in f32 and what its rounding may have changed at most, generously: `t` itself, the difference and the
+/// product it comes from, and the sum that this is added by.
+#[inline]
+fn rounded(t: f64) -> (f32, f32) {
+    let t = t as f32;
+    (t, t.abs() * (2.0 * f32::EPSILON) + f32::MIN_POSITIVE)
+}
