@@ -43,20 +43,137 @@ struct Segment {
     high: f64,
 }
 
-/// Where a ray changes between inside and outside, ascending in `s`: at most the four roots and, for a ray that starts on
-/// the surface, the start.
-#[derive(Default)]
-struct Changes {
-    /// Ray parameter, and whether the ray gets inside there.
-    list: [(f64, bool); 8],
-    count: usize,
-    /// Whether the ray is inside just behind its start; only of interest if it starts on the surface.
-    starts_inside: bool,
+/// What happens along a ray, in this order.
+enum Event {
+    /// The ray starts on the surface, and is inside from there on or not.
+    Start {
+        inside: bool,
+    },
+    Crossing {
+        t: f64,
+        enters: bool,
+    },
 }
 
-impl Changes {
-    fn iter(&self) -> impl Iterator<Item = (f64, bool)> {
-        self.list.into_iter().take(self.count)
+/// Follows a ray from root to root.
+///
+/// The roots only say where the sign *may* change. Whether it does is decided between them, so entering and leaving
+/// alternate even where rounding has lost or made up a root, and the inner surface of a spindle torus, which has
+/// roots too, does not count.
+struct Walk<'a, V> {
+    torus: &'a Torus,
+    segment: Segment,
+    on_surface: bool,
+    inside: bool,
+    /// The last root, as long as it is not known what comes behind it.
+    pending: Option<f64>,
+    visit: V,
+}
+
+/// A stretch of `s` between two roots that is long enough to look for a point inside or outside of it without knowing the
+/// second root exactly.
+const CLEAR: f64 = 1.0 / 64.0;
+
+impl<V: FnMut(Event) -> ControlFlow<()>> Walk<'_, V> {
+    fn run(mut self) {
+        let (coefficients, error) = self.torus.polynomial(&self.segment);
+        let Segment { low, high, .. } = self.segment;
+        let flow = if self.on_surface {
+            // The root at s = 0 is known: without it the polynomial is a cubic.
+            let [_, c1, c2, c3, c4] = coefficients;
+            let cubic = Bernstein::from_power(&[c1, c2, c3, c4], low, high).with_error(error);
+            let mut started = false;
+            let flow = cubic.isolate(&mut |part| {
+                let Some(s) = self.refine(part) else {
+                    return ControlFlow::Continue(());
+                };
+                if s > 0.0 && !started {
+                    started = true;
+                    self.root(0.0)?;
+                }
+                self.root(s)
+            });
+            if started || flow.is_break() {
+                flow
+            } else {
+                self.root(0.0)
+            }
+        } else {
+            let quartic = Bernstein::from_power(&coefficients, low, high).with_error(error);
+            quartic.isolate(&mut |part| self.part(part))
+        };
+        if flow.is_continue() {
+            // The visitor has nothing left to stop.
+            let _ = self.settle(None);
+        }
+    }
+
+    /// The next interval with a root. If that is clear of the last root, its own root is looked for only after the visitor has
+    /// been told about the last one, and perhaps needs no more.
+    fn part<const N: usize>(&mut self, part: &Isolated<N>) -> ControlFlow<()> {
+        if self.pending.is_some_and(|last| part.low() - last > CLEAR) {
+            self.settle(Some(part.low()))?;
+        }
+        self.refine(part)
+            .map_or(ControlFlow::Continue(()), |s| self.root(s))
+    }
+
+    fn root(&mut self, s: f64) -> ControlFlow<()> {
+        self.settle(Some(s))?;
+        self.pending = Some(s);
+        ControlFlow::Continue(())
+    }
+
+    /// Decides what is behind the pending root, where there is no root before `next`. Behind the last one is outside.
+    fn settle(&mut self, next: Option<f64>) -> ControlFlow<()> {
+        let Some(s) = self.pending.take() else {
+            return ControlFlow::Continue(());
+        };
+        let Segment { low, high, .. } = self.segment;
+        let rounding = gamma(8) * if high > -low { high } else { -low };
+        let inside = match next {
+            // A gap no wider than rounding is none.
+            Some(next) if next - s <= rounding => self.inside,
+            Some(next) => self.torus.value(self.segment.at(0.5 * (s + next))) < 0.0,
+            None => false,
+        };
+        let changes = std::mem::replace(&mut self.inside, inside) != inside;
+        if self.on_surface && s == 0.0 {
+            (self.visit)(Event::Start { inside })
+        } else if changes {
+            let t = self.segment.t + s * self.segment.t_per_s;
+            (self.visit)(Event::Crossing { t, enters: inside })
+        } else {
+            ControlFlow::Continue(())
+        }
+    }
+
+    /// The root in an isolating interval: by the distance from the circle if that changes its sign there, else by the
+    /// polynomial if that does.
+    ///
+    /// At the poles of a spindle torus outer and inner surface meet in a double root, where only the former does.
+    fn refine<const N: usize>(&self, part: &Isolated<N>) -> Option<f64> {
+        let (torus, segment) = (self.torus, &self.segment);
+        let (low, high) = (part.low(), part.high());
+        let inside = |s: f64| torus.value(segment.at(s)) < 0.0;
+        let (first, last) =
+            if part.count == RootCount::One && !self.on_surface && torus.minor < torus.major {
+                // Beyond doubt, and there is no inner surface: the distance has the sign of the polynomial.
+                (part.rising, !part.rising)
+            } else {
+                (inside(low), inside(high))
+            };
+        if first == last {
+            return (part.count != RootCount::Even).then(|| part.root());
+        }
+        let value = |s: f64| torus.value_and_slope(segment.at(s), segment.along);
+        Some(find_root(low, high, first, part.estimate(), value))
+    }
+}
+
+impl Segment {
+    fn at(&self, s: f64) -> DVec3 {
+        self.start + self.along * s
     }
 }
 
@@ -200,90 +317,19 @@ impl Torus {
         (coefficients, gamma(16) * magnitude)
     }
 
-    /// All changes between inside and outside.
-    ///
-    /// The roots only say where the sign *may* change. Whether it does is decided between them, so entering and leaving
-    /// alternate even where rounding has lost or made up a root, and the inner surface of a spindle torus, which has
-    /// roots too, does not count.
-    fn changes(&self, ray: &Ray, on_surface: bool) -> Option<Changes> {
-        let segment = self.segment(ray, on_surface)?;
-        let (coefficients, error) = self.polynomial(&segment);
-        let mut roots = [0.0; 6];
-        let mut count = 0;
-        let mut found = |s: f64| {
-            if let Some(slot) = roots.get_mut(count) {
-                *slot = s;
-                count += 1;
+    /// Tells the visitor what happens along the ray, until it breaks off.
+    fn walk(&self, ray: &Ray, on_surface: bool, visit: impl FnMut(Event) -> ControlFlow<()>) {
+        if let Some(segment) = self.segment(ray, on_surface) {
+            Walk {
+                torus: self,
+                segment,
+                on_surface,
+                inside: false,
+                pending: None,
+                visit,
             }
-        };
-        let Segment { low, high, .. } = segment;
-        if on_surface {
-            // The root at s = 0 is known: without it the polynomial is a cubic.
-            let [_, c1, c2, c3, c4] = coefficients;
-            let cubic = Bernstein::from_power(&[c1, c2, c3, c4], low, high).with_error(error);
-            let mut passed_start = false;
-            let _ = cubic.isolate(&mut |part| {
-                if let Some(s) = self.refine(&segment, part) {
-                    if s > 0.0 && !passed_start {
-                        passed_start = true;
-                        found(0.0);
-                    }
-                    found(s);
-                }
-                ControlFlow::Continue(())
-            });
-            if !passed_start {
-                found(0.0);
-            }
-        } else {
-            let quartic = Bernstein::from_power(&coefficients, low, high).with_error(error);
-            let _ = quartic.isolate(&mut |part| {
-                if let Some(s) = self.refine(&segment, part) {
-                    found(s);
-                }
-                ControlFlow::Continue(())
-            });
+            .run();
         }
-
-        let mut changes = Changes::default();
-        let mut inside = false;
-        let roots = roots.get(..count).unwrap_or_default();
-        let rounding = gamma(8) * if high > -low { high } else { -low };
-        for (i, s) in roots.iter().enumerate() {
-            let is_start = on_surface && *s == 0.0;
-            // Behind the last root is outside; a gap no wider than rounding is none.
-            let inside_next = match roots.get(i + 1) {
-                Some(next) if next - s <= rounding => inside,
-                Some(next) => self.value(segment.start + segment.along * (0.5 * (s + next))) < 0.0,
-                None => false,
-            };
-            if is_start {
-                changes.starts_inside = inside_next;
-            } else if inside_next != inside
-                && let Some(slot) = changes.list.get_mut(changes.count)
-            {
-                *slot = (segment.t + s * segment.t_per_s, inside_next);
-                changes.count += 1;
-            }
-            inside = inside_next;
-        }
-        Some(changes)
-    }
-
-    /// The root in an isolating interval: by the distance from the circle if that changes its sign there, else by the
-    /// polynomial if that does.
-    ///
-    /// At the poles of a spindle torus outer and inner surface meet in a double root, where only the former does.
-    fn refine<const N: usize>(&self, segment: &Segment, part: &Isolated<N>) -> Option<f64> {
-        let at = |s: f64| segment.start + segment.along * s;
-        let (low, high) = (part.low(), part.high());
-        let (first, last) = (self.value(at(low)) < 0.0, self.value(at(high)) < 0.0);
-        if first != last {
-            return Some(find_root(low, high, first, |s| {
-                self.value_and_slope(at(s), segment.along)
-            }));
-        }
-        (part.count != RootCount::Even).then(|| part.root())
     }
 
     /// How far the parameter of a crossing may be off.
@@ -334,11 +380,15 @@ impl Primitive for Torus {
         from: Option<SurfaceId>,
         _scratch: &mut Scratch,
     ) -> Option<PrimHit> {
-        let changes = self.changes(ray, from.is_some())?;
-        changes
-            .iter()
-            .find(|(t, _)| range.accepts(*t))
-            .map(|(t, _)| PrimHit::simple(t, 0))
+        let mut closest = None;
+        self.walk(ray, from.is_some(), |event| match event {
+            Event::Crossing { t, .. } if range.accepts(t) => {
+                closest = Some(PrimHit::simple(t, 0));
+                ControlFlow::Break(())
+            }
+            _ => ControlFlow::Continue(()),
+        });
+        closest
     }
 
     fn surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
@@ -397,26 +447,21 @@ impl Solid for Torus {
         _scratch: &mut Scratch,
         out: &mut Crossings,
     ) {
-        let Some(changes) = self.changes(ray, from.is_some()) else {
-            return;
-        };
         let start = start_of(range, from);
-        out.inside_at_start = from.is_some() && changes.starts_inside;
-        for (t, enters) in changes.iter() {
-            if t <= start {
-                // What lies behind a start on the surface says nothing about the way ahead, unless the start does too.
-                if from.is_none() || t > 0.0 {
-                    out.inside_at_start = enters;
+        self.walk(ray, from.is_some(), |event| {
+            match event {
+                Event::Start { inside } => out.inside_at_start = inside,
+                Event::Crossing { t, enters } if t <= start => out.inside_at_start = enters,
+                Event::Crossing { t, enters } if t <= range.max => {
+                    let side = if enters { Side::Enter } else { Side::Exit };
+                    let hit = PrimHit::simple(t, 0);
+                    out.list
+                        .push(Crossing::new(hit, self.t_error(ray, t), side));
                 }
-            } else if t <= range.max {
-                let side = if enters { Side::Enter } else { Side::Exit };
-                out.list.push(Crossing::new(
-                    PrimHit::simple(t, 0),
-                    self.t_error(ray, t),
-                    side,
-                ));
+                Event::Crossing { .. } => return ControlFlow::Break(()),
             }
-        }
+            ControlFlow::Continue(())
+        });
     }
 
     fn contains(&self, point: DVec3) -> bool {
