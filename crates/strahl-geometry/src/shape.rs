@@ -139,7 +139,7 @@ mod tests {
     #[test]
     fn shapes_stay_small() {
         assert!(
-            size_of::<Shape>() <= 128,
+            size_of::<Shape>() <= 96,
             "{}: put the largest shape into an Arc",
             size_of::<Shape>()
         );

@@ -175,6 +175,43 @@ mod tests {
     }
 
     #[test]
+    fn rays_through_the_rim_enter_and_leave() {
+        let mut random = crate::conformance::Random::new(7);
+        let (axis, radius) = (DVec3::new(1.0, -1.0, 0.5), 0.7);
+        let base = DVec3::new(1.0, 2.0, 3.0);
+        let cylinder = Cylinder::new(base, base + axis, radius);
+        let mut through = 0;
+        for _ in 0..20_000 {
+            let across = axis.cross(random.direction()).normalize();
+            let end = if random.below(2) == 0 {
+                base
+            } else {
+                base + axis
+            };
+            let direction = match random.below(3) {
+                // Along the rim, along the side, anywhere.
+                0 => axis.cross(across),
+                1 => axis + across * random.magnitude(-18.0, -1.0),
+                _ => random.direction(),
+            };
+            let origin = end + across * radius - direction * random.between(0.0, 3.0);
+            let ray = Ray::new(origin, direction);
+            let found = hits(&cylinder, &ray);
+            assert!(
+                matches!(found[..], [] | [_, _]) && found.is_sorted_by(|a, b| a.0 < b.0),
+                "{ray:?} {found:?}"
+            );
+            let first = cylinder.closest_hit(&ray, Interval::LINE, None, &mut Scratch::default());
+            assert_eq!(
+                first.map(|hit| (hit.t, hit.surface.facet)),
+                found.first().copied()
+            );
+            through += found.len() / 2;
+        }
+        assert!((2_000..18_000).contains(&through), "{through}");
+    }
+
+    #[test]
     fn a_tube_is_open() {
         let tube = Cylinder::open(DVec3::ZERO, DVec3::Y * 2.0, 1.0);
         assert!(tube.as_solid().is_none());

@@ -170,9 +170,8 @@ impl Frustum {
             if q == 0.0 { (0.0, 0.0) } else { (c / q, q / a) }
         };
         if a > 0.0 {
-            // Both ends are on the same half of the double cone: ours if the radius in the middle is not negative.
-            let ours = radius + growth * (b / a) >= 0.0;
-            return ours.then_some(if first <= second {
+            // Both ends are on the same half of the double cone; the slab cuts away what is on the wrong one.
+            return Some(if first <= second {
                 (first, second)
             } else {
                 (second, first)
