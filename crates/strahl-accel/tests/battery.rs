@@ -54,7 +54,10 @@ fn hit_box(b: &Aabb, ray: &Ray, range: Interval) -> Option<f64> {
     if !(near <= far) {
         return None;
     }
-    [near, far].into_iter().find(|t| range.accepts(*t))
+    // A crossing whose t overflows is none.
+    [near, far]
+        .into_iter()
+        .find(|t| range.accepts(*t) && t.is_finite())
 }
 
 /// The first crossing of the ball inside of a box, which touches it where the box is a cube.
@@ -196,7 +199,7 @@ fn ray(rng: &mut Rng, boxes: &[Aabb], offset: DVec3, scale: f64) -> Ray {
         2 => b.center(),
         _ => offset + rng.point() * scale,
     };
-    let distance = [1e-3, 1.0, 3.0, 1e3, 1e6][rng.below(5)];
+    let distance = [1e-3, 1.0, 3.0, 1e3, 1e6, 1e12][rng.below(6)];
     let mut origin = target + rng.point() * (scale * distance);
     if rng.below(8) == 0 {
         origin = b.corners()[rng.below(8)];
@@ -211,7 +214,7 @@ fn ray(rng: &mut Rng, boxes: &[Aabb], offset: DVec3, scale: f64) -> Ray {
         direction = along;
     }
     if rng.below(6) == 0 {
-        direction[rng.below(3)] = -0.0;
+        direction[rng.below(3)] *= [-0.0, 1e-18, 1e-30][rng.below(3)];
     }
     direction *= [1.0, 0.37, 1e-30, 1e30, 1e-290, 1e280][rng.below(6)];
     Ray::new(origin, direction)
@@ -416,7 +419,16 @@ fn degenerate_builds_are_valid() {
             Aabb::new(p, p)
         })
         .collect();
+    // Every split of these takes off a few only, along one axis after the other: without a limit, 100 levels and more.
+    let deep: Vec<Aabb> = (0..1000)
+        .map(|i| {
+            let mut p = DVec3::ZERO;
+            p[i / 42 % 3] = 2f64.powi(63 - 5 * (i % 42) as i32);
+            Aabb::new(p, p)
+        })
+        .collect();
     for boxes in [
+        deep,
         vec![],
         vec![Aabb::EMPTY; 3],
         vec![Aabb::EVERYTHING; 3],
