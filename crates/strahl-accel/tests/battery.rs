@@ -419,16 +419,7 @@ fn degenerate_builds_are_valid() {
             Aabb::new(p, p)
         })
         .collect();
-    // Every split of these takes off a few only, along one axis after the other: without a limit, 100 levels and more.
-    let deep: Vec<Aabb> = (0..1000)
-        .map(|i| {
-            let mut p = DVec3::ZERO;
-            p[i / 42 % 3] = 2f64.powi(63 - 5 * (i % 42) as i32);
-            Aabb::new(p, p)
-        })
-        .collect();
     for boxes in [
-        deep,
         vec![],
         vec![Aabb::EMPTY; 3],
         vec![Aabb::EVERYTHING; 3],

@@ -241,3 +241,35 @@ impl Split {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use strahl_math::DVec3;
+
+    fn depth(tree: &Tree, child: Child) -> usize {
+        if child.is_leaf() {
+            return 0;
+        }
+        let below = tree.nodes[child.first as usize].children;
+        1 + below.map(|c| depth(tree, c)).into_iter().max().unwrap_or(0)
+    }
+
+    /// Points ever further from the origin on six sides: every split takes off those of one place only.
+    #[test]
+    fn a_tree_that_would_be_too_deep_is_halved() {
+        let boxes: Vec<Aabb> = (0..2000)
+            .map(|i| {
+                let mut p = DVec3::ZERO;
+                p[i % 3] = [1.0, -1.0][i / 3 % 2] * 2f64.powi(63 - 5 * (i / 6 % 42) as i32);
+                Aabb::new(p, p)
+            })
+            .collect();
+        let bvh = Bvh2::build(&boxes);
+        let tree = bvh.tree.as_ref().expect("bounded boxes");
+        // Without the limit it would not fit the stack.
+        let depth = depth(tree, tree.root);
+        assert!((55..MAX_DEPTH).contains(&depth), "{depth}");
+        assert_eq!(bvh.validate(&boxes), Ok(()));
+    }
+}
