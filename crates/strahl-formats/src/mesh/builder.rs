@@ -78,6 +78,13 @@ impl<K: Eq + Hash> MeshBuilder<K> {
         })
     }
 
+    /// Replaces the normal of a vertex that has been made with one.
+    pub(crate) fn set_normal(&mut self, vertex: u32, normal: DVec3) {
+        if let Some(place) = self.normals.get_mut(vertex as usize) {
+            *place = normal.as_vec3().to_array();
+        }
+    }
+
     /// Adds a triangle of such vertices, which comes from this line of the file.
     pub(crate) fn triangle(&mut self, vertices: [u32; 3], line: u32) {
         self.triangles.push(vertices);

@@ -1,6 +1,7 @@
 //! Formats that describe surfaces (OBJ, PLY, STL), and what turns their faces into meshes.
 
 mod builder;
+pub(crate) mod obj;
 pub(crate) mod ply;
 mod polygon;
 pub(crate) mod stl;

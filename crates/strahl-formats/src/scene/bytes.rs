@@ -1,10 +1,11 @@
 //! Bytes from files and from gzip, within limits.
 
+use super::Fallible;
 use flate2::read::MultiGzDecoder;
 use std::borrow::Cow;
 use std::fs::{self, File};
 use std::io::{self, ErrorKind, Read};
-use std::path::{Component, Path, PathBuf};
+use std::path::{Component, Path};
 use strahl_scene::Diagnostic;
 
 /// Most bytes read from something that is no regular file (a pipe) and so has no size of its own.
@@ -16,7 +17,7 @@ const FREE_EXPANSION: u64 = 64 << 20;
 const MOST_EXPANSION: u64 = 200;
 
 /// All bytes of a file, or what is in the way.
-pub(super) fn read_file(path: &Path) -> Result<Vec<u8>, Diagnostic> {
+pub(super) fn read_file(path: &Path) -> Fallible<Vec<u8>> {
     let name = path.display();
     let about = |e: &io::Error| match e.kind() {
         ErrorKind::NotFound => Diagnostic::error(format!("there is no file `{name}`")),
@@ -27,12 +28,11 @@ pub(super) fn read_file(path: &Path) -> Result<Vec<u8>, Diagnostic> {
     };
     let metadata = fs::metadata(path).map_err(|e| about(&e))?;
     if metadata.is_dir() {
-        return Err(Diagnostic::error(format!(
-            "`{name}` is a folder, not a scene file"
-        )));
+        let problem = format!("`{name}` is a folder, not a scene file");
+        return Err(Box::new(Diagnostic::error(problem)));
     }
     if metadata.is_file() {
-        return fs::read(path).map_err(|e| about(&e));
+        return Ok(fs::read(path).map_err(|e| about(&e))?);
     }
     let mut bytes = vec![];
     let file = File::open(path).map_err(|e| about(&e))?;
@@ -40,68 +40,75 @@ pub(super) fn read_file(path: &Path) -> Result<Vec<u8>, Diagnostic> {
         .read_to_end(&mut bytes)
         .map_err(|e| about(&e))?;
     if bytes.len() as u64 > PIPE_LIMIT {
-        return Err(Diagnostic::error(format!(
-            "`{name}` sends more than {} GiB",
-            PIPE_LIMIT >> 30
-        ))
-        .hint("save it as a file first"));
+        let problem = format!("`{name}` sends more than {} GiB", PIPE_LIMIT >> 30);
+        return Err(Box::new(
+            Diagnostic::error(problem).hint("save it as a file first"),
+        ));
     }
     Ok(bytes)
 }
 
 /// Decompresses what begins like gzip; anything else comes back as it is.
-pub(super) fn decompressed<'a>(
-    bytes: Cow<'a, [u8]>,
-    name: &str,
-) -> Result<Cow<'a, [u8]>, Diagnostic> {
+pub(super) fn decompressed<'a>(bytes: Cow<'a, [u8]>, name: &str) -> Fallible<Cow<'a, [u8]>> {
     const MAGIC: [u8; 2] = [0x1f, 0x8b];
     if !bytes.starts_with(&MAGIC) {
         return Ok(bytes);
     }
     let limit = FREE_EXPANSION + MOST_EXPANSION * bytes.len() as u64;
     let mut plain = vec![];
-    match MultiGzDecoder::new(&*bytes)
+    let decoded = MultiGzDecoder::new(&*bytes)
         .take(limit + 1)
-        .read_to_end(&mut plain)
-    {
-        Ok(_) if plain.len() as u64 > limit => Err(Diagnostic::error(format!(
-            "`{name}`: {} compressed bytes expand to more than {limit}",
-            bytes.len()
-        ))
-        .hint("decompress it with gunzip if this is intended")),
-        Ok(_) => Ok(Cow::Owned(plain)),
-        Err(e) if e.kind() == ErrorKind::UnexpectedEof => Err(Diagnostic::error(format!(
-            "`{name}`: the gzip data ends too early, after {} decompressed bytes",
-            plain.len()
-        ))
-        .hint("the file is cut off: copy or download it again")),
-        Err(e) => Err(Diagnostic::error(format!(
-            "`{name}`: the gzip data is damaged: {e}"
-        ))),
-    }
+        .read_to_end(&mut plain);
+    let problem = match decoded {
+        Ok(_) if plain.len() as u64 <= limit => return Ok(Cow::Owned(plain)),
+        Ok(_) => {
+            let compressed = bytes.len();
+            let problem =
+                format!("`{name}`: {compressed} compressed bytes expand to more than {limit}");
+            Diagnostic::error(problem).hint("decompress it with gunzip if this is intended")
+        }
+        Err(e) if e.kind() == ErrorKind::UnexpectedEof => {
+            let end = plain.len();
+            let problem =
+                format!("`{name}`: the gzip data ends too early, after {end} decompressed bytes");
+            Diagnostic::error(problem).hint("the file is cut off: copy or download it again")
+        }
+        Err(e) => Diagnostic::error(format!("`{name}`: the gzip data is damaged: {e}")),
+    };
+    Err(Box::new(problem))
 }
 
-/// Reads a file that a scene names, if it lies in the scene's folder or below.
+/// The path of a file that a scene names, with slashes and without `.`, if it is in the scene's folder or below.
 ///
 /// The check is lexical: `..`, absolute paths and drive letters are refused, symbolic links that the user put there are
 /// followed.
-pub(crate) fn read_beside(folder: Option<&Path>, relative: &str) -> Result<Vec<u8>, String> {
-    let Some(folder) = folder else {
-        return Err("the scene has no folder (it was not read from a file)".into());
-    };
+pub(crate) fn path_beside(relative: &str) -> Result<String, String> {
     // Exporters on Windows write backslashes.
     let relative = relative.replace('\\', "/");
-    let inside = |part: Component<'_>| matches!(part, Component::Normal(_) | Component::CurDir);
-    if relative.is_empty()
-        || relative.contains(['\0', ':'])
-        || !Path::new(&relative).components().all(inside)
-    {
+    let mut parts = vec![];
+    let mut inside = !relative.contains(['\0', ':']);
+    for part in Path::new(&relative).components() {
+        match part {
+            Component::Normal(name) => parts.push(name.to_string_lossy()),
+            Component::CurDir => {}
+            _ => inside = false,
+        }
+    }
+    if parts.is_empty() || !inside {
         return Err(
             "only files in the scene's folder or below are read, by a relative path without `..`"
                 .into(),
         );
     }
-    let path: PathBuf = folder.join(relative);
+    Ok(parts.join("/"))
+}
+
+/// Reads a file that a scene names, by a path from [`path_beside`].
+pub(crate) fn read_beside(folder: Option<&Path>, path: &str) -> Result<Vec<u8>, String> {
+    let Some(folder) = folder else {
+        return Err("the scene has no folder (it was not read from a file)".into());
+    };
+    let path = folder.join(path);
     let metadata = fs::metadata(&path).map_err(|e| match e.kind() {
         ErrorKind::NotFound => "there is no such file".to_owned(),
         _ => e.to_string(),

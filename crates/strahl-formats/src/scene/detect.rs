@@ -1,3 +1,4 @@
+use super::Fallible;
 use std::path::Path;
 use std::{fmt, str::FromStr};
 use strahl_scene::Diagnostic;
@@ -142,7 +143,7 @@ impl FromStr for SceneFormat {
 }
 
 /// The format of a file from its name, or else from its first bytes.
-pub(super) fn of_file(path: &Path, bytes: &[u8]) -> Result<SceneFormat, Diagnostic> {
+pub(super) fn of_file(path: &Path, bytes: &[u8]) -> Fallible<SceneFormat> {
     let extension = |p: &Path| p.extension().map(|e| e.to_string_lossy().into_owned());
     let mut ending = extension(path);
     if ending
@@ -158,7 +159,8 @@ pub(super) fn of_file(path: &Path, bytes: &[u8]) -> Result<SceneFormat, Diagnost
             Some(ending) => format!("`{shown}`: unknown ending `.{ending}`, and the content does not show its format"),
             None => format!("`{shown}`: the name has no ending, and the content does not show its format"),
         };
-        Diagnostic::error(message).hint(format!("name the format with `--format`; there are: {}", names()))
+        let hint = format!("name the format with `--format`; there are: {}", names());
+        Box::new(Diagnostic::error(message).hint(hint))
     })
 }
 

@@ -11,15 +11,17 @@
 //!
 //! A format that describes surfaces only (OBJ, PLY, STL) leaves camera and lights empty: the renderer frames the objects.
 
-mod bytes;
+pub(crate) mod bytes;
 mod detect;
+mod gltf;
 mod nff;
 pub(crate) mod report;
 pub(crate) mod text;
+pub(crate) mod textures;
 
-use crate::mesh::{ply, stl};
+use crate::mesh::{obj, ply, stl};
 pub use detect::{FormatInfo, SceneFormat, UnknownSceneFormat, formats};
-pub(crate) use report::Report;
+pub(crate) use report::{Fallible, Report};
 use std::borrow::Cow;
 use std::path::Path;
 use strahl_scene::{Diagnostic, Scene};
@@ -49,15 +51,15 @@ pub fn load_path(path: &Path, format: Option<SceneFormat>) -> Loaded {
     let name = path.display().to_string();
     let bytes = match bytes::read_file(path) {
         Ok(bytes) => bytes,
-        Err(problem) => return Loaded::failed(problem),
+        Err(problem) => return Loaded::failed(*problem),
     };
     let bytes = match bytes::decompressed(Cow::Owned(bytes), &name) {
         Ok(bytes) => bytes,
-        Err(problem) => return Loaded::failed(problem),
+        Err(problem) => return Loaded::failed(*problem),
     };
     let format = match format.map_or_else(|| detect::of_file(path, &bytes), Ok) {
         Ok(format) => format,
-        Err(problem) => return Loaded::failed(problem),
+        Err(problem) => return Loaded::failed(*problem),
     };
     // The folder of `scene.nff` is the empty path, which means the current one.
     read(&bytes, &name, format, path.parent())
@@ -73,7 +75,7 @@ pub fn load_bytes<'a>(
 ) -> Loaded {
     match bytes::decompressed(bytes.into(), display_name) {
         Ok(bytes) => read(&bytes, display_name, format, base_dir),
-        Err(problem) => Loaded::failed(problem),
+        Err(problem) => Loaded::failed(*problem),
     }
 }
 
@@ -100,11 +102,8 @@ fn read(bytes: &[u8], name: &str, format: SceneFormat, folder: Option<&Path>) ->
         SceneFormat::Nff => nff::read(&input, &mut report),
         SceneFormat::Ply => ply::read(&input, &mut report),
         SceneFormat::Stl => stl::read(&input, &mut report),
-        SceneFormat::Obj | SceneFormat::Gltf => {
-            return Loaded::failed(Diagnostic::error(format!(
-                "`{name}`: {format} is not read yet"
-            )));
-        }
+        SceneFormat::Obj => obj::read(&input, &mut report),
+        SceneFormat::Gltf => gltf::read(&input, &mut report),
     };
     let (failed, diagnostics) = report.finish();
     Loaded {

@@ -1,6 +1,9 @@
 use std::collections::HashMap;
 use strahl_scene::{Diagnostic, Severity};
 
+/// A result whose error is already placed; boxed, because it is rare and large.
+pub(crate) type Fallible<T> = Result<T, Box<Diagnostic>>;
+
 /// Most errors, and most warnings, that are shown one by one.
 const MOST_SHOWN: usize = 20;
 

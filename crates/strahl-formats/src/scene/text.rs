@@ -46,6 +46,7 @@ impl<'a> Text<'a> {
             at: start,
             line,
             comment: Some(b'#'),
+            continued: false,
             last: None,
         }
     }
@@ -62,7 +63,7 @@ impl<'a> Text<'a> {
         let start = start.min(self.bytes.len());
         let first = self.bytes[..start]
             .iter()
-            .rposition(|b| is_end(b))
+            .rposition(is_end)
             .map_or(0, |p| p + 1);
         // What is shown of a very long line is not far from the place.
         let until = start + length.min(1000) + 1000;
@@ -120,6 +121,8 @@ pub(crate) struct Words<'a> {
     at: usize,
     line: u32,
     comment: Option<u8>,
+    /// Whether a backslash at the end of a line joins it with the next.
+    continued: bool,
     last: Option<Word<'a>>,
 }
 
@@ -128,6 +131,14 @@ impl<'a> Words<'a> {
     pub(crate) fn without_comments(self) -> Self {
         Self {
             comment: None,
+            ..self
+        }
+    }
+
+    /// With backslashes at the ends of lines that go on in the next one.
+    pub(crate) fn with_continuation(self) -> Self {
+        Self {
+            continued: true,
             ..self
         }
     }
@@ -154,15 +165,43 @@ impl<'a> Words<'a> {
         self.clone().next()
     }
 
-    /// Goes to the end of the line; returns what is left of it.
+    /// Goes to the end of the line, with continuations; returns what is left of it.
     pub(crate) fn skip_line(&mut self) -> &'a [u8] {
+        let start = self.at;
+        loop {
+            let part = self.skip_to_end();
+            let joined =
+                self.continued && part.last() == Some(&b'\\') && self.at < self.text.bytes.len();
+            if !joined {
+                return &self.text.bytes[start..self.at];
+            }
+            self.skip_end();
+        }
+    }
+
+    /// Goes to the next line end; returns what is passed.
+    fn skip_to_end(&mut self) -> &'a [u8] {
         let rest = &self.text.bytes[self.at..];
-        let length = rest
-            .iter()
-            .position(|b| matches!(b, b'\n' | b'\r'))
-            .unwrap_or(rest.len());
+        let length = rest.iter().position(|b| is_end(*b)).unwrap_or(rest.len());
         self.at += length;
         &rest[..length]
+    }
+
+    /// Passes the line end that is next: LF, CR LF or CR.
+    fn skip_end(&mut self) {
+        self.at += if self.text.bytes[self.at..].starts_with(b"\r\n") {
+            2
+        } else {
+            1
+        };
+        self.line = self.line.saturating_add(1);
+    }
+
+    /// Whether a backslash that joins lines is next.
+    fn at_continuation(&self, at: usize) -> bool {
+        self.continued
+            && self.text.bytes[at] == b'\\'
+            && self.text.bytes.get(at + 1).is_some_and(|b| is_end(*b))
     }
 
     /// Where the next byte is.
@@ -177,10 +216,13 @@ impl<'a> Words<'a> {
 
     fn word(&mut self) -> Option<Word<'a>> {
         let rest = &self.text.bytes[self.at..];
-        let length = rest
+        let mut length = rest
             .iter()
             .position(|b| is_blank(*b) || is_end(*b))
             .unwrap_or(rest.len());
+        if length > 1 && self.at_continuation(self.at + length - 1) {
+            length -= 1;
+        }
         if length == 0 {
             return None;
         }
@@ -195,23 +237,19 @@ impl<'a> Words<'a> {
     }
 
     fn skip_blanks(&mut self, lines: bool) {
-        let bytes = self.text.bytes;
-        while let Some(&byte) = bytes.get(self.at) {
+        while let Some(&byte) = self.text.bytes.get(self.at) {
             if is_end(byte) {
                 if !lines {
                     return;
                 }
-                // A line ends with LF, CR LF or CR.
-                self.at += if byte == b'\r' && bytes.get(self.at + 1) == Some(&b'\n') {
-                    2
-                } else {
-                    1
-                };
-                self.line = self.line.saturating_add(1);
+                self.skip_end();
             } else if is_blank(byte) {
                 self.at += 1;
             } else if Some(byte) == self.comment {
-                self.skip_line();
+                self.skip_to_end();
+            } else if self.at_continuation(self.at) {
+                self.at += 1;
+                self.skip_end();
             } else {
                 return;
             }
@@ -332,6 +370,31 @@ mod tests {
         }
         let expected = [("a", 1), ("b", 1), ("d", 3), ("e#f", 5)];
         assert_eq!(all, expected.map(|(w, l)| (w.to_owned(), l)));
+    }
+
+    #[test]
+    fn a_backslash_joins_lines_if_asked_for() {
+        let t = text(b"f 1 2\\\n3 \\\r\n 4\nx \\\ny\nz # c\\\nw");
+        let mut words = t.words(0, 1).with_continuation();
+        let mut line = vec![];
+        words.next();
+        while let Some(word) = words.next_in_line() {
+            line.push((word.shown(), word.line));
+        }
+        assert_eq!(
+            line,
+            [("1", 1), ("2", 1), ("3", 2), ("4", 3)].map(|(w, l)| (w.to_owned(), l))
+        );
+        assert_eq!(words.next().map(|w| w.line), Some(4));
+        assert_eq!(words.skip_line(), b" \\\ny");
+        assert_eq!(
+            words.next().map(|w| (w.shown(), w.line)),
+            Some(("z".into(), 6))
+        );
+        assert_eq!(
+            words.next().map(|w| (w.shown(), w.line)),
+            Some(("w".into(), 7))
+        );
     }
 
     #[test]

@@ -1,8 +1,7 @@
-use super::Fallible;
 use super::faces::Faces;
 use super::header::{Element, Encoding, Header, Property, Scalar};
 use super::source::Source;
-use crate::scene::report::Report;
+use crate::scene::report::{Fallible, Report};
 use strahl_geometry::MeshData;
 use strahl_math::DVec3;
 use strahl_scene::Diagnostic;

@@ -1,9 +1,8 @@
-use super::Fallible;
 use super::body::{Positions, list_length};
 use super::header::Scalar;
 use super::source::Source;
 use crate::mesh::{Triangulator, polygon_normal};
-use crate::scene::report::Report;
+use crate::scene::report::{Fallible, Report};
 use strahl_math::DVec3;
 use strahl_scene::Diagnostic;
 

@@ -1,4 +1,4 @@
-use super::Fallible;
+use crate::scene::Fallible;
 use crate::scene::text::{Text, Word, Words};
 use strahl_scene::Diagnostic;
 

@@ -18,7 +18,7 @@ mod source;
 
 use crate::mesh::object_name;
 use crate::scene::Input;
-use crate::scene::report::Report;
+use crate::scene::report::{Fallible, Report};
 use crate::scene::text::Text;
 use body::Body;
 use header::{Encoding, Header};
@@ -26,9 +26,6 @@ use source::{Ascii, Binary};
 use std::sync::Arc;
 use strahl_geometry::TriangleMesh;
 use strahl_scene::{Diagnostic, Object, Scene};
-
-/// An error already placed; boxed, because it is rare and large.
-type Fallible<T> = Result<T, Box<Diagnostic>>;
 
 /// Reads a mesh; what is wrong goes to the report.
 pub(crate) fn read(input: &Input<'_>, report: &mut Report) -> Scene {

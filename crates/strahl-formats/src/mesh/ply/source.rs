@@ -1,5 +1,5 @@
-use super::Fallible;
 use super::header::{Header, Scalar};
+use crate::scene::Fallible;
 use crate::scene::text::{Text, Words, parse_f32, parse_f64, parse_integer};
 use strahl_scene::Diagnostic;
 

@@ -8,7 +8,7 @@
 
 use crate::mesh::{object_name, polygon_normal};
 use crate::scene::Input;
-use crate::scene::report::Report;
+use crate::scene::report::{Fallible, Report};
 use crate::scene::text::{Text, Word, Words, parse_f32};
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -19,9 +19,6 @@ use strahl_scene::{Diagnostic, Object, Scene, Span};
 /// Bytes before the triangles, and of a triangle.
 const HEADER: usize = 84;
 const TRIANGLE: usize = 50;
-
-/// An error already placed; boxed, because it is rare and large.
-type Fallible<T> = Result<T, Box<Diagnostic>>;
 
 /// Reads the triangles; what is wrong goes to the report.
 pub(crate) fn read(input: &Input<'_>, report: &mut Report) -> Scene {

@@ -27,7 +27,7 @@ mod fill;
 mod statements;
 
 use super::text::{Text, Word, Words};
-use super::{Input, Report};
+use super::{Fallible, Input, Report};
 use crate::mesh::Triangulator;
 use fill::Fill;
 use std::sync::Arc;
@@ -64,9 +64,6 @@ pub(super) fn read(input: &Input<'_>, report: &mut Report) -> Scene {
     reader.statements();
     reader.finish()
 }
-
-/// An error already placed; boxed, because it is rare and large.
-type Fallible<T> = Result<T, Box<Diagnostic>>;
 
 struct Reader<'a, 'r> {
     text: Text<'a>,

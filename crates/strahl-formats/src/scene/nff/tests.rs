@@ -268,6 +268,7 @@ fn standard_scenes() -> Option<PathBuf> {
     folder.is_dir().then_some(folder)
 }
 
+#[expect(clippy::print_stderr, reason = "a test that is skipped says so")]
 #[test]
 fn the_standard_scenes_have_the_published_numbers_of_primitives_and_lights() {
     let Some(folder) = standard_scenes() else {

@@ -1,0 +1,342 @@
+use crate::scene::{Loaded, SceneFormat, load_bytes, load_path};
+use std::fs;
+use std::sync::Arc;
+use strahl_geometry::{Primitive, Shape, TriangleMesh};
+use strahl_math::{DVec2, DVec3, Interval, Ray};
+use strahl_scene::{Object, ObjectKind, Scene};
+use strahl_shade::{Color, Material};
+
+fn load(text: &str) -> Loaded {
+    load_bytes(text.as_bytes(), "part.obj", SceneFormat::Obj, None)
+}
+
+fn messages(loaded: &Loaded) -> Vec<String> {
+    loaded.diagnostics.iter().map(ToString::to_string).collect()
+}
+
+fn scene(text: &str) -> Scene {
+    let loaded = load(text);
+    assert_eq!(messages(&loaded), [""; 0]);
+    loaded.scene.expect("no errors")
+}
+
+fn mesh(object: &Object) -> Arc<TriangleMesh> {
+    match &object.kind {
+        ObjectKind::Shape(Shape::TriangleMesh(mesh)) => mesh.clone(),
+        other => panic!("{other:?}"),
+    }
+}
+
+fn names(scene: &Scene) -> Vec<&str> {
+    scene
+        .objects
+        .0
+        .iter()
+        .map(|o| o.name.as_deref().unwrap_or(""))
+        .collect()
+}
+
+const SQUARE: &str = "v 0 0 0\nv 1 0 0 1.0\nv 1 1 0 0.5 0.5 0.5\nv 0 1 0\n";
+
+#[test]
+fn all_forms_of_corners_are_read() {
+    let text = format!(
+        "{SQUARE}vt 0.25\nvt 0.5 0.75\nvt 1 1 0\nvn 0 0 2\nf 1 2 3\nf 1/1 2/2 3/3\nf 1//1 2//1 3//1\n\
+         f 1/1/1 2/2/1 3/3/1\nf -4 -3 -2\nf -4/-3/-1 -3/-2/-1 \\\n -2/-1/-1\n"
+    );
+    let scene = scene(&text);
+    assert_eq!(names(&scene), ["part.obj"]);
+    let mesh = mesh(&scene.objects.0[0]);
+    assert_eq!(mesh.triangle_count(), 6);
+    // Corners with equal numbers are one vertex, however they are written.
+    assert_eq!(mesh.positions().len(), 12);
+    assert_eq!(mesh.indices()[4], mesh.indices()[0]);
+    assert_eq!(mesh.indices()[5], mesh.indices()[3]);
+    assert_eq!(mesh.face_line(5), Some(14));
+}
+
+/// The surface where a ray along -z meets the mesh.
+fn look_down(mesh: &TriangleMesh, x: f64, y: f64) -> strahl_geometry::SurfacePoint {
+    let ray = Ray::new(DVec3::new(x, y, 9.0), DVec3::NEG_Z);
+    let hit = mesh
+        .closest_hit(&ray, Interval::FORWARD, None, &mut Default::default())
+        .expect("a hit");
+    mesh.surface_at(&ray, &hit)
+}
+
+#[test]
+fn texture_coordinates_count_from_the_top() {
+    let scene = scene(&format!("{SQUARE}vt 0 0\nvt 1 0\nvt 1 1\nf 1/1 2/2 3/3\n"));
+    let uv = look_down(&mesh(&scene.objects.0[0]), 0.75, 0.25).uv;
+    assert!((uv - DVec2::new(0.75, 0.75)).length() < 1e-12, "{uv}");
+}
+
+#[test]
+fn polygons_are_cut_concave_ones_too() {
+    let scene = scene("v 0 0 0\nv 4 0 0\nv 1 1 0\nv 0 4 0\nv 0 0 1\nf 1 2 3 4\ng cube\nf 1 2 4\n");
+    let dart = mesh(&scene.objects.0[0]);
+    let area: f64 = (0..2)
+        .map(|i| dart.corners(i))
+        .map(|[a, b, c]| (b - a).cross(c - a).z)
+        .sum();
+    assert_eq!((dart.triangle_count(), area), (2, 8.0));
+    assert_eq!(names(&scene), ["part.obj", "cube"]);
+}
+
+#[test]
+fn names_and_materials_tell_meshes_apart() {
+    let text = format!(
+        "{SQUARE}o a\nf 1 2 3\nusemtl red\nf 1 2 3\ng b\nf 1 2 3\no c # not a comment? it is\nf 1 2 3\no a\ng\nf 1 3 4\n"
+    );
+    let loaded = load(&text);
+    let scene = loaded.scene.as_ref().expect("warnings only");
+    assert_eq!(
+        names(scene),
+        ["a", "a", "a/b", "c # not a comment? it is/b"]
+    );
+    assert_eq!(mesh(&scene.objects.0[1]).triangle_count(), 2);
+    assert_eq!(scene.objects.0[1].span.line, 8);
+    assert_eq!(
+        messages(&loaded)[0],
+        "warning: `a` gets the default material: there is no material `red`"
+    );
+}
+
+/// A roof: two squares that meet in an edge, at a right angle.
+const ROOF: &str = "v -1 0 0\nv -1 1 0\nv 0 1 1\nv 0 0 1\nv 1 0 0\nv 1 1 0\n";
+
+#[test]
+fn smoothing_groups_give_smooth_normals_and_off_gives_none() {
+    let faces = "f 1 4 3 2\nf 4 5 6 3\n";
+    let n_at_ridge = |text: &str| look_down(&mesh(&scene(text).objects.0[0]), -1e-9, 0.5).n_shade;
+    let flat = n_at_ridge(&format!("{ROOF}{faces}"));
+    assert!(
+        (flat - DVec3::new(-0.5f64.sqrt(), 0.0, 0.5f64.sqrt())).length() < 1e-6,
+        "{flat}"
+    );
+    let smooth = n_at_ridge(&format!("{ROOF}s 1\n{faces}"));
+    assert!((smooth - DVec3::Z).length() < 1e-6, "{smooth}");
+    let apart = n_at_ridge(&format!("{ROOF}s 1\nf 1 4 3 2\ns 2\nf 4 5 6 3\n"));
+    assert!((apart - flat).length() < 1e-6, "{apart}");
+    let off = n_at_ridge(&format!("{ROOF}s 3\ns off\n{faces}"));
+    assert_eq!(off, flat);
+    // One smooth face in the mesh leaves flat ones flat.
+    let mixed = n_at_ridge(&format!(
+        "{ROOF}{faces}s 1\nv 9 9 9\nv 9 8 9\nv 8 8 9\nf 7 8 9\n"
+    ));
+    assert!((mixed - flat).length() < 1e-12, "{mixed}");
+    // Normals are not cut at the border of materials.
+    let two = load(&format!("{ROOF}s 1\nf 1 4 3 2\nusemtl x\nf 4 5 6 3\n"));
+    let n = look_down(
+        &mesh(&two.scene.expect("warnings only").objects.0[0]),
+        -1e-9,
+        0.5,
+    )
+    .n_shade;
+    assert!((n - DVec3::Z).length() < 1e-6, "{n}");
+}
+
+#[test]
+fn errors_show_the_place_and_reading_goes_on() {
+    let text = format!(
+        "{SQUARE}v 1 2\nf 1 2 9\nf 1 2\nf 0 1 2\nf 1/2/3/4 2 3\nf a b c\nv 1 2 inf\ns loud\nf 1 -9 2\nf 1/7 2 3\n"
+    );
+    let all = messages(&load(&text));
+    assert_eq!(
+        all[1],
+        "error: vertex 9 does not exist: there are 4 so far\n --> part.obj:6:7\n  |\n6 | f 1 2 9\n  |       ^"
+    );
+    let firsts: Vec<_> = all.iter().map(|m| m.lines().next().unwrap_or("")).collect();
+    assert_eq!(
+        firsts,
+        [
+            "error: expected a number (z), found the end of the line",
+            "error: vertex 9 does not exist: there are 4 so far",
+            "error: expected another corner (a face has at least three), found the end of the line",
+            "error: vertex 0 does not exist: OBJ counts from 1",
+            "error: expected a corner such as `1`, `1/2`, `1//3` or `1/2/3`, found `1/2/3/4`",
+            "error: expected the number of a vertex, found `a`",
+            "error: expected a number (z), found `inf`, which is not a finite number",
+            "error: expected the number of a smoothing group, or `off`, found `loud`",
+            "error: vertex -9 does not exist: there are 4 so far",
+            "error: texture coordinate 7 does not exist: there are 0 so far",
+        ]
+    );
+}
+
+#[test]
+fn what_has_no_surface_is_ignored_and_counted() {
+    let text = format!(
+        "{SQUARE}l 1 2\nl 2 3\np 1\ncurv 0 1 1 2 \\\n 3 4\nwhat 1 2\nf 1 1 2\nf 1 2 3\nparm u 0 1\nend\n"
+    );
+    let loaded = load(&text);
+    let firsts: Vec<_> = loaded
+        .diagnostics
+        .iter()
+        .map(|d| d.message.as_str())
+        .collect();
+    assert_eq!(
+        firsts,
+        [
+            "lines (`l`) are ignored: they have no surface (2 times, this is the first)",
+            "points (`p`) are ignored: they have no surface",
+            "free-form curves and surfaces are ignored",
+            "an unknown statement is ignored",
+            "the face is left out: it has no area",
+        ]
+    );
+    assert!(
+        messages(&load("hello world\n"))
+            .iter()
+            .any(|m| m.contains("`part.obj` has no faces"))
+    );
+    assert!(messages(&load("\0\0"))[0].contains("is not an OBJ file: it is a binary file"));
+}
+
+/// Materials of a scene in a folder of its own.
+fn with_library(mtl: &str, obj: &str) -> Loaded {
+    let folder = tempfile::tempdir().expect("a folder");
+    fs::write(folder.path().join("my colours.mtl"), mtl).expect("written");
+    let text = format!("mtllib my colours.mtl\n{SQUARE}{obj}");
+    fs::write(folder.path().join("a.obj"), text).expect("written");
+    let gray = [b"P5 2 1 255\n".as_slice(), &[0, 255]].concat();
+    fs::create_dir(folder.path().join("maps")).expect("made");
+    fs::write(folder.path().join("maps/step.pgm"), gray).expect("written");
+    load_path(&folder.path().join("a.obj"), None)
+}
+
+fn material(mtl: &str) -> Material {
+    let loaded = with_library(&format!("newmtl m\n{mtl}"), "usemtl m\nf 1 2 3\n");
+    assert_eq!(messages(&loaded), [""; 0]);
+    let scene = loaded.scene.expect("no errors");
+    Material::clone(scene.objects.0[0].material.as_ref().expect("found"))
+}
+
+#[test]
+fn coefficients_follow_the_illumination_model() {
+    let matte = material("Kd 0.5 0.25 0\nKs 0.3\nNs 20\nillum 1\nKe 0 0 1");
+    assert_eq!(matte.name, "m");
+    assert_eq!(matte.finish.diffuse, Color::new(0.5, 0.25, 0.0));
+    assert_eq!(
+        (matte.finish.ambient, matte.finish.specular),
+        (matte.finish.diffuse, Color::BLACK)
+    );
+    assert_eq!(matte.finish.emission, Color::new(0.0, 0.0, 1.0));
+    let shiny = material("Ka 0.1 0.1 0.1\nKs 0.3\nNs 20");
+    assert_eq!(
+        (shiny.finish.specular, shiny.finish.shininess),
+        (Color::gray(0.3), 20.0)
+    );
+    assert_eq!(
+        (shiny.finish.ambient, shiny.finish.reflection),
+        (Color::gray(0.1), Color::BLACK)
+    );
+    let mirror = material("Ks 0.3 0.3 0.3\nillum 3");
+    assert_eq!(
+        (mirror.finish.reflection, mirror.fresnel),
+        (Color::gray(0.3), false)
+    );
+    let lacquer = material("Ks 0.3 0.3 0.3\nillum 5\nNi 1.4");
+    assert_eq!(
+        (lacquer.finish.reflection, lacquer.fresnel, lacquer.eta),
+        (Color::gray(0.3), true, 1.4)
+    );
+    let glass = material("Kd 1 1 1\nillum 7\nNi 1.45\nTf 0.9 1 0.9");
+    assert_eq!(
+        (glass.finish.transmission, glass.eta, glass.thin),
+        (Color::new(0.9, 1.0, 0.9), 1.45, false)
+    );
+    assert_eq!(
+        (glass.finish.reflection, glass.finish.diffuse),
+        (Color::WHITE, Color::BLACK)
+    );
+    assert!(glass.fresnel);
+    let pane = material("illum 4\nd 0.25");
+    assert_eq!(
+        (pane.finish.transmission, pane.thin),
+        (Color::gray(0.75), true)
+    );
+    let veil = material("Kd 0.8 0.8 0.8\nTr 0.5");
+    assert_eq!(
+        (veil.finish.transmission, veil.finish.diffuse),
+        (Color::gray(0.5), Color::gray(0.4))
+    );
+    assert_eq!((veil.eta, veil.fresnel), (1.0, false));
+    let lamp = material("Kd 0.8 0.8 0.8\nillum 0");
+    assert_eq!(
+        (lamp.finish.emission, lamp.finish.diffuse),
+        (Color::gray(0.8), Color::BLACK)
+    );
+}
+
+#[test]
+fn a_map_is_turned_scaled_and_moved() {
+    let m = material(
+        "Kd 1 1 1\nmap_Kd -clamp on -o 0.5 0 0 -s 2 3 1 -bm 0.5 maps\\step.pgm\nmap_d maps\\step.pgm\nNi 1.5\n",
+    );
+    let pbr = m.pbr.expect("textured");
+    let texture = pbr.textures.base_color.expect("read");
+    assert_eq!(texture.uv_map, [2.0, 0.0, 0.5, 0.0, 3.0, -2.0]);
+    assert!(pbr.alpha_blend && m.eta == 1.0);
+}
+
+#[test]
+fn what_libraries_lack_is_a_warning() {
+    let loaded = with_library(
+        "newmtl m\nmap_Kd none.png\nbump b.png\nmap_Ns n.png\nPr 0.5\nKa spectral x.rfl",
+        "usemtl m\nf 1 2 3\n",
+    );
+    assert!(loaded.scene.is_some());
+    let firsts: Vec<_> = loaded
+        .diagnostics
+        .iter()
+        .map(|d| d.message.as_str())
+        .collect();
+    assert_eq!(
+        firsts,
+        [
+            "the texture `none.png` is not read: there is no such file",
+            "bump maps are ignored",
+            "maps other than `map_Kd` and `map_d` are ignored",
+            "an unknown property of a material is ignored",
+            "colours as spectra or CIE XYZ are ignored",
+        ]
+    );
+    let outside = load_bytes(
+        format!("mtllib ../a.mtl\nmtllib /etc/a.mtl\nmtllib C:\\a.mtl\n{SQUARE}f 1 2 3\n")
+            .into_bytes(),
+        "a.obj",
+        SceneFormat::Obj,
+        Some(&std::env::temp_dir()),
+    );
+    assert!(outside.scene.is_some());
+    assert!(outside.diagnostics[0].message.starts_with(
+        "the material library `../a.mtl` is not read: only files in the scene's folder or below are read"
+    ));
+    assert!(
+        outside.diagnostics[0]
+            .message
+            .ends_with("(3 times, this is the first)")
+    );
+}
+
+#[test]
+fn errors_in_libraries_are_placed_there() {
+    let loaded = with_library("Kd 1 1 1\nnewmtl m\nKd 1 x 1\nd 2\nNi\nKs -1", "f 1 2 3\n");
+    let firsts: Vec<_> = loaded
+        .diagnostics
+        .iter()
+        .map(|d| d.message.as_str())
+        .collect();
+    assert_eq!(
+        firsts,
+        [
+            "expected `newmtl`, found `Kd`",
+            "expected a number (a part of a colour), found `x`",
+            "d must be between 0 and 1, found `2`",
+            "expected a number (Ni, the index of refraction,), found the end of the line",
+            "a part of a colour must be at least 0, found `-1`",
+        ]
+    );
+    assert!(messages(&loaded)[1].contains("my colours.mtl:3:6\n"));
+}
