@@ -140,3 +140,23 @@ fn the_name_decides_before_the_content_and_the_caller_before_both() {
         );
     }
 }
+
+#[test]
+fn the_seeds_of_the_fuzzers_are_scenes() {
+    let seeds = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fuzz/seeds");
+    let mut count = 0;
+    for info in formats() {
+        for seed in std::fs::read_dir(seeds.join(info.name)).expect("seeds of every format") {
+            let path = seed.expect("readable").path();
+            let loaded = load_path(&path, None);
+            assert!(
+                loaded.scene.is_some(),
+                "{}: {:?}",
+                path.display(),
+                loaded.diagnostics
+            );
+            count += 1;
+        }
+    }
+    assert!(count >= 11);
+}
