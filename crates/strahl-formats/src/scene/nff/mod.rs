@@ -2,7 +2,7 @@
 //!
 //! | statement | becomes |
 //! |---|---|
-//! | `v` `from` `at` `up` `angle` `hither` `resolution` | the camera (`angle` is the full vertical angle), [`Settings::size`] |
+//! | `v` `from` `at` `up` `angle` `hither` `resolution` | the camera (`angle` is the full vertical angle), [`Settings::size`](strahl_scene::Settings::size) |
 //! | `b r g b` | the background |
 //! | `l x y z [r g b]` | a point light |
 //! | `f r g b Kd Ks Shine T ior` | the material of what follows |
