@@ -11,9 +11,15 @@ pub struct Aabb {
 
 impl Aabb {
     /// The box that contains nothing: the neutral element of [`Aabb::union`].
-    pub const EMPTY: Self = Self { min: DVec3::INFINITY, max: DVec3::NEG_INFINITY };
+    pub const EMPTY: Self = Self {
+        min: DVec3::INFINITY,
+        max: DVec3::NEG_INFINITY,
+    };
     /// All of space.
-    pub const EVERYTHING: Self = Self { min: DVec3::NEG_INFINITY, max: DVec3::INFINITY };
+    pub const EVERYTHING: Self = Self {
+        min: DVec3::NEG_INFINITY,
+        max: DVec3::INFINITY,
+    };
 
     /// The box between two corners; each coordinate of `min` must not exceed that of `max`.
     pub const fn new(min: DVec3, max: DVec3) -> Self {
@@ -22,7 +28,9 @@ impl Aabb {
 
     /// The smallest box around some points; empty for no points.
     pub fn from_points(points: impl IntoIterator<Item = DVec3>) -> Self {
-        points.into_iter().fold(Self::EMPTY, |b, p| Self::new(b.min.min(p), b.max.max(p)))
+        points
+            .into_iter()
+            .fold(Self::EMPTY, |b, p| Self::new(b.min.min(p), b.max.max(p)))
     }
 
     /// The smallest box around both.
@@ -80,13 +88,23 @@ impl Aabb {
 
     /// The largest absolute coordinate; 0 for an empty box.
     pub fn max_abs(&self) -> f64 {
-        if self.is_empty() { 0.0 } else { self.min.abs().max(self.max.abs()).max_element() }
+        if self.is_empty() {
+            0.0
+        } else {
+            self.min.abs().max(self.max.abs()).max_element()
+        }
     }
 
     /// The eight corners.
     pub fn corners(&self) -> [DVec3; 8] {
         std::array::from_fn(|i| {
-            let pick = |axis: usize| if i >> axis & 1 == 0 { self.min[axis] } else { self.max[axis] };
+            let pick = |axis: usize| {
+                if i >> axis & 1 == 0 {
+                    self.min[axis]
+                } else {
+                    self.max[axis]
+                }
+            };
             DVec3::new(pick(0), pick(1), pick(2))
         })
     }
@@ -129,7 +147,9 @@ mod tests {
     fn an_empty_box_is_the_neutral_element() {
         let b = Aabb::new(DVec3::ZERO, DVec3::ONE);
         assert_eq!(Aabb::EMPTY.union(&b), b);
-        assert!(Aabb::EMPTY.is_empty() && !Aabb::EMPTY.is_bounded() && Aabb::EMPTY.half_area() == 0.0);
+        assert!(
+            Aabb::EMPTY.is_empty() && !Aabb::EMPTY.is_bounded() && Aabb::EMPTY.half_area() == 0.0
+        );
         assert!(!Aabb::EVERYTHING.is_bounded());
     }
 

@@ -67,7 +67,10 @@ mod tests {
     #[test]
     fn whole_powers_agree_with_the_general_function() {
         for n in 0..=64 {
-            let (a, b) = (super::pow(0.93, f64::from(n)), libm::pow(0.93, f64::from(n)));
+            let (a, b) = (
+                super::pow(0.93, f64::from(n)),
+                libm::pow(0.93, f64::from(n)),
+            );
             assert!((a - b).abs() <= b * 1e-14, "{n}");
         }
         assert_eq!(super::pow(0.0, 0.0), 1.0);

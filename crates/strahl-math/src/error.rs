@@ -45,7 +45,11 @@ pub fn offset_origin(position: DVec3, error: DVec3, normal: DVec3) -> DVec3 {
             x
         }
     };
-    DVec3::new(round(moved.x, normal.x), round(moved.y, normal.y), round(moved.z, normal.z))
+    DVec3::new(
+        round(moved.x, normal.x),
+        round(moved.y, normal.y),
+        round(moved.z, normal.z),
+    )
 }
 
 #[cfg(test)]
@@ -55,7 +59,10 @@ mod tests {
     #[test]
     fn outward_rounding_brackets() {
         for x in [0.1, -0.1, 1e300, -1e300, 1.0, 0.0, 1e-50] {
-            assert!(f64::from(round_down_f32(x)) <= x && x <= f64::from(round_up_f32(x)), "{x}");
+            assert!(
+                f64::from(round_down_f32(x)) <= x && x <= f64::from(round_up_f32(x)),
+                "{x}"
+            );
         }
         assert_eq!(round_up_f32(1.0), 1.0);
     }

@@ -40,8 +40,16 @@ impl Interval {
     #[inline]
     pub fn intersection(&self, other: Self) -> Self {
         Self::new(
-            if self.min > other.min { self.min } else { other.min },
-            if self.max < other.max { self.max } else { other.max },
+            if self.min > other.min {
+                self.min
+            } else {
+                other.min
+            },
+            if self.max < other.max {
+                self.max
+            } else {
+                other.max
+            },
         )
     }
 

@@ -24,12 +24,18 @@ impl Default for Transform {
 
 impl Transform {
     /// The map that changes nothing.
-    pub const IDENTITY: Self =
-        Self { linear: DMat3::IDENTITY, inverse: DMat3::IDENTITY, translation: DVec3::ZERO };
+    pub const IDENTITY: Self = Self {
+        linear: DMat3::IDENTITY,
+        inverse: DMat3::IDENTITY,
+        translation: DVec3::ZERO,
+    };
 
     /// Moves by `offset`.
     pub const fn translate(offset: DVec3) -> Self {
-        Self { translation: offset, ..Self::IDENTITY }
+        Self {
+            translation: offset,
+            ..Self::IDENTITY
+        }
     }
 
     /// Scales by `factors` about the origin.
@@ -52,11 +58,27 @@ impl Transform {
         let k = 1.0 - c;
         // Rodrigues' formula, column by column.
         let linear = DMat3::from_cols(
-            DVec3::new(c + a.x * a.x * k, a.y * a.x * k + a.z * s, a.z * a.x * k - a.y * s),
-            DVec3::new(a.x * a.y * k - a.z * s, c + a.y * a.y * k, a.z * a.y * k + a.x * s),
-            DVec3::new(a.x * a.z * k + a.y * s, a.y * a.z * k - a.x * s, c + a.z * a.z * k),
+            DVec3::new(
+                c + a.x * a.x * k,
+                a.y * a.x * k + a.z * s,
+                a.z * a.x * k - a.y * s,
+            ),
+            DVec3::new(
+                a.x * a.y * k - a.z * s,
+                c + a.y * a.y * k,
+                a.z * a.y * k + a.x * s,
+            ),
+            DVec3::new(
+                a.x * a.z * k + a.y * s,
+                a.y * a.z * k - a.x * s,
+                c + a.z * a.z * k,
+            ),
         );
-        Self { linear, inverse: linear.transpose(), translation: DVec3::ZERO }
+        Self {
+            linear,
+            inverse: linear.transpose(),
+            translation: DVec3::ZERO,
+        }
     }
 
     /// The map `p -> linear * p + translation`.
@@ -65,8 +87,19 @@ impl Transform {
     /// [`SingularTransform`] if `linear` has no finite inverse or a value is not finite.
     pub fn try_new(linear: DMat3, translation: DVec3) -> Result<Self, SingularTransform> {
         let inverse = linear.inverse();
-        let usable = linear.is_finite() && inverse.is_finite() && translation.is_finite() && linear.determinant() != 0.0;
-        if usable { Ok(Self { linear, inverse, translation }) } else { Err(SingularTransform) }
+        let usable = linear.is_finite()
+            && inverse.is_finite()
+            && translation.is_finite()
+            && linear.determinant() != 0.0;
+        if usable {
+            Ok(Self {
+                linear,
+                inverse,
+                translation,
+            })
+        } else {
+            Err(SingularTransform)
+        }
     }
 
     /// This map followed by `next`.
@@ -82,7 +115,11 @@ impl Transform {
     /// The inverse map.
     #[must_use]
     pub fn inverted(&self) -> Self {
-        Self { linear: self.inverse, inverse: self.linear, translation: -(self.inverse * self.translation) }
+        Self {
+            linear: self.inverse,
+            inverse: self.linear,
+            translation: -(self.inverse * self.translation),
+        }
     }
 
     /// The linear part.
@@ -143,7 +180,10 @@ impl Transform {
     /// A ray of outer space, in object space, with the same parameter `t` (the direction is not renormalised).
     #[inline]
     pub fn ray_to_object(&self, ray: &Ray) -> Ray {
-        Ray::new(self.point_to_object(ray.origin), self.vector_to_object(ray.direction))
+        Ray::new(
+            self.point_to_object(ray.origin),
+            self.vector_to_object(ray.direction),
+        )
     }
 
     /// An upper bound of the image of an error box: `|L| e`, coordinate by coordinate.
@@ -165,13 +205,17 @@ impl Transform {
         for column in 0..3 {
             let c = self.linear.col(column);
             for row in 0..3 {
-                let (p, q) = (product(c[row], b.min[column]), product(c[row], b.max[column]));
+                let (p, q) = (
+                    product(c[row], b.min[column]),
+                    product(c[row], b.max[column]),
+                );
                 min[row] += if p < q { p } else { q };
                 max[row] += if p < q { q } else { p };
             }
         }
         // Three products and three sums, each rounded: widen by their bound.
-        let magnitude = self.translation.abs() + self.error_to_world(finite(b.min.abs().max(b.max.abs())));
+        let magnitude =
+            self.translation.abs() + self.error_to_world(finite(b.min.abs().max(b.max.abs())));
         let margin = magnitude * crate::error::gamma(8);
         Aabb::new(min - margin, max + margin)
     }
@@ -227,8 +271,14 @@ mod tests {
 
     #[test]
     fn singular_maps_are_refused() {
-        assert_eq!(Transform::try_scale(DVec3::new(1.0, 0.0, 1.0)), Err(SingularTransform));
-        assert_eq!(Transform::try_scale(DVec3::new(1.0, f64::NAN, 1.0)), Err(SingularTransform));
+        assert_eq!(
+            Transform::try_scale(DVec3::new(1.0, 0.0, 1.0)),
+            Err(SingularTransform)
+        );
+        assert_eq!(
+            Transform::try_scale(DVec3::new(1.0, f64::NAN, 1.0)),
+            Err(SingularTransform)
+        );
     }
 
     #[test]
@@ -236,8 +286,15 @@ mod tests {
         let m = sample();
         let b = Aabb::new(DVec3::new(-1.0, -2.0, -3.0), DVec3::new(1.0, 0.5, 4.0));
         let image = m.bounds_to_world(&b);
-        assert!(b.corners().iter().all(|c| image.contains(m.point_to_world(*c))));
-        let slab = Aabb::new(DVec3::new(f64::NEG_INFINITY, 0.0, 0.0), DVec3::new(f64::INFINITY, 1.0, 1.0));
+        assert!(
+            b.corners()
+                .iter()
+                .all(|c| image.contains(m.point_to_world(*c)))
+        );
+        let slab = Aabb::new(
+            DVec3::new(f64::NEG_INFINITY, 0.0, 0.0),
+            DVec3::new(f64::INFINITY, 1.0, 1.0),
+        );
         let moved = Transform::translate(DVec3::ONE).bounds_to_world(&slab);
         assert!(moved.max.x == f64::INFINITY && moved.max.y >= 2.0 && moved.max.y < 2.001);
     }

@@ -30,7 +30,11 @@ impl Background {
             Self::Solid(color) => color,
             Self::Gradient { up, bottom, top } => {
                 let length = direction.length();
-                let height = if length > 0.0 { up.dot(direction) / length } else { 0.0 };
+                let height = if length > 0.0 {
+                    up.dot(direction) / length
+                } else {
+                    0.0
+                };
                 bottom.lerp(top, 0.5 + 0.5 * height)
             }
         }

@@ -23,22 +23,34 @@ use strahl_shade::{Color, Light, Material};
 pub trait ObjectExt: Into<Object> {
     /// Sets the material; pass an `Arc` to share one among many objects.
     fn material(self, material: impl Into<Arc<Material>>) -> Object {
-        Object { material: Some(material.into()), ..self.into() }
+        Object {
+            material: Some(material.into()),
+            ..self.into()
+        }
     }
 
     /// Sets the name.
     fn named(self, name: &str) -> Object {
-        Object { name: Some(name.into()), ..self.into() }
+        Object {
+            name: Some(name.into()),
+            ..self.into()
+        }
     }
 
     /// Sets the place in the source.
     fn spanned(self, span: Span) -> Object {
-        Object { span, ..self.into() }
+        Object {
+            span,
+            ..self.into()
+        }
     }
 
     /// Sets to which rays the object shows.
     fn visible_to(self, visibility: Visibility) -> Object {
-        Object { visibility, ..self.into() }
+        Object {
+            visibility,
+            ..self.into()
+        }
     }
 
     /// Transforms the object, after the transformations it already has.
@@ -47,7 +59,10 @@ pub trait ObjectExt: Into<Object> {
         let before = object.transform.as_deref().copied().unwrap_or_default();
         let after = before.then(transform);
         let transform = (!after.is_identity()).then(|| Box::new(after));
-        Object { transform, ..object }
+        Object {
+            transform,
+            ..object
+        }
     }
 
     /// Moves the object.
@@ -81,6 +96,10 @@ impl Scene {
     /// it.
     #[must_use]
     #[track_caller]
+    #[expect(
+        clippy::should_implement_trait,
+        reason = "a scene is built by adding to it; nobody writes `scene + sphere`"
+    )]
     pub fn add(mut self, object: impl Into<Object>) -> Self {
         let mut object = object.into();
         if !object.span.is_some() {
@@ -95,7 +114,11 @@ impl Scene {
     #[track_caller]
     pub fn light(mut self, light: Light) -> Self {
         let span = self.caller(Location::caller());
-        self.lights.push(SceneLight { light, name: None, span });
+        self.lights.push(SceneLight {
+            light,
+            name: None,
+            span,
+        });
         self
     }
 
@@ -129,12 +152,20 @@ impl Scene {
 
     /// Adds a group of objects that [`Object::instance`] can place any number of times.
     pub fn add_group(&mut self, objects: Vec<Object>) -> GroupId {
-        self.groups.push(Group { name: None, objects: crate::Children(objects) });
+        self.groups.push(Group {
+            name: None,
+            objects: crate::Children(objects),
+        });
         GroupId(self.groups.len() as u32 - 1)
     }
 
     fn caller(&mut self, location: &Location<'_>) -> Span {
         let file = self.sources.add(location.file());
-        Span { file, line: location.line(), column: location.column(), length: 0 }
+        Span {
+            file,
+            line: location.line(),
+            column: location.column(),
+            length: 0,
+        }
     }
 }

@@ -43,7 +43,14 @@ impl Camera {
 
     /// An orthographic camera that sees `height` world units from the bottom to the top of the picture.
     pub fn orthographic(eye: DVec3, look_at: DVec3, up: DVec3, height: f64) -> Self {
-        Self::looking(eye, look_at - eye, up, height * 0.5, height * 0.5, Projection::Orthographic)
+        Self::looking(
+            eye,
+            look_at - eye,
+            up,
+            height * 0.5,
+            height * 0.5,
+            Projection::Orthographic,
+        )
     }
 
     /// A camera from its eye, any viewing direction, any vector that is not parallel to it and marks "up", and the half
@@ -101,7 +108,12 @@ mod tests {
 
     #[test]
     fn right_is_right_and_up_is_up() {
-        let c = Camera::perspective(DVec3::new(0.0, 0.0, 5.0), DVec3::ZERO, DVec3::Y, std::f64::consts::FRAC_PI_2);
+        let c = Camera::perspective(
+            DVec3::new(0.0, 0.0, 5.0),
+            DVec3::ZERO,
+            DVec3::Y,
+            std::f64::consts::FRAC_PI_2,
+        );
         assert_eq!(c.direction, DVec3::NEG_Z);
         assert!((c.right - DVec3::X).length() < 1e-15 && (c.up - DVec3::Y).length() < 1e-15);
         assert_eq!(c.problem(), None);

@@ -52,7 +52,10 @@ impl Diagnostic {
 
     /// A warning without a place.
     pub fn warning(message: impl Into<String>) -> Self {
-        Self { severity: Severity::Warning, ..Self::error(message) }
+        Self {
+            severity: Severity::Warning,
+            ..Self::error(message)
+        }
     }
 
     /// Says where.
@@ -67,12 +70,21 @@ impl Diagnostic {
         const SHOWN: usize = 160;
         let column = self.span.column.max(1) as usize;
         // Very long lines (exporters write them) are cut around the place.
-        let skip = if column > SHOWN / 2 { column - SHOWN / 2 } else { 0 };
+        let skip = column.saturating_sub(SHOWN / 2);
         let text: String = line.chars().skip(skip).take(SHOWN).collect();
         let shown = text.chars().count().max(1);
         let column = (column - skip).min(shown + 1) as u32;
-        let length = self.span.length.max(1).min((shown as u32 + 1).saturating_sub(column).max(1));
-        self.source = Some(SourceLine { file: file.to_owned(), text, column, length });
+        let length = self
+            .span
+            .length
+            .max(1)
+            .min((shown as u32 + 1).saturating_sub(column).max(1));
+        self.source = Some(SourceLine {
+            file: file.to_owned(),
+            text,
+            column,
+            length,
+        });
         self
     }
 
@@ -98,7 +110,11 @@ impl fmt::Display for Diagnostic {
         };
         write!(f, "{kind}: {}", self.message)?;
         if let Some(source) = &self.source {
-            let number = if self.span.is_some() { self.span.line.to_string() } else { String::new() };
+            let number = if self.span.is_some() {
+                self.span.line.to_string()
+            } else {
+                String::new()
+            };
             let margin = " ".repeat(number.len());
             write!(f, "\n{margin}--> {}", source.file)?;
             if self.span.is_some() {
@@ -107,11 +123,17 @@ impl fmt::Display for Diagnostic {
                     write!(f, ":{}", self.span.column)?;
                 }
                 // Tabs would shift the caret, control characters would disturb the terminal.
-                let text: String =
-                    source.text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
+                let text: String = source
+                    .text
+                    .chars()
+                    .map(|c| if c.is_control() { ' ' } else { c })
+                    .collect();
                 let indent = " ".repeat(source.column.saturating_sub(1) as usize);
                 let carets = "^".repeat(source.length as usize);
-                write!(f, "\n{margin} |\n{number} | {text}\n{margin} | {indent}{carets}")?;
+                write!(
+                    f,
+                    "\n{margin} |\n{number} | {text}\n{margin} | {indent}{carets}"
+                )?;
             }
         }
         for hint in &self.hints {
@@ -128,7 +150,12 @@ mod tests {
 
     #[test]
     fn the_caret_stands_under_the_place() {
-        let span = Span { file: FileId(0), line: 12, column: 5, length: 3 };
+        let span = Span {
+            file: FileId(0),
+            line: 12,
+            column: 5,
+            length: 3,
+        };
         let text = Diagnostic::error("`abc` is not a number")
             .at(span)
             .with_source("scene.nff", "s 0 abc 1 2")
@@ -142,18 +169,44 @@ mod tests {
     #[test]
     fn long_lines_are_cut_around_the_place() {
         let line = "x".repeat(1000);
-        let span = Span { file: FileId(0), line: 1, column: 900, length: 5000 };
-        let diagnostic = Diagnostic::error("too long").at(span).with_source("a", &line);
+        let span = Span {
+            file: FileId(0),
+            line: 1,
+            column: 900,
+            length: 5000,
+        };
+        let diagnostic = Diagnostic::error("too long")
+            .at(span)
+            .with_source("a", &line);
         let source = diagnostic.source.as_ref().expect("given");
         assert!(source.text.len() <= 160 && source.column + source.length <= 162);
-        assert!(diagnostic.to_string().lines().all(|l| l.chars().count() < 180));
+        assert!(
+            diagnostic
+                .to_string()
+                .lines()
+                .all(|l| l.chars().count() < 180)
+        );
     }
 
     #[test]
     fn an_empty_line_and_control_characters_are_harmless() {
-        let span = Span { file: FileId(0), line: 1, column: 1, length: 1 };
-        assert!(Diagnostic::error("x").at(span).with_source("a", "").to_string().ends_with('^'));
-        let shown = Diagnostic::error("x").at(span).with_source("a", "a\tb\u{1b}[2J").to_string();
+        let span = Span {
+            file: FileId(0),
+            line: 1,
+            column: 1,
+            length: 1,
+        };
+        assert!(
+            Diagnostic::error("x")
+                .at(span)
+                .with_source("a", "")
+                .to_string()
+                .ends_with('^')
+        );
+        let shown = Diagnostic::error("x")
+            .at(span)
+            .with_source("a", "a\tb\u{1b}[2J")
+            .to_string();
         assert!(!shown.contains('\u{1b}') && !shown.contains('\t'));
     }
 }

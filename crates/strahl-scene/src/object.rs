@@ -84,7 +84,11 @@ pub struct Visibility {
 
 impl Default for Visibility {
     fn default() -> Self {
-        Self { camera: true, secondary: true, shadow: true }
+        Self {
+            camera: true,
+            secondary: true,
+            shadow: true,
+        }
     }
 }
 
@@ -129,7 +133,10 @@ impl Object {
 
     /// Combines objects.
     pub fn csg(op: CsgOp, children: Vec<Self>) -> Self {
-        Self::new(ObjectKind::Csg { op, children: Children(children) })
+        Self::new(ObjectKind::Csg {
+            op,
+            children: Children(children),
+        })
     }
 
     /// A group once more.

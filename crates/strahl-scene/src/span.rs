@@ -19,11 +19,21 @@ pub struct Span {
 
 impl Span {
     /// No place.
-    pub const NONE: Self = Self { file: FileId(0), line: 0, column: 0, length: 0 };
+    pub const NONE: Self = Self {
+        file: FileId(0),
+        line: 0,
+        column: 0,
+        length: 0,
+    };
 
     /// A whole line of a file.
     pub const fn line(file: FileId, line: u32) -> Self {
-        Self { file, line, column: 0, length: 0 }
+        Self {
+            file,
+            line,
+            column: 0,
+            length: 0,
+        }
     }
 
     /// Whether this names a place.
@@ -56,7 +66,9 @@ impl SourceMap {
 
     /// The place in words, or `None` for [`Span::NONE`].
     pub fn locate(&self, span: Span) -> Option<Location<'_>> {
-        (span.is_some()).then(|| self.name(span.file).map(|file| Location { file, span })).flatten()
+        (span.is_some())
+            .then(|| self.name(span.file).map(|file| Location { file, span }))
+            .flatten()
     }
 }
 
@@ -72,6 +84,10 @@ pub struct Location<'a> {
 impl fmt::Display for Location<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}:{}", self.file, self.span.line)?;
-        if self.span.column > 0 { write!(f, ":{}", self.span.column) } else { Ok(()) }
+        if self.span.column > 0 {
+            write!(f, ":{}", self.span.column)
+        } else {
+            Ok(())
+        }
     }
 }
