@@ -22,6 +22,7 @@ mod render;
 mod sampling;
 mod scene;
 mod shadow;
+mod surface;
 mod tiles;
 pub mod trace;
 mod tree;

@@ -13,6 +13,18 @@ pub(crate) struct Shadow {
     pub(crate) hit: bool,
 }
 
+/// A ray towards a light.
+pub(crate) struct ShadowRay {
+    pub(crate) ray: Ray,
+    /// Where something would be in the way.
+    pub(crate) range: Interval,
+    pub(crate) from: Origin,
+    /// Number of the light.
+    pub(crate) light: usize,
+    /// What the ray starts in.
+    pub(crate) media: MediaStack,
+}
+
 impl Tracer<'_> {
     /// Follows a shadow ray: nothing in between lets all light pass, something opaque none, transparent surfaces filter
     /// by their kt and their insides by Beer-Lambert.
@@ -21,15 +33,18 @@ impl Tracer<'_> {
     /// does not matter.
     pub(crate) fn shadow(
         &mut self,
-        ray: &Ray,
-        range: Interval,
-        from: &Origin,
-        light: usize,
-        media: MediaStack,
+        shadow_ray: &ShadowRay,
         arena: &mut MediaArena,
         hits: &mut Vec<Hit>,
     ) -> Shadow {
-        if self.occluded(ray, range, from, light) {
+        let ShadowRay {
+            ray,
+            range,
+            from,
+            light,
+            media,
+        } = shadow_ray;
+        if self.occluded(ray, *range, from, *light) {
             return Shadow {
                 visible: Color::BLACK,
                 hit: true,
@@ -42,10 +57,10 @@ impl Tracer<'_> {
             };
         }
         hits.clear();
-        self.transmitting_hits(ray, range, Some(from), hits);
+        self.transmitting_hits(ray, *range, Some(from), hits);
         hits.sort_unstable_by(|a, b| a.t.total_cmp(&b.t).then(a.id.cmp(&b.id)));
         let mut visible = Color::WHITE;
-        let (mut inside, mut entered_at) = (media, 0.0);
+        let (mut inside, mut entered_at) = (*media, 0.0);
         for hit in hits.iter() {
             let resolved = self.scene.resolve(ray, Some(from), hit);
             let id = resolved.look.material;

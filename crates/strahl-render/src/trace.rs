@@ -14,11 +14,13 @@
 
 use crate::hit::{Hit, Origin, RayClass};
 use crate::media::{MediaArena, MediaStack, transmittance};
-use crate::observer::{BranchEnd, HitReport, LightTerm, RayKind, RayReport, TraceObserver};
+use crate::observer::{BranchEnd, LightTerm, RayKind, RayReport, TraceObserver};
 use crate::query::Tracer;
-use crate::scene::{RenderScene, Resolved};
-use strahl_math::{DVec3, Interval, Ray, error};
-use strahl_shade::{Color, MaterialId, ShadingModel, fresnel_dielectric, reflect, refract};
+use crate::scene::RenderScene;
+use crate::shadow::ShadowRay;
+use crate::surface::{Split, Surface};
+use strahl_math::{DVec3, Interval, Ray};
+use strahl_shade::{Color, MaterialId, ShadingModel};
 
 /// How trees are grown.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -151,14 +153,14 @@ pub struct TreeTracer<'s> {
 
 /// A ray still to be traced.
 #[derive(Clone, Copy, Debug)]
-struct Branch {
-    ray: Ray,
-    origin: Option<Origin>,
-    kind: RayKind,
-    parent: u32,
-    depth: u32,
-    weight: f64,
-    media: MediaStack,
+pub(crate) struct Branch {
+    pub(crate) ray: Ray,
+    pub(crate) origin: Option<Origin>,
+    pub(crate) kind: RayKind,
+    pub(crate) parent: u32,
+    pub(crate) depth: u32,
+    pub(crate) weight: f64,
+    pub(crate) media: MediaStack,
 }
 
 /// A ray that was traced, waiting for its branches.
@@ -378,15 +380,16 @@ impl<'s> TreeTracer<'s> {
         if scene_light.casts_shadows {
             let (origin_point, origin) = surface.start(hit, sample.shadow_direction);
             let ray = Ray::new(origin_point, sample.shadow_direction);
-            let shadow = self.tracer.shadow(
-                &ray,
-                sample.range,
-                &origin,
+            let shadow_ray = ShadowRay {
+                ray,
+                range: sample.range,
+                from: origin,
                 light,
-                branch.media,
-                &mut self.media,
-                &mut self.shadow_hits,
-            );
+                media: branch.media,
+            };
+            let shadow = self
+                .tracer
+                .shadow(&shadow_ray, &mut self.media, &mut self.shadow_hits);
             self.counts.shadow += 1;
             self.counts.shadow_hit += u64::from(shadow.hit);
             term.shadow_ray = Some(ray);
@@ -452,251 +455,4 @@ impl<'s> TreeTracer<'s> {
             });
         }
     }
-}
-
-/// How a surface divides light between reflection and transparency.
-#[derive(Clone, Copy, Debug)]
-struct Split {
-    kr: Color,
-    kt: Color,
-    /// Unit direction of the reflection ray, if the surface reflects (or transmits: then with kr = 0 unless Fresnel or
-    /// total reflection make it more; the cutoff decides).
-    reflected: Option<DVec3>,
-    refracted: Option<DVec3>,
-    cos_2: Option<f64>,
-    fresnel: Option<f64>,
-    total_reflection: bool,
-}
-
-impl Split {
-    const NONE: Self = Self {
-        kr: Color::BLACK,
-        kt: Color::BLACK,
-        reflected: None,
-        refracted: None,
-        cos_2: None,
-        fresnel: None,
-        total_reflection: false,
-    };
-}
-
-/// Everything at a hit that shading needs, turned to the side of the ray.
-struct Surface {
-    resolved: Resolved,
-    material: strahl_shade::MaterialPoint,
-    /// Unit vector towards the viewer.
-    v: DVec3,
-    n_geom: DVec3,
-    n_shade: DVec3,
-    /// Whether the ray meets the front (or outside).
-    entering: bool,
-    /// Whether the material is a sheet without an inside.
-    thin: bool,
-    eta_1: f64,
-    eta_2: f64,
-}
-
-impl Surface {
-    fn at(scene: &RenderScene, branch: &Branch, hit: &Hit, media: &MediaArena) -> Self {
-        let resolved = scene.resolve(&branch.ray, branch.origin.as_ref(), hit);
-        let point = &resolved.point;
-        let material = &scene.materials[resolved.look.material.0 as usize];
-        let v = -branch.ray.direction.normalize();
-        let entering = point.n_geom.dot(v) >= 0.0;
-        let side = if entering { 1.0 } else { -1.0 };
-        let n_shade = match &material.pbr {
-            None => point.n_shade,
-            Some(pbr) => pbr.shading_normal(point.uv, point.n_shade, point.dpdu, point.dpdv),
-        };
-        let index = |id: Option<MaterialId>| id.map_or(1.0, |m| scene.materials[m.0 as usize].eta);
-        let (eta_1, eta_2) = if entering {
-            (index(media.top(branch.media)), material.eta)
-        } else {
-            // Without a known medium the ray must be inside of the material whose back it sees.
-            let inside = media.top(branch.media).or(Some(resolved.look.material));
-            (
-                index(inside),
-                index(media.top_without(branch.media, resolved.look.material)),
-            )
-        };
-        // A thin sheet has the same medium on both sides and is met from outside.
-        let (eta_1, eta_2) = if material.thin {
-            (index(media.top(branch.media)), material.eta)
-        } else {
-            (eta_1, eta_2)
-        };
-        Self {
-            material: material.at(point.uv),
-            v,
-            n_geom: point.n_geom * side,
-            n_shade: n_shade * side,
-            entering,
-            thin: material.thin,
-            eta_1,
-            eta_2,
-            resolved,
-        }
-    }
-
-    /// The media a ray is in after passing the surface.
-    fn media_behind(&self, before: MediaStack, arena: &mut MediaArena) -> MediaStack {
-        let material = self.resolved.look.material;
-        if self.thin {
-            return before;
-        }
-        if self.entering {
-            arena.entered(before, material)
-        } else {
-            arena.left(before, material)
-        }
-    }
-
-    /// Where a ray in this direction starts: certainly on its side of the surface.
-    fn start(&self, hit: &Hit, direction: DVec3) -> (DVec3, Origin) {
-        let outwards = self.n_geom.dot(direction) >= 0.0;
-        let r = &self.resolved;
-        // Both normals point to the same side of the surface in their spaces.
-        let same = if self.entering { outwards } else { !outwards };
-        let toward = |n: DVec3| if same { n } else { -n };
-        let point = error::offset_origin(
-            r.point.position,
-            r.point.position_error,
-            toward(r.point.n_geom),
-        );
-        let local = error::offset_origin(r.local_position, r.local_error, toward(r.local_normal));
-        (
-            point,
-            Origin {
-                id: hit.id,
-                facet: hit.facet,
-                local,
-            },
-        )
-    }
-
-    /// Divides the light: reflection, transparency by Snell's law, Fresnel's equations on request. On total reflection kt is
-    /// added to kr.
-    fn split(&self, ray: &Ray) -> Split {
-        let finish = &self.material.finish;
-        let transmits = !finish.transmission.is_black();
-        let dielectric = self.material.fresnel && !self.material.fresnel_reflection.is_black();
-        if !transmits && !dielectric && finish.reflection.is_black() {
-            return Split::NONE;
-        }
-        let mut split = Split {
-            kr: finish.reflection,
-            ..Split::NONE
-        };
-        let refracted = if transmits || dielectric {
-            refract(self.n_shade, self.v, self.eta_1 / self.eta_2)
-        } else {
-            None
-        };
-        split.cos_2 = refracted.map(|r| r.cos_2);
-        if self.material.fresnel {
-            let f = refracted.map_or(1.0, |r| {
-                fresnel_dielectric(self.eta_1, r.cos_1, self.eta_2, r.cos_2)
-            });
-            split.fresnel = Some(f);
-            split.kr += self.material.fresnel_reflection * f;
-            split.kt = finish.transmission * (1.0 - f);
-        } else {
-            split.kt = finish.transmission;
-        }
-        if transmits {
-            match refracted {
-                Some(r) => {
-                    // A shading normal may bend the ray to the wrong side: then the true normal decides, and without
-                    // refraction the ray goes straight on, to the last bit.
-                    let straight = self.thin || self.eta_1 == self.eta_2;
-                    let wrong = r.direction.dot(self.n_geom) >= 0.0;
-                    split.refracted = if straight {
-                        Some(ray.direction)
-                    } else if wrong {
-                        refract(self.n_geom, self.v, self.eta_1 / self.eta_2).map(|r| r.direction)
-                    } else {
-                        Some(r.direction)
-                    };
-                }
-                None => {
-                    split.total_reflection = true;
-                    if !self.material.fresnel {
-                        split.kr += split.kt;
-                    }
-                    split.kt = Color::BLACK;
-                }
-            }
-        }
-        let r = reflect(self.n_shade, self.v);
-        let under = r.dot(self.n_geom) <= 0.0;
-        split.reflected = Some(if under {
-            reflect(self.n_geom, self.v)
-        } else {
-            r
-        });
-        split
-    }
-
-    fn report(&self, scene: &RenderScene, hit: &Hit, split: Split) -> HitReport {
-        let finish = &self.material.finish;
-        HitReport {
-            hit: *hit,
-            object: self.resolved.look.object,
-            material: self.resolved.look.material,
-            line: scene.face_line(hit.id),
-            diagnostic: false,
-            position: self.resolved.point.position,
-            n_geom: self.n_geom,
-            n_shade: self.n_shade,
-            eta_1: self.eta_1,
-            eta_2: self.eta_2,
-            cos_1: self.n_shade.dot(self.v),
-            cos_2: split.cos_2,
-            fresnel: split.fresnel,
-            ambient: finish.ambient * scene.ambient,
-            emission: finish.emission,
-            diffuse: finish.diffuse,
-            specular: finish.specular,
-            shininess: finish.shininess,
-            reflection: split.kr,
-            transmission: split.kt,
-        }
-    }
-
-    /// The colour of a diagnostic model.
-    fn diagnose(&self, scene: &RenderScene, model: ShadingModel, first: &FirstHit) -> Color {
-        match model {
-            ShadingModel::Normals => {
-                let n = self.n_shade * 0.5 + DVec3::splat(0.5);
-                Color::new(n.x, n.y, n.z)
-            }
-            ShadingModel::Depth => {
-                let diagonal = scene.diagonal();
-                Color::gray(first.distance / (first.distance + diagonal))
-            }
-            ShadingModel::ObjectId => id_color(first.object),
-            _ => {
-                let uv = self.resolved.point.uv;
-                Color::new(uv.x - uv.x.floor(), uv.y - uv.y.floor(), 0.0)
-            }
-        }
-    }
-}
-
-/// A colour of its own for every number: hues by the golden ratio, three levels of brightness.
-fn id_color(id: u32) -> Color {
-    let hue = (f64::from(id) * 0.618_033_988_749_895).fract() * 6.0;
-    let ramp = |shift: f64| {
-        let h = (hue + shift) % 6.0;
-        let distance = (h - 3.0).abs() - 1.0;
-        if distance < 0.0 {
-            0.0
-        } else if distance > 1.0 {
-            1.0
-        } else {
-            distance
-        }
-    };
-    let level = 0.35 + 0.25 * f64::from(id % 3);
-    Color::new(ramp(0.0), ramp(4.0), ramp(2.0)) * level + Color::gray(0.05)
 }

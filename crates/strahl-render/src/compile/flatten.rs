@@ -272,10 +272,10 @@ impl Pass {
     /// Translates a tree of objects, bottom-up with a stack of its own.
     fn csg_node(&mut self, root: &Todo<'_>, looks: &mut Vec<Look>) -> Option<CsgNode> {
         enum Step<'a> {
-            Visit(Todo<'a>),
+            Visit(Box<Todo<'a>>),
             Combine(CsgOp, usize),
         }
-        let mut steps = vec![Step::Visit(root.clone())];
+        let mut steps = vec![Step::Visit(Box::new(root.clone()))];
         let mut done: Vec<CsgNode> = Vec::new();
         while let Some(step) = steps.pop() {
             match step {
@@ -295,7 +295,7 @@ impl Pass {
                                 .0
                                 .iter()
                                 .rev()
-                                .map(|c| Step::Visit(Todo::new(c, Some(&todo)))),
+                                .map(|c| Step::Visit(Box::new(Todo::new(c, Some(&todo))))),
                         );
                     }
                     ObjectKind::Shape(shape) => {
