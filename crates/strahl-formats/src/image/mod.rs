@@ -37,4 +37,4 @@ pub use error::ImageError;
 pub use format::{FormatInfo, ImageFormat, formats};
 pub use picture::{BitDepth, Layer, LayerData, Picture, Window, WriteOptions};
 pub use texture::{MAX_TEXELS, TextureUse, decode_texture, read_texture};
-pub use write::{encode_picture, write_picture};
+pub use write::{encode_picture, write_bytes, write_picture};

@@ -41,6 +41,11 @@ pub fn encode_picture(
         })
 }
 
+/// Writes any other file in the same manner: it is there entirely or not at all.
+pub fn write_bytes(path: impl AsRef<Path>, bytes: &[u8]) -> Result<(), ImageError> {
+    write_atomically(path.as_ref(), |writer| writer.write_all(bytes))
+}
+
 /// Lets `fill` write a file, which takes its place only when it is complete.
 fn write_atomically(
     path: &Path,
