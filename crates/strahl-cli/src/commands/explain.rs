@@ -1,0 +1,31 @@
+use crate::args::{ExplainArgs, ExplainForm, SceneArgs};
+use crate::explain::{dot, json, text};
+use crate::input::{compiled, render_options};
+use crate::report::Failure;
+
+/// `strahl explain`: the ray tree of a pixel.
+pub(crate) fn explain(args: &ExplainArgs) -> Result<(), Failure> {
+    let input = SceneArgs {
+        scene: args.scene.clone(),
+        format: args.scene_format,
+    };
+    let (scene, _) = compiled(&input, &args.picture, false)?;
+    let options = render_options(&scene, &args.picture);
+    let (x, y) = args.pixel;
+    if x >= options.width || y >= options.height {
+        let (w, h) = (options.width, options.height);
+        return Err(Failure::new(format!(
+            "there is no pixel {x},{y} in a picture of {w}x{h} pixels; the last one is {},{}",
+            w.saturating_sub(1),
+            h.saturating_sub(1)
+        )));
+    }
+    let tree = strahl::explain(&scene, &options, x, y).map_err(Failure::new)?;
+    let printed = match args.format {
+        ExplainForm::Text => text(&scene, &tree, args.pixel),
+        ExplainForm::Json => json(&scene, &tree, args.pixel),
+        ExplainForm::Dot => dot(&scene, &tree, args.pixel),
+    };
+    println!("{printed}");
+    Ok(())
+}

@@ -1,0 +1,128 @@
+use crate::args::SceneArgs;
+use crate::input::load;
+use crate::report::{Failure, print_diagnostics};
+use std::collections::BTreeMap;
+use strahl::accel::AcceleratorKind;
+use strahl::math::DVec3;
+use strahl::scene::Projection;
+use strahl::shade::LightKind;
+use strahl::tracing::{Prepared, RenderScene};
+
+/// `strahl info`: what is in a scene.
+pub(crate) fn info(args: &SceneArgs) -> Result<(), Failure> {
+    let description = load(args, false)?;
+    let prepared = match Prepared::new(&description) {
+        Ok(prepared) => prepared,
+        Err(errors) => {
+            print_diagnostics(&errors, Some(&description.sources), false);
+            return Err(Failure::Reported);
+        }
+    };
+    let (own_camera, own_lights) = (description.camera.is_some(), !description.lights.is_empty());
+    let scene = prepared.build(AcceleratorKind::default());
+    println!("scene       {}", args.scene.display());
+    objects(&scene);
+    view(&scene, own_camera, own_lights);
+    let s = scene.stats();
+    println!("materials   {}", s.materials);
+    println!(
+        "memory      geometry {}, {} {} ({} nodes, {} references)",
+        bytes(s.geometry_bytes),
+        scene.accelerator_name(),
+        bytes(s.accelerator_bytes),
+        s.nodes,
+        s.references,
+    );
+    Ok(())
+}
+
+fn objects(scene: &RenderScene) {
+    let s = scene.stats();
+    let mut kinds: BTreeMap<&str, usize> = BTreeMap::new();
+    for object in scene.objects() {
+        *kinds.entry(object.kind).or_default() += 1;
+    }
+    let kinds: Vec<String> = kinds
+        .iter()
+        .map(|(kind, count)| format!("{count} {kind}"))
+        .collect();
+    let kinds = if kinds.is_empty() {
+        String::new()
+    } else {
+        format!(": {}", kinds.join(", "))
+    };
+    println!("objects     {}{kinds}", s.objects);
+    println!(
+        "primitives  {} stored, {} with instances expanded",
+        s.primitives, s.elements
+    );
+    if s.instances > 0 {
+        println!("instances   {}", s.instances);
+    }
+    let b = scene.bounds();
+    if b.is_empty() {
+        println!("bounds      none");
+    } else {
+        println!(
+            "bounds      {} to {}, size {}",
+            point(b.min),
+            point(b.max),
+            point(b.size())
+        );
+    }
+}
+
+fn view(scene: &RenderScene, own_camera: bool, own_lights: bool) {
+    let c = scene.camera();
+    let kind = match c.projection {
+        Projection::Perspective => "perspective",
+        Projection::Orthographic => "orthographic",
+    };
+    let chosen = if own_camera {
+        ""
+    } else {
+        " (chosen to frame the objects)"
+    };
+    println!(
+        "camera      {kind}, eye {}, direction {}{chosen}",
+        point(c.eye),
+        point(c.direction)
+    );
+    if let Some((w, h)) = scene.settings().size {
+        println!("size        {w}x{h}");
+    }
+    for light in scene.lights() {
+        let place = match light.light.kind {
+            LightKind::Point { position } => format!("point light at {}", point(position)),
+            LightKind::Directional { direction } => {
+                format!("directional light along {}", point(direction))
+            }
+            LightKind::Spot { position, .. } => format!("spot light at {}", point(position)),
+            _ => "light".to_owned(),
+        };
+        let c = light.light.color;
+        let chosen = if own_lights { "" } else { " (added)" };
+        println!(
+            "light       {place}, colour {} {} {}{chosen}",
+            c.r, c.g, c.b
+        );
+    }
+}
+
+fn point(p: DVec3) -> String {
+    format!("({:.6}, {:.6}, {:.6})", p.x, p.y, p.z)
+}
+
+fn bytes(n: usize) -> String {
+    const UNITS: [&str; 4] = ["B", "KiB", "MiB", "GiB"];
+    let (mut value, mut unit) = (n as f64, 0);
+    while value >= 1024.0 && unit + 1 < UNITS.len() {
+        value /= 1024.0;
+        unit += 1;
+    }
+    if unit == 0 {
+        format!("{n} B")
+    } else {
+        format!("{value:.1} {}", UNITS[unit])
+    }
+}

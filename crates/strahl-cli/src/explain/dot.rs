@@ -1,0 +1,110 @@
+use super::{light_name, object_name, object_place};
+use std::fmt::Write;
+use strahl::shade::Color;
+use strahl::tracing::{PixelTree, RayKind, RayNode, RenderScene};
+
+/// The trees of a pixel as a graph for Graphviz: rays that see something as boxes in the colour they bring, shadow rays as small
+/// ellipses.
+pub(crate) fn dot(scene: &RenderScene, pixel: &PixelTree, (x, y): (u32, u32)) -> String {
+    let mut out = String::new();
+    // Writing to a string cannot fail.
+    let _ = writeln!(
+        out,
+        "digraph \"pixel {x},{y}\" {{\n  node [shape=box, style=filled, fontname=\"sans-serif\"];"
+    );
+    for (sample, (_, tree)) in pixel.samples.iter().enumerate() {
+        for node in &tree.nodes {
+            write_node(&mut out, scene, sample, node);
+        }
+    }
+    out.push('}');
+    out
+}
+
+fn write_node(out: &mut String, scene: &RenderScene, sample: usize, node: &RayNode) {
+    let report = &node.report;
+    let id = format!("s{sample}r{}", report.node);
+    let what = match &report.hit {
+        None => "background".to_owned(),
+        Some(hit) => {
+            let place = object_place(scene, hit.object, hit.line)
+                .map_or_else(String::new, |p| format!("\n{p}"));
+            format!(
+                "{}{place}\nt = {}",
+                object_name(scene, hit.object),
+                hit.hit.t
+            )
+        }
+    };
+    let label = format!(
+        "#{} {}\n{what}\n({:.4}, {:.4}, {:.4})",
+        report.node, report.kind, node.total.r, node.total.g, node.total.b
+    );
+    let (fill, ink) = shown(node.total);
+    let _ = writeln!(
+        out,
+        "  {id} [label=\"{}\", fillcolor=\"{fill}\", fontcolor={ink}];",
+        escaped(&label)
+    );
+    if report.node != report.parent {
+        let style = if report.kind == RayKind::Reflection {
+            "solid"
+        } else {
+            "dashed"
+        };
+        let label = format!("{}\nweight {:.4}", report.kind, report.weight);
+        let _ = writeln!(
+            out,
+            "  s{sample}r{} -> {id} [label=\"{}\", style={style}];",
+            report.parent,
+            escaped(&label)
+        );
+    }
+    for term in &node.lights {
+        if term.shadow_ray.is_none() {
+            continue;
+        }
+        let light = format!("{id}l{}", term.light);
+        let seen = if term.visible.is_black() {
+            "in shadow"
+        } else {
+            "lit"
+        };
+        let (fill, ink) = shown(term.diffuse + term.specular);
+        let label = format!("{}\n{seen}", light_name(scene, term.light));
+        let _ = writeln!(
+            out,
+            "  {light} [label=\"{}\", shape=ellipse, fillcolor=\"{fill}\", fontcolor={ink}];\n  {id} -> {light} \
+             [label=\"shadow\", style=dotted];",
+            escaped(&label)
+        );
+    }
+    for (number, (kind, weight, end)) in node.ended.iter().enumerate() {
+        let label = format!("no {kind} ray:\n{end}\nweight {weight:.4}");
+        let _ = writeln!(
+            out,
+            "  {id}e{number} [label=\"{}\", shape=plaintext, style=solid];\n  {id} -> {id}e{number};",
+            escaped(&label)
+        );
+    }
+}
+
+/// A linear colour as a fill on a screen (gamma 2 is near enough for a box), and the ink that is readable on it.
+fn shown(c: Color) -> (String, &'static str) {
+    let code = |v: f64| (v.clamp(0.0, 1.0).sqrt() * 255.0) as u8;
+    let ink = if 0.2 * c.r + 0.7 * c.g + 0.1 * c.b > 0.2 {
+        "black"
+    } else {
+        "white"
+    };
+    (
+        format!("#{:02x}{:02x}{:02x}", code(c.r), code(c.g), code(c.b)),
+        ink,
+    )
+}
+
+fn escaped(s: &str) -> String {
+    s.replace('\\', "\\\\")
+        .replace('"', "\\\"")
+        .replace('\n', "\\n")
+}
