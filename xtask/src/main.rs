@@ -1,2 +1,22 @@
-//! x
-fn main() {}
+//! Chores of the repository, run as `cargo xtask COMMAND`.
+#![allow(clippy::print_stdout, clippy::print_stderr, reason = "a program talks")]
+
+mod bench;
+mod pov;
+
+use anyhow::{Result, bail};
+use std::path::Path;
+
+const USAGE: &str = "usage: cargo xtask COMMAND
+  bench spd [FOLDER] [--runs N]   trace times of the SPD scenes (*.nff.gz) in FOLDER against POV-Ray, one thread
+  nff2pov SCENE OUTPUT.pov        the scene as POV-Ray takes it, doing the same work";
+
+fn main() -> Result<()> {
+    let args: Vec<String> = std::env::args().skip(1).collect();
+    let words: Vec<&str> = args.iter().map(String::as_str).collect();
+    match words.as_slice() {
+        ["bench", "spd", rest @ ..] => bench::spd(rest),
+        ["nff2pov", scene, output] => pov::convert(Path::new(scene), Path::new(output)),
+        _ => bail!("{USAGE}"),
+    }
+}
