@@ -9,6 +9,7 @@ mod aabb;
 pub mod det;
 pub mod error;
 mod interval;
+pub mod noise;
 mod ray;
 pub mod roots;
 mod transform;

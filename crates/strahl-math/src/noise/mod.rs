@@ -1,0 +1,219 @@
+//! Solid noise: a smooth pseudo-random function of space, its vector-valued sibling, and the sums over octaves that are
+//! called turbulence.
+//!
+//! The functions are those of POV-Ray 3.7, so that a marble keeps its veins. Their construction and their tables were
+//! measured on the running program: its `f_noise_generator` and `vturbulence` along the lattice's lines give values and
+//! gradients of the corners exactly, and rows of lattice values that are XOR permutations (or shifts) of each other give
+//! the hash up to one constant, which the requirement that every stage uses the same table fixes. Against 240,000 random points with coordinates up to 3e7 the largest difference was 2.3e-16.
+//!
+//! Two constructions occur, both on the integer lattice, both blending the linear functions attached to the eight corners
+//! of a cell by `s(t) = 3t² - 2t³` along each axis (so the gradient is continuous, the curvature is not):
+//!
+//! * *value-gradient noise* (generators 1 and 2, and [`dnoise`]): corner `(i, j, k)` is hashed to
+//!   `h = H[H[H[i] ^ j] ^ k] & 255` through a permutation of 4096, and carries `r[h]/2 + (r[h+1], r[h+2], r[h+3]) · d`,
+//!   where `d` points from the corner to the place: value and gradient overlap in one table `r`;
+//! * *gradient noise* (generator 3; Perlin, "An Image Synthesizer", SIGGRAPH 1985): corner `(i, j, k)` carries `g · d`
+//!   with a unit vector `g = G[p[p[i] + j] + k]` of 2048. Its lattice is shifted by 10000000.0231572, so that integers
+//!   are not zeros of the function; the sum also rounds coordinates to 2⁻²⁹.
+//!
+//! The first repeats every 4096, the second every 2048 units.
+
+mod tables;
+
+use crate::DVec3;
+use tables::{GRADIENTS, PERMUTATION, R, hash};
+
+/// Which of the three scalar noise functions of POV-Ray 3.7 to use.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum NoiseGenerator {
+    /// `noise_generator 1`: value-gradient noise plus 1/2, cut off at 0 and 1 (which shows as plateaus).
+    Original,
+    /// `noise_generator 2`, the default: the same function, scaled so that it stays in `0..=1`.
+    #[default]
+    RangeCorrected,
+    /// `noise_generator 3`: gradient noise.
+    Perlin,
+}
+
+impl NoiseGenerator {
+    /// The generator with POV-Ray's number 1, 2 or 3.
+    pub const fn from_number(number: u32) -> Option<Self> {
+        match number {
+            1 => Some(Self::Original),
+            2 => Some(Self::RangeCorrected),
+            3 => Some(Self::Perlin),
+            _ => None,
+        }
+    }
+}
+
+/// Scalar noise at `p`, `0..=1` with a mean near 1/2; NaN where a coordinate is not finite.
+pub fn noise(p: DVec3, generator: NoiseGenerator) -> f64 {
+    match generator {
+        NoiseGenerator::Original => unit(value_gradient(p) + 0.5),
+        NoiseGenerator::RangeCorrected => unit((value_gradient(p) + 1.05242) * 0.48985582),
+        NoiseGenerator::Perlin => unit(0.4925 + 0.795 * perlin(p)),
+    }
+}
+
+/// Vector noise at `p`: three independent value-gradient noises, each with a mean near zero and seldom beyond ±1.
+///
+/// The same for every [`NoiseGenerator`]; what turbulence displaces points by.
+pub fn dnoise(p: DVec3) -> DVec3 {
+    let cell = Cell::new(p);
+    let mut sum = DVec3::ZERO;
+    for corner in cell.corners() {
+        let r = &R[corner.hash..];
+        let d = corner.offset;
+        let linear = |k: usize| 0.5 * r[k] + (r[k + 1] * d.x + r[k + 2] * d.y + r[k + 3] * d.z);
+        sum += DVec3::new(linear(0), linear(4), linear(8)) * corner.weight;
+    }
+    sum
+}
+
+/// Octaves of noise: each has `lambda` times the frequency and `omega` times the strength of the one before.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Turbulence {
+    /// Number of octaves summed, `1..=10` in POV-Ray's language.
+    pub octaves: u32,
+    /// Ratio of the strength of successive octaves.
+    pub omega: f64,
+    /// Ratio of the frequency of successive octaves.
+    pub lambda: f64,
+}
+
+impl Default for Turbulence {
+    /// Six octaves, each of half the strength and twice the frequency.
+    fn default() -> Self {
+        Self {
+            octaves: 6,
+            omega: 0.5,
+            lambda: 2.0,
+        }
+    }
+}
+
+impl Turbulence {
+    /// The sum of `omega^i dnoise(lambda^i p)` over the octaves `i`.
+    pub fn vector(&self, p: DVec3) -> DVec3 {
+        let (mut frequency, mut strength) = (1.0, 1.0);
+        let mut sum = DVec3::ZERO;
+        for _ in 0..self.octaves {
+            sum += dnoise(p * frequency) * strength;
+            frequency *= self.lambda;
+            strength *= self.omega;
+        }
+        sum
+    }
+
+    /// The sum of `omega^i noise(lambda^i p)` over the octaves `i`.
+    pub fn scalar(&self, p: DVec3, generator: NoiseGenerator) -> f64 {
+        let (mut frequency, mut strength) = (1.0, 1.0);
+        let mut sum = 0.0;
+        for _ in 0..self.octaves {
+            sum += noise(p * frequency, generator) * strength;
+            frequency *= self.lambda;
+            strength *= self.omega;
+        }
+        sum
+    }
+}
+
+/// `x` cut off at 0 and 1.
+fn unit(x: f64) -> f64 {
+    x.clamp(0.0, 1.0)
+}
+
+/// One corner of a lattice cell as a place inside the cell sees it.
+struct Corner {
+    /// Its entry of the table of values and gradients, `0..256`.
+    hash: usize,
+    /// From the corner to the place.
+    offset: DVec3,
+    /// Its share of the result; the eight shares sum to 1.
+    weight: f64,
+}
+
+/// The cell of the value-gradient lattice around a place.
+struct Cell {
+    /// Lattice coordinates of the lower corner, modulo 4096.
+    index: [usize; 3],
+    fraction: DVec3,
+    smooth: DVec3,
+}
+
+impl Cell {
+    /// What the lattice is shifted by: cell 0 of the table lies at -10000.
+    const SHIFT: i64 = 10_000;
+
+    fn new(p: DVec3) -> Self {
+        let floor = p.floor();
+        let fraction = p - floor;
+        // The cast saturates, so hostile coordinates wrap to some cell and spoil only their own value.
+        let index = floor
+            .to_array()
+            .map(|f| ((f as i64).wrapping_add(Self::SHIFT) & 4095) as usize);
+        Self {
+            index,
+            fraction,
+            smooth: smooth(fraction),
+        }
+    }
+
+    fn corners(&self) -> impl Iterator<Item = Corner> + '_ {
+        (0..8).map(|bits: usize| {
+            let step = [bits >> 2, (bits >> 1) & 1, bits & 1];
+            let [i, j, k] = std::array::from_fn(|a| (self.index[a] + step[a]) & 4095);
+            let step = DVec3::from_array(step.map(|s| s as f64));
+            Corner {
+                hash: usize::from(hash(usize::from(hash(usize::from(hash(i)) ^ j)) ^ k) & 255),
+                offset: self.fraction - step,
+                weight: weight(self.smooth, step),
+            }
+        })
+    }
+}
+
+/// `3t² - 2t³` along each axis.
+fn smooth(t: DVec3) -> DVec3 {
+    t * t * (DVec3::splat(3.0) - 2.0 * t)
+}
+
+/// The product over the axes of `s` where `step` is 1 and of `1 - s` where it is 0.
+fn weight(s: DVec3, step: DVec3) -> f64 {
+    let w = |s: f64, step: f64| if step == 0.0 { 1.0 - s } else { s };
+    w(s.x, step.x) * w(s.y, step.y) * w(s.z, step.z)
+}
+
+fn value_gradient(p: DVec3) -> f64 {
+    let mut sum = 0.0;
+    for corner in Cell::new(p).corners() {
+        let r = &R[corner.hash..];
+        let d = corner.offset;
+        sum += corner.weight * (0.5 * r[0] + (r[1] * d.x + r[2] * d.y + r[3] * d.z));
+    }
+    sum
+}
+
+fn perlin(p: DVec3) -> f64 {
+    // 12432434 · 2⁻²⁹ is what is left of the fraction .0231572 of the shift at this magnitude; both terms are exact.
+    const SHIFT: f64 = 10_000_000.0 + 12_432_434.0 / 536_870_912.0;
+    let p = p + DVec3::splat(SHIFT);
+    let floor = p.floor();
+    let fraction = p - floor;
+    let s = smooth(fraction);
+    let index = floor.to_array().map(|f| (f as i64 & 2047) as usize);
+    let gradients = &*GRADIENTS;
+    let mut sum = 0.0;
+    for bits in 0..8usize {
+        let step = [bits >> 2, (bits >> 1) & 1, bits & 1];
+        let [i, j, k] = std::array::from_fn(|a| (index[a] + step[a]) & 2047);
+        let row = usize::from(PERMUTATION[(usize::from(PERMUTATION[i]) + j) & 2047]);
+        let step = DVec3::from_array(step.map(|s| s as f64));
+        sum += weight(s, step) * gradients[(row + k) & 2047].dot(fraction - step);
+    }
+    sum
+}
+
+#[cfg(test)]
+mod tests;
