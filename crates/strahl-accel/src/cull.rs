@@ -88,7 +88,7 @@ impl CullRay {
     /// The constants for a structure, or `None` if the ray certainly misses it in `range`.
     ///
     /// A ray with a coordinate that is not finite, or without a direction, meets nothing.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn new(ray: &Ray, range: Interval, structure: &CullBounds) -> Option<Self> {
         let distance = largest(ray.origin);
         let (direction, scale) = scaled(ray.direction)?;

@@ -59,6 +59,21 @@ pub struct SurfacePoint {
     pub dpdv: DVec3,
 }
 
+impl SurfacePoint {
+    /// A point without texture coordinates, shaded as the flat surface it lies on.
+    pub(crate) fn bare(position: DVec3, position_error: DVec3, normal: DVec3) -> Self {
+        Self {
+            position,
+            position_error,
+            n_geom: normal,
+            n_shade: normal,
+            uv: DVec2::ZERO,
+            dpdu: DVec3::ZERO,
+            dpdv: DVec3::ZERO,
+        }
+    }
+}
+
 /// Working memory of intersection tests, one per thread: primitives are immutable.
 #[derive(Debug, Default)]
 pub struct Scratch {
@@ -142,6 +157,11 @@ pub trait Primitive: Send + Sync + std::fmt::Debug {
     /// The surface at a hit that this primitive reported for this ray.
     fn surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint;
 
+    /// The same surface, for those who don't look at `uv`, `dpdu` and `dpdv`, which mean nothing here: possibly sooner.
+    fn bare_surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
+        self.surface_at(ray, hit)
+    }
+
     /// The primitive as a solid, if it encloses a volume.
     fn as_solid(&self) -> Option<&dyn Solid> {
         None
@@ -219,6 +239,10 @@ impl<P: Primitive + ?Sized> Primitive for Arc<P> {
 
     fn surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
         (**self).surface_at(ray, hit)
+    }
+
+    fn bare_surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
+        (**self).bare_surface_at(ray, hit)
     }
 
     fn as_solid(&self) -> Option<&dyn Solid> {

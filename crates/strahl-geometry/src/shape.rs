@@ -59,6 +59,10 @@ macro_rules! shapes {
                 match self { $(Self::$variant(shape) => shape.surface_at(ray, hit),)+ }
             }
 
+            fn bare_surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
+                match self { $(Self::$variant(shape) => shape.bare_surface_at(ray, hit),)+ }
+            }
+
             fn as_solid(&self) -> Option<&dyn Solid> {
                 match self { $(Self::$variant(shape) => shape.as_solid(),)+ }
             }

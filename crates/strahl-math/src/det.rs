@@ -42,19 +42,30 @@ pub fn ln(x: f64) -> f64 {
 ///
 /// Small whole exponents, the usual case of highlights, are computed by repeated squaring.
 pub fn pow(base: f64, exponent: f64) -> f64 {
+    small_power(base, exponent).unwrap_or_else(|| libm::pow(base, exponent))
+}
+
+/// Whole exponents from 0 to 64 by repeated squaring.
+fn small_power(base: f64, exponent: f64) -> Option<f64> {
     let whole = exponent as u32;
-    if f64::from(whole) == exponent && whole <= 64 {
-        let (mut result, mut square, mut bits) = (1.0, base, whole);
-        while bits > 0 {
-            if bits & 1 == 1 {
-                result *= square;
-            }
-            square *= square;
-            bits >>= 1;
-        }
-        return result;
+    if f64::from(whole) != exponent || whole > 64 {
+        return None;
     }
-    libm::pow(base, exponent)
+    let (mut result, mut square, mut bits) = (1.0, base, whole);
+    while bits > 0 {
+        if bits & 1 == 1 {
+            result *= square;
+        }
+        square *= square;
+        bits >>= 1;
+    }
+    Some(result)
+}
+
+/// `base` to the power of `exponent` for a positive base, in half the time: as `exp(exponent ln(base))`, whose relative error
+/// grows with the exponent of the result (about 1e-16 times `|exponent ln(base)|`).
+pub fn pow_fast(base: f64, exponent: f64) -> f64 {
+    small_power(base, exponent).unwrap_or_else(|| exp(exponent * ln(base)))
 }
 
 /// Cube root.

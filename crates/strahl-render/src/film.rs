@@ -44,6 +44,11 @@ impl Region {
         }
     }
 
+    /// Whether a pixel of the picture is in the region.
+    pub(crate) const fn contains(&self, x: u32, y: u32) -> bool {
+        x >= self.x && y >= self.y && x - self.x < self.width && y - self.y < self.height
+    }
+
     /// Index of a pixel of the picture in the row-major order of this region, which must contain it.
     pub(crate) fn index(&self, x: u32, y: u32) -> usize {
         (y - self.y) as usize * self.width as usize + (x - self.x) as usize
@@ -218,8 +223,7 @@ impl Film {
     /// The colour of a pixel of the picture; `None` outside of the region.
     pub fn pixel(&self, x: u32, y: u32) -> Option<[f32; 3]> {
         let r = &self.region;
-        let inside = x >= r.x && y >= r.y && x - r.x < r.width && y - r.y < r.height;
-        inside.then(|| self.pixels[r.index(x, y)])
+        r.contains(x, y).then(|| self.pixels[r.index(x, y)])
     }
 
     /// SHA-256 of the pixels (three little-endian f32 each, row by row), in hexadecimal digits: equal exactly if all bits

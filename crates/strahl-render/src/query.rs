@@ -113,13 +113,12 @@ impl<'s> Tracer<'s> {
         let mut search = Search {
             scene: self.scene,
             scratch: &mut self.scratch,
-            stats: TraversalStats::default(),
+            stats: &mut self.stats,
             class: class.bit(),
             query,
         };
         let from = from.map(|o| (o, o.id));
         search.group(&self.scene.groups[0], ray, range, from, 0, first);
-        self.stats += search.stats;
     }
 }
 
@@ -214,7 +213,7 @@ type From<'o> = Option<(&'o Origin, u64)>;
 struct Search<'a, 's, Q> {
     scene: &'s RenderScene,
     scratch: &'a mut Scratch,
-    stats: TraversalStats,
+    stats: &'a mut TraversalStats,
     class: u8,
     query: &'a mut Q,
 }
@@ -256,7 +255,7 @@ impl<Q: Query> Search<'_, '_, Q> {
                 .traverse(ray, range, &mut visitor, &mut stats);
         }
         let t_max = visitor.t_max;
-        self.stats += stats;
+        *self.stats += stats;
         t_max
     }
 }
@@ -397,7 +396,9 @@ impl<Q: Query> GroupVisitor<'_, '_, '_, Q> {
             let look = self.group.look(prim, surface.element);
             &self.search.scene.materials[look.material.0 as usize]
         };
-        let point = self.group.surface_at(prim, self.ray, hit, surface.element);
+        let point = self
+            .group
+            .surface_at(prim, self.ray, hit, surface.element, true);
         let front = point.n_geom.dot(self.ray.direction) < 0.0;
         if material.sides == Sides::Front && !front {
             return false;

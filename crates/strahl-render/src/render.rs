@@ -3,7 +3,7 @@ use crate::film::{Film, FilmError, PixelInfo, Region, try_filled};
 use crate::sampling::{Sampling, contrast};
 use crate::scene::RenderScene;
 use crate::tiles::{TileOrder, tiles};
-use crate::trace::{RayCounts, SampleResult, TraceSettings, TreeTracer};
+use crate::trace::{RayCounts, TraceSettings, TreeTracer};
 use rayon::prelude::*;
 use strahl_accel::TraversalStats;
 use strahl_shade::Color;
@@ -148,16 +148,13 @@ pub(crate) fn passes_of_pixel(
         counts,
         traversal,
     };
-    let (wide, all) = job.refined(
-        Region {
-            x,
-            y,
-            width: 1,
-            height: 1,
-        },
-        threshold,
-        passes,
-    )?;
+    let pixel = Region {
+        x,
+        y,
+        width: 1,
+        height: 1,
+    };
+    let (wide, all) = job.refined(pixel, threshold, passes, |_, _| {})?;
     let bits = all[wide.index(x, y)].passes;
     Ok((1..=passes).filter(|pass| bits >> pass & 1 == 1).collect())
 }
@@ -175,6 +172,8 @@ struct Job<'a> {
 struct TileResult<T> {
     tile: Region,
     values: Vec<T>,
+    /// One for each value, if asked for.
+    infos: Vec<PixelInfo>,
     counts: RayCounts,
     traversal: TraversalStats,
 }
@@ -184,12 +183,17 @@ struct TileResult<T> {
 struct Samples {
     sum: Color,
     count: u32,
-    info: PixelInfo,
     /// The refining passes that looked at it, as bits.
     passes: u32,
 }
 
 impl Samples {
+    const NONE: Self = Self {
+        sum: Color::BLACK,
+        count: 0,
+        passes: 0,
+    };
+
     fn mean(&self) -> Color {
         if self.count == 1 {
             self.sum
@@ -206,7 +210,7 @@ impl Job<'_> {
         region: Region,
         pass: u32,
         trace: impl Fn(&mut PixelTracer<'_>, u32, u32) -> T + Sync,
-        mut store: impl FnMut(Region, Vec<T>),
+        mut store: impl FnMut(TileResult<T>),
     ) -> Result<(), RenderError> {
         // In batches, so that a large picture does not wait in memory twice.
         const BATCH: usize = 1024;
@@ -222,6 +226,7 @@ impl Job<'_> {
                         tree: TreeTracer::new(scene, options.trace),
                         rays,
                         options,
+                        infos: Vec::new(),
                     },
                     |tracer, tile| {
                         (!progress.cancelled()).then(|| {
@@ -236,7 +241,7 @@ impl Job<'_> {
                 let result = result.ok_or(RenderError::Cancelled)?;
                 self.counts += result.counts;
                 self.traversal += result.traversal;
-                store(result.tile, result.values);
+                store(result);
             }
         }
         Ok(())
@@ -249,9 +254,10 @@ impl Job<'_> {
             region,
             0,
             |tracer, x, y| tracer.pixel(0, x, y),
-            |tile, values| {
-                for (pixel, samples) in tile.positions().zip(values) {
-                    film.set(pixel, samples.mean(), &samples.info);
+            |result| {
+                film.set_infos(result.tile, &result.infos);
+                for (pixel, samples) in result.tile.positions().zip(result.values) {
+                    film.set(pixel, samples.mean());
                 }
             },
         )
@@ -265,22 +271,21 @@ impl Job<'_> {
             height: region.height + 1,
             ..region
         };
-        let black = (Color::BLACK, PixelInfo::new(&SampleResult::NOTHING, 0));
-        let mut corners = try_filled(lattice, black)?;
+        let mut corners = try_filled(lattice, Color::BLACK)?;
         self.tiles(
             lattice,
             0,
             |tracer, x, y| tracer.corner(x, y),
-            |tile, values| {
-                for ((x, y), value) in tile.positions().zip(values) {
+            |result| {
+                film.set_infos(result.tile, &result.infos);
+                for ((x, y), value) in result.tile.positions().zip(result.values) {
                     corners[lattice.index(x, y)] = value;
                 }
             },
         )?;
         for (x, y) in region.positions() {
             let at = |dx, dy| corners[lattice.index(x + dx, y + dy)];
-            let sum = at(0, 0).0 + at(1, 0).0 + at(0, 1).0 + at(1, 1).0;
-            film.set((x, y), sum / 4.0, &at(0, 0).1);
+            film.set((x, y), (at(0, 0) + at(1, 0) + at(0, 1) + at(1, 1)) / 4.0);
         }
         Ok(())
     }
@@ -294,39 +299,33 @@ impl Job<'_> {
         passes: u32,
     ) -> Result<(), RenderError> {
         let region = film.region;
-        let (wide, all) = self.refined(region, threshold, passes)?;
+        let (wide, all) = self.refined(region, threshold, passes, |tile, infos| {
+            film.set_infos(tile, infos);
+        })?;
         for (x, y) in region.positions() {
-            let samples = &all[wide.index(x, y)];
-            film.set((x, y), samples.mean(), &samples.info);
+            film.set((x, y), all[wide.index(x, y)].mean());
         }
         Ok(())
     }
 
-    /// The samples of a region and the margin around it.
+    /// The samples of a region and the margin around it; `keep` takes what is known of the first sample of each pixel.
     fn refined(
         &mut self,
         region: Region,
         threshold: f64,
         passes: u32,
+        mut keep: impl FnMut(Region, &[PixelInfo]),
     ) -> Result<(Region, Vec<Samples>), RenderError> {
         let (width, height) = (self.options.width, self.options.height);
         let wide = region.grown(passes, width, height);
-        let info = PixelInfo::new(&SampleResult::NOTHING, 0);
-        let mut all = try_filled(
-            wide,
-            Samples {
-                sum: Color::BLACK,
-                count: 0,
-                info,
-                passes: 0,
-            },
-        )?;
+        let mut all = try_filled(wide, Samples::NONE)?;
         self.tiles(
             wide,
             0,
             |tracer, x, y| tracer.pixel(0, x, y),
-            |tile, values| {
-                for ((x, y), samples) in tile.positions().zip(values) {
+            |result| {
+                keep(result.tile, &result.infos);
+                for ((x, y), samples) in result.tile.positions().zip(result.values) {
                     all[wide.index(x, y)] = samples;
                 }
             },
@@ -350,8 +349,8 @@ impl Job<'_> {
             let refine = |tracer: &mut PixelTracer<'_>, x: u32, y: u32| {
                 rough(x, y).then(|| tracer.pixel(pass, x, y))
             };
-            self.tiles(part, pass, refine, |tile, values| {
-                for ((x, y), more) in tile.positions().zip(values) {
+            self.tiles(part, pass, refine, |result| {
+                for ((x, y), more) in result.tile.positions().zip(result.values) {
                     if let Some(more) = more {
                         let samples = &mut all[wide.index(x, y)];
                         samples.sum += more.sum;
@@ -374,22 +373,21 @@ impl Region {
 }
 
 impl Film {
-    fn set(&mut self, (x, y): (u32, u32), color: Color, info: &PixelInfo) {
+    fn set(&mut self, (x, y): (u32, u32), color: Color) {
         let index = self.region.index(x, y);
         self.pixels[index] = color.to_f32();
+    }
+
+    /// Keeps what is known of the pixels of a tile, as far as they lie in the film.
+    fn set_infos(&mut self, tile: Region, infos: &[PixelInfo]) {
         if let Some(list) = &mut self.info {
-            list[index] = *info;
+            for ((x, y), info) in tile.positions().zip(infos) {
+                if self.region.contains(x, y) {
+                    list[self.region.index(x, y)] = *info;
+                }
+            }
         }
     }
-}
-
-impl SampleResult {
-    const NOTHING: Self = Self {
-        color: Color::BLACK,
-        first: None,
-        depth: 0,
-        rays: 0,
-    };
 }
 
 /// Traces pixels on one thread.
@@ -397,6 +395,8 @@ struct PixelTracer<'s> {
     tree: TreeTracer<'s>,
     rays: PrimaryRays,
     options: &'s RenderOptions,
+    /// Of the pixels of the tile so far.
+    infos: Vec<PixelInfo>,
 }
 
 impl PixelTracer<'_> {
@@ -408,6 +408,7 @@ impl PixelTracer<'_> {
         TileResult {
             tile,
             values,
+            infos: std::mem::take(&mut self.infos),
             counts: self.tree.counts,
             traversal: self.tree.tracer.stats,
         }
@@ -415,37 +416,28 @@ impl PixelTracer<'_> {
 
     /// The samples of one pass of a pixel.
     fn pixel(&mut self, pass: u32, x: u32, y: u32) -> Samples {
-        let mut samples: Option<Samples> = None;
-        for (dx, dy) in self.options.sampling.places(pass, x, y, self.options.seed) {
-            let (color, info) = self.sample(f64::from(x) + dx, f64::from(y) + dy);
-            match &mut samples {
-                None => {
-                    samples = Some(Samples {
-                        sum: color,
-                        count: 1,
-                        info,
-                        passes: 0,
-                    })
-                }
-                Some(samples) => {
-                    samples.sum += color;
-                    samples.count += 1;
-                }
-            }
+        let mut samples = Samples::NONE;
+        let sampling = self.options.sampling;
+        for (dx, dy) in sampling.places(pass, x, y, self.options.seed) {
+            let keep = pass == 0 && samples.count == 0;
+            samples.sum += self.sample(f64::from(x) + dx, f64::from(y) + dy, keep);
+            samples.count += 1;
         }
-        samples.expect("every way of sampling has at least one place in each pixel")
+        samples
     }
 
-    fn corner(&mut self, x: u32, y: u32) -> (Color, PixelInfo) {
-        self.sample(f64::from(x), f64::from(y))
+    fn corner(&mut self, x: u32, y: u32) -> Color {
+        self.sample(f64::from(x), f64::from(y), true)
     }
 
-    fn sample(&mut self, x: f64, y: f64) -> (Color, PixelInfo) {
+    /// The light that comes through a place of the picture; `keep` says whether it stands for its pixel's other data.
+    fn sample(&mut self, x: f64, y: f64, keep: bool) -> Color {
         let before = self.tree.tracer.stats.primitive_tests;
         let sample = self.tree.trace(&self.rays.ray(x, y), &mut ());
-        (
-            sample.color,
-            PixelInfo::new(&sample, self.tree.tracer.stats.primitive_tests - before),
-        )
+        if keep && self.options.info {
+            let tests = self.tree.tracer.stats.primitive_tests - before;
+            self.infos.push(PixelInfo::new(&sample, tests));
+        }
+        sample.color
     }
 }

@@ -39,26 +39,33 @@ impl Sampling {
     }
 
     /// The places in pixel `(x, y)` of pass `pass`, in pixels from its top left corner; `Corners` has its own lattice.
-    pub(crate) fn places(self, pass: u32, x: u32, y: u32, seed: u64) -> Vec<(f64, f64)> {
-        let (cells, first_index) = match (self, pass) {
-            (Self::Corners, _) => return vec![(0.0, 0.0)],
+    pub(crate) fn places(
+        self,
+        pass: u32,
+        x: u32,
+        y: u32,
+        seed: u64,
+    ) -> impl ExactSizeIterator<Item = (f64, f64)> {
+        // Without cells there is one place, the same in every pixel.
+        let (cells, first_index, fixed) = match (self, pass) {
+            (Self::Corners, _) => (1, 0, Some((0.0, 0.0))),
             (Self::Center | Self::Grid(0 | 1), _) | (Self::Adaptive { .. }, 0) => {
-                return vec![(0.5, 0.5)];
+                (1, 0, Some((0.5, 0.5)))
             }
-            (Self::Grid(n), _) => (n, 0),
+            (Self::Grid(n), _) => (n, 0, None),
             // Passes draw from numbers of their own.
-            (Self::Adaptive { .. }, pass) => (1 << pass, 1 << (2 * pass)),
+            (Self::Adaptive { .. }, pass) => (1 << pass, 1 << (2 * pass), None),
         };
-        let mut places = Vec::with_capacity((cells * cells) as usize);
-        for index in 0..cells * cells {
-            let (jx, jy) = jitter(seed, x, y, first_index + index);
-            let size = f64::from(cells);
-            places.push((
-                (f64::from(index % cells) + jx) / size,
-                (f64::from(index / cells) + jy) / size,
-            ));
-        }
-        places
+        (0..cells * cells).map(move |index| {
+            fixed.unwrap_or_else(|| {
+                let (jx, jy) = jitter(seed, x, y, first_index + index);
+                let size = f64::from(cells);
+                (
+                    (f64::from(index % cells) + jx) / size,
+                    (f64::from(index / cells) + jy) / size,
+                )
+            })
+        })
     }
 }
 
@@ -175,12 +182,13 @@ mod tests {
 
     #[test]
     fn every_cell_has_its_sample() {
-        let places = Sampling::Grid(4).places(0, 17, 3, 99);
-        for (i, (x, y)) in places.iter().enumerate() {
+        let places = |x, seed| Sampling::Grid(4).places(0, x, 3, seed).collect::<Vec<_>>();
+        let some = places(17, 99);
+        for (i, (x, y)) in some.iter().enumerate() {
             assert_eq!(((x * 4.0) as usize, (y * 4.0) as usize), (i % 4, i / 4));
         }
-        assert_ne!(places, Sampling::Grid(4).places(0, 18, 3, 99));
-        assert_ne!(places, Sampling::Grid(4).places(0, 17, 3, 98));
+        assert_ne!(some, places(18, 99));
+        assert_ne!(some, places(17, 98));
         assert_eq!(Sampling::ADAPTIVE.places(2, 1, 1, 0).len(), 16);
     }
 }

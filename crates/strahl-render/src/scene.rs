@@ -2,7 +2,7 @@ use crate::hit::Hit;
 use std::sync::Arc;
 use strahl_accel::{Accelerator, AnyAccelerator};
 use strahl_geometry::{PrimHit, Primitive, Shape, SurfaceId, SurfacePoint, TriangleMesh};
-use strahl_math::{Aabb, Ray, Transform};
+use strahl_math::{Aabb, DVec3, Ray, Transform};
 use strahl_scene::{Background, Camera, SceneLight, Settings, SourceMap, Span};
 use strahl_shade::{Color, Material, MaterialId};
 
@@ -172,12 +172,27 @@ pub(crate) struct Located<'s> {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Resolved {
     pub(crate) point: SurfacePoint,
-    /// The same position and its error in the innermost space.
-    pub(crate) local_position: strahl_math::DVec3,
-    pub(crate) local_error: strahl_math::DVec3,
-    /// `n_geom` in the innermost space (unit).
-    pub(crate) local_normal: strahl_math::DVec3,
+    /// The same point in the innermost space, if that is not the world's.
+    pub(crate) local: Option<LocalPoint>,
     pub(crate) look: Look,
+}
+
+/// What of a surface point the start of a ray depends on.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct LocalPoint {
+    pub(crate) position: DVec3,
+    pub(crate) error: DVec3,
+    /// Unit normal of the true surface.
+    pub(crate) normal: DVec3,
+}
+
+/// Whether texture coordinates are wanted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Uv {
+    /// Where the material has textures.
+    IfTextured,
+    /// Everywhere.
+    Always,
 }
 
 impl RenderScene {
@@ -260,6 +275,7 @@ impl RenderScene {
     }
 
     /// Finds an element by its number; the number must come from a hit in this scene.
+    #[inline]
     pub(crate) fn locate(&self, id: u64) -> Located<'_> {
         let (mut group, mut rest, mut to_world) = (&self.groups[0], id, None::<Transform>);
         loop {
@@ -294,8 +310,17 @@ impl RenderScene {
     }
 
     /// The surface at a hit: `ray` is the world ray that found it, `origin` where it started.
-    pub(crate) fn resolve(&self, ray: &Ray, origin: Option<&crate::Origin>, hit: &Hit) -> Resolved {
+    #[inline]
+    pub(crate) fn resolve(
+        &self,
+        ray: &Ray,
+        origin: Option<&crate::Origin>,
+        hit: &Hit,
+        uv: Uv,
+    ) -> Resolved {
         let at = self.locate(hit.id);
+        let look = at.group.look(at.prim, at.element);
+        let uv = uv == Uv::Always || self.materials[look.material.0 as usize].is_textured();
         let local_ray = match &at.to_world {
             None => *ray,
             Some(m) => {
@@ -309,18 +334,24 @@ impl RenderScene {
                 }
             }
         };
-        let local = at.group.surface_at(at.prim, &local_ray, hit, at.element);
-        let look = at.group.look(at.prim, at.element);
-        let point = match &at.to_world {
-            None => local,
-            Some(m) => surface_to_world(m, &local),
-        };
-        Resolved {
-            point,
-            local_position: local.position,
-            local_error: local.position_error,
-            local_normal: local.n_geom,
-            look,
+        let inner = at
+            .group
+            .surface_at(at.prim, &local_ray, hit, at.element, uv);
+        match &at.to_world {
+            None => Resolved {
+                point: inner,
+                local: None,
+                look,
+            },
+            Some(m) => Resolved {
+                point: surface_to_world(m, &inner),
+                local: Some(LocalPoint {
+                    position: inner.position,
+                    error: inner.position_error,
+                    normal: inner.n_geom,
+                }),
+                look,
+            },
         }
     }
 
@@ -348,6 +379,7 @@ impl RenderScene {
 
 impl RenderGroup {
     /// Object and material of an element of a primitive that is no instance.
+    #[inline]
     pub(crate) fn look(&self, prim: u32, element: u32) -> Look {
         match self.prims[prim as usize].kind {
             PrimKind::Triangle(mesh, _) => self.meshes[mesh as usize].look,
@@ -365,8 +397,16 @@ impl RenderGroup {
         }
     }
 
-    /// The surface at a hit, in this group's space.
-    pub(crate) fn surface_at(&self, prim: u32, ray: &Ray, hit: &Hit, element: u32) -> SurfacePoint {
+    /// The surface at a hit, in this group's space, with texture coordinates if `uv`.
+    #[inline]
+    pub(crate) fn surface_at(
+        &self,
+        prim: u32,
+        ray: &Ray,
+        hit: &Hit,
+        element: u32,
+        uv: bool,
+    ) -> SurfacePoint {
         let surface = SurfaceId {
             element,
             facet: hit.facet,
@@ -376,19 +416,23 @@ impl RenderGroup {
             surface,
             uv: hit.uv,
         };
+        let surface = |shape: &Shape, ray: &Ray| {
+            if uv {
+                shape.surface_at(ray, &hit)
+            } else {
+                shape.bare_surface_at(ray, &hit)
+            }
+        };
         match self.prims[prim as usize].kind {
             PrimKind::Triangle(mesh, triangle) => self.meshes[mesh as usize]
                 .mesh
                 .surface_at_element(triangle, hit.uv),
-            PrimKind::Shape(index) => self.shapes[index as usize].shape.surface_at(ray, &hit),
+            PrimKind::Shape(index) => surface(&self.shapes[index as usize].shape, ray),
             PrimKind::Placed(index) => {
                 let used = &self.shapes[index as usize];
                 match &used.transform {
-                    None => used.shape.surface_at(ray, &hit),
-                    Some(m) => {
-                        let local = used.shape.surface_at(&m.ray_to_object(ray), &hit);
-                        surface_to_world(m, &local)
-                    }
+                    None => surface(&used.shape, ray),
+                    Some(m) => surface_to_world(m, &surface(&used.shape, &m.ray_to_object(ray))),
                 }
             }
             PrimKind::Instance(_) => unreachable!("locate ends at a primitive that is no instance"),

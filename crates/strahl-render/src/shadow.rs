@@ -1,6 +1,7 @@
 use crate::hit::{Hit, Origin};
 use crate::media::{MediaArena, MediaStack, transmittance};
 use crate::query::Tracer;
+use crate::scene::Uv;
 use strahl_math::{DVec3, Interval, Ray};
 use strahl_shade::Color;
 
@@ -62,7 +63,7 @@ impl Tracer<'_> {
         let mut visible = Color::WHITE;
         let (mut inside, mut entered_at) = (*media, 0.0);
         for hit in hits.iter() {
-            let resolved = self.scene.resolve(ray, Some(from), hit);
+            let resolved = self.scene.resolve(ray, Some(from), hit, Uv::IfTextured);
             let id = resolved.look.material;
             let material = &self.scene.materials[id.0 as usize];
             visible *= material.at(resolved.point.uv).finish.transmission;

@@ -3,7 +3,7 @@
 use crate::hit::{Hit, Origin};
 use crate::media::{MediaArena, MediaStack};
 use crate::observer::HitReport;
-use crate::scene::{RenderScene, Resolved};
+use crate::scene::{RenderScene, Resolved, Uv};
 use crate::trace::{Branch, FirstHit};
 use strahl_math::{DVec3, Ray, error};
 use strahl_shade::{
@@ -50,11 +50,20 @@ pub(crate) struct Surface {
     pub(crate) thin: bool,
     pub(crate) eta_1: f64,
     pub(crate) eta_2: f64,
+    /// Where rays towards the side of the viewer start, as nearly all do.
+    front: (DVec3, Origin),
 }
 
 impl Surface {
-    pub(crate) fn at(scene: &RenderScene, branch: &Branch, hit: &Hit, media: &MediaArena) -> Self {
-        let resolved = scene.resolve(&branch.ray, branch.origin.as_ref(), hit);
+    #[inline]
+    pub(crate) fn at(
+        scene: &RenderScene,
+        branch: &Branch,
+        hit: &Hit,
+        media: &MediaArena,
+        uv: Uv,
+    ) -> Self {
+        let resolved = scene.resolve(&branch.ray, branch.origin.as_ref(), hit, uv);
         let point = &resolved.point;
         let material = &scene.materials[resolved.look.material.0 as usize];
         let v = -branch.ray.direction.normalize();
@@ -90,6 +99,7 @@ impl Surface {
             thin: material.thin,
             eta_1,
             eta_2,
+            front: start(&resolved, hit, entering),
             resolved,
         }
     }
@@ -108,26 +118,13 @@ impl Surface {
     }
 
     /// Where a ray in this direction starts: certainly on its side of the surface.
+    #[inline]
     pub(crate) fn start(&self, hit: &Hit, direction: DVec3) -> (DVec3, Origin) {
-        let outwards = self.n_geom.dot(direction) >= 0.0;
-        let r = &self.resolved;
-        // Both normals point to the same side of the surface in their spaces.
-        let same = if self.entering { outwards } else { !outwards };
-        let toward = |n: DVec3| if same { n } else { -n };
-        let point = error::offset_origin(
-            r.point.position,
-            r.point.position_error,
-            toward(r.point.n_geom),
-        );
-        let local = error::offset_origin(r.local_position, r.local_error, toward(r.local_normal));
-        (
-            point,
-            Origin {
-                id: hit.id,
-                facet: hit.facet,
-                local,
-            },
-        )
+        if self.n_geom.dot(direction) >= 0.0 {
+            self.front
+        } else {
+            start(&self.resolved, hit, !self.entering)
+        }
     }
 
     /// Divides the light: reflection, transparency by Snell's law, Fresnel's equations on request. On total reflection kt is
@@ -242,6 +239,25 @@ impl Surface {
             }
         }
     }
+}
+
+/// Where a ray that leaves a hit starts, on the side of the surface's own normal or on the other.
+#[inline]
+fn start(r: &Resolved, hit: &Hit, along_normal: bool) -> (DVec3, Origin) {
+    // Both normals point to the same side of the surface in their spaces.
+    let toward = |n: DVec3| if along_normal { n } else { -n };
+    let p = &r.point;
+    let point = error::offset_origin(p.position, p.position_error, toward(p.n_geom));
+    let local = match &r.local {
+        None => point,
+        Some(l) => error::offset_origin(l.position, l.error, toward(l.normal)),
+    };
+    let origin = Origin {
+        id: hit.id,
+        facet: hit.facet,
+        local,
+    };
+    (point, origin)
 }
 
 /// A colour of its own for every number: hues by the golden ratio, three levels of brightness.

@@ -16,7 +16,7 @@ use crate::hit::{Hit, Origin, RayClass};
 use crate::media::{MediaArena, MediaStack, transmittance};
 use crate::observer::{BranchEnd, LightTerm, RayKind, RayReport, TraceObserver};
 use crate::query::Tracer;
-use crate::scene::RenderScene;
+use crate::scene::{RenderScene, Uv};
 use crate::shadow::ShadowRay;
 use crate::surface::{Split, Surface};
 use strahl_math::{DVec3, Interval, Ray};
@@ -145,6 +145,7 @@ pub struct TreeTracer<'s> {
     /// Rays followed so far.
     pub counts: RayCounts,
     settings: TraceSettings,
+    uv: Uv,
     media: MediaArena,
     waiting: Vec<Branch>,
     nodes: Vec<Node>,
@@ -181,8 +182,13 @@ struct Node {
 impl<'s> TreeTracer<'s> {
     /// For one scene and one thread.
     pub fn new(scene: &'s RenderScene, settings: TraceSettings) -> Self {
+        let shown = |model: Option<ShadingModel>| model == Some(ShadingModel::Uv);
+        let uv_shown = shown(settings.force_shading)
+            || shown(Some(settings.shading))
+            || scene.materials.iter().any(|m| shown(m.model));
         Self {
             tracer: Tracer::new(scene),
+            uv: if uv_shown { Uv::Always } else { Uv::IfTextured },
             counts: RayCounts::default(),
             settings,
             media: MediaArena::default(),
@@ -301,7 +307,7 @@ impl<'s> TreeTracer<'s> {
             return None;
         };
 
-        let surface = Surface::at(scene, branch, &hit, &self.media);
+        let surface = Surface::at(scene, branch, &hit, &self.media, self.uv);
         let first = FirstHit {
             distance: length,
             position: surface.resolved.point.position,
@@ -350,6 +356,7 @@ impl<'s> TreeTracer<'s> {
     }
 
     /// One light's contribution: no shadow ray if the surface faces away.
+    #[inline(always)]
     fn light(
         &mut self,
         surface: &Surface,
@@ -399,8 +406,11 @@ impl<'s> TreeTracer<'s> {
             let finish = &surface.material.finish;
             let arriving = sample.color * term.visible;
             term.diffuse = finish.diffuse * arriving * term.n_dot_l;
-            let highlight = model.highlight(surface.n_shade, sample.l, surface.v, finish.shininess);
-            term.specular = finish.specular * arriving * highlight;
+            if !finish.specular.is_black() {
+                let highlight =
+                    model.highlight(surface.n_shade, sample.l, surface.v, finish.shininess);
+                term.specular = finish.specular * arriving * highlight;
+            }
         }
         term
     }

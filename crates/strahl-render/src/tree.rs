@@ -97,9 +97,10 @@ pub fn explain(
     if options.sampling == Sampling::Corners {
         passes.push(vec![(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)]);
     } else {
-        passes.push(options.sampling.places(0, x, y, options.seed));
+        passes.push(options.sampling.places(0, x, y, options.seed).collect());
         for pass in passes_of_pixel(scene, options, x, y)? {
-            passes.push(options.sampling.places(pass, x, y, options.seed));
+            let places = options.sampling.places(pass, x, y, options.seed);
+            passes.push(places.collect());
         }
     }
     let rays = PrimaryRays::new(scene.camera(), options.width, options.height);

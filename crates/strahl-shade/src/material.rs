@@ -180,6 +180,12 @@ impl Material {
         }
     }
 
+    /// Whether the material looks at texture coordinates.
+    #[inline]
+    pub fn is_textured(&self) -> bool {
+        self.pbr.is_some()
+    }
+
     /// The same material under a name.
     #[must_use]
     pub fn named(self, name: impl Into<String>) -> Self {

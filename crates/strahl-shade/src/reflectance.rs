@@ -67,7 +67,7 @@ impl ShadingModel {
             _ => return 0.0,
         };
         if cosine > 0.0 {
-            det::pow(cosine, shininess)
+            det::pow_fast(cosine, shininess)
         } else {
             0.0
         }

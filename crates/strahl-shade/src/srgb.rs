@@ -31,7 +31,28 @@ pub fn decode(encoded: f64) -> f64 {
 
 /// The 8-bit code of linear light: clamped to `0..=1`, encoded, rounded half up; NaN is 0.
 pub fn encode_u8(linear: f64) -> u8 {
-    quantize(linear, 255.0) as u8
+    // Where each code but 0 begins: searching them takes a fifth of the time of a power.
+    static BEGINNINGS: LazyLock<[f64; 255]> =
+        LazyLock::new(|| std::array::from_fn(|i| beginning(i as f64 + 1.0, 255.0)));
+    // NaN is not at or above any of them.
+    BEGINNINGS.partition_point(|begin| linear >= *begin) as u8
+}
+
+/// The smallest number that is quantized to `code` or more: bisection of the few numbers around the inverse.
+fn beginning(code: f64, largest: f64) -> f64 {
+    let about = decode((code - 0.5) / largest);
+    let (mut below, mut above) = (about * (1.0 - 1e-6), about * (1.0 + 1e-6));
+    loop {
+        let middle = 0.5 * (below + above);
+        if middle <= below || middle >= above {
+            return above;
+        }
+        if quantize(middle, largest) >= code {
+            above = middle;
+        } else {
+            below = middle;
+        }
+    }
 }
 
 /// The 16-bit code of linear light: clamped to `0..=1`, encoded, rounded half up; NaN is 0.
@@ -81,6 +102,26 @@ mod tests {
         }
         for code in 0..=u16::MAX {
             assert_eq!(encode_u16(f64::from(decode_u16(code))), code);
+        }
+    }
+
+    #[test]
+    fn the_search_for_a_code_agrees_with_the_formula() {
+        for code in 1..=255 {
+            let begin = beginning(f64::from(code), 255.0);
+            for x in [begin.next_down(), begin, begin.next_up()] {
+                assert_eq!(f64::from(encode_u8(x)), quantize(x, 255.0), "{x}");
+            }
+            assert_eq!(
+                (
+                    encode_u8(begin.next_down()) + 1,
+                    i32::from(encode_u8(begin))
+                ),
+                (code as u8, code)
+            );
+        }
+        for x in [f64::NAN, -1.0, -0.0, 0.0, 1.0, 2.0, f64::INFINITY] {
+            assert_eq!(f64::from(encode_u8(x)), quantize(x, 255.0), "{x}");
         }
     }
 

@@ -50,6 +50,9 @@ impl Subject {
                 "{context}"
             );
             assert!(hit.surface.element < self.shape.elements(), "{context}");
+            let bare = self.shape.bare_surface_at(ray, hit);
+            let all = |p: &SurfacePoint| (p.position, p.position_error, p.n_geom, p.n_shade);
+            assert_eq!(all(&bare), all(surface), "{context}");
             assert!(
                 surface.position.is_finite() && surface.uv.is_finite(),
                 "{context}"
@@ -457,6 +460,7 @@ impl Subject {
                         "{ray:?} {hit:?}"
                     );
                     self.shape.surface_at(&ray, &hit);
+                    self.shape.bare_surface_at(&ray, &hit);
                     self.shape
                         .closest_hit(&ray, range, Some(hit.surface), &mut scratch);
                 }

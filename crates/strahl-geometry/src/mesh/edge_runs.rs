@@ -15,8 +15,6 @@ pub(super) struct EdgeRuns {
     line: Box<[[f64; 2]]>,
     /// Boxes around runs of edges: first of `RUN` edges each, then of `RUN` boxes of the level before each, and so on.
     levels: Box<[Box<[Rect]>]>,
-    /// The sum of the largest coordinates.
-    reach: f64,
 }
 
 /// Edges per run, and runs per longer run.
@@ -93,12 +91,10 @@ impl EdgeRuns {
         let (i, j) = other_axes(largest_axis(normal));
         let mut line = Vec::new();
         let mut starts = Vec::new();
-        let mut largest = DVec3::ZERO;
         for ring in rings {
             let Some(first) = ring.first() else { continue };
             line.extend(ring.iter().chain([first]).map(|p| [p[i], p[j]]));
             starts.push([first[i], first[j]]);
-            largest = ring.iter().fold(largest, |m, p| m.max(p.abs()));
         }
         line.extend(starts.into_iter().rev().skip(1));
 
@@ -114,13 +110,7 @@ impl EdgeRuns {
             axes: [i, j],
             line: line.into(),
             levels: levels.into(),
-            reach: largest.element_sum(),
         }
-    }
-
-    /// The sum of the largest coordinates of the polygon.
-    pub(super) const fn reach(&self) -> f64 {
-        self.reach
     }
 
     /// Whether a point that is known up to `error` in each coordinate is inside, by the even-odd rule; `None` if the error

@@ -38,6 +38,8 @@ pub struct Polygon {
     normal: DVec3,
     /// The largest distance of a corner from the plane.
     deviation: f64,
+    /// No point of the polygon has a larger sum of absolute coordinates.
+    reach: f64,
     /// The corner that is `(0, 1)` in the texture.
     up: u32,
     /// Whether the first ring runs clockwise as seen from the front, as it does after a mirroring transform.
@@ -107,6 +109,7 @@ impl Polygon {
             ring_ends,
             normal: DVec3::ZERO,
             deviation: 0.0,
+            reach: 0.0,
             up,
             flipped,
             runs: None,
@@ -115,6 +118,11 @@ impl Polygon {
         polygon.normal = if flipped { -front } else { front };
         let off_plane = |p: &DVec3| polygon.normal.dot(*p - polygon.corners[0]).abs();
         polygon.deviation = polygon.corners.iter().map(off_plane).fold(0.0, f64::max);
+        let largest = polygon
+            .corners
+            .iter()
+            .fold(DVec3::ZERO, |m, p| m.max(p.abs()));
+        polygon.reach = largest.element_sum();
         if polygon.corners.len() > MANY_EDGES {
             polygon.runs = Some(Box::new(EdgeRuns::build(polygon.rings(), polygon.normal)));
         }
@@ -142,20 +150,26 @@ impl Polygon {
         self.normal
     }
 
-    /// The ray parameter of the hit, if the ray's line passes through the polygon.
+    /// The ray parameter of the hit, if the ray's line passes through the polygon; `None` also where it certainly is not in
+    /// the range.
     #[inline]
-    fn pierced_at(&self, ray: &Ray) -> Option<f64> {
+    fn pierced_at(&self, ray: &Ray, range: Interval) -> Option<f64> {
         let along = self.normal.dot(ray.direction);
         let first = self.corners[0];
         let t = self.normal.dot(first - ray.origin) / along;
         if !t.is_finite() {
             return None; // Edge-on.
         }
+        // How far the point at `t` may be from the polygon's own, which spans no more than `reach`, and `t` from the hit's.
+        let speed = l1(ray.direction);
+        let reach = l1(ray.origin) + t.abs() * speed + self.reach;
+        let t_error = (self.deviation + gamma(64) * reach) / along.abs();
+        if t + t_error < range.min || t - t_error > range.max {
+            return None;
+        }
         if let Some(runs) = &self.runs {
             // The projections along the ray and on the principal plane differ by less than this.
-            let speed = l1(ray.direction);
-            let reach = l1(ray.origin) + t.abs() * speed + runs.reach();
-            let error = (self.deviation + gamma(64) * reach) * (speed / along.abs());
+            let error = t_error * speed;
             if let Some(inside) = runs.locate(ray.at(t), error) {
                 return inside.then_some(t);
             }
@@ -210,17 +224,13 @@ impl Primitive for Polygon {
         if from.is_some() {
             return None; // A ray does not come back to the plane it starts from.
         }
-        let t = self.pierced_at(ray)?;
+        let t = self.pierced_at(ray, range)?;
         range.accepts(t).then_some(PrimHit::simple(t, 0))
     }
 
     fn surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
+        let bare = self.bare_surface_at(ray, hit);
         let (n, origin) = (self.normal, self.corners[0]);
-        let at = ray.at(hit.t);
-        let aside = at - origin;
-        let position = at - n * n.dot(aside);
-        let noise = gamma(8) * n.abs().dot(aside.abs()) + self.deviation;
-
         // Coordinates with respect to two sides, solved in the principal plane.
         let (i, j) = other_axes(largest_axis(n));
         let (right, up) = (
@@ -228,20 +238,27 @@ impl Primitive for Polygon {
             self.corners[self.up as usize] - origin,
         );
         let area = right[i] * up[j] - right[j] * up[i];
-        let p = position - origin;
+        let p = bare.position - origin;
         let uv = DVec2::new(
             p[i] * up[j] - p[j] * up[i],
             right[i] * p[j] - right[j] * p[i],
         ) / area;
         SurfacePoint {
-            position,
-            position_error: n.abs() * noise + position.abs() * (2.0 * ROUNDOFF),
-            n_geom: n,
-            n_shade: n,
             uv,
             dpdu: right,
             dpdv: up,
+            ..bare
         }
+    }
+
+    fn bare_surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
+        let n = self.normal;
+        let at = ray.at(hit.t);
+        let aside = at - self.corners[0];
+        let position = at - n * n.dot(aside);
+        let noise = gamma(8) * n.abs().dot(aside.abs()) + self.deviation;
+        let error = n.abs() * noise + position.abs() * (2.0 * ROUNDOFF);
+        SurfacePoint::bare(position, error, n)
     }
 
     fn baked(&self, map: &Transform) -> Option<Shape> {

@@ -258,8 +258,13 @@ pub(super) fn front_normal(a: DVec3, b: DVec3, c: DVec3) -> Option<DVec3> {
     if !(size > 0.0 && size.is_finite()) {
         return None;
     }
-    // The cross product of the two shorter edges loses the fewest digits; the scale prevents underflow.
-    let edges = edges.map(|e| e / size);
+    // The cross product of the two shorter edges loses the fewest digits; tiny and huge ones are scaled, so that its square
+    // does not leave the range of f64.
+    let edges = if (1e-70..1e70).contains(&size) {
+        edges
+    } else {
+        edges.map(|e| e / size)
+    };
     let squares = edges.map(|e| e.dot(e));
     let longest = if squares[0] >= squares[1] && squares[0] >= squares[2] {
         0

@@ -156,11 +156,13 @@ impl Primitive for Sphere {
     }
 
     fn surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
+        let bare = self.bare_surface_at(ray, hit);
         let r = self.radius.abs();
-        let outward = ((ray.origin - self.center) + ray.direction * hit.t).normalize_or(DVec3::Y);
-        let position = self.center + outward * r;
-        let n = if self.radius < 0.0 { -outward } else { outward };
-
+        let outward = if self.radius < 0.0 {
+            -bare.n_geom
+        } else {
+            bare.n_geom
+        };
         let axes = self.frame.axes(DVec3::Y);
         let local = axes.transpose() * outward;
         let ring = DVec2::new(local.x, local.y).length();
@@ -174,14 +176,20 @@ impl Primitive for Sphere {
         let east = axes.y_axis * east_x - axes.x_axis * east_y;
         let north = axes.z_axis * ring - (axes.x_axis * east_x + axes.y_axis * east_y) * height;
         SurfacePoint {
-            position,
-            position_error: point_error(position, r, 8),
-            n_geom: n,
-            n_shade: n,
             uv: DVec2::new(turn(local.y, local.x), 1.0 - det::acos(height) / PI),
             dpdu: east * (2.0 * PI * r * ring),
             dpdv: north * (PI * r),
+            ..bare
         }
+    }
+
+    #[inline]
+    fn bare_surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
+        let r = self.radius.abs();
+        let outward = ((ray.origin - self.center) + ray.direction * hit.t).normalize_or(DVec3::Y);
+        let position = self.center + outward * r;
+        let n = if self.radius < 0.0 { -outward } else { outward };
+        SurfacePoint::bare(position, point_error(position, r, 8), n)
     }
 
     fn as_solid(&self) -> Option<&dyn Solid> {
