@@ -4,6 +4,7 @@ use anyhow::{Context, Result, bail};
 use std::fmt::Write;
 use std::path::Path;
 use strahl::formats::scene::load_path;
+use strahl::geometry::mesh::triangulate;
 use strahl::geometry::{Shape, TriangleMesh};
 use strahl::math::DVec3;
 use strahl::scene::{Background, Camera, Object, ObjectKind, Scene};
@@ -82,6 +83,21 @@ fn write_object(out: &mut String, object: &Object, ambient: Color) -> Result<()>
             v(s.center()),
             s.radius().abs()
         )?,
+        // POV-Ray tests every edge of a polygon; its triangles, in its own hierarchy, are faster when there are many.
+        Shape::Polygon(p) if p.corners().len() > 8 => {
+            writeln!(out, "mesh {{")?;
+            let corner = |i: u32| v(p.corners()[i as usize]);
+            for [a, b, c] in triangulate(p) {
+                writeln!(
+                    out,
+                    "triangle {{ {} {} {} }}",
+                    corner(a),
+                    corner(b),
+                    corner(c)
+                )?;
+            }
+            writeln!(out, "{look} }}")?;
+        }
         Shape::Polygon(p) => {
             let ring = p.corners();
             write!(out, "polygon {{ {}", ring.len() + 1)?;
@@ -91,9 +107,30 @@ fn write_object(out: &mut String, object: &Object, ambient: Color) -> Result<()>
             writeln!(out, " {look} }}")?;
         }
         Shape::TriangleMesh(mesh) => write_mesh(out, mesh, &look)?,
+        Shape::Cylinder(c) => writeln!(
+            out,
+            "cylinder {{ {} {} {} {} {look} }}",
+            v(c.base()),
+            v(c.apex()),
+            c.radius(),
+            open(c.is_capped())
+        )?,
+        Shape::Cone(c) => writeln!(
+            out,
+            "cone {{ {} {} {} {} {} {look} }}",
+            v(c.base()),
+            c.base_radius(),
+            v(c.apex()),
+            c.apex_radius(),
+            open(c.is_capped())
+        )?,
         other => bail!("cannot convert {other:?}"),
     }
     Ok(())
+}
+
+fn open(capped: bool) -> &'static str {
+    if capped { "" } else { "open" }
 }
 
 fn write_mesh(out: &mut String, mesh: &TriangleMesh, look: &str) -> Result<()> {
