@@ -38,6 +38,52 @@ pub fn ln(x: f64) -> f64 {
     libm::log(x)
 }
 
+/// Arc sine in radians, `-pi/2..=pi/2`; NaN outside of `-1..=1`.
+pub fn asin(x: f64) -> f64 {
+    libm::asin(x)
+}
+
+/// Arc tangent in radians, `-pi/2..=pi/2`.
+pub fn atan(x: f64) -> f64 {
+    libm::atan(x)
+}
+
+/// Hyperbolic sine.
+pub fn sinh(x: f64) -> f64 {
+    libm::sinh(x)
+}
+
+/// Hyperbolic cosine.
+pub fn cosh(x: f64) -> f64 {
+    libm::cosh(x)
+}
+
+/// Hyperbolic tangent.
+pub fn tanh(x: f64) -> f64 {
+    libm::tanh(x)
+}
+
+/// Inverse hyperbolic sine.
+pub fn asinh(x: f64) -> f64 {
+    libm::asinh(x)
+}
+
+/// Inverse hyperbolic cosine; NaN below 1.
+pub fn acosh(x: f64) -> f64 {
+    // The library's formula cancels to a number for large negative arguments.
+    if x < 1.0 { f64::NAN } else { libm::acosh(x) }
+}
+
+/// Inverse hyperbolic tangent; infinite at `-1` and `1`, NaN beyond them.
+pub fn atanh(x: f64) -> f64 {
+    libm::atanh(x)
+}
+
+/// Logarithm to base 10.
+pub fn log10(x: f64) -> f64 {
+    libm::log10(x)
+}
+
 /// `base` to the power of `exponent`.
 ///
 /// Small whole exponents, the usual case of highlights, are computed by repeated squaring.
@@ -75,6 +121,12 @@ pub fn cbrt(x: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    #[test]
+    fn acosh_of_a_large_negative_number_is_nan() {
+        assert!(super::acosh(-234504.77989254522).is_nan());
+        assert_eq!(super::acosh(1.0), 0.0);
+    }
+
     #[test]
     fn whole_powers_agree_with_the_general_function() {
         for n in 0..=64 {

@@ -1,0 +1,319 @@
+//! What a tape can be run over: numbers, lanes of numbers, intervals, numbers with derivatives.
+
+use crate::bounds::Bounds;
+use crate::field::ScalarField;
+use crate::limits;
+use crate::op::{BinaryOp, UnaryOp, power};
+
+/// Whether a loop goes on.
+pub(crate) enum Round<M> {
+    /// It does, for the values of the mask.
+    Go(M),
+    /// It is done.
+    Done,
+    /// That can't be said.
+    Unknown,
+}
+
+/// Values that operations work on.
+///
+/// For every domain an operation gives the bits of the operation on numbers, or bounds that contain them.
+pub(crate) trait Domain: Copy {
+    /// Which of the values takes part in a round of a loop.
+    type Mask: Copy;
+
+    fn constant(value: f64) -> Self;
+    /// What is left when nothing can be said.
+    fn unknown() -> Self;
+    fn unary(op: UnaryOp, a: Self) -> Self;
+    fn binary(op: BinaryOp, a: Self, b: Self) -> Self;
+    fn select(selector: Self, negative: Self, zero: Self, positive: Self) -> Self;
+    fn field(field: &dyn ScalarField, arguments: &[Self]) -> Self;
+    /// Whether a loop whose counter stands at `counter` runs once more.
+    fn round(counter: Self, to: Self) -> Round<Self::Mask>;
+    /// `new` where the mask says so, else `old`.
+    fn blend(mask: Self::Mask, new: Self, old: Self) -> Self;
+}
+
+impl Domain for f64 {
+    type Mask = ();
+
+    fn constant(value: f64) -> Self {
+        value
+    }
+    fn unknown() -> Self {
+        f64::NAN
+    }
+    #[inline]
+    fn unary(op: UnaryOp, a: Self) -> Self {
+        op.value(a)
+    }
+    #[inline]
+    fn binary(op: BinaryOp, a: Self, b: Self) -> Self {
+        op.value(a, b)
+    }
+    #[inline]
+    fn select(selector: Self, negative: Self, zero: Self, positive: Self) -> Self {
+        if selector < 0.0 {
+            negative
+        } else if selector == 0.0 {
+            zero
+        } else {
+            positive
+        }
+    }
+    fn field(field: &dyn ScalarField, arguments: &[Self]) -> Self {
+        field.value(arguments)
+    }
+    fn round(counter: Self, to: Self) -> Round<()> {
+        if counter <= to {
+            Round::Go(())
+        } else {
+            Round::Done
+        }
+    }
+    fn blend((): (), new: Self, _old: Self) -> Self {
+        new
+    }
+}
+
+/// How many points a batch evaluates with each instruction.
+///
+/// Measured with `benches/tape.rs`: 8 doubles are two AVX registers, 16 hide the cost of decoding without leaving the cache.
+pub(crate) const LANES: usize = 16;
+
+/// As many numbers as a batch evaluates together.
+#[derive(Clone, Copy, Debug)]
+#[repr(align(64))]
+pub(crate) struct Lanes(pub(crate) [f64; LANES]);
+
+impl Lanes {
+    #[inline(always)]
+    fn map(self, f: impl Fn(f64) -> f64) -> Self {
+        let mut out = self.0;
+        for x in &mut out {
+            *x = f(*x);
+        }
+        Self(out)
+    }
+
+    #[inline(always)]
+    fn zip(self, other: Self, f: impl Fn(f64, f64) -> f64) -> Self {
+        let mut out = self.0;
+        for (x, y) in out.iter_mut().zip(other.0) {
+            *x = f(*x, y);
+        }
+        Self(out)
+    }
+}
+
+impl Domain for Lanes {
+    type Mask = [bool; LANES];
+
+    fn constant(value: f64) -> Self {
+        Self([value; LANES])
+    }
+    fn unknown() -> Self {
+        Self::constant(f64::NAN)
+    }
+    // The operation is decoded once, outside of the loop over lanes, for those that vectorise.
+    #[inline]
+    fn unary(op: UnaryOp, a: Self) -> Self {
+        match op {
+            UnaryOp::Neg => a.map(|x| -x),
+            UnaryOp::Abs => a.map(f64::abs),
+            UnaryOp::Square => a.map(|x| x * x),
+            UnaryOp::Sqrt => a.map(f64::sqrt),
+            UnaryOp::Power(n) => {
+                // As det::pow multiplies, for all lanes at once.
+                if n > 64 {
+                    return a.map(|x| power(x, n));
+                }
+                let (mut result, mut square, mut bits) = (Self::constant(1.0), a, n);
+                while bits > 0 {
+                    if bits & 1 == 1 {
+                        result = result.zip(square, |x, y| x * y);
+                    }
+                    square = square.map(|x| x * x);
+                    bits >>= 1;
+                }
+                result
+            }
+            op => a.map(|x| op.value(x)),
+        }
+    }
+    #[inline]
+    fn binary(op: BinaryOp, a: Self, b: Self) -> Self {
+        match op {
+            BinaryOp::Add => a.zip(b, |x, y| x + y),
+            BinaryOp::Sub => a.zip(b, |x, y| x - y),
+            BinaryOp::Mul => a.zip(b, |x, y| x * y),
+            BinaryOp::Div => a.zip(b, |x, y| x / y),
+            BinaryOp::Min => a.zip(b, |x, y| BinaryOp::Min.value(x, y)),
+            BinaryOp::Max => a.zip(b, |x, y| BinaryOp::Max.value(x, y)),
+            BinaryOp::Less => a.zip(b, |x, y| BinaryOp::Less.value(x, y)),
+            BinaryOp::LessEqual => a.zip(b, |x, y| BinaryOp::LessEqual.value(x, y)),
+            op => a.zip(b, |x, y| op.value(x, y)),
+        }
+    }
+    #[inline]
+    fn select(selector: Self, negative: Self, zero: Self, positive: Self) -> Self {
+        let mut out = positive.0;
+        for (i, x) in out.iter_mut().enumerate() {
+            *x = f64::select(selector.0[i], negative.0[i], zero.0[i], *x);
+        }
+        Self(out)
+    }
+    fn field(field: &dyn ScalarField, arguments: &[Self]) -> Self {
+        let mut point = [0.0; limits::PARAMETERS];
+        let arity = arguments.len().min(limits::PARAMETERS);
+        let mut out = [0.0; LANES];
+        for (i, value) in out.iter_mut().enumerate() {
+            for (x, lanes) in point.iter_mut().zip(arguments) {
+                *x = lanes.0[i];
+            }
+            *value = field.value(&point[..arity]);
+        }
+        Self(out)
+    }
+    fn round(counter: Self, to: Self) -> Round<[bool; LANES]> {
+        let mut mask = [false; LANES];
+        for (i, active) in mask.iter_mut().enumerate() {
+            *active = counter.0[i] <= to.0[i];
+        }
+        if mask.contains(&true) {
+            Round::Go(mask)
+        } else {
+            Round::Done
+        }
+    }
+    fn blend(mask: [bool; LANES], new: Self, old: Self) -> Self {
+        let mut out = old.0;
+        for (i, x) in out.iter_mut().enumerate() {
+            if mask[i] {
+                *x = new.0[i];
+            }
+        }
+        Self(out)
+    }
+}
+
+impl Domain for Bounds {
+    type Mask = ();
+
+    fn constant(value: f64) -> Self {
+        Self::point(value)
+    }
+    fn unknown() -> Self {
+        Self::UNKNOWN
+    }
+    fn unary(op: UnaryOp, a: Self) -> Self {
+        op.bounds(a)
+    }
+    fn binary(op: BinaryOp, a: Self, b: Self) -> Self {
+        op.bounds(a, b)
+    }
+    fn select(selector: Self, negative: Self, zero: Self, positive: Self) -> Self {
+        let mut result: Option<Self> = None;
+        let mut include = |possible: bool, value: Self| {
+            if possible {
+                result = Some(result.map_or(value, |r| r.hull(value)));
+            }
+        };
+        include(selector.min < 0.0, negative);
+        include(selector.min <= 0.0 && selector.max >= 0.0, zero);
+        include(selector.nan || selector.max > 0.0, positive);
+        result.unwrap_or(Self::UNKNOWN)
+    }
+    fn field(field: &dyn ScalarField, arguments: &[Self]) -> Self {
+        field.bounds(arguments)
+    }
+    fn round(counter: Self, to: Self) -> Round<()> {
+        if counter.is_empty() || to.is_empty() || counter.min > to.max {
+            Round::Done
+        } else if counter.max <= to.min && !counter.nan && !to.nan {
+            Round::Go(())
+        } else {
+            Round::Unknown
+        }
+    }
+    fn blend((): (), new: Self, _old: Self) -> Self {
+        new
+    }
+}
+
+/// A number with its derivatives by three variables.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Dual {
+    pub(crate) value: f64,
+    pub(crate) partials: [f64; 3],
+}
+
+impl Dual {
+    pub(crate) const fn number(value: f64) -> Self {
+        Self {
+            value,
+            partials: [0.0; 3],
+        }
+    }
+
+    /// Adds a derivative times the slope along it; an argument that doesn't change contributes nothing, however steep it is.
+    fn along(mut self, other: Self, slope: f64) -> Self {
+        for (total, partial) in self.partials.iter_mut().zip(other.partials) {
+            if partial != 0.0 {
+                *total += partial * slope;
+            }
+        }
+        self
+    }
+}
+
+impl Domain for Dual {
+    type Mask = ();
+
+    fn constant(value: f64) -> Self {
+        Self::number(value)
+    }
+    fn unknown() -> Self {
+        Self::number(f64::NAN)
+    }
+    fn unary(op: UnaryOp, a: Self) -> Self {
+        let value = op.value(a.value);
+        Self::number(value).along(a, op.slope(a.value, value))
+    }
+    fn binary(op: BinaryOp, a: Self, b: Self) -> Self {
+        let value = op.value(a.value, b.value);
+        let (by_a, by_b) = op.slopes(a.value, b.value, value);
+        Self::number(value).along(a, by_a).along(b, by_b)
+    }
+    fn select(selector: Self, negative: Self, zero: Self, positive: Self) -> Self {
+        if selector.value < 0.0 {
+            negative
+        } else if selector.value == 0.0 {
+            zero
+        } else {
+            positive
+        }
+    }
+    fn field(field: &dyn ScalarField, arguments: &[Self]) -> Self {
+        let mut point = [0.0; limits::PARAMETERS];
+        let mut partials = [0.0; limits::PARAMETERS];
+        let arity = arguments.len().min(limits::PARAMETERS);
+        for (x, dual) in point.iter_mut().zip(arguments) {
+            *x = dual.value;
+        }
+        let value = field.gradient(&point[..arity], &mut partials[..arity]);
+        arguments
+            .iter()
+            .zip(partials)
+            .fold(Self::number(value), |sum, (&dual, slope)| {
+                sum.along(dual, slope)
+            })
+    }
+    fn round(counter: Self, to: Self) -> Round<()> {
+        <f64 as Domain>::round(counter.value, to.value)
+    }
+    fn blend((): (), new: Self, _old: Self) -> Self {
+        new
+    }
+}

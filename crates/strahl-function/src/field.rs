@@ -1,0 +1,55 @@
+use crate::bounds::Bounds;
+use std::fmt::Debug;
+
+/// A real function that expressions call but don't know the formula of: a pattern, one channel of a pigment, a spline, noise.
+///
+/// This is how functions, patterns and geometry refer to each other without their crates doing so.
+pub trait ScalarField: Debug + Send + Sync {
+    /// How many arguments the field takes; 3 for a field in space. At most [`limits::PARAMETERS`](crate::limits::PARAMETERS).
+    fn arity(&self) -> usize {
+        3
+    }
+
+    /// The value at the arguments, [`arity`](Self::arity) many. The same arguments always give the same bits.
+    fn value(&self, arguments: &[f64]) -> f64;
+
+    /// An interval that contains the value at all arguments within bounds.
+    fn bounds(&self, _arguments: &[Bounds]) -> Bounds {
+        Bounds::UNKNOWN
+    }
+
+    /// The value, which must have the bits of [`value`](Self::value), and its partial derivatives.
+    ///
+    /// By default central differences, good to about ten digits where the field is smooth.
+    fn gradient(&self, arguments: &[f64], partials: &mut [f64]) -> f64 {
+        let mut shifted = [0.0; crate::limits::PARAMETERS];
+        let shifted = &mut shifted[..arguments.len().min(crate::limits::PARAMETERS)];
+        shifted.copy_from_slice(&arguments[..shifted.len()]);
+        for (i, partial) in partials.iter_mut().enumerate().take(shifted.len()) {
+            let x = shifted[i];
+            // The cube root of the unit roundoff balances rounding against the third derivative.
+            let step = 6e-6 * if x.abs() > 1.0 { x.abs() } else { 1.0 };
+            shifted[i] = x + step;
+            let above = self.value(shifted);
+            let high = shifted[i];
+            shifted[i] = x - step;
+            *partial = (above - self.value(shifted)) / (high - shifted[i]);
+            shifted[i] = x;
+        }
+        self.value(arguments)
+    }
+}
+
+/// Where the noise of the `f_noise3d` family comes from.
+///
+/// The internal functions that need noise are given it when they are built.
+pub trait NoiseField: Debug + Send + Sync {
+    /// Solid noise in `0..=1` at a point, by one of POV-Ray's generators (1 original, 2 range-corrected, 3 Perlin; 0 is the
+    /// scene's default).
+    fn noise(&self, point: [f64; 3], generator: u8) -> f64;
+
+    /// An interval that contains the noise in a box.
+    fn bounds(&self, _point: [Bounds; 3], _generator: u8) -> Bounds {
+        Bounds::new(0.0, 1.0).with_nan(true)
+    }
+}

@@ -1,0 +1,174 @@
+use crate::bounds::Bounds;
+use crate::domain::{Domain, Dual, LANES, Lanes};
+use crate::error::FunctionError;
+use crate::graph::{Expr, Graph};
+use crate::run::{prepare, run};
+use crate::tape::{self, Tape};
+use std::sync::Arc;
+
+/// A function of named parameters, ready to be evaluated. Cheap to clone.
+///
+/// Missing arguments count as NaN, surplus ones are ignored; no arguments make it panic.
+#[derive(Clone, Debug)]
+pub struct Function {
+    inner: Arc<Inner>,
+}
+
+#[derive(Debug)]
+struct Inner {
+    graph: Graph,
+    root: Expr,
+    tape: Tape,
+    size: usize,
+}
+
+/// Memory that evaluations share: one for each thread, used for any number of functions.
+#[derive(Clone, Debug, Default)]
+pub struct Workspace {
+    points: Vec<f64>,
+    lanes: Vec<Lanes>,
+    bounds: Vec<Bounds>,
+    duals: Vec<Dual>,
+}
+
+impl Workspace {
+    /// An empty workspace; it grows to what the functions need.
+    pub fn new() -> Self {
+        Self::default()
+    }
+}
+
+impl Function {
+    pub(crate) fn compile(graph: Graph, root: Expr) -> Result<Self, FunctionError> {
+        let tape = tape::compile(&graph, root)?;
+        let size = graph.reachable(root).len();
+        Ok(Self {
+            inner: Arc::new(Inner {
+                graph,
+                root,
+                tape,
+                size,
+            }),
+        })
+    }
+
+    /// The names of the parameters, in the order of the arguments.
+    pub fn parameters(&self) -> &[String] {
+        self.inner.graph.parameters()
+    }
+
+    /// How many different values the function computes or reads.
+    pub fn size(&self) -> usize {
+        self.inner.size
+    }
+
+    /// The function's number, if it doesn't depend on its arguments.
+    pub fn constant(&self) -> Option<f64> {
+        self.inner.graph.known(self.inner.root)
+    }
+
+    /// The value at a point.
+    pub fn value(&self, workspace: &mut Workspace, arguments: &[f64]) -> f64 {
+        let tape = self.tape();
+        let stack = reserve(&mut workspace.points, tape);
+        fill(stack, arguments, tape.inputs);
+        prepare(tape, stack);
+        run(tape, stack)
+    }
+
+    /// The values at many points: `arguments` has a column for each parameter, `values` says how many points there are.
+    ///
+    /// Every value has the bits that [`value`](Self::value) gives for its point. A point that a column is too short for
+    /// has NaN there.
+    pub fn values(&self, workspace: &mut Workspace, arguments: &[&[f64]], values: &mut [f64]) {
+        let tape = self.tape();
+        let stack = reserve(&mut workspace.lanes, tape);
+        prepare(tape, stack);
+        for (chunk, out) in values.chunks_mut(LANES).enumerate() {
+            for (input, register) in stack[..tape.inputs].iter_mut().enumerate() {
+                let column = arguments.get(input).copied().unwrap_or(&[]);
+                let rest = column.get(chunk * LANES..).unwrap_or(&[]);
+                match rest.first_chunk::<LANES>() {
+                    Some(full) => register.0 = *full,
+                    None => {
+                        *register = Lanes::constant(f64::NAN);
+                        for (lane, &x) in register.0.iter_mut().zip(rest) {
+                            *lane = x;
+                        }
+                    }
+                }
+            }
+            let result = run(tape, stack);
+            out.copy_from_slice(&result.0[..out.len()]);
+        }
+    }
+
+    /// An interval that contains the value at every point whose arguments are within bounds.
+    pub fn bounds(&self, workspace: &mut Workspace, arguments: &[Bounds]) -> Bounds {
+        let tape = self.tape();
+        let stack = reserve(&mut workspace.bounds, tape);
+        for (register, i) in stack.iter_mut().zip(0..tape.inputs) {
+            *register = arguments.get(i).map_or(Bounds::NAN, |a| {
+                if a.is_empty() {
+                    *a
+                } else {
+                    Bounds::argument(a.min, a.max).with_nan(a.nan)
+                }
+            });
+        }
+        prepare(tape, stack);
+        run(tape, stack)
+    }
+
+    /// The value at a point, with the bits of [`value`](Self::value), and its derivatives by the first three parameters.
+    ///
+    /// At steps and corners (`floor`, `abs`, `min`, ...) the derivative of one side is given.
+    pub fn gradient(&self, workspace: &mut Workspace, arguments: &[f64]) -> (f64, [f64; 3]) {
+        let tape = self.tape();
+        let stack = reserve(&mut workspace.duals, tape);
+        for (register, i) in stack.iter_mut().zip(0..tape.inputs) {
+            *register = Dual::number(arguments.get(i).copied().unwrap_or(f64::NAN));
+            if let Some(partial) = register.partials.get_mut(i) {
+                *partial = 1.0;
+            }
+        }
+        prepare(tape, stack);
+        let result = run(tape, stack);
+        (result.value, result.partials)
+    }
+
+    /// Whether both are one compiled function.
+    pub(crate) fn is_same(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.inner, &other.inner)
+    }
+
+    pub(crate) fn graph(&self) -> &Graph {
+        &self.inner.graph
+    }
+
+    pub(crate) fn root(&self) -> Expr {
+        self.inner.root
+    }
+
+    pub(crate) fn tape(&self) -> &Tape {
+        &self.inner.tape
+    }
+
+    pub(crate) fn depth(&self) -> u32 {
+        self.inner.graph.depth(self.inner.root)
+    }
+}
+
+/// The registers for a tape.
+fn reserve<'a, T: Domain>(stack: &'a mut Vec<T>, tape: &Tape) -> &'a mut [T] {
+    if stack.len() < tape.stack {
+        stack.resize(tape.stack, T::constant(0.0));
+    }
+    stack
+}
+
+fn fill(stack: &mut [f64], arguments: &[f64], inputs: usize) {
+    for (register, i) in stack.iter_mut().zip(0..inputs) {
+        *register = arguments.get(i).copied().unwrap_or(f64::NAN);
+    }
+}

@@ -1,0 +1,591 @@
+use crate::error::FunctionError;
+use crate::field::ScalarField;
+use crate::function::Function;
+use crate::limits;
+use crate::op::{BinaryOp, UnaryOp};
+use std::collections::HashMap;
+use std::sync::Arc;
+
+/// A value within a [`Graph`]: a handle, cheap to copy.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Expr(pub(crate) u32);
+
+/// A list of arguments within a graph.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) struct List(u32);
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) enum Node {
+    /// The bits of a number.
+    Constant(u64),
+    /// A parameter of the function.
+    Parameter(u32),
+    /// The counter of a loop.
+    Variable(u32),
+    Unary(UnaryOp, Expr),
+    Binary(BinaryOp, Expr, Expr),
+    /// Selector, then the values for negative, zero, and everything else.
+    Select(Expr, Expr, Expr, Expr),
+    Field(u32, List),
+    Call(u32, List),
+    Loop(Loop),
+}
+
+/// `sum` or `prod` of `body` over `variable`, from, to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) struct Loop {
+    pub(crate) product: bool,
+    pub(crate) variable: u32,
+    pub(crate) from: Expr,
+    pub(crate) to: Expr,
+    pub(crate) body: Expr,
+}
+
+/// Builds a function as a graph of operations.
+///
+/// Equal subexpressions are stored once, operations on constants are done at once; neither changes a bit of any value.
+/// The methods never fail: what is wrong is remembered and reported by [`finish`](Self::finish).
+///
+/// ```
+/// use strahl_function::{Graph, Workspace};
+///
+/// let mut g = Graph::new(["x", "y", "z"]);
+/// let [x, y, z] = g.xyz();
+/// let r = g.length(&[x, y, z]);
+/// let one = g.constant(1.0);
+/// let sphere = g.sub(r, one);
+/// let f = g.finish(sphere)?;
+/// assert_eq!(f.value(&mut Workspace::new(), &[0.0, 3.0, 4.0]), 4.0);
+/// # Ok::<(), strahl_function::FunctionError>(())
+/// ```
+#[derive(Clone, Debug, Default)]
+pub struct Graph {
+    nodes: Vec<Node>,
+    index: HashMap<Node, Expr>,
+    parameters: Vec<String>,
+    lists: Vec<Box<[Expr]>>,
+    list_index: HashMap<Box<[Expr]>, List>,
+    fields: Vec<Arc<dyn ScalarField>>,
+    functions: Vec<Function>,
+    /// The loop variables a node depends on that no loop within it binds, ascending; absent for most.
+    free: HashMap<Expr, Box<[u32]>>,
+    /// How deep loops and calls are nested in each node.
+    depth: Vec<u32>,
+    variables: u32,
+    failure: Option<FunctionError>,
+}
+
+impl Graph {
+    /// An empty graph of a function with these parameters.
+    pub fn new<S: Into<String>>(parameters: impl IntoIterator<Item = S>) -> Self {
+        let mut graph = Self::default();
+        for name in parameters {
+            let name = name.into();
+            if graph.parameters.contains(&name) {
+                graph.fail(FunctionError::DuplicateParameter { name: name.clone() });
+            }
+            graph.parameters.push(name);
+        }
+        let found = graph.parameters.len();
+        if found > limits::PARAMETERS {
+            graph.fail(FunctionError::TooManyParameters {
+                found,
+                limit: limits::PARAMETERS,
+            });
+        }
+        graph
+    }
+
+    /// The names of the parameters.
+    pub fn parameters(&self) -> &[String] {
+        &self.parameters
+    }
+
+    /// Makes [`finish`](Self::finish) report `error`, unless something failed before.
+    pub fn fail(&mut self, error: FunctionError) -> Expr {
+        self.failure.get_or_insert(error);
+        self.push(Node::Constant(f64::NAN.to_bits()))
+    }
+
+    /// The first thing that went wrong so far.
+    pub fn failure(&self) -> Option<&FunctionError> {
+        self.failure.as_ref()
+    }
+
+    /// Compiles the function whose value is `root`.
+    pub fn finish(self, root: Expr) -> Result<Function, FunctionError> {
+        if let Some(error) = self.failure {
+            return Err(error);
+        }
+        if root.0 as usize >= self.nodes.len() {
+            return Err(FunctionError::ForeignExpression);
+        }
+        Function::compile(self, root)
+    }
+
+    // Leaves
+
+    /// A number.
+    pub fn constant(&mut self, value: f64) -> Expr {
+        self.push(Node::Constant(value.to_bits()))
+    }
+
+    /// The parameter of that name. `u` and `x` name the same parameter, so do `v` and `y` (as in POV-Ray).
+    pub fn parameter(&mut self, name: &str) -> Expr {
+        let find = |name: &str| self.parameters.iter().position(|p| p == name);
+        let alias = match name {
+            "u" => "x",
+            "x" => "u",
+            "v" => "y",
+            "y" => "v",
+            other => other,
+        };
+        match find(name).or_else(|| find(alias)) {
+            // At most limits::PARAMETERS, or the graph has failed already.
+            Some(i) => self.push(Node::Parameter(i as u32)),
+            None => {
+                let error = FunctionError::UnknownParameter {
+                    name: name.to_owned(),
+                    parameters: self.parameters.clone(),
+                };
+                self.fail(error)
+            }
+        }
+    }
+
+    /// The parameters `x`, `y` and `z`.
+    pub fn xyz(&mut self) -> [Expr; 3] {
+        [
+            self.parameter("x"),
+            self.parameter("y"),
+            self.parameter("z"),
+        ]
+    }
+
+    /// The number an expression is known to be.
+    pub fn known(&self, e: Expr) -> Option<f64> {
+        match self.nodes.get(e.0 as usize)? {
+            Node::Constant(bits) => Some(f64::from_bits(*bits)),
+            _ => None,
+        }
+    }
+
+    // Operations
+
+    /// An operation on one value.
+    pub fn unary(&mut self, op: UnaryOp, a: Expr) -> Expr {
+        if let Some(value) = self.known(a) {
+            return self.constant(op.value(value));
+        }
+        match (op, self.nodes.get(a.0 as usize).copied()) {
+            (UnaryOp::Neg, Some(Node::Unary(UnaryOp::Neg, inner))) => inner,
+            (UnaryOp::Abs, Some(Node::Unary(UnaryOp::Neg | UnaryOp::Abs, inner))) => {
+                self.unary(UnaryOp::Abs, inner)
+            }
+            (UnaryOp::Square, Some(Node::Unary(UnaryOp::Neg | UnaryOp::Abs, inner))) => {
+                self.unary(UnaryOp::Square, inner)
+            }
+            (UnaryOp::Power(0), _) => self.constant(1.0),
+            (UnaryOp::Power(1), _) => a,
+            (UnaryOp::Power(2), _) => self.unary(UnaryOp::Square, a),
+            _ => self.push(Node::Unary(op, a)),
+        }
+    }
+
+    /// An operation on two values.
+    pub fn binary(&mut self, op: BinaryOp, a: Expr, b: Expr) -> Expr {
+        let (left, right) = (self.known(a), self.known(b));
+        if let (Some(a), Some(b)) = (left, right) {
+            return self.constant(op.value(a, b));
+        }
+        // Only rewrites that keep every bit, signs of zeros and infinities included.
+        let is =
+            |known: Option<f64>, value: f64| known.is_some_and(|k| k.to_bits() == value.to_bits());
+        match op {
+            BinaryOp::Mul if is(right, 1.0) => return a,
+            BinaryOp::Mul if is(left, 1.0) => return b,
+            BinaryOp::Mul if is(right, -1.0) => return self.unary(UnaryOp::Neg, a),
+            BinaryOp::Mul if is(left, -1.0) => return self.unary(UnaryOp::Neg, b),
+            BinaryOp::Mul if a == b => return self.unary(UnaryOp::Square, a),
+            BinaryOp::Div if is(right, 1.0) => return a,
+            BinaryOp::Div => {
+                // The reciprocal of a power of two is exact.
+                if let Some(d) = right
+                    && d.is_normal()
+                    && d.to_bits().trailing_zeros() >= 52
+                    && (1.0 / d).is_normal()
+                {
+                    let factor = self.constant(1.0 / d);
+                    return self.binary(BinaryOp::Mul, a, factor);
+                }
+            }
+            BinaryOp::Add if is(right, -0.0) => return a,
+            BinaryOp::Add if is(left, -0.0) => return b,
+            BinaryOp::Sub if is(right, 0.0) => return a,
+            BinaryOp::Min | BinaryOp::Max if a == b => return a,
+            BinaryOp::Pow => {
+                if let Some(n) = right
+                    && (0.0..=64.0).contains(&n)
+                    && n == n.trunc()
+                {
+                    return self.unary(UnaryOp::Power(n as u8), a);
+                }
+            }
+            _ => {}
+        }
+        let (a, b) = if op.is_commutative() && b.0 < a.0 {
+            (b, a)
+        } else {
+            (a, b)
+        };
+        self.push(Node::Binary(op, a, b))
+    }
+
+    /// `negative`, `zero` or `positive` by the sign of `selector`; NaN counts as positive, as in POV-Ray.
+    pub fn select(&mut self, selector: Expr, negative: Expr, zero: Expr, positive: Expr) -> Expr {
+        if negative == zero && zero == positive {
+            return negative;
+        }
+        match self.known(selector) {
+            Some(s) if s < 0.0 => negative,
+            Some(0.0) => zero,
+            Some(_) => positive,
+            None => self.push(Node::Select(selector, negative, zero, positive)),
+        }
+    }
+
+    /// POV-Ray's `select` with three arguments: `negative` if `selector < 0`, else `otherwise`.
+    pub fn select_negative(&mut self, selector: Expr, negative: Expr, otherwise: Expr) -> Expr {
+        self.select(selector, negative, otherwise, otherwise)
+    }
+
+    /// `condition ? then : otherwise`; everything but zero is true.
+    pub fn if_else(&mut self, condition: Expr, then: Expr, otherwise: Expr) -> Expr {
+        self.select(condition, then, otherwise, then)
+    }
+
+    /// The value of a field (a pattern, a spline, ...) at the arguments.
+    pub fn field(&mut self, field: &Arc<dyn ScalarField>, arguments: &[Expr]) -> Expr {
+        let expected = field.arity();
+        if expected != arguments.len() || expected > limits::PARAMETERS {
+            let found = arguments.len();
+            return self.fail(FunctionError::ArgumentCount {
+                function: format!("{field:?}"),
+                expected: expected.min(limits::PARAMETERS),
+                found,
+            });
+        }
+        let known = self.fields.iter().position(|f| Arc::ptr_eq(f, field));
+        let id = known.unwrap_or_else(|| {
+            self.fields.push(Arc::clone(field));
+            self.fields.len() - 1
+        });
+        let list = self.list(arguments);
+        self.push(Node::Field(id as u32, list))
+    }
+
+    /// A call of another function: small ones become part of this graph, large ones are called.
+    pub fn call(&mut self, function: &Function, arguments: &[Expr]) -> Expr {
+        let expected = function.parameters().len();
+        if arguments.len() != expected {
+            let found = arguments.len();
+            return self.fail(FunctionError::ArgumentCount {
+                function: "the function".to_owned(),
+                expected,
+                found,
+            });
+        }
+        if function.size() <= limits::INLINE {
+            return self.inline(function, arguments);
+        }
+        let known = self.functions.iter().position(|f| f.is_same(function));
+        let id = known.unwrap_or_else(|| {
+            self.functions.push(function.clone());
+            self.functions.len() - 1
+        });
+        let list = self.list(arguments);
+        self.push(Node::Call(id as u32, list))
+    }
+
+    /// A new loop variable, to be used in the body of one [`sum`](Self::sum) or [`prod`](Self::prod).
+    pub fn loop_variable(&mut self) -> Expr {
+        self.variables = self.variables.saturating_add(1);
+        self.push(Node::Variable(self.variables - 1))
+    }
+
+    /// The sum of `body` for `variable` = `from`, `from + 1`, ... as long as it is not above `to`; 0 if it is at once.
+    pub fn sum(&mut self, variable: Expr, from: Expr, to: Expr, body: Expr) -> Expr {
+        self.repeat(false, variable, from, to, body)
+    }
+
+    /// The product, like [`sum`](Self::sum); 1 if there is no factor.
+    pub fn prod(&mut self, variable: Expr, from: Expr, to: Expr, body: Expr) -> Expr {
+        self.repeat(true, variable, from, to, body)
+    }
+
+    fn repeat(&mut self, product: bool, counter: Expr, from: Expr, to: Expr, body: Expr) -> Expr {
+        let Some(&Node::Variable(variable)) = self.nodes.get(counter.0 as usize) else {
+            return self.fail(FunctionError::UnboundVariable);
+        };
+        if self.depends_on(from, variable) || self.depends_on(to, variable) {
+            return self.fail(FunctionError::UnboundVariable);
+        }
+        if let (Some(from), Some(to)) = (self.known(from), self.known(to)) {
+            // Short loops are written out, with the additions a loop would do.
+            let rounds = to - from;
+            let size = self.reachable(body).len() as f64;
+            if !(rounds >= 0.0) || (rounds < 256.0 && rounds * size < limits::UNROLL as f64) {
+                return self.unroll(product, counter, from, to, body);
+            }
+        }
+        self.push(Node::Loop(Loop {
+            product,
+            variable,
+            from,
+            to,
+            body,
+        }))
+    }
+
+    fn unroll(&mut self, product: bool, counter: Expr, from: f64, to: f64, body: Expr) -> Expr {
+        let (op, neutral) = if product {
+            (BinaryOp::Mul, 1.0)
+        } else {
+            (BinaryOp::Add, 0.0)
+        };
+        let mut total = self.constant(neutral);
+        let mut i = from;
+        while i <= to {
+            let value = self.constant(i);
+            let term = self.replace(body, counter, value);
+            total = self.binary(op, total, term);
+            i += 1.0;
+        }
+        total
+    }
+
+    // Structure
+
+    /// Adds a node, or finds an equal one.
+    fn push(&mut self, node: Node) -> Expr {
+        if let Some(&e) = self.index.get(&node) {
+            return e;
+        }
+        if self
+            .children(node)
+            .iter()
+            .any(|c| c.0 as usize >= self.nodes.len())
+        {
+            return self.fail(FunctionError::ForeignExpression);
+        }
+        if self.nodes.len() >= limits::NODES {
+            self.failure.get_or_insert(FunctionError::TooLarge {
+                limit: limits::NODES,
+            });
+            return Expr(0);
+        }
+        let depth = self.nesting(node);
+        if depth as usize > limits::DEPTH {
+            return self.fail(FunctionError::TooDeep {
+                limit: limits::DEPTH,
+            });
+        }
+        let e = Expr(self.nodes.len() as u32);
+        let free = self.free_variables(node);
+        if !free.is_empty() {
+            self.free.insert(e, free.into_boxed_slice());
+        }
+        self.depth.push(depth);
+        self.nodes.push(node);
+        self.index.insert(node, e);
+        e
+    }
+
+    fn list(&mut self, arguments: &[Expr]) -> List {
+        if let Some(&list) = self.list_index.get(arguments) {
+            return list;
+        }
+        let list = List(self.lists.len() as u32);
+        self.lists.push(arguments.into());
+        self.list_index.insert(arguments.into(), list);
+        list
+    }
+
+    fn nesting(&self, node: Node) -> u32 {
+        let inner = self
+            .children(node)
+            .iter()
+            .filter_map(|c| self.depth.get(c.0 as usize))
+            .max()
+            .copied()
+            .unwrap_or(0);
+        match node {
+            Node::Loop(_) => inner + 1,
+            Node::Call(id, _) => {
+                let callee = self.function_at(id).map_or(0, Function::depth);
+                inner.max(callee + 1)
+            }
+            _ => inner,
+        }
+    }
+
+    /// How deep loops and calls are nested in an expression.
+    pub(crate) fn depth(&self, e: Expr) -> u32 {
+        self.depth.get(e.0 as usize).copied().unwrap_or(0)
+    }
+
+    fn free_variables(&self, node: Node) -> Vec<u32> {
+        let mut free: Vec<u32> = match node {
+            Node::Variable(v) => vec![v],
+            _ => Vec::new(),
+        };
+        for child in self.children(node) {
+            if let Some(inner) = self.free.get(&child) {
+                let bound =
+                    |v: u32| matches!(node, Node::Loop(l) if l.body == child && l.variable == v);
+                free.extend(inner.iter().copied().filter(|&v| !bound(v)));
+            }
+        }
+        free.sort_unstable();
+        free.dedup();
+        free
+    }
+
+    /// Whether `e` changes with a loop variable.
+    pub(crate) fn depends_on(&self, e: Expr, variable: u32) -> bool {
+        self.free
+            .get(&e)
+            .is_some_and(|free| free.binary_search(&variable).is_ok())
+    }
+
+    /// The node of a loop variable, if anything uses it.
+    pub(crate) fn find_variable(&self, variable: u32) -> Option<Expr> {
+        self.index.get(&Node::Variable(variable)).copied()
+    }
+
+    pub(crate) fn node(&self, e: Expr) -> Node {
+        self.nodes
+            .get(e.0 as usize)
+            .copied()
+            .unwrap_or(Node::Constant(f64::NAN.to_bits()))
+    }
+
+    pub(crate) fn arguments(&self, list: List) -> &[Expr] {
+        self.lists.get(list.0 as usize).map_or(&[], |l| l)
+    }
+
+    pub(crate) fn field_at(&self, id: u32) -> Option<&Arc<dyn ScalarField>> {
+        self.fields.get(id as usize)
+    }
+
+    pub(crate) fn function_at(&self, id: u32) -> Option<&Function> {
+        self.functions.get(id as usize)
+    }
+
+    pub(crate) fn children(&self, node: Node) -> Vec<Expr> {
+        match node {
+            Node::Constant(_) | Node::Parameter(_) | Node::Variable(_) => Vec::new(),
+            Node::Unary(_, a) => vec![a],
+            Node::Binary(_, a, b) => vec![a, b],
+            Node::Select(s, n, z, p) => vec![s, n, z, p],
+            Node::Field(_, list) | Node::Call(_, list) => self.arguments(list).to_vec(),
+            Node::Loop(l) => vec![l.from, l.to, l.body],
+        }
+    }
+
+    /// All nodes an expression needs, operands first. Nodes are only ever made after their operands, so that is by number.
+    pub(crate) fn reachable(&self, root: Expr) -> Vec<Expr> {
+        let mut seen = vec![false; self.nodes.len()];
+        let mut stack = vec![root];
+        let mut found = Vec::new();
+        while let Some(e) = stack.pop() {
+            match seen.get_mut(e.0 as usize) {
+                Some(mark) if !*mark => *mark = true,
+                _ => continue,
+            }
+            found.push(e);
+            stack.extend(self.children(self.node(e)));
+        }
+        found.sort_unstable_by_key(|e| e.0);
+        found
+    }
+
+    /// `root` with `counter` replaced by `value`.
+    fn replace(&mut self, root: Expr, counter: Expr, value: Expr) -> Expr {
+        let Node::Variable(variable) = self.node(counter) else {
+            return root;
+        };
+        let mut image: HashMap<Expr, Expr> = HashMap::from([(counter, value)]);
+        for e in self.reachable(root) {
+            if e != counter && self.depends_on(e, variable) {
+                let copy = self.rebuild(self.node(e), |c| image.get(&c).copied().unwrap_or(c));
+                image.insert(e, copy);
+            }
+        }
+        image.get(&root).copied().unwrap_or(root)
+    }
+
+    /// A node of this graph with other operands, simplified anew.
+    fn rebuild(&mut self, node: Node, to: impl Fn(Expr) -> Expr) -> Expr {
+        match node {
+            Node::Constant(_) | Node::Parameter(_) | Node::Variable(_) => self.push(node),
+            Node::Unary(op, a) => self.unary(op, to(a)),
+            Node::Binary(op, a, b) => self.binary(op, to(a), to(b)),
+            Node::Select(s, n, z, p) => self.select(to(s), to(n), to(z), to(p)),
+            Node::Field(id, list) => {
+                let arguments: Vec<Expr> = self.arguments(list).iter().map(|&a| to(a)).collect();
+                let list = self.list(&arguments);
+                self.push(Node::Field(id, list))
+            }
+            Node::Call(id, list) => {
+                let arguments: Vec<Expr> = self.arguments(list).iter().map(|&a| to(a)).collect();
+                let list = self.list(&arguments);
+                self.push(Node::Call(id, list))
+            }
+            Node::Loop(l) => {
+                let counter = self.push(Node::Variable(l.variable));
+                self.repeat(l.product, counter, to(l.from), to(l.to), to(l.body))
+            }
+        }
+    }
+
+    /// Copies the graph of a function with its parameters replaced.
+    fn inline(&mut self, function: &Function, arguments: &[Expr]) -> Expr {
+        let source = function.graph();
+        let base = self.variables;
+        self.variables = self.variables.saturating_add(source.variables);
+        let mut image: HashMap<Expr, Expr> = HashMap::new();
+        for e in source.reachable(function.root()) {
+            let to = |c: Expr| image.get(&c).copied().unwrap_or(Expr(u32::MAX));
+            let many = |list: List| -> Vec<Expr> {
+                source.arguments(list).iter().map(|&a| to(a)).collect()
+            };
+            let copy = match source.node(e) {
+                Node::Parameter(i) => match arguments.get(i as usize) {
+                    Some(&a) => a,
+                    None => self.fail(FunctionError::ForeignExpression),
+                },
+                Node::Variable(v) => self.push(Node::Variable(base.saturating_add(v))),
+                Node::Field(id, list) => match source.field_at(id) {
+                    Some(field) => self.field(field, &many(list)),
+                    None => self.fail(FunctionError::ForeignExpression),
+                },
+                Node::Call(id, list) => match source.function_at(id) {
+                    Some(callee) => self.call(callee, &many(list)),
+                    None => self.fail(FunctionError::ForeignExpression),
+                },
+                Node::Loop(l) => {
+                    let counter = self.push(Node::Variable(base.saturating_add(l.variable)));
+                    self.repeat(l.product, counter, to(l.from), to(l.to), to(l.body))
+                }
+                node => self.rebuild(node, to),
+            };
+            image.insert(e, copy);
+        }
+        let root = function.root();
+        match image.get(&root) {
+            Some(&e) => e,
+            None => self.fail(FunctionError::ForeignExpression),
+        }
+    }
+}

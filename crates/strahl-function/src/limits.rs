@@ -1,0 +1,14 @@
+//! How large a function may be. Every limit gives an error when it is passed, never a panic.
+
+/// The most parameters of a function (POV-Ray's limit).
+pub const PARAMETERS: usize = 56;
+/// The most operations of a function.
+pub const NODES: usize = 1 << 20;
+/// The deepest nesting of calls and loops.
+pub const DEPTH: usize = 128;
+/// Functions with at most so many operations are copied into their callers.
+pub const INLINE: usize = 4096;
+/// Loops with at most so many operations over all rounds are written out.
+pub const UNROLL: usize = 4096;
+/// The most rounds of a loop; its value is NaN if it needs more.
+pub const ROUNDS: usize = 1 << 20;

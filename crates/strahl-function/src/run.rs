@@ -1,0 +1,82 @@
+//! The interpreter, once for all domains.
+
+use crate::domain::{Domain, Round};
+use crate::limits;
+use crate::op::BinaryOp;
+use crate::tape::{LoopCode, Op, Tape};
+
+/// Writes the constants of a tape to their registers.
+pub(crate) fn prepare<T: Domain>(tape: &Tape, stack: &mut [T]) {
+    for (register, &value) in stack[tape.inputs..].iter_mut().zip(&tape.constants) {
+        *register = T::constant(value);
+    }
+}
+
+/// Runs a tape whose inputs and constants are in place at the start of `stack`, which has `tape.stack` registers.
+pub(crate) fn run<T: Domain>(tape: &Tape, stack: &mut [T]) -> T {
+    let (r, rest) = stack.split_at_mut(tape.registers);
+    for i in &tape.code {
+        let (out, a, b) = (i.out as usize, i.a as usize, i.b as usize);
+        r[out] = match i.op {
+            Op::Unary(op) => T::unary(op, r[a]),
+            Op::Binary(op) => T::binary(op, r[a], r[b]),
+            Op::Select => {
+                let [negative, zero, positive] = tape.selects[b];
+                T::select(
+                    r[a],
+                    r[negative as usize],
+                    r[zero as usize],
+                    r[positive as usize],
+                )
+            }
+            Op::Field => {
+                let (field, arguments) = &tape.fields[b];
+                gather(r, arguments, rest);
+                T::field(field.as_ref(), &rest[..arguments.len()])
+            }
+            Op::Call => {
+                let (function, arguments) = &tape.calls[b];
+                gather(r, arguments, rest);
+                prepare(function.tape(), rest);
+                run(function.tape(), rest)
+            }
+            Op::Loop => repeat(&tape.loops[b], r, rest),
+        };
+    }
+    r[tape.result as usize]
+}
+
+fn gather<T: Domain>(registers: &[T], from: &[u32], to: &mut [T]) {
+    for (to, &from) in to.iter_mut().zip(from) {
+        *to = registers[from as usize];
+    }
+}
+
+fn repeat<T: Domain>(code: &LoopCode, registers: &[T], stack: &mut [T]) -> T {
+    let (op, neutral) = if code.product {
+        (BinaryOp::Mul, 1.0)
+    } else {
+        (BinaryOp::Add, 0.0)
+    };
+    let mut counter = registers[code.from as usize];
+    let to = registers[code.to as usize];
+    let mut total = T::constant(neutral);
+    gather(registers, &code.captures, &mut stack[1..]);
+    prepare(&code.body, stack);
+    let mut rounds = 0;
+    loop {
+        let mask = match T::round(counter, to) {
+            Round::Go(mask) => mask,
+            Round::Done => return total,
+            Round::Unknown => return T::unknown(),
+        };
+        if rounds == limits::ROUNDS {
+            return T::blend(mask, T::constant(f64::NAN), total);
+        }
+        rounds += 1;
+        stack[0] = counter;
+        let term = run(&code.body, stack);
+        total = T::blend(mask, T::binary(op, total, term), total);
+        counter = T::binary(BinaryOp::Add, counter, T::constant(1.0));
+    }
+}

@@ -1,0 +1,279 @@
+//! Graphs: sharing, folding, calls, loops, limits and errors.
+
+use std::sync::Arc;
+use strahl_function::{
+    Bounds, Expr, Function, FunctionError, Graph, ScalarField, Workspace, limits,
+};
+
+fn value(f: &Function, arguments: &[f64]) -> f64 {
+    f.value(&mut Workspace::new(), arguments)
+}
+
+#[test]
+fn equal_parts_are_stored_once_and_constants_folded() {
+    let mut g = Graph::new(["x", "y"]);
+    let (x, y) = (g.parameter("x"), g.parameter("y"));
+    let a = g.add(x, y);
+    let b = g.add(y, x);
+    assert_eq!(a, b);
+    let two = g.constant(2.0);
+    let four = g.square(two);
+    assert_eq!(g.known(four), Some(4.0));
+    let product = g.mul(a, b);
+    let f = g.finish(product).unwrap();
+    assert_eq!(f.size(), 4);
+    assert_eq!(value(&f, &[1.0, 2.0]), 9.0);
+}
+
+#[test]
+fn folding_keeps_signed_zeros() {
+    let mut g = Graph::new(["x"]);
+    let x = g.parameter("x");
+    let zero = g.constant(0.0);
+    let sum = g.add(x, zero);
+    assert_ne!(sum, x, "-0 + 0 is +0");
+    let difference = g.sub(x, zero);
+    assert_eq!(difference, x);
+    let f = g.finish(sum).unwrap();
+    assert_eq!(value(&f, &[-0.0]).to_bits(), 0.0f64.to_bits());
+}
+
+#[test]
+fn u_and_v_are_other_names_of_x_and_y() {
+    let mut g = Graph::new(["u", "v"]);
+    let (u, x) = (g.parameter("u"), g.parameter("x"));
+    assert_eq!(u, x);
+    let y = g.parameter("y");
+    let sum = g.sub(x, y);
+    assert_eq!(value(&g.finish(sum).unwrap(), &[3.0, 1.0]), 2.0);
+}
+
+/// The sum of the first `n` powers of a parameter, in a function of its own.
+fn powers(unroll: bool) -> Function {
+    let mut g = Graph::new(["x", "n"]);
+    let (x, n) = (g.parameter("x"), g.parameter("n"));
+    let to = if unroll { g.constant(5.0) } else { n };
+    let i = g.loop_variable();
+    let power = g.pow(x, i);
+    let one = g.constant(1.0);
+    let sum = g.sum(i, one, to, power);
+    g.finish(sum).unwrap()
+}
+
+#[test]
+fn loops_written_out_have_the_bits_of_loops() {
+    let (a, b) = (powers(true), powers(false));
+    for x in [0.3, -1.7, 2.5, 0.0] {
+        assert_eq!(
+            value(&a, &[x, 5.0]).to_bits(),
+            value(&b, &[x, 5.0]).to_bits()
+        );
+    }
+}
+
+#[test]
+fn nested_loops_see_outer_variables_and_calls_keep_theirs_apart() {
+    // sum(i, 1, n, sum(j, 1, i, j * x)), called twice within another loop.
+    let mut g = Graph::new(["x", "n"]);
+    let (x, n, one) = (g.parameter("x"), g.parameter("n"), g.constant(1.0));
+    let (i, j) = (g.loop_variable(), g.loop_variable());
+    let jx = g.mul(j, x);
+    let inner = g.sum(j, one, i, jx);
+    let outer = g.sum(i, one, n, inner);
+    let f = g.finish(outer).unwrap();
+    assert_eq!(value(&f, &[1.5, 3.0]), 15.0);
+
+    let mut g = Graph::new(["n"]);
+    let (n, one) = (g.parameter("n"), g.constant(1.0));
+    let k = g.loop_variable();
+    let inner = g.call(&f, &[k, k]);
+    let other = g.call(&f, &[one, n]);
+    let term = g.add(inner, other);
+    let root = g.sum(k, one, n, term);
+    let h = g.finish(root).unwrap();
+    let s = |n: i32| (1..=n).map(|i| i * (i + 1) / 2).sum::<i32>();
+    let expected: i32 = (1..=4).map(|k| k * s(k) + s(4)).sum();
+    assert_eq!(value(&h, &[4.0]), f64::from(expected));
+    let mut ws = Workspace::new();
+    let four = Bounds::point(4.0);
+    assert!(h.bounds(&mut ws, &[four]).contains(f64::from(expected)));
+    // Lanes leave the loop at different rounds.
+    let n: Vec<f64> = (0..23).map(|i| f64::from(i % 7) - 0.5).collect();
+    let mut values = vec![0.0; n.len()];
+    h.values(&mut ws, &[&n], &mut values);
+    for (n, v) in n.iter().zip(values) {
+        assert_eq!(h.value(&mut ws, &[*n]), v, "{n}");
+    }
+}
+
+#[test]
+fn a_loop_that_does_not_end_is_nan() {
+    let f = powers(false);
+    assert!(value(&f, &[1.0, 1e300]).is_nan());
+    assert_eq!(value(&f, &[1.0, f64::NAN]), 0.0);
+}
+
+#[test]
+fn deep_expressions_need_no_deep_stack() {
+    let mut g = Graph::new(["x"]);
+    let x = g.parameter("x");
+    let mut e = x;
+    for _ in 0..200_000 {
+        e = g.sin(e);
+        e = g.add(e, x);
+    }
+    let f = g.finish(e).unwrap();
+    assert!(value(&f, &[0.5]).is_finite());
+    let mut ws = Workspace::new();
+    assert!(!f.bounds(&mut ws, &[Bounds::new(0.0, 1.0)]).is_empty());
+}
+
+#[test]
+fn a_graph_that_is_too_large_is_an_error() {
+    let mut g = Graph::new(["x"]);
+    let mut e = g.parameter("x");
+    for _ in 0..=limits::NODES {
+        e = g.exp(e);
+    }
+    assert_eq!(
+        g.finish(e).unwrap_err(),
+        FunctionError::TooLarge {
+            limit: limits::NODES
+        }
+    );
+}
+
+#[test]
+fn calls_that_double_stay_small() {
+    // f(x) = g(x) + g(x + 1), thirty times: a billion terms if it were written out.
+    let mut g = Graph::new(["x"]);
+    let x = g.parameter("x");
+    let e = g.sin(x);
+    let mut f = g.finish(e).unwrap();
+    for round in 0..14 {
+        let mut g = Graph::new(["x"]);
+        let x = g.parameter("x");
+        let shifted = g.scaled(x, 1.0 + f64::from(round) / 7.0);
+        let (a, b) = (g.call(&f, &[x]), g.call(&f, &[shifted]));
+        let sum = g.add(a, b);
+        f = g.finish(sum).unwrap();
+        assert!(f.size() <= 4 * limits::INLINE);
+    }
+    let mut ws = Workspace::new();
+    let v = f.value(&mut ws, &[0.25]);
+    let mut out = [0.0];
+    f.values(&mut ws, &[&[0.25]], &mut out);
+    assert_eq!(v.to_bits(), out[0].to_bits());
+    assert_eq!(v.to_bits(), f.gradient(&mut ws, &[0.25]).0.to_bits());
+    assert!(f.bounds(&mut ws, &[Bounds::point(0.25)]).contains(v));
+}
+
+#[test]
+fn loops_nested_too_deep_are_an_error() {
+    let mut g = Graph::new(["n"]);
+    let (n, one) = (g.parameter("n"), g.constant(1.0));
+    let mut e = n;
+    for _ in 0..10_000 {
+        let i = g.loop_variable();
+        let body = g.mul(e, i);
+        e = g.sum(i, one, n, body);
+    }
+    assert!(matches!(
+        g.finish(e).unwrap_err(),
+        FunctionError::TooDeep { .. }
+    ));
+}
+
+#[test]
+fn what_is_wrong_is_said() {
+    let mut g = Graph::new(["x", "x"]);
+    let e = g.parameter("x");
+    assert!(matches!(
+        g.finish(e).unwrap_err(),
+        FunctionError::DuplicateParameter { .. }
+    ));
+
+    let mut g = Graph::new(["a", "b"]);
+    let e = g.parameter("c");
+    let error = g.finish(e).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "`c` is not a parameter of the function, which has a, b"
+    );
+
+    let mut g = Graph::new(["x"]);
+    let i = g.loop_variable();
+    let e = g.sin(i);
+    assert_eq!(g.finish(e).unwrap_err(), FunctionError::UnboundVariable);
+
+    let mut other = Graph::new(["x"]);
+    let mut far = other.parameter("x");
+    for _ in 0..10 {
+        far = other.sin(far);
+    }
+    let mut g = Graph::new(["x"]);
+    let e = g.cos(far);
+    assert_eq!(g.finish(e).unwrap_err(), FunctionError::ForeignExpression);
+    let g = Graph::new(["x"]);
+    assert_eq!(g.finish(far).unwrap_err(), FunctionError::ForeignExpression);
+
+    let f = powers(false);
+    let mut g = Graph::new(["x"]);
+    let x = g.parameter("x");
+    let e = g.call(&f, &[x]);
+    assert!(matches!(
+        g.finish(e).unwrap_err(),
+        FunctionError::ArgumentCount {
+            expected: 2,
+            found: 1,
+            ..
+        }
+    ));
+
+    let many: Vec<String> = (0..57).map(|i| format!("p{i}")).collect();
+    let mut g = Graph::new(many);
+    let e = g.constant(0.0);
+    assert!(matches!(
+        g.finish(e).unwrap_err(),
+        FunctionError::TooManyParameters { found: 57, .. }
+    ));
+}
+
+#[derive(Debug)]
+struct Product;
+
+impl ScalarField for Product {
+    fn value(&self, p: &[f64]) -> f64 {
+        p[0] * p[1] * p[2]
+    }
+}
+
+#[test]
+fn fields_are_called_from_all_domains() {
+    let field: Arc<dyn ScalarField> = Arc::new(Product);
+    let mut g = Graph::new(["x", "y", "z"]);
+    let [x, y, z] = g.xyz();
+    let e: Expr = g.field(&field, &[y, z, x]);
+    let twice = g.add(e, e);
+    let f = g.finish(twice).unwrap();
+    let mut ws = Workspace::new();
+    let p = [2.0, 3.0, 5.0];
+    assert_eq!(f.value(&mut ws, &p), 60.0);
+    let (v, gradient) = f.gradient(&mut ws, &p);
+    assert_eq!(v, 60.0);
+    for (a, b) in gradient.iter().zip([30.0, 20.0, 12.0]) {
+        assert!((a - b).abs() < 1e-8, "{a} {b}");
+    }
+    assert!(f.bounds(&mut ws, &p.map(Bounds::point)).contains(60.0));
+    let mut values = [0.0; 3];
+    f.values(&mut ws, &[&[2.0; 3], &[3.0; 3], &[5.0; 3]], &mut values);
+    assert_eq!(values, [60.0; 3]);
+
+    let mut g = Graph::new(["x"]);
+    let x = g.parameter("x");
+    let e = g.field(&field, &[x]);
+    assert!(matches!(
+        g.finish(e).unwrap_err(),
+        FunctionError::ArgumentCount { .. }
+    ));
+}
