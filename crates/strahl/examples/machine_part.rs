@@ -77,9 +77,9 @@ fn flange() -> Object {
     let mut parts = vec![body, solid(-0.1, 2.1, 0.75)];
     for i in 0..6 {
         let a = TAU * f64::from(i) / 6.0;
-        let place = DVec3::new(a.cos(), 0.0, a.sin()) * 1.75;
+        let place = DVec3::new(a.cos(), 0.0, a.sin()) * 1.8;
         parts.push(Cylinder::new(place - up, place + up, 0.2).into());
-        parts.push(Cone::new(place + up * 0.55, 0.2, place + up * 0.76, 0.38).into());
+        parts.push(Cone::new(place + up * 0.55, 0.2, place + up * 0.76, 0.33).into());
     }
     parts.push(Cuboid::new(DVec3::new(-0.17, -0.1, 0.5), DVec3::new(0.17, 2.1, 1.0)).into());
     Object::csg(CsgOp::Difference, parts)
