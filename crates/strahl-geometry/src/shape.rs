@@ -114,6 +114,19 @@ shapes! {
     Custom(Arc<dyn Primitive>),
 }
 
+/// The large shapes come into their `Arc` by themselves.
+macro_rules! shared {
+    ($($type:ident),+) => {
+        $(impl From<$type> for Shape {
+            fn from(shape: $type) -> Self {
+                Self::$type(Arc::new(shape))
+            }
+        })+
+    };
+}
+
+shared!(Quadric, SmoothTriangle, TriangleMesh, Csg, Brep);
+
 #[cfg(test)]
 mod tests {
     use super::*;

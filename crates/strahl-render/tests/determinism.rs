@@ -2,7 +2,9 @@
 
 mod common;
 
-use common::{compiled, glass_and_mirrors, rendered};
+use std::collections::BTreeMap;
+
+use common::{compiled, every_shape, glass_and_mirrors, rendered};
 use strahl_accel::AcceleratorKind;
 use strahl_render::{CompileOptions, Region, Sampling, TileOrder, compile};
 
@@ -18,23 +20,43 @@ const SAMPLINGS: [Sampling; 4] = [
 
 #[test]
 fn list_and_bvh_give_the_same_bits() {
-    let scene = glass_and_mirrors();
-    let mut hashes = Vec::new();
-    for accelerator in AcceleratorKind::ALL.iter().copied() {
-        let scene = compile(&scene, &CompileOptions { accelerator }).expect("valid");
-        let picture = rendered(&scene, |o| o.sampling = Sampling::Grid(2));
-        hashes.push((accelerator.to_string(), picture.film.sha256(), picture.rays));
+    for scene in [glass_and_mirrors(), every_shape()] {
+        let mut hashes = Vec::new();
+        for accelerator in AcceleratorKind::ALL.iter().copied() {
+            let scene = compile(&scene, &CompileOptions { accelerator }).expect("valid");
+            let picture = rendered(&scene, |o| o.sampling = Sampling::Grid(2));
+            hashes.push((accelerator.to_string(), picture.film.sha256(), picture.rays));
+        }
+        assert!(hashes.len() >= 2);
+        for other in &hashes[1..] {
+            assert_eq!(
+                (&hashes[0].1, hashes[0].2),
+                (&other.1, other.2),
+                "{} and {}",
+                hashes[0].0,
+                other.0
+            );
+        }
     }
-    assert!(hashes.len() >= 2);
-    for other in &hashes[1..] {
-        assert_eq!(
-            (&hashes[0].1, hashes[0].2),
-            (&other.1, other.2),
-            "{} and {}",
-            hashes[0].0,
-            other.0
-        );
+}
+
+/// What is compared is there: each kind of shape has pixels.
+#[test]
+fn every_shape_is_seen() {
+    let scene = compiled(&every_shape());
+    let picture = rendered(&scene, |o| {
+        (o.width, o.height) = (480, 320);
+        o.info = true;
+    });
+    let mut pixels: BTreeMap<&str, usize> = scene.objects().iter().map(|o| (o.kind, 0)).collect();
+    for info in picture.film.info.expect("asked for") {
+        if info.object > 0 {
+            let kind = scene.objects()[info.object as usize - 1].kind;
+            pixels.entry(kind).and_modify(|n| *n += 1);
+        }
     }
+    assert_eq!(pixels.len(), 13, "{pixels:?}");
+    assert!(pixels.values().all(|n| *n > 50), "{pixels:?}");
 }
 
 #[test]

@@ -52,13 +52,14 @@ pub struct Textures {
 ///
 /// | classical | from |
 /// |---|---|
-/// | kd, ka | base colour · (1 - metalness) · (1 - transmission) |
+/// | kd, ka | base colour · ((1 - metalness) · (1 - transmission) + metalness · (1 - (1 - roughness)²)) |
 /// | kr | metals: base colour · (1 - roughness)²; dielectrics: (1 - roughness)², times Fresnel's F |
 /// | kt | base colour · transmission · (1 - metalness), times 1 - F |
 /// | ks, p | highlight of strength F₀ scaled to the exponent `2/α² - 2`, α = roughness² |
 ///
 /// A classical ray tracer has no blurred reflection, so rough surfaces reflect less instead: `(1 - roughness)²` is 1 for a
-/// mirror and fades out where the reflection would be a blur.
+/// mirror and fades out where the reflection would be a blur. What a rough metal does not reflect it scatters: kd + kr is the base
+/// colour.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pbr {
     /// Base colour factor, linear.
@@ -119,8 +120,9 @@ impl Pbr {
             };
         }
         let blend = if self.alpha_blend { alpha } else { 1.0 };
-        let diffuse = base * ((1.0 - metallic) * (1.0 - transmission) * blend);
         let gloss = (1.0 - roughness) * (1.0 - roughness);
+        let scattered = (1.0 - metallic) * (1.0 - transmission) + metallic * (1.0 - gloss);
+        let diffuse = base * (scattered * blend);
         let metal_color = base * metallic;
         let alpha_2 = {
             let a = roughness * roughness;
@@ -175,5 +177,39 @@ impl Pbr {
         let mapped = tangent * x + bitangent * (y * handedness) + n * (z * 2.0 - 1.0);
         let length = mapped.length();
         if length > 0.0 { mapped / length } else { n }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn metal(roughness: f64) -> Finish {
+        let pbr = Pbr {
+            base_color: Color::new(0.9, 0.6, 0.2),
+            alpha: 1.0,
+            alpha_cutoff: None,
+            alpha_blend: false,
+            metallic: 1.0,
+            roughness,
+            transmission: 0.0,
+            emissive: Color::BLACK,
+            f0: 0.04,
+            normal_scale: 1.0,
+            unlit: false,
+            textures: Textures::default(),
+        };
+        pbr.at(DVec2::ZERO).finish
+    }
+
+    #[test]
+    fn a_metal_reflects_or_scatters_its_colour() {
+        assert_eq!(metal(0.0).reflection, Color::new(0.9, 0.6, 0.2));
+        assert!(metal(0.0).diffuse.is_black());
+        assert_eq!(metal(1.0).diffuse, Color::new(0.9, 0.6, 0.2));
+        for roughness in [0.1, 0.5, 0.9] {
+            let f = metal(roughness);
+            assert!(((f.diffuse + f.reflection).g - 0.6).abs() < 1e-15);
+        }
     }
 }

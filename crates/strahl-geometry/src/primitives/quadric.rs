@@ -3,7 +3,6 @@ use super::point_error;
 use crate::{
     Crossings, GeometryError, PrimHit, Primitive, Scratch, Shape, Solid, SurfaceId, SurfacePoint,
 };
-use std::sync::Arc;
 use strahl_math::error::gamma;
 use strahl_math::{Aabb, DMat3, DVec2, DVec3, Interval, Ray, Transform};
 
@@ -438,12 +437,6 @@ impl Solid for Quadric {
 
     fn contains(&self, point: DVec3) -> bool {
         self.value(point) <= 0.0
-    }
-}
-
-impl From<Quadric> for Shape {
-    fn from(quadric: Quadric) -> Self {
-        Self::Quadric(Arc::new(quadric))
     }
 }
 
