@@ -5,17 +5,31 @@ use strahl_shade::{Color, Light};
 /// Vertical angle of the camera that frames objects.
 const ANGLE: f64 = 35.0 * std::f64::consts::PI / 180.0;
 
+/// How much of the picture's height the objects' box may take.
+const MARGIN: f64 = 0.95;
+
 /// A camera that sees all of a box from the front, a little from the right and from above (y is up).
 pub(super) fn frame(bounds: Aabb) -> Camera {
-    let (center, radius) = if bounds.is_bounded() {
-        (bounds.center(), 0.5 * bounds.size().length())
+    let (center, half) = if bounds.is_bounded() && bounds.size() != DVec3::ZERO {
+        (bounds.center(), 0.5 * bounds.size())
     } else {
-        (DVec3::ZERO, 1.0)
+        (DVec3::ZERO, DVec3::ONE)
     };
-    let radius = if radius > 0.0 { radius } else { 1.0 };
     let towards = DVec3::new(0.45, 0.35, 1.0).normalize();
-    // The bounding sphere just fits between bottom and top, with a margin of 5 %.
-    let distance = 1.05 * radius / strahl_math::det::sin(ANGLE * 0.5);
+    let right = DVec3::Y.cross(towards).normalize();
+    let up = towards.cross(right);
+    // From this distance all corners of the box lie within the middle square of the picture, with a margin.
+    let slope = MARGIN * strahl_math::det::tan(ANGLE * 0.5);
+    let mut distance = 0.0;
+    for corner in 0..8 {
+        let side = |bit: u32| if corner >> bit & 1 == 1 { 1.0 } else { -1.0 };
+        let c = half * DVec3::new(side(0), side(1), side(2));
+        let (across, above) = (right.dot(c).abs(), up.dot(c).abs());
+        let needed = towards.dot(c) + if across > above { across } else { above } / slope;
+        if needed > distance {
+            distance = needed;
+        }
+    }
     Camera::perspective(center + towards * distance, center, DVec3::Y, ANGLE)
 }
 
