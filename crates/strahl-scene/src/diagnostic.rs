@@ -36,6 +36,8 @@ pub struct Diagnostic {
     pub source: Option<SourceLine>,
     /// What to do about it.
     pub hints: Vec<String>,
+    /// How the scene got there, innermost first: the macros and include files around the place.
+    pub trace: Vec<String>,
 }
 
 impl Diagnostic {
@@ -47,6 +49,7 @@ impl Diagnostic {
             span: Span::NONE,
             source: None,
             hints: vec![],
+            trace: vec![],
         }
     }
 
@@ -95,6 +98,13 @@ impl Diagnostic {
         self
     }
 
+    /// Adds a step of the way there, outside of those already given.
+    #[must_use]
+    pub fn traced(mut self, step: impl Into<String>) -> Self {
+        self.trace.push(step.into());
+        self
+    }
+
     /// Whether it is an error.
     pub fn is_error(&self) -> bool {
         self.severity == Severity::Error
@@ -102,7 +112,7 @@ impl Diagnostic {
 }
 
 impl fmt::Display for Diagnostic {
-    /// Message, place, line with caret, hints: plain text without colours.
+    /// Message, place, line with caret, trace, hints: plain text without colours.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let kind = match self.severity {
             Severity::Warning => "warning",
@@ -136,6 +146,9 @@ impl fmt::Display for Diagnostic {
                 )?;
             }
         }
+        for step in &self.trace {
+            write!(f, "\n  = {step}")?;
+        }
         for hint in &self.hints {
             write!(f, "\n  = help: {hint}")?;
         }
@@ -159,10 +172,11 @@ mod tests {
         let text = Diagnostic::error("`abc` is not a number")
             .at(span)
             .with_source("scene.nff", "s 0 abc 1 2")
+            .traced("in macro `M`, called at scene.nff:9:1")
             .hint("write a decimal number such as `0.5`")
             .to_string();
         let expected = "error: `abc` is not a number\n  --> scene.nff:12:5\n   |\n12 | s 0 abc 1 2\n   |     ^^^\n  \
-                        = help: write a decimal number such as `0.5`";
+                        = in macro `M`, called at scene.nff:9:1\n  = help: write a decimal number such as `0.5`";
         assert_eq!(text, expected);
     }
 

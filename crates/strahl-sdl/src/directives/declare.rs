@@ -1,0 +1,217 @@
+use crate::keywords::Word;
+use crate::parser::{PResult, Parser, Place, Step, Target};
+use crate::symbol::Symbol;
+use crate::token::Kind;
+use crate::value::Value;
+
+impl Parser<'_> {
+    /// `#declare` or `#local` behind the word.
+    pub(super) fn declare(&mut self, local: bool) -> PResult<()> {
+        let deprecated = self.deprecated()?;
+        if self.accept(Kind::LeftParen)? {
+            self.declare_tuple(local)?;
+        } else {
+            let (target, place) = self.assigned(local)?;
+            self.expect(Kind::Equal)?;
+            let value = self.value()?;
+            self.assign(&target, value, place)?;
+        }
+        if let Some(text) = deprecated {
+            let place = self.place();
+            self.warn(place, format!("this name is deprecated: {text}"));
+        }
+        self.end_of_assignment();
+        Ok(())
+    }
+
+    /// A semicolon is asked for, but what is meant is clear without.
+    fn end_of_assignment(&mut self) {
+        if self.raw().kind == Kind::Semicolon {
+            self.jump(self.position() + 1);
+        }
+    }
+
+    /// `deprecated [once] "text"`: who declares says so to who uses; here it is taken note of only.
+    fn deprecated(&mut self) -> PResult<Option<String>> {
+        if !self.raw().is(Word::Deprecated) {
+            return Ok(None);
+        }
+        self.next()?;
+        self.accept_word(Word::Once)?;
+        let token = self.peek()?;
+        if token.kind == Kind::String {
+            let text = self.string()?;
+            return Ok(Some(text.to_string()));
+        }
+        Ok(Some(String::new()))
+    }
+
+    /// `(A, B, ...) = values` (3.8): several names at once; the right side is read before the first is set.
+    fn declare_tuple(&mut self, local: bool) -> PResult<()> {
+        let mut targets = vec![];
+        loop {
+            let optional = self.raw().is(Word::Optional);
+            if optional {
+                self.next()?;
+            }
+            let (target, place) = self.assigned(local)?;
+            targets.push((target, place, optional));
+            self.comma()?;
+            if self.accept(Kind::RightParen)? {
+                break;
+            }
+        }
+        self.expect(Kind::Equal)?;
+        let place = self.place();
+        let values = if self.accept(Kind::LeftParen)? {
+            let values = self.nested(|p| p.tuple(targets.len()))?;
+            values.into_iter().map(Some).collect()
+        } else {
+            match self.value()? {
+                Value::Array(array) => array.elements().to_vec(),
+                other => {
+                    let message = format!(
+                        "expected as many values as names, found {}",
+                        other.describe()
+                    );
+                    return Err(self.fail_hint(
+                        place,
+                        message,
+                        "write `(a, b)` or an array on the right",
+                    ));
+                }
+            }
+        };
+        for (index, (target, place, optional)) in targets.iter().enumerate() {
+            match values.get(index).cloned().flatten() {
+                Some(value) => self.assign(target, value, *place)?,
+                None if *optional => {}
+                None => {
+                    let message = "there is no value for this name in the list on the right";
+                    return Err(self.fail(*place, message));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn tuple(&mut self, count: usize) -> PResult<Vec<Value>> {
+        let mut values = vec![];
+        while values.len() < count && self.peek()?.kind != Kind::RightParen {
+            values.push(self.value()?);
+            self.comma()?;
+        }
+        self.expect(Kind::RightParen)?;
+        Ok(values)
+    }
+
+    /// Name and indices on the left of `=`.
+    fn assigned(&mut self, mut local: bool) -> PResult<(Target, Place)> {
+        let mut global = false;
+        let scope = self.raw();
+        if (scope.is(Word::Local) || scope.is(Word::Global)) && self.raw_ahead(1).kind == Kind::Dot
+        {
+            global = scope.is(Word::Global);
+            local = !global;
+            self.next()?;
+            self.next()?;
+        }
+        let symbol = self.raw_name("the name of a variable")?;
+        let place = self.place();
+        let mut target = match (global, local) {
+            (true, _) => Target {
+                symbol,
+                depth: 0,
+                path: vec![],
+            },
+            (false, true) => self.local_target(symbol),
+            // A local name that the scope sees is changed, as the language has it.
+            (false, false) => self.scopes.target(symbol, false).unwrap_or(Target {
+                symbol,
+                depth: 0,
+                path: vec![],
+            }),
+        };
+        self.steps_into(&mut target)?;
+        Ok((target, place))
+    }
+
+    /// Where `#local` puts a name.
+    pub(super) fn local_target(&self, symbol: Symbol) -> Target {
+        self.scopes.target(symbol, true).unwrap_or(Target {
+            symbol,
+            depth: self.scopes.depth(),
+            path: vec![],
+        })
+    }
+
+    /// `[i]`, `.Key` behind a name that is assigned to.
+    pub(crate) fn steps_into(&mut self, target: &mut Target) -> PResult<()> {
+        loop {
+            let token = self.raw();
+            match token.kind {
+                Kind::LeftBracket => match self.scopes.at(target) {
+                    Some(Value::Dictionary(_)) => {
+                        let key = self.key_in_brackets()?;
+                        target.path.push(Step::Key(key));
+                    }
+                    Some(Value::Array(_)) => {
+                        let index = self.array_index(target)?;
+                        target.path.push(Step::Index(index));
+                    }
+                    _ => {
+                        let place = self.place();
+                        return Err(self.fail_hint(
+                            place,
+                            "this is no array, so it has no elements",
+                            "declare it first: `#declare Name = array[10];`",
+                        ));
+                    }
+                },
+                Kind::Dot => {
+                    self.take(token)?;
+                    let key = self.key()?;
+                    target.path.push(Step::Key(key));
+                }
+                _ => return Ok(()),
+            }
+        }
+    }
+
+    pub(super) fn assign(&mut self, target: &Target, value: Value, place: Place) -> PResult<()> {
+        if self.scopes.store(target, value) {
+            return Ok(());
+        }
+        Err(self.fail(
+            place,
+            "this element cannot be assigned to: arrays and dictionaries hold what exists, at most 100 deep",
+        ))
+    }
+
+    /// `#undef` behind the word.
+    pub(super) fn undef(&mut self) -> PResult<()> {
+        let scope = self.raw();
+        if (scope.is(Word::Local) || scope.is(Word::Global)) && self.raw_ahead(1).kind == Kind::Dot
+        {
+            self.next()?;
+            self.next()?;
+        }
+        let symbol = self.raw_name("the name of a variable")?;
+        let place = self.place();
+        match self.scopes.target(symbol, false) {
+            Some(mut target) => {
+                self.steps_into(&mut target)?;
+                self.scopes.remove(&target);
+            }
+            None => {
+                let name = self.symbols.text(symbol).to_owned();
+                self.warn(
+                    place,
+                    format!("`{name}` is not declared, so `#undef` does nothing"),
+                );
+            }
+        }
+        self.end_of_assignment();
+        Ok(())
+    }
+}

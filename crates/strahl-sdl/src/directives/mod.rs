@@ -1,0 +1,83 @@
+//! What follows a `#`.
+
+mod conditional;
+mod declare;
+mod define;
+mod files;
+mod include;
+mod loops;
+mod messages;
+mod settings;
+
+use crate::parser::{PResult, Parser};
+use crate::token::{Directive, Token};
+
+/// How to go on after a directive.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Flow {
+    /// With the tokens at the position.
+    On,
+    /// Not at all: what is being read must not leave its block.
+    Stop,
+}
+
+impl Parser<'_> {
+    /// Carries out the directive at the position.
+    pub(crate) fn run_directive(&mut self, token: Token) -> PResult<Flow> {
+        let directive = token.directive().unwrap_or(Directive::Unknown);
+        let boundary =
+            directive.divides() || matches!(directive, Directive::End | Directive::Break);
+        if boundary && self.at_floor() {
+            return Ok(Flow::Stop);
+        }
+        let here = self.position();
+        self.mark_directive();
+        if directive == Directive::End && self.at_macro_end() && self.block().is_none() {
+            self.leave_frame();
+            return Ok(Flow::On);
+        }
+        self.take(token)?;
+        self.enclosed(|p| match directive {
+            Directive::If | Directive::Ifdef | Directive::Ifndef => p.if_(directive, here),
+            Directive::Else | Directive::Elseif | Directive::Case | Directive::Range => {
+                p.divider(directive, here)
+            }
+            Directive::End => p.end(here),
+            Directive::Switch => p.switch(here),
+            Directive::While => p.while_(here),
+            Directive::For => p.for_(here),
+            Directive::Break => p.break_(),
+            Directive::Declare => p.declare(false),
+            Directive::Local => p.declare(true),
+            Directive::Undef => p.undef(),
+            Directive::Macro => p.define(here),
+            Directive::Include => p.include_directive(),
+            Directive::Version => p.version(),
+            Directive::Default => p.default_directive(),
+            Directive::Debug
+            | Directive::Warning
+            | Directive::Error
+            | Directive::Render
+            | Directive::Statistics => p.message(directive),
+            Directive::Fopen => p.fopen(),
+            Directive::Fclose => p.fclose(),
+            Directive::Read => p.read(),
+            Directive::Write => p.write(),
+            Directive::Unknown => Err(p.unknown_directive(token)),
+        })?;
+        Ok(Flow::On)
+    }
+
+    fn unknown_directive(&mut self, token: Token) -> crate::parser::Failed {
+        let place = self.place();
+        let symbol = token.link().map_or(u32::MAX, |l| l as u32);
+        let name = self.symbols.text(crate::symbol::Symbol(symbol)).to_owned();
+        let known = Directive::ALL.iter().map(|(_, text)| *text);
+        let close = crate::suggest::closest(&name, known.filter(|t| !t.is_empty()));
+        let message = format!("there is no directive `#{name}`");
+        match close {
+            Some(close) => self.fail_hint(place, message, format!("did you mean `#{close}`?")),
+            None => self.fail(place, message),
+        }
+    }
+}

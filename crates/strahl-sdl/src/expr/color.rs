@@ -1,0 +1,105 @@
+use crate::keywords::Word;
+use crate::parser::{PResult, Parser};
+use crate::token::Kind;
+use crate::value::Vector;
+use strahl_shade::srgb;
+
+impl Parser<'_> {
+    /// A colour: red, green, blue, filter, transmit.
+    ///
+    /// `rgb <1, 0, 0>`, `color rgbt 0.5`, `red 1 green 0.5`, the name of a colour, any vector; parts such as
+    /// `filter 0.5` may follow and replace a component.
+    ///
+    /// # Errors
+    /// If there is no colour.
+    pub fn color(&mut self) -> PResult<[f64; 5]> {
+        let token = self.peek()?;
+        match token.word() {
+            Some(w) if w.kind() == crate::keywords::WordKind::Color => self.color_expression(),
+            _ => {
+                let color = self.expression()?;
+                self.color_parts(opaque(color))
+            }
+        }
+    }
+
+    /// A colour that begins with one of the colour words.
+    pub(super) fn color_expression(&mut self) -> PResult<[f64; 5]> {
+        let token = self.peek()?;
+        match token.word() {
+            Some(Word::Color | Word::Colour) => {
+                self.take(token)?;
+                let next = self.peek()?;
+                match next.word() {
+                    // `color color` says nothing more.
+                    Some(Word::Color | Word::Colour) => self.nested(Self::color_expression),
+                    _ => self.color(),
+                }
+            }
+            Some(Word::Rgb) => self.rgb(3, false),
+            Some(Word::Rgbf) => self.rgb(4, false),
+            Some(Word::Rgbt) => self.rgbt(false),
+            Some(Word::Rgbft) => self.rgb(5, false),
+            Some(Word::Srgb) => self.rgb(3, true),
+            Some(Word::Srgbf) => self.rgb(4, true),
+            Some(Word::Srgbt) => self.rgbt(true),
+            Some(Word::Srgbft) => self.rgb(5, true),
+            _ => self.color_parts([0.0; 5]),
+        }
+    }
+
+    /// `rgb`, `rgbf` and `rgbft` with as many numbers. The word applies to the whole sum behind it.
+    fn rgb(&mut self, count: usize, encoded: bool) -> PResult<[f64; 5]> {
+        self.next()?;
+        let value = self.nested(Self::expression)?;
+        let value = value.promoted(count).components();
+        self.color_parts(decoded(value, encoded))
+    }
+
+    /// `rgbt`: the fourth number is transmit.
+    fn rgbt(&mut self, encoded: bool) -> PResult<[f64; 5]> {
+        self.next()?;
+        let value = self.nested(Self::expression)?;
+        let [r, g, b, t, _] = value.promoted(4).components();
+        self.color_parts(decoded([r, g, b, 0.0, t], encoded))
+    }
+
+    /// `red 1`, `filter 0.5`, ... in any order.
+    pub(super) fn color_parts(&mut self, mut color: [f64; 5]) -> PResult<[f64; 5]> {
+        loop {
+            let token = self.peek()?;
+            if token.kind != Kind::Word {
+                return Ok(color);
+            }
+            let index = match token.word() {
+                Some(Word::Red) => 0,
+                Some(Word::Green) => 1,
+                Some(Word::Blue) => 2,
+                Some(Word::Filter) => 3,
+                Some(Word::Transmit) => 4,
+                _ => return Ok(color),
+            };
+            self.take(token)?;
+            let value = self.float()?;
+            if let Some(slot) = color.get_mut(index) {
+                *slot = value;
+            }
+        }
+    }
+}
+
+/// A vector as a colour: a float is a grey, up to three numbers are opaque, the fourth is filter.
+pub(super) fn opaque(value: Vector) -> [f64; 5] {
+    match value.len() {
+        1 => value.promoted(5).components(),
+        len => value.promoted(len).components(),
+    }
+}
+
+fn decoded([r, g, b, f, t]: [f64; 5], encoded: bool) -> [f64; 5] {
+    if encoded {
+        [srgb::decode(r), srgb::decode(g), srgb::decode(b), f, t]
+    } else {
+        [r, g, b, f, t]
+    }
+}

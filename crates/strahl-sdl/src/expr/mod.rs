@@ -1,0 +1,434 @@
+//! Expressions, evaluated straight from the tokens.
+//!
+//! Where the language wants a number it takes a *numeric* expression (`+ - * /`); comparisons, `&`, `|` and `?:` stand in
+//! parentheses only, so that `>` can end a vector.
+
+mod access;
+mod array;
+mod color;
+mod defined;
+mod dictionary;
+mod float_functions;
+mod random;
+mod strings;
+mod value;
+mod vector_functions;
+
+pub use array::Array;
+pub use dictionary::Dictionary;
+pub(crate) use vector_functions::rotation;
+
+use crate::keywords::{Word, WordKind};
+use crate::parser::{PResult, Parser, Place};
+use crate::token::{Kind, Token};
+use crate::value::{Value, Vector};
+use strahl_math::DVec3;
+
+/// Numbers closer than this count as equal in comparisons; measured with POV-Ray 3.7.
+const EPSILON: f64 = 1e-10;
+
+/// How strongly an operator binds; 0 for what is none.
+const fn precedence(kind: Kind) -> u8 {
+    match kind {
+        Kind::Bar => 1,
+        Kind::Ampersand => 2,
+        Kind::Less
+        | Kind::LessEqual
+        | Kind::Greater
+        | Kind::GreaterEqual
+        | Kind::Equal
+        | Kind::NotEqual => 3,
+        Kind::Plus | Kind::Minus => 4,
+        Kind::Star | Kind::Slash => 5,
+        _ => 0,
+    }
+}
+
+/// Equality as the language compares numbers.
+pub(crate) fn equal(a: f64, b: f64) -> bool {
+    (a - b).abs() < EPSILON || a == b
+}
+
+fn truth(b: bool) -> f64 {
+    if b { 1.0 } else { 0.0 }
+}
+
+impl Parser<'_> {
+    /// A float.
+    ///
+    /// # Errors
+    /// If there is no numeric expression, or it is a vector.
+    #[inline]
+    pub fn float(&mut self) -> PResult<f64> {
+        if let Some(x) = self.plain_number() {
+            return Ok(x);
+        }
+        let token = self.peek()?;
+        let place = self.place_of(token);
+        let value = self.expression()?;
+        self.as_float(value, place)
+    }
+
+    /// A vector of three; a float stands for three equal components.
+    ///
+    /// # Errors
+    /// If there is no numeric expression.
+    #[inline]
+    pub fn vector3(&mut self) -> PResult<DVec3> {
+        Ok(self.expression()?.to_dvec3())
+    }
+
+    /// A vector of two; a float stands for two equal components.
+    ///
+    /// # Errors
+    /// If there is no numeric expression.
+    pub fn vector2(&mut self) -> PResult<[f64; 2]> {
+        let [u, v, ..] = self.expression()?.promoted(2).components();
+        Ok([u, v])
+    }
+
+    /// A number of any kind: float, vector or colour.
+    ///
+    /// # Errors
+    /// If there is no numeric expression.
+    #[inline]
+    pub fn expression(&mut self) -> PResult<Vector> {
+        self.binary(4)
+    }
+
+    /// An expression with comparisons, logic and `?:`: what stands in parentheses.
+    ///
+    /// # Errors
+    /// If there is no such expression.
+    pub fn full_expression(&mut self) -> PResult<Vector> {
+        let condition = self.binary(1)?;
+        if self.peek()?.kind != Kind::Question {
+            return Ok(condition);
+        }
+        let place = self.place();
+        self.next()?;
+        let yes = self.nested(Self::full_expression)?;
+        self.expect(Kind::Colon)?;
+        let no = self.nested(Self::full_expression)?;
+        let holds = self.as_float(condition, place)? != 0.0;
+        Ok(if holds { yes } else { no })
+    }
+
+    /// A number alone, with or without sign, before something that ends an expression: most of a file of plain objects.
+    #[inline]
+    fn plain_number(&mut self) -> Option<f64> {
+        let first = self.raw();
+        let (negative, number) = match first.kind {
+            Kind::Minus => (true, self.raw_ahead(1)),
+            _ => (false, first),
+        };
+        if number.kind != Kind::Number {
+            return None;
+        }
+        let after = self.raw_ahead(1 + usize::from(negative));
+        let ends = matches!(
+            after.kind,
+            Kind::Comma
+                | Kind::Greater
+                | Kind::RightBrace
+                | Kind::RightParen
+                | Kind::Semicolon
+                | Kind::Word
+        );
+        if !ends {
+            return None;
+        }
+        self.jump(self.position() + 1 + usize::from(negative));
+        let x = f64::from_bits(number.bits);
+        Some(if negative { -x } else { x })
+    }
+
+    #[inline]
+    fn binary(&mut self, weakest: u8) -> PResult<Vector> {
+        let left = self.factor()?;
+        self.binary_from(left, weakest)
+    }
+
+    /// Goes on with an expression whose first operand is known.
+    fn binary_from(&mut self, mut left: Vector, weakest: u8) -> PResult<Vector> {
+        loop {
+            let token = self.peek()?;
+            let binds = precedence(token.kind);
+            if binds < weakest || binds == 0 {
+                return Ok(left);
+            }
+            self.take(token)?;
+            let place = self.place();
+            let right = if binds == 5 {
+                self.factor()?
+            } else {
+                self.nested(|p| p.binary(binds + 1))?
+            };
+            left = self.combine(token.kind, left, right, place)?;
+        }
+    }
+
+    fn combine(&mut self, operator: Kind, a: Vector, b: Vector, place: Place) -> PResult<Vector> {
+        Ok(match operator {
+            Kind::Plus => a.zip(b, |x, y| x + y),
+            Kind::Minus => a.zip(b, |x, y| x - y),
+            Kind::Star => a.zip(b, |x, y| x * y),
+            Kind::Slash => {
+                let divisor = b.promoted(a.len().max(b.len()));
+                if divisor.as_slice().contains(&0.0) {
+                    return Err(self.fail(place, "division by zero"));
+                }
+                a.zip(b, |x, y| x / y)
+            }
+            Kind::Ampersand => a.zip(b, |x, y| truth(x != 0.0 && y != 0.0)),
+            Kind::Bar => a.zip(b, |x, y| truth(x != 0.0 || y != 0.0)),
+            Kind::Equal | Kind::NotEqual if a.len() > 1 || b.len() > 1 => {
+                let len = a.len().max(b.len());
+                let (a, b) = (a.promoted(len), b.promoted(len));
+                let same = a
+                    .as_slice()
+                    .iter()
+                    .zip(b.as_slice())
+                    .all(|(x, y)| equal(*x, *y));
+                Vector::float(truth(same == (operator == Kind::Equal)))
+            }
+            _ => {
+                let (x, y) = (self.as_float(a, place)?, self.as_float(b, place)?);
+                let same = equal(x, y);
+                Vector::float(truth(match operator {
+                    Kind::Equal => same,
+                    Kind::NotEqual => !same,
+                    Kind::Less => x < y,
+                    Kind::Greater => x > y,
+                    Kind::LessEqual => x < y || same,
+                    _ => x > y || same,
+                }))
+            }
+        })
+    }
+
+    #[inline]
+    fn factor(&mut self) -> PResult<Vector> {
+        if let Some(x) = self.plain_number() {
+            return Ok(Vector::float(x));
+        }
+        let token = self.peek()?;
+        match token.kind {
+            Kind::Number => {
+                self.take(token)?;
+                self.components_of(Vector::float(token.number()))
+            }
+            Kind::Less => {
+                let vector = self.vector_literal(token)?;
+                self.components_of(vector)
+            }
+            Kind::Minus => {
+                self.take(token)?;
+                Ok(self.nested(Self::factor)?.map(|x| -x))
+            }
+            Kind::Plus => {
+                self.take(token)?;
+                self.nested(Self::factor)
+            }
+            Kind::Bang => {
+                self.take(token)?;
+                Ok(self.nested(Self::factor)?.map(|x| truth(x == 0.0)))
+            }
+            Kind::LeftParen => {
+                self.take(token)?;
+                let value = self.nested(Self::full_expression)?;
+                self.expect(Kind::RightParen)?;
+                self.components_of(value)
+            }
+            Kind::Name => self.name_in_expression(token),
+            Kind::Word => self.word_in_expression(token),
+            _ => Err(self.unexpected(token, "a number or vector")),
+        }
+    }
+
+    /// `<a, b, ...>` with two to five components.
+    #[inline]
+    fn vector_literal(&mut self, open: Token) -> PResult<Vector> {
+        self.take(open)?;
+        let place = self.place();
+        let mut numbers = [0.0; 5];
+        let mut count = 0;
+        self.nested(|p| {
+            loop {
+                let number = p.float()?;
+                match numbers.get_mut(count) {
+                    Some(slot) => *slot = number,
+                    None => return Err(p.fail(place, "a vector has at most 5 components")),
+                }
+                count += 1;
+                let token = p.peek()?;
+                match token.kind {
+                    Kind::Comma => p.take(token)?,
+                    Kind::Greater => return p.take(token),
+                    _ => {}
+                }
+            }
+        })?;
+        if count < 2 {
+            return Err(self.fail(place, "a vector has at least 2 components"));
+        }
+        Ok(Vector::new(numbers.get(..count).unwrap_or(&numbers)))
+    }
+
+    fn name_in_expression(&mut self, token: Token) -> PResult<Vector> {
+        let place = self.place_of(token);
+        let simple = !matches!(self.raw_ahead(1).kind, Kind::Dot | Kind::LeftBracket);
+        if simple && let Some(symbol) = token.symbol() {
+            let number = self.scopes.find(symbol).and_then(Value::numeric);
+            return match number {
+                Some(number) => {
+                    self.take(token)?;
+                    self.components_of(number)
+                }
+                None => self.not_numeric(token),
+            };
+        }
+        let value = self.variable(token)?;
+        match value.numeric() {
+            Some(number) => self.components_of(number),
+            None => {
+                let message = format!("expected a number or vector, found {}", value.describe());
+                Err(self.fail(place, message))
+            }
+        }
+    }
+
+    /// A name alone that is no number: a function called by the grammar's side, or a mistake.
+    fn not_numeric(&mut self, token: Token) -> PResult<Vector> {
+        Err(self.unexpected(token, "a number or vector"))
+    }
+
+    fn word_in_expression(&mut self, token: Token) -> PResult<Vector> {
+        let Some(word) = token.word() else {
+            return Err(self.unexpected(token, "a number or vector"));
+        };
+        let value = match word.kind() {
+            WordKind::Constant => {
+                let value = self.constant(word);
+                self.take(token)?;
+                value
+            }
+            WordKind::FloatFunction => {
+                self.take(token)?;
+                let place = self.place();
+                Vector::float(self.nested(|p| p.float_function(word, place))?)
+            }
+            WordKind::VectorFunction => {
+                self.take(token)?;
+                let place = self.place();
+                self.nested(|p| p.vector_function(word, place))?
+            }
+            WordKind::Color => return self.nested(Self::color_expression).map(Vector::rgbft),
+            WordKind::Scope => {
+                let value = self.variable(token)?;
+                match value.numeric() {
+                    Some(number) => number,
+                    None => {
+                        let place = self.place();
+                        let found = value.describe();
+                        return Err(
+                            self.fail(place, format!("expected a number or vector, found {found}"))
+                        );
+                    }
+                }
+            }
+            _ => return Err(self.unexpected(token, "a number or vector")),
+        };
+        self.components_of(value)
+    }
+
+    fn constant(&mut self, word: Word) -> Vector {
+        let o = self.options;
+        Vector::float(match word {
+            Word::X => return Vector::xyz(1.0, 0.0, 0.0),
+            Word::Y => return Vector::xyz(0.0, 1.0, 0.0),
+            Word::Z => return Vector::xyz(0.0, 0.0, 1.0),
+            Word::T => return Vector::new(&[0.0, 0.0, 0.0, 1.0]),
+            Word::U => return Vector::new(&[1.0, 0.0]),
+            Word::V => return Vector::new(&[0.0, 1.0]),
+            Word::Pi => std::f64::consts::PI,
+            Word::Tau => std::f64::consts::TAU,
+            Word::True | Word::Yes | Word::On => 1.0,
+            Word::Clock => o.clock,
+            Word::ClockOn => truth(o.frame.animated),
+            Word::ClockDelta => o.frame.clock_delta,
+            Word::FinalClock => o.frame.final_clock,
+            Word::FinalFrame => o.frame.last,
+            Word::FrameNumber => o.frame.number,
+            Word::ImageHeight => f64::from(o.image_height),
+            Word::ImageWidth => f64::from(o.image_width),
+            Word::InitialClock => o.frame.initial_clock,
+            Word::InitialFrame => o.frame.first,
+            Word::Now => self.host.now(),
+            _ => 0.0,
+        })
+    }
+
+    /// `.x`, `.red`, ... behind a value.
+    #[inline]
+    fn components_of(&mut self, value: Vector) -> PResult<Vector> {
+        let token = self.peek()?;
+        if token.kind != Kind::Dot {
+            return Ok(value);
+        }
+        self.take(token)?;
+        let name = self.next()?;
+        let index = match name.word() {
+            Some(Word::X | Word::U | Word::Red) => 0,
+            Some(Word::Y | Word::V | Word::Green) => 1,
+            Some(Word::Z | Word::Blue) => 2,
+            Some(Word::T | Word::Filter) => 3,
+            Some(Word::Transmit) => 4,
+            Some(Word::Gray | Word::Grey) => {
+                let [r, g, b, ..] = value.components();
+                return Ok(Vector::float(0.297 * r + 0.589 * g + 0.114 * b));
+            }
+            _ => {
+                let place = self.place();
+                let found = self.describe(name);
+                let message = format!("expected a component, found {found}");
+                return Err(self.fail_hint(
+                    place,
+                    message,
+                    "components are x, y, z, t, u, v, red, green, blue, filter, transmit, gray",
+                ));
+            }
+        };
+        // A float has every component.
+        let all = value.promoted(value.len().max(if value.len() == 1 { 5 } else { 1 }));
+        match all.as_slice().get(index) {
+            Some(x) => Ok(Vector::float(*x)),
+            None => {
+                let place = self.place();
+                let len = value.len();
+                Err(self.fail(
+                    place,
+                    format!("a vector of {len} components has no such component"),
+                ))
+            }
+        }
+    }
+
+    /// The value as a float.
+    pub(crate) fn as_float(&mut self, value: Vector, place: Place) -> PResult<f64> {
+        match value.as_float() {
+            Some(x) => Ok(x),
+            None => {
+                let message = format!(
+                    "expected a float, found a vector of {} components",
+                    value.len()
+                );
+                Err(self.fail_hint(
+                    place,
+                    message,
+                    "take one of its components, such as `.x`, or its `vlength`",
+                ))
+            }
+        }
+    }
+}

@@ -1,0 +1,278 @@
+use crate::keywords::{Word, WordKind};
+use crate::parser::{PResult, Parser, Place};
+use crate::source::HostError;
+use crate::token::Kind;
+use crate::value::Value;
+use std::sync::Arc;
+
+impl Parser<'_> {
+    /// A string: a literal, the name of one, or a string function.
+    ///
+    /// # Errors
+    /// If there is none.
+    pub fn string(&mut self) -> PResult<Arc<str>> {
+        let token = self.peek()?;
+        match token.kind {
+            Kind::String => {
+                self.take(token)?;
+                Ok(self.string_of(token))
+            }
+            Kind::Word if token.word().map(Word::kind) == Some(WordKind::StringFunction) => {
+                self.take(token)?;
+                let place = self.place();
+                let word = token.word().unwrap_or(Word::Concat);
+                self.nested(|p| p.string_function(word, place))
+            }
+            Kind::Name => match self.variable(token)? {
+                Value::String(text) => Ok(text),
+                other => {
+                    let place = self.place();
+                    Err(self.fail_hint(
+                        place,
+                        format!("expected a string, found {}", other.describe()),
+                        "numbers become strings by `str(value, length, digits)`",
+                    ))
+                }
+            },
+            _ => Err(self.unexpected(token, "a string")),
+        }
+    }
+
+    fn string_function(&mut self, word: Word, place: Place) -> PResult<Arc<str>> {
+        if word == Word::InputFileName {
+            return Ok(self.scene_name().into());
+        }
+        self.expect(Kind::LeftParen)?;
+        let text = match word {
+            Word::Chr => {
+                let code = self.full_float()?;
+                let c = char::from_u32(code as u32).filter(|_| code >= 0.0);
+                match c {
+                    Some(c) => c.to_string(),
+                    None => return Err(self.fail(place, format!("there is no character {code}"))),
+                }
+            }
+            Word::Concat => {
+                let mut text = self.string()?.to_string();
+                while self.accept(Kind::Comma)? {
+                    text.push_str(&self.string()?);
+                    self.check_length(text.len(), place)?;
+                }
+                text
+            }
+            Word::Str => {
+                let value = self.full_float()?;
+                self.comma()?;
+                let length = self.full_float()?;
+                self.comma()?;
+                let digits = self.full_float()?;
+                self.formatted(value, length, digits, place)?
+            }
+            Word::Vstr => self.vstr(place)?,
+            Word::Strlwr => self.string()?.to_lowercase(),
+            Word::Strupr => self.string()?.to_uppercase(),
+            Word::Substr => {
+                let text = self.string()?;
+                self.comma()?;
+                let first = self.full_float()?;
+                self.comma()?;
+                let count = self.full_float()?;
+                let total = text.chars().count() as f64;
+                if !(first >= 1.0 && count >= 0.0 && first + count - 1.0 <= total) {
+                    let message = format!(
+                        "`substr` asks for {count} characters from number {first} of a string that has {total}"
+                    );
+                    return Err(self.fail(place, message));
+                }
+                text.chars()
+                    .skip(first as usize - 1)
+                    .take(count as usize)
+                    .collect()
+            }
+            Word::Datetime => self.datetime(place)?,
+            _ => {
+                let text = word.text();
+                return Err(self.fail(
+                    place,
+                    format!("the function `{text}` is not supported here"),
+                ));
+            }
+        };
+        self.check_length(text.len(), place)?;
+        self.expect(Kind::RightParen)?;
+        Ok(text.into())
+    }
+
+    fn check_length(&mut self, bytes: usize, place: Place) -> PResult<()> {
+        let limit = self.options.limits.string_bytes;
+        if bytes <= limit {
+            return Ok(());
+        }
+        Err(self.fail(
+            place,
+            format!("a string may have {limit} bytes; this one would be longer"),
+        ))
+    }
+
+    /// As C's `printf` does it: at least `length` characters, zeros in front if it is negative; six digits if `digits` is
+    /// negative.
+    fn formatted(&mut self, value: f64, length: f64, digits: f64, place: Place) -> PResult<String> {
+        /// More digits than any float has.
+        const MOST: f64 = 1100.0;
+        if !(length.abs() <= MOST && digits <= MOST) {
+            return Err(self.fail(
+                place,
+                format!("a number is written with at most {MOST} characters"),
+            ));
+        }
+        let digits = if digits < 0.0 { 6 } else { digits as usize };
+        let width = length.abs() as usize;
+        Ok(if length < 0.0 {
+            format!("{value:0width$.digits$}")
+        } else {
+            format!("{value:width$.digits$}")
+        })
+    }
+
+    /// `vstr(count, vector, separator, length, digits)`
+    fn vstr(&mut self, place: Place) -> PResult<String> {
+        let count = self.full_float()?;
+        self.comma()?;
+        let vector = self.expression()?;
+        self.comma()?;
+        let separator = self.string()?;
+        self.comma()?;
+        let length = self.full_float()?;
+        self.comma()?;
+        let digits = self.full_float()?;
+        if !(2.0..=5.0).contains(&count) {
+            return Err(self.fail(place, "`vstr` writes 2 to 5 components"));
+        }
+        let mut text = String::new();
+        let vector = vector.promoted(count as usize);
+        for (index, component) in vector.as_slice().iter().enumerate() {
+            if index > 0 {
+                text.push_str(&separator);
+            }
+            text.push_str(&self.formatted(*component, length, digits, place)?);
+        }
+        Ok(text)
+    }
+
+    /// `datetime(days, format)`: the letters of C's `strftime` that don't depend on a language.
+    fn datetime(&mut self, place: Place) -> PResult<String> {
+        let days = self.full_float()?;
+        let format = if self.accept(Kind::Comma)? {
+            self.string()?
+        } else {
+            "%Y-%m-%d %H:%M:%SZ".into()
+        };
+        if !(days.abs() < 1e8) {
+            return Err(self.fail(place, format!("{days} days after 2000 is no date")));
+        }
+        Ok(date(days, &format))
+    }
+
+    /// Whether a file of this name would be found.
+    pub(super) fn exists(&mut self, name: &str, place: Place) -> bool {
+        let from = self.span_at(place).file;
+        let from = self.scene.sources.name(from).unwrap_or("").to_owned();
+        match self.host.load(name, &from) {
+            Ok(_) | Err(HostError::TooLarge { .. }) => true,
+            Err(_) => crate::include::find(name).is_some(),
+        }
+    }
+}
+
+/// The number that a text begins with, as C's `atof` reads it; 0 if there is none.
+pub(super) fn leading_number(text: &str) -> f64 {
+    let text = text.trim_start();
+    let unsigned = text.strip_prefix(['-', '+']).unwrap_or(text);
+    let sign = text.len() - unsigned.len();
+    let digits = unsigned.bytes().take_while(|b| b.is_ascii_digit()).count();
+    let mut end = digits;
+    let tail = &unsigned[end..];
+    if let Some(fraction) = tail.strip_prefix('.') {
+        end += 1 + fraction.bytes().take_while(u8::is_ascii_digit).count();
+    }
+    let tail = &unsigned[end..];
+    if tail.starts_with(['e', 'E']) {
+        let exponent = tail[1..].strip_prefix(['-', '+']).unwrap_or(&tail[1..]);
+        let count = exponent.bytes().take_while(u8::is_ascii_digit).count();
+        if count > 0 {
+            end += tail.len() - exponent.len() + count;
+        }
+    }
+    text[..sign + end].parse().unwrap_or(0.0)
+}
+
+/// Days since the beginning of 2000, in the proleptic Gregorian calendar (Howard Hinnant, "chrono-compatible low-level date
+/// algorithms", `civil_from_days`).
+fn date(days: f64, format: &str) -> String {
+    let whole = days.floor();
+    let seconds = ((days - whole) * 86_400.0) as u32;
+    // Days since 0000-03-01.
+    let z = whole as i64 + 730_425;
+    let era = z.div_euclid(146_097);
+    let day_of_era = z.rem_euclid(146_097);
+    let year_of_era =
+        (day_of_era - day_of_era / 1460 + day_of_era / 36_524 - day_of_era / 146_096) / 365;
+    let day_of_year = day_of_era - (365 * year_of_era + year_of_era / 4 - year_of_era / 100);
+    let m = (5 * day_of_year + 2) / 153;
+    let day = day_of_year - (153 * m + 2) / 5 + 1;
+    let month = if m < 10 { m + 3 } else { m - 9 };
+    let year = year_of_era + era * 400 + i64::from(month <= 2);
+    let mut out = String::new();
+    let mut chars = format.chars();
+    while let Some(c) = chars.next() {
+        if c != '%' {
+            out.push(c);
+            continue;
+        }
+        match chars.next() {
+            Some('Y') => out.push_str(&year.to_string()),
+            Some('y') => out.push_str(&format!("{:02}", year.rem_euclid(100))),
+            Some('m') => out.push_str(&format!("{month:02}")),
+            Some('d') => out.push_str(&format!("{day:02}")),
+            Some('H') => out.push_str(&format!("{:02}", seconds / 3600)),
+            Some('M') => out.push_str(&format!("{:02}", seconds / 60 % 60)),
+            Some('S') => out.push_str(&format!("{:02}", seconds % 60)),
+            Some('%') => out.push('%'),
+            Some(other) => {
+                out.push('%');
+                out.push(other);
+            }
+            None => out.push('%'),
+        }
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_at_the_front_of_a_text() {
+        for (text, expected) in [
+            ("1.5e2", 150.0),
+            ("  -3.25abc", -3.25),
+            ("12e", 12.0),
+            ("1e+", 1.0),
+            ("abc", 0.0),
+            ("", 0.0),
+            (".5", 0.5),
+            ("5.", 5.0),
+        ] {
+            assert_eq!(leading_number(text), expected, "{text}");
+        }
+    }
+
+    #[test]
+    fn dates() {
+        assert_eq!(date(0.0, "%Y-%m-%d %H:%M:%S"), "2000-01-01 00:00:00");
+        assert_eq!(date(59.5, "%d.%m.%y %H%%%M"), "29.02.00 12%00");
+        assert_eq!(date(-1.0, "%Y-%m-%d"), "1999-12-31");
+        assert_eq!(date(9000.0, "%Y-%m-%d"), "2024-08-22");
+    }
+}

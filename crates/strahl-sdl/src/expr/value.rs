@@ -1,0 +1,76 @@
+use crate::keywords::{Word, WordKind};
+use crate::parser::{PResult, Parser};
+use crate::token::{Kind, Token};
+use crate::value::Value;
+
+impl Parser<'_> {
+    /// Any value: what may stand on the right of `#declare`, in an array or as an argument of a macro.
+    ///
+    /// # Errors
+    /// If there is none.
+    pub fn value(&mut self) -> PResult<Value> {
+        let token = self.peek()?;
+        match token.kind {
+            Kind::String => self.string().map(Value::String),
+            Kind::Name => self.value_of_name(token),
+            Kind::Word => self.value_of_word(token),
+            _ => self.expression().map(Value::from),
+        }
+    }
+
+    fn value_of_name(&mut self, token: Token) -> PResult<Value> {
+        if token
+            .symbol()
+            .is_some_and(|s| self.scopes.find(s).is_none())
+        {
+            return Err(self.unexpected(token, "a value"));
+        }
+        let value = self.variable(token)?;
+        let Some(number) = value.numeric() else {
+            return Ok(value);
+        };
+        // The name may be the first operand of a longer expression.
+        let number = self.components_of(number)?;
+        let number = self.binary_from(number, 4)?;
+        let followed = self.peek()?;
+        match followed.word().map(Word::kind) {
+            Some(WordKind::Color) => {
+                let color = self.color_parts(super::color::opaque(number))?;
+                Ok(Value::Vector(crate::value::Vector::rgbft(color)))
+            }
+            _ => Ok(number.into()),
+        }
+    }
+
+    fn value_of_word(&mut self, token: Token) -> PResult<Value> {
+        let Some(word) = token.word() else {
+            return Err(self.unexpected(token, "a value"));
+        };
+        match word.kind() {
+            WordKind::StringFunction => self.string().map(Value::String),
+            WordKind::Scope => {
+                let value = self.variable(token)?;
+                match value.numeric() {
+                    Some(number) => {
+                        let number = self.components_of(number)?;
+                        self.binary_from(number, 4).map(Value::from)
+                    }
+                    None => Ok(value),
+                }
+            }
+            _ if word == Word::Array => {
+                self.take(token)?;
+                self.nested(Self::array)
+            }
+            _ if word == Word::Dictionary => {
+                self.take(token)?;
+                self.nested(Self::dictionary)
+            }
+            WordKind::Object | WordKind::Statement | WordKind::Thing => match self.thing(token)? {
+                Some(thing) => Ok(Value::Thing(thing)),
+                None => Err(self.unexpected(token, "a value")),
+            },
+            _ => self.expression().map(Value::from),
+        }
+    }
+}

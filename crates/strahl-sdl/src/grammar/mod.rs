@@ -1,0 +1,121 @@
+//! What scenes are made of: statements, objects, and everything inside their braces.
+//!
+//! The grammar pulls tokens from the [`Parser`] and does not know whether they come from the file, a macro, a loop or an
+//! include. It is table driven: a new object is a file in `objects/` with a function `fn(&mut Parser) -> PResult<Object>`, and
+//! a line in the table there. The other tables: [`STATEMENTS`] here, things that can be declared in `thing.rs`, what may stand
+//! inside of every object in `objects/modifiers.rs`.
+
+mod background;
+mod camera;
+mod defaults;
+mod global_settings;
+mod lights;
+mod objects;
+mod skip;
+mod texture;
+mod thing;
+mod transform;
+
+pub use defaults::State;
+pub(crate) use defaults::default_items;
+pub use texture::{Finish, Pigment, Texture};
+pub use thing::Thing;
+
+use crate::keywords::{Word, WordKind};
+use crate::parser::{PResult, Parser};
+use crate::token::{Kind, Token};
+
+/// Reads a statement; its word is already taken.
+type StatementParser = fn(&mut Parser<'_>) -> PResult<()>;
+
+/// Statements that are no objects.
+const STATEMENTS: &[(Word, StatementParser)] = &[
+    (Word::Background, background::background),
+    (Word::Camera, camera::camera_statement),
+    (Word::GlobalSettings, global_settings::global_settings),
+    (Word::LightSource, lights::light_statement),
+];
+
+/// A table of functions by word, so that finding one is a single step.
+const fn by_word<F: Copy, const N: usize>(table: [(Word, F); N]) -> [Option<F>; Word::ALL.len()] {
+    let mut out = [None; Word::ALL.len()];
+    let mut row = 0;
+    while row < N {
+        out[table[row].0 as usize] = Some(table[row].1);
+        row += 1;
+    }
+    out
+}
+
+/// Whether a statement can begin with this token: where to go on after an error.
+pub(crate) fn opens_statement(token: Token) -> bool {
+    token
+        .word()
+        .is_some_and(|word| matches!(word.kind(), WordKind::Object | WordKind::Statement))
+}
+
+impl Parser<'_> {
+    /// Reads the whole scene; goes on after errors with the next statement.
+    pub(crate) fn run(&mut self) {
+        while !self.is_fatal() {
+            self.between_statements(true);
+            match self.statement() {
+                Ok(true) => {}
+                Ok(false) => return,
+                Err(_) => self.recover(),
+            }
+        }
+    }
+
+    /// One statement; `false` at the end of the scene.
+    fn statement(&mut self) -> PResult<bool> {
+        let token = self.peek()?;
+        self.between_statements(false);
+        match token.kind {
+            Kind::End => return Ok(false),
+            // A semicolon too many does no harm.
+            Kind::Semicolon => {
+                self.take(token)?;
+                return Ok(true);
+            }
+            Kind::Word => {}
+            _ => return Err(self.unexpected(token, "an object or a directive")),
+        }
+        let Some(word) = token.word() else {
+            return Err(self.unexpected(token, "an object or a directive"));
+        };
+        if let Some((_, parse)) = STATEMENTS.iter().find(|(w, _)| *w == word) {
+            self.take(token)?;
+            parse(self)?;
+        } else if let Some(object) = self.object()? {
+            self.add(object)?;
+        } else if word.kind() == WordKind::Statement || word.kind() == WordKind::Object {
+            self.take(token)?;
+            let text = word.text();
+            self.warn_hint(
+                self.place(),
+                format!("`{text}` is not supported yet and is left out"),
+                "the picture will lack it",
+            );
+            self.skip_body()?;
+        } else {
+            return Err(self.unexpected(token, "an object or a directive"));
+        }
+        Ok(true)
+    }
+
+    fn add(&mut self, object: strahl_scene::Object) -> PResult<()> {
+        let limit = self.options.limits.objects;
+        if self.scene.objects.0.len() >= limit {
+            let message = format!("the scene has more than {limit} objects");
+            let place = self.place();
+            return Err(self.fail_fatally(
+                place,
+                message,
+                "does a loop not end? Otherwise raise the limit of objects",
+            ));
+        }
+        self.scene.objects.0.push(object);
+        Ok(())
+    }
+}

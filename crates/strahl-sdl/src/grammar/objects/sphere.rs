@@ -1,0 +1,14 @@
+use crate::parser::{PResult, Parser};
+use strahl_geometry::Sphere;
+use strahl_scene::Object;
+
+/// `sphere { centre, radius ... }`
+pub(super) fn sphere(p: &mut Parser<'_>) -> PResult<Object> {
+    p.shape(|p| {
+        let center = p.vector3()?;
+        p.comma()?;
+        let radius = p.float()?;
+        // A negative radius has always meant the same sphere.
+        Ok(Sphere::try_new(center, radius.abs()))
+    })
+}

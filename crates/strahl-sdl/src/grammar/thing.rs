@@ -1,0 +1,120 @@
+use super::{Finish, Pigment, Texture, by_word};
+use crate::keywords::Word;
+use crate::parser::{PResult, Parser};
+use crate::token::{Kind, Token};
+use crate::value::Value;
+use std::sync::Arc;
+use strahl_math::Transform;
+use strahl_scene::{Camera, Object, SceneLight};
+
+macro_rules! things {
+    ($($kind:ident($payload:ty) $text:literal)*) => {
+        /// What a name can stand for besides numbers, strings and arrays: each kind with its typed payload.
+        #[derive(Clone, Debug)]
+        pub enum Thing {
+            $(#[doc = $text] $kind(Arc<$payload>),)*
+        }
+
+        impl Thing {
+            /// What it is, in words, for messages.
+            pub fn describe(&self) -> &'static str {
+                match self {
+                    $(Self::$kind(_) => $text,)*
+                }
+            }
+        }
+    };
+}
+
+things! {
+    Camera(Camera) "a camera"
+    Finish(Finish) "a finish"
+    Light(SceneLight) "a light source"
+    Object(Object) "an object"
+    Pigment(Pigment) "a pigment"
+    Texture(Texture) "a texture"
+    Transform(Transform) "a transformation"
+}
+
+/// Reads a thing; its word is already taken.
+type ThingParser = fn(&mut Parser<'_>) -> PResult<Thing>;
+
+/// What can stand on the right of `#declare` besides objects.
+static THINGS: [Option<ThingParser>; Word::ALL.len()] = by_word::<ThingParser, _>([
+    (Word::Camera, |p| Ok(Thing::Camera(Arc::new(p.camera()?)))),
+    (Word::Finish, |p| {
+        Ok(Thing::Finish(Arc::new(p.finish_block()?)))
+    }),
+    (Word::LightSource, |p| {
+        Ok(Thing::Light(Arc::new(p.light()?)))
+    }),
+    (Word::Pigment, |p| {
+        Ok(Thing::Pigment(Arc::new(p.pigment_block()?)))
+    }),
+    (Word::Texture, |p| {
+        Ok(Thing::Texture(Arc::new(p.texture_block()?)))
+    }),
+    (Word::Transform, |p| {
+        Ok(Thing::Transform(Arc::new(p.transform_block()?)))
+    }),
+]);
+
+impl Parser<'_> {
+    /// If a thing is written out here (`sphere { ... }`, `texture { ... }`), reads it.
+    ///
+    /// # Errors
+    /// If the thing is wrong.
+    pub(crate) fn thing(&mut self, token: Token) -> PResult<Option<Thing>> {
+        let word = token.word().map_or(usize::MAX, |w| w as usize);
+        if let Some(parse) = THINGS.get(word).copied().flatten() {
+            self.take(token)?;
+            return self.nested(parse).map(Some);
+        }
+        Ok(self.object()?.map(|object| Thing::Object(Arc::new(object))))
+    }
+
+    /// If a name of a thing of one kind stands here, takes it and gives the thing.
+    ///
+    /// # Errors
+    /// If a directive on the way fails.
+    pub(crate) fn accept_thing<T>(
+        &mut self,
+        pick: impl FnOnce(&Thing) -> Option<&Arc<T>>,
+    ) -> PResult<Option<Arc<T>>> {
+        let token = self.peek()?;
+        let (Kind::Name, Some(symbol)) = (token.kind, token.symbol()) else {
+            return Ok(None);
+        };
+        let found = match self.scopes.find(symbol) {
+            Some(Value::Thing(thing)) => pick(thing).cloned(),
+            Some(Value::Array(_) | Value::Dictionary(_)) => {
+                let place = self.place_of(token);
+                let value = self.value()?;
+                return match &value {
+                    Value::Thing(thing) => match pick(thing) {
+                        Some(found) => Ok(Some(Arc::clone(found))),
+                        None => Err(self.fail(
+                            place,
+                            format!(
+                                "this element is {} and does not belong here",
+                                thing.describe()
+                            ),
+                        )),
+                    },
+                    other => Err(self.fail(
+                        place,
+                        format!(
+                            "this element is {} and does not belong here",
+                            other.describe()
+                        ),
+                    )),
+                };
+            }
+            _ => None,
+        };
+        if found.is_some() {
+            self.take(token)?;
+        }
+        Ok(found)
+    }
+}

@@ -1,0 +1,94 @@
+use crate::expr::rotation;
+use crate::keywords::Word;
+use crate::parser::{PResult, Parser};
+use crate::token::{Kind, Token};
+use strahl_math::{DMat3, DVec3, Transform};
+
+impl Parser<'_> {
+    /// If a transformation stands here, reads it: `translate`, `rotate`, `scale`, `matrix`, `transform`.
+    ///
+    /// # Errors
+    /// If what follows is no transformation, or it has no inverse.
+    pub(crate) fn transformation(&mut self, token: Token) -> PResult<Option<Transform>> {
+        let word = match token.word() {
+            Some(
+                w @ (Word::Translate | Word::Rotate | Word::Scale | Word::Matrix | Word::Transform),
+            ) => w,
+            _ => return Ok(None),
+        };
+        self.take(token)?;
+        let transform = match word {
+            Word::Translate => Transform::translate(self.vector3()?),
+            Word::Rotate => rotation(self.vector3()?),
+            Word::Scale => self.scale()?,
+            Word::Matrix => self.matrix()?,
+            _ => self.transform_block()?,
+        };
+        Ok(Some(transform))
+    }
+
+    /// Factors of zero count as 1, as the language has it, with a warning.
+    fn scale(&mut self) -> PResult<Transform> {
+        let place = self.place();
+        let mut factors = self.vector3()?;
+        for axis in 0..3 {
+            if factors[axis] == 0.0 {
+                self.warn(
+                    place,
+                    "a scale factor of 0 would flatten everything; 1 is taken",
+                );
+                factors[axis] = 1.0;
+            }
+        }
+        Transform::try_scale(factors).map_err(|e| self.fail(place, e.to_string()))
+    }
+
+    /// `<m00, m01, ..., m32>`: images of x, y, z, and the translation.
+    fn matrix(&mut self) -> PResult<Transform> {
+        let place = self.place();
+        self.expect(Kind::Less)?;
+        let mut rows = [DVec3::ZERO; 4];
+        for row in &mut rows {
+            for axis in 0..3 {
+                row[axis] = self.float()?;
+                self.comma()?;
+            }
+        }
+        self.expect(Kind::Greater)?;
+        let [x, y, z, translation] = rows;
+        Transform::try_new(DMat3::from_cols(x, y, z), translation)
+            .map_err(|e| self.fail(place, e.to_string()))
+    }
+
+    /// `{ ... }` or a name behind `transform`; `inverse` turns everything before it around.
+    pub(crate) fn transform_block(&mut self) -> PResult<Transform> {
+        if let Some(named) = self.accept_transform()? {
+            return Ok(named);
+        }
+        let mut all = Transform::IDENTITY;
+        self.braces(|p| {
+            p.items("`transform`", |p, token| {
+                if let Some(next) = p.transformation(token)? {
+                    all = all.then(&next);
+                } else if token.is(Word::Inverse) {
+                    p.take(token)?;
+                    all = all.inverted();
+                } else if let Some(named) = p.accept_transform()? {
+                    all = all.then(&named);
+                } else {
+                    return Err(p.unexpected(token, "a transformation"));
+                }
+                Ok(())
+            })
+        })?;
+        Ok(all)
+    }
+
+    fn accept_transform(&mut self) -> PResult<Option<Transform>> {
+        let named = self.accept_thing(|thing| match thing {
+            super::Thing::Transform(t) => Some(t),
+            _ => None,
+        })?;
+        Ok(named.map(|t| *t))
+    }
+}

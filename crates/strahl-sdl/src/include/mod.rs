@@ -1,0 +1,14 @@
+//! The include files that are built in: our own library, compatible by name with POV-Ray's.
+//!
+//! Files of the user with the same name win; see [`Host`](crate::Host).
+
+/// Name and text of each built-in file.
+pub(crate) const FILES: &[(&str, &str)] = &[];
+
+/// The text of a built-in file; capital and small letters count the same, as scenes come from Windows too.
+pub(crate) fn find(name: &str) -> Option<(&'static str, &'static str)> {
+    let known = FILES
+        .iter()
+        .find(|(file, _)| file.eq_ignore_ascii_case(name));
+    known.copied()
+}

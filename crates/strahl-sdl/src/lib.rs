@@ -1,0 +1,113 @@
+//! POV-Ray's scene description language, read into strahl's scene description.
+//!
+//! ```
+//! use strahl_sdl::{MemoryHost, Options, Source, parse};
+//!
+//! let text = "
+//!     #version 3.7;
+//!     #macro Ball(X) sphere { <X, 0, 5>, 0.4 pigment { rgb <1, X / 4, 0> } } #end
+//!     #for (I, -2, 2) Ball(I) #end
+//! ";
+//! let parsed = parse(Source::new("balls.pov", text), &Options::default(), &mut MemoryHost::new());
+//! let scene = parsed.scene.expect("no errors");
+//! assert_eq!(scene.objects.0.len(), 5);
+//! ```
+//!
+//! # Design
+//!
+//! **Tokens once, replayed as slices.** `lexer` cuts each file into tokens of 16 bytes and links the directives of every block,
+//! so that a branch not taken is skipped in one step. A macro is a slice of those tokens. A loop is a position to jump back to.
+//! `parser` keeps a stack of frames (scene, includes, macro calls), each a position in a file; nothing of this recurses on the
+//! machine's stack, and no token is copied.
+//!
+//! **One stream.** The grammar pulls tokens by [`Parser::peek`], [`Parser::next`], [`Parser::expect`] and never knows where they
+//! come from: directives (`directives/`) and macro calls happen in between. What a directive or an argument reads ends where
+//! its block or frame ends, so `#declare A = 1 #end` means what it looks like.
+//!
+//! **Names** are numbers; each has a stack of bindings (`parser/scope.rs`), because the language's scopes are dynamic: a
+//! macro sees the local names of its caller. A macro's argument that is a lone variable stands for the variable itself.
+//!
+//! **Expressions** (`expr/`) are evaluated straight from the tokens, with numbers and vectors on the stack.
+//!
+//! **The grammar** (`grammar/`) is tables from words to functions, one file per object; [`Thing`] lists what can be declared.
+//!
+//! **Errors** are reported where they happen, with the source line and the macros and includes around it; the statement is given
+//! up ([`Failed`]) and parsing goes on behind it. [`Limits`] bound every resource a scene may use. Files are read and written
+//! through a [`Host`] only.
+
+mod directives;
+mod expr;
+mod grammar;
+mod include;
+mod keywords;
+mod lexer;
+mod options;
+mod parser;
+mod source;
+mod suggest;
+mod symbol;
+mod token;
+mod value;
+
+pub use expr::{Array, Dictionary};
+pub use grammar::{Finish, Pigment, State, Texture, Thing};
+pub use keywords::{Word, WordKind};
+pub use options::{Frame, Limits, Options};
+pub use parser::{Failed, Macro, PResult, Parser, Place};
+pub use source::{FolderHost, Host, HostError, MemoryHost, Source, Stream};
+pub use symbol::Symbol;
+pub use token::{Kind, Token};
+pub use value::{Value, Vector};
+
+use strahl_scene::{Diagnostic, Scene};
+
+/// What became of a text.
+#[derive(Debug)]
+pub struct Parsed {
+    /// The scene; `None` if there was an error.
+    pub scene: Option<Scene>,
+    /// What there is to say about it, in the order found.
+    pub diagnostics: Vec<Diagnostic>,
+}
+
+/// Reads a scene.
+///
+/// Never panics and always ends, whatever the text: [`Options::limits`](Options) bound what it may use.
+pub fn parse(source: Source, options: &Options, host: &mut dyn Host) -> Parsed {
+    // Nested braces and parentheses recurse; 64 KiB for each allowed level are plenty.
+    let stack = options
+        .limits
+        .nesting
+        .saturating_mul(64 << 10)
+        .clamp(4 << 20, 1 << 30);
+    std::thread::scope(|scope| {
+        let job = std::thread::Builder::new()
+            .name("sdl".to_owned())
+            .stack_size(stack)
+            .spawn_scoped(scope, || parse_here(source, options, host));
+        match job.map(std::thread::ScopedJoinHandle::join) {
+            Ok(Ok(parsed)) => parsed,
+            Ok(Err(panic)) => std::panic::resume_unwind(panic),
+            Err(error) => Parsed {
+                scene: None,
+                diagnostics: vec![Diagnostic::error(format!(
+                    "no thread for parsing could be started: {error}"
+                ))],
+            },
+        }
+    })
+}
+
+fn parse_here(source: Source, options: &Options, host: &mut dyn Host) -> Parsed {
+    if source.bytes.len() >= u32::MAX as usize {
+        let message = format!("`{}` is too large: a file may have 4 GiB", source.name);
+        return Parsed {
+            scene: None,
+            diagnostics: vec![Diagnostic::error(message).hint("split the file by `#include`")],
+        };
+    }
+    let mut parser = Parser::new(source, options, host);
+    parser.declare_given();
+    parser.run();
+    parser.into_parsed()
+}

@@ -1,0 +1,111 @@
+use crate::Value;
+
+/// What the caller knows besides the text.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct Options {
+    /// The value of `clock`.
+    pub clock: f64,
+    /// The animation's numbers.
+    pub frame: Frame,
+    /// The value of `image_width`, in pixels.
+    pub image_width: u32,
+    /// The value of `image_height`, in pixels.
+    pub image_height: u32,
+    /// Names declared before the scene begins (`Declare=NAME=VALUE`).
+    pub declare: Vec<(String, Value)>,
+    /// The language version of a scene that has no `#version`.
+    pub version: f64,
+    /// Bounds on what a scene may use.
+    pub limits: Limits,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            clock: 0.0,
+            frame: Frame::default(),
+            image_width: 800,
+            image_height: 600,
+            declare: vec![],
+            version: 3.8,
+            limits: Limits::default(),
+        }
+    }
+}
+
+/// Where in an animation the picture stands.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Frame {
+    /// Whether there is an animation: the value of `clock_on`.
+    pub animated: bool,
+    /// `frame_number`
+    pub number: f64,
+    /// `initial_frame`
+    pub first: f64,
+    /// `final_frame`
+    pub last: f64,
+    /// `initial_clock`
+    pub initial_clock: f64,
+    /// `final_clock`
+    pub final_clock: f64,
+    /// `clock_delta`
+    pub clock_delta: f64,
+}
+
+impl Default for Frame {
+    fn default() -> Self {
+        Self {
+            animated: false,
+            number: 1.0,
+            first: 1.0,
+            last: 1.0,
+            initial_clock: 0.0,
+            final_clock: 1.0,
+            clock_delta: 1.0,
+        }
+    }
+}
+
+/// Bounds on what a scene may use, so that a mistake in it ends in an error and not in an exhausted machine.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Limits {
+    /// Tokens read in all, loops and macros counted as often as they run.
+    pub steps: u64,
+    /// Macro calls and includes within each other.
+    pub depth: usize,
+    /// Braces and parentheses within each other.
+    pub nesting: usize,
+    /// Elements of all arrays made.
+    pub array_elements: u64,
+    /// Bytes of one string.
+    pub string_bytes: usize,
+    /// Objects of the scene.
+    pub objects: usize,
+    /// Bytes of all files read.
+    pub read_bytes: u64,
+    /// Files opened for writing.
+    pub written_files: usize,
+    /// Bytes written to files, and bytes of messages.
+    pub written_bytes: u64,
+    /// Errors after which parsing ends.
+    pub errors: usize,
+}
+
+impl Default for Limits {
+    fn default() -> Self {
+        Self {
+            steps: 20_000_000_000,
+            depth: 10_000,
+            nesting: 1000,
+            array_elements: 1 << 27,
+            string_bytes: 1 << 24,
+            objects: 50_000_000,
+            read_bytes: 8 << 30,
+            written_files: 1000,
+            written_bytes: 1 << 30,
+            errors: 20,
+        }
+    }
+}

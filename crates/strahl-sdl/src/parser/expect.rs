@@ -1,0 +1,128 @@
+use super::{PResult, Parser};
+use crate::keywords::Word;
+use crate::symbol::Symbol;
+use crate::token::{Kind, Token};
+
+impl Parser<'_> {
+    /// Takes the next token if it is of this kind.
+    ///
+    /// # Errors
+    /// If a directive on the way fails.
+    #[inline]
+    pub fn accept(&mut self, kind: Kind) -> PResult<bool> {
+        let token = self.peek()?;
+        let found = token.kind == kind;
+        if found {
+            self.take(token)?;
+        }
+        Ok(found)
+    }
+
+    /// Takes the next token, which must be of this kind.
+    ///
+    /// # Errors
+    /// If it is another.
+    #[inline]
+    pub fn expect(&mut self, kind: Kind) -> PResult<Token> {
+        let token = self.peek()?;
+        if token.kind != kind {
+            return Err(self.unexpected(token, kind.describe()));
+        }
+        self.take(token)?;
+        Ok(token)
+    }
+
+    /// Takes the next token if it is this word.
+    ///
+    /// # Errors
+    /// If a directive on the way fails.
+    #[inline]
+    pub fn accept_word(&mut self, word: Word) -> PResult<bool> {
+        let token = self.peek()?;
+        let found = token.is(word);
+        if found {
+            self.take(token)?;
+        }
+        Ok(found)
+    }
+
+    /// Takes a comma if there is one: the language lets most of them be left out.
+    ///
+    /// # Errors
+    /// If a directive on the way fails.
+    #[inline]
+    pub fn comma(&mut self) -> PResult<()> {
+        self.accept(Kind::Comma).map(|_| ())
+    }
+
+    /// `{`, what `f` reads, `}`.
+    ///
+    /// # Errors
+    /// If a brace is missing, braces are nested too deep, or `f` fails.
+    pub fn braces<T>(&mut self, f: impl FnOnce(&mut Self) -> PResult<T>) -> PResult<T> {
+        self.expect(Kind::LeftBrace)?;
+        let result = self.nested(f)?;
+        self.expect(Kind::RightBrace)?;
+        Ok(result)
+    }
+
+    /// Reads items by `f` until the closing brace, which is left; `f` gets the word or token that opens the item, not yet
+    /// taken.
+    ///
+    /// # Errors
+    /// If the text ends before, or `f` fails.
+    pub fn items(
+        &mut self,
+        what: &str,
+        mut f: impl FnMut(&mut Self, Token) -> PResult<()>,
+    ) -> PResult<()> {
+        loop {
+            let token = self.peek()?;
+            match token.kind {
+                Kind::RightBrace => return Ok(()),
+                Kind::End => {
+                    return Err(self.unexpected(token, &format!("`}}` at the end of {what}")));
+                }
+                // Stray separators between items do no harm.
+                Kind::Comma | Kind::Semicolon => self.take(token)?,
+                _ => f(self, token)?,
+            }
+        }
+    }
+
+    /// Takes a name without looking at what it stands for: what follows `#declare`, `#ifdef` and `#macro`.
+    pub(crate) fn raw_name(&mut self, what: &str) -> PResult<Symbol> {
+        let token = self.raw();
+        match (token.kind, token.symbol()) {
+            (Kind::Name, Some(symbol)) => {
+                self.take(token)?;
+                Ok(symbol)
+            }
+            (Kind::Word, Some(_)) => {
+                let word = self.describe(token);
+                let place = self.place_of(token);
+                let message = format!("{word} is a word of the language and cannot be {what}");
+                Err(self.fail_hint(
+                    place,
+                    message,
+                    "write another name: capital first letters are never reserved",
+                ))
+            }
+            _ => {
+                let found = self.describe(token);
+                let place = self.place_of(token);
+                Err(self.fail(place, format!("expected {what}, found {found}")))
+            }
+        }
+    }
+
+    /// Takes a raw token of this kind, if it stands there.
+    pub(crate) fn raw_accept(&mut self, kind: Kind) -> PResult<bool> {
+        let token = self.raw();
+        let found = token.kind == kind;
+        if found {
+            self.take(token)?;
+        }
+        Ok(found)
+    }
+}

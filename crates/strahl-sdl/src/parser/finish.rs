@@ -1,0 +1,30 @@
+use super::Parser;
+use crate::Parsed;
+
+impl Parser<'_> {
+    /// Declares the names that the caller gives.
+    pub(crate) fn declare_given(&mut self) {
+        for (name, value) in &self.options.declare {
+            let symbol = self.symbols.intern(name.as_bytes());
+            if symbol.index() >= crate::keywords::Word::ALL.len() {
+                self.scopes.bind_value(symbol, value.clone());
+            }
+        }
+    }
+
+    /// The name of the scene file.
+    pub(crate) fn scene_name(&self) -> String {
+        self.sources
+            .first()
+            .map_or(String::new(), |f| f.name.clone())
+    }
+
+    /// What has become of the text.
+    pub(crate) fn into_parsed(mut self) -> Parsed {
+        let (diagnostics, failed) = self.take_diagnostics();
+        Parsed {
+            scene: (!failed).then_some(self.scene),
+            diagnostics,
+        }
+    }
+}

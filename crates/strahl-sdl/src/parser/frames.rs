@@ -1,0 +1,294 @@
+use super::{Failed, Floor, PResult, Parser, Place, Scopes};
+use crate::directives::Flow;
+use crate::grammar::State;
+use crate::include;
+use crate::options::Options;
+use crate::source::{Host, HostError, Source, SourceFile};
+use crate::symbol::{Symbol, Symbols};
+use crate::token::{Kind, Token};
+use std::sync::Arc;
+use strahl_scene::{Diagnostic, Scene};
+
+/// How a frame was entered.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Entry {
+    /// The scene file.
+    Scene,
+    /// `#include`.
+    Include,
+    /// A macro call.
+    Macro(Symbol),
+}
+
+/// Something that tokens are read from.
+#[derive(Debug)]
+pub(super) struct Frame {
+    pub(super) entry: Entry,
+    /// Where it was entered from.
+    pub(super) from: Place,
+    /// File and position to go on with when this frame ends.
+    back: (Arc<SourceFile>, usize),
+    /// Index of the token that ends the frame.
+    pub(super) end: usize,
+    /// How many blocks were open when it was entered.
+    pub(super) blocks: usize,
+}
+
+impl<'h> Parser<'h> {
+    /// A parser at the beginning of a scene.
+    pub(crate) fn new(source: Source, options: &'h Options, host: &'h mut dyn Host) -> Self {
+        let mut symbols = Symbols::new();
+        let mut scene = Scene::new();
+        let id = scene.sources.add(&source.name);
+        let (file, problems) = SourceFile::new(id, source, &mut symbols);
+        let file = Arc::new(file);
+        let mut parser = Self {
+            options,
+            host,
+            symbols,
+            scopes: Scopes::default(),
+            scene,
+            state: State::default(),
+            version: options.version,
+            random: vec![],
+            array_elements: 0,
+            sources: vec![Arc::clone(&file)],
+            position: 0,
+            frames: vec![],
+            blocks: vec![],
+            floor: Floor::default(),
+            place: Place { file: 0, start: 0 },
+            mark: super::recover::Mark::default(),
+            between: true,
+            steps: 0,
+            nesting: 0,
+            read_bytes: file.bytes.len() as u64,
+            message_bytes: 0,
+            diagnostics: vec![],
+            errors: 0,
+            failures: 0,
+            fatal: false,
+            file: Arc::clone(&file),
+        };
+        parser.frames.push(Frame {
+            entry: Entry::Scene,
+            from: parser.place,
+            end: file.tokens.len().saturating_sub(1),
+            back: (Arc::clone(&file), file.tokens.len().saturating_sub(1)),
+            blocks: 0,
+        });
+        parser.report_lexing(0, problems);
+        parser
+    }
+
+    /// The end of what may be read, at the position.
+    #[cold]
+    fn end_here(&self) -> Token {
+        Token {
+            kind: Kind::End,
+            ..self.raw()
+        }
+    }
+
+    /// See [`Parser::peek`].
+    pub(super) fn expand(&mut self) -> PResult<Token> {
+        loop {
+            self.steps += 1;
+            if self.steps > self.options.limits.steps {
+                return Err(self.out_of_steps());
+            }
+            let token = self.raw();
+            match token.kind {
+                Kind::Name => {
+                    let symbol = Symbol(token.bits as u32);
+                    match self.scopes.find_macro(symbol) {
+                        Some(found) => {
+                            let found = Arc::clone(found);
+                            self.call(token, found)?;
+                        }
+                        None => return Ok(token),
+                    }
+                }
+                Kind::Directive => match self.run_directive(token)? {
+                    Flow::On => {}
+                    Flow::Stop => return Ok(self.end_here()),
+                },
+                Kind::End => {
+                    let innermost = self.frames.len() <= 1 || self.at_floor();
+                    if innermost {
+                        return Ok(token);
+                    }
+                    self.leave_frame();
+                }
+                _ => return Ok(token),
+            }
+        }
+    }
+
+    /// Whether the position stands in the frame and block that the running directive must not leave.
+    pub(crate) fn at_floor(&self) -> bool {
+        self.frames.len() <= self.floor.frames && self.blocks.len() <= self.floor.blocks
+    }
+
+    /// Runs `f` so that it sees the end of input where the current frame or block ends: what a directive or an argument
+    /// reads never leaves the place it stands in.
+    pub(crate) fn enclosed<T>(&mut self, f: impl FnOnce(&mut Self) -> PResult<T>) -> PResult<T> {
+        let before = self.floor;
+        self.floor = Floor {
+            frames: self.frames.len(),
+            blocks: self.blocks.len(),
+        };
+        let result = f(self);
+        self.floor = before;
+        result
+    }
+
+    /// Goes on reading in a part of a file: an include or the body of a macro.
+    pub(crate) fn enter_frame(
+        &mut self,
+        entry: Entry,
+        from: Place,
+        file: Arc<SourceFile>,
+        begin: usize,
+        end: usize,
+    ) -> PResult<()> {
+        let limit = self.options.limits.depth;
+        if self.frames.len() >= limit {
+            let message = format!("macros and includes are nested deeper than {limit} levels");
+            return Err(self.fail_fatally(
+                from,
+                message,
+                "a macro that calls itself needs an `#if` that ends the recursion",
+            ));
+        }
+        let back = (std::mem::replace(&mut self.file, file), self.position);
+        self.position = begin;
+        self.frames.push(Frame {
+            entry,
+            from,
+            back,
+            end,
+            blocks: self.blocks.len(),
+        });
+        self.scopes.enter();
+        Ok(())
+    }
+
+    /// Leaves the innermost frame, which is not the scene itself.
+    pub(crate) fn leave_frame(&mut self) {
+        if self.frames.len() > 1
+            && let Some(frame) = self.frames.pop()
+        {
+            (self.file, self.position) = frame.back;
+            self.blocks.truncate(frame.blocks);
+            self.scopes.leave();
+        }
+    }
+
+    /// Whether the position stands at the end of the macro being run.
+    pub(crate) fn at_macro_end(&self) -> bool {
+        self.frames
+            .last()
+            .is_some_and(|f| matches!(f.entry, Entry::Macro(_)) && f.end == self.position)
+    }
+
+    /// The file being read.
+    pub(crate) fn current_file(&self) -> &Arc<SourceFile> {
+        &self.file
+    }
+
+    /// Index of the token at the position.
+    pub(crate) fn position(&self) -> usize {
+        self.position
+    }
+
+    /// Moves the position within the file.
+    pub(crate) fn jump(&mut self, position: usize) {
+        self.position = position;
+    }
+
+    /// How deep frames are nested; 1 in the scene itself.
+    pub(crate) fn frame_depth(&self) -> usize {
+        self.frames.len()
+    }
+
+    /// Goes on reading in an included file.
+    pub(crate) fn include(&mut self, name: &str, from: Place) -> PResult<()> {
+        let file = self.load(name, from)?;
+        // A file may include itself under an `#ifndef`, but not without end.
+        const SELF_INCLUDES: usize = 32;
+        let includes = self.frames.iter().filter(|f| f.entry == Entry::Include);
+        let same = includes.filter(|f| f.back.0.name == file.name);
+        if same.count() > SELF_INCLUDES {
+            let message = format!("`{}` includes itself again and again", file.name);
+            return Err(self.fail_fatally(
+                from,
+                message,
+                "guard the file with `#ifndef(NAME)`, `#declare NAME = 1;` ... `#end`",
+            ));
+        }
+        let end = file.tokens.len().saturating_sub(1);
+        self.enter_frame(Entry::Include, from, file, 0, end)
+    }
+
+    /// A file of this name, with its tokens.
+    pub(crate) fn load(&mut self, name: &str, from: Place) -> PResult<Arc<SourceFile>> {
+        let asking = self.sources.get(from.file as usize);
+        let asking = asking.map_or(String::new(), |file| file.name.clone());
+        let mut source = match self.host.load(name, &asking) {
+            Ok(source) => source,
+            Err(error) => {
+                let built_in = include::find(name)
+                    .filter(|_| matches!(error, HostError::NotFound { .. }))
+                    .map(|(name, text)| Source::new(format!("<built in>/{name}"), text));
+                match built_in {
+                    Some(source) => source,
+                    None => return Err(self.unreadable(error, from)),
+                }
+            }
+        };
+        let known = self
+            .sources
+            .iter()
+            .find(|f| f.name == source.name && f.bytes == source.bytes);
+        if let Some(known) = known {
+            return Ok(Arc::clone(known));
+        }
+        self.read_bytes = self.read_bytes.saturating_add(source.bytes.len() as u64);
+        let limit = self.options.limits.read_bytes;
+        if source.bytes.len() >= u32::MAX as usize || self.read_bytes > limit {
+            let message = format!(
+                "`{}` is too large: all files of a scene may have {limit} bytes, one file 4 GiB",
+                source.name
+            );
+            return Err(self.fail_fatally(
+                from,
+                message,
+                "raise the limit of bytes read, or split the file",
+            ));
+        }
+        // A text that has changed since it was read the first time gets an entry of its own.
+        while self.sources.iter().any(|f| f.name == source.name) {
+            source.name.push_str(" (changed)");
+        }
+        let id = self.scene.sources.add(&source.name);
+        let (file, problems) = SourceFile::new(id, source, &mut self.symbols);
+        let file = Arc::new(file);
+        self.sources.push(Arc::clone(&file));
+        self.report_lexing(id.0, problems);
+        Ok(file)
+    }
+
+    fn unreadable(&mut self, error: HostError, from: Place) -> Failed {
+        let mut diagnostic = Diagnostic::error(error.to_string());
+        if let HostError::NotFound { name, searched } = &error {
+            let folders = searched.join(", ");
+            diagnostic = diagnostic.hint(format!("it was searched in: {folders}"));
+            let built_in = include::FILES.iter().map(|(file, _)| *file);
+            if let Some(close) = crate::suggest::closest(name, built_in) {
+                diagnostic = diagnostic.hint(format!("did you mean `{close}`, which is built in?"));
+            }
+        }
+        self.fail_with(from, diagnostic)
+    }
+}

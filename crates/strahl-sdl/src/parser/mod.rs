@@ -1,0 +1,217 @@
+//! Pulling tokens: files, includes, macros and loops behind one stream.
+//!
+//! [`Parser::peek`] and [`Parser::next`] hand the grammar the tokens as they come after all directives are carried out.
+//! A frame is a position in the tokens of a file; including a file or calling a macro pushes one, a loop moves the
+//! position back. Nothing of this recurses on the machine's stack.
+
+mod blocks;
+mod call;
+mod expect;
+mod finish;
+mod frames;
+mod messages;
+mod recover;
+mod report;
+mod scope;
+
+pub(crate) use blocks::{Block, BlockKind, Loop};
+pub use call::Macro;
+pub(crate) use call::Parameter;
+pub(crate) use frames::Entry;
+pub use report::{Failed, PResult};
+pub(crate) use scope::{Scopes, Step, Target};
+
+use crate::grammar::State;
+use crate::options::Options;
+use crate::source::{Host, SourceFile};
+use crate::symbol::Symbols;
+use crate::token::{Kind, Token};
+use frames::Frame;
+use std::sync::Arc;
+use strahl_scene::{Diagnostic, Scene, Span};
+
+/// A place in the text, cheap to keep; [`Parser::span_at`] makes a span of it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Place {
+    file: u32,
+    start: u32,
+}
+
+/// Where directives must not read on: the end of the frame and of the block they stand in.
+#[derive(Clone, Copy, Debug, Default)]
+struct Floor {
+    frames: usize,
+    blocks: usize,
+}
+
+/// The state of reading one scene.
+pub struct Parser<'h> {
+    /// What the caller knows.
+    pub(crate) options: &'h Options,
+    /// The world outside.
+    pub(crate) host: &'h mut dyn Host,
+    pub(crate) symbols: Symbols,
+    pub(crate) scopes: Scopes,
+    /// The scene made so far.
+    pub scene: Scene,
+    /// What the grammar remembers between statements: defaults, global settings, ...
+    pub state: State,
+    /// The language version in force, such as 3.7.
+    pub version: f64,
+    /// Random streams: the state of each.
+    pub(crate) random: Vec<u32>,
+    /// Elements of all arrays made so far.
+    pub(crate) array_elements: u64,
+    sources: Vec<Arc<SourceFile>>,
+    file: Arc<SourceFile>,
+    position: usize,
+    frames: Vec<Frame>,
+    blocks: Vec<Block>,
+    floor: Floor,
+    place: Place,
+    /// Where to begin skipping if the current statement fails.
+    mark: recover::Mark,
+    /// Whether no statement has begun yet, so that directives are given up by themselves.
+    between: bool,
+    steps: u64,
+    nesting: usize,
+    read_bytes: u64,
+    message_bytes: u64,
+    diagnostics: Vec<Diagnostic>,
+    errors: usize,
+    /// Errors with those that were told before.
+    failures: usize,
+    fatal: bool,
+}
+
+impl Parser<'_> {
+    /// The next token after all directives and macro calls before it, without taking it.
+    ///
+    /// # Errors
+    /// If a directive on the way fails.
+    #[inline]
+    pub fn peek(&mut self) -> PResult<Token> {
+        match self.file.tokens.get(self.position) {
+            Some(token) if token.kind < Kind::Name => Ok(*token),
+            _ => self.expand(),
+        }
+    }
+
+    /// Takes the next token.
+    ///
+    /// # Errors
+    /// If a directive on the way fails, or the budget of steps is used up.
+    #[inline]
+    #[expect(
+        clippy::should_implement_trait,
+        reason = "the word every parser uses; the stream has no end that an iterator could tell"
+    )]
+    pub fn next(&mut self) -> PResult<Token> {
+        let token = self.peek()?;
+        self.take(token)?;
+        Ok(token)
+    }
+
+    /// Takes the token just peeked.
+    #[inline]
+    pub(crate) fn take(&mut self, token: Token) -> PResult<()> {
+        self.mark(token);
+        if token.kind != Kind::End {
+            self.position += 1;
+        }
+        self.steps += 1;
+        if self.steps > self.options.limits.steps {
+            return Err(self.out_of_steps());
+        }
+        Ok(())
+    }
+
+    /// The token at the position as it stands in the file: no directive is carried out, no macro called.
+    #[inline]
+    pub(crate) fn raw(&self) -> Token {
+        self.raw_ahead(0)
+    }
+
+    /// The token `offset` further on in the file.
+    #[inline]
+    pub(crate) fn raw_ahead(&self, offset: usize) -> Token {
+        let token = self.file.tokens.get(self.position + offset);
+        token.copied().unwrap_or(Token::END)
+    }
+
+    /// Makes a token the last one taken, for messages.
+    #[inline]
+    pub(crate) fn mark(&mut self, token: Token) {
+        self.place = Place {
+            file: self.file.id.0,
+            start: token.start,
+        };
+    }
+
+    /// The place of the last token taken.
+    #[inline]
+    pub fn place(&self) -> Place {
+        self.place
+    }
+
+    /// The place of the token just peeked.
+    pub(crate) fn place_of(&self, token: Token) -> Place {
+        Place {
+            file: self.file.id.0,
+            start: token.start,
+        }
+    }
+
+    /// A place as line and column.
+    pub fn span_at(&self, place: Place) -> Span {
+        let file = self.sources.get(place.file as usize);
+        file.map_or(Span::NONE, |file| file.span(place.start))
+    }
+
+    /// The text of a string token of the current file.
+    pub(crate) fn string_of(&self, token: Token) -> Arc<str> {
+        let text = self.file.strings.get(token.bits as usize);
+        text.cloned().unwrap_or_default()
+    }
+
+    /// The string as written, without resolving escapes.
+    pub(crate) fn raw_string_of(&self, token: Token) -> String {
+        self.file.raw_string(token)
+    }
+
+    /// Runs `f` one level deeper.
+    ///
+    /// # Errors
+    /// If that is deeper than the limit, or `f` fails.
+    #[inline]
+    pub fn nested<T>(&mut self, f: impl FnOnce(&mut Self) -> PResult<T>) -> PResult<T> {
+        if self.nesting >= self.options.limits.nesting {
+            return Err(self.too_deep());
+        }
+        self.nesting += 1;
+        let result = f(self);
+        self.nesting -= 1;
+        result
+    }
+
+    fn too_deep(&mut self) -> Failed {
+        let limit = self.options.limits.nesting;
+        let message = format!("braces and parentheses are nested deeper than {limit} levels");
+        self.fail_fatally(
+            self.place,
+            message,
+            "raise the limit of nesting, or build the thing in steps with `#declare`",
+        )
+    }
+
+    fn out_of_steps(&mut self) -> Failed {
+        let limit = self.options.limits.steps;
+        let message =
+            format!("the scene has read {limit} tokens: a loop or recursion seems not to end");
+        self.fail_fatally(
+            self.place,
+            message,
+            "check that the condition of the loop becomes false, or raise the limit of steps",
+        )
+    }
+}

@@ -1,0 +1,97 @@
+use super::{Floor, Parser};
+use crate::grammar;
+use crate::token::{Directive, Kind};
+
+/// Where a statement begins, to find the way back after an error in it.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Mark {
+    frames: usize,
+    blocks: usize,
+    position: usize,
+    file: u32,
+}
+
+impl Parser<'_> {
+    /// Remembers that a statement begins here, or that only directives are read until one begins.
+    pub(crate) fn between_statements(&mut self, between: bool) {
+        self.between = between;
+        self.mark_here();
+    }
+
+    /// Remembers that something begins here that is given up as a whole if it fails.
+    pub(super) fn mark_here(&mut self) {
+        self.mark = Mark {
+            frames: self.frames.len(),
+            blocks: self.blocks.len(),
+            position: self.position,
+            file: self.file.id.0,
+        };
+    }
+
+    /// Called before a directive is carried out: between statements it is given up by itself.
+    pub(crate) fn mark_directive(&mut self) {
+        if self.between && self.floor.frames == 0 {
+            self.mark_here();
+        }
+    }
+
+    /// Goes on behind the statement or directive that failed.
+    ///
+    /// Macros and includes entered since its beginning are left; then everything is skipped up to the brace that closes the
+    /// statement, or the next word or directive that opens one. Blocks within what is skipped are skipped whole.
+    pub(crate) fn recover(&mut self) {
+        let mark = self.mark;
+        while self.frames.len() > mark.frames.max(1) {
+            self.leave_frame();
+        }
+        self.nesting = 0;
+        self.floor = Floor::default();
+        let same = mark.file == self.file.id.0 && mark.frames == self.frames.len();
+        let begin = if same { mark.position } else { self.position };
+        if same && begin == self.position && self.raw().kind != Kind::End {
+            // At least one token is passed, or the error would repeat for ever.
+            self.position += 1;
+        }
+        let passed = self.file.tokens.get(begin..self.position).unwrap_or(&[]);
+        let mut open = passed.iter().fold(0usize, |open, t| match t.kind {
+            Kind::LeftBrace => open + 1,
+            Kind::RightBrace => open.saturating_sub(1),
+            _ => open,
+        });
+        // Blocks that the statement has opened end within what is skipped.
+        let mut blocks = self.blocks.len().saturating_sub(mark.blocks);
+        self.blocks.truncate(mark.blocks);
+        loop {
+            let token = self.raw();
+            match token.kind {
+                Kind::End => return,
+                Kind::LeftBrace => open += 1,
+                Kind::RightBrace if open <= 1 => {
+                    self.position += 1;
+                    return;
+                }
+                Kind::RightBrace => open -= 1,
+                Kind::Word if open == 0 && blocks == 0 && grammar::opens_statement(token) => return,
+                Kind::Directive => match token.directive() {
+                    Some(Directive::End) if blocks > 0 => blocks -= 1,
+                    Some(d)
+                        if (d.divides() || d == Directive::End)
+                            && blocks == 0
+                            && (self.block().is_some() || self.at_macro_end()) =>
+                    {
+                        return;
+                    }
+                    Some(d) if open == 0 && blocks == 0 && !d.divides() => return,
+                    Some(d) if d.opens() => match self.end_of(self.position) {
+                        Ok(end) => self.position = end,
+                        Err(_) => return,
+                    },
+                    _ => {}
+                },
+                _ => {}
+            }
+            self.position += 1;
+            self.steps += 1;
+        }
+    }
+}

@@ -1,0 +1,230 @@
+use super::{Entry, Parser, Place};
+use crate::keywords::Word;
+use crate::lexer::LexProblem;
+use crate::suggest;
+use crate::symbol::Symbol;
+use crate::token::{Kind, Token};
+use strahl_scene::{Diagnostic, Severity};
+
+/// Something went wrong and has been reported; the statement it happened in is given up.
+///
+/// Only the reporting functions of [`Parser`] make one, so an error cannot pass in silence.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Failed(());
+
+/// The result of parsing a piece.
+pub type PResult<T> = Result<T, Failed>;
+
+impl Parser<'_> {
+    /// Reports an error.
+    pub fn fail(&mut self, place: Place, message: impl Into<String>) -> Failed {
+        self.fail_with(place, Diagnostic::error(message))
+    }
+
+    /// Reports an error with a piece of advice.
+    pub fn fail_hint(
+        &mut self,
+        place: Place,
+        message: impl Into<String>,
+        hint: impl Into<String>,
+    ) -> Failed {
+        self.fail_with(place, Diagnostic::error(message).hint(hint))
+    }
+
+    /// Reports an error after which parsing ends.
+    pub(crate) fn fail_fatally(
+        &mut self,
+        place: Place,
+        message: impl Into<String>,
+        hint: impl Into<String>,
+    ) -> Failed {
+        let failed = self.fail_hint(place, message, hint);
+        self.fatal = true;
+        failed
+    }
+
+    /// Reports an error; place, source line and trace are added.
+    pub(crate) fn fail_with(&mut self, place: Place, diagnostic: Diagnostic) -> Failed {
+        if !self.fatal {
+            self.errors += usize::from(self.report(place, diagnostic));
+            self.failures += 1;
+            let limit = self.options.limits.errors;
+            // The same error again and again is told once, but a loop of errors must end too.
+            self.fatal |= self.errors >= limit || self.failures >= limit.saturating_mul(50);
+        }
+        Failed(())
+    }
+
+    /// Reports a warning; each text once per place.
+    pub fn warn(&mut self, place: Place, message: impl Into<String>) {
+        self.report(place, Diagnostic::warning(message));
+    }
+
+    /// Reports a warning with a piece of advice.
+    pub fn warn_hint(&mut self, place: Place, message: impl Into<String>, hint: impl Into<String>) {
+        self.report(place, Diagnostic::warning(message).hint(hint));
+    }
+
+    /// `false` if the same was said of the same place before: loops would repeat it.
+    fn report(&mut self, place: Place, mut diagnostic: Diagnostic) -> bool {
+        const WARNINGS: usize = 200;
+        let span = self.span_at(place);
+        let same = |d: &Diagnostic| d.span == span && d.message == diagnostic.message;
+        if self.diagnostics.iter().any(same) {
+            return false;
+        }
+        if diagnostic.severity == Severity::Warning && self.diagnostics.len() >= WARNINGS {
+            return false;
+        }
+        diagnostic = diagnostic.at(span);
+        if let Some(file) = self.sources.get(place.file as usize) {
+            diagnostic = diagnostic.with_source(&file.name, &file.line_text(span.line));
+        }
+        for step in self.trace() {
+            diagnostic = diagnostic.traced(step);
+        }
+        self.diagnostics.push(diagnostic);
+        true
+    }
+
+    /// The macros and includes around the position, innermost first.
+    fn trace(&self) -> Vec<String> {
+        /// Of a deep recursion the ends tell enough.
+        const SHOWN: usize = 8;
+        let mut steps = vec![];
+        for frame in self.frames.iter().rev() {
+            let span = self.span_at(frame.from);
+            let from = self.scene.sources.locate(span);
+            let from = from.map_or(String::new(), |l| l.to_string());
+            match frame.entry {
+                Entry::Scene => {}
+                Entry::Include => steps.push(format!("included at {from}")),
+                Entry::Macro(name) => {
+                    let name = self.symbols.text(name);
+                    steps.push(format!("in macro `{name}`, called at {from}"));
+                }
+            }
+        }
+        if steps.len() > SHOWN {
+            let left_out = steps.len() - SHOWN;
+            steps.splice(
+                SHOWN / 2..steps.len() - SHOWN / 2,
+                [format!("... and {left_out} more ...")],
+            );
+        }
+        steps
+    }
+
+    /// Reports a token that should have been something else.
+    pub fn unexpected(&mut self, token: Token, expected: &str) -> Failed {
+        let place = self.place_of(token);
+        if let (Kind::Name, Some(symbol)) = (token.kind, token.symbol()) {
+            return match self.scopes.find(symbol) {
+                None => self.undeclared(symbol, place, expected),
+                Some(value) => {
+                    let is = value.describe();
+                    let name = self.symbols.text(symbol);
+                    let message = format!("expected {expected}, found `{name}`, which is {is}");
+                    self.fail(place, message)
+                }
+            };
+        }
+        let found = self.describe(token);
+        self.fail(place, format!("expected {expected}, found {found}"))
+    }
+
+    /// Reports a name that stands for nothing.
+    pub(crate) fn undeclared(&mut self, symbol: Symbol, place: Place, expected: &str) -> Failed {
+        let name = self.symbols.text(symbol).to_owned();
+        let mut diagnostic = Diagnostic::error(format!(
+            "expected {expected}, found the undeclared name `{name}`"
+        ));
+        if let Some(hint) = self.advice_for(&name) {
+            diagnostic = diagnostic.hint(hint);
+        }
+        self.fail_with(place, diagnostic)
+    }
+
+    /// What a misspelt name may mean.
+    fn advice_for(&self, name: &str) -> Option<String> {
+        for (file, text) in crate::include::FILES {
+            if declares(text, name) {
+                return Some(format!(
+                    "`{name}` is declared in {file}: write `#include \"{file}\"` first"
+                ));
+            }
+        }
+        let bound = self.scopes.bound().map(|s| self.symbols.text(s));
+        let words = Word::ALL.iter().map(|(_, text, _)| *text);
+        if let Some(close) = suggest::closest(name, bound.chain(words)) {
+            return Some(format!("did you mean `{close}`?"));
+        }
+        for (file, text) in crate::include::FILES {
+            if let Some(close) = suggest::closest(name, declared(text)) {
+                return Some(format!("did you mean `{close}`, from {file}?"));
+            }
+        }
+        None
+    }
+
+    /// A token in words.
+    pub(crate) fn describe(&self, token: Token) -> String {
+        match (token.kind, token.symbol()) {
+            (Kind::Number, _) => format!("the number {}", token.number()),
+            (Kind::String, _) => format!("the string \"{}\"", self.string_of(token)),
+            (Kind::Word, Some(s)) => format!("`{}`", self.symbols.text(s)),
+            (Kind::Name, Some(s)) => format!("the name `{}`", self.symbols.text(s)),
+            (Kind::Unknown, _) => match token.bits as u8 {
+                b if b.is_ascii_graphic() => format!("`{}`", char::from(b)),
+                b => format!("the byte 0x{b:02x}"),
+            },
+            (kind, _) => kind.describe().to_owned(),
+        }
+    }
+
+    pub(super) fn report_lexing(&mut self, file: u32, problems: Vec<LexProblem>) {
+        for problem in problems {
+            let place = Place {
+                file,
+                start: problem.start,
+            };
+            self.fail_hint(place, problem.message, problem.hint);
+        }
+    }
+
+    /// Whether parsing has ended early.
+    pub(crate) fn is_fatal(&self) -> bool {
+        self.fatal
+    }
+
+    /// Everything reported, and whether an error is among it.
+    pub(crate) fn take_diagnostics(&mut self) -> (Vec<Diagnostic>, bool) {
+        (std::mem::take(&mut self.diagnostics), self.errors > 0)
+    }
+}
+
+/// The names that a text declares.
+fn declared(text: &str) -> impl Iterator<Item = &str> {
+    text.split('#').skip(1).filter_map(|piece| {
+        let mut words = piece.split(|c: char| !c.is_ascii_alphanumeric() && c != '_');
+        let directive = words.next()?;
+        matches!(directive, "declare" | "macro")
+            .then(|| words.find(|w| !w.is_empty()))
+            .flatten()
+    })
+}
+
+fn declares(text: &str, name: &str) -> bool {
+    declared(text).any(|n| n == name)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn declarations_are_found_in_a_text() {
+        let text = "// x\n#declare Red = rgb x;\n#macro Ball (R) #local N = 1; #end";
+        assert_eq!(declared(text).collect::<Vec<_>>(), ["Red", "Ball"]);
+    }
+}

@@ -1,0 +1,115 @@
+//! Names as numbers.
+
+use crate::keywords::Word;
+
+/// A name or reserved word; reserved words have the numbers of [`Word`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Symbol(pub(crate) u32);
+
+impl Symbol {
+    pub(crate) fn index(self) -> usize {
+        self.0 as usize
+    }
+}
+
+/// All names met so far, each stored once: an open-addressing table of numbers over one string.
+///
+/// Own code instead of a `HashMap<Box<str>, _>` because every identifier of the text passes here: one multiplication per
+/// byte, no allocation for known names.
+#[derive(Debug)]
+pub(crate) struct Symbols {
+    text: String,
+    ends: Vec<u32>,
+    /// Symbol number plus one; 0 is free. The length is a power of two.
+    table: Vec<u32>,
+}
+
+impl Symbols {
+    /// A table that holds the reserved words.
+    pub(crate) fn new() -> Self {
+        let mut symbols = Self {
+            text: String::new(),
+            ends: vec![],
+            table: vec![0; 2048],
+        };
+        for (_, text, _) in Word::ALL {
+            symbols.intern(text.as_bytes());
+        }
+        symbols
+    }
+
+    /// The spelling of a symbol; empty for a number of another table.
+    pub(crate) fn text(&self, symbol: Symbol) -> &str {
+        let index = symbol.index();
+        let start = match index {
+            0 => 0,
+            _ => self.ends.get(index - 1).copied().unwrap_or(0) as usize,
+        };
+        let end = self.ends.get(index).copied().unwrap_or(0) as usize;
+        self.text.get(start..end).unwrap_or("")
+    }
+
+    /// All spellings, in the order in which they were met.
+    pub(crate) fn iter(&self) -> impl Iterator<Item = (Symbol, &str)> {
+        (0..self.ends.len() as u32).map(|n| (Symbol(n), self.text(Symbol(n))))
+    }
+
+    /// The symbol of a name, which is valid UTF-8: ASCII letters, digits and underscores, or the key of a dictionary.
+    pub(crate) fn intern(&mut self, name: &[u8]) -> Symbol {
+        let mut hash = 0xcbf2_9ce4_8422_2325_u64;
+        for &byte in name {
+            // FNV-1a.
+            hash = (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
+        }
+        let mask = self.table.len() - 1;
+        let mut slot = (hash ^ (hash >> 32)) as usize & mask;
+        loop {
+            match self.table[slot] {
+                0 => break,
+                n if self.text(Symbol(n - 1)).as_bytes() == name => return Symbol(n - 1),
+                _ => slot = (slot + 1) & mask,
+            }
+        }
+        let symbol = Symbol(self.ends.len() as u32);
+        self.text.push_str(std::str::from_utf8(name).unwrap_or(""));
+        self.ends.push(self.text.len() as u32);
+        self.table[slot] = symbol.0 + 1;
+        if self.ends.len() * 2 > self.table.len() {
+            self.grow();
+        }
+        symbol
+    }
+
+    fn grow(&mut self) {
+        let names: Vec<Vec<u8>> = self.iter().map(|(_, t)| t.as_bytes().to_vec()).collect();
+        let size = self.table.len() * 4;
+        *self = Self {
+            text: String::with_capacity(self.text.len() * 2),
+            ends: Vec::with_capacity(self.ends.len() * 2),
+            table: vec![0; size],
+        };
+        for name in names {
+            self.intern(&name);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_keep_their_numbers_while_the_table_grows() {
+        let mut symbols = Symbols::new();
+        assert_eq!(symbols.intern(b"sphere").0, Word::Sphere as u32);
+        let first = symbols.intern(b"Ball");
+        for i in 0..5000 {
+            symbols.intern(format!("Name_{i}").as_bytes());
+        }
+        assert_eq!(symbols.intern(b"Ball"), first);
+        assert_eq!(symbols.text(first), "Ball");
+        assert_eq!(symbols.text(Symbol(u32::MAX)), "");
+        let again = symbols.intern(b"Name_4321");
+        assert_eq!(symbols.text(again), "Name_4321");
+    }
+}

@@ -1,0 +1,64 @@
+//! What a name can stand for.
+
+use crate::expr::{Array, Dictionary};
+use crate::grammar::Thing;
+use crate::parser::Macro;
+use std::sync::Arc;
+
+mod vector;
+
+pub use vector::Vector;
+
+/// The value of a name or an expression. Numbers and vectors live in it, everything larger is shared.
+#[derive(Clone, Debug)]
+pub enum Value {
+    /// A number. Also what `seed` returns: the number of a random stream.
+    Float(f64),
+    /// Two to five components; a colour is a vector of five: red, green, blue, filter, transmit.
+    Vector(Vector),
+    /// A text.
+    String(Arc<str>),
+    /// An array of one or more dimensions.
+    Array(Arc<Array>),
+    /// Values by name (3.8).
+    Dictionary(Arc<Dictionary>),
+    /// A macro; only names hold one.
+    Macro(Arc<Macro>),
+    /// Something the grammar defines: an object, a texture, a transformation, ...
+    Thing(Thing),
+}
+
+impl Value {
+    /// What it is, in words, for messages.
+    pub fn describe(&self) -> &'static str {
+        match self {
+            Self::Float(_) => "a float",
+            Self::Vector(v) if v.len() == 5 => "a colour",
+            Self::Vector(_) => "a vector",
+            Self::String(_) => "a string",
+            Self::Array(_) => "an array",
+            Self::Dictionary(_) => "a dictionary",
+            Self::Macro(_) => "a macro",
+            Self::Thing(thing) => thing.describe(),
+        }
+    }
+
+    /// The value as a number or vector, if it is one.
+    #[inline]
+    pub fn numeric(&self) -> Option<Vector> {
+        match self {
+            Self::Float(x) => Some(Vector::float(*x)),
+            Self::Vector(v) => Some(*v),
+            _ => None,
+        }
+    }
+}
+
+impl From<Vector> for Value {
+    fn from(v: Vector) -> Self {
+        match v.as_float() {
+            Some(x) => Self::Float(x),
+            None => Self::Vector(v),
+        }
+    }
+}

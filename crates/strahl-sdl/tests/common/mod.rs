@@ -1,0 +1,27 @@
+//! What the tests share; each uses a part of it.
+#![allow(dead_code, reason = "each test binary uses a part of this")]
+
+use strahl_sdl::{MemoryHost, Options, Parsed, Source, Stream, parse};
+
+/// Parses a text with files in memory.
+pub(crate) fn parse_with(host: &mut MemoryHost, text: &str) -> Parsed {
+    parse(Source::new("test.pov", text), &Options::default(), host)
+}
+
+/// What a text writes by `#debug`; it must have no errors.
+pub(crate) fn debug(text: &str) -> String {
+    let mut host = MemoryHost::new();
+    let parsed = parse_with(&mut host, text);
+    let errors: Vec<String> = parsed.diagnostics.iter().map(ToString::to_string).collect();
+    assert!(parsed.scene.is_some(), "{text}\n{}", errors.join("\n"));
+    host.text(Stream::Debug)
+}
+
+/// The messages of a text that must have an error.
+pub(crate) fn errors(text: &str) -> Vec<String> {
+    let parsed = parse_with(&mut MemoryHost::new(), text);
+    let shown: String = text.chars().take(200).collect();
+    assert!(parsed.scene.is_none(), "no error in: {shown}");
+    let errors = parsed.diagnostics.iter().filter(|d| d.is_error());
+    errors.map(ToString::to_string).collect()
+}

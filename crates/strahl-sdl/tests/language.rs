@@ -1,0 +1,228 @@
+//! Directives, macros, loops and scopes.
+
+mod common;
+
+use common::{debug, errors, parse_with};
+use strahl_sdl::MemoryHost;
+
+/// `#debug` of several floats.
+fn values(setup: &str, expressions: &[&str]) -> Vec<f64> {
+    let prints: String = expressions
+        .iter()
+        .map(|e| format!("#debug concat(str({e}, 0, 15), \" \")\n"))
+        .collect();
+    let text = debug(&format!("{setup}\n{prints}"));
+    text.split_whitespace()
+        .map(|w| w.parse().expect("a number"))
+        .collect()
+}
+
+#[test]
+fn branches_and_loops() {
+    assert_eq!(debug("#if (1) #debug \"a\" #else #debug \"b\" #end"), "a");
+    assert_eq!(
+        debug("#if (0) #debug \"a\" #elseif (1) #debug \"b\" #else #debug \"c\" #end"),
+        "b"
+    );
+    assert_eq!(
+        debug(
+            "#ifdef (A) #debug \"a\" #else #declare A = 1; #end #ifndef (A) #else #debug \"b\" #end"
+        ),
+        "b"
+    );
+    assert_eq!(
+        debug("#declare I = 0; #while (I < 3) #debug str(I, 0, 0) #declare I = I + 1; #end"),
+        "012"
+    );
+    assert_eq!(
+        debug("#for (I, 3, 1, -1) #debug str(I, 0, 0) #end #debug str(I, 0, 0)"),
+        "3210"
+    );
+    assert_eq!(
+        debug("#for (I, 0, 1, 0.1) #debug \"x\" #end"),
+        "xxxxxxxxxxx"
+    );
+    assert_eq!(
+        debug("#for (I, 1, 9) #if (I > 3) #break #end #debug str(I, 0, 0) #end"),
+        "123"
+    );
+    assert_eq!(debug("#for (I, 2, 1) #debug \"never\" #end"), "");
+}
+
+#[test]
+fn switches_fall_through_until_a_break() {
+    let switch = |n: i32| {
+        debug(&format!(
+            "#switch ({n}) #case (1) #debug \"1\" #case (2) #debug \"2\" #break #range (3, 5) #debug \"r\" #else #debug \"e\" #end"
+        ))
+    };
+    assert_eq!(switch(1), "12");
+    assert_eq!(switch(2), "2");
+    assert_eq!(switch(4), "re");
+    assert_eq!(switch(9), "e");
+}
+
+#[test]
+fn nothing_leaks_out_of_a_declaration_without_semicolon() {
+    assert_eq!(
+        debug("#declare I = 0; #while (I < 3) #debug str(I, 0, 0) #declare I = I + 1 #end"),
+        "012"
+    );
+    assert_eq!(
+        debug("#macro M(P) #declare P = P + 1 #end #declare Q = 1; M(Q) #debug str(Q, 0, 0)"),
+        "2"
+    );
+    assert_eq!(
+        debug("#if (1) #declare A = 1 #else #declare A = 2 #end #debug str(A, 0, 0)"),
+        "1"
+    );
+}
+
+#[test]
+fn macros_see_their_callers_names_and_change_variables_given() {
+    // All measured with POV-Ray 3.7.
+    let outer =
+        "#macro Inner() #debug str(L, 0, 0) #end #macro Outer() #local L = 7; Inner() #end Outer()";
+    assert_eq!(debug(outer), "7");
+    assert_eq!(
+        debug("#macro M(P) #declare P = 99; #end #declare Q = 5; M(Q) #debug str(Q, 0, 0)"),
+        "99"
+    );
+    assert_eq!(
+        debug("#macro M(P) #local P = 77; #end #declare Q = 5; M(Q) #debug str(Q, 0, 0)"),
+        "77"
+    );
+    assert_eq!(
+        debug(
+            "#macro M(P) #declare P = 9; #end #declare A = array[2]{1, 2}; M(A[1]) #debug str(A[1], 0, 0)"
+        ),
+        "9"
+    );
+    assert_eq!(
+        debug(
+            "#macro M(P) #declare P = P + 1; #debug str(P, 0, 0) #end #declare Q = 3; M(Q + 0) #debug str(Q, 0, 0)"
+        ),
+        "43"
+    );
+    assert_eq!(
+        debug(
+            "#macro M() #local X = 1; #declare X = 2; #debug str(X, 0, 0) #end M() #ifdef (X) #debug \"global\" #end"
+        ),
+        "2"
+    );
+    let inner = "#macro I() #declare L = 8; #end #macro O() #local L = 7; I() #debug str(L, 0, 0) #end O() #ifdef (L) #debug \"global\" #end";
+    assert_eq!(debug(inner), "8");
+}
+
+#[test]
+fn macros_are_tokens() {
+    assert_eq!(
+        values(
+            "#macro Three() 3 #end #macro Sum(A, B) (A + B) #end",
+            &["Three() + 1", "2 * Sum(1, Sum(2, 3))"]
+        ),
+        [4.0, 12.0]
+    );
+    let text = "#macro Open() sphere { 0, #end #macro Close() 1 } #end Open() Close() Open() 2 }";
+    let parsed = parse_with(&mut MemoryHost::new(), text);
+    assert_eq!(parsed.scene.unwrap().objects.0.len(), 2);
+    let factorial = "#macro F(N) #if (N < 2) 1 #else (N * F(N - 1)) #end #end";
+    assert_eq!(values(factorial, &["F(10)"]), [3_628_800.0]);
+    let deep = "#macro R(N) #if (N > 0) R(N - 1) #end #end R(5000)";
+    assert_eq!(debug(deep), "");
+}
+
+#[test]
+fn optional_parameters() {
+    let text = "#macro M(A, optional B) #ifdef (local.B) #debug str(A + B, 0, 0) #else #debug str(A, 0, 0) #end #end M(1) M(1, 2) M(1,)";
+    assert_eq!(debug(text), "131");
+}
+
+#[test]
+fn macros_of_vmd_and_ase_without_commas() {
+    let text = "#macro C(LOC, R COL) sphere { LOC, R pigment { color COL } } #end C(<1, 2, 3>, 0.5 rgb <1, 0, 0>) C(<1, 2, 3>0.5 <1, 0, 0>)";
+    let scene = parse_with(&mut MemoryHost::new(), text).scene.unwrap();
+    assert_eq!(scene.objects.0.len(), 2);
+    let [a, b] = [0, 1].map(|i| scene.objects.0[i].material.clone().unwrap());
+    assert_eq!(a, b);
+}
+
+#[test]
+fn locals_end_with_their_macro_and_file() {
+    assert_eq!(
+        debug("#macro M() #local A = 1; #end M() #ifdef (A) #debug \"leak\" #end"),
+        ""
+    );
+    let mut host = MemoryHost::new().with_file("a.inc", "#local A = 1; #declare B = A + 1;");
+    let text = "#include \"a.inc\" #ifdef (A) #debug \"leak\" #end #debug str(B, 0, 0)";
+    assert!(parse_with(&mut host, text).scene.is_some());
+    assert_eq!(host.text(strahl_sdl::Stream::Debug), "2");
+}
+
+#[test]
+fn arrays_dictionaries_and_tuples() {
+    let setup = "#declare A = array[2][3]{{1, 2, 3}, {4, 5, 6}}; #declare B = A; #declare B[1][2] = 60;
+        #declare G = array; #declare G[2] = 5; #declare D = dictionary { .One: 1, [\"Two\"]: <1, 2, 3> }; #declare D.Three = 3;
+        #declare (P, Q) = (1, 2); #declare (P, Q) = (Q, P); #declare N = array mixed [2]{ 1, array[2]{7, 8} };";
+    let list = [
+        "A[1][2]",
+        "B[1][2]",
+        "dimensions(A)",
+        "dimension_size(A, 2)",
+        "dimension_size(G, 1)",
+        "G[2]",
+        "D.One",
+        "D.Two.y",
+        "D[\"Three\"]",
+        "P",
+        "Q",
+        "N[1][1]",
+    ];
+    assert_eq!(
+        values(setup, &list),
+        [6.0, 60.0, 2.0, 3.0, 3.0, 5.0, 1.0, 2.0, 3.0, 2.0, 1.0, 8.0]
+    );
+    assert_eq!(
+        values(
+            "#declare A = array[2]; #declare A[0] = 1;",
+            &["defined(A[0])", "defined(A[1])", "defined(Z)"]
+        ),
+        [1.0, 0.0, 0.0]
+    );
+    assert_eq!(
+        debug("#declare A = 1; #undef A #ifdef (A) #debug \"still\" #end"),
+        ""
+    );
+}
+
+#[test]
+fn errors_name_the_place_and_the_way_there() {
+    let found = errors("#macro Ball(R)\n  sphere { 0, Radius }\n#end\nBall(1)\n");
+    assert_eq!(found.len(), 1);
+    let expected = "error: expected a number or vector, found the undeclared name `Radius`\n --> test.pov:2:15\n  |\n2 |   \
+                    sphere { 0, Radius }\n  |               ^^^^^^\n  = in macro `Ball`, called at test.pov:4:1\n  = help: did you mean `radius`?";
+    assert_eq!(found[0], expected);
+}
+
+#[test]
+fn several_errors_are_found_in_one_run() {
+    let text = "sphere { 0, }\nbox { 0, 1 }\nshpere { 0, 1 }\nplane { y, foo }\n#declare A = ;\nsphere { 0, 1 }\n#iff (1)\n";
+    let found = errors(text);
+    let lines: Vec<&str> = found
+        .iter()
+        .filter_map(|e| e.split("test.pov:").nth(1))
+        .collect();
+    let lines: Vec<&str> = lines.iter().filter_map(|l| l.split(':').next()).collect();
+    assert_eq!(lines, ["1", "3", "4", "5", "7"]);
+    assert!(found[1].contains("did you mean `sphere`?"));
+}
+
+#[test]
+fn an_error_in_a_loop_is_told_once() {
+    let found = errors("#for (I, 1, 100) sphere { 0, Nope } #end");
+    assert_eq!(found.len(), 1, "{found:#?}");
+    assert_eq!(
+        errors("object { #for (I, 1, 100) sphere { 0, Nope } #end }").len(),
+        1
+    );
+}
