@@ -39,17 +39,3 @@ pub trait ScalarField: Debug + Send + Sync {
         self.value(arguments)
     }
 }
-
-/// Where the noise of the `f_noise3d` family comes from.
-///
-/// The internal functions that need noise are given it when they are built.
-pub trait NoiseField: Debug + Send + Sync {
-    /// Solid noise in `0..=1` at a point, by one of POV-Ray's generators (1 original, 2 range-corrected, 3 Perlin; 0 is the
-    /// scene's default).
-    fn noise(&self, point: [f64; 3], generator: u8) -> f64;
-
-    /// An interval that contains the noise in a box.
-    fn bounds(&self, _point: [Bounds; 3], _generator: u8) -> Bounds {
-        Bounds::new(0.0, 1.0).with_nan(true)
-    }
-}

@@ -4,6 +4,7 @@
 //! * [`Graph`] builds a function of named parameters; [`Expr`] is a value in it.
 //! * [`Function`] is the compiled function, [`Workspace`] the memory its evaluations use.
 //! * [`Bounds`] is an interval that may contain NaN.
+//! * [`internal`] has the functions of POV-Ray's `functions.inc`.
 //! * [`ScalarField`] is what a function calls without knowing its formula: patterns, pigments, splines.
 //!
 //! A function means what POV-Ray 3.7's `function { }` means, measured with that program: comparisons are exact, anything but
@@ -19,6 +20,7 @@ mod error;
 mod field;
 mod function;
 mod graph;
+pub mod internal;
 pub mod limits;
 mod op;
 mod run;
@@ -26,7 +28,7 @@ mod tape;
 
 pub use bounds::Bounds;
 pub use error::FunctionError;
-pub use field::{NoiseField, ScalarField};
+pub use field::ScalarField;
 pub use function::{Function, Workspace};
 pub use graph::{Expr, Graph};
 pub use op::{BinaryOp, UnaryOp};

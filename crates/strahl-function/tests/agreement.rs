@@ -1,5 +1,7 @@
 //! All ways to evaluate a function agree: batches and gradients bit by bit with points, bounds by containing them.
 
+#![allow(clippy::unwrap_used, reason = "a test that unwraps fails as it should")]
+
 use proptest::prelude::*;
 use strahl_function::{BinaryOp, Bounds, Expr, Function, Graph, UnaryOp, Workspace};
 
@@ -80,7 +82,7 @@ fn build(steps: &[Step], constants: &[f64]) -> Function {
             g.unary(op, a)
         } else if let Some(&op) = BINARY.get((kind - UNARY.len()) / 2) {
             g.binary(op, a, b)
-        } else if kind % 2 == 0 {
+        } else if kind.is_multiple_of(2) {
             g.select(a, b, c, d)
         } else {
             // A short loop whose length and body depend on what there is.

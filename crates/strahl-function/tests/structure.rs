@@ -1,5 +1,7 @@
 //! Graphs: sharing, folding, calls, loops, limits and errors.
 
+#![allow(clippy::unwrap_used, reason = "a test that unwraps fails as it should")]
+
 use std::sync::Arc;
 use strahl_function::{
     Bounds, Expr, Function, FunctionError, Graph, ScalarField, Workspace, limits,

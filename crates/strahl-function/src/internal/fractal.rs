@@ -1,0 +1,231 @@
+//! Noise and the sums over its octaves: terrains of Musgrave's kind.
+//!
+//! The sums are those of Ebert, Musgrave et al., Texturing and Modeling (chapter 16: hetero terrain, ridged multifractal);
+//! how POV-Ray counts fractions of an octave and reads its parameters was measured.
+
+use super::{Formula, Internal};
+use crate::bounds::Bounds;
+use crate::field::ScalarField;
+use crate::graph::{Expr, Graph};
+use std::sync::Arc;
+use strahl_math::DVec3;
+use strahl_math::det;
+use strahl_math::noise::{NoiseGenerator, noise};
+
+pub(super) const TABLE: &[Internal] = &[
+    row("f_noise3d", 0, Kind::Noise),
+    row("f_snoise3d", 0, Kind::Signed),
+    row("f_noise_generator", 1, Kind::Generator),
+    row("f_hetero_mf", 6, Kind::Hetero),
+    row("f_ridge", 6, Kind::Ridge),
+    row("f_ridged_mf", 6, Kind::Ridged),
+];
+
+const fn row(name: &'static str, parameters: usize, kind: Kind) -> Internal {
+    Internal {
+        name,
+        parameters,
+        formula: Formula::Noise(kind),
+    }
+}
+
+/// Octaves beyond this number are left out: their frequencies have left the range of the lattice long before.
+const OCTAVES: f64 = 256.0;
+
+/// Which function of noise.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Kind {
+    /// Noise of the scene's generator.
+    Noise,
+    /// The same, from -1 to 1.
+    Signed,
+    /// Noise of the generator that is the fourth argument.
+    Generator,
+    /// A terrain that is smooth where it is low.
+    Hetero,
+    /// A mean over octaves of how far noise is from the ridge.
+    Ridge,
+    /// Ridges that are rough where they are high.
+    Ridged,
+}
+
+/// A function of noise as a field, whose arguments are the point and the parameters.
+#[derive(Debug)]
+struct NoiseFunction {
+    kind: Kind,
+    generator: NoiseGenerator,
+}
+
+pub(super) fn build(
+    graph: &mut Graph,
+    kind: Kind,
+    generator: NoiseGenerator,
+    arguments: &[Expr],
+) -> Expr {
+    let field: Arc<dyn ScalarField> = Arc::new(NoiseFunction { kind, generator });
+    graph.field(&field, arguments)
+}
+
+/// POV-Ray takes any number but 2 and 3 for the first generator.
+fn numbered(number: f64) -> NoiseGenerator {
+    match number.trunc() {
+        2.0 => NoiseGenerator::RangeCorrected,
+        3.0 => NoiseGenerator::Perlin,
+        _ => NoiseGenerator::Original,
+    }
+}
+
+impl ScalarField for NoiseFunction {
+    fn arity(&self) -> usize {
+        match self.kind {
+            Kind::Noise | Kind::Signed => 3,
+            Kind::Generator => 4,
+            Kind::Hetero | Kind::Ridge | Kind::Ridged => 9,
+        }
+    }
+
+    fn value(&self, arguments: &[f64]) -> f64 {
+        let (&[x, y, z, ref rest @ ..], true) = (arguments, arguments.len() == self.arity()) else {
+            return f64::NAN;
+        };
+        let p = DVec3::new(x, y, z);
+        match (self.kind, rest) {
+            (Kind::Noise, _) => noise(p, self.generator),
+            (Kind::Signed, _) => 2.0 * noise(p, self.generator) - 1.0,
+            (Kind::Generator, &[number]) => noise(p, numbered(number)),
+            (Kind::Hetero, rest) => Octaves::new(p, rest).map_or(f64::NAN, |o| o.hetero()),
+            (Kind::Ridge, rest) => ridge(p, rest),
+            (Kind::Ridged, rest) => Octaves::new(p, rest).map_or(f64::NAN, |o| o.ridged()),
+            (Kind::Generator, _) => f64::NAN,
+        }
+    }
+
+    fn bounds(&self, arguments: &[Bounds]) -> Bounds {
+        // Noise has no value where a coordinate is not finite.
+        let finite = |b: &Bounds| b.min.is_finite() && b.max.is_finite() && !b.nan;
+        let nan = !arguments.iter().take(3).all(finite);
+        match self.kind {
+            Kind::Noise | Kind::Generator => Bounds::new(0.0, 1.0).with_nan(nan),
+            Kind::Signed => Bounds::new(-1.0, 1.0).with_nan(nan),
+            Kind::Hetero | Kind::Ridge | Kind::Ridged => Bounds::UNKNOWN,
+        }
+    }
+}
+
+/// The parameters of a sum over octaves.
+struct Octaves {
+    p: DVec3,
+    /// How fast amplitudes fall with frequency.
+    h: f64,
+    lacunarity: f64,
+    octaves: f64,
+    offset: f64,
+    /// `T` of the hetero terrain, the gain of the ridges.
+    last: f64,
+    generator: NoiseGenerator,
+}
+
+impl Octaves {
+    fn new(p: DVec3, rest: &[f64]) -> Option<Self> {
+        let &[h, lacunarity, octaves, offset, last, generator] = rest else {
+            return None;
+        };
+        Some(Self {
+            p,
+            h,
+            lacunarity,
+            octaves: if octaves < OCTAVES { octaves } else { OCTAVES },
+            offset,
+            last,
+            generator: numbered(generator),
+        })
+    }
+
+    /// Noise from -1 to 1.
+    fn signed(&self, p: DVec3) -> f64 {
+        2.0 * noise(p, self.generator) - 1.0
+    }
+
+    fn hetero(&self) -> f64 {
+        let mut p = self.p;
+        let mut value = self.offset + self.signed(p);
+        let mut frequency = self.lacunarity;
+        p *= self.lacunarity;
+        let mut octave = 1.0;
+        while octave < self.octaves {
+            let increment = (self.signed(p) + self.offset) * det::pow(frequency, -self.h);
+            // The height takes part as often as the whole part of T says.
+            value += increment * det::pow(value, self.last.trunc());
+            frequency *= self.lacunarity;
+            p *= self.lacunarity;
+            octave += 1.0;
+        }
+        // A fraction of an octave adds the next one in part.
+        let rest = self.octaves - self.octaves.trunc();
+        if rest != 0.0 {
+            let increment = (self.signed(p) + self.offset) * det::pow(frequency, -self.h);
+            value += rest * increment * value;
+        }
+        value
+    }
+
+    /// POV-Ray itself keeps the weights of the octaves from the first call in a scene, so that a second set of parameters
+    /// gets wrong ones; this uses those of the parameters at hand.
+    fn ridged(&self) -> f64 {
+        let ridge = |p: DVec3| {
+            let height = self.offset - self.signed(p).abs();
+            height * height
+        };
+        let mut p = self.p;
+        let mut signal = ridge(p);
+        let mut value = signal;
+        let mut frequency = self.lacunarity;
+        let mut octave = 1.0;
+        while octave < self.octaves {
+            p *= self.lacunarity;
+            let weight = signal * self.last;
+            let weight = if weight > 1.0 {
+                1.0
+            } else if weight > 0.0 {
+                weight
+            } else {
+                0.0
+            };
+            signal = ridge(p) * weight;
+            value += signal * det::pow(frequency, -self.h);
+            frequency *= self.lacunarity;
+            octave += 1.0;
+        }
+        value
+    }
+}
+
+/// The mean of octaves with weights `omega` to the power of their number, each the distance of the noise from `ridge`
+/// less `offset`, both scaled to at most one.
+fn ridge(mut p: DVec3, rest: &[f64]) -> f64 {
+    let &[lambda, octaves, omega, offset, ridge, generator] = rest else {
+        return f64::NAN;
+    };
+    let generator = numbered(generator);
+    let larger = |a: f64| if a > 1.0 - a { a } else { 1.0 - a };
+    let octaves = if octaves < OCTAVES { octaves } else { OCTAVES };
+    // The first octave counts in full, a fraction adds the next one in part.
+    let whole = if octaves >= 1.0 { octaves.trunc() } else { 1.0 };
+    let rest = octaves - octaves.trunc();
+    let (mut sum, mut total, mut weight) = (0.0, 0.0, 1.0);
+    let mut octave = 0.0;
+    while octave < whole || rest > 0.0 && octave == whole {
+        let share = if octave < whole {
+            weight
+        } else {
+            weight * rest
+        };
+        let distance = (noise(p, generator) - ridge).abs() / larger(ridge);
+        sum += share * ((distance - offset) / larger(offset));
+        total += share;
+        weight *= omega;
+        p *= lambda;
+        octave += 1.0;
+    }
+    sum / total
+}
