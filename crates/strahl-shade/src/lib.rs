@@ -3,16 +3,21 @@
 //! Materials don't know shapes: everything here works on directions, normals and numbers.
 
 mod color;
+mod color_ft;
 mod fresnel;
+pub mod image_map;
 pub mod image_texture;
 mod light;
 mod material;
+pub mod patterns;
 mod pbr;
+pub mod pigment;
 mod reflectance;
 mod refraction;
 pub mod srgb;
 
 pub use color::Color;
+pub use color_ft::ColorFt;
 pub use fresnel::fresnel_dielectric;
 pub use light::{Falloff, Light, LightKind, LightSample};
 pub use material::{Finish, Material, MaterialId, MaterialPoint, Sides};

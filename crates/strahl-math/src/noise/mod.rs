@@ -106,17 +106,47 @@ impl Turbulence {
         sum
     }
 
-    /// The sum of `omega^i noise(lambda^i p)` over the octaves `i`.
+    /// The scalar sum of `omega^i n_i(lambda^i p)` over the octaves `i`, as marble and agate use it.
+    ///
+    /// `n_i` is [`noise`] with [`NoiseGenerator::Original`], and `2 noise - 1/2` with the others; of the latter only the
+    /// first octave is cut off at 0 and 1 (measured).
     pub fn scalar(&self, p: DVec3, generator: NoiseGenerator) -> f64 {
-        let (mut frequency, mut strength) = (1.0, 1.0);
-        let mut sum = 0.0;
-        for _ in 0..self.octaves {
-            sum += noise(p * frequency, generator) * strength;
+        let (mut frequency, mut strength) = (self.lambda, self.omega);
+        let mut sum = if self.octaves > 0 {
+            pattern_noise(p, generator)
+        } else {
+            0.0
+        };
+        for _ in 1..self.octaves {
+            sum += stretched(p * frequency, generator) * strength;
             frequency *= self.lambda;
             strength *= self.omega;
         }
         sum
     }
+}
+
+/// Noise as granite, wrinkles and turbulence want it: with [`NoiseGenerator::Original`] the [`noise`] itself, else
+/// `2 noise - 1/2`, cut off at 0 and 1, which has about the same distribution.
+pub fn pattern_noise(p: DVec3, generator: NoiseGenerator) -> f64 {
+    unit(stretched(p, generator))
+}
+
+fn stretched(p: DVec3, generator: NoiseGenerator) -> f64 {
+    let n = noise(p, generator);
+    if generator == NoiseGenerator::Original {
+        n
+    } else {
+        2.0 * n - 0.5
+    }
+}
+
+/// The hash of a lattice cell, `0..4096`, by which cells are told apart in patterns that need a random number per cell.
+///
+/// It is the hash of the value-gradient noise without that noise's shift of the lattice; it repeats every 4096 cells.
+pub fn lattice_hash(cell: [i64; 3]) -> usize {
+    let [i, j, k] = cell.map(|c| (c & 4095) as usize);
+    usize::from(hash(usize::from(hash(usize::from(hash(i)) ^ j)) ^ k))
 }
 
 /// `x` cut off at 0 and 1.

@@ -1,0 +1,172 @@
+//! Pictures wrapped around things: `image_map`, `image_pattern`, `bump_map` and `material_map`.
+
+use std::sync::Arc;
+
+use strahl_math::{DVec2, DVec3, det};
+
+use crate::image_texture::TextureImage;
+use crate::{Color, ColorFt};
+
+/// How the unit square of a picture is laid around space (`map_type`).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum MapType {
+    /// On the x-y plane, between the corners (0, 0) and (1, 1).
+    #[default]
+    Planar,
+    /// Around the y axis, from pole to pole of any sphere around the origin.
+    Spherical,
+    /// Around the y axis, between the heights 0 and 1.
+    Cylindrical,
+    /// Around the circle of radius 1 around the y axis.
+    Toroidal,
+}
+
+impl MapType {
+    /// The map type with POV-Ray's number 0, 1, 2 or 5.
+    pub const fn from_number(number: u32) -> Option<Self> {
+        match number {
+            0 => Some(Self::Planar),
+            1 => Some(Self::Spherical),
+            2 => Some(Self::Cylindrical),
+            5 => Some(Self::Toroidal),
+            _ => None,
+        }
+    }
+
+    /// The place in the picture, u to the right and v upwards, for a point.
+    fn place(self, p: DVec3) -> DVec2 {
+        use std::f64::consts::{PI, TAU};
+        let turn = det::atan2(p.z, p.x) / TAU;
+        let u = if turn < 0.0 { turn + 1.0 } else { turn };
+        let around = (p.x * p.x + p.z * p.z).sqrt();
+        match self {
+            Self::Planar => DVec2::new(p.x, p.y),
+            Self::Spherical => DVec2::new(u, 0.5 + det::atan2(p.y, around) / PI),
+            Self::Cylindrical => DVec2::new(u, p.y),
+            Self::Toroidal => DVec2::new(u, 0.5 + det::atan2(p.y, around - 1.0) / TAU),
+        }
+    }
+}
+
+/// How texels are combined (`interpolate`).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Interpolation {
+    /// The texel the point lies in (no interpolation).
+    #[default]
+    Nearest,
+    /// The four texels around, weighted linearly (`interpolate 2`).
+    Bilinear,
+    /// The four texels around, weighted by the inverse square of their distance (`interpolate 4`).
+    NormalizedDistance,
+}
+
+/// A picture and how it lies in space.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ImageMap {
+    /// The picture.
+    pub image: Arc<TextureImage>,
+    /// How it is laid.
+    pub map_type: MapType,
+    /// How texels are combined.
+    pub interpolation: Interpolation,
+    /// Whether there is only one copy (planar and cylindrical maps).
+    pub once: bool,
+    /// `filter all`: added to every texel.
+    pub filter_all: f64,
+    /// `transmit all`: added to every texel.
+    pub transmit_all: f64,
+    /// Whether the alpha channel is the value of [`ImageMap::gray`] (`use_alpha`).
+    pub use_alpha: bool,
+}
+
+impl ImageMap {
+    /// The picture on the x-y plane, repeated, not interpolated.
+    pub fn new(image: Arc<TextureImage>) -> Self {
+        Self {
+            image,
+            map_type: MapType::Planar,
+            interpolation: Interpolation::Nearest,
+            once: false,
+            filter_all: 0.0,
+            transmit_all: 0.0,
+            use_alpha: false,
+        }
+    }
+
+    /// The colour at a point; `None` beside the one copy of a picture that is laid `once`.
+    pub fn color(&self, p: DVec3) -> Option<ColorFt> {
+        let [r, g, b, a] = self.sample(p)?;
+        Some(ColorFt {
+            rgb: Color::new(r, g, b),
+            filter: self.filter_all,
+            transmit: self.transmit_all + (1.0 - a),
+        })
+    }
+
+    /// The grey value (or alpha) at a point, 0 beside the one copy of a picture that is laid `once`.
+    pub fn gray(&self, p: DVec3) -> f64 {
+        match self.sample(p) {
+            None => 0.0,
+            Some([_, _, _, a]) if self.use_alpha => a,
+            // A transparent texel counts as lying on black.
+            Some([r, g, b, a]) => crate::color_ft::gray(Color::new(r, g, b)) * a,
+        }
+    }
+
+    /// The size of a texel in the unit square.
+    pub fn texel_size(&self) -> DVec2 {
+        DVec2::new(
+            1.0 / f64::from(self.image.width()),
+            1.0 / f64::from(self.image.height()),
+        )
+    }
+
+    fn sample(&self, p: DVec3) -> Option<[f64; 4]> {
+        let place = self.map_type.place(p);
+        let inside = |x: f64| (0.0..1.0).contains(&x);
+        let beside = match self.map_type {
+            MapType::Planar => !inside(place.x) || !inside(place.y),
+            MapType::Cylindrical => !inside(place.y),
+            MapType::Spherical | MapType::Toroidal => false,
+        };
+        if self.once && beside {
+            return None;
+        }
+        let (width, height) = (self.image.width(), self.image.height());
+        let fraction = place - place.floor();
+        let x = fraction.x * f64::from(width);
+        let y = fraction.y * f64::from(height);
+        // Row 0 of the picture is its top, v points up.
+        let texel = |column: f64, row: f64| {
+            let column = (column as i64).rem_euclid(i64::from(width)) as u32;
+            let row = (row as i64).rem_euclid(i64::from(height)) as u32;
+            self.image.fetch(column, height - 1 - row).map(f64::from)
+        };
+        if self.interpolation == Interpolation::Nearest {
+            return Some(texel(x.floor(), y.floor()));
+        }
+        let (x, y) = (x - 0.5, y - 0.5);
+        let (left, low) = (x.floor(), y.floor());
+        let (s, t) = (x - left, y - low);
+        let mut sum = [0.0; 4];
+        let mut total = 0.0;
+        for (i, j) in [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)] {
+            let texel = texel(left + i, low + j);
+            let (ds, dt) = (s - i, t - j);
+            let weight = if self.interpolation == Interpolation::Bilinear {
+                (1.0 - ds.abs()) * (1.0 - dt.abs())
+            } else {
+                let squared = ds * ds + dt * dt;
+                if squared == 0.0 {
+                    return Some(texel);
+                }
+                1.0 / squared
+            };
+            total += weight;
+            for (sum, channel) in sum.iter_mut().zip(texel) {
+                *sum += weight * channel;
+            }
+        }
+        Some(sum.map(|channel| channel / total))
+    }
+}

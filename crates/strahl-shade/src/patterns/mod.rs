@@ -1,0 +1,322 @@
+//! Patterns: functions from a point to a number, by which colours, normals and whole textures are chosen.
+//!
+//! They are POV-Ray's, and give its values: every pattern here was compared with `function { pattern { ... } }` of
+//! POV-Ray 3.7 (the tables of `tests.rs`).
+//!
+//! A pattern is evaluated in three steps. The point is moved by the warps and transformations, last written first, and then
+//! by turbulence; the pattern's formula gives a raw value; [`Modifiers::shape`] repeats it by frequency and phase and
+//! bends it by a wave form. Block patterns (checker, brick, ...) give the number of a cell instead.
+
+mod blocks;
+mod crackle;
+mod fractal;
+mod modifiers;
+mod noisy;
+mod plain;
+mod random;
+mod warp;
+mod water;
+
+use std::sync::Arc;
+
+use strahl_function::ScalarField;
+use strahl_math::{DVec2, DVec3};
+
+pub use crackle::{Crackle, CrackleMetric};
+pub use fractal::{Exterior, Fractal, FractalKind, Interior as FractalInterior};
+pub use modifiers::{Modifiers, Wave};
+pub use plain::{Altitude, SlopeReference};
+pub use warp::{BlackHole, Mapping, Warp};
+
+use crate::image_map::ImageMap;
+use crate::pigment::Pigment;
+
+/// Where a texture is asked for its value.
+///
+/// All vectors are in the space of `position`; when a texture, pigment or pattern has a transformation of its own,
+/// only the position is carried into its space, as in POV-Ray.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TexturePoint {
+    /// The place on the surface, in the space of the texture.
+    pub position: DVec3,
+    /// Unit normal of the surface, turned towards the viewer.
+    pub n_geom: DVec3,
+    /// Unit normal for shading (smooth triangles interpolate it), turned towards the viewer.
+    pub n_shade: DVec3,
+    /// Surface coordinates, for `uv_mapping`.
+    pub uv: DVec2,
+    /// Unit direction of the ray that meets the surface, pointing away from the viewer.
+    pub direction: DVec3,
+}
+
+impl TexturePoint {
+    /// A point of space without a surface: the normal is `y`, the direction `-y`.
+    pub fn in_space(position: DVec3) -> Self {
+        Self {
+            position,
+            n_geom: DVec3::Y,
+            n_shade: DVec3::Y,
+            uv: DVec2::ZERO,
+            direction: DVec3::NEG_Y,
+        }
+    }
+
+    /// The same with another position.
+    #[must_use]
+    pub fn at(&self, position: DVec3) -> Self {
+        Self { position, ..*self }
+    }
+}
+
+/// Something with an inside, for the object pattern. Implemented by whoever knows shapes.
+pub trait Inside: std::fmt::Debug + Send + Sync {
+    /// Whether the point lies inside.
+    fn contains(&self, p: DVec3) -> bool;
+}
+
+/// The patterns: name, parameters and formula. THE table.
+#[derive(Clone, Debug)]
+pub enum Pattern {
+    /// Bands of marble-like stone with a turbulence of its own, along z.
+    Agate {
+        /// Strength of the built-in turbulence (`agate_turb`), 1 by default.
+        turbulence: f64,
+    },
+    /// From 1/2 where the ray grazes the surface to 1 where it meets it head on.
+    Aoi,
+    /// `1 - max(|x|, |y|, |z|)`, not below zero.
+    Boxed,
+    /// Smooth noise; also bumps and spotted.
+    Bozo,
+    /// A wall of bricks: block 0 is the mortar, block 1 the bricks.
+    Brick {
+        /// Size of a brick with its mortar, `<8, 3, 4.5>` by default.
+        size: DVec3,
+        /// Thickness of the mortar, 1/2 by default.
+        mortar: f64,
+    },
+    /// A random number per unit cube.
+    Cells,
+    /// Unit cubes in two colours.
+    Checker,
+    /// Distances to random points, one per unit cube.
+    Crackle(Crackle),
+    /// Six pyramids around the origin: blocks +x, +y, +z, -x, -y, -z.
+    Cubic,
+    /// `1 - sqrt(x² + z²)`, not below zero.
+    Cylindrical,
+    /// The cube of noise.
+    Dents,
+    /// A Mandelbrot, Julia or magnet set in the x-y plane.
+    Fractal(Fractal),
+    /// Any function of x, y and z.
+    Function(Arc<dyn ScalarField>),
+    /// The distance along a direction.
+    Gradient(DVec3),
+    /// Six octaves of noise with creases.
+    Granite,
+    /// Hexagonal rods along y, of side 1, in three colours.
+    Hexagon,
+    /// The grey value of a picture.
+    Image(Arc<ImageMap>),
+    /// `((sin x + sin y + sin z) / 3)²`.
+    Leopard,
+    /// `x`, stirred by turbulence.
+    Marble,
+    /// Block 0 outside, block 1 inside of an object.
+    Object(Arc<dyn Inside>),
+    /// The distance from the origin, modulo 1.
+    Onion,
+    /// The grey value of a pigment.
+    Pigment(Arc<Pigment>),
+    /// `1 - |y|`, not below zero.
+    Planar,
+    /// Cushions on the unit cubes, with POV-Ray's `control0` and `control1`.
+    Quilted {
+        /// Slope of the profile near the middle of a cushion.
+        control0: f64,
+        /// Slope of the profile near the seam.
+        control1: f64,
+    },
+    /// The angle around the y axis.
+    Radial,
+    /// Ripples from ten sources, all of the same wavelength.
+    Ripples {
+        /// Number of sources (`number_of_waves`), 10 by default.
+        sources: u32,
+    },
+    /// How steep the surface is.
+    Slope {
+        /// What the normal is compared with.
+        reference: SlopeReference,
+        /// The slopes that become 0 and 1; equal values mean 0 and 1.
+        range: [f64; 2],
+        /// A gradient mixed in.
+        altitude: Option<Altitude>,
+    },
+    /// `1 - sqrt(x² + y² + z²)`, not below zero.
+    Spherical,
+    /// A spiral around the z axis with this number of arms.
+    Spiral1(f64),
+    /// Two spirals laid over each other.
+    Spiral2(f64),
+    /// Square rods along y in four colours.
+    Square,
+    /// Triangular rods along y, of side 1, in six colours.
+    Triangular,
+    /// Waves from ten sources, each of its own wavelength.
+    Waves {
+        /// Number of sources (`number_of_waves`), 10 by default.
+        sources: u32,
+    },
+    /// Rings around the z axis, stirred by turbulence.
+    Wood,
+    /// Ten octaves of noise.
+    Wrinkles,
+}
+
+impl Pattern {
+    /// The number of blocks of a block pattern; `None` for patterns with continuous values.
+    pub fn block_count(&self) -> Option<usize> {
+        match self {
+            Self::Brick { .. } | Self::Checker | Self::Object(_) => Some(2),
+            Self::Hexagon => Some(3),
+            Self::Square => Some(4),
+            Self::Cubic | Self::Triangular => Some(6),
+            _ => None,
+        }
+    }
+
+    /// The wave form the pattern has unless one is written.
+    pub fn default_wave(&self) -> Wave {
+        match self {
+            Self::Marble | Self::Spiral1(_) | Self::Spiral2(_) | Self::Wood => Wave::Triangle,
+            _ => Wave::Ramp,
+        }
+    }
+
+    /// Whether turbulence moves the point before the formula; marble and wood have their own use for it.
+    fn is_displaced(&self) -> bool {
+        !matches!(self, Self::Marble | Self::Wood)
+    }
+
+    /// The number of the block at `p`, which is already warped; 0 for patterns without blocks.
+    fn block(&self, p: DVec3) -> usize {
+        match self {
+            Self::Brick { size, mortar } => blocks::brick(p, *size, *mortar),
+            Self::Checker => blocks::checker(p),
+            Self::Cubic => blocks::cubic(p),
+            Self::Hexagon => blocks::hexagon(p),
+            Self::Object(object) => usize::from(object.contains(p)),
+            Self::Square => blocks::square(p),
+            Self::Triangular => blocks::triangular(p),
+            _ => 0,
+        }
+    }
+
+    /// The raw value at `p`, the moved position of `point`.
+    fn raw(&self, p: DVec3, point: &TexturePoint, modifiers: &Modifiers) -> f64 {
+        let noise = modifiers.noise;
+        match self {
+            Self::Agate { turbulence } => noisy::agate(p, *turbulence, modifiers),
+            Self::Aoi => plain::aoi(point),
+            Self::Boxed => plain::boxed(p),
+            Self::Bozo => strahl_math::noise::noise(p, noise),
+            Self::Cells => crackle::cells(p),
+            Self::Crackle(crackle) => crackle.value(p, noise),
+            Self::Cylindrical => plain::cylindrical(p),
+            Self::Dents => noisy::dents(p, noise),
+            Self::Fractal(fractal) => fractal.value(DVec2::new(p.x, p.y)),
+            Self::Function(function) => function.value(&p.to_array()),
+            Self::Gradient(direction) => plain::gradient(p, *direction),
+            Self::Granite => noisy::granite(p, noise),
+            Self::Image(image) => image.gray(p),
+            Self::Leopard => plain::leopard(p),
+            Self::Marble => noisy::marble(p, modifiers),
+            Self::Onion => plain::onion(p),
+            Self::Pigment(pigment) => pigment.color_at(&point.at(p)).gray(),
+            Self::Planar => plain::planar(p),
+            Self::Quilted { control0, control1 } => plain::quilted(p, *control0, *control1),
+            Self::Radial => plain::radial(p),
+            Self::Ripples { sources } => water::ripples(p, *sources, modifiers),
+            Self::Slope {
+                reference,
+                range,
+                altitude,
+            } => plain::slope(p, point, reference, *range, altitude.as_ref()),
+            Self::Spherical => plain::spherical(p),
+            Self::Spiral1(arms) => plain::spiral1(p, *arms, modifiers),
+            Self::Spiral2(arms) => plain::spiral2(p, *arms, modifiers),
+            Self::Waves { sources } => water::waves(p, *sources, modifiers),
+            Self::Wood => noisy::wood(p, modifiers),
+            Self::Wrinkles => noisy::wrinkles(p, noise),
+            Self::Brick { .. }
+            | Self::Checker
+            | Self::Cubic
+            | Self::Hexagon
+            | Self::Object(_)
+            | Self::Square
+            | Self::Triangular => self.block(p) as f64,
+        }
+    }
+}
+
+/// A pattern with its modifiers: what stands in a pigment, normal or texture statement.
+#[derive(Clone, Debug)]
+pub struct PatternField {
+    /// The pattern.
+    pub pattern: Pattern,
+    /// Its modifiers.
+    pub modifiers: Modifiers,
+}
+
+impl From<Pattern> for PatternField {
+    /// The pattern without modifiers.
+    fn from(pattern: Pattern) -> Self {
+        Self {
+            pattern,
+            modifiers: Modifiers::default(),
+        }
+    }
+}
+
+impl PatternField {
+    /// The value at a point, in `0..=1.00001`: what lies beyond is repeated into it by [`Modifiers::shape`].
+    pub fn value(&self, point: &TexturePoint) -> f64 {
+        let raw = self.raw(point);
+        let wave = self
+            .modifiers
+            .wave
+            .unwrap_or_else(|| self.pattern.default_wave());
+        self.modifiers.shape(raw, wave)
+    }
+
+    /// The pattern's formula at the moved point, without frequency, phase and wave form.
+    pub fn raw(&self, point: &TexturePoint) -> f64 {
+        self.pattern
+            .raw(self.moved(point.position), point, &self.modifiers)
+    }
+
+    /// The number of the block at a point, below [`Pattern::block_count`]; 0 for patterns without blocks.
+    pub fn block(&self, point: &TexturePoint) -> usize {
+        self.pattern.block(self.moved(point.position))
+    }
+
+    /// The position after warps and transformations.
+    pub fn transformed(&self, position: DVec3) -> DVec3 {
+        self.modifiers.warped(position)
+    }
+
+    /// The position after warps, transformations and turbulence.
+    pub fn moved(&self, position: DVec3) -> DVec3 {
+        let p = self.modifiers.warped(position);
+        if self.pattern.is_displaced() {
+            self.modifiers.displaced(p)
+        } else {
+            p
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,103 @@
+use strahl_math::noise::{NoiseGenerator, Turbulence};
+use strahl_math::{DVec3, det};
+
+use super::Warp;
+
+/// How the value of a pattern runs through `0..=1` over one period.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Wave {
+    /// Straight up, then a jump down.
+    Ramp,
+    /// Straight up and down again.
+    Triangle,
+    /// `(1 + sin 2πx) / 2`.
+    Sine,
+    /// `|sin πx|`.
+    Scallop,
+    /// `3x² - 2x³`.
+    Cubic,
+    /// `x` to this power.
+    Poly(f64),
+}
+
+impl Wave {
+    /// The wave form at `x` in `0..=1`.
+    pub fn apply(self, x: f64) -> f64 {
+        use std::f64::consts::{PI, TAU};
+        match self {
+            Self::Ramp => x,
+            Self::Triangle => triangle(x),
+            Self::Sine => 0.5 * (1.0 + det::sin(TAU * x)),
+            Self::Scallop => det::sin(PI * x).abs(),
+            Self::Cubic => x * x * (3.0 - 2.0 * x),
+            Self::Poly(exponent) => det::pow(x, exponent),
+        }
+    }
+}
+
+/// Up from 0 to 1 over the first half of a period of 1, and down again over the second.
+pub(super) fn triangle(x: f64) -> f64 {
+    let x = x - x.floor();
+    if x < 0.5 { 2.0 * x } else { 2.0 - 2.0 * x }
+}
+
+/// What changes a pattern without changing its kind.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Modifiers {
+    /// Warps and transformations in the order they are written; the last is applied to the point first.
+    pub warps: Vec<Warp>,
+    /// How far turbulence moves the point along each axis; zero is no turbulence.
+    pub turbulence: DVec3,
+    /// The octaves of `turbulence`, and of the patterns that have a turbulence built in.
+    pub octaves: Turbulence,
+    /// How often the map is run through over one period of the pattern.
+    pub frequency: f64,
+    /// What the value is shifted by after multiplication with `frequency`.
+    pub phase: f64,
+    /// The wave form; `None` takes the pattern's.
+    pub wave: Option<Wave>,
+    /// The noise used by the pattern. Turbulence always uses the same vector noise.
+    pub noise: NoiseGenerator,
+}
+
+impl Default for Modifiers {
+    /// None of them, and POV-Ray's default of six octaves.
+    fn default() -> Self {
+        Self {
+            warps: Vec::new(),
+            turbulence: DVec3::ZERO,
+            octaves: Turbulence::default(),
+            frequency: 1.0,
+            phase: 0.0,
+            wave: None,
+            noise: NoiseGenerator::default(),
+        }
+    }
+}
+
+impl Modifiers {
+    /// The value that a map is looked up with: `value · frequency + phase`, repeated with period 1, bent by the wave form.
+    ///
+    /// The period is 1.00001, so that a value of exactly 1 doesn't become 0, but a negative remainder is raised by 1:
+    /// POV-Ray does so, and values of far-off places therefore differ by 1e-5 from those of a period of 1.
+    pub fn shape(&self, value: f64, wave: Wave) -> f64 {
+        const PERIOD: f64 = 1.00001;
+        let x = (value * self.frequency + self.phase) % PERIOD;
+        let x = if x < 0.0 { x + 1.0 } else { x };
+        wave.apply(x)
+    }
+
+    /// The point after the warps and transformations.
+    pub(super) fn warped(&self, p: DVec3) -> DVec3 {
+        self.warps.iter().rev().fold(p, |p, warp| warp.apply(p))
+    }
+
+    /// The point after turbulence.
+    pub(super) fn displaced(&self, p: DVec3) -> DVec3 {
+        if self.turbulence == DVec3::ZERO {
+            p
+        } else {
+            p + self.turbulence * self.octaves.vector(p)
+        }
+    }
+}

@@ -1,0 +1,62 @@
+//! Patterns made of noise.
+
+use strahl_math::noise::{NoiseGenerator, noise, pattern_noise};
+use strahl_math::{DVec3, det};
+
+use super::Modifiers;
+
+/// `sin 2πx`.
+pub(super) fn cycloidal(x: f64) -> f64 {
+    det::sin(std::f64::consts::TAU * x)
+}
+
+pub(super) fn agate(p: DVec3, strength: f64, modifiers: &Modifiers) -> f64 {
+    let stirred = strength * modifiers.octaves.scalar(p, modifiers.noise);
+    let wave = 0.5 * (cycloidal(1.3 * stirred + 1.1 * p.z) + 1.0);
+    det::pow(wave.clamp(0.0, 1.0), 0.77)
+}
+
+pub(super) fn dents(p: DVec3, generator: NoiseGenerator) -> f64 {
+    let n = noise(p, generator);
+    n * n * n
+}
+
+pub(super) fn granite(p: DVec3, generator: NoiseGenerator) -> f64 {
+    let mut frequency = 1.0;
+    let mut sum = 0.0;
+    for _ in 0..6 {
+        sum += (0.5 - pattern_noise(p * (4.0 * frequency), generator)).abs() / frequency;
+        frequency *= 2.0;
+    }
+    sum
+}
+
+pub(super) fn marble(p: DVec3, modifiers: &Modifiers) -> f64 {
+    let strength = modifiers.turbulence.x;
+    if strength == 0.0 {
+        p.x
+    } else {
+        p.x + strength * modifiers.octaves.scalar(p, modifiers.noise)
+    }
+}
+
+pub(super) fn wood(p: DVec3, modifiers: &Modifiers) -> f64 {
+    let amount = modifiers.turbulence;
+    if amount == DVec3::ZERO {
+        return (p.x * p.x + p.y * p.y).sqrt();
+    }
+    let t = modifiers.octaves.vector(p);
+    let x = p.x + cycloidal((p.x + t.x) * amount.x);
+    let y = p.y + cycloidal((p.y + t.y) * amount.y);
+    (x * x + y * y).sqrt()
+}
+
+pub(super) fn wrinkles(p: DVec3, generator: NoiseGenerator) -> f64 {
+    let mut frequency = 1.0;
+    let mut sum = 0.0;
+    for _ in 0..10 {
+        sum += pattern_noise(p * frequency, generator) / frequency;
+        frequency *= 2.0;
+    }
+    0.5 * sum
+}

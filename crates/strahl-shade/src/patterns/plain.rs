@@ -1,0 +1,149 @@
+//! Patterns that are a plain formula.
+
+use strahl_math::{DVec3, det};
+
+use super::modifiers::triangle;
+use super::{Modifiers, TexturePoint};
+
+/// 1 at zero, falling to 0 at distance 1.
+fn fading(distance: f64) -> f64 {
+    if distance < 1.0 { 1.0 - distance } else { 0.0 }
+}
+
+pub(super) fn boxed(p: DVec3) -> f64 {
+    fading(p.abs().max_element())
+}
+
+pub(super) fn cylindrical(p: DVec3) -> f64 {
+    fading((p.x * p.x + p.z * p.z).sqrt())
+}
+
+pub(super) fn planar(p: DVec3) -> f64 {
+    fading(p.y.abs())
+}
+
+pub(super) fn spherical(p: DVec3) -> f64 {
+    fading(p.length())
+}
+
+/// Values above 1 are taken modulo 1 here, exactly; [`Modifiers::shape`] deals with the rest.
+pub(super) fn gradient(p: DVec3, direction: DVec3) -> f64 {
+    let x = p.dot(direction.normalize_or_zero());
+    if x > 1.0 { x % 1.0 } else { x }
+}
+
+pub(super) fn leopard(p: DVec3) -> f64 {
+    let s = (det::sin(p.x) + det::sin(p.y) + det::sin(p.z)) / 3.0;
+    s * s
+}
+
+pub(super) fn onion(p: DVec3) -> f64 {
+    p.length() % 1.0
+}
+
+/// The angle around the y axis in turns, `1/4..=5/4`.
+pub(super) fn radial(p: DVec3) -> f64 {
+    use std::f64::consts::{PI, TAU};
+    0.25 + (det::atan2(p.x, p.z) + PI) / TAU
+}
+
+/// The angle around the z axis in turns, `0..1`, from the negative y axis.
+fn turn(p: DVec3) -> f64 {
+    let turn = 0.25 + det::atan2(p.y, p.x) / std::f64::consts::TAU;
+    if turn < 0.0 { turn + 1.0 } else { turn }
+}
+
+/// Besides moving the point, the turbulence of the spirals shifts the value.
+fn spiral_shift(p: DVec3, modifiers: &Modifiers) -> f64 {
+    let strength = modifiers.turbulence.x;
+    if strength == 0.0 {
+        0.0
+    } else {
+        strength * modifiers.octaves.scalar(p, modifiers.noise)
+    }
+}
+
+pub(super) fn spiral1(p: DVec3, arms: f64, modifiers: &Modifiers) -> f64 {
+    let r = (p.x * p.x + p.y * p.y).sqrt();
+    p.z + r + arms * turn(p) + spiral_shift(p, modifiers)
+}
+
+pub(super) fn spiral2(p: DVec3, arms: f64, modifiers: &Modifiers) -> f64 {
+    let r = (p.x * p.x + p.y * p.y).sqrt();
+    triangle(spiral1(p, arms, modifiers)) + triangle(r)
+}
+
+/// A cubic Bézier profile with ordinates 0, c₀, c₁, 1 over the distance `t` from the middle of the unit cube, times the
+/// mean of the distances along the axes, scaled to 1 at the cube's corners.
+pub(super) fn quilted(p: DVec3, control0: f64, control1: f64) -> f64 {
+    /// 2 / (3 √3).
+    const SCALE: f64 = 0.384_900_179_459_750_5;
+    let v = p - p.floor() - DVec3::splat(0.5);
+    let t = v.length();
+    let s = 1.0 - t;
+    let profile = t * (3.0 * s * (control0 * s + control1 * t) + t * t);
+    profile * (v.x.abs() + v.y.abs() + v.z.abs()) * SCALE
+}
+
+/// What the slope pattern compares the normal with.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum SlopeReference {
+    /// A direction; its length is the weight of the slope against [`Altitude`].
+    Direction(DVec3),
+    /// The direction towards a point.
+    Point(DVec3),
+}
+
+/// The gradient mixed into the slope pattern.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Altitude {
+    /// Direction of the gradient; its length is its weight.
+    pub direction: DVec3,
+    /// The heights that become 0 and 1; equal values mean 0 and 1.
+    pub range: [f64; 2],
+}
+
+/// `x` with `range` carried to `0..1`.
+fn rescaled(x: f64, [low, high]: [f64; 2]) -> f64 {
+    if high == low {
+        x
+    } else {
+        (x - low) / (high - low)
+    }
+}
+
+/// `1 - angle/π` for the angle between two vectors: 1 along, 1/2 across, 0 against.
+fn alignment(a: DVec3, b: DVec3) -> f64 {
+    let cos = a.normalize_or_zero().dot(b.normalize_or_zero());
+    1.0 - det::acos(cos.clamp(-1.0, 1.0)) / std::f64::consts::PI
+}
+
+pub(super) fn aoi(point: &TexturePoint) -> f64 {
+    alignment(point.n_shade, -point.direction)
+}
+
+/// The normal is the surface's, whatever transformation the pattern has; the altitude is that of the moved point `p`.
+pub(super) fn slope(
+    p: DVec3,
+    point: &TexturePoint,
+    reference: &SlopeReference,
+    range: [f64; 2],
+    altitude: Option<&Altitude>,
+) -> f64 {
+    let direction = match reference {
+        SlopeReference::Direction(direction) => *direction,
+        SlopeReference::Point(target) => *target - point.position,
+    };
+    let slope = rescaled(alignment(point.n_shade, direction), range);
+    let Some(altitude) = altitude else {
+        return slope;
+    };
+    let (a, b) = (direction.length(), altitude.direction.length());
+    let height = p.dot(altitude.direction.normalize_or_zero());
+    let height = rescaled(height, altitude.range);
+    if a + b > 0.0 {
+        (a * slope + b * height) / (a + b)
+    } else {
+        slope
+    }
+}

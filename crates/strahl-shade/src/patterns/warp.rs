@@ -1,0 +1,191 @@
+use strahl_math::noise::Turbulence;
+use strahl_math::{DVec3, Transform, det};
+
+/// A step that moves the point before a pattern is evaluated.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Warp {
+    /// A transformation of the pattern: its inverse is applied to the point.
+    Transform(Transform),
+    /// A slice of the pattern, repeated along one axis.
+    Repeat {
+        /// Axis of the repetition, 0 to 2.
+        axis: usize,
+        /// Width of the slice, not zero.
+        width: f64,
+        /// What the pattern is shifted by from each copy to the next.
+        offset: DVec3,
+        /// Along which axes every second copy is mirrored.
+        flip: [bool; 3],
+    },
+    /// A place that draws the pattern in or pushes it away.
+    BlackHole(BlackHole),
+    /// Turbulence in the order of the warps.
+    Turbulence {
+        /// How far along each axis.
+        amount: DVec3,
+        /// The octaves.
+        octaves: Turbulence,
+    },
+    /// The x-y plane wrapped around a cylinder, sphere or torus.
+    Mapping {
+        /// Around what.
+        mapping: Mapping,
+        /// Unit vector along which the pattern looks outwards, z by default.
+        orientation: DVec3,
+        /// The pattern is stretched by the distance to this power.
+        distance_exponent: f64,
+    },
+    /// The pattern of one plane, continued along its normal.
+    Planar {
+        /// Unit normal of the plane, z by default.
+        orientation: DVec3,
+        /// Distance of the plane from the origin.
+        distance: f64,
+    },
+}
+
+/// What the x-y plane is wrapped around by [`Warp::Mapping`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Mapping {
+    /// The y axis.
+    Cylindrical,
+    /// The origin.
+    Spherical,
+    /// The circle of this radius around the y axis.
+    Toroidal(f64),
+}
+
+/// A sphere in which a pattern is drawn towards the centre, or pushed away from it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BlackHole {
+    /// The centre.
+    pub center: DVec3,
+    /// Radius beyond which nothing happens.
+    pub radius: f64,
+    /// Factor of the force.
+    pub strength: f64,
+    /// Power of the closeness (1 at the centre, 0 at the radius) that is the force.
+    pub falloff: f64,
+    /// Whether the pattern is pushed away.
+    pub inverse: bool,
+    /// Edge lengths of the blocks in which the hole is repeated; 0 is no repetition along that axis.
+    pub repeat: DVec3,
+}
+
+impl BlackHole {
+    /// One hole of strength 1 and falloff 2.
+    pub fn new(center: DVec3, radius: f64) -> Self {
+        Self {
+            center,
+            radius,
+            strength: 1.0,
+            falloff: 2.0,
+            inverse: false,
+            repeat: DVec3::ZERO,
+        }
+    }
+
+    fn apply(&self, p: DVec3) -> DVec3 {
+        let block = |x: f64, length: f64| {
+            if length == 0.0 {
+                0.0
+            } else {
+                (x / length).floor() * length
+            }
+        };
+        let r = self.repeat;
+        let corner = DVec3::new(block(p.x, r.x), block(p.y, r.y), block(p.z, r.z));
+        let from_center = p - corner - self.center;
+        let distance = from_center.length();
+        if !(distance < self.radius) {
+            return p;
+        }
+        let closeness = (self.radius - distance) / self.radius;
+        let force = det::pow(closeness, self.falloff) * self.strength;
+        let force = if force > 1.0 { 1.0 } else { force };
+        if self.inverse {
+            p - from_center * force
+        } else {
+            p + from_center * force
+        }
+    }
+}
+
+impl Warp {
+    /// Where the pattern has to be evaluated for the point `p`.
+    pub fn apply(&self, p: DVec3) -> DVec3 {
+        match self {
+            Self::Transform(transform) => transform.point_to_object(p),
+            Self::Repeat {
+                axis,
+                width,
+                offset,
+                flip,
+            } => repeat(p, *axis, *width, *offset, *flip),
+            Self::BlackHole(hole) => hole.apply(p),
+            Self::Turbulence { amount, octaves } => p + *amount * octaves.vector(p),
+            Self::Mapping {
+                mapping,
+                orientation,
+                distance_exponent,
+            } => orient(mapping.unwrap(p, *distance_exponent), *orientation),
+            Self::Planar {
+                orientation,
+                distance,
+            } => orient(DVec3::new(p.x, p.y, *distance), *orientation),
+        }
+    }
+}
+
+fn repeat(p: DVec3, axis: usize, width: f64, offset: DVec3, flip: [bool; 3]) -> DVec3 {
+    let axis = axis.min(2);
+    if width == 0.0 {
+        return p;
+    }
+    let copy = (p[axis] / width).floor();
+    let mut q = p;
+    q[axis] -= copy * width;
+    let is_odd = copy - 2.0 * (0.5 * copy).floor() == 1.0;
+    if is_odd {
+        for (a, _) in flip.iter().enumerate().filter(|(_, flip)| **flip) {
+            q[a] = if a == axis { width - q[a] } else { -q[a] };
+        }
+    }
+    q + offset * copy
+}
+
+impl Mapping {
+    /// Longitude and latitude (or height) and the distance.
+    fn unwrap(self, p: DVec3, distance_exponent: f64) -> DVec3 {
+        use std::f64::consts::{PI, TAU};
+        let turn = det::atan2(p.z, p.x) / TAU;
+        let u = if turn < 0.0 { turn + 1.0 } else { turn };
+        let around = (p.x * p.x + p.z * p.z).sqrt();
+        let (v, distance, scales_v) = match self {
+            Self::Cylindrical => (p.y, around, false),
+            // The angle as atan2 is accurate at the poles too, unlike an arc sine.
+            Self::Spherical => (0.5 + det::atan2(p.y, around) / PI, p.length(), true),
+            Self::Toroidal(major) => {
+                let h = around - major;
+                let v = 0.5 + det::atan2(p.y, h) / TAU;
+                (v, (h * h + p.y * p.y).sqrt(), true)
+            }
+        };
+        let stretch = if distance_exponent == 0.0 {
+            1.0
+        } else {
+            det::pow(distance, distance_exponent)
+        };
+        let v = if scales_v { v * stretch } else { v };
+        DVec3::new(u * stretch, v, distance)
+    }
+}
+
+/// Turns z into `n`, as POV-Ray does: right for the axes, a skewed map for other directions (measured).
+fn orient(q: DVec3, n: DVec3) -> DVec3 {
+    DVec3::new(
+        (n.y + n.z) * q.x + n.x * q.z,
+        (n.x + n.z) * q.y - n.y * q.z,
+        -n.x * q.x + n.y * q.y + n.z * q.z,
+    )
+}

@@ -1,0 +1,44 @@
+//! Ripples and waves: circles around a few sources near the origin.
+
+use strahl_math::DVec3;
+use strahl_math::noise::dnoise;
+
+use super::Modifiers;
+use super::noisy::cycloidal;
+
+/// Source `i`: a random point of the unit sphere.
+pub(super) fn source(i: u32) -> DVec3 {
+    dnoise(DVec3::new(f64::from(i), 0.0, 0.0)).normalize_or(DVec3::X)
+}
+
+/// The spatial frequency of source `i` in waves, `0.01..=1.01`.
+///
+/// The first ten were measured; the rest are drawn from another stream than POV-Ray's and therefore give other,
+/// equally random, waves.
+pub(super) fn wave_frequency(i: u32) -> f64 {
+    const MEASURED: [u16; 10] = [
+        29789, 31130, 13866, 22914, 22255, 32159, 25328, 12801, 7198, 5194,
+    ];
+    match MEASURED.get(i as usize) {
+        Some(&k) => f64::from(k) / 32767.0 + 0.01,
+        None => super::random::uniform(i as usize) + 0.01,
+    }
+}
+
+pub(super) fn ripples(p: DVec3, sources: u32, modifiers: &Modifiers) -> f64 {
+    let sum: f64 = (0..sources)
+        .map(|i| cycloidal((p - source(i)).length() * modifiers.frequency + modifiers.phase))
+        .sum();
+    0.5 * (1.0 + sum / f64::from(sources.max(1)))
+}
+
+pub(super) fn waves(p: DVec3, sources: u32, modifiers: &Modifiers) -> f64 {
+    let sum: f64 = (0..sources)
+        .map(|i| {
+            let f = wave_frequency(i);
+            let length = (p - source(i)).length();
+            cycloidal(length * modifiers.frequency * f + modifiers.phase) / f
+        })
+        .sum();
+    0.5 + 0.2 * sum / f64::from(sources.max(1))
+}
