@@ -96,8 +96,8 @@ fn build(steps: &[Step], constants: &[f64]) -> Function {
         };
         values.push(e);
     }
-    let root = *values.last().unwrap();
-    g.finish(root).unwrap()
+    let root = *values.last().expect("not empty");
+    g.finish(root).expect("small")
 }
 
 fn same(a: f64, b: f64) -> bool {
@@ -176,7 +176,7 @@ fn slopes(build: impl Fn(&mut Graph, [Expr; 3]) -> Expr, p: [f64; 3]) -> ([f64; 
     let mut g = Graph::new(["x", "y", "z"]);
     let xyz = g.xyz();
     let root = build(&mut g, xyz);
-    let f = g.finish(root).unwrap();
+    let f = g.finish(root).expect("small");
     let mut ws = Workspace::new();
     let gradient = f.gradient(&mut ws, &p).1;
     let differences = std::array::from_fn(|i| {

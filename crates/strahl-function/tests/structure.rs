@@ -36,7 +36,7 @@ fn folding_keeps_signed_zeros() {
     assert_ne!(sum, x, "-0 + 0 is +0");
     let difference = g.sub(x, zero);
     assert_eq!(difference, x);
-    let f = g.finish(sum).unwrap();
+    let f = g.finish(sum).expect("small");
     assert_eq!(value(&f, &[-0.0]).to_bits(), 0.0f64.to_bits());
 }
 
@@ -47,7 +47,7 @@ fn u_and_v_are_other_names_of_x_and_y() {
     assert_eq!(u, x);
     let y = g.parameter("y");
     let sum = g.sub(x, y);
-    assert_eq!(value(&g.finish(sum).unwrap(), &[3.0, 1.0]), 2.0);
+    assert_eq!(value(&g.finish(sum).expect("small"), &[3.0, 1.0]), 2.0);
 }
 
 /// The sum of the first `n` powers of a parameter, in a function of its own.
@@ -59,7 +59,7 @@ fn powers(unroll: bool) -> Function {
     let power = g.pow(x, i);
     let one = g.constant(1.0);
     let sum = g.sum(i, one, to, power);
-    g.finish(sum).unwrap()
+    g.finish(sum).expect("small")
 }
 
 #[test]
@@ -158,7 +158,7 @@ fn calls_that_double_stay_small() {
         let shifted = g.scaled(x, 1.0 + f64::from(round) / 7.0);
         let (a, b) = (g.call(&f, &[x]), g.call(&f, &[shifted]));
         let sum = g.add(a, b);
-        f = g.finish(sum).unwrap();
+        f = g.finish(sum).expect("small");
         assert!(f.size() <= 4 * limits::INLINE);
     }
     let mut ws = Workspace::new();
