@@ -77,9 +77,8 @@ impl Domain for f64 {
     }
 }
 
-/// How many points a batch evaluates with each instruction.
-///
-/// Measured with `benches/tape.rs`: 8 doubles are two AVX registers, 16 hide the cost of decoding without leaving the cache.
+/// How many points a batch evaluates with each instruction: enough to share the cost of decoding it, few enough that the
+/// registers of usual functions stay in the first cache. Other widths have not been measured.
 pub(crate) const LANES: usize = 16;
 
 /// As many numbers as a batch evaluates together.
