@@ -579,7 +579,7 @@ words! {
     VaxisRotate "vaxis_rotate" VectorFunction,
     Vcross "vcross" VectorFunction,
     Vdot "vdot" FloatFunction,
-    Version "version" Directive,
+    Version "version" Constant,
     VertexVectors "vertex_vectors" Item,
     Vlength "vlength" FloatFunction,
     Vnormalize "vnormalize" VectorFunction,

@@ -49,7 +49,7 @@ mod symbol;
 mod token;
 mod value;
 
-pub use expr::{Array, Dictionary};
+pub use expr::{Array, Dictionary, Spline, SplineKind};
 pub use grammar::{Finish, Pigment, State, Texture, Thing};
 pub use keywords::{Word, WordKind};
 pub use options::{Frame, Limits, Options};

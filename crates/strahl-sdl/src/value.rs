@@ -1,9 +1,10 @@
 //! What a name can stand for.
 
-use crate::expr::{Array, Dictionary};
+use crate::expr::{Array, Dictionary, Spline};
 use crate::grammar::Thing;
 use crate::parser::Macro;
 use std::sync::Arc;
+use strahl_function::Function;
 
 mod vector;
 
@@ -22,6 +23,10 @@ pub enum Value {
     Array(Arc<Array>),
     /// Values by name (3.8).
     Dictionary(Arc<Dictionary>),
+    /// A curve through points.
+    Spline(Arc<Spline>),
+    /// A function of numbers.
+    Function(Function),
     /// A macro; only names hold one.
     Macro(Arc<Macro>),
     /// Something the grammar defines: an object, a texture, a transformation, ...
@@ -38,9 +43,16 @@ impl Value {
             Self::String(_) => "a string",
             Self::Array(_) => "an array",
             Self::Dictionary(_) => "a dictionary",
+            Self::Spline(_) => "a spline",
+            Self::Function(_) => "a function",
             Self::Macro(_) => "a macro",
             Self::Thing(thing) => thing.describe(),
         }
+    }
+
+    /// Whether `(` behind the name calls it.
+    pub(crate) fn is_callable(&self) -> bool {
+        matches!(self, Self::Function(_) | Self::Spline(_))
     }
 
     /// The value as a number or vector, if it is one.

@@ -196,6 +196,53 @@ fn arrays_dictionaries_and_tuples() {
 }
 
 #[test]
+fn files_are_written_and_read() {
+    let mut host = MemoryHost::new().with_file("data.txt", "1, -2.5, <1, 2, 3>\n\"text\" 4");
+    let text = "#fopen W \"out.txt\" write #write (W, \"a\", 1, \" \", <1, 2>) #fclose W
+        #fopen W \"out.txt\" append #write (W, \"b\") #fclose W
+        #fopen R \"data.txt\" read #read (R, A, B, V, T)
+        #ifdef (R) #debug concat(str(A + B + V.z, 0, 1), T) #end
+        #read (R, C) #ifndef (R) #debug str(C, 0, 0) #end #fclose R";
+    let parsed = parse_with(&mut host, text);
+    assert!(parsed.scene.is_some(), "{:#?}", parsed.diagnostics);
+    assert_eq!(
+        host.written("out.txt").as_deref(),
+        Some(&b"a1.000000 <1.000000, 2.000000>b"[..])
+    );
+    assert_eq!(host.text(strahl_sdl::Stream::Debug), "1.5text4");
+    assert!(errors("#fopen F \"missing.txt\" read")[0].contains("no file `missing.txt`"));
+    assert!(errors("#write (F, 1)")[0].contains("not open for writing"));
+}
+
+#[test]
+fn built_in_files_are_read_without_errors() {
+    for file in [
+        "arrays",
+        "colors",
+        "consts",
+        "debug",
+        "math",
+        "rad_def",
+        "rand",
+        "strings",
+        "transforms",
+    ] {
+        let parsed = parse_with(&mut MemoryHost::new(), &format!("#include \"{file}.inc\""));
+        let errors: Vec<String> = parsed.diagnostics.iter().map(ToString::to_string).collect();
+        assert!(parsed.scene.is_some(), "{file}: {}", errors.join("\n"));
+    }
+}
+
+#[test]
+fn a_name_from_an_include_not_included_is_recognised() {
+    let found = errors("background { color Firebrick }");
+    assert!(
+        found[0].contains("write `#include \"colors.inc\"` first"),
+        "{found:?}"
+    );
+}
+
+#[test]
 fn errors_name_the_place_and_the_way_there() {
     let found = errors("#macro Ball(R)\n  sphere { 0, Radius }\n#end\nBall(1)\n");
     assert_eq!(found.len(), 1);

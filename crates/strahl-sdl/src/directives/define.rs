@@ -35,16 +35,8 @@ impl Parser<'_> {
         let target = self
             .scopes
             .target(name, false)
-            .unwrap_or_else(|| self.global(name));
+            .unwrap_or_else(|| self.global_target(name));
         self.scopes.store(&target, Value::Macro(Arc::new(defined)));
         Ok(())
-    }
-
-    fn global(&self, symbol: crate::symbol::Symbol) -> crate::parser::Target {
-        crate::parser::Target {
-            symbol,
-            depth: 0,
-            path: vec![],
-        }
     }
 }

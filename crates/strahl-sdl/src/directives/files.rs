@@ -1,20 +1,266 @@
-use crate::parser::{PResult, Parser};
+use crate::keywords::Word;
+use crate::parser::{PResult, Parser, Place};
+use crate::source::SourceFile;
+use crate::symbol::Symbol;
+use crate::token::{Kind, Token};
+use crate::value::{Value, Vector};
+use std::collections::BTreeMap;
+use std::io::Write;
+use std::sync::Arc;
+
+/// Files that the scene has opened, by the names it gave them.
+#[derive(Default)]
+pub(crate) struct Files {
+    open: BTreeMap<Symbol, OpenFile>,
+    opened: usize,
+    written: u64,
+}
+
+/// What may be done with a file.
+enum OpenFile {
+    /// The tokens of the text and where reading goes on.
+    Read(Arc<SourceFile>, usize),
+    Write(Box<dyn Write + Send>),
+}
 
 impl Parser<'_> {
+    /// `#fopen Handle "name" read|write|append` behind the word.
     pub(super) fn fopen(&mut self) -> PResult<()> {
+        let handle = self.raw_name("the name of a file handle")?;
+        let name = self.file_name()?;
         let place = self.place();
-        Err(self.fail(
-            place,
-            "writing and reading files by `#fopen` is not supported",
-        ))
+        let mode = self.next()?;
+        let file = match mode.word() {
+            Some(Word::Read) => OpenFile::Read(self.load(&name, place)?, 0),
+            Some(Word::Write) => OpenFile::Write(self.create(&name, false, place)?),
+            Some(Word::Append) => OpenFile::Write(self.create(&name, true, place)?),
+            _ => return Err(self.unexpected(mode, "`read`, `write` or `append`")),
+        };
+        let reads = matches!(file, OpenFile::Read(..));
+        self.io.open.insert(handle, file);
+        // `#ifdef (Handle)` asks whether there is more to read.
+        let target = self.global_target(handle);
+        let value = Value::Float(1.0);
+        if !reads || self.more_to_read(handle) {
+            self.scopes.store(&target, value);
+        }
+        Ok(())
     }
+
+    fn create(&mut self, name: &str, append: bool, place: Place) -> PResult<Box<dyn Write + Send>> {
+        let limit = self.options.limits.written_files;
+        self.io.opened += 1;
+        if self.io.opened > limit {
+            let message = format!("the scene opens more than {limit} files for writing");
+            return Err(self.fail_fatally(place, message, "raise the limit of files written"));
+        }
+        match self.host.create(name, append) {
+            Ok(file) => Ok(file),
+            Err(error) => Err(self.fail_hint(
+                place,
+                error.to_string(),
+                "scenes may write only where the caller allows it",
+            )),
+        }
+    }
+
+    /// `#fclose Handle` behind the word.
     pub(super) fn fclose(&mut self) -> PResult<()> {
-        self.fopen()
+        let handle = self.raw_name("the name of a file handle")?;
+        let place = self.place();
+        match self.io.open.remove(&handle) {
+            Some(OpenFile::Write(mut file)) => {
+                if let Err(error) = file.flush() {
+                    return Err(self.fail(place, format!("the file cannot be written: {error}")));
+                }
+            }
+            Some(OpenFile::Read(..)) => {}
+            None => self.warn(place, "this file is not open"),
+        }
+        let target = self.global_target(handle);
+        self.scopes.remove(&target);
+        Ok(())
     }
-    pub(super) fn read(&mut self) -> PResult<()> {
-        self.fopen()
-    }
+
+    /// `#write (Handle, values ...)` behind the word.
     pub(super) fn write(&mut self) -> PResult<()> {
-        self.fopen()
+        self.expect(Kind::LeftParen)?;
+        let handle = self.raw_name("the name of a file handle")?;
+        let place = self.place();
+        self.comma()?;
+        let mut text = String::new();
+        while !self.accept(Kind::RightParen)? {
+            let token = self.peek()?;
+            match token.word() {
+                Some(
+                    word @ (Word::Sint8
+                    | Word::Uint8
+                    | Word::Sint16be
+                    | Word::Sint16le
+                    | Word::Uint16be
+                    | Word::Uint16le
+                    | Word::Sint32be
+                    | Word::Sint32le),
+                ) => {
+                    let word = word.text();
+                    return Err(self.fail(
+                        place,
+                        format!("writing binary numbers (`{word}`) is not supported"),
+                    ));
+                }
+                _ => match self.value()? {
+                    Value::String(s) => text.push_str(&s),
+                    Value::Float(x) => text.push_str(&format!("{x:.6}")),
+                    Value::Vector(v) => {
+                        let numbers = v.as_slice().iter().map(|x| format!("{x:.6}"));
+                        text.push_str(&format!("<{}>", numbers.collect::<Vec<_>>().join(", ")));
+                    }
+                    other => {
+                        let message = format!("{} cannot be written to a file", other.describe());
+                        return Err(self.fail(place, message));
+                    }
+                },
+            }
+            self.comma()?;
+        }
+        self.io.written = self.io.written.saturating_add(text.len() as u64);
+        let limit = self.options.limits.written_bytes;
+        if self.io.written > limit {
+            let message = format!("the scene writes more than {limit} bytes");
+            return Err(self.fail_fatally(place, message, "raise the limit of bytes written"));
+        }
+        match self.io.open.get_mut(&handle) {
+            Some(OpenFile::Write(file)) => match file.write_all(text.as_bytes()) {
+                Ok(()) => Ok(()),
+                Err(error) => Err(self.fail(place, format!("the file cannot be written: {error}"))),
+            },
+            _ => Err(self.fail_hint(
+                place,
+                "this file is not open for writing",
+                "open it by `#fopen Handle \"name\" write`",
+            )),
+        }
+    }
+
+    /// `#read (Handle, names ...)` behind the word: numbers, vectors and strings with commas between them.
+    pub(super) fn read(&mut self) -> PResult<()> {
+        self.expect(Kind::LeftParen)?;
+        let handle = self.raw_name("the name of a file handle")?;
+        while !self.accept(Kind::RightParen)? {
+            self.comma()?;
+            let symbol = self.raw_name("the name of a variable")?;
+            let place = self.place();
+            let found = self.scopes.target(symbol, false);
+            let mut target = found.unwrap_or_else(|| self.global_target(symbol));
+            self.steps_into(&mut target)?;
+            let value = self.read_value(handle, place)?;
+            self.assign(&target, value, place)?;
+        }
+        if !self.more_to_read(handle) {
+            let target = self.global_target(handle);
+            self.scopes.remove(&target);
+        }
+        Ok(())
+    }
+
+    fn more_to_read(&self, handle: Symbol) -> bool {
+        match self.io.open.get(&handle) {
+            Some(OpenFile::Read(file, position)) => {
+                let rest = file.tokens.get(*position..).unwrap_or(&[]);
+                rest.iter()
+                    .any(|t| !matches!(t.kind, Kind::Comma | Kind::End))
+            }
+            _ => false,
+        }
+    }
+
+    fn read_value(&mut self, handle: Symbol, place: Place) -> PResult<Value> {
+        let Some(OpenFile::Read(file, position)) = self.io.open.get_mut(&handle) else {
+            return Err(self.fail_hint(
+                place,
+                "this file is not open for reading",
+                "open it by `#fopen Handle \"name\" read`",
+            ));
+        };
+        let mut reader = Reader {
+            file,
+            position: *position,
+        };
+        let value = reader.value();
+        *position = reader.position;
+        let name = file.name.clone();
+        match value {
+            Some(value) => Ok(value),
+            None => Err(self.fail_hint(
+                place,
+                format!("`{name}` has no number, vector or string here"),
+                "`#while (defined(Handle))` reads up to the end of the file",
+            )),
+        }
+    }
+
+    pub(super) fn global_target(&self, symbol: Symbol) -> crate::parser::Target {
+        crate::parser::Target {
+            symbol,
+            depth: 0,
+            path: vec![],
+        }
+    }
+}
+
+/// Reads values from the tokens of a data file.
+struct Reader<'a> {
+    file: &'a SourceFile,
+    position: usize,
+}
+
+impl Reader<'_> {
+    fn next(&mut self) -> Token {
+        let token = self.file.tokens.get(self.position).copied();
+        self.position += 1;
+        token.unwrap_or(Token::END)
+    }
+
+    fn value(&mut self) -> Option<Value> {
+        let mut token = self.next();
+        while token.kind == Kind::Comma {
+            token = self.next();
+        }
+        match token.kind {
+            Kind::String => {
+                let text = self.file.strings.get(token.bits as usize)?;
+                Some(Value::String(Arc::clone(text)))
+            }
+            Kind::Less => {
+                let mut numbers = vec![];
+                loop {
+                    let token = self.next();
+                    match token.kind {
+                        Kind::Comma => {}
+                        Kind::Greater if (2..=5).contains(&numbers.len()) => {
+                            return Some(Value::Vector(Vector::new(&numbers)));
+                        }
+                        _ if numbers.len() < 5 => numbers.push(self.number(token)?),
+                        _ => return None,
+                    }
+                }
+            }
+            _ => self.number(token).map(Value::Float),
+        }
+    }
+
+    fn number(&mut self, token: Token) -> Option<f64> {
+        match token.kind {
+            Kind::Number => Some(token.number()),
+            Kind::Minus => {
+                let next = self.next();
+                (next.kind == Kind::Number).then(|| -next.number())
+            }
+            Kind::Plus => {
+                let next = self.next();
+                (next.kind == Kind::Number).then(|| next.number())
+            }
+            _ => None,
+        }
     }
 }

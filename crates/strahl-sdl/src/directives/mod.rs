@@ -9,6 +9,8 @@ mod loops;
 mod messages;
 mod settings;
 
+pub(crate) use files::Files;
+
 use crate::parser::{PResult, Parser};
 use crate::token::{Directive, Token};
 

@@ -9,13 +9,16 @@ mod color;
 mod defined;
 mod dictionary;
 mod float_functions;
+mod function;
 mod random;
+mod spline;
 mod strings;
 mod value;
 mod vector_functions;
 
 pub use array::Array;
 pub use dictionary::Dictionary;
+pub use spline::{Spline, SplineKind};
 pub(crate) use vector_functions::rotation;
 
 use crate::keywords::{Word, WordKind};
@@ -27,11 +30,11 @@ use strahl_math::DVec3;
 /// Numbers closer than this count as equal in comparisons; measured with POV-Ray 3.7.
 const EPSILON: f64 = 1e-10;
 
-/// How strongly an operator binds; 0 for what is none.
+/// How strongly an operator binds; 0 for what is none. `&` and `|` bind the same, measured with POV-Ray 3.7 (in functions they
+/// don't).
 const fn precedence(kind: Kind) -> u8 {
     match kind {
-        Kind::Bar => 1,
-        Kind::Ampersand => 2,
+        Kind::Bar | Kind::Ampersand => 1,
         Kind::Less
         | Kind::LessEqual
         | Kind::Greater
@@ -42,6 +45,24 @@ const fn precedence(kind: Kind) -> u8 {
         Kind::Star | Kind::Slash => 5,
         _ => 0,
     }
+}
+
+/// Whether an operand surely ends before a token of this kind: no component, index or argument can follow.
+const fn ends_operand(after: Kind) -> bool {
+    matches!(
+        after,
+        Kind::Comma
+            | Kind::Greater
+            | Kind::RightBrace
+            | Kind::RightParen
+            | Kind::RightBracket
+            | Kind::Semicolon
+            | Kind::Word
+            | Kind::Plus
+            | Kind::Minus
+            | Kind::Star
+            | Kind::Slash
+    )
 }
 
 /// Equality as the language compares numbers.
@@ -60,7 +81,7 @@ impl Parser<'_> {
     /// If there is no numeric expression, or it is a vector.
     #[inline]
     pub fn float(&mut self) -> PResult<f64> {
-        if let Some(x) = self.plain_number() {
+        if let Some(x) = self.lone_float() {
             return Ok(x);
         }
         let token = self.peek()?;
@@ -114,33 +135,34 @@ impl Parser<'_> {
         Ok(if holds { yes } else { no })
     }
 
-    /// A number alone, with or without sign, before something that ends an expression: most of a file of plain objects.
+    /// A float alone, with or without sign, before something that ends an expression: most of a file of plain objects.
     #[inline]
-    fn plain_number(&mut self) -> Option<f64> {
+    fn lone_float(&mut self) -> Option<f64> {
         let first = self.raw();
-        let (negative, number) = match first.kind {
-            Kind::Minus => (true, self.raw_ahead(1)),
-            _ => (false, first),
+        let (negative, offset) = match first.kind {
+            Kind::Minus => (true, 1),
+            _ => (false, 0),
         };
-        if number.kind != Kind::Number {
+        let x = self.plain_float(self.raw_ahead(offset))?;
+        let after = self.raw_ahead(offset + 1).kind;
+        if !ends_operand(after) || precedence(after) > 3 {
             return None;
         }
-        let after = self.raw_ahead(1 + usize::from(negative));
-        let ends = matches!(
-            after.kind,
-            Kind::Comma
-                | Kind::Greater
-                | Kind::RightBrace
-                | Kind::RightParen
-                | Kind::Semicolon
-                | Kind::Word
-        );
-        if !ends {
-            return None;
-        }
-        self.jump(self.position() + 1 + usize::from(negative));
-        let x = f64::from_bits(number.bits);
+        self.jump(self.position() + offset + 1);
         Some(if negative { -x } else { x })
+    }
+
+    /// A number, or the name of a float.
+    #[inline]
+    fn plain_float(&self, token: Token) -> Option<f64> {
+        match token.kind {
+            Kind::Number => Some(f64::from_bits(token.bits)),
+            Kind::Name => match self.scopes.find(token.symbol()?) {
+                Some(Value::Float(x)) => Some(*x),
+                _ => None,
+            },
+            _ => None,
+        }
     }
 
     #[inline]
@@ -162,9 +184,14 @@ impl Parser<'_> {
             let right = if binds == 5 {
                 self.factor()?
             } else {
-                self.nested(|p| p.binary(binds + 1))?
+                self.binary(binds + 1)?
             };
-            left = self.combine(token.kind, left, right, place)?;
+            left = match (token.kind, left.as_float(), right.as_float()) {
+                (Kind::Plus, Some(a), Some(b)) => Vector::float(a + b),
+                (Kind::Minus, Some(a), Some(b)) => Vector::float(a - b),
+                (Kind::Star, Some(a), Some(b)) => Vector::float(a * b),
+                _ => self.combine(token.kind, left, right, place)?,
+            };
         }
     }
 
@@ -209,7 +236,11 @@ impl Parser<'_> {
 
     #[inline]
     fn factor(&mut self) -> PResult<Vector> {
-        if let Some(x) = self.plain_number() {
+        // Most operands are plain floats with nothing to unfold around them.
+        if let Some(x) = self.plain_float(self.raw())
+            && ends_operand(self.raw_ahead(1).kind)
+        {
+            self.jump(self.position() + 1);
             return Ok(Vector::float(x));
         }
         let token = self.peek()?;
@@ -291,6 +322,7 @@ impl Parser<'_> {
         let value = self.variable(token)?;
         match value.numeric() {
             Some(number) => self.components_of(number),
+            None if value.is_callable() => self.call_value(&value),
             None => {
                 let message = format!("expected a number or vector, found {}", value.describe());
                 Err(self.fail(place, message))
@@ -298,9 +330,33 @@ impl Parser<'_> {
         }
     }
 
-    /// A name alone that is no number: a function called by the grammar's side, or a mistake.
+    /// A name that is no number: a function to be called, or a mistake.
     fn not_numeric(&mut self, token: Token) -> PResult<Vector> {
-        Err(self.unexpected(token, "a number or vector"))
+        let callee = token.symbol().and_then(|s| self.scopes.find(s));
+        let callee = callee.filter(|value| value.is_callable()).cloned();
+        match callee {
+            Some(callee) => {
+                self.take(token)?;
+                self.call_value(&callee)
+            }
+            None => Err(self.unexpected(token, "a number or vector")),
+        }
+    }
+
+    /// Calls what has just been named.
+    fn call_value(&mut self, callee: &Value) -> PResult<Vector> {
+        let value = match callee {
+            Value::Function(function) => {
+                let called = self.nested(|p| p.call_function(function))?;
+                Vector::float(called)
+            }
+            Value::Spline(spline) => self.nested(|p| p.call_spline(spline))?,
+            _ => {
+                let place = self.place();
+                return Err(self.fail(place, format!("{} cannot be called", callee.describe())));
+            }
+        };
+        self.components_of(value)
     }
 
     fn word_in_expression(&mut self, token: Token) -> PResult<Vector> {
@@ -365,6 +421,7 @@ impl Parser<'_> {
             Word::InitialClock => o.frame.initial_clock,
             Word::InitialFrame => o.frame.first,
             Word::Now => self.host.now(),
+            Word::Version => self.version,
             _ => 0.0,
         })
     }

@@ -26,8 +26,12 @@ impl Parser<'_> {
             return Err(self.unexpected(token, "a value"));
         }
         let value = self.variable(token)?;
-        let Some(number) = value.numeric() else {
-            return Ok(value);
+        let number = match value.numeric() {
+            Some(number) => number,
+            None if value.is_callable() && self.raw().kind == Kind::LeftParen => {
+                self.call_value(&value)?
+            }
+            None => return Ok(value),
         };
         // The name may be the first operand of a longer expression.
         let number = self.components_of(number)?;
@@ -61,6 +65,14 @@ impl Parser<'_> {
             _ if word == Word::Array => {
                 self.take(token)?;
                 self.nested(Self::array)
+            }
+            _ if word == Word::Function => {
+                self.take(token)?;
+                self.nested(Self::function).map(Value::Function)
+            }
+            _ if word == Word::Spline => {
+                self.take(token)?;
+                self.nested(Self::spline)
             }
             _ if word == Word::Dictionary => {
                 self.take(token)?;

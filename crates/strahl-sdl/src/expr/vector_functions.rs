@@ -2,6 +2,7 @@ use crate::keywords::Word;
 use crate::parser::{PResult, Parser, Place};
 use crate::token::Kind;
 use crate::value::Vector;
+use strahl_math::noise::Turbulence;
 use strahl_math::{DVec3, Transform};
 
 /// Rotates about the x axis, then y, then z, by degrees.
@@ -48,6 +49,21 @@ impl Parser<'_> {
                 self.comma()?;
                 let degrees = self.full_float()?;
                 Transform::rotate(axis, degrees.to_radians()).vector_to_world(v)
+            }
+            Word::Vturbulence => {
+                let lambda = self.full_float()?;
+                self.comma()?;
+                let omega = self.full_float()?;
+                self.comma()?;
+                let octaves = self.full_float()?;
+                self.comma()?;
+                let point = self.vector3()?;
+                let turbulence = Turbulence {
+                    octaves: octaves.clamp(1.0, 10.0) as u32,
+                    omega,
+                    lambda,
+                };
+                turbulence.vector(point)
             }
             _ => {
                 let text = word.text();

@@ -2,8 +2,26 @@
 //!
 //! Files of the user with the same name win; see [`Host`](crate::Host).
 
-/// Name and text of each built-in file.
-pub(crate) const FILES: &[(&str, &str)] = &[];
+macro_rules! built_in {
+    ($($name:literal)*) => {
+        /// Name and text of each built-in file.
+        pub(crate) const FILES: &[(&str, &str)] =
+            &[$(($name, include_str!(concat!("../../include/", $name)))),*];
+    };
+}
+
+built_in! {
+    "arrays.inc"
+    "colors.inc"
+    "consts.inc"
+    "debug.inc"
+    "functions.inc"
+    "math.inc"
+    "rad_def.inc"
+    "rand.inc"
+    "strings.inc"
+    "transforms.inc"
+}
 
 /// The text of a built-in file; capital and small letters count the same, as scenes come from Windows too.
 pub(crate) fn find(name: &str) -> Option<(&'static str, &'static str)> {

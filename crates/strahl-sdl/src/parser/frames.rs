@@ -1,5 +1,5 @@
 use super::{Failed, Floor, PResult, Parser, Place, Scopes};
-use crate::directives::Flow;
+use crate::directives::{Files, Flow};
 use crate::grammar::State;
 use crate::include;
 use crate::options::Options;
@@ -51,6 +51,8 @@ impl<'h> Parser<'h> {
             state: State::default(),
             version: options.version,
             random: vec![],
+            workspace: strahl_function::Workspace::new(),
+            io: Files::default(),
             array_elements: 0,
             sources: vec![Arc::clone(&file)],
             position: 0,

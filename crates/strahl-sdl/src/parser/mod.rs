@@ -21,6 +21,7 @@ pub(crate) use frames::Entry;
 pub use report::{Failed, PResult};
 pub(crate) use scope::{Scopes, Step, Target};
 
+use crate::directives::Files;
 use crate::grammar::State;
 use crate::options::Options;
 use crate::source::{Host, SourceFile};
@@ -28,6 +29,7 @@ use crate::symbol::Symbols;
 use crate::token::{Kind, Token};
 use frames::Frame;
 use std::sync::Arc;
+use strahl_function::Workspace;
 use strahl_scene::{Diagnostic, Scene, Span};
 
 /// A place in the text, cheap to keep; [`Parser::span_at`] makes a span of it.
@@ -60,6 +62,10 @@ pub struct Parser<'h> {
     pub version: f64,
     /// Random streams: the state of each.
     pub(crate) random: Vec<u32>,
+    /// Files opened by the scene.
+    pub(crate) io: Files,
+    /// Memory for evaluating functions.
+    pub(crate) workspace: Workspace,
     /// Elements of all arrays made so far.
     pub(crate) array_elements: u64,
     sources: Vec<Arc<SourceFile>>,

@@ -50,7 +50,7 @@ impl Parser<'_> {
             self.failures += 1;
             let limit = self.options.limits.errors;
             // The same error again and again is told once, but a loop of errors must end too.
-            self.fatal |= self.errors >= limit || self.failures >= limit.saturating_mul(50);
+            self.fatal |= self.errors >= limit || self.failures >= limit.saturating_mul(10);
         }
         Failed(())
     }

@@ -92,6 +92,7 @@ impl Scopes {
     }
 
     /// What is stored at a place.
+    #[inline]
     pub(crate) fn at(&self, target: &Target) -> Option<&Value> {
         let stack = self.bindings.get(target.symbol.index())?;
         let binding = stack.iter().rev().find(|b| b.depth == target.depth)?;

@@ -8,7 +8,7 @@ use strahl_scene::{Object, ObjectExt};
 
 /// What stands in an object besides its numbers, gathered until the brace closes.
 pub(crate) struct Draft {
-    transform: Transform,
+    transform: Option<Transform>,
     texture: Option<Texture>,
     shadows: Option<bool>,
 }
@@ -45,7 +45,7 @@ impl Parser<'_> {
     /// If an item is wrong.
     pub(crate) fn modifiers(&mut self, object: &mut Object) -> PResult<()> {
         let mut draft = Draft {
-            transform: Transform::IDENTITY,
+            transform: None,
             texture: None,
             shadows: None,
         };
@@ -61,16 +61,19 @@ impl Parser<'_> {
         if let Some(shadow) = draft.shadows {
             object.visibility.shadow = shadow;
         }
-        if !draft.transform.is_identity() {
+        if let Some(transform) = &draft.transform {
             let moved = std::mem::replace(object, Object::csg(strahl_scene::CsgOp::Union, vec![]));
-            *object = moved.transformed(&draft.transform);
+            *object = moved.transformed(transform);
         }
         Ok(())
     }
 
     fn modifier(&mut self, draft: &mut Draft, token: Token) -> PResult<bool> {
         if let Some(next) = self.transformation(token)? {
-            draft.transform = draft.transform.then(&next);
+            draft.transform = Some(match &draft.transform {
+                Some(before) => before.then(&next),
+                None => next,
+            });
             return Ok(true);
         }
         match token.word() {

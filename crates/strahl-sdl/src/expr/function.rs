@@ -1,0 +1,349 @@
+//! `function { ... }`: from tokens straight to the graph of a [`strahl_function::Function`].
+
+use super::precedence;
+use crate::keywords::{Word, WordKind};
+use crate::parser::{PResult, Parser, Place};
+use crate::symbol::Symbol;
+use crate::token::{Kind, Token};
+use crate::value::Value;
+use strahl_function::{BinaryOp, Expr, Function, Graph, UnaryOp};
+
+/// A function while its body is read.
+struct Body {
+    graph: Graph,
+    parameters: Vec<(Symbol, String)>,
+    /// Variables of the `sum` and `prod` around the place, innermost last.
+    loops: Vec<(Symbol, Expr)>,
+}
+
+/// A function of one argument as an operation.
+const fn unary(word: Word) -> Option<UnaryOp> {
+    Some(match word {
+        Word::Abs => UnaryOp::Abs,
+        Word::Acos => UnaryOp::Acos,
+        Word::Acosh => UnaryOp::Acosh,
+        Word::Asin => UnaryOp::Asin,
+        Word::Asinh => UnaryOp::Asinh,
+        Word::Atan => UnaryOp::Atan,
+        Word::Atanh => UnaryOp::Atanh,
+        Word::Ceil => UnaryOp::Ceil,
+        Word::Cos => UnaryOp::Cos,
+        Word::Cosh => UnaryOp::Cosh,
+        Word::Exp => UnaryOp::Exp,
+        Word::Floor => UnaryOp::Floor,
+        Word::Int => UnaryOp::Trunc,
+        Word::Ln => UnaryOp::Ln,
+        Word::Log => UnaryOp::Log10,
+        Word::Sin => UnaryOp::Sin,
+        Word::Sinh => UnaryOp::Sinh,
+        Word::Sqr => UnaryOp::Square,
+        Word::Sqrt => UnaryOp::Sqrt,
+        Word::Tan => UnaryOp::Tan,
+        Word::Tanh => UnaryOp::Tanh,
+        _ => return None,
+    })
+}
+
+impl Parser<'_> {
+    /// `(parameters) { expression }` behind `function`; the parameters are x, y, z if none are given.
+    ///
+    /// # Errors
+    /// If the expression is wrong or too large.
+    pub(crate) fn function(&mut self) -> PResult<Function> {
+        let place = self.place();
+        let mut parameters = vec![];
+        if self.accept(Kind::LeftParen)? {
+            while !self.accept(Kind::RightParen)? {
+                let token = self.raw();
+                let Some(symbol) = token.symbol() else {
+                    return Err(self.unexpected(token, "the name of a parameter, or `)`"));
+                };
+                self.take(token)?;
+                parameters.push((symbol, self.symbols.text(symbol).to_owned()));
+                self.comma()?;
+            }
+        } else {
+            let space = [(Word::X, "x"), (Word::Y, "y"), (Word::Z, "z")];
+            parameters.extend(space.map(|(word, text)| (Symbol(word as u32), text.to_owned())));
+        }
+        let mut body = Body {
+            graph: Graph::new(parameters.iter().map(|(_, text)| text.clone())),
+            parameters,
+            loops: vec![],
+        };
+        let root = self.braces(|p| p.formula(&mut body))?;
+        body.graph
+            .finish(root)
+            .map_err(|error| self.fail(place, error.to_string()))
+    }
+
+    /// A whole expression, `?:` included.
+    fn formula(&mut self, body: &mut Body) -> PResult<Expr> {
+        let condition = self.formula_binary(body, 1)?;
+        if !self.accept(Kind::Question)? {
+            return Ok(condition);
+        }
+        let yes = self.nested(|p| p.formula(body))?;
+        self.expect(Kind::Colon)?;
+        let no = self.nested(|p| p.formula(body))?;
+        Ok(body.graph.if_else(condition, yes, no))
+    }
+
+    fn formula_binary(&mut self, body: &mut Body, weakest: u8) -> PResult<Expr> {
+        let mut left = self.formula_operand(body)?;
+        loop {
+            let token = self.peek()?;
+            let binds = match token.kind {
+                // In functions, unlike elsewhere, `&` goes before `|`.
+                Kind::Ampersand => 2,
+                kind => precedence(kind),
+            };
+            if binds < weakest || binds == 0 {
+                return Ok(left);
+            }
+            self.take(token)?;
+            let right = self.formula_binary(body, binds + 1)?;
+            let graph = &mut body.graph;
+            left = match token.kind {
+                Kind::Plus => graph.binary(BinaryOp::Add, left, right),
+                Kind::Minus => graph.binary(BinaryOp::Sub, left, right),
+                Kind::Star => graph.binary(BinaryOp::Mul, left, right),
+                Kind::Slash => graph.binary(BinaryOp::Div, left, right),
+                Kind::Ampersand => graph.binary(BinaryOp::And, left, right),
+                Kind::Bar => graph.binary(BinaryOp::Or, left, right),
+                Kind::Less => graph.binary(BinaryOp::Less, left, right),
+                Kind::LessEqual => graph.binary(BinaryOp::LessEqual, left, right),
+                Kind::Greater => graph.binary(BinaryOp::Less, right, left),
+                Kind::GreaterEqual => graph.binary(BinaryOp::LessEqual, right, left),
+                Kind::Equal => graph.binary(BinaryOp::Equal, left, right),
+                _ => {
+                    let equal = graph.binary(BinaryOp::Equal, left, right);
+                    graph.unary(UnaryOp::Not, equal)
+                }
+            };
+        }
+    }
+
+    fn formula_operand(&mut self, body: &mut Body) -> PResult<Expr> {
+        let token = self.peek()?;
+        match token.kind {
+            Kind::Number => {
+                self.take(token)?;
+                Ok(body.graph.constant(token.number()))
+            }
+            Kind::Minus => {
+                self.take(token)?;
+                let operand = self.nested(|p| p.formula_operand(body))?;
+                Ok(body.graph.unary(UnaryOp::Neg, operand))
+            }
+            Kind::Plus => {
+                self.take(token)?;
+                self.nested(|p| p.formula_operand(body))
+            }
+            Kind::Bang => {
+                self.take(token)?;
+                let operand = self.nested(|p| p.formula_operand(body))?;
+                Ok(body.graph.unary(UnaryOp::Not, operand))
+            }
+            Kind::LeftParen => {
+                self.take(token)?;
+                let inner = self.nested(|p| p.formula(body))?;
+                self.expect(Kind::RightParen)?;
+                Ok(inner)
+            }
+            Kind::Name | Kind::Word => self.formula_name(body, token),
+            _ => Err(self.unexpected(token, "a number, a parameter or a function")),
+        }
+    }
+
+    fn formula_name(&mut self, body: &mut Body, token: Token) -> PResult<Expr> {
+        let symbol = token.symbol();
+        let variable = body.loops.iter().rev().find(|(s, _)| Some(*s) == symbol);
+        if let Some((_, expr)) = variable {
+            let expr = *expr;
+            self.take(token)?;
+            return Ok(expr);
+        }
+        let parameter = body.parameters.iter().find(|(s, _)| Some(*s) == symbol);
+        if let Some((_, text)) = parameter {
+            let expr = body.graph.parameter(text);
+            self.take(token)?;
+            return Ok(expr);
+        }
+        if let Some(word) = token.word() {
+            return self.formula_word(body, token, word);
+        }
+        let callee = match symbol.and_then(|s| self.scopes.find(s)) {
+            Some(Value::Function(function)) => Some(function.clone()),
+            _ => None,
+        };
+        if let Some(function) = callee {
+            self.take(token)?;
+            let place = self.place();
+            let arguments = self.nested(|p| p.formula_arguments(body))?;
+            self.check_arguments(function.parameters().len(), arguments.len(), place)?;
+            return Ok(body.graph.call(&function, &arguments));
+        }
+        // Anything else is a number that is fixed when the function is declared.
+        let number = self.name_in_expression(token)?;
+        let place = self.place();
+        let number = self.as_float(number, place)?;
+        Ok(body.graph.constant(number))
+    }
+
+    fn formula_word(&mut self, body: &mut Body, token: Token, word: Word) -> PResult<Expr> {
+        if let Some(operation) = unary(word) {
+            self.take(token)?;
+            let place = self.place();
+            let arguments = self.nested(|p| p.formula_arguments(body))?;
+            return match arguments.as_slice() {
+                [argument] => Ok(body.graph.unary(operation, *argument)),
+                other => Err(self.wrong_arguments(1, other.len(), place)),
+            };
+        }
+        match word {
+            Word::Sum | Word::Prod => {
+                self.take(token)?;
+                return self.nested(|p| p.formula_loop(body, word));
+            }
+            Word::X | Word::Y | Word::Z | Word::U | Word::V | Word::T => {
+                let names: Vec<&str> = body.parameters.iter().map(|(_, t)| t.as_str()).collect();
+                let message = format!(
+                    "`{}` is not a parameter of this function, which has {}",
+                    word.text(),
+                    names.join(", ")
+                );
+                let place = self.place_of(token);
+                return Err(self.fail(place, message));
+            }
+            _ => {}
+        }
+        match word.kind() {
+            WordKind::Constant => {
+                let value = self.word_in_expression(token)?;
+                let place = self.place();
+                let value = self.as_float(value, place)?;
+                Ok(body.graph.constant(value))
+            }
+            WordKind::FloatFunction => {
+                self.take(token)?;
+                let place = self.place();
+                let arguments = self.nested(|p| p.formula_arguments(body))?;
+                self.formula_function(body, word, &arguments, place)
+            }
+            _ => Err(self.unexpected(token, "a number, a parameter or a function")),
+        }
+    }
+
+    fn formula_function(
+        &mut self,
+        body: &mut Body,
+        word: Word,
+        arguments: &[Expr],
+        place: Place,
+    ) -> PResult<Expr> {
+        let graph = &mut body.graph;
+        let fold = |graph: &mut Graph, operation| {
+            let folded = arguments.iter().copied();
+            folded.reduce(|a, b| graph.binary(operation, a, b))
+        };
+        let value = match (word, arguments) {
+            (Word::Min, [_, ..]) => fold(graph, BinaryOp::Min),
+            (Word::Max, [_, ..]) => fold(graph, BinaryOp::Max),
+            (Word::Mod, [a, b]) => Some(graph.binary(BinaryOp::Mod, *a, *b)),
+            (Word::Pow, [a, b]) => Some(graph.binary(BinaryOp::Pow, *a, *b)),
+            (Word::Atan2, [a, b]) => Some(graph.binary(BinaryOp::Atan2, *a, *b)),
+            (Word::Div, [a, b]) => {
+                let quotient = graph.binary(BinaryOp::Div, *a, *b);
+                Some(graph.unary(UnaryOp::Trunc, quotient))
+            }
+            (Word::Degrees | Word::Radians, [a]) => {
+                let factor = match word {
+                    Word::Degrees => 180.0 / std::f64::consts::PI,
+                    _ => std::f64::consts::PI / 180.0,
+                };
+                let factor = graph.constant(factor);
+                Some(graph.binary(BinaryOp::Mul, *a, factor))
+            }
+            (Word::Select, [a, b, c]) => Some(graph.select_negative(*a, *b, *c)),
+            (Word::Select, [a, b, c, d]) => Some(graph.select(*a, *b, *c, *d)),
+            _ => None,
+        };
+        match value {
+            Some(value) => Ok(value),
+            None => {
+                let count = arguments.len();
+                let text = word.text();
+                let message = format!("`{text}` with {count} arguments is not known in functions");
+                Err(self.fail(place, message))
+            }
+        }
+    }
+
+    /// `(variable, from, to, expression)` behind `sum` and `prod`.
+    fn formula_loop(&mut self, body: &mut Body, word: Word) -> PResult<Expr> {
+        self.expect(Kind::LeftParen)?;
+        let token = self.raw();
+        let Some(symbol) = token.symbol() else {
+            return Err(self.unexpected(token, "the variable of the loop"));
+        };
+        self.take(token)?;
+        self.comma()?;
+        let from = self.formula(body)?;
+        self.comma()?;
+        let to = self.formula(body)?;
+        self.comma()?;
+        let variable = body.graph.loop_variable();
+        body.loops.push((symbol, variable));
+        let inner = self.formula(body);
+        body.loops.pop();
+        let inner = inner?;
+        self.expect(Kind::RightParen)?;
+        Ok(match word {
+            Word::Sum => body.graph.sum(variable, from, to, inner),
+            _ => body.graph.prod(variable, from, to, inner),
+        })
+    }
+
+    fn formula_arguments(&mut self, body: &mut Body) -> PResult<Vec<Expr>> {
+        self.expect(Kind::LeftParen)?;
+        let mut arguments = vec![];
+        while !self.accept(Kind::RightParen)? {
+            arguments.push(self.formula(body)?);
+            self.comma()?;
+        }
+        Ok(arguments)
+    }
+
+    /// A call of a function in an expression; its name is already taken.
+    pub(super) fn call_function(&mut self, function: &Function) -> PResult<f64> {
+        let place = self.place();
+        self.expect(Kind::LeftParen)?;
+        let mut arguments = vec![];
+        while !self.accept(Kind::RightParen)? {
+            arguments.push(self.full_float()?);
+            self.comma()?;
+        }
+        self.check_arguments(function.parameters().len(), arguments.len(), place)?;
+        Ok(function.value(&mut self.workspace, &arguments))
+    }
+
+    fn check_arguments(&mut self, expected: usize, found: usize, place: Place) -> PResult<()> {
+        if expected == found {
+            return Ok(());
+        }
+        Err(self.wrong_arguments(expected, found, place))
+    }
+
+    fn wrong_arguments(
+        &mut self,
+        expected: usize,
+        found: usize,
+        place: Place,
+    ) -> crate::parser::Failed {
+        self.fail(
+            place,
+            format!("this function takes {expected} arguments, found {found}"),
+        )
+    }
+}
