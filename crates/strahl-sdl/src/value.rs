@@ -27,6 +27,8 @@ pub enum Value {
     Spline(Arc<Spline>),
     /// A function of numbers.
     Function(Function),
+    /// Something that is read past but cannot be used yet: what it is, in words.
+    Unsupported(&'static str),
     /// A macro; only names hold one.
     Macro(Arc<Macro>),
     /// Something the grammar defines: an object, a texture, a transformation, ...
@@ -45,6 +47,7 @@ impl Value {
             Self::Dictionary(_) => "a dictionary",
             Self::Spline(_) => "a spline",
             Self::Function(_) => "a function",
+            Self::Unsupported(what) => what,
             Self::Macro(_) => "a macro",
             Self::Thing(thing) => thing.describe(),
         }

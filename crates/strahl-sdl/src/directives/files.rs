@@ -199,7 +199,7 @@ impl Parser<'_> {
         }
     }
 
-    pub(super) fn global_target(&self, symbol: Symbol) -> crate::parser::Target {
+    pub(crate) fn global_target(&self, symbol: Symbol) -> crate::parser::Target {
         crate::parser::Target {
             symbol,
             depth: 0,

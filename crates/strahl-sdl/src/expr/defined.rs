@@ -41,7 +41,7 @@ impl Parser<'_> {
                 }
                 None => {
                     self.skip_to_closing()?;
-                    false
+                    strahl_function::internal::find(self.symbols.text(symbol)).is_some()
                 }
             }
         };

@@ -6,7 +6,8 @@ use crate::parser::{PResult, Parser, Place};
 use crate::symbol::Symbol;
 use crate::token::{Kind, Token};
 use crate::value::Value;
-use strahl_function::{BinaryOp, Expr, Function, Graph, UnaryOp};
+use strahl_function::{BinaryOp, Expr, Function, Graph, UnaryOp, internal};
+use strahl_math::noise::NoiseGenerator;
 
 /// A function while its body is read.
 struct Body {
@@ -45,6 +46,73 @@ const fn unary(word: Word) -> Option<UnaryOp> {
 }
 
 impl Parser<'_> {
+    /// What stands behind `function` in a declaration.
+    pub(super) fn function_value(&mut self) -> PResult<Value> {
+        let open = self.peek()?;
+        let body = self.raw_ahead(1);
+        if open.kind == Kind::LeftBrace {
+            let unsupported = match body.word() {
+                Some(Word::Pattern) => "a function made of a pattern, which is not supported yet",
+                Some(Word::Pigment) => "a function made of a pigment, which is not supported yet",
+                Some(Word::Transform) => {
+                    "a function made of a transformation, which is not supported yet"
+                }
+                _ => "",
+            };
+            if !unsupported.is_empty() {
+                self.skip_body()?;
+                return Ok(Value::Unsupported(unsupported));
+            }
+            if body.is(Word::Internal) {
+                return self.internal_by_number();
+            }
+        }
+        self.function().map(Value::Function)
+    }
+
+    /// `{ internal(number) }`: how POV-Ray's own `functions.inc` names the internal functions.
+    fn internal_by_number(&mut self) -> PResult<Value> {
+        self.braces(|p| {
+            p.next()?;
+            p.expect(Kind::LeftParen)?;
+            let number = p.full_float()?;
+            let place = p.place();
+            p.expect(Kind::RightParen)?;
+            let name = (number >= 0.0).then(|| crate::include::internal_function(number as u32));
+            match name.flatten().and_then(internal::find) {
+                Some(known) => Ok(p.internal(known)),
+                None => Err(p.fail(place, format!("there is no internal function {number}"))),
+            }
+        })
+    }
+
+    /// An internal function as a function of its coordinates and parameters.
+    fn internal(&mut self, known: &internal::Internal) -> Value {
+        let coordinates = ["x", "y", "z"].map(str::to_owned);
+        let parameters = (0..known.parameters).map(|i| format!("p{i}"));
+        let names: Vec<String> = coordinates.into_iter().chain(parameters).collect();
+        let mut graph = Graph::new(names.iter().cloned());
+        let arguments: Vec<Expr> = names.iter().map(|name| graph.parameter(name)).collect();
+        let root = graph.internal(known.name, &arguments, NoiseGenerator::default());
+        match graph.finish(root) {
+            Ok(function) => Value::Function(function),
+            Err(_) => Value::Unsupported("an internal function that is not supported yet"),
+        }
+    }
+
+    /// Whether a name stands for something; the names of the internal functions do without being declared.
+    pub(super) fn declare_internal(&mut self, symbol: Symbol) -> bool {
+        if self.scopes.find(symbol).is_some() {
+            return true;
+        }
+        let Some(known) = internal::find(self.symbols.text(symbol)) else {
+            return false;
+        };
+        let value = self.internal(known);
+        let target = self.global_target(symbol);
+        self.scopes.store(&target, value)
+    }
+
     /// `(parameters) { expression }` behind `function`; the parameters are x, y, z if none are given.
     ///
     /// # Errors
@@ -172,6 +240,9 @@ impl Parser<'_> {
         }
         if let Some(word) = token.word() {
             return self.formula_word(body, token, word);
+        }
+        if let Some(symbol) = symbol {
+            self.declare_internal(symbol);
         }
         let callee = match symbol.and_then(|s| self.scopes.find(s)) {
             Some(Value::Function(function)) => Some(function.clone()),

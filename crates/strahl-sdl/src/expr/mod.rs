@@ -332,6 +332,9 @@ impl Parser<'_> {
 
     /// A name that is no number: a function to be called, or a mistake.
     fn not_numeric(&mut self, token: Token) -> PResult<Vector> {
+        if let Some(symbol) = token.symbol() {
+            self.declare_internal(symbol);
+        }
         let callee = token.symbol().and_then(|s| self.scopes.find(s));
         let callee = callee.filter(|value| value.is_callable()).cloned();
         match callee {

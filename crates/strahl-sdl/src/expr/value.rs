@@ -19,9 +19,8 @@ impl Parser<'_> {
     }
 
     fn value_of_name(&mut self, token: Token) -> PResult<Value> {
-        if token
-            .symbol()
-            .is_some_and(|s| self.scopes.find(s).is_none())
+        if let Some(symbol) = token.symbol()
+            && !self.declare_internal(symbol)
         {
             return Err(self.unexpected(token, "a value"));
         }
@@ -68,7 +67,7 @@ impl Parser<'_> {
             }
             _ if word == Word::Function => {
                 self.take(token)?;
-                self.nested(Self::function).map(Value::Function)
+                self.nested(Self::function_value)
             }
             _ if word == Word::Spline => {
                 self.take(token)?;
@@ -80,6 +79,17 @@ impl Parser<'_> {
             }
             WordKind::Object | WordKind::Statement | WordKind::Thing => match self.thing(token)? {
                 Some(thing) => Ok(Value::Thing(thing)),
+                None if self.raw_ahead(1).kind == Kind::LeftBrace => {
+                    self.take(token)?;
+                    let (place, text) = (self.place(), word.text());
+                    self.warn_hint(
+                        place,
+                        format!("`{text}` is not supported yet and is left out"),
+                        "what uses this declaration cannot be shown",
+                    );
+                    self.skip_body()?;
+                    Ok(Value::Unsupported("a thing that is not supported yet"))
+                }
                 None => Err(self.unexpected(token, "a value")),
             },
             _ => self.expression().map(Value::from),

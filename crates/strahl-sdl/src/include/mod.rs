@@ -12,6 +12,7 @@ macro_rules! built_in {
 
 built_in! {
     "arrays.inc"
+    "chars.inc"
     "colors.inc"
     "consts.inc"
     "debug.inc"
@@ -19,6 +20,12 @@ built_in! {
     "math.inc"
     "rad_def.inc"
     "rand.inc"
+    "screen.inc"
+    "shapes.inc"
+    "shapes2.inc"
+    "shapes_old.inc"
+    "shapesq.inc"
+    "stdinc.inc"
     "strings.inc"
     "transforms.inc"
 }
@@ -29,4 +36,23 @@ pub(crate) fn find(name: &str) -> Option<(&'static str, &'static str)> {
         .iter()
         .find(|(file, _)| file.eq_ignore_ascii_case(name));
     known.copied()
+}
+
+/// The name that our `functions.inc` gives to an internal function by its number.
+pub(crate) fn internal_function(number: u32) -> Option<&'static str> {
+    let (_, text) = find("functions.inc")?;
+    let body = format!("function {{ internal({number}) }}");
+    let line = text.lines().find(|line| line.ends_with(&body))?;
+    line.strip_prefix("#declare ")?.split(' ').next()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn internal_functions_have_their_names() {
+        assert_eq!(internal_function(61), Some("f_sphere"));
+        assert_eq!(internal_function(1000), None);
+    }
 }
