@@ -53,6 +53,7 @@ impl Parser<'_> {
             Word::BitwiseOr => self.bitwise(|a, b| a | b)?,
             Word::BitwiseXor => self.bitwise(|a, b| a ^ b)?,
             Word::Select => self.select()?,
+            Word::Inside => super::truth(self.ask_inside()?),
             Word::Seed => {
                 let seed = self.full_float()?;
                 self.seed(seed, place)?

@@ -50,6 +50,8 @@ impl Parser<'_> {
                 let degrees = self.full_float()?;
                 Transform::rotate(axis, degrees.to_radians()).vector_to_world(v)
             }
+            Word::MinExtent | Word::MaxExtent => self.ask_extent(word)?,
+            Word::Trace => self.ask_trace(place)?,
             Word::Vturbulence => {
                 let lambda = self.full_float()?;
                 self.comma()?;

@@ -11,6 +11,7 @@ mod defaults;
 mod global_settings;
 mod lights;
 mod objects;
+mod query;
 mod skip;
 mod texture;
 mod thing;
