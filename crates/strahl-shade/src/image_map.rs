@@ -113,16 +113,46 @@ impl ImageMap {
         }
     }
 
-    /// The size of a texel in the unit square.
-    pub fn texel_size(&self) -> DVec2 {
-        DVec2::new(
+    /// How the picture, taken as a relief, tilts a normal per unit of `bump_size`; zero beside a picture laid `once`.
+    ///
+    /// The relief is the plane through the grey values at the place and one texel below it to the left and to the right, at
+    /// a distance of one per texel (measured for planar maps). On the others the tilt follows the map's longitude and
+    /// latitude, which was not compared with POV-Ray.
+    pub fn tilt(&self, p: DVec3) -> DVec3 {
+        let place = self.map_type.place(p);
+        let texel = DVec2::new(
             1.0 / f64::from(self.image.width()),
             1.0 / f64::from(self.image.height()),
-        )
+        );
+        let gray = |dx: f64, dy: f64| {
+            let sample = self.sample_at(place + DVec2::new(dx, dy) * texel);
+            sample.map_or(0.0, |[r, g, b, a]| {
+                crate::color_ft::gray(Color::new(r, g, b)) * a
+            })
+        };
+        if self.sample_at(place).is_none() {
+            return DVec3::ZERO;
+        }
+        let (center, left, right) = (gray(0.0, 0.0), gray(-1.0, -1.0), gray(1.0, -1.0));
+        let (across, up) = (0.5 * (left - right), 0.5 * (left + right) - center);
+        if self.map_type == MapType::Planar {
+            return DVec3::new(across, up, 0.0);
+        }
+        let east = DVec3::new(-p.z, 0.0, p.x).normalize_or_zero();
+        let outwards = match self.map_type {
+            MapType::Spherical => p,
+            MapType::Toroidal => p - DVec3::new(p.x, 0.0, p.z).normalize_or_zero(),
+            MapType::Planar | MapType::Cylindrical => DVec3::new(p.x, 0.0, p.z),
+        };
+        let north = outwards.normalize_or_zero().cross(east) * -1.0;
+        east * across + north * up
     }
 
     fn sample(&self, p: DVec3) -> Option<[f64; 4]> {
-        let place = self.map_type.place(p);
+        self.sample_at(self.map_type.place(p))
+    }
+
+    fn sample_at(&self, place: DVec2) -> Option<[f64; 4]> {
         let inside = |x: f64| (0.0..1.0).contains(&x);
         let beside = match self.map_type {
             MapType::Planar => !inside(place.x) || !inside(place.y),

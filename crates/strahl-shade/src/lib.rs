@@ -7,14 +7,18 @@ mod color_ft;
 mod fresnel;
 pub mod image_map;
 pub mod image_texture;
+pub mod interior;
 mod light;
 mod material;
+pub mod normal;
 pub mod patterns;
 mod pbr;
 pub mod pigment;
+pub mod pov_finish;
 mod reflectance;
 mod refraction;
 pub mod srgb;
+pub mod texture;
 
 pub use color::Color;
 pub use color_ft::ColorFt;

@@ -15,7 +15,7 @@ mod noisy;
 mod plain;
 mod random;
 mod warp;
-mod water;
+pub(crate) mod water;
 
 use std::sync::Arc;
 
@@ -25,6 +25,7 @@ use strahl_math::{DVec2, DVec3};
 pub use crackle::{Crackle, CrackleMetric};
 pub use fractal::{Exterior, Fractal, FractalKind, Interior as FractalInterior};
 pub use modifiers::{Modifiers, Wave};
+pub(crate) use plain::quilted_tilt;
 pub use plain::{Altitude, SlopeReference};
 pub use warp::{BlackHole, Mapping, Warp};
 
@@ -39,6 +40,8 @@ use crate::pigment::Pigment;
 pub struct TexturePoint {
     /// The place on the surface, in the space of the texture.
     pub position: DVec3,
+    /// The same place in the world: textures, pigments and patterns don't move it.
+    pub surface: DVec3,
     /// Unit normal of the surface, turned towards the viewer.
     pub n_geom: DVec3,
     /// Unit normal for shading (smooth triangles interpolate it), turned towards the viewer.
@@ -54,6 +57,7 @@ impl TexturePoint {
     pub fn in_space(position: DVec3) -> Self {
         Self {
             position,
+            surface: position,
             n_geom: DVec3::Y,
             n_shade: DVec3::Y,
             uv: DVec2::ZERO,
@@ -236,7 +240,7 @@ impl Pattern {
             Self::Onion => plain::onion(p),
             Self::Pigment(pigment) => pigment.color_at(&point.at(p)).gray(),
             Self::Planar => plain::planar(p),
-            Self::Quilted { control0, control1 } => plain::quilted(p, *control0, *control1),
+            Self::Quilted { control0, control1 } => plain::quilted(p, [*control0, *control1]),
             Self::Radial => plain::radial(p),
             Self::Ripples { sources } => water::ripples(p, *sources, modifiers),
             Self::Slope {
@@ -283,33 +287,57 @@ impl From<Pattern> for PatternField {
 impl PatternField {
     /// The value at a point, in `0..=1.00001`: what lies beyond is repeated into it by [`Modifiers::shape`].
     pub fn value(&self, point: &TexturePoint) -> f64 {
-        let raw = self.raw(point);
-        let wave = self
-            .modifiers
-            .wave
-            .unwrap_or_else(|| self.pattern.default_wave());
-        self.modifiers.shape(raw, wave)
-    }
-
-    /// The pattern's formula at the moved point, without frequency, phase and wave form.
-    pub fn raw(&self, point: &TexturePoint) -> f64 {
-        self.pattern
-            .raw(self.moved(point.position), point, &self.modifiers)
+        let inner = point.at(self.transformed(point.position));
+        self.as_ref().value_inside(&inner)
     }
 
     /// The number of the block at a point, below [`Pattern::block_count`]; 0 for patterns without blocks.
     pub fn block(&self, point: &TexturePoint) -> usize {
-        self.pattern.block(self.moved(point.position))
+        let inner = point.at(self.transformed(point.position));
+        self.as_ref().block_inside(&inner)
     }
 
-    /// The position after warps and transformations.
+    /// The position after warps and transformations, where the members of a map are evaluated.
     pub fn transformed(&self, position: DVec3) -> DVec3 {
         self.modifiers.warped(position)
     }
 
-    /// The position after warps, transformations and turbulence.
-    pub fn moved(&self, position: DVec3) -> DVec3 {
-        let p = self.modifiers.warped(position);
+    fn as_ref(&self) -> FieldRef<'_> {
+        FieldRef {
+            pattern: &self.pattern,
+            modifiers: &self.modifiers,
+        }
+    }
+}
+
+/// A pattern and the modifiers that belong to it, borrowed from wherever they are.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct FieldRef<'a> {
+    pub(crate) pattern: &'a Pattern,
+    pub(crate) modifiers: &'a Modifiers,
+}
+
+impl FieldRef<'_> {
+    /// The value at a point in the pattern's own space, where only turbulence is left to be applied.
+    pub(crate) fn value_inside(&self, point: &TexturePoint) -> f64 {
+        self.value_moved(self.moved(point.position), point)
+    }
+
+    /// The value at `p`, which turbulence has moved already.
+    pub(crate) fn value_moved(&self, p: DVec3, point: &TexturePoint) -> f64 {
+        let raw = self.pattern.raw(p, point, self.modifiers);
+        let wave = self.modifiers.wave;
+        let wave = wave.unwrap_or_else(|| self.pattern.default_wave());
+        self.modifiers.shape(raw, wave)
+    }
+
+    /// The block at a point in the pattern's own space.
+    pub(crate) fn block_inside(&self, point: &TexturePoint) -> usize {
+        self.pattern.block(self.moved(point.position))
+    }
+
+    /// The point after turbulence, if the pattern lets turbulence move it.
+    pub(crate) fn moved(&self, p: DVec3) -> DVec3 {
         if self.pattern.is_displaced() {
             self.modifiers.displaced(p)
         } else {

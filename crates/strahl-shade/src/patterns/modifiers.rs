@@ -88,12 +88,12 @@ impl Modifiers {
     }
 
     /// The point after the warps and transformations.
-    pub(super) fn warped(&self, p: DVec3) -> DVec3 {
+    pub(crate) fn warped(&self, p: DVec3) -> DVec3 {
         self.warps.iter().rev().fold(p, |p, warp| warp.apply(p))
     }
 
     /// The point after turbulence.
-    pub(super) fn displaced(&self, p: DVec3) -> DVec3 {
+    pub(crate) fn displaced(&self, p: DVec3) -> DVec3 {
         if self.turbulence == DVec3::ZERO {
             p
         } else {

@@ -73,16 +73,31 @@ pub(super) fn spiral2(p: DVec3, arms: f64, modifiers: &Modifiers) -> f64 {
     triangle(spiral1(p, arms, modifiers)) + triangle(r)
 }
 
-/// A cubic Bézier profile with ordinates 0, c₀, c₁, 1 over the distance `t` from the middle of the unit cube, times the
-/// mean of the distances along the axes, scaled to 1 at the cube's corners.
-pub(super) fn quilted(p: DVec3, control0: f64, control1: f64) -> f64 {
-    /// 2 / (3 √3).
-    const SCALE: f64 = 0.384_900_179_459_750_5;
-    let v = p - p.floor() - DVec3::splat(0.5);
-    let t = v.length();
+/// The cubic Bézier profile of a cushion, with ordinates 0, c₀, c₁, 1 over the distance `t` from its middle.
+fn cushion(t: f64, [c0, c1]: [f64; 2]) -> f64 {
     let s = 1.0 - t;
-    let profile = t * (3.0 * s * (control0 * s + control1 * t) + t * t);
-    profile * (v.x.abs() + v.y.abs() + v.z.abs()) * SCALE
+    t * (3.0 * s * (c0 * s + c1 * t) + t * t)
+}
+
+/// From the middle of the unit cube around `p` to `p`.
+fn from_middle(p: DVec3) -> DVec3 {
+    p - p.floor() - DVec3::splat(0.5)
+}
+
+/// 2/√3: the reciprocal of the distance of a unit cube's corners from its middle.
+const CUSHION_SCALE: f64 = 1.154_700_538_379_251_5;
+
+/// The cushion's profile times the mean of the distances along the axes, scaled to 1 at the cube's corners.
+pub(super) fn quilted(p: DVec3, controls: [f64; 2]) -> f64 {
+    let v = from_middle(p);
+    let mean = (v.x.abs() + v.y.abs() + v.z.abs()) / 3.0;
+    cushion(v.length(), controls) * mean * CUSHION_SCALE
+}
+
+/// Where cushions tilt a normal: outwards, by their profile.
+pub(crate) fn quilted_tilt(p: DVec3, controls: [f64; 2]) -> DVec3 {
+    let v = from_middle(p);
+    v * (cushion(v.length(), controls) * CUSHION_SCALE)
 }
 
 /// What the slope pattern compares the normal with.
@@ -132,7 +147,7 @@ pub(super) fn slope(
 ) -> f64 {
     let direction = match reference {
         SlopeReference::Direction(direction) => *direction,
-        SlopeReference::Point(target) => *target - point.position,
+        SlopeReference::Point(target) => *target - point.surface,
     };
     let slope = rescaled(alignment(point.n_shade, direction), range);
     let Some(altitude) = altitude else {

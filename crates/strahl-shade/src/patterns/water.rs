@@ -42,3 +42,30 @@ pub(super) fn waves(p: DVec3, sources: u32, modifiers: &Modifiers) -> f64 {
         .sum();
     0.5 + 0.2 * sum / f64::from(sources.max(1))
 }
+
+/// Where ripples tilt a normal: from the sources, by the wave's slope.
+pub(crate) fn ripples_tilt(p: DVec3, sources: u32, modifiers: &Modifiers) -> DVec3 {
+    tilt(p, sources, |_, length| {
+        cycloidal(length * modifiers.frequency + modifiers.phase)
+    })
+}
+
+/// Where waves tilt a normal.
+pub(crate) fn waves_tilt(p: DVec3, sources: u32, modifiers: &Modifiers) -> DVec3 {
+    tilt(p, sources, |i, length| {
+        let f = wave_frequency(i);
+        cycloidal(length * modifiers.frequency * f + modifiers.phase) / f
+    })
+}
+
+/// The mean over the sources of the unit vector from the source times `strength(source, distance)`.
+fn tilt(p: DVec3, sources: u32, strength: impl Fn(u32, f64) -> f64) -> DVec3 {
+    let sum = (0..sources)
+        .map(|i| {
+            let from_source = p - source(i);
+            let length = from_source.length();
+            from_source.normalize_or_zero() * strength(i, length)
+        })
+        .fold(DVec3::ZERO, |a, b| a + b);
+    sum / f64::from(sources.max(1))
+}

@@ -1,0 +1,79 @@
+//! What is inside of a transparent solid.
+
+use strahl_math::det;
+
+use crate::Color;
+
+/// The inside of a solid as POV-Ray's `interior` describes it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Interior {
+    /// Index of refraction.
+    pub ior: f64,
+    /// The distance at which the light is weakened to a half (or to 1/e, see [`Interior::attenuation`]); 0 is no weakening.
+    pub fade_distance: f64,
+    /// How quickly it is weakened; 0 is no weakening.
+    pub fade_power: f64,
+    /// The colour that light has in the end; black by default.
+    pub fade_color: Color,
+    /// Ratio of the indices of refraction for violet and red; 1 is no dispersion.
+    pub dispersion: f64,
+}
+
+impl Default for Interior {
+    /// Air: nothing happens.
+    fn default() -> Self {
+        Self {
+            ior: 1.0,
+            fade_distance: 0.0,
+            fade_power: 0.0,
+            fade_color: Color::BLACK,
+            dispersion: 1.0,
+        }
+    }
+}
+
+impl Interior {
+    /// What is left of light after a path of this length inside.
+    ///
+    /// With `s = length / fade_distance`: `c + (1 - c) / (1 + s^fade_power)` below a power of 1000, and
+    /// `exp(-(1 - c) s)`, the law of Beer and Lambert, from there on.
+    pub fn attenuation(&self, length: f64) -> Color {
+        if !(self.fade_power > 0.0) || !(self.fade_distance > 0.0) {
+            return Color::WHITE;
+        }
+        let s = length / self.fade_distance;
+        if self.fade_power >= 1000.0 {
+            self.fade_color.map(|c| det::exp(-(1.0 - c) * s))
+        } else {
+            let left = 1.0 / (1.0 + det::pow(s, self.fade_power));
+            self.fade_color.map(|c| c + (1.0 - c) * left)
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn equals_the_measured_values() {
+        let color = Color::new(0.2, 0.5, 0.8);
+        for (fade_power, fade_color, expected) in [
+            (2.0, Color::BLACK, [0.2, 0.2, 0.2]),
+            (2.0, color, [0.36, 0.6, 0.84]),
+            (1001.0, Color::BLACK, [0.13533, 0.13533, 0.13533]),
+            (1001.0, color, [0.20189, 0.36788, 0.67031]),
+        ] {
+            let interior = Interior {
+                fade_distance: 1.0,
+                fade_power,
+                fade_color,
+                ..Interior::default()
+            };
+            let got = interior.attenuation(2.0).to_array();
+            for (g, e) in got.iter().zip(expected) {
+                assert!((g - e).abs() < 2e-5, "{fade_power}: {got:?}");
+            }
+        }
+    }
+}

@@ -1,0 +1,246 @@
+//! POV-Ray's finish: how a surface treats light, as pure functions.
+//!
+//! Every formula here was found or confirmed by rendering small scenes with POV-Ray 3.7 into 16-bit pictures of gamma 1;
+//! the largest difference was 1e-5, the pictures' own step.
+
+use strahl_math::{DVec3, det};
+
+use crate::{Color, fresnel_dielectric};
+
+/// The specular reflection of a finish (`reflection { min, max ... }`).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PovReflection {
+    /// Reflectance head on.
+    pub min: Color,
+    /// Reflectance at grazing angles. `reflection c` has `min = max = c`; with `fresnel`, `reflection { c }` has `min` = 0.
+    pub max: Color,
+    /// Whether Fresnel's equations lead from `min` to `max` instead of the power `falloff`.
+    pub fresnel: bool,
+    /// Power of `1 - cos θ` that leads from `min` to `max`.
+    pub falloff: f64,
+    /// What comes back is raised to the power of the reciprocal: see [`PovReflection::reflected`].
+    pub exponent: f64,
+    /// How much the reflection takes on the pigment's colour, `0..=1`.
+    pub metallic: f64,
+}
+
+impl Default for PovReflection {
+    /// None.
+    fn default() -> Self {
+        Self {
+            min: Color::BLACK,
+            max: Color::BLACK,
+            fresnel: false,
+            falloff: 1.0,
+            exponent: 1.0,
+            metallic: 0.0,
+        }
+    }
+}
+
+impl PovReflection {
+    /// A mirror of the same reflectance at all angles.
+    pub fn constant(color: Color) -> Self {
+        Self {
+            min: color,
+            max: color,
+            ..Self::default()
+        }
+    }
+
+    /// Whether nothing is ever reflected.
+    pub fn is_none(&self) -> bool {
+        self.min.is_black() && self.max.is_black()
+    }
+
+    /// The share of the light from the mirror direction that is reflected.
+    ///
+    /// `cos_view` is the cosine between the tilted normal and the direction to the viewer, `pigment` the pigment's colour,
+    /// `eta` the index of refraction behind the surface divided by the one before it.
+    pub fn reflectance(&self, cos_view: f64, pigment: Color, eta: f64) -> Color {
+        if self.is_none() {
+            return Color::BLACK;
+        }
+        let cos = cos_view.abs().clamp(0.0, 1.0);
+        let share = if self.fresnel {
+            let sin2 = (1.0 - cos * cos) / (eta * eta);
+            if sin2 < 1.0 {
+                fresnel_dielectric(1.0, cos, eta, (1.0 - sin2).sqrt())
+            } else {
+                1.0
+            }
+        } else if self.min == self.max {
+            0.0
+        } else {
+            det::pow(1.0 - cos, self.falloff)
+        };
+        let reflectance = self.min + (self.max - self.min) * share;
+        reflectance * metallic_tint(self.metallic, cos, pigment)
+    }
+
+    /// The light that comes back: `reflectance · light^(1 / exponent)`.
+    pub fn reflected(&self, reflectance: Color, light: Color) -> Color {
+        if self.exponent == 1.0 || !(self.exponent > 0.0) {
+            reflectance * light
+        } else {
+            let power = 1.0 / self.exponent;
+            reflectance * light.map(|x| if x > 0.0 { det::pow(x, power) } else { 0.0 })
+        }
+    }
+}
+
+/// How a surface treats light.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PovFinish {
+    /// Share of the scene's ambient light; default 0.1.
+    pub ambient: Color,
+    /// Light of its own; default 0.
+    pub emission: Color,
+    /// Diffuse reflectance; default 0.6.
+    pub diffuse: f64,
+    /// Share of light from behind that a thin sheet scatters to the viewer; default 0.
+    pub diffuse_back: f64,
+    /// Power of the cosine in diffuse reflection; default 1.
+    pub brilliance: f64,
+    /// Strength of the Phong highlight; default 0.
+    pub phong: f64,
+    /// Exponent of the Phong highlight; default 40.
+    pub phong_size: f64,
+    /// Strength of the highlight by half vectors; default 0.
+    pub specular: f64,
+    /// Reciprocal of that highlight's exponent; default 0.05.
+    pub roughness: f64,
+    /// How much highlights take on the pigment's colour, `0..=1`; default 0.
+    pub metallic: f64,
+    /// Mirror reflection.
+    pub reflection: PovReflection,
+    /// Whether what is reflected is missing in what passes.
+    pub conserve_energy: bool,
+    /// Strength of the random darkening of diffuse light (`crand`); default 0.
+    pub crand: f64,
+}
+
+impl Default for PovFinish {
+    /// The finish of POV-Ray's default texture.
+    fn default() -> Self {
+        Self {
+            ambient: Color::gray(0.1),
+            emission: Color::BLACK,
+            diffuse: 0.6,
+            diffuse_back: 0.0,
+            brilliance: 1.0,
+            phong: 0.0,
+            phong_size: 40.0,
+            specular: 0.0,
+            roughness: 0.05,
+            metallic: 0.0,
+            reflection: PovReflection::default(),
+            conserve_energy: false,
+            crand: 0.0,
+        }
+    }
+}
+
+/// The colour that metallic highlights and reflections get.
+///
+/// It is the pigment's colour head on and white at grazing angles, by an empirical function of the angle θ between the
+/// normal and the other direction: `1 + metallic (1 - F) (pigment - 1)`, `F = 0.014567225 / (x - 1.12)² - 0.011612903`
+/// with `x = 2θ/π`.
+fn metallic_tint(metallic: f64, cos: f64, pigment: Color) -> Color {
+    if metallic == 0.0 {
+        return Color::WHITE;
+    }
+    let x = det::acos(cos.clamp(-1.0, 1.0)) / std::f64::consts::FRAC_PI_2;
+    let d = x - 1.12;
+    let f = (0.014_567_225 / (d * d) - 0.011_612_903).clamp(0.0, 1.0);
+    Color::WHITE + (pigment - Color::WHITE) * (metallic * (1.0 - f))
+}
+
+impl PovFinish {
+    /// The factor that turns `diffuse albedo x` into `diffuse`: `(brilliance + 1) / 2`.
+    pub fn diffuse_from_albedo(brilliance: f64) -> f64 {
+        0.5 * (brilliance + 1.0)
+    }
+
+    /// The factor that turns `phong albedo x` into `phong`: `(phong_size + 1) / 2`.
+    pub fn phong_from_albedo(phong_size: f64) -> f64 {
+        0.5 * (phong_size + 1.0)
+    }
+
+    /// The factor that turns `specular albedo x` into `specular`: `(p + 2) / (4 (2 - 2^(-p/2)))`, `p = 1 / roughness`.
+    pub fn specular_from_albedo(roughness: f64) -> f64 {
+        let p = 1.0 / roughness;
+        (p + 2.0) / (4.0 * (2.0 - det::exp(-0.5 * p * std::f64::consts::LN_2)))
+    }
+
+    /// What the diffuse term makes of light of colour white: the factor of `light · pigment · opacity`.
+    ///
+    /// `cos_light` is the cosine between the tilted normal and the direction to the light. The opacity
+    /// `1 - filter - transmit` is [`crate::ColorFt::opacity`].
+    pub fn diffuse_factor(&self, cos_light: f64) -> f64 {
+        let (strength, cos) = if cos_light > 0.0 {
+            (self.diffuse, cos_light)
+        } else {
+            (self.diffuse_back, -cos_light)
+        };
+        if strength == 0.0 {
+            0.0
+        } else if self.brilliance == 1.0 {
+            strength * cos
+        } else {
+            strength * det::pow(cos, self.brilliance)
+        }
+    }
+
+    /// What both highlights add per unit of light: the factor of the light's colour. The opacity plays no part.
+    ///
+    /// `n` is the tilted unit normal, `to_light` and `to_viewer` are unit vectors away from the surface. Nothing is added for
+    /// light from behind.
+    pub fn highlight(&self, n: DVec3, to_light: DVec3, to_viewer: DVec3, pigment: Color) -> Color {
+        let cos_light = n.dot(to_light);
+        if !(cos_light > 0.0) || (self.phong == 0.0 && self.specular == 0.0) {
+            return Color::BLACK;
+        }
+        let mut strength = 0.0;
+        if self.phong != 0.0 {
+            let cos = crate::reflect(n, to_viewer).dot(to_light);
+            if cos > 0.0 {
+                strength += self.phong * det::pow(cos, self.phong_size);
+            }
+        }
+        if self.specular != 0.0 && self.roughness > 0.0 {
+            let half = (to_light + to_viewer).normalize_or_zero();
+            let cos = n.dot(half);
+            if cos > 0.0 {
+                strength += self.specular * det::pow(cos, 1.0 / self.roughness);
+            }
+        }
+        metallic_tint(self.metallic, cos_light, pigment) * strength
+    }
+
+    /// What `crand` takes away from each channel of the surface's diffuse light at a place.
+    ///
+    /// POV-Ray draws a random number per pixel; here it depends on the place alone, so that the same scene gives the same
+    /// picture.
+    pub fn grain(&self, place: DVec3) -> f64 {
+        if self.crand == 0.0 {
+            return 0.0;
+        }
+        // splitmix64's mixing function (Steele et al., OOPSLA 2014) over the bits of the coordinates.
+        let mix = |mut z: u64| {
+            z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+            z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+            z ^ (z >> 31)
+        };
+        let hash = place
+            .to_array()
+            .iter()
+            .fold(0x9e37_79b9_7f4a_7c15, |h: u64, x| {
+                mix(h.wrapping_add(x.to_bits()))
+            });
+        self.crand * ((hash >> 11) as f64 / (1u64 << 53) as f64)
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,328 @@
+//! Textures: pigment, normal and finish together, in layers and by patterns.
+
+use std::sync::Arc;
+
+use strahl_math::{DVec3, Transform};
+
+use crate::image_map::ImageMap;
+use crate::normal::PovNormal;
+use crate::patterns::{PatternField, TexturePoint, Warp};
+use crate::pigment::{Blend, BlendMap, Pigment, warped};
+use crate::pov_finish::PovFinish;
+use crate::{Color, ColorFt};
+
+/// One texture statement: colour, roughness and treatment of light.
+#[derive(Clone, Debug, Default)]
+pub struct PlainTexture {
+    /// The colour.
+    pub pigment: Pigment,
+    /// What tilts the normal; nothing by default.
+    pub normal: Option<PovNormal>,
+    /// The treatment of light.
+    pub finish: PovFinish,
+}
+
+/// What a surface looks like.
+#[derive(Clone, Debug)]
+pub enum Texture {
+    /// One pigment, normal and finish.
+    Plain(Box<PlainTexture>),
+    /// Textures laid over each other, the lowest first, as they are written.
+    Layered(Vec<Texture>),
+    /// Two textures blended by the value of a pattern (`texture_map`).
+    Map(PatternField, BlendMap<Texture>),
+    /// The texture of the block a point lies in. Blocks beyond the list take its last.
+    Blocks(PatternField, Vec<Texture>),
+    /// The weighted mean of textures (`average`), at the point moved by these warps.
+    Average(Vec<(f64, Texture)>, Vec<Warp>),
+    /// The texture whose number a picture's texel holds (`material_map`): red · 255, or the code of a grey picture, modulo the
+    /// number of textures.
+    MaterialMap(Arc<ImageMap>, Vec<Texture>),
+    /// A texture in a space of its own.
+    Transformed(Box<Transform>, Box<Texture>),
+    /// A texture at the surface's own coordinates: (u, v, 0) takes the place of the point.
+    UvMapped(Box<Texture>),
+}
+
+impl Default for Texture {
+    fn default() -> Self {
+        Self::from(PlainTexture::default())
+    }
+}
+
+impl From<PlainTexture> for Texture {
+    fn from(texture: PlainTexture) -> Self {
+        Self::Plain(Box::new(texture))
+    }
+}
+
+/// One layer of a texture at a point, with all that the surface itself decides.
+///
+/// What a viewer sees, with `E` the ambient light, a light of colour `L` (shadows included) in direction `l`, and `R` the light
+/// from the mirror direction, is the sum over all layers of
+///
+/// ```text
+/// share · above · [ color.rgb · opacity · (finish.ambient · E + finish.emission + finish.diffuse_factor(n·l) · L)
+///                   + finish.highlight(n, l, v, color.rgb) · L ]
+/// + share · finish.reflection.reflected(reflectance, R)
+/// ```
+///
+/// plus [`TexturePaint::transmission`] times the light from behind. Layers above weaken all but the reflection; the
+/// opacity `1 - filter - transmit` weakens all but highlights and reflection (all this as measured).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LayerPoint<'a> {
+    /// The pigment's colour.
+    pub color: ColorFt,
+    /// The tilted unit normal, in the space of the texture point handed in.
+    pub normal: DVec3,
+    /// The finish.
+    pub finish: &'a PovFinish,
+    /// The share of this layer's stack where textures are blended; the shares of all stacks sum to 1.
+    pub share: f64,
+    /// What the layers above let pass.
+    pub above: Color,
+    /// The share of the light from the mirror direction that is reflected.
+    pub reflectance: Color,
+}
+
+/// A texture evaluated at a point. Reused from point to point, it stops allocating.
+#[derive(Clone, Debug, Default)]
+pub struct TexturePaint<'a> {
+    /// The layers: stack by stack, from the top to the bottom.
+    pub layers: Vec<LayerPoint<'a>>,
+    /// What passes all layers of light from behind: the sum over the stacks of share times the product of
+    /// `rgb · filter + transmit`, with `conserve_energy` also times `1 - reflectance`.
+    pub transmission: Color,
+}
+
+/// A stack of layers under construction.
+struct Stack {
+    share: f64,
+    above: Color,
+}
+
+impl Texture {
+    /// Evaluates the texture at a point; `eta` is the index of refraction behind the surface divided by the one before it,
+    /// for reflections with `fresnel`.
+    pub fn layers_at<'a>(&'a self, point: &TexturePoint, eta: f64, out: &mut TexturePaint<'a>) {
+        out.layers.clear();
+        out.transmission = Color::BLACK;
+        let mut stack = Stack {
+            share: 1.0,
+            above: Color::WHITE,
+        };
+        self.paint(point, point.n_shade, &Identity, eta, &mut stack, out);
+        out.transmission += stack.above * stack.share;
+    }
+
+    /// What light keeps that passes the surface towards a light source: as [`TexturePaint::transmission`], but without
+    /// regard to `conserve_energy`.
+    pub fn shadow_attenuation(&self, point: &TexturePoint) -> Color {
+        match self {
+            Self::Plain(texture) => texture.pigment.color_at(point).attenuation(),
+            Self::Layered(layers) => layers.iter().fold(Color::WHITE, |passed, layer| {
+                if passed.is_black() {
+                    passed
+                } else {
+                    passed * layer.shadow_attenuation(point)
+                }
+            }),
+            _ => {
+                let mut sum = Color::BLACK;
+                self.for_members(point, |texture, point, _, share| {
+                    sum += texture.shadow_attenuation(point) * share;
+                });
+                sum
+            }
+        }
+    }
+
+    /// Calls `visit` with each texture that makes up this one at a point, the point it is to be evaluated at, the way normals
+    /// take to and from its space, and its share.
+    fn for_members<'a>(
+        &'a self,
+        point: &TexturePoint,
+        mut visit: impl FnMut(&'a Texture, &TexturePoint, &dyn NormalSpace, f64),
+    ) {
+        match self {
+            Self::Plain(_) | Self::Layered(_) => visit(self, point, &Identity, 1.0),
+            Self::Map(field, map) => {
+                let warps = &field.modifiers.warps;
+                let inner = point.at(warped(warps, point.position));
+                match map.lookup(field.value(point)) {
+                    None => {}
+                    Some(Blend::One(texture)) => visit(texture, &inner, warps, 1.0),
+                    Some(Blend::Two(low, high, t)) => {
+                        visit(low, &inner, warps, 1.0 - t);
+                        visit(high, &inner, warps, t);
+                    }
+                }
+            }
+            Self::Blocks(field, textures) => {
+                let warps = &field.modifiers.warps;
+                let inner = point.at(warped(warps, point.position));
+                if let Some(texture) = textures.get(field.block(point)).or(textures.last()) {
+                    visit(texture, &inner, warps, 1.0);
+                }
+            }
+            Self::Average(members, warps) => {
+                let inner = point.at(warped(warps, point.position));
+                let total: f64 = members.iter().map(|(weight, _)| weight).sum();
+                for (weight, texture) in members.iter().filter(|_| total != 0.0) {
+                    visit(texture, &inner, warps, weight / total);
+                }
+            }
+            Self::MaterialMap(image, textures) => {
+                let index = match image.color(point.position) {
+                    None => 0,
+                    Some(color) => (color.rgb.r * 255.0).round() as usize,
+                };
+                if let Some(texture) = textures.get(index % textures.len().max(1)) {
+                    visit(texture, point, &Identity, 1.0);
+                }
+            }
+            Self::Transformed(transform, texture) => {
+                let inner = point.at(transform.point_to_object(point.position));
+                visit(texture, &inner, transform.as_ref(), 1.0);
+            }
+            Self::UvMapped(texture) => {
+                let uv = DVec3::new(point.uv.x, point.uv.y, 0.0);
+                visit(texture, &point.at(uv), &Identity, 1.0);
+            }
+        }
+    }
+
+    fn paint<'a>(
+        &'a self,
+        point: &TexturePoint,
+        n: DVec3,
+        space: &dyn NormalSpace,
+        eta: f64,
+        stack: &mut Stack,
+        out: &mut TexturePaint<'a>,
+    ) {
+        match self {
+            Self::Plain(texture) => texture.paint(point, n, space, eta, stack, out),
+            Self::Layered(layers) => {
+                for layer in layers.iter().rev() {
+                    layer.paint(point, n, space, eta, stack, out);
+                }
+            }
+            _ => {
+                // Each member starts from what the layers above leave; what passes all of them is mixed again.
+                let (share, above) = (stack.share, stack.above);
+                let mut passed = Color::BLACK;
+                self.for_members(point, |texture, inner, member_space, weight| {
+                    let mut member = Stack {
+                        share: share * weight,
+                        above,
+                    };
+                    let chain = Chain {
+                        outer: space,
+                        inner: member_space,
+                    };
+                    let n_inner = member_space.enter(n);
+                    texture.paint(inner, n_inner, &chain, eta, &mut member, out);
+                    passed += member.above * weight;
+                });
+                stack.above = passed;
+            }
+        }
+    }
+}
+
+impl PlainTexture {
+    fn paint<'a>(
+        &'a self,
+        point: &TexturePoint,
+        n: DVec3,
+        space: &dyn NormalSpace,
+        eta: f64,
+        stack: &mut Stack,
+        out: &mut TexturePaint<'a>,
+    ) {
+        let color = self.pigment.color_at(point);
+        let normal = match &self.normal {
+            // A layer without a normal of its own leaves the surface's untouched, to the last bit.
+            None => point.n_shade,
+            Some(normal) => space
+                .leave(normal.tilt(point, n))
+                .normalize_or(point.n_shade),
+        };
+        let cos_view = -normal.dot(point.direction);
+        let reflectance = self.finish.reflection.reflectance(cos_view, color.rgb, eta);
+        out.layers.push(LayerPoint {
+            color,
+            normal,
+            finish: &self.finish,
+            share: stack.share,
+            above: stack.above,
+            reflectance,
+        });
+        let mut passes = color.attenuation();
+        if self.finish.conserve_energy {
+            passes *= Color::WHITE - reflectance;
+        }
+        stack.above *= passes;
+    }
+}
+
+/// The way of a normal into a texture's own space and back.
+trait NormalSpace {
+    /// The normal in the inner space, of unit length.
+    fn enter(&self, n: DVec3) -> DVec3;
+    /// A normal of the inner space in the outer one.
+    fn leave(&self, n: DVec3) -> DVec3;
+}
+
+/// No space of its own.
+struct Identity;
+
+impl NormalSpace for Identity {
+    fn enter(&self, n: DVec3) -> DVec3 {
+        n
+    }
+    fn leave(&self, n: DVec3) -> DVec3 {
+        n
+    }
+}
+
+impl NormalSpace for Transform {
+    fn enter(&self, n: DVec3) -> DVec3 {
+        (self.linear().transpose() * n).normalize_or(n)
+    }
+    fn leave(&self, n: DVec3) -> DVec3 {
+        self.normal_to_world(n)
+    }
+}
+
+/// The transformations among warps; the other warps leave normals alone.
+impl NormalSpace for Vec<Warp> {
+    fn enter(&self, n: DVec3) -> DVec3 {
+        self.iter().rev().fold(n, |n, warp| match warp {
+            Warp::Transform(transform) => transform.enter(n),
+            _ => n,
+        })
+    }
+    fn leave(&self, n: DVec3) -> DVec3 {
+        self.iter().fold(n, |n, warp| match warp {
+            Warp::Transform(transform) => transform.leave(n),
+            _ => n,
+        })
+    }
+}
+
+/// A space inside of another.
+struct Chain<'s> {
+    outer: &'s dyn NormalSpace,
+    inner: &'s dyn NormalSpace,
+}
+
+impl NormalSpace for Chain<'_> {
+    fn enter(&self, n: DVec3) -> DVec3 {
+        self.inner.enter(self.outer.enter(n))
+    }
+    fn leave(&self, n: DVec3) -> DVec3 {
+        self.outer.leave(self.inner.leave(n))
+    }
+}
