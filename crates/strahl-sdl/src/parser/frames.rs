@@ -204,6 +204,13 @@ impl<'h> Parser<'h> {
         self.position
     }
 
+    /// Passes tokens of the file that have been read by themselves.
+    #[inline]
+    pub(crate) fn pass(&mut self, count: usize) {
+        self.position += count;
+        self.steps += count as u64;
+    }
+
     /// Moves the position within the file.
     pub(crate) fn jump(&mut self, position: usize) {
         self.position = position;

@@ -1,4 +1,5 @@
 use crate::grammar::Thing;
+use crate::keywords::{Word, WordKind};
 use crate::parser::{PResult, Parser};
 use strahl_scene::Object;
 
@@ -23,7 +24,14 @@ pub(super) fn object(p: &mut Parser<'_>) -> PResult<Object> {
                 Some(object) => object,
                 None => {
                     let token = p.peek()?;
-                    return Err(p.unexpected(token, "an object"));
+                    let kind = token.word().map(Word::kind);
+                    let expected = match kind {
+                        Some(WordKind::Object) => {
+                            "an object of a kind that is known (this one is not supported yet)"
+                        }
+                        _ => "an object",
+                    };
+                    return Err(p.unexpected(token, expected));
                 }
             },
         };

@@ -1,0 +1,123 @@
+//! The short way for expressions of floats alone.
+//!
+//! Most expressions are numbers, names of floats and the four operations. They are evaluated here from the tokens as they
+//! stand, without unfolding, bookkeeping or errors; at the first token that needs any of that the attempt ends, nothing has
+//! changed, and the full evaluator begins anew. Both give the same bits: the operations are the same.
+
+use super::{equal, precedence, truth};
+use crate::keywords::Word;
+use crate::parser::Parser;
+use crate::token::{Kind, Token};
+use crate::value::Value;
+use strahl_math::det;
+
+/// Whether an expression surely ends before this token: nothing that could unfold to an operator, index or argument.
+const fn ends(kind: Kind) -> bool {
+    matches!(
+        kind,
+        Kind::Comma
+            | Kind::Greater
+            | Kind::RightBrace
+            | Kind::RightParen
+            | Kind::RightBracket
+            | Kind::Semicolon
+            | Kind::Word
+    )
+}
+
+impl Parser<'_> {
+    /// The value of the expression at the position with operators that bind at least so strongly, and the position moved
+    /// behind it; `None`, and nothing moved, if it takes more than floats.
+    #[inline]
+    pub(super) fn quick(&mut self, weakest: u8) -> Option<f64> {
+        /// Parentheses within each other; deeper ones take the long way.
+        const DEPTH: u32 = 8;
+        let first = self.raw().kind;
+        if !matches!(
+            first,
+            Kind::Number | Kind::Name | Kind::Minus | Kind::LeftParen | Kind::Word
+        ) {
+            return None;
+        }
+        let begin = self.position();
+        let mut position = begin;
+        let value = self.quick_binary(&mut position, weakest, DEPTH)?;
+        self.pass(position - begin);
+        Some(value)
+    }
+
+    #[inline]
+    fn token_at(&self, position: usize) -> Token {
+        let token = self.current_file().tokens.get(position);
+        token.copied().unwrap_or(Token::END)
+    }
+
+    fn quick_binary(&self, position: &mut usize, weakest: u8, depth: u32) -> Option<f64> {
+        let mut left = self.quick_operand(position, depth)?;
+        loop {
+            let kind = self.token_at(*position).kind;
+            let binds = precedence(kind);
+            if binds == 0 || binds < weakest {
+                return (binds > 0 || ends(kind)).then_some(left);
+            }
+            *position += 1;
+            let right = if binds == 5 {
+                self.quick_operand(position, depth)?
+            } else {
+                self.quick_binary(position, binds + 1, depth)?
+            };
+            left = match kind {
+                Kind::Plus => left + right,
+                Kind::Minus => left - right,
+                Kind::Star => left * right,
+                Kind::Slash if right != 0.0 => left / right,
+                Kind::Less => truth(left < right),
+                Kind::Greater => truth(left > right),
+                Kind::Equal => truth(equal(left, right)),
+                Kind::NotEqual => truth(!equal(left, right)),
+                Kind::LessEqual => truth(left < right || equal(left, right)),
+                Kind::GreaterEqual => truth(left > right || equal(left, right)),
+                _ => return None,
+            };
+        }
+    }
+
+    fn quick_operand(&self, position: &mut usize, depth: u32) -> Option<f64> {
+        let token = self.token_at(*position);
+        *position += 1;
+        let value = match token.kind {
+            Kind::Number => f64::from_bits(token.bits),
+            Kind::Name => match self.scopes.find(token.symbol()?)? {
+                Value::Float(x) => *x,
+                _ => return None,
+            },
+            Kind::Minus if depth > 0 => return Some(-self.quick_operand(position, depth - 1)?),
+            Kind::LeftParen => self.quick_parenthesised(position, depth)?,
+            Kind::Word => {
+                let function = match token.word()? {
+                    Word::Sin => det::sin,
+                    Word::Cos => det::cos,
+                    Word::Abs => f64::abs,
+                    Word::Floor => f64::floor,
+                    _ => return None,
+                };
+                if self.token_at(*position).kind != Kind::LeftParen {
+                    return None;
+                }
+                *position += 1;
+                function(self.quick_parenthesised(position, depth)?)
+            }
+            _ => return None,
+        };
+        let after = self.token_at(*position).kind;
+        (ends(after) || precedence(after) > 0).then_some(value)
+    }
+
+    /// What stands behind a `(`, up to and with the `)`.
+    fn quick_parenthesised(&self, position: &mut usize, depth: u32) -> Option<f64> {
+        let value = self.quick_binary(position, 1, depth.checked_sub(1)?)?;
+        let closed = self.token_at(*position).kind == Kind::RightParen;
+        *position += 1;
+        closed.then_some(value)
+    }
+}
