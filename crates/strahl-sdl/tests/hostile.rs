@@ -134,3 +134,41 @@ fn any_bytes_are_read() {
         let _ = parse(Source::new("x", bytes), &options, &mut MemoryHost::new());
     }
 }
+
+/// Words of the language in any order reach further into the parser than bytes do.
+#[test]
+fn words_in_any_order_are_read() {
+    const WORDS: &str = "sphere box plane object { } { } ( ) ( ) < > [ ] , ; . + - * / = != <= ? : & | ! 0 1 2.5 1e9 -3 \
+        \"s\" \"a.inc\" A B C A B C x y z t rgb rgbt color filter #declare A = #declare B = #local C = #if ( #ifdef ( #else #elseif ( \
+        #end #end #end #while ( #for ( A , 0 , 3 ) #switch ( #case ( #range ( #break #macro A ( #macro B ( C ) #include #undef \
+        #fopen #read ( #write ( #fclose #version #default #debug array [ dictionary { . function { function ( spline { linear_spline \
+        cubic_spline sum ( max ( sin ( rand ( seed ( str ( concat ( vstr ( substr ( defined ( dimension_size ( trace ( inside ( min_extent ( \
+        select ( f_sphere ( internal ( pattern pigment texture finish transform camera light_source background global_settings \
+        translate rotate scale matrix read write append local. global. optional mixed #local A = array [ 3 ] { 1 , 2 , 3 } ; \
+        #declare F = function ( x , y ) { x * y } ; F ( A [ 1 ] A ( B ( .x .red location look_at angle phong reflection";
+    let words: Vec<&str> = WORDS.split_whitespace().collect();
+    let rounds: u64 = std::env::var("STRAHL_SOUP")
+        .ok()
+        .and_then(|n| n.parse().ok())
+        .unwrap_or(2000);
+    let mut state = 1u64;
+    for round in 0..rounds {
+        let mut text = String::new();
+        for _ in 0..(5 + round % 120) {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            let word = (state >> 33) as usize % words.len();
+            text.push_str(words[word]);
+            text.push(' ');
+        }
+        let mut options = Options::default();
+        options.limits.steps = 20_000;
+        options.limits.array_elements = 1 << 16;
+        options.limits.string_bytes = 1 << 12;
+        let mut host = MemoryHost::new().with_file("a.inc", text.clone());
+        let parsed = parse(Source::new("soup.pov", text), &options, &mut host);
+        let failed = parsed.diagnostics.iter().any(|d| d.is_error());
+        assert_eq!(failed, parsed.scene.is_none());
+    }
+}
