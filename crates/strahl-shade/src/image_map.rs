@@ -200,3 +200,126 @@ impl ImageMap {
         Some(sum.map(|channel| channel / total))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::image_texture::{ColorSpace, TexelChannels, TexelData};
+
+    fn picture() -> Arc<TextureImage> {
+        let samples = vec![
+            10, 200, 30, 250, 40, 60, 70, 80, 90, 100, 110, 20, 0, 255, 128, 33, 66, 99,
+        ];
+        let image = TextureImage::try_new(
+            3,
+            2,
+            TexelChannels::Rgb,
+            ColorSpace::Linear,
+            TexelData::U8(samples),
+        );
+        Arc::new(image.expect("3 x 2 texels"))
+    }
+
+    const POINTS: [[f64; 3]; 6] = [
+        [0.153, -0.627, -0.524],
+        [-0.502, 1.95, 0.531],
+        [0.697, -0.68, 0.72],
+        [-1.508, -1.793, 1.401],
+        [-1.964, 1.915, 1.308],
+        [1.141, -1.808, -1.17],
+    ];
+
+    /// Red, as POV-Ray 3.7.0.10 gives it.
+    #[test]
+    fn equals_the_measured_values() {
+        let cases = [
+            (
+                MapType::Planar,
+                Interpolation::Nearest,
+                [
+                    0.39215687, 0.98039216, 0.12941177, 0.0, 0.03921569, 0.39215687,
+                ],
+            ),
+            (
+                MapType::Planar,
+                Interpolation::Bilinear,
+                [
+                    0.299584, 0.58578825, 0.14462502, 0.09097349, 0.18349522, 0.3354328,
+                ],
+            ),
+            (
+                MapType::Planar,
+                Interpolation::NormalizedDistance,
+                [
+                    0.34267449, 0.60636914, 0.18799505, 0.01250192, 0.17448537, 0.377074,
+                ],
+            ),
+            (
+                MapType::Spherical,
+                Interpolation::Nearest,
+                [
+                    0.12941177, 0.98039216, 0.39215687, 0.0, 0.98039216, 0.12941177,
+                ],
+            ),
+            (
+                MapType::Cylindrical,
+                Interpolation::Bilinear,
+                [
+                    0.17380519, 0.42982876, 0.32011342, 0.18350138, 0.51626968, 0.17063667,
+                ],
+            ),
+            (
+                MapType::Toroidal,
+                Interpolation::Nearest,
+                [
+                    0.12941177, 0.98039216, 0.39215687, 0.0, 0.98039216, 0.12941177,
+                ],
+            ),
+        ];
+        for (map_type, interpolation, values) in cases {
+            let map = ImageMap {
+                map_type,
+                interpolation,
+                ..ImageMap::new(picture())
+            };
+            for (p, expected) in POINTS.iter().zip(values) {
+                let got = map.color(DVec3::from_array(*p)).expect("repeated").rgb.r;
+                assert!(
+                    (got - expected).abs() < 1e-6,
+                    "{map_type:?} {interpolation:?} {p:?}: {got} {expected}"
+                );
+            }
+        }
+        let values = [
+            0.3794902, 0.41039217, 0.23514119, 0.64622355, 0.48701963, 0.3794902,
+        ];
+        for (p, expected) in POINTS.iter().zip(values) {
+            let got = ImageMap::new(picture()).gray(DVec3::from_array(*p));
+            assert!((got - expected).abs() < 1e-6, "{p:?}: {got} {expected}");
+        }
+    }
+
+    #[test]
+    fn once_means_once_and_hostile_points_do_not_panic() {
+        let once = ImageMap {
+            once: true,
+            ..ImageMap::new(picture())
+        };
+        assert!(once.color(DVec3::new(0.5, 0.5, 3.0)).is_some());
+        assert!(once.color(DVec3::new(1.5, 0.5, 3.0)).is_none());
+        assert_eq!(once.tilt(DVec3::new(1.5, 0.5, 3.0)), DVec3::ZERO);
+        for x in [f64::NAN, f64::INFINITY, 1e300, -1e-300] {
+            for interpolation in [
+                Interpolation::Nearest,
+                Interpolation::Bilinear,
+                Interpolation::NormalizedDistance,
+            ] {
+                let map = ImageMap {
+                    interpolation,
+                    ..ImageMap::new(picture())
+                };
+                let _ = (map.color(DVec3::splat(x)), map.tilt(DVec3::splat(x)));
+            }
+        }
+    }
+}

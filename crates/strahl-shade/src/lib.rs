@@ -5,6 +5,7 @@
 mod color;
 mod color_ft;
 mod fresnel;
+pub mod functions;
 pub mod image_map;
 pub mod image_texture;
 pub mod interior;

@@ -148,7 +148,9 @@ impl PovNormal {
             }
             NormalKind::BumpMap(image) => n + image.tilt(p) * self.amount,
             NormalKind::Map(pattern, map) => {
-                let value = self.field(pattern).value_inside(&inner);
+                let field = self.field(pattern);
+                let value = field.value_inside(&inner);
+                let inner = inner.at(field.moved(transformed));
                 let unit = n.normalize_or_zero();
                 match map.lookup(value) {
                     None => n,
@@ -159,11 +161,14 @@ impl PovNormal {
                 }
             }
             NormalKind::Blocks(pattern, normals) => {
-                let block = self.field(pattern).block_inside(&inner);
+                let field = self.field(pattern);
+                let block = field.block_inside(&inner);
+                let inner = inner.at(field.moved(transformed));
                 let normal = normals.get(block).or(normals.last());
                 normal.map_or(n, |normal| normal.tilt(&inner, n.normalize_or_zero()))
             }
             NormalKind::Average(members) => {
+                let inner = inner.at(p);
                 let unit = n.normalize_or_zero();
                 let sum = members
                     .iter()

@@ -6,7 +6,7 @@ use strahl_math::DVec3;
 
 use crate::ColorFt;
 use crate::image_map::ImageMap;
-use crate::patterns::{PatternField, TexturePoint, Warp};
+use crate::patterns::{Modifiers, PatternField, TexturePoint};
 
 /// Entries at positions in `0..=1`, between which a value is looked up: the common part of all maps.
 ///
@@ -67,10 +67,10 @@ pub enum Pigment {
     PigmentMap(PatternField, BlendMap<Pigment>),
     /// A block pattern whose blocks have these pigments. Blocks beyond the list take its last.
     Blocks(PatternField, Vec<Pigment>),
-    /// A picture, moved by warps and transformations; clear beside a picture that is laid `once`.
-    Image(Arc<ImageMap>, Vec<Warp>),
-    /// The weighted mean of pigments, each evaluated at the warped point.
-    Average(Vec<(f64, Pigment)>, Vec<Warp>),
+    /// A picture, moved by warps, transformations and turbulence; clear beside a picture that is laid `once`.
+    Image(Arc<ImageMap>, Modifiers),
+    /// The weighted mean of pigments, each evaluated at the moved point.
+    Average(Vec<(f64, Pigment)>, Modifiers),
     /// The pigment at the surface's own coordinates: (u, v, 0) takes the place of the point.
     UvMapped(Box<Pigment>),
 }
@@ -88,16 +88,11 @@ impl From<ColorFt> for Pigment {
     }
 }
 
-/// The point after warps and transformations, last written first.
-pub(crate) fn warped(warps: &[Warp], p: DVec3) -> DVec3 {
-    warps.iter().rev().fold(p, |p, warp| warp.apply(p))
-}
-
 impl Pigment {
     /// The colour at a point.
     ///
-    /// The members of maps are evaluated at the point warped by the map's own warps and transformations, but not displaced
-    /// by its turbulence, as in POV-Ray.
+    /// The members of maps are evaluated at the point that the map's pattern is evaluated at, turbulence included, as in
+    /// POV-Ray.
     pub fn color_at(&self, point: &TexturePoint) -> ColorFt {
         match self {
             Self::Solid(color) => *color,
@@ -107,7 +102,7 @@ impl Pigment {
                 Some(Blend::Two(low, high, t)) => low.lerp(*high, t),
             },
             Self::PigmentMap(field, map) => {
-                let inner = point.at(field.transformed(point.position));
+                let inner = point.at(field.moved(point.position));
                 match map.lookup(field.value(point)) {
                     None => ColorFt::default(),
                     Some(Blend::One(pigment)) => pigment.color_at(&inner),
@@ -117,15 +112,15 @@ impl Pigment {
                 }
             }
             Self::Blocks(field, pigments) => {
-                let inner = point.at(field.transformed(point.position));
+                let inner = point.at(field.moved(point.position));
                 let block = pigments.get(field.block(point)).or(pigments.last());
                 block.map_or_else(ColorFt::default, |pigment| pigment.color_at(&inner))
             }
-            Self::Image(image, warps) => image
-                .color(warped(warps, point.position))
+            Self::Image(image, modifiers) => image
+                .color(modifiers.moved(point.position))
                 .unwrap_or(ColorFt::CLEAR),
-            Self::Average(members, warps) => {
-                let inner = point.at(warped(warps, point.position));
+            Self::Average(members, modifiers) => {
+                let inner = point.at(modifiers.moved(point.position));
                 let (mut sum, mut total) = (ColorFt::default(), 0.0);
                 for (weight, pigment) in members {
                     sum = sum + pigment.color_at(&inner) * *weight;
@@ -141,6 +136,75 @@ impl Pigment {
                 let uv = DVec3::new(point.uv.x, point.uv.y, 0.0);
                 pigment.color_at(&point.at(uv))
             }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Color;
+    use crate::patterns::Pattern;
+
+    fn gray(value: f64) -> ColorFt {
+        Color::gray(value).into()
+    }
+
+    #[test]
+    fn a_step_belongs_to_the_lower_side() {
+        let map = BlendMap::new(vec![(0.3, 0.0), (0.5, 1.0), (0.5, 0.25), (0.7, 0.75)]);
+        let at = |value: f64| match map.lookup(value) {
+            None => f64::NAN,
+            Some(Blend::One(v)) => *v,
+            Some(Blend::Two(a, b, t)) => a * (1.0 - t) + b * t,
+        };
+        for (value, expected) in [
+            (0.0, 0.0),
+            (0.3, 0.0),
+            (0.4, 0.5),
+            (0.5, 1.0),
+            (0.6, 0.5),
+            (0.9, 0.75),
+        ] {
+            assert!(
+                (at(value) - expected).abs() < 1e-12,
+                "{value}: {}",
+                at(value)
+            );
+        }
+        assert!(at(0.5 + 1e-12) < 0.26);
+        assert_eq!(at(f64::NAN), 0.0);
+        assert!(BlendMap::<f64>::new(Vec::new()).lookup(0.5).is_none());
+    }
+
+    /// Red of POV-Ray 3.7.0.10 at <0.3, -0.7, 1.1>.
+    #[test]
+    fn members_are_evaluated_at_the_moved_point_as_measured() {
+        let ramp = |pattern: Pattern| {
+            Pigment::ColorMap(
+                pattern.into(),
+                BlendMap::new(vec![(0.0, gray(0.0)), (1.0, gray(1.0))]),
+            )
+        };
+        let turbulent = Modifiers {
+            turbulence: DVec3::splat(0.5),
+            ..Modifiers::default()
+        };
+        let point = TexturePoint::in_space(DVec3::new(0.3, -0.7, 1.1));
+        let blocks = Pigment::Blocks(
+            PatternField {
+                pattern: Pattern::Checker,
+                modifiers: turbulent.clone(),
+            },
+            vec![ramp(Pattern::Bozo), ramp(Pattern::Granite)],
+        );
+        let average = Pigment::Average(
+            vec![(1.0, ramp(Pattern::Bozo)), (2.0, ramp(Pattern::Granite))],
+            turbulent,
+        );
+        for (pigment, expected) in [(blocks, 0.42866036), (average, 0.43265471)] {
+            let got = pigment.color_at(&point).rgb.r;
+            assert!((got - expected).abs() < 1e-6, "{got} is not {expected}");
         }
     }
 }

@@ -6,8 +6,8 @@ use strahl_math::{DVec3, Transform};
 
 use crate::image_map::ImageMap;
 use crate::normal::PovNormal;
-use crate::patterns::{PatternField, TexturePoint, Warp};
-use crate::pigment::{Blend, BlendMap, Pigment, warped};
+use crate::patterns::{Modifiers, PatternField, TexturePoint, Warp};
+use crate::pigment::{Blend, BlendMap, Pigment};
 use crate::pov_finish::PovFinish;
 use crate::{Color, ColorFt};
 
@@ -33,11 +33,11 @@ pub enum Texture {
     Map(PatternField, BlendMap<Texture>),
     /// The texture of the block a point lies in. Blocks beyond the list take its last.
     Blocks(PatternField, Vec<Texture>),
-    /// The weighted mean of textures (`average`), at the point moved by these warps.
-    Average(Vec<(f64, Texture)>, Vec<Warp>),
+    /// The weighted mean of textures (`average`), at the point moved by these modifiers.
+    Average(Vec<(f64, Texture)>, Modifiers),
     /// The texture whose number a picture's texel holds (`material_map`): red · 255, or the code of a grey picture, modulo the
     /// number of textures.
-    MaterialMap(Arc<ImageMap>, Vec<Texture>),
+    MaterialMap(Arc<ImageMap>, Modifiers, Vec<Texture>),
     /// A texture in a space of its own.
     Transformed(Box<Transform>, Box<Texture>),
     /// A texture at the surface's own coordinates: (u, v, 0) takes the place of the point.
@@ -148,7 +148,7 @@ impl Texture {
             Self::Plain(_) | Self::Layered(_) => visit(self, point, &Identity, 1.0),
             Self::Map(field, map) => {
                 let warps = &field.modifiers.warps;
-                let inner = point.at(warped(warps, point.position));
+                let inner = point.at(field.moved(point.position));
                 match map.lookup(field.value(point)) {
                     None => {}
                     Some(Blend::One(texture)) => visit(texture, &inner, warps, 1.0),
@@ -160,25 +160,26 @@ impl Texture {
             }
             Self::Blocks(field, textures) => {
                 let warps = &field.modifiers.warps;
-                let inner = point.at(warped(warps, point.position));
+                let inner = point.at(field.moved(point.position));
                 if let Some(texture) = textures.get(field.block(point)).or(textures.last()) {
                     visit(texture, &inner, warps, 1.0);
                 }
             }
-            Self::Average(members, warps) => {
-                let inner = point.at(warped(warps, point.position));
+            Self::Average(members, modifiers) => {
+                let inner = point.at(modifiers.moved(point.position));
                 let total: f64 = members.iter().map(|(weight, _)| weight).sum();
                 for (weight, texture) in members.iter().filter(|_| total != 0.0) {
-                    visit(texture, &inner, warps, weight / total);
+                    visit(texture, &inner, &modifiers.warps, weight / total);
                 }
             }
-            Self::MaterialMap(image, textures) => {
-                let index = match image.color(point.position) {
+            Self::MaterialMap(image, modifiers, textures) => {
+                let inner = point.at(modifiers.moved(point.position));
+                let index = match image.color(inner.position) {
                     None => 0,
                     Some(color) => (color.rgb.r * 255.0).round() as usize,
                 };
                 if let Some(texture) = textures.get(index % textures.len().max(1)) {
-                    visit(texture, point, &Identity, 1.0);
+                    visit(texture, &inner, &modifiers.warps, 1.0);
                 }
             }
             Self::Transformed(transform, texture) => {
@@ -326,3 +327,6 @@ impl NormalSpace for Chain<'_> {
         self.outer.leave(self.inner.leave(n))
     }
 }
+
+#[cfg(test)]
+mod tests;

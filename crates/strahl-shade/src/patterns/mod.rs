@@ -287,19 +287,21 @@ impl From<Pattern> for PatternField {
 impl PatternField {
     /// The value at a point, in `0..=1.00001`: what lies beyond is repeated into it by [`Modifiers::shape`].
     pub fn value(&self, point: &TexturePoint) -> f64 {
-        let inner = point.at(self.transformed(point.position));
+        let inner = point.at(self.modifiers.warped(point.position));
         self.as_ref().value_inside(&inner)
     }
 
     /// The number of the block at a point, below [`Pattern::block_count`]; 0 for patterns without blocks.
     pub fn block(&self, point: &TexturePoint) -> usize {
-        let inner = point.at(self.transformed(point.position));
+        let inner = point.at(self.modifiers.warped(point.position));
         self.as_ref().block_inside(&inner)
     }
 
-    /// The position after warps and transformations, where the members of a map are evaluated.
-    pub fn transformed(&self, position: DVec3) -> DVec3 {
-        self.modifiers.warped(position)
+    /// The position after warps, transformations and the turbulence that moves points: there the pattern is evaluated, and
+    /// there the members of a map or list are (measured).
+    pub fn moved(&self, position: DVec3) -> DVec3 {
+        let field = self.as_ref();
+        field.moved(self.modifiers.warped(position))
     }
 
     fn as_ref(&self) -> FieldRef<'_> {

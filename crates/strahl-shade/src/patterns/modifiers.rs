@@ -87,6 +87,11 @@ impl Modifiers {
         wave.apply(x)
     }
 
+    /// The point after warps, transformations and turbulence.
+    pub fn moved(&self, p: DVec3) -> DVec3 {
+        self.displaced(self.warped(p))
+    }
+
     /// The point after the warps and transformations.
     pub(crate) fn warped(&self, p: DVec3) -> DVec3 {
         self.warps.iter().rev().fold(p, |p, warp| warp.apply(p))
