@@ -1,6 +1,10 @@
 //! What light does at a point: colours, materials, lights and the selectable shading models.
 //!
 //! Materials don't know shapes: everything here works on directions, normals and numbers.
+//!
+//! There are two ways to describe a surface. [`Material`] is the classical model's (and glTF's): one set of coefficients, or
+//! pictures of them. [`texture::Texture`] is POV-Ray's: [`pigment`], [`normal`] and [`pov_finish`] by [`patterns`], in layers,
+//! with an [`interior`].
 
 mod color;
 mod color_ft;
