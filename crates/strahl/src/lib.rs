@@ -69,8 +69,10 @@
 //! assert_eq!(scene.stats().primitives, 1);
 //! ```
 
+mod load;
 mod picture;
 
+pub use load::{Format, Listener, LoadOptions, UnknownFormat, load_bytes, load_path};
 pub use picture::{Problems, layers, metadata, picture, save};
 pub use strahl_accel as accel;
 pub use strahl_formats as formats;
@@ -78,6 +80,7 @@ pub use strahl_geometry as geometry;
 pub use strahl_math as math;
 pub use strahl_render::{self as tracing, compile, explain, render};
 pub use strahl_scene as scene;
+pub use strahl_sdl as sdl;
 pub use strahl_shade as shade;
 
 /// Everything a program that builds and renders scenes is likely to name.

@@ -16,6 +16,15 @@ const PIPE_LIMIT: u64 = 1 << 32;
 const FREE_EXPANSION: u64 = 64 << 20;
 const MOST_EXPANSION: u64 = 200;
 
+/// All bytes of a file, decompressed if it begins like gzip: for readers of formats outside of this crate.
+///
+/// # Errors
+/// What is in the way: no such file, no permission, damaged gzip data, or data that expands without measure.
+pub fn read_decompressed(path: &Path) -> Result<Vec<u8>, Box<Diagnostic>> {
+    let bytes = read_file(path)?;
+    Ok(decompressed(Cow::Owned(bytes), &path.display().to_string())?.into_owned())
+}
+
 /// All bytes of a file, or what is in the way.
 pub(super) fn read_file(path: &Path) -> Fallible<Vec<u8>> {
     let name = path.display();

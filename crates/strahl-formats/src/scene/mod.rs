@@ -20,6 +20,7 @@ pub(crate) mod text;
 pub(crate) mod textures;
 
 use crate::mesh::{obj, ply, stl};
+pub use bytes::read_decompressed;
 pub use detect::{FormatInfo, SceneFormat, UnknownSceneFormat, formats};
 pub(crate) use report::{Fallible, Report};
 use std::borrow::Cow;

@@ -1,0 +1,188 @@
+use std::fmt;
+use std::path::{Path, PathBuf};
+use std::str::FromStr;
+use strahl_formats::scene::{self, Loaded, SceneFormat, read_decompressed};
+use strahl_scene::Diagnostic;
+use strahl_sdl::{FolderHost, Source, Stream, parse};
+
+/// A format that scenes are loaded from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// POV-Ray's scene description language.
+    Pov,
+    /// A file format of [`strahl_formats`].
+    File(SceneFormat),
+}
+
+impl Format {
+    /// Name, endings and description of [`Format::Pov`], as in the table of [`strahl_formats::scene::formats`].
+    pub const POV: (&'static str, &'static [&'static str], &'static str) =
+        ("pov", &["pov"], "POV-Ray's scene description language");
+
+    /// The format that a file's name tells, if it does; before it an ending `.gz` is ignored.
+    pub fn of_path(path: &Path) -> Option<Self> {
+        let ending = ending(path)?;
+        if ending == "pov" {
+            return Some(Self::Pov);
+        }
+        SceneFormat::of_extension(&ending).map(Self::File)
+    }
+}
+
+/// The ending of a file's name in lower case, without `.gz`.
+fn ending(path: &Path) -> Option<String> {
+    let of = |p: &Path| Some(p.extension()?.to_string_lossy().to_ascii_lowercase());
+    match of(path)?.as_str() {
+        "gz" => of(Path::new(path.file_stem()?)),
+        other => Some(other.to_owned()),
+    }
+}
+
+impl fmt::Display for Format {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Pov => f.write_str(Self::POV.0),
+            Self::File(format) => format.fmt(f),
+        }
+    }
+}
+
+/// There is no scene format of that name.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("unknown scene format `{found}`; there are: {}", names())]
+pub struct UnknownFormat {
+    found: String,
+}
+
+fn names() -> String {
+    let files = scene::formats().iter().map(|info| info.name);
+    let all: Vec<&str> = [Format::POV.0].into_iter().chain(files).collect();
+    all.join(", ")
+}
+
+impl FromStr for Format {
+    type Err = UnknownFormat;
+
+    fn from_str(s: &str) -> Result<Self, Self::Err> {
+        if s.eq_ignore_ascii_case(Self::POV.0) {
+            return Ok(Self::Pov);
+        }
+        let unknown = |_| UnknownFormat { found: s.into() };
+        s.parse().map(Self::File).map_err(unknown)
+    }
+}
+
+/// Takes what a scene says.
+pub type Listener = Box<dyn FnMut(Stream, &str) + Send>;
+
+/// How a scene is loaded. All but `format` matters to POV-Ray's language only.
+#[derive(Default)]
+pub struct LoadOptions {
+    /// The format; `None` lets the file's name and content tell.
+    pub format: Option<Format>,
+    /// Clock, picture size, declared names, limits.
+    pub sdl: strahl_sdl::Options,
+    /// Folders where included files are searched after the scene's own; the built-in includes come last.
+    pub library: Vec<PathBuf>,
+    /// The folder within which the scene may write files; `None` forbids it.
+    pub writable: Option<PathBuf>,
+    /// Takes what the scene says by `#debug` and the like.
+    pub on_message: Option<Listener>,
+}
+
+impl fmt::Debug for LoadOptions {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("LoadOptions")
+            .field("format", &self.format)
+            .field("sdl", &self.sdl)
+            .field("library", &self.library)
+            .field("writable", &self.writable)
+            .finish_non_exhaustive()
+    }
+}
+
+impl LoadOptions {
+    fn parse(self, name: &str, bytes: Vec<u8>) -> Loaded {
+        let mut host = FolderHost::new(self.library);
+        if let Some(folder) = self.writable {
+            host = host.allow_writing(folder);
+        }
+        if let Some(f) = self.on_message {
+            host = host.on_message(f);
+        }
+        let parsed = parse(Source::new(name, bytes), &self.sdl, &mut host);
+        Loaded {
+            scene: parsed.scene,
+            diagnostics: parsed.diagnostics,
+        }
+    }
+}
+
+/// Loads a scene file of any format.
+///
+/// ```
+/// use strahl::{LoadOptions, load_path};
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// # let folder = tempfile::tempdir()?;
+/// # let path = folder.path().join("ball.pov");
+/// std::fs::write(&path, "sphere { 0, 1 pigment { rgb <1, 0, 0> } }")?;
+/// let loaded = load_path(&path, LoadOptions::default());
+/// assert_eq!(loaded.scene.expect("no errors").objects.0.len(), 1);
+/// # Ok(())
+/// # }
+/// ```
+pub fn load_path(path: &Path, options: LoadOptions) -> Loaded {
+    let failed = |problem| Loaded {
+        scene: None,
+        diagnostics: vec![problem],
+    };
+    if options.format.is_none() && ending(path).is_some_and(|e| e == "inc") {
+        let shown = path.display();
+        return failed(
+            Diagnostic::error(format!("`{shown}` is an include file, no scene")).hint(
+                "give the .pov file that includes it; `--format pov` reads it as a scene anyway",
+            ),
+        );
+    }
+    match options.format.or_else(|| Format::of_path(path)) {
+        Some(Format::Pov) => match read_decompressed(path) {
+            Ok(bytes) => options.parse(&path.display().to_string(), bytes),
+            Err(problem) => failed(*problem),
+        },
+        Some(Format::File(format)) => scene::load_path(path, Some(format)),
+        None => scene::load_path(path, None),
+    }
+}
+
+/// Loads a scene from memory; `name` stands for the file in messages.
+pub fn load_bytes(bytes: Vec<u8>, name: &str, format: Format, options: LoadOptions) -> Loaded {
+    match format {
+        Format::Pov => options.parse(name, bytes),
+        Format::File(format) => scene::load_bytes(bytes, name, format, None),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_tell_formats() {
+        let of = |name: &str| Format::of_path(Path::new(name));
+        assert_eq!(of("a/b.POV"), Some(Format::Pov));
+        assert_eq!(of("b.pov.gz"), Some(Format::Pov));
+        assert_eq!(of("b.nff"), Some(Format::File(SceneFormat::Nff)));
+        assert_eq!(of("b.xyz"), None);
+        assert_eq!(of("pov"), None);
+        assert_eq!("Pov".parse(), Ok(Format::Pov));
+        let unknown = "xyz".parse::<Format>().expect_err("no such format");
+        assert!(unknown.to_string().contains("pov, nff"), "{unknown}");
+    }
+
+    #[test]
+    fn an_include_file_is_no_scene() {
+        let loaded = load_path(Path::new("colors.inc"), LoadOptions::default());
+        assert!(loaded.diagnostics[0].hints[0].contains(".pov"));
+    }
+}
