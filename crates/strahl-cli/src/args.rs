@@ -1,8 +1,9 @@
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
+use strahl::Format;
 use strahl::accel::AcceleratorKind;
 use strahl::formats::image::BitDepth;
-use strahl::formats::scene::SceneFormat;
+use strahl::sdl::Word;
 use strahl::shade::ShadingModel;
 use strahl::tracing::{Region, Sampling, TileOrder};
 
@@ -35,7 +36,70 @@ pub(crate) struct SceneArgs {
     pub(crate) scene: PathBuf,
     /// Format of the scene, if the file name doesn't tell (see `strahl formats`)
     #[arg(long, alias = "scene-format", value_name = "NAME")]
-    pub(crate) format: Option<SceneFormat>,
+    pub(crate) format: Option<Format>,
+    #[command(flatten)]
+    pub(crate) pov: PovArgs,
+}
+
+/// What scenes in POV-Ray's language want to know.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "POV-Ray scenes")]
+pub(crate) struct PovArgs {
+    /// Search included files here too, after the scene's folder and the current one; may be given several times
+    #[arg(short = 'L', long, value_name = "DIR")]
+    pub(crate) library_path: Vec<PathBuf>,
+    /// Declare a number before the scene begins; may be given several times
+    #[arg(long, value_name = "NAME=VALUE", value_parser = parse_declaration)]
+    pub(crate) declare: Vec<(String, f64)>,
+    /// The value of `clock` [default: 0]
+    #[arg(long, value_name = "T", allow_negative_numbers = true)]
+    pub(crate) clock: Option<f64>,
+    /// Let the scene write files into this folder instead of its own
+    #[arg(long, value_name = "DIR")]
+    pub(crate) allow_write: Option<PathBuf>,
+    /// Language version of scenes that name none, such as 3.7
+    #[arg(long, value_name = "VERSION", value_parser = parse_version)]
+    pub(crate) language_version: Option<f64>,
+}
+
+/// Several pictures of one scene at different clocks.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Animation of POV-Ray scenes")]
+pub(crate) struct AnimationArgs {
+    /// Number of the first frame [default: 1]
+    #[arg(long, value_name = "N")]
+    pub(crate) initial_frame: Option<u32>,
+    /// Number of the last frame: makes an animation of pictures with numbered names
+    #[arg(long, value_name = "N")]
+    pub(crate) final_frame: Option<u32>,
+    /// The clock of the first frame
+    #[arg(
+        long,
+        value_name = "T",
+        default_value_t = 0.0,
+        allow_negative_numbers = true
+    )]
+    pub(crate) initial_clock: f64,
+    /// The clock of the last frame
+    #[arg(
+        long,
+        value_name = "T",
+        default_value_t = 1.0,
+        allow_negative_numbers = true
+    )]
+    pub(crate) final_clock: f64,
+    /// The final clock belongs to a frame after the last one, which looks like the first
+    #[arg(long)]
+    pub(crate) cyclic: bool,
+    /// Render from this frame on; from 0.0 to below 1.0 a part of all frames
+    #[arg(long, value_name = "N")]
+    pub(crate) subset_start_frame: Option<f64>,
+    /// Render up to this frame; from 0.0 to below 1.0 a part of all frames
+    #[arg(long, value_name = "N")]
+    pub(crate) subset_end_frame: Option<f64>,
+    /// Render every Nth frame only
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
+    pub(crate) frame_step: u32,
 }
 
 /// What decides the value of a pixel.
@@ -69,8 +133,11 @@ pub(crate) struct PictureArgs {
 
 #[derive(Debug, Args)]
 pub(crate) struct RenderArgs {
-    #[command(flatten)]
-    pub(crate) scene: SceneArgs,
+    /// Scene file, or `-` for the standard input [default: a built-in demonstration]
+    pub(crate) scene: Option<PathBuf>,
+    /// Format of the scene, if the file name doesn't tell (see `strahl formats`)
+    #[arg(long, alias = "scene-format", value_name = "NAME")]
+    pub(crate) format: Option<Format>,
     /// Picture file (see `strahl formats`) [default: the scene's name with .png, in the current folder]
     #[arg(short, long, value_name = "PICTURE")]
     pub(crate) output: Option<PathBuf>,
@@ -79,6 +146,9 @@ pub(crate) struct RenderArgs {
     /// Render this part of the picture only: left, top, width, height in pixels
     #[arg(long, value_name = "X,Y,WxH", value_parser = parse_region)]
     pub(crate) region: Option<Region>,
+    /// With --region: write a picture of the whole size, black around the part
+    #[arg(long, requires = "region", conflicts_with = "layers")]
+    pub(crate) full_size: bool,
     /// Number of threads; 0 takes one per processor
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub(crate) threads: usize,
@@ -94,9 +164,19 @@ pub(crate) struct RenderArgs {
     /// Write what was done, counted and timed, as JSON
     #[arg(long, value_name = "FILE")]
     pub(crate) stats: Option<PathBuf>,
+    /// Render, but write no picture
+    #[arg(long)]
+    pub(crate) no_output: bool,
+    /// Keep pictures that are complete already: goes on with an interrupted animation
+    #[arg(long)]
+    pub(crate) resume: bool,
     /// Say nothing unless something is wrong
     #[arg(short, long)]
     pub(crate) quiet: bool,
+    #[command(flatten)]
+    pub(crate) pov: PovArgs,
+    #[command(flatten)]
+    pub(crate) animation: AnimationArgs,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -125,7 +205,7 @@ pub(crate) struct ExplainArgs {
     pub(crate) scene: PathBuf,
     /// Format of the scene, if the file name doesn't tell (see `strahl formats`)
     #[arg(long, value_name = "NAME")]
-    pub(crate) scene_format: Option<SceneFormat>,
+    pub(crate) scene_format: Option<Format>,
     /// The pixel, counted from 0,0 at the top left
     #[arg(long, value_name = "X,Y", value_parser = parse_pixel)]
     pub(crate) pixel: (u32, u32),
@@ -134,6 +214,8 @@ pub(crate) struct ExplainArgs {
     pub(crate) format: ExplainForm,
     #[command(flatten)]
     pub(crate) picture: PictureArgs,
+    #[command(flatten)]
+    pub(crate) pov: PovArgs,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -179,6 +261,38 @@ fn parse_weight(s: &str) -> Result<f64, String> {
         .ok_or_else(|| "expected a number from 0 to 1".to_owned())
 }
 
+fn parse_declaration(s: &str) -> Result<(String, f64), String> {
+    let (name, value) = s
+        .split_once('=')
+        .ok_or_else(|| "expected NAME=VALUE, such as Detail=2".to_owned())?;
+    let (name, value) = (name.trim(), value.trim());
+    let mut letters = name.chars();
+    let starts = letters
+        .next()
+        .is_some_and(|c| c.is_ascii_alphabetic() || c == '_');
+    if !starts || !letters.all(|c| c.is_ascii_alphanumeric() || c == '_') {
+        return Err(format!(
+            "`{name}` is no name: letters, digits and `_`, no digit first"
+        ));
+    }
+    if Word::ALL.iter().any(|(_, word, _)| *word == name) {
+        return Err(format!(
+            "`{name}` is a word of the language; names of your own begin with a capital"
+        ));
+    }
+    let number = value.parse().ok().filter(|v: &f64| v.is_finite());
+    number.map(|v| (name.to_owned(), v)).ok_or_else(|| {
+        format!("`{value}` is no number: only numbers can be declared here, such as {name}=2.5")
+    })
+}
+
+fn parse_version(s: &str) -> Result<f64, String> {
+    s.parse()
+        .ok()
+        .filter(|v| (1.0..4.0).contains(v))
+        .ok_or_else(|| "expected a version from 1.0 to 3.8, such as 3.7".to_owned())
+}
+
 fn parse_bits(s: &str) -> Result<BitDepth, String> {
     match s {
         "8" => Ok(BitDepth::Eight),
@@ -195,6 +309,14 @@ mod tests {
     #[test]
     fn the_command_line_is_consistent() {
         Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn declarations_are_numbers_with_names_of_their_own() {
+        assert_eq!(parse_declaration("A_1 = -2.5"), Ok(("A_1".into(), -2.5)));
+        for bad in ["A", "1A=1", "=1", "sphere=1", "A=red", "A=inf", "A-B=1"] {
+            assert!(parse_declaration(bad).is_err(), "{bad}");
+        }
     }
 
     #[test]

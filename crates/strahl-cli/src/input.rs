@@ -1,13 +1,19 @@
-use crate::args::{PictureArgs, SceneArgs};
-use crate::report::{Failure, print_diagnostics};
+use crate::args::{PictureArgs, PovArgs, SceneArgs};
+use crate::report::{Failure, Reporter};
 use std::io::Read;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
-use strahl::formats::scene::{Loaded, load_bytes, load_path};
+use strahl::formats::scene::Loaded;
 use strahl::scene::Scene;
+use strahl::sdl::{Frame, Stream, Value};
 use strahl::tracing::{Prepared, RenderOptions, RenderScene};
+use strahl::{Format, LoadOptions, load_bytes, load_path};
 
 /// The size of pictures of scenes that name none.
-const DEFAULT_SIZE: (u32, u32) = (800, 600);
+pub(crate) const DEFAULT_SIZE: (u32, u32) = (800, 600);
+
+/// The scene that is rendered if none is given.
+const DEMO: &str = include_str!("../../../scenes/demo.pov");
 
 /// Seconds spent, phase by phase.
 #[derive(Clone, Copy, Debug, Default)]
@@ -18,60 +24,208 @@ pub(crate) struct LoadTimes {
     pub(crate) build: f64,
 }
 
-/// Reads a scene and prints what there is to say about it.
-pub(crate) fn load(args: &SceneArgs, quiet: bool) -> Result<Scene, Failure> {
-    let loaded = read(args)?;
-    let failed = print_diagnostics(&loaded.diagnostics, None, quiet);
-    match loaded.scene {
-        Some(scene) if !failed => Ok(scene),
-        _ => Err(Failure::Reported),
-    }
+/// Where the text of a scene comes from.
+#[derive(Debug)]
+enum Place {
+    File(PathBuf),
+    Text {
+        name: &'static str,
+        format: Format,
+        bytes: Vec<u8>,
+    },
 }
 
-/// Reads a scene with its diagnostics.
-pub(crate) fn read(args: &SceneArgs) -> Result<Loaded, Failure> {
-    if args.scene.as_os_str() != "-" {
-        return Ok(load_path(&args.scene, args.format));
-    }
-    let Some(format) = args.format else {
-        return Err(Failure::new(
-            "a scene from the standard input needs --format NAME (see `strahl formats`)",
-        ));
-    };
-    let mut bytes = Vec::new();
-    std::io::stdin()
-        .lock()
-        .read_to_end(&mut bytes)
-        .map_err(|e| Failure::new(format!("cannot read the standard input: {e}")))?;
-    Ok(load_bytes(bytes, "<stdin>", format, None))
+/// The scene of a command line and how it is read: every command reads its scenes through this.
+#[derive(Debug)]
+pub(crate) struct Input<'a> {
+    place: Place,
+    format: Option<Format>,
+    pov: &'a PovArgs,
+    size: (u32, u32),
 }
 
-/// Reads and compiles a scene.
-pub(crate) fn compiled(
-    args: &SceneArgs,
-    picture: &PictureArgs,
-    quiet: bool,
-) -> Result<(RenderScene, LoadTimes), Failure> {
-    let start = Instant::now();
-    let scene = load(args, quiet)?;
-    let loaded = Instant::now();
-    let prepared = match Prepared::new(&scene) {
-        Ok(prepared) => prepared,
-        Err(errors) => {
-            print_diagnostics(&errors, Some(&scene.sources), quiet);
-            return Err(Failure::Reported);
+/// The time a scene is read for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Moment {
+    pub(crate) clock: f64,
+    pub(crate) frame: Frame,
+}
+
+impl<'a> Input<'a> {
+    /// Finds out where the scene is; reads the standard input if it is there.
+    pub(crate) fn new(
+        scene: Option<&Path>,
+        format: Option<Format>,
+        pov: &'a PovArgs,
+        size: Option<(u32, u32)>,
+    ) -> Result<Self, Failure> {
+        let place = match scene {
+            None => Place::Text {
+                name: "demo.pov",
+                format: Format::Pov,
+                bytes: DEMO.into(),
+            },
+            Some(path) if path.as_os_str() == "-" => {
+                let format = format.ok_or_else(|| {
+                    Failure::new(
+                        "a scene from the standard input needs --format NAME (see `strahl formats`)",
+                    )
+                })?;
+                let mut bytes = Vec::new();
+                std::io::stdin()
+                    .lock()
+                    .read_to_end(&mut bytes)
+                    .map_err(|e| Failure::new(format!("cannot read the standard input: {e}")))?;
+                Place::Text {
+                    name: "<stdin>",
+                    format,
+                    bytes,
+                }
+            }
+            Some(path) => Place::File(path.to_owned()),
+        };
+        Ok(Self {
+            place,
+            format,
+            pov,
+            size: size.unwrap_or(DEFAULT_SIZE),
+        })
+    }
+
+    /// The scene of `check` and `info`.
+    pub(crate) fn of(args: &'a SceneArgs) -> Result<Self, Failure> {
+        Self::new(Some(&args.scene), args.format, &args.pov, None)
+    }
+
+    /// The scene's name as shown to the user.
+    pub(crate) fn name(&self) -> String {
+        match &self.place {
+            Place::File(path) => path.display().to_string(),
+            Place::Text { name, .. } => (*name).to_owned(),
         }
-    };
-    print_diagnostics(prepared.warnings(), Some(&scene.sources), quiet);
-    drop(scene);
-    let build_start = Instant::now();
-    let compiled = prepared.build(picture.accelerator);
-    let times = LoadTimes {
-        load: (loaded - start).as_secs_f64(),
-        compile: loaded.elapsed().as_secs_f64(),
-        build: build_start.elapsed().as_secs_f64(),
-    };
-    Ok((compiled, times))
+    }
+
+    /// Whether the scene is in POV-Ray's language, as far as can be told without reading it.
+    pub(crate) fn is_pov(&self) -> bool {
+        let format = match &self.place {
+            Place::File(path) => self.format.or_else(|| Format::of_path(path)),
+            Place::Text { format, .. } => Some(*format),
+        };
+        format == Some(Format::Pov)
+    }
+
+    /// The moment of a picture that belongs to no animation. Like POV-Ray's, its frame numbers are zero.
+    pub(crate) fn still(&self) -> Moment {
+        Moment {
+            clock: self.pov.clock.unwrap_or(0.0),
+            frame: Frame {
+                animated: self.pov.clock.is_some(),
+                number: 0.0,
+                first: 0.0,
+                last: 0.0,
+                initial_clock: 0.0,
+                final_clock: 0.0,
+                clock_delta: 0.0,
+            },
+        }
+    }
+
+    /// Reads the scene with its diagnostics.
+    pub(crate) fn read(&self, moment: Moment, quiet: bool) -> Loaded {
+        let options = self.options(moment, quiet);
+        match &self.place {
+            Place::File(path) => load_path(path, options),
+            Place::Text {
+                name,
+                format,
+                bytes,
+            } => load_bytes(bytes.clone(), name, *format, options),
+        }
+    }
+
+    fn options(&self, moment: Moment, quiet: bool) -> LoadOptions {
+        let mut options = LoadOptions {
+            format: self.format,
+            library: vec![PathBuf::from(".")],
+            writable: self.writable(),
+            on_message: (!quiet).then(|| Box::new(print_message) as _),
+            ..LoadOptions::default()
+        };
+        options.library.extend(self.pov.library_path.clone());
+        let sdl = &mut options.sdl;
+        sdl.clock = moment.clock;
+        sdl.frame = moment.frame;
+        (sdl.image_width, sdl.image_height) = self.size;
+        if let Some(version) = self.pov.language_version {
+            sdl.version = version;
+        }
+        let declared = self.pov.declare.iter();
+        sdl.declare = declared
+            .map(|(name, x)| (name.clone(), Value::Float(*x)))
+            .collect();
+        options
+    }
+
+    /// Where the scene may write: the folder allowed, or its own. A text has no folder.
+    fn writable(&self) -> Option<PathBuf> {
+        if let Some(folder) = &self.pov.allow_write {
+            return Some(folder.clone());
+        }
+        let Place::File(path) = &self.place else {
+            return None;
+        };
+        let folder = path.parent()?;
+        Some(match folder.as_os_str().is_empty() {
+            true => PathBuf::from("."),
+            false => folder.to_owned(),
+        })
+    }
+
+    /// Reads the scene and prints what there is to say about it.
+    pub(crate) fn load(&self, moment: Moment, reporter: &Reporter) -> Result<Scene, Failure> {
+        let loaded = self.read(moment, reporter.quiet);
+        let failed = reporter.print(&loaded.diagnostics, None);
+        match loaded.scene {
+            Some(scene) if !failed => Ok(scene),
+            _ => Err(Failure::Reported),
+        }
+    }
+
+    /// Reads and compiles the scene.
+    pub(crate) fn compiled(
+        &self,
+        moment: Moment,
+        picture: &PictureArgs,
+        reporter: &Reporter,
+    ) -> Result<(RenderScene, LoadTimes), Failure> {
+        let start = Instant::now();
+        let scene = self.load(moment, reporter)?;
+        let loaded = Instant::now();
+        let prepared = match Prepared::new(&scene) {
+            Ok(prepared) => prepared,
+            Err(errors) => {
+                reporter.print(&errors, Some(&scene.sources));
+                return Err(Failure::Reported);
+            }
+        };
+        reporter.print(prepared.warnings(), Some(&scene.sources));
+        drop(scene);
+        let build_start = Instant::now();
+        let compiled = prepared.build(picture.accelerator);
+        let times = LoadTimes {
+            load: (loaded - start).as_secs_f64(),
+            compile: loaded.elapsed().as_secs_f64(),
+            build: build_start.elapsed().as_secs_f64(),
+        };
+        Ok((compiled, times))
+    }
+}
+
+/// What a scene says goes to the standard error, as it comes; warnings are among the diagnostics already.
+fn print_message(stream: Stream, text: &str) {
+    if stream != Stream::Warning {
+        eprint!("{text}");
+    }
 }
 
 /// The options that decide the values of pixels.

@@ -5,11 +5,13 @@
     reason = "talking to the user is what a program is for"
 )]
 
+mod animation;
 mod args;
 mod commands;
 mod explain;
 mod input;
 mod interrupt;
+mod pov;
 mod progress;
 mod report;
 mod stats;
@@ -19,7 +21,19 @@ use clap::Parser;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    let cli = Cli::parse();
+    let words = match pov::translate(std::env::args_os().collect()) {
+        Ok(translated) => translated,
+        Err(problem) => {
+            eprintln!("error: {problem}");
+            return ExitCode::from(2);
+        }
+    };
+    let cli = Cli::parse_from(words.words);
+    if !matches!(&cli.command, Command::Render(args) if args.quiet) {
+        for note in words.notes {
+            eprintln!("note: {note}");
+        }
+    }
     let outcome = match &cli.command {
         Command::Render(args) => commands::render(args),
         Command::Explain(args) => commands::explain(args),

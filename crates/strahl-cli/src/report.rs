@@ -1,3 +1,5 @@
+use std::cell::RefCell;
+use std::collections::BTreeSet;
 use std::fmt::Display;
 use strahl::scene::{Diagnostic, Severity, SourceMap};
 
@@ -8,8 +10,8 @@ pub(crate) enum Failure {
     Message(String),
     /// The scene is wrong; the diagnostics are printed already.
     Reported,
-    /// The user pressed Ctrl-C.
-    Interrupted,
+    /// The user pressed Ctrl-C; the text says what is lost and what is kept.
+    Interrupted(String),
 }
 
 impl Failure {
@@ -21,7 +23,7 @@ impl Failure {
         match self {
             Self::Message(message) => eprintln!("error: {message}"),
             Self::Reported => {}
-            Self::Interrupted => eprintln!("interrupted; nothing was written"),
+            Self::Interrupted(what) => eprintln!("interrupted; {what}"),
         }
     }
 
@@ -29,28 +31,44 @@ impl Failure {
     pub(crate) fn code(&self) -> u8 {
         match self {
             Self::Message(_) | Self::Reported => 1,
-            Self::Interrupted => 130,
+            Self::Interrupted(_) => 130,
         }
     }
 }
 
-/// Prints diagnostics and tells whether one of them is an error. Diagnostics of the compiler know their place, but not the
-/// text of the line: `sources` gives at least the name of the file.
-pub(crate) fn print_diagnostics(
-    diagnostics: &[Diagnostic],
-    sources: Option<&SourceMap>,
-    quiet: bool,
-) -> bool {
-    for diagnostic in diagnostics {
-        if quiet && diagnostic.severity == Severity::Warning {
-            continue;
-        }
-        eprintln!("{diagnostic}");
-        if diagnostic.source.is_none()
-            && let Some(location) = sources.and_then(|s| s.locate(diagnostic.span))
-        {
-            eprintln!("  --> {location}");
+/// Prints diagnostics, each text once: the frames of an animation repeat them.
+#[derive(Debug)]
+pub(crate) struct Reporter {
+    /// Print errors only.
+    pub(crate) quiet: bool,
+    said: RefCell<BTreeSet<String>>,
+}
+
+impl Reporter {
+    pub(crate) fn new(quiet: bool) -> Self {
+        Self {
+            quiet,
+            said: RefCell::default(),
         }
     }
-    diagnostics.iter().any(Diagnostic::is_error)
+
+    /// Prints diagnostics and tells whether one of them is an error. Diagnostics of the compiler know their place, but not
+    /// the text of the line: `sources` gives at least the name of the file.
+    pub(crate) fn print(&self, diagnostics: &[Diagnostic], sources: Option<&SourceMap>) -> bool {
+        for diagnostic in diagnostics {
+            if self.quiet && diagnostic.severity == Severity::Warning {
+                continue;
+            }
+            let mut text = diagnostic.to_string();
+            if diagnostic.source.is_none()
+                && let Some(location) = sources.and_then(|s| s.locate(diagnostic.span))
+            {
+                text.push_str(&format!("\n  --> {location}"));
+            }
+            if self.said.borrow_mut().insert(text.clone()) {
+                eprintln!("{text}");
+            }
+        }
+        diagnostics.iter().any(Diagnostic::is_error)
+    }
 }

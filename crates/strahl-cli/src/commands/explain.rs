@@ -1,15 +1,13 @@
-use crate::args::{ExplainArgs, ExplainForm, SceneArgs};
+use crate::args::{ExplainArgs, ExplainForm};
 use crate::explain::{dot, json, text};
-use crate::input::{compiled, render_options};
-use crate::report::Failure;
+use crate::input::{Input, render_options};
+use crate::report::{Failure, Reporter};
 
 /// `strahl explain`: the ray tree of a pixel.
 pub(crate) fn explain(args: &ExplainArgs) -> Result<(), Failure> {
-    let input = SceneArgs {
-        scene: args.scene.clone(),
-        format: args.scene_format,
-    };
-    let (scene, _) = compiled(&input, &args.picture, false)?;
+    let (scene_file, format) = (Some(args.scene.as_path()), args.scene_format);
+    let input = Input::new(scene_file, format, &args.pov, args.picture.size)?;
+    let (scene, _) = input.compiled(input.still(), &args.picture, &Reporter::new(false))?;
     let options = render_options(&scene, &args.picture);
     let (x, y) = args.pixel;
     if x >= options.width || y >= options.height {

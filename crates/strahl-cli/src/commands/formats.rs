@@ -1,15 +1,13 @@
 use crate::report::Failure;
+use strahl::Format;
 
 /// `strahl formats`: the tables of formats.
 pub(crate) fn formats() -> Result<(), Failure> {
     println!("Scenes (each may be compressed with gzip):");
-    for format in strahl::formats::scene::formats() {
-        println!(
-            "  {:8} {:16} {}",
-            format.name,
-            extensions(format.extensions),
-            format.description
-        );
+    let files = strahl::formats::scene::formats().iter();
+    let files = files.map(|f| (f.name, f.extensions, f.description));
+    for (name, endings, description) in [Format::POV].into_iter().chain(files) {
+        println!("  {name:8} {:16} {description}", extensions(endings));
     }
     println!("Pictures:");
     for format in strahl::formats::image::formats() {

@@ -1,6 +1,6 @@
 use crate::args::SceneArgs;
-use crate::input::load;
-use crate::report::{Failure, print_diagnostics};
+use crate::input::Input;
+use crate::report::{Failure, Reporter};
 use std::collections::BTreeMap;
 use strahl::accel::AcceleratorKind;
 use strahl::math::DVec3;
@@ -10,11 +10,12 @@ use strahl::tracing::{Prepared, RenderScene};
 
 /// `strahl info`: what is in a scene.
 pub(crate) fn info(args: &SceneArgs) -> Result<(), Failure> {
-    let description = load(args, false)?;
+    let (input, reporter) = (Input::of(args)?, Reporter::new(false));
+    let description = input.load(input.still(), &reporter)?;
     let prepared = match Prepared::new(&description) {
         Ok(prepared) => prepared,
         Err(errors) => {
-            print_diagnostics(&errors, Some(&description.sources), false);
+            reporter.print(&errors, Some(&description.sources));
             return Err(Failure::Reported);
         }
     };

@@ -1,0 +1,149 @@
+//! Files of settings: `Key=Value` lines, lines of switches, `[sections]`, comments behind `;`.
+
+use super::settings::Settings;
+use super::switches;
+use std::path::{Path, PathBuf};
+
+/// The file and the section that a word names: `a.ini`, `a.ini[low]`, `a[low]`.
+pub(super) fn named(word: &str) -> Option<(PathBuf, Option<String>)> {
+    let is_ini = |file: &str| {
+        let ending = Path::new(file).extension();
+        ending.is_some_and(|e| e.eq_ignore_ascii_case("ini"))
+    };
+    if let Some((file, section)) = word.strip_suffix(']').and_then(|w| w.split_once('[')) {
+        let mut path = PathBuf::from(file);
+        if !is_ini(file) {
+            path.set_extension("ini");
+        }
+        return (!file.is_empty()).then(|| (path, Some(section.trim().to_owned())));
+    }
+    is_ini(word).then(|| (PathBuf::from(word), None))
+}
+
+/// Applies a file's settings: those before the first section, and those of the section.
+pub(super) fn apply(
+    file: &Path,
+    section: Option<&str>,
+    settings: &mut Settings,
+) -> Result<(), String> {
+    let shown = file.display();
+    let bytes = std::fs::read(file).map_err(|e| format!("cannot read `{shown}`: {e}"))?;
+    let text = String::from_utf8_lossy(&bytes);
+    settings.beside = file.parent().map(Path::to_path_buf);
+    let mut sections = vec![];
+    let mut applies = true;
+    for (number, line) in text.lines().enumerate() {
+        let line = without_comment(line).trim();
+        if let Some(label) = line.strip_prefix('[').and_then(|l| l.strip_suffix(']')) {
+            let label = label.trim();
+            applies = section.is_some_and(|s| s.eq_ignore_ascii_case(label));
+            sections.push(label.to_owned());
+        } else if applies && !line.is_empty() {
+            apply_line(line, settings).map_err(|e| format!("{shown}:{}: {e}", number + 1))?;
+        }
+    }
+    settings.beside = None;
+    match section {
+        Some(s) if !sections.iter().any(|l| l.eq_ignore_ascii_case(s)) => {
+            let has = match sections.is_empty() {
+                true => "no sections".to_owned(),
+                false => format!("the sections {}", sections.join(", ")),
+            };
+            Err(format!("`{shown}` has no section [{s}]; it has {has}"))
+        }
+        _ => Ok(()),
+    }
+}
+
+fn apply_line(line: &str, settings: &mut Settings) -> Result<(), String> {
+    if line.starts_with(['+', '-']) {
+        for word in words(line) {
+            switches::apply(&word, settings)?;
+        }
+        return Ok(());
+    }
+    let (key, value) = line.split_once('=').ok_or_else(|| {
+        format!("`{line}` is neither `Key=Value` nor switches such as `+W640 +H480`")
+    })?;
+    settings.set(key.trim(), unquoted(value.trim()))
+}
+
+/// The line up to a semicolon that stands outside of quotation marks.
+fn without_comment(line: &str) -> &str {
+    let mut quoted = false;
+    for (at, c) in line.char_indices() {
+        match c {
+            '"' => quoted = !quoted,
+            ';' if !quoted => return &line[..at],
+            _ => {}
+        }
+    }
+    line
+}
+
+/// Words between spaces; quotation marks hold spaces together and are dropped.
+fn words(line: &str) -> Vec<String> {
+    let (mut out, mut word, mut quoted) = (vec![], String::new(), false);
+    for c in line.chars() {
+        match c {
+            '"' => quoted = !quoted,
+            c if c.is_whitespace() && !quoted => out.push(std::mem::take(&mut word)),
+            c => word.push(c),
+        }
+    }
+    out.push(word);
+    out.retain(|w| !w.is_empty());
+    out
+}
+
+fn unquoted(value: &str) -> &str {
+    let inner = |quote| value.strip_prefix(quote)?.strip_suffix(quote);
+    inner('"').or_else(|| inner('\'')).unwrap_or(value)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TEXT: &str = "; a comment\nWidth = 40 ; another\n+H30 -D +L\"my inc\"\n[Low]\nwidth=4\n[Really High]\n\
+                        Height=90\nOutput_File_Name=\"a;b.png\"\nInput_File_Name=\"scene.pov\"\r\n";
+
+    fn words_of(section: Option<&str>) -> Result<Vec<String>, String> {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("a.ini");
+        std::fs::write(&file, TEXT).unwrap();
+        let mut settings = Settings::default();
+        apply(&file, section, &mut settings)?;
+        settings.words(false)
+    }
+
+    #[test]
+    fn a_section_adds_to_what_stands_before_the_first() {
+        let general = ["--size", "40x30", "--library-path", "my inc"];
+        assert_eq!(words_of(None).unwrap(), general);
+        assert_eq!(words_of(Some("low")).unwrap()[1], "4x30");
+        let high = words_of(Some("really high")).unwrap();
+        assert_eq!(high[1], "40x90");
+        assert_eq!(high[4..], ["--output", "a;b.png", "scene.pov"]);
+        let error = words_of(Some("none")).unwrap_err();
+        assert!(error.contains("Low, Really High"), "{error}");
+    }
+
+    #[test]
+    fn names_of_files_and_sections() {
+        let is = |word: &str, file: &str, section: Option<&str>| {
+            assert_eq!(
+                named(word),
+                Some((file.into(), section.map(str::to_owned))),
+                "{word}"
+            );
+        };
+        is("a/b.ini", "a/b.ini", None);
+        is("B.INI", "B.INI", None);
+        is("b.ini[Really High]", "b.ini", Some("Really High"));
+        is("b[low]", "b.ini", Some("low"));
+        for other in ["b.pov", "[x]", "ini"] {
+            assert_eq!(named(other), None, "{other}");
+        }
+    }
+}

@@ -1,0 +1,130 @@
+//! `+W640`, `-D`, `+A0.3`: each switch is an abbreviation of settings.
+
+use super::settings::Settings;
+
+/// What a switch stands for.
+#[derive(Clone, Copy)]
+enum Meaning {
+    /// The rest is the value of this key.
+    Value(&'static str),
+    /// `+` switches this key on, `-` off.
+    Flag(&'static str),
+    /// Both: the first key is switched, the second gets the rest, if there is one.
+    FlagAndValue(&'static str, &'static str),
+    /// Type and bits of the picture file.
+    FileType,
+    /// Says nothing about the picture.
+    Nothing,
+}
+
+use Meaning::{FileType, Flag, FlagAndValue, Nothing, Value};
+
+/// All switches; the longest that a word begins with counts.
+const SWITCHES: &[(&str, Meaning)] = &[
+    ("A", FlagAndValue("Antialias", "Antialias_Threshold")),
+    ("AG", Nothing),
+    ("AM", Value("Sampling_Method")),
+    ("BM", Nothing),
+    ("BS", Nothing),
+    ("C", Flag("Continue_Trace")),
+    ("D", Nothing),
+    ("EC", Value("End_Column")),
+    ("EF", Value("Subset_End_Frame")),
+    ("EP", Nothing),
+    ("ER", Value("End_Row")),
+    ("F", FileType),
+    ("GA", Nothing),
+    ("GD", Nothing),
+    ("GF", Nothing),
+    ("GI", Value("Create_Ini")),
+    ("GP", Nothing),
+    ("GR", Nothing),
+    ("GS", Nothing),
+    ("GW", Nothing),
+    ("H", Value("Height")),
+    ("HI", Value("Include_Header")),
+    ("HR", Nothing),
+    ("I", Value("Input_File_Name")),
+    ("J", Nothing),
+    ("K", Value("Clock")),
+    ("KC", Flag("Cyclic_Animation")),
+    ("KF", Value("Final_Clock")),
+    ("KFF", Value("Final_Frame")),
+    ("KFI", Value("Initial_Frame")),
+    ("KI", Value("Initial_Clock")),
+    ("L", Value("Library_Path")),
+    ("MB", Nothing),
+    ("MI", Nothing),
+    ("MV", Value("Version")),
+    ("O", Value("Output_File_Name")),
+    ("P", Nothing),
+    ("Q", Value("Quality")),
+    ("R", Value("Antialias_Depth")),
+    ("RF", Nothing),
+    ("RP", Nothing),
+    ("RS", Nothing),
+    ("RVP", Nothing),
+    ("SC", Value("Start_Column")),
+    ("SF", Value("Subset_Start_Frame")),
+    ("SP", Nothing),
+    ("SR", Value("Start_Row")),
+    ("STP", Value("Frame_Step")),
+    ("SU", Nothing),
+    ("TH", Nothing),
+    ("UA", Flag("Output_Alpha")),
+    ("UD", Nothing),
+    ("UF", Flag("Field_Render")),
+    ("UL", Nothing),
+    ("UO", Nothing),
+    ("UR", Nothing),
+    ("UV", Nothing),
+    ("V", Nothing),
+    ("W", Value("Width")),
+    ("WL", Nothing),
+    ("WT", Value("Work_Threads")),
+    ("X", Nothing),
+];
+
+/// Applies a switch.
+pub(super) fn apply(word: &str, settings: &mut Settings) -> Result<(), String> {
+    let on = word.starts_with('+');
+    let body = word.get(1..).unwrap_or_default();
+    let begins = |name: &str| {
+        let start = body.get(..name.len());
+        start.is_some_and(|s| s.eq_ignore_ascii_case(name))
+    };
+    let found = SWITCHES.iter().filter(|(name, _)| begins(name));
+    let Some((name, meaning)) = found.max_by_key(|(name, _)| name.len()) else {
+        return Err(format!(
+            "unknown switch `{word}`: it is neither an option of strahl (see `strahl render --help`) nor a switch of POV-Ray"
+        ));
+    };
+    let rest = body.get(name.len()..).unwrap_or_default();
+    let state = if on { "on" } else { "off" };
+    let result = match *meaning {
+        Value(key) => settings.set(key, rest),
+        Flag(key) => settings.set(key, state),
+        FlagAndValue(flag, value) => settings.set(flag, state).and_then(|()| match rest {
+            "" => Ok(()),
+            rest => settings.set(value, rest),
+        }),
+        FileType => settings
+            .set("Output_to_File", state)
+            .and_then(|()| file_type(rest, settings)),
+        Nothing => Ok(()),
+    };
+    result.map_err(|problem| format!("{word}: {problem}"))
+}
+
+/// The letter and the number of bits in `N16`.
+fn file_type(rest: &str, settings: &mut Settings) -> Result<(), String> {
+    let mut letters = rest.chars();
+    let Some(letter) = letters.next() else {
+        return Ok(());
+    };
+    settings.set("Output_File_Type", &letter.to_string())?;
+    match letters.as_str() {
+        "" => Ok(()),
+        bits => settings.set("Bits_Per_Color", bits),
+    }
+}
