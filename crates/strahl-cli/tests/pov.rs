@@ -1,0 +1,319 @@
+//! Scenes in POV-Ray's language, and POV-Ray's habits on the command line.
+
+use std::io::Write;
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+
+const SCENE: &str = "\
+#version 3.7;
+global_settings { assumed_gamma 1 }
+camera { location <0, 0, -5> look_at 0 }
+light_source { <3, 4, -6> rgb 1 }
+sphere { <clock, 0, 0>, 1 pigment { rgb <1, 0.5, 0.2> } }
+#debug concat(\"frame \", str(frame_number, 0, 0), \" of \", str(final_frame, 0, 0), \" clock \", str(clock, 0, 3), \"\\n\")
+";
+
+fn folder() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().expect("a folder");
+    write(folder.path(), "scene.pov", SCENE);
+    folder
+}
+
+fn write(folder: &Path, name: &str, text: &str) {
+    std::fs::write(folder.join(name), text).expect("writable");
+}
+
+fn strahl(folder: &Path, args: &[&str]) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_strahl"));
+    command.current_dir(folder).args(args).stdin(Stdio::null());
+    command.output().expect("the program starts")
+}
+
+fn stderr(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+#[track_caller]
+fn succeeds(folder: &Path, args: &[&str]) -> String {
+    let output = strahl(folder, args);
+    assert!(output.status.success(), "{args:?}: {}", stderr(&output));
+    stderr(&output)
+}
+
+#[track_caller]
+fn fails(folder: &Path, args: &[&str], code: i32, parts: &[&str]) -> String {
+    let output = strahl(folder, args);
+    let text = stderr(&output);
+    assert_eq!(output.status.code(), Some(code), "{args:?}: {text}");
+    for part in parts {
+        assert!(text.contains(part), "{args:?}: no `{part}` in\n{text}");
+    }
+    text
+}
+
+/// Width and height of a PNG.
+#[track_caller]
+fn size(folder: &Path, name: &str) -> (u32, u32) {
+    let bytes = std::fs::read(folder.join(name)).expect(name);
+    let number = |at| u32::from_be_bytes(bytes[at..at + 4].try_into().expect("four bytes"));
+    (number(16), number(20))
+}
+
+fn pictures(folder: &Path) -> Vec<String> {
+    let entries = std::fs::read_dir(folder).expect("a folder");
+    let names = entries.map(|e| e.expect("an entry").file_name());
+    let names = names.map(|n| n.to_string_lossy().into_owned());
+    let mut pictures: Vec<String> = names.filter(|n| n.ends_with(".png")).collect();
+    pictures.sort();
+    pictures
+}
+
+#[test]
+fn every_command_reads_pov_scenes() {
+    let folder = folder();
+    let f = folder.path();
+    succeeds(
+        f,
+        &["render", "scene.pov", "--size", "16x12", "-o", "a.png"],
+    );
+    assert_eq!(size(f, "a.png"), (16, 12));
+    let info = strahl(f, &["info", "scene.pov"]);
+    assert!(String::from_utf8_lossy(&info.stdout).contains("1 sphere"));
+    let check = strahl(f, &["check", "scene.pov"]);
+    assert!(check.status.success(), "{}", stderr(&check));
+    let explain = strahl(f, &["explain", "scene.pov", "--pixel", "400,300"]);
+    assert!(String::from_utf8_lossy(&explain.stdout).contains("scene.pov:5"));
+    let formats = strahl(f, &["formats"]);
+    assert!(String::from_utf8_lossy(&formats.stdout).contains(".pov"));
+}
+
+#[test]
+fn a_scene_comes_from_the_standard_input() {
+    let folder = folder();
+    for args in [
+        &[
+            "render", "-", "--format", "pov", "-o", "a.png", "--size", "8x6",
+        ][..],
+        &["render", "+I-", "+Oa.png", "+W8", "+H6"],
+    ] {
+        let mut child = Command::new(env!("CARGO_BIN_EXE_strahl"))
+            .current_dir(folder.path())
+            .args(args)
+            .stdin(Stdio::piped())
+            .stderr(Stdio::null())
+            .spawn()
+            .expect("the program starts");
+        let mut stdin = child.stdin.take().expect("piped");
+        stdin.write_all(SCENE.as_bytes()).expect("it reads");
+        drop(stdin);
+        assert!(child.wait().expect("it ends").success(), "{args:?}");
+        assert_eq!(size(folder.path(), "a.png"), (8, 6));
+        std::fs::remove_file(folder.path().join("a.png")).expect("it was there");
+    }
+}
+
+#[test]
+fn without_a_scene_there_is_a_demonstration() {
+    let folder = folder();
+    let said = succeeds(folder.path(), &["render", "--size", "32x24"]);
+    assert_eq!(size(folder.path(), "demo.png"), (32, 24));
+    assert!(!said.contains("warning"), "{said}");
+}
+
+#[test]
+fn povray_switches_render() {
+    let folder = folder();
+    let f = folder.path();
+    let line = "render +Iscene.pov +Ob.png +W20 +H10 +A0.3 +AM2 +R2 +Linc -D +Q9 +WT1 +FN16 -P +V";
+    succeeds(f, &line.split(' ').collect::<Vec<_>>());
+    assert_eq!(size(f, "b.png"), (20, 10));
+    assert_eq!(
+        std::fs::read(f.join("b.png")).expect("written")[24],
+        16,
+        "bits"
+    );
+    // A part in a picture of the whole size.
+    succeeds(f, &["render", "scene.pov", "+W20", "+H10", "+SC0.5", "+Oc"]);
+    assert_eq!(size(f, "c.png"), (20, 10));
+    fails(f, &["render", "scene.pov", "+Y3"], 2, &["+Y3", "--help"]);
+    let noted = succeeds(f, &["render", "scene.pov", "+W8", "+H6", "+Q3", "+UA"]);
+    assert!(
+        noted.contains("quality 3") && noted.contains("alpha"),
+        "{noted}"
+    );
+}
+
+#[test]
+fn ini_files_have_sections() {
+    let folder = folder();
+    let f = folder.path();
+    let ini = "Input_File_Name=scene.pov ; the scene\n+W12 +H9\nDeclare=Unused=3\nAntialias=Off\n\
+               [Small]\nWidth=4\nHeight=3\nOutput_File_Name=small.png\n[Broken]\nWidht=3\n";
+    write(f, "run.ini", ini);
+    succeeds(f, &["render", "run.ini"]);
+    assert_eq!(size(f, "scene.png"), (12, 9));
+    succeeds(f, &["render", "run.ini[small]"]);
+    assert_eq!(size(f, "small.png"), (4, 3));
+    // Later words win.
+    succeeds(f, &["render", "run[Small]", "+W5", "+Olater.png"]);
+    assert_eq!(size(f, "later.png"), (5, 3));
+    let parts = ["run.ini:10", "Widht", "`Width`"];
+    fails(f, &["render", "run.ini[broken]"], 2, &parts);
+    fails(
+        f,
+        &["render", "run.ini[none]"],
+        2,
+        &["[none]", "Small, Broken"],
+    );
+}
+
+#[test]
+fn declared_numbers_reach_the_scene() {
+    let folder = folder();
+    let f = folder.path();
+    write(
+        f,
+        "d.pov",
+        "#debug concat(\"R is \", str(R, 0, 2), \"\\n\") sphere { 0, R }",
+    );
+    for args in [["--declare", "R=1.25"], ["Declare=R=1.25", "-GA"]] {
+        let all = [&["render", "d.pov", "--size", "8x6"][..], &args].concat();
+        let said = succeeds(f, &all);
+        assert!(said.contains("R is 1.25"), "{said}");
+    }
+    fails(f, &["render", "d.pov"], 1, &["`R`", "d.pov:1"]);
+    fails(f, &["check", "d.pov", "--declare", "R=red"], 2, &["`red`"]);
+}
+
+#[test]
+fn frames_are_numbered_and_timed() {
+    let folder = folder();
+    let f = folder.path();
+    let small = ["render", "scene.pov", "+W8", "+H6", "-A"];
+    let said = succeeds(f, &[&small[..], &["+KFF10", "+SF9"]].concat());
+    assert_eq!(pictures(f), ["scene09.png", "scene10.png"]);
+    for line in ["frame 9 of 10 clock 0.889", "frame 10 of 10 clock 1.000"] {
+        assert!(said.contains(line), "{said}");
+    }
+    let said = succeeds(
+        f,
+        &[
+            &small[..],
+            &["+KFI3", "+KFF4", "+KC", "+KI2", "+KF4", "+Oc"],
+        ]
+        .concat(),
+    );
+    assert!(
+        said.contains("frame 3 of 5 clock 2.000\nframe 4 of 5 clock 3.000"),
+        "{said}"
+    );
+    assert_eq!(pictures(f)[..2], ["c3.png", "c4.png"]);
+    // No animation: the numbers are zero.
+    let said = succeeds(f, &[&small[..], &["+K0.5"]].concat());
+    assert!(said.contains("frame 0 of 0 clock 0.500"), "{said}");
+    write(f, "a.nff", "s 0 0 0 1\n");
+    fails(f, &["render", "a.nff", "--final-frame", "3"], 1, &[".pov"]);
+}
+
+#[test]
+fn resuming_keeps_complete_frames_only() {
+    let folder = folder();
+    let f = folder.path();
+    let args = ["render", "scene.pov", "--size", "8x6", "--final-frame", "4"];
+    succeeds(f, &args);
+    let whole = std::fs::read(f.join("scene2.png")).expect("written");
+    // A marked picture shows whether it was kept: it is complete, but not what would be rendered.
+    let other = std::fs::read(f.join("scene4.png")).expect("written");
+    std::fs::write(f.join("scene1.png"), &other).expect("writable");
+    std::fs::write(f.join("scene2.png"), &whole[..whole.len() - 20]).expect("writable");
+    std::fs::remove_file(f.join("scene3.png")).expect("it was there");
+    let said = succeeds(f, &[&args[..], &["--resume"]].concat());
+    assert!(said.contains("2 were complete"), "{said}");
+    assert!(
+        !said.contains("frame 1 of") && said.contains("frame 3 of"),
+        "{said}"
+    );
+    assert_eq!(std::fs::read(f.join("scene1.png")).expect("kept"), other);
+    assert_eq!(std::fs::read(f.join("scene2.png")).expect("again"), whole);
+    assert_eq!(pictures(f).len(), 4);
+    // Pictures of another size are not those of this animation.
+    succeeds(
+        f,
+        &[
+            "render",
+            "scene.pov",
+            "--size",
+            "4x3",
+            "--final-frame",
+            "4",
+            "--resume",
+        ],
+    );
+    assert_eq!(size(f, "scene1.png"), (4, 3));
+}
+
+#[test]
+fn an_error_shows_line_caret_and_trace() {
+    let folder = folder();
+    let f = folder.path();
+    write(
+        f,
+        "shapes_of_mine.inc",
+        "#macro Ball(R)\n  sphere { 0, Radius }\n#end\n",
+    );
+    write(f, "bad.pov", "#include \"shapes_of_mine.inc\"\nBall(1)\n");
+    let text = fails(
+        f,
+        &["render", "bad.pov"],
+        1,
+        &[
+            "`Radius`",
+            "shapes_of_mine.inc:2:15",
+            "2 |   sphere { 0, Radius }",
+            "^^^^^^",
+            "in macro `Ball`, called at bad.pov:2",
+        ],
+    );
+    assert!(!f.join("bad.png").exists(), "{text}");
+    fails(f, &["check", "bad.pov"], 1, &["in macro `Ball`"]);
+    fails(
+        f,
+        &["render", "shapes_of_mine.inc"],
+        1,
+        &["include file", ".pov"],
+    );
+}
+
+#[test]
+fn includes_are_searched_in_library_paths() {
+    let folder = folder();
+    let f = folder.path();
+    std::fs::create_dir(f.join("lib")).expect("a folder");
+    write(f, "lib/extra.inc", "#declare R = 1;");
+    write(f, "e.pov", "#include \"extra.inc\" sphere { 0, R }");
+    fails(f, &["check", "e.pov"], 1, &["extra.inc"]);
+    for path in [&["-L", "lib"][..], &["-Llib"], &["--library-path", "lib"]] {
+        succeeds(f, &[&["check", "e.pov"][..], path].concat());
+    }
+    succeeds(f, &["render", "+Ie.pov", "+Llib", "+W8", "+H6"]);
+}
+
+#[test]
+fn scenes_write_within_their_folder_only() {
+    let folder = folder();
+    let f = folder.path();
+    for name in ["in", "allowed"] {
+        std::fs::create_dir(f.join(name)).expect("a folder");
+    }
+    let scene = |name: &str| {
+        format!("#fopen F \"{name}\" write\n#write(F, 1)\n#fclose F\nsphere {{ 0, 1 }}")
+    };
+    write(f, "in/inside.pov", &scene("a.txt"));
+    write(f, "in/outside.pov", &scene("../b.txt"));
+    succeeds(f, &["check", "in/inside.pov"]);
+    assert!(f.join("in/a.txt").exists());
+    fails(f, &["check", "in/outside.pov"], 1, &["../b.txt"]);
+    assert!(!f.join("b.txt").exists());
+    succeeds(f, &["check", "in/inside.pov", "--allow-write", "allowed"]);
+    assert!(f.join("allowed/a.txt").exists());
+}
