@@ -15,6 +15,7 @@ mod camera;
 mod compile;
 mod film;
 mod hit;
+mod layers;
 mod media;
 mod observer;
 mod query;

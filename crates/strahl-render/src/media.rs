@@ -1,4 +1,4 @@
-use strahl_shade::{Color, MaterialId};
+use strahl_shade::MaterialId;
 
 /// What a ray is inside of: a stack of materials, shared between the branches of a ray tree.
 ///
@@ -71,22 +71,6 @@ impl MediaArena {
     }
 }
 
-/// Beer-Lambert: what stays of the light on a path of this length.
-#[inline]
-pub(crate) fn transmittance(absorption: Color, length: f64) -> Color {
-    if absorption.is_black() {
-        return Color::WHITE;
-    }
-    // An endless path through a colour that is not absorbed keeps it: 0 * inf must not become NaN.
-    absorption.map(|a| {
-        if a == 0.0 {
-            1.0
-        } else {
-            strahl_math::det::exp(-a * length)
-        }
-    })
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -106,16 +90,5 @@ mod tests {
         let outside = arena.left(poking, glass);
         assert_eq!(outside, MediaStack::VACUUM);
         assert_eq!(arena.left(outside, glass), MediaStack::VACUUM);
-    }
-
-    #[test]
-    fn absorption_follows_beer_and_lambert() {
-        let t = transmittance(Color::new(0.0, 1.0, 2.0), 1.5);
-        assert_eq!(t.r, 1.0);
-        assert!((t.g - (-1.5f64).exp()).abs() < 1e-15 && (t.b - (-3.0f64).exp()).abs() < 1e-15);
-        assert_eq!(
-            transmittance(Color::new(0.0, 1.0, 1.0), f64::INFINITY),
-            Color::new(1.0, 0.0, 0.0)
-        );
     }
 }

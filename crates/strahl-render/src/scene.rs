@@ -4,6 +4,7 @@ use strahl_accel::{Accelerator, AnyAccelerator};
 use strahl_geometry::{PrimHit, Primitive, Shape, SurfaceId, SurfacePoint, TriangleMesh};
 use strahl_math::{Aabb, DVec3, Ray, Transform};
 use strahl_scene::{Background, Camera, SceneLight, Settings, SourceMap, Span};
+use strahl_shade::patterns::TexturePoint;
 use strahl_shade::{Color, Material, MaterialId};
 
 /// What is known of an object of the scene, for ray trees and layers.
@@ -68,6 +69,13 @@ pub(crate) enum Looks {
 pub(crate) struct Look {
     pub(crate) object: u32,
     pub(crate) material: MaterialId,
+    /// Index in the list of texture spaces, or [`Look::NO_SPACE`].
+    pub(crate) texture_space: u32,
+}
+
+impl Look {
+    /// The texture's space is the group's.
+    pub(crate) const NO_SPACE: u32 = u32::MAX;
 }
 
 #[derive(Clone, Debug)]
@@ -124,6 +132,8 @@ pub struct RenderScene {
     pub(crate) groups: Vec<RenderGroup>,
     pub(crate) objects: Vec<ObjectInfo>,
     pub(crate) materials: Vec<Arc<Material>>,
+    /// From the spaces of textures to the groups'.
+    pub(crate) texture_spaces: Vec<Transform>,
     pub(crate) lights: Vec<SceneLight>,
     pub(crate) ambient: Color,
     pub(crate) background: Background,
@@ -352,6 +362,45 @@ impl RenderScene {
                 }),
                 look,
             },
+        }
+    }
+
+    /// The map from the space of the texture at a hit to the world; `None` if they are the same.
+    pub(crate) fn texture_space(&self, hit: &Hit, look: &Look) -> Option<Transform> {
+        let to_world = self.locate(hit.id).to_world;
+        let to_group = self.texture_spaces.get(look.texture_space as usize);
+        match (to_group, to_world) {
+            (None, outer) => outer,
+            (Some(inner), None) => Some(*inner),
+            (Some(inner), Some(outer)) => Some(inner.then(&outer)),
+        }
+    }
+
+    /// A point of the world as the texture there sees it, for what depends on the place only.
+    pub(crate) fn texture_place(
+        &self,
+        resolved: &Resolved,
+        direction: DVec3,
+        hit: &Hit,
+    ) -> TexturePoint {
+        let point = &resolved.point;
+        let direction = direction.normalize();
+        let facing = if point.n_geom.dot(direction) <= 0.0 {
+            1.0
+        } else {
+            -1.0
+        };
+        let position = match self.texture_space(hit, &resolved.look) {
+            None => point.position,
+            Some(space) => space.point_to_object(point.position),
+        };
+        TexturePoint {
+            position,
+            surface: point.position,
+            n_geom: point.n_geom * facing,
+            n_shade: point.n_shade * facing,
+            uv: point.uv,
+            direction,
         }
     }
 

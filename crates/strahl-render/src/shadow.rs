@@ -1,5 +1,5 @@
 use crate::hit::{Hit, Origin};
-use crate::media::{MediaArena, MediaStack, transmittance};
+use crate::media::{MediaArena, MediaStack};
 use crate::query::Tracer;
 use crate::scene::Uv;
 use strahl_math::{DVec3, Interval, Ray};
@@ -66,7 +66,13 @@ impl Tracer<'_> {
             let resolved = self.scene.resolve(ray, Some(from), hit, Uv::IfTextured);
             let id = resolved.look.material;
             let material = &self.scene.materials[id.0 as usize];
-            visible *= material.at(resolved.point.uv).finish.transmission;
+            visible *= match &material.texture {
+                None => material.at(resolved.point.uv).finish.transmission,
+                Some(texture) => {
+                    let place = self.scene.texture_place(&resolved, ray.direction, hit);
+                    texture.0.shadow_attenuation(&place)
+                }
+            };
             visible *= self.absorbed(arena, inside, ray.direction, hit.t - entered_at);
             entered_at = hit.t;
             inside = if resolved.point.n_geom.dot(ray.direction) < 0.0 {
@@ -93,8 +99,7 @@ impl Tracer<'_> {
         stretch: f64,
     ) -> Color {
         arena.top(inside).map_or(Color::WHITE, |id| {
-            let absorption = self.scene.materials[id.0 as usize].absorption;
-            transmittance(absorption, stretch * direction.length())
+            self.scene.materials[id.0 as usize].attenuation(stretch * direction.length())
         })
     }
 }

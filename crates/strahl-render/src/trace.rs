@@ -13,13 +13,15 @@
 //! bottom-up in the order reflection, transparency, so the sum does not depend on the order of tracing.
 
 use crate::hit::{Hit, Origin, RayClass};
-use crate::media::{MediaArena, MediaStack, transmittance};
+use crate::layers;
+use crate::media::{MediaArena, MediaStack};
 use crate::observer::{BranchEnd, LightTerm, RayKind, RayReport, TraceObserver};
 use crate::query::Tracer;
 use crate::scene::{RenderScene, Uv};
 use crate::shadow::ShadowRay;
 use crate::surface::{Split, Surface};
 use strahl_math::{DVec3, Interval, Ray};
+use strahl_shade::texture::TexturePaint;
 use strahl_shade::{Color, MaterialId, ShadingModel};
 
 /// How trees are grown.
@@ -150,6 +152,8 @@ pub struct TreeTracer<'s> {
     waiting: Vec<Branch>,
     nodes: Vec<Node>,
     shadow_hits: Vec<Hit>,
+    /// The layers of the hit at hand; none without a texture.
+    paint: TexturePaint<'s>,
 }
 
 /// A ray still to be traced.
@@ -195,6 +199,7 @@ impl<'s> TreeTracer<'s> {
             waiting: Vec::new(),
             nodes: Vec::new(),
             shadow_hits: Vec::new(),
+            paint: TexturePaint::default(),
         }
     }
 
@@ -275,7 +280,7 @@ impl<'s> TreeTracer<'s> {
         let index = self.nodes.len() as u32;
         let length = hit.map_or(f64::INFINITY, |h| h.t * branch.ray.direction.length());
         let attenuation = self.media.top(branch.media).map_or(Color::WHITE, |id| {
-            transmittance(scene.materials[id.0 as usize].absorption, length)
+            scene.materials[id.0 as usize].attenuation(length)
         });
         let mut node = Node {
             parent: branch.parent,
@@ -307,7 +312,8 @@ impl<'s> TreeTracer<'s> {
             return None;
         };
 
-        let surface = Surface::at(scene, branch, &hit, &self.media, self.uv);
+        let mut surface = Surface::at(scene, branch, &hit, &self.media, self.uv);
+        layers::paint(scene, &mut surface, &hit, &mut self.paint);
         let first = FirstHit {
             distance: length,
             position: surface.resolved.point.position,
@@ -340,6 +346,7 @@ impl<'s> TreeTracer<'s> {
                 observer.light(index, term);
             }
         }
+        node.local = layers::grained(&self.paint, first.position, node.local);
         node.kr = split.kr;
         node.kt = split.kt;
         self.nodes.push(node);
@@ -380,7 +387,13 @@ impl<'s> TreeTracer<'s> {
         };
         term.n_dot_l = surface.n_shade.dot(sample.l);
         term.color = sample.color;
-        if !(term.n_dot_l > 0.0) {
+        let textured = !self.paint.layers.is_empty();
+        let faces = if textured {
+            layers::faces(&self.paint, sample.l)
+        } else {
+            term.n_dot_l > 0.0
+        };
+        if !faces {
             return term;
         }
         term.visible = Color::WHITE;
@@ -405,6 +418,11 @@ impl<'s> TreeTracer<'s> {
         if !term.visible.is_black() {
             let finish = &surface.material.finish;
             let arriving = sample.color * term.visible;
+            if textured {
+                (term.diffuse, term.specular) =
+                    layers::lit(&self.paint, surface, sample.l, arriving);
+                return term;
+            }
             term.diffuse = finish.diffuse * arriving * term.n_dot_l;
             if !finish.specular.is_black() {
                 let highlight =

@@ -1,5 +1,7 @@
+use crate::interior::Interior;
+use crate::texture::SharedTexture;
 use crate::{Color, Pbr, ShadingModel};
-use strahl_math::DVec2;
+use strahl_math::{DVec2, det};
 
 /// Index of a material in the scene's list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -70,6 +72,11 @@ pub struct Material {
     pub sides: Sides,
     /// A physically based description (glTF's) from which the coefficients follow, possibly by textures.
     pub pbr: Option<Box<Pbr>>,
+    /// A texture in POV-Ray's sense, which takes the place of `model`, `finish`, `fresnel` and `pbr`. Its space is that of the
+    /// object that has the material, before that object's own transformation: it moves with the object.
+    pub texture: Option<SharedTexture>,
+    /// How light fades inside, as POV-Ray's `interior` has it, which takes the place of `absorption`; `eta` holds still.
+    pub interior: Option<Interior>,
 }
 
 /// A material evaluated at a point.
@@ -135,6 +142,8 @@ impl Material {
             thin: false,
             sides: Sides::Two,
             pbr: None,
+            texture: None,
+            interior: None,
         }
     }
 
@@ -183,7 +192,16 @@ impl Material {
     /// Whether the material looks at texture coordinates.
     #[inline]
     pub fn is_textured(&self) -> bool {
-        self.pbr.is_some()
+        self.pbr.is_some() || self.texture.is_some()
+    }
+
+    /// What is left of light after a path of this length inside.
+    #[inline]
+    pub fn attenuation(&self, length: f64) -> Color {
+        match &self.interior {
+            None => transmittance(self.absorption, length),
+            Some(interior) => interior.attenuation(length),
+        }
     }
 
     /// The same material under a name.
@@ -221,5 +239,32 @@ impl Material {
             None => MaterialPoint::classical(self.finish, self.fresnel),
             Some(pbr) => pbr.at(uv),
         }
+    }
+}
+/// Beer-Lambert: what stays of the light on a path of this length.
+#[inline]
+fn transmittance(absorption: Color, length: f64) -> Color {
+    if absorption.is_black() {
+        return Color::WHITE;
+    }
+    // An endless path through a colour that is not absorbed keeps it: 0 * inf must not become NaN.
+    absorption.map(|a| if a == 0.0 { 1.0 } else { det::exp(-a * length) })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn light_fades_by_length() {
+        let glass = Material {
+            absorption: Color::new(0.0, 1.0, 2.0),
+            ..Material::glass(1.5)
+        };
+        let t = glass.attenuation(1.5);
+        assert_eq!(t.r, 1.0);
+        assert!((t.g - (-1.5f64).exp()).abs() < 1e-15 && (t.b - (-3.0f64).exp()).abs() < 1e-15);
+        // An endless path keeps what is not absorbed.
+        assert_eq!(glass.attenuation(f64::INFINITY), Color::new(1.0, 0.0, 0.0));
     }
 }

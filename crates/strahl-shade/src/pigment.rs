@@ -89,6 +89,20 @@ impl From<ColorFt> for Pigment {
 }
 
 impl Pigment {
+    /// Whether light passes somewhere: `false` is certain, `true` is not.
+    pub fn may_transmit(&self) -> bool {
+        let passes = |c: &ColorFt| c.filter != 0.0 || c.transmit != 0.0;
+        match self {
+            Self::Solid(color) => passes(color),
+            Self::ColorMap(_, map) => map.entries.iter().any(|(_, c)| passes(c)),
+            Self::PigmentMap(_, map) => map.entries.iter().any(|(_, p)| p.may_transmit()),
+            Self::Blocks(_, pigments) => pigments.iter().any(Self::may_transmit),
+            Self::Image(..) => true,
+            Self::Average(members, _) => members.iter().any(|(_, p)| p.may_transmit()),
+            Self::UvMapped(pigment) => pigment.may_transmit(),
+        }
+    }
+
     /// The colour at a point.
     ///
     /// The members of maps are evaluated at the point that the map's pattern is evaluated at, turbulence included, as in

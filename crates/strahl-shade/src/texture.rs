@@ -56,6 +56,22 @@ impl From<PlainTexture> for Texture {
     }
 }
 
+/// A texture that several materials may share; equal to itself only.
+#[derive(Clone, Debug)]
+pub struct SharedTexture(pub Arc<Texture>);
+
+impl PartialEq for SharedTexture {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.0, &other.0)
+    }
+}
+
+impl From<Texture> for SharedTexture {
+    fn from(texture: Texture) -> Self {
+        Self(Arc::new(texture))
+    }
+}
+
 /// One layer of a texture at a point, with all that the surface itself decides.
 ///
 /// What a viewer sees, with `E` the ambient light, a light of colour `L` (shadows included) in direction `l`, and `R` the light
@@ -113,6 +129,44 @@ impl Texture {
         };
         self.paint(point, point.n_shade, &Identity, eta, &mut stack, out);
         out.transmission += stack.above * stack.share;
+    }
+
+    /// The same for a texture in a space of its own, as [`Texture::Transformed`] has it; `None` is the point's space.
+    pub fn layers_in<'a>(
+        &'a self,
+        space: Option<&Transform>,
+        point: &TexturePoint,
+        eta: f64,
+        out: &mut TexturePaint<'a>,
+    ) {
+        let Some(space) = space else {
+            return self.layers_at(point, eta, out);
+        };
+        out.layers.clear();
+        out.transmission = Color::BLACK;
+        let mut stack = Stack {
+            share: 1.0,
+            above: Color::WHITE,
+        };
+        let inner = point.at(space.point_to_object(point.position));
+        let n = NormalSpace::enter(space, point.n_shade);
+        self.paint(&inner, n, space, eta, &mut stack, out);
+        out.transmission += stack.above * stack.share;
+    }
+
+    /// Whether light passes somewhere: `false` is certain, `true` is not.
+    pub fn may_transmit(&self) -> bool {
+        match self {
+            Self::Plain(texture) => texture.pigment.may_transmit(),
+            // What one layer stops does not pass.
+            Self::Layered(layers) => layers.iter().all(Self::may_transmit),
+            Self::Map(_, map) => map.entries.iter().any(|(_, t)| t.may_transmit()),
+            Self::Blocks(_, textures) | Self::MaterialMap(_, _, textures) => {
+                textures.iter().any(Self::may_transmit)
+            }
+            Self::Average(members, _) => members.iter().any(|(_, t)| t.may_transmit()),
+            Self::Transformed(_, texture) | Self::UvMapped(texture) => texture.may_transmit(),
+        }
     }
 
     /// What light keeps that passes the surface towards a light source: as [`TexturePaint::transmission`], but without

@@ -25,6 +25,7 @@ pub(super) struct Flat {
     pub(super) groups: Vec<FlatGroup>,
     pub(super) objects: Vec<ObjectInfo>,
     pub(super) materials: MaterialTable,
+    pub(super) texture_spaces: Vec<Transform>,
     /// Warnings.
     pub(super) diagnostics: Vec<Diagnostic>,
 }
@@ -71,6 +72,8 @@ struct Todo<'a> {
     object: &'a Object,
     transform: Transform,
     material: Option<&'a Arc<Material>>,
+    /// From the space of the object that has the material to the group's.
+    material_space: Transform,
     name: Option<&'a Arc<str>>,
     span: Span,
     visibility: Visibility,
@@ -84,15 +87,22 @@ impl<'a> Todo<'a> {
                 object,
                 transform: own,
                 material: object.material.as_ref(),
+                material_space: own,
                 name: object.name.as_ref(),
                 span: object.span,
                 visibility: object.visibility,
             };
         };
         let (a, b) = (object.visibility, p.visibility);
+        let transform = own.then(&p.transform);
         Self {
             object,
-            transform: own.then(&p.transform),
+            transform,
+            material_space: if object.material.is_some() {
+                transform
+            } else {
+                p.material_space
+            },
             material: material_of(object, p.material),
             name: object.name.as_ref().or(p.name),
             span: if object.span.is_some() {
@@ -160,9 +170,21 @@ impl Pass {
             kind,
             span: todo.span,
         });
+        let spaces = &mut self.flat.texture_spaces;
+        let textured = self.flat.materials.get(material).texture.is_some();
+        let texture_space = if !textured || todo.material_space.is_identity() {
+            Look::NO_SPACE
+        } else {
+            // Neighbours often share one: the parts of a union.
+            if spaces.last() != Some(&todo.material_space) {
+                spaces.push(todo.material_space);
+            }
+            spaces.len() as u32 - 1
+        };
         Look {
             object: self.flat.objects.len() as u32 - 1,
             material,
+            texture_space,
         }
     }
 

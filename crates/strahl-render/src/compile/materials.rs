@@ -39,6 +39,9 @@ impl MaterialTable {
 
 /// Whether shadow rays pass the material at all.
 pub(crate) fn material_transmits(material: &Material) -> bool {
+    if let Some(texture) = &material.texture {
+        return texture.0.may_transmit();
+    }
     match &material.pbr {
         None => !material.finish.transmission.is_black(),
         Some(pbr) => pbr.transmission > 0.0 || pbr.alpha_blend,

@@ -18,7 +18,7 @@ use assemble::Assembled;
 pub(crate) use materials::material_transmits;
 use std::sync::Arc;
 use strahl_accel::{AcceleratorKind, AnyAccelerator};
-use strahl_math::Aabb;
+use strahl_math::{Aabb, Transform};
 use strahl_scene::{Background, Camera, Diagnostic, Scene, SceneLight, Settings, SourceMap};
 use strahl_shade::{Color, Material};
 
@@ -35,6 +35,7 @@ pub struct Prepared {
     groups: Vec<Assembled>,
     objects: Vec<ObjectInfo>,
     materials: Vec<Arc<Material>>,
+    texture_spaces: Vec<Transform>,
     lights: Vec<SceneLight>,
     ambient: Color,
     background: Background,
@@ -80,6 +81,7 @@ impl Prepared {
             groups,
             objects: flat.objects,
             materials: flat.materials.into_list(),
+            texture_spaces: flat.texture_spaces,
             lights,
             ambient,
             background: scene
@@ -124,6 +126,7 @@ impl Prepared {
             groups: groups.collect(),
             objects: self.objects,
             materials: self.materials,
+            texture_spaces: self.texture_spaces,
             lights: self.lights,
             ambient: self.ambient,
             background: self.background,

@@ -1,0 +1,148 @@
+//! POV-Ray's textures on objects: their space, layers and shadows.
+
+mod common;
+
+use common::{compiled, rendered};
+use strahl_geometry::{Cuboid, Sphere};
+use strahl_math::DVec3;
+use strahl_scene::{Camera, CsgOp, Object, ObjectExt, Scene};
+use strahl_shade::patterns::Pattern;
+use strahl_shade::pigment::Pigment;
+use strahl_shade::pov_finish::{PovFinish, PovReflection};
+use strahl_shade::texture::{PlainTexture, Texture};
+use strahl_shade::{Color, ColorFt, Light, Material};
+
+fn material(texture: Texture) -> Material {
+    Material {
+        texture: Some(texture.into()),
+        ..Material::default()
+    }
+}
+
+fn plain(pigment: Pigment) -> PlainTexture {
+    PlainTexture {
+        pigment,
+        ..PlainTexture::default()
+    }
+}
+
+fn opaque(r: f64, g: f64, b: f64) -> Pigment {
+    ColorFt::opaque(Color::new(r, g, b)).into()
+}
+
+/// What a camera at `eye`, looking along -z, sees in the middle of the picture.
+fn seen(scene: Scene, eye: DVec3) -> [f32; 3] {
+    let camera = Camera::perspective(eye, eye - DVec3::Z, DVec3::Y, 0.1);
+    let scene = compiled(&scene.camera(camera).ambient(Color::WHITE));
+    let film = rendered(&scene, |o| (o.width, o.height) = (1, 1)).film;
+    film.pixels[0]
+}
+
+/// A box whose front shows red for x > 0, y > 0 of its own space, and green beside.
+fn checkered() -> Object {
+    let blocks = Pigment::Blocks(
+        Pattern::Checker.into(),
+        vec![opaque(0.0, 1.0, 0.0), opaque(1.0, 0.0, 0.0)],
+    );
+    let texture = PlainTexture {
+        finish: PovFinish {
+            ambient: Color::WHITE,
+            diffuse: 0.0,
+            ..PovFinish::default()
+        },
+        ..plain(blocks)
+    };
+    let cube = Cuboid::new(DVec3::new(-0.9, -0.9, -0.9), DVec3::new(0.9, 0.9, 0.9));
+    cube.material(material(texture.into()))
+}
+
+#[test]
+fn a_texture_moves_with_its_object() {
+    // Checker changes where any coordinate passes a whole number: the front is at z = 0.9.
+    let colors = |object: Object, at: DVec3| {
+        [(0.5, 0.5), (-0.5, 0.5)].map(|(x, y)| {
+            let scene = Scene::new().add(object.clone());
+            seen(scene, at + DVec3::new(x, y, 9.0))
+        })
+    };
+    let here = colors(checkered(), DVec3::ZERO);
+    assert_ne!(here[0], here[1]);
+    let (aside, farther) = (DVec3::new(3.5, 0.25, 0.0), DVec3::new(-1.0, 7.5, 0.5));
+    let moved = checkered().translated(aside);
+    assert_eq!(colors(moved.clone(), aside), here);
+    let union = Object::csg(CsgOp::Union, vec![moved.clone()]).translated(farther);
+    assert_eq!(colors(union, aside + farther), here);
+    // In a solid that has the texture itself, its parts have none of their own.
+    let bare = Object {
+        material: None,
+        ..checkered()
+    };
+    let ball = Sphere::new(DVec3::ZERO, 9.0).into();
+    let solid = Object::csg(CsgOp::Intersection, vec![bare.translated(aside), ball]);
+    let solid = Object {
+        material: checkered().material,
+        ..solid
+    };
+    let of_solid = colors(solid.translated(-aside), DVec3::ZERO);
+    // The texture's space is the solid's: it starts half a block further left.
+    assert_eq!(
+        of_solid[0],
+        colors(checkered(), DVec3::new(1.0, 0.0, 0.0))[1]
+    );
+    let mut scene = Scene::new();
+    let inner = scene.add_group(vec![moved]);
+    let outer = scene.add_group(vec![Object::instance(inner).translated(farther)]);
+    for (place, color) in [(0.5, here[0]), (-0.5, here[1])] {
+        let scene = scene.clone().add(Object::instance(outer).translated(aside));
+        let eye = aside + aside + farther + DVec3::new(place, 0.5, 9.0);
+        assert_eq!(seen(scene, eye), color);
+    }
+}
+
+#[test]
+fn layers_mirrors_and_shadows_follow_the_formula() {
+    let clear = ColorFt {
+        rgb: Color::new(1.0, 0.5, 0.25),
+        filter: 0.5,
+        transmit: 0.25,
+    };
+    let top = plain(Pigment::Solid(clear));
+    let bottom = |mirror: f64| PlainTexture {
+        finish: PovFinish {
+            reflection: PovReflection::constant(Color::gray(mirror)),
+            ..PovFinish::default()
+        },
+        ..plain(opaque(0.2, 0.4, 0.8))
+    };
+    let layered = |mirror: f64| Texture::Layered(vec![bottom(mirror).into(), top.clone().into()]);
+    let wall = Cuboid::new(DVec3::new(-9.0, -9.0, -1.0), DVec3::new(9.0, 9.0, 0.0));
+    let scene = |shade: bool| {
+        let scene = Scene::new()
+            .add(wall.material(material(layered(if shade { 0.0 } else { 0.5 }))))
+            .light(Light::directional(DVec3::NEG_Z, Color::WHITE))
+            .background(strahl_scene::Background::Solid(Color::new(0.3, 0.2, 0.1)));
+        let sheet = Cuboid::new(DVec3::new(-9.0, -9.0, 20.0), DVec3::new(9.0, 9.0, 21.0));
+        let sheet = sheet.material(material(plain(Pigment::Solid(clear)).into()));
+        if shade { scene.add(sheet) } else { scene }
+    };
+    let expected = |light: Color| {
+        // Ambient 0.1 and diffuse 0.6; the upper layer is opaque by 1/4.
+        let above = Color::new(1.0, 0.5, 0.25) * 0.5 + Color::gray(0.25);
+        let body = Color::new(1.0, 0.5, 0.25) * 0.25 + Color::new(0.2, 0.4, 0.8) * above;
+        body * (Color::gray(0.1) + light * 0.6)
+    };
+    let close = |found: [f32; 3], color: Color| {
+        let off = found.iter().zip(color.to_array());
+        off.map(|(a, b)| (f64::from(*a) - b).abs())
+            .fold(0.0, f64::max)
+            < 1e-6
+    };
+    let mirrored = Color::new(0.3, 0.2, 0.1) * 0.5;
+    let found = seen(scene(false), DVec3::new(0.0, 0.0, 9.0));
+    assert!(close(found, expected(Color::WHITE) + mirrored), "{found:?}");
+
+    // The sheet filters the light at both of its faces.
+    let pass = clear.attenuation() * clear.attenuation();
+    let found = seen(scene(true), DVec3::new(0.0, 0.0, 9.0));
+    assert!(close(found, expected(pass)), "{found:?}");
+}
