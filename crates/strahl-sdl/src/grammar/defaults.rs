@@ -9,6 +9,8 @@ use strahl_shade::Material;
 pub struct State {
     /// What `#default` has set; objects begin with it.
     pub default_texture: Texture,
+    /// Declared objects that are used as instances.
+    pub(super) shared: super::objects::Shared,
     /// The last material made: neighbouring objects mostly share one.
     pub(super) last_material: Option<(Texture, Arc<Material>)>,
 }
@@ -20,6 +22,7 @@ impl Default for State {
                 pigment: Pigment::default(),
                 finish: Finish::default(),
             },
+            shared: super::objects::Shared::default(),
             last_material: None,
         }
     }

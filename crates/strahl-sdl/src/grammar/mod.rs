@@ -8,6 +8,7 @@
 mod background;
 mod camera;
 mod defaults;
+mod entity;
 mod global_settings;
 mod lights;
 mod objects;
@@ -19,12 +20,14 @@ mod transform;
 
 pub use defaults::State;
 pub(crate) use defaults::default_items;
+pub use entity::{Declared, Entity};
 pub use texture::{Finish, Pigment, Texture};
 pub use thing::Thing;
 
 use crate::keywords::{Word, WordKind};
 use crate::parser::{PResult, Parser};
 use crate::token::{Kind, Token};
+use entity::is_nothing;
 
 /// Reads a statement; its word is already taken.
 type StatementParser = fn(&mut Parser<'_>) -> PResult<()>;
@@ -88,8 +91,8 @@ impl Parser<'_> {
         if let Some((_, parse)) = STATEMENTS.iter().find(|(w, _)| *w == word) {
             self.take(token)?;
             parse(self)?;
-        } else if let Some(object) = self.object()? {
-            self.add(object)?;
+        } else if let Some(entity) = self.entity()? {
+            self.add(entity)?;
         } else if word.kind() == WordKind::Statement || word.kind() == WordKind::Object {
             self.take(token)?;
             let text = word.text();
@@ -105,7 +108,11 @@ impl Parser<'_> {
         Ok(true)
     }
 
-    fn add(&mut self, object: strahl_scene::Object) -> PResult<()> {
+    fn add(&mut self, entity: Entity) -> PResult<()> {
+        let mut object = entity.object;
+        if is_nothing(&object) {
+            return Ok(());
+        }
         let limit = self.options.limits.objects;
         if self.scene.objects.0.len() >= limit {
             let message = format!("the scene has more than {limit} objects");
@@ -115,6 +122,18 @@ impl Parser<'_> {
                 message,
                 "does a loop not end? Otherwise raise the limit of objects",
             ));
+        }
+        if object.material.is_none() {
+            // The default texture does not move with the object.
+            let texture = match &object.transform {
+                Some(map) => self
+                    .state
+                    .default_texture
+                    .clone()
+                    .transformed(&map.inverted()),
+                None => self.state.default_texture.clone(),
+            };
+            object.material = Some(self.material(&texture));
         }
         self.scene.objects.0.push(object);
         Ok(())

@@ -1,127 +1,105 @@
 //! What scenes ask of their own objects: `inside`, `trace`, `min_extent`, `max_extent`.
 
 use super::Thing;
+use super::entity::Declared;
+use super::objects::expanded;
 use crate::keywords::Word;
 use crate::parser::{PResult, Parser, Place};
 use crate::symbol::Symbol;
 use crate::token::Kind;
 use crate::value::{Value, Vector};
 use std::sync::Arc;
-use strahl_geometry::{Primitive, Scratch};
+use strahl_geometry::{Csg, CsgNode, Primitive, Scratch, Shape, Solid};
 use strahl_math::{Aabb, DVec3, Interval, Ray};
 use strahl_scene::{CsgOp, Object, ObjectKind};
 
-/// Objects nested deeper than this answer nothing: the questions recurse.
-const DEPTH: u32 = 500;
+/// An object made ready to be asked where it is.
+#[derive(Debug)]
+pub(crate) struct Query {
+    csg: Csg,
+    bounds: Aabb,
+}
 
-/// Whether a point is inside of an object; open surfaces have no inside.
-fn inside(object: &Object, point: DVec3, depth: u32) -> bool {
-    if depth == 0 {
-        return false;
+impl Query {
+    /// `None` if nothing is there, or a shape is wrong.
+    fn new(object: &Object) -> Option<Self> {
+        let csg = Csg::try_new(node(object)?).ok()?;
+        let bounds = unclipped(object).unwrap_or_else(|| csg.bounds());
+        Some(Self { csg, bounds })
     }
-    let point = match &object.transform {
-        Some(transform) => transform.point_to_object(point),
-        None => point,
-    };
-    let (op, children) = match &object.kind {
-        ObjectKind::Shape(shape) => {
-            return shape.as_solid().is_some_and(|solid| solid.contains(point));
-        }
-        ObjectKind::Csg { op, children } => (*op, children.0.as_slice()),
-        ObjectKind::Instance(_) => return false,
-    };
-    let test = |child: &Object| inside(child, point, depth - 1);
-    match (op, children) {
-        (CsgOp::Union | CsgOp::Merge, all) => all.iter().any(test),
-        (CsgOp::Intersection | CsgOp::Clip, all) => all.iter().all(test),
-        (CsgOp::Difference, [first, rest @ ..]) => test(first) && !rest.iter().any(test),
-        (CsgOp::Difference, []) => false,
-        (CsgOp::Inverse, all) => !all.iter().any(test),
+
+    fn contains(&self, point: DVec3) -> bool {
+        self.csg.contains(point)
+    }
+
+    /// Where a ray meets it first, with the unit normal.
+    fn trace(&self, origin: DVec3, direction: DVec3) -> Option<(DVec3, DVec3)> {
+        let ray = Ray::new(origin, direction);
+        let scratch = &mut Scratch::default();
+        let hit = self
+            .csg
+            .closest_hit(&ray, Interval::FORWARD, None, scratch)?;
+        let point = self.csg.surface_at(&ray, &hit);
+        Some((point.position, point.n_shade))
     }
 }
 
-/// A box around an object.
-fn bounds(object: &Object, depth: u32) -> Aabb {
-    if depth == 0 {
-        return Aabb::EVERYTHING;
+/// The tree of a whole object; `None` if nothing is there. Walked with a list, since trees may be deeper than the stack.
+fn node(object: &Object) -> Option<CsgNode> {
+    enum Step<'a> {
+        Visit(&'a Object),
+        Build(&'a Object, CsgOp, usize),
     }
-    let own = match &object.kind {
-        ObjectKind::Shape(shape) => shape.bounds(),
-        ObjectKind::Instance(_) => Aabb::EVERYTHING,
-        ObjectKind::Csg { op, children } => {
-            let boxes = children.0.iter().map(|child| bounds(child, depth - 1));
-            match op {
-                CsgOp::Union | CsgOp::Merge => boxes.fold(Aabb::EMPTY, |a, b| a.union(&b)),
-                CsgOp::Intersection | CsgOp::Clip => {
-                    boxes.fold(Aabb::EVERYTHING, |a, b| a.intersection(&b))
+    let mut steps = vec![Step::Visit(object)];
+    let mut done: Vec<CsgNode> = vec![];
+    while let Some(step) = steps.pop() {
+        let (object, node) = match step {
+            Step::Visit(object) => match &object.kind {
+                ObjectKind::Csg { children, .. } if children.0.is_empty() => return None,
+                ObjectKind::Csg { op, children } => {
+                    steps.push(Step::Build(object, *op, children.0.len()));
+                    steps.extend(children.0.iter().rev().map(Step::Visit));
+                    continue;
                 }
-                CsgOp::Difference => boxes.take(1).fold(Aabb::EMPTY, |a, b| a.union(&b)),
-                CsgOp::Inverse => Aabb::EVERYTHING,
-            }
-        }
-    };
-    match &object.transform {
-        Some(transform) => transform.bounds_to_world(&own),
-        None => own,
-    }
-}
-
-/// The first hit behind `after`: its parameter and a normal of any length.
-fn next_hit(object: &Object, ray: &Ray, after: f64, depth: u32) -> Option<(f64, DVec3)> {
-    /// Surfaces passed that are not part of the combined object.
-    const PASSED: usize = 10_000;
-    if depth == 0 {
-        return None;
-    }
-    let local = match &object.transform {
-        Some(transform) => transform.ray_to_object(ray),
-        None => *ray,
-    };
-    let hit = match &object.kind {
-        ObjectKind::Instance(_) => None,
-        ObjectKind::Shape(shape) => {
-            let range = Interval::new(after, f64::INFINITY);
-            let hit = shape.closest_hit(&local, range, None, &mut Scratch::default());
-            hit.map(|hit| (hit.t, shape.surface_at(&local, &hit).n_geom))
-        }
-        ObjectKind::Csg { op, children } => {
-            let children = children.0.as_slice();
-            let mut after = after;
-            let mut found = None;
-            for _ in 0..PASSED {
-                let hits = children.iter().enumerate().filter_map(|(index, child)| {
-                    next_hit(child, &local, after, depth - 1).map(|(t, n)| (index, t, n))
-                });
-                let first = hits.reduce(|a, b| if b.1 < a.1 { b } else { a });
-                let Some((hit, t, normal)) = first else {
-                    break;
+                ObjectKind::Shape(shape) => (object, CsgNode::leaf(Shape::clone(shape), 0)),
+                ObjectKind::Instance(_) => return None,
+            },
+            Step::Build(object, op, count) => {
+                let operands = done.split_off(done.len() - count).into();
+                let node = match op {
+                    CsgOp::Union => CsgNode::Union(operands),
+                    CsgOp::Merge => CsgNode::Merge(operands),
+                    CsgOp::Intersection => CsgNode::Intersection(operands),
+                    CsgOp::Difference => CsgNode::Difference(operands),
+                    CsgOp::Inverse => CsgNode::Inverse(operands),
+                    CsgOp::Clip => CsgNode::Clip(operands),
                 };
-                if is_surface(*op, children, hit, local.at(t), depth) {
-                    found = Some((t, normal));
-                    break;
-                }
-                after = t;
+                (object, node)
             }
-            found
-        }
-    };
-    match &object.transform {
-        Some(transform) => hit.map(|(t, normal)| (t, transform.normal_to_world(normal))),
-        None => hit,
+        };
+        done.push(match object.transform.as_deref() {
+            Some(map) => node.transformed(*map),
+            None => node,
+        });
     }
+    done.pop()
 }
 
-/// Whether a point on the surface of child number `hit` is on the surface of the combined object.
-fn is_surface(op: CsgOp, children: &[Object], hit: usize, point: DVec3, depth: u32) -> bool {
-    let mut others = children.iter().enumerate().filter(|(i, _)| *i != hit);
-    let test = |child: &Object| inside(child, point, depth - 1);
-    match op {
-        CsgOp::Union | CsgOp::Inverse => true,
-        CsgOp::Merge => !others.any(|(_, child)| test(child)),
-        CsgOp::Intersection => others.all(|(_, child)| test(child)),
-        CsgOp::Clip => hit == 0 && others.all(|(_, child)| test(child)),
-        CsgOp::Difference => others.all(|(i, child)| test(child) == (i == 0)),
-    }
+/// The box of an object that is clipped or inverted, which the language takes from the object as it was before.
+fn unclipped(object: &Object) -> Option<Aabb> {
+    let ObjectKind::Csg {
+        op: CsgOp::Clip | CsgOp::Inverse,
+        children,
+    } = &object.kind
+    else {
+        return None;
+    };
+    let inner = children.0.first()?;
+    let bounds = Query::new(inner)?.bounds;
+    Some(match object.transform.as_deref() {
+        Some(map) => map.bounds_to_world(&bounds),
+        None => bounds,
+    })
 }
 
 impl Parser<'_> {
@@ -129,7 +107,7 @@ impl Parser<'_> {
     pub(crate) fn ask_inside(&mut self) -> PResult<bool> {
         let object = self.object_argument()?;
         let point = self.vector3()?;
-        Ok(inside(&object, point, DEPTH))
+        Ok(self.query(&object).is_some_and(|q| q.contains(point)))
     }
 
     /// `min_extent(Object)` and `max_extent(Object)` behind the parenthesis; unbounded objects reach to 1e10, as in
@@ -137,12 +115,13 @@ impl Parser<'_> {
     pub(crate) fn ask_extent(&mut self, word: Word) -> PResult<DVec3> {
         const FAR: DVec3 = DVec3::splat(1e10);
         let object = self.object_argument()?;
-        let b = bounds(&object, DEPTH);
-        let corner = if word == Word::MinExtent {
-            b.min
-        } else {
-            b.max
-        };
+        let corner = self.query(&object).map_or(DVec3::ZERO, |q| {
+            if word == Word::MinExtent {
+                q.bounds.min
+            } else {
+                q.bounds.max
+            }
+        });
         Ok(corner.clamp(-FAR, FAR))
     }
 
@@ -162,13 +141,12 @@ impl Parser<'_> {
         if !(length > 0.0 && length.is_finite() && origin.is_finite()) {
             return Err(self.fail(place, "`trace` needs a direction that is not zero"));
         }
-        let ray = Ray::new(origin, direction);
-        let hit = next_hit(&object, &ray, 0.0, DEPTH);
+        let hit = self.query(&object).and_then(|q| q.trace(origin, direction));
         if let Some(symbol) = normal_of {
-            let normal = hit.map_or(DVec3::ZERO, |(_, n)| n.normalize_or_zero());
+            let normal = hit.map_or(DVec3::ZERO, |(_, n)| n);
             self.store_normal(symbol, normal);
         }
-        Ok(hit.map_or(DVec3::ZERO, |(t, _)| ray.at(t)))
+        Ok(hit.map_or(DVec3::ZERO, |(point, _)| point))
     }
 
     fn store_normal(&mut self, symbol: Symbol, normal: DVec3) {
@@ -179,7 +157,7 @@ impl Parser<'_> {
     }
 
     /// An object as the first argument of a function, with the comma behind it.
-    fn object_argument(&mut self) -> PResult<Arc<Object>> {
+    fn object_argument(&mut self) -> PResult<Arc<Declared>> {
         let token = self.peek()?;
         let place = self.place_of(token);
         let object = match self.value()? {
@@ -191,5 +169,14 @@ impl Parser<'_> {
         };
         self.comma()?;
         Ok(object)
+    }
+
+    /// The object made ready, once for all questions; `None` if there is nothing to meet.
+    fn query<'d>(&self, declared: &'d Declared) -> Option<&'d Query> {
+        let made = declared.query.get_or_init(|| {
+            let object = expanded(&declared.entity.object, &self.state.shared);
+            Query::new(&object).map(Box::new)
+        });
+        made.as_deref()
     }
 }

@@ -10,6 +10,7 @@ pub use pigment::Pigment;
 use crate::keywords::Word;
 use crate::parser::{PResult, Parser};
 use crate::token::Token;
+use strahl_math::Transform;
 
 /// A pigment with a finish.
 #[derive(Clone, Debug, PartialEq)]
@@ -18,6 +19,14 @@ pub struct Texture {
     pub pigment: Pigment,
     /// How the surface takes light.
     pub finish: Finish,
+}
+
+impl Texture {
+    /// The texture moved along with an object. It is the same everywhere, so it stays what it is.
+    #[must_use]
+    pub(in crate::grammar) fn transformed(self, _map: &Transform) -> Self {
+        self
+    }
 }
 
 impl Parser<'_> {

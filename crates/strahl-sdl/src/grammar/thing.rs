@@ -1,11 +1,11 @@
-use super::{Finish, Pigment, Texture, by_word};
+use super::{Declared, Finish, Pigment, Texture, by_word};
 use crate::keywords::Word;
 use crate::parser::{PResult, Parser};
 use crate::token::{Kind, Token};
 use crate::value::Value;
 use std::sync::Arc;
 use strahl_math::Transform;
-use strahl_scene::{Camera, Object, SceneLight};
+use strahl_scene::{Camera, SceneLight};
 
 macro_rules! things {
     ($($kind:ident($payload:ty) $text:literal)*) => {
@@ -30,7 +30,7 @@ things! {
     Camera(Camera) "a camera"
     Finish(Finish) "a finish"
     Light(SceneLight) "a light source"
-    Object(Object) "an object"
+    Object(Declared) "an object"
     Pigment(Pigment) "a pigment"
     Texture(Texture) "a texture"
     Transform(Transform) "a transformation"
@@ -70,7 +70,8 @@ impl Parser<'_> {
             self.take(token)?;
             return self.nested(parse).map(Some);
         }
-        Ok(self.object()?.map(|object| Thing::Object(Arc::new(object))))
+        let entity = self.entity()?;
+        Ok(entity.map(|e| Thing::Object(Arc::new(Declared::from(e)))))
     }
 
     /// If a name of a thing of one kind stands here, takes it and gives the thing.

@@ -55,6 +55,15 @@ impl Parser<'_> {
             }
         }
         self.expect(Kind::Greater)?;
+        for axis in 0..3 {
+            if rows.iter().take(3).all(|row| row[axis] == 0.0) {
+                self.warn(
+                    place,
+                    "a matrix with a column of zeros would flatten everything; 1 is taken on its diagonal",
+                );
+                rows[axis][axis] = 1.0;
+            }
+        }
         let [x, y, z, translation] = rows;
         Transform::try_new(DMat3::from_cols(x, y, z), translation)
             .map_err(|e| self.fail(place, e.to_string()))

@@ -22,6 +22,11 @@ impl Parser<'_> {
     /// What has become of the text.
     pub(crate) fn into_parsed(mut self) -> Parsed {
         let (diagnostics, failed) = self.take_diagnostics();
+        if !failed {
+            // No name is needed any more: what only names hold can be moved into the scene.
+            self.scopes = super::Scopes::default();
+            self.link_instances();
+        }
         Parsed {
             scene: (!failed).then_some(self.scene),
             diagnostics,

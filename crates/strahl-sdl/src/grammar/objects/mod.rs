@@ -1,25 +1,53 @@
 //! Objects: a file each, and a line in [`OBJECTS`].
+//!
+//! `modifiers` reads what all objects may have; `reuse` lets uses of a declared object share one group.
 
 mod boxes;
+mod cone;
+mod csg;
+mod cylinder;
+mod disc;
+mod mesh;
 mod modifiers;
 mod named;
 mod plane;
+mod polygon;
+mod quadric;
+mod reuse;
 mod sphere;
+mod torus;
+mod triangle;
 
-use super::by_word;
-use crate::keywords::Word;
+pub(crate) use reuse::{Shared, Tally, expanded};
+
+use super::{Entity, by_word};
+use crate::keywords::{Word, WordKind};
 use crate::parser::{PResult, Parser};
 use strahl_scene::Object;
 
 /// Reads an object from its `{` to its `}`; its word is already taken.
-type ObjectParser = fn(&mut Parser<'_>) -> PResult<Object>;
+type ObjectParser = fn(&mut Parser<'_>) -> PResult<Entity>;
 
 /// All objects by their words.
 static OBJECTS: [Option<ObjectParser>; Word::ALL.len()] = by_word::<ObjectParser, _>([
     (Word::Box, boxes::cuboid),
+    (Word::Cone, cone::cone),
+    (Word::Cylinder, cylinder::cylinder),
+    (Word::Difference, csg::difference),
+    (Word::Disc, disc::disc),
+    (Word::Intersection, csg::intersection),
+    (Word::Merge, csg::merge),
+    (Word::Mesh, mesh::mesh),
+    (Word::Mesh2, mesh::mesh2),
     (Word::Object, named::object),
     (Word::Plane, plane::plane),
+    (Word::Polygon, polygon::polygon),
+    (Word::Quadric, quadric::quadric),
+    (Word::SmoothTriangle, triangle::smooth_triangle),
     (Word::Sphere, sphere::sphere),
+    (Word::Torus, torus::torus),
+    (Word::Triangle, triangle::triangle),
+    (Word::Union, csg::union),
 ]);
 
 impl Parser<'_> {
@@ -28,16 +56,33 @@ impl Parser<'_> {
     /// # Errors
     /// If the object is wrong.
     pub(crate) fn object(&mut self) -> PResult<Option<Object>> {
+        Ok(self.entity()?.map(|entity| entity.object))
+    }
+
+    /// If an object stands here, reads it with its texture. One that is not supported yet leaves nothing.
+    ///
+    /// # Errors
+    /// If the object is wrong.
+    pub(crate) fn entity(&mut self) -> PResult<Option<Entity>> {
         let token = self.peek()?;
-        let parse = token
-            .word()
-            .and_then(|w| OBJECTS.get(w as usize).copied().flatten());
-        match parse {
-            Some(parse) => {
-                self.take(token)?;
-                self.nested(parse).map(Some)
-            }
-            None => Ok(None),
+        let Some(word) = token.word() else {
+            return Ok(None);
+        };
+        if let Some(parse) = OBJECTS.get(word as usize).copied().flatten() {
+            self.take(token)?;
+            return self.nested(parse).map(Some);
         }
+        if word.kind() != WordKind::Object || word == Word::LightSource {
+            return Ok(None);
+        }
+        self.take(token)?;
+        let text = word.text();
+        self.warn_hint(
+            self.place(),
+            format!("`{text}` is not supported yet and is left out"),
+            "the picture will lack it",
+        );
+        self.skip_body()?;
+        Ok(Some(Entity::nothing()))
     }
 }

@@ -1,109 +1,237 @@
-use crate::grammar::Texture;
-use crate::keywords::Word;
+use crate::grammar::Entity;
+use crate::grammar::entity::{is_nothing, transform};
+use crate::keywords::{Word, WordKind};
 use crate::parser::{PResult, Parser};
-use crate::token::Token;
-use strahl_geometry::{GeometryError, Shape};
-use strahl_math::Transform;
-use strahl_scene::{Object, ObjectExt};
+use crate::token::{Kind, Token};
+use crate::value::Value;
+use strahl_geometry::{GeometryError, Primitive, Shape};
+use strahl_scene::{CsgOp, Object, ObjectKind};
 
-/// What stands in an object besides its numbers, gathered until the brace closes.
-pub(crate) struct Draft {
-    transform: Option<Transform>,
-    texture: Option<Texture>,
-    shadows: Option<bool>,
+/// What is gathered besides the object itself until the brace closes.
+#[derive(Default)]
+struct Draft {
+    /// Whether the texture is another than the material says.
+    textured: bool,
+    /// What `bounded_by` has named, for `clipped_by { bounded_by }`.
+    bounds: Vec<Object>,
+    /// What `clipped_by` has named, for `bounded_by { clipped_by }`.
+    clips: Vec<Object>,
 }
 
 impl Parser<'_> {
     /// A simple object: its numbers, read by `f` from the opening brace on, then what all objects may have.
     ///
     /// # Errors
-    /// If the text or the shape is wrong.
+    /// If the text is wrong or a number is not finite.
     pub(crate) fn shape<S: Into<Shape>>(
         &mut self,
         f: impl FnOnce(&mut Self) -> PResult<Result<S, GeometryError>>,
-    ) -> PResult<Object> {
+    ) -> PResult<Entity> {
+        self.simple(|p| Ok(f(p)?.map(|shape| ObjectKind::Shape(shape.into()))))
+    }
+
+    /// Like [`Parser::shape`] for what may be more than one shape.
+    ///
+    /// What has no extent, and so cannot be seen, is left out with a warning; a shape of NaN or infinite numbers is an error.
+    ///
+    /// # Errors
+    /// If the text is wrong or a number is not finite.
+    pub(super) fn simple(
+        &mut self,
+        f: impl FnOnce(&mut Self) -> PResult<Result<ObjectKind, GeometryError>>,
+    ) -> PResult<Entity> {
         let place = self.place();
         self.braces(|p| {
-            let shape = match f(p)? {
-                Ok(shape) => shape,
-                Err(error) => return Err(p.fail(place, error.to_string())),
+            let mut entity = match f(p)? {
+                Ok(kind) => Object::new(kind).into(),
+                Err(
+                    error @ (GeometryError::NotFinite { .. } | GeometryError::NotFiniteAt { .. }),
+                ) => return Err(p.fail(place, error.to_string())),
+                Err(error) => {
+                    p.warn_hint(place, error.to_string(), "the object is left out");
+                    Entity::nothing()
+                }
             };
-            let mut object = Object::from(shape);
-            object.span = p.span_at(place);
-            p.modifiers(&mut object)?;
-            if object.material.is_none() {
-                let texture = p.state.default_texture.clone();
-                object.material = Some(p.material(&texture));
-            }
-            Ok(object)
+            entity.object.span = p.span_at(place);
+            p.modifiers(&mut entity)?;
+            Ok(entity)
         })
     }
 
-    /// Transformations, textures and switches up to the closing brace.
+    /// Transformations, textures and switches up to the closing brace, in the order they stand: what moves the object moves
+    /// the textures and clipping objects before it.
     ///
     /// # Errors
     /// If an item is wrong.
-    pub(crate) fn modifiers(&mut self, object: &mut Object) -> PResult<()> {
-        let mut draft = Draft {
-            transform: None,
-            texture: None,
-            shadows: None,
-        };
+    pub(crate) fn modifiers(&mut self, entity: &mut Entity) -> PResult<()> {
+        let mut draft = Draft::default();
         self.items("the object", |p, token| {
-            if p.modifier(&mut draft, token)? {
+            if p.modifier(entity, &mut draft, token)? {
                 return Ok(());
             }
             p.skip_item(token, "the object")
         })?;
-        if let Some(texture) = &draft.texture {
-            object.material = Some(self.material(texture));
-        }
-        if let Some(shadow) = draft.shadows {
-            object.visibility.shadow = shadow;
-        }
-        if let Some(transform) = &draft.transform {
-            let moved = std::mem::replace(object, Object::csg(strahl_scene::CsgOp::Union, vec![]));
-            *object = moved.transformed(transform);
+        if draft.textured
+            && let Some(texture) = &entity.texture
+        {
+            entity.object.material = Some(self.material(texture));
         }
         Ok(())
     }
 
-    fn modifier(&mut self, draft: &mut Draft, token: Token) -> PResult<bool> {
-        if let Some(next) = self.transformation(token)? {
-            draft.transform = Some(match &draft.transform {
-                Some(before) => before.then(&next),
-                None => next,
-            });
+    fn modifier(&mut self, entity: &mut Entity, draft: &mut Draft, token: Token) -> PResult<bool> {
+        if let Some(map) = self.transformation(token)? {
+            entity.transform(&map);
+            for bound in &mut draft.bounds {
+                transform(bound, &map);
+            }
             return Ok(true);
         }
+        let visibility = &mut entity.object.visibility;
         match token.word() {
             Some(Word::Pigment | Word::Finish) => {
-                let default = &self.state.default_texture;
-                let mut texture = draft.texture.take().unwrap_or_else(|| default.clone());
+                // What is written now is meant in the space that the object has been moved to.
+                let place = entity.placement();
+                let texture = entity.texture.take();
+                let texture = texture.unwrap_or_else(|| self.state.default_texture.clone());
+                let mut texture = texture.transformed(&place);
                 self.texture_item(&mut texture, token)?;
-                draft.texture = Some(texture);
+                entity.texture = Some(texture.transformed(&place.inverted()));
+                draft.textured = true;
+                return Ok(true);
             }
             Some(Word::Texture) => {
                 self.take(token)?;
-                draft.texture = Some(self.texture_block()?);
+                let texture = self.texture_block()?;
+                entity.texture = Some(texture.transformed(&entity.placement().inverted()));
+                draft.textured = true;
+                return Ok(true);
             }
-            Some(Word::NoShadow) => {
+            Some(Word::NoShadow) => visibility.shadow = false,
+            // Seen through transparent objects counts as neither.
+            Some(Word::NoImage) => visibility.camera = false,
+            Some(Word::NoReflection) => visibility.secondary = false,
+            Some(Word::Inverse) => {
                 self.take(token)?;
-                draft.shadows = Some(false);
+                self.invert(&mut entity.object);
+                return Ok(true);
             }
-            // Matters for media and fog only, and there are none.
-            Some(Word::Hollow) => {
+            Some(Word::ClippedBy) => {
                 self.take(token)?;
-                let switch = self.peek()?;
-                if switch
-                    .word()
-                    .is_some_and(|w| w.kind() == crate::keywords::WordKind::Constant)
-                {
-                    self.take(switch)?;
-                }
+                let clips = self.enclosing("`clipped_by`", Word::BoundedBy, &draft.bounds)?;
+                draft.clips.clone_from(&clips);
+                self.clip(&mut entity.object, clips);
+                return Ok(true);
             }
+            Some(Word::BoundedBy) => {
+                self.take(token)?;
+                draft.bounds = self.enclosing("`bounded_by`", Word::ClippedBy, &draft.clips)?;
+                return Ok(true);
+            }
+            // `hollow` matters for media and fog, `uv_mapping` for patterns; the others choose POV-Ray's methods.
+            Some(
+                Word::Hollow | Word::Hierarchy | Word::SplitUnion | Word::Sturm | Word::UvMapping,
+            ) => {}
             _ => return Ok(false),
+        }
+        self.take(token)?;
+        if !self.switched()? {
+            let visibility = &mut entity.object.visibility;
+            match token.word() {
+                Some(Word::NoShadow) => visibility.shadow = true,
+                Some(Word::NoImage) => visibility.camera = true,
+                Some(Word::NoReflection) => visibility.secondary = true,
+                _ => {}
+            }
         }
         Ok(true)
     }
+
+    /// What stands behind a switch: nothing or `on`, or `off`.
+    ///
+    /// # Errors
+    /// If the number there is wrong.
+    pub(super) fn switched(&mut self) -> PResult<bool> {
+        Ok(!self.number_follows()? || self.float()? != 0.0)
+    }
+
+    /// Whether a number stands here, and not the next item.
+    pub(super) fn number_follows(&mut self) -> PResult<bool> {
+        let token = self.peek()?;
+        Ok(match token.kind {
+            Kind::Number | Kind::Plus | Kind::Minus | Kind::Bang | Kind::LeftParen => true,
+            Kind::Word => token
+                .word()
+                .is_some_and(|w| matches!(w.kind(), WordKind::Constant | WordKind::FloatFunction)),
+            Kind::Name => token.symbol().is_some_and(|symbol| {
+                let value = self.scopes.find(symbol);
+                matches!(value, Some(Value::Float(_) | Value::Array(_)))
+            }),
+            _ => false,
+        })
+    }
+
+    /// The objects in the braces of `clipped_by` or `bounded_by`, or those that the other one has named.
+    fn enclosing(&mut self, what: &str, other: Word, known: &[Object]) -> PResult<Vec<Object>> {
+        let place = self.place();
+        let mut found = vec![];
+        self.braces(|p| {
+            if p.accept_word(other)? {
+                found = known.to_vec();
+                return Ok(());
+            }
+            found = p.parts()?;
+            if found.is_empty() {
+                let token = p.peek()?;
+                return Err(p.unexpected(token, "an object"));
+            }
+            Ok(())
+        })?;
+        if found.is_empty() {
+            let other = other.text();
+            self.warn(
+                place,
+                format!("there is no `{other}` before this {what}, so it does nothing"),
+            );
+        }
+        Ok(found)
+    }
+
+    /// Cuts an object, without a cap; the clipping objects stand in its parent's space.
+    fn clip(&mut self, object: &mut Object, clips: Vec<Object>) {
+        if clips.is_empty() || is_nothing(object) {
+            return;
+        }
+        let back = object.transform.as_deref().map(|t| t.inverted());
+        wrap(object, CsgOp::Clip);
+        if let ObjectKind::Csg { children, .. } = &mut object.kind {
+            children.0.extend(clips.into_iter().map(|mut clip| {
+                if let Some(back) = &back {
+                    transform(&mut clip, back);
+                }
+                clip
+            }));
+        }
+        self.expand_instances(object);
+    }
+
+    /// Turns inside and outside round; surfaces without an inside stay as they are.
+    fn invert(&mut self, object: &mut Object) {
+        let open = match &object.kind {
+            ObjectKind::Shape(shape) => shape.as_solid().is_none(),
+            _ => is_nothing(object),
+        };
+        if !open {
+            wrap(object, CsgOp::Inverse);
+            self.expand_instances(object);
+        }
+    }
+}
+
+/// Puts an operation around what an object is; all else about it stays.
+fn wrap(object: &mut Object, op: CsgOp) {
+    let nothing = Object::csg(CsgOp::Union, vec![]).kind;
+    let mut inner = Object::new(std::mem::replace(&mut object.kind, nothing));
+    inner.span = object.span;
+    object.kind = Object::csg(op, vec![inner]).kind;
 }

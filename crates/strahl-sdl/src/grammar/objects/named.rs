@@ -1,41 +1,34 @@
-use crate::grammar::Thing;
-use crate::keywords::{Word, WordKind};
+use crate::grammar::{Entity, Thing};
 use crate::parser::{PResult, Parser};
-use strahl_scene::Object;
 
 /// `object { Name ... }` or `object { sphere { ... } ... }`
-pub(super) fn object(p: &mut Parser<'_>) -> PResult<Object> {
+pub(super) fn object(p: &mut Parser<'_>) -> PResult<Entity> {
     let place = p.place();
     p.braces(|p| {
+        let token = p.peek()?;
         let named = p.accept_thing(|thing| match thing {
             Thing::Object(object) => Some(object),
             _ => None,
         })?;
-        let mut object = match named {
-            Some(named) => {
+        let mut entity = match named {
+            Some(declared) => {
+                let mut entity = p.use_declared(&declared);
                 // Rays then name the place that put the object into the scene.
-                let span = p.span_at(place);
-                Object {
-                    span,
-                    ..Object::clone(&named)
+                entity.object.span = p.span_at(place);
+                if let Some(symbol) = token.symbol() {
+                    entity.object.name = Some(p.name_of(symbol));
                 }
+                entity
             }
-            None => match p.object()? {
-                Some(object) => object,
+            None => match p.entity()? {
+                Some(entity) => entity,
                 None => {
                     let token = p.peek()?;
-                    let kind = token.word().map(Word::kind);
-                    let expected = match kind {
-                        Some(WordKind::Object) => {
-                            "an object of a kind that is known (this one is not supported yet)"
-                        }
-                        _ => "an object",
-                    };
-                    return Err(p.unexpected(token, expected));
+                    return Err(p.unexpected(token, "an object"));
                 }
             },
         };
-        p.modifiers(&mut object)?;
-        Ok(object)
+        p.modifiers(&mut entity)?;
+        Ok(entity)
     })
 }

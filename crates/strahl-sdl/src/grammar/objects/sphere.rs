@@ -1,9 +1,9 @@
+use crate::grammar::Entity;
 use crate::parser::{PResult, Parser};
 use strahl_geometry::Sphere;
-use strahl_scene::Object;
 
 /// `sphere { centre, radius ... }`
-pub(super) fn sphere(p: &mut Parser<'_>) -> PResult<Object> {
+pub(super) fn sphere(p: &mut Parser<'_>) -> PResult<Entity> {
     p.shape(|p| {
         let center = p.vector3()?;
         p.comma()?;

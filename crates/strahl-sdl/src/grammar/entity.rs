@@ -1,0 +1,85 @@
+use super::Texture;
+use super::objects::Tally;
+use super::query::Query;
+use std::sync::OnceLock;
+use std::sync::atomic::AtomicU32;
+use strahl_math::Transform;
+use strahl_scene::{CsgOp, Object, ObjectKind};
+
+/// An object as it is being read: the scene's object and what that does not hold.
+#[derive(Clone, Debug)]
+pub struct Entity {
+    /// The object. Its material is that of `texture`; without one it is left to the parent or the defaults.
+    pub object: Object,
+    /// The texture, to be modified where the object is used again; it lives in the object's own space.
+    pub texture: Option<Texture>,
+}
+
+impl From<Object> for Entity {
+    fn from(object: Object) -> Self {
+        Self {
+            object,
+            texture: None,
+        }
+    }
+}
+
+impl Entity {
+    /// What is left of an object that cannot be seen: a union of nothing.
+    pub(crate) fn nothing() -> Self {
+        Object::csg(CsgOp::Union, vec![]).into()
+    }
+
+    /// Moves the object, after the transformations it has.
+    pub(crate) fn transform(&mut self, map: &Transform) {
+        transform(&mut self.object, map);
+    }
+
+    /// From the object's own space to that of its parent.
+    pub(crate) fn placement(&self) -> Transform {
+        self.object
+            .transform
+            .as_deref()
+            .copied()
+            .unwrap_or_default()
+    }
+}
+
+/// Moves an object in place.
+pub(crate) fn transform(object: &mut Object, map: &Transform) {
+    match &mut object.transform {
+        Some(before) => **before = before.then(map),
+        None if map.is_identity() => {}
+        none => *none = Some(Box::new(*map)),
+    }
+}
+
+/// Whether an object has no surface because nothing is left of it.
+pub(crate) fn is_nothing(object: &Object) -> bool {
+    matches!(&object.kind, ObjectKind::Csg { children, .. } if children.0.is_empty())
+}
+
+/// An object with a name: read once, used any number of times.
+#[derive(Debug)]
+pub struct Declared {
+    pub(crate) entity: Entity,
+    pub(crate) tally: Tally,
+    /// How often it has been used.
+    pub(crate) uses: AtomicU32,
+    /// Its number among the objects whose uses share one group.
+    pub(crate) shared: OnceLock<u32>,
+    /// What answers `inside`, `trace` and the extents; made when first asked.
+    pub(crate) query: OnceLock<Option<Box<Query>>>,
+}
+
+impl From<Entity> for Declared {
+    fn from(entity: Entity) -> Self {
+        Self {
+            tally: Tally::of(&entity.object),
+            entity,
+            uses: AtomicU32::new(0),
+            shared: OnceLock::new(),
+            query: OnceLock::new(),
+        }
+    }
+}

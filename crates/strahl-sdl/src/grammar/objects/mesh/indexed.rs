@@ -1,0 +1,279 @@
+use super::builder::{Builder, NONE};
+use super::{Parts, has_area};
+use crate::grammar::{Entity, Texture};
+use crate::keywords::Word;
+use crate::parser::{PResult, Parser, Place};
+use crate::token::Kind;
+use std::collections::{BTreeMap, HashMap};
+use strahl_geometry::MeshData;
+use strahl_math::DVec3;
+
+/// The lists of a `mesh2`.
+#[derive(Default)]
+struct Lists {
+    vertices: Vec<DVec3>,
+    normals: Vec<DVec3>,
+    uvs: Vec<[f64; 2]>,
+    textures: Vec<Texture>,
+    faces: Vec<[u32; 3]>,
+    /// The texture of each face that has one.
+    face_textures: HashMap<usize, usize>,
+    normal_faces: Vec<[u32; 3]>,
+    uv_faces: Vec<[u32; 3]>,
+    has_inside: bool,
+}
+
+/// Which list of faces numbers the normals or texture coordinates.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Numbering {
+    None,
+    Vertices,
+    Own,
+}
+
+/// `mesh2 { vertex_vectors { ... } face_indices { ... } ... }`
+pub(in crate::grammar::objects) fn mesh2(p: &mut Parser<'_>) -> PResult<Entity> {
+    let place = p.place();
+    p.braces(|p| {
+        let mut lists = Lists::default();
+        while p.mesh2_list(&mut lists)? {}
+        let (normals, faces) = (lists.normals.len(), lists.normal_faces.len());
+        let normals = p.numbering(place, "normal", normals, faces, &lists)?;
+        let (uvs, faces) = (lists.uvs.len(), lists.uv_faces.len());
+        let uvs = p.numbering(place, "uv", uvs, faces, &lists)?;
+        let mut entity = p.mesh_object(lists.into_parts(normals, uvs), place)?;
+        p.modifiers(&mut entity)?;
+        Ok(entity)
+    })
+}
+
+impl Parser<'_> {
+    /// One of the lists; `false` if none stands here.
+    fn mesh2_list(&mut self, lists: &mut Lists) -> PResult<bool> {
+        let token = self.peek()?;
+        let word = match token.word() {
+            Some(
+                word @ (Word::VertexVectors
+                | Word::NormalVectors
+                | Word::UvVectors
+                | Word::TextureList
+                | Word::FaceIndices
+                | Word::NormalIndices
+                | Word::UvIndices
+                | Word::InsideVector),
+            ) => word,
+            _ => return Ok(false),
+        };
+        self.take(token)?;
+        match word {
+            Word::VertexVectors => lists.vertices = self.counted(Self::f32_vector)?,
+            Word::NormalVectors => lists.normals = self.counted(Self::f32_vector)?,
+            Word::UvVectors => lists.uvs = self.counted(Self::vector2)?,
+            Word::TextureList => {
+                lists.textures = self.counted(|p| {
+                    p.expect_word_texture()?;
+                    p.texture_block()
+                })?;
+            }
+            Word::FaceIndices => self.face_indices(lists)?,
+            Word::NormalIndices => {
+                let count = lists.normals.len();
+                lists.normal_faces = self.counted(|p| p.face(count, "normal_vectors"))?;
+            }
+            Word::UvIndices => {
+                let count = lists.uvs.len();
+                lists.uv_faces = self.counted(|p| p.face(count, "uv_vectors"))?;
+            }
+            _ => lists.has_inside = self.vector3()? != DVec3::ZERO,
+        }
+        self.comma()?;
+        Ok(true)
+    }
+
+    fn face_indices(&mut self, lists: &mut Lists) -> PResult<()> {
+        let (vertices, textures) = (lists.vertices.len(), lists.textures.len());
+        let mut face_textures = HashMap::new();
+        let mut index = 0;
+        lists.faces = self.counted(|p| {
+            let face = p.face(vertices, "vertex_vectors")?;
+            if textures > 0
+                && let Some(texture) = p.face_texture(textures)?
+            {
+                face_textures.insert(index, texture);
+            }
+            index += 1;
+            Ok(face)
+        })?;
+        lists.face_textures = face_textures;
+        Ok(())
+    }
+
+    fn expect_word_texture(&mut self) -> PResult<()> {
+        if self.accept_word(Word::Texture)? {
+            return Ok(());
+        }
+        let token = self.peek()?;
+        Err(self.unexpected(token, "`texture`"))
+    }
+
+    /// `{ count, item, ... }`
+    fn counted<T>(&mut self, mut item: impl FnMut(&mut Self) -> PResult<T>) -> PResult<Vec<T>> {
+        self.braces(|p| {
+            let count = p.float()?;
+            let place = p.place();
+            let mut list = vec![];
+            // Each item is read, so the count cannot ask for more memory than the text has.
+            while (list.len() as f64) < count {
+                p.comma()?;
+                if p.peek()?.kind == Kind::RightBrace {
+                    let found = list.len();
+                    let message = format!("the list should have {count} entries, found {found}");
+                    return Err(p.fail(place, message));
+                }
+                list.push(item(p)?);
+            }
+            p.comma()?;
+            Ok(list)
+        })
+    }
+
+    /// A vector that f32 can hold, as the mesh keeps it.
+    fn f32_vector(&mut self) -> PResult<DVec3> {
+        let vector = self.vector3()?;
+        if vector.as_vec3().is_finite() {
+            return Ok(vector);
+        }
+        let place = self.place();
+        Err(self.fail(place, "this vector is too large for a mesh"))
+    }
+
+    /// `<a, b, c>`, numbers of entries of a list.
+    fn face(&mut self, count: usize, list: &str) -> PResult<[u32; 3]> {
+        let token = self.peek()?;
+        let place = self.place_of(token);
+        let numbers = self.vector3()?.to_array();
+        let mut face = [0; 3];
+        for (index, number) in face.iter_mut().zip(numbers) {
+            *index = self.entry(number, count, list, place)? as u32;
+        }
+        Ok(face)
+    }
+
+    /// A number of a list as an index.
+    fn entry(&mut self, number: f64, count: usize, list: &str, place: Place) -> PResult<usize> {
+        if number >= 0.0 && number < count as f64 {
+            return Ok(number as usize);
+        }
+        let message = format!("there is no entry {number} in {list}, which has {count}");
+        Err(self.fail_hint(place, message, "entries are counted from 0"))
+    }
+
+    /// The number of a face's texture: one, or three of which the first is taken.
+    fn face_texture(&mut self, count: usize) -> PResult<Option<usize>> {
+        let mut first = None;
+        for _ in 0..3 {
+            // A comma may also part this face from the next.
+            self.comma()?;
+            if !self.number_follows()? {
+                break;
+            }
+            let token = self.peek()?;
+            let place = self.place_of(token);
+            let number = self.float()?;
+            let texture = self.entry(number, count, "texture_list", place)?;
+            if *first.get_or_insert(texture) != texture {
+                self.warn(
+                    place,
+                    "textures at the corners of a face are not blended; the first is taken",
+                );
+            }
+        }
+        Ok(first)
+    }
+
+    /// How normals or texture coordinates are numbered: by their own list of faces, as the vertices, or not at all.
+    fn numbering(
+        &mut self,
+        place: Place,
+        what: &str,
+        vectors: usize,
+        faces: usize,
+        lists: &Lists,
+    ) -> PResult<Numbering> {
+        let (expected, vertices) = (lists.faces.len(), lists.vertices.len());
+        if vectors == 0 {
+            return Ok(Numbering::None);
+        }
+        if faces == 0 && vectors >= vertices {
+            return Ok(Numbering::Vertices);
+        }
+        if faces == 0 {
+            let message =
+                format!("there are {vectors} {what}_vectors for {vertices} vertex_vectors");
+            let hint = format!("give one for each vertex, or {what}_indices");
+            return Err(self.fail_hint(place, message, hint));
+        }
+        if faces == expected {
+            return Ok(Numbering::Own);
+        }
+        let message = format!("there are {faces} {what}_indices for {expected} face_indices");
+        Err(self.fail_hint(place, message, "give one for each face"))
+    }
+}
+
+impl Lists {
+    fn into_parts(self, normals: Numbering, uvs: Numbering) -> Parts {
+        let vertex = |i: u32| self.vertices.get(i as usize).copied().unwrap_or_default();
+        let sound = |face: &[u32; 3]| has_area(face.map(vertex));
+        let degenerate = self.faces.iter().filter(|face| !sound(face)).count();
+        let has_inside = self.has_inside;
+        // Most meshes: one texture, and the corners are the vertices.
+        if self.face_textures.is_empty() && normals == Numbering::None && uvs == Numbering::None {
+            let faces: Vec<_> = self.faces.iter().copied().filter(|f| sound(f)).collect();
+            let meshes = (!faces.is_empty())
+                .then(|| (None, MeshData::from_f64(&self.vertices, faces)))
+                .into_iter()
+                .collect();
+            return Parts {
+                meshes,
+                degenerate,
+                has_inside,
+            };
+        }
+        let numbers = |numbering, own: &[[u32; 3]], index: usize, face: [u32; 3]| match numbering {
+            Numbering::None => [NONE; 3],
+            Numbering::Vertices => face,
+            Numbering::Own => own.get(index).copied().unwrap_or([NONE; 3]),
+        };
+        let usable = |i: &u32| {
+            let normal = self.normals.get(*i as usize);
+            normal.is_some_and(|n| *n != DVec3::ZERO)
+        };
+        // By texture and whether there are normals: those of a face may be zero.
+        let mut builders: BTreeMap<(Option<usize>, bool), Builder> = BTreeMap::new();
+        for (index, face) in self.faces.iter().enumerate() {
+            if !sound(face) {
+                continue;
+            }
+            let n = numbers(normals, &self.normal_faces, index, *face);
+            // As in POV-Ray, a face of one normal is flat and takes that of its plane.
+            let [a, b, c] = n.map(|i| self.normals.get(i as usize));
+            let smooth = n.iter().all(usable) && !(a == b && b == c);
+            let n = if smooth { n } else { [NONE; 3] };
+            let uv = numbers(uvs, &self.uv_faces, index, *face);
+            let texture = self.face_textures.get(&index).copied();
+            let builder = builders.entry((texture, smooth)).or_default();
+            builder.add(std::array::from_fn(|k| [face[k], n[k], uv[k]]));
+        }
+        let meshes = builders.into_iter().map(|((texture, _), builder)| {
+            let texture = texture.and_then(|t| self.textures.get(t).cloned());
+            let data = builder.finish(&self.vertices, &self.normals, &self.uvs);
+            (texture, data)
+        });
+        Parts {
+            meshes: meshes.collect(),
+            degenerate,
+            has_inside,
+        }
+    }
+}

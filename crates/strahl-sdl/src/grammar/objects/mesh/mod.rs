@@ -1,0 +1,108 @@
+//! Triangles in large numbers.
+
+mod builder;
+mod indexed;
+mod orient;
+mod triangles;
+
+pub(super) use indexed::mesh2;
+pub(super) use triangles::mesh;
+
+use crate::grammar::{Entity, Texture};
+use crate::parser::{PResult, Parser, Place};
+use strahl_geometry::{Brep, MeshData, Shape, TriangleMesh};
+use strahl_math::DVec3;
+use strahl_scene::{CsgOp, Object, ObjectKind};
+
+/// What has been read of a mesh: its parts, each of one texture, and whether it has an inside.
+#[derive(Default)]
+struct Parts {
+    meshes: Vec<(Option<Texture>, MeshData)>,
+    /// The number of triangles without area, which are left out.
+    degenerate: usize,
+    has_inside: bool,
+}
+
+/// Equal textures are looked for among the last ones only, so that a texture for each triangle costs no square.
+const SEARCHED: usize = 64;
+
+/// The number of a texture in a list that it joins if it is new.
+fn texture_number(list: &mut Vec<Texture>, texture: Texture) -> usize {
+    let first = list.len().saturating_sub(SEARCHED);
+    let recent = list.get(first..).unwrap_or(&[]);
+    match recent.iter().rposition(|t| *t == texture) {
+        Some(found) => first + found,
+        None => {
+            list.push(texture);
+            list.len() - 1
+        }
+    }
+}
+
+/// Whether three corners span an area at all.
+fn has_area([a, b, c]: [DVec3; 3]) -> bool {
+    (b - a).cross(c - a) != DVec3::ZERO
+}
+
+impl Parser<'_> {
+    /// The object of a mesh: one mesh, a solid if it is closed and has an `inside_vector`, or a union of meshes of different
+    /// textures.
+    fn mesh_object(&mut self, parts: Parts, place: Place) -> PResult<Entity> {
+        if parts.degenerate > 0 {
+            let n = parts.degenerate;
+            self.warn(
+                place,
+                format!("{n} of the mesh's triangles have no area and are left out"),
+            );
+        }
+        let single = parts.meshes.len() == 1;
+        if parts.has_inside && parts.meshes.len() > 1 {
+            self.warn_hint(
+                place,
+                "a mesh of several textures, or partly with normals, has no inside",
+                "in intersections and differences it will not be cut or cut as a solid",
+            );
+        }
+        let mut objects = vec![];
+        for (texture, mut data) in parts.meshes {
+            if parts.has_inside && single {
+                orient::orient(&mut data);
+            }
+            let mesh = match TriangleMesh::try_new(data) {
+                Ok(mesh) => mesh,
+                Err(error) => return Err(self.fail(place, error.to_string())),
+            };
+            let shape = if parts.has_inside && single {
+                self.closed_mesh(mesh, place)
+            } else {
+                mesh.into()
+            };
+            let mut object = Object::new(ObjectKind::Shape(shape));
+            object.span = self.span_at(place);
+            object.material = texture.map(|t| self.material(&t));
+            objects.push(object);
+        }
+        if objects.is_empty() {
+            self.warn(place, "the mesh has no triangles and is left out");
+        }
+        // A texture of the whole does not replace those of triangles.
+        let plain = objects.pop_if(|only| single && only.material.is_none());
+        let mut entity = Entity::from(plain.unwrap_or_else(|| Object::csg(CsgOp::Union, objects)));
+        entity.object.span = self.span_at(place);
+        Ok(entity)
+    }
+
+    fn closed_mesh(&mut self, mesh: TriangleMesh, place: Place) -> Shape {
+        match Brep::try_new(mesh.clone()) {
+            Ok(solid) => solid.into(),
+            Err(error) => {
+                self.warn_hint(
+                    place,
+                    error.to_string(),
+                    "the mesh has no inside: in intersections and differences it will not be cut or cut as a solid",
+                );
+                mesh.into()
+            }
+        }
+    }
+}

@@ -1,0 +1,55 @@
+use std::collections::HashMap;
+use strahl_geometry::MeshData;
+
+/// Turns triangles round so that neighbours run alike, as a solid needs it: the language's meshes may be wound anyhow.
+///
+/// Neighbours share an edge between the same places. Where more than two triangles meet in an edge, or one alone, nothing
+/// is decided.
+pub(super) fn orient(data: &mut MeshData) {
+    let mut places: HashMap<[u32; 3], u32> = HashMap::new();
+    let welded: Vec<u32> = data
+        .positions
+        .iter()
+        .enumerate()
+        .map(|(index, p)| {
+            // Adding zero makes one of the two zeros.
+            let bits = p.map(|x| (x + 0.0).to_bits());
+            *places.entry(bits).or_insert(index as u32)
+        })
+        .collect();
+    let place = |vertex: u32| welded.get(vertex as usize).copied().unwrap_or(vertex);
+    let edges = |face: [u32; 3]| {
+        let [a, b, c] = face.map(place);
+        [(a, b), (b, c), (c, a)]
+    };
+    let mut around: HashMap<(u32, u32), Vec<usize>> = HashMap::new();
+    for (index, face) in data.indices.iter().enumerate() {
+        for (a, b) in edges(*face) {
+            around.entry((a.min(b), a.max(b))).or_default().push(index);
+        }
+    }
+    let mut seen = vec![false; data.indices.len()];
+    for start in 0..data.indices.len() {
+        let mut waiting = vec![start];
+        if std::mem::replace(&mut seen[start], true) {
+            continue;
+        }
+        while let Some(index) = waiting.pop() {
+            for (a, b) in edges(data.indices[index]) {
+                let both = around.get(&(a.min(b), a.max(b)));
+                let Some([first, second]) = both.map(Vec::as_slice) else {
+                    continue;
+                };
+                let other = if *first == index { *second } else { *first };
+                if std::mem::replace(&mut seen[other], true) {
+                    continue;
+                }
+                // Consistent neighbours run along their edge in opposite directions.
+                if edges(data.indices[other]).contains(&(a, b)) {
+                    data.indices[other].swap(1, 2);
+                }
+                waiting.push(other);
+            }
+        }
+    }
+}

@@ -1,0 +1,47 @@
+use crate::grammar::Entity;
+use crate::parser::{PResult, Parser};
+use strahl_geometry::Polygon;
+use strahl_math::DVec3;
+
+/// `polygon { count, corner, ... }`
+///
+/// A corner equal to the first of its ring closes it; the next one begins another ring, which cuts a hole (or fills one).
+pub(super) fn polygon(p: &mut Parser<'_>) -> PResult<Entity> {
+    let place = p.place();
+    p.shape(|p| {
+        let count = p.float()?;
+        if !(count >= 3.0) {
+            let message = format!("a polygon has at least 3 corners, found {count}");
+            return Err(p.fail(place, message));
+        }
+        let mut rings: Vec<Vec<DVec3>> = vec![];
+        let mut open = false;
+        // Each corner is read, so the count cannot ask for more memory than the text has.
+        let mut read = 0.0;
+        while read < count {
+            p.comma()?;
+            let corner = p.vector3()?;
+            read += 1.0;
+            match rings.last_mut().filter(|_| open) {
+                Some(ring) if ring.first() == Some(&corner) => open = false,
+                Some(ring) => ring.push(corner),
+                None => {
+                    rings.push(vec![corner]);
+                    open = true;
+                }
+            }
+        }
+        if open && rings.last().is_some_and(|ring| ring.len() > 1) {
+            p.warn(
+                place,
+                "the last corner of the polygon differs from the first; it is closed by an edge",
+            );
+        }
+        // A lone corner behind the last ring encloses nothing.
+        rings.retain(|ring| ring.len() > 1);
+        let mut rings = rings.into_iter();
+        let outer = rings.next().unwrap_or_default();
+        let holes: Vec<_> = rings.collect();
+        Ok(Polygon::try_with_holes(&outer, &holes))
+    })
+}

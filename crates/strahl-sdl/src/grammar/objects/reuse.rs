@@ -1,0 +1,365 @@
+//! Declared objects, used again without copies.
+//!
+//! While the scene is read, the use of a declared object that is large or popular is an [`ObjectKind::Instance`] whose number
+//! counts the declared objects ([`Shared`]), not yet the scene's groups. When all is read, [`link`] makes groups of them: one
+//! for each declared object and each material that its parts take from the use. What turns out to be used once is
+//! put in its place instead, so a scene built up step by step (`#declare All = union { object { All } ... }`) has no tower of
+//! instances. Operations other than unions want all their parts: [`expanded`] copies them.
+
+use crate::grammar::Entity;
+use crate::grammar::entity::{Declared, is_nothing};
+use crate::parser::Parser;
+use crate::symbol::Symbol;
+use std::collections::HashMap;
+use std::sync::Arc;
+use std::sync::atomic::Ordering;
+use strahl_geometry::Primitive;
+use strahl_scene::{Children, CsgOp, Group, GroupId, Object, ObjectKind, Scene};
+use strahl_shade::Material;
+
+/// Up to so many parts an object is copied for each of its first uses; beyond, the level that an instance adds for rays
+/// costs less than the copies.
+const SMALL: u64 = 8;
+
+/// An object of several parts that is used more often is shared from then on.
+const OFTEN: u32 = 16;
+
+/// A mesh of up to so many triangles is a small thing.
+const FEW_TRIANGLES: u64 = 64;
+
+/// What an object is made of, counted.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Tally {
+    /// Shapes and operations.
+    parts: u64,
+    /// Elements of the shapes: triangles of meshes.
+    elements: u64,
+    /// Whether a part takes its material from the use.
+    inherits: bool,
+}
+
+impl Tally {
+    pub(crate) fn of(object: &Object) -> Self {
+        let mut tally = Self::default();
+        let mut waiting = vec![(object, false)];
+        while let Some((object, above)) = waiting.pop() {
+            let has_material = above || (tally.parts > 0 && object.material.is_some());
+            tally.parts += 1;
+            match &object.kind {
+                ObjectKind::Csg { children, .. } => {
+                    waiting.extend(children.0.iter().map(|child| (child, has_material)));
+                }
+                ObjectKind::Shape(shape) => {
+                    tally.elements += u64::from(shape.elements());
+                    tally.inherits |= !has_material;
+                }
+                // Its parts may; asking them would not be worth it.
+                ObjectKind::Instance(_) => tally.inherits |= !has_material,
+            }
+        }
+        tally
+    }
+}
+
+/// The declared objects whose uses share a group, and the names of objects.
+#[derive(Debug, Default)]
+pub(crate) struct Shared {
+    objects: Vec<Arc<Declared>>,
+    names: HashMap<Symbol, Arc<str>>,
+}
+
+impl Shared {
+    fn kind_of(&self, id: GroupId) -> Option<&Object> {
+        let declared = self.objects.get(id.0 as usize)?;
+        Some(&declared.entity.object)
+    }
+}
+
+impl Parser<'_> {
+    /// The text of a name, one copy for all objects.
+    pub(super) fn name_of(&mut self, symbol: Symbol) -> Arc<str> {
+        let text = self.symbols.text(symbol);
+        let names = &mut self.state.shared.names;
+        Arc::clone(names.entry(symbol).or_insert_with(|| text.into()))
+    }
+
+    /// A declared object once more.
+    pub(super) fn use_declared(&mut self, declared: &Arc<Declared>) -> Entity {
+        let Tally {
+            parts, elements, ..
+        } = declared.tally;
+        let uses = declared.uses.fetch_add(1, Ordering::Relaxed);
+        let large = parts > SMALL || elements > FEW_TRIANGLES + parts;
+        if !(large || (parts > 1 && uses >= OFTEN)) {
+            return declared.entity.clone();
+        }
+        let objects = &mut self.state.shared.objects;
+        let id = *declared.shared.get_or_init(|| {
+            objects.push(Arc::clone(declared));
+            objects.len() as u32 - 1
+        });
+        let kind = ObjectKind::Instance(GroupId(id));
+        Entity {
+            object: attributes(&declared.entity.object, kind),
+            texture: declared.entity.texture.clone(),
+        }
+    }
+
+    /// Puts the parts of declared objects in place of their instances.
+    pub(super) fn expand_instances(&self, object: &mut Object) {
+        if has_instances(object) {
+            *object = expanded(object, &self.state.shared);
+        }
+    }
+
+    /// Makes the scene's groups; called when the whole text is read and no name is needed any more.
+    pub(crate) fn link_instances(&mut self) {
+        let shared = std::mem::take(&mut self.state.shared);
+        if !shared.objects.is_empty() {
+            Linker::new(shared.objects).link(&mut self.scene);
+        }
+    }
+}
+
+/// All but the kind from one object, and a kind.
+fn attributes(object: &Object, kind: ObjectKind) -> Object {
+    Object {
+        name: object.name.clone(),
+        span: object.span,
+        material: object.material.clone(),
+        transform: object.transform.clone(),
+        visibility: object.visibility,
+        kind,
+    }
+}
+
+fn has_instances(object: &Object) -> bool {
+    let mut waiting = vec![object];
+    while let Some(object) = waiting.pop() {
+        match &object.kind {
+            ObjectKind::Instance(_) => return true,
+            ObjectKind::Csg { children, .. } => waiting.extend(&children.0),
+            ObjectKind::Shape(_) => {}
+        }
+    }
+    false
+}
+
+/// A copy with all instances replaced by what they stand for. Trees may be deeper than the stack, so they are walked with a
+/// list.
+pub(crate) fn expanded(object: &Object, shared: &Shared) -> Object {
+    copy(object, Some(shared))
+}
+
+fn copy(object: &Object, expand: Option<&Shared>) -> Object {
+    enum Step<'a> {
+        /// Copy this kind, with these attributes.
+        Visit(&'a Object, &'a ObjectKind),
+        Build(&'a Object, CsgOp, usize),
+    }
+    let mut steps = vec![Step::Visit(object, &object.kind)];
+    let mut done: Vec<Object> = vec![];
+    while let Some(step) = steps.pop() {
+        match step {
+            Step::Visit(like, ObjectKind::Csg { op, children }) => {
+                steps.push(Step::Build(like, *op, children.0.len()));
+                steps.extend(children.0.iter().rev().map(|c| Step::Visit(c, &c.kind)));
+            }
+            Step::Visit(like, ObjectKind::Instance(id)) if expand.is_some() => {
+                match expand.and_then(|shared| shared.kind_of(*id)) {
+                    Some(inner) => steps.push(Step::Visit(like, &inner.kind)),
+                    None => done.push(Object::csg(CsgOp::Union, vec![])),
+                }
+            }
+            Step::Visit(like, kind) => done.push(attributes(like, kind.clone())),
+            Step::Build(like, op, count) => {
+                let mut children = done.split_off(done.len() - count);
+                // A use of something that has no surface.
+                children.retain(|child| !is_nothing(child));
+                let children = Children(children);
+                done.push(attributes(like, ObjectKind::Csg { op, children }));
+            }
+        }
+    }
+    // The walk ends with the copy of its root.
+    done.pop()
+        .unwrap_or_else(|| Object::csg(CsgOp::Union, vec![]))
+}
+
+/// A declared object with the material that its parts take from the use.
+type Key = (u32, Option<*const Material>);
+
+/// Turns numbers of declared objects into groups.
+struct Linker {
+    objects: Vec<Option<Arc<Declared>>>,
+    /// All keys met, with the material, in the order of the scene.
+    variants: Vec<(u32, Option<Arc<Material>>)>,
+    /// Of each variant: how often it is used, and its group once it has one.
+    uses: Vec<u32>,
+    groups: Vec<Option<GroupId>>,
+    known: HashMap<Key, usize>,
+    /// How many variants of each declared object are still to be made.
+    open: Vec<u32>,
+}
+
+// The pointers are keys only, of materials that `variants` keeps alive; they are never followed.
+impl Linker {
+    fn new(objects: Vec<Arc<Declared>>) -> Self {
+        let open = vec![0; objects.len()];
+        Self {
+            objects: objects.into_iter().map(Some).collect(),
+            variants: vec![],
+            uses: vec![],
+            groups: vec![],
+            known: HashMap::new(),
+            open,
+        }
+    }
+
+    fn link(mut self, scene: &mut Scene) {
+        for object in &scene.objects.0 {
+            self.count(object, None);
+        }
+        // Those used by others come behind them.
+        let mut next = 0;
+        while next < self.variants.len() {
+            let (id, material) = self.variants[next].clone();
+            if let Some(declared) = self.objects.get(id as usize).cloned().flatten() {
+                self.count_kind(&declared.entity.object, material);
+            }
+            next += 1;
+        }
+        let mut objects = std::mem::take(&mut scene.objects.0);
+        let mut waiting = vec![];
+        for object in &mut objects {
+            self.replace(object, None, scene, &mut waiting);
+        }
+        scene.objects.0 = objects;
+        while let Some((group, variant)) = waiting.pop() {
+            let Some((id, material)) = self.variants.get(variant).cloned() else {
+                continue;
+            };
+            let name = self.name(id);
+            let mut object = Object::new(self.kind(id));
+            object.material = material;
+            self.replace(&mut object, None, scene, &mut waiting);
+            if let Some(group) = scene.groups.get_mut(group) {
+                group.name = name;
+                group.objects.0.push(object);
+            }
+        }
+    }
+
+    fn name(&self, id: u32) -> Option<Arc<str>> {
+        let declared = self.objects.get(id as usize)?.as_ref()?;
+        declared.entity.object.name.clone()
+    }
+
+    fn count(&mut self, object: &Object, inherited: Option<Arc<Material>>) {
+        let material = object.material.clone().or(inherited);
+        self.count_kind(object, material);
+    }
+
+    /// Counts the instances within an object whose parts take this material.
+    fn count_kind(&mut self, object: &Object, material: Option<Arc<Material>>) {
+        let mut waiting = vec![(object, material)];
+        while let Some((object, material)) = waiting.pop() {
+            match &object.kind {
+                ObjectKind::Shape(_) => {}
+                ObjectKind::Csg { children, .. } => {
+                    waiting.extend(children.0.iter().rev().map(|child| {
+                        let own = child.material.as_ref().or(material.as_ref());
+                        (child, own.cloned())
+                    }));
+                }
+                ObjectKind::Instance(id) => {
+                    let variant = self.variant(id.0, material);
+                    if let Some(uses) = self.uses.get_mut(variant) {
+                        *uses = uses.saturating_add(1);
+                    }
+                }
+            }
+        }
+    }
+
+    fn variant(&mut self, id: u32, material: Option<Arc<Material>>) -> usize {
+        let declared = self.objects.get(id as usize).and_then(Option::as_ref);
+        let material = material.filter(|_| declared.is_some_and(|d| d.tally.inherits));
+        let key = (id, material.as_ref().map(Arc::as_ptr));
+        *self.known.entry(key).or_insert_with(|| {
+            self.variants.push((id, material));
+            self.uses.push(0);
+            self.groups.push(None);
+            if let Some(open) = self.open.get_mut(id as usize) {
+                *open += 1;
+            }
+            self.variants.len() - 1
+        })
+    }
+
+    /// What a declared object is; taken from it for its last variant, copied for the others.
+    fn kind(&mut self, id: u32) -> ObjectKind {
+        let nothing = Object::csg(CsgOp::Union, vec![]).kind;
+        let (Some(slot), Some(open)) = (
+            self.objects.get_mut(id as usize),
+            self.open.get_mut(id as usize),
+        ) else {
+            return nothing;
+        };
+        *open = open.saturating_sub(1);
+        let taken = if *open == 0 {
+            slot.take()
+        } else {
+            slot.clone()
+        };
+        match taken.map(Arc::try_unwrap) {
+            Some(Ok(declared)) => declared.entity.object.kind,
+            Some(Err(declared)) => copy(&declared.entity.object, None).kind,
+            None => nothing,
+        }
+    }
+
+    /// Replaces the instances within an object by instances of the scene's groups, or by what is used here only. Groups
+    /// that are new on this way wait to be filled.
+    fn replace(
+        &mut self,
+        object: &mut Object,
+        inherited: Option<Arc<Material>>,
+        scene: &mut Scene,
+        new: &mut Vec<(usize, usize)>,
+    ) {
+        let mut waiting = vec![(object, inherited)];
+        while let Some((object, inherited)) = waiting.pop() {
+            let material = object.material.clone().or(inherited);
+            while let ObjectKind::Instance(id) = object.kind {
+                let variant = self.variant(id.0, material.clone());
+                if self.uses.get(variant).is_some_and(|uses| *uses > 1) {
+                    object.kind = ObjectKind::Instance(self.group(variant, scene, new));
+                    break;
+                }
+                object.kind = self.kind(id.0);
+            }
+            if let ObjectKind::Csg { children, .. } = &mut object.kind {
+                let children = children.0.iter_mut().rev();
+                waiting.extend(children.map(|child| (child, material.clone())));
+            }
+        }
+    }
+
+    fn group(
+        &mut self,
+        variant: usize,
+        scene: &mut Scene,
+        new: &mut Vec<(usize, usize)>,
+    ) -> GroupId {
+        let Some(slot) = self.groups.get_mut(variant) else {
+            return GroupId(0);
+        };
+        *slot.get_or_insert_with(|| {
+            let index = scene.groups.len();
+            scene.groups.push(Group::default());
+            new.push((index, variant));
+            GroupId(index as u32)
+        })
+    }
+}

@@ -1,0 +1,411 @@
+//! The same objects, rendered by POV-Ray 3.7 and here: more than 99 % of the pixels must be equal.
+
+mod common;
+
+use common::parse_with;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use strahl_render::{CompileOptions, RenderOptions, compile, render};
+use strahl_sdl::MemoryHost;
+
+const WIDTH: u32 = 60;
+const HEIGHT: u32 = 45;
+
+/// A program to compare with; without it the caller skips, unless the environment requires all tools.
+fn tool(name: &str) -> Option<PathBuf> {
+    let path = std::env::var_os("PATH")?;
+    let found = std::env::split_paths(&path)
+        .map(|folder| folder.join(name))
+        .find(|p| p.is_file());
+    if found.is_none() {
+        assert!(
+            std::env::var_os("STRAHL_REQUIRE_TOOLS").is_none(),
+            "{name} is missing, but required"
+        );
+        use std::io::Write;
+        let _ = writeln!(std::io::stderr().lock(), "SKIPPED: {name} is not installed");
+    }
+    found
+}
+
+const SETUP: &str = "
+#version 3.7;
+global_settings { assumed_gamma 1 ambient_light 1 }
+camera { location <0.3, 1.2, -6> right x * 4 / 3 up y look_at <0, 0, 0> angle 40 }
+light_source { <5, 8, -9>, rgb 1 }
+background { rgb <0.1, 0.2, 0.4> }
+#declare Red = texture { pigment { rgb <0.9, 0.2, 0.1> } finish { ambient 0.2 diffuse 0.7 } }
+#declare Green = texture { pigment { rgb <0.2, 0.8, 0.3> } finish { ambient 0.3 diffuse 0.6 } }
+#declare Flat = texture { pigment { rgb <0.7, 0.7, 0.2> } finish { ambient 1 diffuse 0 } }
+#default { texture { Flat } }
+#declare Ball = sphere { 0, 1 }
+#declare Pair = union { sphere { -x, 0.6 } box { <0.4, -0.5, -0.5>, <1.4, 0.5, 0.5> texture { Green } } }
+#declare Cross = merge {
+    cylinder { -x * 1.2, x * 1.2, 0.3 } cylinder { -y, y, 0.3 } cylinder { -z, z, 0.3 } sphere { 0, 0.5 }
+    sphere { x, 0.4 } sphere { -x, 0.4 } sphere { y, 0.4 } sphere { -y, 0.4 }
+}
+";
+
+/// Names and bodies of the scenes.
+const SCENES: &[(&str, &str)] = &[
+    ("sphere", "sphere { <0.2, 0.1, 0>, 1.1 texture { Red } }"),
+    (
+        "ellipsoid",
+        "sphere { 0, 1 texture { Red } scale <1.5, 0.6, 1> rotate z * 30 translate x * 0.3 }",
+    ),
+    ("negative radius", "sphere { 0, -1 texture { Red } }"),
+    (
+        "box",
+        "box { <-1, 1, -0.5>, <0.8, -0.7, 1> texture { Red } rotate <20, 30, 10> }",
+    ),
+    (
+        "flat box",
+        "box { <-1, -1, 0>, <1, 1, 0> texture { Red } rotate y * 30 }",
+    ),
+    ("plane", "plane { <0, 2, 0.1>, -1 texture { Red } }"),
+    ("disc", "disc { 0, <0.3, 1, -1>, 1.4, 0.5 texture { Red } }"),
+    (
+        "disc without hole",
+        "disc { x * 0.2 <0.3, 1, -1> 1.4 texture { Red } }",
+    ),
+    (
+        "cylinder",
+        "cylinder { <-1, -0.5, 0>, <1, 0.8, 1>, 0.5 texture { Red } }",
+    ),
+    (
+        "open cylinder",
+        "cylinder { <-1, -0.5, 0>, <1, 0.8, -2>, 0.5 open texture { Red } }",
+    ),
+    (
+        "cone",
+        "cone { <-1, -0.5, 0>, 0.9, <1, 0.8, 1>, 0.2 texture { Red } }",
+    ),
+    (
+        "pointed cone",
+        "cone { <0, -1, 0>, 0.9, <0, 1.2, 0>, 0 texture { Red } }",
+    ),
+    (
+        "open cone",
+        "cone { <-1, -0.5, 0>, 0.2, <0.5, 0.8, -2>, 0.7 open texture { Red } }",
+    ),
+    (
+        "torus",
+        "torus { 1.2, 0.4 texture { Red } rotate <-40, 0, 10> }",
+    ),
+    (
+        "spindle torus",
+        "torus { 0.5, 0.9 sturm texture { Red } rotate <-40, 0, 10> }",
+    ),
+    (
+        "quadric",
+        "intersection { quadric { <1, -1, 1>, <0, 0.2, 0>, <0, 0.1, 0>, -0.2 } sphere { 0, 1.5 } texture { Red } }",
+    ),
+    (
+        "quadric alone",
+        "quadric { <1, 2, 1>, <0.3, 0, 0>, 0, -1 texture { Red } }",
+    ),
+    (
+        "triangle",
+        "triangle { <-1.5, -1, 0>, <1.5, -0.8, 0.5>, <0.2, 1.2, -0.5> texture { Red } }",
+    ),
+    (
+        "smooth triangle",
+        "smooth_triangle { <-1.5, -1, 0>, <-0.5, 0, -1>, <1.5, -0.8, 0.5>, <0.7, 0, -1>, <0.2, 1.2, -0.5>, <0, 0.6, -1> texture { Red } }",
+    ),
+    (
+        "equal normals",
+        "smooth_triangle { <-1.5, -1, 0>, <-1, 0, -1>, <1.5, -0.8, 0.5>, <-1, 0, -1>, <0.2, 1.2, -0.5>, <-1, 0, -1> texture { Red } no_shadow }",
+    ),
+    (
+        "equal normals in a mesh",
+        "mesh { smooth_triangle { <-1.5, -1, 0>, <-1, 0, -1>, <1.5, -0.8, 0.5>, <-1, 0, -1>, <0.2, 1.2, -0.5>, <-1, 0, -1> } texture { Red } no_shadow }",
+    ),
+    (
+        "polygon",
+        "polygon { 5, <-1, -1>, <1, -1>, <1.4, 1>, <-0.8, 0.9>, <-1, -1> texture { Red } rotate y * 20 }",
+    ),
+    (
+        "polygon with holes",
+        "polygon { 15, <-1.5, -1.2>, <1.5, -1.2>, <1.5, 1.2>, <-1.5, 1.2>, <-1.5, -1.2>, <-1, -0.8>, <0, -0.8>, <0, 0.8>, <-1, 0.8>, <-1, -0.8>, <0.4, -0.5>, <1.2, -0.5>, <1.2, 0.5>, <0.4, 0.5>, <0.4, -0.5> texture { Red } }",
+    ),
+    (
+        "open polygon",
+        "polygon { 4, <-1, -1>, <1, -1>, <1.4, 1>, <-0.8, 0.9> texture { Red } }",
+    ),
+    (
+        "mesh",
+        "mesh { triangle { <-1, -1, 0>, <1, -1, 0>, <0, 0, -1> } triangle { <-1, -1, 0>, <0, 0, -1>, <0, 1.2, 0> texture { Green } } smooth_triangle { <1, -1, 0>, <1, 0, -1>, <0, 0, -1>, -z, <0, 1.2, 0>, <0, 1, -1> } texture { Red } rotate y * 20 }",
+    ),
+    (
+        "mesh2",
+        "mesh2 { vertex_vectors { 4, <-1, -1, 0>, <1, -1, 0>, <0, 0, -1>, <0, 1.2, 0> } texture_list { 2, texture { Red } texture { Green } } face_indices { 3, <0, 1, 2>, 0, <0, 2, 3>, 1, <1, 2, 3>, 1 } scale 1.2 }",
+    ),
+    (
+        "mesh2 with normals",
+        "mesh2 { vertex_vectors { 4 <-1, -1, 0> <1, -1, 0> <0, 0, -1> <0, 1.2, 0> } normal_vectors { 4, <-1, 0, -1>, <1, 0, -1>, <0, 0, -1>, <0, 1, -1> } face_indices { 3, <0, 1, 2>, <0, 2, 3>, <1, 2, 3> } no_shadow texture { Red } }",
+    ),
+    (
+        "mesh2 with normal indices",
+        "mesh2 { vertex_vectors { 4, <-1, -1, 0>, <1, -1, 0>, <0, 0, -1>, <0, 1.2, 0> } normal_vectors { 2, <-1, 0, -1>, <0.5, 1, -1> } uv_vectors { 2, <0, 0>, <1, 1> } face_indices { 3, <0, 1, 2>, <0, 2, 3>, <1, 2, 3> } normal_indices { 3, <0, 0, 1>, <0, 0, 0>, <1, 1, 0> } uv_indices { 3, <0, 0, 1>, <0, 0, 0>, <1, 1, 0> } no_shadow texture { Red } }",
+    ),
+    (
+        "closed mesh2 in CSG",
+        "difference { mesh2 { vertex_vectors { 4, <-1, -1, -1>, <1.5, -1, -0.5>, <0, -1, 1.5>, <0, 1.3, 0> } face_indices { 4, <0, 1, 2>, <0, 1, 3>, <1, 2, 3>, <2, 0, 3> } inside_vector y } sphere { <0, 0, -1>, 0.8 texture { Green } } texture { Red } }",
+    ),
+    (
+        "union",
+        "union { sphere { -x * 0.7, 0.8 } box { 0, 1 texture { Green } } cone { -y, 0.5, y * 0.2, 0 } texture { Red } rotate x * -20 }",
+    ),
+    (
+        "merge",
+        "merge { sphere { -x * 0.4, 0.8 } sphere { x * 0.4, 0.8 texture { Green } } pigment { rgbt <1, 0.5, 0.5, 0.5> } finish { ambient 1 diffuse 0 } }",
+    ),
+    (
+        "union of glass",
+        "union { sphere { -x * 0.4, 0.8 } sphere { x * 0.4, 0.8 } pigment { rgbt <1, 0.5, 0.5, 0.5> } finish { ambient 1 diffuse 0 } }",
+    ),
+    (
+        "intersection",
+        "intersection { sphere { -x * 0.4, 1 } box { -0.8, 0.8 texture { Green } } plane { y, 0.5 texture { Flat } } texture { Red } }",
+    ),
+    (
+        "difference",
+        "difference { box { -1, 1 } sphere { <0.2, 0.5, -1>, 0.9 texture { Green } } cylinder { -2 * x, 2 * x, 0.4 } texture { Red } rotate <10, 35, 0> }",
+    ),
+    (
+        "nested operations",
+        "difference { union { box { -1, <0, 1, 1> } sphere { x * 0.3, 0.9 } translate y * 0.1 } intersection { sphere { -z, 0.8 } plane { x, 0.2 } rotate z * 20 } merge { cylinder { -2 * y, 2 * y, 0.2 } sphere { y, 0.5 } } texture { Red } }",
+    ),
+    (
+        "inverse",
+        "intersection { box { -1, 1 } sphere { <0.5, 0.5, -1>, 1 inverse texture { Green } } texture { Red } }",
+    ),
+    (
+        "inverse union",
+        "intersection { box { -1, 1 } union { sphere { <0.5, 0.5, -1>, 0.7 } sphere { <-0.5, 0.5, -1>, 0.7 } inverse texture { Green } } texture { Red } }",
+    ),
+    (
+        "single part",
+        "intersection { sphere { 0, 1 } texture { Red } }",
+    ),
+    (
+        "open parts",
+        "union { disc { y * 0.8, <0.2, 0.5, -1>, 0.5 } triangle { -x, x, -y texture { Green } } texture { Red } }",
+    ),
+    (
+        "open parts cut",
+        "intersection { disc { 0, <0.2, 0.5, -1>, 1.5 texture { Green } } sphere { 0, 1 texture { Red } } }",
+    ),
+    (
+        "clipped",
+        "sphere { 0, 1.2 clipped_by { plane { <0.3, 1, -0.2>, 0.3 } } texture { Red } }",
+    ),
+    (
+        "clipped, then moved",
+        "sphere { 0, 1.2 clipped_by { plane { y, 0.3 } box { -1, 1 } } rotate z * 30 scale <1, 0.8, 1> texture { Red } }",
+    ),
+    (
+        "moved, then clipped",
+        "sphere { 0, 1.2 scale <1.3, 0.8, 1> rotate z * 30 clipped_by { plane { y, 0.3 } } translate x * 0.2 texture { Red } }",
+    ),
+    (
+        "clipped by bounds",
+        "box { -1, 1 bounded_by { sphere { 0, 1.3 } } clipped_by { bounded_by } texture { Red } rotate 30 }",
+    ),
+    (
+        "bounded by clip",
+        "box { -1, 1 clipped_by { sphere { 0, 1.3 } } bounded_by { clipped_by } texture { Red } rotate 30 }",
+    ),
+    (
+        "clipped union",
+        "union { sphere { -x * 0.7, 0.8 } box { 0, 1 texture { Green } } clipped_by { plane { z, 0.2 inverse } } texture { Red } rotate y * 160 }",
+    ),
+    (
+        "clipped part",
+        "difference { sphere { 0, 1.1 clipped_by { plane { x, 0.5 } } texture { Red } } box { -1, <1, 0.2, 0.1> texture { Green } } }",
+    ),
+    (
+        "no shadow",
+        "plane { y, -1 texture { Red } } sphere { 0, 0.8 no_shadow texture { Green } } box { <1, -0.9, 0>, <1.5, 0, 0.5> texture { Green } }",
+    ),
+    (
+        "no image",
+        "plane { y, -1 texture { Red } } sphere { 0, 0.8 no_image texture { Green } }",
+    ),
+    (
+        "other switches",
+        "sphere { 0, 1 texture { Red } hollow on no_reflection double_illuminate off } union { box { 1, 1.4 hollow } texture { Red } split_union off hollow false }",
+    ),
+    (
+        "transforms",
+        "#declare T = transform { rotate z * 30 translate x * 0.5 } box { -0.7, 0.7 texture { Red } transform { T inverse } transform T scale <1, 1.5, 1> matrix <1, 0.2, 0, 0, 1, 0, 0, 0, 1, 0.1, 0.2, 0> }",
+    ),
+    (
+        "scale by zero",
+        "sphere { 0, 1 scale <1.2, 0, 1> texture { Red } }",
+    ),
+    (
+        "singular matrix",
+        "sphere { 0, 1 matrix <1.2, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0.1, 0> texture { Red } }",
+    ),
+    (
+        "declared",
+        "object { Ball texture { Red } scale 0.7 translate -x } object { Ball scale 0.6 texture { Green } translate x } object { Ball scale 0.3 translate y }",
+    ),
+    (
+        "declared union",
+        "object { Pair texture { Red } rotate z * 20 translate y * 0.6 } object { Pair translate -y * 0.6 }",
+    ),
+    (
+        "pigment of a textured object",
+        "#declare S = sphere { 0, 0.8 texture { Red } } object { S pigment { rgb z } translate x } object { S translate -x }",
+    ),
+    (
+        "texture of a textured object",
+        "#declare S = sphere { 0, 0.8 texture { Red } } object { S texture { Green } translate x } object { S translate -x }",
+    ),
+    (
+        "default after the declaration",
+        "#declare S = sphere { 0, 0.8 } #default { texture { Red } } object { S }",
+    ),
+    (
+        "instances",
+        "#for (I, -3, 3) object { Cross scale 0.3 rotate <20, 30 * I, 0> translate <0.6 * I, 0, 0> #if (mod(I + 4, 2) = 0) texture { Red } #else pigment { rgb <0.2, 0.3 + I / 10, 0.8> } #end } #end",
+    ),
+    (
+        "instances of instances",
+        "#declare Row = union { #for (I, -3, 3) object { Cross scale 0.3 rotate <20, 30 * I, 0> translate <0.6 * I, 0, 0> } #end texture { Red } } object { Row translate y } object { Row texture { Green } rotate z * 5 } object { Row translate -y }",
+    ),
+    (
+        "instances in CSG",
+        "#declare Big = union { #for (I, -5, 5) sphere { x * I * 0.3, 0.25 texture { Green } } #end } difference { box { <-1.5, -1, 0>, <1.5, 0.8, 1> } object { Big } object { Big rotate z * 30 translate -y * 0.2 } texture { Red } }",
+    ),
+    (
+        "built up",
+        "#declare All = sphere { 0, 0.1 } #for (I, 1, 60) #declare All = union { object { All } sphere { <cos(I / 3), sin(I / 3), 0> * I / 50, 0.1 } } #end object { All texture { Red } }",
+    ),
+    (
+        "built up by difference",
+        "#declare All = box { <-1.3, -1.3, 0>, <1.3, 1.3, 0.2> } #for (I, 1, 40) #declare All = difference { object { All } sphere { <cos(I / 3), sin(I / 3), 0> * I / 35, 0.12 texture { Green } } } #end object { All texture { Red } }",
+    ),
+    (
+        "degenerate parts",
+        "difference { sphere { 0, 1 } sphere { 0, 0 } texture { Red } } union { sphere { x, 0 } triangle { 0, x, 2 * x } disc { y, y, 1, 2 } sphere { x * 1.4, 0.3 } texture { Green } } intersection { sphere { -x * 1.5, 0.5 } sphere { 0, 0 } }",
+    ),
+    (
+        "object around an object",
+        "object { object { Ball scale 0.5 } texture { Red } translate y * 0.5 }",
+    ),
+];
+
+/// The picture in sRGB, 0 to 1, by POV-Ray.
+fn by_povray(povray: &Path, folder: &Path, text: &str) -> Result<Vec<f64>, String> {
+    std::fs::write(folder.join("scene.pov"), text).expect("writable");
+    let mut command = Command::new(povray);
+    command.current_dir(folder).args([
+        "+Iscene.pov",
+        "+Oscene.ppm",
+        "+FP16",
+        "-A",
+        "-D",
+        "+WT1",
+        "File_Gamma=srgb",
+        &format!("+W{WIDTH}"),
+        &format!("+H{HEIGHT}"),
+    ]);
+    let output = command.output().expect("POV-Ray starts");
+    let log = String::from_utf8_lossy(&output.stderr);
+    if !output.status.success() {
+        let errors = log.lines().filter(|line| line.contains("Error"));
+        return Err(errors.collect::<Vec<_>>().join("; "));
+    }
+    let bytes = std::fs::read(folder.join("scene.ppm")).expect("a picture");
+    let count = (WIDTH * HEIGHT * 3 * 2) as usize;
+    let pixels = &bytes[bytes.len() - count..];
+    let values = pixels.chunks_exact(2);
+    Ok(values
+        .map(|b| f64::from(u16::from_be_bytes([b[0], b[1]])) / 65535.0)
+        .collect::<Vec<_>>())
+}
+
+/// The picture in sRGB, 0 to 1, by us.
+fn by_us(text: &str) -> Result<Vec<f64>, String> {
+    let parsed = parse_with(&mut MemoryHost::new(), text);
+    let messages: Vec<String> = parsed.diagnostics.iter().map(ToString::to_string).collect();
+    let scene = parsed.scene.ok_or_else(|| messages.join("\n"))?;
+    let scene = compile(&scene, &CompileOptions::default()).map_err(|e| format!("{e:?}"))?;
+    let mut options = RenderOptions::new(&scene, WIDTH, HEIGHT);
+    options.threads = 1;
+    let rendered = render(&scene, &options, &()).expect("a picture");
+    let mut values = vec![];
+    for (y, x) in (0..HEIGHT).flat_map(|y| (0..WIDTH).map(move |x| (y, x))) {
+        let pixel = rendered.film.pixel(x, y).expect("inside");
+        values.extend(pixel.map(|c| encoded(f64::from(c.clamp(0.0, 1.0)))));
+    }
+    Ok(values)
+}
+
+/// The sRGB curve.
+fn encoded(x: f64) -> f64 {
+    if x <= 0.003_130_8 {
+        12.92 * x
+    } else {
+        1.055 * x.powf(1.0 / 2.4) - 0.055
+    }
+}
+
+#[test]
+fn objects_look_as_in_povray() {
+    let Some(povray) = tool("povray") else {
+        return;
+    };
+    let folder = tempfile::tempdir().expect("a folder");
+    let only = std::env::var("STRAHL_SILHOUETTE").ok();
+    let mut wrong = vec![];
+    for (name, body) in SCENES {
+        if only.as_deref().is_some_and(|only| only != *name) {
+            continue;
+        }
+        let text = format!("{SETUP}\n{body}\n");
+        let theirs = by_povray(&povray, folder.path(), &text);
+        let (Ok(theirs), Ok(ours)) = (&theirs, &by_us(&text)) else {
+            wrong.push(format!(
+                "{name}: {:?} {:?}",
+                theirs.err(),
+                by_us(&text).err()
+            ));
+            continue;
+        };
+        let pixels = (WIDTH * HEIGHT) as usize;
+        let differs = |pixel: &usize| {
+            let range = pixel * 3..pixel * 3 + 3;
+            let pairs = ours[range.clone()].iter().zip(&theirs[range]);
+            pairs.into_iter().any(|(a, b)| (a - b).abs() > 2.0 / 255.0)
+        };
+        let different = (0..pixels).filter(differs).count();
+        let background = &theirs[..3];
+        let seen = theirs.chunks(3).filter(|p| *p != background).count();
+        assert!(
+            seen > pixels / 50,
+            "{name}: there is hardly anything to see"
+        );
+        if different * 100 >= pixels {
+            wrong.push(format!("{name}: {different} of {pixels} pixels differ"));
+        }
+        if only.is_some() {
+            let rows = (0..HEIGHT as usize).map(|y| {
+                let row = (0..WIDTH as usize).map(|x| {
+                    let pixel = y * WIDTH as usize + x;
+                    if differs(&pixel) { '#' } else { '.' }
+                });
+                row.collect::<String>()
+            });
+            panic!(
+                "{}\n{}",
+                rows.collect::<Vec<_>>().join("\n"),
+                wrong.join("\n")
+            );
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
