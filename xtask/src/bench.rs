@@ -71,7 +71,8 @@ fn median(values: &mut [f64]) -> f64 {
     values[values.len() / 2]
 }
 
-fn build_strahl() -> Result<()> {
+/// Builds the release binary.
+pub(crate) fn build_strahl() -> Result<()> {
     let status = Command::new("cargo")
         .args(["build", "--release", "--quiet", "-p", "strahl-cli"])
         .status()?;
@@ -82,7 +83,7 @@ fn build_strahl() -> Result<()> {
 }
 
 /// The release binary beside this program.
-fn strahl_binary() -> Result<PathBuf> {
+pub(crate) fn strahl_binary() -> Result<PathBuf> {
     let own = std::env::current_exe()?;
     Ok(own
         .parent()

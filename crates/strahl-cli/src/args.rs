@@ -24,7 +24,7 @@ pub(crate) enum Command {
     /// Tell what is in a scene
     Info(SceneArgs),
     /// Look for errors in a scene without rendering it
-    Check(SceneArgs),
+    Check(CheckArgs),
     /// List the scene and picture formats
     Formats,
 }
@@ -197,6 +197,15 @@ impl From<Order> for TileOrder {
             Order::Center => Self::Center,
         }
     }
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct CheckArgs {
+    #[command(flatten)]
+    pub(crate) scene: SceneArgs,
+    /// Look at the text only, not at whether it can be rendered
+    #[arg(long)]
+    pub(crate) syntax: bool,
 }
 
 #[derive(Debug, Args)]

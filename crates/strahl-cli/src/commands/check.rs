@@ -1,15 +1,15 @@
-use crate::args::SceneArgs;
+use crate::args::CheckArgs;
 use crate::input::Input;
 use crate::report::{Failure, Reporter};
 use strahl::tracing::Prepared;
 
 /// `strahl check`: everything there is to say about a scene, and whether it could be rendered.
-pub(crate) fn check(args: &SceneArgs) -> Result<(), Failure> {
-    let (input, reporter) = (Input::of(args)?, Reporter::new(false));
+pub(crate) fn check(args: &CheckArgs) -> Result<(), Failure> {
+    let (input, reporter) = (Input::of(&args.scene)?, Reporter::new(false));
     let loaded = input.read(input.still(), false);
     let mut failed = reporter.print(&loaded.diagnostics, None);
     let mut said = loaded.diagnostics.len();
-    if let Some(scene) = &loaded.scene {
+    if let (Some(scene), false) = (&loaded.scene, args.syntax) {
         let more = match Prepared::new(scene) {
             Ok(prepared) => prepared.warnings().to_vec(),
             Err(errors) => errors,
@@ -21,10 +21,15 @@ pub(crate) fn check(args: &SceneArgs) -> Result<(), Failure> {
         return Err(Failure::Reported);
     }
     match said {
-        0 => println!("{}: no problems", args.scene.display()),
+        0 => println!("{}: no problems", input.name()),
         n => println!(
-            "{}: renders, with {n} warning{}",
-            args.scene.display(),
+            "{}: {}, with {n} warning{}",
+            input.name(),
+            if args.syntax {
+                "can be read"
+            } else {
+                "renders"
+            },
             if n == 1 { "" } else { "s" }
         ),
     }

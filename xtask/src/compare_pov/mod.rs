@@ -1,0 +1,223 @@
+//! Renders a folder of .pov scenes with POV-Ray and with strahl, and reports how far the pictures are apart.
+//!
+//! Nothing is written beside the scenes: both programs work in scratch folders, pictures and results go to `--out`.
+
+mod picture;
+mod programs;
+mod report;
+
+use anyhow::{Context, Result, bail};
+use programs::{Outcome, Programs};
+use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// Where Debian's package povray-examples lies.
+const EXAMPLES: &str = "/usr/share/doc/povray/examples";
+
+/// Words that say that a picture needs what strahl does not do yet: a classical ray tracer's picture will differ.
+const MARKS: [&str; 4] = ["radiosity", "photons", "media", "subsurface"];
+
+/// What became of a scene.
+struct Row {
+    /// Path below the folder.
+    scene: String,
+    /// Those of [`MARKS`] that the scene uses.
+    marks: Vec<&'static str>,
+    povray: Outcome,
+    strahl: Outcome,
+    /// Whether strahl reads the scene without an error.
+    parses: bool,
+    /// Mean absolute difference of the channels and its root mean square, in 8-bit codes.
+    difference: Option<(f64, f64)>,
+}
+
+struct Options {
+    folder: PathBuf,
+    size: (u32, u32),
+    limit: usize,
+    jobs: usize,
+    out: PathBuf,
+    only: Option<String>,
+}
+
+impl Options {
+    fn new(args: &[&str]) -> Result<Self> {
+        let mut options = Self {
+            folder: PathBuf::from(EXAMPLES),
+            size: (160, 120),
+            limit: usize::MAX,
+            jobs: 2,
+            out: PathBuf::from("target/compare-pov/report"),
+            only: None,
+        };
+        let mut rest = args.iter();
+        while let Some(arg) = rest.next() {
+            let mut value = || rest.next().with_context(|| format!("{arg} needs a value"));
+            match *arg {
+                "--size" => options.size = size(value()?)?,
+                "--limit" => options.limit = value()?.parse().context("--limit needs a number")?,
+                "--jobs" => options.jobs = value()?.parse().context("--jobs needs a number")?,
+                "--out" => options.out = PathBuf::from(value()?),
+                "--only" => options.only = Some((*value()?).to_owned()),
+                other if other.starts_with('-') => bail!("unknown option {other}"),
+                folder => options.folder = PathBuf::from(folder),
+            }
+        }
+        // The programs run in other folders.
+        options.folder = std::path::absolute(&options.folder)?;
+        Ok(options)
+    }
+}
+
+fn size(text: &str) -> Result<(u32, u32)> {
+    let (w, h) = text
+        .split_once('x')
+        .context("--size needs WIDTHxHEIGHT, such as 160x120")?;
+    Ok((w.parse()?, h.parse()?))
+}
+
+/// `cargo xtask compare-pov`
+pub(crate) fn run(args: &[&str]) -> Result<()> {
+    let options = Options::new(args)?;
+    let folder = &options.folder;
+    if !folder.is_dir() {
+        bail!(
+            "there is no folder {}: install Debian's package povray-examples, or name a folder with .pov scenes",
+            folder.display()
+        );
+    }
+    let mut scenes = vec![];
+    find_scenes(folder, &mut scenes)?;
+    scenes.sort();
+    if let Some(part) = &options.only {
+        scenes.retain(|s| s.to_string_lossy().contains(part.as_str()));
+    }
+    scenes.truncate(options.limit);
+    if scenes.is_empty() {
+        bail!("there are no .pov scenes below {}", folder.display());
+    }
+    let programs = Programs::new(options.size)?;
+    let images = options.out.join("images");
+    std::fs::create_dir_all(&images)
+        .with_context(|| format!("cannot create {}", images.display()))?;
+
+    let rows = compare_all(&options, &scenes, &programs)?;
+    report::write_tsv(&rows, &options.out.join("compare-pov.tsv"))?;
+    report::write_html(&rows, options.size, &options.out.join("index.html"))?;
+    print!("{}", report::totals(&rows));
+    println!("report: {}", options.out.join("index.html").display());
+    Ok(())
+}
+
+/// Works through the scenes with several threads; the rows come back in the order of the scenes.
+fn compare_all(options: &Options, scenes: &[PathBuf], programs: &Programs) -> Result<Vec<Row>> {
+    let (next, done) = (AtomicUsize::new(0), AtomicUsize::new(0));
+    let rows = Mutex::new(vec![]);
+    std::thread::scope(|scope| {
+        let work = || -> Result<()> {
+            loop {
+                let index = next.fetch_add(1, Ordering::Relaxed);
+                let Some(scene) = scenes.get(index) else {
+                    return Ok(());
+                };
+                let row = compare(options, scene, index, programs)?;
+                let done = done.fetch_add(1, Ordering::Relaxed) + 1;
+                eprintln!("{done}/{} {}", scenes.len(), report::line(&row));
+                if let Ok(mut rows) = rows.lock() {
+                    rows.push((index, row));
+                }
+            }
+        };
+        let threads: Vec<_> = (0..options.jobs.max(1))
+            .map(|_| scope.spawn(work))
+            .collect();
+        threads
+            .into_iter()
+            .try_for_each(|thread| match thread.join() {
+                Ok(result) => result,
+                Err(_) => bail!("a thread panicked"),
+            })
+    })?;
+    let mut rows = rows.into_inner().unwrap_or_default();
+    rows.sort_by_key(|(index, _)| *index);
+    Ok(rows.into_iter().map(|(_, row)| row).collect())
+}
+
+fn compare(options: &Options, scene: &Path, index: usize, programs: &Programs) -> Result<Row> {
+    let images = options.out.join("images");
+    let file = |who: &str| images.join(format!("{index:04}-{who}.png"));
+    let (theirs, ours, apart) = (file("povray"), file("strahl"), file("difference"));
+    for file in [&theirs, &ours, &apart] {
+        // What an earlier run left must not stand for this one.
+        let _ = std::fs::remove_file(file);
+    }
+    let bytes = std::fs::read(scene)?;
+    let povray = programs.povray(scene, &bytes, &theirs)?;
+    let strahl = programs.strahl(scene, &ours)?;
+    let parses = strahl.rendered || programs.parses(scene)?;
+    let mut difference = None;
+    if povray.rendered && strahl.rendered {
+        let (a, b) = (picture::read(&theirs)?, picture::read(&ours)?);
+        difference = picture::compare(&a, &b);
+        if difference.is_some() {
+            picture::write_difference(&a, &b, &apart)?;
+        }
+    }
+    let name = scene.strip_prefix(&options.folder).unwrap_or(scene);
+    Ok(Row {
+        scene: name.to_string_lossy().into_owned(),
+        marks: marks(&String::from_utf8_lossy(&bytes)),
+        povray,
+        strahl,
+        parses,
+        difference,
+    })
+}
+
+fn find_scenes(folder: &Path, found: &mut Vec<PathBuf>) -> Result<()> {
+    let entries =
+        std::fs::read_dir(folder).with_context(|| format!("cannot read {}", folder.display()))?;
+    for entry in entries {
+        let entry = entry?;
+        let (path, kind) = (entry.path(), entry.file_type()?);
+        if kind.is_dir() {
+            find_scenes(&path, found)?;
+        } else if path
+            .extension()
+            .is_some_and(|e| e.eq_ignore_ascii_case("pov"))
+        {
+            found.push(path);
+        }
+    }
+    Ok(())
+}
+
+/// Which of [`MARKS`] stand before a brace, comments aside.
+fn marks(text: &str) -> Vec<&'static str> {
+    let code: String = text
+        .lines()
+        .map(|line| line.split("//").next().unwrap_or_default())
+        .collect::<Vec<_>>()
+        .join("\n");
+    let opens = |word: &str| {
+        code.match_indices(word).any(|(at, _)| {
+            let before = code[..at].chars().next_back();
+            let inside = before.is_some_and(|c| c.is_alphanumeric() || c == '_');
+            !inside && code[at + word.len()..].trim_start().starts_with('{')
+        })
+    };
+    MARKS.into_iter().filter(|word| opens(word)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn marks_are_words_before_a_brace() {
+        let text = "// media { }\ninterior {\n  media\n { } } #declare Radiosity=1; my_photons { }";
+        assert_eq!(marks(text), ["media"]);
+        assert!(marks("radiosity off photons 1").is_empty());
+    }
+}

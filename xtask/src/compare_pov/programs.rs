@@ -1,0 +1,230 @@
+use anyhow::{Context, Result, bail};
+use sha2::{Digest, Sha256};
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+
+/// How long a program may take for one scene.
+const TIMEOUT: Duration = Duration::from_secs(120);
+
+/// What a program made of a scene.
+#[derive(Clone, Debug)]
+pub(super) struct Outcome {
+    /// Whether there is a picture.
+    pub(super) rendered: bool,
+    /// Seconds by the clock on the wall, reading included.
+    pub(super) seconds: f64,
+    /// The first error, or else the first warning.
+    pub(super) reason: String,
+    /// What strahl says that it leaves out.
+    pub(super) lacks: BTreeSet<String>,
+}
+
+/// Both programs, with the size of the pictures.
+pub(super) struct Programs {
+    strahl: PathBuf,
+    cache: PathBuf,
+    size: (u32, u32),
+}
+
+impl Programs {
+    /// Builds strahl and looks for POV-Ray.
+    pub(super) fn new(size: (u32, u32)) -> Result<Self> {
+        let known = Command::new("povray").arg("--version").output();
+        if known.is_err() {
+            bail!("POV-Ray is missing: install Debian's package povray");
+        }
+        crate::bench::build_strahl()?;
+        let cache = PathBuf::from("target/compare-pov/cache");
+        std::fs::create_dir_all(&cache)?;
+        Ok(Self {
+            strahl: std::path::absolute(crate::bench::strahl_binary()?)?,
+            cache,
+            size,
+        })
+    }
+
+    /// POV-Ray's picture, from an earlier run if the scene is the same.
+    pub(super) fn povray(&self, scene: &Path, bytes: &[u8], picture: &Path) -> Result<Outcome> {
+        let (w, h) = self.size;
+        let mut hash = Sha256::new();
+        hash.update(bytes);
+        hash.update(scene.as_os_str().as_encoded_bytes());
+        let digest = hash.finalize();
+        let key: String = digest.iter().take(12).map(|b| format!("{b:02x}")).collect();
+        let kept = self.cache.join(format!("{key}-{w}x{h}.png"));
+        let note = kept.with_extension("txt");
+        if let Some(outcome) = read_note(&note) {
+            if outcome.rendered {
+                std::fs::copy(&kept, picture)?;
+            }
+            return Ok(outcome);
+        }
+        let scratch = tempfile::tempdir()?;
+        let output = scratch.path().join("picture.png");
+        let mut command = Command::new("povray");
+        command
+            .arg(format!("+I{}", scene.display()))
+            .arg(format!("+O{}", output.display()))
+            .arg(format!("+L{}", parent(scene).display()))
+            .args([format!("+W{w}"), format!("+H{h}")])
+            .args(["-A", "+FN", "-D", "-GA", "+GF", "+WT1"]);
+        let mut outcome = run(command, scratch.path(), &output)?;
+        outcome.reason = match outcome.rendered {
+            true => String::new(),
+            false => povray_reason(&outcome.reason),
+        };
+        if outcome.rendered {
+            std::fs::copy(&output, &kept)?;
+            std::fs::copy(&output, picture)?;
+        }
+        let state = if outcome.rendered {
+            "rendered"
+        } else {
+            "failed"
+        };
+        let text = format!("{state}\n{}\n{}\n", outcome.seconds, outcome.reason);
+        std::fs::write(note, text)?;
+        Ok(outcome)
+    }
+
+    /// Strahl's picture.
+    pub(super) fn strahl(&self, scene: &Path, picture: &Path) -> Result<Outcome> {
+        let scratch = tempfile::tempdir()?;
+        let output = scratch.path().join("picture.png");
+        let mut command = self.command("render", scene, scratch.path());
+        command
+            .arg("--size")
+            .arg(format!("{}x{}", self.size.0, self.size.1))
+            .args(["--sampling", "center", "--threads", "1", "--output"])
+            .arg(&output);
+        let mut outcome = run(command, scratch.path(), &output)?;
+        outcome.lacks = lacks(&outcome.reason);
+        outcome.reason = strahl_reason(&outcome.reason);
+        if outcome.rendered {
+            std::fs::copy(&output, picture)?;
+        } else if outcome.reason.is_empty() {
+            outcome.reason = "died without a word".to_owned();
+        }
+        Ok(outcome)
+    }
+
+    /// Whether strahl reads the scene without an error.
+    pub(super) fn parses(&self, scene: &Path) -> Result<bool> {
+        let scratch = tempfile::tempdir()?;
+        let mut command = self.command("check", scene, scratch.path());
+        command.arg("--syntax");
+        Ok(run(command, scratch.path(), Path::new(""))?.rendered)
+    }
+
+    fn command(&self, name: &str, scene: &Path, scratch: &Path) -> Command {
+        let mut command = Command::new(&self.strahl);
+        command.arg(name).arg(scene);
+        command.arg("--allow-write").arg(scratch);
+        command
+    }
+}
+
+fn parent(scene: &Path) -> PathBuf {
+    scene.parent().map_or_else(PathBuf::new, Path::to_path_buf)
+}
+
+/// Runs a program in a folder; `reason` of the outcome is all it said. Without an `output`, success counts as rendered.
+fn run(mut command: Command, folder: &Path, output: &Path) -> Result<Outcome> {
+    let log = folder.join("log");
+    let start = Instant::now();
+    let mut child = command
+        .current_dir(folder)
+        .stdin(Stdio::null())
+        .stdout(Stdio::null())
+        .stderr(std::fs::File::create(&log)?)
+        .spawn()
+        .with_context(|| format!("cannot run {:?}", command.get_program()))?;
+    let status = loop {
+        if let Some(status) = child.try_wait()? {
+            break Some(status);
+        }
+        if start.elapsed() > TIMEOUT {
+            child.kill()?;
+            child.wait()?;
+            break None;
+        }
+        std::thread::sleep(Duration::from_millis(5));
+    };
+    let seconds = start.elapsed().as_secs_f64();
+    let said = std::fs::read(&log)?;
+    let mut reason = String::from_utf8_lossy(&said).into_owned();
+    if status.is_none() {
+        reason = format!("error: no end after {} s\n", TIMEOUT.as_secs());
+    }
+    let success = status.is_some_and(|s| s.success());
+    Ok(Outcome {
+        rendered: success && (output.as_os_str().is_empty() || output.is_file()),
+        seconds,
+        reason,
+        lacks: BTreeSet::new(),
+    })
+}
+
+fn read_note(file: &Path) -> Option<Outcome> {
+    let text = std::fs::read_to_string(file).ok()?;
+    let mut lines = text.lines();
+    Some(Outcome {
+        rendered: lines.next()? == "rendered",
+        seconds: lines.next()?.parse().ok()?,
+        reason: lines.next().unwrap_or_default().to_owned(),
+        lacks: BTreeSet::new(),
+    })
+}
+
+/// POV-Ray's first error, in one line.
+fn povray_reason(log: &str) -> String {
+    let at = log.find("Error:").or_else(|| log.find("error:"));
+    let text = at.map_or(log, |at| &log[at..]);
+    let words: Vec<&str> = text.split_whitespace().take(24).collect();
+    words.join(" ")
+}
+
+/// The warnings about features that are not there yet.
+fn lacks(log: &str) -> BTreeSet<String> {
+    let warnings = log.lines().filter_map(|l| l.strip_prefix("warning: "));
+    let lacks = warnings.filter(|l| l.contains("not supported"));
+    lacks.map(str::to_owned).collect()
+}
+
+/// Strahl's first error, or else its first warning, with the place.
+fn strahl_reason(log: &str) -> String {
+    let find = |kind: &str| {
+        let mut lines = log.lines().skip_while(|l| !l.starts_with(kind));
+        let message = lines.next()?;
+        let place = lines.next().map(str::trim).unwrap_or_default();
+        Some(match place.strip_prefix("--> ") {
+            Some(place) => format!("{message} ({place})"),
+            None => message.to_owned(),
+        })
+    };
+    let found = find("error:")
+        .or_else(|| {
+            log.lines()
+                .find(|l| l.contains("panicked"))
+                .map(str::to_owned)
+        })
+        .or_else(|| find("warning:"));
+    found.unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn reasons_are_first_errors() {
+        let log = "hello\nwarning: a\n --> x:1:2\nerror: b\n --> y:3:4\n  |\n";
+        assert_eq!(strahl_reason(log), "error: b (y:3:4)");
+        assert_eq!(strahl_reason("warning: a\n --> x:1\n"), "warning: a (x:1)");
+        assert_eq!(strahl_reason("fine\n"), "");
+        let log = "File 'a' line 1: Parse Error: No\n matching  brace\n";
+        assert_eq!(povray_reason(log), "Error: No matching brace");
+    }
+}
