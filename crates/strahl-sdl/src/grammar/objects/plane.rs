@@ -6,9 +6,10 @@ use strahl_math::DVec3;
 /// `plane { normal, distance ... }`: the distance is measured along the unit normal.
 pub(super) fn plane(p: &mut Parser<'_>) -> PResult<Entity> {
     p.shape(|p| {
+        let token = p.peek()?;
+        let place = p.place_of(token);
         let normal = p.vector3()?;
         if normal == DVec3::ZERO {
-            let place = p.place();
             return Err(p.fail(place, "the normal of the plane is zero"));
         }
         p.comma()?;

@@ -191,7 +191,10 @@ type Key = (u32, Option<*const Material>);
 
 /// Turns numbers of declared objects into groups.
 struct Linker {
+    /// Until their last variant has taken them.
     objects: Vec<Option<Arc<Declared>>>,
+    /// Whether parts of each take their material from the use.
+    inherits: Vec<bool>,
     /// All keys met, with the material, in the order of the scene.
     variants: Vec<(u32, Option<Arc<Material>>)>,
     /// Of each variant: how often it is used, and its group once it has one.
@@ -207,6 +210,7 @@ impl Linker {
     fn new(objects: Vec<Arc<Declared>>) -> Self {
         let open = vec![0; objects.len()];
         Self {
+            inherits: objects.iter().map(|d| d.tally.inherits).collect(),
             objects: objects.into_iter().map(Some).collect(),
             variants: vec![],
             uses: vec![],
@@ -239,20 +243,14 @@ impl Linker {
             let Some((id, material)) = self.variants.get(variant).cloned() else {
                 continue;
             };
-            let name = self.name(id);
             let mut object = Object::new(self.kind(id));
             object.material = material;
             self.replace(&mut object, None, scene, &mut waiting);
             if let Some(group) = scene.groups.get_mut(group) {
-                group.name = name;
+                object.name = group.name.clone();
                 group.objects.0.push(object);
             }
         }
-    }
-
-    fn name(&self, id: u32) -> Option<Arc<str>> {
-        let declared = self.objects.get(id as usize)?.as_ref()?;
-        declared.entity.object.name.clone()
     }
 
     fn count(&mut self, object: &Object, inherited: Option<Arc<Material>>) {
@@ -283,8 +281,8 @@ impl Linker {
     }
 
     fn variant(&mut self, id: u32, material: Option<Arc<Material>>) -> usize {
-        let declared = self.objects.get(id as usize).and_then(Option::as_ref);
-        let material = material.filter(|_| declared.is_some_and(|d| d.tally.inherits));
+        let inherits = self.inherits.get(id as usize) == Some(&true);
+        let material = material.filter(|_| inherits);
         let key = (id, material.as_ref().map(Arc::as_ptr));
         *self.known.entry(key).or_insert_with(|| {
             self.variants.push((id, material));
@@ -334,7 +332,8 @@ impl Linker {
             while let ObjectKind::Instance(id) = object.kind {
                 let variant = self.variant(id.0, material.clone());
                 if self.uses.get(variant).is_some_and(|uses| *uses > 1) {
-                    object.kind = ObjectKind::Instance(self.group(variant, scene, new));
+                    let id = self.group(variant, &object.name, scene, new);
+                    object.kind = ObjectKind::Instance(id);
                     break;
                 }
                 object.kind = self.kind(id.0);
@@ -346,9 +345,11 @@ impl Linker {
         }
     }
 
+    /// The group of a variant, named after its first use.
     fn group(
         &mut self,
         variant: usize,
+        name: &Option<Arc<str>>,
         scene: &mut Scene,
         new: &mut Vec<(usize, usize)>,
     ) -> GroupId {
@@ -357,7 +358,10 @@ impl Linker {
         };
         *slot.get_or_insert_with(|| {
             let index = scene.groups.len();
-            scene.groups.push(Group::default());
+            scene.groups.push(Group {
+                name: name.clone(),
+                objects: Children::default(),
+            });
             new.push((index, variant));
             GroupId(index as u32)
         })

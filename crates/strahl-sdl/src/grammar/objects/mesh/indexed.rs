@@ -119,8 +119,9 @@ impl Parser<'_> {
     /// `{ count, item, ... }`
     fn counted<T>(&mut self, mut item: impl FnMut(&mut Self) -> PResult<T>) -> PResult<Vec<T>> {
         self.braces(|p| {
+            let token = p.peek()?;
+            let place = p.place_of(token);
             let count = p.float()?;
-            let place = p.place();
             let mut list = vec![];
             // Each item is read, so the count cannot ask for more memory than the text has.
             while (list.len() as f64) < count {

@@ -1,0 +1,522 @@
+//! Objects: their syntax, what becomes of them, and what is said about mistakes.
+
+mod common;
+
+use common::{debug, errors, parse_with};
+use strahl_geometry::Shape;
+use strahl_scene::{CsgOp, Object, ObjectKind, Scene};
+use strahl_sdl::MemoryHost;
+
+/// The scene of a text without errors, and its warnings.
+fn scene(text: &str) -> (Scene, Vec<String>) {
+    let parsed = parse_with(&mut MemoryHost::new(), text);
+    let messages: Vec<String> = parsed.diagnostics.iter().map(ToString::to_string).collect();
+    let Some(scene) = parsed.scene else {
+        panic!("{text}\n{}", messages.join("\n"));
+    };
+    (scene, messages)
+}
+
+/// The only object of a text without any message.
+fn object(text: &str) -> Object {
+    let (mut scene, messages) = scene(text);
+    assert!(messages.is_empty(), "{text}\n{}", messages.join("\n"));
+    assert_eq!(scene.objects.0.len(), 1, "{text}");
+    scene.objects.0.remove(0)
+}
+
+fn shape(text: &str) -> Shape {
+    match &object(text).kind {
+        ObjectKind::Shape(shape) => shape.clone(),
+        other => panic!("{text}\n{other:?}"),
+    }
+}
+
+fn operation(object: &Object) -> (CsgOp, &[Object]) {
+    match &object.kind {
+        ObjectKind::Csg { op, children } => (*op, &children.0),
+        other => panic!("{other:?}"),
+    }
+}
+
+/// Texts that mean the same shape.
+fn same(texts: &[&str]) {
+    let first = format!("{:?}", shape(texts[0]));
+    for text in texts {
+        assert_eq!(format!("{:?}", shape(text)), first, "{text}");
+    }
+}
+
+#[test]
+fn commas_and_braces_may_be_written_in_many_ways() {
+    same(&[
+        "sphere { <1, 2, 3>, 0.5 }",
+        "sphere{<1 2 3> .5}",
+        "#declare R = 0.5; sphere { <1, 2, 3> R }",
+        "#macro S(P, R) sphere { P R #end S(<1, 2, 3>, 0.5) }",
+        "sphere { #if (1) <1, 2, 3>, #else 0, #end 0.5 }",
+    ]);
+    same(&[
+        "box { <0, 0, 0>, <1, 2, 3> }",
+        "box { 0 <1, 2, 3> }",
+        "box { <1, 0, 3> <0, 2, 0> }",
+    ]);
+    same(&[
+        "plane { y, 2 }",
+        "plane { <0, 3, 0> 2 }",
+        "plane { y 2 hollow }",
+    ]);
+    same(&[
+        "disc { 0, y, 2 }",
+        "disc { 0 y 2 }",
+        "disc { 0, y, 2, 0 }",
+        "disc { 0 y 2 0 }",
+    ]);
+    same(&[
+        "disc { 0, y, 2, 1 }",
+        "disc { 0 y 2 1 }",
+        "#declare H = 1; disc { 0 y 2 H }",
+    ]);
+    same(&[
+        "cylinder { 0, y, 2 }",
+        "cylinder { 0 y 2 }",
+        "cylinder { 0 y, -2 }",
+    ]);
+    same(&["cylinder { 0, y, 2 open }", "cylinder { 0 y 2 open }"]);
+    same(&["cone { 0, 2, y, 1 }", "cone { 0 2 y 1 }"]);
+    same(&["cone { 0, 2, y, 0 open }", "cone { 0 2 y 0 open }"]);
+    same(&[
+        "torus { 2, 1 }",
+        "torus { 2 1 sturm }",
+        "torus { 2, 1 sturm on }",
+        "torus { 2 1 sturm 1 }",
+    ]);
+    same(&[
+        "quadric { <1, 2, 3>, <0, 0, 0>, <0, 1, 0>, -1 }",
+        "quadric { <1, 2, 3> 0 y, -1 }",
+    ]);
+    same(&["triangle { 0, x, y }", "triangle { 0 x y }"]);
+    same(&[
+        "smooth_triangle { 0, z, x, <0, 1, 1>, y, <1, 0, 1> }",
+        "smooth_triangle { 0 z x <0, 1, 1> y <1, 0, 1> }",
+    ]);
+    same(&[
+        "polygon { 4, <0, 0>, <1, 0>, <0, 1>, <0, 0> }",
+        "polygon { 4 <0, 0> <1, 0> <0, 1> <0, 0> }",
+        "polygon { 4, <0, 0, 0> x, y, 0 }",
+    ]);
+    same(&[
+        "mesh2 { vertex_vectors { 3, 0, x, y } face_indices { 1, <0, 1, 2> } }",
+        "mesh2 { vertex_vectors { 3 0 x y } face_indices { 1 <0, 1, 2> } }",
+        "mesh2 { vertex_vectors { 3, 0, x, y, } face_indices { 1, <0, 1, 2>, } }",
+    ]);
+    same(&[
+        "mesh { triangle { 0, x, y } }",
+        "mesh { triangle { 0 x y } hierarchy off }",
+    ]);
+}
+
+#[test]
+fn what_cannot_be_seen_is_left_out_with_a_warning() {
+    for text in [
+        "sphere { 0, 0 }",
+        "box { 0, x }",
+        "box { 0, 0 }",
+        "cone { 0, 0, y, 0 }",
+        "cylinder { 0, y, 0 }",
+        "disc { 0, y, 1, 2 }",
+        "disc { 0, 0, 1 }",
+        "torus { 1, 0 }",
+        "triangle { 0, x, 2 * x }",
+        "smooth_triangle { 0, y, x, y, 2 * x, y }",
+        "quadric { 1, 0, 0, 1 }",
+        "polygon { 4, <0, 0>, <1, 0>, <2, 0>, <0, 0> }",
+        "mesh { triangle { 0, x, 2 * x } }",
+        "mesh { }",
+        "mesh2 { vertex_vectors { 3, 0, x, 2 * x } face_indices { 1, <0, 1, 2> } }",
+        "union { }",
+        "intersection { sphere { 0, 1 } sphere { 0, 0 } }",
+        "difference { sphere { 0, 0 } sphere { 0, 1 } }",
+        "sphere { 0, 0 clipped_by { plane { y, 0 } } inverse }",
+        "object { sphere { 0, 0 } scale 2 }",
+    ] {
+        let (scene, messages) = scene(text);
+        assert!(scene.objects.0.is_empty(), "{text}: {:?}", scene.objects);
+        assert!(!messages.is_empty(), "{text}");
+    }
+    let (scene, messages) = scene("difference { sphere { 0, 1 } sphere { 0, 0 } }");
+    assert_eq!(operation(&scene.objects.0[0]).1.len(), 1);
+    assert!(messages[0].contains("radius of the sphere"), "{messages:?}");
+}
+
+#[test]
+fn objects_that_are_missing_yet_are_named() {
+    for word in [
+        "blob",
+        "lathe",
+        "sor",
+        "prism",
+        "sphere_sweep",
+        "superellipsoid",
+        "height_field",
+        "isosurface",
+        "parametric",
+        "julia_fractal",
+        "bicubic_patch",
+        "text",
+        "cubic",
+        "quartic",
+        "poly",
+        "polynomial",
+        "ovus",
+        "lemon",
+    ] {
+        let body = "{ threshold 1 sphere { 0, 1, 1 } \"text\" function { x } }";
+        let text = format!(
+            "{word} {body} union {{ {word} {body} sphere {{ 0, 1 }} }} #declare A = {word} {body} object {{ A }}"
+        );
+        let (scene, messages) = scene(&text);
+        assert_eq!(scene.objects.0.len(), 1, "{text}");
+        assert_eq!(messages.len(), 3, "{messages:?}");
+        let expected = format!("warning: `{word}` is not supported yet and is left out");
+        assert!(
+            messages.iter().all(|m| m.starts_with(&expected)),
+            "{messages:?}"
+        );
+    }
+    let (_, messages) =
+        scene("sphere { 0, 1 photons { target } double_illuminate radiosity { importance 1 } }");
+    assert_eq!(messages.len(), 3, "{messages:?}");
+}
+
+#[test]
+fn mistakes_are_shown_with_their_place() {
+    let cases = [
+        (
+            "cylinder { x, x, 1 }",
+            "both ends of the cylinder are at <1, 0, 0>",
+            1,
+        ),
+        (
+            "cone { x, 1, x, 2 }",
+            "both ends of the cone are at <1, 0, 0>",
+            1,
+        ),
+        ("plane { 0, 1 }", "the normal of the plane is zero", 9),
+        (
+            "polygon { 2, 0, x }",
+            "a polygon has at least 3 corners, found 2",
+            1,
+        ),
+        ("sphere { 0 }", "expected a number or vector, found `}`", 12),
+        (
+            "union { 1 }",
+            "expected an item of the object, or `}`, found the number 1",
+            9,
+        ),
+        ("object { 1 }", "expected an object, found the number 1", 10),
+        (
+            "object { Ball }",
+            "expected an object, found the undeclared name `Ball`",
+            10,
+        ),
+        (
+            "sphere { 0, 1 clipped_by { } }",
+            "expected an object, found `}`",
+            28,
+        ),
+        (
+            "sphere { 0, 1 clipped_by { 3 } }",
+            "expected an object, found the number 3",
+            28,
+        ),
+        (
+            "mesh { triangle { 0, x, y 5 } }",
+            "expected an item of the triangle, or `}`, found the number 5",
+            27,
+        ),
+        (
+            "mesh { triangle { 0, x * 1e300, y } }",
+            "a corner of the triangle is too far away for a mesh",
+            33,
+        ),
+        (
+            "mesh2 { vertex_vectors { 3, 0, x, y } face_indices { 1, <0, 1, 3> } }",
+            "there is no entry 3 in vertex_vectors, which has 3",
+            57,
+        ),
+        (
+            "mesh2 { vertex_vectors { 3, 0, x, y } face_indices { 1, <0, -1, 2> } }",
+            "there is no entry -1 in vertex_vectors, which has 3",
+            57,
+        ),
+        (
+            "mesh2 { vertex_vectors { 4, 0, x, y } face_indices { 1, <0, 1, 2> } }",
+            "the list should have 4 entries, found 3",
+            26,
+        ),
+        (
+            "mesh2 { vertex_vectors { 3, 0, x, y } normal_vectors { 1, z } face_indices { 1, <0, 1, 2> } }",
+            "there are 1 normal_vectors for 3 vertex_vectors",
+            1,
+        ),
+        (
+            "mesh2 { vertex_vectors { 3, 0, x, y } uv_vectors { 1, 0 } face_indices { 1, <0, 1, 2> } uv_indices { 2, 0, 0 } }",
+            "there are 2 uv_indices for 1 face_indices",
+            1,
+        ),
+        (
+            "mesh2 { vertex_vectors { 3, 0, x, y } texture_list { 1, texture { } } face_indices { 1, <0, 1, 2>, 1 } }",
+            "there is no entry 1 in texture_list, which has 1",
+            100,
+        ),
+    ];
+    for (text, message, column) in cases {
+        let found = errors(&format!("\n{text}\n"));
+        assert_eq!(found.len(), 1, "{found:?}");
+        let first = format!("error: {message}\n --> test.pov:2:{column}\n");
+        assert!(
+            found[0].starts_with(&first),
+            "{text}\nexpected {first}\nfound {}",
+            found[0]
+        );
+    }
+}
+
+#[test]
+fn parsing_goes_on_behind_a_wrong_object() {
+    let found = errors("cylinder { 0, 0, 1 pigment { rgb 1 } }\nsphere { 0, 1 }\nplane { 0, 1 }\n");
+    assert_eq!(found.len(), 2, "{found:?}");
+}
+
+#[test]
+fn items_act_in_the_order_they_stand() {
+    // The clipping plane turns with the sphere, or not.
+    let before = object("sphere { 0, 1 clipped_by { plane { y, 0 } } rotate z * 90 }");
+    let after = object("sphere { 0, 1 rotate z * 90 clipped_by { plane { y, 0 } } }");
+    let clip = |o: &Object| operation(o).1[1].transform.as_deref().copied();
+    assert!(clip(&before).is_none());
+    let turned_back = clip(&after).expect("moved against the object");
+    let image = turned_back.vector_to_world(strahl_math::DVec3::Y);
+    assert!((image - strahl_math::DVec3::X).length() < 1e-12, "{image}");
+    assert!(before.transform.is_some() && after.transform.is_some());
+}
+
+#[test]
+fn parts_take_the_material_of_the_whole_if_they_have_none() {
+    let text = "union { sphere { 0, 1 } sphere { x, 1 pigment { rgb x } } pigment { rgb y } }";
+    let whole = object(text);
+    let parts = operation(&whole).1;
+    assert!(whole.material.is_some() && parts[0].material.is_none() && parts[1].material.is_some());
+    // Without a texture of its own, the default texture where it enters the scene.
+    let text = "#declare S = sphere { 0, 1 } #default { pigment { rgb x } } object { S }";
+    let expected = object("sphere { 0, 1 pigment { rgb x } }").material;
+    assert_eq!(object(text).material, expected);
+}
+
+#[test]
+fn objects_know_name_and_place() {
+    let (scene, _) = scene("#declare Wheel = torus { 2, 1 }\n  object { Wheel }\nsphere { 0, 1 }");
+    let [wheel, ball] = scene.objects.0.as_slice() else {
+        panic!("two objects");
+    };
+    assert_eq!(wheel.name.as_deref(), Some("Wheel"));
+    assert_eq!((wheel.span.line, wheel.span.column), (2, 3));
+    assert_eq!((ball.name.as_deref(), ball.span.line), (None, 3));
+}
+
+#[test]
+fn switches_can_be_turned_off() {
+    let seen = object("sphere { 0, 1 no_shadow no_image off no_reflection on }").visibility;
+    assert_eq!(
+        (seen.shadow, seen.camera, seen.secondary),
+        (false, true, false)
+    );
+    let seen = object("sphere { 0, 1 no_shadow no_image no_shadow off }").visibility;
+    assert_eq!(
+        (seen.shadow, seen.camera, seen.secondary),
+        (true, false, true)
+    );
+}
+
+#[test]
+fn bounds_are_only_hints() {
+    shape("sphere { 0, 1 bounded_by { box { -0.1, 0.1 } } }");
+    let clipped =
+        object("sphere { 0, 1 bounded_by { box { -1, 1 } } scale 2 clipped_by { bounded_by } }");
+    let (op, parts) = operation(&clipped);
+    assert_eq!((op, parts.len()), (CsgOp::Clip, 2));
+    let (_, messages) = scene("sphere { 0, 1 clipped_by { bounded_by } }");
+    assert!(
+        messages[0].contains("there is no `bounded_by`"),
+        "{messages:?}"
+    );
+}
+
+/// Many parts, so that uses are shared.
+const LARGE: &str = "#declare Large = union { #for (I, 0, 19) sphere { I * x, 0.4 } #end }\n";
+
+#[test]
+fn large_objects_are_shared() {
+    let text = format!("{LARGE} #for (I, 1, 1000) object {{ Large translate I * y }} #end");
+    let (scene, _) = scene(&text);
+    assert_eq!((scene.objects.0.len(), scene.groups.len()), (1000, 1));
+    assert_eq!(operation(&scene.groups[0].objects.0[0]).1.len(), 20);
+    assert_eq!(scene.groups[0].name.as_deref(), Some("Large"));
+    let kinds = scene
+        .objects
+        .0
+        .iter()
+        .map(|o| matches!(o.kind, ObjectKind::Instance(id) if id.0 == 0));
+    assert!(kinds.into_iter().all(|instance| instance));
+}
+
+#[test]
+fn popular_objects_are_shared() {
+    let small = "#declare Small = union { sphere { 0, 1 } sphere { x, 1 } }";
+    let (scene, _) = scene(&format!(
+        "{small} #for (I, 1, 100) object {{ Small translate I * y }} #end"
+    ));
+    assert_eq!(scene.groups.len(), 1);
+    let copies = scene
+        .objects
+        .0
+        .iter()
+        .filter(|o| matches!(o.kind, ObjectKind::Csg { .. }));
+    assert_eq!(copies.count(), 16);
+}
+
+#[test]
+fn a_lone_shape_is_no_group() {
+    let (scene, _) =
+        scene("#declare S = sphere { 0, 1 } #for (I, 1, 100) object { S translate I * y } #end");
+    assert_eq!((scene.objects.0.len(), scene.groups.len()), (100, 0));
+}
+
+#[test]
+fn what_is_used_once_is_put_in_its_place() {
+    let (scene, _) = scene(&format!(
+        "{LARGE} object {{ Large scale 2 pigment {{ rgb x }} }}"
+    ));
+    assert_eq!(scene.groups.len(), 0);
+    assert_eq!(operation(&scene.objects.0[0]).1.len(), 20);
+    assert!(scene.objects.0[0].transform.is_some());
+}
+
+#[test]
+fn a_scene_built_up_step_by_step_is_no_tower() {
+    let text = "#declare All = sphere { 0, 1 } #for (I, 1, 20000) #declare All = union { object { All } sphere { I * x, 1 } } #end object { All }";
+    let (scene, _) = scene(text);
+    assert_eq!((scene.objects.0.len(), scene.groups.len()), (1, 0));
+    let mut spheres = 0;
+    let mut waiting = vec![&scene.objects.0[0]];
+    while let Some(object) = waiting.pop() {
+        match &object.kind {
+            ObjectKind::Csg { children, .. } => waiting.extend(&children.0),
+            ObjectKind::Shape(_) => spheres += 1,
+            ObjectKind::Instance(_) => panic!("an instance is left"),
+        }
+    }
+    assert_eq!(spheres, 20001);
+}
+
+#[test]
+fn each_material_from_outside_has_its_group() {
+    let uses = "object { Large pigment { rgb x } } object { Large pigment { rgb x } translate y } object { Large pigment { rgb y } } object { Large pigment { rgb y } translate -y }";
+    let (scene, _) = scene(&format!("{LARGE} {uses}"));
+    assert_eq!(scene.groups.len(), 2);
+    let materials: Vec<_> = scene
+        .groups
+        .iter()
+        .map(|g| g.objects.0[0].material.clone())
+        .collect();
+    assert_ne!(materials[0], materials[1]);
+    // A material that no part would take makes no difference.
+    let textured = LARGE.replace("0.4 }", "0.4 pigment { rgb z } }");
+    let (scene, _) = self::scene(&format!("{textured} {uses}"));
+    assert_eq!(scene.groups.len(), 1);
+}
+
+#[test]
+fn groups_hold_groups() {
+    let text = format!(
+        "{LARGE} #declare Two = union {{ object {{ Large }} object {{ Large translate y }} #for (I, 0, 9) sphere {{ I * z, 1 }} #end }} object {{ Two }} object {{ Two translate z }} object {{ Large translate -y }}"
+    );
+    let (scene, _) = scene(&text);
+    assert_eq!(scene.groups.len(), 2);
+    let inner = |group: usize| {
+        let children = operation(&scene.groups[group].objects.0[0]).1;
+        children
+            .iter()
+            .filter(|c| matches!(c.kind, ObjectKind::Instance(_)))
+            .count()
+    };
+    let mut instances = [inner(0), inner(1)];
+    instances.sort_unstable();
+    assert_eq!(instances, [0, 2]);
+}
+
+#[test]
+fn operations_get_the_parts_of_what_they_use() {
+    let text = format!(
+        "{LARGE} difference {{ box {{ -1, 30 }} object {{ Large }} object {{ Large translate y }} }}"
+    );
+    let (scene, _) = scene(&text);
+    assert_eq!(scene.groups.len(), 0);
+    let (op, parts) = operation(&scene.objects.0[0]);
+    assert_eq!((op, parts.len()), (CsgOp::Difference, 3));
+    assert_eq!(operation(&parts[1]).1.len(), 20);
+    assert_eq!(operation(&parts[2]).1.len(), 20);
+    assert!(parts[2].transform.is_some());
+}
+
+#[test]
+fn meshes_share_vertices_and_split_by_texture() {
+    let Shape::TriangleMesh(mesh) =
+        shape("mesh { triangle { 0, x, y } triangle { x, x + y, y } triangle { 0, x, z } }")
+    else {
+        panic!("a mesh");
+    };
+    assert_eq!((mesh.triangle_count(), mesh.positions().len()), (3, 5));
+    let text = "mesh { triangle { 0, x, y } triangle { x, x + y, y texture { pigment { rgb x } } } triangle { 0, x, z } pigment { rgb y } }";
+    let whole = object(text);
+    let (op, parts) = operation(&whole);
+    assert_eq!((op, parts.len()), (CsgOp::Union, 2));
+    assert!(parts[0].material.is_none() && parts[1].material.is_some());
+}
+
+#[test]
+fn closed_meshes_are_solids_however_they_are_wound() {
+    let vertices = "vertex_vectors { 4, 0, x, y, z }";
+    for faces in [
+        "<0, 2, 1>, <0, 1, 3>, <1, 2, 3>, <2, 0, 3>",
+        "<0, 1, 2>, <0, 1, 3>, <1, 2, 3>, <2, 0, 3>",
+    ] {
+        let text = format!("mesh2 {{ {vertices} face_indices {{ 4, {faces} }} inside_vector y }}");
+        assert!(matches!(shape(&text), Shape::Brep(_)), "{text}");
+        let asked = debug(&format!(
+            "#declare M = {text} #debug str(inside(M, <0.1, 0.1, 0.1>), 0, 0) #debug str(inside(M, 1), 0, 0)"
+        ));
+        assert_eq!(asked, "10");
+    }
+    let (_, messages) = scene(&format!(
+        "mesh2 {{ {vertices} face_indices {{ 2, <0, 1, 2>, <0, 1, 3> }} inside_vector y }}"
+    ));
+    assert!(messages[0].contains("has no inside"), "{messages:?}");
+}
+
+#[test]
+fn questions_see_instances_and_meshes() {
+    let text = "#declare N = y; #declare All = union { object { Large } object { Large translate 10 * y } } \
+                #debug concat(vstr(3, max_extent(All), \",\", 0, 3), \" \", vstr(3, trace(All, <3, 50, 0>, -y, N), \",\", 0, 3), \" \", vstr(3, N, \",\", 0, 3))";
+    assert_eq!(
+        debug(&format!("{LARGE} {text}")),
+        "19.400,10.400,0.400 3.000,10.400,0.000 0.000,1.000,0.000"
+    );
+}
+
+#[test]
+fn descriptions_of_objects_are_small() {
+    // A million spheres are a million of these.
+    assert!(size_of::<Object>() <= 176, "{}", size_of::<Object>());
+}
