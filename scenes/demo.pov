@@ -6,7 +6,7 @@ camera {
   location <0, 3.4, -10>
   right x * 4 / 3
   angle 42
-  look_at <0, 0.8, 0>
+  look_at <0, 0.75, 0>
 }
 
 background { rgb <0.35, 0.55, 0.85> }
@@ -20,9 +20,24 @@ plane {
   finish { diffuse 0.8 ambient 0.08 reflection 0.15 }
 }
 
-// Gold, a mirror, and blue enamel.
+// A die: a cube without its corners, with a hole through every face.
+difference {
+  intersection {
+    box { -1, 1 }
+    sphere { 0, 1.4 }
+  }
+  cylinder { -2 * x, 2 * x, 0.55 }
+  cylinder { -2 * y, 2 * y, 0.55 }
+  cylinder { -2 * z, 2 * z, 0.55 }
+  pigment { rgb <0.85, 0.2, 0.12> }
+  finish { ambient 0.1 diffuse 0.7 phong 0.8 phong_size 60 }
+  rotate 35 * y
+  translate <0, 1, 0>
+}
+
+// A ball of gold in it; a mirror and blue enamel beside it.
 sphere {
-  <0, 1, 0>, 1
+  <0, 1, 0>, 0.45
   pigment { rgb <0.95, 0.7, 0.25> }
   finish { ambient 0.1 diffuse 0.4 phong 1 phong_size 90 reflection 0.35 }
 }

@@ -317,3 +317,40 @@ fn scenes_write_within_their_folder_only() {
     succeeds(f, &["check", "in/inside.pov", "--allow-write", "allowed"]);
     assert!(f.join("allowed/a.txt").exists());
 }
+
+#[cfg(unix)]
+#[test]
+fn ctrl_c_leaves_whole_frames() {
+    let folder = folder();
+    let f = folder.path();
+    let child = Command::new(env!("CARGO_BIN_EXE_strahl"))
+        .current_dir(f)
+        .args(["render", "scene.pov", "+W160", "+H120", "+KFF900", "-GA"])
+        .stdin(Stdio::null())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the program starts");
+    let start = std::time::Instant::now();
+    while !f.join("scene002.png").exists() && start.elapsed().as_secs() < 60 {
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    }
+    let pid = child.id().to_string();
+    let killed = Command::new("kill").args(["-INT", &pid]).status();
+    assert!(killed.expect("kill runs").success(), "it ended too early");
+    let output = child.wait_with_output().expect("it ends");
+    let said = stderr(&output);
+    assert_eq!(output.status.code(), Some(130), "{said}");
+    let names = pictures(f);
+    let text = format!(
+        "interrupted; {} of 900 frames are complete; --resume",
+        names.len()
+    );
+    assert!(said.contains(&text), "no `{text}` in\n{said}");
+    for name in &names {
+        let bytes = std::fs::read(f.join(name)).expect("a picture");
+        assert!(bytes[bytes.len() - 8..].starts_with(b"IEND"), "{name}");
+    }
+    // The scene and its pictures, nothing half done.
+    let files = std::fs::read_dir(f).expect("a folder").count();
+    assert_eq!(files, names.len() + 1);
+}
