@@ -319,3 +319,9 @@ fn an_error_in_a_loop_is_told_once() {
         1
     );
 }
+
+#[test]
+fn an_array_may_be_followed_by_a_directive_that_fills_it() {
+    let text = "#declare A = array[2]\n#declare A[0] = 1;\n#declare A[1] = 2;\n#debug str(A[0] + A[1], 0, 0)";
+    assert_eq!(debug(text), "3");
+}

@@ -75,7 +75,8 @@ impl Parser<'_> {
         self.accept_word(Word::Mixed)?;
         let place = self.place();
         let mut dimensions = vec![];
-        while self.peek()?.kind == Kind::LeftBracket {
+        // Not by `peek`, which would carry out a directive that follows, perhaps one that assigns to this array.
+        while self.raw().kind == Kind::LeftBracket {
             self.next()?;
             let size = self.float()?;
             self.expect(Kind::RightBracket)?;
@@ -100,7 +101,7 @@ impl Parser<'_> {
             dimensions: if sized { dimensions } else { vec![0] },
         };
         let mut given = false;
-        if self.peek()?.kind == Kind::LeftBrace {
+        if self.raw().kind == Kind::LeftBrace {
             given = true;
             let all = array.dimensions.clone();
             self.initialiser(&mut array, &all, 0)?;

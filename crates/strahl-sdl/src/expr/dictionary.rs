@@ -47,7 +47,8 @@ impl Parser<'_> {
     /// `dictionary { .Key: value, ["Key"]: value }` behind the word.
     pub(super) fn dictionary(&mut self) -> PResult<Value> {
         let mut entries = Dictionary::default();
-        if self.peek()?.kind == Kind::LeftBrace {
+        // Not by `peek`, which would carry out a directive that follows.
+        if self.raw().kind == Kind::LeftBrace {
             self.braces(|p| {
                 while p.peek()?.kind != Kind::RightBrace {
                     let place = p.place();
