@@ -11,9 +11,11 @@
 //! A pixel depends on the scene, its position and its samples only, so a film has the same bits for every accelerator,
 //! number of threads, order of tiles and split into regions.
 
+mod area;
 mod camera;
 mod compile;
 mod film;
+mod fog;
 mod hit;
 mod layers;
 mod media;

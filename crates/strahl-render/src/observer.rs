@@ -69,6 +69,8 @@ pub struct RayReport {
     pub background: Option<Color>,
     /// What the medium it ran through kept of the light.
     pub attenuation: Color,
+    /// What fog in front of the hit adds to what is kept.
+    pub fog: Color,
 }
 
 /// The surface a ray of the tree hit.
@@ -123,9 +125,12 @@ pub struct LightTerm {
     pub light: u32,
     /// n·l.
     pub n_dot_l: f64,
-    /// The shadow ray; `None` if none was sent because the surface faces away or the light does not shine here.
+    /// The shadow ray, of a light with an extent the one to its centre; `None` if none was sent because the surface faces
+    /// away, the light does not shine here or casts no shadows.
     pub shadow_ray: Option<Ray>,
-    /// What arrives through whatever is in between: 0 in full shadow, 1 without any.
+    /// How many shadow rays were followed: 1, or as many as points of a light with an extent were needed.
+    pub shadow_rays: u32,
+    /// What arrives through whatever is in between: 0 in full shadow, 1 without any; the mean over a light's extent.
     pub visible: Color,
     /// The light's colour at the point.
     pub color: Color,
@@ -145,6 +150,10 @@ pub trait TraceObserver {
 
     /// A light was looked at from the hit of a ray.
     fn light(&mut self, _node: u32, _term: LightTerm) {}
+
+    /// A shadow ray to a point of a light with an extent was followed, and this share of the light came through.
+    /// [`TraceObserver::light`] tells the mean when all are followed.
+    fn area_shadow(&mut self, _node: u32, _light: u32, _ray: Ray, _visible: Color) {}
 
     /// A branch was not followed.
     fn ended(&mut self, _node: u32, _kind: RayKind, _weight: f64, _end: BranchEnd) {}

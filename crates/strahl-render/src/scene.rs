@@ -3,7 +3,7 @@ use std::sync::Arc;
 use strahl_accel::{Accelerator, AnyAccelerator};
 use strahl_geometry::{PrimHit, Primitive, Shape, SurfaceId, SurfacePoint, TriangleMesh};
 use strahl_math::{Aabb, DVec3, Ray, Transform};
-use strahl_scene::{Background, Camera, SceneLight, Settings, SourceMap, Span};
+use strahl_scene::{Background, Camera, Fog, SceneLight, Settings, SourceMap, Span};
 use strahl_shade::patterns::TexturePoint;
 use strahl_shade::{Color, Material, MaterialId};
 
@@ -137,6 +137,7 @@ pub struct RenderScene {
     pub(crate) lights: Vec<SceneLight>,
     pub(crate) ambient: Color,
     pub(crate) background: Background,
+    pub(crate) fogs: Vec<Fog>,
     pub(crate) camera: Camera,
     pub(crate) settings: Settings,
     pub(crate) sources: SourceMap,

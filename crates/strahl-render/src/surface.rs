@@ -127,6 +127,24 @@ impl Surface {
         }
     }
 
+    /// What the surface makes of light arriving from the unit direction `l`: the diffuse part and the highlight.
+    #[inline]
+    pub(crate) fn reflected(
+        &self,
+        model: ShadingModel,
+        arriving: Color,
+        l: DVec3,
+        n_dot_l: f64,
+    ) -> (Color, Color) {
+        let finish = &self.material.finish;
+        let diffuse = finish.diffuse * arriving * n_dot_l;
+        if finish.specular.is_black() {
+            return (diffuse, Color::BLACK);
+        }
+        let highlight = model.highlight(self.n_shade, l, self.v, finish.shininess);
+        (diffuse, finish.specular * arriving * highlight)
+    }
+
     /// Divides the light: reflection, transparency by Snell's law, Fresnel's equations on request. On total reflection kt is
     /// added to kr.
     pub(crate) fn split(&self, ray: &Ray) -> Split {

@@ -12,6 +12,7 @@
 //! secondary. The tree is walked with a stack of its own, so its depth is not limited by the machine's stack, and combined
 //! bottom-up in the order reflection, transparency, so the sum does not depend on the order of tracing.
 
+use crate::area::Arriving;
 use crate::hit::{Hit, Origin, RayClass};
 use crate::layers;
 use crate::media::{MediaArena, MediaStack};
@@ -21,8 +22,9 @@ use crate::scene::{RenderScene, Uv};
 use crate::shadow::ShadowRay;
 use crate::surface::{Split, Surface};
 use strahl_math::{DVec3, Interval, Ray};
+use strahl_scene::WorkingSpace;
 use strahl_shade::texture::TexturePaint;
-use strahl_shade::{Color, MaterialId, ShadingModel};
+use strahl_shade::{Color, Light, MaterialId, ShadingModel};
 
 /// How trees are grown.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,6 +40,10 @@ pub struct TraceSettings {
     /// Most rays of one tree, shadow rays not counted: glass that reflects and refracts at every level grows trees of 2ⁿ
     /// rays. Trees that were cut are counted in [`RayCounts::cut_trees`].
     pub max_tree_rays: u32,
+    /// In which numbers the scene's colours are given.
+    pub working_space: WorkingSpace,
+    /// Whether a transparency ray that goes straight on counts as a level.
+    pub straight_counts: bool,
 }
 
 impl TraceSettings {
@@ -53,6 +59,16 @@ impl TraceSettings {
             shading: s.shading,
             force_shading: None,
             max_tree_rays: Self::MAX_TREE_RAYS,
+            working_space: s.working_space,
+            straight_counts: s.straight_counts,
+        }
+    }
+
+    /// What is seen, in linear light; pictures of something other than light stay as they are.
+    fn decoded(&self, color: Color) -> Color {
+        match self.force_shading {
+            Some(model) if model.is_diagnostic() => color,
+            _ => self.working_space.decode(color),
         }
     }
 }
@@ -148,12 +164,14 @@ pub struct TreeTracer<'s> {
     pub counts: RayCounts,
     settings: TraceSettings,
     uv: Uv,
-    media: MediaArena,
+    pub(crate) media: MediaArena,
     waiting: Vec<Branch>,
     nodes: Vec<Node>,
-    shadow_hits: Vec<Hit>,
+    pub(crate) shadow_hits: Vec<Hit>,
+    /// The points of an area light already looked at, for one lit point at a time.
+    pub(crate) area_points: Vec<Option<Arriving>>,
     /// The layers of the hit at hand; none without a texture.
-    paint: TexturePaint<'s>,
+    pub(crate) paint: TexturePaint<'s>,
 }
 
 /// A ray still to be traced.
@@ -181,6 +199,8 @@ struct Node {
     transmitted: Color,
     /// What the medium in front of the hit keeps of all this.
     attenuation: Color,
+    /// What fog in front of the hit adds to what is kept.
+    fog: Color,
 }
 
 impl<'s> TreeTracer<'s> {
@@ -200,6 +220,7 @@ impl<'s> TreeTracer<'s> {
             nodes: Vec::new(),
             shadow_hits: Vec::new(),
             paint: TexturePaint::default(),
+            area_points: Vec::new(),
         }
     }
 
@@ -232,6 +253,7 @@ impl<'s> TreeTracer<'s> {
             }
         }
         let color = self.combine(observer);
+        let color = self.settings.decoded(color);
         let rays = self.nodes.len() as u64 + self.counts.shadow - shadow_before;
         SampleResult {
             color,
@@ -244,10 +266,14 @@ impl<'s> TreeTracer<'s> {
     /// Adds the tree up from its leaves: every ray sends its hit's own light, plus kr times what its reflection ray
     /// brought, plus kt times what its transparency ray brought.
     fn combine<O: TraceObserver>(&mut self, observer: &mut O) -> Color {
+        let fogged = !self.tracer.scene.fogs.is_empty();
         for index in (0..self.nodes.len()).rev() {
             let node = self.nodes[index];
             let sum = node.local + node.kr * node.reflected + node.kt * node.transmitted;
-            let total = sum * node.attenuation;
+            let mut total = sum * node.attenuation;
+            if fogged {
+                total += node.fog;
+            }
             if O::ACTIVE {
                 observer.combined(index as u32, node.local, total);
             }
@@ -279,9 +305,15 @@ impl<'s> TreeTracer<'s> {
 
         let index = self.nodes.len() as u32;
         let length = hit.map_or(f64::INFINITY, |h| h.t * branch.ray.direction.length());
-        let attenuation = self.media.top(branch.media).map_or(Color::WHITE, |id| {
+        let medium = self.media.top(branch.media);
+        let mut attenuation = medium.map_or(Color::WHITE, |id| {
             scene.materials[id.0 as usize].attenuation(length)
         });
+        let mut fog = Color::BLACK;
+        // Fog is outside of solid things only.
+        if !scene.fogs.is_empty() && medium.is_none() {
+            (attenuation, fog) = scene.fog_along(&branch.ray, length);
+        }
         let mut node = Node {
             parent: branch.parent,
             kind: branch.kind,
@@ -291,6 +323,7 @@ impl<'s> TreeTracer<'s> {
             reflected: Color::BLACK,
             transmitted: Color::BLACK,
             attenuation,
+            fog,
         };
         let report = |hit, background| RayReport {
             node: index,
@@ -302,6 +335,7 @@ impl<'s> TreeTracer<'s> {
             hit,
             background,
             attenuation,
+            fog,
         };
         let Some(hit) = hit else {
             node.local = scene.background.along(branch.ray.direction);
@@ -340,7 +374,7 @@ impl<'s> TreeTracer<'s> {
         let finish = &surface.material.finish;
         node.local = finish.ambient * scene.ambient + finish.emission;
         for light in 0..scene.lights.len() {
-            let term = self.light(&surface, &hit, model, light, branch);
+            let term = self.light(&surface, &hit, model, light, branch, index, observer);
             node.local += term.diffuse + term.specular;
             if O::ACTIVE {
                 observer.light(index, term);
@@ -364,19 +398,26 @@ impl<'s> TreeTracer<'s> {
 
     /// One light's contribution: no shadow ray if the surface faces away.
     #[inline(always)]
-    fn light(
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "inlined into its only caller; what belongs together is together already"
+    )]
+    fn light<O: TraceObserver>(
         &mut self,
         surface: &Surface,
         hit: &Hit,
         model: ShadingModel,
         light: usize,
         branch: &Branch,
+        node: u32,
+        observer: &mut O,
     ) -> LightTerm {
         let scene_light = &self.tracer.scene.lights[light].light;
         let mut term = LightTerm {
             light: light as u32,
             n_dot_l: 0.0,
             shadow_ray: None,
+            shadow_rays: 0,
             visible: Color::BLACK,
             color: Color::BLACK,
             diffuse: Color::BLACK,
@@ -387,50 +428,97 @@ impl<'s> TreeTracer<'s> {
         };
         term.n_dot_l = surface.n_shade.dot(sample.l);
         term.color = sample.color;
-        let textured = !self.paint.layers.is_empty();
-        let faces = if textured {
-            layers::faces(&self.paint, sample.l)
-        } else {
-            term.n_dot_l > 0.0
-        };
-        if !faces {
+        // Parts of a light that shades point by point may be seen where its centre is not.
+        if !self.faces(sample.l, term.n_dot_l) && scene_light.area.is_none_or(|a| !a.illumination) {
             return term;
         }
         term.visible = Color::WHITE;
-        if scene_light.casts_shadows {
+        if scene_light.casts_shadows && !sample.range.is_empty() {
             let (origin_point, origin) = surface.start(hit, sample.shadow_direction);
             let ray = Ray::new(origin_point, sample.shadow_direction);
-            let shadow_ray = ShadowRay {
-                ray,
-                range: sample.range,
-                from: origin,
-                light,
-                media: branch.media,
-            };
-            let shadow = self
-                .tracer
-                .shadow(&shadow_ray, &mut self.media, &mut self.shadow_hits);
-            self.counts.shadow += 1;
-            self.counts.shadow_hit += u64::from(shadow.hit);
             term.shadow_ray = Some(ray);
-            term.visible = shadow.visible;
+            if let Some(area) = &scene_light.area {
+                self.area_light(
+                    area, &sample, surface, hit, model, light, branch, node, &mut term, observer,
+                );
+                if area.illumination {
+                    return term;
+                }
+            } else {
+                let shadow_ray = ShadowRay {
+                    ray,
+                    range: sample.range,
+                    from: origin,
+                    light,
+                    media: branch.media,
+                };
+                let shadow =
+                    self.tracer
+                        .shadow(&shadow_ray, &mut self.media, &mut self.shadow_hits);
+                self.counts.shadow += 1;
+                self.counts.shadow_hit += u64::from(shadow.hit);
+                term.shadow_rays = 1;
+                term.visible = shadow.visible;
+            }
+        }
+        if scene_light.fogged
+            && !self.tracer.scene.fogs.is_empty()
+            && self.media.top(branch.media).is_none()
+        {
+            let ray = Ray::new(surface.resolved.point.position, sample.l);
+            let length = if sample.range.max.is_infinite() {
+                f64::INFINITY
+            } else {
+                sample.shadow_direction.length()
+            };
+            term.visible *= self.tracer.scene.fog_along(&ray, length).0;
         }
         if !term.visible.is_black() {
-            let finish = &surface.material.finish;
             let arriving = sample.color * term.visible;
-            if textured {
-                (term.diffuse, term.specular) =
-                    layers::lit(&self.paint, surface, sample.l, arriving);
-                return term;
-            }
-            term.diffuse = finish.diffuse * arriving * term.n_dot_l;
-            if !finish.specular.is_black() {
-                let highlight =
-                    model.highlight(surface.n_shade, sample.l, surface.v, finish.shininess);
-                term.specular = finish.specular * arriving * highlight;
-            }
+            (term.diffuse, term.specular) = self.reflected(
+                surface,
+                scene_light,
+                model,
+                arriving,
+                sample.l,
+                term.n_dot_l,
+            );
         }
         term
+    }
+
+    /// Whether light from the unit direction `l` shows on the surface at hand.
+    #[inline]
+    pub(crate) fn faces(&self, l: DVec3, n_dot_l: f64) -> bool {
+        if self.paint.layers.is_empty() {
+            n_dot_l > 0.0
+        } else {
+            layers::faces(&self.paint, l)
+        }
+    }
+
+    /// What the surface at hand makes of light from the unit direction `l`: the diffuse part and the highlight.
+    #[inline]
+    pub(crate) fn reflected(
+        &self,
+        surface: &Surface,
+        light: &Light,
+        model: ShadingModel,
+        arriving: Color,
+        l: DVec3,
+        n_dot_l: f64,
+    ) -> (Color, Color) {
+        let (diffuse, highlight) = if self.paint.layers.is_empty() {
+            surface.reflected(model, arriving, l, n_dot_l)
+        } else {
+            layers::lit(&self.paint, surface, l, arriving)
+        };
+        let highlight = if light.highlights {
+            highlight
+        } else {
+            Color::BLACK
+        };
+        (diffuse, highlight)
     }
 
     /// Queues what the surface reflects and transmits; the reflection ray is traced first.
@@ -471,13 +559,14 @@ impl<'s> TreeTracer<'s> {
                 RayKind::Refraction => surface.media_behind(branch.media, &mut self.media),
                 _ => branch.media,
             };
+            let straight = kind == RayKind::Refraction && direction == branch.ray.direction;
             let (point, origin) = surface.start(hit, direction);
             self.waiting.push(Branch {
                 ray: Ray::new(point, direction),
                 origin: Some(origin),
                 kind,
                 parent: index,
-                depth: branch.depth + 1,
+                depth: branch.depth + u32::from(self.settings.straight_counts || !straight),
                 weight,
                 media,
             });

@@ -1,4 +1,4 @@
-use crate::Span;
+use crate::{SceneLight, Span};
 use std::sync::Arc;
 use strahl_geometry::Shape;
 use strahl_math::Transform;
@@ -69,6 +69,8 @@ pub enum ObjectKind {
     },
     /// A group of objects once more, without copying it.
     Instance(GroupId),
+    /// A light, moved along with what it is combined with; it has no surface.
+    Light(Box<SceneLight>),
 }
 
 /// To which kinds of rays an object shows.
@@ -137,6 +139,11 @@ impl Object {
             op,
             children: Children(children),
         })
+    }
+
+    /// A light.
+    pub fn light(light: SceneLight) -> Self {
+        Self::new(ObjectKind::Light(Box::new(light)))
     }
 
     /// A group once more.

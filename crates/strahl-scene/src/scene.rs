@@ -1,4 +1,4 @@
-use crate::{Background, Camera, Children, Group, Settings, SourceMap, Span};
+use crate::{Background, Camera, Children, Fog, Group, Settings, SourceMap, Span};
 use std::sync::Arc;
 use strahl_shade::{Color, Light};
 
@@ -25,6 +25,8 @@ pub struct Scene {
     pub ambient: Option<Color>,
     /// What rays see that hit nothing; `None` is black, or a soft gradient behind objects framed by the renderer.
     pub background: Option<Background>,
+    /// Fogs; each fills all space outside of solid things.
+    pub fogs: Vec<Fog>,
     /// Hints for the renderer.
     pub settings: Settings,
     /// The objects.

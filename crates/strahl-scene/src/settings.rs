@@ -1,3 +1,4 @@
+use crate::WorkingSpace;
 use strahl_shade::ShadingModel;
 
 /// What a scene asks of the renderer; the caller may override each.
@@ -12,6 +13,11 @@ pub struct Settings {
     pub adc_bailout: f64,
     /// Shading model of materials that name none.
     pub shading: ShadingModel,
+    /// In which numbers the scene's colours are given.
+    pub working_space: WorkingSpace,
+    /// Whether a transparency ray that goes straight on counts as a level of the ray tree. POV-Ray counts reflections and
+    /// refractions only.
+    pub straight_counts: bool,
 }
 
 impl Default for Settings {
@@ -21,6 +27,8 @@ impl Default for Settings {
             max_depth: 10,
             adc_bailout: 1.0 / 255.0,
             shading: ShadingModel::BlinnPhong,
+            working_space: WorkingSpace::Linear,
+            straight_counts: true,
         }
     }
 }

@@ -415,6 +415,7 @@ fn a_scene_built_up_step_by_step_is_no_tower() {
             ObjectKind::Csg { children, .. } => waiting.extend(&children.0),
             ObjectKind::Shape(_) => spheres += 1,
             ObjectKind::Instance(_) => panic!("an instance is left"),
+            ObjectKind::Light(_) => panic!("a light is no part"),
         }
     }
     assert_eq!(spheres, 20001);

@@ -2,26 +2,8 @@
 
 mod common;
 
-use common::debug;
-use std::path::PathBuf;
+use common::{debug, tool};
 use std::process::Command;
-
-/// A program to compare with; without it the caller skips, unless the environment requires all tools.
-fn tool(name: &str) -> Option<PathBuf> {
-    let path = std::env::var_os("PATH")?;
-    let found = std::env::split_paths(&path)
-        .map(|folder| folder.join(name))
-        .find(|p| p.is_file());
-    if found.is_none() {
-        assert!(
-            std::env::var_os("STRAHL_REQUIRE_TOOLS").is_none(),
-            "{name} is missing, but required"
-        );
-        use std::io::Write;
-        let _ = writeln!(std::io::stderr().lock(), "SKIPPED: {name} is not installed");
-    }
-    found
-}
 
 const SETUP: &str = "
 #version 3.7;

@@ -1,36 +1,11 @@
+mod area;
+mod falloff;
+
+pub use area::AreaLight;
+pub use falloff::Falloff;
+
 use crate::Color;
-use strahl_math::{DVec3, Interval, det};
-
-/// How a light weakens with the distance `d` to it.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub enum Falloff {
-    /// Not at all: the classical model.
-    #[default]
-    None,
-    /// `1 / d²`, the physical law: the light's colour is the radiance at distance 1.
-    InverseSquare,
-    /// `2 / (1 + (d / distance)^power)`: 1 at `distance`, at most 2.
-    Fade {
-        /// Where the light has its nominal strength; positive.
-        distance: f64,
-        /// Exponent; 1 and 2 are usual.
-        power: f64,
-    },
-    /// `1 / (c₀ + c₁ d + c₂ d²)`, the model of the rasterisers.
-    Polynomial([f64; 3]),
-}
-
-impl Falloff {
-    /// The factor at distance `d > 0`.
-    pub fn at(self, d: f64) -> f64 {
-        match self {
-            Self::None => 1.0,
-            Self::InverseSquare => 1.0 / (d * d),
-            Self::Fade { distance, power } => 2.0 / (1.0 + det::pow(d / distance, power)),
-            Self::Polynomial([c0, c1, c2]) => 1.0 / (c0 + d * (c1 + d * c2)),
-        }
-    }
-}
+use strahl_math::{DVec3, Interval, Transform, det};
 
 /// Where a light is and where it shines.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -54,12 +29,35 @@ pub enum LightKind {
         direction: DVec3,
         /// Cosine of the half angle within which the light has its full strength.
         cos_inner: f64,
-        /// Cosine of the half angle outside of which there is no light; at most `cos_inner`.
+        /// Cosine of the half angle outside of which there is no light; with `cos_inner` below it the cone ends sharply
+        /// at `cos_inner`.
         cos_outer: f64,
+        /// The strength is also multiplied by this power of the cosine of the angle; 0 for an even cone.
+        tightness: f64,
+    },
+    /// Parallel light from a plane through a point: what lies behind the plane is lit too, but without shadows.
+    Parallel {
+        /// A point of the plane.
+        position: DVec3,
+        /// Unit direction in which the light travels, the normal of the plane.
+        direction: DVec3,
+    },
+    /// Parallel light within a cylinder that begins at a point.
+    Beam {
+        /// Centre of the beam's beginning.
+        position: DVec3,
+        /// Unit direction in which the light travels, the axis.
+        direction: DVec3,
+        /// Distance from the axis up to which the light has its full strength.
+        inner: f64,
+        /// Distance from the axis beyond which there is no light; with `inner` above it the beam ends sharply at `inner`.
+        outer: f64,
+        /// The strength at distance `d` is also multiplied by `(1 - d / outer)^tightness`; 0 for an even beam.
+        tightness: f64,
     },
 }
 
-/// A light source without extent.
+/// A light source.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Light {
     /// Where it is.
@@ -70,6 +68,12 @@ pub struct Light {
     pub falloff: Falloff,
     /// Whether objects cast shadows in this light.
     pub casts_shadows: bool,
+    /// Whether the light makes highlights.
+    pub highlights: bool,
+    /// Whether fog weakens the light on its way to what it lights.
+    pub fogged: bool,
+    /// The extent of the light; `None` if it shines from a point. Of the kind this is the centre.
+    pub area: Option<AreaLight>,
 }
 
 /// A light as seen from one point.
@@ -79,7 +83,7 @@ pub struct LightSample {
     pub l: DVec3,
     /// Direction of the shadow ray: from the point to the light (which is at `t = 1`), or `l` for directional lights.
     pub shadow_direction: DVec3,
-    /// The range in which an object casts a shadow.
+    /// The range in which an object casts a shadow; empty where nothing does.
     pub range: Interval,
     /// The light that arrives if nothing is in between.
     pub color: Color,
@@ -93,6 +97,9 @@ impl Light {
             color,
             falloff: Falloff::None,
             casts_shadows: true,
+            highlights: true,
+            fogged: false,
+            area: None,
         }
     }
 
@@ -122,6 +129,7 @@ impl Light {
                 direction,
                 cos_inner,
                 cos_outer,
+                tightness: 0.0,
             },
             color,
         )
@@ -153,7 +161,9 @@ impl Light {
                 direction,
                 cos_inner,
                 cos_outer,
-            } => (position, Some((direction, cos_inner, cos_outer))),
+                tightness,
+            } => (position, Some((direction, cos_inner, cos_outer, tightness))),
+            LightKind::Parallel { .. } | LightKind::Beam { .. } => return self.parallel(point),
         };
         let to_light = position - point;
         let distance = to_light.length();
@@ -162,11 +172,13 @@ impl Light {
         }
         let l = to_light / distance;
         let mut strength = self.falloff.at(distance);
-        if let Some((direction, cos_inner, cos_outer)) = cone {
-            strength *= smooth_step(cos_outer, cos_inner, -l.dot(direction));
+        if let Some((direction, cos_inner, cos_outer, tightness)) = cone {
+            let cosine = -l.dot(direction);
+            strength *= smooth_step(cos_outer, cos_inner, cosine);
             if strength == 0.0 {
                 return None;
             }
+            strength *= power(cosine, tightness);
         }
         let color = self.color * strength;
         Some(LightSample {
@@ -175,6 +187,101 @@ impl Light {
             range: Interval::UNTIL_LIGHT,
             color,
         })
+    }
+
+    /// Whether the light's rays are parallel.
+    pub fn is_parallel(&self) -> bool {
+        !matches!(self.kind, LightKind::Point { .. } | LightKind::Spot { .. })
+    }
+
+    /// Parallel light with a beginning. Its distance is that to the plane it comes from.
+    fn parallel(&self, point: DVec3) -> Option<LightSample> {
+        let (position, direction, beam) = match self.kind {
+            LightKind::Parallel {
+                position,
+                direction,
+            } => (position, direction, None),
+            LightKind::Beam {
+                position,
+                direction,
+                inner,
+                outer,
+                tightness,
+            } => (position, direction, Some((inner, outer, tightness))),
+            _ => return None,
+        };
+        let from_light = point - position;
+        let distance = from_light.dot(direction);
+        let mut strength = self.falloff.at(distance.abs());
+        if let Some((inner, outer, tightness)) = beam {
+            let radius = (from_light - direction * distance).length();
+            // Seen from the axis a smaller distance is more, as a larger cosine is in a cone.
+            strength *=
+                smooth_step(-outer, -inner, -radius) * power(1.0 - radius / outer, tightness);
+            if distance <= 0.0 || !(strength > 0.0) {
+                return None;
+            }
+        }
+        let (shadow_direction, range) = if distance > 0.0 {
+            (direction * -distance, Interval::UNTIL_LIGHT)
+        } else {
+            (-direction, Interval::new(0.0, 0.0))
+        };
+        Some(LightSample {
+            l: -direction,
+            shadow_direction,
+            range,
+            color: self.color * strength,
+        })
+    }
+
+    /// The light after a transformation; radii of beams and fading distances stay.
+    #[must_use]
+    pub fn transformed(&self, t: &Transform) -> Self {
+        let turned = |v: DVec3| t.vector_to_world(v).normalize_or(v);
+        let mut light = *self;
+        match &mut light.kind {
+            LightKind::Point { position } => *position = t.point_to_world(*position),
+            LightKind::Directional { direction } => *direction = turned(*direction),
+            LightKind::Spot {
+                position,
+                direction,
+                ..
+            }
+            | LightKind::Parallel {
+                position,
+                direction,
+            }
+            | LightKind::Beam {
+                position,
+                direction,
+                ..
+            } => {
+                *position = t.point_to_world(*position);
+                *direction = turned(*direction);
+            }
+        }
+        if let Some(area) = &mut light.area {
+            area.axis_1 = t.vector_to_world(area.axis_1);
+            area.axis_2 = t.vector_to_world(area.axis_2);
+            if let LightKind::Parallel { direction, .. } | LightKind::Beam { direction, .. } =
+                self.kind
+            {
+                area.reach = t.vector_to_world(direction * area.reach).length();
+            }
+        }
+        light
+    }
+}
+
+/// `base^exponent`; 1 for exponent 0, and 0 for bases that are not positive.
+fn power(base: f64, exponent: f64) -> f64 {
+    if exponent == 0.0 {
+        1.0
+    } else if base > 0.0 {
+        det::pow(base, exponent)
+    } else {
+        0.0
     }
 }
 
@@ -215,16 +322,65 @@ mod tests {
     }
 
     #[test]
-    fn falloff_laws() {
-        assert_eq!(Falloff::InverseSquare.at(2.0), 0.25);
-        assert_eq!(
-            Falloff::Fade {
-                distance: 3.0,
-                power: 2.0
-            }
-            .at(3.0),
-            1.0
-        );
-        assert_eq!(Falloff::Polynomial([1.0, 0.5, 0.25]).at(2.0), 1.0 / 3.0);
+    fn a_tight_spot_weakens_by_the_power_of_the_cosine() {
+        let even = Light::spot(DVec3::ZERO, DVec3::NEG_Z, 1.0, 1.2, Color::WHITE);
+        let mut tight = even;
+        if let LightKind::Spot { tightness, .. } = &mut tight.kind {
+            *tightness = 3.0;
+        }
+        let p = DVec3::new(0.6, 0.0, -0.8);
+        assert_eq!(even.illuminate(p).expect("lit").color, Color::WHITE);
+        let c = tight.illuminate(p).expect("lit").color.r;
+        assert!((c - 0.8f64.powi(3)).abs() < 1e-15);
+    }
+
+    #[test]
+    fn parallel_light_comes_from_its_plane() {
+        let kind = LightKind::Parallel {
+            position: DVec3::new(5.0, 2.0, 0.0),
+            direction: DVec3::NEG_Y,
+        };
+        let light = Light::new(kind, Color::WHITE).with_falloff(Falloff::InverseSquare);
+        let s = light.illuminate(DVec3::new(-7.0, 0.0, 3.0)).expect("lit");
+        assert_eq!((s.l, s.shadow_direction), (DVec3::Y, DVec3::Y * 2.0));
+        assert_eq!(s.color, Color::gray(0.25));
+        let behind = light.illuminate(DVec3::new(0.0, 3.0, 0.0)).expect("lit");
+        assert!(behind.range.is_empty() && behind.l == DVec3::Y);
+    }
+
+    #[test]
+    fn a_beam_is_a_cylinder_with_a_beginning() {
+        let kind = LightKind::Beam {
+            position: DVec3::ZERO,
+            direction: DVec3::Z,
+            inner: 0.5,
+            outer: 1.0,
+            tightness: 0.0,
+        };
+        let light = Light::new(kind, Color::WHITE);
+        let at = |x: f64, z: f64| light.illuminate(DVec3::new(x, 0.0, z)).map(|s| s.color.r);
+        assert_eq!(at(0.4, 3.0), Some(1.0));
+        assert_eq!(at(0.75, 3.0), Some(0.5));
+        assert_eq!((at(1.1, 3.0), at(0.0, -1.0)), (None, None));
+    }
+
+    #[test]
+    fn a_light_moves_with_everything_it_has() {
+        let t = Transform::rotate(DVec3::Z, std::f64::consts::FRAC_PI_2)
+            .then(&Transform::translate(DVec3::new(0.0, 0.0, 4.0)));
+        let mut light = Light::spot(DVec3::X, DVec3::X * 2.0, 0.1, 0.2, Color::WHITE);
+        light.area = Some(AreaLight::new(DVec3::X, DVec3::Z, 3, 3));
+        let moved = light.transformed(&t);
+        let LightKind::Spot {
+            position,
+            direction,
+            ..
+        } = moved.kind
+        else {
+            panic!("still a spot");
+        };
+        assert!((position - DVec3::new(0.0, 1.0, 4.0)).length() < 1e-15);
+        assert!((direction - DVec3::Y).length() < 1e-15);
+        assert!((moved.area.expect("kept").axis_1 - DVec3::Y).length() < 1e-15);
     }
 }

@@ -99,6 +99,10 @@ fn view(scene: &RenderScene, own_camera: bool, own_lights: bool) {
                 format!("directional light along {}", point(direction))
             }
             LightKind::Spot { position, .. } => format!("spot light at {}", point(position)),
+            LightKind::Parallel { direction, .. } => {
+                format!("parallel light along {}", point(direction))
+            }
+            LightKind::Beam { position, .. } => format!("beam of light from {}", point(position)),
             _ => "light".to_owned(),
         };
         let c = light.light.color;

@@ -85,6 +85,7 @@ fn light(scene: &RenderScene, term: &LightTerm) -> Value {
         "light": light_name(scene, term.light),
         "n_dot_l": term.n_dot_l,
         "shadow_ray": term.shadow_ray.as_ref().map(ray),
+        "shadow_rays": term.shadow_rays,
         "visible": color(term.visible),
         "color": color(term.color),
         "kd_n_dot_l": color(term.diffuse),

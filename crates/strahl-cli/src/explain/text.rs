@@ -133,6 +133,9 @@ fn write_node(out: &mut String, scene: &RenderScene, tree: &RayTree, node: &RayN
             format_args!("absorbed on the way: times {}", color(report.attenuation)),
         );
     }
+    if report.fog != Color::BLACK {
+        line(out, level, format_args!("fog adds {}", color(report.fog)));
+    }
     line(out, level, format_args!("total {}", color(node.total)));
 }
 
@@ -202,7 +205,12 @@ fn write_light(out: &mut String, scene: &RenderScene, level: usize, term: &Light
         None => "casts no shadows".to_owned(),
         Some(_) if term.visible.is_black() => "in shadow".to_owned(),
         Some(_) if term.visible == Color::WHITE => "visible".to_owned(),
+        Some(_) if term.shadow_rays > 1 => format!("seen to {}", color(term.visible)),
         Some(_) => format!("filtered to {}", color(term.visible)),
+    };
+    let rays = match term.shadow_rays {
+        0 | 1 => String::new(),
+        n => format!("s: {n}, the one to the centre"),
     };
     line(
         out,
@@ -214,7 +222,7 @@ fn write_light(out: &mut String, scene: &RenderScene, level: usize, term: &Light
             out,
             level + 1,
             format_args!(
-                "shadow ray from {} direction {}",
+                "shadow ray{rays} from {} direction {}",
                 point(ray.origin),
                 point(ray.direction)
             ),

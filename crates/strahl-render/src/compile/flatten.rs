@@ -7,7 +7,7 @@ use std::collections::HashSet;
 use std::sync::Arc;
 use strahl_geometry::{Csg, CsgNode, GeometryError, Primitive, Shape};
 use strahl_math::Transform;
-use strahl_scene::{CsgOp, Diagnostic, Object, ObjectKind, Scene, Span, Visibility};
+use strahl_scene::{CsgOp, Diagnostic, Object, ObjectKind, Scene, SceneLight, Span, Visibility};
 use strahl_shade::{Material, MaterialId};
 
 /// The lists of one group.
@@ -26,6 +26,8 @@ pub(super) struct Flat {
     pub(super) objects: Vec<ObjectInfo>,
     pub(super) materials: MaterialTable,
     pub(super) texture_spaces: Vec<Transform>,
+    /// Lights found among the objects.
+    pub(super) lights: Vec<SceneLight>,
     /// Warnings.
     pub(super) diagnostics: Vec<Diagnostic>,
 }
@@ -43,8 +45,19 @@ pub(super) fn flatten(scene: &Scene) -> Result<Flat, Vec<Diagnostic>> {
     let world = std::iter::once(&scene.objects);
     for objects in scene.groups.iter().map(|g| &g.objects).chain(world) {
         let mut group = FlatGroup::default();
+        let (lights, is_world) = (
+            pass.flat.lights.len(),
+            pass.flat.groups.len() == scene.groups.len(),
+        );
         pass.objects(&objects.0, scene, &mut group);
         pass.flat.groups.push(group);
+        if !is_world && let Some(light) = pass.flat.lights.get(lights) {
+            let message =
+                "a light in a group that is instanced does not shine; put it beside the instances";
+            let warning = Diagnostic::warning(message).at(light.span);
+            pass.flat.diagnostics.push(warning);
+            pass.flat.lights.truncate(lights);
+        }
     }
     if pass.errors.is_empty() {
         return Ok(pass.flat);
@@ -133,6 +146,7 @@ impl Pass {
                 }
                 ObjectKind::Csg { .. } => self.csg(&todo, group),
                 ObjectKind::Shape(shape) => self.shape(shape, &todo, group),
+                ObjectKind::Light(light) => self.light(light, &todo),
                 ObjectKind::Instance(id) if (id.0 as usize) < scene.groups.len() => {
                     group.instances.push(InstanceUse {
                         group: id.0,
@@ -155,6 +169,14 @@ impl Pass {
                 }
             }
         }
+    }
+
+    fn light(&mut self, light: &SceneLight, todo: &Todo<'_>) {
+        self.flat.lights.push(SceneLight {
+            light: light.light.transformed(&todo.transform),
+            name: light.name.as_ref().or(todo.name).cloned(),
+            span: light.span,
+        });
     }
 
     /// Registers object and material.
@@ -307,11 +329,15 @@ impl Pass {
                 }
                 Step::Visit(todo) => match &todo.object.kind {
                     ObjectKind::Csg { op, children } => {
-                        if let Some(problem) = wrong_count(*op, children.0.len()) {
+                        // Lights among the operands shine, but are none.
+                        let is_light = |c: &Object| matches!(c.kind, ObjectKind::Light(_));
+                        let lights = children.0.iter().filter(|c| is_light(c)).count();
+                        let count = children.0.len() - lights;
+                        if let Some(problem) = wrong_count(*op, count) {
                             self.errors.push(Diagnostic::error(problem).at(todo.span));
                             return None;
                         }
-                        steps.push(Step::Combine(*op, children.0.len()));
+                        steps.push(Step::Combine(*op, count));
                         steps.extend(
                             children
                                 .0
@@ -320,6 +346,7 @@ impl Pass {
                                 .map(|c| Step::Visit(Box::new(Todo::new(c, Some(&todo))))),
                         );
                     }
+                    ObjectKind::Light(light) => self.light(light, &todo),
                     ObjectKind::Shape(shape) => {
                         if let Err(error) = shape.validate() {
                             self.invalid(&todo, shape.kind(), &error);

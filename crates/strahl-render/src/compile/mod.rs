@@ -19,7 +19,7 @@ pub(crate) use materials::material_transmits;
 use std::sync::Arc;
 use strahl_accel::{AcceleratorKind, AnyAccelerator};
 use strahl_math::{Aabb, Transform};
-use strahl_scene::{Background, Camera, Diagnostic, Scene, SceneLight, Settings, SourceMap};
+use strahl_scene::{Background, Camera, Diagnostic, Fog, Scene, SceneLight, Settings, SourceMap};
 use strahl_shade::{Color, Material};
 
 /// How to compile a scene.
@@ -39,6 +39,7 @@ pub struct Prepared {
     lights: Vec<SceneLight>,
     ambient: Color,
     background: Background,
+    fogs: Vec<Fog>,
     camera: Camera,
     settings: Settings,
     sources: SourceMap,
@@ -76,7 +77,7 @@ impl Prepared {
                 "the scene has no objects: the picture shows the background only",
             ));
         }
-        let (lights, ambient) = view::lights(scene, &camera, bounds);
+        let (lights, ambient) = view::lights(scene, flat.lights, &camera, bounds);
         Ok(Self {
             groups,
             objects: flat.objects,
@@ -86,7 +87,9 @@ impl Prepared {
             ambient,
             background: scene
                 .background
+                .clone()
                 .unwrap_or_else(|| view::background(scene, &camera)),
+            fogs: scene.fogs.clone(),
             camera,
             settings: scene.settings,
             sources: scene.sources.clone(),
@@ -130,6 +133,7 @@ impl Prepared {
             lights: self.lights,
             ambient: self.ambient,
             background: self.background,
+            fogs: self.fogs,
             camera: self.camera,
             settings: self.settings,
             sources: self.sources,

@@ -36,11 +36,17 @@ pub(super) fn frame(bounds: Aabb) -> Camera {
 /// The scene's lights and ambient light. A scene with neither camera nor lights (a bare mesh) gets a key light over the
 /// viewer's left shoulder, a weaker fill light from the right and a faint one from behind; they cast no shadows onto
 /// what the viewer wants to see but the key light's.
-pub(super) fn lights(scene: &Scene, camera: &Camera, bounds: Aabb) -> (Vec<SceneLight>, Color) {
+pub(super) fn lights(
+    scene: &Scene,
+    of_objects: Vec<SceneLight>,
+    camera: &Camera,
+    bounds: Aabb,
+) -> (Vec<SceneLight>, Color) {
     let ambient = scene.ambient.unwrap_or(Color::gray(0.1));
-    let emits = scene.lights.is_empty() && scene.camera.is_none();
+    let own = [scene.lights.as_slice(), &of_objects].concat();
+    let emits = own.is_empty() && scene.camera.is_none();
     if !emits || !bounds.is_bounded() {
-        return (scene.lights.clone(), ambient);
+        return (own, ambient);
     }
     let (w, u, v) = (
         camera.direction,

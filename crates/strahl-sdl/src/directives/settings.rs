@@ -22,6 +22,7 @@ impl Parser<'_> {
             );
         }
         self.version = version;
+        self.state.global.versioned = true;
         self.raw_accept(Kind::Semicolon)?;
         Ok(())
     }

@@ -1,10 +1,18 @@
 use crate::parser::{PResult, Parser};
-use strahl_scene::Background;
+use std::sync::Arc;
+use strahl_scene::{Background, SkySphere};
 use strahl_shade::Color;
 
-/// `background { colour }`
+/// `background { colour }`; a sky sphere covers it.
 pub(super) fn background(p: &mut Parser<'_>) -> PResult<()> {
     let [r, g, b, ..] = p.braces(Parser::color)?;
-    p.scene.background = Some(Background::Solid(Color::new(r, g, b)));
+    let color = Color::new(r, g, b);
+    p.scene.background = Some(match p.scene.background.take() {
+        Some(Background::Sky(sky)) => Background::Sky(Arc::new(SkySphere {
+            behind: color,
+            ..SkySphere::clone(&sky)
+        })),
+        _ => Background::Solid(color),
+    });
     Ok(())
 }

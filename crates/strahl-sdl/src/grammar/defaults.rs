@@ -11,6 +11,8 @@ pub struct State {
     pub default_texture: Texture,
     /// Declared objects that are used as instances.
     pub(super) shared: super::objects::Shared,
+    /// What `global_settings` has set.
+    pub global: super::GlobalSettings,
     /// The last material made: neighbouring objects mostly share one.
     pub(super) last_material: Option<(Texture, Arc<Material>)>,
 }
@@ -23,6 +25,7 @@ impl Default for State {
                 finish: Finish::default(),
             },
             shared: super::objects::Shared::default(),
+            global: super::GlobalSettings::default(),
             last_material: None,
         }
     }

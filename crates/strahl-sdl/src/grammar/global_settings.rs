@@ -1,52 +1,170 @@
 use crate::keywords::Word;
 use crate::parser::{PResult, Parser};
+use crate::token::Token;
+use strahl_scene::WorkingSpace;
 use strahl_shade::Color;
 
-/// `global_settings { ... }`
+/// `max_trace_level` of scenes that set none.
+const TRACE_LEVEL: u32 = 5;
+
+/// What `global_settings` has set so far; the rest are the language's defaults, which depend on its version.
+#[derive(Debug, Default)]
+pub struct GlobalSettings {
+    /// Whether the scene names its version; scenes that do not are old.
+    pub versioned: bool,
+    /// `assumed_gamma`
+    pub working_space: Option<WorkingSpace>,
+    /// `max_trace_level`
+    pub trace_level: Option<u32>,
+    /// `ambient_light`
+    pub ambient: Option<Color>,
+    /// `noise_generator`: 1, 2 or 3.
+    pub noise_generator: Option<u8>,
+    /// `number_of_waves`
+    pub number_of_waves: Option<u32>,
+    /// `irid_wavelength`
+    pub irid_wavelength: Option<Color>,
+}
+
+/// `global_settings { ... }`; of several, each item's last value counts.
 pub(super) fn global_settings(p: &mut Parser<'_>) -> PResult<()> {
-    p.braces(|p| {
-        p.items("`global_settings`", |p, token| {
-            match token.word() {
-                Some(Word::AmbientLight) => {
-                    p.take(token)?;
-                    let [r, g, b, ..] = p.color()?;
-                    p.scene.ambient = Some(Color::new(r, g, b));
-                }
-                Some(Word::MaxTraceLevel) => {
-                    p.take(token)?;
-                    let level = p.float()?;
-                    let place = p.place();
-                    if !(1.0..=256.0).contains(&level) {
-                        return Err(p.fail(
-                            place,
-                            format!("max_trace_level must be 1 to 256, not {level}"),
-                        ));
-                    }
-                    p.scene.settings.max_depth = level as u32;
-                }
-                Some(Word::AdcBailout) => {
-                    p.take(token)?;
-                    p.scene.settings.adc_bailout = p.float()?;
-                }
-                // Pictures are computed in linear light and written as sRGB, which is what 1.0 asks for.
-                Some(Word::AssumedGamma) => {
-                    p.take(token)?;
-                    let place = p.place();
-                    if !p.accept_word(Word::Srgb)? {
-                        let gamma = p.float()?;
-                        if gamma != 1.0 {
-                            p.warn(
-                                place,
-                                format!(
-                                    "assumed_gamma {gamma} is not supported yet and counts as 1.0"
-                                ),
-                            );
-                        }
-                    }
-                }
-                _ => return p.skip_item(token, "`global_settings`"),
+    p.braces(|p| p.items("`global_settings`", Parser::global_setting))
+}
+
+impl Parser<'_> {
+    fn global_setting(&mut self, token: Token) -> PResult<()> {
+        let Some(word) = token.word() else {
+            return self.skip_item(token, "`global_settings`");
+        };
+        let place = self.place_of(token);
+        match word {
+            Word::AssumedGamma => {
+                self.take(token)?;
+                self.assumed_gamma()?;
             }
-            Ok(())
-        })
-    })
+            Word::AmbientLight => {
+                self.take(token)?;
+                let [r, g, b, ..] = self.color()?;
+                self.state.global.ambient = Some(Color::new(r, g, b));
+            }
+            Word::IridWavelength => {
+                self.take(token)?;
+                let [r, g, b, ..] = self.color()?;
+                self.state.global.irid_wavelength = Some(Color::new(r, g, b));
+            }
+            Word::AdcBailout => {
+                self.take(token)?;
+                let value = self.float()?;
+                if !(value >= 0.0) {
+                    return Err(
+                        self.fail(place, format!("adc_bailout must be 0 or more, not {value}"))
+                    );
+                }
+                self.scene.settings.adc_bailout = value;
+            }
+            Word::MaxTraceLevel => {
+                self.take(token)?;
+                let level = self.whole_setting("max_trace_level", 256)?;
+                self.state.global.trace_level = Some(level);
+            }
+            Word::NoiseGenerator => {
+                self.take(token)?;
+                let generator = self.whole_setting("noise_generator", 3)?;
+                self.state.global.noise_generator = u8::try_from(generator).ok();
+            }
+            Word::NumberOfWaves => {
+                self.take(token)?;
+                let waves = self.whole_setting("number_of_waves", 10_000)?;
+                self.state.global.number_of_waves = Some(waves);
+            }
+            // No table of intersections can overflow here, and a unit has no size without subsurface light.
+            Word::MaxIntersections | Word::MmPerUnit => {
+                self.take(token)?;
+                self.float()?;
+            }
+            Word::HfGray16 => {
+                self.take(token)?;
+                self.switched()?;
+                self.warn(
+                    place,
+                    "hf_gray_16 has no effect: the format of the picture is chosen by its name",
+                );
+            }
+            // Text is UTF-8 in any case, of which ASCII is a part.
+            Word::Charset => {
+                self.take(token)?;
+                let set = self.next()?;
+                if !(set.is(Word::Ascii) || set.is(Word::Utf8) || set.is(Word::Sys)) {
+                    return Err(self.unexpected(set, "`ascii`, `utf8` or `sys`"));
+                }
+            }
+            Word::Radiosity | Word::Photons | Word::Subsurface => {
+                self.take(token)?;
+                let lacks = match word {
+                    Word::Radiosity => "the picture lacks light reflected between surfaces",
+                    Word::Photons => "the picture lacks light focused by mirrors and lenses",
+                    _ => "the picture lacks light scattered below surfaces",
+                };
+                let message = format!("`{}` is not supported yet and is left out", word.text());
+                self.warn_hint(place, message, lacks);
+                self.skip_body()?;
+            }
+            _ => return self.skip_item(token, "`global_settings`"),
+        }
+        Ok(())
+    }
+
+    /// A number or `srgb` behind `assumed_gamma`.
+    fn assumed_gamma(&mut self) -> PResult<()> {
+        let place = self.place();
+        let space = if self.accept_word(Word::Srgb)? {
+            WorkingSpace::Srgb
+        } else {
+            match self.float()? {
+                1.0 => WorkingSpace::Linear,
+                gamma if gamma > 0.0 && gamma.is_finite() => WorkingSpace::Gamma(gamma),
+                gamma => {
+                    return Err(self.fail(
+                        place,
+                        format!("assumed_gamma must be positive, not {gamma}"),
+                    ));
+                }
+            }
+        };
+        if space != WorkingSpace::Linear {
+            self.warn_hint(
+                place,
+                "light is not computed in linear numbers, so lights and shadows don't add up as in nature",
+                "write `assumed_gamma 1.0`, and `srgb` instead of `rgb` before colours that should stay as they are",
+            );
+        }
+        self.state.global.working_space = Some(space);
+        Ok(())
+    }
+
+    /// A whole number from 1 to `most`.
+    fn whole_setting(&mut self, name: &str, most: u32) -> PResult<u32> {
+        let value = self.float()?;
+        if value >= 1.0 && value < f64::from(most) + 1.0 {
+            return Ok(value as u32);
+        }
+        let place = self.place();
+        Err(self.fail(place, format!("{name} must be 1 to {most}, not {value}")))
+    }
+
+    /// What is known only at the end of the scene: settings that it has left to the language.
+    pub(super) fn settle(&mut self) {
+        let global = &self.state.global;
+        self.scene.ambient = Some(global.ambient.unwrap_or(Color::WHITE));
+        let settings = &mut self.scene.settings;
+        settings.max_depth = global.trace_level.unwrap_or(TRACE_LEVEL);
+        settings.straight_counts = false;
+        // Scenes from before 3.7 that say nothing mean the numbers of the screen. (Of several versions the last one decides.)
+        let old = self.version < 3.7 || !global.versioned;
+        settings.working_space = global.working_space.unwrap_or(if old {
+            WorkingSpace::Srgb
+        } else {
+            WorkingSpace::Linear
+        });
+    }
 }

@@ -1,50 +1,345 @@
+use crate::grammar::{Entity, Thing};
 use crate::keywords::Word;
-use crate::parser::{PResult, Parser};
-use strahl_scene::SceneLight;
-use strahl_shade::{Color, Light};
+use crate::parser::{PResult, Parser, Place};
+use crate::token::Token;
+use strahl_math::{DVec3, Transform, det};
+use strahl_scene::{CsgOp, Object, ObjectExt, ObjectKind, SceneLight};
+use strahl_shade::{AreaLight, Color, Falloff, Light, LightKind};
 
 /// `light_source { ... }` as a statement.
 pub(super) fn light_statement(p: &mut Parser<'_>) -> PResult<()> {
-    let light = p.light()?;
-    p.scene.lights.push(light);
+    let entity = light_source(p)?;
+    let ObjectKind::Light(light) = entity.object.kind else {
+        return p.add(entity);
+    };
+    let moved = entity.object.transform.map(|t| light.light.transformed(&t));
+    p.scene.lights.push(SceneLight {
+        light: moved.unwrap_or(light.light),
+        ..*light
+    });
     Ok(())
 }
 
-impl Parser<'_> {
-    /// `{ position colour ... }` behind `light_source`.
-    pub(super) fn light(&mut self) -> PResult<SceneLight> {
-        let span = self.span_at(self.place());
-        let mut casts_shadows = true;
-        let (mut position, mut color) = (strahl_math::DVec3::ZERO, [1.0; 5]);
-        self.braces(|p| {
-            position = p.vector3()?;
-            p.comma()?;
-            p.items("`light_source`", |p, token| {
-                if let Some(transform) = p.transformation(token)? {
-                    position = transform.point_to_world(position);
-                } else if token.is(Word::Shadowless) {
-                    p.take(token)?;
-                    casts_shadows = false;
-                } else if token
-                    .word()
-                    .is_none_or(|w| w.kind() == crate::keywords::WordKind::Color)
-                {
-                    color = p.color()?;
-                } else {
-                    return p.skip_item(token, "`light_source`");
-                }
-                Ok(())
-            })
+/// `light_source { position colour ... }`: a light, or the union of a light and what it looks like.
+pub(super) fn light_source(p: &mut Parser<'_>) -> PResult<Entity> {
+    let place = p.place();
+    p.braces(|p| {
+        let named = p.accept_thing(|thing| match thing {
+            Thing::Object(object) => Some(object),
+            _ => None,
         })?;
-        let [r, g, b, ..] = color;
-        let light = Light {
-            casts_shadows,
-            ..Light::point(position, Color::new(r, g, b))
+        if let Some(named) = named {
+            return p.named_light(&named.entity.object, place).map(Entity::from);
+        }
+        let mut draft = Draft::at(p.vector3()?);
+        p.comma()?;
+        p.items("`light_source`", |p, token| p.light_item(&mut draft, token))?;
+        Ok(p.finish_light(draft, place).into())
+    })
+}
+
+/// Whether a light is what an object consists of: alone, or with its looks.
+fn is_light(object: &Object) -> bool {
+    match &object.kind {
+        ObjectKind::Light(_) => true,
+        ObjectKind::Csg {
+            op: CsgOp::Union,
+            children,
+        } => matches!(
+            children.0.first().map(|o| &o.kind),
+            Some(ObjectKind::Light(_))
+        ),
+        _ => false,
+    }
+}
+
+/// The form of the cone, beam or plane.
+#[derive(Clone, Copy, PartialEq)]
+enum Form {
+    Point,
+    Spot,
+    Cylinder,
+}
+
+/// A light being read. Transformations move what is known when they come.
+struct Draft {
+    form: Form,
+    parallel: bool,
+    position: DVec3,
+    point_at: DVec3,
+    color: [f64; 5],
+    radius: Option<f64>,
+    falloff: Option<f64>,
+    tightness: f64,
+    fade_distance: f64,
+    fade_power: f64,
+    shadowless: bool,
+    fogged: bool,
+    area: Option<AreaLight>,
+    looks_like: Option<Object>,
+}
+
+impl Draft {
+    fn at(position: DVec3) -> Self {
+        Self {
+            form: Form::Point,
+            parallel: false,
+            position,
+            point_at: DVec3::Z,
+            color: [1.0; 5],
+            radius: None,
+            falloff: None,
+            tightness: 0.0,
+            fade_distance: 0.0,
+            fade_power: 0.0,
+            shadowless: false,
+            fogged: false,
+            area: None,
+            looks_like: None,
+        }
+    }
+
+    fn transform(&mut self, t: &Transform) {
+        self.position = t.point_to_world(self.position);
+        self.point_at = t.point_to_world(self.point_at);
+        if let Some(area) = &mut self.area {
+            area.axis_1 = t.vector_to_world(area.axis_1);
+            area.axis_2 = t.vector_to_world(area.axis_2);
+        }
+        if let Some(object) = self.looks_like.take() {
+            self.looks_like = Some(object.transformed(t));
+        }
+    }
+
+    /// The options of an area light may come before the light itself; they count only with it.
+    fn area(&mut self) -> &mut AreaLight {
+        self.area
+            .get_or_insert(AreaLight::new(DVec3::ZERO, DVec3::ZERO, 1, 1))
+    }
+
+    fn kind(&self) -> LightKind {
+        let position = self.position;
+        let direction = (self.point_at - position).normalize_or_zero();
+        let radians = |degrees: f64| det::cos(degrees.to_radians());
+        match self.form {
+            _ if direction == DVec3::ZERO => LightKind::Point { position },
+            Form::Cylinder => LightKind::Beam {
+                position,
+                direction,
+                inner: self.radius.unwrap_or(0.75),
+                outer: self.falloff.unwrap_or(1.0),
+                tightness: self.tightness,
+            },
+            // Seen along parallel light, every point is in the middle of the cone.
+            _ if self.parallel => LightKind::Parallel {
+                position,
+                direction,
+            },
+            Form::Spot => LightKind::Spot {
+                position,
+                direction,
+                cos_inner: radians(self.radius.unwrap_or(30.0)),
+                cos_outer: radians(self.falloff.unwrap_or(45.0)),
+                tightness: self.tightness,
+            },
+            Form::Point => LightKind::Point { position },
+        }
+    }
+}
+
+impl Parser<'_> {
+    /// What may follow a declared light: transformations move it as a whole, other items stand in its declaration.
+    fn named_light(&mut self, named: &Object, place: Place) -> PResult<Object> {
+        if !is_light(named) {
+            return Err(self.fail(place, "the name in `light_source` is not that of a light"));
+        }
+        let mut object = named.clone();
+        object.span = self.span_at(place);
+        self.items("`light_source`", |p, token| {
+            match p.transformation(token)? {
+                Some(t) => {
+                    let moved = std::mem::replace(&mut object, Object::csg(CsgOp::Union, vec![]));
+                    object = moved.transformed(&t);
+                    Ok(())
+                }
+                None => p.skip_item(token, "a declared light"),
+            }
+        })?;
+        if object.transform.is_none()
+            && let ObjectKind::Light(light) = &mut object.kind
+        {
+            light.span = object.span;
+        }
+        Ok(object)
+    }
+
+    fn light_item(&mut self, draft: &mut Draft, token: Token) -> PResult<()> {
+        if let Some(transform) = self.transformation(token)? {
+            draft.transform(&transform);
+            return Ok(());
+        }
+        let Some(word) = token.word() else {
+            draft.color = self.color()?;
+            return Ok(());
         };
-        Ok(SceneLight {
+        if word.kind() == crate::keywords::WordKind::Color {
+            draft.color = self.color()?;
+            return Ok(());
+        }
+        match word {
+            Word::Spotlight | Word::Cylinder | Word::Parallel | Word::Shadowless => {
+                self.take(token)?;
+                match word {
+                    Word::Spotlight => draft.form = Form::Spot,
+                    Word::Cylinder => draft.form = Form::Cylinder,
+                    Word::Parallel => draft.parallel = true,
+                    _ => draft.shadowless = true,
+                }
+            }
+            Word::PointAt => {
+                self.take(token)?;
+                draft.point_at = self.vector3()?;
+            }
+            Word::Radius
+            | Word::Falloff
+            | Word::Tightness
+            | Word::FadeDistance
+            | Word::FadePower => {
+                self.take(token)?;
+                let value = self.float()?;
+                match word {
+                    Word::Radius => draft.radius = Some(value),
+                    Word::Falloff => draft.falloff = Some(value),
+                    Word::Tightness => draft.tightness = value,
+                    Word::FadeDistance => draft.fade_distance = value,
+                    _ => draft.fade_power = value,
+                }
+            }
+            Word::LooksLike => {
+                self.take(token)?;
+                draft.looks_like = Some(self.looks_like()?.translated(draft.position));
+            }
+            // There are no media for the light to meet.
+            Word::MediaInteraction => {
+                self.take(token)?;
+                self.switched()?;
+            }
+            Word::MediaAttenuation => {
+                self.take(token)?;
+                draft.fogged = self.switched()?;
+            }
+            Word::ProjectedThrough => {
+                let place = self.place_of(token);
+                self.take(token)?;
+                self.warn_hint(
+                    place,
+                    "projected_through is not supported yet and is left out",
+                    "the light will shine everywhere, not only through the object",
+                );
+                self.skip_body()?;
+            }
+            _ => return self.area_item(draft, token, word),
+        }
+        Ok(())
+    }
+
+    fn area_item(&mut self, draft: &mut Draft, token: Token, word: Word) -> PResult<()> {
+        match word {
+            Word::AreaLight => {
+                self.take(token)?;
+                let axis_1 = self.vector3()?;
+                self.comma()?;
+                let axis_2 = self.vector3()?;
+                self.comma()?;
+                let size_1 = self.area_size()?;
+                self.comma()?;
+                let size_2 = self.area_size()?;
+                let area = draft.area();
+                (area.axis_1, area.axis_2) = (axis_1, axis_2);
+                (area.size_1, area.size_2) = (size_1, size_2);
+            }
+            Word::Adaptive => {
+                self.take(token)?;
+                let level = self.float()?;
+                // The cast saturates; deeper than 32 halvings no grid goes.
+                draft.area().adaptive = Some((level as u32).min(32));
+            }
+            Word::Jitter => {
+                self.take(token)?;
+                draft.area().jitter = true;
+            }
+            Word::Circular => {
+                self.take(token)?;
+                draft.area().circular = true;
+            }
+            Word::Orient => {
+                self.take(token)?;
+                draft.area().orient = true;
+            }
+            Word::AreaIllumination => {
+                self.take(token)?;
+                draft.area().illumination = self.switched()?;
+            }
+            _ => return self.skip_item(token, "`light_source`"),
+        }
+        Ok(())
+    }
+
+    fn area_size(&mut self) -> PResult<u32> {
+        let size = self.float()?;
+        let most = AreaLight::MAX_SIZE;
+        if size >= 1.0 && size < f64::from(most) + 1.0 {
+            return Ok(size as u32);
+        }
+        let place = self.place();
+        Err(self.fail(
+            place,
+            format!("an area light has 1 to {most} points along an edge, not {size}"),
+        ))
+    }
+
+    /// `{ object }` behind `looks_like`; it casts no shadow.
+    fn looks_like(&mut self) -> PResult<Object> {
+        let mut object = super::objects::object(self)?.object;
+        object.visibility.shadow = false;
+        Ok(object)
+    }
+
+    fn finish_light(&mut self, draft: Draft, place: Place) -> Object {
+        let span = self.span_at(place);
+        let kind = draft.kind();
+        if draft.form != Form::Point && matches!(kind, LightKind::Point { .. }) {
+            self.warn(
+                place,
+                "the light points at its own location and shines into all directions",
+            );
+        }
+        let [r, g, b, ..] = draft.color;
+        let mut light = Light::new(kind, Color::new(r, g, b));
+        light.casts_shadows = !draft.shadowless;
+        light.highlights = !draft.shadowless;
+        light.fogged = draft.fogged;
+        if draft.fade_distance > 0.0 && draft.fade_power > 0.0 {
+            light.falloff = Falloff::Fade {
+                distance: draft.fade_distance,
+                power: draft.fade_power,
+            };
+        }
+        // Without points to tell apart the options mean nothing.
+        light.area = draft.area.filter(|a| a.size_1 > 1 || a.size_2 > 1);
+        if let Some(area) = &mut light.area {
+            let reach = (draft.point_at - draft.position).length();
+            area.reach = if reach > 0.0 { reach } else { 1.0 };
+        }
+        let object = Object::light(SceneLight {
             light,
             name: None,
             span,
-        })
+        });
+        let object = match draft.looks_like {
+            None => object,
+            Some(looks) => Object::csg(CsgOp::Union, vec![object, looks]),
+        };
+        object.spanned(span)
     }
 }

@@ -9,11 +9,13 @@ mod background;
 mod camera;
 mod defaults;
 mod entity;
+mod fog;
 mod global_settings;
 mod lights;
 mod objects;
 mod query;
 mod skip;
+mod sky;
 mod texture;
 mod thing;
 mod transform;
@@ -21,6 +23,7 @@ mod transform;
 pub use defaults::State;
 pub(crate) use defaults::default_items;
 pub use entity::{Declared, Entity};
+pub use global_settings::GlobalSettings;
 pub use texture::{Finish, Pigment, Texture};
 pub use thing::Thing;
 
@@ -36,8 +39,10 @@ type StatementParser = fn(&mut Parser<'_>) -> PResult<()>;
 const STATEMENTS: &[(Word, StatementParser)] = &[
     (Word::Background, background::background),
     (Word::Camera, camera::camera_statement),
+    (Word::Fog, fog::fog_statement),
     (Word::GlobalSettings, global_settings::global_settings),
     (Word::LightSource, lights::light_statement),
+    (Word::SkySphere, sky::sky_statement),
 ];
 
 /// A table of functions by word, so that finding one is a single step.
@@ -65,7 +70,7 @@ impl Parser<'_> {
             self.between_statements(true);
             match self.statement() {
                 Ok(true) => {}
-                Ok(false) => return,
+                Ok(false) => return self.settle(),
                 Err(_) => self.recover(),
             }
         }

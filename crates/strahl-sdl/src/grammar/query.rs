@@ -57,12 +57,15 @@ fn node(object: &Object) -> Option<CsgNode> {
             Step::Visit(object) => match &object.kind {
                 ObjectKind::Csg { children, .. } if children.0.is_empty() => return None,
                 ObjectKind::Csg { op, children } => {
-                    steps.push(Step::Build(object, *op, children.0.len()));
-                    steps.extend(children.0.iter().rev().map(Step::Visit));
+                    let is_light = |c: &&Object| matches!(c.kind, ObjectKind::Light(_));
+                    let lights = children.0.iter().filter(is_light).count();
+                    steps.push(Step::Build(object, *op, children.0.len() - lights));
+                    let parts = children.0.iter().rev().filter(|c| !is_light(c));
+                    steps.extend(parts.map(Step::Visit));
                     continue;
                 }
                 ObjectKind::Shape(shape) => (object, CsgNode::leaf(Shape::clone(shape), 0)),
-                ObjectKind::Instance(_) => return None,
+                ObjectKind::Instance(_) | ObjectKind::Light(_) => return None,
             },
             Step::Build(object, op, count) => {
                 let operands = done.split_off(done.len() - count).into();

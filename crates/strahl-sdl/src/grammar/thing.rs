@@ -5,7 +5,7 @@ use crate::token::{Kind, Token};
 use crate::value::Value;
 use std::sync::Arc;
 use strahl_math::Transform;
-use strahl_scene::{Camera, SceneLight};
+use strahl_scene::{Camera, Fog, SkySphere};
 
 macro_rules! things {
     ($($kind:ident($payload:ty) $text:literal)*) => {
@@ -29,9 +29,10 @@ macro_rules! things {
 things! {
     Camera(Camera) "a camera"
     Finish(Finish) "a finish"
-    Light(SceneLight) "a light source"
+    Fog(Fog) "a fog"
     Object(Declared) "an object"
     Pigment(Pigment) "a pigment"
+    SkySphere(SkySphere) "a sky sphere"
     Texture(Texture) "a texture"
     Transform(Transform) "a transformation"
 }
@@ -45,11 +46,12 @@ static THINGS: [Option<ThingParser>; Word::ALL.len()] = by_word::<ThingParser, _
     (Word::Finish, |p| {
         Ok(Thing::Finish(Arc::new(p.finish_block()?)))
     }),
-    (Word::LightSource, |p| {
-        Ok(Thing::Light(Arc::new(p.light()?)))
-    }),
+    (Word::Fog, |p| Ok(Thing::Fog(Arc::new(p.fog()?)))),
     (Word::Pigment, |p| {
         Ok(Thing::Pigment(Arc::new(p.pigment_block()?)))
+    }),
+    (Word::SkySphere, |p| {
+        Ok(Thing::SkySphere(Arc::new(p.sky_sphere()?)))
     }),
     (Word::Texture, |p| {
         Ok(Thing::Texture(Arc::new(p.texture_block()?)))

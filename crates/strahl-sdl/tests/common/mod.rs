@@ -1,6 +1,7 @@
 //! What the tests share; each uses a part of it.
 #![allow(dead_code, reason = "each test binary uses a part of this")]
 
+use std::path::PathBuf;
 use strahl_sdl::{MemoryHost, Options, Parsed, Source, Stream, parse};
 
 /// Parses a text with files in memory.
@@ -24,4 +25,21 @@ pub(crate) fn errors(text: &str) -> Vec<String> {
     assert!(parsed.scene.is_none(), "no error in: {shown}");
     let errors = parsed.diagnostics.iter().filter(|d| d.is_error());
     errors.map(ToString::to_string).collect()
+}
+
+/// A program to compare with; without it the caller skips, unless the environment requires all tools.
+pub(crate) fn tool(name: &str) -> Option<PathBuf> {
+    let path = std::env::var_os("PATH")?;
+    let found = std::env::split_paths(&path)
+        .map(|folder| folder.join(name))
+        .find(|p| p.is_file());
+    if found.is_none() {
+        assert!(
+            std::env::var_os("STRAHL_REQUIRE_TOOLS").is_none(),
+            "{name} is missing, but required"
+        );
+        use std::io::Write;
+        let _ = writeln!(std::io::stderr().lock(), "SKIPPED: {name} is not installed");
+    }
+    found
 }

@@ -288,6 +288,7 @@ fn light(json: &JsonLight, world: &DAffine3) -> Result<Light, String> {
                 direction,
                 cos_inner: det::cos(inner),
                 cos_outer: det::cos(outer),
+                tightness: 0.0,
             };
             Light::new(kind, color).with_falloff(Falloff::InverseSquare)
         }

@@ -18,6 +18,7 @@ mod sphere;
 mod torus;
 mod triangle;
 
+pub(super) use named::object;
 pub(crate) use reuse::{Shared, Tally, expanded};
 
 use super::{Entity, by_word};
@@ -31,6 +32,7 @@ type ObjectParser = fn(&mut Parser<'_>) -> PResult<Entity>;
 /// All objects by their words.
 static OBJECTS: [Option<ObjectParser>; Word::ALL.len()] = by_word::<ObjectParser, _>([
     (Word::Box, boxes::cuboid),
+    (Word::LightSource, super::lights::light_source),
     (Word::Cone, cone::cone),
     (Word::Cylinder, cylinder::cylinder),
     (Word::Difference, csg::difference),
@@ -39,7 +41,7 @@ static OBJECTS: [Option<ObjectParser>; Word::ALL.len()] = by_word::<ObjectParser
     (Word::Merge, csg::merge),
     (Word::Mesh, mesh::mesh),
     (Word::Mesh2, mesh::mesh2),
-    (Word::Object, named::object),
+    (Word::Object, object),
     (Word::Plane, plane::plane),
     (Word::Polygon, polygon::polygon),
     (Word::Quadric, quadric::quadric),

@@ -151,12 +151,12 @@ impl Parser<'_> {
     ///
     /// # Errors
     /// If the number there is wrong.
-    pub(super) fn switched(&mut self) -> PResult<bool> {
+    pub(in crate::grammar) fn switched(&mut self) -> PResult<bool> {
         Ok(!self.number_follows()? || self.float()? != 0.0)
     }
 
     /// Whether a number stands here, and not the next item.
-    pub(super) fn number_follows(&mut self) -> PResult<bool> {
+    pub(in crate::grammar) fn number_follows(&mut self) -> PResult<bool> {
         let token = self.peek()?;
         Ok(match token.kind {
             Kind::Number | Kind::Plus | Kind::Minus | Kind::Bang | Kind::LeftParen => true,

@@ -2,7 +2,7 @@ use crate::grammar::{Entity, Thing};
 use crate::parser::{PResult, Parser};
 
 /// `object { Name ... }` or `object { sphere { ... } ... }`
-pub(super) fn object(p: &mut Parser<'_>) -> PResult<Entity> {
+pub(in crate::grammar) fn object(p: &mut Parser<'_>) -> PResult<Entity> {
     let place = p.place();
     p.braces(|p| {
         let token = p.peek()?;

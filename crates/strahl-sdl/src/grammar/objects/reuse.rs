@@ -36,6 +36,8 @@ pub(crate) struct Tally {
     elements: u64,
     /// Whether a part takes its material from the use.
     inherits: bool,
+    /// Whether a part is a light.
+    lights: bool,
 }
 
 impl Tally {
@@ -55,6 +57,7 @@ impl Tally {
                 }
                 // Its parts may; asking them would not be worth it.
                 ObjectKind::Instance(_) => tally.inherits |= !has_material,
+                ObjectKind::Light(_) => tally.lights = true,
             }
         }
         tally
@@ -89,6 +92,10 @@ impl Parser<'_> {
             parts, elements, ..
         } = declared.tally;
         let uses = declared.uses.fetch_add(1, Ordering::Relaxed);
+        // Lights shine where they stand, so each use needs its own.
+        if declared.tally.lights {
+            return declared.entity.clone();
+        }
         let large = parts > SMALL || elements > FEW_TRIANGLES + parts;
         if !(large || (parts > 1 && uses >= OFTEN)) {
             return declared.entity.clone();
@@ -139,7 +146,7 @@ fn has_instances(object: &Object) -> bool {
         match &object.kind {
             ObjectKind::Instance(_) => return true,
             ObjectKind::Csg { children, .. } => waiting.extend(&children.0),
-            ObjectKind::Shape(_) => {}
+            ObjectKind::Shape(_) | ObjectKind::Light(_) => {}
         }
     }
     false
@@ -263,7 +270,7 @@ impl Linker {
         let mut waiting = vec![(object, material)];
         while let Some((object, material)) = waiting.pop() {
             match &object.kind {
-                ObjectKind::Shape(_) => {}
+                ObjectKind::Shape(_) | ObjectKind::Light(_) => {}
                 ObjectKind::Csg { children, .. } => {
                     waiting.extend(children.0.iter().rev().map(|child| {
                         let own = child.material.as_ref().or(material.as_ref());

@@ -1,0 +1,232 @@
+//! Shadow rays to lights with an extent.
+
+use crate::hit::Hit;
+use crate::observer::{LightTerm, TraceObserver};
+use crate::shadow::ShadowRay;
+use crate::surface::Surface;
+use crate::trace::{Branch, TreeTracer};
+use strahl_math::Ray;
+use strahl_shade::{AreaLight, Color, Light, LightSample, ShadingModel};
+
+/// Visibilities of the corners of a cell that differ by more than this make an adaptive grid look closer: less than a step
+/// of an 8-bit channel.
+const THRESHOLD: f64 = 1.0 / 256.0;
+
+/// What one point of the grid, or the mean of several, sends to the lit point.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Arriving {
+    visible: Color,
+    diffuse: Color,
+    specular: Color,
+}
+
+impl Arriving {
+    fn mean(parts: [Self; 4]) -> Self {
+        let mean = |of: fn(&Self) -> Color| {
+            let [a, b, c, d] = &parts;
+            ((of(a) + of(b)) + (of(c) + of(d))) * 0.25
+        };
+        Self {
+            visible: mean(|p| p.visible),
+            diffuse: mean(|p| p.diffuse),
+            specular: mean(|p| p.specular),
+        }
+    }
+}
+
+/// A rectangle of the grid, corners included.
+#[derive(Clone, Copy, Debug)]
+struct Cell {
+    i: [u32; 2],
+    j: [u32; 2],
+    /// How often the grid has been halved to get here.
+    level: u32,
+}
+
+/// Halves a stretch of the grid: an even one at its middle point, which both halves share, an odd one in the gap between
+/// its two middle points. A stretch of one cell stays.
+fn halves([low, high]: [u32; 2]) -> ([[u32; 2]; 2], bool) {
+    let width = high - low;
+    if width <= 1 {
+        return ([[low, high]; 2], false);
+    }
+    let middle = low + width / 2;
+    ([[low, middle], [middle + width % 2, high]], true)
+}
+
+/// A light with an extent as seen from one lit point.
+struct AreaQuery<'q> {
+    number: usize,
+    light: &'q Light,
+    area: &'q AreaLight,
+    /// The centre of the light.
+    center: &'q LightSample,
+    surface: &'q Surface,
+    hit: &'q Hit,
+    model: ShadingModel,
+    branch: &'q Branch,
+    node: u32,
+}
+
+impl TreeTracer<'_> {
+    /// Fills in what arrives from a light with an extent: its shadow rays, one for each point of the grid that is needed.
+    #[cold]
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "the arguments of the trace loop's own function, of which this is the rare branch"
+    )]
+    pub(crate) fn area_light<O: TraceObserver>(
+        &mut self,
+        area: &AreaLight,
+        sample: &LightSample,
+        surface: &Surface,
+        hit: &Hit,
+        model: ShadingModel,
+        light: usize,
+        branch: &Branch,
+        node: u32,
+        term: &mut LightTerm,
+        observer: &mut O,
+    ) {
+        let query = AreaQuery {
+            number: light,
+            light: &self.tracer.scene.lights[light].light,
+            area,
+            center: sample,
+            surface,
+            hit,
+            model,
+            branch,
+            node,
+        };
+        let before = self.counts.shadow;
+        let mut known = std::mem::take(&mut self.area_points);
+        known.clear();
+        known.resize(area.size_1 as usize * area.size_2 as usize, None);
+        let whole = Cell {
+            i: [0, area.size_1.saturating_sub(1)],
+            j: [0, area.size_2.saturating_sub(1)],
+            level: 0,
+        };
+        let arriving = self.area_cell(&query, whole, &mut known, observer);
+        self.area_points = known;
+        term.shadow_rays = (self.counts.shadow - before) as u32;
+        term.visible = arriving.visible;
+        if area.illumination {
+            term.diffuse = arriving.diffuse;
+            term.specular = arriving.specular;
+        }
+    }
+
+    /// The mean over a cell: of its four corners, or of its four quarters if it has points inside that matter. Recursion
+    /// is as deep as the logarithm of [`AreaLight::MAX_SIZE`].
+    fn area_cell<O: TraceObserver>(
+        &mut self,
+        query: &AreaQuery<'_>,
+        cell: Cell,
+        known: &mut [Option<Arriving>],
+        observer: &mut O,
+    ) -> Arriving {
+        let ([i_low, i_high], i_splits) = halves(cell.i);
+        let ([j_low, j_high], j_splits) = halves(cell.j);
+        let splits = i_splits || j_splits;
+        let must = query.area.adaptive.is_none_or(|level| cell.level < level);
+        if !(splits && must) {
+            let [i0, i1] = cell.i;
+            let [j0, j1] = cell.j;
+            let corners = [(i0, j0), (i1, j0), (i0, j1), (i1, j1)]
+                .map(|(i, j)| self.area_point(query, (i, j), known, observer));
+            let differ = |a: &Arriving| {
+                let difference = a.visible - corners[0].visible;
+                difference.map(f64::abs).max_component() > THRESHOLD
+            };
+            if !splits || !corners.iter().any(differ) {
+                return Arriving::mean(corners);
+            }
+        }
+        let level = cell.level + 1;
+        let quarters = [
+            (i_low, j_low),
+            (i_high, j_low),
+            (i_low, j_high),
+            (i_high, j_high),
+        ];
+        Arriving::mean(
+            quarters.map(|(i, j)| self.area_cell(query, Cell { i, j, level }, known, observer)),
+        )
+    }
+
+    /// One point of the grid; its shadow ray is followed once.
+    fn area_point<O: TraceObserver>(
+        &mut self,
+        query: &AreaQuery<'_>,
+        (i, j): (u32, u32),
+        known: &mut [Option<Arriving>],
+        observer: &mut O,
+    ) -> Arriving {
+        let index = j as usize * query.area.size_1 as usize + i as usize;
+        if let Some(Some(arriving)) = known.get(index) {
+            return *arriving;
+        }
+        let (surface, center) = (query.surface, query.center);
+        let lit = surface.resolved.point.position;
+        let mut offset = query.area.offset(i, j, lit, center.l);
+        if query.light.is_parallel() {
+            offset *= center.shadow_direction.length() / query.area.reach;
+        }
+        let direction = center.shadow_direction + offset;
+        let (origin_point, from) = surface.start(query.hit, direction);
+        let ray = Ray::new(origin_point, direction);
+        let shadow = self.tracer.shadow(
+            &ShadowRay {
+                ray,
+                range: center.range,
+                from,
+                light: query.number,
+                media: query.branch.media,
+            },
+            &mut self.media,
+            &mut self.shadow_hits,
+        );
+        self.counts.shadow += 1;
+        self.counts.shadow_hit += u64::from(shadow.hit);
+        if O::ACTIVE {
+            observer.area_shadow(query.node, query.number as u32, ray, shadow.visible);
+        }
+        let mut arriving = Arriving {
+            visible: shadow.visible,
+            ..Arriving::default()
+        };
+        if query.area.illumination && !shadow.visible.is_black() {
+            // The point shines like the centre would from its place.
+            let moved = query
+                .light
+                .illuminate(lit - offset)
+                .map(|sample| (surface.n_shade.dot(sample.l), sample));
+            if let Some((n_dot_l, sample)) = moved
+                && self.faces(sample.l, n_dot_l)
+            {
+                let light = sample.color * shadow.visible;
+                (arriving.diffuse, arriving.specular) =
+                    self.reflected(surface, query.light, query.model, light, sample.l, n_dot_l);
+            }
+        }
+        if let Some(slot) = known.get_mut(index) {
+            *slot = Some(arriving);
+        }
+        arriving
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::halves;
+
+    #[test]
+    fn even_stretches_share_their_middle_and_odd_ones_part() {
+        assert_eq!(halves([0, 4]), ([[0, 2], [2, 4]], true));
+        assert_eq!(halves([0, 5]), ([[0, 2], [3, 5]], true));
+        assert_eq!(halves([3, 4]), ([[3, 4], [3, 4]], false));
+        assert_eq!(halves([7, 7]), ([[7, 7], [7, 7]], false));
+    }
+}

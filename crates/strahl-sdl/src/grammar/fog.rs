@@ -1,0 +1,168 @@
+use crate::grammar::Thing;
+use crate::keywords::{Word, WordKind};
+use crate::parser::{PResult, Parser, Place};
+use crate::token::Token;
+use strahl_math::DVec3;
+use strahl_scene::{Fog, FogKind};
+use strahl_shade::{Color, ColorFt};
+
+/// `fog { ... }` as a statement; several fill the scene together.
+pub(super) fn fog_statement(p: &mut Parser<'_>) -> PResult<()> {
+    let fog = p.fog()?;
+    // Fog of distance 0 is none.
+    if fog.distance > 0.0 {
+        p.scene.fogs.push(fog);
+    }
+    Ok(())
+}
+
+/// A fog being read.
+struct Draft {
+    ground: bool,
+    up: DVec3,
+    offset: f64,
+    altitude: f64,
+    distance: f64,
+    color: ColorFt,
+}
+
+impl Draft {
+    fn new() -> Self {
+        Self {
+            ground: false,
+            up: DVec3::Y,
+            offset: 0.0,
+            altitude: 0.0,
+            distance: 0.0,
+            color: ColorFt::default(),
+        }
+    }
+
+    fn of(fog: &Fog) -> Self {
+        let mut draft = Self {
+            distance: fog.distance,
+            color: fog.color,
+            ..Self::new()
+        };
+        if let FogKind::Ground {
+            up,
+            offset,
+            altitude,
+        } = fog.kind
+        {
+            draft.ground = true;
+            (draft.up, draft.offset, draft.altitude) = (up, offset, altitude);
+        }
+        draft
+    }
+}
+
+impl Parser<'_> {
+    /// `{ ... }` behind `fog`.
+    pub(super) fn fog(&mut self) -> PResult<Fog> {
+        let place = self.place();
+        let mut draft = Draft::new();
+        self.braces(|p| {
+            let named = p.accept_thing(|thing| match thing {
+                Thing::Fog(fog) => Some(fog),
+                _ => None,
+            })?;
+            if let Some(fog) = named {
+                draft = Draft::of(&fog);
+            }
+            p.items("`fog`", |p, token| p.fog_item(&mut draft, token))
+        })?;
+        Ok(self.finish_fog(&draft, place))
+    }
+
+    fn fog_item(&mut self, draft: &mut Draft, token: Token) -> PResult<()> {
+        if let Some(t) = self.transformation(token)? {
+            draft.up = t.vector_to_world(draft.up);
+            return Ok(());
+        }
+        let word = match token.word() {
+            Some(word) if word.kind() != WordKind::Color => word,
+            _ => {
+                let [r, g, b, filter, transmit] = self.color()?;
+                draft.color = ColorFt {
+                    rgb: Color::new(r, g, b),
+                    filter,
+                    transmit,
+                };
+                return Ok(());
+            }
+        };
+        let place = self.place_of(token);
+        match word {
+            Word::FogType => {
+                self.take(token)?;
+                draft.ground = match self.float()? {
+                    1.0 => false,
+                    2.0 => true,
+                    other => {
+                        let message = format!(
+                            "fog_type is 1 (the same everywhere) or 2 (ground fog), not {other}"
+                        );
+                        return Err(self.fail(place, message));
+                    }
+                };
+            }
+            Word::Distance => {
+                self.take(token)?;
+                draft.distance = self.float()?;
+            }
+            Word::FogOffset => {
+                self.take(token)?;
+                draft.offset = self.float()?;
+            }
+            Word::FogAlt => {
+                self.take(token)?;
+                draft.altitude = self.float()?;
+            }
+            Word::Up => {
+                self.take(token)?;
+                draft.up = self.vector3()?;
+            }
+            Word::Turbulence => {
+                self.take(token)?;
+                if self.vector3()? != DVec3::ZERO {
+                    self.warn_hint(
+                        place,
+                        "`turbulence` in `fog` is not supported yet",
+                        "the fog will be smooth",
+                    );
+                }
+            }
+            Word::TurbDepth | Word::Octaves | Word::Omega | Word::Lambda => {
+                self.take(token)?;
+                self.float()?;
+            }
+            _ => return self.skip_item(token, "`fog`"),
+        }
+        Ok(())
+    }
+
+    fn finish_fog(&mut self, draft: &Draft, place: Place) -> Fog {
+        let kind = if draft.ground {
+            FogKind::Ground {
+                up: draft.up.normalize_or(DVec3::Y),
+                offset: draft.offset,
+                altitude: draft.altitude,
+            }
+        } else {
+            FogKind::Constant
+        };
+        if !(draft.distance > 0.0) {
+            self.warn(
+                place,
+                "fog without a positive `distance` cannot be seen and is left out",
+            );
+        }
+        Fog {
+            kind,
+            distance: draft.distance,
+            color: draft.color,
+            span: self.span_at(place),
+        }
+    }
+}

@@ -1,0 +1,67 @@
+use crate::keywords::Word;
+use crate::parser::{PResult, Parser};
+use std::sync::Arc;
+use strahl_math::Transform;
+use strahl_scene::{Background, SkySphere};
+use strahl_shade::pigment::Pigment;
+use strahl_shade::{Color, ColorFt};
+
+/// `sky_sphere { pigment { ... } ... }` as a statement: the last one counts.
+pub(super) fn sky_statement(p: &mut Parser<'_>) -> PResult<()> {
+    let mut sky = p.sky_sphere()?;
+    if let Some(Background::Solid(color)) = p.scene.background {
+        sky.behind = color;
+    }
+    p.scene.background = Some(Background::Sky(Arc::new(sky)));
+    Ok(())
+}
+
+impl Parser<'_> {
+    /// `{ ... }` or `{ Name ... }` behind `sky_sphere`.
+    pub(super) fn sky_sphere(&mut self) -> PResult<SkySphere> {
+        let mut sky = SkySphere {
+            layers: vec![],
+            transform: Transform::IDENTITY,
+            emission: Color::WHITE,
+            behind: Color::BLACK,
+        };
+        self.braces(|p| {
+            let named = p.accept_thing(|thing| match thing {
+                super::Thing::SkySphere(sky) => Some(sky),
+                _ => None,
+            })?;
+            if let Some(named) = named {
+                sky = SkySphere::clone(&named);
+            }
+            p.items("`sky_sphere`", |p, token| {
+                if let Some(t) = p.transformation(token)? {
+                    sky.transform = sky.transform.then(&t);
+                    return Ok(());
+                }
+                match token.word() {
+                    Some(Word::Pigment) => {
+                        p.take(token)?;
+                        sky.layers.push(p.sky_layer()?);
+                    }
+                    Some(Word::Emission) => {
+                        p.take(token)?;
+                        let [r, g, b, ..] = p.color()?;
+                        sky.emission = Color::new(r, g, b);
+                    }
+                    _ => return p.skip_item(token, "`sky_sphere`"),
+                }
+                Ok(())
+            })
+        })?;
+        Ok(sky)
+    }
+
+    fn sky_layer(&mut self) -> PResult<Pigment> {
+        let [r, g, b, filter, transmit] = self.pigment_block()?.color;
+        Ok(Pigment::Solid(ColorFt {
+            rgb: Color::new(r, g, b),
+            filter,
+            transmit,
+        }))
+    }
+}

@@ -1,0 +1,451 @@
+//! Small pictures of planes and spheres, rendered by POV-Ray 3.7 and here: lights, cameras, fog and global settings.
+//!
+//! Both write linear values. What differs at all are single pixels on the edges of objects and shadows.
+
+mod common;
+
+use common::{parse_with, tool};
+use std::path::Path;
+use std::process::Command;
+use strahl_render::{CompileOptions, RenderOptions, compile, render};
+use strahl_sdl::MemoryHost;
+
+const SIZE: (u32, u32) = (64, 48);
+
+/// Things to light and to see.
+const THINGS: &str = "
+plane { y, -1 pigment { rgb <0.8, 0.7, 0.6> } finish { ambient 0.05 diffuse 0.8 } }
+sphere { <-0.9, 0, 0.5>, 1 pigment { rgb <0.9, 0.2, 0.1> } finish { ambient 0.1 diffuse 0.7 phong 0.6 phong_size 20 } }
+sphere { <1.1, -0.4, -0.5>, 0.6 pigment { rgb <0.2, 0.4, 0.9> } finish { diffuse 0.6 reflection 0.3 } }
+sphere { <0.4, 0.7, 1.5>, 0.5 pigment { rgbf <0.5, 1, 0.6, 0.7> } finish { ambient 0 diffuse 0.5 } }
+";
+const CAMERA: &str = "camera { location <1, 2, -6> look_at <0, 0, 0> angle 50 }\n";
+const LIGHT: &str = "light_source { <4, 6, -5>, rgb 1 }\n";
+const SETTINGS: &str = "#version 3.7; global_settings { assumed_gamma 1 }\n";
+
+/// Linear values of a picture, row by row.
+type Pixels = Vec<[f64; 3]>;
+
+/// The pixels of a PPM file with 16 bits per channel: what its header leaves.
+fn read_ppm(bytes: &[u8]) -> Pixels {
+    let size = SIZE.0 as usize * SIZE.1 as usize * 6;
+    assert!(bytes.starts_with(b"P6") && bytes.len() > size);
+    let numbers: Vec<f64> = bytes[bytes.len() - size..]
+        .chunks_exact(2)
+        .map(|b| f64::from(u16::from_be_bytes([b[0], b[1]])) / 65535.0)
+        .collect();
+    numbers
+        .chunks_exact(3)
+        .map(|c| [c[0], c[1], c[2]])
+        .collect()
+}
+
+fn theirs(povray: &Path, folder: &Path, text: &str) -> Pixels {
+    let scene = folder.join("scene.pov");
+    std::fs::write(&scene, text).expect("writable");
+    let (w, h) = SIZE;
+    let run = Command::new(povray)
+        .current_dir(folder)
+        .args([
+            "+Iscene.pov",
+            "+Oout.ppm",
+            "+FP16",
+            "-A",
+            "-D",
+            "-GA",
+            "+WT1",
+        ])
+        .args([
+            format!("+W{w}"),
+            format!("+H{h}"),
+            "File_Gamma=1.0".to_owned(),
+        ])
+        .output()
+        .expect("the program starts");
+    let log = String::from_utf8_lossy(&run.stderr);
+    assert!(run.status.success(), "{text}\n{log}");
+    read_ppm(&std::fs::read(folder.join("out.ppm")).expect("a picture"))
+}
+
+fn ours(text: &str) -> Pixels {
+    let parsed = parse_with(&mut MemoryHost::new(), text);
+    let messages: Vec<String> = parsed.diagnostics.iter().map(ToString::to_string).collect();
+    let scene = parsed
+        .scene
+        .unwrap_or_else(|| panic!("{text}\n{}", messages.join("\n")));
+    let scene = compile(&scene, &CompileOptions::default()).expect("a scene");
+    let mut options = RenderOptions::new(&scene, SIZE.0, SIZE.1);
+    options.threads = 1;
+    let film = render(&scene, &options, &()).expect("a picture").film;
+    let clipped = |p: &[f32; 3]| p.map(|c| f64::from(c).clamp(0.0, 1.0));
+    film.pixels.iter().map(clipped).collect()
+}
+
+/// The same of a scene whose colours are the screen's: POV-Ray then writes them as they are.
+fn theirs_encoded(povray: &Path, folder: &Path, text: &str) -> Pixels {
+    let decoded = |p: [f64; 3]| p.map(strahl_shade::srgb::decode);
+    theirs(povray, folder, text)
+        .into_iter()
+        .map(decoded)
+        .collect()
+}
+
+/// Renders by both; the mean difference of channels, and the share of pixels with a visible difference.
+fn compare(povray: &Path, text: &str) -> (f64, f64) {
+    let folder = tempfile::tempdir().expect("a folder");
+    let encoded = !text.contains("3.7") && !text.contains("assumed_gamma");
+    let read = if encoded { theirs_encoded } else { theirs };
+    let (a, b) = (read(povray, folder.path(), text), ours(text));
+    assert_eq!(a.len(), b.len());
+    let count = a.len() as f64;
+    let (mut sum, mut off) = (0.0, 0);
+    let mut lit = 0.0;
+    for (p, q) in a.iter().zip(&b) {
+        let differences = [0, 1, 2].map(|c| (p[c] - q[c]).abs());
+        sum += differences.iter().sum::<f64>() / 3.0;
+        off += usize::from(differences.iter().any(|d| *d > 4.0 / 255.0));
+        lit += p.iter().sum::<f64>();
+    }
+    assert!(lit > 0.0, "a black picture shows nothing: {text}");
+    (sum / count, off as f64 / count)
+}
+
+/// All of these must agree but for `most_off` of their pixels.
+fn agree(most_off: f64, scenes: &[(&str, String)]) {
+    let Some(povray) = tool("povray") else {
+        return;
+    };
+    let mut failed = vec![];
+    for (name, text) in scenes {
+        let (mean, off) = compare(&povray, text);
+        if !(mean < 0.5 / 255.0 && off <= most_off) {
+            failed.push(format!(
+                "{name}: mean difference {:.3}/255, {:.2} % of pixels differ visibly",
+                mean * 255.0,
+                off * 100.0
+            ));
+        }
+    }
+    assert!(failed.is_empty(), "{}", failed.join("\n"));
+}
+
+fn lit(light: &str) -> String {
+    format!("{SETTINGS}{CAMERA}{light}{THINGS}")
+}
+
+#[test]
+fn lights_shine_as_povrays() {
+    let scenes = [
+        ("point", LIGHT),
+        (
+            "two",
+            "light_source { <4, 6, -5>, rgb <0.7, 0.6, 0.3> } light_source { <-4, 3, -5>, rgb <0.1, 0.2, 0.4> }",
+        ),
+        (
+            "spot",
+            "light_source { <2, 5, -3>, rgb 1.2 spotlight point_at <0, -0.5, 0> radius 10 falloff 25 }",
+        ),
+        (
+            "tight spot",
+            "light_source { <2, 5, -3>, rgb 1.2 spotlight point_at 0 radius 15 falloff 40 tightness 12 }",
+        ),
+        (
+            "default spot",
+            "light_source { <0, 3, -3>, rgb 1 spotlight point_at <0, -1, 1> }",
+        ),
+        (
+            "sharp spot",
+            "light_source { <2, 5, -3>, rgb 1 spotlight point_at 0 radius 30 falloff 10 }",
+        ),
+        (
+            "cylinder",
+            "light_source { <2, 5, -3>, rgb 1 cylinder point_at <0, -1, 0> radius 0.8 falloff 1.6 }",
+        ),
+        (
+            "tight cylinder",
+            "light_source { <2, 5, -3>, rgb 1 cylinder point_at <0, -1, 0> radius 0.5 falloff 2 tightness 4 }",
+        ),
+        (
+            "default cylinder",
+            "light_source { <1, 5, -3>, rgb 1 cylinder point_at <-1, 0, 0> }",
+        ),
+        (
+            "parallel",
+            "light_source { <2, 5, -3>, rgb 1 parallel point_at 0 }",
+        ),
+        (
+            "parallel through things",
+            "light_source { <-0.5, 0.3, 0>, rgb 1 parallel point_at <-1, -1, 1> }",
+        ),
+        (
+            "parallel spot",
+            "light_source { <2, 5, -3>, rgb 1 spotlight radius 5 falloff 9 parallel point_at 0 }",
+        ),
+        (
+            "parallel fading",
+            "light_source { <2, 5, -3>, rgb 1 parallel point_at 0 fade_distance 5 fade_power 2 }",
+        ),
+        (
+            "shadowless",
+            "light_source { <4, 6, -5>, rgb 1 shadowless }",
+        ),
+        (
+            "fading",
+            "light_source { <2, 3, -3>, rgb 0.9 fade_distance 4 fade_power 1.5 }",
+        ),
+        (
+            "moved",
+            "light_source { 0, rgb 1 spotlight point_at -y radius 20 falloff 30 rotate <20, 30, 0> translate <1, 4, -1> }",
+        ),
+        (
+            "declared",
+            "#declare L = light_source { 0, rgb 0.8 } light_source { L translate <4, 6, -5> } object { L translate <-4, 6, -5> }",
+        ),
+        (
+            "in a union",
+            "union { light_source { <0, 3, 0>, rgb 0.8 } sphere { <0, 2.5, 1>, 0.2 pigment { rgb 1 } } translate <1, 1, -1> }",
+        ),
+        (
+            "in a difference",
+            "difference { sphere { <0, 3, 1>, 0.5 } light_source { <0, 4, -3>, rgb 0.8 } box { <-1, 3, -1>, 1 } pigment { rgb 1 } rotate 20 * y }",
+        ),
+        (
+            "with looks",
+            "light_source { <1, 2, -1>, rgb 0.8 looks_like { sphere { 0, 0.3 pigment { rgb <1, 1, 0> } finish { ambient 1 } } } }",
+        ),
+    ];
+    let scenes = scenes.map(|(name, light)| (name, lit(light)));
+    agree(0.004, &scenes);
+}
+
+#[test]
+fn lights_with_an_extent_shine_as_povrays() {
+    let scenes = [
+        (
+            "line",
+            "light_source { <3, 5, -4>, rgb 1 area_light <3, 0, 0>, <0, 0, 1>, 6, 1 }",
+        ),
+        (
+            "grid",
+            "light_source { <3, 5, -4>, rgb 1 area_light <3, 0, 0>, <0, 3, 3>, 5, 4 }",
+        ),
+        (
+            "adaptive",
+            "light_source { <3, 5, -4>, rgb 1 area_light <3, 0, 0>, <0, 3, 3>, 9, 9 adaptive 1 }",
+        ),
+        (
+            "circular",
+            "light_source { <3, 5, -4>, rgb 1 area_light <3, 0, 0>, <0, 3, 3>, 7, 7 circular }",
+        ),
+        (
+            "oriented",
+            "light_source { <3, 5, -4>, rgb 1 area_light 3 * x, 3 * z, 5, 5 circular orient }",
+        ),
+        (
+            "spot",
+            "light_source { <3, 5, -4>, rgb 1 spotlight point_at 0 radius 10 falloff 20 area_light 2 * x, 2 * z, 5, 5 }",
+        ),
+        (
+            "parallel",
+            "light_source { <3, 5, -4>, rgb 1 parallel point_at 0 area_light 2 * x, 2 * z, 5, 5 }",
+        ),
+        (
+            "large and jittered",
+            "light_source { <3, 5, -4>, rgb 1 area_light 2 * x, 2 * z, 33, 33 jitter }",
+        ),
+    ];
+    let scenes = scenes.map(|(name, light)| (name, lit(light)));
+    agree(0.01, &scenes);
+}
+
+fn seen(camera: &str) -> String {
+    format!("{SETTINGS}camera {{ {camera} }}\n{LIGHT}{THINGS}")
+}
+
+#[test]
+fn cameras_see_as_povrays() {
+    let scenes = [
+        ("default lens", "location <0, 1, -7>"),
+        (
+            "looking before standing",
+            "look_at <0, 0, 0> location <3, 2, -5>",
+        ),
+        (
+            "right-handed",
+            "location <1, 2, -6> right -4/3 * x look_at 0",
+        ),
+        (
+            "square pixels",
+            "location <1, 2, -6> right x * image_width / image_height look_at 0",
+        ),
+        (
+            "wide pixels",
+            "location <1, 2, -6> right 2 * x up y look_at 0",
+        ),
+        (
+            "exporter",
+            "location <0, 0, -8> direction <0, 0, 2.5> right <1.33, 0, 0> up <0, 1, 0> sky <0, 1, 0>",
+        ),
+        (
+            "z up",
+            "location <6, 1, 4> sky z up z right 4/3 * x angle 45 look_at <0, 0, 0.5>",
+        ),
+        ("tilted sky", "location <1, 2, -6> sky <1, 2, 0> look_at 0"),
+        (
+            "angle before right",
+            "angle 60 right 1.6 * x up 1.2 * y location <1, 2, -6> look_at 0",
+        ),
+        (
+            "turned before",
+            "rotate 20 * y location <0, 1, -6> look_at <0, 0.5, 0>",
+        ),
+        (
+            "turned after",
+            "location <0, 1, -6> look_at <0, 0.5, 0> rotate 20 * y translate 0.5 * x",
+        ),
+        ("from above", "location <0, 8, 0> look_at 0 angle 40"),
+        (
+            "skewed",
+            "location <1, 2, -6> right <1.33, 0.3, 0> up <0, 1, 0.2> direction <0.1, -0.2, 1>",
+        ),
+        (
+            "orthographic",
+            "orthographic location <1, 2, -6> right 6 * x up 4.5 * y look_at 0",
+        ),
+        (
+            "orthographic as perspective",
+            "orthographic location <1, 2, -6> look_at 0",
+        ),
+        (
+            "orthographic by angle",
+            "orthographic angle 40 location <1, 2, -6> right 2 * x up 1.2 * y look_at 0",
+        ),
+        (
+            "orthographic without a point",
+            "orthographic location <0, 0.5, -5> direction 2 * z",
+        ),
+    ];
+    agree(0.004, &scenes.map(|(name, camera)| (name, seen(camera))));
+}
+
+#[test]
+fn a_declared_camera_can_be_moved() {
+    let text = format!(
+        "{SETTINGS}#declare C = camera {{ location <0, 1, -6> look_at 0 angle 40 }} camera {{ C rotate 30 * y }}{LIGHT}{THINGS}"
+    );
+    agree(0.004, &[("declared", text)]);
+}
+
+#[test]
+fn the_air_is_povrays() {
+    let hazy = |fog: &str| {
+        format!("{SETTINGS}{CAMERA}background {{ rgb <0.2, 0.3, 0.5> }}{LIGHT}{fog}{THINGS}")
+    };
+    let scenes = [
+        ("background", ""),
+        ("fog", "fog { distance 8 rgb <0.6, 0.7, 0.8> }"),
+        ("thin fog", "fog { distance 3 rgbt <0.6, 0.7, 0.8, 0.3> }"),
+        (
+            "tinting fog",
+            "fog { distance 6 rgbft <0.8, 0.5, 0.2, 0.6, 0.1> }",
+        ),
+        (
+            "ground fog",
+            "fog { fog_type 2 distance 1 rgb <0.6, 0.7, 0.8> fog_offset -0.8 fog_alt 0.3 }",
+        ),
+        (
+            "ground fog seen from inside",
+            "fog { fog_type 2 distance 9 rgb 0.7 fog_offset 3 fog_alt 1 }",
+        ),
+        (
+            "turned ground fog",
+            "fog { fog_type 2 distance 2 rgb 0.7 fog_offset -0.5 fog_alt 0.5 up 2 * y rotate 30 * z }",
+        ),
+        (
+            "two fogs",
+            "fog { distance 12 rgb <0.6, 0.1, 0.1> } fog { fog_type 2 distance 2 rgb 0.7 fog_alt 0.4 }",
+        ),
+        (
+            "declared",
+            "#declare F = fog { distance 9 rgb 0.5 } fog { F color rgb <0.2, 0.6, 0.2> }",
+        ),
+        (
+            "light in fog",
+            "fog { distance 8 rgb <0.2, 0.1, 0.1> } light_source { <-3, 3, -3>, rgb 1 media_attenuation on }",
+        ),
+        (
+            "sky sphere",
+            "sky_sphere { pigment { rgb <0.6, 0.1, 0.1> } pigment { rgbt <0.1, 0.6, 0.1, 0.5> } emission 0.8 }",
+        ),
+    ];
+    agree(0.004, &scenes.map(|(name, fog)| (name, hazy(fog))));
+}
+
+#[test]
+fn global_settings_mean_the_same() {
+    let mirrors = "
+        plane { -z, -3 pigment { rgb 0 } finish { ambient 0 diffuse 0.1 reflection 0.9 } }
+        plane { z, -8 pigment { rgb 0 } finish { ambient 0 diffuse 0.1 reflection 0.9 } }";
+    let sheets: String = (0..9)
+        .map(|i| format!("plane {{ z, -5 + {i} * 0.1 hollow pigment {{ rgbt <1, 0.5, 0.2, 0.9> }} finish {{ ambient 0.3 }} }}\n"))
+        .collect();
+    let with = |settings: &str, more: &str| format!("{settings}{CAMERA}{LIGHT}{THINGS}{more}");
+    let scenes = [
+        ("nothing", with("#version 3.7; global_settings { }", "")),
+        ("no version", with("", "")),
+        ("version 3.6", with("#version 3.6;", "")),
+        (
+            "gamma 1 in 3.6",
+            with("#version 3.6; global_settings { assumed_gamma 1.0 }", ""),
+        ),
+        (
+            "gamma 2.2",
+            with("#version 3.7; global_settings { assumed_gamma 2.2 }", ""),
+        ),
+        (
+            "gamma 1.4",
+            with("#version 3.7; global_settings { assumed_gamma 1.4 }", ""),
+        ),
+        (
+            "gamma srgb",
+            with("#version 3.7; global_settings { assumed_gamma srgb }", ""),
+        ),
+        (
+            "ambient",
+            with(
+                "#version 3.7; global_settings { assumed_gamma 1 ambient_light rgb <3, 2, 1> }",
+                "",
+            ),
+        ),
+        ("default level", with(SETTINGS, mirrors)),
+        (
+            "level 2",
+            with(
+                "#version 3.7; global_settings { assumed_gamma 1 max_trace_level 2 }",
+                mirrors,
+            ),
+        ),
+        (
+            "level 12",
+            with(
+                "#version 3.7; global_settings { assumed_gamma 1 max_trace_level 12 adc_bailout 0 }",
+                mirrors,
+            ),
+        ),
+        (
+            "bailout",
+            with(
+                "#version 3.7; global_settings { assumed_gamma 1 adc_bailout 0.5 }",
+                mirrors,
+            ),
+        ),
+        (
+            "sheets are no levels",
+            with(
+                "#version 3.7; global_settings { assumed_gamma 1 max_trace_level 2 }",
+                &sheets,
+            ),
+        ),
+    ];
+    agree(0.006, &scenes);
+}
