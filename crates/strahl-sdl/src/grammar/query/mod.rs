@@ -1,5 +1,7 @@
 //! What scenes ask of their own objects: `inside`, `trace`, `min_extent`, `max_extent`.
 
+mod mesh;
+
 use super::Thing;
 use super::entity::Declared;
 use super::objects::expanded;
@@ -8,6 +10,7 @@ use crate::parser::{PResult, Parser, Place};
 use crate::symbol::Symbol;
 use crate::token::Kind;
 use crate::value::{Value, Vector};
+use mesh::SearchableMesh;
 use std::sync::Arc;
 use strahl_geometry::{Csg, CsgNode, Primitive, Scratch, Shape, Solid};
 use strahl_math::{Aabb, DVec3, Interval, Ray};
@@ -63,6 +66,10 @@ fn node(object: &Object) -> Option<CsgNode> {
                     let parts = children.0.iter().rev().filter(|c| !is_light(c));
                     steps.extend(parts.map(Step::Visit));
                     continue;
+                }
+                ObjectKind::Shape(Shape::TriangleMesh(mesh)) => {
+                    let mesh: Arc<dyn Primitive> = Arc::new(SearchableMesh::new(Arc::clone(mesh)));
+                    (object, CsgNode::leaf(mesh, 0))
                 }
                 ObjectKind::Shape(shape) => (object, CsgNode::leaf(Shape::clone(shape), 0)),
                 ObjectKind::Instance(_) | ObjectKind::Light(_) => return None,
