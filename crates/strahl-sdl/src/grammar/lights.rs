@@ -38,6 +38,32 @@ pub(super) fn light_source(p: &mut Parser<'_>) -> PResult<Entity> {
     })
 }
 
+/// `light_group { lights and objects }`: for now a union whose lights shine on everything.
+pub(super) fn light_group(p: &mut Parser<'_>) -> PResult<Entity> {
+    let place = p.place();
+    p.warn_hint(
+        place,
+        "`light_group` is not supported yet and counts as a union",
+        "its lights will shine on everything, and all other lights on its objects",
+    );
+    p.braces(|p| {
+        let mut parts = vec![];
+        loop {
+            if p.accept_word(Word::GlobalLights)? {
+                p.switched()?;
+            } else if let Some(object) = p.object()? {
+                parts.push(object);
+            } else {
+                break;
+            }
+        }
+        let mut entity = Entity::from(Object::csg(CsgOp::Union, parts));
+        entity.object.span = p.span_at(place);
+        p.modifiers(&mut entity)?;
+        Ok(entity)
+    })
+}
+
 /// Whether a light is what an object consists of: alone, or with its looks.
 fn is_light(object: &Object) -> bool {
     match &object.kind {

@@ -32,6 +32,7 @@ type ObjectParser = fn(&mut Parser<'_>) -> PResult<Entity>;
 /// All objects by their words.
 static OBJECTS: [Option<ObjectParser>; Word::ALL.len()] = by_word::<ObjectParser, _>([
     (Word::Box, boxes::cuboid),
+    (Word::LightGroup, super::lights::light_group),
     (Word::LightSource, super::lights::light_source),
     (Word::Cone, cone::cone),
     (Word::Cylinder, cylinder::cylinder),

@@ -1,0 +1,102 @@
+//! What lights, cameras, fog and settings become, and what is said of them.
+
+mod common;
+
+use common::{errors, parse_with};
+use strahl_scene::{Projection, Scene, WorkingSpace};
+use strahl_sdl::MemoryHost;
+use strahl_shade::{Color, LightKind};
+
+/// The scene and the messages of a text without errors.
+fn scene(text: &str) -> (Scene, String) {
+    let parsed = parse_with(&mut MemoryHost::new(), text);
+    let messages: Vec<String> = parsed.diagnostics.iter().map(ToString::to_string).collect();
+    let messages = messages.join("\n");
+    (parsed.scene.expect(&messages), messages)
+}
+
+#[test]
+fn a_group_of_lights_keeps_its_objects() {
+    let (scene, messages) = scene(
+        "light_group { light_source { y, rgb 1 } global_lights off sphere { 0, 1 } translate x }",
+    );
+    assert_eq!(scene.objects.0.len(), 1);
+    assert!(messages.contains("`light_group` is not supported yet"));
+}
+
+#[test]
+fn what_is_missing_is_named_and_read_past() {
+    let (scene, messages) = scene(
+        "global_settings { radiosity { count 50 } photons { count 100 } hf_gray_16 on charset utf8 max_trace_level 7 }
+         camera { fisheye location -z aperture 0.4 blur_samples 4, 20 focal_point 0 normal { bumps 0.2 } look_at y angle 60 }
+         light_source { y, rgb 1 projected_through { sphere { 0, 1 } } media_interaction off }
+         fog { distance 5 rgb 1 turbulence 0.5 turb_depth 0.3 octaves 3 }",
+    );
+    for word in [
+        "radiosity",
+        "photons",
+        "hf_gray_16",
+        "fisheye",
+        "aperture",
+        "normal",
+        "projected_through",
+        "turbulence",
+    ] {
+        assert!(messages.contains(word), "{word}: {messages}");
+    }
+    assert_eq!((scene.settings.max_depth, scene.fogs.len()), (7, 1));
+    assert_eq!(scene.lights.len(), 1);
+    let camera = scene.camera.expect("a camera");
+    assert_eq!(camera.projection, Projection::Perspective);
+}
+
+#[test]
+fn versions_decide_what_numbers_mean() {
+    let space = |text: &str| scene(text).0.settings.working_space;
+    assert_eq!(space("#version 3.7;"), WorkingSpace::Linear);
+    assert_eq!(space("#version 3.6;"), WorkingSpace::Srgb);
+    assert_eq!(space(""), WorkingSpace::Srgb);
+    assert_eq!(
+        space("#version 3.6; global_settings { assumed_gamma 1 }"),
+        WorkingSpace::Linear
+    );
+    let (scene, messages) = scene("#version 3.7; global_settings { assumed_gamma 2.2 }");
+    assert_eq!(scene.settings.working_space, WorkingSpace::Gamma(2.2));
+    assert!(messages.contains("assumed_gamma 1.0"), "{messages}");
+    assert_eq!(scene.ambient, Some(Color::WHITE));
+}
+
+#[test]
+fn wrong_numbers_are_errors() {
+    for (text, message) in [
+        ("global_settings { max_trace_level 0 }", "1 to 256"),
+        ("global_settings { assumed_gamma 0 }", "must be positive"),
+        ("camera { angle 200 }", "between 0 and 180"),
+        ("camera { right 0 }", "sees nothing"),
+        ("fog { fog_type 3 }", "fog_type is 1"),
+        (
+            "light_source { 0, 1 area_light x, y, 0, 5 }",
+            "1 to 1024 points",
+        ),
+        (
+            "#declare S = sphere { 0, 1 } light_source { S }",
+            "not that of a light",
+        ),
+    ] {
+        let errors = errors(text);
+        assert!(
+            errors.iter().any(|e| e.contains(message)),
+            "{text}: {errors:?}"
+        );
+    }
+}
+
+#[test]
+fn a_light_that_points_at_itself_shines_everywhere() {
+    let (scene, messages) = scene("light_source { y, rgb 1 spotlight point_at y }");
+    assert!(matches!(
+        scene.lights[0].light.kind,
+        LightKind::Point { .. }
+    ));
+    assert!(messages.contains("points at its own location"));
+}
