@@ -5,33 +5,16 @@ use crate::observer::{LightTerm, TraceObserver};
 use crate::shadow::ShadowRay;
 use crate::surface::Surface;
 use crate::trace::{Branch, TreeTracer};
-use strahl_math::Ray;
+use strahl_math::{DVec3, Ray};
 use strahl_shade::{AreaLight, Color, Light, LightSample, ShadingModel};
 
 /// Visibilities of the corners of a cell that differ by more than this make an adaptive grid look closer: less than a step
 /// of an 8-bit channel.
 const THRESHOLD: f64 = 1.0 / 256.0;
 
-/// What one point of the grid, or the mean of several, sends to the lit point.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Arriving {
-    visible: Color,
-    diffuse: Color,
-    specular: Color,
-}
-
-impl Arriving {
-    fn mean(parts: [Self; 4]) -> Self {
-        let mean = |of: fn(&Self) -> Color| {
-            let [a, b, c, d] = &parts;
-            ((of(a) + of(b)) + (of(c) + of(d))) * 0.25
-        };
-        Self {
-            visible: mean(|p| p.visible),
-            diffuse: mean(|p| p.diffuse),
-            specular: mean(|p| p.specular),
-        }
-    }
+/// The mean of four.
+fn mean([a, b, c, d]: [Color; 4]) -> Color {
+    ((a + b) + (c + d)) * 0.25
 }
 
 /// A rectangle of the grid, corners included.
@@ -66,6 +49,19 @@ struct AreaQuery<'q> {
     model: ShadingModel,
     branch: &'q Branch,
     node: u32,
+}
+
+impl AreaQuery<'_> {
+    /// From the centre of the light to a point of its grid, as seen from the lit point.
+    fn offset(&self, i: u32, j: u32) -> DVec3 {
+        let lit = self.surface.resolved.point.position;
+        let offset = self.area.offset(i, j, lit, self.center.l);
+        if self.light.is_parallel() {
+            offset * (self.center.shadow_direction.length() / self.area.reach)
+        } else {
+            offset
+        }
+    }
 }
 
 impl TreeTracer<'_> {
@@ -108,14 +104,44 @@ impl TreeTracer<'_> {
             j: [0, area.size_2.saturating_sub(1)],
             level: 0,
         };
-        let arriving = self.area_cell(&query, whole, &mut known, observer);
+        term.visible = self.area_cell(&query, whole, &mut known, observer);
         self.area_points = known;
         term.shadow_rays = (self.counts.shadow - before) as u32;
-        term.visible = arriving.visible;
-        if area.illumination {
-            term.diffuse = arriving.diffuse;
-            term.specular = arriving.specular;
+        if area.illumination && !term.visible.is_black() {
+            (term.diffuse, term.specular) = self.area_shading(&query, term.visible);
         }
+    }
+
+    /// What the surface makes of a light whose points shade one by one: their plain mean, weakened by what of the whole
+    /// light is visible (as POV-Ray does it).
+    fn area_shading(&self, query: &AreaQuery<'_>, visible: Color) -> (Color, Color) {
+        let lit = query.surface.resolved.point.position;
+        let (mut diffuse, mut specular) = (Color::BLACK, Color::BLACK);
+        for j in 0..query.area.size_2 {
+            for i in 0..query.area.size_1 {
+                // The point shines like the centre would from its place.
+                let offset = query.offset(i, j);
+                let Some(sample) = query.light.illuminate(lit - offset) else {
+                    continue;
+                };
+                let n_dot_l = query.surface.n_shade.dot(sample.l);
+                if self.faces(sample.l, n_dot_l) {
+                    let light = sample.color * visible;
+                    let (d, s) = self.reflected(
+                        query.surface,
+                        query.light,
+                        query.model,
+                        light,
+                        sample.l,
+                        n_dot_l,
+                    );
+                    diffuse += d;
+                    specular += s;
+                }
+            }
+        }
+        let count = f64::from(query.area.size_1) * f64::from(query.area.size_2);
+        (diffuse / count, specular / count)
     }
 
     /// The mean over a cell: of its four corners, or of its four quarters if it has points inside that matter. Recursion
@@ -124,9 +150,9 @@ impl TreeTracer<'_> {
         &mut self,
         query: &AreaQuery<'_>,
         cell: Cell,
-        known: &mut [Option<Arriving>],
+        known: &mut [Option<Color>],
         observer: &mut O,
-    ) -> Arriving {
+    ) -> Color {
         let ([i_low, i_high], i_splits) = halves(cell.i);
         let ([j_low, j_high], j_splits) = halves(cell.j);
         let splits = i_splits || j_splits;
@@ -136,12 +162,12 @@ impl TreeTracer<'_> {
             let [j0, j1] = cell.j;
             let corners = [(i0, j0), (i1, j0), (i0, j1), (i1, j1)]
                 .map(|(i, j)| self.area_point(query, (i, j), known, observer));
-            let differ = |a: &Arriving| {
-                let difference = a.visible - corners[0].visible;
+            let differ = |a: &Color| {
+                let difference = *a - corners[0];
                 difference.map(f64::abs).max_component() > THRESHOLD
             };
             if !splits || !corners.iter().any(differ) {
-                return Arriving::mean(corners);
+                return mean(corners);
             }
         }
         let level = cell.level + 1;
@@ -151,9 +177,7 @@ impl TreeTracer<'_> {
             (i_low, j_high),
             (i_high, j_high),
         ];
-        Arriving::mean(
-            quarters.map(|(i, j)| self.area_cell(query, Cell { i, j, level }, known, observer)),
-        )
+        mean(quarters.map(|(i, j)| self.area_cell(query, Cell { i, j, level }, known, observer)))
     }
 
     /// One point of the grid; its shadow ray is followed once.
@@ -161,20 +185,15 @@ impl TreeTracer<'_> {
         &mut self,
         query: &AreaQuery<'_>,
         (i, j): (u32, u32),
-        known: &mut [Option<Arriving>],
+        known: &mut [Option<Color>],
         observer: &mut O,
-    ) -> Arriving {
+    ) -> Color {
         let index = j as usize * query.area.size_1 as usize + i as usize;
-        if let Some(Some(arriving)) = known.get(index) {
-            return *arriving;
+        if let Some(Some(visible)) = known.get(index) {
+            return *visible;
         }
         let (surface, center) = (query.surface, query.center);
-        let lit = surface.resolved.point.position;
-        let mut offset = query.area.offset(i, j, lit, center.l);
-        if query.light.is_parallel() {
-            offset *= center.shadow_direction.length() / query.area.reach;
-        }
-        let direction = center.shadow_direction + offset;
+        let direction = center.shadow_direction + query.offset(i, j);
         let (origin_point, from) = surface.start(query.hit, direction);
         let ray = Ray::new(origin_point, direction);
         let shadow = self.tracer.shadow(
@@ -193,28 +212,10 @@ impl TreeTracer<'_> {
         if O::ACTIVE {
             observer.area_shadow(query.node, query.number as u32, ray, shadow.visible);
         }
-        let mut arriving = Arriving {
-            visible: shadow.visible,
-            ..Arriving::default()
-        };
-        if query.area.illumination && !shadow.visible.is_black() {
-            // The point shines like the centre would from its place.
-            let moved = query
-                .light
-                .illuminate(lit - offset)
-                .map(|sample| (surface.n_shade.dot(sample.l), sample));
-            if let Some((n_dot_l, sample)) = moved
-                && self.faces(sample.l, n_dot_l)
-            {
-                let light = sample.color * shadow.visible;
-                (arriving.diffuse, arriving.specular) =
-                    self.reflected(surface, query.light, query.model, light, sample.l, n_dot_l);
-            }
-        }
         if let Some(slot) = known.get_mut(index) {
-            *slot = Some(arriving);
+            *slot = Some(shadow.visible);
         }
-        arriving
+        shadow.visible
     }
 }
 

@@ -12,7 +12,6 @@
 //! secondary. The tree is walked with a stack of its own, so its depth is not limited by the machine's stack, and combined
 //! bottom-up in the order reflection, transparency, so the sum does not depend on the order of tracing.
 
-use crate::area::Arriving;
 use crate::hit::{Hit, Origin, RayClass};
 use crate::layers;
 use crate::media::{MediaArena, MediaStack};
@@ -169,7 +168,7 @@ pub struct TreeTracer<'s> {
     nodes: Vec<Node>,
     pub(crate) shadow_hits: Vec<Hit>,
     /// The points of an area light already looked at, for one lit point at a time.
-    pub(crate) area_points: Vec<Option<Arriving>>,
+    pub(crate) area_points: Vec<Option<Color>>,
     /// The layers of the hit at hand; none without a texture.
     pub(crate) paint: TexturePaint<'s>,
 }

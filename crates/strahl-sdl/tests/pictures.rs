@@ -250,6 +250,10 @@ fn lights_with_an_extent_shine_as_povrays() {
             "light_source { <3, 5, -4>, rgb 1 parallel point_at 0 area_light 2 * x, 2 * z, 5, 5 }",
         ),
         (
+            "illuminating",
+            "light_source { <1, 3, -2>, rgb 1 area_light 3 * x, 3 * z, 5, 5 area_illumination on }",
+        ),
+        (
             "large and jittered",
             "light_source { <3, 5, -4>, rgb 1 area_light 2 * x, 2 * z, 33, 33 jitter }",
         ),
