@@ -224,7 +224,7 @@ impl<'a> Input<'a> {
 /// What a scene says goes to the standard error, as it comes; warnings are among the diagnostics already.
 fn print_message(stream: Stream, text: &str) {
     if stream != Stream::Warning {
-        eprint!("{text}");
+        Reporter::message(text);
     }
 }
 

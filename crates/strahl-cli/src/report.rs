@@ -1,6 +1,7 @@
 use std::cell::RefCell;
 use std::collections::BTreeSet;
 use std::fmt::Display;
+use std::sync::atomic::{AtomicBool, Ordering};
 use strahl::scene::{Diagnostic, Severity, SourceMap};
 
 /// Why a command failed.
@@ -36,6 +37,9 @@ impl Failure {
     }
 }
 
+/// Whether the last message of a scene did not end its line.
+static OPEN_LINE: AtomicBool = AtomicBool::new(false);
+
 /// Prints diagnostics, each text once: the frames of an animation repeat them.
 #[derive(Debug)]
 pub(crate) struct Reporter {
@@ -49,6 +53,14 @@ impl Reporter {
         Self {
             quiet,
             said: RefCell::default(),
+        }
+    }
+
+    /// Prints what a scene says, as it comes.
+    pub(crate) fn message(text: &str) {
+        eprint!("{text}");
+        if let Some(last) = text.chars().next_back() {
+            OPEN_LINE.store(last != '\n', Ordering::Relaxed);
         }
     }
 
@@ -66,6 +78,10 @@ impl Reporter {
                 text.push_str(&format!("\n  --> {location}"));
             }
             if self.said.borrow_mut().insert(text.clone()) {
+                // Scenes often leave their last line open.
+                if OPEN_LINE.swap(false, Ordering::Relaxed) {
+                    eprintln!();
+                }
                 eprintln!("{text}");
             }
         }

@@ -276,6 +276,9 @@ fn an_error_shows_line_caret_and_trace() {
     );
     assert!(!f.join("bad.png").exists(), "{text}");
     fails(f, &["check", "bad.pov"], 1, &["in macro `Ball`"]);
+    // What the scene said last does not swallow the error.
+    write(f, "said.pov", "#debug \"half a line\"\nbox { 1 }");
+    fails(f, &["check", "said.pov"], 1, &["half a line\nerror: "]);
     fails(
         f,
         &["render", "shapes_of_mine.inc"],
