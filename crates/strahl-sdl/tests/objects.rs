@@ -469,6 +469,13 @@ fn operations_get_the_parts_of_what_they_use() {
     assert_eq!(operation(&parts[1]).1.len(), 20);
     assert_eq!(operation(&parts[2]).1.len(), 20);
     assert!(parts[2].transform.is_some());
+    // Also where something small holds it.
+    let text = format!(
+        "{LARGE} #declare U = union {{ object {{ Large }} sphere {{ 0, 1 }} }} difference {{ box {{ -1, 30 }} object {{ U }} }}"
+    );
+    let (scene, _) = self::scene(&text);
+    let holder = &operation(&scene.objects.0[0]).1[1];
+    assert_eq!(operation(&operation(holder).1[0]).1.len(), 20);
 }
 
 #[test]

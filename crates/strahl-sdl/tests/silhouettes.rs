@@ -197,6 +197,10 @@ const SCENES: &[(&str, &str)] = &[
         "intersection { disc { 0, <0.2, 0.5, -1>, 1.5 texture { Green } } sphere { 0, 1 texture { Red } } }",
     ),
     (
+        "light in a union",
+        "#declare Lamp = union { light_source { <0, 1.5, -2>, rgb 0.5 } sphere { <0.6, 0, 0>, 0.5 texture { Red } } rotate y * 20 } object { Lamp translate -x } plane { y, -1 texture { Green } }",
+    ),
+    (
         "clipped",
         "sphere { 0, 1.2 clipped_by { plane { <0.3, 1, -0.2>, 0.3 } } texture { Red } }",
     ),

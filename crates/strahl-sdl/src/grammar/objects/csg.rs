@@ -27,16 +27,18 @@ impl Parser<'_> {
     fn csg(&mut self, op: CsgOp) -> PResult<Entity> {
         let place = self.place();
         self.braces(|p| {
-            let children = p.parts()?;
+            // What is combined otherwise than by unions is copied at once.
+            let before = p.state.shared.copying;
+            p.state.shared.copying |= op != CsgOp::Union;
+            let children = p.parts();
+            p.state.shared.copying = before;
+            let children = children?;
             if children.is_empty() {
                 p.warn(place, format!("the {} has no objects", op.name()));
             }
             let kept = combine(op, children);
             let mut entity = Entity::from(Object::csg(op, kept));
             entity.object.span = p.span_at(place);
-            if op != CsgOp::Union {
-                p.expand_instances(&mut entity.object);
-            }
             p.modifiers(&mut entity)?;
             Ok(entity)
         })

@@ -69,6 +69,8 @@ impl Tally {
 pub(crate) struct Shared {
     objects: Vec<Arc<Declared>>,
     names: HashMap<Symbol, Arc<str>>,
+    /// Whether objects are read that are combined otherwise than by unions, which takes copies.
+    pub(super) copying: bool,
 }
 
 impl Shared {
@@ -92,6 +94,12 @@ impl Parser<'_> {
             parts, elements, ..
         } = declared.tally;
         let uses = declared.uses.fetch_add(1, Ordering::Relaxed);
+        if self.state.shared.copying {
+            return Entity {
+                object: expanded(&declared.entity.object, &self.state.shared),
+                texture: declared.entity.texture.clone(),
+            };
+        }
         // Lights shine where they stand, so each use needs its own.
         if declared.tally.lights {
             return declared.entity.clone();
