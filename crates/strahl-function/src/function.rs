@@ -1,9 +1,11 @@
 use crate::bounds::Bounds;
 use crate::domain::{Domain, Dual, LANES, Lanes};
 use crate::error::FunctionError;
+use crate::field::ScalarField;
 use crate::graph::{Expr, Graph};
 use crate::run::{prepare, run};
 use crate::tape::{self, Tape};
+use std::cell::Cell;
 use std::sync::Arc;
 
 /// A function of named parameters, ready to be evaluated. Cheap to clone.
@@ -170,5 +172,27 @@ fn reserve<'a, T: Domain>(stack: &'a mut Vec<T>, tape: &Tape) -> &'a mut [T] {
 fn fill(stack: &mut [f64], arguments: &[f64], inputs: usize) {
     for (register, i) in stack.iter_mut().zip(0..inputs) {
         *register = arguments.get(i).copied().unwrap_or(f64::NAN);
+    }
+}
+
+impl ScalarField for Function {
+    fn arity(&self) -> usize {
+        self.parameters().len()
+    }
+
+    fn value(&self, arguments: &[f64]) -> f64 {
+        thread_local! {
+            static WORKSPACE: Cell<Workspace> = Cell::default();
+        }
+        if arguments.is_empty() {
+            return self.constant().unwrap_or(f64::NAN);
+        }
+        // Taken away and put back, so that a field within the function may do the same.
+        WORKSPACE.with(|cell| {
+            let mut workspace = cell.take();
+            let value = Function::value(self, &mut workspace, arguments);
+            cell.set(workspace);
+            value
+        })
     }
 }

@@ -23,6 +23,14 @@ impl Parser<'_> {
         }
     }
 
+    /// The colour that begins with `value`, whose parts may follow: `filter 0.5`, ...
+    ///
+    /// # Errors
+    /// If a part has no number.
+    pub(crate) fn color_from(&mut self, value: Vector) -> PResult<[f64; 5]> {
+        self.color_parts(opaque(value))
+    }
+
     /// A colour that begins with one of the colour words.
     pub(super) fn color_expression(&mut self) -> PResult<[f64; 5]> {
         let token = self.peek()?;

@@ -1,8 +1,8 @@
 use super::Texture;
 use super::objects::Tally;
 use super::query::Query;
-use std::sync::OnceLock;
 use std::sync::atomic::AtomicU32;
+use std::sync::{Arc, OnceLock};
 use strahl_math::Transform;
 use strahl_scene::{CsgOp, Object, ObjectKind};
 
@@ -69,7 +69,7 @@ pub struct Declared {
     /// Its number among the objects whose uses share one group.
     pub(crate) shared: OnceLock<u32>,
     /// What answers `inside`, `trace` and the extents; made when first asked.
-    pub(crate) query: OnceLock<Option<Box<Query>>>,
+    pub(crate) query: OnceLock<Option<Arc<Query>>>,
 }
 
 impl From<Entity> for Declared {

@@ -24,7 +24,7 @@ pub use defaults::State;
 pub(crate) use defaults::default_items;
 pub use entity::{Declared, Entity};
 pub use global_settings::GlobalSettings;
-pub use texture::{Finish, Pigment, Texture};
+pub use texture::Texture;
 pub use thing::Thing;
 
 use crate::keywords::{Word, WordKind};

@@ -3,8 +3,7 @@ use crate::parser::{PResult, Parser};
 use std::sync::Arc;
 use strahl_math::Transform;
 use strahl_scene::{Background, SkySphere};
-use strahl_shade::pigment::Pigment;
-use strahl_shade::{Color, ColorFt};
+use strahl_shade::Color;
 
 /// `sky_sphere { pigment { ... } ... }` as a statement: the last one counts.
 pub(super) fn sky_statement(p: &mut Parser<'_>) -> PResult<()> {
@@ -41,7 +40,7 @@ impl Parser<'_> {
                 match token.word() {
                     Some(Word::Pigment) => {
                         p.take(token)?;
-                        sky.layers.push(p.sky_layer()?);
+                        sky.layers.push(p.pigment_block()?);
                     }
                     Some(Word::Emission) => {
                         p.take(token)?;
@@ -54,14 +53,5 @@ impl Parser<'_> {
             })
         })?;
         Ok(sky)
-    }
-
-    fn sky_layer(&mut self) -> PResult<Pigment> {
-        let [r, g, b, filter, transmit] = self.pigment_block()?.color;
-        Ok(Pigment::Solid(ColorFt {
-            rgb: Color::new(r, g, b),
-            filter,
-            transmit,
-        }))
     }
 }

@@ -1,69 +1,238 @@
-//! How surfaces look: pigments, finishes and textures.
+//! How objects look: pigments, normals, finishes, textures, interiors.
+//!
+//! `pattern` is the table of patterns, which pigments, normals and textures share, `modifiers` what changes any of them, `maps` the
+//! lists of `[position thing]`. Everything is read straight into the types of `strahl_shade`; only [`Texture`], what an object
+//! carries, is of this crate.
+//!
+//! **Order and space.** A transformation moves what has been written before it, within its braces. A texture lives in the
+//! object's own space, inside of [`Object::transform`](strahl_scene::Object): whatever moves the object later moves the texture
+//! along, in copies, combinations and instances too. Only a texture that is written *after* a transformation of its object
+//! needs that transformation undone, by [`Texture::transformed`].
 
+mod bitmap;
 mod finish;
+mod inside;
+mod interior;
+mod maps;
 mod material;
+mod modifiers;
+mod normal;
+mod pattern;
 mod pigment;
+mod statement;
 
-pub use finish::Finish;
-pub use pigment::Pigment;
+pub(super) use bitmap::KnownPicture;
 
 use crate::keywords::Word;
 use crate::parser::{PResult, Parser};
 use crate::token::Token;
+use std::sync::{Arc, LazyLock};
 use strahl_math::Transform;
+use strahl_shade::interior::Interior;
+use strahl_shade::texture::{PlainTexture, Texture as Surface};
 
-/// A pigment with a finish.
-#[derive(Clone, Debug, PartialEq)]
+/// What an object is covered with and filled with.
+#[derive(Clone, Debug, Default)]
 pub struct Texture {
-    /// The colour.
-    pub pigment: Pigment,
-    /// How the surface takes light.
-    pub finish: Finish,
+    /// What covers the surface.
+    pub surface: Arc<Surface>,
+    /// What covers it as seen from inside, if that is something else.
+    pub inner_surface: Option<Arc<Surface>>,
+    /// What is inside.
+    pub interior: Option<Interior>,
+    /// Whether `surface` has been written and is not the default: further textures are then laid over it.
+    pub(super) written: bool,
+}
+
+/// Moves a texture. With `uv`, also what lies in surface coordinates; objects that are moved leave that alone.
+fn transform(texture: &mut Surface, by: &Transform, uv: bool) {
+    match texture {
+        Surface::Plain(plain) => {
+            pigment::transform(&mut plain.pigment, by, uv);
+            if let Some(normal) = &mut plain.normal {
+                normal::transform(normal, by);
+            }
+        }
+        Surface::Layered(layers) => layers.iter_mut().for_each(|l| transform(l, by, uv)),
+        Surface::Map(field, _) | Surface::Blocks(field, _) => {
+            modifiers::transform(&mut field.modifiers.warps, by);
+        }
+        Surface::Average(_, modifiers) | Surface::MaterialMap(_, modifiers, _) => {
+            modifiers::transform(&mut modifiers.warps, by);
+        }
+        Surface::Transformed(own, _) => **own = own.then(by),
+        Surface::UvMapped(inner) => {
+            if uv {
+                transform(inner, by, uv);
+            }
+        }
+    }
+}
+
+/// Whether a texture is the same everywhere, so that moving it changes nothing.
+fn is_uniform(texture: &Surface) -> bool {
+    use strahl_shade::pigment::Pigment;
+    match texture {
+        Surface::Plain(plain) => {
+            plain.normal.is_none() && matches!(plain.pigment, Pigment::Solid(_))
+        }
+        Surface::Layered(layers) => layers.iter().all(is_uniform),
+        _ => false,
+    }
+}
+
+/// The pigment, normal and finish that further items change: those of the uppermost layer.
+fn top_of(texture: &mut Surface) -> Option<&mut PlainTexture> {
+    match texture {
+        Surface::Plain(plain) => Some(plain),
+        Surface::Layered(layers) => layers.last_mut().and_then(top_of),
+        Surface::Transformed(_, inner) | Surface::UvMapped(inner) => top_of(inner),
+        _ => None,
+    }
+}
+
+/// The textures of `upper` over those of `lower`.
+fn layered(lower: Surface, upper: Surface) -> Surface {
+    let layers = |texture| match texture {
+        Surface::Layered(layers) => layers,
+        single => vec![single],
+    };
+    let mut all = layers(lower);
+    all.extend(layers(upper));
+    Surface::Layered(all)
 }
 
 impl Texture {
-    /// The texture moved along with an object. It is the same everywhere, so it stays what it is.
+    /// The texture after a transformation of the space it lies in; what lies in surface coordinates stays.
     #[must_use]
-    pub(in crate::grammar) fn transformed(self, _map: &Transform) -> Self {
-        self
+    pub fn transformed(&self, by: &Transform) -> Self {
+        let moved = |surface: &Arc<Surface>| {
+            if by.is_identity() || is_uniform(surface) {
+                return Arc::clone(surface);
+            }
+            let mut surface = Surface::clone(surface);
+            transform(&mut surface, by, false);
+            Arc::new(surface)
+        };
+        Self {
+            surface: moved(&self.surface),
+            inner_surface: self.inner_surface.as_ref().map(moved),
+            interior: self.interior,
+            written: self.written,
+        }
+    }
+
+    /// Pigment, normal and finish of the uppermost layer; the defaults of the language for patterned textures.
+    pub(super) fn top(&self) -> &PlainTexture {
+        static DEFAULT: LazyLock<PlainTexture> = LazyLock::new(PlainTexture::default);
+        let mut texture = &*self.surface;
+        loop {
+            texture = match texture {
+                Surface::Plain(plain) => return plain,
+                Surface::Layered(layers) => match layers.last() {
+                    Some(top) => top,
+                    None => return &DEFAULT,
+                },
+                Surface::Transformed(_, inner) | Surface::UvMapped(inner) => inner,
+                _ => return &DEFAULT,
+            };
+        }
+    }
+
+    /// Lays a texture over what has been written, or puts it in the place of the default.
+    fn cover(&mut self, surface: Arc<Surface>) {
+        self.surface = if self.written {
+            let lower = Surface::clone(&self.surface);
+            Arc::new(layered(lower, Surface::clone(&surface)))
+        } else {
+            surface
+        };
+        self.written = true;
     }
 }
 
 impl Parser<'_> {
-    /// `{ ... }` behind `texture`.
-    pub(super) fn texture_block(&mut self) -> PResult<Texture> {
-        let mut texture = self.state.default_texture.clone();
-        self.braces(|p| {
-            let named = p.accept_thing(|thing| match thing {
-                super::Thing::Texture(t) => Some(t),
-                _ => None,
-            })?;
-            if let Some(named) = named {
-                texture = Texture::clone(&named);
-            }
-            p.items("`texture`", |p, token| {
-                if p.texture_item(&mut texture, token)? || p.transformation(token)?.is_some() {
-                    return Ok(());
-                }
-                p.skip_item(token, "`texture`")
-            })
-        })?;
-        Ok(texture)
-    }
-
-    /// `pigment` or `finish` with its block, in a texture or directly in an object; `false` if none stands here.
+    /// If something stands here that says how an object looks or what it is filled with, reads it: `pigment`, `normal`,
+    /// `finish`, `texture`, `interior_texture`, `interior`, `material`, `uv_mapping`.
+    ///
+    /// # Errors
+    /// If it is wrong.
     pub(super) fn texture_item(&mut self, texture: &mut Texture, token: Token) -> PResult<bool> {
         match token.word() {
-            Some(Word::Pigment) => {
-                self.take(token)?;
-                texture.pigment = self.pigment_block()?;
+            Some(Word::Pigment | Word::Normal | Word::Finish) => {
+                self.plain_item(Arc::make_mut(&mut texture.surface), token)?;
+                texture.written = true;
             }
-            Some(Word::Finish) => {
+            Some(Word::Texture) => {
                 self.take(token)?;
-                texture.finish = self.finish_block()?;
+                let surface = self.surface_block()?;
+                texture.cover(surface);
+            }
+            Some(Word::InteriorTexture) => {
+                self.take(token)?;
+                let place = self.place();
+                self.warn_hint(
+                    place,
+                    "`interior_texture` is not shown yet",
+                    "both sides of the surface will have the outer texture",
+                );
+                texture.inner_surface = Some(self.surface_block()?);
+            }
+            Some(Word::Interior) => {
+                self.take(token)?;
+                texture.interior = Some(self.interior_block()?);
+            }
+            Some(Word::Material) => {
+                self.take(token)?;
+                let material = self.material_block()?;
+                if material.written {
+                    texture.cover(material.surface);
+                }
+                if material.inner_surface.is_some() {
+                    texture.inner_surface = material.inner_surface;
+                }
+                if material.interior.is_some() {
+                    texture.interior = material.interior;
+                }
+            }
+            Some(Word::UvMapping) => {
+                self.take(token)?;
+                if self.flag()? && !matches!(*texture.surface, Surface::UvMapped(_)) {
+                    let inner = Surface::clone(&texture.surface);
+                    texture.surface = Arc::new(Surface::UvMapped(Box::new(inner)));
+                }
             }
             _ => return Ok(false),
         }
         Ok(true)
+    }
+
+    /// `pigment`, `normal` or `finish` with its block, changing the uppermost layer.
+    fn plain_item(&mut self, surface: &mut Surface, token: Token) -> PResult<()> {
+        self.take(token)?;
+        let place = self.place();
+        let mut unused = PlainTexture::default();
+        let patterned = top_of(surface).is_none();
+        if patterned {
+            let word = token.word().map_or("", Word::text);
+            self.warn_hint(
+                place,
+                format!("this `{word}` has no effect: the texture is made of other textures"),
+                format!("write the `{word}` into those"),
+            );
+        }
+        let top = top_of(surface).unwrap_or(&mut unused);
+        match token.word() {
+            Some(Word::Pigment) => {
+                let base = std::mem::take(&mut top.pigment);
+                top.pigment = self.pigment_block_on(base)?;
+            }
+            Some(Word::Normal) => {
+                let base = top.normal.take();
+                top.normal = Some(self.normal_block_on(base)?);
+            }
+            _ => top.finish = self.finish_block_on(top.finish)?,
+        }
+        Ok(())
     }
 }

@@ -1,4 +1,4 @@
-use super::{Declared, Finish, Pigment, Texture, by_word};
+use super::{Declared, Texture, by_word};
 use crate::keywords::Word;
 use crate::parser::{PResult, Parser};
 use crate::token::{Kind, Token};
@@ -6,6 +6,12 @@ use crate::value::Value;
 use std::sync::Arc;
 use strahl_math::Transform;
 use strahl_scene::{Camera, Fog, SkySphere};
+use strahl_shade::ColorFt;
+use strahl_shade::interior::Interior;
+use strahl_shade::normal::PovNormal;
+use strahl_shade::pigment::{BlendMap, Pigment};
+use strahl_shade::pov_finish::PovFinish;
+use strahl_shade::texture::Texture as Surface;
 
 macro_rules! things {
     ($($kind:ident($payload:ty) $text:literal)*) => {
@@ -28,12 +34,20 @@ macro_rules! things {
 
 things! {
     Camera(Camera) "a camera"
-    Finish(Finish) "a finish"
+    ColorMap(BlendMap<ColorFt>) "a colour map"
+    Finish(PovFinish) "a finish"
     Fog(Fog) "a fog"
+    Interior(Interior) "an interior"
+    Material(Texture) "a material"
+    Normal(PovNormal) "a normal"
+    NormalMap(BlendMap<PovNormal>) "a normal map"
     Object(Declared) "an object"
     Pigment(Pigment) "a pigment"
+    PigmentMap(BlendMap<Pigment>) "a pigment map"
     SkySphere(SkySphere) "a sky sphere"
-    Texture(Texture) "a texture"
+    SlopeMap(BlendMap<[f64; 2]>) "a slope map"
+    Texture(Surface) "a texture"
+    TextureMap(BlendMap<Surface>) "a texture map"
     Transform(Transform) "a transformation"
 }
 
@@ -43,23 +57,48 @@ type ThingParser = fn(&mut Parser<'_>) -> PResult<Thing>;
 /// What can stand on the right of `#declare` besides objects.
 static THINGS: [Option<ThingParser>; Word::ALL.len()] = by_word::<ThingParser, _>([
     (Word::Camera, |p| Ok(Thing::Camera(Arc::new(p.camera()?)))),
+    (Word::ColorMap, color_map),
+    (Word::ColourMap, color_map),
     (Word::Finish, |p| {
         Ok(Thing::Finish(Arc::new(p.finish_block()?)))
     }),
     (Word::Fog, |p| Ok(Thing::Fog(Arc::new(p.fog()?)))),
+    (Word::Interior, |p| {
+        Ok(Thing::Interior(Arc::new(p.interior_block()?)))
+    }),
+    (Word::Material, |p| {
+        Ok(Thing::Material(Arc::new(p.material_block()?)))
+    }),
+    (Word::Normal, |p| {
+        Ok(Thing::Normal(Arc::new(p.normal_block()?)))
+    }),
+    (Word::NormalMap, |p| {
+        Ok(Thing::NormalMap(Arc::new(p.normal_map()?)))
+    }),
     (Word::Pigment, |p| {
         Ok(Thing::Pigment(Arc::new(p.pigment_block()?)))
+    }),
+    (Word::PigmentMap, |p| {
+        Ok(Thing::PigmentMap(Arc::new(p.pigment_map()?)))
     }),
     (Word::SkySphere, |p| {
         Ok(Thing::SkySphere(Arc::new(p.sky_sphere()?)))
     }),
-    (Word::Texture, |p| {
-        Ok(Thing::Texture(Arc::new(p.texture_block()?)))
+    (Word::SlopeMap, |p| {
+        Ok(Thing::SlopeMap(Arc::new(p.slope_map()?.0)))
+    }),
+    (Word::Texture, |p| p.declared_texture().map(Thing::Texture)),
+    (Word::TextureMap, |p| {
+        Ok(Thing::TextureMap(Arc::new(p.texture_map()?)))
     }),
     (Word::Transform, |p| {
         Ok(Thing::Transform(Arc::new(p.transform_block()?)))
     }),
 ]);
+
+fn color_map(p: &mut Parser<'_>) -> PResult<Thing> {
+    Ok(Thing::ColorMap(Arc::new(p.color_map()?)))
+}
 
 impl Parser<'_> {
     /// If a thing is written out here (`sphere { ... }`, `texture { ... }`), reads it.

@@ -74,14 +74,30 @@ impl Parser<'_> {
     pub fn items(
         &mut self,
         what: &str,
+        f: impl FnMut(&mut Self, Token) -> PResult<()>,
+    ) -> PResult<()> {
+        self.items_until(Kind::RightBrace, what, f)
+    }
+
+    /// [`Parser::items`] that end before another token than `}`.
+    ///
+    /// # Errors
+    /// If the text ends before, or `f` fails.
+    pub(crate) fn items_until(
+        &mut self,
+        closing: Kind,
+        what: &str,
         mut f: impl FnMut(&mut Self, Token) -> PResult<()>,
     ) -> PResult<()> {
         loop {
             let token = self.peek()?;
+            if token.kind == closing {
+                return Ok(());
+            }
             match token.kind {
-                Kind::RightBrace => return Ok(()),
                 Kind::End => {
-                    return Err(self.unexpected(token, &format!("`}}` at the end of {what}")));
+                    let closing = closing.describe();
+                    return Err(self.unexpected(token, &format!("{closing} at the end of {what}")));
                 }
                 // Stray separators between items do no harm.
                 Kind::Comma | Kind::Semicolon => self.take(token)?,

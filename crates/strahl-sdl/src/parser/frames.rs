@@ -288,6 +288,23 @@ impl<'h> Parser<'h> {
         Ok(file)
     }
 
+    /// The bytes of a file that is no text of the scene, such as a picture.
+    pub(crate) fn read_file(&mut self, name: &str, from: Place) -> PResult<Source> {
+        let asking = self.sources.get(from.file as usize);
+        let asking = asking.map_or(String::new(), |file| file.name.clone());
+        let source = match self.host.load(name, &asking) {
+            Ok(source) => source,
+            Err(error) => return Err(self.unreadable(error, from)),
+        };
+        self.read_bytes = self.read_bytes.saturating_add(source.bytes.len() as u64);
+        let limit = self.options.limits.read_bytes;
+        if self.read_bytes > limit {
+            let message = format!("`{name}` is too large: all files may have {limit} bytes");
+            return Err(self.fail_fatally(from, message, "raise the limit of bytes read"));
+        }
+        Ok(source)
+    }
+
     fn unreadable(&mut self, error: HostError, from: Place) -> Failed {
         let mut diagnostic = Diagnostic::error(error.to_string());
         if let HostError::NotFound { name, searched } = &error {

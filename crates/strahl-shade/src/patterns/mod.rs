@@ -231,7 +231,7 @@ impl Pattern {
             Self::Cylindrical => plain::cylindrical(p),
             Self::Dents => noisy::dents(p, noise),
             Self::Fractal(fractal) => fractal.value(DVec2::new(p.x, p.y)),
-            Self::Function(function) => function.value(&p.to_array()),
+            Self::Function(function) => plain::wrapped(function.value(&p.to_array())),
             Self::Gradient(direction) => plain::gradient(p, *direction),
             Self::Granite => noisy::granite(p, noise),
             Self::Image(image) => image.gray(p),

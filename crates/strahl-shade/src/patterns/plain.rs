@@ -27,9 +27,12 @@ pub(super) fn spherical(p: DVec3) -> f64 {
 }
 
 /// Values above 1 are taken modulo 1 here, exactly; [`Modifiers::shape`] deals with the rest.
-pub(super) fn gradient(p: DVec3, direction: DVec3) -> f64 {
-    let x = p.dot(direction.normalize_or_zero());
+pub(super) fn wrapped(x: f64) -> f64 {
     if x > 1.0 { x % 1.0 } else { x }
+}
+
+pub(super) fn gradient(p: DVec3, direction: DVec3) -> f64 {
+    wrapped(p.dot(direction.normalize_or_zero()))
 }
 
 pub(super) fn leopard(p: DVec3) -> f64 {

@@ -89,7 +89,16 @@ impl Parser<'_> {
         }
         let visibility = &mut entity.object.visibility;
         match token.word() {
-            Some(Word::Pigment | Word::Finish) => {
+            Some(
+                Word::Pigment
+                | Word::Normal
+                | Word::Finish
+                | Word::Texture
+                | Word::InteriorTexture
+                | Word::Interior
+                | Word::Material
+                | Word::UvMapping,
+            ) => {
                 // What is written now is meant in the space that the object has been moved to.
                 let place = entity.placement();
                 let texture = entity.texture.take();
@@ -97,13 +106,6 @@ impl Parser<'_> {
                 let mut texture = texture.transformed(&place);
                 self.texture_item(&mut texture, token)?;
                 entity.texture = Some(texture.transformed(&place.inverted()));
-                draft.textured = true;
-                return Ok(true);
-            }
-            Some(Word::Texture) => {
-                self.take(token)?;
-                let texture = self.texture_block()?;
-                entity.texture = Some(texture.transformed(&entity.placement().inverted()));
                 draft.textured = true;
                 return Ok(true);
             }
@@ -128,10 +130,8 @@ impl Parser<'_> {
                 draft.bounds = self.enclosing("`bounded_by`", Word::ClippedBy, &draft.clips)?;
                 return Ok(true);
             }
-            // `hollow` matters for media and fog, `uv_mapping` for patterns; the others choose POV-Ray's methods.
-            Some(
-                Word::Hollow | Word::Hierarchy | Word::SplitUnion | Word::Sturm | Word::UvMapping,
-            ) => {}
+            // `hollow` matters for media and fog; the others choose POV-Ray's methods.
+            Some(Word::Hollow | Word::Hierarchy | Word::SplitUnion | Word::Sturm) => {}
             _ => return Ok(false),
         }
         self.take(token)?;

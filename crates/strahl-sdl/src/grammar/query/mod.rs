@@ -31,7 +31,7 @@ impl Query {
         Some(Self { csg, bounds })
     }
 
-    fn contains(&self, point: DVec3) -> bool {
+    pub(super) fn contains(&self, point: DVec3) -> bool {
         self.csg.contains(point)
     }
 
@@ -182,11 +182,11 @@ impl Parser<'_> {
     }
 
     /// The object made ready, once for all questions; `None` if there is nothing to meet.
-    fn query<'d>(&self, declared: &'d Declared) -> Option<&'d Query> {
+    pub(super) fn query(&self, declared: &Declared) -> Option<Arc<Query>> {
         let made = declared.query.get_or_init(|| {
             let object = expanded(&declared.entity.object, &self.state.shared);
-            Query::new(&object).map(Box::new)
+            Query::new(&object).map(Arc::new)
         });
-        made.as_deref()
+        made.clone()
     }
 }

@@ -1,109 +1,181 @@
+//! `finish { ... }`
+
+use crate::grammar::Thing;
 use crate::keywords::Word;
 use crate::parser::{PResult, Parser};
-use crate::token::Kind;
+use crate::token::{Kind, Token};
+use strahl_shade::Color;
+use strahl_shade::pov_finish::{PovFinish, PovReflection};
 
-/// How a surface takes light.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Finish {
-    /// Share of the ambient light, per colour.
-    pub ambient: [f64; 3],
-    /// Share of the light from light sources.
-    pub diffuse: f64,
-    /// Strength of Phong's highlight.
-    pub phong: f64,
-    /// Its exponent.
-    pub phong_size: f64,
-    /// Strength of the highlight around the halfway vector.
-    pub specular: f64,
-    /// Its exponent is one over this.
-    pub roughness: f64,
-    /// Share of the light from the reflected direction, per colour.
-    pub reflection: [f64; 3],
-    /// Light the surface emits, per colour.
-    pub emission: [f64; 3],
-}
-
-impl Default for Finish {
-    fn default() -> Self {
-        Self {
-            ambient: [0.1; 3],
-            diffuse: 0.6,
-            phong: 0.0,
-            phong_size: 40.0,
-            specular: 0.0,
-            roughness: 0.05,
-            reflection: [0.0; 3],
-            emission: [0.0; 3],
-        }
-    }
+/// Which strengths are given as the share of all light that is reflected (`albedo`); they depend on items that may follow.
+#[derive(Default)]
+struct Albedo {
+    diffuse: bool,
+    phong: bool,
+    specular: bool,
 }
 
 impl Parser<'_> {
-    /// `{ ... }` behind `finish`.
-    pub(crate) fn finish_block(&mut self) -> PResult<Finish> {
-        let mut finish = self.state.default_texture.finish.clone();
-        self.braces(|p| {
-            let named = p.accept_thing(|thing| match thing {
-                crate::grammar::Thing::Finish(finish) => Some(finish),
-                _ => None,
-            })?;
-            if let Some(named) = named {
-                finish = Finish::clone(&named);
-            }
-            p.items("`finish`", |p, token| {
-                match token.word() {
-                    Some(Word::Ambient) => finish.ambient = p.finish_color()?,
-                    Some(Word::Emission) => finish.emission = p.finish_color()?,
-                    Some(Word::Diffuse) => finish.diffuse = p.finish_float()?,
-                    Some(Word::Phong) => finish.phong = p.finish_float()?,
-                    Some(Word::PhongSize) => finish.phong_size = p.finish_float()?,
-                    Some(Word::Specular) => finish.specular = p.finish_float()?,
-                    Some(Word::Roughness) => {
-                        finish.roughness = p.finish_float()?;
-                        if !(finish.roughness > 0.0) {
-                            let place = p.place();
-                            return Err(p.fail(place, "roughness must be positive"));
-                        }
-                    }
-                    Some(Word::Reflection) => {
-                        p.take(token)?;
-                        finish.reflection = p.reflection()?;
-                    }
-                    _ => return p.skip_item(token, "`finish`"),
-                }
-                Ok(())
-            })
-        })?;
-        Ok(finish)
+    /// `{ ... }` behind `finish`, which changes the default finish.
+    pub(crate) fn finish_block(&mut self) -> PResult<PovFinish> {
+        let base = self.state.default_texture.top().finish;
+        self.finish_block_on(base)
     }
 
-    fn finish_float(&mut self) -> PResult<f64> {
-        self.next()?;
+    /// `{ ... }` behind `finish`, which changes `base` unless it begins with a name.
+    pub(super) fn finish_block_on(&mut self, base: PovFinish) -> PResult<PovFinish> {
+        self.braces(|p| {
+            let named = p.accept_thing(|thing| match thing {
+                Thing::Finish(finish) => Some(finish),
+                _ => None,
+            })?;
+            let mut finish = named.map_or(base, |named| *named);
+            let mut albedo = Albedo::default();
+            p.items("`finish`", |p, token| {
+                p.finish_item(&mut finish, &mut albedo, token)
+            })?;
+            if albedo.diffuse {
+                finish.diffuse *= PovFinish::diffuse_from_albedo(finish.brilliance);
+            }
+            if albedo.phong {
+                finish.phong *= PovFinish::phong_from_albedo(finish.phong_size);
+            }
+            if albedo.specular {
+                finish.specular *= PovFinish::specular_from_albedo(finish.roughness);
+            }
+            Ok(finish)
+        })
+    }
+
+    fn finish_item(
+        &mut self,
+        finish: &mut PovFinish,
+        albedo: &mut Albedo,
+        token: Token,
+    ) -> PResult<()> {
+        let Some(word) = token.word() else {
+            return self.skip_item(token, "`finish`");
+        };
+        match word {
+            Word::Ambient => finish.ambient = self.finish_color(token)?,
+            Word::Emission => finish.emission = self.finish_color(token)?,
+            Word::Diffuse => {
+                self.take(token)?;
+                albedo.diffuse = self.accept_word(Word::Albedo)?;
+                finish.diffuse = self.float()?;
+                self.comma()?;
+                if self.starts_number()? {
+                    finish.diffuse_back = self.float()?;
+                }
+            }
+            Word::Brilliance => finish.brilliance = self.finish_float(token)?,
+            Word::Phong => {
+                self.take(token)?;
+                albedo.phong = self.accept_word(Word::Albedo)?;
+                finish.phong = self.float()?;
+            }
+            Word::PhongSize => finish.phong_size = self.finish_float(token)?,
+            Word::Specular => {
+                self.take(token)?;
+                albedo.specular = self.accept_word(Word::Albedo)?;
+                finish.specular = self.float()?;
+            }
+            Word::Roughness => {
+                finish.roughness = self.finish_float(token)?;
+                if !(finish.roughness > 0.0) {
+                    let place = self.place();
+                    return Err(self.fail_hint(
+                        place,
+                        format!("roughness must be positive, not {}", finish.roughness),
+                        "0.001 is very smooth, 1 very rough",
+                    ));
+                }
+            }
+            Word::Metallic => {
+                self.take(token)?;
+                finish.metallic = self.optional_float(1.0)?;
+            }
+            Word::Reflection => {
+                self.take(token)?;
+                self.reflection(&mut finish.reflection)?;
+            }
+            Word::ReflectionExponent => {
+                finish.reflection.exponent = self.finish_float(token)?;
+            }
+            Word::ConserveEnergy => {
+                self.take(token)?;
+                finish.conserve_energy = self.flag()?;
+            }
+            Word::Crand => finish.crand = self.finish_float(token)?,
+            _ => return self.skip_item(token, "`finish`"),
+        }
+        Ok(())
+    }
+
+    fn finish_float(&mut self, word: Token) -> PResult<f64> {
+        self.take(word)?;
         self.float()
     }
 
-    fn finish_color(&mut self) -> PResult<[f64; 3]> {
-        self.next()?;
-        self.color().map(|[r, g, b, ..]| [r, g, b])
+    fn finish_color(&mut self, word: Token) -> PResult<Color> {
+        self.take(word)?;
+        self.plain_color()
     }
 
-    /// A colour, or `{ [min,] max ... }`: the largest reflection counts.
-    fn reflection(&mut self) -> PResult<[f64; 3]> {
+    /// A number if one stands here.
+    fn optional_float(&mut self, otherwise: f64) -> PResult<f64> {
+        if self.starts_number()? {
+            self.float()
+        } else {
+            Ok(otherwise)
+        }
+    }
+
+    /// A colour without its transparency.
+    pub(super) fn plain_color(&mut self) -> PResult<Color> {
+        let [r, g, b, ..] = self.color()?;
+        Ok(Color::new(r, g, b))
+    }
+
+    /// A colour, or `{ [min,] max ... }`.
+    fn reflection(&mut self, reflection: &mut PovReflection) -> PResult<()> {
         if self.peek()?.kind != Kind::LeftBrace {
-            return self.color().map(|[r, g, b, ..]| [r, g, b]);
+            let color = self.plain_color()?;
+            (reflection.min, reflection.max) = (color, color);
+            return Ok(());
         }
         self.braces(|p| {
-            let mut color = p.color()?;
+            let first = p.plain_color()?;
             p.comma()?;
             let token = p.peek()?;
-            if token.kind != Kind::RightBrace && token.kind != Kind::Word {
-                color = p.color()?;
-            }
+            let second = if p.starts_color(token) {
+                Some(p.plain_color()?)
+            } else {
+                None
+            };
             p.items("`reflection`", |p, token| {
-                p.skip_item(token, "`reflection`")
+                match token.word() {
+                    Some(Word::Fresnel) => {
+                        p.take(token)?;
+                        reflection.fresnel = p.flag()?;
+                    }
+                    Some(Word::Falloff) => reflection.falloff = p.finish_float(token)?,
+                    Some(Word::Exponent) => reflection.exponent = p.finish_float(token)?,
+                    Some(Word::Metallic) => {
+                        p.take(token)?;
+                        reflection.metallic = p.optional_float(1.0)?;
+                    }
+                    _ => return p.skip_item(token, "`reflection`"),
+                }
+                Ok(())
             })?;
-            let [r, g, b, ..] = color;
-            Ok([r, g, b])
+            // With Fresnel's equations a lone colour is that of grazing angles.
+            (reflection.min, reflection.max) = match second {
+                Some(max) => (first, max),
+                None if reflection.fresnel => (Color::BLACK, first),
+                None => (first, first),
+            };
+            Ok(())
         })
     }
 }

@@ -1,14 +1,50 @@
 use super::Texture;
 use crate::parser::Parser;
 use std::sync::Arc;
+use strahl_math::DVec3;
+use strahl_shade::patterns::TexturePoint;
+use strahl_shade::pigment::Pigment;
+use strahl_shade::texture::{SharedTexture, Texture as Surface};
 use strahl_shade::{Color, Finish, Material, ShadingModel};
 
+/// How many of the last materials are kept to be shared.
+const RECENT: usize = 16;
+
+/// Whether two surfaces are one, or two of the same colour and finish: exporters write those out at each object.
+fn same_surface(a: &Arc<Surface>, b: &Arc<Surface>) -> bool {
+    if Arc::ptr_eq(a, b) {
+        return true;
+    }
+    let (Surface::Plain(a), Surface::Plain(b)) = (&**a, &**b) else {
+        return false;
+    };
+    match (&a.pigment, &b.pigment) {
+        (Pigment::Solid(first), Pigment::Solid(second)) => {
+            first == second && a.normal.is_none() && b.normal.is_none() && a.finish == b.finish
+        }
+        _ => false,
+    }
+}
+
+impl PartialEq for Texture {
+    /// Patterned textures are equal only if they are one and the same.
+    fn eq(&self, other: &Self) -> bool {
+        let same_inner = match (&self.inner_surface, &other.inner_surface) {
+            (None, None) => true,
+            (Some(a), Some(b)) => same_surface(a, b),
+            _ => false,
+        };
+        same_inner && self.interior == other.interior && same_surface(&self.surface, &other.surface)
+    }
+}
+
 impl Texture {
-    /// The texture in the engine's terms: colour times coefficients.
+    /// The material, with coefficients of the classical model for who does not evaluate textures: those at the origin.
     fn to_material(&self) -> Material {
-        let [r, g, b, filter, transmit] = self.pigment.color;
-        let color = Color::new(r, g, b);
-        let f = &self.finish;
+        let top = self.top();
+        let origin = TexturePoint::in_space(DVec3::ZERO);
+        let pigment = top.pigment.color_at(&origin);
+        let (color, f) = (pigment.rgb, &top.finish);
         let phong = f.phong > 0.0 && f.specular <= 0.0;
         let (strength, shininess) = if phong {
             (f.phong, f.phong_size)
@@ -21,33 +57,38 @@ impl Texture {
             ShadingModel::BlinnPhong
         };
         let finish = Finish {
-            ambient: color * Color::from(f.ambient),
+            ambient: color * f.ambient,
             diffuse: color * f.diffuse,
             specular: Color::gray(strength),
             shininess,
-            reflection: Color::from(f.reflection),
-            emission: color * Color::from(f.emission),
+            reflection: f.reflection.max,
+            emission: color * f.emission,
             ..Finish::BLACK
         };
         Material {
             model: Some(model),
             finish,
+            eta: self.interior.map_or(1.0, |i| i.ior),
+            texture: Some(SharedTexture(Arc::clone(&self.surface))),
+            interior: self.interior,
             ..Material::matte(color)
         }
-        .with_transparency(color, filter, transmit)
+        .with_transparency(color, pigment.filter, pigment.transmit)
     }
 }
 
 impl Parser<'_> {
-    /// The material of a texture; equal textures one after the other share it.
+    /// The material of a texture; equal textures close to each other share it.
     pub(in crate::grammar) fn material(&mut self, texture: &Texture) -> Arc<Material> {
-        if let Some((last, material)) = &self.state.last_material
-            && last == texture
-        {
-            return Arc::clone(material);
+        let recent = &mut self.state.recent_materials;
+        if let Some(found) = recent.iter().position(|(known, _)| known == texture) {
+            return Arc::clone(&recent[found].1);
         }
         let material = Arc::new(texture.to_material());
-        self.state.last_material = Some((texture.clone(), Arc::clone(&material)));
+        if recent.len() >= RECENT {
+            recent.remove(0);
+        }
+        recent.push((texture.clone(), Arc::clone(&material)));
         material
     }
 }

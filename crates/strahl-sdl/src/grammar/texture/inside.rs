@@ -1,0 +1,14 @@
+use crate::grammar::query::Query;
+use std::sync::Arc;
+use strahl_math::DVec3;
+use strahl_shade::patterns::Inside;
+
+/// An object as the object pattern sees it; one that is not there has no inside.
+#[derive(Debug)]
+pub(super) struct ObjectInside(pub(super) Option<Arc<Query>>);
+
+impl Inside for ObjectInside {
+    fn contains(&self, p: DVec3) -> bool {
+        self.0.as_ref().is_some_and(|query| query.contains(p))
+    }
+}

@@ -1,0 +1,61 @@
+//! `interior { ... }`
+
+use crate::grammar::Thing;
+use crate::keywords::Word;
+use crate::parser::{PResult, Parser};
+use strahl_shade::interior::Interior;
+
+impl Parser<'_> {
+    /// `{ ... }` behind `interior`.
+    pub(crate) fn interior_block(&mut self) -> PResult<Interior> {
+        self.braces(|p| {
+            let named = p.accept_thing(|thing| match thing {
+                Thing::Interior(interior) => Some(interior),
+                _ => None,
+            })?;
+            let mut interior = named.map_or_else(Interior::default, |named| *named);
+            p.items("`interior`", |p, token| {
+                match token.word() {
+                    Some(Word::Ior) => {
+                        p.take(token)?;
+                        interior.ior = p.positive("the index of refraction")?;
+                    }
+                    Some(Word::FadeDistance) => {
+                        p.take(token)?;
+                        interior.fade_distance = p.float()?;
+                    }
+                    Some(Word::FadePower) => {
+                        p.take(token)?;
+                        interior.fade_power = p.float()?;
+                    }
+                    Some(Word::FadeColor | Word::FadeColour) => {
+                        p.take(token)?;
+                        interior.fade_color = p.plain_color()?;
+                    }
+                    Some(Word::Dispersion) => {
+                        p.take(token)?;
+                        interior.dispersion = p.positive("dispersion")?;
+                    }
+                    // How many rays show the spectrum is for the renderer to choose.
+                    Some(Word::DispersionSamples) => {
+                        p.take(token)?;
+                        p.float()?;
+                    }
+                    _ => return p.skip_item(token, "`interior`"),
+                }
+                Ok(())
+            })?;
+            Ok(interior)
+        })
+    }
+
+    fn positive(&mut self, what: &str) -> PResult<f64> {
+        let token = self.peek()?;
+        let place = self.place_of(token);
+        let x = self.float()?;
+        if x > 0.0 {
+            return Ok(x);
+        }
+        Err(self.fail(place, format!("{what} must be positive, not {x}")))
+    }
+}

@@ -1,0 +1,181 @@
+//! Maps: lists of `[position thing]`, between whose entries the value of a pattern is looked up.
+
+use crate::grammar::Thing;
+use crate::keywords::{Word, WordKind};
+use crate::parser::{PResult, Parser};
+use crate::token::{Kind, Token};
+use strahl_shade::ColorFt;
+use strahl_shade::normal::{PovNormal, SlopeMap};
+use strahl_shade::pigment::{BlendMap, Pigment};
+use strahl_shade::texture::Texture;
+
+/// A colour of the language in the engine's terms.
+pub(super) fn color_ft([r, g, b, filter, transmit]: [f64; 5]) -> ColorFt {
+    ColorFt {
+        rgb: strahl_shade::Color::new(r, g, b),
+        filter,
+        transmit,
+    }
+}
+
+impl Parser<'_> {
+    /// `{ ... }` behind `color_map`.
+    pub(crate) fn color_map(&mut self) -> PResult<BlendMap<ColorFt>> {
+        self.blend_map(
+            "`color_map`",
+            |thing| match thing {
+                Thing::ColorMap(map) => Some(map),
+                _ => None,
+            },
+            Self::color_entry,
+        )
+    }
+
+    /// `{ ... }` behind `pigment_map`.
+    pub(crate) fn pigment_map(&mut self) -> PResult<BlendMap<Pigment>> {
+        self.blend_map(
+            "`pigment_map`",
+            |thing| match thing {
+                Thing::PigmentMap(map) => Some(map),
+                _ => None,
+            },
+            |p, at, entries| {
+                let base = p.default_pigment();
+                let pigment = p.nested(|p| p.pigment_items(Kind::RightBracket, base))?;
+                entries.push((at, pigment));
+                Ok(())
+            },
+        )
+    }
+
+    /// `{ ... }` behind `normal_map`.
+    pub(crate) fn normal_map(&mut self) -> PResult<BlendMap<PovNormal>> {
+        self.blend_map(
+            "`normal_map`",
+            |thing| match thing {
+                Thing::NormalMap(map) => Some(map),
+                _ => None,
+            },
+            |p, at, entries| {
+                let normal = p.nested(|p| p.normal_items(Kind::RightBracket, None))?;
+                entries.push((at, normal));
+                Ok(())
+            },
+        )
+    }
+
+    /// `{ ... }` behind `texture_map`.
+    pub(crate) fn texture_map(&mut self) -> PResult<BlendMap<Texture>> {
+        self.blend_map(
+            "`texture_map`",
+            |thing| match thing {
+                Thing::TextureMap(map) => Some(map),
+                _ => None,
+            },
+            |p, at, entries| {
+                let texture = p.nested(|p| p.texture_items(Kind::RightBracket))?;
+                entries.push((at, texture));
+                Ok(())
+            },
+        )
+    }
+
+    /// `{ ... }` behind `slope_map`.
+    pub(crate) fn slope_map(&mut self) -> PResult<SlopeMap> {
+        let map = self.blend_map(
+            "`slope_map`",
+            |thing| match thing {
+                Thing::SlopeMap(map) => Some(map),
+                _ => None,
+            },
+            |p, at, entries| {
+                entries.push((at, p.vector2()?));
+                Ok(())
+            },
+        )?;
+        Ok(SlopeMap(map))
+    }
+
+    /// The name of a map, or entries `[position ...]` of which `entry` reads what follows the position.
+    fn blend_map<T: Clone>(
+        &mut self,
+        what: &str,
+        pick: impl Fn(&Thing) -> Option<&std::sync::Arc<BlendMap<T>>>,
+        mut entry: impl FnMut(&mut Self, f64, &mut Vec<(f64, T)>) -> PResult<()>,
+    ) -> PResult<BlendMap<T>> {
+        self.braces(|p| {
+            let place = p.place();
+            let named = p.accept_thing(pick)?;
+            let mut entries = named.map_or_else(Vec::new, |map| map.entries.clone());
+            p.items(what, |p, token| {
+                if token.is(Word::BlendMode) || token.is(Word::BlendGamma) {
+                    return p.skip_item(token, what);
+                }
+                if token.kind != Kind::LeftBracket {
+                    return Err(p.unexpected(token, "`[` before an entry of the map, or `}`"));
+                }
+                p.take(token)?;
+                // The weights of `average` may be left out.
+                let at = if p.starts_number()? { p.float()? } else { 1.0 };
+                p.comma()?;
+                entry(p, at, &mut entries)?;
+                p.expect(Kind::RightBracket)?;
+                Ok(())
+            })?;
+            if entries.is_empty() {
+                return Err(p.fail(place, format!("this {what} has no entries")));
+            }
+            Ok(BlendMap::new(entries))
+        })
+    }
+
+    /// `color]`, or in the oldest notation `end color color]`.
+    fn color_entry(&mut self, at: f64, entries: &mut Vec<(f64, ColorFt)>) -> PResult<()> {
+        let begins_color = |token: Token| token.word().is_some_and(|w| w.kind() == WordKind::Color);
+        if begins_color(self.peek()?) {
+            let color = self.color()?;
+            entries.push((at, color_ft(color)));
+            return Ok(());
+        }
+        let value = self.expression()?;
+        let next = self.peek()?;
+        let part = matches!(next.word(), Some(Word::Filter | Word::Transmit));
+        match value.as_float() {
+            Some(end) if next.kind != Kind::RightBracket && !part => {
+                self.comma()?;
+                let first = self.color()?;
+                self.comma()?;
+                let second = self.color()?;
+                entries.push((at, color_ft(first)));
+                entries.push((end, color_ft(second)));
+            }
+            _ => {
+                let color = self.color_from(value)?;
+                entries.push((at, color_ft(color)));
+            }
+        }
+        Ok(())
+    }
+
+    /// A map whose positions do not decrease, as lookups need them; each too small one is raised, and said so.
+    pub(super) fn in_order<T>(&mut self, mut map: BlendMap<T>) -> BlendMap<T> {
+        let mut highest = f64::NEG_INFINITY;
+        let mut raised = false;
+        for (at, _) in &mut map.entries {
+            if *at < highest || at.is_nan() {
+                *at = highest;
+                raised = true;
+            }
+            highest = *at;
+        }
+        if raised {
+            let place = self.place();
+            self.warn_hint(
+                place,
+                "the positions in this map decrease",
+                "write the entries from the smallest position to the largest",
+            );
+        }
+        map
+    }
+}

@@ -1,0 +1,299 @@
+//! `normal { ... }`
+
+use super::modifiers;
+use crate::grammar::Thing;
+use crate::keywords::Word;
+use crate::parser::{PResult, Parser};
+use crate::token::{Kind, Token};
+use strahl_math::Transform;
+use strahl_shade::normal::{NormalKind, PovNormal, SlopeMap};
+use strahl_shade::patterns::Pattern;
+use strahl_shade::pigment::BlendMap;
+
+/// What tilts the normal.
+enum Chooser {
+    /// Nothing.
+    Flat,
+    Pattern(Pattern),
+    Average,
+    /// A kind that needs no pattern.
+    Fixed(NormalKind),
+}
+
+/// What the pattern's value means.
+enum Choice {
+    /// A height, or what the pattern has for normals only.
+    Own,
+    Slopes(SlopeMap),
+    Normals(BlendMap<PovNormal>),
+    Blocks(Vec<PovNormal>),
+}
+
+/// A normal while it is being read: its parts may come in any order.
+struct Draft {
+    chooser: Chooser,
+    choice: Choice,
+    /// Everything but the kind.
+    normal: PovNormal,
+    /// Whether the pattern tilts the normal in its own way, not by its value as a height.
+    special: bool,
+}
+
+/// A normal that tilts nothing.
+fn flat() -> PovNormal {
+    PovNormal::new(NormalKind::Average(vec![]))
+}
+
+impl From<PovNormal> for Draft {
+    fn from(mut normal: PovNormal) -> Self {
+        let kind = std::mem::replace(&mut normal.kind, NormalKind::Average(vec![]));
+        let (chooser, choice, special) = match kind {
+            NormalKind::Bumps => (Chooser::Pattern(Pattern::Bozo), Choice::Own, true),
+            NormalKind::Dents => (Chooser::Pattern(Pattern::Dents), Choice::Own, true),
+            NormalKind::Wrinkles => (Chooser::Pattern(Pattern::Wrinkles), Choice::Own, true),
+            NormalKind::Ripples(sources) => (
+                Chooser::Pattern(Pattern::Ripples { sources }),
+                Choice::Own,
+                true,
+            ),
+            NormalKind::Waves(sources) => (
+                Chooser::Pattern(Pattern::Waves { sources }),
+                Choice::Own,
+                true,
+            ),
+            NormalKind::Quilted([control0, control1]) => (
+                Chooser::Pattern(Pattern::Quilted { control0, control1 }),
+                Choice::Own,
+                true,
+            ),
+            NormalKind::Height(pattern, None) => (Chooser::Pattern(pattern), Choice::Own, false),
+            NormalKind::Height(pattern, Some(map)) => {
+                (Chooser::Pattern(pattern), Choice::Slopes(map), false)
+            }
+            NormalKind::Map(pattern, map) => {
+                (Chooser::Pattern(pattern), Choice::Normals(map), false)
+            }
+            NormalKind::Blocks(pattern, list) => {
+                (Chooser::Pattern(pattern), Choice::Blocks(list), false)
+            }
+            NormalKind::Average(members) if members.is_empty() => {
+                (Chooser::Flat, Choice::Own, false)
+            }
+            NormalKind::Average(members) => (
+                Chooser::Average,
+                Choice::Normals(BlendMap::new(members)),
+                false,
+            ),
+            fixed => (Chooser::Fixed(fixed), Choice::Own, false),
+        };
+        Self {
+            chooser,
+            choice,
+            normal,
+            special,
+        }
+    }
+}
+
+impl Draft {
+    fn finish(self) -> PovNormal {
+        let kind = match (self.chooser, self.choice) {
+            (Chooser::Flat, _) => NormalKind::Average(vec![]),
+            (Chooser::Fixed(kind), _) => kind,
+            (Chooser::Average, Choice::Normals(map)) => NormalKind::Average(map.entries),
+            (Chooser::Average, _) => NormalKind::Average(vec![]),
+            (Chooser::Pattern(pattern), Choice::Slopes(map)) => {
+                NormalKind::Height(pattern, Some(map))
+            }
+            (Chooser::Pattern(pattern), Choice::Normals(map)) => NormalKind::Map(pattern, map),
+            (Chooser::Pattern(pattern), Choice::Blocks(list)) => NormalKind::Blocks(pattern, list),
+            (Chooser::Pattern(pattern), Choice::Own) => match pattern {
+                Pattern::Bozo if self.special => NormalKind::Bumps,
+                Pattern::Dents => NormalKind::Dents,
+                Pattern::Wrinkles => NormalKind::Wrinkles,
+                Pattern::Ripples { sources } => NormalKind::Ripples(sources),
+                Pattern::Waves { sources } => NormalKind::Waves(sources),
+                Pattern::Quilted { control0, control1 } => {
+                    NormalKind::Quilted([control0, control1])
+                }
+                pattern => NormalKind::Height(pattern, None),
+            },
+        };
+        PovNormal {
+            kind,
+            ..self.normal
+        }
+    }
+}
+
+/// Moves a normal.
+pub(super) fn transform(normal: &mut PovNormal, by: &Transform) {
+    modifiers::transform(&mut normal.modifiers.warps, by);
+}
+
+impl Parser<'_> {
+    /// `{ ... }` behind `normal`, which changes the default normal.
+    pub(crate) fn normal_block(&mut self) -> PResult<PovNormal> {
+        let base = self.state.default_texture.top().normal.clone();
+        self.normal_block_on(base)
+    }
+
+    /// `{ ... }` behind `normal`, which changes `base` unless it begins with a name.
+    pub(super) fn normal_block_on(&mut self, base: Option<PovNormal>) -> PResult<PovNormal> {
+        self.braces(|p| p.normal_items(Kind::RightBrace, base))
+    }
+
+    /// What stands in a normal's braces, or in the brackets of an entry of `normal_map`.
+    pub(super) fn normal_items(
+        &mut self,
+        closing: Kind,
+        base: Option<PovNormal>,
+    ) -> PResult<PovNormal> {
+        let named = self.accept_thing(|thing| match thing {
+            Thing::Normal(normal) => Some(normal),
+            _ => None,
+        })?;
+        let base = match named {
+            Some(named) => PovNormal::clone(&named),
+            None => base.unwrap_or_else(flat),
+        };
+        if self.peek()?.kind == closing {
+            return Ok(base);
+        }
+        let mut draft = Draft::from(base);
+        self.items_until(closing, "`normal`", |p, token| {
+            p.normal_item(&mut draft, token)
+        })?;
+        Ok(draft.finish())
+    }
+
+    fn normal_item(&mut self, draft: &mut Draft, token: Token) -> PResult<()> {
+        match token.word() {
+            Some(Word::BumpSize) => {
+                self.take(token)?;
+                draft.normal.amount = self.float()?;
+                return Ok(());
+            }
+            Some(Word::Accuracy) => {
+                self.take(token)?;
+                draft.normal.accuracy = self.float()?;
+                return Ok(());
+            }
+            Some(Word::NoBumpScale) => {
+                self.take(token)?;
+                draft.normal.no_bump_scale = self.flag()?;
+                return Ok(());
+            }
+            Some(Word::SlopeMap) => {
+                self.take(token)?;
+                let SlopeMap(map) = self.slope_map()?;
+                draft.choice = Choice::Slopes(SlopeMap(self.in_order(map)));
+                return Ok(());
+            }
+            Some(Word::NormalMap) => {
+                self.take(token)?;
+                let map = self.normal_map()?;
+                draft.choice = Choice::Normals(match &draft.chooser {
+                    Chooser::Average => map,
+                    _ => self.in_order(map),
+                });
+                return Ok(());
+            }
+            Some(Word::Average) => {
+                self.take(token)?;
+                draft.chooser = Chooser::Average;
+                return self.normal_amount(draft);
+            }
+            Some(Word::BumpMap) => {
+                self.take(token)?;
+                let (image, size) = self.bump_bitmap()?;
+                if let Some(image) = image {
+                    draft.chooser = Chooser::Fixed(NormalKind::BumpMap(image));
+                }
+                draft.choice = Choice::Own;
+                if let Some(size) = size {
+                    draft.normal.amount = size;
+                }
+                return self.normal_amount(draft);
+            }
+            Some(Word::Facets) => return self.skip_facets(token),
+            _ => {}
+        }
+        if let Some(pattern) = self.pattern(token)? {
+            draft.special = token.is(Word::Bumps);
+            draft.choice = Choice::Own;
+            self.block_normals(draft, &pattern)?;
+            if let Chooser::Flat = draft.chooser {
+                draft.normal.modifiers.noise = self.default_noise();
+            }
+            draft.chooser = Chooser::Pattern(pattern);
+            return self.normal_amount(draft);
+        }
+        let pattern = match &mut draft.chooser {
+            Chooser::Pattern(pattern) => Some(pattern),
+            _ => None,
+        };
+        if self.pattern_parameter(pattern, token)?
+            || self.pattern_modifier(&mut draft.normal.modifiers, token)?
+        {
+            return Ok(());
+        }
+        self.skip_item(token, "`normal`")
+    }
+
+    /// The number that may stand behind a pattern: how much it tilts the normal.
+    fn normal_amount(&mut self, draft: &mut Draft) -> PResult<()> {
+        self.comma()?;
+        if self.starts_number()? {
+            draft.normal.amount = self.float()?;
+        }
+        Ok(())
+    }
+
+    /// The normals of a block pattern's blocks, if they stand here.
+    fn block_normals(&mut self, draft: &mut Draft, pattern: &Pattern) -> PResult<()> {
+        let Some(count) = pattern.block_count() else {
+            return Ok(());
+        };
+        let mut closed = !matches!(pattern, Pattern::Object(_));
+        let mut list = vec![];
+        while list.len() < count {
+            self.normal_amount(draft)?;
+            let token = self.peek()?;
+            if token.is(Word::Normal) {
+                self.take(token)?;
+                list.push(self.nested(Self::normal_block)?);
+            } else if token.kind == Kind::RightBrace && !closed {
+                self.take(token)?;
+                closed = true;
+            } else {
+                break;
+            }
+        }
+        if !closed {
+            self.expect(Kind::RightBrace)?;
+        }
+        if !list.is_empty() {
+            list.resize(count, flat());
+            draft.choice = Choice::Blocks(list);
+        }
+        Ok(())
+    }
+
+    /// `facets size 0.5` or `facets coords 2`: there is no such pattern yet.
+    fn skip_facets(&mut self, token: Token) -> PResult<()> {
+        self.take(token)?;
+        let place = self.place();
+        self.warn_hint(
+            place,
+            "`facets` is not supported yet and is left out",
+            "the surface will be smooth instead of faceted",
+        );
+        let kind = self.peek()?;
+        if kind.is(Word::Size) || kind.is(Word::Coords) {
+            self.take(kind)?;
+            self.float()?;
+        }
+        Ok(())
+    }
+}

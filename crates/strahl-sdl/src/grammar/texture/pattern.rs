@@ -1,0 +1,426 @@
+//! Patterns: THE table from words to patterns, and the parameters that belong to single patterns.
+
+use super::inside::ObjectInside;
+use crate::grammar::{Declared, Thing, by_word};
+use crate::keywords::Word;
+use crate::parser::{PResult, Parser};
+use crate::token::{Kind, Token};
+use std::sync::Arc;
+use strahl_math::noise::NoiseGenerator;
+use strahl_math::{DVec2, DVec3};
+use strahl_shade::patterns::{
+    Altitude, Crackle, CrackleMetric, Exterior, Fractal, FractalInterior, FractalKind, Pattern,
+    PatternField, SlopeReference,
+};
+
+/// Reads what must follow the word of a pattern, which is already taken.
+type PatternParser = fn(&mut Parser<'_>) -> PResult<Pattern>;
+
+/// All patterns by their words; after an object pattern the closing brace is left, as colours may stand before it.
+static PATTERNS: [Option<PatternParser>; Word::ALL.len()] = by_word::<PatternParser, _>([
+    (Word::Agate, |_| Ok(Pattern::Agate { turbulence: 1.0 })),
+    (Word::Aoi, |_| Ok(Pattern::Aoi)),
+    (Word::Boxed, |_| Ok(Pattern::Boxed)),
+    (Word::Bozo, |_| Ok(Pattern::Bozo)),
+    (Word::Brick, |_| {
+        Ok(Pattern::Brick {
+            size: DVec3::new(8.0, 3.0, 4.5),
+            mortar: 0.5,
+        })
+    }),
+    (Word::Bumps, |_| Ok(Pattern::Bozo)),
+    (Word::Cells, |_| Ok(Pattern::Cells)),
+    (Word::Checker, |_| Ok(Pattern::Checker)),
+    (Word::Crackle, |_| Ok(Pattern::Crackle(Crackle::default()))),
+    (Word::Cubic, |_| Ok(Pattern::Cubic)),
+    (Word::Cylindrical, |_| Ok(Pattern::Cylindrical)),
+    (Word::Dents, |_| Ok(Pattern::Dents)),
+    (Word::Function, |p| {
+        let function = p.nested(Parser::function)?;
+        Ok(Pattern::Function(Arc::new(function)))
+    }),
+    (Word::Gradient, |p| p.vector3().map(Pattern::Gradient)),
+    (Word::Granite, |_| Ok(Pattern::Granite)),
+    (Word::Hexagon, |_| Ok(Pattern::Hexagon)),
+    (Word::ImagePattern, |p| {
+        p.pattern_bitmap().map(Pattern::Image)
+    }),
+    (Word::Julia, |p| p.julia(FractalKind::Power { exponent: 2 })),
+    (Word::Leopard, |_| Ok(Pattern::Leopard)),
+    (Word::Magnet, |p| p.magnet()),
+    (Word::Mandel, |p| {
+        p.mandel(FractalKind::Power { exponent: 2 })
+    }),
+    (Word::Marble, |_| Ok(Pattern::Marble)),
+    (Word::Object, |p| p.object_pattern()),
+    (Word::Onion, |_| Ok(Pattern::Onion)),
+    (Word::PigmentPattern, |p| {
+        let pigment = p.nested(Parser::pigment_block)?;
+        Ok(Pattern::Pigment(Arc::new(pigment)))
+    }),
+    (Word::Planar, |_| Ok(Pattern::Planar)),
+    (Word::Quilted, |_| {
+        Ok(Pattern::Quilted {
+            control0: 1.0,
+            control1: 1.0,
+        })
+    }),
+    (Word::Radial, |_| Ok(Pattern::Radial)),
+    (Word::Ripples, |p| {
+        let sources = p.wave_sources();
+        Ok(Pattern::Ripples { sources })
+    }),
+    (Word::Slope, |p| p.slope_pattern()),
+    (Word::Spherical, |_| Ok(Pattern::Spherical)),
+    (Word::Spiral1, |p| p.float().map(Pattern::Spiral1)),
+    (Word::Spiral2, |p| p.float().map(Pattern::Spiral2)),
+    (Word::Spotted, |_| Ok(Pattern::Bozo)),
+    (Word::Square, |_| Ok(Pattern::Square)),
+    (Word::Triangular, |_| Ok(Pattern::Triangular)),
+    (Word::Waves, |p| {
+        let sources = p.wave_sources();
+        Ok(Pattern::Waves { sources })
+    }),
+    (Word::Wood, |_| Ok(Pattern::Wood)),
+    (Word::Wrinkles, |_| Ok(Pattern::Wrinkles)),
+]);
+
+/// The most steps of a fractal: a point of the set takes all of them.
+const MAX_ITERATIONS: f64 = 1e6;
+
+impl Parser<'_> {
+    /// If a pattern stands here, reads it with what must follow its word.
+    ///
+    /// # Errors
+    /// If that is wrong.
+    pub(super) fn pattern(&mut self, token: Token) -> PResult<Option<Pattern>> {
+        let parse = token
+            .word()
+            .and_then(|w| PATTERNS.get(w as usize).copied().flatten());
+        match parse {
+            Some(parse) => {
+                self.take(token)?;
+                parse(self).map(Some)
+            }
+            None => Ok(None),
+        }
+    }
+
+    /// `{ pattern with modifiers }`: what functions and pictures are made of.
+    ///
+    /// # Errors
+    /// If there is no pattern.
+    pub(crate) fn pattern_block(&mut self) -> PResult<PatternField> {
+        self.braces(|p| {
+            let token = p.peek()?;
+            let Some(pattern) = p.pattern(token)? else {
+                return Err(p.unexpected(token, "a pattern"));
+            };
+            if let Pattern::Object(_) = pattern {
+                p.expect(Kind::RightBrace)?;
+            }
+            let mut field = PatternField::from(pattern);
+            field.modifiers.noise = p.default_noise();
+            p.items("`pattern`", |p, token| {
+                if p.pattern_parameter(Some(&mut field.pattern), token)?
+                    || p.pattern_modifier(&mut field.modifiers, token)?
+                {
+                    return Ok(());
+                }
+                p.skip_item(token, "`pattern`")
+            })?;
+            Ok(field)
+        })
+    }
+
+    /// If a parameter of a single pattern stands here (`brick_size`, `metric`, ...), reads it into `pattern`.
+    ///
+    /// # Errors
+    /// If its value is wrong.
+    pub(super) fn pattern_parameter(
+        &mut self,
+        pattern: Option<&mut Pattern>,
+        token: Token,
+    ) -> PResult<bool> {
+        let Some(word) = token.word() else {
+            return Ok(false);
+        };
+        match (word, pattern) {
+            (Word::AgateTurb, Some(Pattern::Agate { turbulence })) => {
+                self.take(token)?;
+                *turbulence = self.float()?;
+            }
+            (Word::BrickSize, Some(Pattern::Brick { size, .. })) => {
+                self.take(token)?;
+                let place = self.place();
+                *size = self.vector3()?;
+                if size.to_array().contains(&0.0) {
+                    return Err(self.fail(place, "a brick needs a size in every direction"));
+                }
+            }
+            (Word::Mortar, Some(Pattern::Brick { mortar, .. })) => {
+                self.take(token)?;
+                *mortar = self.float()?;
+            }
+            (Word::Form, Some(Pattern::Crackle(crackle))) => {
+                self.take(token)?;
+                crackle.form = self.vector3()?;
+            }
+            (Word::Metric, Some(Pattern::Crackle(crackle))) => {
+                self.take(token)?;
+                crackle.metric = CrackleMetric::from_number(self.float()?);
+            }
+            (Word::Offset, Some(Pattern::Crackle(crackle))) => {
+                self.take(token)?;
+                crackle.offset = self.float()?;
+            }
+            (Word::Solid, Some(Pattern::Crackle(crackle))) => {
+                self.take(token)?;
+                crackle.solid = self.flag()?;
+            }
+            (Word::Exponent, Some(Pattern::Fractal(fractal))) => {
+                self.take(token)?;
+                let exponent = self.whole(2, 33)?;
+                if let FractalKind::Power { .. } = fractal.kind {
+                    fractal.kind = FractalKind::Power { exponent };
+                }
+            }
+            (Word::Exterior, Some(Pattern::Fractal(fractal))) => {
+                self.take(token)?;
+                fractal.exterior = self.exterior(fractal.exterior)?;
+            }
+            (Word::Interior, Some(Pattern::Fractal(fractal))) => {
+                self.take(token)?;
+                fractal.interior = self.fractal_interior()?;
+            }
+            (Word::Control0, Some(Pattern::Quilted { control0, .. })) => {
+                self.take(token)?;
+                *control0 = self.float()?;
+            }
+            (Word::Control1, Some(Pattern::Quilted { control1, .. })) => {
+                self.take(token)?;
+                *control1 = self.float()?;
+            }
+            (
+                Word::NumberOfWaves,
+                Some(Pattern::Ripples { sources } | Pattern::Waves { sources }),
+            ) => {
+                self.take(token)?;
+                *sources = self.whole(1, 1000)?;
+            }
+            _ => return Ok(false),
+        }
+        Ok(true)
+    }
+
+    /// The number of wave sources unless `number_of_waves` is written.
+    fn wave_sources(&self) -> u32 {
+        self.state.global.number_of_waves.unwrap_or(10)
+    }
+
+    /// The noise of patterns for which none is written.
+    pub(super) fn default_noise(&self) -> NoiseGenerator {
+        let number = self.state.global.noise_generator.map(u32::from);
+        number
+            .and_then(NoiseGenerator::from_number)
+            .unwrap_or_default()
+    }
+
+    /// A whole number between bounds.
+    pub(super) fn whole(&mut self, least: u32, most: u32) -> PResult<u32> {
+        let token = self.peek()?;
+        let place = self.place_of(token);
+        let x = self.float()?;
+        if !(f64::from(least)..=f64::from(most)).contains(&x.trunc()) {
+            let message = format!("expected a whole number from {least} to {most}, found {x}");
+            return Err(self.fail(place, message));
+        }
+        Ok(x as u32)
+    }
+
+    /// `on`, `off`, a number, or nothing for `on`.
+    pub(super) fn flag(&mut self) -> PResult<bool> {
+        if self.starts_number()? {
+            return Ok(self.float()? != 0.0);
+        }
+        Ok(true)
+    }
+
+    /// Whether a number can begin here.
+    pub(super) fn starts_number(&mut self) -> PResult<bool> {
+        use crate::keywords::WordKind as W;
+        let token = self.peek()?;
+        Ok(match token.kind {
+            Kind::Number | Kind::Minus | Kind::Plus | Kind::LeftParen | Kind::Bang => true,
+            Kind::Name => {
+                let value = token.symbol().and_then(|s| self.scopes.find(s));
+                // What is not declared at all may be a misspelt number, which the expression reports best.
+                value.is_none_or(|v| v.numeric().is_some() || v.is_callable())
+            }
+            Kind::Word => {
+                let kind = token.word().map(Word::kind);
+                matches!(kind, Some(W::Constant | W::FloatFunction))
+            }
+            _ => false,
+        })
+    }
+
+    /// Iterations and, in normals, what other patterns have as their first number: left to the caller.
+    fn iterations(&mut self) -> PResult<u32> {
+        self.whole(1, MAX_ITERATIONS as u32)
+    }
+
+    fn mandel(&mut self, kind: FractalKind) -> PResult<Pattern> {
+        let iterations = self.iterations()?;
+        Ok(Pattern::Fractal(Fractal {
+            kind,
+            ..Fractal::mandelbrot(iterations)
+        }))
+    }
+
+    fn julia(&mut self, kind: FractalKind) -> PResult<Pattern> {
+        let [re, im] = self.vector2()?;
+        self.comma()?;
+        let iterations = self.iterations()?;
+        Ok(Pattern::Fractal(Fractal {
+            kind,
+            julia: Some(DVec2::new(re, im)),
+            ..Fractal::mandelbrot(iterations)
+        }))
+    }
+
+    /// `magnet 1 mandel 20`, `magnet 2 julia <...>, 20`
+    fn magnet(&mut self) -> PResult<Pattern> {
+        let kind = match self.whole(1, 2)? {
+            1 => FractalKind::Magnet1,
+            _ => FractalKind::Magnet2,
+        };
+        let token = self.peek()?;
+        match token.word() {
+            Some(Word::Mandel) => {
+                self.take(token)?;
+                self.mandel(kind)
+            }
+            Some(Word::Julia) => {
+                self.take(token)?;
+                self.julia(kind)
+            }
+            _ => Err(self.unexpected(token, "`mandel` or `julia`")),
+        }
+    }
+
+    /// `type, factor`; the factor is 1 if it is left out.
+    fn coloring(&mut self) -> PResult<(u32, f64)> {
+        let number = self.whole(0, 8)?;
+        self.comma()?;
+        let factor = if self.starts_number()? {
+            self.float()?
+        } else {
+            1.0
+        };
+        Ok((number, factor))
+    }
+
+    fn exterior(&mut self, before: Exterior) -> PResult<Exterior> {
+        let place = self.place();
+        let (number, factor) = self.coloring()?;
+        Ok(match number {
+            0 => Exterior::Constant(factor),
+            1 => Exterior::Steps,
+            2 => Exterior::Real(factor),
+            3 => Exterior::Imaginary(factor),
+            4 => Exterior::RealSquared(factor),
+            5 => Exterior::ImaginarySquared(factor),
+            6 => Exterior::Absolute(factor),
+            _ => {
+                self.warn_hint(
+                    place,
+                    format!("exterior {number} is not supported yet and is left out"),
+                    "the outside of the fractal will have other colours",
+                );
+                before
+            }
+        })
+    }
+
+    fn fractal_interior(&mut self) -> PResult<FractalInterior> {
+        let place = self.place();
+        let (number, factor) = self.coloring()?;
+        Ok(match number {
+            0 => FractalInterior::Constant(factor),
+            1 => FractalInterior::Smallest(factor),
+            2 => FractalInterior::Real(factor),
+            3 => FractalInterior::Imaginary(factor),
+            4 => FractalInterior::RealSquared(factor),
+            5 => FractalInterior::ImaginarySquared(factor),
+            6 => FractalInterior::Absolute(factor),
+            _ => {
+                let message = format!("expected a number from 0 to 6, found {number}");
+                return Err(self.fail(place, message));
+            }
+        })
+    }
+
+    /// `<direction>` or `point_at <point>`, the range of slopes, and an altitude; braces around it may be left out.
+    fn slope_pattern(&mut self) -> PResult<Pattern> {
+        if self.peek()?.kind == Kind::LeftBrace {
+            return self.braces(Self::slope_items);
+        }
+        self.slope_items()
+    }
+
+    fn slope_items(&mut self) -> PResult<Pattern> {
+        let reference = if self.accept_word(Word::PointAt)? {
+            SlopeReference::Point(self.vector3()?)
+        } else {
+            SlopeReference::Direction(self.vector3()?)
+        };
+        let range = self.value_range()?;
+        let altitude = if self.accept_word(Word::Altitude)? {
+            let direction = self.vector3()?;
+            let range = self.value_range()?;
+            Some(Altitude { direction, range })
+        } else {
+            None
+        };
+        Ok(Pattern::Slope {
+            reference,
+            range,
+            altitude,
+        })
+    }
+
+    /// `, low, high`, or nothing.
+    fn value_range(&mut self) -> PResult<[f64; 2]> {
+        self.comma()?;
+        if !self.starts_number()? {
+            return Ok([0.0, 0.0]);
+        }
+        let low = self.float()?;
+        self.comma()?;
+        let high = self.float()?;
+        self.comma()?;
+        Ok([low, high])
+    }
+
+    /// `{ object ... }`: the colours or pigments behind the object are left to the caller, who knows what they are.
+    fn object_pattern(&mut self) -> PResult<Pattern> {
+        self.expect(Kind::LeftBrace)?;
+        let named = self.accept_thing(|thing| match thing {
+            Thing::Object(object) => Some(object),
+            _ => None,
+        })?;
+        let object = match named {
+            Some(named) => named,
+            None => match self.entity()? {
+                Some(entity) => Arc::new(Declared::from(entity)),
+                None => {
+                    let found = self.peek()?;
+                    return Err(self.unexpected(found, "an object"));
+                }
+            },
+        };
+        let inside = self.query(&object);
+        Ok(Pattern::Object(Arc::new(ObjectInside(inside))))
+    }
+}

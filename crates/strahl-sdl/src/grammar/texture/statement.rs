@@ -1,0 +1,372 @@
+//! `texture { ... }` and `material { ... }`
+
+use super::{Texture, layered, top_of, transform};
+use crate::grammar::Thing;
+use crate::keywords::Word;
+use crate::parser::{PResult, Parser};
+use crate::token::{Kind, Token};
+use std::sync::Arc;
+use strahl_shade::normal::PovNormal;
+use strahl_shade::patterns::{Modifiers, Pattern, PatternField};
+use strahl_shade::pigment::{BlendMap, Pigment};
+use strahl_shade::texture::Texture as Surface;
+
+/// What chooses among textures.
+enum Chooser {
+    /// Nothing: there is one texture.
+    Single,
+    Pattern(Pattern),
+    Average,
+}
+
+/// What is chosen from.
+enum Choice {
+    Nothing,
+    Map(BlendMap<Surface>),
+    Blocks(Vec<Surface>),
+}
+
+/// A texture while it is being read.
+struct Draft {
+    /// The texture, if there is one.
+    single: Surface,
+    chooser: Chooser,
+    choice: Choice,
+    modifiers: Modifiers,
+    uv_mapped: bool,
+}
+
+impl From<Surface> for Draft {
+    fn from(texture: Surface) -> Self {
+        let patterned = |field: PatternField, choice| Self {
+            single: Surface::default(),
+            chooser: Chooser::Pattern(field.pattern),
+            choice,
+            modifiers: field.modifiers,
+            uv_mapped: false,
+        };
+        match texture {
+            Surface::Map(field, map) => patterned(field, Choice::Map(map)),
+            Surface::Blocks(field, list) => patterned(field, Choice::Blocks(list)),
+            Surface::Average(members, modifiers) => Self {
+                single: Surface::default(),
+                chooser: Chooser::Average,
+                choice: Choice::Map(BlendMap::new(members)),
+                modifiers,
+                uv_mapped: false,
+            },
+            Surface::UvMapped(inner) => Self {
+                uv_mapped: true,
+                ..Self::from(*inner)
+            },
+            single => Self {
+                single,
+                chooser: Chooser::Single,
+                choice: Choice::Nothing,
+                modifiers: Modifiers::default(),
+                uv_mapped: false,
+            },
+        }
+    }
+}
+
+impl Draft {
+    fn finish(self) -> Surface {
+        let texture = match (self.chooser, self.choice) {
+            (Chooser::Single, _) => self.single,
+            (Chooser::Average, Choice::Map(map)) => Surface::Average(map.entries, self.modifiers),
+            (Chooser::Average, _) => self.single,
+            (Chooser::Pattern(pattern), choice) => {
+                let field = PatternField {
+                    pattern,
+                    modifiers: self.modifiers,
+                };
+                match choice {
+                    Choice::Map(map) => Surface::Map(field, map),
+                    Choice::Blocks(list) => Surface::Blocks(field, list),
+                    Choice::Nothing => self.single,
+                }
+            }
+        };
+        if self.uv_mapped {
+            Surface::UvMapped(Box::new(texture))
+        } else {
+            texture
+        }
+    }
+}
+
+impl Parser<'_> {
+    /// `{ ... }` behind `texture`, as what an object carries.
+    pub(crate) fn texture_block(&mut self) -> PResult<Texture> {
+        Ok(Texture {
+            surface: self.surface_block()?,
+            written: true,
+            ..Texture::default()
+        })
+    }
+
+    /// `{ ... }` behind `texture` in a declaration; further textures right behind it are laid over it.
+    pub(crate) fn declared_texture(&mut self) -> PResult<Arc<Surface>> {
+        let mut all = self.surface_block()?;
+        while self.raw().is(Word::Texture) {
+            self.next()?;
+            let upper = self.surface_block()?;
+            all = Arc::new(layered(Surface::clone(&all), Surface::clone(&upper)));
+        }
+        Ok(all)
+    }
+
+    /// `{ ... }` behind `texture`; a name alone is shared, not copied.
+    pub(super) fn surface_block(&mut self) -> PResult<Arc<Surface>> {
+        self.braces(|p| {
+            let named = p.accept_thing(|thing| match thing {
+                Thing::Texture(texture) => Some(texture),
+                _ => None,
+            })?;
+            if let Some(named) = &named
+                && p.peek()?.kind == Kind::RightBrace
+            {
+                return Ok(Arc::clone(named));
+            }
+            p.rest_of_texture(Kind::RightBrace, named).map(Arc::new)
+        })
+    }
+
+    /// What stands in the brackets of an entry of `texture_map`.
+    pub(super) fn texture_items(&mut self, closing: Kind) -> PResult<Surface> {
+        let named = self.accept_thing(|thing| match thing {
+            Thing::Texture(texture) => Some(texture),
+            _ => None,
+        })?;
+        self.rest_of_texture(closing, named)
+    }
+
+    fn rest_of_texture(&mut self, closing: Kind, named: Option<Arc<Surface>>) -> PResult<Surface> {
+        let base = named.unwrap_or_else(|| Arc::clone(&self.state.default_texture.surface));
+        let mut draft = Draft::from(Surface::clone(&base));
+        self.items_until(closing, "`texture`", |p, token| {
+            p.texture_part(&mut draft, token)
+        })?;
+        Ok(draft.finish())
+    }
+
+    fn texture_part(&mut self, draft: &mut Draft, token: Token) -> PResult<()> {
+        if let Some(by) = self.transformation(token)? {
+            transform(&mut draft.single, &by, true);
+            super::modifiers::transform(&mut draft.modifiers.warps, &by);
+            return Ok(());
+        }
+        match token.word() {
+            Some(Word::Pigment | Word::Normal | Word::Finish) => {
+                return self.plain_item(&mut draft.single, token);
+            }
+            Some(Word::TextureMap) => {
+                self.take(token)?;
+                let map = self.texture_map()?;
+                draft.choice = Choice::Map(match &draft.chooser {
+                    Chooser::Average => map,
+                    _ => self.in_order(map),
+                });
+                return Ok(());
+            }
+            Some(Word::Average) => {
+                self.take(token)?;
+                draft.chooser = Chooser::Average;
+                return Ok(());
+            }
+            Some(Word::UvMapping) => {
+                self.take(token)?;
+                draft.uv_mapped = self.flag()?;
+                return Ok(());
+            }
+            Some(Word::Tiles) => {
+                self.take(token)?;
+                return self.tiles(draft);
+            }
+            Some(Word::MaterialMap) => {
+                self.take(token)?;
+                return self.material_map(draft);
+            }
+            // Belongs to the normals in the texture.
+            Some(Word::NoBumpScale) => {
+                self.take(token)?;
+                let switch = self.flag()?;
+                if let Some(normal) = top_of(&mut draft.single).and_then(|t| t.normal.as_mut()) {
+                    normal.no_bump_scale = switch;
+                }
+                return Ok(());
+            }
+            _ => {}
+        }
+        if let Some(pattern) = self.pattern(token)? {
+            self.block_textures(draft, &pattern)?;
+            if let Chooser::Single = draft.chooser {
+                draft.modifiers.noise = self.default_noise();
+            }
+            draft.chooser = Chooser::Pattern(pattern);
+            return Ok(());
+        }
+        if let Chooser::Pattern(pattern) = &mut draft.chooser
+            && (self.pattern_parameter(Some(pattern), token)?
+                || self.pattern_modifier(&mut draft.modifiers, token)?)
+        {
+            return Ok(());
+        }
+        if self.named_part(draft)? {
+            return Ok(());
+        }
+        self.skip_item(token, "`texture`")
+    }
+
+    /// The name of a pigment, normal or finish directly in a texture, which takes its place.
+    fn named_part(&mut self, draft: &mut Draft) -> PResult<bool> {
+        let found = self.accept_thing(|thing| match thing {
+            Thing::Pigment(pigment) => Some(pigment),
+            _ => None,
+        })?;
+        if let (Some(pigment), Some(top)) = (&found, top_of(&mut draft.single)) {
+            top.pigment = Pigment::clone(pigment);
+            return Ok(true);
+        }
+        let found = self.accept_thing(|thing| match thing {
+            Thing::Normal(normal) => Some(normal),
+            _ => None,
+        })?;
+        if let (Some(normal), Some(top)) = (&found, top_of(&mut draft.single)) {
+            top.normal = Some(PovNormal::clone(normal));
+            return Ok(true);
+        }
+        let found = self.accept_thing(|thing| match thing {
+            Thing::Finish(finish) => Some(finish),
+            _ => None,
+        })?;
+        if let (Some(finish), Some(top)) = (&found, top_of(&mut draft.single)) {
+            top.finish = **finish;
+            return Ok(true);
+        }
+        Ok(false)
+    }
+
+    /// The textures of a block pattern's blocks.
+    fn block_textures(&mut self, draft: &mut Draft, pattern: &Pattern) -> PResult<()> {
+        let Some(count) = pattern.block_count() else {
+            return Ok(());
+        };
+        let mut closed = !matches!(pattern, Pattern::Object(_));
+        let mut list = vec![];
+        while list.len() < count {
+            self.comma()?;
+            let token = self.peek()?;
+            if token.is(Word::Texture) {
+                self.take(token)?;
+                let texture = self.nested(Self::surface_block)?;
+                list.push(Surface::clone(&texture));
+            } else if token.kind == Kind::RightBrace && !closed {
+                self.take(token)?;
+                closed = true;
+            } else {
+                break;
+            }
+        }
+        if !closed {
+            self.expect(Kind::RightBrace)?;
+        }
+        if !list.is_empty() {
+            list.resize(count, Surface::clone(&self.state.default_texture.surface));
+            draft.choice = Choice::Blocks(list);
+        }
+        Ok(())
+    }
+
+    /// `texture {...} tile2 texture {...}` behind `tiles`: an old word for a checker; braces around it may stand.
+    fn tiles(&mut self, draft: &mut Draft) -> PResult<()> {
+        if self.peek()?.kind == Kind::LeftBrace {
+            return self.braces(|p| p.two_tiles(draft));
+        }
+        self.two_tiles(draft)
+    }
+
+    fn two_tiles(&mut self, draft: &mut Draft) -> PResult<()> {
+        let mut list = vec![];
+        for is_second in [false, true] {
+            if is_second {
+                let token = self.peek()?;
+                if !self.accept_word(Word::Tile2)? {
+                    return Err(self.unexpected(token, "`tile2`"));
+                }
+            }
+            let token = self.peek()?;
+            if !self.accept_word(Word::Texture)? {
+                return Err(self.unexpected(token, "`texture`"));
+            }
+            let texture = self.nested(Self::surface_block)?;
+            list.push(Surface::clone(&texture));
+        }
+        draft.chooser = Chooser::Pattern(Pattern::Checker);
+        draft.choice = Choice::Blocks(list);
+        Ok(())
+    }
+
+    /// `{ picture textures }` behind `material_map`.
+    fn material_map(&mut self, draft: &mut Draft) -> PResult<()> {
+        let mut list = vec![];
+        let place = self.place();
+        let image = self.material_bitmap(|p, token| {
+            if !token.is(Word::Texture) {
+                return Ok(false);
+            }
+            p.take(token)?;
+            let texture = p.nested(Self::surface_block)?;
+            list.push(Surface::clone(&texture));
+            Ok(true)
+        })?;
+        if list.is_empty() {
+            return Err(self.fail_hint(
+                place,
+                "`material_map` needs at least one texture",
+                "write `texture { ... }` behind the picture, one for each value of its texels",
+            ));
+        }
+        draft.single = match image {
+            Some(image) => Surface::MaterialMap(image, Modifiers::default(), list),
+            None => list.swap_remove(0),
+        };
+        draft.chooser = Chooser::Single;
+        Ok(())
+    }
+
+    /// `{ ... }` behind `material`.
+    pub(crate) fn material_block(&mut self) -> PResult<Texture> {
+        self.braces(|p| {
+            let named = p.accept_thing(|thing| match thing {
+                Thing::Material(material) => Some(material),
+                _ => None,
+            })?;
+            let mut material = match named {
+                Some(named) => Texture::clone(&named),
+                None => Texture {
+                    written: false,
+                    ..p.state.default_texture.clone()
+                },
+            };
+            p.items("`material`", |p, token| {
+                if let Some(by) = p.transformation(token)? {
+                    let transformed = |surface: &mut Arc<Surface>| {
+                        transform(Arc::make_mut(surface), &by, false);
+                    };
+                    transformed(&mut material.surface);
+                    if let Some(inner) = &mut material.inner_surface {
+                        transformed(inner);
+                    }
+                    return Ok(());
+                }
+                if p.texture_item(&mut material, token)? {
+                    return Ok(());
+                }
+                p.skip_item(token, "`material`")
+            })?;
+            Ok(material)
+        })
+    }
+}
