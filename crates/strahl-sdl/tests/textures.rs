@@ -37,9 +37,9 @@ fn textures(text: &str) -> Vec<Arc<Texture>> {
     let (scene, messages) = scene(text);
     assert!(messages.is_empty(), "{text}\n{}", messages.join("\n"));
     let objects = scene.objects.0.iter();
-    let materials = objects.map(|o| o.material.as_ref().unwrap());
+    let materials = objects.map(|o| o.material.as_ref().expect("a material"));
     materials
-        .map(|m| Arc::clone(&m.texture.as_ref().unwrap().0))
+        .map(|m| Arc::clone(&m.texture.as_ref().expect("a texture").0))
         .collect()
 }
 
@@ -75,7 +75,7 @@ const PIGMENTS: &[&str] = &[
     "bumps color_map { [0.3 rgb x] [0.6 rgb y] }",
     "boxed",
     "brick",
-    "brick rgb x, rgb y brick_size <2, 1, 1> mortar 0.1 scale 0.3",
+    "brick rgb x, rgb y brick_size <2, 1, 1> mortar 0.15 scale 0.3",
     "cells scale 0.4",
     "checker",
     "checker rgb x rgb y scale 0.3",
@@ -138,7 +138,7 @@ const PIGMENTS: &[&str] = &[
     "Pigments[0] translate x",
     "checker rgb x rgb y warp { repeat x offset <0, 0.3, 0> flip y } scale 0.4",
     "gradient y warp { black_hole <0.2, 0.3, 0.1>, 1.5 strength 1.2 falloff 1.5 }",
-    "gradient y warp { black_hole <0.2, 0.3, 0.1>, 1 inverse repeat <1, 1, 1> }",
+    "gradient y warp { black_hole <0.4, 0.5, 0.5>, 0.4 inverse repeat <1, 1, 1> }",
     "gradient y warp { turbulence 0.4 octaves 4 } rotate 30 * x",
     "checker rgb x rgb y scale 0.2 warp { spherical orientation y dist_exp 1 }",
     "checker rgb x rgb y scale 0.2 warp { cylindrical }",
