@@ -35,9 +35,16 @@ built_in! {
     "stars.inc"
     "stdcam.inc"
     "stdinc.inc"
+    "stoneold.inc"
+    "stones.inc"
+    "stones1.inc"
+    "stones2.inc"
     "strings.inc"
     "sunpos.inc"
+    "textures.inc"
     "transforms.inc"
+    "woodmaps.inc"
+    "woods.inc"
 }
 
 /// The text of a built-in file; capital and small letters count the same, as scenes come from Windows too.
