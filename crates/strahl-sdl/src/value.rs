@@ -55,7 +55,10 @@ impl Value {
 
     /// Whether `(` behind the name calls it.
     pub(crate) fn is_callable(&self) -> bool {
-        matches!(self, Self::Function(_) | Self::Spline(_))
+        matches!(
+            self,
+            Self::Function(_) | Self::Spline(_) | Self::Thing(Thing::PigmentFunction(_))
+        )
     }
 
     /// The value as a number or vector, if it is one.

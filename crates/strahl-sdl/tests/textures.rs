@@ -414,6 +414,23 @@ fn finishes() {
 }
 
 #[test]
+fn pigments_and_patterns_as_functions() {
+    let text = "#include \"functions.inc\"
+        #declare P = pigment { gradient x color_map { [0 rgb 0] [1 rgbt <1, 0.5, 0, 0.25>] } }
+        #declare F = function { pigment { P } }
+        #declare G = function { pattern { gradient x scale 2 } }
+        #declare H = function { F(x, y, z).green + 10 * G(x, y, z) }
+        #declare C = eval_pigment(P, <0.5, 0, 0>);
+        #debug concat(vstr(5, C, \",\", 0, 4), \" \", str(F(0.5, 0, 0).red, 0, 4), \" \")
+        #debug concat(str(G(0.5, 0, 0), 0, 4), \" \", str(H(0.5, 0, 0), 0, 4))";
+    let expected = "0.5000,0.2500,0.0000,0.0000,0.1250 0.5000 0.2500 2.7500";
+    assert_eq!(common::debug(text), expected);
+    let found =
+        errors("#declare F = function { pigment { rgb 1 } } #declare G = function { F(x, y, z) }");
+    assert!(found[0].contains("component"), "{found:?}");
+}
+
+#[test]
 fn defaults_and_shared_materials() {
     let text = "#default { texture { pigment { rgb x } finish { ambient 0.5 } } }
                 sphere { 0, 1 } sphere { x, 1 finish { phong 1 } }

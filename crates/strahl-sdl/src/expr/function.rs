@@ -1,11 +1,13 @@
 //! `function { ... }`: from tokens straight to the graph of a [`strahl_function::Function`].
 
 use super::precedence;
+use crate::grammar::Thing;
 use crate::keywords::{Word, WordKind};
 use crate::parser::{PResult, Parser, Place};
 use crate::symbol::Symbol;
 use crate::token::{Kind, Token};
 use crate::value::Value;
+use std::sync::Arc;
 use strahl_function::{BinaryOp, Expr, Function, Graph, UnaryOp, internal};
 use strahl_math::noise::NoiseGenerator;
 
@@ -52,8 +54,8 @@ impl Parser<'_> {
         let body = self.raw_ahead(1);
         if open.kind == Kind::LeftBrace {
             let unsupported = match body.word() {
-                Some(Word::Pattern) => "a function made of a pattern, which is not supported yet",
-                Some(Word::Pigment) => "a function made of a pigment, which is not supported yet",
+                Some(Word::Pattern) => return self.pattern_function(),
+                Some(Word::Pigment) => return self.pigment_function(),
                 Some(Word::Transform) => {
                     "a function made of a transformation, which is not supported yet"
                 }
@@ -254,6 +256,18 @@ impl Parser<'_> {
             let arguments = self.nested(|p| p.formula_arguments(body))?;
             self.check_arguments(function.parameters().len(), arguments.len(), place)?;
             return Ok(body.graph.call(&function, &arguments));
+        }
+        let callee = match symbol.and_then(|s| self.scopes.find(s)) {
+            Some(Value::Thing(Thing::PigmentFunction(pigment))) => Some(Arc::clone(pigment)),
+            _ => None,
+        };
+        if let Some(pigment) = callee {
+            self.take(token)?;
+            let place = self.place();
+            let arguments = self.nested(|p| p.formula_arguments(body))?;
+            self.check_arguments(3, arguments.len(), place)?;
+            let component = self.pigment_component(&pigment)?;
+            return Ok(body.graph.field(&component, &arguments));
         }
         // Anything else is a number that is fixed when the function is declared.
         let number = self.name_in_expression(token)?;

@@ -14,6 +14,7 @@ mod quick;
 mod random;
 mod spline;
 mod strings;
+mod texture_function;
 mod value;
 mod vector_functions;
 
@@ -22,6 +23,7 @@ pub use dictionary::Dictionary;
 pub use spline::{Spline, SplineKind};
 pub(crate) use vector_functions::rotation;
 
+use crate::grammar::Thing;
 use crate::keywords::{Word, WordKind};
 use crate::parser::{PResult, Parser, Place};
 use crate::token::{Kind, Token};
@@ -344,6 +346,9 @@ impl Parser<'_> {
                 Vector::float(called)
             }
             Value::Spline(spline) => self.nested(|p| p.call_spline(spline))?,
+            Value::Thing(Thing::PigmentFunction(pigment)) => {
+                self.nested(|p| p.call_pigment(pigment))?
+            }
             _ => {
                 let place = self.place();
                 return Err(self.fail(place, format!("{} cannot be called", callee.describe())));

@@ -43,6 +43,7 @@ things! {
     NormalMap(BlendMap<PovNormal>) "a normal map"
     Object(Declared) "an object"
     Pigment(Pigment) "a pigment"
+    PigmentFunction(Pigment) "a function made of a pigment"
     PigmentMap(BlendMap<Pigment>) "a pigment map"
     SkySphere(SkySphere) "a sky sphere"
     SlopeMap(BlendMap<[f64; 2]>) "a slope map"
