@@ -414,6 +414,20 @@ fn finishes() {
 }
 
 #[test]
+fn an_interior_fills_the_parts_of_a_whole() {
+    use strahl_scene::ObjectKind;
+    let text = "union { sphere { 0, 1 pigment { rgb x } } sphere { 0, 1 pigment { rgb x } interior { ior 2 } }
+                sphere { 0, 1 } interior { ior 1.5 } }";
+    let (scene, _) = scene(text);
+    let ObjectKind::Csg { children, .. } = &scene.objects.0[0].kind else {
+        panic!("not combined");
+    };
+    let eta = |i: usize| children.0[i].material.as_ref().map(|m| m.eta);
+    assert_eq!([eta(0), eta(1), eta(2)], [Some(1.5), Some(2.0), None]);
+    assert_eq!(scene.objects.0[0].material.as_ref().unwrap().eta, 1.5);
+}
+
+#[test]
 fn pigments_and_patterns_as_functions() {
     let text = "#include \"functions.inc\"
         #declare P = pigment { gradient x color_map { [0 rgb 0] [1 rgbt <1, 0.5, 0, 0.25>] } }

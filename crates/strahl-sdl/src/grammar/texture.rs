@@ -22,6 +22,7 @@ mod pigment;
 mod statement;
 
 pub(super) use bitmap::KnownPicture;
+pub(super) use material::fill_parts;
 
 use crate::keywords::Word;
 use crate::parser::{PResult, Parser};

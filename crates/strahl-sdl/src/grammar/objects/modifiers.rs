@@ -1,5 +1,6 @@
 use crate::grammar::Entity;
 use crate::grammar::entity::{is_nothing, transform};
+use crate::grammar::texture::fill_parts;
 use crate::keywords::{Word, WordKind};
 use crate::parser::{PResult, Parser};
 use crate::token::{Kind, Token};
@@ -75,6 +76,9 @@ impl Parser<'_> {
             && let Some(texture) = &entity.texture
         {
             entity.object.material = Some(self.material(texture));
+            if let Some(interior) = texture.interior {
+                fill_parts(&mut entity.object, interior);
+            }
         }
         Ok(())
     }

@@ -2,6 +2,8 @@ use super::Texture;
 use crate::parser::Parser;
 use std::sync::Arc;
 use strahl_math::DVec3;
+use strahl_scene::{Object, ObjectKind};
+use strahl_shade::interior::Interior;
 use strahl_shade::patterns::TexturePoint;
 use strahl_shade::pigment::Pigment;
 use strahl_shade::texture::{SharedTexture, Texture as Surface};
@@ -74,6 +76,40 @@ impl Texture {
             ..Material::matte(color)
         }
         .with_transparency(color, pigment.filter, pigment.transmit)
+    }
+}
+
+/// Fills the parts of a combined object that have a texture but no interior of their own.
+pub(in crate::grammar) fn fill_parts(object: &mut Object, interior: Interior) {
+    // Parts that shared a material go on sharing one.
+    let mut filled: Vec<(Arc<Material>, Arc<Material>)> = vec![];
+    let mut waiting = vec![object];
+    while let Some(object) = waiting.pop() {
+        let ObjectKind::Csg { children, .. } = &mut object.kind else {
+            continue;
+        };
+        for child in &mut children.0 {
+            if let Some(before) = &child.material
+                && before.interior.is_none()
+            {
+                let known = filled.iter().rev().take(RECENT);
+                let known = known.into_iter().find(|(old, _)| Arc::ptr_eq(old, before));
+                let after = match known {
+                    Some((_, after)) => Arc::clone(after),
+                    None => {
+                        let after = Arc::new(Material {
+                            interior: Some(interior),
+                            eta: interior.ior,
+                            ..Material::clone(before)
+                        });
+                        filled.push((Arc::clone(before), Arc::clone(&after)));
+                        after
+                    }
+                };
+                child.material = Some(after);
+            }
+            waiting.push(child);
+        }
     }
 }
 
