@@ -115,6 +115,18 @@ fn macros_see_their_callers_names_and_change_variables_given() {
 }
 
 #[test]
+fn locals_that_hold_what_a_macro_made_end_with_their_macro() {
+    // The value is stored while the inner call's scope is still open, and must not outlive the outer one's.
+    let text = "
+        #macro Nest(N)
+          #if (N < 3) #local Inner = Nest(N + 1) concat(\"(\", Inner, str(N, 0, 0), \")\") #else \"x\" #end
+        #end
+        #debug Nest(0)
+        #ifdef (Inner) #debug \" leak\" #end";
+    assert_eq!(debug(text), "(((x2)1)0)");
+}
+
+#[test]
 fn macros_are_tokens() {
     assert_eq!(
         values(

@@ -226,11 +226,24 @@ impl Scopes {
             Some(at) if stack[at].depth == depth => stack[at].bound = bound,
             found => {
                 stack.insert(found.map_or(0, |at| at + 1), Binding { depth, bound });
-                if depth == self.depth() && depth > 0 {
-                    self.declared.push(symbol);
-                }
+                self.remember(symbol, depth);
             }
         }
+    }
+
+    /// Notes that a scope has a symbol, which leaving it removes. The scope need not be the innermost one: what a macro gives as a
+    /// value is stored while the macro's own scope is still open.
+    fn remember(&mut self, symbol: Symbol, depth: u32) {
+        if depth == 0 {
+            return;
+        }
+        let further_in = self.begins.get_mut(depth as usize..).unwrap_or_default();
+        let end = further_in.first().copied();
+        for begin in further_in {
+            *begin += 1;
+        }
+        self.declared
+            .insert(end.unwrap_or(self.declared.len()), symbol);
     }
 
     /// Names that are bound, for advice on misspelt ones.
