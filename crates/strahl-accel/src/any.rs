@@ -1,15 +1,15 @@
-use crate::{Accelerator, Bvh2, List, TraversalStats, Visitor};
+use crate::{Accelerator, Bvh2, Bvh8, List, TraversalStats, Visitor};
 use std::{fmt, str::FromStr};
 use strahl_math::{Aabb, Interval, Ray};
 
 /// Makes the enum of all structures from the table below.
 macro_rules! accelerators {
-    ($($(#[$doc:meta])* $name:literal $variant:ident $(#[$default:meta])?,)+) => {
+    ($($(#[$doc:meta])* $name:literal $variant:ident = $build:expr,)+) => {
         /// Which acceleration structure.
-        #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
         #[non_exhaustive]
         pub enum AcceleratorKind {
-            $($(#[$doc])* $(#[$default])? $variant,)+
+            $($(#[$doc])* $variant,)+
         }
 
         impl AcceleratorKind {
@@ -32,7 +32,7 @@ macro_rules! accelerators {
         impl AnyAccelerator {
             /// Builds the structure over boxes `0..n`.
             pub fn build(kind: AcceleratorKind, bounds: &[Aabb]) -> Self {
-                match kind { $(AcceleratorKind::$variant => Self::$variant($variant::build(bounds)),)+ }
+                match kind { $(AcceleratorKind::$variant => Self::$variant(($build)(bounds)),)+ }
             }
         }
 
@@ -70,9 +70,21 @@ macro_rules! accelerators {
 // THE table of accelerators: a new one is one line here.
 accelerators! {
     /// No structure: every primitive for every ray.
-    "list" List,
-    /// The binary bounding volume hierarchy.
-    "bvh" Bvh2 #[default],
+    "list" List = List::build,
+    /// The binary bounding volume hierarchy: the readable reference.
+    "bvh2" Bvh2 = Bvh2::build,
+    /// The bounding volume hierarchy of width eight.
+    "bvh" Bvh8 = |b| Bvh8::build(b, |_| 0),
+}
+
+#[expect(
+    clippy::derivable_impls,
+    reason = "the table's macro makes the variants, this one is chosen outside of it"
+)]
+impl Default for AcceleratorKind {
+    fn default() -> Self {
+        Self::Bvh8
+    }
 }
 
 impl fmt::Display for AcceleratorKind {

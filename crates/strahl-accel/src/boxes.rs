@@ -50,8 +50,17 @@ impl Box32 {
         self.hi = self.hi.max(point);
     }
 
+    /// The box with these corners, of which the fourth lane means nothing.
+    pub(crate) const fn of_corners(lo: Vec4, hi: Vec4) -> Self {
+        Self { lo, hi }
+    }
+
     pub(crate) fn lo(&self) -> Vec4 {
         self.lo
+    }
+
+    pub(crate) fn hi(&self) -> Vec4 {
+        self.hi
     }
 
     pub(crate) fn size(&self) -> Vec4 {

@@ -39,8 +39,8 @@ impl CullBounds {
 /// itself is rounded (u|c|): altogether at most `3u|r|(|b| + |o|)` to first order, `b` being exact; the f64 roundings of r and c
 /// are 2⁻²⁹ of that. So with `E = 8u|r|(B + |o|)`, B the largest coordinate of any plane, `ĉ = c + E` makes the computed near
 /// crossing never later than the true one, and `ĉ = c - E` the far crossing never earlier. The factor 8 instead of 3 also covers
-/// hits that a primitive's own rounding puts just outside of its box. (Engine design, section 3.1; there with a fused
-/// multiply-add, which the baseline processor does not have.)
+/// hits that a primitive's own rounding puts just outside of its box. A fused multiply-subtract rounds once less.
+/// (Engine design, section 3.1.)
 ///
 /// E grows with |o|, so a ray that starts far away is first moved to where it enters the structure, in f64. Directions are scaled
 /// by a power of two so that their largest component is in `1..2`, which is exact; `t` is scaled with them.
@@ -48,23 +48,23 @@ impl CullBounds {
 /// Boxes end at 2⁶⁴ and scaled directions at 2⁻⁶⁰, so no product overflows and no difference is a NaN: the minima and maxima of
 /// the loop mean the same on every processor.
 pub(crate) struct CullRay {
-    axes: [CullAxis; 3],
+    pub(crate) axes: [CullAxis; 3],
     /// What was taken off `t`.
     offset: f64,
     /// The power of two that `t - offset` is multiplied by.
     scale: f64,
-    t_min: f32,
+    pub(crate) t_min: f32,
 }
 
-/// Constants of one axis, the same in all lanes.
+/// Constants of one axis.
 #[derive(Clone, Copy, Default)]
-struct CullAxis {
+pub(crate) struct CullAxis {
     /// 1/d, rounded.
-    rd: Vec4,
+    pub(crate) rd: f32,
     /// `c + E`: subtracted for the plane the ray meets first.
-    near: Vec4,
+    pub(crate) near: f32,
     /// `c - E`: subtracted for the plane the ray meets last.
-    far: Vec4,
+    pub(crate) far: f32,
 }
 
 /// Components of a direction smaller than this part of the largest one are replaced by it. While it crosses the structure such
@@ -116,9 +116,9 @@ impl CullRay {
             let (r, o) = (1.0 / d, origin[axis]);
             let (c, e) = (o * r, r.abs() * (margin + SLACK * o.abs()));
             *constants = CullAxis {
-                rd: Vec4::splat(r as f32),
-                near: Vec4::splat((c + e) as f32),
-                far: Vec4::splat((c - e) as f32),
+                rd: r as f32,
+                near: (c + e) as f32,
+                far: (c - e) as f32,
             };
         }
         let (t_min, error) = rounded((range.min - offset) * scale);
@@ -142,10 +142,10 @@ impl CullRay {
     pub(crate) fn enter(&self, pair: &BoxPair, t_max: f32) -> ([f32; 2], u32) {
         let (mut near, mut far) = (Vec4::splat(self.t_min), Vec4::splat(t_max));
         for (planes, axis) in pair.iter().zip(&self.axes) {
-            let crossed = Vec4::from_array(*planes) * axis.rd;
+            let crossed = Vec4::from_array(*planes) * Vec4::splat(axis.rd);
             let other = crossed.zwxy();
-            near = (crossed.min(other) - axis.near).max(near);
-            far = (crossed.max(other) - axis.far).min(far);
+            near = (crossed.min(other) - Vec4::splat(axis.near)).max(near);
+            far = (crossed.max(other) - Vec4::splat(axis.far)).min(far);
         }
         ([near.x, near.y], near.cmple(far).bitmask() & 3)
     }

@@ -8,11 +8,13 @@
 mod any;
 mod boxes;
 mod bvh;
+mod bvh8;
 mod cull;
 mod list;
 mod traversal;
 
 pub use any::{AcceleratorKind, AnyAccelerator, UnknownAccelerator};
 pub use bvh::{BuildOptions, Bvh2};
+pub use bvh8::{BLOCK, Bvh8, NO_PRIMITIVE};
 pub use list::List;
-pub use traversal::{Accelerator, TraversalStats, Visitor};
+pub use traversal::{Accelerator, Leaf, TraversalStats, Visitor};

@@ -1,4 +1,5 @@
 use strahl_math::{Interval, Ray};
+use strahl_simd::Isa;
 
 /// What is done with the primitives a ray may meet.
 pub trait Visitor {
@@ -7,6 +8,37 @@ pub trait Visitor {
     /// Returns the new `t_max`: unchanged on a miss, the distance of the hit if one was found,
     /// `f64::NEG_INFINITY` to end the traversal at once.
     fn visit(&mut self, id: u32, t_max: f64) -> f64;
+
+    /// Whether the first hit ends the traversal: then there is no point in sorting what is on the way.
+    const ANY: bool = false;
+
+    /// Looks at all primitives of a leaf of a structure with blocks of slots (see [`Bvh8`](crate::Bvh8)), knowing that only
+    /// `t <= t_max` is still of interest; returns as [`Visitor::visit`]. Called inside of [`Isa::call`].
+    ///
+    /// By itself it visits them one by one.
+    #[inline(always)]
+    fn visit_leaf<I: Isa>(&mut self, _isa: I, leaf: &Leaf<'_>, mut t_max: f64) -> f64 {
+        for id in leaf.ids {
+            t_max = self.visit(*id, t_max);
+            if t_max == f64::NEG_INFINITY {
+                break;
+            }
+        }
+        t_max
+    }
+}
+
+/// A leaf of a structure with blocks of slots.
+#[derive(Clone, Copy, Debug)]
+pub struct Leaf<'a> {
+    /// The class of all its primitives.
+    pub class: u8,
+    /// Its first block.
+    pub first_block: usize,
+    /// How many blocks it has.
+    pub blocks: usize,
+    /// Its primitives, at least one.
+    pub ids: &'a [u32],
 }
 
 /// What a traversal cost.

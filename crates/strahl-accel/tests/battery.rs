@@ -5,9 +5,11 @@
 
 use proptest::prelude::*;
 use strahl_accel::{
-    Accelerator, AcceleratorKind, AnyAccelerator, BuildOptions, Bvh2, List, TraversalStats, Visitor,
+    Accelerator, AcceleratorKind, AnyAccelerator, BuildOptions, Bvh2, Bvh8, List, TraversalStats,
+    Visitor,
 };
 use strahl_math::{Aabb, DVec3, Interval, Ray};
+use strahl_simd::Simd;
 
 /// SplitMix64.
 struct Rng(u64);
@@ -234,10 +236,15 @@ fn compare(
         return (0, 0);
     }
     let list = List::build(&boxes);
-    let others: Vec<AnyAccelerator> = AcceleratorKind::ALL
+    let mut others: Vec<AnyAccelerator> = AcceleratorKind::ALL
         .iter()
         .map(|kind| AnyAccelerator::build(*kind, &boxes))
         .collect();
+    let classes = Bvh8::build(&boxes, |id| (id % 5 / 2) as u8);
+    assert_eq!(classes.validate(&boxes), Ok(()));
+    for simd in Simd::available() {
+        others.push(AnyAccelerator::Bvh8(classes.clone().with_simd(simd)));
+    }
     let (mut compared, mut hits) = (0, 0);
     for _ in 0..rays {
         let ray = ray(rng, &boxes, offset, scale);
@@ -429,10 +436,10 @@ fn degenerate_builds_are_valid() {
     ] {
         let bvh = Bvh2::build(&boxes);
         assert_eq!(bvh.validate(&boxes), Ok(()));
-        assert_eq!(
-            bvh.references(),
-            boxes.iter().filter(|b| !b.is_empty()).count()
-        );
+        let wide = Bvh8::build(&boxes, |id| (id % 3) as u8);
+        assert_eq!(wide.validate(&boxes), Ok(()));
+        let expected = boxes.iter().filter(|b| !b.is_empty()).count();
+        assert_eq!((bvh.references(), wide.references()), (expected, expected));
     }
 }
 
@@ -444,11 +451,16 @@ fn the_tree_does_not_depend_on_the_number_of_threads() {
             .num_threads(threads)
             .build()
             .expect("threads");
-        pool.install(|| Bvh2::build(&boxes))
+        pool.install(|| {
+            let wide = Bvh8::build(&boxes, |id| (id % 3) as u8);
+            (Bvh2::build(&boxes), wide)
+        })
     };
     let one = build(1);
-    assert_eq!(one.validate(&boxes), Ok(()));
-    assert!(one.nodes() > 10_000);
+    assert_eq!(one.0.validate(&boxes), Ok(()));
+    assert_eq!(one.1.validate(&boxes), Ok(()));
+    assert!(one.0.nodes() > 10_000);
+    assert!(one.1.nodes() > 1000);
     for threads in [2, 7] {
         assert_eq!(build(threads), one);
     }

@@ -126,7 +126,7 @@ pub(crate) struct PictureArgs {
     /// Shading model of everything: lambert, phong, blinn-phong, or to look at the geometry: normals, depth, object-id, uv
     #[arg(long, value_name = "MODEL")]
     pub(crate) shading: Option<ShadingModel>,
-    /// Acceleration structure: list or bvh; the picture is the same
+    /// Acceleration structure: list, bvh2 or bvh; the picture is the same
     #[arg(long, value_name = "NAME", default_value_t)]
     pub(crate) accelerator: AcceleratorKind,
 }

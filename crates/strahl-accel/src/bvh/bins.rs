@@ -2,7 +2,7 @@
 //!
 //! I. Wald, "On fast construction of SAH-based bounding volume hierarchies" (2007).
 
-use super::build::Ref;
+use super::split::{Ref, blocks};
 use crate::boxes::Box32;
 use rayon::prelude::*;
 use strahl_math::Vec4;
@@ -17,7 +17,7 @@ pub(super) struct Plane {
     binning: Binning,
     axis: usize,
     last_left: usize,
-    /// Half area times number of primitives, summed over both sides.
+    /// Half area times number of blocks of primitives, summed over both sides.
     pub(super) cost: f64,
 }
 
@@ -27,8 +27,9 @@ impl Plane {
         self.binning.bins_of(r)[self.axis] <= self.last_left
     }
 
-    /// The cheapest way to split a set whose doubled centres span `centers`; `None` if no plane separates any two of them.
-    pub(super) fn cheapest(refs: &[Ref], centers: &Box32) -> Option<Self> {
+    /// The cheapest way to split a set whose doubled centres span `centers`, with blocks of `2^block_log` primitives; `None`
+    /// if no plane separates any two of them.
+    pub(super) fn cheapest(refs: &[Ref], centers: &Box32, block_log: u32) -> Option<Self> {
         let binning = Binning::new(refs.len(), centers);
         let bins = if refs.len() > CHUNK {
             // Minima, maxima and integer sums: exact in any grouping, so the threads leave no trace.
@@ -39,7 +40,7 @@ impl Plane {
             binning.fill(refs)
         };
         (0..3)
-            .filter_map(|axis| bins.cheapest(axis, binning.count))
+            .filter_map(|axis| bins.cheapest(axis, binning.count, block_log))
             // Of equal ones the first, so that the choice is unique.
             .reduce(|a, b| if b.0 < a.0 { b } else { a })
             .map(|(cost, axis, last_left)| Self {
@@ -116,7 +117,7 @@ impl Bins {
     }
 
     /// The cost, the axis and the last bin of the left side of an axis's cheapest plane.
-    fn cheapest(&self, axis: usize, bins: usize) -> Option<(f64, usize, usize)> {
+    fn cheapest(&self, axis: usize, bins: usize, log: u32) -> Option<(f64, usize, usize)> {
         let (boxes, counts) = (&self.boxes[axis][..bins], &self.counts[axis][..bins]);
         // Sweep from the right for the costs of all right sides, then from the left for the sums.
         let mut right_costs = [0.0; BINS];
@@ -125,7 +126,7 @@ impl Bins {
             right.grow(&boxes[bin]);
             right_count += counts[bin];
             if right_count > 0 {
-                right_costs[bin - 1] = right.half_area() * right_count as f64;
+                right_costs[bin - 1] = right.half_area() * blocks(right_count, log) as f64;
             }
         }
         let total = right_count + counts[0];
@@ -140,7 +141,7 @@ impl Bins {
             if left_count == total {
                 break;
             }
-            let cost = left.half_area() * left_count as f64 + right_costs[bin];
+            let cost = left.half_area() * blocks(left_count, log) as f64 + right_costs[bin];
             if best.is_none_or(|b| cost < b.0) {
                 best = Some((cost, axis, bin));
             }

@@ -1,8 +1,8 @@
 //! Builds the tree from the top, splitting by the surface area heuristic; the same tree for any number of threads.
 
-use super::bins::Plane;
 use super::node::{Child, Node};
-use super::{Bvh2, MAX_DEPTH, Tree};
+use super::split::{Extent, LeafModel, Ref, Split};
+use super::{Bvh2, Tree};
 use crate::List;
 use crate::boxes::Box32;
 use crate::cull::CullBounds;
@@ -31,13 +31,6 @@ impl Default for BuildOptions {
     }
 }
 
-/// A primitive while the tree is built.
-#[derive(Clone, Copy)]
-pub(super) struct Ref {
-    pub(super) bounds: Box32,
-    id: u32,
-}
-
 impl Bvh2 {
     /// Builds the hierarchy over boxes `0..n`, n at most 2³¹.
     pub fn build(bounds: &[Aabb]) -> Self {
@@ -50,7 +43,11 @@ impl Bvh2 {
         let mut unbounded = Vec::new();
         for (id, b) in (0..).zip(bounds) {
             if let Some(bounds) = Box32::try_new(b) {
-                refs.push(Ref { bounds, id });
+                refs.push(Ref {
+                    bounds,
+                    id,
+                    class: 0,
+                });
             } else if !b.is_empty() {
                 unbounded.push(id);
             }
@@ -66,45 +63,23 @@ impl Bvh2 {
 
 impl Tree {
     fn build(refs: &mut [Ref], options: &BuildOptions) -> Self {
+        let leaf = LeafModel {
+            max_size: options.max_leaf_size,
+            block_cost: options.primitive_cost,
+            block_log: 0,
+        };
         let extent = Extent::of(refs);
         let mut parts = Parts {
             nodes: Vec::new(),
             ids: Vec::with_capacity(refs.len()),
         };
-        let root = parts.add(refs, &extent, 0, options);
+        let root = parts.add(refs, &extent, 0, &leaf);
         Self {
             root,
             nodes: parts.nodes,
             ids: parts.ids,
             bounds: CullBounds::new(extent.bounds.to_aabb()),
         }
-    }
-}
-
-/// The extent of a set: what its primitives' boxes span, and what their (doubled) centres span.
-struct Extent {
-    bounds: Box32,
-    centers: Box32,
-}
-
-impl Extent {
-    const EMPTY: Self = Self {
-        bounds: Box32::EMPTY,
-        centers: Box32::EMPTY,
-    };
-
-    fn of(refs: &[Ref]) -> Self {
-        let mut extent = Self::EMPTY;
-        for r in refs {
-            extent.grow(r);
-        }
-        extent
-    }
-
-    #[inline(always)]
-    fn grow(&mut self, r: &Ref) {
-        self.bounds.grow(&r.bounds);
-        self.centers.grow_to(r.bounds.center());
     }
 }
 
@@ -117,14 +92,8 @@ struct Parts {
 
 impl Parts {
     /// Adds the subtree of a set that is not empty, at a depth below the root.
-    fn add(
-        &mut self,
-        refs: &mut [Ref],
-        extent: &Extent,
-        depth: usize,
-        options: &BuildOptions,
-    ) -> Child {
-        let Some(split) = Split::choose(refs, extent, depth, options) else {
+    fn add(&mut self, refs: &mut [Ref], extent: &Extent, depth: usize, leaf: &LeafModel) -> Child {
+        let Some(split) = Split::choose(refs, extent, depth, leaf) else {
             return self.add_leaf(refs);
         };
         let node = self.nodes.len();
@@ -132,7 +101,7 @@ impl Parts {
         let parallel = refs.len() > PARALLEL;
         let (left, right) = refs.split_at_mut(split.middle);
         let add = |parts: &mut Self, refs: &mut [Ref], extent: &Extent| {
-            parts.add(refs, extent, depth + 1, options)
+            parts.add(refs, extent, depth + 1, leaf)
         };
         let children = if parallel {
             let mut other = Self::default();
@@ -173,77 +142,9 @@ impl Parts {
     }
 }
 
-/// A set after its primitives were ordered so that the left child's come first.
-struct Split {
-    middle: usize,
-    left: Extent,
-    right: Extent,
-}
-
-impl Split {
-    /// Splits a set, or decides (`None`) that it is a leaf.
-    fn choose(
-        refs: &mut [Ref],
-        extent: &Extent,
-        depth: usize,
-        options: &BuildOptions,
-    ) -> Option<Self> {
-        if refs.len() == 1 {
-            return None;
-        }
-        let fits = refs.len() <= options.max_leaf_size;
-        // From here on halving takes this many levels of nodes. It takes over while there are still that many.
-        let needed = (refs.len() - 1).ilog2() as usize + 1;
-        if depth + needed >= MAX_DEPTH - 1 {
-            return (!fits).then(|| Self::halve(refs));
-        }
-        let Some(plane) = Plane::cheapest(refs, &extent.centers) else {
-            // All centres in one point: nothing to choose by.
-            return (!fits).then(|| Self::halve(refs));
-        };
-        let area = extent.bounds.half_area();
-        let leaf_cost = options.primitive_cost * refs.len() as f64 * area;
-        if fits && leaf_cost <= area + options.primitive_cost * plane.cost {
-            return None;
-        }
-        Some(Self::at(&plane, refs))
-    }
-
-    /// In the middle of the list, whatever its order.
-    fn halve(refs: &[Ref]) -> Self {
-        let middle = refs.len() / 2;
-        Self {
-            middle,
-            left: Extent::of(&refs[..middle]),
-            right: Extent::of(&refs[middle..]),
-        }
-    }
-
-    /// Exchanges primitives that are on the wrong side, from both ends: one thread does it, so the order is always the same.
-    fn at(plane: &Plane, refs: &mut [Ref]) -> Self {
-        let (mut left, mut right) = (Extent::EMPTY, Extent::EMPTY);
-        let (mut middle, mut end) = (0, refs.len());
-        while middle < end {
-            let r = refs[middle];
-            if plane.is_left(&r) {
-                left.grow(&r);
-                middle += 1;
-            } else {
-                right.grow(&r);
-                end -= 1;
-                refs.swap(middle, end);
-            }
-        }
-        Self {
-            middle,
-            left,
-            right,
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
+    use super::super::MAX_DEPTH;
     use super::*;
     use strahl_math::DVec3;
 

@@ -1,12 +1,13 @@
-//! The binary bounding volume hierarchy: scalar and readable, the reference of the wide ones to come.
+//! The binary bounding volume hierarchy: scalar and readable, the reference of the wide one.
 //!
 //! Split by phase: `build` makes it, `traverse` walks it, `validate` proves that it is what the walk relies on.
 
 mod bins;
 mod build;
 mod node;
+pub(crate) mod split;
 mod traverse;
-mod validate;
+pub(crate) mod validate;
 
 use crate::List;
 use crate::cull::CullBounds;
@@ -37,4 +38,4 @@ struct Tree {
 /// Levels of the tree, and so the depth of the traversal's stack.
 ///
 /// The builder keeps to it by halving what the surface area heuristic would split too unevenly (see `build`).
-const MAX_DEPTH: usize = 64;
+pub(crate) const MAX_DEPTH: usize = 64;

@@ -7,7 +7,7 @@ use strahl_math::{Interval, Ray};
 
 impl Accelerator for Bvh2 {
     fn name(&self) -> &'static str {
-        "bvh"
+        "bvh2"
     }
 
     #[inline]

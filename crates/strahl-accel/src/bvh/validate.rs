@@ -9,21 +9,39 @@ impl Bvh2 {
     /// # Errors
     /// The first thing found wrong, in words.
     pub fn validate(&self, bounds: &[Aabb]) -> Result<(), String> {
-        let mut seen = vec![0u32; bounds.len()];
-        let mut note = |id: u32| match seen.get_mut(id as usize) {
-            Some(count) => {
-                *count += 1;
-                Ok(())
-            }
-            None => Err(format!("primitive {id} does not exist")),
-        };
+        let mut places = Places::new(bounds);
         for id in self.unbounded.ids() {
-            note(*id)?;
+            places.note(*id)?;
         }
         if let Some(tree) = &self.tree {
-            tree.validate(bounds, &mut note)?;
+            tree.validate(bounds, &mut places)?;
         }
-        for (id, (count, b)) in seen.iter().zip(bounds).enumerate() {
+        places.finish()
+    }
+}
+
+/// In how many places each primitive was found.
+pub(crate) struct Places<'a> {
+    seen: Vec<u32>,
+    bounds: &'a [Aabb],
+}
+
+impl<'a> Places<'a> {
+    pub(crate) fn new(bounds: &'a [Aabb]) -> Self {
+        let seen = vec![0; bounds.len()];
+        Self { seen, bounds }
+    }
+
+    /// A primitive was found.
+    pub(crate) fn note(&mut self, id: u32) -> Result<(), String> {
+        let count = self.seen.get_mut(id as usize);
+        *count.ok_or_else(|| format!("primitive {id} does not exist"))? += 1;
+        Ok(())
+    }
+
+    /// Whether each was found once, and empty ones never.
+    pub(crate) fn finish(self) -> Result<(), String> {
+        for (id, (count, b)) in self.seen.iter().zip(self.bounds).enumerate() {
             let expected = u32::from(!b.is_empty());
             if *count != expected {
                 return Err(format!(
@@ -36,12 +54,8 @@ impl Bvh2 {
 }
 
 impl Tree {
-    /// The part of the proof that is about the tree; tells `note` of every primitive it comes across.
-    fn validate(
-        &self,
-        bounds: &[Aabb],
-        mut note: impl FnMut(u32) -> Result<(), String>,
-    ) -> Result<(), String> {
+    /// The part of the proof that is about the tree.
+    fn validate(&self, bounds: &[Aabb], places: &mut Places<'_>) -> Result<(), String> {
         let whole = Box32::try_new(self.bounds.bounds()).ok_or("the tree has no bounds")?;
         let mut waiting = vec![(self.root, whole, 0)];
         let mut visited = 0;
@@ -54,7 +68,7 @@ impl Tree {
                     .get(first..end)
                     .ok_or_else(|| format!("ids {first}..{end} do not exist"))?;
                 for id in ids {
-                    note(*id)?;
+                    places.note(*id)?;
                     let inside =
                         Box32::try_new(&bounds[*id as usize]).is_some_and(|b| own.contains(&b));
                     if !inside {

@@ -1,0 +1,63 @@
+//! The bounding volume hierarchy of width eight: one vector instruction looks at all children of a node.
+//!
+//! Split by phase as [`crate::Bvh2`]: `build` makes it, `traverse` walks it, `validate` proves that it is what the walk relies on.
+
+mod build;
+mod node;
+mod traverse;
+mod validate;
+
+use crate::List;
+use crate::cull::CullBounds;
+use node::{Child, Node};
+use strahl_simd::Simd;
+
+/// Primitives in a block of slots.
+pub const BLOCK: usize = 4;
+
+/// The slot of no primitive.
+pub const NO_PRIMITIVE: u32 = u32::MAX;
+
+/// A bounding volume hierarchy of width eight built by the surface area heuristic.
+///
+/// Boxes are f32, rounded outwards. Primitives without bounds are kept in a list beside the tree and always visited.
+///
+/// Leaves are blocks of four slots, so that the owner of the primitives can keep them in the same order and look at four at once
+/// (see [`crate::Visitor::visit_leaf`]). All primitives of a leaf have the same class, a number from 0 to 3 that means
+/// nothing here but that the blocks of class 0 are looked at one by one.
+///
+/// H. Dammertz, J. Hanika, A. Keller, "Shallow Bounding Volume Hierarchies for Fast SIMD Ray Tracing of Incoherent Rays" (2008); I. Wald,
+/// C. Benthin, S. Boulos, "Getting Rid of Packets" (2008).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Bvh8 {
+    tree: Option<Tree>,
+    /// The primitives that are not in the tree: without bounds, or too far away for f32.
+    unbounded: List,
+    simd: Simd,
+}
+
+/// What holds all bounded primitives, at least one.
+#[derive(Clone, Debug, PartialEq)]
+struct Tree {
+    root: Child,
+    nodes: Vec<Node>,
+    /// The primitives of the leaves, leaf by leaf; leaves are filled up with [`NO_PRIMITIVE`] to whole blocks.
+    slots: Vec<u32>,
+    bounds: CullBounds,
+}
+
+impl Bvh8 {
+    /// The most primitives a hierarchy can hold.
+    pub const MAX_PRIMITIVES: usize = Child::MAX_BLOCKS;
+
+    /// The primitives in the order of the leaves' slots; [`NO_PRIMITIVE`] where a slot is empty.
+    pub fn slots(&self) -> &[u32] {
+        self.tree.as_ref().map_or(&[], |t| &t.slots)
+    }
+
+    /// The same hierarchy walked with the instructions of another level.
+    #[must_use]
+    pub fn with_simd(self, simd: Simd) -> Self {
+        Self { simd, ..self }
+    }
+}

@@ -1,0 +1,221 @@
+use super::node::{Child, Node, WIDTH};
+use super::{BLOCK, Bvh8, Tree};
+use crate::bvh::MAX_DEPTH;
+use crate::cull::CullRay;
+use crate::list::visit_all;
+use crate::traversal::Leaf;
+use crate::{Accelerator, TraversalStats, Visitor};
+use arrayvec::ArrayVec;
+use strahl_math::{Interval, Ray};
+use strahl_simd::{Isa, dispatch};
+
+/// Children left to visit: at most all but one of each level.
+type Stack = ArrayVec<Waiting, { MAX_DEPTH * (WIDTH - 1) }>;
+
+/// A child to visit, with the parameter at which the ray gets there in the upper half: smaller numbers come first.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct Waiting(i64);
+
+impl Waiting {
+    /// `near` is at least 0, or negative and so close to it that the order does not matter.
+    #[inline(always)]
+    fn new(child: Child, near: f32) -> Self {
+        Self((i64::from(near.to_bits()) << 32) | i64::from(child.bits()))
+    }
+
+    #[inline(always)]
+    fn near(self) -> f32 {
+        f32::from_bits((self.0 >> 32) as u32)
+    }
+
+    #[inline(always)]
+    fn child(self) -> Child {
+        Child::from_bits(self.0 as u32)
+    }
+}
+
+impl Accelerator for Bvh8 {
+    fn name(&self) -> &'static str {
+        "bvh"
+    }
+
+    #[inline]
+    fn traverse<V: Visitor>(
+        &self,
+        ray: &Ray,
+        range: Interval,
+        visitor: &mut V,
+        stats: &mut TraversalStats,
+    ) {
+        let t_max = visit_all(self.unbounded.ids(), range.max, visitor, stats);
+        if t_max > f64::NEG_INFINITY
+            && let Some(tree) = &self.tree
+        {
+            dispatch!(self.simd, isa => tree.walk(isa, ray, range.with_max(t_max), visitor, stats));
+        }
+    }
+
+    fn bytes(&self) -> usize {
+        let tree = self.tree.as_ref().map_or(0, |t| {
+            size_of_val(t.nodes.as_slice()) + size_of_val(t.slots.as_slice())
+        });
+        tree + self.unbounded.bytes()
+    }
+
+    fn nodes(&self) -> usize {
+        self.tree.as_ref().map_or(0, |t| t.nodes.len())
+    }
+
+    fn references(&self) -> usize {
+        let used = self.slots().iter().filter(|id| **id != super::NO_PRIMITIVE);
+        used.count() + self.unbounded.references()
+    }
+}
+
+/// The constants of the culling test in vectors.
+struct Slabs<I: Isa> {
+    rd: [I::F32x8; 3],
+    near: [I::F32x8; 3],
+    far: [I::F32x8; 3],
+    /// Per axis which of the two planes the ray meets first.
+    first: [usize; 3],
+    t_min: I::F32x8,
+}
+
+impl<I: Isa> Slabs<I> {
+    #[inline(always)]
+    fn new(isa: I, cull: &CullRay) -> Self {
+        let axes = &cull.axes;
+        Self {
+            rd: std::array::from_fn(|k| isa.splat_f32(axes[k].rd)),
+            near: std::array::from_fn(|k| isa.splat_f32(axes[k].near)),
+            far: std::array::from_fn(|k| isa.splat_f32(axes[k].far)),
+            first: std::array::from_fn(|k| usize::from(axes[k].rd < 0.0)),
+            t_min: isa.splat_f32(cull.t_min),
+        }
+    }
+
+    /// Where the ray enters the children's boxes, and which of them it may meet.
+    #[inline(always)]
+    fn enter(&self, isa: I, node: &Node, t_max: I::F32x8) -> (I::F32x8, u32) {
+        let plane = |k: usize, which: usize| isa.load_f32(&node.planes[2 * k + which]);
+        let near = |k: usize| isa.mul_sub(plane(k, self.first[k]), self.rd[k], self.near[k]);
+        let far = |k: usize| isa.mul_sub(plane(k, 1 - self.first[k]), self.rd[k], self.far[k]);
+        let enter = isa.max_f32(
+            isa.max_f32(near(0), near(1)),
+            isa.max_f32(near(2), self.t_min),
+        );
+        let leave = isa.min_f32(isa.min_f32(far(0), far(1)), isa.min_f32(far(2), t_max));
+        (enter, isa.le_f32(enter, leave))
+    }
+}
+
+impl Tree {
+    /// Walks the tree, nearer children first.
+    #[inline(always)]
+    fn walk<I: Isa, V: Visitor>(
+        &self,
+        isa: I,
+        ray: &Ray,
+        range: Interval,
+        visitor: &mut V,
+        stats: &mut TraversalStats,
+    ) {
+        let Some(cull) = CullRay::new(ray, range, &self.bounds) else {
+            return;
+        };
+        let slabs = Slabs::new(isa, &cull);
+        let mut t_max = range.max;
+        let mut far = cull.t_max(t_max);
+        let mut far_lanes = isa.splat_f32(far);
+        let mut stack = Stack::new();
+        let mut current = self.root;
+        loop {
+            if !current.is_leaf() {
+                stats.node_visits += 1;
+                let node = &self.nodes[current.node()];
+                let (near, mut hit) = slabs.enter(isa, node, far_lanes);
+                // Branches rather than arithmetic on masks: the processor goes on with the likely child before the test is done.
+                if hit != 0 {
+                    let first = hit.trailing_zeros() as usize;
+                    hit &= hit - 1;
+                    if hit == 0 {
+                        current = node.children[first];
+                        continue;
+                    }
+                    let near = isa.store_f32(near).0;
+                    let waiting = |i: usize| Waiting::new(node.children[i], near[i]);
+                    let a = waiting(first);
+                    let second = hit.trailing_zeros() as usize;
+                    hit &= hit - 1;
+                    let b = waiting(second);
+                    let (mut nearest, other) = if b < a { (b, a) } else { (a, b) };
+                    let bottom = stack.len();
+                    stack.push(other);
+                    while hit != 0 {
+                        let next = waiting(hit.trailing_zeros() as usize);
+                        hit &= hit - 1;
+                        let later;
+                        (nearest, later) = if next < nearest {
+                            (next, nearest)
+                        } else {
+                            (nearest, next)
+                        };
+                        stack.push(later);
+                    }
+                    if !V::ANY && stack.len() > bottom + 1 {
+                        farthest_first(&mut stack[bottom..]);
+                    }
+                    current = nearest.child();
+                    continue;
+                }
+            } else {
+                let leaf = current.parts();
+                let ids = &self.slots[leaf.slots()];
+                stats.primitive_tests += leaf.count as u64;
+                let closest = visitor.visit_leaf(
+                    isa,
+                    &Leaf {
+                        class: leaf.class,
+                        first_block: leaf.first_block,
+                        blocks: leaf.count.div_ceil(BLOCK),
+                        ids,
+                    },
+                    t_max,
+                );
+                if closest < t_max {
+                    if closest == f64::NEG_INFINITY {
+                        return;
+                    }
+                    t_max = closest;
+                    far = cull.t_max(t_max);
+                    far_lanes = isa.splat_f32(far);
+                }
+            }
+            // A box that starts exactly at the closest hit is still visited: ids decide ties.
+            loop {
+                let Some(next) = stack.pop() else {
+                    return;
+                };
+                if next.near() <= far {
+                    current = next.child();
+                    break;
+                }
+            }
+        }
+    }
+}
+
+/// Sorts a few, the farthest first.
+#[inline(always)]
+fn farthest_first(list: &mut [Waiting]) {
+    for i in 1..list.len() {
+        let item = list[i];
+        let mut j = i;
+        while j > 0 && list[j - 1] < item {
+            list[j] = list[j - 1];
+            j -= 1;
+        }
+        list[j] = item;
+    }
+}

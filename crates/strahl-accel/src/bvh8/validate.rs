@@ -1,0 +1,64 @@
+use super::node::Child;
+use super::{Bvh8, NO_PRIMITIVE, Tree};
+use crate::boxes::Box32;
+use crate::bvh::validate::Places;
+use strahl_math::Aabb;
+
+impl Bvh8 {
+    /// Proves what the traversal relies on: indices in range, no circles, every box inside its parent's, every
+    /// primitive that is not empty in exactly one place and inside the box of its leaf.
+    ///
+    /// # Errors
+    /// The first thing found wrong, in words.
+    pub fn validate(&self, bounds: &[Aabb]) -> Result<(), String> {
+        let mut places = Places::new(bounds);
+        for id in self.unbounded.ids() {
+            places.note(*id)?;
+        }
+        if let Some(tree) = &self.tree {
+            tree.validate(bounds, &mut places)?;
+        }
+        places.finish()
+    }
+}
+
+impl Tree {
+    /// The part of the proof that is about the tree.
+    fn validate(&self, bounds: &[Aabb], places: &mut Places<'_>) -> Result<(), String> {
+        let whole = Box32::try_new(self.bounds.bounds()).ok_or("the tree has no bounds")?;
+        let mut waiting: Vec<(Child, Box32)> = vec![(self.root, whole)];
+        let mut visited = 0;
+        while let Some((child, own)) = waiting.pop() {
+            if child.is_leaf() {
+                let slots = child.parts().slots();
+                let ids = self.slots.get(slots.clone());
+                for id in ids.ok_or_else(|| format!("slots {slots:?} do not exist"))? {
+                    if *id == NO_PRIMITIVE {
+                        return Err(format!("an empty slot among {slots:?}"));
+                    }
+                    places.note(*id)?;
+                    let inside =
+                        Box32::try_new(&bounds[*id as usize]).is_some_and(|b| own.contains(&b));
+                    if !inside {
+                        return Err(format!("primitive {id} sticks out of its leaf"));
+                    }
+                }
+                continue;
+            }
+            visited += 1;
+            let number = child.node();
+            if visited > self.nodes.len() {
+                return Err(format!("node {number} is in a circle or has two parents"));
+            }
+            let node = self.nodes.get(number);
+            let node = node.ok_or_else(|| format!("node {number} does not exist"))?;
+            for (child, inner) in node.children() {
+                if !own.contains(&inner) {
+                    return Err(format!("a child of node {number} sticks out"));
+                }
+                waiting.push((child, inner));
+            }
+        }
+        Ok(())
+    }
+}

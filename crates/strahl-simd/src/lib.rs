@@ -1,0 +1,114 @@
+//! Vectors for the kernels: eight lanes of f32 for culling, four of f64 for what decides.
+//!
+//! A kernel is written once, generic over an [`Isa`], and entered through [`Isa::call`], which compiles it for the instructions of
+//! that level. [`Simd::detect`] finds out at run time what the processor has; [`dispatch!`] picks the instantiation.
+//!
+//! # The same bits everywhere
+//! The f64 vectors offer `+ - * / sqrt` and comparisons only, each rounded as IEEE 754 says, lane by lane: no fused operations, no
+//! approximate reciprocals. So their results are those of scalar code on every level. The f32 vectors have a fused
+//! multiply-subtract where the processor does; they are for conservative culling, whose error bounds cover both.
+//!
+//! # Safety
+//! This crate is the home of the workspace's `unsafe` code. A value of a level's type ([`Avx2`], [`Avx512`], ...) can only be got
+//! from the detection, so holding one proves that its instructions exist; that is what every `unsafe` block here relies on.
+
+mod level;
+mod portable;
+#[cfg(target_arch = "x86_64")]
+mod x86;
+
+pub use level::{Level, Simd, UnknownLevel};
+pub use portable::Portable;
+#[cfg(target_arch = "x86_64")]
+pub use x86::{Avx2, Avx512, Sse4};
+
+/// Eight f32 next to each other, as kernels load them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C, align(32))]
+pub struct Lanes8(pub [f32; 8]);
+
+/// The vectors of one level of instructions. Values of implementing types are proofs that the instructions exist.
+///
+/// Masks have one bit per lane, the first lane in bit 0.
+pub trait Isa: Copy + Send + Sync + 'static {
+    /// Eight lanes of f32.
+    type F32x8: Copy;
+    /// Four lanes of f64.
+    type F64x4: Copy;
+
+    /// Which level this is.
+    const LEVEL: Level;
+
+    /// Runs a kernel compiled for this level: everything `#[inline(always)]` in it uses its instructions.
+    fn call<R>(self, kernel: impl FnOnce() -> R) -> R;
+
+    /// The same number in all lanes.
+    fn splat_f32(self, x: f32) -> Self::F32x8;
+    /// Eight numbers from memory.
+    fn load_f32(self, lanes: &Lanes8) -> Self::F32x8;
+    /// To an array.
+    fn store_f32(self, v: Self::F32x8) -> Lanes8;
+    /// `a b - c`, rounded once or twice: for culling only.
+    fn mul_sub(self, a: Self::F32x8, b: Self::F32x8, c: Self::F32x8) -> Self::F32x8;
+    /// The smaller ones; neither may be NaN.
+    fn min_f32(self, a: Self::F32x8, b: Self::F32x8) -> Self::F32x8;
+    /// The larger ones; neither may be NaN.
+    fn max_f32(self, a: Self::F32x8, b: Self::F32x8) -> Self::F32x8;
+    /// Where `a <= b`.
+    fn le_f32(self, a: Self::F32x8, b: Self::F32x8) -> u32;
+
+    /// The same number in all lanes.
+    fn splat(self, x: f64) -> Self::F64x4;
+    /// Four numbers from memory.
+    fn load(self, lanes: &[f64; 4]) -> Self::F64x4;
+    /// Four f32 from memory, converted exactly.
+    fn load_wide(self, lanes: &[f32; 4]) -> Self::F64x4;
+    /// To an array.
+    fn store(self, v: Self::F64x4) -> [f64; 4];
+    /// `a + b`.
+    fn add(self, a: Self::F64x4, b: Self::F64x4) -> Self::F64x4;
+    /// `a - b`.
+    fn sub(self, a: Self::F64x4, b: Self::F64x4) -> Self::F64x4;
+    /// `a b`.
+    fn mul(self, a: Self::F64x4, b: Self::F64x4) -> Self::F64x4;
+    /// `a / b`.
+    fn div(self, a: Self::F64x4, b: Self::F64x4) -> Self::F64x4;
+    /// The square root.
+    fn sqrt(self, a: Self::F64x4) -> Self::F64x4;
+    /// Where `a <= b`; false for NaN.
+    fn le(self, a: Self::F64x4, b: Self::F64x4) -> u32;
+    /// Where `a < b`; false for NaN.
+    fn lt(self, a: Self::F64x4, b: Self::F64x4) -> u32;
+}
+
+/// Runs an expression with the proof of a level, inside of [`Isa::call`].
+///
+/// `dispatch!(simd, isa => expression)` takes a [`Simd`] and binds `isa` to the [`Isa`] in it.
+#[cfg(target_arch = "x86_64")]
+#[macro_export]
+macro_rules! dispatch {
+    ($simd:expr, $isa:ident => $body:expr) => {
+        match $simd {
+            $crate::Simd::Portable($isa) => $crate::Isa::call($isa, || $body),
+            $crate::Simd::Sse4($isa) => $crate::Isa::call($isa, || $body),
+            $crate::Simd::Avx2($isa) => $crate::Isa::call($isa, || $body),
+            $crate::Simd::Avx512($isa) => $crate::Isa::call($isa, || $body),
+        }
+    };
+}
+
+/// Runs an expression with the proof of a level, inside of [`Isa::call`].
+///
+/// `dispatch!(simd, isa => expression)` takes a [`Simd`] and binds `isa` to the [`Isa`] in it.
+#[cfg(not(target_arch = "x86_64"))]
+#[macro_export]
+macro_rules! dispatch {
+    ($simd:expr, $isa:ident => $body:expr) => {
+        match $simd {
+            $crate::Simd::Portable($isa) => $crate::Isa::call($isa, || $body),
+        }
+    };
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,118 @@
+//! Vectors as arrays: the reference of all other levels, and what the compiler makes of it where there are none.
+
+use crate::{Isa, Level};
+
+/// The instructions every processor of the target has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Portable;
+
+/// The operations of [`Isa`] lane by lane, for a level whose vectors are arrays.
+macro_rules! lane_by_lane {
+    () => {
+        type F32x8 = [f32; 8];
+        type F64x4 = [f64; 4];
+
+        #[inline(always)]
+        fn splat_f32(self, x: f32) -> [f32; 8] {
+            [x; 8]
+        }
+
+        #[inline(always)]
+        fn load_f32(self, lanes: &$crate::Lanes8) -> [f32; 8] {
+            lanes.0
+        }
+
+        #[inline(always)]
+        fn store_f32(self, v: [f32; 8]) -> $crate::Lanes8 {
+            $crate::Lanes8(v)
+        }
+
+        #[inline(always)]
+        fn mul_sub(self, a: [f32; 8], b: [f32; 8], c: [f32; 8]) -> [f32; 8] {
+            std::array::from_fn(|i| a[i] * b[i] - c[i])
+        }
+
+        #[inline(always)]
+        fn min_f32(self, a: [f32; 8], b: [f32; 8]) -> [f32; 8] {
+            std::array::from_fn(|i| if a[i] < b[i] { a[i] } else { b[i] })
+        }
+
+        #[inline(always)]
+        fn max_f32(self, a: [f32; 8], b: [f32; 8]) -> [f32; 8] {
+            std::array::from_fn(|i| if a[i] > b[i] { a[i] } else { b[i] })
+        }
+
+        #[inline(always)]
+        fn le_f32(self, a: [f32; 8], b: [f32; 8]) -> u32 {
+            (0..8).fold(0, |mask, i| mask | u32::from(a[i] <= b[i]) << i)
+        }
+
+        #[inline(always)]
+        fn splat(self, x: f64) -> [f64; 4] {
+            [x; 4]
+        }
+
+        #[inline(always)]
+        fn load(self, lanes: &[f64; 4]) -> [f64; 4] {
+            *lanes
+        }
+
+        #[inline(always)]
+        fn load_wide(self, lanes: &[f32; 4]) -> [f64; 4] {
+            lanes.map(f64::from)
+        }
+
+        #[inline(always)]
+        fn store(self, v: [f64; 4]) -> [f64; 4] {
+            v
+        }
+
+        #[inline(always)]
+        fn add(self, a: [f64; 4], b: [f64; 4]) -> [f64; 4] {
+            std::array::from_fn(|i| a[i] + b[i])
+        }
+
+        #[inline(always)]
+        fn sub(self, a: [f64; 4], b: [f64; 4]) -> [f64; 4] {
+            std::array::from_fn(|i| a[i] - b[i])
+        }
+
+        #[inline(always)]
+        fn mul(self, a: [f64; 4], b: [f64; 4]) -> [f64; 4] {
+            std::array::from_fn(|i| a[i] * b[i])
+        }
+
+        #[inline(always)]
+        fn div(self, a: [f64; 4], b: [f64; 4]) -> [f64; 4] {
+            std::array::from_fn(|i| a[i] / b[i])
+        }
+
+        #[inline(always)]
+        fn sqrt(self, a: [f64; 4]) -> [f64; 4] {
+            a.map(f64::sqrt)
+        }
+
+        #[inline(always)]
+        fn le(self, a: [f64; 4], b: [f64; 4]) -> u32 {
+            (0..4).fold(0, |mask, i| mask | u32::from(a[i] <= b[i]) << i)
+        }
+
+        #[inline(always)]
+        fn lt(self, a: [f64; 4], b: [f64; 4]) -> u32 {
+            (0..4).fold(0, |mask, i| mask | u32::from(a[i] < b[i]) << i)
+        }
+    };
+}
+#[cfg(target_arch = "x86_64")]
+pub(crate) use lane_by_lane;
+
+impl Isa for Portable {
+    const LEVEL: Level = Level::Portable;
+
+    #[inline(always)]
+    fn call<R>(self, kernel: impl FnOnce() -> R) -> R {
+        kernel()
+    }
+
+    lane_by_lane!();
+}

@@ -1,0 +1,72 @@
+use super::*;
+
+const A: [f64; 4] = [1.5, -0.0, 1e300, f64::NAN];
+const B: [f64; 4] = [0.1, 3.0, 1e300, 2.0];
+
+/// Every operation on numbers that would show a wrong rounding or order.
+fn everything<I: Isa>(isa: I) -> Vec<u64> {
+    let (a, b) = (isa.load(&A), isa.load(&B));
+    let values = [
+        isa.add(a, b),
+        isa.sub(a, b),
+        isa.mul(a, b),
+        isa.div(a, b),
+        isa.sqrt(b),
+        isa.splat(0.7),
+        isa.load_wide(&[0.1, -2.5, 1e-42, f32::INFINITY]),
+    ];
+    let mut bits: Vec<u64> = values
+        .into_iter()
+        .flat_map(|v| isa.store(v))
+        .map(|x| if x.is_nan() { 0 } else { x.to_bits() })
+        .collect();
+    bits.extend([isa.le(a, b), isa.le(b, a), isa.lt(a, b), isa.lt(b, a)].map(u64::from));
+    let p = isa.load_f32(&Lanes8([
+        1.0,
+        -2.0,
+        3.0,
+        -4.0,
+        0.5,
+        0.25,
+        1e10,
+        f32::INFINITY,
+    ]));
+    let q = isa.splat_f32(0.5);
+    // Exact products, so that fused and separate rounding agree.
+    let culled = isa.mul_sub(p, q, isa.splat_f32(0.25));
+    for v in [culled, isa.min_f32(p, q), isa.max_f32(p, q)] {
+        bits.extend(isa.store_f32(v).0.map(|x| u64::from(x.to_bits())));
+    }
+    bits.extend([isa.le_f32(p, q), isa.le_f32(q, p)].map(u64::from));
+    bits
+}
+
+#[test]
+fn every_level_computes_the_same() {
+    let reference = everything(Portable);
+    assert_eq!(reference[0], 1.6f64.to_bits());
+    for simd in Simd::available() {
+        let found = dispatch!(simd, isa => everything(isa));
+        assert_eq!(found, reference, "{}", simd.level());
+    }
+}
+
+#[test]
+fn levels_have_names() {
+    for level in Level::ALL {
+        assert_eq!(level.name().parse(), Ok(*level));
+    }
+    let unknown = "mmx"
+        .parse::<Level>()
+        .expect_err("no such level")
+        .to_string();
+    assert_eq!(
+        unknown,
+        "unknown SIMD level `mmx`; there are: scalar, sse4, avx2, avx512"
+    );
+    assert!(Simd::of(Level::Portable).is_some());
+    assert_eq!(
+        Simd::detect().level(),
+        Simd::available().last().expect("one").level()
+    );
+}

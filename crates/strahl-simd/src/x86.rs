@@ -1,0 +1,244 @@
+//! The levels of x86-64.
+#![expect(
+    unsafe_code,
+    reason = "vector instructions: the home of the workspace's unsafe code, see the crate's documentation"
+)]
+
+use crate::portable::lane_by_lane;
+use crate::{Isa, Lanes8, Level};
+use std::arch::x86_64::*;
+
+/// Proof of SSE 4.1. Its vectors are arrays that the compiler splits into two registers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Sse4(());
+
+/// Proof of AVX2 and FMA.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Avx2(());
+
+/// Proof of AVX-512 F, VL, DQ, BW and everything of [`Avx2`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Avx512(());
+
+impl Sse4 {
+    /// The proof, if this processor has it.
+    pub fn detect() -> Option<Self> {
+        is_x86_feature_detected!("sse4.1").then_some(Self(()))
+    }
+}
+
+impl Avx2 {
+    /// The proof, if this processor has it.
+    pub fn detect() -> Option<Self> {
+        let found = is_x86_feature_detected!("avx2")
+            && is_x86_feature_detected!("fma")
+            && is_x86_feature_detected!("bmi1")
+            && is_x86_feature_detected!("bmi2")
+            && is_x86_feature_detected!("lzcnt")
+            && is_x86_feature_detected!("popcnt");
+        found.then_some(Self(()))
+    }
+}
+
+impl Avx512 {
+    /// The proof, if this processor has it.
+    pub fn detect() -> Option<Self> {
+        let found = Avx2::detect().is_some()
+            && is_x86_feature_detected!("avx512f")
+            && is_x86_feature_detected!("avx512vl")
+            && is_x86_feature_detected!("avx512dq")
+            && is_x86_feature_detected!("avx512bw");
+        found.then_some(Self(()))
+    }
+}
+
+impl Isa for Sse4 {
+    const LEVEL: Level = Level::Sse4;
+
+    #[inline(always)]
+    fn call<R>(self, kernel: impl FnOnce() -> R) -> R {
+        #[target_feature(enable = "sse4.1")]
+        #[inline]
+        fn compiled<R>(kernel: impl FnOnce() -> R) -> R {
+            kernel()
+        }
+        // SAFETY: `self` proves the feature.
+        unsafe { compiled(kernel) }
+    }
+
+    lane_by_lane!();
+}
+
+/// What AVX2 and AVX-512 have in common: everything but comparisons.
+macro_rules! avx {
+    () => {
+        type F32x8 = __m256;
+        type F64x4 = __m256d;
+
+        #[inline(always)]
+        fn splat_f32(self, x: f32) -> __m256 {
+            // SAFETY: `self` proves AVX.
+            unsafe { _mm256_set1_ps(x) }
+        }
+
+        #[inline(always)]
+        fn load_f32(self, lanes: &Lanes8) -> __m256 {
+            // SAFETY: `self` proves AVX; the eight floats are there, aligned to 32 bytes by their type.
+            unsafe { _mm256_load_ps(lanes.0.as_ptr()) }
+        }
+
+        #[inline(always)]
+        fn store_f32(self, v: __m256) -> Lanes8 {
+            let mut lanes = Lanes8([0.0; 8]);
+            // SAFETY: `self` proves AVX; there is room for eight floats, aligned to 32 bytes by their type.
+            unsafe { _mm256_store_ps(lanes.0.as_mut_ptr(), v) };
+            lanes
+        }
+
+        #[inline(always)]
+        fn mul_sub(self, a: __m256, b: __m256, c: __m256) -> __m256 {
+            // SAFETY: `self` proves FMA.
+            unsafe { _mm256_fmsub_ps(a, b, c) }
+        }
+
+        #[inline(always)]
+        fn min_f32(self, a: __m256, b: __m256) -> __m256 {
+            // SAFETY: `self` proves AVX.
+            unsafe { _mm256_min_ps(a, b) }
+        }
+
+        #[inline(always)]
+        fn max_f32(self, a: __m256, b: __m256) -> __m256 {
+            // SAFETY: `self` proves AVX.
+            unsafe { _mm256_max_ps(a, b) }
+        }
+
+        #[inline(always)]
+        fn splat(self, x: f64) -> __m256d {
+            // SAFETY: `self` proves AVX.
+            unsafe { _mm256_set1_pd(x) }
+        }
+
+        #[inline(always)]
+        fn load(self, lanes: &[f64; 4]) -> __m256d {
+            // SAFETY: `self` proves AVX; the four numbers are there, and the load needs no alignment.
+            unsafe { _mm256_loadu_pd(lanes.as_ptr()) }
+        }
+
+        #[inline(always)]
+        fn load_wide(self, lanes: &[f32; 4]) -> __m256d {
+            // SAFETY: `self` proves AVX; the four numbers are there, and the load needs no alignment.
+            unsafe { _mm256_cvtps_pd(_mm_loadu_ps(lanes.as_ptr())) }
+        }
+
+        #[inline(always)]
+        fn store(self, v: __m256d) -> [f64; 4] {
+            let mut lanes = [0.0; 4];
+            // SAFETY: `self` proves AVX; there is room for four numbers, and the store needs no alignment.
+            unsafe { _mm256_storeu_pd(lanes.as_mut_ptr(), v) };
+            lanes
+        }
+
+        #[inline(always)]
+        fn add(self, a: __m256d, b: __m256d) -> __m256d {
+            // SAFETY: `self` proves AVX.
+            unsafe { _mm256_add_pd(a, b) }
+        }
+
+        #[inline(always)]
+        fn sub(self, a: __m256d, b: __m256d) -> __m256d {
+            // SAFETY: `self` proves AVX.
+            unsafe { _mm256_sub_pd(a, b) }
+        }
+
+        #[inline(always)]
+        fn mul(self, a: __m256d, b: __m256d) -> __m256d {
+            // SAFETY: `self` proves AVX.
+            unsafe { _mm256_mul_pd(a, b) }
+        }
+
+        #[inline(always)]
+        fn div(self, a: __m256d, b: __m256d) -> __m256d {
+            // SAFETY: `self` proves AVX.
+            unsafe { _mm256_div_pd(a, b) }
+        }
+
+        #[inline(always)]
+        fn sqrt(self, a: __m256d) -> __m256d {
+            // SAFETY: `self` proves AVX.
+            unsafe { _mm256_sqrt_pd(a) }
+        }
+    };
+}
+
+impl Isa for Avx2 {
+    const LEVEL: Level = Level::Avx2;
+
+    #[inline(always)]
+    fn call<R>(self, kernel: impl FnOnce() -> R) -> R {
+        #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
+        #[inline]
+        fn compiled<R>(kernel: impl FnOnce() -> R) -> R {
+            kernel()
+        }
+        // SAFETY: `self` proves the features.
+        unsafe { compiled(kernel) }
+    }
+
+    avx!();
+
+    #[inline(always)]
+    fn le_f32(self, a: __m256, b: __m256) -> u32 {
+        // SAFETY: `self` proves AVX.
+        unsafe { _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(a, b)) as u32 }
+    }
+
+    #[inline(always)]
+    fn le(self, a: __m256d, b: __m256d) -> u32 {
+        // SAFETY: `self` proves AVX.
+        unsafe { _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_LE_OQ>(a, b)) as u32 }
+    }
+
+    #[inline(always)]
+    fn lt(self, a: __m256d, b: __m256d) -> u32 {
+        // SAFETY: `self` proves AVX.
+        unsafe { _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_LT_OQ>(a, b)) as u32 }
+    }
+}
+
+impl Isa for Avx512 {
+    const LEVEL: Level = Level::Avx512;
+
+    #[inline(always)]
+    fn call<R>(self, kernel: impl FnOnce() -> R) -> R {
+        #[target_feature(
+            enable = "avx512f,avx512vl,avx512dq,avx512bw,avx2,fma,bmi1,bmi2,lzcnt,popcnt"
+        )]
+        #[inline]
+        fn compiled<R>(kernel: impl FnOnce() -> R) -> R {
+            kernel()
+        }
+        // SAFETY: `self` proves the features.
+        unsafe { compiled(kernel) }
+    }
+
+    avx!();
+
+    #[inline(always)]
+    fn le_f32(self, a: __m256, b: __m256) -> u32 {
+        // SAFETY: `self` proves AVX-512 F and VL.
+        unsafe { u32::from(_mm256_cmp_ps_mask::<_CMP_LE_OQ>(a, b)) }
+    }
+
+    #[inline(always)]
+    fn le(self, a: __m256d, b: __m256d) -> u32 {
+        // SAFETY: `self` proves AVX-512 F and VL.
+        unsafe { u32::from(_mm256_cmp_pd_mask::<_CMP_LE_OQ>(a, b)) }
+    }
+
+    #[inline(always)]
+    fn lt(self, a: __m256d, b: __m256d) -> u32 {
+        // SAFETY: `self` proves AVX-512 F and VL.
+        unsafe { u32::from(_mm256_cmp_pd_mask::<_CMP_LT_OQ>(a, b)) }
+    }
+}
