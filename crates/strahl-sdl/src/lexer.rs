@@ -1,8 +1,14 @@
-//! Bytes to tokens, once per file.
+//! Bytes to tokens, a chunk of the file at a time.
 //!
 //! Besides cutting the text the lexer links the directives of each block (`#if` to `#else` to `#end`), so that skipping a
 //! branch or jumping back to the head of a loop costs nothing.
+//!
+//! A chunk of a long file ends where no block, parenthesis or bracket is open, and only before a word that opens an object or
+//! between two vectors of a list: there nobody looks at the next token without [`Parser::peek`](crate::Parser::peek), which goes on
+//! with the next chunk. So nothing ever jumps from one chunk into another, and the tokens of an exported scene of any size
+//! stay in the processor's cache.
 
+use crate::keywords::{Word, WordKind};
 use crate::symbol::Symbols;
 use crate::token::{Directive, Kind, Token};
 use std::sync::Arc;
@@ -18,29 +24,43 @@ pub(crate) struct LexProblem {
     pub(crate) hint: &'static str,
 }
 
-/// The tokens of a file; the last one is [`Kind::End`].
+/// The tokens of a chunk of a file; the last one is [`Kind::End`].
 #[derive(Debug, Default)]
 pub(crate) struct Lexed {
     pub(crate) tokens: Vec<Token>,
     pub(crate) strings: Vec<Arc<str>>,
     pub(crate) problems: Vec<LexProblem>,
+    /// Byte offset at which the next chunk begins; `None` at the end of the file.
+    pub(crate) rest: Option<usize>,
 }
 
-/// Cuts a text into tokens. The text must be shorter than 4 GiB (the source loader sees to it).
-pub(crate) fn lex(bytes: &[u8], symbols: &mut Symbols) -> Lexed {
+/// Cuts a text into tokens, from a byte offset up to the first good place behind `wanted` tokens. The text must be shorter
+/// than 4 GiB (the source loader sees to it).
+///
+/// The vectors of `used` are used again.
+pub(crate) fn lex(
+    bytes: &[u8],
+    begin: usize,
+    wanted: usize,
+    symbols: &mut Symbols,
+    used: Lexed,
+) -> Lexed {
+    let mut out = used;
+    out.tokens.clear();
+    out.strings.clear();
+    out.problems.clear();
+    out.rest = None;
     let mut lexer = Lexer {
         bytes,
-        position: 0,
+        position: begin,
+        wanted,
+        brackets: 0,
         symbols,
         open: vec![],
-        out: Lexed {
-            // Measured on exported scenes: three to five bytes per token. What is not used is never touched.
-            tokens: Vec::with_capacity(bytes.len() / 3 + 16),
-            ..Lexed::default()
-        },
+        out,
     };
     // A byte order mark is no character of the scene.
-    if bytes.starts_with(b"\xef\xbb\xbf") {
+    if begin == 0 && bytes.starts_with(b"\xef\xbb\xbf") {
         lexer.position = 3;
     }
     lexer.run();
@@ -75,19 +95,59 @@ pub(crate) const UNCLOSED: &str = "every `#if`, `#ifdef`, `#ifndef`, `#while`, `
 struct Lexer<'a> {
     bytes: &'a [u8],
     position: usize,
+    /// How many tokens the chunk should have.
+    wanted: usize,
+    /// How many parentheses and brackets are open.
+    brackets: u32,
     symbols: &'a mut Symbols,
     /// Indices of the last divider of each open block.
     open: Vec<usize>,
     out: Lexed,
 }
 
-fn is_blank(b: u8) -> bool {
+const fn is_blank(b: u8) -> bool {
     matches!(b, b' ' | b'\t' | b'\r' | b'\n' | 0x0b | 0x0c | 0x1a | 0)
 }
 
-fn is_name_start(b: u8) -> bool {
+const fn is_name_start(b: u8) -> bool {
     b.is_ascii_alphabetic() || b == b'_'
 }
+
+/// What a token can be that begins with a byte.
+#[derive(Clone, Copy)]
+enum First {
+    Blank,
+    Digit,
+    Name,
+    Dot,
+    Slash,
+    Quote,
+    Hash,
+    Less,
+    Other,
+}
+
+/// By the first byte; looked up once per token.
+const FIRST: [First; 256] = {
+    let mut table = [First::Other; 256];
+    let mut index = 0;
+    while index < 256 {
+        let b = index as u8;
+        table[index] = match b {
+            b if is_blank(b) => First::Blank,
+            b'0'..=b'9' => First::Digit,
+            b if is_name_start(b) => First::Name,
+            b'.' => First::Dot,
+            b'/' => First::Slash,
+            b'"' => First::Quote,
+            b'#' => First::Hash,
+            b'<' => First::Less,
+            _ => First::Other,
+        };
+        index += 1;
+    }
+    table
+};
 
 /// Which bytes go on with a name.
 const NAME: [bool; 256] = {
@@ -131,21 +191,32 @@ impl<'a> Lexer<'a> {
     fn run(&mut self) {
         while let Some(&byte) = self.bytes.get(self.position) {
             let start = self.position;
-            match byte {
-                b if is_blank(b) => self.position += 1,
-                b'0'..=b'9' => self.number(),
-                b if is_name_start(b) => {
+            match FIRST[byte as usize] {
+                First::Blank => self.position += 1,
+                First::Digit => self.number(),
+                First::Name => {
                     let name = self.name();
                     let symbol = self.symbols.intern(name);
-                    let known = (symbol.index()) < crate::keywords::Word::ALL.len();
+                    let known = (symbol.index()) < Word::ALL.len();
                     let kind = if known { Kind::Word } else { Kind::Name };
+                    if self.out.tokens.len() >= self.wanted
+                        && kind == Kind::Word
+                        && self.ends_before_object(Word::from_number(u64::from(symbol.0)))
+                    {
+                        return self.end_chunk(start);
+                    }
                     self.push(kind, start, u64::from(symbol.0));
                 }
-                b'.' if self.at(1).is_ascii_digit() => self.number(),
-                b'/' if self.at(1) == b'/' => self.line_comment(),
-                b'/' if self.at(1) == b'*' => self.block_comment(),
-                b'"' => self.string(),
-                b'#' => self.directive(),
+                First::Less
+                    if self.out.tokens.len() >= self.wanted && self.ends_before_vector() =>
+                {
+                    return self.end_chunk(start);
+                }
+                First::Dot if self.at(1).is_ascii_digit() => self.number(),
+                First::Slash if self.at(1) == b'/' => self.line_comment(),
+                First::Slash if self.at(1) == b'*' => self.block_comment(),
+                First::Quote => self.string(),
+                First::Hash => self.directive(),
                 _ => self.punctuation(byte),
             }
         }
@@ -156,6 +227,28 @@ impl<'a> Lexer<'a> {
             let message = format!("`#{word}` has no `#end`");
             self.problem(token.start as usize, message, UNCLOSED);
         }
+    }
+
+    /// Whether the chunk may end before a word: behind a complete thing, if the word opens an object.
+    fn ends_before_object(&self, word: Option<Word>) -> bool {
+        let closed = self.out.tokens.last().map(|t| t.kind) == Some(Kind::RightBrace);
+        closed && self.is_between() && word.is_some_and(|w| w.kind() == WordKind::Object)
+    }
+
+    /// Whether the chunk may end before a `<`: between the vectors of a list.
+    fn ends_before_vector(&self) -> bool {
+        let kinds = |&[a, b]: &[Token; 2]| a.kind == Kind::Greater && b.kind == Kind::Comma;
+        self.is_between() && self.out.tokens.last_chunk().is_some_and(kinds)
+    }
+
+    fn is_between(&self) -> bool {
+        self.brackets == 0 && self.open.is_empty()
+    }
+
+    /// Ends the chunk before the token at `start`.
+    fn end_chunk(&mut self, start: usize) {
+        self.push(Kind::End, start, 0);
+        self.out.rest = Some(start);
     }
 
     fn punctuation(&mut self, byte: u8) {
@@ -189,6 +282,13 @@ impl<'a> Lexer<'a> {
             b'|' => (Kind::Bar, 1),
             _ => (Kind::Unknown, 1),
         };
+        match kind {
+            Kind::LeftParen | Kind::LeftBracket => self.brackets = self.brackets.saturating_add(1),
+            Kind::RightParen | Kind::RightBracket => {
+                self.brackets = self.brackets.saturating_sub(1);
+            }
+            _ => {}
+        }
         self.position += length;
         self.push(kind, start, u64::from(byte));
     }
@@ -343,30 +443,80 @@ fn short_decimal(rest: &[u8]) -> Option<(f64, usize)> {
         1e17, 1e18, 1e19, 1e20, 1e21, 1e22,
     ];
     let mut mantissa = 0u64;
-    let mut length = 0;
-    let mut point = None;
-    while let Some(&byte) = rest.get(length) {
-        if byte.is_ascii_digit() {
-            if length > 18 {
-                return None;
-            }
-            mantissa = mantissa * 10 + u64::from(byte - b'0');
-        } else if byte == b'.' && point.is_none() {
-            point = Some(length);
-        } else if is_name_start(byte) {
-            // An exponent, or a component of a number.
-            return None;
-        } else {
-            break;
-        }
-        length += 1;
+    let whole = digits(rest, &mut mantissa)?;
+    let (mut length, mut fraction) = (whole, 0);
+    if rest.get(length) == Some(&b'.') {
+        fraction = digits(rest.get(length + 1..)?, &mut mantissa)?;
+        length += 1 + fraction;
     }
-    if mantissa > 1 << 53 {
+    // A name behind it is an exponent, or a component of a number.
+    let joined = rest.get(length).is_some_and(|b| is_name_start(*b));
+    // So many digits have not overflown the mantissa.
+    if joined || whole + fraction > 19 || mantissa > 1 << 53 {
         return None;
     }
-    let fraction = point.map_or(0, |at| length - at - 1);
     let power = POWERS.get(fraction)?;
     Some((mantissa as f64 / power, length))
+}
+
+/// Reads decimal digits on to a mantissa, modulo 2^64, and gives how many there are; `None` if they are too many.
+#[inline]
+fn digits(rest: &[u8], mantissa: &mut u64) -> Option<usize> {
+    const POWERS: [u64; 9] = [
+        1,
+        10,
+        100,
+        1000,
+        10_000,
+        100_000,
+        1_000_000,
+        10_000_000,
+        100_000_000,
+    ];
+    let mut count = 0;
+    while let Some((window, _)) = rest.get(count..)?.split_first_chunk() {
+        let (value, more) = leading_digits(u64::from_le_bytes(*window));
+        *mantissa = mantissa
+            .wrapping_mul(*POWERS.get(more)?)
+            .wrapping_add(value);
+        count += more;
+        if more < 8 {
+            return Some(count);
+        }
+        if count > 16 {
+            return None;
+        }
+    }
+    // Near the end of the text.
+    for byte in rest.get(count..)?.iter().take_while(|b| b.is_ascii_digit()) {
+        *mantissa = mantissa
+            .wrapping_mul(10)
+            .wrapping_add(u64::from(byte - b'0'));
+        count += 1;
+    }
+    Some(count)
+}
+
+/// The value of the digits at the front of eight bytes, and how many they are, all bytes at once.
+#[inline]
+fn leading_digits(window: u64) -> (u64, usize) {
+    const ZEROS: u64 = 0x3030_3030_3030_3030;
+    // The upper bit of each byte that is no digit is set: those above `9` by the sum, those below `0` by the difference. What
+    // is carried or borrowed changes only bytes behind the first of them.
+    let above = window.wrapping_add(0x4646_4646_4646_4646);
+    let below = window.wrapping_sub(ZEROS);
+    let count = (((above | below) & 0x8080_8080_8080_8080).trailing_zeros() / 8) as usize;
+    if count == 0 {
+        return (0, 0);
+    }
+    // Zeros take the place of the digits that are missing in front.
+    let d = below << (64 - 8 * count);
+    // Pairs of digits, then all: Lemire, "Quickly parsing eight digits", 2018.
+    let pairs = d.wrapping_mul(10).wrapping_add(d >> 8);
+    const MASK: u64 = 0x0000_00ff_0000_00ff;
+    let first = (pairs & MASK).wrapping_mul(100 + (1_000_000 << 32));
+    let second = (pairs >> 16 & MASK).wrapping_mul(1 + (10_000 << 32));
+    (first.wrapping_add(second) >> 32, count)
 }
 
 /// UTF-8 if it is, else Latin-1.
@@ -419,14 +569,18 @@ fn unescape(text: &str) -> String {
 mod tests {
     use super::*;
 
+    fn whole(bytes: &[u8]) -> Lexed {
+        lex(bytes, 0, usize::MAX, &mut Symbols::new(), Lexed::default())
+    }
+
     fn kinds(text: &str) -> Vec<Kind> {
-        let lexed = lex(text.as_bytes(), &mut Symbols::new());
+        let lexed = whole(text.as_bytes());
         assert_eq!(lexed.problems, []);
         lexed.tokens.iter().map(|t| t.kind).collect()
     }
 
     fn numbers(text: &str) -> Vec<f64> {
-        let lexed = lex(text.as_bytes(), &mut Symbols::new());
+        let lexed = whole(text.as_bytes());
         let numbers = lexed.tokens.iter().filter(|t| t.kind == Kind::Number);
         numbers.map(|t| t.number()).collect()
     }
@@ -488,16 +642,16 @@ mod tests {
             kinds("1 /* a /* b */ // c */ 2 // d \n+"),
             [Kind::Number, Kind::Number, Kind::Plus, Kind::End]
         );
-        let lexed = lex(br#""/* \"quoted\" \u00e9\n""#, &mut Symbols::new());
+        let lexed = whole(br#""/* \"quoted\" \u00e9\n""#);
         assert_eq!(lexed.strings, [Arc::from("/* \"quoted\" \u{e9}\n")]);
-        let latin = lex(b"\"caf\xe9\"", &mut Symbols::new());
+        let latin = whole(b"\"caf\xe9\"");
         assert_eq!(latin.strings, [Arc::from("caf\u{e9}")]);
     }
 
     #[test]
     fn unfinished_text_is_reported_where_it_starts() {
         for (text, start) in [("1 /* /* */", 2), ("12 \"abc", 3), ("\"a\\", 0)] {
-            let lexed = lex(text.as_bytes(), &mut Symbols::new());
+            let lexed = whole(text.as_bytes());
             assert_eq!(lexed.problems.len(), 1, "{text}");
             assert_eq!(lexed.problems[0].start, start);
             assert_eq!(lexed.tokens.last().map(|t| t.kind), Some(Kind::End));
@@ -508,7 +662,7 @@ mod tests {
     fn blocks_are_linked() {
         let text =
             "#if(1) #while(0) #end #else # switch(1) #case(1) #break #end #end #end #macro A()";
-        let lexed = lex(text.as_bytes(), &mut Symbols::new());
+        let lexed = whole(text.as_bytes());
         let directives: Vec<&Token> = lexed
             .tokens
             .iter()

@@ -74,31 +74,6 @@ pub struct Parsed {
 ///
 /// Never panics and always ends, whatever the text: [`Options::limits`](Options) bound what it may use.
 pub fn parse(source: Source, options: &Options, host: &mut dyn Host) -> Parsed {
-    // Nested braces and parentheses recurse; 64 KiB for each allowed level are plenty.
-    let stack = options
-        .limits
-        .nesting
-        .saturating_mul(64 << 10)
-        .clamp(4 << 20, 1 << 30);
-    std::thread::scope(|scope| {
-        let job = std::thread::Builder::new()
-            .name("sdl".to_owned())
-            .stack_size(stack)
-            .spawn_scoped(scope, || parse_here(source, options, host));
-        match job.map(std::thread::ScopedJoinHandle::join) {
-            Ok(Ok(parsed)) => parsed,
-            Ok(Err(panic)) => std::panic::resume_unwind(panic),
-            Err(error) => Parsed {
-                scene: None,
-                diagnostics: vec![Diagnostic::error(format!(
-                    "no thread for parsing could be started: {error}"
-                ))],
-            },
-        }
-    })
-}
-
-fn parse_here(source: Source, options: &Options, host: &mut dyn Host) -> Parsed {
     if source.bytes.len() >= u32::MAX as usize {
         let message = format!("`{}` is too large: a file may have 4 GiB", source.name);
         return Parsed {

@@ -1,9 +1,10 @@
 //! Files: who reads and writes them, and what is kept of those read.
 
-use crate::lexer::{self, LexProblem};
+use crate::lexer::{self, Lexed};
 use crate::symbol::Symbols;
 use crate::token::Token;
 use std::io::Write;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, OnceLock};
 use strahl_scene::{FileId, Span};
 
@@ -106,34 +107,28 @@ pub trait Host: Send {
     fn now(&mut self) -> f64;
 }
 
-/// A file with its tokens.
+/// The text of a file.
 #[derive(Debug)]
 pub(crate) struct SourceFile {
     pub(crate) id: FileId,
     pub(crate) name: String,
     pub(crate) bytes: Vec<u8>,
-    pub(crate) tokens: Vec<Token>,
-    pub(crate) strings: Vec<Arc<str>>,
+    /// Where the lines begin; made when first needed.
     lines: OnceLock<Vec<u32>>,
+    /// The place looked up last: byte offset above, number of line ends before it below.
+    last: AtomicU64,
 }
 
 impl SourceFile {
-    /// Cuts a text into tokens; `bytes` must be shorter than 4 GiB.
-    pub(crate) fn new(
-        id: FileId,
-        source: Source,
-        symbols: &mut Symbols,
-    ) -> (Self, Vec<LexProblem>) {
-        let lexed = lexer::lex(&source.bytes, symbols);
-        let file = Self {
+    /// `source` must be shorter than 4 GiB.
+    pub(crate) fn new(id: FileId, source: Source) -> Self {
+        Self {
             id,
             name: source.name,
             bytes: source.bytes,
-            tokens: lexed.tokens,
-            strings: lexed.strings,
             lines: OnceLock::new(),
-        };
-        (file, lexed.problems)
+            last: AtomicU64::new(0),
+        }
     }
 
     fn lines(&self) -> &[u32] {
@@ -145,25 +140,58 @@ impl SourceFile {
         })
     }
 
+    fn line_ends(&self, from: u32, to: u32) -> u32 {
+        let part = self.bytes.get(from as usize..to as usize).unwrap_or(&[]);
+        part.iter().filter(|b| **b == b'\n').count() as u32
+    }
+
+    /// How many lines end before a byte offset.
+    ///
+    /// Most places asked for are close to the one before, and counting from there needs no table of all lines, which takes
+    /// a pass over the file and a search that misses the cache at every step.
+    fn ends_before(&self, start: u32) -> u32 {
+        const NEAR: u32 = 4096;
+        const FAR: u32 = 1 << 20;
+        let last = self.last.load(Ordering::Relaxed);
+        let (at, ends) = ((last >> 32) as u32, last as u32);
+        let distance = at.abs_diff(start);
+        let close = distance <= NEAR || (distance <= FAR && self.lines.get().is_none());
+        let ends = if !close {
+            let lines = self.lines();
+            lines.partition_point(|s| *s <= start).saturating_sub(1) as u32
+        } else if at <= start {
+            ends + self.line_ends(at, start)
+        } else {
+            ends - self.line_ends(start, at)
+        };
+        let now = u64::from(start) << 32 | u64::from(ends);
+        self.last.store(now, Ordering::Relaxed);
+        ends
+    }
+
     /// The place of the token at a byte offset.
     pub(crate) fn span(&self, start: u32) -> Span {
         /// Beyond this many bytes into a line, columns are counted in bytes: exporters write whole scenes into one line.
         const COUNTED: usize = 4096;
-        let lines = self.lines();
-        let line = lines.partition_point(|s| *s <= start);
-        let begin = lines.get(line.saturating_sub(1)).copied().unwrap_or(0) as usize;
-        let before = self.bytes.get(begin..start as usize).unwrap_or(&[]);
-        let column = if before.len() > COUNTED {
-            before.len()
-        } else {
-            // Continuation bytes of UTF-8 are no characters of their own.
-            before.iter().filter(|b| **b & 0xc0 != 0x80).count()
+        // The place may be one behind the last byte.
+        let start = start.min(self.bytes.len() as u32);
+        let ends = self.ends_before(start);
+        let end = start as usize;
+        let window = end.saturating_sub(COUNTED);
+        let before = self.bytes.get(window..end).unwrap_or(&[]);
+        let column = match before.iter().rposition(|b| *b == b'\n') {
+            Some(at) => characters(before.get(at + 1..).unwrap_or(&[])),
+            None if window == 0 => characters(before),
+            None => {
+                let begin = self.lines().get(ends as usize).copied().unwrap_or(0);
+                end - begin as usize
+            }
         };
         Span {
             file: self.id,
-            line: line as u32,
+            line: ends + 1,
             column: column as u32 + 1,
-            length: lexer::token_length(&self.bytes, start as usize) as u32,
+            length: lexer::token_length(&self.bytes, end) as u32,
         }
     }
 
@@ -187,19 +215,167 @@ impl SourceFile {
     }
 }
 
+/// How many characters a text has.
+fn characters(text: &[u8]) -> usize {
+    // Continuation bytes of UTF-8 are no characters of their own.
+    text.iter().filter(|b| **b & 0xc0 != 0x80).count()
+}
+
+/// The tokens of a part of a file that nothing reaches into or out of; most files are one chunk.
+#[derive(Debug)]
+pub(crate) struct Chunk {
+    pub(crate) source: Arc<SourceFile>,
+    /// That of the source.
+    pub(crate) file: FileId,
+    pub(crate) lexed: Lexed,
+}
+
+impl Chunk {
+    /// How many tokens a chunk has at least, unless the file ends before: with 16 bytes each they fit into the second
+    /// level of caches.
+    pub(crate) const TOKENS: usize = 8192;
+
+    /// The first chunk of a file, of so many tokens.
+    pub(crate) fn first(source: Arc<SourceFile>, tokens: usize, symbols: &mut Symbols) -> Self {
+        // Measured on exported scenes: three to five bytes per token.
+        let capacity = (source.bytes.len() / 3 + 16).min(tokens.saturating_add(tokens / 8));
+        let space = Lexed {
+            tokens: Vec::with_capacity(capacity),
+            ..Lexed::default()
+        };
+        Self {
+            file: source.id,
+            lexed: lexer::lex(&source.bytes, 0, tokens, symbols, space),
+            source,
+        }
+    }
+
+    /// The chunk behind `this`, which takes its memory if nobody else needs it; `false` at the end of the file.
+    pub(crate) fn advance(this: &mut Arc<Self>, symbols: &mut Symbols) -> bool {
+        let Some(begin) = this.lexed.rest else {
+            return false;
+        };
+        let used = Arc::get_mut(this).map(|own| std::mem::take(&mut own.lexed));
+        let source = Arc::clone(&this.source);
+        let lexed = lexer::lex(
+            &source.bytes,
+            begin,
+            Self::TOKENS,
+            symbols,
+            used.unwrap_or_default(),
+        );
+        match Arc::get_mut(this) {
+            Some(own) => own.lexed = lexed,
+            None => {
+                let file = source.id;
+                *this = Arc::new(Self {
+                    source,
+                    file,
+                    lexed,
+                });
+            }
+        }
+        true
+    }
+
+    /// The token at an index.
+    #[inline]
+    pub(crate) fn token(&self, index: usize) -> Option<Token> {
+        self.lexed.tokens.get(index).copied()
+    }
+
+    /// The tokens from an index on.
+    #[inline]
+    pub(crate) fn tokens_from(&self, index: usize) -> &[Token] {
+        self.lexed.tokens.get(index..).unwrap_or(&[])
+    }
+
+    /// Index of the last token, [`Kind::End`](crate::Kind::End).
+    pub(crate) fn end(&self) -> usize {
+        self.lexed.tokens.len().saturating_sub(1)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::token::Kind;
 
     #[test]
     fn places_are_lines_and_characters() {
         let text = "sphere\n  \u{e9}\u{e9} box{\r\n";
         let source = Source::new("a.pov", text);
-        let (file, _) = SourceFile::new(FileId(3), source, &mut Symbols::new());
+        let file = SourceFile::new(FileId(3), source);
         let start = text.find("box").unwrap() as u32;
         let span = file.span(start);
         assert_eq!((span.line, span.column, span.length), (2, 6, 3));
         assert_eq!(file.line_text(2), "  \u{e9}\u{e9} box{");
         assert_eq!(file.line_text(9), "");
+    }
+
+    #[test]
+    fn places_do_not_depend_on_those_asked_for_before() {
+        let mut text = String::new();
+        for line in 0..3000 {
+            let width = if line % 1000 == 7 { 9000 } else { line % 50 };
+            text.push_str(&"x".repeat(width));
+            text.push('\n');
+        }
+        let place = |start: usize| {
+            let line = text[..start].matches('\n').count();
+            let begin = text[..start].rfind('\n').map_or(0, |at| at + 1);
+            (line as u32 + 1, (start - begin) as u32 + 1)
+        };
+        for with_table in [false, true] {
+            let file = SourceFile::new(FileId(0), Source::new("a.pov", text.clone()));
+            if with_table {
+                file.lines();
+            }
+            let mut state = 1usize;
+            for round in 0..2000 {
+                state = state.wrapping_mul(1_103_515_245).wrapping_add(12_345) % (1 << 31);
+                let near = if round % 3 == 0 { text.len() } else { 5000 };
+                let start = (state % near + round * 40) % (text.len() + 1);
+                let span = file.span(start as u32);
+                assert_eq!((span.line, span.column), place(start), "{start}");
+            }
+        }
+    }
+
+    #[test]
+    fn chunks_follow_each_other_without_a_gap() {
+        let object = "sphere { <1, 2, 3>, 4 pigment { rgb <0, 1, 0> } } // a\n";
+        let mut text = object.repeat(2000);
+        text.push_str("mesh2 { vertex_vectors { 9999");
+        text.push_str(&", <1, 2, 3>".repeat(9999));
+        text.push_str("} } #if (1)");
+        text.push_str(&object.repeat(2000));
+        text.push_str("#end box { 1, \"end\" }");
+        let mut symbols = Symbols::new();
+        let source = Arc::new(SourceFile::new(FileId(0), Source::new("a.pov", text)));
+        let whole = Chunk::first(Arc::clone(&source), usize::MAX, &mut symbols);
+        let mut chunk = Arc::new(Chunk::first(source, Chunk::TOKENS, &mut symbols));
+        let first = Arc::clone(&chunk);
+        let (mut tokens, mut lengths) = (vec![], vec![]);
+        loop {
+            assert_eq!(chunk.token(chunk.end()).unwrap().kind, Kind::End);
+            tokens.extend((0..chunk.end()).filter_map(|i| chunk.token(i)));
+            lengths.push(chunk.end());
+            if !Chunk::advance(&mut chunk, &mut symbols) {
+                break;
+            }
+        }
+        assert_eq!(first.end(), lengths[0]);
+        let short = lengths.iter().take(lengths.len() - 1);
+        assert!(
+            short.into_iter().all(|n| *n < Chunk::TOKENS + 50),
+            "{lengths:?}"
+        );
+        assert!(lengths.len() > 5);
+        // Links are indices within the chunk.
+        for (a, b) in tokens.iter().zip(&whole.lexed.tokens) {
+            assert_eq!((a.kind, a.start), (b.kind, b.start));
+        }
+        assert_eq!(tokens.len(), whole.end());
     }
 }

@@ -33,7 +33,7 @@ impl Parser<'_> {
         loop {
             part = self.next_part(part)?;
             self.jump(part + 1);
-            let token = self.current_file().tokens.get(part).copied();
+            let token = self.current_file().token(part);
             match token.and_then(|t| t.directive()) {
                 Some(Directive::Elseif) => {
                     if self.condition()? {
@@ -98,7 +98,7 @@ impl Parser<'_> {
         loop {
             part = self.next_part(part)?;
             self.jump(part + 1);
-            let token = self.current_file().tokens.get(part).copied();
+            let token = self.current_file().token(part);
             let taken = match token.and_then(|t| t.directive()) {
                 Some(Directive::Case) => crate::expr::equal(self.parenthesised_float()?, value),
                 Some(Directive::Range) => {

@@ -1,6 +1,6 @@
 use crate::keywords::Word;
 use crate::parser::{PResult, Parser, Place};
-use crate::source::SourceFile;
+use crate::source::Chunk;
 use crate::symbol::Symbol;
 use crate::token::{Kind, Token};
 use crate::value::{Value, Vector};
@@ -19,7 +19,7 @@ pub(crate) struct Files {
 /// What may be done with a file.
 enum OpenFile {
     /// The tokens of the text and where reading goes on.
-    Read(Arc<SourceFile>, usize),
+    Read(Arc<Chunk>, usize),
     Write(Box<dyn Write + Send>),
 }
 
@@ -31,7 +31,7 @@ impl Parser<'_> {
         let place = self.place();
         let mode = self.next()?;
         let file = match mode.word() {
-            Some(Word::Read) => OpenFile::Read(self.load(&name, place)?, 0),
+            Some(Word::Read) => OpenFile::Read(self.load(&name, place, usize::MAX)?, 0),
             Some(Word::Write) => OpenFile::Write(self.create(&name, false, place)?),
             Some(Word::Append) => OpenFile::Write(self.create(&name, true, place)?),
             _ => return Err(self.unexpected(mode, "`read`, `write` or `append`")),
@@ -166,7 +166,7 @@ impl Parser<'_> {
     fn more_to_read(&self, handle: Symbol) -> bool {
         match self.io.open.get(&handle) {
             Some(OpenFile::Read(file, position)) => {
-                let rest = file.tokens.get(*position..).unwrap_or(&[]);
+                let rest = file.lexed.tokens.get(*position..).unwrap_or(&[]);
                 rest.iter()
                     .any(|t| !matches!(t.kind, Kind::Comma | Kind::End))
             }
@@ -188,7 +188,7 @@ impl Parser<'_> {
         };
         let value = reader.value();
         *position = reader.position;
-        let name = file.name.clone();
+        let name = file.source.name.clone();
         match value {
             Some(value) => Ok(value),
             None => Err(self.fail_hint(
@@ -210,13 +210,13 @@ impl Parser<'_> {
 
 /// Reads values from the tokens of a data file.
 struct Reader<'a> {
-    file: &'a SourceFile,
+    file: &'a Chunk,
     position: usize,
 }
 
 impl Reader<'_> {
     fn next(&mut self) -> Token {
-        let token = self.file.tokens.get(self.position).copied();
+        let token = self.file.token(self.position);
         self.position += 1;
         token.unwrap_or(Token::END)
     }
@@ -228,7 +228,7 @@ impl Reader<'_> {
         }
         match token.kind {
             Kind::String => {
-                let text = self.file.strings.get(token.bits as usize)?;
+                let text = self.file.lexed.strings.get(token.bits as usize)?;
                 Some(Value::String(Arc::clone(text)))
             }
             Kind::Less => {

@@ -84,6 +84,9 @@ impl Parser<'_> {
     /// If there is no numeric expression, or it is a vector.
     #[inline]
     pub fn float(&mut self) -> PResult<f64> {
+        if let Some(x) = self.lone_number() {
+            return Ok(x);
+        }
         if let Some(x) = self.quick(4) {
             return Ok(x);
         }
@@ -99,7 +102,11 @@ impl Parser<'_> {
     /// If there is no numeric expression.
     #[inline]
     pub fn vector3(&mut self) -> PResult<DVec3> {
-        Ok(self.expression()?.to_dvec3())
+        Ok(match self.lone_vector() {
+            // What is missing is zero.
+            Some(([x, y, z, ..], _)) => DVec3::new(x, y, z),
+            None => self.expression()?.to_dvec3(),
+        })
     }
 
     /// A vector of two; a float stands for two equal components.
@@ -117,6 +124,9 @@ impl Parser<'_> {
     /// If there is no numeric expression.
     #[inline]
     pub fn expression(&mut self) -> PResult<Vector> {
+        if let Some((components, count)) = self.lone_vector() {
+            return Ok(Vector::of(components, count));
+        }
         if let Some(x) = self.quick(4) {
             return Ok(Vector::float(x));
         }

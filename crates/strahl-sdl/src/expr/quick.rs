@@ -26,6 +26,52 @@ const fn ends(kind: Kind) -> bool {
 }
 
 impl Parser<'_> {
+    /// The number at the position, and the position moved behind it, if it is one without sign and surely the whole expression.
+    #[inline]
+    pub(super) fn lone_number(&mut self) -> Option<f64> {
+        let token = self.raw();
+        if token.kind != Kind::Number || !ends(self.raw_ahead(1).kind) {
+            return None;
+        }
+        self.pass(1);
+        Some(f64::from_bits(token.bits))
+    }
+
+    /// The vector at the position, and the position moved behind it, if its components are numbers and it is surely the
+    /// whole expression: what most of an exported scene consists of. The components, and how many.
+    #[inline]
+    pub(super) fn lone_vector(&mut self) -> Option<([f64; 5], usize)> {
+        let begin = self.position();
+        let mut tokens = self.current_file().tokens_from(begin).iter();
+        if tokens.next()?.kind != Kind::Less {
+            return None;
+        }
+        let mut components = [0.0; 5];
+        for count in 0..5 {
+            let mut token = tokens.next()?;
+            let negative = token.kind == Kind::Minus;
+            if negative {
+                token = tokens.next()?;
+            }
+            if token.kind != Kind::Number {
+                return None;
+            }
+            let number = f64::from_bits(token.bits);
+            *components.get_mut(count)? = if negative { -number } else { number };
+            match tokens.next()?.kind {
+                Kind::Comma => {}
+                Kind::Greater if count > 0 && ends(tokens.as_slice().first()?.kind) => {
+                    let left = tokens.len();
+                    let passed = self.current_file().tokens_from(begin).len() - left;
+                    self.pass(passed);
+                    return Some((components, count + 1));
+                }
+                _ => return None,
+            }
+        }
+        None
+    }
+
     /// The value of the expression at the position with operators that bind at least so strongly, and the position moved
     /// behind it; `None`, and nothing moved, if it takes more than floats.
     #[inline]
@@ -48,8 +94,7 @@ impl Parser<'_> {
 
     #[inline]
     fn token_at(&self, position: usize) -> Token {
-        let token = self.current_file().tokens.get(position);
-        token.copied().unwrap_or(Token::END)
+        self.current_file().token(position).unwrap_or(Token::END)
     }
 
     fn quick_binary(&self, position: &mut usize, weakest: u8, depth: u32) -> Option<f64> {

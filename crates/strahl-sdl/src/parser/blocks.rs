@@ -50,7 +50,7 @@ impl Parser<'_> {
 
     /// Index of the directive that divides or ends the block at `index`.
     pub(crate) fn next_part(&mut self, index: usize) -> PResult<usize> {
-        let token = self.file.tokens.get(index).copied();
+        let token = self.file.token(index);
         if let Some(next) = token.and_then(|t| t.link()) {
             return Ok(next);
         }
@@ -63,7 +63,7 @@ impl Parser<'_> {
             format!("`#{word}` has no `#end`"),
             crate::lexer::UNCLOSED,
         );
-        self.position = self.file.tokens.len().saturating_sub(1);
+        self.position = self.file.end();
         Err(failed)
     }
 
@@ -71,7 +71,7 @@ impl Parser<'_> {
     pub(crate) fn end_of(&mut self, mut index: usize) -> PResult<usize> {
         loop {
             index = self.next_part(index)?;
-            let token = self.file.tokens.get(index);
+            let token = self.file.token(index);
             if token.and_then(|t| t.directive()) == Some(Directive::End) {
                 return Ok(index);
             }

@@ -1,16 +1,16 @@
 use super::{Entry, PResult, Parser, Step, Target};
-use crate::source::SourceFile;
+use crate::source::Chunk;
 use crate::symbol::Symbol;
 use crate::token::{Kind, Token};
 use crate::value::Value;
 use std::sync::Arc;
 
-/// A macro: a slice of the tokens of a file, with parameters.
+/// A macro: a slice of the tokens of a file's chunk, with parameters.
 #[derive(Debug)]
 pub struct Macro {
     pub(crate) name: Symbol,
     pub(crate) parameters: Vec<Parameter>,
-    pub(crate) file: Arc<SourceFile>,
+    pub(crate) file: Arc<Chunk>,
     /// First token of the body.
     pub(crate) begin: usize,
     /// The `#end`.

@@ -16,7 +16,7 @@ impl Parser<'_> {
     pub(crate) fn scene_name(&self) -> String {
         self.sources
             .first()
-            .map_or(String::new(), |f| f.name.clone())
+            .map_or(String::new(), |f| f.source.name.clone())
     }
 
     /// What has become of the text.

@@ -3,7 +3,7 @@ use crate::directives::{Files, Flow};
 use crate::grammar::State;
 use crate::include;
 use crate::options::Options;
-use crate::source::{Host, HostError, Source, SourceFile};
+use crate::source::{Chunk, Host, HostError, Source, SourceFile};
 use crate::symbol::{Symbol, Symbols};
 use crate::token::{Kind, Token};
 use std::sync::Arc;
@@ -27,7 +27,7 @@ pub(super) struct Frame {
     /// Where it was entered from.
     pub(super) from: Place,
     /// File and position to go on with when this frame ends.
-    back: (Arc<SourceFile>, usize),
+    back: (Arc<Chunk>, usize),
     /// Index of the token that ends the frame.
     pub(super) end: usize,
     /// How many blocks were open when it was entered.
@@ -40,8 +40,9 @@ impl<'h> Parser<'h> {
         let mut symbols = Symbols::new();
         let mut scene = Scene::new();
         let id = scene.sources.add(&source.name);
-        let (file, problems) = SourceFile::new(id, source, &mut symbols);
-        let file = Arc::new(file);
+        let text = Arc::new(SourceFile::new(id, source));
+        let file = Arc::new(Chunk::first(text, Chunk::TOKENS, &mut symbols));
+        let problems = file.lexed.problems.clone();
         let mut parser = Self {
             options,
             host,
@@ -64,7 +65,7 @@ impl<'h> Parser<'h> {
             between: true,
             steps: 0,
             nesting: 0,
-            read_bytes: file.bytes.len() as u64,
+            read_bytes: file.source.bytes.len() as u64,
             message_bytes: 0,
             diagnostics: vec![],
             errors: 0,
@@ -75,8 +76,8 @@ impl<'h> Parser<'h> {
         parser.frames.push(Frame {
             entry: Entry::Scene,
             from: parser.place,
-            end: file.tokens.len().saturating_sub(1),
-            back: (Arc::clone(&file), file.tokens.len().saturating_sub(1)),
+            end: file.end(),
+            back: (Arc::clone(&file), file.end()),
             blocks: 0,
         });
         parser.report_lexing(0, problems);
@@ -115,6 +116,7 @@ impl<'h> Parser<'h> {
                     Flow::On => {}
                     Flow::Stop => return Ok(self.end_here()),
                 },
+                Kind::End if self.next_chunk() => {}
                 Kind::End => {
                     let innermost = self.frames.len() <= 1 || self.at_floor();
                     if innermost {
@@ -150,7 +152,7 @@ impl<'h> Parser<'h> {
         &mut self,
         entry: Entry,
         from: Place,
-        file: Arc<SourceFile>,
+        file: Arc<Chunk>,
         begin: usize,
         end: usize,
     ) -> PResult<()> {
@@ -194,8 +196,9 @@ impl<'h> Parser<'h> {
             .is_some_and(|f| matches!(f.entry, Entry::Macro(_)) && f.end == self.position)
     }
 
-    /// The file being read.
-    pub(crate) fn current_file(&self) -> &Arc<SourceFile> {
+    /// The chunk of a file being read.
+    #[inline]
+    pub(crate) fn current_file(&self) -> &Arc<Chunk> {
         &self.file
     }
 
@@ -223,27 +226,28 @@ impl<'h> Parser<'h> {
 
     /// Goes on reading in an included file.
     pub(crate) fn include(&mut self, name: &str, from: Place) -> PResult<()> {
-        let file = self.load(name, from)?;
+        let file = self.load(name, from, Chunk::TOKENS)?;
         // A file may include itself under an `#ifndef`, but not without end.
         const SELF_INCLUDES: usize = 32;
         let includes = self.frames.iter().filter(|f| f.entry == Entry::Include);
-        let same = includes.filter(|f| f.back.0.name == file.name);
+        let same = includes.filter(|f| f.back.0.source.name == file.source.name);
         if same.count() > SELF_INCLUDES {
-            let message = format!("`{}` includes itself again and again", file.name);
+            let name = &file.source.name;
+            let message = format!("`{name}` includes itself again and again");
             return Err(self.fail_fatally(
                 from,
                 message,
                 "guard the file with `#ifndef(NAME)`, `#declare NAME = 1;` ... `#end`",
             ));
         }
-        let end = file.tokens.len().saturating_sub(1);
+        let end = file.end();
         self.enter_frame(Entry::Include, from, file, 0, end)
     }
 
-    /// A file of this name, with its tokens.
-    pub(crate) fn load(&mut self, name: &str, from: Place) -> PResult<Arc<SourceFile>> {
+    /// A file of this name, with its first tokens, at least so many.
+    pub(crate) fn load(&mut self, name: &str, from: Place, tokens: usize) -> PResult<Arc<Chunk>> {
         let asking = self.sources.get(from.file as usize);
-        let asking = asking.map_or(String::new(), |file| file.name.clone());
+        let asking = asking.map_or(String::new(), |f| f.source.name.clone());
         let mut source = match self.host.load(name, &asking) {
             Ok(source) => source,
             Err(error) => {
@@ -259,9 +263,13 @@ impl<'h> Parser<'h> {
         let known = self
             .sources
             .iter()
-            .find(|f| f.name == source.name && f.bytes == source.bytes);
+            .find(|f| f.source.name == source.name && f.source.bytes == source.bytes);
         if let Some(known) = known {
-            return Ok(Arc::clone(known));
+            if known.lexed.rest.is_none() || tokens == Chunk::TOKENS {
+                return Ok(Arc::clone(known));
+            }
+            let text = Arc::clone(&known.source);
+            return Ok(Arc::new(Chunk::first(text, tokens, &mut self.symbols)));
         }
         self.read_bytes = self.read_bytes.saturating_add(source.bytes.len() as u64);
         let limit = self.options.limits.read_bytes;
@@ -277,21 +285,21 @@ impl<'h> Parser<'h> {
             ));
         }
         // A text that has changed since it was read the first time gets an entry of its own.
-        while self.sources.iter().any(|f| f.name == source.name) {
+        while self.sources.iter().any(|f| f.source.name == source.name) {
             source.name.push_str(" (changed)");
         }
         let id = self.scene.sources.add(&source.name);
-        let (file, problems) = SourceFile::new(id, source, &mut self.symbols);
-        let file = Arc::new(file);
+        let text = Arc::new(SourceFile::new(id, source));
+        let file = Arc::new(Chunk::first(text, tokens, &mut self.symbols));
         self.sources.push(Arc::clone(&file));
-        self.report_lexing(id.0, problems);
+        self.report_lexing(id.0, file.lexed.problems.clone());
         Ok(file)
     }
 
     /// The bytes of a file that is no text of the scene, such as a picture.
     pub(crate) fn read_file(&mut self, name: &str, from: Place) -> PResult<Source> {
         let asking = self.sources.get(from.file as usize);
-        let asking = asking.map_or(String::new(), |file| file.name.clone());
+        let asking = asking.map_or(String::new(), |f| f.source.name.clone());
         let source = match self.host.load(name, &asking) {
             Ok(source) => source,
             Err(error) => return Err(self.unreadable(error, from)),

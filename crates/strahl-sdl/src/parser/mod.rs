@@ -24,7 +24,7 @@ pub(crate) use scope::{Scopes, Step, Target};
 use crate::directives::Files;
 use crate::grammar::State;
 use crate::options::Options;
-use crate::source::{Host, SourceFile};
+use crate::source::{Chunk, Host};
 use crate::symbol::Symbols;
 use crate::token::{Kind, Token};
 use frames::Frame;
@@ -68,8 +68,10 @@ pub struct Parser<'h> {
     pub(crate) workspace: Workspace,
     /// Elements of all arrays made so far.
     pub(crate) array_elements: u64,
-    sources: Vec<Arc<SourceFile>>,
-    file: Arc<SourceFile>,
+    /// The first chunk of each file.
+    sources: Vec<Arc<Chunk>>,
+    /// The chunk being read.
+    file: Arc<Chunk>,
     position: usize,
     frames: Vec<Frame>,
     blocks: Vec<Block>,
@@ -97,8 +99,8 @@ impl Parser<'_> {
     /// If a directive on the way fails.
     #[inline]
     pub fn peek(&mut self) -> PResult<Token> {
-        match self.file.tokens.get(self.position) {
-            Some(token) if token.kind < Kind::Name => Ok(*token),
+        match self.file.token(self.position) {
+            Some(token) if token.kind < Kind::Name => Ok(token),
             _ => self.expand(),
         }
     }
@@ -141,15 +143,15 @@ impl Parser<'_> {
     /// The token `offset` further on in the file.
     #[inline]
     pub(crate) fn raw_ahead(&self, offset: usize) -> Token {
-        let token = self.file.tokens.get(self.position + offset);
-        token.copied().unwrap_or(Token::END)
+        let token = self.file.token(self.position + offset);
+        token.unwrap_or(Token::END)
     }
 
     /// Makes a token the last one taken, for messages.
     #[inline]
     pub(crate) fn mark(&mut self, token: Token) {
         self.place = Place {
-            file: self.file.id.0,
+            file: self.file.file.0,
             start: token.start,
         };
     }
@@ -163,7 +165,7 @@ impl Parser<'_> {
     /// The place of the token just peeked.
     pub(crate) fn place_of(&self, token: Token) -> Place {
         Place {
-            file: self.file.id.0,
+            file: self.file.file.0,
             start: token.start,
         }
     }
@@ -171,18 +173,18 @@ impl Parser<'_> {
     /// A place as line and column.
     pub fn span_at(&self, place: Place) -> Span {
         let file = self.sources.get(place.file as usize);
-        file.map_or(Span::NONE, |file| file.span(place.start))
+        file.map_or(Span::NONE, |chunk| chunk.source.span(place.start))
     }
 
     /// The text of a string token of the current file.
     pub(crate) fn string_of(&self, token: Token) -> Arc<str> {
-        let text = self.file.strings.get(token.bits as usize);
+        let text = self.file.lexed.strings.get(token.bits as usize);
         text.cloned().unwrap_or_default()
     }
 
     /// The string as written, without resolving escapes.
     pub(crate) fn raw_string_of(&self, token: Token) -> String {
-        self.file.raw_string(token)
+        self.file.source.raw_string(token)
     }
 
     /// Runs `f` one level deeper.
@@ -194,8 +196,11 @@ impl Parser<'_> {
         if self.nesting >= self.options.limits.nesting {
             return Err(self.too_deep());
         }
+        /// More than one level takes, expression, object and texture together.
+        const LEVEL: usize = 128 << 10;
+        const MORE: usize = 4 << 20;
         self.nesting += 1;
-        let result = f(self);
+        let result = stacker::maybe_grow(LEVEL, MORE, || f(self));
         self.nesting -= 1;
         result
     }

@@ -1,5 +1,6 @@
 use super::{Floor, Parser};
 use crate::grammar;
+use crate::source::Chunk;
 use crate::token::{Directive, Kind};
 
 /// Where a statement begins, to find the way back after an error in it.
@@ -9,6 +10,8 @@ pub(super) struct Mark {
     blocks: usize,
     position: usize,
     file: u32,
+    /// Braces opened by the statement in chunks of the file that have been passed.
+    open: usize,
 }
 
 impl Parser<'_> {
@@ -24,7 +27,8 @@ impl Parser<'_> {
             frames: self.frames.len(),
             blocks: self.blocks.len(),
             position: self.position,
-            file: self.file.id.0,
+            file: self.file.file.0,
+            open: 0,
         };
     }
 
@@ -33,6 +37,35 @@ impl Parser<'_> {
         if self.between && self.floor.frames == 0 {
             self.mark_here();
         }
+    }
+
+    /// Goes on with the next chunk of the file; `false` at its end.
+    pub(super) fn next_chunk(&mut self) -> bool {
+        if self.file.lexed.rest.is_none() {
+            return false;
+        }
+        let end = self.file.end();
+        if self.mark.frames == self.frames.len() && self.mark.file == self.file.file.0 {
+            self.mark.open = self.open_after(self.mark.open, self.mark.position, end);
+            self.mark.position = 0;
+        }
+        if !Chunk::advance(&mut self.file, &mut self.symbols) {
+            return false;
+        }
+        self.position = 0;
+        let problems = self.file.lexed.problems.clone();
+        self.report_lexing(self.file.file.0, problems);
+        true
+    }
+
+    /// How many braces are open behind some tokens of the chunk, if `open` were before them.
+    fn open_after(&self, open: usize, from: usize, to: usize) -> usize {
+        let passed = self.file.lexed.tokens.get(from..to).unwrap_or(&[]);
+        passed.iter().fold(open, |open, t| match t.kind {
+            Kind::LeftBrace => open + 1,
+            Kind::RightBrace => open.saturating_sub(1),
+            _ => open,
+        })
     }
 
     /// Goes on behind the statement or directive that failed.
@@ -46,25 +79,26 @@ impl Parser<'_> {
         }
         self.nesting = 0;
         self.floor = Floor::default();
-        let same = mark.file == self.file.id.0 && mark.frames == self.frames.len();
+        let same = mark.file == self.file.file.0 && mark.frames == self.frames.len();
         let begin = if same { mark.position } else { self.position };
         if same && begin == self.position && self.raw().kind != Kind::End {
             // At least one token is passed, or the error would repeat for ever.
             self.position += 1;
         }
-        let passed = self.file.tokens.get(begin..self.position).unwrap_or(&[]);
-        let mut open = passed.iter().fold(0usize, |open, t| match t.kind {
-            Kind::LeftBrace => open + 1,
-            Kind::RightBrace => open.saturating_sub(1),
-            _ => open,
-        });
+        let before = if same { mark.open } else { 0 };
+        let mut open = self.open_after(before, begin, self.position);
         // Blocks that the statement has opened end within what is skipped.
         let mut blocks = self.blocks.len().saturating_sub(mark.blocks);
         self.blocks.truncate(mark.blocks);
         loop {
             let token = self.raw();
             match token.kind {
-                Kind::End => return,
+                Kind::End => {
+                    if !self.next_chunk() {
+                        return;
+                    }
+                    continue;
+                }
                 Kind::LeftBrace => open += 1,
                 Kind::RightBrace if open <= 1 => {
                     self.position += 1;

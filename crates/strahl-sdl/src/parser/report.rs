@@ -77,7 +77,8 @@ impl Parser<'_> {
             return false;
         }
         diagnostic = diagnostic.at(span);
-        if let Some(file) = self.sources.get(place.file as usize) {
+        if let Some(chunk) = self.sources.get(place.file as usize) {
+            let file = &chunk.source;
             diagnostic = diagnostic.with_source(&file.name, &file.line_text(span.line));
         }
         for step in self.trace() {

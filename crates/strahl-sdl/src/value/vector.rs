@@ -48,6 +48,15 @@ impl Vector {
         }
     }
 
+    /// The first `count` of five numbers; those behind must be zero.
+    #[inline]
+    pub(crate) const fn of(components: [f64; 5], count: usize) -> Self {
+        Self {
+            len: count as u8,
+            components,
+        }
+    }
+
     /// How many components, 1 to 5.
     #[inline]
     #[expect(clippy::len_without_is_empty, reason = "never empty")]
