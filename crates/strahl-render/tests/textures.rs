@@ -49,7 +49,8 @@ fn checkered() -> Object {
             ambient: Color::WHITE,
             diffuse: 0.0,
             ..PovFinish::default()
-        },
+        }
+        .into(),
         ..plain(blocks)
     };
     let cube = Cuboid::new(DVec3::new(-0.9, -0.9, -0.9), DVec3::new(0.9, 0.9, 0.9));
@@ -111,7 +112,8 @@ fn layers_mirrors_and_shadows_follow_the_formula() {
         finish: PovFinish {
             reflection: PovReflection::constant(Color::gray(mirror)),
             ..PovFinish::default()
-        },
+        }
+        .into(),
         ..plain(opaque(0.2, 0.4, 0.8))
     };
     let layered = |mirror: f64| Texture::Layered(vec![bottom(mirror).into(), top.clone().into()]);

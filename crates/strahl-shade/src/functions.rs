@@ -77,7 +77,7 @@ mod tests {
             (1.0, Color::new(1.0, 0.5, 0.0).into()),
         ]);
         let channel = PigmentChannel {
-            pigment: Arc::new(Pigment::ColorMap(field, map)),
+            pigment: Arc::new(Pigment::ColorMap(Box::new(field), map)),
             channel: Channel::Green,
         };
         assert_eq!(channel.value(&[0.5, 0.0, 0.0]), 0.25);

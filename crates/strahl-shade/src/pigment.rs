@@ -62,15 +62,15 @@ pub enum Pigment {
     /// The same everywhere.
     Solid(ColorFt),
     /// A value of a pattern, looked up in a map of colours.
-    ColorMap(PatternField, BlendMap<ColorFt>),
+    ColorMap(Box<PatternField>, BlendMap<ColorFt>),
     /// A value of a pattern, looked up in a map of pigments.
-    PigmentMap(PatternField, BlendMap<Pigment>),
+    PigmentMap(Box<PatternField>, BlendMap<Pigment>),
     /// A block pattern whose blocks have these pigments. Blocks beyond the list take its last.
-    Blocks(PatternField, Vec<Pigment>),
+    Blocks(Box<PatternField>, Vec<Pigment>),
     /// A picture, moved by warps, transformations and turbulence; clear beside a picture that is laid `once`.
-    Image(Arc<ImageMap>, Modifiers),
+    Image(Arc<ImageMap>, Box<Modifiers>),
     /// The weighted mean of pigments, each evaluated at the moved point.
-    Average(Vec<(f64, Pigment)>, Modifiers),
+    Average(Vec<(f64, Pigment)>, Box<Modifiers>),
     /// The pigment at the surface's own coordinates: (u, v, 0) takes the place of the point.
     UvMapped(Box<Pigment>),
 }
@@ -206,15 +206,15 @@ mod tests {
         };
         let point = TexturePoint::in_space(DVec3::new(0.3, -0.7, 1.1));
         let blocks = Pigment::Blocks(
-            PatternField {
+            Box::new(PatternField {
                 pattern: Pattern::Checker,
                 modifiers: turbulent.clone(),
-            },
+            }),
             vec![ramp(Pattern::Bozo), ramp(Pattern::Granite)],
         );
         let average = Pigment::Average(
             vec![(1.0, ramp(Pattern::Bozo)), (2.0, ramp(Pattern::Granite))],
-            turbulent,
+            Box::new(turbulent),
         );
         for (pigment, expected) in [(blocks, 0.42866036), (average, 0.43265471)] {
             let got = pigment.color_at(&point).rgb.r;

@@ -17,12 +17,12 @@ pub struct PlainTexture {
     /// The colour.
     pub pigment: Pigment,
     /// What tilts the normal; nothing by default.
-    pub normal: Option<PovNormal>,
-    /// The treatment of light.
-    pub finish: PovFinish,
+    pub normal: Option<Box<PovNormal>>,
+    /// The treatment of light; textures of many colours mostly have one in common.
+    pub finish: Arc<PovFinish>,
 }
 
-/// What a surface looks like.
+/// What a surface looks like. Small, because a scene may have one for each of a million objects.
 #[derive(Clone, Debug)]
 pub enum Texture {
     /// One pigment, normal and finish.
@@ -30,14 +30,14 @@ pub enum Texture {
     /// Textures laid over each other, the lowest first, as they are written.
     Layered(Vec<Texture>),
     /// Two textures blended by the value of a pattern (`texture_map`).
-    Map(PatternField, BlendMap<Texture>),
+    Map(Box<PatternField>, BlendMap<Texture>),
     /// The texture of the block a point lies in. Blocks beyond the list take its last.
-    Blocks(PatternField, Vec<Texture>),
+    Blocks(Box<PatternField>, Vec<Texture>),
     /// The weighted mean of textures (`average`), at the point moved by these modifiers.
-    Average(Vec<(f64, Texture)>, Modifiers),
+    Average(Vec<(f64, Texture)>, Box<Modifiers>),
     /// The texture whose number a picture's texel holds (`material_map`): red · 255, or the code of a grey picture, modulo the
     /// number of textures.
-    MaterialMap(Arc<ImageMap>, Modifiers, Vec<Texture>),
+    MaterialMap(Arc<ImageMap>, Box<Modifiers>, Vec<Texture>),
     /// A texture in a space of its own.
     Transformed(Box<Transform>, Box<Texture>),
     /// A texture at the surface's own coordinates: (u, v, 0) takes the place of the point.

@@ -1,9 +1,9 @@
 use super::Texture;
-use super::texture::KnownPicture;
+use super::texture::{KnownMaterials, KnownPicture};
 use crate::keywords::Word;
 use crate::parser::{PResult, Parser};
 use std::sync::Arc;
-use strahl_shade::Material;
+use strahl_shade::pov_finish::PovFinish;
 
 /// What the grammar remembers between statements.
 #[derive(Debug, Default)]
@@ -14,8 +14,10 @@ pub struct State {
     pub(super) shared: super::objects::Shared,
     /// What `global_settings` has set.
     pub global: super::GlobalSettings,
-    /// The last materials made: neighbouring objects mostly share one.
-    pub(super) recent_materials: Vec<(Texture, Arc<Material>)>,
+    /// The finish read last.
+    pub(super) last_finish: Arc<PovFinish>,
+    /// The materials made, to be shared.
+    pub(super) materials: KnownMaterials,
     /// The pictures read so far.
     pub(super) pictures: Vec<KnownPicture>,
 }

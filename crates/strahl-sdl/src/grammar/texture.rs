@@ -22,7 +22,7 @@ mod pigment;
 mod statement;
 
 pub(super) use bitmap::KnownPicture;
-pub(super) use material::fill_parts;
+pub(super) use material::{KnownMaterials, fill_parts};
 
 use crate::keywords::Word;
 use crate::parser::{PResult, Parser};
@@ -212,17 +212,19 @@ impl Parser<'_> {
     fn plain_item(&mut self, surface: &mut Surface, token: Token) -> PResult<()> {
         self.take(token)?;
         let place = self.place();
-        let mut unused = PlainTexture::default();
-        let patterned = top_of(surface).is_none();
-        if patterned {
+        let mut unused;
+        let top = if let Some(top) = top_of(surface) {
+            top
+        } else {
             let word = token.word().map_or("", Word::text);
             self.warn_hint(
                 place,
                 format!("this `{word}` has no effect: the texture is made of other textures"),
                 format!("write the `{word}` into those"),
             );
-        }
-        let top = top_of(surface).unwrap_or(&mut unused);
+            unused = PlainTexture::default();
+            &mut unused
+        };
         match token.word() {
             Some(Word::Pigment) => {
                 let base = std::mem::take(&mut top.pigment);
@@ -230,9 +232,9 @@ impl Parser<'_> {
             }
             Some(Word::Normal) => {
                 let base = top.normal.take();
-                top.normal = Some(self.normal_block_on(base)?);
+                top.normal = Some(Box::new(self.normal_block_on(base.map(|n| *n))?));
             }
-            _ => top.finish = self.finish_block_on(top.finish)?,
+            _ => top.finish = self.finish_block_on(Arc::clone(&top.finish))?,
         }
         Ok(())
     }

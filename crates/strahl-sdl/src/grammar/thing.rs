@@ -60,9 +60,7 @@ static THINGS: [Option<ThingParser>; Word::ALL.len()] = by_word::<ThingParser, _
     (Word::Camera, |p| Ok(Thing::Camera(Arc::new(p.camera()?)))),
     (Word::ColorMap, color_map),
     (Word::ColourMap, color_map),
-    (Word::Finish, |p| {
-        Ok(Thing::Finish(Arc::new(p.finish_block()?)))
-    }),
+    (Word::Finish, |p| Ok(Thing::Finish(p.finish_block()?))),
     (Word::Fog, |p| Ok(Thing::Fog(Arc::new(p.fog()?)))),
     (Word::Interior, |p| {
         Ok(Thing::Interior(Arc::new(p.interior_block()?)))

@@ -284,6 +284,13 @@ impl From<Pattern> for PatternField {
     }
 }
 
+impl From<Pattern> for Box<PatternField> {
+    /// The pattern without modifiers.
+    fn from(pattern: Pattern) -> Self {
+        Self::new(pattern.into())
+    }
+}
+
 impl PatternField {
     /// The value at a point, in `0..=1.00001`: what lies beyond is repeated into it by [`Modifiers::shape`].
     pub fn value(&self, point: &TexturePoint) -> f64 {

@@ -10,7 +10,7 @@ fn plain(color: ColorFt, finish: PovFinish) -> PlainTexture {
     PlainTexture {
         pigment: color.into(),
         normal: None,
-        finish,
+        finish: finish.into(),
     }
 }
 
@@ -74,7 +74,7 @@ fn bumpy() -> Texture {
         ..PovNormal::new(NormalKind::Bumps)
     };
     Texture::from(PlainTexture {
-        normal: Some(bumps),
+        normal: Some(Box::new(bumps)),
         ..plain(Color::new(1.0, 0.5, 0.25).into(), finish)
     })
 }
@@ -83,14 +83,14 @@ fn scale(x: f64, y: f64, z: f64) -> Transform {
     Transform::try_scale(DVec3::new(x, y, z)).expect("regular")
 }
 
-fn scaled(pattern: Pattern, transform: Transform) -> PatternField {
-    PatternField {
+fn scaled(pattern: Pattern, transform: Transform) -> Box<PatternField> {
+    Box::new(PatternField {
         pattern,
         modifiers: Modifiers {
             warps: vec![Warp::Transform(transform)],
             ..Modifiers::default()
         },
-    }
+    })
 }
 
 /// The formula of [`LayerPoint`]'s documentation.
@@ -140,7 +140,7 @@ fn shades_as_measured() {
         ("glass", glass(), [0.280003, 0.472007, 0.672007]),
         (
             "average",
-            Texture::Average(vec![(1.0, bluish()), (3.0, glass())], Modifiers::default()),
+            Texture::Average(vec![(1.0, bluish()), (3.0, glass())], Box::default()),
             [0.249775, 0.405478, 0.584726],
         ),
         (
@@ -179,7 +179,7 @@ fn shares_sum_to_one() {
     let mut paint = TexturePaint::default();
     let texture = Texture::Average(
         vec![(1.0, bluish()), (2.0, veil()), (5.0, glass())],
-        Modifiers::default(),
+        Box::default(),
     );
     texture.layers_at(&point, 1.5, &mut paint);
     let shares: f64 = paint.layers.iter().map(|layer| layer.share).sum();

@@ -104,12 +104,17 @@ impl Parser<'_> {
                 | Word::UvMapping,
             ) => {
                 // What is written now is meant in the space that the object has been moved to.
-                let place = entity.placement();
                 let texture = entity.texture.take();
-                let texture = texture.unwrap_or_else(|| self.state.default_texture.clone());
-                let mut texture = texture.transformed(&place);
-                self.texture_item(&mut texture, token)?;
-                entity.texture = Some(texture.transformed(&place.inverted()));
+                let mut texture = texture.unwrap_or_else(|| self.state.default_texture.clone());
+                if entity.object.transform.is_none() {
+                    self.texture_item(&mut texture, token)?;
+                    entity.texture = Some(texture);
+                } else {
+                    let place = entity.placement();
+                    texture = texture.transformed(&place);
+                    self.texture_item(&mut texture, token)?;
+                    entity.texture = Some(texture.transformed(&place.inverted()));
+                }
                 draft.textured = true;
                 return Ok(true);
             }

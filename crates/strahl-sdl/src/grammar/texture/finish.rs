@@ -4,6 +4,7 @@ use crate::grammar::Thing;
 use crate::keywords::Word;
 use crate::parser::{PResult, Parser};
 use crate::token::{Kind, Token};
+use std::sync::Arc;
 use strahl_shade::Color;
 use strahl_shade::pov_finish::{PovFinish, PovReflection};
 
@@ -17,19 +18,23 @@ struct Albedo {
 
 impl Parser<'_> {
     /// `{ ... }` behind `finish`, which changes the default finish.
-    pub(crate) fn finish_block(&mut self) -> PResult<PovFinish> {
-        let base = self.state.default_texture.top().finish;
+    pub(crate) fn finish_block(&mut self) -> PResult<Arc<PovFinish>> {
+        let base = Arc::clone(&self.state.default_texture.top().finish);
         self.finish_block_on(base)
     }
 
-    /// `{ ... }` behind `finish`, which changes `base` unless it begins with a name.
-    pub(super) fn finish_block_on(&mut self, base: PovFinish) -> PResult<PovFinish> {
+    /// `{ ... }` behind `finish`, which changes `base` unless it begins with a name. Equal finishes one after the other are one.
+    pub(super) fn finish_block_on(&mut self, base: Arc<PovFinish>) -> PResult<Arc<PovFinish>> {
         self.braces(|p| {
             let named = p.accept_thing(|thing| match thing {
                 Thing::Finish(finish) => Some(finish),
                 _ => None,
             })?;
-            let mut finish = named.map_or(base, |named| *named);
+            let base = named.unwrap_or(base);
+            if p.peek()?.kind == Kind::RightBrace {
+                return Ok(base);
+            }
+            let mut finish = *base;
             let mut albedo = Albedo::default();
             p.items("`finish`", |p, token| {
                 p.finish_item(&mut finish, &mut albedo, token)
@@ -43,7 +48,11 @@ impl Parser<'_> {
             if albedo.specular {
                 finish.specular *= PovFinish::specular_from_albedo(finish.roughness);
             }
-            Ok(finish)
+            let last = &mut p.state.last_finish;
+            if **last != finish {
+                *last = Arc::new(finish);
+            }
+            Ok(Arc::clone(last))
         })
     }
 

@@ -9,7 +9,7 @@ use strahl_shade::pigment::Pigment;
 use strahl_shade::texture::{SharedTexture, Texture as Surface};
 use strahl_shade::{Color, Finish, Material, ShadingModel};
 
-/// How many of the last materials are kept to be shared.
+/// How many of the last materials with patterns are kept to be shared.
 const RECENT: usize = 16;
 
 /// Whether two surfaces are one, or two of the same colour and finish: exporters write those out at each object.
@@ -22,7 +22,8 @@ fn same_surface(a: &Arc<Surface>, b: &Arc<Surface>) -> bool {
     };
     match (&a.pigment, &b.pigment) {
         (Pigment::Solid(first), Pigment::Solid(second)) => {
-            first == second && a.normal.is_none() && b.normal.is_none() && a.finish == b.finish
+            let same_finish = Arc::ptr_eq(&a.finish, &b.finish) || a.finish == b.finish;
+            first == second && a.normal.is_none() && b.normal.is_none() && same_finish
         }
         _ => false,
     }
@@ -113,18 +114,94 @@ pub(in crate::grammar) fn fill_parts(object: &mut Object, interior: Interior) {
     }
 }
 
-impl Parser<'_> {
-    /// The material of a texture; equal textures close to each other share it.
-    pub(in crate::grammar) fn material(&mut self, texture: &Texture) -> Arc<Material> {
-        let recent = &mut self.state.recent_materials;
-        if let Some(found) = recent.iter().position(|(known, _)| known == texture) {
-            return Arc::clone(&recent[found].1);
+/// Materials made before, by their textures.
+#[derive(Debug, Default)]
+pub(in crate::grammar) struct KnownMaterials {
+    /// The last ones with patterns.
+    recent: Vec<(Texture, Arc<Material>)>,
+    /// Those of one colour and finish, each where its hash says, until another takes the place. Exported scenes have the
+    /// same few colours again and again; those with a colour of its own for each object must not pay for a table of all.
+    plain: Vec<Option<(u64, Arc<Material>)>>,
+}
+
+impl KnownMaterials {
+    /// Places for materials of one colour. Few enough that what makes room is still in the cache when it is let go.
+    const PLAIN: usize = 1 << 10;
+
+    /// The material of a texture.
+    fn of(&mut self, texture: &Texture) -> Arc<Material> {
+        match plain_hash(texture) {
+            Some(hash) => self.of_plain(texture, hash),
+            None => self.of_pattern(texture),
+        }
+    }
+
+    fn of_plain(&mut self, texture: &Texture, hash: u64) -> Arc<Material> {
+        if self.plain.is_empty() {
+            self.plain.resize(Self::PLAIN, None);
+        }
+        let index = hash as usize % Self::PLAIN;
+        if let Some(Some((known, material))) = self.plain.get(index)
+            && *known == hash
+            && material.interior == texture.interior
+            && let Some(SharedTexture(surface)) = &material.texture
+            && same_surface(surface, &texture.surface)
+        {
+            return Arc::clone(material);
         }
         let material = Arc::new(texture.to_material());
-        if recent.len() >= RECENT {
-            recent.remove(0);
+        if let Some(slot) = self.plain.get_mut(index) {
+            *slot = Some((hash, Arc::clone(&material)));
         }
-        recent.push((texture.clone(), Arc::clone(&material)));
         material
+    }
+
+    fn of_pattern(&mut self, texture: &Texture) -> Arc<Material> {
+        if let Some((_, material)) = self.recent.iter().find(|(known, _)| known == texture) {
+            return Arc::clone(material);
+        }
+        let material = Arc::new(texture.to_material());
+        if self.recent.len() >= RECENT {
+            self.recent.remove(0);
+        }
+        self.recent.push((texture.clone(), Arc::clone(&material)));
+        material
+    }
+}
+
+/// A hash of what most tells materials of one colour and finish apart; `None` for other textures.
+fn plain_hash(texture: &Texture) -> Option<u64> {
+    /// 2^64 divided by the golden ratio: the upper bits of the product depend on all lower ones.
+    const FACTOR: u64 = 0x9e37_79b9_7f4a_7c15;
+    let Surface::Plain(plain) = &*texture.surface else {
+        return None;
+    };
+    let Pigment::Solid(color) = &plain.pigment else {
+        return None;
+    };
+    if texture.inner_surface.is_some() || plain.normal.is_some() {
+        return None;
+    }
+    let (rgb, finish) = (&color.rgb, &plain.finish);
+    let numbers = [
+        rgb.r,
+        rgb.g,
+        rgb.b,
+        color.filter,
+        color.transmit,
+        finish.ambient.r,
+        finish.diffuse,
+        finish.phong,
+        finish.specular,
+        finish.reflection.max.r,
+    ];
+    let mix = |hash: u64, x: f64| (hash.rotate_left(5) ^ x.to_bits()).wrapping_mul(FACTOR);
+    Some(numbers.into_iter().fold(0, mix) >> 32)
+}
+
+impl Parser<'_> {
+    /// The material of a texture; equal textures share it, unless they have patterns and stand far apart.
+    pub(in crate::grammar) fn material(&mut self, texture: &Texture) -> Arc<Material> {
+        self.state.materials.of(texture)
     }
 }

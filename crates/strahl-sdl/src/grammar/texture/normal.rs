@@ -134,7 +134,7 @@ pub(super) fn transform(normal: &mut PovNormal, by: &Transform) {
 impl Parser<'_> {
     /// `{ ... }` behind `normal`, which changes the default normal.
     pub(crate) fn normal_block(&mut self) -> PResult<PovNormal> {
-        let base = self.state.default_texture.top().normal.clone();
+        let base = self.state.default_texture.top().normal.as_deref().cloned();
         self.normal_block_on(base)
     }
 

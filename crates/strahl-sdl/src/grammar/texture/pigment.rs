@@ -50,7 +50,7 @@ impl From<Pigment> for Draft {
             modifiers,
             uv_mapped: false,
         };
-        let field = |field: PatternField, choice| {
+        let field = |field: Box<PatternField>, choice| {
             draft(Chooser::Pattern(field.pattern), choice, field.modifiers)
         };
         match pigment {
@@ -63,12 +63,12 @@ impl From<Pigment> for Draft {
             Pigment::PigmentMap(f, map) => field(f, Choice::Pigments(map)),
             Pigment::Blocks(f, list) => field(f, Choice::Blocks(list)),
             Pigment::Image(image, modifiers) => {
-                draft(Chooser::Image(image), Choice::Default(None), modifiers)
+                draft(Chooser::Image(image), Choice::Default(None), *modifiers)
             }
             Pigment::Average(members, modifiers) => draft(
                 Chooser::Average,
                 Choice::Pigments(BlendMap::new(members)),
-                modifiers,
+                *modifiers,
             ),
             Pigment::UvMapped(inner) => Self {
                 uv_mapped: true,
@@ -88,16 +88,16 @@ impl Draft {
         } = self;
         let pigment = match chooser {
             Chooser::Solid(color) => return Pigment::Solid(color),
-            Chooser::Image(image) => Pigment::Image(image, modifiers),
+            Chooser::Image(image) => Pigment::Image(image, Box::new(modifiers)),
             Chooser::Average => {
                 let members = match choice {
                     Choice::Pigments(map) => map.entries,
                     _ => vec![],
                 };
-                Pigment::Average(members, modifiers)
+                Pigment::Average(members, Box::new(modifiers))
             }
             Chooser::Pattern(pattern) => {
-                let field = PatternField { pattern, modifiers };
+                let field = Box::new(PatternField { pattern, modifiers });
                 match choice {
                     Choice::Colors(map) => Pigment::ColorMap(field, map),
                     Choice::Pigments(map) => Pigment::PigmentMap(field, map),
@@ -241,9 +241,20 @@ impl Parser<'_> {
             None => base,
         };
         // Most pigments are one name or one colour.
-        if self.peek()?.kind == closing {
+        let token = self.peek()?;
+        if token.kind == closing {
             return Ok(base);
         }
+        let base = match base {
+            Pigment::Solid(_) if token.word().is_some_and(|w| w.kind() == WordKind::Color) => {
+                let color = Pigment::Solid(color_ft(self.color()?));
+                if self.peek()?.kind == closing {
+                    return Ok(color);
+                }
+                color
+            }
+            other => other,
+        };
         let mut draft = Draft::from(base);
         self.items_until(closing, "`pigment`", |p, token| {
             p.pigment_item(&mut draft, token)

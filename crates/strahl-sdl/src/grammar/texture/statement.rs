@@ -38,7 +38,7 @@ struct Draft {
 
 impl From<Surface> for Draft {
     fn from(texture: Surface) -> Self {
-        let patterned = |field: PatternField, choice| Self {
+        let patterned = |field: Box<PatternField>, choice| Self {
             single: Surface::default(),
             chooser: Chooser::Pattern(field.pattern),
             choice,
@@ -52,7 +52,7 @@ impl From<Surface> for Draft {
                 single: Surface::default(),
                 chooser: Chooser::Average,
                 choice: Choice::Map(BlendMap::new(members)),
-                modifiers,
+                modifiers: *modifiers,
                 uv_mapped: false,
             },
             Surface::UvMapped(inner) => Self {
@@ -74,13 +74,15 @@ impl Draft {
     fn finish(self) -> Surface {
         let texture = match (self.chooser, self.choice) {
             (Chooser::Single, _) => self.single,
-            (Chooser::Average, Choice::Map(map)) => Surface::Average(map.entries, self.modifiers),
+            (Chooser::Average, Choice::Map(map)) => {
+                Surface::Average(map.entries, Box::new(self.modifiers))
+            }
             (Chooser::Average, _) => self.single,
             (Chooser::Pattern(pattern), choice) => {
-                let field = PatternField {
+                let field = Box::new(PatternField {
                     pattern,
                     modifiers: self.modifiers,
-                };
+                });
                 match choice {
                     Choice::Map(map) => Surface::Map(field, map),
                     Choice::Blocks(list) => Surface::Blocks(field, list),
@@ -234,7 +236,7 @@ impl Parser<'_> {
             _ => None,
         })?;
         if let (Some(normal), Some(top)) = (&found, top_of(&mut draft.single)) {
-            top.normal = Some(PovNormal::clone(normal));
+            top.normal = Some(Box::new(PovNormal::clone(normal)));
             return Ok(true);
         }
         let found = self.accept_thing(|thing| match thing {
@@ -242,7 +244,7 @@ impl Parser<'_> {
             _ => None,
         })?;
         if let (Some(finish), Some(top)) = (&found, top_of(&mut draft.single)) {
-            top.finish = **finish;
+            top.finish = Arc::clone(finish);
             return Ok(true);
         }
         Ok(false)
@@ -329,7 +331,7 @@ impl Parser<'_> {
             ));
         }
         draft.single = match image {
-            Some(image) => Surface::MaterialMap(image, Modifiers::default(), list),
+            Some(image) => Surface::MaterialMap(image, Box::default(), list),
             None => list.swap_remove(0),
         };
         draft.chooser = Chooser::Single;
