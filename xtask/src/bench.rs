@@ -66,7 +66,8 @@ fn one_scene(scene: &Path, runs: usize) -> Result<f64> {
     Ok(ratio)
 }
 
-fn median(values: &mut [f64]) -> f64 {
+/// The middle one of several values.
+pub(crate) fn median(values: &mut [f64]) -> f64 {
     values.sort_by(f64::total_cmp);
     values[values.len() / 2]
 }

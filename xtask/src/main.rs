@@ -2,6 +2,7 @@
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "a program talks")]
 
 mod bench;
+mod bench_parse;
 mod compare_pov;
 mod pov;
 
@@ -10,6 +11,8 @@ use std::path::Path;
 
 const USAGE: &str = "usage: cargo xtask COMMAND
   bench spd [FOLDER] [--runs N]   trace times of the SPD scenes (*.nff.gz) in FOLDER against POV-Ray, one thread
+  bench parse [--runs N] [--megabytes N]
+                                  time of reading a million spheres made by loops, and an exported scene, against POV-Ray
   compare-pov [FOLDER] [--size 160x120] [--limit N] [--only PART] [--jobs 2] [--out DIR]
                                   pictures of POV-Ray's example scenes by both programs, with their differences
   nff2pov SCENE OUTPUT.pov        the scene as POV-Ray takes it, doing the same work";
@@ -19,6 +22,7 @@ fn main() -> Result<()> {
     let words: Vec<&str> = args.iter().map(String::as_str).collect();
     match words.as_slice() {
         ["bench", "spd", rest @ ..] => bench::spd(rest),
+        ["bench", "parse", rest @ ..] => bench_parse::parse(rest),
         ["compare-pov", rest @ ..] => compare_pov::run(rest),
         ["nff2pov", scene, output] => pov::convert(Path::new(scene), Path::new(output)),
         _ => bail!("{USAGE}"),
