@@ -32,7 +32,17 @@ macro_rules! accelerators {
         impl AnyAccelerator {
             /// Builds the structure over boxes `0..n`.
             pub fn build(kind: AcceleratorKind, bounds: &[Aabb]) -> Self {
-                match kind { $(AcceleratorKind::$variant => Self::$variant(($build)(bounds)),)+ }
+                Self::build_classed(kind, bounds, &|_| 0)
+            }
+
+            /// Builds the structure over boxes `0..n`, with leaves of one class each (see [`Bvh8`]).
+            pub fn build_classed(kind: AcceleratorKind, bounds: &[Aabb], class: &dyn Fn(u32) -> u8) -> Self {
+                match kind {
+                    $(AcceleratorKind::$variant => {
+                        let build: fn(&[Aabb], &dyn Fn(u32) -> u8) -> $variant = $build;
+                        Self::$variant(build(bounds, class))
+                    })+
+                }
             }
         }
 
@@ -50,6 +60,10 @@ macro_rules! accelerators {
                 stats: &mut TraversalStats,
             ) {
                 match self { $(Self::$variant(a) => a.traverse(ray, range, visitor, stats),)+ }
+            }
+
+            fn slots(&self) -> &[u32] {
+                match self { $(Self::$variant(a) => a.slots(),)+ }
             }
 
             fn bytes(&self) -> usize {
@@ -70,11 +84,11 @@ macro_rules! accelerators {
 // THE table of accelerators: a new one is one line here.
 accelerators! {
     /// No structure: every primitive for every ray.
-    "list" List = List::build,
+    "list" List = |b, _| List::build(b),
     /// The binary bounding volume hierarchy: the readable reference.
-    "bvh2" Bvh2 = Bvh2::build,
+    "bvh2" Bvh2 = |b, _| Bvh2::build(b),
     /// The bounding volume hierarchy of width eight.
-    "bvh" Bvh8 = |b| Bvh8::build(b, |_| 0),
+    "bvh" Bvh8 = |b, class| Bvh8::build(b, class),
 }
 
 #[expect(

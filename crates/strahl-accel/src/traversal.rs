@@ -79,6 +79,11 @@ pub trait Accelerator: Send + Sync {
         stats: &mut TraversalStats,
     );
 
+    /// The primitives in the order of the leaves' slots, for [`Visitor::visit_leaf`]; nothing if the structure has no slots.
+    fn slots(&self) -> &[u32] {
+        &[]
+    }
+
     /// Bytes the structure occupies.
     fn bytes(&self) -> usize;
 

@@ -5,6 +5,7 @@
 //! * [`Csg`]: solids combined to one, by trees of any depth.
 //! * [`mod@conformance`]: the battery of tests every primitive must pass.
 
+pub mod blocks;
 pub mod conformance;
 pub mod csg;
 pub mod mesh;

@@ -12,6 +12,7 @@
 //! number of threads, order of tiles and split into regions.
 
 mod area;
+mod blocks;
 mod camera;
 mod compile;
 mod film;

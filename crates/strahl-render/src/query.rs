@@ -1,9 +1,11 @@
+use crate::blocks::{LaneTests, LeafClass};
 use crate::hit::{Hit, Origin, RayClass};
 use crate::scene::{Prim, PrimKind, RenderGroup, RenderScene};
-use strahl_accel::{Accelerator, TraversalStats, Visitor};
+use strahl_accel::{Accelerator, BLOCK, Leaf, TraversalStats, Visitor};
 use strahl_geometry::{PrimHit, Primitive, RayShear, Scratch, SurfaceId};
 use strahl_math::{Interval, Ray};
 use strahl_shade::Sides;
+use strahl_simd::Isa;
 
 /// Asks a scene what its rays meet; owns the working memory of one thread.
 #[derive(Debug)]
@@ -133,6 +135,9 @@ trait Query {
     /// Whether the hits behind the first one on the same primitive matter too.
     const ALL: bool;
 
+    /// Whether any hit will do.
+    const ANY: bool = false;
+
     /// Whether a hit on an element of a material that lets light through (or not) is of interest; asked only on
     /// primitives with both kinds.
     fn wants_hit(transmits: bool) -> bool;
@@ -175,6 +180,8 @@ impl Query for AnyOpaque {
     fn wants(flags: u8) -> bool {
         flags & Prim::STOPS != 0
     }
+
+    const ANY: bool = true;
 
     fn take(&mut self, hit: Hit, _: f64) -> f64 {
         self.found = Some(hit.id);
@@ -233,7 +240,11 @@ impl<Q: Query> Search<'_, '_, Q> {
     ) -> f64 {
         let from_prim = from.map_or(u32::MAX, |(_, id)| group.prim_of(id));
         let mut stats = TraversalStats::default();
-        let shear = (!group.meshes.is_empty()).then(|| RayShear::new(ray));
+        let shear = if group.sheared {
+            RayShear::new(ray)
+        } else {
+            RayShear::UNUSED
+        };
         let mut visitor = GroupVisitor {
             search: self,
             group,
@@ -264,7 +275,7 @@ struct GroupVisitor<'v, 'a, 's, Q> {
     search: &'v mut Search<'a, 's, Q>,
     group: &'v RenderGroup,
     ray: &'v Ray,
-    shear: Option<RayShear>,
+    shear: RayShear,
     range_min: f64,
     from: From<'v>,
     /// The primitive the ray starts on, or `u32::MAX`.
@@ -274,6 +285,41 @@ struct GroupVisitor<'v, 'a, 's, Q> {
 }
 
 impl<Q: Query> Visitor for GroupVisitor<'_, '_, '_, Q> {
+    const ANY: bool = Q::ANY;
+
+    #[inline(always)]
+    fn visit_leaf<I: Isa>(&mut self, isa: I, leaf: &Leaf<'_>, t_max: f64) -> f64 {
+        let group = self.group;
+        let blocks = leaf.first_block..leaf.first_block + leaf.blocks;
+        match LeafClass::from_number(leaf.class) {
+            LeafClass::Mesh => {
+                self.lanes(isa, leaf.ids, blocks.map(|b| group.blocks.mesh(b)), t_max)
+            }
+            LeafClass::Triangles => self.lanes(
+                isa,
+                leaf.ids,
+                blocks.map(|b| group.blocks.triangles(b)),
+                t_max,
+            ),
+            LeafClass::Spheres => self.lanes(
+                isa,
+                leaf.ids,
+                blocks.map(|b| group.blocks.spheres(b)),
+                t_max,
+            ),
+            LeafClass::Single => {
+                let mut t_max = t_max;
+                for id in leaf.ids {
+                    t_max = self.visit(*id, t_max);
+                    if t_max == f64::NEG_INFINITY {
+                        break;
+                    }
+                }
+                t_max
+            }
+        }
+    }
+
     #[inline]
     fn visit(&mut self, id: u32, t_max: f64) -> f64 {
         let prim = self.group.prims[id as usize];
@@ -295,6 +341,56 @@ impl<Q: Query> Visitor for GroupVisitor<'_, '_, '_, Q> {
 }
 
 impl<Q: Query> GroupVisitor<'_, '_, '_, Q> {
+    /// Tests the primitives of a leaf four at a time.
+    #[inline(always)]
+    fn lanes<'b, I: Isa, B: LaneTests + 'b>(
+        &mut self,
+        isa: I,
+        ids: &[u32],
+        blocks: impl Iterator<Item = &'b B>,
+        mut t_max: f64,
+    ) -> f64 {
+        let shear = self.shear;
+        for (ids, block) in ids.chunks(BLOCK).zip(blocks) {
+            let mut candidates = block.candidates(isa, self.ray, &shear);
+            while candidates != 0 {
+                let lane = candidates.trailing_zeros() as usize;
+                candidates &= candidates - 1;
+                let Some(id) = ids.get(lane) else { break };
+                t_max = self.lane(*id, block, lane, t_max);
+                if t_max == f64::NEG_INFINITY {
+                    return t_max;
+                }
+            }
+        }
+        t_max
+    }
+
+    /// Looks at a primitive that its block takes for a candidate.
+    #[inline]
+    fn lane<B: LaneTests>(&mut self, id: u32, block: &B, lane: usize, t_max: f64) -> f64 {
+        let prim = self.group.prims[id as usize];
+        let plain = prim.flags & Prim::FILTERED == 0 && !Q::ALL && id != self.from_prim;
+        if !plain {
+            return self.visit(id, t_max);
+        }
+        if prim.visible & self.search.class == 0 || !Q::wants(prim.flags) {
+            return t_max;
+        }
+        let range = Interval::new(self.range_min, t_max);
+        let Some((t, uv)) = block.hit(lane, self.ray, &self.shear, range) else {
+            return t_max;
+        };
+        let hit = Hit {
+            t,
+            id: self.base + self.group.first_id(id),
+            facet: 0,
+            uv,
+        };
+        self.t_max = self.search.query.take(hit, t_max);
+        self.t_max
+    }
+
     fn instance(&mut self, index: u32, t_max: f64, from: From<'_>, first: u64) -> f64 {
         let instance = &self.group.instances[index as usize];
         let inner = &self.search.scene.groups[instance.group as usize];
@@ -363,7 +459,7 @@ impl<Q: Query> GroupVisitor<'_, '_, '_, Q> {
                     return None;
                 }
                 let mesh = &self.group.meshes[mesh as usize].mesh;
-                let hit = mesh.hit_element(triangle, self.shear.as_ref()?, range)?;
+                let hit = mesh.hit_element(triangle, &self.shear, range)?;
                 // Seen from outside the mesh every triangle is a primitive of one element.
                 Some(PrimHit {
                     surface: SurfaceId {

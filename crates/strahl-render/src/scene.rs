@@ -1,3 +1,4 @@
+use crate::blocks::Blocks;
 use crate::hit::Hit;
 use std::sync::Arc;
 use strahl_accel::{Accelerator, AnyAccelerator};
@@ -103,6 +104,10 @@ pub(crate) struct RenderGroup {
     pub(crate) count: u64,
     pub(crate) bounds: Aabb,
     pub(crate) accelerator: AnyAccelerator,
+    /// Whether it has triangles that are tested by a shear of the ray.
+    pub(crate) sheared: bool,
+    /// The primitives in the order of the accelerator's leaves.
+    pub(crate) blocks: Blocks,
 }
 
 impl RenderGroup {
@@ -280,6 +285,7 @@ impl RenderScene {
             s.geometry_bytes += size_of_val(g.prims.as_slice())
                 + size_of_val(g.shapes.as_slice())
                 + size_of_val(g.instances.as_slice())
+                + g.blocks.bytes()
                 + g.meshes.iter().map(|m| m.mesh.bytes()).sum::<usize>();
         }
         s

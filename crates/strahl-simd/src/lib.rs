@@ -1,7 +1,8 @@
 //! Vectors for the kernels: eight lanes of f32 for culling, four of f64 for what decides.
 //!
 //! A kernel is written once, generic over an [`Isa`], and entered through [`Isa::call`], which compiles it for the instructions of
-//! that level. [`Simd::detect`] finds out at run time what the processor has; [`dispatch!`] picks the instantiation.
+//! that level. Everything in it that holds vectors must be an `#[inline(always)]` function: what is not (closures too, hence
+//! `array::map` and the like) would be compiled without those instructions, correct but many times slower. [`Simd::detect`] finds out at run time what the processor has; [`dispatch!`] picks the instantiation.
 //!
 //! # The same bits everywhere
 //! The f64 vectors offer `+ - * / sqrt` and comparisons only, each rounded as IEEE 754 says, lane by lane: no fused operations, no
@@ -89,10 +90,26 @@ pub trait Isa: Copy + Send + Sync + 'static {
 macro_rules! dispatch {
     ($simd:expr, $isa:ident => $body:expr) => {
         match $simd {
-            $crate::Simd::Portable($isa) => $crate::Isa::call($isa, || $body),
-            $crate::Simd::Sse4($isa) => $crate::Isa::call($isa, || $body),
-            $crate::Simd::Avx2($isa) => $crate::Isa::call($isa, || $body),
-            $crate::Simd::Avx512($isa) => $crate::Isa::call($isa, || $body),
+            $crate::Simd::Portable($isa) => $crate::Isa::call(
+                $isa,
+                #[inline(always)]
+                || $body,
+            ),
+            $crate::Simd::Sse4($isa) => $crate::Isa::call(
+                $isa,
+                #[inline(always)]
+                || $body,
+            ),
+            $crate::Simd::Avx2($isa) => $crate::Isa::call(
+                $isa,
+                #[inline(always)]
+                || $body,
+            ),
+            $crate::Simd::Avx512($isa) => $crate::Isa::call(
+                $isa,
+                #[inline(always)]
+                || $body,
+            ),
         }
     };
 }
@@ -105,7 +122,11 @@ macro_rules! dispatch {
 macro_rules! dispatch {
     ($simd:expr, $isa:ident => $body:expr) => {
         match $simd {
-            $crate::Simd::Portable($isa) => $crate::Isa::call($isa, || $body),
+            $crate::Simd::Portable($isa) => $crate::Isa::call(
+                $isa,
+                #[inline(always)]
+                || $body,
+            ),
         }
     };
 }

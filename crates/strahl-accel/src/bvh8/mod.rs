@@ -50,11 +50,6 @@ impl Bvh8 {
     /// The most primitives a hierarchy can hold.
     pub const MAX_PRIMITIVES: usize = Child::MAX_BLOCKS;
 
-    /// The primitives in the order of the leaves' slots; [`NO_PRIMITIVE`] where a slot is empty.
-    pub fn slots(&self) -> &[u32] {
-        self.tree.as_ref().map_or(&[], |t| &t.slots)
-    }
-
     /// The same hierarchy walked with the instructions of another level.
     #[must_use]
     pub fn with_simd(self, simd: Simd) -> Self {

@@ -55,6 +55,10 @@ impl Accelerator for Bvh8 {
         }
     }
 
+    fn slots(&self) -> &[u32] {
+        self.tree.as_ref().map_or(&[], |t| &t.slots)
+    }
+
     fn bytes(&self) -> usize {
         let tree = self.tree.as_ref().map_or(0, |t| {
             size_of_val(t.nodes.as_slice()) + size_of_val(t.slots.as_slice())
@@ -85,27 +89,57 @@ struct Slabs<I: Isa> {
 impl<I: Isa> Slabs<I> {
     #[inline(always)]
     fn new(isa: I, cull: &CullRay) -> Self {
-        let axes = &cull.axes;
+        let [x, y, z] = &cull.axes;
         Self {
-            rd: std::array::from_fn(|k| isa.splat_f32(axes[k].rd)),
-            near: std::array::from_fn(|k| isa.splat_f32(axes[k].near)),
-            far: std::array::from_fn(|k| isa.splat_f32(axes[k].far)),
-            first: std::array::from_fn(|k| usize::from(axes[k].rd < 0.0)),
+            rd: [
+                isa.splat_f32(x.rd),
+                isa.splat_f32(y.rd),
+                isa.splat_f32(z.rd),
+            ],
+            near: [
+                isa.splat_f32(x.near),
+                isa.splat_f32(y.near),
+                isa.splat_f32(z.near),
+            ],
+            far: [
+                isa.splat_f32(x.far),
+                isa.splat_f32(y.far),
+                isa.splat_f32(z.far),
+            ],
+            first: [x.rd, y.rd, z.rd].map(|rd| usize::from(rd < 0.0)),
             t_min: isa.splat_f32(cull.t_min),
         }
+    }
+
+    /// Where the ray crosses the planes of an axis that it meets first.
+    #[inline(always)]
+    fn near(&self, isa: I, node: &Node, k: usize) -> I::F32x8 {
+        let planes = isa.load_f32(&node.planes[2 * k + self.first[k]]);
+        isa.mul_sub(planes, self.rd[k], self.near[k])
+    }
+
+    /// Where the ray crosses the planes of an axis that it meets last.
+    #[inline(always)]
+    fn far(&self, isa: I, node: &Node, k: usize) -> I::F32x8 {
+        let planes = isa.load_f32(&node.planes[2 * k + 1 - self.first[k]]);
+        isa.mul_sub(planes, self.rd[k], self.far[k])
     }
 
     /// Where the ray enters the children's boxes, and which of them it may meet.
     #[inline(always)]
     fn enter(&self, isa: I, node: &Node, t_max: I::F32x8) -> (I::F32x8, u32) {
-        let plane = |k: usize, which: usize| isa.load_f32(&node.planes[2 * k + which]);
-        let near = |k: usize| isa.mul_sub(plane(k, self.first[k]), self.rd[k], self.near[k]);
-        let far = |k: usize| isa.mul_sub(plane(k, 1 - self.first[k]), self.rd[k], self.far[k]);
-        let enter = isa.max_f32(
-            isa.max_f32(near(0), near(1)),
-            isa.max_f32(near(2), self.t_min),
+        let (x, y, z) = (
+            self.near(isa, node, 0),
+            self.near(isa, node, 1),
+            self.near(isa, node, 2),
         );
-        let leave = isa.min_f32(isa.min_f32(far(0), far(1)), isa.min_f32(far(2), t_max));
+        let enter = isa.max_f32(isa.max_f32(x, y), isa.max_f32(z, self.t_min));
+        let (x, y, z) = (
+            self.far(isa, node, 0),
+            self.far(isa, node, 1),
+            self.far(isa, node, 2),
+        );
+        let leave = isa.min_f32(isa.min_f32(x, y), isa.min_f32(z, t_max));
         (enter, isa.le_f32(enter, leave))
     }
 }

@@ -239,6 +239,12 @@ impl TriangleMesh {
         self.local_corners(triangle).map(|p| self.anchor + p)
     }
 
+    /// The corners of a triangle as they are stored, relative to the anchor; `None` if it has no area and is never hit.
+    pub fn stored_corners(&self, triangle: u32) -> Option<[[f32; 3]; 3]> {
+        let corners = || self.triangle(triangle).map(|v| self.positions[v as usize]);
+        self.has_area(triangle).then(corners)
+    }
+
     /// The box around a triangle.
     pub fn element_bounds(&self, triangle: u32) -> Aabb {
         Aabb::from_points(self.corners(triangle))
@@ -351,7 +357,7 @@ impl TriangleMesh {
 
     /// Whether a triangle is a surface; in the ray's projection rounding may give area to corners on a line.
     #[inline]
-    fn has_area(&self, triangle: u32) -> bool {
+    pub(crate) fn has_area(&self, triangle: u32) -> bool {
         let [a, b, c] = self.local_corners(triangle);
         (b - a).cross(c - a) != DVec3::ZERO || front_normal(a, b, c).is_some()
     }

@@ -23,6 +23,14 @@ pub struct RayShear {
 }
 
 impl RayShear {
+    /// That of no ray: it meets nothing.
+    pub const UNUSED: Self = Self {
+        axes: [0, 1, 2],
+        origin: [f64::NAN; 3],
+        shear: [f64::NAN; 2],
+        direction_z: f64::NAN,
+    };
+
     /// The shear of a ray: once per ray and space.
     pub fn new(ray: &Ray) -> Self {
         let (d, size) = (ray.direction, ray.direction.abs());
@@ -42,6 +50,24 @@ impl RayShear {
             shear: [d[axes[0]] / direction_z, d[axes[1]] / direction_z],
             direction_z,
         }
+    }
+
+    /// The axes in their new order: the ray moves fastest along the last.
+    #[inline(always)]
+    pub(crate) const fn axes(&self) -> [usize; 3] {
+        self.axes
+    }
+
+    /// The ray's origin in that order.
+    #[inline(always)]
+    pub(crate) const fn origin(&self) -> [f64; 3] {
+        self.origin
+    }
+
+    /// By how much the picture is sheared per unit of z.
+    #[inline(always)]
+    pub(crate) const fn slope(&self) -> [f64; 2] {
+        self.shear
     }
 
     /// The shear of the same ray for corners that are given relative to `anchor`.

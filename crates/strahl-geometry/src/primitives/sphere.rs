@@ -61,12 +61,11 @@ impl Sphere {
     /// `a (r² - |f + (b/a) d|²)`, the roots are `c / q` and `q / a` with `q = b ± √(b² - a c)` of the larger magnitude.
     #[inline(always)]
     fn roots(&self, ray: &Ray, on_surface: bool) -> Option<(f64, f64)> {
-        let (d, r) = (ray.direction, self.radius.abs());
-        let f = ray.origin - self.center;
-        let a = d.dot(d);
-        let b = -f.dot(d);
-        let closest_t = b / a;
         if on_surface {
+            let d = ray.direction;
+            let f = ray.origin - self.center;
+            let b = -f.dot(d);
+            let closest_t = b / d.dot(d);
             // c is zero: the roots are 0 and 2b/a. Below its own rounding error the sign of b says nothing: a tangent.
             let other = 2.0 * closest_t;
             let certain = b.abs() > gamma(4) * f.abs().dot(d.abs());
@@ -76,6 +75,17 @@ impl Sphere {
                 (other, 0.0)
             });
         }
+        Self::crossings_of(self.center, self.radius.abs(), ray)
+    }
+
+    /// The roots for a ray that starts anywhere but on the sphere, whose radius is positive.
+    #[inline(always)]
+    pub(crate) fn crossings_of(center: DVec3, r: f64, ray: &Ray) -> Option<(f64, f64)> {
+        let d = ray.direction;
+        let f = ray.origin - center;
+        let a = d.dot(d);
+        let b = -f.dot(d);
+        let closest_t = b / a;
         let closest = f + d * closest_t;
         let discriminant = a * (r * r - closest.dot(closest));
         // Also false if the ray has a NaN, no direction or an infinite coordinate.

@@ -13,11 +13,12 @@ mod materials;
 mod spaces;
 mod view;
 
+use crate::blocks::{Blocks, LeafClass};
 use crate::scene::{ObjectInfo, RenderGroup, RenderScene};
 use assemble::Assembled;
 pub(crate) use materials::material_transmits;
 use std::sync::Arc;
-use strahl_accel::{AcceleratorKind, AnyAccelerator};
+use strahl_accel::{Accelerator, AcceleratorKind, AnyAccelerator};
 use strahl_math::{Aabb, Transform};
 use strahl_scene::{Background, Camera, Diagnostic, Fog, Scene, SceneLight, Settings, SourceMap};
 use strahl_shade::{Color, Material};
@@ -108,12 +109,15 @@ impl Prepared {
         let last = self.groups.len().saturating_sub(1) as u32;
         let renumber = |group: u32| last - group;
         let groups = self.groups.into_iter().rev().map(|g| {
-            let accelerator = AnyAccelerator::build(kind, &g.prim_bounds);
+            let class = |id: u32| LeafClass::of(&g.prims[id as usize], &g.shapes, &g.meshes) as u8;
+            let accelerator = AnyAccelerator::build_classed(kind, &g.prim_bounds, &class);
+            let blocks = Blocks::new(accelerator.slots(), &g.prims, &g.shapes, &g.meshes);
             let mut instances = g.instances;
             for instance in &mut instances {
                 instance.group = renumber(instance.group);
             }
             RenderGroup {
+                sheared: blocks.sheared() || !g.meshes.is_empty(),
                 prims: g.prims,
                 shapes: g.shapes,
                 meshes: g.meshes,
@@ -122,6 +126,7 @@ impl Prepared {
                 count: g.count,
                 bounds: g.bounds,
                 accelerator,
+                blocks,
             }
         });
         let transmits = self.materials.iter().any(|m| material_transmits(m));
