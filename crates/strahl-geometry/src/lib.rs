@@ -13,6 +13,7 @@ mod primitive;
 pub mod primitives;
 mod shape;
 mod spans;
+pub mod swept;
 
 pub use csg::{Csg, CsgNode, Operands};
 pub use mesh::{Brep, MeshData, Polygon, RayShear, SmoothTriangle, Triangle, TriangleMesh};
@@ -20,3 +21,4 @@ pub use primitive::{GeometryError, PrimHit, Primitive, Scratch, Solid, SurfaceId
 pub use primitives::{Cone, Cuboid, Cylinder, Disc, Plane, Quadric, Sphere, Torus};
 pub use shape::Shape;
 pub use spans::{Crossing, Crossings, Side};
+pub use swept::{Glyph, Outline, OutlineBuilder, Prism, PrismSweep, Spline};

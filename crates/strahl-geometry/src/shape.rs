@@ -1,5 +1,6 @@
 use crate::mesh::{Brep, Polygon, SmoothTriangle, Triangle, TriangleMesh};
 use crate::primitives::{Cone, Cuboid, Cylinder, Disc, Plane, Quadric, Sphere, Torus};
+use crate::swept::{Glyph, Prism};
 use crate::{Csg, GeometryError, PrimHit, Primitive, Scratch, Solid, SurfaceId, SurfacePoint};
 use std::sync::Arc;
 use strahl_math::{Aabb, Interval, Ray, Transform};
@@ -98,6 +99,10 @@ shapes! {
     Torus(Torus),
     /// A surface of degree 2.
     Quadric(Arc<Quadric>),
+    /// A plane figure swept along an axis.
+    Prism(Arc<Prism>),
+    /// A letter.
+    Glyph(Glyph),
     /// A flat triangle.
     Triangle(Triangle),
     /// A triangle with a normal at each corner.
@@ -125,7 +130,7 @@ macro_rules! shared {
     };
 }
 
-shared!(Quadric, SmoothTriangle, TriangleMesh, Csg, Brep);
+shared!(Quadric, Prism, SmoothTriangle, TriangleMesh, Csg, Brep);
 
 #[cfg(test)]
 mod tests {

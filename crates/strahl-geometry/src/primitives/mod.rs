@@ -21,12 +21,14 @@ pub use quadric::Quadric;
 pub use sphere::Sphere;
 pub use torus::Torus;
 
+pub(crate) use convex::start_of;
+
 use crate::GeometryError;
 use strahl_math::error::{ROUNDOFF, gamma};
 use strahl_math::{DVec3, Ray};
 
 /// Checks that a point or vector has no NaN or infinite coordinate.
-fn check_finite(what: &'static str, v: DVec3) -> Result<(), GeometryError> {
+pub(crate) fn check_finite(what: &'static str, v: DVec3) -> Result<(), GeometryError> {
     if v.is_finite() {
         Ok(())
     } else {
@@ -99,7 +101,7 @@ fn unit_vector(v: DVec3) -> DVec3 {
 /// coordinates are at most `extent`: the one place where the primitives' position errors are put together.
 ///
 /// Never zero, so that an offset by it does move the point.
-fn point_error(position: DVec3, extent: f64, operations: u32) -> DVec3 {
+pub(crate) fn point_error(position: DVec3, extent: f64, operations: u32) -> DVec3 {
     let local = gamma(operations) * extent;
     position.abs() * (2.0 * ROUNDOFF) + DVec3::splat(local + f64::MIN_POSITIVE)
 }

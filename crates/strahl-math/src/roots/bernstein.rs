@@ -88,6 +88,23 @@ impl<const N: usize> Isolated<N> {
 const MAX_DEPTH: u32 = 56;
 
 impl<const N: usize> Bernstein<N> {
+    /// The polynomial with these Bernstein coefficients on `low <= t <= high`, each of them off by `error` at most.
+    ///
+    /// The control points of a Bézier curve, put into a linear function, are such coefficients.
+    pub fn new(coefficients: [f64; N], error: f64, low: f64, high: f64) -> Self {
+        let finite = coefficients.iter().all(|c| c.is_finite());
+        Self {
+            coefficients,
+            error: if finite {
+                error + f64::MIN_POSITIVE
+            } else {
+                f64::INFINITY
+            },
+            low,
+            high,
+        }
+    }
+
     /// The polynomial `power[0] + power[1] t + power[2] t² + ...` on `low <= t <= high`.
     ///
     /// The error bound covers the rounding here, with the given coefficients taken as exact or rounded once; add what is

@@ -1,0 +1,309 @@
+use super::outline::{Cut, Outline, direction, slab};
+use super::spans::{report, snap};
+use crate::primitives::point_error;
+use crate::{Crossing, Crossings, PrimHit, Scratch, Side, SurfaceId, SurfacePoint};
+use strahl_math::{Aabb, DVec2, DVec3, Interval, Ray};
+
+/// The facet of the cap at the lower height.
+const LOW_CAP: u32 = 0;
+/// The facet of the cap at the upper height.
+const HIGH_CAP: u32 = 1;
+/// The facet of the first piece's wall.
+const FIRST_WALL: u32 = 2;
+
+/// An outline swept along the z axis from one height to another, seen by rays of its own space.
+///
+/// A ray is inside where it is between the two heights and inside of the outline, so its crossings follow from two lists that
+/// are each right by themselves: the heights, and where the ray's image in the plane crosses the outline. What is inside at
+/// a cap follows from the walls crossed so far, never from a test of its own: walls and caps meet without a crack.
+///
+/// With `conic` the outline is scaled by the height: it is as drawn at height 1, and a point at 0. The image is then the
+/// projection from that point.
+///
+/// Hits have `uv = [s, side]`: the parameter on the piece, and 1 if the outer side is the right of the curve, else -1.
+pub(super) struct Extrusion<'a> {
+    pub(super) outline: &'a Outline,
+    pub(super) conic: bool,
+    pub(super) low: f64,
+    pub(super) high: f64,
+    /// Whether there are caps to be seen.
+    pub(super) capped: bool,
+}
+
+impl Extrusion<'_> {
+    pub(super) fn bounds(&self) -> Aabb {
+        let [min, max] = self.outline.bounds();
+        let scales = if self.conic {
+            [self.low, self.high]
+        } else {
+            [1.0, 1.0]
+        };
+        let corners = scales.into_iter().zip([self.low, self.high]);
+        Aabb::from_points(
+            corners.flat_map(|(scale, z)| [min, max].map(|corner| (corner * scale).extend(z))),
+        )
+    }
+
+    pub(super) fn closest_hit(
+        &self,
+        ray: &Ray,
+        range: Interval,
+        from: Option<SurfaceId>,
+        scratch: &mut Scratch,
+    ) -> Option<PrimHit> {
+        let mut list = scratch.take();
+        self.walk(ray, from, &mut list);
+        let hit = report::first(&list, range, from);
+        scratch.give(list);
+        hit
+    }
+
+    pub(super) fn crossings(
+        &self,
+        ray: &Ray,
+        range: Interval,
+        from: Option<SurfaceId>,
+        scratch: &mut Scratch,
+        out: &mut Crossings,
+    ) {
+        let mut list = scratch.take();
+        self.walk(ray, from, &mut list);
+        report::all(&list, range, from, out, |hit| self.t_error(ray, hit));
+        scratch.give(list);
+    }
+
+    /// Fills the list with the crossings of the whole line.
+    fn walk(&self, ray: &Ray, from: Option<SurfaceId>, list: &mut Crossings) {
+        let Ray {
+            origin: o,
+            direction: d,
+        } = *ray;
+        let finite = o.is_finite() && d.is_finite();
+        if !finite || d == DVec3::ZERO || self.bounds().clip(ray, Interval::LINE).is_none() {
+            return;
+        }
+        let Some(heights) = slab(o.z, d.z, self.low, self.high) else {
+            return;
+        };
+        let always = self.walls(ray, list);
+        if list.list.is_empty() && !always {
+            return;
+        }
+        self.snap_walls(ray, from, &mut list.list);
+
+        let rising = d.z > 0.0;
+        let (first, last) = if rising {
+            (LOW_CAP, HIGH_CAP)
+        } else {
+            (HIGH_CAP, LOW_CAP)
+        };
+        let cap = |t: f64, facet: u32, side: Side| {
+            let on_it = from.is_some_and(|from| from.facet == facet);
+            Crossing::new(
+                PrimHit::simple(if on_it { 0.0 } else { t }, facet),
+                0.0,
+                side,
+            )
+        };
+        list.list.push(cap(heights.min, first, Side::Enter));
+        list.list.push(cap(heights.max, last, Side::Exit));
+        // Where a ray meets an edge it leaves before it enters: no span without length.
+        let rank = |side: Side| match side {
+            Side::Exit => 0,
+            Side::Inner => 1,
+            Side::Enter => 2,
+        };
+        let order = |c: &Crossing| (rank(c.side), c.hit.surface.facet);
+        list.list.sort_unstable_by(|a, b| {
+            a.hit
+                .t
+                .total_cmp(&b.hit.t)
+                .then_with(|| order(a).cmp(&order(b)))
+        });
+
+        let apex = self.apex(ray);
+        let before = |c: &&Crossing| c.side == Side::Inner && c.hit.t < apex;
+        let mut within = always || list.list.iter().filter(before).count() % 2 == 1;
+        let mut between = false;
+        list.list.retain_mut(|crossing| {
+            let inside = within && between;
+            match crossing.side {
+                Side::Enter => between = true,
+                Side::Exit => between = false,
+                Side::Inner => within = !within,
+            }
+            let enters = within && between;
+            if enters == inside || !crossing.hit.t.is_finite() {
+                return false;
+            }
+            if crossing.side == Side::Inner {
+                crossing.hit.uv[1] = self.outer_side(ray, &crossing.hit, enters);
+            } else {
+                crossing.visible = self.capped;
+            }
+            crossing.side = if enters { Side::Enter } else { Side::Exit };
+            true
+        });
+    }
+
+    /// Which side of the curve is outside where a ray crosses a wall: 1 for the right, -1 for the left. `hit.uv[1]` tells as yet
+    /// whether the curve gets to the left of the ray (1) there or to the right (-1).
+    fn outer_side(&self, ray: &Ray, hit: &PrimHit, enters: bool) -> f64 {
+        let [s, rises] = hit.uv;
+        if !self.conic {
+            // The right side of a curve that gets to the left is in front.
+            return if enters { -rises } else { rises };
+        }
+        // Which side is in front changes at the apex; near it only the normal tells on which side of the apex this is.
+        let right = PrimHit {
+            uv: [s, 1.0],
+            ..*hit
+        };
+        let in_front = self.wall_normal(&right).dot(ray.direction) >= 0.0;
+        if enters == in_front { -1.0 } else { 1.0 }
+    }
+
+    /// Where on the ray the outline is scaled to a point, and nothing is inside: at the apex, or infinitely far away.
+    fn apex(&self, ray: &Ray) -> f64 {
+        if self.conic && ray.direction.z != 0.0 {
+            -ray.origin.z / ray.direction.z
+        } else {
+            f64::NEG_INFINITY
+        }
+    }
+
+    /// Lists where the ray's line crosses the infinite walls. `true` if the line's image is a point inside the outline.
+    fn walls(&self, ray: &Ray, list: &mut Crossings) -> bool {
+        let Ray {
+            origin: o,
+            direction: d,
+        } = *ray;
+        let cut = if self.conic {
+            // The plane through line and apex.
+            let normal = o.cross(d);
+            Cut {
+                normal: normal.truncate(),
+                anchor: DVec2::ZERO,
+                offset: normal.z,
+            }
+        } else {
+            Cut {
+                normal: DVec2::new(-d.y, d.x),
+                anchor: o.truncate(),
+                offset: 0.0,
+            }
+        };
+        if cut.normal == DVec2::ZERO {
+            return if !self.conic {
+                self.outline.contains(o.truncate())
+            } else {
+                d.z != 0.0 && self.outline.contains(d.truncate() / d.z)
+            };
+        }
+        self.outline.crossings(&cut, |crossing| {
+            let t = if self.conic {
+                // The point on the line whose direction from the apex is that of the curve's.
+                let aside = crossing.point.extend(1.0);
+                quotient(-aside.cross(o), aside.cross(d))
+            } else {
+                let way = (crossing.point - o.truncate()).extend(0.0);
+                quotient(way, d.truncate().extend(0.0))
+            };
+            let surface = SurfaceId {
+                element: 0,
+                facet: FIRST_WALL.saturating_add(crossing.piece),
+            };
+            let uv = [crossing.s, if crossing.rising { 1.0 } else { -1.0 }];
+            let hit = PrimHit { t, surface, uv };
+            list.list.push(Crossing::new(hit, 0.0, Side::Inner));
+        });
+        false
+    }
+
+    /// Root identity: puts the crossing that the ray starts on at exactly 0.
+    fn snap_walls(&self, ray: &Ray, from: Option<SurfaceId>, walls: &mut [Crossing]) {
+        let Some(start) = from.and_then(|from| from.facet.checked_sub(FIRST_WALL)) else {
+            return;
+        };
+        let run = self.outline.smooth_run(start);
+        let near = |hit: &PrimHit| {
+            let wall = hit.surface.facet.saturating_sub(FIRST_WALL);
+            (self.outline.smooth_run(wall) == run).then(|| self.wall_normal(hit))
+        };
+        let size = self.bounds().size().max_element();
+        snap(walls, ray, size, near);
+    }
+
+    /// The unit normal of a wall at a hit, on the outer side.
+    fn wall_normal(&self, hit: &PrimHit) -> DVec3 {
+        let [s, side] = hit.uv;
+        let index = hit.surface.facet.saturating_sub(FIRST_WALL);
+        let Some(piece) = self.outline.piece(index) else {
+            return DVec3::X; // A hit of another shape.
+        };
+        let along = direction(piece, s);
+        let right = DVec2::new(along.y, -along.x) * side;
+        let normal = if self.conic {
+            right.extend(-right.dot(piece.at(s)))
+        } else {
+            right.extend(0.0)
+        };
+        normal.normalize_or(DVec3::X)
+    }
+
+    pub(super) fn surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
+        let at = ray.at(hit.t);
+        let reach = self.outline.reach().max_element();
+        let tallest = self.low.abs().max(self.high.abs());
+        let (position, normal) = match hit.surface.facet {
+            LOW_CAP => (at.truncate().extend(self.low), DVec3::NEG_Z),
+            HIGH_CAP => (at.truncate().extend(self.high), DVec3::Z),
+            wall => {
+                let piece = self.outline.piece(wall.saturating_sub(FIRST_WALL));
+                let on_curve = piece.map_or(DVec2::ZERO, |piece| piece.at(hit.uv[0]));
+                let scale = if self.conic { at.z } else { 1.0 };
+                ((on_curve * scale).extend(at.z), self.wall_normal(hit))
+            }
+        };
+        let extent = if self.conic {
+            reach * tallest + tallest
+        } else {
+            reach
+        };
+        // Heights are exact at the caps and do not matter on straight walls.
+        SurfacePoint::bare(position, point_error(position, extent, 32), normal)
+    }
+
+    /// How far the parameter of a crossing may be off.
+    fn t_error(&self, ray: &Ray, hit: &PrimHit) -> f64 {
+        let normal = match hit.surface.facet {
+            LOW_CAP | HIGH_CAP => DVec3::Z,
+            _ => self.wall_normal(hit),
+        };
+        let size = self.bounds().max_abs();
+        let reach = ray.origin.length() + (ray.direction * hit.t).length() + size;
+        super::spans::t_error(ray, hit.t, normal, reach, size)
+    }
+
+    pub(super) fn contains(&self, point: DVec3) -> bool {
+        if !(self.low <= point.z && point.z <= self.high) {
+            return false;
+        }
+        if !self.conic {
+            return self.outline.contains(point.truncate());
+        }
+        point.z != 0.0 && self.outline.contains(point.truncate() / point.z)
+    }
+}
+
+/// The number by which `b` has to be multiplied to give `a`, which is parallel to it up to rounding.
+fn quotient(a: DVec3, b: DVec3) -> f64 {
+    let size = b.abs();
+    if size.x >= size.y && size.x >= size.z {
+        a.x / b.x
+    } else if size.y >= size.z {
+        a.y / b.y
+    } else {
+        a.z / b.z
+    }
+}

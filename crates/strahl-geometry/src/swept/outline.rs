@@ -1,0 +1,416 @@
+use super::curve::Piece;
+use super::runs::{Rect, Runs};
+use crate::GeometryError;
+use std::ops::ControlFlow;
+use strahl_math::error::gamma;
+use strahl_math::roots::{Bernstein, RootCount};
+use strahl_math::{DVec2, Interval};
+
+/// Closed curves in a plane, of lines, parabolas and cubics: what prisms and letters are swept from.
+///
+/// A point is inside if a half-line from it crosses the curves an odd number of times (even-odd rule).
+///
+/// Built contour by contour with [`OutlineBuilder`]. Outlines are shared: a page of text has few different letters.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Outline {
+    pieces: Box<[Piece<DVec2>]>,
+    /// For each piece, the first piece of the smooth run that it belongs to.
+    smooth: Box<[u32]>,
+    runs: Runs,
+    /// The largest absolute coordinates.
+    reach: DVec2,
+    gaps: usize,
+}
+
+/// Collects the contours of an [`Outline`].
+///
+/// ```
+/// use strahl_geometry::OutlineBuilder;
+/// use strahl_math::DVec2;
+///
+/// let mut builder = OutlineBuilder::default();
+/// builder.move_to(DVec2::new(-1.0, 0.0));
+/// builder.line_to(DVec2::new(1.0, 0.0));
+/// builder.quadratic_to(DVec2::new(0.0, 2.0), DVec2::new(-1.0, 0.0));
+/// assert_eq!(builder.finish().unwrap().piece_count(), 2);
+/// ```
+#[derive(Clone, Debug, Default)]
+pub struct OutlineBuilder {
+    pieces: Vec<Piece<DVec2>>,
+    /// Where each contour begins.
+    starts: Vec<usize>,
+    first: Option<DVec2>,
+    last: DVec2,
+    gaps: usize,
+}
+
+impl OutlineBuilder {
+    /// Begins a contour; the one before is closed by a line if it is not closed.
+    pub fn move_to(&mut self, point: DVec2) {
+        self.close();
+        self.starts.push(self.pieces.len());
+        self.first = Some(point);
+        self.last = point;
+    }
+
+    /// A line to the point.
+    pub fn line_to(&mut self, point: DVec2) {
+        self.piece(Piece::Line([self.last, point]));
+    }
+
+    /// A parabola to the point.
+    pub fn quadratic_to(&mut self, control: DVec2, point: DVec2) {
+        self.piece(Piece::Quadratic([self.last, control, point]));
+    }
+
+    /// A cubic to the point.
+    pub fn cubic_to(&mut self, control: DVec2, other: DVec2, point: DVec2) {
+        self.piece(Piece::Cubic([self.last, control, other, point]));
+    }
+
+    /// Appends a piece; it begins where the last one has ended.
+    pub(super) fn piece(&mut self, piece: Piece<DVec2>) {
+        self.last = piece.end();
+        let start = piece.start();
+        // What is no longer than a point has no direction.
+        if piece.points().iter().any(|p| *p != start) {
+            self.pieces.push(piece);
+        }
+    }
+
+    /// Closes the contour, by a line if need be.
+    pub fn close(&mut self) {
+        if let Some(first) = self.first.take()
+            && first != self.last
+        {
+            self.gaps += 1;
+            self.line_to(first);
+        }
+    }
+
+    /// The outline; the last contour is closed.
+    ///
+    /// # Errors
+    /// A coordinate is not finite, or there is nothing but points.
+    pub fn finish(mut self) -> Result<Outline, GeometryError> {
+        self.close();
+        let all = self.pieces.iter().flat_map(|piece| piece.points());
+        if !all.clone().all(|p| p.is_finite()) {
+            let what = "a point of the outline";
+            return Err(GeometryError::NotFinite { what });
+        }
+        if self.pieces.is_empty() {
+            return Err(GeometryError::Degenerate {
+                what: "outline",
+                why: "all its points are the same",
+            });
+        }
+        let reach = all.fold(DVec2::ZERO, |reach, p| reach.max(p.abs()));
+        let boxes: Vec<_> = self
+            .pieces
+            .iter()
+            .map(|p| Rect::around(p.points()))
+            .collect();
+        Ok(Outline {
+            smooth: smooth_runs(&self.pieces, &self.starts),
+            runs: Runs::build(&boxes),
+            pieces: self.pieces.into_boxed_slice(),
+            reach,
+            gaps: self.gaps,
+        })
+    }
+}
+
+/// A straight line in the plane of an outline: the points where `normal . (p - anchor) + offset` is zero.
+pub(super) struct Cut {
+    pub(super) normal: DVec2,
+    pub(super) anchor: DVec2,
+    pub(super) offset: f64,
+}
+
+/// Where a line crosses an outline.
+pub(super) struct OutlineCrossing {
+    pub(super) piece: u32,
+    pub(super) s: f64,
+    pub(super) point: DVec2,
+    /// Whether the curve gets to the side that the line's normal points to.
+    pub(super) rising: bool,
+}
+
+impl Outline {
+    /// How many lines, parabolas and cubics there are.
+    pub fn piece_count(&self) -> usize {
+        self.pieces.len()
+    }
+
+    /// How many contours were not closed, so that a line had to be drawn.
+    pub fn gaps(&self) -> usize {
+        self.gaps
+    }
+
+    /// The rectangle around the outline, as its lower left and upper right corner.
+    pub fn bounds(&self) -> [DVec2; 2] {
+        let Rect { min, max } = self.runs.bounds();
+        [min, max]
+    }
+
+    /// The largest absolute coordinates.
+    pub(super) fn reach(&self) -> DVec2 {
+        self.reach
+    }
+
+    pub(super) fn piece(&self, index: u32) -> Option<&Piece<DVec2>> {
+        self.pieces.get(index as usize)
+    }
+
+    /// The first piece of the smooth run that a piece belongs to.
+    pub(super) fn smooth_run(&self, piece: u32) -> u32 {
+        self.smooth.get(piece as usize).copied().unwrap_or(piece)
+    }
+
+    /// Visits all crossings with a line, piece by piece.
+    ///
+    /// Which side a joint is on is decided once, for both pieces that meet there; so a line crosses a contour an even number of
+    /// times whatever the rounding.
+    pub(super) fn crossings(&self, cut: &Cut, mut visit: impl FnMut(&OutlineCrossing)) {
+        let side = |p: DVec2| {
+            let aside = p - cut.anchor;
+            cut.normal.x * aside.x + cut.normal.y * aside.y + cut.offset
+        };
+        // Differences, products, sums, and the roundings of normal and offset.
+        let far = self.reach + cut.anchor.abs();
+        let error = gamma(16) * (cut.normal.abs().dot(far) + cut.offset.abs());
+        let width = cut.normal.abs() * 0.5;
+        let near = |rect: &Rect| {
+            let middle = (rect.min + rect.max) * 0.5;
+            side(middle).abs() <= width.dot(rect.max - rect.min) + error
+        };
+        self.runs.visit(near, |index| {
+            let Some(piece) = self.pieces.get(index) else {
+                return;
+            };
+            let mut found = |s: f64, rising: bool| {
+                visit(&OutlineCrossing {
+                    piece: index as u32,
+                    s,
+                    point: piece.at(s),
+                    rising,
+                });
+            };
+            match *piece {
+                Piece::Line(points) => {
+                    let [a, b] = points.map(side);
+                    if (a >= 0.0) != (b >= 0.0) {
+                        found(a / (a - b), b >= 0.0);
+                    }
+                }
+                Piece::Quadratic(points) => roots(points.map(side), error, &mut found),
+                Piece::Cubic(points) => roots(points.map(side), error, &mut found),
+            }
+        });
+    }
+
+    /// Whether the point is inside; on the boundary either.
+    pub(super) fn contains(&self, point: DVec2) -> bool {
+        let cut = Cut {
+            normal: DVec2::Y,
+            anchor: point,
+            offset: 0.0,
+        };
+        let mut inside = false;
+        self.crossings(&cut, |crossing| inside ^= crossing.point.x > point.x);
+        inside
+    }
+}
+
+/// The roots of a polynomial in Bernstein form where it changes its sign.
+fn roots<const N: usize>(values: [f64; N], error: f64, found: &mut impl FnMut(f64, bool)) {
+    let all = |sign: bool| values.iter().all(|v| (*v >= 0.0) == sign);
+    // Nearly all pieces lie on one side: no need to go on.
+    if all(true) || all(false) {
+        return;
+    }
+    let polynomial = Bernstein::new(values, error, 0.0, 1.0);
+    let _ = polynomial.isolate(&mut |part| {
+        if part.count != RootCount::Even {
+            found(part.root(), part.rising);
+        }
+        ControlFlow::Continue(())
+    });
+}
+
+/// Two pieces are one smooth run if the sine of the angle between them is less: 2⁻²⁰, some hundred times what coordinates given
+/// with eight digits make of a smooth joint.
+const SMOOTH: f64 = 1.0 / 1_048_576.0;
+
+/// For each piece, the first piece of its smooth run.
+pub(super) fn smooth_runs(pieces: &[Piece<DVec2>], starts: &[usize]) -> Box<[u32]> {
+    let mut run: Vec<u32> = (0..pieces.len() as u32).collect();
+    let ends = starts.iter().skip(1).copied().chain([pieces.len()]);
+    for (&start, end) in starts.iter().zip(ends) {
+        let Some(contour) = pieces.get(start..end) else {
+            continue;
+        };
+        for (i, pair) in contour.windows(2).enumerate() {
+            if let [a, b] = pair
+                && joins_smoothly(a, b)
+            {
+                run[start + i + 1] = run[start + i];
+            }
+        }
+        // The last run goes on with the first one.
+        if let [first, .., last] = contour
+            && joins_smoothly(last, first)
+        {
+            let (from, to) = (run[end - 1], run[start]);
+            run[start..end]
+                .iter_mut()
+                .filter(|r| **r == from)
+                .for_each(|r| *r = to);
+        }
+    }
+    run.into_boxed_slice()
+}
+
+fn joins_smoothly(a: &Piece<DVec2>, b: &Piece<DVec2>) -> bool {
+    let (into, out) = (direction(a, 1.0), direction(b, 0.0));
+    let sine = into.perp_dot(out);
+    a.end() == b.start()
+        && into.dot(out) > 0.0
+        && sine.abs() <= SMOOTH * into.length() * out.length()
+}
+
+/// A vector along the curve at `s`: the derivative, or where that vanishes the direction of what lies beside it.
+pub(super) fn direction(piece: &Piece<DVec2>, s: f64) -> DVec2 {
+    let (start, end) = (piece.start(), piece.end());
+    let size = piece
+        .points()
+        .iter()
+        .fold(0.0, |m: f64, p| m.max((*p - start).length()));
+    let tangent = piece.derivative(s);
+    if tangent.length() > gamma(64) * size {
+        return tangent;
+    }
+    let here = piece.at(s);
+    // The part of the piece on the longer side of `s`.
+    let aside = if s < 0.5 {
+        piece.at(s + 1.0 / 1024.0) - here
+    } else {
+        here - piece.at(s - 1.0 / 1024.0)
+    };
+    if aside == DVec2::ZERO {
+        end - start
+    } else {
+        aside
+    }
+}
+
+/// The part of `range` where `origin + t direction` is between `low` and `high`; `None` if there is no such part.
+pub(super) fn slab(origin: f64, direction: f64, low: f64, high: f64) -> Option<Interval> {
+    if direction == 0.0 {
+        return (low <= origin && origin <= high).then_some(Interval::LINE);
+    }
+    let (a, b) = ((low - origin) / direction, (high - origin) / direction);
+    let (min, max) = if a < b { (a, b) } else { (b, a) };
+    (min < max).then_some(Interval::new(min, max))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn disc_with_a_hole() -> Outline {
+        let mut builder = OutlineBuilder::default();
+        for radius in [1.0, 0.5] {
+            // A circle of four cubics, as drawing programs make it.
+            let k = 0.552_284_749_831 * radius;
+            builder.move_to(DVec2::new(radius, 0.0));
+            for quarter in 0..4 {
+                let turn = |x: f64, y: f64| match quarter {
+                    0 => DVec2::new(x, y),
+                    1 => DVec2::new(-y, x),
+                    2 => DVec2::new(-x, -y),
+                    _ => DVec2::new(y, -x),
+                };
+                builder.cubic_to(turn(radius, k), turn(k, radius), turn(0.0, radius));
+            }
+        }
+        builder.finish().unwrap()
+    }
+
+    #[test]
+    fn holes_are_outside() {
+        let outline = disc_with_a_hole();
+        assert_eq!((outline.piece_count(), outline.gaps()), (8, 0));
+        for (x, inside) in [
+            (0.0, false),
+            (0.49, false),
+            (0.51, true),
+            (0.99, true),
+            (1.01, false),
+        ] {
+            for angle in 0..64 {
+                let (sin, cos) = (f64::from(angle) * 0.1).sin_cos();
+                assert_eq!(
+                    outline.contains(DVec2::new(x * cos, x * sin)),
+                    inside,
+                    "{x} {angle}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn smooth_joints_make_one_run() {
+        let outline = disc_with_a_hole();
+        assert_eq!(*outline.smooth, [0, 0, 0, 0, 4, 4, 4, 4]);
+        let mut builder = OutlineBuilder::default();
+        builder.move_to(DVec2::ZERO);
+        builder.line_to(DVec2::X);
+        builder.quadratic_to(DVec2::new(2.0, 0.0), DVec2::new(2.0, 1.0));
+        builder.line_to(DVec2::new(2.0, 2.0));
+        let outline = builder.finish().unwrap();
+        assert_eq!((*outline.smooth).to_vec(), [0, 0, 0, 3]);
+        assert_eq!(outline.gaps(), 1);
+    }
+
+    #[test]
+    fn lines_cross_contours_an_even_number_of_times() {
+        let outline = disc_with_a_hole();
+        // Through joints, tangent to them, and anywhere.
+        for i in 0..2000 {
+            let (sin, cos) = (f64::from(i) * 0.01).sin_cos();
+            for offset in [0.0, 0.5, 1.0, f64::from(i) * 1e-3] {
+                let (mut count, mut balance) = (0, 0);
+                let cut = Cut {
+                    normal: DVec2::new(cos, sin),
+                    anchor: DVec2::ZERO,
+                    offset,
+                };
+                outline.crossings(&cut, |crossing| {
+                    count += 1;
+                    balance += if crossing.rising { 1 } else { -1 };
+                });
+                assert!(count % 2 == 0 && balance == 0 && count <= 4, "{i} {offset}");
+            }
+        }
+    }
+
+    #[test]
+    fn nothing_but_a_point_is_refused() {
+        let mut builder = OutlineBuilder::default();
+        builder.move_to(DVec2::ONE);
+        builder.line_to(DVec2::ONE);
+        assert!(matches!(
+            builder.finish(),
+            Err(GeometryError::Degenerate { .. })
+        ));
+        let mut builder = OutlineBuilder::default();
+        builder.move_to(DVec2::ONE);
+        builder.line_to(DVec2::NAN);
+        assert!(matches!(
+            builder.finish(),
+            Err(GeometryError::NotFinite { .. })
+        ));
+    }
+}

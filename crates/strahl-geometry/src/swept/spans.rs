@@ -1,0 +1,94 @@
+//! What the swept shapes do alike with the crossings of a whole line.
+
+use crate::{Crossing, PrimHit, Side, SurfaceId};
+use strahl_math::error::gamma;
+use strahl_math::{DVec3, Interval, Ray};
+
+/// From the crossings of a whole line to what was asked for.
+pub(super) mod report {
+    use super::{Interval, PrimHit, Side, SurfaceId};
+    use crate::Crossings;
+    use crate::primitives::start_of;
+
+    /// The first hit in the range that can be seen.
+    pub(in crate::swept) fn first(
+        list: &Crossings,
+        range: Interval,
+        from: Option<SurfaceId>,
+    ) -> Option<PrimHit> {
+        let start = start_of(range, from);
+        let counts = |t: f64| range.accepts(t) && start < t;
+        let mut seen = list.list.iter().filter(|c| c.visible && counts(c.hit.t));
+        seen.next().map(|crossing| crossing.hit)
+    }
+
+    /// The crossings in the range with the errors of their parameters, and what is inside at its start.
+    pub(in crate::swept) fn all(
+        list: &Crossings,
+        range: Interval,
+        from: Option<SurfaceId>,
+        out: &mut Crossings,
+        t_error: impl Fn(&PrimHit) -> f64,
+    ) {
+        let start = start_of(range, from);
+        for crossing in &list.list {
+            let t = crossing.hit.t;
+            if t <= start {
+                out.inside_at_start = crossing.side == Side::Enter;
+            } else if range.accepts(t) {
+                let mut crossing = *crossing;
+                crossing.t_error = t_error(&crossing.hit);
+                out.list.push(crossing);
+            }
+        }
+    }
+}
+
+/// How far off a surface a ray's start may lie and still be taken to lie on it, as a part of the shape's size: 2⁻¹².
+///
+/// This decides nothing about where a surface is. A ray says itself that it starts on a piece of surface; among the crossings
+/// with that piece the nearest one is then the start. The limit only keeps a crossing elsewhere from being taken for it
+/// where rounding has lost the right one, as may happen beside an edge.
+const NEAR: f64 = 1.0 / 4096.0;
+
+/// Root identity: of the crossings for which `normal` answers, the nearest to 0 is where the ray starts, and gets `t = 0`.
+///
+/// The start has been moved off the surface to the side that the ray leaves towards, so of the two crossings of a short chord
+/// that of the start is the nearer one, and where rays graze both may be missing.
+pub(super) fn snap(
+    crossings: &mut [Crossing],
+    ray: &Ray,
+    size: f64,
+    normal: impl Fn(&PrimHit) -> Option<DVec3>,
+) {
+    let mut nearest: Option<&mut Crossing> = None;
+    for crossing in crossings {
+        let t = crossing.hit.t.abs();
+        if nearest.as_ref().is_some_and(|best| best.hit.t.abs() <= t) {
+            continue;
+        }
+        if let Some(n) = normal(&crossing.hit)
+            && (n.dot(ray.direction) * t).abs() <= NEAR * size
+        {
+            nearest = Some(crossing);
+        }
+    }
+    if let Some(crossing) = nearest {
+        crossing.hit.t = 0.0;
+    }
+}
+
+/// How far the parameter may be off at which a ray crosses a surface with this normal, if points near it are known to
+/// within rounding of `reach`; a surface that is met at a flat angle has a curvature of about `size`.
+pub(super) fn t_error(ray: &Ray, t: f64, normal: DVec3, reach: f64, size: f64) -> f64 {
+    let point = gamma(48) * reach;
+    let speed = ray.direction.length();
+    let straight = point / normal.dot(ray.direction).abs();
+    let tangent = (2.0 * size * point).sqrt() / speed;
+    let across = if straight < tangent {
+        straight
+    } else {
+        tangent
+    };
+    gamma(4) * t.abs() + across
+}
