@@ -1,4 +1,5 @@
 use crate::args::{PictureArgs, PovArgs, SceneArgs};
+use crate::fonts::font_folders;
 use crate::report::{Failure, Reporter};
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -147,6 +148,7 @@ impl<'a> Input<'a> {
         let mut options = LoadOptions {
             format: self.format,
             library: vec![PathBuf::from(".")],
+            fonts: font_folders(),
             writable: self.writable(),
             on_message: (!quiet).then(|| Box::new(print_message) as _),
             ..LoadOptions::default()

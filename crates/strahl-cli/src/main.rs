@@ -9,6 +9,7 @@ mod animation;
 mod args;
 mod commands;
 mod explain;
+mod fonts;
 mod input;
 mod interrupt;
 mod pov;

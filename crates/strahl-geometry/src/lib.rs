@@ -21,4 +21,6 @@ pub use primitive::{GeometryError, PrimHit, Primitive, Scratch, Solid, SurfaceId
 pub use primitives::{Cone, Cuboid, Cylinder, Disc, Plane, Quadric, Sphere, Torus};
 pub use shape::Shape;
 pub use spans::{Crossing, Crossings, Side};
-pub use swept::{Glyph, Outline, OutlineBuilder, Prism, PrismSweep, Spline};
+pub use swept::{
+    Glyph, Lathe, Outline, OutlineBuilder, Prism, PrismSweep, Sor, SphereSweep, Spline, SweepSpline,
+};

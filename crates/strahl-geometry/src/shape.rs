@@ -1,6 +1,6 @@
 use crate::mesh::{Brep, Polygon, SmoothTriangle, Triangle, TriangleMesh};
 use crate::primitives::{Cone, Cuboid, Cylinder, Disc, Plane, Quadric, Sphere, Torus};
-use crate::swept::{Glyph, Prism};
+use crate::swept::{Glyph, Lathe, Prism, Sor, SphereSweep};
 use crate::{Csg, GeometryError, PrimHit, Primitive, Scratch, Solid, SurfaceId, SurfacePoint};
 use std::sync::Arc;
 use strahl_math::{Aabb, Interval, Ray, Transform};
@@ -103,6 +103,12 @@ shapes! {
     Prism(Arc<Prism>),
     /// A letter.
     Glyph(Glyph),
+    /// A curve turned about an axis.
+    Lathe(Arc<Lathe>),
+    /// A surface of revolution whose radius is a function of the height.
+    Sor(Arc<Sor>),
+    /// The space that a moving sphere covers.
+    SphereSweep(Arc<SphereSweep>),
     /// A flat triangle.
     Triangle(Triangle),
     /// A triangle with a normal at each corner.
@@ -130,7 +136,16 @@ macro_rules! shared {
     };
 }
 
-shared!(Quadric, Prism, SmoothTriangle, TriangleMesh, Csg, Brep);
+shared!(
+    Quadric,
+    Prism,
+    Lathe,
+    Sor,
+    SmoothTriangle,
+    TriangleMesh,
+    Csg,
+    Brep
+);
 
 #[cfg(test)]
 mod tests {

@@ -9,6 +9,7 @@ use std::sync::{Arc, OnceLock};
 use strahl_scene::{FileId, Span};
 
 mod folder;
+mod fonts;
 mod memory;
 
 pub use folder::FolderHost;
@@ -93,6 +94,15 @@ pub trait Host: Send {
     /// # Errors
     /// [`HostError::NotFound`] lets the parser look among the built-in include files.
     fn load(&mut self, name: &str, from: &str) -> Result<Source, HostError>;
+
+    /// Reads a font of the system by the name of its file, without folder; `None` if there is none. Scenes that name a font get
+    /// here when [`Host::load`] does not find it.
+    ///
+    /// # Errors
+    /// If the file is there and can't be read.
+    fn load_font(&mut self, _file: &str) -> Result<Option<Source>, HostError> {
+        Ok(None)
+    }
 
     /// Opens a file for `#write`.
     ///

@@ -84,6 +84,8 @@ pub struct LoadOptions {
     pub sdl: strahl_sdl::Options,
     /// Folders where included files are searched after the scene's own; the built-in includes come last.
     pub library: Vec<PathBuf>,
+    /// Folders where fonts are searched, with the folders in them, after the others.
+    pub fonts: Vec<PathBuf>,
     /// The folder within which the scene may write files; `None` forbids it.
     pub writable: Option<PathBuf>,
     /// Takes what the scene says by `#debug` and the like.
@@ -96,6 +98,7 @@ impl fmt::Debug for LoadOptions {
             .field("format", &self.format)
             .field("sdl", &self.sdl)
             .field("library", &self.library)
+            .field("fonts", &self.fonts)
             .field("writable", &self.writable)
             .finish_non_exhaustive()
     }
@@ -103,7 +106,7 @@ impl fmt::Debug for LoadOptions {
 
 impl LoadOptions {
     fn parse(self, name: &str, bytes: Vec<u8>) -> Loaded {
-        let mut host = FolderHost::new(self.library);
+        let mut host = FolderHost::new(self.library).with_fonts(self.fonts);
         if let Some(folder) = self.writable {
             host = host.allow_writing(folder);
         }

@@ -22,6 +22,7 @@ pub use sphere::Sphere;
 pub use torus::Torus;
 
 pub(crate) use convex::start_of;
+pub(crate) use frame::turn;
 
 use crate::GeometryError;
 use strahl_math::error::{ROUNDOFF, gamma};

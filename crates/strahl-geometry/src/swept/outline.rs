@@ -111,8 +111,12 @@ impl OutlineBuilder {
             .iter()
             .map(|p| Rect::around(p.points()))
             .collect();
+        let ends = self.pieces.iter().map(|piece| {
+            [(piece.start(), 0.0), (piece.end(), 1.0)].map(|(p, s)| (p, direction(piece, s)))
+        });
+        let ends: Vec<[End; 2]> = ends.collect();
         Ok(Outline {
-            smooth: smooth_runs(&self.pieces, &self.starts),
+            smooth: smooth_runs(&ends, &self.starts),
             runs: Runs::build(&boxes),
             pieces: self.pieces.into_boxed_slice(),
             reach,
@@ -243,41 +247,38 @@ fn roots<const N: usize>(values: [f64; N], error: f64, found: &mut impl FnMut(f6
 /// with eight digits make of a smooth joint.
 const SMOOTH: f64 = 1.0 / 1_048_576.0;
 
-/// For each piece, the first piece of its smooth run.
-pub(super) fn smooth_runs(pieces: &[Piece<DVec2>], starts: &[usize]) -> Box<[u32]> {
+/// An end of a piece: where it is, and a vector along the curve there.
+pub(super) type End = (DVec2, DVec2);
+
+/// For each piece, given by its two ends, the first piece of its smooth run. `starts` tells where each contour begins; its last run
+/// may go on with its first one.
+pub(super) fn smooth_runs(pieces: &[[End; 2]], starts: &[usize]) -> Box<[u32]> {
     let mut run: Vec<u32> = (0..pieces.len() as u32).collect();
     let ends = starts.iter().skip(1).copied().chain([pieces.len()]);
     for (&start, end) in starts.iter().zip(ends) {
-        let Some(contour) = pieces.get(start..end) else {
+        let (Some(contour), Some(run)) = (pieces.get(start..end), run.get_mut(start..end)) else {
             continue;
         };
         for (i, pair) in contour.windows(2).enumerate() {
-            if let [a, b] = pair
-                && joins_smoothly(a, b)
+            if let [[_, into], [out, _]] = pair
+                && joins_smoothly(*into, *out)
             {
-                run[start + i + 1] = run[start + i];
+                run[i + 1] = run[i];
             }
         }
-        // The last run goes on with the first one.
-        if let [first, .., last] = contour
-            && joins_smoothly(last, first)
+        if let ([[out, _], .., [_, into]], [to, .., from]) = (contour, &mut *run)
+            && joins_smoothly(*into, *out)
         {
-            let (from, to) = (run[end - 1], run[start]);
-            run[start..end]
-                .iter_mut()
-                .filter(|r| **r == from)
-                .for_each(|r| *r = to);
+            let (from, to) = (*from, *to);
+            run.iter_mut().filter(|r| **r == from).for_each(|r| *r = to);
         }
     }
     run.into_boxed_slice()
 }
 
-fn joins_smoothly(a: &Piece<DVec2>, b: &Piece<DVec2>) -> bool {
-    let (into, out) = (direction(a, 1.0), direction(b, 0.0));
+fn joins_smoothly((end, into): End, (start, out): End) -> bool {
     let sine = into.perp_dot(out);
-    a.end() == b.start()
-        && into.dot(out) > 0.0
-        && sine.abs() <= SMOOTH * into.length() * out.length()
+    end == start && into.dot(out) > 0.0 && sine.abs() <= SMOOTH * into.length() * out.length()
 }
 
 /// A vector along the curve at `s`: the derivative, or where that vanishes the direction of what lies beside it.

@@ -1,4 +1,5 @@
 use super::Texture;
+use super::objects::KnownFont;
 use super::texture::{KnownMaterials, KnownPicture};
 use crate::keywords::Word;
 use crate::parser::{PResult, Parser};
@@ -20,6 +21,8 @@ pub struct State {
     pub(super) materials: KnownMaterials,
     /// The pictures read so far.
     pub(super) pictures: Vec<KnownPicture>,
+    /// The fonts read so far.
+    pub(super) fonts: Vec<KnownFont>,
 }
 
 /// What stands in the braces of `#default`.

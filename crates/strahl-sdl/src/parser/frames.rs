@@ -298,12 +298,38 @@ impl<'h> Parser<'h> {
 
     /// The bytes of a file that is no text of the scene, such as a picture.
     pub(crate) fn read_file(&mut self, name: &str, from: Place) -> PResult<Source> {
+        match self.look_for_file(name, from)? {
+            Ok(source) => Ok(source),
+            Err(error) => Err(self.unreadable(error, from)),
+        }
+    }
+
+    /// The bytes of a file, or why the host does not give them, which is not reported yet.
+    pub(crate) fn look_for_file(
+        &mut self,
+        name: &str,
+        from: Place,
+    ) -> PResult<Result<Source, HostError>> {
         let asking = self.sources.get(from.file as usize);
         let asking = asking.map_or(String::new(), |f| f.source.name.clone());
-        let source = match self.host.load(name, &asking) {
-            Ok(source) => source,
-            Err(error) => return Err(self.unreadable(error, from)),
-        };
+        match self.host.load(name, &asking) {
+            Ok(source) => self.counted(source, from).map(Ok),
+            Err(error) => Ok(Err(error)),
+        }
+    }
+
+    /// The bytes of a font of the system, by the name of its file.
+    pub(crate) fn system_font(&mut self, file: &str, from: Place) -> PResult<Option<Source>> {
+        match self.host.load_font(file) {
+            Ok(Some(source)) => self.counted(source, from).map(Some),
+            Ok(None) => Ok(None),
+            Err(error) => Err(self.unreadable(error, from)),
+        }
+    }
+
+    /// Counts the bytes of a file to those read.
+    fn counted(&mut self, source: Source, from: Place) -> PResult<Source> {
+        let name = &source.name;
         self.read_bytes = self.read_bytes.saturating_add(source.bytes.len() as u64);
         let limit = self.options.limits.read_bytes;
         if self.read_bytes > limit {

@@ -1,3 +1,4 @@
+use super::fonts::FontFolders;
 use super::{Host, HostError, Source, Stream};
 use std::fs;
 use std::io::{BufWriter, ErrorKind, Read, Write};
@@ -13,6 +14,7 @@ type Listener = dyn FnMut(Stream, &str) + Send;
 /// folder allowed, none at first. Messages of the scene go to the function given, or nowhere.
 pub struct FolderHost {
     library: Vec<PathBuf>,
+    fonts: FontFolders,
     writable: Option<PathBuf>,
     max_file: u64,
     on_message: Option<Box<Listener>>,
@@ -34,11 +36,19 @@ impl FolderHost {
     pub fn new(library: impl IntoIterator<Item = PathBuf>) -> Self {
         Self {
             library: library.into_iter().collect(),
+            fonts: FontFolders::default(),
             writable: None,
             max_file: u64::from(u32::MAX) - 1,
             on_message: None,
             now: None,
         }
+    }
+
+    /// Searches these folders, and the folders in them, for fonts that are not found elsewhere.
+    #[must_use]
+    pub fn with_fonts(mut self, folders: impl IntoIterator<Item = PathBuf>) -> Self {
+        self.fonts = FontFolders::new(folders);
+        self
     }
 
     /// Lets scenes write files within this folder; the names they give are taken relative to it.
@@ -121,6 +131,14 @@ impl Host for FolderHost {
             name: name.to_owned(),
             searched: folders.iter().map(show).collect(),
         })
+    }
+
+    fn load_font(&mut self, file: &str) -> Result<Option<Source>, HostError> {
+        let Some(path) = self.fonts.find(file) else {
+            return Ok(None);
+        };
+        let bytes = self.read(&path)?;
+        Ok(bytes.map(|bytes| Source::new(path.display().to_string(), bytes)))
     }
 
     fn create(&mut self, name: &str, append: bool) -> Result<Box<dyn Write + Send>, HostError> {

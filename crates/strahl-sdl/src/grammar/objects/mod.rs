@@ -7,19 +7,25 @@ mod cone;
 mod csg;
 mod cylinder;
 mod disc;
+mod lathe;
 mod mesh;
 mod modifiers;
 mod named;
 mod plane;
 mod polygon;
+mod prism;
 mod quadric;
 mod reuse;
+mod sor;
 mod sphere;
+mod sphere_sweep;
+mod text;
 mod torus;
 mod triangle;
 
 pub(super) use named::object;
 pub(crate) use reuse::{Shared, Tally, expanded};
+pub(super) use text::KnownFont;
 
 use super::{Entity, by_word};
 use crate::keywords::{Word, WordKind};
@@ -32,6 +38,7 @@ type ObjectParser = fn(&mut Parser<'_>) -> PResult<Entity>;
 /// All objects by their words.
 static OBJECTS: [Option<ObjectParser>; Word::ALL.len()] = by_word::<ObjectParser, _>([
     (Word::Box, boxes::cuboid),
+    (Word::Lathe, lathe::lathe),
     (Word::LightGroup, super::lights::light_group),
     (Word::LightSource, super::lights::light_source),
     (Word::Cone, cone::cone),
@@ -45,9 +52,13 @@ static OBJECTS: [Option<ObjectParser>; Word::ALL.len()] = by_word::<ObjectParser
     (Word::Object, object),
     (Word::Plane, plane::plane),
     (Word::Polygon, polygon::polygon),
+    (Word::Prism, prism::prism),
     (Word::Quadric, quadric::quadric),
     (Word::SmoothTriangle, triangle::smooth_triangle),
+    (Word::Sor, sor::sor),
     (Word::Sphere, sphere::sphere),
+    (Word::SphereSweep, sphere_sweep::sphere_sweep),
+    (Word::Text, text::text),
     (Word::Torus, torus::torus),
     (Word::Triangle, triangle::triangle),
     (Word::Union, csg::union),

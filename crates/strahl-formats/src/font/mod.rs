@@ -1,0 +1,209 @@
+//! Fonts: TrueType and OpenType files to the outlines of letters.
+
+mod error;
+mod substitute;
+
+pub use error::FontError;
+pub use substitute::substitutes;
+
+use skrifa::instance::{LocationRef, Size};
+use skrifa::metrics::GlyphMetrics;
+use skrifa::outline::{DrawSettings, OutlineGlyphCollection, OutlinePen};
+use skrifa::raw::tables::kern::SubtableKind;
+use skrifa::raw::{FileRef, TableProvider};
+use skrifa::{FontRef, GlyphId, MetadataProvider};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+use strahl_geometry::{Outline, OutlineBuilder};
+use strahl_math::DVec2;
+
+/// A font: the outlines of its letters, each made once and shared by all its uses.
+///
+/// Lengths are in units of the font's em square, so that lines of text are about 1 apart. Of a collection the first font is taken.
+/// Letters are as drawn by their designer: nothing is fitted to pixels.
+#[derive(Debug)]
+pub struct Font {
+    bytes: Vec<u8>,
+    glyphs: BTreeMap<u32, Option<Arc<Outline>>>,
+}
+
+/// A letter of a line of text.
+#[derive(Clone, Debug)]
+pub struct Letter {
+    /// Its outline about its own origin, which lies on the base line; `None` for what has none, such as spaces.
+    pub outline: Option<Arc<Outline>>,
+    /// Where its origin is on the base line.
+    pub x: f64,
+}
+
+impl Font {
+    /// A font from the bytes of its file.
+    ///
+    /// # Errors
+    /// The file is no font, or a table that every font must have is missing or broken.
+    pub fn parse(bytes: Vec<u8>) -> Result<Self, FontError> {
+        let font = open(&bytes)?;
+        let outlines = font.outline_glyphs();
+        if outlines.format().is_none() {
+            return Err(FontError::NoOutlines);
+        }
+        units(&font)?;
+        Ok(Self {
+            bytes,
+            glyphs: BTreeMap::new(),
+        })
+    }
+
+    /// Lays out a line of text from x = 0 to the right: every letter after the width of the one before, corrected by the font's
+    /// table of pairs (`kern`). A character that the font lacks is its first glyph, usually a box.
+    ///
+    /// There is no shaping: no ligatures, no right-to-left text.
+    ///
+    /// # Errors
+    /// The outline of a letter is broken.
+    pub fn lay_out(&mut self, text: &str) -> Result<Vec<Letter>, FontError> {
+        let Self { bytes, glyphs } = self;
+        let font = open(bytes)?;
+        let unit = 1.0 / units(&font)?;
+        let (charmap, outlines) = (font.charmap(), font.outline_glyphs());
+        let metrics = font.glyph_metrics(Size::unscaled(), LocationRef::default());
+        let mut letters = vec![];
+        let (mut x, mut before) = (0.0, None);
+        for character in text.chars() {
+            let id = charmap.map(character).unwrap_or(GlyphId::NOTDEF);
+            if let Some(before) = before {
+                x += f64::from(kerning(&font, before, id)) * unit;
+            }
+            let outline = match glyphs.get(&id.to_u32()) {
+                Some(known) => known.clone(),
+                None => {
+                    let made = outline(&outlines, id, unit)?.map(Arc::new);
+                    glyphs.insert(id.to_u32(), made.clone());
+                    made
+                }
+            };
+            letters.push(Letter { outline, x });
+            x += advance(&metrics, id) * unit;
+            before = Some(id);
+        }
+        Ok(letters)
+    }
+}
+
+/// The font of a file, or the first one of a collection.
+fn open(bytes: &[u8]) -> Result<FontRef<'_>, FontError> {
+    let broken = |error| FontError::Broken {
+        what: "the file",
+        error,
+    };
+    match FileRef::new(bytes).map_err(broken)? {
+        FileRef::Font(font) => Ok(font),
+        FileRef::Collection(fonts) => fonts.get(0).map_err(broken),
+    }
+}
+
+/// The units of the em square's side.
+fn units(font: &FontRef<'_>) -> Result<f64, FontError> {
+    let head = font.head().map_err(|error| FontError::Broken {
+        what: "the table `head`",
+        error,
+    })?;
+    match head.units_per_em() {
+        0 => Err(FontError::NoOutlines),
+        units => Ok(f64::from(units)),
+    }
+}
+
+fn advance(metrics: &GlyphMetrics<'_>, id: GlyphId) -> f64 {
+    f64::from(metrics.advance_width(id).unwrap_or(0.0))
+}
+
+/// By how many units two letters in a row move apart.
+fn kerning(font: &FontRef<'_>, left: GlyphId, right: GlyphId) -> i32 {
+    let Ok(kern) = font.kern() else {
+        return 0;
+    };
+    let usable = kern
+        .subtables()
+        .filter_map(Result::ok)
+        .filter(|table| table.is_horizontal() && !table.is_cross_stream() && !table.is_variable());
+    let pairs = usable.filter_map(|table| match table.kind() {
+        Ok(SubtableKind::Format0(pairs)) => pairs.kerning(left, right),
+        Ok(SubtableKind::Format2(pairs)) => pairs.kerning(left, right),
+        Ok(SubtableKind::Format3(pairs)) => pairs.kerning(left, right),
+        _ => None,
+    });
+    pairs.sum()
+}
+
+/// The outline of a glyph; `None` if there is nothing to see.
+fn outline(
+    outlines: &OutlineGlyphCollection<'_>,
+    id: GlyphId,
+    unit: f64,
+) -> Result<Option<Outline>, FontError> {
+    let Some(glyph) = outlines.get(id) else {
+        return Ok(None);
+    };
+    let mut pen = Pen {
+        builder: OutlineBuilder::default(),
+        unit,
+        drawn: false,
+    };
+    let settings = DrawSettings::unhinted(Size::unscaled(), LocationRef::default());
+    if let Err(error) = glyph.draw(settings, &mut pen) {
+        return Err(FontError::Glyph {
+            id: id.to_u32(),
+            message: error.to_string(),
+        });
+    }
+    // A glyph of nothing but points is as good as a space.
+    Ok(if pen.drawn {
+        pen.builder.finish().ok()
+    } else {
+        None
+    })
+}
+
+/// Draws a glyph into an outline.
+struct Pen {
+    builder: OutlineBuilder,
+    unit: f64,
+    drawn: bool,
+}
+
+impl Pen {
+    fn point(&self, x: f32, y: f32) -> DVec2 {
+        DVec2::new(f64::from(x) * self.unit, f64::from(y) * self.unit)
+    }
+}
+
+impl OutlinePen for Pen {
+    fn move_to(&mut self, x: f32, y: f32) {
+        self.builder.move_to(self.point(x, y));
+    }
+
+    fn line_to(&mut self, x: f32, y: f32) {
+        self.drawn = true;
+        self.builder.line_to(self.point(x, y));
+    }
+
+    fn quad_to(&mut self, cx0: f32, cy0: f32, x: f32, y: f32) {
+        self.drawn = true;
+        let control = self.point(cx0, cy0);
+        self.builder.quadratic_to(control, self.point(x, y));
+    }
+
+    fn curve_to(&mut self, cx0: f32, cy0: f32, cx1: f32, cy1: f32, x: f32, y: f32) {
+        self.drawn = true;
+        let (control, other) = (self.point(cx0, cy0), self.point(cx1, cy1));
+        self.builder.cubic_to(control, other, self.point(x, y));
+    }
+
+    fn close(&mut self) {
+        self.builder.close();
+    }
+}
+
+#[cfg(test)]
+mod tests;

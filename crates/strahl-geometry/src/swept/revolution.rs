@@ -1,0 +1,405 @@
+use super::meridian::{Arc, ArcPoint, Meridian};
+use super::runs::Rect;
+use super::spans::{report, snap};
+use crate::primitives::{point_error, turn};
+use crate::{Crossing, Crossings, PrimHit, Scratch, Side, SurfaceId, SurfacePoint};
+use std::f64::consts::TAU;
+use strahl_math::error::gamma;
+use strahl_math::roots::find_root;
+use strahl_math::{Aabb, DVec2, DVec3, Interval, Ray};
+
+/// A meridian turned about the y axis.
+///
+/// In the half-plane of radius and height a line is one branch of a hyperbola. With the distance `m` of the line from the axis
+/// and `h` along its horizontal part, counted from the place nearest to the axis, a point of the meridian is on it where
+/// `h = ±q`, `q = sqrt(r² - m²)`, is where the line has the same height: two functions of the meridian's parameter, one for each half of the
+/// line. Neither has the double roots that their product has for level rays, the polynomial of degree 6 of other ray tracers.
+/// As radius and height are monotone on every arc, both functions are bounded by their values at the ends of an
+/// interval, and their slopes by a few products: bisection finds all roots, with certainty and mostly at once.
+///
+/// Which side of the line a joint of two arcs is on is decided by the same numbers for both, so entering and leaving
+/// alternate whatever the rounding.
+///
+/// Hits have `uv = [s, side]`: the parameter on the arc, and 1 if the outer side is the right of the curve, else -1.
+pub(super) struct Revolution<'a>(pub(super) &'a Meridian);
+
+/// A line as the meridian sees it.
+struct Line {
+    ray: Ray,
+    /// Unit vector along the horizontal part (x, z).
+    ahead: DVec2,
+    /// Horizontal speed.
+    speed: f64,
+    /// Where the origin is along the horizontal part.
+    start: f64,
+    /// The squared distance from the axis.
+    m2: f64,
+}
+
+/// A value of the function whose roots are looked for.
+#[derive(Clone, Copy)]
+struct Sample {
+    s: f64,
+    y: f64,
+    /// The distance along the horizontal part from where the line is nearest to the axis.
+    q: f64,
+    value: f64,
+}
+
+impl Sample {
+    fn sign(&self) -> bool {
+        self.value >= 0.0
+    }
+}
+
+/// Halvings at most: then an interval has no point inside.
+const DEPTH: u32 = 56;
+
+impl Line {
+    fn new(ray: &Ray) -> Self {
+        let flat = |v: DVec3| DVec2::new(v.x, v.z);
+        let (o, d) = (flat(ray.origin), flat(ray.direction));
+        let speed = d.length();
+        // An upright line may be taken to lie in any plane: best in that through the axis.
+        let ahead = if speed > 0.0 {
+            d / speed
+        } else {
+            o.try_normalize().unwrap_or(DVec2::X)
+        };
+        let m = ahead.perp_dot(o);
+        Self {
+            ray: *ray,
+            ahead,
+            speed,
+            start: ahead.dot(o),
+            m2: m * m,
+        }
+    }
+
+    /// The height over the line times its horizontal speed, but for the part that depends on `q`.
+    fn level(&self, y: f64) -> f64 {
+        self.speed * (y - self.ray.origin.y) + self.ray.direction.y * self.start
+    }
+
+    fn q(&self, square: f64) -> f64 {
+        let q2 = square - self.m2;
+        if q2 > 0.0 { q2.sqrt() } else { 0.0 }
+    }
+
+    /// Whether the line may pass through a ring of this box.
+    fn meets(&self, rect: &Rect) -> bool {
+        if rect.max.x < self.m2 {
+            return false;
+        }
+        let dy = self.ray.direction.y;
+        let (near, far) = (self.q(rect.min.x) * dy, self.q(rect.max.x) * dy);
+        let (low, high) = (self.level(rect.min.y), self.level(rect.max.y));
+        let tallest = rect.min.y.abs() + rect.max.y.abs() + self.ray.origin.y.abs();
+        let slack = gamma(16) * (self.speed * tallest + (dy * self.start).abs() + far.abs());
+        let overlaps = |a: f64, b: f64| {
+            let (a, b) = if a < b { (a, b) } else { (b, a) };
+            low <= b + slack && a - slack <= high
+        };
+        overlaps(near, far) || overlaps(-near, -far)
+    }
+
+    /// The value at a point for the half of the line that `half` (1 or -1) names.
+    fn sample(&self, half: f64, s: f64, point: ArcPoint) -> Sample {
+        let q = self.q(point.square);
+        Sample {
+            s,
+            y: point.y,
+            q,
+            value: self.level(point.y) - half * self.ray.direction.y * q,
+        }
+    }
+
+    /// All crossings with an arc: parameter, half of the line, whether the value rises.
+    fn roots(&self, arc: &Arc, visit: &mut impl FnMut(f64, f64, bool)) {
+        let (first, last) = (arc.at(0.0), arc.at(1.0));
+        let within = |point: ArcPoint| point.square >= self.m2;
+        let (mut low, mut high) = ((0.0, first), (1.0, last));
+        match (within(first), within(last)) {
+            (false, false) => return,
+            (true, true) => {}
+            (outer, _) => {
+                // What is nearer to the axis than the line is of no interest.
+                let s = find_root(0.0, 1.0, !outer, f64::NAN, |s| {
+                    let point = arc.at(s);
+                    (point.square - self.m2, point.d_square)
+                });
+                let point = ArcPoint {
+                    square: self.m2,
+                    ..arc.at(s)
+                };
+                if outer {
+                    high = (s, point);
+                } else {
+                    low = (s, point);
+                }
+            }
+        }
+        for half in [1.0, -1.0] {
+            let a = self.sample(half, low.0, low.1);
+            let b = self.sample(half, high.0, high.1);
+            self.search(arc, half, a, b, 0, visit);
+        }
+    }
+
+    fn search(
+        &self,
+        arc: &Arc,
+        half: f64,
+        a: Sample,
+        b: Sample,
+        depth: u32,
+        visit: &mut impl FnMut(f64, f64, bool),
+    ) {
+        let change = a.sign() != b.sign();
+        let climb = half * self.ray.direction.y;
+        if !change {
+            // The two parts of the value are both monotone.
+            let (low, high) = sorted(self.level(a.y), self.level(b.y));
+            let (least, most) = sorted(climb * a.q, climb * b.q);
+            if low > most || high < least {
+                return;
+            }
+        }
+        let [low, high] = self.slopes(arc, climb, &a, &b);
+        if low >= 0.0 || high <= 0.0 {
+            if change {
+                visit(self.refine(arc, half, &a, &b), half, b.sign());
+            }
+            return;
+        }
+        let s = 0.5 * (a.s + b.s);
+        if depth >= DEPTH || !(a.s < s && s < b.s) {
+            if change {
+                visit(s, half, b.sign());
+            }
+            return;
+        }
+        let middle = self.sample(half, s, arc.at(s));
+        let steepest = if -low > high { -low } else { high };
+        if !change && middle.value.abs() > steepest * (b.s - a.s) * 0.5 {
+            return;
+        }
+        self.search(arc, half, a, middle, depth + 1, visit);
+        self.search(arc, half, middle, b, depth + 1, visit);
+    }
+
+    /// Bounds of the slope of the value between two samples.
+    fn slopes(&self, arc: &Arc, climb: f64, a: &Sample, b: &Sample) -> [f64; 2] {
+        let dy = arc.dy_range(a.s, b.s).map(|dy| dy * self.speed);
+        // q' = (r²)' / 2q.
+        let (near, far) = sorted(a.q, b.q);
+        let dq = arc.d_square_range(a.s, b.s);
+        let over = |slope: f64, small: f64, large: f64| {
+            if slope == 0.0 {
+                0.0
+            } else {
+                slope / (2.0 * if slope > 0.0 { large } else { small })
+            }
+        };
+        let dq = [over(dq[0], near, far), over(dq[1], far, near)];
+        let product = |q: f64| if climb == 0.0 { 0.0 } else { climb * q };
+        let (least, most) = sorted(product(dq[0]), product(dq[1]));
+        [dy[0] - most, dy[1] - least]
+    }
+
+    fn refine(&self, arc: &Arc, half: f64, a: &Sample, b: &Sample) -> f64 {
+        let climb = half * self.ray.direction.y;
+        let guess = a.s + (b.s - a.s) * (a.value / (a.value - b.value));
+        find_root(a.s, b.s, b.sign(), guess, |s| {
+            let point = arc.at(s);
+            let sample = self.sample(half, s, point);
+            // Where q is 0 the slope is no number, and the interval is halved.
+            let slope = point.dy * self.speed - climb * (point.d_square / (2.0 * sample.q));
+            (sample.value, slope)
+        })
+    }
+
+    /// The ray's parameter at a point of the meridian that is on the line.
+    fn parameter(&self, half: f64, point: ArcPoint) -> f64 {
+        let dy = self.ray.direction.y;
+        if dy.abs() > self.speed {
+            (point.y - self.ray.origin.y) / dy
+        } else {
+            (half * self.q(point.square) - self.start) / self.speed
+        }
+    }
+}
+
+fn sorted(a: f64, b: f64) -> (f64, f64) {
+    if a < b { (a, b) } else { (b, a) }
+}
+
+impl Revolution<'_> {
+    pub(super) fn bounds(&self) -> Aabb {
+        let Rect { min, max } = self.0.runs.bounds();
+        let r = max.x.sqrt();
+        Aabb::new(DVec3::new(-r, min.y, -r), DVec3::new(r, max.y, r))
+    }
+
+    pub(super) fn closest_hit(
+        &self,
+        ray: &Ray,
+        range: Interval,
+        from: Option<SurfaceId>,
+        scratch: &mut Scratch,
+    ) -> Option<PrimHit> {
+        let mut list = scratch.take();
+        self.walk(ray, from, &mut list);
+        let hit = report::first(&list, range, from);
+        scratch.give(list);
+        hit
+    }
+
+    pub(super) fn crossings(
+        &self,
+        ray: &Ray,
+        range: Interval,
+        from: Option<SurfaceId>,
+        scratch: &mut Scratch,
+        out: &mut Crossings,
+    ) {
+        let mut list = scratch.take();
+        self.walk(ray, from, &mut list);
+        let size = self.bounds().max_abs();
+        report::all(&list, range, from, out, |hit| {
+            let reach = ray.origin.length() + (ray.direction * hit.t).length() + size;
+            super::spans::t_error(ray, hit.t, self.normal(ray, hit), reach, size)
+        });
+        scratch.give(list);
+    }
+
+    /// Fills the list with the crossings of the whole line.
+    fn walk(&self, ray: &Ray, from: Option<SurfaceId>, list: &mut Crossings) {
+        let (o, d) = (ray.origin, ray.direction);
+        if !(o.is_finite() && d.is_finite())
+            || d == DVec3::ZERO
+            || self.bounds().clip(ray, Interval::LINE).is_none()
+        {
+            return;
+        }
+        let line = Line::new(ray);
+        self.0.runs.visit(
+            |rect| line.meets(rect),
+            |index| {
+                let Some(arc) = self.0.arcs.get(index) else {
+                    return;
+                };
+                line.roots(arc, &mut |s, half, rising| {
+                    let t = line.parameter(half, arc.at(s));
+                    // The slope of the value has the sign of the approach to the right side, on the other half the other one.
+                    let approach = if rising { half } else { -half };
+                    let surface = SurfaceId {
+                        element: 0,
+                        facet: index as u32,
+                    };
+                    let uv = [s, approach];
+                    let hit = PrimHit { t, surface, uv };
+                    let mut crossing = Crossing::new(hit, 0.0, Side::Inner);
+                    crossing.visible = arc.visible;
+                    list.list.push(crossing);
+                });
+            },
+        );
+        if let Some(from) = from {
+            let run = |facet: u32| self.0.smooth.get(facet as usize);
+            let near = |hit: &PrimHit| {
+                (run(hit.surface.facet) == run(from.facet)).then(|| self.normal(ray, hit))
+            };
+            let size = self.bounds().size().max_element();
+            snap(&mut list.list, ray, size, near);
+        }
+        list.list.sort_unstable_by(|a, b| {
+            let facets = || a.hit.surface.facet.cmp(&b.hit.surface.facet);
+            a.hit.t.total_cmp(&b.hit.t).then_with(facets)
+        });
+        let mut inside = false;
+        for crossing in &mut list.list {
+            inside = !inside;
+            let [_, approach] = crossing.hit.uv;
+            // Entering goes against the outer side.
+            crossing.hit.uv[1] = if inside { -approach } else { approach };
+            crossing.side = if inside { Side::Enter } else { Side::Exit };
+        }
+        list.list.retain(|crossing| crossing.hit.t.is_finite());
+    }
+
+    fn arc(&self, hit: &PrimHit) -> Option<&Arc> {
+        self.0.arcs.get(hit.surface.facet as usize)
+    }
+
+    /// The direction away from the axis at a hit (x, z).
+    fn outward(ray: &Ray, hit: &PrimHit) -> DVec2 {
+        let at = ray.at(hit.t);
+        let flat = DVec2::new(at.x, at.z);
+        let largest = flat.abs().max_element();
+        if largest > 0.0 && largest.is_finite() {
+            (flat / largest).normalize()
+        } else {
+            DVec2::X
+        }
+    }
+
+    /// The unit normal at a hit, on the outer side.
+    fn normal(&self, ray: &Ray, hit: &PrimHit) -> DVec3 {
+        let Some(arc) = self.arc(hit) else {
+            return DVec3::Y; // A hit of another shape.
+        };
+        let [s, side] = hit.uv;
+        let right = arc.right(s) * side;
+        let outward = Self::outward(ray, hit) * right.x;
+        DVec3::new(outward.x, right.y, outward.y).normalize_or(DVec3::Y)
+    }
+
+    /// The surface at a hit, with texture coordinates: `u` once around the axis, `v` as the arc says.
+    pub(super) fn surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
+        let outward = Self::outward(ray, hit);
+        let [s, _] = hit.uv;
+        let arc = self.arc(hit);
+        let (r, y) = arc.map_or((0.0, 0.0), |arc| (arc.radius(s), arc.at(s).y));
+        let position = DVec3::new(outward.x * r, y, outward.y * r);
+        let extent = self.bounds().max_abs();
+        let normal = self.normal(ray, hit);
+        let bare = SurfacePoint::bare(position, point_error(position, extent, 32), normal);
+        let Some(arc) = arc else { return bare };
+        let [from, to] = arc.v;
+        let right = arc.right(s);
+        // Along the curve, per unit of `v`.
+        let along = DVec2::new(-right.y, right.x);
+        let scale = if from == to { 0.0 } else { 1.0 / (to - from) };
+        let speed = if arc.is_squared() && r > 0.0 {
+            0.5 / r
+        } else {
+            1.0
+        };
+        let along = along * (scale * speed);
+        SurfacePoint {
+            uv: DVec2::new(turn(outward.y, outward.x), from + (to - from) * s),
+            dpdu: DVec3::new(-outward.y, 0.0, outward.x) * (TAU * r),
+            dpdv: DVec3::new(outward.x * along.x, along.y, outward.y * along.x),
+            ..bare
+        }
+    }
+
+    /// Whether a line away from the axis crosses the meridian an odd number of times.
+    pub(super) fn contains(&self, point: DVec3) -> bool {
+        let square = point.x * point.x + point.z * point.z;
+        let mut inside = false;
+        self.0.runs.visit(
+            |rect| rect.max.x >= square && rect.min.y <= point.y && point.y <= rect.max.y,
+            |index| {
+                let Some(arc) = self.0.arcs.get(index) else {
+                    return;
+                };
+                if (arc.at(0.0).y >= point.y) != (arc.at(1.0).y >= point.y) {
+                    inside ^= arc.at(arc.at_height(point.y)).square > square;
+                }
+            },
+        );
+        inside
+    }
+}

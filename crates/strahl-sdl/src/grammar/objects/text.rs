@@ -1,0 +1,140 @@
+use crate::grammar::Entity;
+use crate::keywords::Word;
+use crate::parser::{PResult, Parser, Place};
+use crate::source::{HostError, Source};
+use strahl_formats::font::{Font, substitutes};
+use strahl_geometry::{GeometryError, Glyph};
+use strahl_math::DVec3;
+use strahl_scene::{CsgOp, Object, ObjectKind};
+
+/// A font that has been read: texts ask for the same again and again.
+#[derive(Debug)]
+pub(in crate::grammar) struct KnownFont {
+    name: String,
+    font: Font,
+}
+
+/// The fonts of `internal`, by their numbers; other numbers mean the first.
+const INTERNAL: [&str; 4] = ["povlogo.ttf", "timrom.ttf", "cyrvetic.ttf", "crystal.ttf"];
+
+/// `text { ttf "file" "text" thickness, offset }`, or `internal number` for the file
+pub(super) fn text(p: &mut Parser<'_>) -> PResult<Entity> {
+    p.simple(|p| {
+        let token = p.peek()?;
+        let name = match token.word() {
+            Some(Word::Ttf) => {
+                p.take(token)?;
+                p.file_name()?
+            }
+            Some(Word::Internal) => {
+                p.take(token)?;
+                // Beyond the list, NaN too, is the first.
+                let number = p.float()? as usize;
+                INTERNAL.get(number).unwrap_or(&INTERNAL[0]).to_string()
+            }
+            _ => return Err(p.unexpected(token, "`ttf` or `internal`")),
+        };
+        let place = p.place();
+        p.comma()?;
+        let line = p.string()?;
+        p.comma()?;
+        let thickness = p.float()?;
+        p.comma()?;
+        let offset = p.vector3()?;
+        let font = p.font(&name, place)?;
+        let letters = match p.state.fonts.get_mut(font).map(|f| f.font.lay_out(&line)) {
+            Some(Ok(letters)) => letters,
+            Some(Err(error)) => return Err(p.fail(place, format!("`{name}`: {error}"))),
+            None => vec![],
+        };
+        let mut glyphs = vec![];
+        for (index, letter) in letters.into_iter().enumerate() {
+            let Some(outline) = letter.outline else {
+                continue;
+            };
+            let origin = DVec3::X * letter.x + offset * index as f64;
+            match Glyph::try_new(outline, origin, thickness) {
+                Ok(glyph) => glyphs.push(glyph),
+                Err(error) => return Ok(Err::<_, GeometryError>(error)),
+            }
+        }
+        let span = p.span_at(place);
+        let objects = glyphs.into_iter().map(|glyph| {
+            let mut object = Object::from(glyph);
+            object.span = span;
+            object
+        });
+        let mut objects: Vec<_> = objects.collect();
+        Ok(Ok(match objects.pop() {
+            // A single letter needs no union around it.
+            Some(Object {
+                kind: kind @ ObjectKind::Shape(_),
+                ..
+            }) if objects.is_empty() => kind,
+            last => {
+                objects.extend(last);
+                Object::csg(CsgOp::Union, objects).kind
+            }
+        }))
+    })
+}
+
+impl Parser<'_> {
+    /// The place among the known fonts of the one that a scene names, or of one that stands in for it.
+    fn font(&mut self, name: &str, place: Place) -> PResult<usize> {
+        if let Some(known) = self.state.fonts.iter().position(|f| f.name == name) {
+            return Ok(known);
+        }
+        let source = self.font_file(name, place)?;
+        let file = source.name.clone();
+        let font = match Font::parse(source.bytes) {
+            Ok(font) => font,
+            Err(error) => return Err(self.fail(place, format!("`{file}`: {error}"))),
+        };
+        self.state.fonts.push(KnownFont {
+            name: name.to_owned(),
+            font,
+        });
+        Ok(self.state.fonts.len() - 1)
+    }
+
+    /// Looks for a font: by its name where all files are searched, then among the fonts of the system, then for one like it.
+    fn font_file(&mut self, name: &str, place: Place) -> PResult<Source> {
+        let file = name.rsplit(['/', '\\']).next().unwrap_or(name);
+        // The ending may be left out.
+        let mut endings = vec![""];
+        if !file.contains('.') {
+            endings.extend([".ttf", ".ttc", ".otf"]);
+        }
+        let mut searched = vec![];
+        for ending in &endings {
+            match self.look_for_file(&format!("{name}{ending}"), place)? {
+                Ok(source) => return Ok(source),
+                Err(HostError::NotFound { searched: here, .. }) => searched = here,
+                Err(error) => return Err(self.fail(place, error.to_string())),
+            }
+        }
+        for ending in &endings {
+            if let Some(source) = self.system_font(&format!("{file}{ending}"), place)? {
+                return Ok(source);
+            }
+        }
+        for other in substitutes(file) {
+            if let Some(source) = self.system_font(other, place)? {
+                self.warn_hint(
+                    place,
+                    format!("the font `{name}` was not found; {other} stands in for it"),
+                    "letters will look and be spaced differently; name its folder with `--library-path`",
+                );
+                return Ok(source);
+            }
+        }
+        let searched = searched.join(", ");
+        let message = format!("the font `{name}` was not found (searched in: {searched})");
+        Err(self.fail_hint(
+            place,
+            message,
+            "put it beside the scene, or name its folder with `--library-path`; POV-Ray's fonts come with its include files",
+        ))
+    }
+}
