@@ -26,8 +26,6 @@ pub(super) struct Revolution<'a>(pub(super) &'a Meridian);
 /// A line as the meridian sees it.
 struct Line {
     ray: Ray,
-    /// Unit vector along the horizontal part (x, z).
-    ahead: DVec2,
     /// Horizontal speed.
     speed: f64,
     /// Where the origin is along the horizontal part.
@@ -52,9 +50,6 @@ impl Sample {
     }
 }
 
-/// Halvings at most: then an interval has no point inside.
-const DEPTH: u32 = 56;
-
 impl Line {
     fn new(ray: &Ray) -> Self {
         let flat = |v: DVec3| DVec2::new(v.x, v.z);
@@ -69,7 +64,6 @@ impl Line {
         let m = ahead.perp_dot(o);
         Self {
             ray: *ray,
-            ahead,
             speed,
             start: ahead.dot(o),
             m2: m * m,
@@ -139,10 +133,15 @@ impl Line {
                 }
             }
         }
+        let dy = self.ray.direction.y;
         for half in [1.0, -1.0] {
             let a = self.sample(half, low.0, low.1);
             let b = self.sample(half, high.0, high.1);
-            self.search(arc, half, a, b, 0, visit);
+            // What the terms of the value may lose to rounding.
+            let tallest = a.y.abs() + b.y.abs() + self.ray.origin.y.abs();
+            let widest = a.q + b.q + self.start.abs();
+            let noise = gamma(16) * (self.speed * tallest + dy.abs() * widest);
+            self.search(arc, half, a, b, noise, visit);
         }
     }
 
@@ -152,7 +151,7 @@ impl Line {
         half: f64,
         a: Sample,
         b: Sample,
-        depth: u32,
+        noise: f64,
         visit: &mut impl FnMut(f64, f64, bool),
     ) {
         let change = a.sign() != b.sign();
@@ -173,19 +172,20 @@ impl Line {
             return;
         }
         let s = 0.5 * (a.s + b.s);
-        if depth >= DEPTH || !(a.s < s && s < b.s) {
+        let steepest = if -low > high { -low } else { high };
+        // Less than rounding happens in between: only the ends count. (Not a number is less too.)
+        if !(steepest * (b.s - a.s) > noise) || !(a.s < s && s < b.s) {
             if change {
                 visit(s, half, b.sign());
             }
             return;
         }
         let middle = self.sample(half, s, arc.at(s));
-        let steepest = if -low > high { -low } else { high };
         if !change && middle.value.abs() > steepest * (b.s - a.s) * 0.5 {
             return;
         }
-        self.search(arc, half, a, middle, depth + 1, visit);
-        self.search(arc, half, middle, b, depth + 1, visit);
+        self.search(arc, half, a, middle, noise, visit);
+        self.search(arc, half, middle, b, noise, visit);
     }
 
     /// Bounds of the slope of the value between two samples.

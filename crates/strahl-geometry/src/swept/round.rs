@@ -197,7 +197,7 @@ impl Segment {
     pub(super) fn contains(&self, point: DVec3) -> bool {
         let points = self.curve.cubic();
         let away = points.map(|p| p.truncate() - point);
-        let square = product(&points.map(|p| p.w), &points.map(|p| p.w));
+        let square: [f64; 7] = product(&points.map(|p| p.w), &points.map(|p| p.w));
         let distance = dot(&away, &away);
         let depth: [f64; 7] = std::array::from_fn(|k| square[k] - distance[k]);
         if depth[0] >= 0.0 || depth[6] >= 0.0 {
@@ -330,7 +330,7 @@ fn mark_line(from: DVec4, to: DVec4, line: &Line, marks: &mut Marks) -> bool {
     let b = from.w * step.w - across.dot(drift);
     let c = from.w * from.w - across.dot(across);
     let bend = b * b - a * c;
-    for (s, t) in quadratic(a, b, c, bend) {
+    if let Some((s, t)) = quadratic(a, b, c, bend) {
         marks.push(s);
         marks.push(t);
     }
@@ -338,7 +338,7 @@ fn mark_line(from: DVec4, to: DVec4, line: &Line, marks: &mut Marks) -> bool {
     let f = step.w * step.w - step.truncate().length_squared();
     let climb2 = climb * climb;
     let turning = (a * f, b * f, b * b - climb2 * c);
-    for (s, t) in quadratic(turning.0, turning.1, turning.2, -f * climb2 * bend) {
+    if let Some((s, t)) = quadratic(turning.0, turning.1, turning.2, -f * climb2 * bend) {
         marks.push(s);
         marks.push(t);
     }
