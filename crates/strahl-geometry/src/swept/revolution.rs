@@ -174,7 +174,8 @@ impl Line {
         let s = 0.5 * (a.s + b.s);
         let steepest = if -low > high { -low } else { high };
         // Less than rounding happens in between: only the ends count. (Not a number is less too.)
-        if !(steepest * (b.s - a.s) > noise) || !(a.s < s && s < b.s) {
+        let worth = steepest * (b.s - a.s) > noise;
+        if !(worth && a.s < s && s < b.s) {
             if change {
                 visit(s, half, b.sign());
             }

@@ -54,8 +54,7 @@ struct Marks {
 impl Marks {
     fn push(&mut self, s: f64) {
         if let Some(slot) = self.list.get_mut(self.count)
-            && 0.0 <= s
-            && s <= 1.0
+            && (0.0..=1.0).contains(&s)
         {
             *slot = s;
             self.count += 1;
