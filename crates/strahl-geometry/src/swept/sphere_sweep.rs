@@ -269,7 +269,8 @@ mod tests {
             [3.0, 0.0, 2.0, 0.6],
             [5.0, 0.0, -1.0, 0.1],
         ];
-        let lists: [(SweepSpline, &[[f64; 4]], &[(f64, f64)]); 3] = [
+        type Case<'a> = (SweepSpline, &'a [[f64; 4]], &'a [(f64, f64)]);
+        let lists: [Case; 3] = [
             (
                 SweepSpline::Cubic,
                 &cubic,
