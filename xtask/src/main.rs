@@ -4,6 +4,7 @@
 mod bench;
 mod bench_parse;
 mod compare_pov;
+mod peers;
 mod pov;
 
 use anyhow::{Result, bail};
@@ -13,6 +14,8 @@ const USAGE: &str = "usage: cargo xtask COMMAND
   bench spd [FOLDER] [--runs N]   trace times of the SPD scenes (*.nff.gz) in FOLDER against POV-Ray, one thread
   bench parse [--runs N] [--megabytes N]
                                   time of reading a million spheres made by loops, and an exported scene, against POV-Ray
+  bench peers [--rounds N] [--side PIXELS] [--only PART]
+                                  rays a second on meshes and spheres against Embree, one thread
   compare-pov [FOLDER] [--size 160x120] [--limit N] [--only PART] [--jobs 2] [--out DIR]
                                   pictures of POV-Ray's example scenes by both programs, with their differences
   nff2pov SCENE OUTPUT.pov        the scene as POV-Ray takes it, doing the same work";
@@ -23,6 +26,7 @@ fn main() -> Result<()> {
     match words.as_slice() {
         ["bench", "spd", rest @ ..] => bench::spd(rest),
         ["bench", "parse", rest @ ..] => bench_parse::parse(rest),
+        ["bench", "peers", rest @ ..] => peers::run(rest),
         ["compare-pov", rest @ ..] => compare_pov::run(rest),
         ["nff2pov", scene, output] => pov::convert(Path::new(scene), Path::new(output)),
         _ => bail!("{USAGE}"),

@@ -326,6 +326,11 @@ impl RenderScene {
         }
     }
 
+    /// The surface at a hit, in world space: `ray` is the ray that found it, from a place of its own (no [`crate::Origin`]).
+    pub fn surface_at(&self, ray: &Ray, hit: &Hit) -> SurfacePoint {
+        self.resolve(ray, None, hit, Uv::Always).point
+    }
+
     /// The surface at a hit: `ray` is the world ray that found it, `origin` where it started.
     #[inline]
     pub(crate) fn resolve(
