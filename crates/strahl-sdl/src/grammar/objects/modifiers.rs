@@ -103,18 +103,20 @@ impl Parser<'_> {
                 | Word::Material
                 | Word::UvMapping,
             ) => {
-                // What is written now is meant in the space that the object has been moved to.
-                let texture = entity.texture.take();
-                let mut texture = texture.unwrap_or_else(|| self.state.default_texture.clone());
-                if entity.object.transform.is_none() {
-                    self.texture_item(&mut texture, token)?;
-                    entity.texture = Some(texture);
-                } else {
-                    let place = entity.placement();
-                    texture = texture.transformed(&place);
-                    self.texture_item(&mut texture, token)?;
-                    entity.texture = Some(texture.transformed(&place.inverted()));
-                }
+                // What is written now is meant in the space that the object has been moved to; so is the default, which
+                // comes to the object only now.
+                let mut texture = match entity.texture.take() {
+                    Some(texture) if entity.object.transform.is_some() => {
+                        texture.transformed(&entity.placement())
+                    }
+                    Some(texture) => texture,
+                    None => self.state.default_texture.clone(),
+                };
+                self.texture_item(&mut texture, token)?;
+                entity.texture = Some(match entity.object.transform {
+                    None => texture,
+                    Some(_) => texture.transformed(&entity.placement().inverted()),
+                });
                 draft.textured = true;
                 return Ok(true);
             }

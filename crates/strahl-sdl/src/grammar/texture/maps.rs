@@ -57,7 +57,9 @@ impl Parser<'_> {
                 _ => None,
             },
             |p, at, entries| {
-                let normal = p.nested(|p| p.normal_items(Kind::RightBracket, None))?;
+                // Entries change the default normal, as `normal { }` does.
+                let base = p.state.default_texture.top().normal.clone();
+                let normal = p.nested(|p| p.normal_items(Kind::RightBracket, base))?;
                 entries.push((at, normal));
                 Ok(())
             },

@@ -102,12 +102,10 @@ impl Draft {
             (Chooser::Fixed(kind), _) => kind,
             (Chooser::Average, Choice::Normals(map)) => NormalKind::Average(map.entries),
             (Chooser::Average, _) => NormalKind::Average(vec![]),
-            (Chooser::Pattern(pattern), Choice::Slopes(map)) => {
-                NormalKind::Height(pattern, Some(map))
-            }
             (Chooser::Pattern(pattern), Choice::Normals(map)) => NormalKind::Map(pattern, map),
             (Chooser::Pattern(pattern), Choice::Blocks(list)) => NormalKind::Blocks(pattern, list),
-            (Chooser::Pattern(pattern), Choice::Own) => match pattern {
+            (Chooser::Pattern(pattern), choice) => match pattern {
+                // These have no height that a slope map could change (as measured).
                 Pattern::Bozo if self.special => NormalKind::Bumps,
                 Pattern::Dents => NormalKind::Dents,
                 Pattern::Wrinkles => NormalKind::Wrinkles,
@@ -116,7 +114,10 @@ impl Draft {
                 Pattern::Quilted { control0, control1 } => {
                     NormalKind::Quilted([control0, control1])
                 }
-                pattern => NormalKind::Height(pattern, None),
+                pattern => match choice {
+                    Choice::Slopes(map) => NormalKind::Height(pattern, Some(map)),
+                    _ => NormalKind::Height(pattern, None),
+                },
             },
         };
         PovNormal {
