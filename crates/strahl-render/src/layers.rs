@@ -18,7 +18,8 @@ pub(crate) fn paint<'s>(
     paint: &mut TexturePaint<'s>,
 ) {
     let look = &surface.resolved.look;
-    let Some(texture) = &scene.materials[look.material.0 as usize].texture else {
+    let material = &scene.materials[look.material.0 as usize];
+    let Some(texture) = material.texture_seen(surface.entering) else {
         paint.layers.clear();
         return;
     };

@@ -6,6 +6,7 @@ use strahl_geometry::{PrimHit, Primitive, Shape, SurfaceId, SurfacePoint, Triang
 use strahl_math::{Aabb, DVec3, Ray, Transform};
 use strahl_scene::{Background, Camera, Fog, SceneLight, Settings, SourceMap, Span};
 use strahl_shade::patterns::TexturePoint;
+use strahl_shade::texture::Texture;
 use strahl_shade::{Color, Material, MaterialId};
 
 /// What is known of an object of the scene, for ray trees and layers.
@@ -388,13 +389,15 @@ impl RenderScene {
         }
     }
 
-    /// A point of the world as the texture there sees it, for what depends on the place only.
-    pub(crate) fn texture_place(
+    /// What the texture at a hit leaves of light along a direction; `caustics` is that of the interior.
+    pub(crate) fn attenuated(
         &self,
+        texture: &Texture,
         resolved: &Resolved,
         direction: DVec3,
         hit: &Hit,
-    ) -> TexturePoint {
+        caustics: f64,
+    ) -> Color {
         let point = &resolved.point;
         let direction = direction.normalize();
         let facing = if point.n_geom.dot(direction) <= 0.0 {
@@ -402,17 +405,23 @@ impl RenderScene {
         } else {
             -1.0
         };
-        let position = match self.texture_space(hit, &resolved.look) {
-            None => point.position,
-            Some(space) => space.point_to_object(point.position),
-        };
-        TexturePoint {
-            position,
+        let place = TexturePoint {
+            position: point.position,
             surface: point.position,
             n_geom: point.n_geom * facing,
             n_shade: point.n_shade * facing,
             uv: point.uv,
             direction,
+        };
+        let space = self.texture_space(hit, &resolved.look);
+        if caustics > 0.0 {
+            return texture.gathered_attenuation(space.as_ref(), &place, caustics);
+        }
+        match space {
+            None => texture.shadow_attenuation(&place),
+            Some(space) => {
+                texture.shadow_attenuation(&place.at(space.point_to_object(place.position)))
+            }
         }
     }
 

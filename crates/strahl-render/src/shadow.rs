@@ -66,16 +66,18 @@ impl Tracer<'_> {
             let resolved = self.scene.resolve(ray, Some(from), hit, Uv::IfTextured);
             let id = resolved.look.material;
             let material = &self.scene.materials[id.0 as usize];
-            visible *= match &material.texture {
+            let entering = resolved.point.n_geom.dot(ray.direction) < 0.0;
+            visible *= match material.texture_seen(entering) {
                 None => material.at(resolved.point.uv).finish.transmission,
                 Some(texture) => {
-                    let place = self.scene.texture_place(&resolved, ray.direction, hit);
-                    texture.0.shadow_attenuation(&place)
+                    let caustics = material.interior.map_or(0.0, |i| i.caustics);
+                    self.scene
+                        .attenuated(&texture.0, &resolved, ray.direction, hit, caustics)
                 }
             };
             visible *= self.absorbed(arena, inside, ray.direction, hit.t - entered_at);
             entered_at = hit.t;
-            inside = if resolved.point.n_geom.dot(ray.direction) < 0.0 {
+            inside = if entering {
                 arena.entered(inside, id)
             } else {
                 arena.left(inside, id)

@@ -18,15 +18,24 @@ pub struct SkySphere {
 
 impl SkySphere {
     /// The colour seen along a direction of any length: that of the pigments at the end of the unit vector.
+    ///
+    /// As measured, layers let `filter + transmit` of those below pass without tinting it, while what is behind all is tinted:
+    /// it keeps the product of all `rgb · filter` plus that of all `transmit`.
     pub fn along(&self, direction: DVec3) -> Color {
         let at = self
             .transform
             .point_to_object(direction.normalize_or(DVec3::Y));
         let point = TexturePoint::in_space(at);
-        self.layers.iter().fold(self.behind, |below, layer| {
+        let mut seen = Color::BLACK;
+        let (mut passes, mut tint, mut clear) = (1.0, Color::WHITE, 1.0);
+        for layer in self.layers.iter().rev() {
             let color: ColorFt = layer.color_at(&point);
-            color.rgb * self.emission * color.opacity() + below * color.attenuation()
-        })
+            seen += color.rgb * self.emission * (color.opacity() * passes);
+            passes *= color.filter + color.transmit;
+            tint *= color.rgb * color.filter;
+            clear *= color.transmit;
+        }
+        seen + self.behind * (tint + Color::gray(clear))
     }
 }
 
@@ -51,5 +60,31 @@ mod tests {
             behind: Color::WHITE,
         };
         assert_eq!(sky.along(DVec3::Z * 7.0), Color::new(0.25, 0.75, 0.0));
+    }
+
+    #[test]
+    fn layers_tint_what_is_behind_all_only() {
+        let layer = |rgb: [f64; 3], filter, transmit| {
+            ColorFt {
+                rgb: Color::from(rgb),
+                filter,
+                transmit,
+            }
+            .into()
+        };
+        let sky = SkySphere {
+            layers: vec![
+                layer([0.5, 0.3, 0.2], 0.4, 0.2),
+                layer([0.8, 0.6, 0.4], 0.5, 0.1),
+            ],
+            transform: Transform::IDENTITY,
+            emission: Color::WHITE,
+            behind: Color::new(0.2, 0.6, 0.8),
+        };
+        // As POV-Ray renders it.
+        let seen = sky.along(DVec3::X).to_array();
+        for (seen, expected) in seen.into_iter().zip([0.46, 0.3456, 0.2368]) {
+            assert!((seen - expected).abs() < 1e-9, "{seen}");
+        }
     }
 }

@@ -17,6 +17,9 @@ pub struct Interior {
     pub fade_color: Color,
     /// Ratio of the indices of refraction for violet and red; 1 is no dispersion.
     pub dispersion: f64,
+    /// How sharply light that passes straight on is gathered, in place of real caustics; 0 is not at all. See
+    /// [`Interior::gathered`].
+    pub caustics: f64,
 }
 
 impl Default for Interior {
@@ -28,11 +31,22 @@ impl Default for Interior {
             fade_power: 0.0,
             fade_color: Color::BLACK,
             dispersion: 1.0,
+            caustics: 0.0,
         }
     }
 }
 
 impl Interior {
+    /// What light is multiplied by where it passes a surface towards the lit point: `1 + |cos|^(45 caustics)`, with the cosine
+    /// between the tilted normal and the light's direction (as measured).
+    pub fn gathered(caustics: f64, cos: f64) -> f64 {
+        if caustics > 0.0 {
+            1.0 + det::pow(cos.abs(), 45.0 * caustics)
+        } else {
+            1.0
+        }
+    }
+
     /// What is left of light after a path of this length inside.
     ///
     /// With `s = length / fade_distance`: `c + (1 - c) / (1 + s^fade_power)` below a power of 1000, and

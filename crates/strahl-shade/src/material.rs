@@ -75,6 +75,8 @@ pub struct Material {
     /// A texture in POV-Ray's sense, which takes the place of `model`, `finish`, `fresnel` and `pbr`. Its space is that of the
     /// object that has the material, before that object's own transformation: it moves with the object.
     pub texture: Option<SharedTexture>,
+    /// The texture that the surface shows to rays from inside, if that is another (`interior_texture`).
+    pub inner_texture: Option<SharedTexture>,
     /// How light fades inside, as POV-Ray's `interior` has it, which takes the place of `absorption`; `eta` holds still.
     pub interior: Option<Interior>,
 }
@@ -126,6 +128,14 @@ impl Default for Material {
 }
 
 impl Material {
+    /// The texture that rays from outside or from inside see, if the material has one.
+    pub fn texture_seen(&self, from_outside: bool) -> Option<&SharedTexture> {
+        match &self.inner_texture {
+            Some(inner) if !from_outside => Some(inner),
+            _ => self.texture.as_ref(),
+        }
+    }
+
     /// A diffuse surface of the given colour, without highlight: kd = ka = colour.
     pub fn matte(color: Color) -> Self {
         Self {
@@ -143,6 +153,7 @@ impl Material {
             sides: Sides::Two,
             pbr: None,
             texture: None,
+            inner_texture: None,
             interior: None,
         }
     }

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use strahl_math::{DVec3, Transform};
 
 use crate::image_map::ImageMap;
+use crate::interior::Interior;
 use crate::normal::PovNormal;
 use crate::patterns::{Modifiers, PatternField, TexturePoint, Warp};
 use crate::pigment::{Blend, BlendMap, Pigment};
@@ -191,6 +192,54 @@ impl Texture {
         }
     }
 
+    /// The same for a solid whose interior gathers light ([`Interior::gathered`]), which every layer does with its own normal;
+    /// the space is that of [`Texture::layers_in`].
+    pub fn gathered_attenuation(
+        &self,
+        space: Option<&Transform>,
+        point: &TexturePoint,
+        caustics: f64,
+    ) -> Color {
+        match space {
+            None => self.gather(point, point.n_shade, &Identity, caustics),
+            Some(space) => {
+                let inner = point.at(space.point_to_object(point.position));
+                let n = NormalSpace::enter(space, point.n_shade);
+                self.gather(&inner, n, space, caustics)
+            }
+        }
+    }
+
+    fn gather(
+        &self,
+        point: &TexturePoint,
+        n: DVec3,
+        space: &dyn NormalSpace,
+        caustics: f64,
+    ) -> Color {
+        match self {
+            Self::Plain(texture) => {
+                let cos = texture.tilted(point, n, space).dot(point.direction);
+                texture.pigment.color_at(point).attenuation() * Interior::gathered(caustics, cos)
+            }
+            Self::Layered(layers) => layers.iter().fold(Color::WHITE, |passed, layer| {
+                passed * layer.gather(point, n, space, caustics)
+            }),
+            _ => {
+                let mut sum = Color::BLACK;
+                self.for_members(point, |texture, inner, member_space, share| {
+                    let chain = Chain {
+                        outer: space,
+                        inner: member_space,
+                    };
+                    let n_inner = member_space.enter(n);
+                    sum += texture.gather(inner, n_inner, &chain, caustics) * share;
+                });
+                sum
+            }
+        }
+    }
+
     /// Calls `visit` with each texture that makes up this one at a point, the point it is to be evaluated at, the way normals
     /// take to and from its space, and its share.
     fn for_members<'a>(
@@ -287,6 +336,17 @@ impl Texture {
 }
 
 impl PlainTexture {
+    /// The tilted unit normal in the space around; `n` is the normal in the texture's space.
+    fn tilted(&self, point: &TexturePoint, n: DVec3, space: &dyn NormalSpace) -> DVec3 {
+        match &self.normal {
+            // A layer without a normal of its own leaves the surface's untouched, to the last bit.
+            None => point.n_shade,
+            Some(normal) => space
+                .leave(normal.tilt(point, n))
+                .normalize_or(point.n_shade),
+        }
+    }
+
     fn paint<'a>(
         &'a self,
         point: &TexturePoint,
@@ -297,13 +357,7 @@ impl PlainTexture {
         out: &mut TexturePaint<'a>,
     ) {
         let color = self.pigment.color_at(point);
-        let normal = match &self.normal {
-            // A layer without a normal of its own leaves the surface's untouched, to the last bit.
-            None => point.n_shade,
-            Some(normal) => space
-                .leave(normal.tilt(point, n))
-                .normalize_or(point.n_shade),
-        };
+        let normal = self.tilted(point, n, space);
         let cos_view = -normal.dot(point.direction);
         let reflectance = self.finish.reflection.reflectance(cos_view, color.rgb, eta);
         out.layers.push(LayerPoint {

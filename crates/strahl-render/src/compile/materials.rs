@@ -40,7 +40,8 @@ impl MaterialTable {
 /// Whether shadow rays pass the material at all.
 pub(crate) fn material_transmits(material: &Material) -> bool {
     if let Some(texture) = &material.texture {
-        return texture.0.may_transmit();
+        let inner = material.inner_texture.as_ref();
+        return texture.0.may_transmit() || inner.is_some_and(|t| t.0.may_transmit());
     }
     match &material.pbr {
         None => !material.finish.transmission.is_black(),

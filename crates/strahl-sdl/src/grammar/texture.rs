@@ -171,12 +171,6 @@ impl Parser<'_> {
             }
             Some(Word::InteriorTexture) => {
                 self.take(token)?;
-                let place = self.place();
-                self.warn_hint(
-                    place,
-                    "`interior_texture` is not shown yet",
-                    "both sides of the surface will have the outer texture",
-                );
                 texture.inner_surface = Some(self.surface_block()?);
             }
             Some(Word::Interior) => {

@@ -36,6 +36,10 @@ impl Parser<'_> {
                         p.take(token)?;
                         interior.dispersion = p.positive("dispersion")?;
                     }
+                    Some(Word::Caustics) => {
+                        p.take(token)?;
+                        interior.caustics = p.float()?;
+                    }
                     // How many rays show the spectrum is for the renderer to choose.
                     Some(Word::DispersionSamples) => {
                         p.take(token)?;

@@ -73,6 +73,7 @@ impl Texture {
             finish,
             eta: self.interior.map_or(1.0, |i| i.ior),
             texture: Some(SharedTexture(Arc::clone(&self.surface))),
+            inner_texture: self.inner_surface.clone().map(SharedTexture),
             interior: self.interior,
             ..Material::matte(color)
         }
