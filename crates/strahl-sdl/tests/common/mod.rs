@@ -1,6 +1,8 @@
 //! What the tests share; each uses a part of it.
 #![allow(dead_code, reason = "each test binary uses a part of this")]
 
+pub(crate) mod pictures;
+
 use std::path::PathBuf;
 use strahl_sdl::{MemoryHost, Options, Parsed, Source, Stream, parse};
 

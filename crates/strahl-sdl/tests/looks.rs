@@ -1,0 +1,204 @@
+//! How things look: textures by default, finishes, and what the include files declare, rendered by POV-Ray 3.7 with its own
+//! include files and here with ours.
+
+mod common;
+
+use common::pictures::agree;
+
+const START: &str = "
+#version 3.7; global_settings { assumed_gamma 1 }
+camera { orthographic location <4, 3, -10> look_at <4, 3, 0> right 8*x up 6*y }
+light_source { <8, 20, -30>, rgb 1 }
+";
+
+/// A tile for each name, each showing another part of the texture, in rows of eight.
+fn tiles(includes: &str, names: &[String], item: impl Fn(&str) -> String) -> String {
+    let tiles = names.iter().enumerate().map(|(i, name)| {
+        let (x, y) = (i % 8, i / 8);
+        let texture = item(name);
+        format!(
+            "box {{ <-0.5, -0.5, 0>, <0.5, 0.5, 1> {texture} rotate <{}, {}, 0> scale <1, 1, 0.1> translate <{x}.5, {y}.5, 0> }}\n",
+            (i * 7) % 20,
+            (i * 11) % 20,
+        )
+    });
+    format!("{START}{includes}{}", tiles.collect::<String>())
+}
+
+fn numbered(
+    prefix: &str,
+    numbers: std::ops::RangeInclusive<u32>,
+) -> impl Iterator<Item = String> + '_ {
+    numbers.map(move |n| format!("{prefix}{n}"))
+}
+
+#[test]
+fn normals_begin_with_the_default_one() {
+    let slopes = "slope_map { [0 <0, 1>] [0.5 <1, 1>] [0.5 <1, -1>] [1 <0, -1>] }";
+    let scene = |default: &str, objects: &str| {
+        format!("{START}#default {{ pigment {{ rgb 0.8 }} normal {{ {default} }} }}\n{objects}\n")
+    };
+    let plane = |normal: &str| format!("plane {{ <0.1, 0.2, -1>, 0 normal {{ {normal} }} }}");
+    let scenes = [
+        // The default comes to the object when it is first changed, not when the object is made.
+        (
+            "moved before the normal",
+            scene(
+                "onion 0.8 scale 0.4",
+                &format!(
+                    "#declare T = box {{ <-1, -1, 0>, <1, 1, 1> scale 2 }} object {{ T normal {{ {slopes} }} translate <4, 3, 0> }}"
+                ),
+            ),
+        ),
+        (
+            "moved without a normal",
+            scene(
+                "onion 0.8 scale 0.4",
+                "box { <-1, -1, 0>, <1, 1, 1> scale 2 translate <4, 3, 0> }",
+            ),
+        ),
+        (
+            "amounts in maps",
+            scene(
+                "bump_size 1.5",
+                &plane("gradient x normal_map { [0.3 bumps] [0.7 dents 0.5] } scale 2"),
+            ),
+        ),
+        (
+            "amounts of blocks",
+            scene(
+                "bump_size 1.5",
+                &plane("checker normal { bumps } normal { dents 0.5 } scale 0.7"),
+            ),
+        ),
+        ("slope maps of bumps", scene("bumps 0.3", &plane(slopes))),
+        (
+            "slope maps of ripples",
+            scene("ripples 0.3", &plane(slopes)),
+        ),
+        (
+            "slope maps of wrinkles",
+            scene("wrinkles 0.3", &plane(slopes)),
+        ),
+    ];
+    agree(0.01, &scenes);
+}
+
+#[test]
+fn woods_look_as_povrays() {
+    let woods: Vec<String> = numbered("T_Wood", 1..=33).collect();
+    let grains: Vec<String> = (1..=19)
+        .flat_map(|n| [format!("P_WoodGrain{n}A"), format!("P_WoodGrain{n}B")])
+        .collect();
+    let include = "#include \"woods.inc\"\n";
+    let scenes = [
+        (
+            "woods",
+            tiles(include, &woods, |name| format!("texture {{ {name} scale 0.7 }}")),
+        ),
+        (
+            "grains",
+            tiles(include, &grains, |name| {
+                format!("pigment {{ {name} color_map {{ [0 rgb x] [1 rgb y] }} scale 0.7 }}")
+            }),
+        ),
+        (
+            "maps",
+            (1..=19).fold(format!("{START}{include}"), |text, n| {
+                let strip = |m: char, y: f64| {
+                    format!(
+                        "box {{ <0, {y}, 0>, <8, {}, 1> hollow pigment {{ gradient x color_map {{ M_Wood{n}{m} }} scale 8 }} }}\n",
+                        y + 0.15
+                    )
+                };
+                text + &strip('A', f64::from(n) * 0.3) + &strip('B', f64::from(n) * 0.3 + 0.15)
+            }),
+        ),
+    ];
+    agree(0.02, &scenes);
+}
+
+const ROOM: &str = "
+#version 3.7; global_settings { assumed_gamma 1 }
+camera { location <0, 1.5, -4> look_at <0, -0.3, 0> angle 50 }
+light_source { <2, 6, -1>, rgb 0.3 }
+plane { y, -1.5 pigment { checker rgb 0.8 rgb 0.5 } }
+";
+
+#[test]
+fn caustics_gather_light_as_povrays() {
+    let clear = "pigment { rgbf <0.9, 1, 0.95, 0.9> } finish { ambient 0 diffuse 0 }";
+    let bumpy = format!("{clear} normal {{ bumps 0.3 scale 0.2 }}");
+    let veil = "pigment { rgbt <1, 1, 1, 0.8> } normal { wrinkles 0.2 }";
+    let slab = |texture: String| {
+        format!("{ROOM}box {{ <-2, -0.3, -2>, <2, 0, 2> {texture} interior {{ caustics 0.7 }} }}")
+    };
+    let scenes = [
+        (
+            "sphere",
+            format!("{ROOM}sphere {{ 0, 1 {clear} interior {{ ior 1.3 caustics 1 }} }}"),
+        ),
+        ("normal", slab(bumpy.clone())),
+        (
+            "layers",
+            slab(format!("texture {{ {bumpy} }} texture {{ {veil} }}")),
+        ),
+        (
+            "map",
+            slab(format!(
+                "texture {{ gradient x texture_map {{ [0 {bumpy}] [1 {veil}] }} scale 2 }}"
+            )),
+        ),
+    ];
+    agree(0.01, &scenes);
+}
+
+#[test]
+fn insides_show_their_texture() {
+    let two = "texture { pigment { rgb x } } interior_texture { pigment { rgb z } }";
+    let clear = "texture { pigment { checker rgb x rgbf <1, 1, 0, 0.8> scale 0.3 } } interior_texture { pigment { rgbf <0, 0, 1, 0.7> } }";
+    let scene = |object: String| format!("{ROOM}{object}");
+    let scenes = [
+        (
+            "open sphere",
+            scene(format!(
+                "sphere {{ 0, 1 clipped_by {{ plane {{ <0.2, 0.5, -0.6>, 0.3 }} }} {two} }}"
+            )),
+        ),
+        (
+            "open cylinder",
+            scene(format!(
+                "cylinder {{ -y, y, 1 open material {{ {two} }} rotate -30*x }}"
+            )),
+        ),
+        ("clear", scene(format!("sphere {{ 0, 1 {clear} }}"))),
+        (
+            "difference",
+            scene(format!(
+                "difference {{ box {{ -1, 1 }} sphere {{ -z, 0.8 }} {two} }}"
+            )),
+        ),
+        ("back of a disc", scene(format!("disc {{ 0, z, 1 {two} }}"))),
+        (
+            "front of a disc",
+            scene(format!("disc {{ 0, -z, 1 {two} }}")),
+        ),
+    ];
+    agree(0.01, &scenes);
+}
+
+#[test]
+fn include_textures_look_as_povrays() {
+    let include = "#include \"colors.inc\"\n#include \"textures.inc\"\n#include \"skies.inc\"\n";
+    let pigments = "Jade Red_Marble White_Marble Blood_Marble Blue_Agate Sapphire_Agate Brown_Agate Pink_Granite Blue_Sky Bright_Blue_Sky \
+         Blue_Sky2 Blue_Sky3 Blood_Sky Apocalypse Clouds FBM_Clouds Cherry_Wood Pine_Wood Dark_Wood Tan_Wood White_Wood Tom_Wood DMFWood1 \
+         DMFWood2 DMFWood3 DMFWood4 DMFWood5 DMFLightOak DMFDarkOak P_Cloud1 P_Cloud2 P_Cloud3 P_Cloud4";
+    let names: Vec<String> = pigments.split_whitespace().map(str::to_owned).collect();
+    let scenes = [(
+        "pigments",
+        tiles(include, &names, |name| {
+            format!("pigment {{ {name} scale 0.7 }}")
+        }),
+    )];
+    agree(0.02, &scenes);
+}
