@@ -20,7 +20,10 @@
 //!
 //! The first repeats every 4096, the second every 2048 units.
 
+mod bounds;
 mod tables;
+
+pub use bounds::noise_bounds;
 
 use crate::DVec3;
 use tables::{GRADIENTS, PERMUTATION, R, hash};
@@ -227,22 +230,29 @@ fn value_gradient(p: DVec3) -> f64 {
     sum
 }
 
+/// What the lattice of the gradient noise is shifted by. 12432434 · 2⁻²⁹ is what is left of the fraction .0231572 at this
+/// magnitude; both terms are exact.
+const SHIFT: f64 = 10_000_000.0 + 12_432_434.0 / 536_870_912.0;
+
+/// The gradient at a corner of a cell, whose index is below 2048.
+fn perlin_gradient(index: [usize; 3], step: [usize; 3]) -> DVec3 {
+    let [i, j, k] = std::array::from_fn(|a| (index[a] + step[a]) & 2047);
+    let row = usize::from(PERMUTATION[(usize::from(PERMUTATION[i]) + j) & 2047]);
+    GRADIENTS[(row + k) & 2047]
+}
+
 fn perlin(p: DVec3) -> f64 {
-    // 12432434 · 2⁻²⁹ is what is left of the fraction .0231572 of the shift at this magnitude; both terms are exact.
-    const SHIFT: f64 = 10_000_000.0 + 12_432_434.0 / 536_870_912.0;
     let p = p + DVec3::splat(SHIFT);
     let floor = p.floor();
     let fraction = p - floor;
     let s = smooth(fraction);
     let index = floor.to_array().map(|f| (f as i64 & 2047) as usize);
-    let gradients = &*GRADIENTS;
     let mut sum = 0.0;
     for bits in 0..8usize {
         let step = [bits >> 2, (bits >> 1) & 1, bits & 1];
-        let [i, j, k] = std::array::from_fn(|a| (index[a] + step[a]) & 2047);
-        let row = usize::from(PERMUTATION[(usize::from(PERMUTATION[i]) + j) & 2047]);
+        let gradient = perlin_gradient(index, step);
         let step = DVec3::from_array(step.map(|s| s as f64));
-        sum += weight(s, step) * gradients[(row + k) & 2047].dot(fraction - step);
+        sum += weight(s, step) * gradient.dot(fraction - step);
     }
     sum
 }

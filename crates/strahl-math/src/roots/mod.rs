@@ -3,12 +3,12 @@
 //! * [`quadratic`]: both roots without cancellation.
 //! * [`Bernstein`]: all roots of a polynomial of any small degree on an interval, by sign variations in Bernstein
 //!   form; no allocation, ascending, with rounding errors accounted for.
-//! * [`find_root`]: the root of any function in a bracket, to the last bit.
+//! * [`find_root`]: the root of any function in a bracket, to the last bit; [`find_crossing`]: the same without derivatives.
 
 mod bernstein;
 mod bracket;
 mod quadratic;
 
 pub use bernstein::{Bernstein, Isolated, RootCount, Roots};
-pub use bracket::find_root;
+pub use bracket::{find_crossing, find_root};
 pub use quadratic::quadratic;
