@@ -13,6 +13,12 @@ pub trait ScalarField: Debug + Send + Sync {
     /// The value at the arguments, [`arity`](Self::arity) many. The same arguments always give the same bits.
     fn value(&self, arguments: &[f64]) -> f64;
 
+    /// Whether [`bounds`](Self::bounds) says something, and ever more the smaller the box: else a caller who needs to know where
+    /// the field can't be zero has to trust in how steep it is.
+    fn is_bounded(&self) -> bool {
+        false
+    }
+
     /// An interval that contains the value at all arguments within bounds.
     fn bounds(&self, _arguments: &[Bounds]) -> Bounds {
         Bounds::UNKNOWN

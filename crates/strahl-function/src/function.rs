@@ -122,6 +122,11 @@ impl Function {
         run(tape, stack)
     }
 
+    /// Whether [`bounds`](Self::bounds) close in on the values as boxes become small: no field within lacks them.
+    pub fn is_bounded(&self) -> bool {
+        self.tape().is_bounded()
+    }
+
     /// The value at a point, with the bits of [`value`](Self::value), and its derivatives by the first three parameters.
     ///
     /// At steps and corners (`floor`, `abs`, `min`, ...) the derivative of one side is given.

@@ -47,6 +47,15 @@ pub(crate) struct Tape {
     pub(crate) loops: Vec<LoopCode>,
 }
 
+impl Tape {
+    /// Whether all fields it reads have bounds.
+    pub(crate) fn is_bounded(&self) -> bool {
+        self.fields.iter().all(|(field, _)| field.is_bounded())
+            && self.calls.iter().all(|(f, _)| f.tape().is_bounded())
+            && self.loops.iter().all(|l| l.body.is_bounded())
+    }
+}
+
 /// A loop: its body is a tape with the counter as first input and then what it takes from outside.
 #[derive(Debug)]
 pub(crate) struct LoopCode {

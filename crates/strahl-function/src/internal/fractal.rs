@@ -10,7 +10,7 @@ use crate::graph::{Expr, Graph};
 use std::sync::Arc;
 use strahl_math::DVec3;
 use strahl_math::det;
-use strahl_math::noise::{NoiseGenerator, noise};
+use strahl_math::noise::{NoiseGenerator, noise, noise_bounds};
 
 pub(super) const TABLE: &[Internal] = &[
     row("f_noise3d", 0, Kind::Noise),
@@ -100,16 +100,59 @@ impl ScalarField for NoiseFunction {
         }
     }
 
+    fn is_bounded(&self) -> bool {
+        true
+    }
+
     fn bounds(&self, arguments: &[Bounds]) -> Bounds {
+        let (&[x, y, z, ref rest @ ..], true) = (arguments, arguments.len() == self.arity()) else {
+            return Bounds::NAN;
+        };
         // Noise has no value where a coordinate is not finite.
         let finite = |b: &Bounds| b.min.is_finite() && b.max.is_finite() && !b.nan;
-        let nan = !arguments.iter().take(3).all(finite);
-        match self.kind {
-            Kind::Noise | Kind::Generator => Bounds::new(0.0, 1.0).with_nan(nan),
-            Kind::Signed => Bounds::new(-1.0, 1.0).with_nan(nan),
-            Kind::Hetero | Kind::Ridge | Kind::Ridged => Bounds::UNKNOWN,
+        let nan = ![x, y, z].iter().all(finite);
+        let p = [x, y, z];
+        let mut numbers = [0.0; 6];
+        for (number, parameter) in numbers.iter_mut().zip(rest) {
+            match parameter.single() {
+                Some(known) => *number = known,
+                None => return Bounds::UNKNOWN,
+            }
         }
+        let rest = &numbers[..rest.len().min(numbers.len())];
+        let bounds = match (self.kind, rest) {
+            (Kind::Noise, _) => noise_within(p, self.generator),
+            (Kind::Signed, _) => signed_within(p, self.generator),
+            (Kind::Generator, &[number]) => noise_within(p, numbered(number)),
+            (Kind::Hetero, rest) => {
+                Octaves::new(DVec3::ZERO, rest).map_or(Bounds::UNKNOWN, |o| o.hetero_within(p))
+            }
+            (Kind::Ridge, rest) => ridge_within(p, rest),
+            (Kind::Ridged, rest) => {
+                Octaves::new(DVec3::ZERO, rest).map_or(Bounds::UNKNOWN, |o| o.ridged_within(p))
+            }
+            (Kind::Generator, _) => Bounds::NAN,
+        };
+        bounds.with_nan(nan)
     }
+}
+
+/// Bounds of the noise over a box.
+fn noise_within([x, y, z]: [Bounds; 3], generator: NoiseGenerator) -> Bounds {
+    let min = DVec3::new(x.min, y.min, z.min);
+    let (low, high) = noise_bounds(min, DVec3::new(x.max, y.max, z.max), generator);
+    Bounds::new(low, high)
+}
+
+/// Bounds of the noise from -1 to 1.
+fn signed_within(p: [Bounds; 3], generator: NoiseGenerator) -> Bounds {
+    let double = noise_within(p, generator).mul(Bounds::point(2.0));
+    double.sub(Bounds::point(1.0))
+}
+
+/// The box of the next octave.
+fn scaled(p: [Bounds; 3], factor: f64) -> [Bounds; 3] {
+    p.map(|b| b.mul(Bounds::point(factor)))
 }
 
 /// The parameters of a sum over octaves.
@@ -200,32 +243,124 @@ impl Octaves {
     }
 }
 
+/// The sums over octaves on bounds, step by step as on numbers.
+impl Octaves {
+    fn hetero_within(&self, p: [Bounds; 3]) -> Bounds {
+        let mut p = p;
+        let offset = Bounds::point(self.offset);
+        let mut value = offset.add(signed_within(p, self.generator));
+        let mut frequency = self.lacunarity;
+        let increment = |p, frequency| {
+            let height = signed_within(p, self.generator).add(offset);
+            height.mul(Bounds::point(det::pow(frequency, -self.h)))
+        };
+        p = scaled(p, self.lacunarity);
+        let mut octave = 1.0;
+        while octave < self.octaves {
+            let share = value.pow(Bounds::point(self.last.trunc()));
+            value = value.add(increment(p, frequency).mul(share));
+            frequency *= self.lacunarity;
+            p = scaled(p, self.lacunarity);
+            octave += 1.0;
+        }
+        let rest = self.octaves - self.octaves.trunc();
+        if rest != 0.0 {
+            let share = Bounds::point(rest).mul(increment(p, frequency));
+            value = value.add(share.mul(value));
+        }
+        value
+    }
+
+    fn ridged_within(&self, p: [Bounds; 3]) -> Bounds {
+        let ridge = |p| {
+            let distance = signed_within(p, self.generator).abs();
+            Bounds::point(self.offset).sub(distance).square()
+        };
+        let mut p = p;
+        let mut signal = ridge(p);
+        let mut value = signal;
+        let mut frequency = self.lacunarity;
+        let mut octave = 1.0;
+        while octave < self.octaves {
+            p = scaled(p, self.lacunarity);
+            let weight = signal.mul(Bounds::point(self.last));
+            let weight = weight
+                .minimum(Bounds::point(1.0))
+                .maximum(Bounds::point(0.0));
+            signal = ridge(p).mul(weight);
+            value = value.add(signal.mul(Bounds::point(det::pow(frequency, -self.h))));
+            frequency *= self.lacunarity;
+            octave += 1.0;
+        }
+        value
+    }
+}
+
 /// The mean of octaves with weights `omega` to the power of their number, each the distance of the noise from `ridge`
 /// less `offset`, both scaled to at most one.
-fn ridge(mut p: DVec3, rest: &[f64]) -> f64 {
+fn ridge(p: DVec3, rest: &[f64]) -> f64 {
+    let mut p = p;
+    mean_of_octaves(
+        rest,
+        0.0,
+        |sum, lambda, share, (ridge, offset, generator)| {
+            let distance = (noise(p, generator) - ridge).abs() / larger(ridge);
+            p *= lambda;
+            sum + share * ((distance - offset) / larger(offset))
+        },
+    )
+    .map_or(f64::NAN, |(sum, total)| sum / total)
+}
+
+/// The same on bounds.
+fn ridge_within(p: [Bounds; 3], rest: &[f64]) -> Bounds {
+    let mut p = p;
+    let zero = Bounds::point(0.0);
+    mean_of_octaves(
+        rest,
+        zero,
+        |sum, lambda, share, (ridge, offset, generator)| {
+            let point = Bounds::point;
+            let distance = noise_within(p, generator).sub(point(ridge)).abs();
+            let distance = distance.div(point(larger(ridge))).sub(point(offset));
+            p = scaled(p, lambda);
+            sum.add(point(share).mul(distance.div(point(larger(offset)))))
+        },
+    )
+    .map_or(Bounds::NAN, |(sum, total)| sum.div(Bounds::point(total)))
+}
+
+/// The distance of 0 or 1, whichever is further.
+fn larger(a: f64) -> f64 {
+    if a > 1.0 - a { a } else { 1.0 - a }
+}
+
+/// Adds up the octaves of [`ridge`] by `add`, which gets the sum so far, `lambda`, the weight, and the ridge, its offset and the
+/// generator; gives the sum and the total of the weights.
+fn mean_of_octaves<T>(
+    rest: &[f64],
+    zero: T,
+    mut add: impl FnMut(T, f64, f64, (f64, f64, NoiseGenerator)) -> T,
+) -> Option<(T, f64)> {
     let &[lambda, octaves, omega, offset, ridge, generator] = rest else {
-        return f64::NAN;
+        return None;
     };
-    let generator = numbered(generator);
-    let larger = |a: f64| if a > 1.0 - a { a } else { 1.0 - a };
+    let parameters = (ridge, offset, numbered(generator));
     let octaves = if octaves < OCTAVES { octaves } else { OCTAVES };
     // The first octave counts in full, a fraction adds the next one in part.
     let whole = if octaves >= 1.0 { octaves.trunc() } else { 1.0 };
     let rest = octaves - octaves.trunc();
-    let (mut sum, mut total, mut weight) = (0.0, 0.0, 1.0);
-    let mut octave = 0.0;
+    let (mut sum, mut total, mut weight, mut octave) = (zero, 0.0, 1.0, 0.0);
     while octave < whole || rest > 0.0 && octave == whole {
         let share = if octave < whole {
             weight
         } else {
             weight * rest
         };
-        let distance = (noise(p, generator) - ridge).abs() / larger(ridge);
-        sum += share * ((distance - offset) / larger(offset));
+        sum = add(sum, lambda, share, parameters);
         total += share;
         weight *= omega;
-        p *= lambda;
         octave += 1.0;
     }
-    sum / total
+    Some((sum, total))
 }
