@@ -53,7 +53,27 @@ pub fn decode_texture(
     if bytes.starts_with(&EXR_MAGIC) {
         return decode_exr(bytes, name);
     }
+    let reader = open_picture(bytes, name)?;
     let failed = |error: ::image::ImageError| decode_error(name, error);
+    let decoder = reader.into_decoder().map_err(failed)?;
+    let (width, height) = decoder.dimensions();
+    let bytes_per_texel = u64::from(decoder.color_type().bytes_per_pixel());
+    check_size(name, width.into(), height.into(), bytes_per_texel)?;
+    let picture = DynamicImage::from_decoder(decoder).map_err(failed)?;
+
+    let (channels, data) = texels(picture);
+    let color_space = match texture_use {
+        TextureUse::Color => ColorSpace::Srgb,
+        TextureUse::Data => ColorSpace::Linear,
+    };
+    build(name, width, height, channels, color_space, data)
+}
+
+/// A reader that knows the format: by the first bytes, else by the extension of the name.
+pub(super) fn open_picture<'a>(
+    bytes: &'a [u8],
+    name: &str,
+) -> Result<ImageReader<Cursor<&'a [u8]>>, ImageError> {
     let mut reader = ImageReader::new(Cursor::new(bytes))
         .with_guessed_format()
         .map_err(|error| decode_error(name, error))?;
@@ -69,18 +89,7 @@ pub fn decode_texture(
     let mut limits = Limits::no_limits();
     limits.max_alloc = Some(MAX_BYTES);
     reader.limits(limits);
-    let decoder = reader.into_decoder().map_err(failed)?;
-    let (width, height) = decoder.dimensions();
-    let bytes_per_texel = u64::from(decoder.color_type().bytes_per_pixel());
-    check_size(name, width.into(), height.into(), bytes_per_texel)?;
-    let picture = DynamicImage::from_decoder(decoder).map_err(failed)?;
-
-    let (channels, data) = texels(picture);
-    let color_space = match texture_use {
-        TextureUse::Color => ColorSpace::Srgb,
-        TextureUse::Data => ColorSpace::Linear,
-    };
-    build(name, width, height, channels, color_space, data)
+    Ok(reader)
 }
 
 /// The samples as the file has them.
@@ -139,7 +148,12 @@ fn decode_exr(bytes: &[u8], name: &str) -> Result<TextureImage, ImageError> {
     )
 }
 
-fn check_size(name: &str, width: u64, height: u64, texel_bytes: u64) -> Result<(), ImageError> {
+pub(super) fn check_size(
+    name: &str,
+    width: u64,
+    height: u64,
+    texel_bytes: u64,
+) -> Result<(), ImageError> {
     let limit = MAX_TEXELS.min(MAX_BYTES / texel_bytes.max(1));
     if width.saturating_mul(height) > limit {
         return Err(ImageError::TextureTooLarge {
@@ -174,7 +188,7 @@ fn build(
         .map_err(|error| decode_error(name, error))
 }
 
-fn decode_error(name: &str, reason: impl ToString) -> ImageError {
+pub(super) fn decode_error(name: &str, reason: impl ToString) -> ImageError {
     ImageError::Decode {
         name: name.to_owned(),
         reason: reason.to_string(),
