@@ -8,6 +8,8 @@
 pub mod blocks;
 pub mod conformance;
 pub mod csg;
+pub mod fractal;
+pub mod implicit;
 pub mod mesh;
 mod primitive;
 pub mod primitives;
@@ -16,6 +18,8 @@ mod spans;
 pub mod swept;
 
 pub use csg::{Csg, CsgNode, Operands};
+pub use fractal::{HypercomplexFunction, Julia, JuliaAlgebra, JuliaOptions, QuaternionFunction};
+pub use implicit::{Container, HeightField, Isosurface, IsosurfaceOptions};
 pub use mesh::{Brep, MeshData, Polygon, RayShear, SmoothTriangle, Triangle, TriangleMesh};
 pub use primitive::{GeometryError, PrimHit, Primitive, Scratch, Solid, SurfaceId, SurfacePoint};
 pub use primitives::{Cone, Cuboid, Cylinder, Disc, Plane, Quadric, Sphere, Torus};

@@ -176,9 +176,13 @@ pub trait Primitive: Send + Sync + std::fmt::Debug {
 }
 
 /// A primitive that encloses a volume: it has an inside.
-///
-/// Its [`Primitive::bounds`] hold the inside, not the surface alone (they differ for solids like half-spaces).
 pub trait Solid: Primitive {
+    /// A box around the inside. By default that of the surface, [`Primitive::bounds`]; they differ where the inside reaches
+    /// further than the surface that is seen, as below landscapes.
+    fn inside_bounds(&self) -> Aabb {
+        self.bounds()
+    }
+
     /// Appends all crossings of the surface with `range.min < t <= range.max`, ascending in `t`, and sets
     /// [`Crossings::inside_at_start`] to whether the ray just behind `range.min` is inside.
     ///

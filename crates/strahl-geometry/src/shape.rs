@@ -1,3 +1,5 @@
+use crate::fractal::Julia;
+use crate::implicit::{HeightField, Isosurface};
 use crate::mesh::{Brep, Polygon, SmoothTriangle, Triangle, TriangleMesh};
 use crate::primitives::{Cone, Cuboid, Cylinder, Disc, Plane, Quadric, Sphere, Torus};
 use crate::swept::{Glyph, Lathe, Prism, Sor, SphereSweep};
@@ -117,6 +119,12 @@ shapes! {
     Polygon(Polygon),
     /// Triangles that share their vertices.
     TriangleMesh(Arc<TriangleMesh>),
+    /// A landscape over a grid of heights.
+    HeightField(Arc<HeightField>),
+    /// A surface where a function has a given value.
+    Isosurface(Arc<Isosurface>),
+    /// A slice of a Julia set in four dimensions.
+    Julia(Arc<Julia>),
     /// A tree of solids, combined.
     Csg(Arc<Csg>),
     /// A closed mesh with an inside.
@@ -143,6 +151,9 @@ shared!(
     Sor,
     SmoothTriangle,
     TriangleMesh,
+    HeightField,
+    Isosurface,
+    Julia,
     Csg,
     Brep
 );

@@ -10,11 +10,34 @@ use strahl_math::{Aabb, DVec3, Interval, Ray, Transform};
 pub(super) struct Placed {
     shape: Arc<dyn Primitive>,
     map: Transform,
+    /// Whether this stands for the shape as a solid, which may differ from the shape where a ray only touches it.
+    is_solid: bool,
+    solid: Option<Box<Self>>,
 }
 
 impl Placed {
     pub(super) fn new(shape: Arc<dyn Primitive>, map: Transform) -> Self {
-        Self { shape, map }
+        let solid = shape.as_solid().map(|_| {
+            Box::new(Self {
+                shape: Arc::clone(&shape),
+                map,
+                is_solid: true,
+                solid: None,
+            })
+        });
+        Self {
+            shape,
+            map,
+            is_solid: false,
+            solid,
+        }
+    }
+
+    fn primitive(&self) -> &dyn Primitive {
+        match self.shape.as_solid() {
+            Some(solid) if self.is_solid => solid,
+            _ => &*self.shape,
+        }
     }
 
     /// The surface point of object space, in outer space.
@@ -37,19 +60,19 @@ impl Placed {
 
 impl Primitive for Placed {
     fn kind(&self) -> &'static str {
-        self.shape.kind()
+        self.primitive().kind()
     }
 
     fn validate(&self) -> Result<(), GeometryError> {
-        self.shape.validate()
+        self.primitive().validate()
     }
 
     fn bounds(&self) -> Aabb {
-        self.map.bounds_to_world(&self.shape.bounds())
+        self.map.bounds_to_world(&self.primitive().bounds())
     }
 
     fn elements(&self) -> u32 {
-        self.shape.elements()
+        self.primitive().elements()
     }
 
     fn closest_hit(
@@ -59,7 +82,7 @@ impl Primitive for Placed {
         from: Option<SurfaceId>,
         scratch: &mut Scratch,
     ) -> Option<PrimHit> {
-        self.shape
+        self.primitive()
             .closest_hit(&self.map.ray_to_object(ray), range, from, scratch)
     }
 
@@ -70,16 +93,23 @@ impl Primitive for Placed {
         from: Option<SurfaceId>,
         scratch: &mut Scratch,
     ) -> bool {
-        self.shape
+        self.primitive()
             .any_hit(&self.map.ray_to_object(ray), range, from, scratch)
     }
 
     fn surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
-        self.surface_to_world(&self.shape.surface_at(&self.map.ray_to_object(ray), hit))
+        self.surface_to_world(
+            &self
+                .primitive()
+                .surface_at(&self.map.ray_to_object(ray), hit),
+        )
     }
 
     fn as_solid(&self) -> Option<&dyn Solid> {
-        self.shape.as_solid().map(|_| self as &dyn Solid)
+        if self.is_solid {
+            return Some(self);
+        }
+        self.solid.as_deref().map(|solid| solid as &dyn Solid)
     }
 }
 

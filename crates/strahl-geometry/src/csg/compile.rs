@@ -204,7 +204,9 @@ impl Compiler {
         let baked = context.map.and_then(|map| shape.baked(&map));
         let map = if baked.is_some() { None } else { context.map };
         let shape = baked.unwrap_or(shape);
-        let bounds = map.map_or(shape.bounds(), |map| map.bounds_to_world(&shape.bounds()));
+        let solid = shape.as_solid();
+        let bounds = solid.map_or_else(|| shape.bounds(), |solid| solid.inside_bounds());
+        let bounds = map.map_or(bounds, |map| map.bounds_to_world(&bounds));
         let first_element = self.elements;
         self.elements = first_element.checked_add(shape.elements()).ok_or({
             GeometryError::OutOfRange {

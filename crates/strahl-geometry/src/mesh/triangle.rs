@@ -290,7 +290,7 @@ pub(super) fn any_normal(a: DVec3, b: DVec3, c: DVec3) -> DVec3 {
 
 /// The point with barycentric coordinates `uv`, and a bound on its distance from the triangle's plane.
 #[inline]
-pub(super) fn combine(a: DVec3, b: DVec3, c: DVec3, [u, v]: [f64; 2]) -> (DVec3, DVec3) {
+pub(crate) fn combine(a: DVec3, b: DVec3, c: DVec3, [u, v]: [f64; 2]) -> (DVec3, DVec3) {
     let (along_b, along_c) = ((b - a) * u, (c - a) * v);
     let position = a + (along_b + along_c);
     // Edge, product and sum are rounded on the way to the offset, then the point itself.
@@ -299,7 +299,7 @@ pub(super) fn combine(a: DVec3, b: DVec3, c: DVec3, [u, v]: [f64; 2]) -> (DVec3,
 }
 
 /// The interpolated unit normal, on the side of `n_geom` (see [`SmoothTriangle`]).
-pub(super) fn smooth_normal(normals: [DVec3; 3], [u, v]: [f64; 2], n_geom: DVec3) -> DVec3 {
+pub(crate) fn smooth_normal(normals: [DVec3; 3], [u, v]: [f64; 2], n_geom: DVec3) -> DVec3 {
     let [a, b, c] = normals;
     let n = a * (1.0 - u - v) + b * u + c * v;
     let front = (a + b + c).dot(n_geom) >= 0.0;

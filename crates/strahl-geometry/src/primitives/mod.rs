@@ -38,7 +38,7 @@ pub(crate) fn check_finite(what: &'static str, v: DVec3) -> Result<(), GeometryE
 }
 
 /// Checks that a length is finite and greater than zero.
-fn check_positive(what: &'static str, found: f64) -> Result<(), GeometryError> {
+pub(crate) fn check_positive(what: &'static str, found: f64) -> Result<(), GeometryError> {
     check_length(what, found)?;
     if found > 0.0 {
         return Ok(());
@@ -86,7 +86,7 @@ fn check_direction(
 /// The unit vector along `v`; zero if `v` is zero, NaN if it has a NaN or infinite coordinate.
 ///
 /// Scaled first, so that tiny and huge vectors neither vanish nor overflow when squared.
-fn unit_vector(v: DVec3) -> DVec3 {
+pub(crate) fn unit_vector(v: DVec3) -> DVec3 {
     let largest = v.abs().max_element();
     if largest == 0.0 {
         return DVec3::ZERO;
@@ -108,7 +108,7 @@ pub(crate) fn point_error(position: DVec3, extent: f64, operations: u32) -> DVec
 }
 
 /// How far the parameter may be off at which a ray crosses a plane, coordinates of both taken as rounded.
-fn plane_t_error(ray: &Ray, t: f64, point: DVec3, normal: DVec3) -> f64 {
+pub(crate) fn plane_t_error(ray: &Ray, t: f64, point: DVec3, normal: DVec3) -> f64 {
     let n = normal.abs();
     let magnitude = (ray.origin.abs() + point.abs() + ray.direction.abs() * t.abs()).dot(n);
     gamma(8) * magnitude / ray.direction.dot(normal).abs()

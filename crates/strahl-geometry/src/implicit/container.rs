@@ -1,0 +1,105 @@
+use crate::{
+    Crossing, Cuboid, GeometryError, PrimHit, Scratch, Solid, Sphere, SurfaceId, SurfacePoint,
+};
+use strahl_math::{Aabb, DVec3, Interval, Ray};
+
+/// The volume within which a function is looked at: POV-Ray's `contained_by`.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Container {
+    /// A sphere.
+    Sphere(Sphere),
+    /// A box.
+    Box(Cuboid),
+}
+
+/// The part of a ray within a container.
+pub(crate) struct Passage {
+    /// Where the ray gets in; none if it starts on the container and goes inwards.
+    pub(crate) enter: Option<Crossing>,
+    /// Where it gets out.
+    pub(crate) exit: Crossing,
+}
+
+impl Passage {
+    /// The parameter at which it begins.
+    pub(crate) fn start(&self) -> f64 {
+        self.enter.map_or(0.0, |enter| enter.hit.t)
+    }
+}
+
+impl Default for Container {
+    /// The box from -1 to 1 along every axis.
+    fn default() -> Self {
+        Self::Box(Cuboid::new(DVec3::NEG_ONE, DVec3::ONE))
+    }
+}
+
+impl Container {
+    fn solid(&self) -> &dyn Solid {
+        match self {
+            Self::Sphere(sphere) => sphere,
+            Self::Box(cuboid) => cuboid,
+        }
+    }
+
+    /// Checks the parameters.
+    ///
+    /// # Errors
+    /// Those of the sphere or the box.
+    pub fn validate(&self) -> Result<(), GeometryError> {
+        self.solid().validate()?;
+        if !self.bounds().is_bounded() {
+            return Err(GeometryError::NotFinite { what: "container" });
+        }
+        Ok(())
+    }
+
+    /// A box around it.
+    pub fn bounds(&self) -> Aabb {
+        self.solid().bounds()
+    }
+
+    /// Whether a point is inside or on it.
+    pub fn contains(&self, point: DVec3) -> bool {
+        self.solid().contains(point)
+    }
+
+    /// Whether nothing of a box is inside.
+    pub(crate) fn excludes(&self, cell: &Aabb) -> bool {
+        match self {
+            Self::Sphere(sphere) => {
+                let nearest = sphere.center().clamp(cell.min, cell.max);
+                (nearest - sphere.center()).length() > sphere.radius()
+            }
+            Self::Box(_) => false,
+        }
+    }
+
+    /// The part of a ray inside; `from` names the facet of the container on which the ray starts.
+    pub(crate) fn passage(
+        &self,
+        ray: &Ray,
+        from: Option<u32>,
+        scratch: &mut Scratch,
+    ) -> Option<Passage> {
+        let from = from.map(|facet| SurfaceId { element: 0, facet });
+        let mut list = scratch.take();
+        let solid = self.solid();
+        solid.crossings(ray, Interval::LINE, from, scratch, &mut list);
+        let passage = match (list.inside_at_start, list.list.as_slice()) {
+            (true, &[exit]) => Some(Passage { enter: None, exit }),
+            (false, &[enter, exit]) => Some(Passage {
+                enter: Some(enter),
+                exit,
+            }),
+            _ => None,
+        };
+        scratch.give(list);
+        passage
+    }
+
+    /// The surface at a hit on the container.
+    pub(crate) fn surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
+        self.solid().surface_at(ray, hit)
+    }
+}

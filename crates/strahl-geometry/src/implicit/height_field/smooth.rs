@@ -1,0 +1,46 @@
+//! Normals at the vertices, for smooth shading.
+
+use super::grid::{Grid, SCALE};
+use strahl_math::DVec3;
+
+/// What components of stored normals are multiplied by.
+const FULL: f64 = 32767.0;
+
+/// The normal of each vertex as POV-Ray 3.7 has it, found by measuring: the sum of the unit normals of the up to four
+/// triangles that a vertex forms with neighbours along x and along z, taken on a grid whose cells are 1 wide and whose heights
+/// run to 65536, cut off to 16 bits.
+///
+/// On that grid all but flat triangles stand nearly upright, so flat neighbours outweigh steep ones, and slopes have
+/// few digits where the grid is coarse. Both show in its pictures, so both are kept.
+pub(super) fn normals(grid: &Grid) -> Box<[[i16; 3]]> {
+    let (width, depth) = grid.size();
+    let vertices = (0..depth).flat_map(|j| (0..width).map(move |i| (i, j)));
+    vertices.map(|(i, j)| normal(grid, i, j)).collect()
+}
+
+fn normal(grid: &Grid, i: u32, j: u32) -> [i16; 3] {
+    let (width, depth) = grid.size();
+    let height = |i: u32, j: u32| f64::from(grid.height(i, j));
+    let here = height(i, j);
+    let right = (i + 1 < width).then(|| height(i + 1, j) - here);
+    let left = i.checked_sub(1).map(|i| here - height(i, j));
+    let up = (j + 1 < depth).then(|| height(i, j + 1) - here);
+    let down = j.checked_sub(1).map(|j| here - height(i, j));
+    let mut sum = DVec3::ZERO;
+    for (along_x, along_z) in [(right, up), (left, up), (left, down), (right, down)] {
+        if let (Some(x), Some(z)) = (along_x, along_z) {
+            sum += DVec3::new(-x, 1.0, -z).normalize();
+        }
+    }
+    // Casts of floats cut off.
+    (sum.normalize_or_zero() * FULL)
+        .to_array()
+        .map(|c| c as i16)
+}
+
+/// A stored normal in the unit cube, of any length.
+pub(super) fn in_unit_cube(grid: &Grid, normal: [i16; 3]) -> DVec3 {
+    let (columns, rows) = grid.cells();
+    let [x, y, z] = normal.map(f64::from);
+    DVec3::new(x * f64::from(columns), y * SCALE, z * f64::from(rows))
+}

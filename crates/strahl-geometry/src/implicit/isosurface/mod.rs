@@ -1,0 +1,458 @@
+//! Surfaces where a function of space has a given value.
+
+mod octree;
+mod search;
+#[cfg(test)]
+mod tests;
+
+use super::container::Container;
+use super::workspace::with_workspace;
+use crate::{
+    Crossing, Crossings, GeometryError, PrimHit, Primitive, Scratch, Side, Solid, SurfaceId,
+    SurfacePoint,
+};
+use octree::Octree;
+use search::{Search, excludes_change};
+use std::ops::ControlFlow;
+use std::sync::OnceLock;
+use strahl_function::{Bounds, Function, Workspace};
+use strahl_math::error::{ROUNDOFF, gamma};
+use strahl_math::{Aabb, DVec3, Interval, Ray};
+
+/// How an isosurface is looked for; the defaults are POV-Ray's.
+#[derive(Clone, Debug, PartialEq)]
+pub struct IsosurfaceOptions {
+    /// The value of the function on the surface; inside it is smaller.
+    pub threshold: f64,
+    /// Features thinner than this along a ray may be missed. Crossings themselves are found to the last digit.
+    pub accuracy: f64,
+    /// The most the function changes per unit of length. Used only where the function calls patterns or pigments, of which
+    /// nothing else is known.
+    pub max_gradient: f64,
+    /// Whether the container, where it cuts through the inside, is no surface to be seen.
+    pub open: bool,
+}
+
+impl Default for IsosurfaceOptions {
+    fn default() -> Self {
+        Self {
+            threshold: 0.0,
+            accuracy: 0.001,
+            max_gradient: 1.1,
+            open: false,
+        }
+    }
+}
+
+/// The surface where a function has a given value, within a container; inside, the function is smaller.
+///
+/// Hits are certified by interval arithmetic: a part of a ray is passed over only where the function's bounds prove that the
+/// sign does not change, so there are no holes and no gradient has to be guessed, however steep the function is. Only
+/// functions that call patterns or pigments have no bounds; for these [`IsosurfaceOptions::max_gradient`] is trusted, as
+/// in POV-Ray. An octree, built when the first ray comes, holds where the surface may be at all; it depends on the function
+/// alone, so it changes no picture.
+///
+/// Facets: 0 is the function's surface, 1 and up are the facets of the container. NaN counts as outside. There are no texture
+/// coordinates.
+///
+/// R. E. Moore, Interval Analysis (1966); D. P. Mitchell, "Robust ray intersection with interval arithmetic", Graphics
+/// Interface 1990; M. J. Keeter, "Massively parallel rendering of complex closed-form implicit surfaces", SIGGRAPH 2020.
+#[derive(Debug)]
+pub struct Isosurface {
+    function: Function,
+    container: Container,
+    options: IsosurfaceOptions,
+    is_bounded: bool,
+    octree: OnceLock<Octree>,
+}
+
+/// The facet that is the function's surface.
+const SURFACE: SurfaceId = SurfaceId {
+    element: 0,
+    facet: 0,
+};
+
+/// How far cells are widened when they are examined, as a part of the container's largest coordinate: more than rounding moves a
+/// point on a ray out of the cell it is in.
+const CELL_PAD: f64 = 256.0 * f64::EPSILON;
+
+/// The shortest and the longest part of a ray that is not divided, as a part of the container's size.
+const SHORTEST: (f64, f64) = (1e-6, 1e-3);
+
+impl Isosurface {
+    /// The surface of a function of x, y and z.
+    ///
+    /// # Errors
+    /// The container is degenerate, the function has other than three parameters, a number is not finite, or accuracy or
+    /// gradient are not positive.
+    pub fn try_new(
+        function: Function,
+        container: Container,
+        options: IsosurfaceOptions,
+    ) -> Result<Self, GeometryError> {
+        container.validate()?;
+        let found = function.parameters().len() as u64;
+        if found != 3 {
+            return Err(GeometryError::WrongCount {
+                what: "parameters of the function of an isosurface",
+                expected: 3,
+                found,
+            });
+        }
+        if !options.threshold.is_finite() {
+            return Err(GeometryError::NotFinite {
+                what: "threshold of the isosurface",
+            });
+        }
+        crate::primitives::check_positive("accuracy of the isosurface", options.accuracy)?;
+        crate::primitives::check_positive("max_gradient of the isosurface", options.max_gradient)?;
+        let is_bounded = function.is_bounded();
+        Ok(Self {
+            function,
+            container,
+            options,
+            is_bounded,
+            octree: OnceLock::new(),
+        })
+    }
+
+    /// The function.
+    pub fn function(&self) -> &Function {
+        &self.function
+    }
+
+    /// Whether bounds of the function prove things; else the gradient is trusted.
+    fn is_bounded(&self) -> bool {
+        self.is_bounded
+    }
+
+    /// The function less the threshold; infinite where it is not a number.
+    fn value(&self, workspace: &mut Workspace, p: DVec3) -> f64 {
+        let value = self.function.value(workspace, &p.to_array()) - self.options.threshold;
+        if value.is_nan() { f64::INFINITY } else { value }
+    }
+
+    /// The function less the threshold, and its gradient.
+    fn gradient(&self, workspace: &mut Workspace, p: DVec3) -> (f64, DVec3) {
+        let (value, partials) = self.function.gradient(workspace, &p.to_array());
+        (value - self.options.threshold, DVec3::from_array(partials))
+    }
+
+    /// Bounds of the function less the threshold.
+    fn bounds_within(&self, workspace: &mut Workspace, cell: &Aabb) -> Bounds {
+        let side = |k: usize| Bounds::new(cell.min[k], cell.max[k]);
+        let values = self
+            .function
+            .bounds(workspace, &[side(0), side(1), side(2)]);
+        let threshold = self.options.threshold;
+        // A difference has the sign of the exact one.
+        Bounds {
+            min: values.min - threshold,
+            max: values.max - threshold,
+            nan: values.nan,
+        }
+    }
+
+    /// The cells with a surface, found once.
+    fn octree(&self, workspace: &mut Workspace) -> &Octree {
+        self.octree.get_or_init(|| {
+            let bounds = self.container.bounds();
+            let pad = DVec3::splat(CELL_PAD * bounds.max_abs());
+            Octree::build(bounds, |cell| {
+                let cell = cell.padded(pad);
+                if self.container.excludes(&cell) {
+                    return false;
+                }
+                if self.is_bounded {
+                    return !excludes_change(self.bounds_within(workspace, &cell));
+                }
+                let reach = self.options.max_gradient * 0.5 * cell.size().length();
+                !(self.value(workspace, cell.center()).abs() > reach)
+            })
+        })
+    }
+
+    /// The largest extent of the container.
+    fn size(&self) -> f64 {
+        self.container.bounds().size().max_element()
+    }
+
+    /// What rounding does to the function near a point.
+    fn noise(&self, workspace: &mut Workspace, p: DVec3, gradient: DVec3) -> f64 {
+        let place = gradient.abs().dot(p.abs()) * gamma(4);
+        let values = self.bounds_within(workspace, &Aabb::new(p, p));
+        let width = values.max - values.min;
+        if self.is_bounded && width.is_finite() && width >= 0.0 {
+            place + width
+        } else {
+            let size = self.options.threshold.abs() + gradient.length() * self.size() + 1.0;
+            place + gamma(64) * size
+        }
+    }
+
+    /// Tells the visitor what happens along a ray, in its order, until it breaks off. Crossings of the function's surface come
+    /// without an error bound.
+    fn walk(
+        &self,
+        ray: &Ray,
+        from: Option<SurfaceId>,
+        scratch: &mut Scratch,
+        workspace: &mut Workspace,
+        visit: &mut impl FnMut(Event) -> ControlFlow<()>,
+    ) -> ControlFlow<()> {
+        let on_container = from.and_then(|surface| surface.facet.checked_sub(1));
+        let Some(passage) = self.container.passage(ray, on_container, scratch) else {
+            return ControlFlow::Continue(());
+        };
+        let (mut start, end) = (passage.start(), passage.exit.hit.t);
+        if from == Some(SURFACE) && start < 0.0 {
+            start = 0.0;
+        }
+        // A ray that leaves the container, or one that is so far away that its ends can't be told apart.
+        if !(start < end && end.is_finite() && start.is_finite()) {
+            return ControlFlow::Continue(());
+        }
+        let octree = self.octree(workspace);
+        let mut search = self.search(ray, start, workspace);
+        let mut last = search.place(0.0);
+        if from == Some(SURFACE) {
+            last.value = self.value_leaving(ray, last.value, search.workspace);
+        }
+        let mut inside = last.is_inside();
+        match passage.enter.filter(|enter| enter.hit.t == start) {
+            Some(enter) if inside => visit(Event::Crossing(self.cap(enter, Side::Enter)))?,
+            Some(_) => {}
+            None => visit(Event::Start { inside })?,
+        }
+        let length = end - start;
+        octree.walk(search.origin, ray.direction, &mut |enter, exit| {
+            let enter = if enter > last.s { enter } else { last.s };
+            let exit = if exit < length { exit } else { length };
+            if !(enter < exit) {
+                return ControlFlow::Continue(());
+            }
+            let mut first = if enter == last.s {
+                last
+            } else {
+                search.place(enter)
+            };
+            if first.is_inside() != inside {
+                // Nothing happens between the parts, so this is a zero within rounding.
+                first.value = least_value(inside);
+            }
+            last = search.place(exit);
+            search.run(first, last, &mut |s| {
+                inside = !inside;
+                let side = if inside { Side::Enter } else { Side::Exit };
+                let hit = PrimHit::simple(start + s, SURFACE.facet);
+                visit(Event::Crossing(Crossing::new(hit, 0.0, side)))
+            })
+        })?;
+        if inside {
+            visit(Event::Crossing(self.cap(passage.exit, Side::Exit)))?;
+        }
+        ControlFlow::Continue(())
+    }
+
+    fn search<'a>(&'a self, ray: &Ray, start: f64, workspace: &'a mut Workspace) -> Search<'a> {
+        let speed = ray.direction.length();
+        let (least, most) = SHORTEST;
+        let accuracy = self.options.accuracy;
+        let shortest = accuracy.clamp(least * self.size(), most * self.size());
+        Search {
+            surface: self,
+            workspace,
+            origin: ray.at(start),
+            direction: ray.direction,
+            shortest: shortest / speed,
+            slope: 0.5 * self.options.max_gradient * speed,
+        }
+    }
+
+    /// The value at the start of a ray that leaves the surface: where rounding hides its sign, the way the ray goes tells.
+    fn value_leaving(&self, ray: &Ray, value: f64, workspace: &mut Workspace) -> f64 {
+        let (_, gradient) = self.gradient(workspace, ray.origin);
+        if value.abs() <= self.noise(workspace, ray.origin, gradient) {
+            least_value(gradient.dot(ray.direction) < 0.0)
+        } else {
+            value
+        }
+    }
+
+    /// A crossing of the container, within the inside of the surface.
+    fn cap(&self, crossing: Crossing, side: Side) -> Crossing {
+        let surface = SurfaceId {
+            facet: crossing.hit.surface.facet + 1,
+            ..crossing.hit.surface
+        };
+        Crossing {
+            hit: PrimHit {
+                surface,
+                ..crossing.hit
+            },
+            side,
+            visible: !self.options.open,
+            ..crossing
+        }
+    }
+
+    /// How far the parameter of a crossing of the function's surface may be off.
+    fn t_error(&self, ray: &Ray, t: f64, workspace: &mut Workspace) -> f64 {
+        let p = ray.at(t);
+        let (_, gradient) = self.gradient(workspace, p);
+        let reach = (ray.origin.abs() + (ray.direction * t).abs()) * gamma(4);
+        let noise = self.noise(workspace, p, gradient) + gradient.abs().dot(reach);
+        let error = noise / gradient.dot(ray.direction).abs();
+        // Along the surface nothing is known but the length of what is not looked into.
+        let longest = SHORTEST.1 * self.size() / ray.direction.length();
+        gamma(4) * t.abs() + if error < longest { error } else { longest }
+    }
+
+    /// The point of the function's surface nearest to a point almost on it, with its error and the normal.
+    fn settle(&self, ray: &Ray, point: DVec3, workspace: &mut Workspace) -> SurfacePoint {
+        let nearby = SHORTEST.1 * self.size();
+        let mut p = point;
+        let (mut value, mut gradient) = self.gradient(workspace, p);
+        for _ in 0..2 {
+            let step = gradient * (value / gradient.dot(gradient));
+            // A kink, a jump, or a flat place.
+            if !(step.length() < nearby) {
+                break;
+            }
+            let next = self.gradient(workspace, p - step);
+            if !(next.0.abs() < value.abs()) {
+                break;
+            }
+            p -= step;
+            (value, gradient) = next;
+        }
+        let slope = gradient.length();
+        let off = (self.noise(workspace, p, gradient) + value.abs()) / slope;
+        let off = if off < nearby { off } else { nearby };
+        let normal = gradient
+            .try_normalize()
+            .or_else(|| (-ray.direction).try_normalize())
+            .unwrap_or(DVec3::Y);
+        let error = DVec3::splat(off + f64::MIN_POSITIVE) + p.abs() * (4.0 * ROUNDOFF);
+        SurfacePoint::bare(p, error, normal)
+    }
+}
+
+/// What happens along a ray.
+enum Event {
+    /// The ray starts within the container, inside of the surface from there on or not.
+    Start {
+        inside: bool,
+    },
+    Crossing(Crossing),
+}
+
+/// The smallest value on one side of the surface.
+fn least_value(inside: bool) -> f64 {
+    if inside {
+        -f64::MIN_POSITIVE
+    } else {
+        f64::MIN_POSITIVE
+    }
+}
+
+impl Primitive for Isosurface {
+    fn kind(&self) -> &'static str {
+        "isosurface"
+    }
+
+    /// Nothing is left to check: [`Isosurface::try_new`] has done so.
+    fn validate(&self) -> Result<(), GeometryError> {
+        Ok(())
+    }
+
+    fn bounds(&self) -> Aabb {
+        self.container.bounds()
+    }
+
+    fn closest_hit(
+        &self,
+        ray: &Ray,
+        range: Interval,
+        from: Option<SurfaceId>,
+        scratch: &mut Scratch,
+    ) -> Option<PrimHit> {
+        let mut closest = None;
+        with_workspace(|workspace| {
+            // Whether the visitor has seen enough makes no difference to anyone else.
+            let _ = self.walk(ray, from, scratch, workspace, &mut |event| {
+                let Event::Crossing(crossing) = event else {
+                    return ControlFlow::Continue(());
+                };
+                if crossing.visible && range.accepts(crossing.hit.t) {
+                    closest = Some(crossing.hit);
+                    return ControlFlow::Break(());
+                }
+                if crossing.hit.t > range.max {
+                    return ControlFlow::Break(());
+                }
+                ControlFlow::Continue(())
+            });
+        });
+        closest
+    }
+
+    fn surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
+        match hit.surface.facet.checked_sub(1) {
+            Some(facet) => {
+                let surface = SurfaceId {
+                    facet,
+                    ..hit.surface
+                };
+                let hit = PrimHit { surface, ..*hit };
+                let point = self.container.surface_at(ray, &hit);
+                SurfacePoint::bare(point.position, point.position_error, point.n_geom)
+            }
+            None => with_workspace(|workspace| self.settle(ray, ray.at(hit.t), workspace)),
+        }
+    }
+
+    fn as_solid(&self) -> Option<&dyn Solid> {
+        Some(self)
+    }
+}
+
+impl Solid for Isosurface {
+    fn crossings(
+        &self,
+        ray: &Ray,
+        range: Interval,
+        from: Option<SurfaceId>,
+        scratch: &mut Scratch,
+        out: &mut Crossings,
+    ) {
+        let start = if from.is_some() && range.min < 0.0 {
+            0.0
+        } else {
+            range.min
+        };
+        with_workspace(|workspace| {
+            let _ = self.walk(ray, from, scratch, workspace, &mut |event| {
+                match event {
+                    Event::Start { inside } => out.inside_at_start = inside,
+                    Event::Crossing(c) if c.hit.t <= start => {
+                        out.inside_at_start = c.side == Side::Enter;
+                    }
+                    Event::Crossing(c) if c.hit.t <= range.max => out.list.push(c),
+                    Event::Crossing(_) => return ControlFlow::Break(()),
+                }
+                ControlFlow::Continue(())
+            });
+            for crossing in &mut out.list {
+                if crossing.surface() == SURFACE {
+                    crossing.t_error = self.t_error(ray, crossing.hit.t, workspace);
+                }
+            }
+        });
+    }
+
+    fn contains(&self, point: DVec3) -> bool {
+        self.container.contains(point)
+            && with_workspace(|workspace| self.value(workspace, point) <= 0.0)
+    }
+}

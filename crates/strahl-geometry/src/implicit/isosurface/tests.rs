@@ -1,0 +1,231 @@
+use super::*;
+use crate::conformance::Random;
+use crate::{Cuboid, Sphere};
+use std::sync::Arc;
+use strahl_function::{Expr, Graph, ScalarField};
+use strahl_math::noise::NoiseGenerator;
+
+fn function(build: impl Fn(&mut Graph, [Expr; 3]) -> Expr) -> Function {
+    let mut graph = Graph::new(["x", "y", "z"]);
+    let xyz = graph.xyz();
+    let root = build(&mut graph, xyz);
+    graph.finish(root).unwrap()
+}
+
+/// `x² + y² + z²`
+fn ball() -> Function {
+    function(|g, xyz| g.norm2(&xyz))
+}
+
+fn gyroid() -> Function {
+    function(|g, [x, y, z]| {
+        let scaled = [x, y, z].map(|c| g.scaled(c, 4.0));
+        let [x, y, z] = scaled;
+        let mut term = |a: Expr, b: Expr| {
+            let (s, c) = (g.sin(a), g.cos(b));
+            g.mul(s, c)
+        };
+        let terms = [term(x, y), term(y, z), term(z, x)];
+        g.total(&terms)
+    })
+}
+
+fn bumpy() -> Function {
+    function(|g, [x, y, z]| {
+        let many = [x, y, z].map(|c| g.scaled(c, 5.0));
+        let noise = g.internal("f_noise3d", &many, NoiseGenerator::default());
+        let r = g.length(&[x, y, z]);
+        let noise = g.scaled(noise, 0.4);
+        let sum = g.add(r, noise);
+        g.offset(sum, -1.0)
+    })
+}
+
+fn cube(side: f64) -> Container {
+    Container::Box(Cuboid::new(DVec3::splat(-side), DVec3::splat(side)))
+}
+
+fn iso(function: Function, container: Container, threshold: f64) -> Isosurface {
+    let options = IsosurfaceOptions {
+        threshold,
+        ..IsosurfaceOptions::default()
+    };
+    Isosurface::try_new(function, container, options).unwrap()
+}
+
+crate::primitive_tests!(whole, || iso(ball(), cube(1.5), 1.0));
+crate::primitive_tests!(cut, || iso(ball(), cube(0.8), 1.0));
+crate::primitive_tests!(in_a_sphere, || iso(
+    gyroid(),
+    Container::Sphere(Sphere::new(DVec3::new(0.1, 0.0, 0.2), 1.0)),
+    0.1
+));
+crate::primitive_tests!(noisy, || iso(bumpy(), cube(1.1), 0.0));
+
+fn hits(surface: &Isosurface, origin: DVec3, direction: DVec3) -> Vec<(f64, u32)> {
+    let mut out = Crossings::default();
+    let ray = Ray::new(origin, direction);
+    surface.crossings(
+        &ray,
+        Interval::LINE,
+        None,
+        &mut Scratch::default(),
+        &mut out,
+    );
+    out.list
+        .iter()
+        .map(|c| (c.hit.t, c.hit.surface.facet))
+        .collect()
+}
+
+#[test]
+fn crossings_are_those_of_the_sphere() {
+    let surface = iso(ball(), cube(1.5), 1.0);
+    let sphere = Sphere::new(DVec3::ZERO, 1.0);
+    let (mut random, mut scratch) = (Random::new(3), Scratch::default());
+    let mut found = 0;
+    for _ in 0..2000 {
+        let (from, to) = (random.cube() * 4.0, random.cube());
+        let ray = Ray::new(from, to - from);
+        let ours = surface.closest_hit(&ray, Interval::FORWARD, None, &mut scratch);
+        let theirs = sphere.closest_hit(&ray, Interval::FORWARD, None, &mut scratch);
+        let chord = theirs.map_or(0.0, |hit| {
+            ray.direction
+                .normalize()
+                .dot(sphere.surface_at(&ray, &hit).n_geom)
+                .abs()
+        });
+        if chord < 0.05 {
+            continue;
+        }
+        let (ours, theirs) = (ours.unwrap().t, theirs.unwrap().t);
+        assert!((ours - theirs).abs() < 1e-13, "{ray:?} {ours} {theirs}");
+        found += 1;
+    }
+    assert!(found > 500);
+}
+
+#[test]
+fn steep_thin_sheets_have_no_holes() {
+    // A sheet of thickness 0.002 with a gradient of about 1000; POV-Ray's default gradient would lose all of it.
+    let sheet = function(|g, [x, y, _]| {
+        let wave = g.sin(y);
+        let bent = g.sub(x, wave);
+        let height = g.abs(bent);
+        let steep = g.scaled(height, 1000.0);
+        g.offset(steep, -1.0)
+    });
+    let surface = iso(sheet, cube(1.0), 0.0);
+    for i in 0..200 {
+        let y = f64::from(i) / 200.0 - 0.5;
+        let found = hits(&surface, DVec3::new(-3.0, y, 0.1 * y), DVec3::X);
+        assert_eq!(found.len(), 2, "{y}: {found:?}");
+        assert!((found[0].0 - (3.0 + strahl_math::det::sin(y) - 0.001)).abs() < 1e-12);
+    }
+}
+
+#[test]
+fn the_container_closes_what_it_cuts_unless_open() {
+    let surface = iso(ball(), cube(0.5), 1.0);
+    assert_eq!(
+        hits(&surface, DVec3::new(-2.0, 0.0, 0.0), DVec3::X).len(),
+        2
+    );
+    let options = IsosurfaceOptions {
+        open: true,
+        threshold: 1.0,
+        ..IsosurfaceOptions::default()
+    };
+    let open = Isosurface::try_new(ball(), cube(0.5), options).unwrap();
+    let ray = Ray::new(DVec3::new(-2.0, 0.0, 0.0), DVec3::X);
+    let scratch = &mut Scratch::default();
+    assert!(
+        open.closest_hit(&ray, Interval::FORWARD, None, scratch)
+            .is_none()
+    );
+    assert!(
+        surface
+            .closest_hit(&ray, Interval::FORWARD, None, scratch)
+            .is_some()
+    );
+    assert!(open.contains(DVec3::ZERO) && !open.contains(DVec3::X * 0.6));
+}
+
+/// A field that tells nothing about itself.
+#[derive(Debug)]
+struct Opaque;
+
+impl ScalarField for Opaque {
+    fn value(&self, p: &[f64]) -> f64 {
+        strahl_math::det::sin(7.0 * p[0])
+    }
+}
+
+#[test]
+fn without_bounds_the_gradient_is_trusted() {
+    let field: Arc<dyn ScalarField> = Arc::new(Opaque);
+    let waves = function(|g, xyz| g.field(&field, &xyz));
+    assert!(!waves.is_bounded());
+    let options = IsosurfaceOptions {
+        max_gradient: 7.0,
+        ..IsosurfaceOptions::default()
+    };
+    let surface = Isosurface::try_new(waves, cube(1.0), options).unwrap();
+    let found = hits(&surface, DVec3::new(-3.0, 0.1, 0.2), DVec3::X);
+    // Zeros at multiples of pi / 7: from -2 to 2; the wave is negative at the right end, positive at the left.
+    let expected: Vec<f64> = (-2..=2)
+        .map(|k| 3.0 + f64::from(k) * std::f64::consts::PI / 7.0)
+        .collect();
+    let inner: Vec<f64> = found.iter().filter(|h| h.1 == 0).map(|h| h.0).collect();
+    assert_eq!(inner.len(), expected.len(), "{found:?}");
+    assert!(
+        inner
+            .iter()
+            .zip(&expected)
+            .all(|(a, b)| (a - b).abs() < 1e-12),
+        "{found:?}"
+    );
+}
+
+#[test]
+fn what_is_not_a_number_is_outside() {
+    // A root of x: there is nothing for negative x.
+    let half = function(|g, [x, y, _]| {
+        let root = g.sqrt(x);
+        let sum = g.add(root, y);
+        g.offset(sum, -0.5)
+    });
+    let surface = iso(half, cube(1.0), 0.0);
+    assert!(!surface.contains(DVec3::new(-0.5, -0.9, 0.0)));
+    assert!(surface.contains(DVec3::new(0.5, -0.9, 0.0)));
+    let found = hits(&surface, DVec3::new(-2.0, -0.5, 0.0), DVec3::X);
+    assert!(
+        (found[0].0 - 2.0).abs() < 1e-12 && found.len() == 2,
+        "{found:?}"
+    );
+}
+
+#[test]
+fn wrong_parameters_are_refused() {
+    let make = |accuracy, max_gradient, threshold| {
+        let options = IsosurfaceOptions {
+            accuracy,
+            max_gradient,
+            threshold,
+            open: false,
+        };
+        Isosurface::try_new(ball(), Container::default(), options)
+    };
+    assert!(make(0.001, 1.1, 0.0).is_ok());
+    assert!(make(0.0, 1.1, 0.0).is_err());
+    assert!(make(0.001, -1.0, 0.0).is_err());
+    assert!(make(0.001, 1.1, f64::NAN).is_err());
+    let flat = Container::Sphere(Sphere::new(DVec3::ZERO, 0.0));
+    assert!(Isosurface::try_new(ball(), flat, IsosurfaceOptions::default()).is_err());
+    let mut graph = Graph::new(["u"]);
+    let root = graph.constant(1.0);
+    let short = graph.finish(root).unwrap();
+    assert!(
+        Isosurface::try_new(short, Container::default(), IsosurfaceOptions::default()).is_err()
+    );
+}

@@ -1,0 +1,11 @@
+//! Surfaces given by numbers or functions rather than by a formula of their own: landscapes and level sets.
+
+mod container;
+mod height_field;
+mod isosurface;
+mod workspace;
+
+pub use container::Container;
+pub(crate) use container::Passage;
+pub use height_field::HeightField;
+pub use isosurface::{Isosurface, IsosurfaceOptions};
