@@ -297,6 +297,62 @@ const SCENES: &[(&str, &str)] = &[
         "difference { sphere { 0, 1 } sphere { 0, 0 } texture { Red } } union { sphere { x, 0 } triangle { 0, x, 2 * x } disc { y, y, 1, 2 } sphere { x * 1.4, 0.3 } texture { Green } } intersection { sphere { -x * 1.5, 0.5 } sphere { 0, 0 } }",
     ),
     (
+        "height field",
+        "height_field { function 30, 20 { pattern { bozo scale 0.2 } } texture { Red } no_shadow translate <-0.5, -0.3, -0.5> scale <3, 1, 3> rotate y * 20 }",
+    ),
+    (
+        "smooth height field",
+        "height_field { function 12, 16 { 0.5 + 0.3 * sin(x * 5) * cos(y * 7 + x) } smooth texture { Red } no_shadow translate <-0.5, -0.3, -0.5> scale <3, 1, 3> rotate y * 20 }",
+    ),
+    (
+        "height field with water",
+        "height_field { function 60, 70 { pattern { bozo scale 0.2 } } water_level 0.4 smooth off hierarchy off texture { Red } no_shadow translate <-0.5, -0.3, -0.5> scale <3, 1, 3> rotate y * 20 }",
+    ),
+    (
+        "height field in CSG",
+        "difference { box { <-1.4, -0.5, -1.4>, <1.4, 1, 0.3> } height_field { function 40, 40 { pattern { bozo scale 0.3 } } translate -0.5 scale <2, 1.4, 2> rotate z * 10 texture { Green } } texture { Red } rotate <-20, 30, 0> } intersection { sphere { <0, 1, 0>, 0.6 } height_field { function 40, 40 { x * y } water_level 0.2 translate -0.5 scale 2 translate y texture { Green } } texture { Red } }",
+    ),
+    (
+        "isosurface",
+        "isosurface { function { x * x + y * y * 2 + z * z + 0.3 * sin(5 * x) - 1 } contained_by { box { -1.5, 1.5 } } max_gradient 8 accuracy 0.0001 texture { Red } rotate 20 }",
+    ),
+    (
+        "isosurface in its container",
+        "isosurface { function { sin(4 * x) * cos(3 * y) + sin(4 * y) * cos(4 * z) + sin(3 * z) * cos(4 * x) } threshold 0.1 max_gradient 8 contained_by { sphere { 0, 1.3 } } accuracy 0.0001 texture { Red } no_shadow }",
+    ),
+    (
+        "open isosurface",
+        "isosurface { function { x * x + y * y + z * z - 1 } open evaluate 2, 1.2, 0.9 contained_by { box { -0.8, <0.7, 0.9, 0.8> } } max_gradient 4 accuracy 0.0001 texture { Red } no_shadow rotate <-30, 20, 0> }",
+    ),
+    (
+        "isosurface of noise",
+        "#declare F = function { f_noise3d(x, y, z) } isosurface { function { sqrt(x * x + y * y + z * z) - 1.3 + 0.7 * F(x * 4, y * 4, z * 4) } contained_by { sphere { 0, 1.3 } } max_gradient 7 accuracy 0.0001 texture { Red } no_shadow }",
+    ),
+    (
+        "isosurface of a pattern",
+        "#declare F = function { pattern { bozo scale 0.4 } } isosurface { function { y + 0.4 - F(x, 0, z) * 0.5 } contained_by { box { <-1.3, -0.7, -1.3>, 1.3 } } max_gradient 3 accuracy 0.0001 texture { Red } no_shadow }",
+    ),
+    (
+        "isosurface in CSG",
+        "difference { box { -1, 1 } isosurface { function { x * x + y * y - 0.4 + 0.2 * sin(8 * z) } max_trace 4 max_gradient 4 accuracy 0.0001 contained_by { box { -1.1, 1.1 } } texture { Green } } texture { Red } rotate <20, 30, 0> }",
+    ),
+    (
+        "Julia set of quaternions",
+        "julia_fractal { <-0.083, 0, -0.83, -0.025> quaternion sqr max_iteration 6 precision 200 texture { Red } no_shadow }",
+    ),
+    (
+        "Julia set of cubes",
+        "julia_fractal { <-0.2, 0.3, -0.53, -0.025> cube max_iteration 5 precision 200 slice <0.1, 0.2, 0, 1>, 0.1 texture { Red } no_shadow rotate 30 }",
+    ),
+    (
+        "Julia set of hypercomplex numbers",
+        "julia_fractal { <-0.1, 0.2, -0.5, 0.1> hypercomplex sqr max_iteration 6 precision 200 texture { Red } no_shadow }",
+    ),
+    (
+        "Julia set cut off",
+        "difference { julia_fractal { <-0.083, 0, -0.83, -0.025> max_iteration 6 precision 200 texture { Green } } box { <-2, -2, -2>, <2, 2, 0> } texture { Red } no_shadow rotate y * 30 }",
+    ),
+    (
         "object around an object",
         "object { object { Ball scale 0.5 } texture { Red } translate y * 0.5 }",
     ),

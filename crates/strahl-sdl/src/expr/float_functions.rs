@@ -121,7 +121,7 @@ impl Parser<'_> {
     }
 
     /// A float in the parentheses of a function, where comparisons are clear.
-    pub(super) fn full_float(&mut self) -> PResult<f64> {
+    pub(crate) fn full_float(&mut self) -> PResult<f64> {
         let token = self.peek()?;
         let place = self.place_of(token);
         let value = self.full_expression()?;

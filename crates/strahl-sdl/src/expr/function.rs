@@ -49,7 +49,7 @@ const fn unary(word: Word) -> Option<UnaryOp> {
 
 impl Parser<'_> {
     /// What stands behind `function` in a declaration.
-    pub(super) fn function_value(&mut self) -> PResult<Value> {
+    pub(crate) fn function_value(&mut self) -> PResult<Value> {
         let open = self.peek()?;
         let body = self.raw_ahead(1);
         if open.kind == Kind::LeftBrace {

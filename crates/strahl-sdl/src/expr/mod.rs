@@ -118,6 +118,15 @@ impl Parser<'_> {
         Ok([u, v])
     }
 
+    /// A vector of four; a float stands for four equal components.
+    ///
+    /// # Errors
+    /// If there is no numeric expression.
+    pub fn vector4(&mut self) -> PResult<[f64; 4]> {
+        let [x, y, z, w, ..] = self.expression()?.promoted(4).components();
+        Ok([x, y, z, w])
+    }
+
     /// A number of any kind: float, vector or colour.
     ///
     /// # Errors

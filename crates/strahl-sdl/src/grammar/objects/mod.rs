@@ -7,6 +7,9 @@ mod cone;
 mod csg;
 mod cylinder;
 mod disc;
+mod height_field;
+mod isosurface;
+mod julia_fractal;
 mod lathe;
 mod mesh;
 mod modifiers;
@@ -38,6 +41,8 @@ type ObjectParser = fn(&mut Parser<'_>) -> PResult<Entity>;
 /// All objects by their words.
 static OBJECTS: [Option<ObjectParser>; Word::ALL.len()] = by_word::<ObjectParser, _>([
     (Word::Box, boxes::cuboid),
+    (Word::Isosurface, isosurface::isosurface),
+    (Word::JuliaFractal, julia_fractal::julia_fractal),
     (Word::Lathe, lathe::lathe),
     (Word::LightGroup, super::lights::light_group),
     (Word::LightSource, super::lights::light_source),
@@ -45,6 +50,7 @@ static OBJECTS: [Option<ObjectParser>; Word::ALL.len()] = by_word::<ObjectParser
     (Word::Cylinder, cylinder::cylinder),
     (Word::Difference, csg::difference),
     (Word::Disc, disc::disc),
+    (Word::HeightField, height_field::height_field),
     (Word::Intersection, csg::intersection),
     (Word::Merge, csg::merge),
     (Word::Mesh, mesh::mesh),

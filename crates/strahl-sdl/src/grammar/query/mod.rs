@@ -95,17 +95,17 @@ fn node(object: &Object) -> Option<CsgNode> {
     done.pop()
 }
 
-/// The box of an object that is clipped or inverted, which the language takes from the object as it was before.
+/// The box of an object that is clipped or inverted, which the language takes from the object as it was before, or of a
+/// shape, where the language takes the surface and not the inside.
 fn unclipped(object: &Object) -> Option<Aabb> {
-    let ObjectKind::Csg {
-        op: CsgOp::Clip | CsgOp::Inverse,
-        children,
-    } = &object.kind
-    else {
-        return None;
+    let bounds = match &object.kind {
+        ObjectKind::Csg {
+            op: CsgOp::Clip | CsgOp::Inverse,
+            children,
+        } => Query::new(children.0.first()?)?.bounds,
+        ObjectKind::Shape(shape) => shape.bounds(),
+        _ => return None,
     };
-    let inner = children.0.first()?;
-    let bounds = Query::new(inner)?.bounds;
     Some(match object.transform.as_deref() {
         Some(map) => map.bounds_to_world(&bounds),
         None => bounds,

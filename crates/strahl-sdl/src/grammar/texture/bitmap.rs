@@ -90,29 +90,36 @@ impl Parser<'_> {
         })
     }
 
+    /// The type of a picture file, if it is named.
+    pub(in crate::grammar) fn picture_type(&mut self) -> PResult<Option<Word>> {
+        let token = self.peek()?;
+        let kind = token.word().filter(|word| {
+            matches!(
+                word,
+                Word::Bmp
+                    | Word::Exr
+                    | Word::Gif
+                    | Word::Hdr
+                    | Word::Iff
+                    | Word::Jpeg
+                    | Word::Pgm
+                    | Word::Png
+                    | Word::Pot
+                    | Word::Ppm
+                    | Word::Sys
+                    | Word::Tga
+                    | Word::Tiff
+            )
+        });
+        if kind.is_some() {
+            self.take(token)?;
+        }
+        Ok(kind)
+    }
+
     /// `[type] "file" [gamma g] [premultiplied on]`
     fn picture_file(&mut self, mut gamma: Gamma) -> PResult<Option<Arc<TextureImage>>> {
-        let token = self.peek()?;
-        let kind = match token.word() {
-            Some(
-                word @ (Word::Bmp
-                | Word::Exr
-                | Word::Gif
-                | Word::Hdr
-                | Word::Iff
-                | Word::Jpeg
-                | Word::Pgm
-                | Word::Png
-                | Word::Ppm
-                | Word::Sys
-                | Word::Tga
-                | Word::Tiff),
-            ) => {
-                self.take(token)?;
-                Some(word)
-            }
-            _ => None,
-        };
+        let kind = self.picture_type()?;
         let name = self.file_name()?;
         let place = self.place();
         loop {
@@ -184,25 +191,12 @@ impl Parser<'_> {
         }
     }
 
-    /// `width, height { function }` behind `function`: a picture of the unit square, whose corners are the corner texels; y
-    /// grows downwards (measured).
+    /// `width, height { function }` behind `function`: a picture of 16 bits.
     fn function_picture(&mut self) -> PResult<Arc<TextureImage>> {
         let place = self.place();
-        let width = self.whole(1, 1 << 20)?;
-        self.comma()?;
-        let height = self.whole(1, 1 << 20)?;
-        if u64::from(width) * u64::from(height) > MAX_FUNCTION_TEXELS {
-            let message = format!("a picture of {width} x {height} texels is too large here");
-            return Err(self.fail(place, message));
-        }
-        let value = self.picture_function()?;
-        let mut samples = Vec::with_capacity(width as usize * height as usize * 4);
-        for row in 0..height {
-            for column in 0..width {
-                let p = DVec3::new(share(column, width), share(row, height), 0.0);
-                samples.extend(value(p).map(in_16_bits));
-            }
-        }
+        let mut samples = vec![];
+        let (width, height) =
+            self.sampled_function(|texel| samples.extend(texel.map(in_16_bits)))?;
         let made = TextureImage::try_new(
             width,
             height,
@@ -212,6 +206,30 @@ impl Parser<'_> {
         );
         made.map(Arc::new)
             .map_err(|error| self.fail(place, error.to_string()))
+    }
+
+    /// `width, height { function }` behind `function`: its values, as red, green, blue and alpha, row by row over the unit square,
+    /// whose corners are the corner texels; y grows downwards (measured).
+    pub(in crate::grammar) fn sampled_function(
+        &mut self,
+        mut take: impl FnMut([f64; 4]),
+    ) -> PResult<(u32, u32)> {
+        let place = self.place();
+        let width = self.whole(1, 1 << 20)?;
+        self.comma()?;
+        let height = self.whole(1, 1 << 20)?;
+        if u64::from(width) * u64::from(height) > MAX_FUNCTION_TEXELS {
+            let message = format!("a picture of {width} x {height} texels is too large here");
+            return Err(self.fail(place, message));
+        }
+        let value = self.picture_function()?;
+        for row in 0..height {
+            for column in 0..width {
+                let p = DVec3::new(share(column, width), share(row, height), 0.0);
+                take(value(p));
+            }
+        }
+        Ok((width, height))
     }
 
     /// The red, green, blue and alpha of a picture made by `{ pigment ... }`, `{ pattern ... }` or a formula.
@@ -241,7 +259,6 @@ impl Parser<'_> {
         let function = self.nested(Self::function)?;
         Ok(Box::new(move |p| {
             let value = strahl_function::ScalarField::value(&function, &p.to_array());
-            let value = value.clamp(0.0, 1.0);
             [value, value, value, 1.0]
         }))
     }

@@ -1,0 +1,94 @@
+use crate::grammar::Entity;
+use crate::keywords::Word;
+use crate::parser::{PResult, Parser};
+use strahl_formats::image::{Heights, decode_heights};
+use strahl_geometry::HeightField;
+use strahl_math::det;
+
+/// `height_field { [type] "file" [gamma g] | function width, height { ... } [water_level y] [smooth] ... }`
+pub(super) fn height_field(p: &mut Parser<'_>) -> PResult<Entity> {
+    p.shape(|p| {
+        let heights = if p.accept_word(Word::Function)? {
+            p.height_function()?
+        } else {
+            p.height_file()?
+        };
+        let (mut water, mut smooth) = (0.0, false);
+        loop {
+            if p.accept_word(Word::WaterLevel)? {
+                water = p.float()?;
+            } else if p.accept_word(Word::Smooth)? {
+                smooth = p.switched()?;
+            } else {
+                break;
+            }
+        }
+        let Heights {
+            width,
+            height,
+            values,
+            ..
+        } = heights;
+        Ok(HeightField::try_new(width, height, values, water, smooth))
+    })
+}
+
+impl Parser<'_> {
+    /// `[type] "file" [gamma g] [premultiplied on]`
+    fn height_file(&mut self) -> PResult<Heights> {
+        self.picture_type()?;
+        let place = self.place();
+        let name = self.file_name()?;
+        let source = self.read_file(&name, place)?;
+        let mut heights = match decode_heights(&source.bytes, &name) {
+            Ok(heights) => heights,
+            Err(error) => return Err(self.fail(place, error.to_string())),
+        };
+        loop {
+            if self.accept_word(Word::Gamma)? {
+                let decode: Box<dyn Fn(f64) -> f64> = if self.accept_word(Word::Srgb)? {
+                    Box::new(strahl_shade::srgb::decode)
+                } else {
+                    let power = self.float()?;
+                    Box::new(move |x| det::pow(x, power))
+                };
+                // Of colours and indices, POV-Ray makes something that nobody can have meant.
+                if heights.gray {
+                    for value in &mut heights.values {
+                        *value = in_16_bits(decode(f64::from(*value) / 65535.0));
+                    }
+                }
+            } else if self.accept_word(Word::Premultiplied)? {
+                self.switched()?;
+            } else {
+                return Ok(heights);
+            }
+        }
+    }
+
+    /// `width, height { ... }` behind `function`
+    fn height_function(&mut self) -> PResult<Heights> {
+        let mut values = vec![];
+        let (width, height) = self.sampled_function(|[r, g, b, _]| {
+            // A value beyond the range wraps around (measured); colours count by brightness.
+            values.push(if r == g && g == b {
+                in_16_bits(r)
+            } else {
+                let channel = |x: f64| f64::from(in_16_bits(x.clamp(0.0, 1.0)));
+                (0.297 * channel(r) + 0.589 * channel(g) + 0.114 * channel(b)) as u16
+            });
+        })?;
+        Ok(Heights {
+            width,
+            height,
+            values,
+            gray: true,
+        })
+    }
+}
+
+/// A height as 16 bits hold it; what does not fit loses its upper bits.
+fn in_16_bits(x: f64) -> u16 {
+    // The first cast cuts off and takes NaN for 0.
+    (x * 65535.0) as i64 as u16
+}
