@@ -19,7 +19,9 @@ pub mod swept;
 
 pub use csg::{Csg, CsgNode, Operands};
 pub use fractal::{HypercomplexFunction, Julia, JuliaAlgebra, JuliaOptions, QuaternionFunction};
-pub use implicit::{Container, HeightField, Isosurface, IsosurfaceOptions};
+pub use implicit::{
+    Container, HeightField, Isosurface, IsosurfaceOptions, Parametric, ParametricOptions,
+};
 pub use mesh::{Brep, MeshData, Polygon, RayShear, SmoothTriangle, Triangle, TriangleMesh};
 pub use primitive::{GeometryError, PrimHit, Primitive, Scratch, Solid, SurfaceId, SurfacePoint};
 pub use primitives::{Cone, Cuboid, Cylinder, Disc, Plane, Quadric, Sphere, Torus};

@@ -1,5 +1,5 @@
 use crate::fractal::Julia;
-use crate::implicit::{HeightField, Isosurface};
+use crate::implicit::{HeightField, Isosurface, Parametric};
 use crate::mesh::{Brep, Polygon, SmoothTriangle, Triangle, TriangleMesh};
 use crate::primitives::{Cone, Cuboid, Cylinder, Disc, Plane, Quadric, Sphere, Torus};
 use crate::swept::{Glyph, Lathe, Prism, Sor, SphereSweep};
@@ -123,6 +123,8 @@ shapes! {
     HeightField(Arc<HeightField>),
     /// A surface where a function has a given value.
     Isosurface(Arc<Isosurface>),
+    /// A surface whose points are functions of two parameters.
+    Parametric(Arc<Parametric>),
     /// A slice of a Julia set in four dimensions.
     Julia(Arc<Julia>),
     /// A tree of solids, combined.
@@ -153,6 +155,7 @@ shared!(
     TriangleMesh,
     HeightField,
     Isosurface,
+    Parametric,
     Julia,
     Csg,
     Brep

@@ -306,7 +306,7 @@ const SCENES: &[(&str, &str)] = &[
     ),
     (
         "height field with water",
-        "height_field { function 60, 70 { pattern { bozo scale 0.2 } } water_level 0.4 smooth off hierarchy off texture { Red } no_shadow translate <-0.5, -0.3, -0.5> scale <3, 1, 3> rotate y * 20 }",
+        "height_field { function 60, 70 { pattern { bozo scale 0.2 } } water_level 0.4 hierarchy off texture { Red } no_shadow translate <-0.5, -0.3, -0.5> scale <3, 1, 3> rotate y * 20 }",
     ),
     (
         "height field in CSG",
@@ -326,7 +326,7 @@ const SCENES: &[(&str, &str)] = &[
     ),
     (
         "isosurface of noise",
-        "#declare F = function { f_noise3d(x, y, z) } isosurface { function { sqrt(x * x + y * y + z * z) - 1.3 + 0.7 * F(x * 4, y * 4, z * 4) } contained_by { sphere { 0, 1.3 } } max_gradient 7 accuracy 0.0001 texture { Red } no_shadow }",
+        "#include \"functions.inc\" isosurface { function { sqrt(x * x + y * y + z * z) - 1.3 + 0.7 * f_noise3d(x * 4, y * 4, z * 4) } contained_by { sphere { 0, 1.3 } } max_gradient 7 accuracy 0.0001 texture { Red } no_shadow }",
     ),
     (
         "isosurface of a pattern",
@@ -351,6 +351,10 @@ const SCENES: &[(&str, &str)] = &[
     (
         "Julia set cut off",
         "difference { julia_fractal { <-0.083, 0, -0.83, -0.025> max_iteration 6 precision 200 texture { Green } } box { <-2, -2, -2>, <2, 2, 0> } texture { Red } no_shadow rotate y * 30 }",
+    ),
+    (
+        "parametric",
+        "parametric { function { (1 + 0.4 * cos(v)) * cos(u) } function { 0.4 * sin(v) } function { (1 + 0.4 * cos(v)) * sin(u) } <0, 0>, <2 * pi, 2 * pi> contained_by { box { -1.5, 1.5 } } max_gradient 3 accuracy 0.001 precompute 8 x, y, z texture { Red } no_shadow rotate <-40, 0, 10> }",
     ),
     (
         "object around an object",

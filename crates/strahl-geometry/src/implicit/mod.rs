@@ -3,9 +3,11 @@
 mod container;
 mod height_field;
 mod isosurface;
+mod parametric;
 mod workspace;
 
 pub use container::Container;
 pub(crate) use container::Passage;
 pub use height_field::HeightField;
 pub use isosurface::{Isosurface, IsosurfaceOptions};
+pub use parametric::{Parametric, ParametricOptions};

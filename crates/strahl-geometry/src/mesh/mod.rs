@@ -26,6 +26,6 @@ pub use indexed::{MeshData, TriangleMesh};
 pub use polygon::{Polygon, fan_triangles};
 pub(crate) use shear::intersect_sheared;
 pub use shear::{RayShear, TriangleHit, intersect_triangle};
+pub(crate) use triangle::combine;
 pub use triangle::{SmoothTriangle, Triangle};
-pub(crate) use triangle::{combine, smooth_normal};
 pub use triangulate::triangulate;

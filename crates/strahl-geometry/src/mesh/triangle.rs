@@ -299,7 +299,7 @@ pub(crate) fn combine(a: DVec3, b: DVec3, c: DVec3, [u, v]: [f64; 2]) -> (DVec3,
 }
 
 /// The interpolated unit normal, on the side of `n_geom` (see [`SmoothTriangle`]).
-pub(crate) fn smooth_normal(normals: [DVec3; 3], [u, v]: [f64; 2], n_geom: DVec3) -> DVec3 {
+pub(super) fn smooth_normal(normals: [DVec3; 3], [u, v]: [f64; 2], n_geom: DVec3) -> DVec3 {
     let [a, b, c] = normals;
     let n = a * (1.0 - u - v) + b * u + c * v;
     let front = (a + b + c).dot(n_geom) >= 0.0;

@@ -120,6 +120,14 @@ impl Parser<'_> {
     /// # Errors
     /// If the expression is wrong or too large.
     pub(crate) fn function(&mut self) -> PResult<Function> {
+        self.function_of(&[(Word::X, "x"), (Word::Y, "y"), (Word::Z, "z")])
+    }
+
+    /// The same with other parameters if none are given.
+    ///
+    /// # Errors
+    /// If the expression is wrong or too large.
+    pub(crate) fn function_of(&mut self, usual: &[(Word, &str)]) -> PResult<Function> {
         let place = self.place();
         let mut parameters = vec![];
         if self.accept(Kind::LeftParen)? {
@@ -133,8 +141,8 @@ impl Parser<'_> {
                 self.comma()?;
             }
         } else {
-            let space = [(Word::X, "x"), (Word::Y, "y"), (Word::Z, "z")];
-            parameters.extend(space.map(|(word, text)| (Symbol(word as u32), text.to_owned())));
+            let usual = usual.iter();
+            parameters.extend(usual.map(|(word, text)| (Symbol(*word as u32), (*text).to_owned())));
         }
         let mut body = Body {
             graph: Graph::new(parameters.iter().map(|(_, text)| text.clone())),

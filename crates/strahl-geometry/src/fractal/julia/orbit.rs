@@ -92,44 +92,56 @@ impl Rule {
         }
     }
 
-    /// The gradient of the end's value by the four components of the starting point.
-    pub(super) fn gradient(&self, start: Four) -> Four {
+    /// The gradient of the end's value by the four components of the starting point, at the end or so many points behind it.
+    pub(super) fn gradient(&self, start: Four, behind: u32) -> Four {
         match self.algebra {
-            JuliaAlgebra::Quaternion(f) => self.quaternion_gradient(f, start),
-            JuliaAlgebra::Hypercomplex(f) => self.hypercomplex_gradient(f, start),
+            JuliaAlgebra::Quaternion(f) => self.quaternion_gradient(f, start, behind),
+            JuliaAlgebra::Hypercomplex(f) => self.hypercomplex_gradient(f, start, behind),
         }
     }
 
-    fn quaternion_gradient(&self, f: QuaternionFunction, start: Four) -> Four {
+    fn quaternion_gradient(&self, f: QuaternionFunction, start: Four, behind: u32) -> Four {
         let limit = self.exit * self.exit;
         let mut h = start;
         // Rows: the derivatives by the components of the starting point.
         let mut rows: [Four; 4] =
             std::array::from_fn(|k| std::array::from_fn(|l| f64::from(u8::from(k == l))));
+        let mut step = |h: &mut Four| {
+            rows = rows.map(|d| f.derivative(*h, d));
+            let next = f.value(*h);
+            *h = std::array::from_fn(|k| next[k] + self.parameter[k]);
+        };
         for _ in 1..self.points {
             if !(norm2(h) <= limit) {
                 break;
             }
-            rows = rows.map(|d| f.derivative(h, d));
-            let next = f.value(h);
-            h = std::array::from_fn(|k| next[k] + self.parameter[k]);
+            step(&mut h);
+        }
+        for _ in 0..behind {
+            step(&mut h);
         }
         let r2 = norm2(h);
         rows.map(|d| ((h[0] * d[0] + h[1] * d[1]) + (h[2] * d[2] + h[3] * d[3])) / r2)
     }
 
-    fn hypercomplex_gradient(&self, f: HypercomplexFunction, start: Four) -> Four {
+    fn hypercomplex_gradient(&self, f: HypercomplexFunction, start: Four, behind: u32) -> Four {
         let limit = self.exit * self.exit;
         let [p, q] = split(self.parameter);
         let [mut a, mut b] = split(start);
         let (mut da, mut db) = (Complex::new(1.0, 0.0), Complex::new(1.0, 0.0));
+        let mut step = |a: &mut Complex, b: &mut Complex| {
+            let (fa, fb) = (f.value(*a), f.value(*b));
+            (da, db) = (da * f.slope(*a, fa), db * f.slope(*b, fb));
+            (*a, *b) = (fa + p, fb + q);
+        };
         for _ in 1..self.points {
             if !(joint_norm2([a, b]) <= limit) {
                 break;
             }
-            let (fa, fb) = (f.value(a), f.value(b));
-            (da, db) = (da * f.slope(a, fa), db * f.slope(b, fb));
-            (a, b) = (fa + p, fb + q);
+            step(&mut a, &mut b);
+        }
+        for _ in 0..behind {
+            step(&mut a, &mut b);
         }
         // The gradient of |a|²/2 by the real and imaginary part of its start is a conj(a'); so for b.
         let (ga, gb) = (a * da.conjugate(), b * db.conjugate());
@@ -198,7 +210,7 @@ mod tests {
                 exit: 4.0,
             };
             let start = [0.3, -0.2, 0.25, 0.1];
-            let (gradient, end) = (rule.gradient(start), rule.end(start));
+            let (gradient, end) = (rule.gradient(start, 0), rule.end(start));
             for k in 0..4 {
                 let moved = |by: f64| {
                     let mut p = start;

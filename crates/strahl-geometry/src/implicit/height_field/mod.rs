@@ -7,7 +7,7 @@ mod smooth;
 mod tests;
 mod traverse;
 
-use crate::mesh::{RayShear, combine, intersect_sheared, smooth_normal};
+use crate::mesh::{RayShear, combine, intersect_sheared};
 use crate::{GeometryError, PrimHit, Primitive, Scratch, Solid, SurfaceId, SurfacePoint};
 use body::Body;
 use grid::{Cell, Grid, SCALE};
@@ -209,11 +209,7 @@ impl Surface {
         let (by_x, by_z) = ((b.y - a.y) / (b.x - a.x), (c.y - a.y) / (c.z - a.z));
         let n_geom = DVec3::new(-by_x, 1.0, -by_z).normalize();
         let n_shade = self.normals.as_ref().map_or(n_geom, |normals| {
-            let width = self.grid.size().0 as usize;
-            let corners = numbers.map(|(i, j)| {
-                smooth::in_unit_cube(&self.grid, normals[j as usize * width + i as usize])
-            });
-            smooth_normal(corners, hit.uv, n_geom)
+            smooth::interpolated(&self.grid, normals, element / 2, position, n_geom)
         });
         SurfacePoint {
             position,

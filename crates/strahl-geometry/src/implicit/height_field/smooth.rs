@@ -38,9 +38,38 @@ fn normal(grid: &Grid, i: u32, j: u32) -> [i16; 3] {
         .map(|c| c as i16)
 }
 
-/// A stored normal in the unit cube, of any length.
-pub(super) fn in_unit_cube(grid: &Grid, normal: [i16; 3]) -> DVec3 {
+/// A stored normal in the unit cube, of unit length.
+fn in_unit_cube(grid: &Grid, normal: [i16; 3]) -> DVec3 {
     let (columns, rows) = grid.cells();
     let [x, y, z] = normal.map(f64::from);
-    DVec3::new(x * f64::from(columns), y * SCALE, z * f64::from(rows))
+    DVec3::new(x * f64::from(columns), y * SCALE, z * f64::from(rows)).normalize_or(DVec3::Y)
+}
+
+/// The normal at a point of a cell: bilinear between the four vertices, as in POV-Ray (measured), but never on the other side of the
+/// surface.
+pub(super) fn interpolated(
+    grid: &Grid,
+    normals: &[[i16; 3]],
+    cell: u32,
+    point: DVec3,
+    n_geom: DVec3,
+) -> DVec3 {
+    let (columns, rows) = grid.cells();
+    let (i, j) = (cell % columns, cell / columns);
+    let at = |i: u32, j: u32| {
+        let index = j as usize * grid.size().0 as usize + i as usize;
+        normals
+            .get(index)
+            .map_or(n_geom, |&n| in_unit_cube(grid, n))
+    };
+    let u = point.x * f64::from(columns) - f64::from(i);
+    let v = point.z * f64::from(rows) - f64::from(j);
+    let near = at(i, j) * (1.0 - u) + at(i + 1, j) * u;
+    let far = at(i, j + 1) * (1.0 - u) + at(i + 1, j + 1) * u;
+    let n = (near * (1.0 - v) + far * v).normalize_or(n_geom);
+    let above = n.dot(n_geom);
+    if above >= 0.0 {
+        return n;
+    }
+    (n - n_geom * above).normalize_or(n_geom)
 }

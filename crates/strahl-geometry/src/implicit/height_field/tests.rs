@@ -151,6 +151,24 @@ fn walls_and_water_are_crossed_unseen() {
 }
 
 #[test]
+fn normals_between_vertices_are_those_measured() {
+    let f = |x: f64, y: f64| 0.2 + 0.3 * x * x + 0.4 * y * y * x;
+    let rows =
+        (0..16).map(|k| (65535.0 * f(f64::from(k % 4) / 3.0, f64::from(k / 4) / 3.0)) as u16);
+    let field = HeightField::try_new(4, 4, rows.collect(), 0.0, true).unwrap();
+    for (x, z, expected) in [
+        (0.4, 0.45, [-0.370091810, 0.910935268, 0.182288203]),
+        (0.6, 0.6, [-0.402050134, 0.897596554, 0.180765364]),
+        (0.1, 0.05, [-0.461442815, 0.884876892, 0.063744912]),
+    ] {
+        let ray = Ray::new(DVec3::new(x, 5.0, z), -DVec3::Y);
+        let hit = closest(&field, ray.origin, ray.direction).unwrap();
+        let off = field.surface_at(&ray, &hit).n_shade - DVec3::from_array(expected);
+        assert!(off.length() < 1e-6, "{x} {z}: {off}");
+    }
+}
+
+#[test]
 fn smooth_normals_are_those_measured() {
     // Heights and normals of a field of POV-Ray 3.7, row by row with ascending z (y of the normals is what is cut off).
     let rows = [

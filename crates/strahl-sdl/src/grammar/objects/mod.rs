@@ -14,6 +14,7 @@ mod lathe;
 mod mesh;
 mod modifiers;
 mod named;
+mod parametric;
 mod plane;
 mod polygon;
 mod prism;
@@ -56,6 +57,7 @@ static OBJECTS: [Option<ObjectParser>; Word::ALL.len()] = by_word::<ObjectParser
     (Word::Mesh, mesh::mesh),
     (Word::Mesh2, mesh::mesh2),
     (Word::Object, object),
+    (Word::Parametric, parametric::parametric),
     (Word::Plane, plane::plane),
     (Word::Polygon, polygon::polygon),
     (Word::Prism, prism::prism),
