@@ -149,6 +149,7 @@ impl<'a> Input<'a> {
             format: self.format,
             library: vec![PathBuf::from(".")],
             fonts: font_folders(),
+            installed: strahl::povray_folders(),
             writable: self.writable(),
             on_message: (!quiet).then(|| Box::new(print_message) as _),
             ..LoadOptions::default()

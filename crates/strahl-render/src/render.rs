@@ -3,7 +3,7 @@ use crate::film::{Film, FilmError, PixelInfo, Region, try_filled};
 use crate::sampling::{Sampling, contrast};
 use crate::scene::RenderScene;
 use crate::tiles::{TileOrder, tiles};
-use crate::trace::{RayCounts, TraceSettings, TreeTracer};
+use crate::trace::{RayCounts, SampleResult, TraceSettings, TreeTracer};
 use rayon::prelude::*;
 use strahl_accel::TraversalStats;
 use strahl_shade::Color;
@@ -217,7 +217,8 @@ impl Job<'_> {
         let all = tiles(region, self.options.tile_order);
         self.progress
             .pass(pass, 1 + self.options.sampling.passes(), all.len());
-        let (scene, options, rays, progress) = (self.scene, self.options, self.rays, self.progress);
+        let (scene, options, progress) = (self.scene, self.options, self.progress);
+        let rays = &self.rays;
         for batch in all.chunks(BATCH) {
             let results: Vec<Option<TileResult<T>>> = batch
                 .par_iter()
@@ -393,7 +394,7 @@ impl Film {
 /// Traces pixels on one thread.
 struct PixelTracer<'s> {
     tree: TreeTracer<'s>,
-    rays: PrimaryRays,
+    rays: &'s PrimaryRays,
     options: &'s RenderOptions,
     /// Of the pixels of the tile so far.
     infos: Vec<PixelInfo>,
@@ -433,11 +434,19 @@ impl PixelTracer<'_> {
     /// The light that comes through a place of the picture; `keep` says whether it stands for its pixel's other data.
     fn sample(&mut self, x: f64, y: f64, keep: bool) -> Color {
         let before = self.tree.tracer.stats.primitive_tests;
-        let sample = self.tree.trace(&self.rays.ray(x, y), &mut ());
+        let mut first = SampleResult::NOTHING;
+        let tree = &mut self.tree;
+        let color = self.rays.color(x, y, |ray| {
+            let sample = tree.trace(ray, &mut ());
+            if first.rays == 0 {
+                first = sample;
+            }
+            sample.color
+        });
         if keep && self.options.info {
             let tests = self.tree.tracer.stats.primitive_tests - before;
-            self.infos.push(PixelInfo::new(&sample, tests));
+            self.infos.push(PixelInfo::new(&first, tests));
         }
-        sample.color
+        color
     }
 }

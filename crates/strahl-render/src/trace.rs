@@ -154,6 +154,16 @@ pub struct SampleResult {
     pub rays: u32,
 }
 
+impl SampleResult {
+    /// Where the camera sends no ray.
+    pub const NOTHING: Self = Self {
+        color: Color::BLACK,
+        first: None,
+        depth: 0,
+        rays: 0,
+    };
+}
+
 /// Grows ray trees; owns the working memory of one thread.
 #[derive(Debug)]
 pub struct TreeTracer<'s> {

@@ -106,14 +106,19 @@ pub fn explain(
     let rays = PrimaryRays::new(scene.camera(), options.width, options.height);
     let mut tracer = TreeTracer::new(scene, options.trace);
     let mut samples = Vec::new();
+    let mut count = 0u32;
     let mut sum: Option<Color> = None;
     for places in passes {
         let mut pass_sum: Option<Color> = None;
         for (dx, dy) in places {
             let place = (f64::from(x) + dx, f64::from(y) + dy);
-            let mut tree = RayTree::default();
-            let color = tracer.trace(&rays.ray(place.0, place.1), &mut tree).color;
-            samples.push((place, tree));
+            let color = rays.color(place.0, place.1, |ray| {
+                let mut tree = RayTree::default();
+                let color = tracer.trace(ray, &mut tree).color;
+                samples.push((place, tree));
+                color
+            });
+            count += 1;
             pass_sum = Some(pass_sum.map_or(color, |s| s + color));
         }
         sum = match (sum, pass_sum) {
@@ -122,10 +127,10 @@ pub fn explain(
         };
     }
     let sum = sum.unwrap_or_default();
-    let color = if samples.len() == 1 {
+    let color = if count == 1 {
         sum
     } else {
-        sum / samples.len() as f64
+        sum / f64::from(count)
     };
     Ok(PixelTree {
         samples,

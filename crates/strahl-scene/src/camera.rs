@@ -1,21 +1,14 @@
-use crate::Span;
+use crate::{Lens, Projection, Span};
+use std::sync::Arc;
 use strahl_math::{DVec3, det};
-
-/// How rays leave the camera.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Projection {
-    /// All through the eye.
-    Perspective,
-    /// Parallel to the viewing direction, from the plane through the eye.
-    Orthographic,
-}
+use strahl_shade::normal::PovNormal;
 
 /// The eye and its viewing coordinate system (method: section 2).
 ///
 /// The picture spans `right` and `up` from its centre to its edges, so image coordinates `x, y` in `-1..=1` (x to the right, y
 /// upwards) name the point `eye + direction + x·right + y·up` of the image plane. `right` is stretched by the
 /// picture's aspect ratio unless `aspect` fixes one. Nothing requires the three vectors to be perpendicular.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct Camera {
     /// Position of the eye.
     pub eye: DVec3,
@@ -25,8 +18,12 @@ pub struct Camera {
     pub right: DVec3,
     /// From the centre of the picture to its top edge.
     pub up: DVec3,
-    /// Perspective or orthographic.
+    /// How rays leave it.
     pub projection: Projection,
+    /// What blurs the picture; `None` is a pinhole.
+    pub lens: Option<Lens>,
+    /// What bends the rays; looked up at the place in the picture, from -0.5 to 0.5 in x and y.
+    pub normal: Option<Arc<PovNormal>>,
     /// Fixed width-to-height ratio of what is seen; `None` takes the picture's.
     pub aspect: Option<f64>,
     /// Where the scene says so.
@@ -77,6 +74,8 @@ impl Camera {
             right: u * half_width,
             up: v * half_height,
             projection,
+            lens: None,
+            normal: None,
             aspect: None,
             span: Span::NONE,
         }
@@ -90,6 +89,17 @@ impl Camera {
         }
         if self.aspect.is_some_and(|a| !(a > 0.0 && a.is_finite())) {
             return Some("the camera's aspect ratio must be positive");
+        }
+        if self
+            .projection
+            .angles()
+            .any(|a| !(a > 0.0 && a.is_finite()))
+        {
+            return Some("the camera's angle must be positive");
+        }
+        if matches!(self.projection, Projection::Mesh(_)) {
+            // The faces know where to look.
+            return None;
         }
         let volume = self.right.cross(self.up).dot(self.direction);
         if volume == 0.0 || !volume.is_finite() {

@@ -61,6 +61,28 @@ impl Word {
         Self::ALL[self as usize].1
     }
 
+    /// Whether the word came with version 3.8, so that older scenes use it as a name; measured with POV-Ray 3.7.
+    pub(crate) fn is_new(self) -> bool {
+        matches!(
+            self,
+            Self::Cmap
+                | Self::Dictionary
+                | Self::Global
+                | Self::Grey
+                | Self::Lemon
+                | Self::Mixed
+                | Self::Obj
+                | Self::Optional
+                | Self::Polarity
+                | Self::Potential
+                | Self::Prefix
+                | Self::Suffix
+                | Self::Tau
+                | Self::Unofficial
+                | Self::UserDefined
+        )
+    }
+
     /// What it is.
     pub fn kind(self) -> WordKind {
         Self::ALL[self as usize].2

@@ -9,7 +9,7 @@
 //! stay in the processor's cache.
 
 use crate::keywords::{Word, WordKind};
-use crate::symbol::Symbols;
+use crate::symbol::{Symbol, Symbols};
 use crate::token::{Directive, Kind, Token};
 use std::sync::Arc;
 
@@ -198,7 +198,11 @@ impl<'a> Lexer<'a> {
                     let name = self.name();
                     let symbol = self.symbols.intern(name);
                     let known = (symbol.index()) < Word::ALL.len();
-                    let kind = if known { Kind::Word } else { Kind::Name };
+                    let kind = if known && !self.is_freed(symbol) {
+                        Kind::Word
+                    } else {
+                        Kind::Name
+                    };
                     if self.out.tokens.len() >= self.wanted
                         && kind == Kind::Word
                         && self.ends_before_object(Word::from_number(u64::from(symbol.0)))
@@ -367,6 +371,45 @@ impl<'a> Lexer<'a> {
         let index = self.out.strings.len();
         self.out.strings.push(text.into());
         self.push(Kind::String, start, index as u64);
+    }
+
+    /// Whether a reserved word is a name here, because the scene declares one: words that came with 3.8 were names before.
+    fn is_freed(&mut self, symbol: Symbol) -> bool {
+        /// How far to look back for the head of a macro.
+        const PARAMETERS: usize = 200;
+        if self.symbols.is_freed(symbol) {
+            return true;
+        }
+        let Some(word) = Word::from_number(u64::from(symbol.0)).filter(|w| w.is_new()) else {
+            return false;
+        };
+        let tokens = &self.out.tokens;
+        let before = |n: usize| tokens.len().checked_sub(n).and_then(|at| tokens.get(at));
+        let directive = |n: usize| before(n).and_then(|t| t.directive());
+        let rest = self.bytes.get(self.position..).unwrap_or(&[]);
+        let next = rest.iter().copied().find(|b| !is_blank(*b)).unwrap_or(0);
+        let declared = match (directive(1), directive(2)) {
+            (Some(Directive::Declare | Directive::Local), _) => matches!(next, b'=' | b'['),
+            (_, Some(Directive::For)) => next == b',',
+            // A parameter of a macro: the names since the parenthesis have commas between them.
+            _ => {
+                let list = tokens.iter().rev().take(PARAMETERS).take_while(|t| {
+                    matches!(
+                        t.kind,
+                        Kind::Name | Kind::Word | Kind::Comma | Kind::LeftParen
+                    )
+                });
+                let head = tokens.len() - list.count();
+                let head = head.checked_sub(1).and_then(|at| tokens.get(at));
+                head.and_then(|t| t.directive()) == Some(Directive::Macro)
+                    && word != Word::Optional
+                    && matches!(next, b',' | b')')
+            }
+        };
+        if declared {
+            self.symbols.free(symbol);
+        }
+        declared
     }
 
     fn directive(&mut self) {

@@ -85,6 +85,16 @@ pub enum HostError {
     },
 }
 
+impl HostError {
+    /// Adds folders that were searched as well.
+    pub(crate) fn also(mut self, more: Vec<String>) -> Self {
+        if let Self::NotFound { searched, .. } = &mut self {
+            searched.extend(more);
+        }
+        self
+    }
+}
+
 /// What the parser asks of the world outside: it does no input or output by itself.
 pub trait Host: Send {
     /// Reads a file that a scene names.
@@ -102,6 +112,17 @@ pub trait Host: Send {
     /// If the file is there and can't be read.
     fn load_font(&mut self, _file: &str) -> Result<Option<Source>, HostError> {
         Ok(None)
+    }
+
+    /// Reads a file that is neither where [`Host::load`] looks nor built in, such as a picture of an installed POV-Ray.
+    ///
+    /// # Errors
+    /// [`HostError::NotFound`] where nothing of the kind is known.
+    fn load_installed(&mut self, name: &str) -> Result<Source, HostError> {
+        Err(HostError::NotFound {
+            name: name.to_owned(),
+            searched: vec![],
+        })
     }
 
     /// Opens a file for `#write`.

@@ -22,6 +22,8 @@ pub(crate) struct Symbols {
     ends: Vec<u32>,
     /// Symbol number plus one; 0 is free. The length is a power of two.
     table: Vec<u32>,
+    /// Reserved words that the scene has declared as names.
+    freed: Vec<Symbol>,
 }
 
 impl Symbols {
@@ -31,6 +33,7 @@ impl Symbols {
             text: String::new(),
             ends: vec![],
             table: vec![0; 2048],
+            freed: vec![],
         };
         for (_, text, _) in Word::ALL {
             symbols.intern(text.as_bytes());
@@ -47,6 +50,16 @@ impl Symbols {
         };
         let end = self.ends.get(index).copied().unwrap_or(0) as usize;
         self.text.get(start..end).unwrap_or("")
+    }
+
+    /// Makes a name of a reserved word, for all that is read from now on.
+    pub(crate) fn free(&mut self, word: Symbol) {
+        self.freed.push(word);
+    }
+
+    /// Whether a reserved word is a name now.
+    pub(crate) fn is_freed(&self, word: Symbol) -> bool {
+        self.freed.contains(&word)
     }
 
     /// All spellings, in the order in which they were met.
@@ -82,6 +95,7 @@ impl Symbols {
             text: String::with_capacity(self.text.len() * 2),
             ends: Vec::with_capacity(self.ends.len() * 2),
             table: vec![0; size],
+            freed: std::mem::take(&mut self.freed),
         };
         for name in names {
             self.intern(&name);

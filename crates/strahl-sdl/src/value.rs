@@ -57,7 +57,9 @@ impl Value {
     pub(crate) fn is_callable(&self) -> bool {
         matches!(
             self,
-            Self::Function(_) | Self::Spline(_) | Self::Thing(Thing::PigmentFunction(_))
+            Self::Function(_)
+                | Self::Spline(_)
+                | Self::Thing(Thing::PigmentFunction(_) | Thing::TransformFunction(_))
         )
     }
 

@@ -337,3 +337,107 @@ fn an_array_may_be_followed_by_a_directive_that_fills_it() {
     let text = "#declare A = array[2]\n#declare A[0] = 1;\n#declare A[1] = 2;\n#debug str(A[0] + A[1], 0, 0)";
     assert_eq!(debug(text), "3");
 }
+
+#[test]
+fn strings_are_compared() {
+    let setup = "#declare S = \"ab\"; #declare A = array[1] { \"x\" }";
+    let found = values(
+        setup,
+        &[
+            "(S = \"ab\")",
+            "(S != \"\")",
+            "(\"a\" < \"b\")",
+            "(\"a\" >= \"b\")",
+            "(concat(S, \"\") = S ? 3 : 4)",
+            "(A[0] = \"x\") + 2",
+        ],
+    );
+    assert_eq!(found, [1.0, 1.0, 1.0, 0.0, 3.0, 3.0]);
+    assert!(errors("#declare A = \"a\" + 1;")[0].contains("expected"));
+    assert!(errors("sphere { \"a\", 1 }")[0].contains("the string \"a\""));
+}
+
+#[test]
+fn a_comma_may_follow_the_last_component() {
+    let found = values("#declare V = <1, 2, 3,> + <1, 1,>;", &["V.x", "V.y", "V.z"]);
+    assert_eq!(found, [2.0, 3.0, 3.0]);
+    assert!(!errors("#declare V = <1,>;").is_empty());
+}
+
+#[test]
+fn some_directives_do_without_their_sign() {
+    let text = "declare A = 3; version 3.7; default { pigment { rgb 1 } } #debug str(A, 0, 0) # ; sphere { 0, A # }";
+    let mut host = MemoryHost::new();
+    let parsed = parse_with(&mut host, text);
+    assert_eq!(host.text(strahl_sdl::Stream::Debug), "3");
+    assert_eq!(parsed.scene.expect("no errors").objects.0.len(), 1);
+    let messages: Vec<&str> = parsed
+        .diagnostics
+        .iter()
+        .map(|d| d.message.as_str())
+        .collect();
+    assert_eq!(messages.len(), 5, "{messages:?}");
+    assert!(
+        messages.iter().all(|m| m.contains("without")),
+        "{messages:?}"
+    );
+}
+
+#[test]
+fn new_words_are_names_once_they_are_declared() {
+    let text = "
+        #declare prefix = \"a\"; #declare tau = 5; #local obj = array[1] { 7 };
+        #macro Twice(mixed, potential) 2 * mixed + potential #end
+        #for (suffix, 1, 2) #debug str(suffix, 0, 0) #end
+        #debug concat(prefix, str(tau, 0, 0), str(obj[0], 0, 0), str(Twice(3, 4), 0, 0))";
+    assert_eq!(debug(text), "12a5710");
+    // Until then they mean what they mean in 3.8.
+    assert_eq!(debug("#debug str(tau, 0, 2)"), "6.28");
+    assert_eq!(
+        debug("#declare A = dictionary; #declare A.b = 1; #debug str(A.b, 0, 0)"),
+        "1"
+    );
+    assert!(!errors("#declare sphere = 1;").is_empty());
+}
+
+#[test]
+fn functions_of_splines_and_transformations() {
+    let setup = "
+        #declare S = function { spline { linear_spline 0, <1, 2, 3> 1, <4, 5, 6, 7> } }
+        #declare F = function(q) { S(q).y + S(q).t + S(q).transmit }
+        #declare T = function { transform { rotate z * 90 translate <1, 2, 3> } }
+        #declare G = function(x, y, z) { T(x, y, z).y + 1 }";
+    let found = values(
+        setup,
+        &[
+            "S(0.5).z",
+            "F(0.5)",
+            "T(1, 0, 0).x",
+            "(T(1, 0, 0) * 2).z",
+            "G(1, 0, 0)",
+        ],
+    );
+    let expected = [4.5, 7.0, 1.0, 6.0, 4.0];
+    let close = |(a, b): (&f64, &f64)| (a - b).abs() < 1e-12;
+    assert!(found.iter().zip(&expected).all(close), "{found:?}");
+    assert!(
+        errors(&format!("{setup} #declare H = function(q) {{ S(q) }}"))[0].contains("component")
+    );
+    assert!(
+        errors(&format!("{setup} #declare H = function(q) {{ T(q).x }}"))[0].contains("arguments")
+    );
+}
+
+#[test]
+fn media_around_everything_are_named_as_missing() {
+    let parsed = parse_with(
+        &mut MemoryHost::new(),
+        "media { scattering { 1, 1 } } sphere { 0, 1 }",
+    );
+    assert_eq!(parsed.scene.expect("no errors").objects.0.len(), 1);
+    assert!(
+        parsed.diagnostics[0]
+            .message
+            .contains("`media` is not supported")
+    );
+}

@@ -4,7 +4,7 @@
 
 mod common;
 
-use common::pictures::agree;
+use common::pictures::{agree, agree_within};
 
 /// Things to light and to see.
 const THINGS: &str = "
@@ -152,6 +152,95 @@ fn lights_with_an_extent_shine_as_povrays() {
 
 fn seen(camera: &str) -> String {
     format!("{SETTINGS}camera {{ {camera} }}\n{LIGHT}{THINGS}")
+}
+
+#[test]
+fn wide_cameras_see_as_povrays() {
+    let place = "location <1, 2, -6> look_at <0, 0, 0>";
+    let scenes = [
+        ("fisheye", "fisheye angle 150"),
+        ("all around", "fisheye angle 360 right x up y"),
+        ("mirrored fisheye", "fisheye right -x up 0.75 * y"),
+        ("ultra wide angle", "ultra_wide_angle angle 160"),
+        ("omnimax", "omnimax angle 100"),
+        ("narrow omnimax", "omnimax right 0.8 * x up y"),
+        ("panoramic", "panoramic angle 120"),
+        ("cylinder 1", "cylinder 1 angle 150 right 2 * x up 2 * y"),
+        ("cylinder 2", "cylinder 2 angle 90 right 1.5 * x"),
+        ("cylinder 3", "cylinder 3 angle 220 right 2 * x up 4 * y"),
+        ("cylinder 4", "cylinder 4 angle 90 right 4 * x up 3 * y"),
+        ("spherical", "spherical angle 270, 100"),
+        ("half as high", "spherical angle 160"),
+        (
+            "mirrored sphere",
+            "spherical right -x angle 160 rotate 20 * z scale <1, 1.5, 1>",
+        ),
+        ("bumpy", "normal { bumps 0.3 scale 0.2 }"),
+        (
+            "wavy fisheye",
+            "fisheye angle 150 normal { bumps 0.2 scale 0.3 rotate 20 * x }",
+        ),
+    ];
+    let scenes = scenes.map(|(name, camera)| (name, seen(&format!("{camera} {place}"))));
+    agree(0.01, &scenes);
+}
+
+#[test]
+fn meshes_see_as_povrays() {
+    // A face for each pixel, with uv coordinates of its place.
+    let face = "#macro Face(I, J)
+          triangle {
+            <I / 10 - 3.2, 2.4 - J / 10, -4>, <I / 10 - 3.1, 2.4 - J / 10, -4>, <I / 10 - 3.2, 2.3 - J / 10, -4>
+            uv_vectors <I, 48 - J> / <64, 48>, <I + 1, 48 - J> / <64, 48>, <I, 47 - J> / <64, 48>
+          }
+        #end
+        #macro Grid(W, H, D) mesh { #for (J, 0, H - 1) #for (I, 0, W - 1) Face(I + D, J) #end #end } #end
+        #declare G = Grid(64, 48, 0)
+        #declare Half = Grid(32, 48, 10)
+        #declare Top = Grid(64, 20, 0)
+        #declare Rest = Grid(64, 28, 0)\n";
+    let scenes = [
+        ("each", "mesh_camera { 1 0 mesh { G } }"),
+        (
+            "backwards",
+            "mesh_camera { 1 0 mesh { G } } location <0, 0, 0.5> direction -z",
+        ),
+        (
+            "several",
+            "mesh_camera { 2 0 mesh { G } mesh { G rotate 20 * y } }",
+        ),
+        (
+            "joined",
+            "mesh_camera { 1 1 mesh { Top } mesh { Rest translate 0.3 * x } }",
+        ),
+        (
+            "side by side",
+            "mesh_camera { 1 2 mesh { Half } mesh { Half translate 0.5 * x } }",
+        ),
+        ("by uv", "mesh_camera { 1 3 mesh { G } }"),
+    ];
+    let scenes = scenes.map(|(name, camera)| {
+        let text = seen(camera).replace("\ncamera {", &format!("\n{face}camera {{"));
+        (name, text)
+    });
+    agree(0.02, &scenes);
+}
+
+#[test]
+fn lenses_blur_as_povrays() {
+    // Both draw places on the lens, POV-Ray in the pixel too. (Its orthographic cameras with a lens show a single point.)
+    let lens = "location <1, 2, -6> look_at 0 aperture 0.8 blur_samples 400, 400 variance 0 confidence 0.99";
+    let scenes = [
+        ("before the plane", "focal_point <0, 0, 6>"),
+        ("within the scene", "focal_point <0, 0, 0>"),
+        ("turned", "focal_point <0, 0, 3> rotate 30 * y translate x"),
+        (
+            "long lens",
+            "focal_point <0, 0, 6> right 3 * x up 2.25 * y direction 2 * z",
+        ),
+    ];
+    let scenes = scenes.map(|(name, more)| (name, seen(&format!("{more} {lens}"))));
+    agree_within(1.0 / 255.0, 0.06, &scenes);
 }
 
 #[test]

@@ -36,9 +36,6 @@ fn what_is_missing_is_named_and_read_past() {
         "radiosity",
         "photons",
         "hf_gray_16",
-        "fisheye",
-        "aperture",
-        "normal",
         "projected_through",
         "turbulence",
     ] {
@@ -47,7 +44,14 @@ fn what_is_missing_is_named_and_read_past() {
     assert_eq!((scene.settings.max_depth, scene.fogs.len()), (7, 1));
     assert_eq!(scene.lights.len(), 1);
     let camera = scene.camera.expect("a camera");
-    assert_eq!(camera.projection, Projection::Perspective);
+    let angle = 60_f64.to_radians();
+    assert_eq!(camera.projection, Projection::Fisheye { angle });
+    let lens = camera.lens.expect("a lens");
+    assert_eq!(
+        (lens.aperture, lens.min_samples, lens.max_samples),
+        (0.4, 4, 20)
+    );
+    assert!(camera.normal.is_some());
 }
 
 #[test]
@@ -73,6 +77,10 @@ fn wrong_numbers_are_errors() {
         ("global_settings { assumed_gamma 0 }", "must be positive"),
         ("camera { angle 200 }", "between 0 and 180"),
         ("camera { right 0 }", "sees nothing"),
+        ("camera { fisheye angle 0 }", "must be positive"),
+        ("camera { cylinder 5 }", "1, 2, 3 or 4"),
+        ("camera { mesh_camera { 1 4 } }", "0, 1, 2 or 3"),
+        ("camera { mesh_camera { 1 0 sphere { 0, 1 } } }", "no faces"),
         ("fog { fog_type 3 }", "fog_type is 1"),
         (
             "light_source { 0, 1 area_light x, y, 0, 5 }",

@@ -72,7 +72,9 @@
 mod load;
 mod picture;
 
-pub use load::{Format, Listener, LoadOptions, UnknownFormat, load_bytes, load_path};
+pub use load::{
+    Format, Listener, LoadOptions, UnknownFormat, load_bytes, load_path, povray_folders,
+};
 pub use picture::{Problems, layers, metadata, picture, save};
 pub use strahl_accel as accel;
 pub use strahl_formats as formats;

@@ -82,10 +82,12 @@ pub struct LoadOptions {
     pub format: Option<Format>,
     /// Clock, picture size, declared names, limits.
     pub sdl: strahl_sdl::Options,
-    /// Folders where included files are searched after the scene's own; the built-in includes come last.
+    /// Folders where included files are searched after the scene's own; then come the built-in includes.
     pub library: Vec<PathBuf>,
     /// Folders where fonts are searched, with the folders in them, after the others.
     pub fonts: Vec<PathBuf>,
+    /// Folders that are searched last; [`povray_folders`] names those of an installed POV-Ray.
+    pub installed: Vec<PathBuf>,
     /// The folder within which the scene may write files; `None` forbids it.
     pub writable: Option<PathBuf>,
     /// Takes what the scene says by `#debug` and the like.
@@ -99,6 +101,7 @@ impl fmt::Debug for LoadOptions {
             .field("sdl", &self.sdl)
             .field("library", &self.library)
             .field("fonts", &self.fonts)
+            .field("installed", &self.installed)
             .field("writable", &self.writable)
             .finish_non_exhaustive()
     }
@@ -106,7 +109,9 @@ impl fmt::Debug for LoadOptions {
 
 impl LoadOptions {
     fn parse(self, name: &str, bytes: Vec<u8>) -> Loaded {
-        let mut host = FolderHost::new(self.library).with_fonts(self.fonts);
+        let mut host = FolderHost::new(self.library)
+            .with_fonts(self.fonts)
+            .with_installed(self.installed);
         if let Some(folder) = self.writable {
             host = host.allow_writing(folder);
         }
@@ -119,6 +124,26 @@ impl LoadOptions {
             diagnostics: parsed.diagnostics,
         }
     }
+}
+
+/// The folders where packages of POV-Ray have put its include files, pictures and fonts on this machine.
+///
+/// The include files of POV-Ray are built into strahl; the rest (pictures, fonts, colour maps of single textures) is taken
+/// from an installed POV-Ray where there is one.
+pub fn povray_folders() -> Vec<PathBuf> {
+    let mut folders = vec![];
+    for root in [
+        "/usr/local/share",
+        "/usr/share",
+        "/opt/homebrew/share",
+        "/opt/local/share",
+    ] {
+        for name in ["povray-3.8", "povray-3.7", "povray"] {
+            folders.push(PathBuf::from(root).join(name).join("include"));
+        }
+    }
+    folders.retain(|folder| folder.is_dir());
+    folders
 }
 
 /// Loads a scene file of any format.

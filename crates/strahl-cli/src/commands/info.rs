@@ -4,7 +4,6 @@ use crate::report::{Failure, Reporter};
 use std::collections::BTreeMap;
 use strahl::accel::AcceleratorKind;
 use strahl::math::DVec3;
-use strahl::scene::Projection;
 use strahl::shade::LightKind;
 use strahl::tracing::{Prepared, RenderScene};
 
@@ -75,10 +74,7 @@ fn objects(scene: &RenderScene) {
 
 fn view(scene: &RenderScene, own_camera: bool, own_lights: bool) {
     let c = scene.camera();
-    let kind = match c.projection {
-        Projection::Perspective => "perspective",
-        Projection::Orthographic => "orthographic",
-    };
+    let kind = c.projection.name();
     let chosen = if own_camera {
         ""
     } else {

@@ -68,7 +68,7 @@ impl Prepared {
         let mut warnings = flat.diagnostics;
         let camera = match &scene.camera {
             Some(camera) => match camera.problem() {
-                None => *camera,
+                None => camera.clone(),
                 Some(problem) => return Err(vec![Diagnostic::error(problem).at(camera.span)]),
             },
             None => view::frame(bounds),

@@ -11,6 +11,7 @@ mod settings;
 
 pub(crate) use files::Files;
 
+use crate::keywords::Word;
 use crate::parser::{PResult, Parser};
 use crate::token::{Directive, Token};
 
@@ -65,21 +66,47 @@ impl Parser<'_> {
             Directive::Fclose => p.fclose(),
             Directive::Read => p.read(),
             Directive::Write => p.write(),
-            Directive::Unknown => Err(p.unknown_directive(token)),
+            Directive::Unknown => p.unknown_directive(token),
         })?;
         Ok(Flow::On)
     }
 
-    fn unknown_directive(&mut self, token: Token) -> crate::parser::Failed {
+    /// `declare`, `include`, `default` and `version` as statements, which the language lets go without their `#`.
+    pub(crate) fn bare_directive(&mut self, token: Token) -> PResult<bool> {
+        let word = match token.word() {
+            Some(word @ (Word::Declare | Word::Include | Word::Default | Word::Version)) => word,
+            _ => return Ok(false),
+        };
+        let text = word.text();
+        self.take(token)?;
+        self.warn_hint(
+            self.place(),
+            format!("`{text}` stands without its `#`"),
+            format!("write `#{text}`"),
+        );
+        self.enclosed(|p| match word {
+            Word::Declare => p.declare(false),
+            Word::Include => p.include_directive(),
+            Word::Version => p.version(),
+            _ => p.default_directive(),
+        })?;
+        Ok(true)
+    }
+
+    fn unknown_directive(&mut self, token: Token) -> PResult<()> {
         let place = self.place();
         let symbol = token.link().map_or(u32::MAX, |l| l as u32);
         let name = self.symbols.text(crate::symbol::Symbol(symbol)).to_owned();
+        if name.is_empty() {
+            self.warn(place, "`#` without a directive behind it does nothing");
+            return Ok(());
+        }
         let known = Directive::ALL.iter().map(|(_, text)| *text);
         let close = crate::suggest::closest(&name, known.filter(|t| !t.is_empty()));
         let message = format!("there is no directive `#{name}`");
-        match close {
+        Err(match close {
             Some(close) => self.fail_hint(place, message, format!("did you mean `#{close}`?")),
             None => self.fail(place, message),
-        }
+        })
     }
 }

@@ -142,7 +142,7 @@ impl Parser<'_> {
     }
 
     /// Counts elements against the limit.
-    pub(super) fn spend_elements(&mut self, count: u64) -> PResult<()> {
+    pub(crate) fn spend_elements(&mut self, count: u64) -> PResult<()> {
         let limit = self.options.limits.array_elements;
         self.array_elements = self.array_elements.saturating_add(count);
         if self.array_elements <= limit {

@@ -53,20 +53,13 @@ impl Parser<'_> {
         let open = self.peek()?;
         let body = self.raw_ahead(1);
         if open.kind == Kind::LeftBrace {
-            let unsupported = match body.word() {
+            match body.word() {
+                Some(Word::Internal) => return self.internal_by_number(),
                 Some(Word::Pattern) => return self.pattern_function(),
                 Some(Word::Pigment) => return self.pigment_function(),
-                Some(Word::Transform) => {
-                    "a function made of a transformation, which is not supported yet"
-                }
-                _ => "",
-            };
-            if !unsupported.is_empty() {
-                self.skip_body()?;
-                return Ok(Value::Unsupported(unsupported));
-            }
-            if body.is(Word::Internal) {
-                return self.internal_by_number();
+                Some(Word::Spline) => return self.spline_function(),
+                Some(Word::Transform) => return self.transform_function(),
+                _ => {}
             }
         }
         self.function().map(Value::Function)
@@ -277,6 +270,17 @@ impl Parser<'_> {
             let component = self.pigment_component(&pigment)?;
             return Ok(body.graph.field(&component, &arguments));
         }
+        let callee = match symbol.and_then(|s| self.scopes.find(s)) {
+            Some(value @ (Value::Spline(_) | Value::Thing(Thing::TransformFunction(_)))) => {
+                Some(value.clone())
+            }
+            _ => None,
+        };
+        if let Some(callee) = callee {
+            self.take(token)?;
+            let arguments = self.nested(|p| p.formula_arguments(body))?;
+            return self.vector_component(&mut body.graph, &callee, &arguments);
+        }
         // Anything else is a number that is fixed when the function is declared.
         let number = self.name_in_expression(token)?;
         let place = self.place();
@@ -421,7 +425,12 @@ impl Parser<'_> {
         Ok(function.value(&mut self.workspace, &arguments))
     }
 
-    fn check_arguments(&mut self, expected: usize, found: usize, place: Place) -> PResult<()> {
+    pub(super) fn check_arguments(
+        &mut self,
+        expected: usize,
+        found: usize,
+        place: Place,
+    ) -> PResult<()> {
         if expected == found {
             return Ok(());
         }

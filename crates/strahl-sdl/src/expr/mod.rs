@@ -16,6 +16,7 @@ mod spline;
 mod strings;
 mod texture_function;
 mod value;
+mod vector_field;
 mod vector_functions;
 
 pub use array::Array;
@@ -284,8 +285,31 @@ impl Parser<'_> {
             }
             Kind::Name => self.name_in_expression(token),
             Kind::Word => self.word_in_expression(token),
+            Kind::String if precedence(self.raw_ahead(1).kind) == 3 => {
+                let text = self.string()?;
+                self.compared(&text)
+            }
             _ => Err(self.unexpected(token, "a number or vector")),
         }
+    }
+
+    /// `= string` and other comparisons behind a string: a truth value.
+    fn compared(&mut self, left: &str) -> PResult<Vector> {
+        let token = self.peek()?;
+        if precedence(token.kind) != 3 {
+            return Err(self.unexpected(token, "a comparison of the string before it"));
+        }
+        self.take(token)?;
+        let right = self.string()?;
+        let order = left.as_bytes().cmp(right.as_bytes());
+        Ok(Vector::float(truth(match token.kind {
+            Kind::Equal => order.is_eq(),
+            Kind::NotEqual => order.is_ne(),
+            Kind::Less => order.is_lt(),
+            Kind::Greater => order.is_gt(),
+            Kind::LessEqual => order.is_le(),
+            _ => order.is_ge(),
+        })))
     }
 
     /// `<a, b, ...>` with two to five components.
@@ -305,7 +329,14 @@ impl Parser<'_> {
                 count += 1;
                 let token = p.peek()?;
                 match token.kind {
-                    Kind::Comma => p.take(token)?,
+                    Kind::Comma => {
+                        p.take(token)?;
+                        // A comma behind the last component does no harm.
+                        let token = p.peek()?;
+                        if token.kind == Kind::Greater {
+                            return p.take(token);
+                        }
+                    }
                     Kind::Greater => return p.take(token),
                     _ => {}
                 }
@@ -331,6 +362,11 @@ impl Parser<'_> {
             };
         }
         let value = self.variable(token)?;
+        if let Value::String(text) = &value
+            && precedence(self.peek()?.kind) == 3
+        {
+            return self.compared(text);
+        }
         match value.numeric() {
             Some(number) => self.components_of(number),
             None if value.is_callable() => self.call_value(&value),
@@ -343,6 +379,11 @@ impl Parser<'_> {
 
     /// A name that is no number: a function to be called, or a mistake.
     fn not_numeric(&mut self, token: Token) -> PResult<Vector> {
+        let found = token.symbol().and_then(|s| self.scopes.find(s));
+        if matches!(found, Some(Value::String(_))) && precedence(self.raw_ahead(1).kind) == 3 {
+            let text = self.string()?;
+            return self.compared(&text);
+        }
         if let Some(symbol) = token.symbol() {
             self.declare_internal(symbol);
         }
@@ -367,6 +408,9 @@ impl Parser<'_> {
             Value::Spline(spline) => self.nested(|p| p.call_spline(spline))?,
             Value::Thing(Thing::PigmentFunction(pigment)) => {
                 self.nested(|p| p.call_pigment(pigment))?
+            }
+            Value::Thing(Thing::TransformFunction(map)) => {
+                self.nested(|p| p.call_transform(map))?
             }
             _ => {
                 let place = self.place();
@@ -395,6 +439,10 @@ impl Parser<'_> {
                 self.take(token)?;
                 let place = self.place();
                 self.nested(|p| p.vector_function(word, place))?
+            }
+            WordKind::StringFunction => {
+                let text = self.string()?;
+                return self.compared(&text);
             }
             WordKind::Color => return self.nested(Self::color_expression).map(Vector::rgbft),
             WordKind::Scope => {

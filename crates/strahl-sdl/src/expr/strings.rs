@@ -175,12 +175,10 @@ impl Parser<'_> {
 
     /// Whether a file of this name would be found.
     pub(super) fn exists(&mut self, name: &str, place: Place) -> bool {
-        let from = self.span_at(place).file;
-        let from = self.scene.sources.name(from).unwrap_or("").to_owned();
-        match self.host.load(name, &from) {
-            Ok(_) | Err(HostError::TooLarge { .. }) => true,
-            Err(_) => crate::include::find(name).is_some(),
-        }
+        matches!(
+            self.find_file(name, place, true),
+            Ok(_) | Err(HostError::TooLarge { .. })
+        )
     }
 }
 

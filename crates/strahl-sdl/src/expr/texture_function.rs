@@ -88,21 +88,25 @@ impl Parser<'_> {
 
     /// `(x, y, z)` behind a function made of a pigment, in an expression.
     pub(super) fn call_pigment(&mut self, pigment: &Pigment) -> PResult<Vector> {
-        self.expect(Kind::LeftParen)?;
-        let mut p = DVec3::ZERO;
-        for axis in 0..3 {
-            p[axis] = self.full_float()?;
-            if axis < 2 {
-                self.expect(Kind::Comma)?;
-            }
-        }
-        self.expect(Kind::RightParen)?;
+        let p = self.point_arguments()?;
         let ColorFt {
             rgb,
             filter,
             transmit,
         } = pigment.color_at(&TexturePoint::in_space(p));
         Ok(Vector::rgbft([rgb.r, rgb.g, rgb.b, filter, transmit]))
+    }
+
+    /// `(x, y, z)`
+    pub(super) fn point_arguments(&mut self) -> PResult<DVec3> {
+        self.expect(Kind::LeftParen)?;
+        let x = self.full_float()?;
+        self.comma()?;
+        let y = self.full_float()?;
+        self.comma()?;
+        let z = self.full_float()?;
+        self.expect(Kind::RightParen)?;
+        Ok(DVec3::new(x, y, z))
     }
 
     /// `.red` behind a call of a function made of a pigment, within a function.

@@ -42,8 +42,19 @@ const STATEMENTS: &[(Word, StatementParser)] = &[
     (Word::Fog, fog::fog_statement),
     (Word::GlobalSettings, global_settings::global_settings),
     (Word::LightSource, lights::light_statement),
+    (Word::Media, media),
     (Word::SkySphere, sky::sky_statement),
 ];
+
+/// `media { ... }` as a statement: what fills all space outside of the objects.
+fn media(p: &mut Parser<'_>) -> PResult<()> {
+    p.warn_hint(
+        p.place(),
+        "`media` is not supported yet and is left out",
+        "the picture lacks what the air absorbs, scatters and emits",
+    );
+    p.skip_body()
+}
 
 /// A table of functions by word, so that finding one is a single step.
 const fn by_word<F: Copy, const N: usize>(table: [(Word, F); N]) -> [Option<F>; Word::ALL.len()] {
@@ -93,6 +104,9 @@ impl Parser<'_> {
         let Some(word) = token.word() else {
             return Err(self.unexpected(token, "an object or a directive"));
         };
+        if self.bare_directive(token)? {
+            return Ok(true);
+        }
         if let Some((_, parse)) = STATEMENTS.iter().find(|(w, _)| *w == word) {
             self.take(token)?;
             parse(self)?;

@@ -50,6 +50,7 @@ things! {
     Texture(Surface) "a texture"
     TextureMap(BlendMap<Surface>) "a texture map"
     Transform(Transform) "a transformation"
+    TransformFunction(Transform) "a function made of a transformation"
 }
 
 /// Reads a thing; its word is already taken.

@@ -244,21 +244,33 @@ impl<'h> Parser<'h> {
         self.enter_frame(Entry::Include, from, file, 0, end)
     }
 
-    /// A file of this name, with its first tokens, at least so many.
-    pub(crate) fn load(&mut self, name: &str, from: Place, tokens: usize) -> PResult<Arc<Chunk>> {
+    /// A file of this name: the user's, else, if a text is asked for, a built-in one, else one of an installed POV-Ray.
+    pub(crate) fn find_file(
+        &mut self,
+        name: &str,
+        from: Place,
+        text: bool,
+    ) -> Result<Source, HostError> {
         let asking = self.sources.get(from.file as usize);
         let asking = asking.map_or(String::new(), |f| f.source.name.clone());
-        let mut source = match self.host.load(name, &asking) {
+        let not_found = match self.host.load(name, &asking) {
+            Err(error @ HostError::NotFound { .. }) => error,
+            other => return other,
+        };
+        if text && let Some((name, text)) = include::find(name) {
+            return Ok(Source::new(format!("<built in>/{name}"), text));
+        }
+        match self.host.load_installed(name) {
+            Err(HostError::NotFound { searched, .. }) => Err(not_found.also(searched)),
+            other => other,
+        }
+    }
+
+    /// A file of this name, with its first tokens, at least so many.
+    pub(crate) fn load(&mut self, name: &str, from: Place, tokens: usize) -> PResult<Arc<Chunk>> {
+        let mut source = match self.find_file(name, from, true) {
             Ok(source) => source,
-            Err(error) => {
-                let built_in = include::find(name)
-                    .filter(|_| matches!(error, HostError::NotFound { .. }))
-                    .map(|(name, text)| Source::new(format!("<built in>/{name}"), text));
-                match built_in {
-                    Some(source) => source,
-                    None => return Err(self.unreadable(error, from)),
-                }
-            }
+            Err(error) => return Err(self.unreadable(error, from)),
         };
         let known = self
             .sources
@@ -310,9 +322,7 @@ impl<'h> Parser<'h> {
         name: &str,
         from: Place,
     ) -> PResult<Result<Source, HostError>> {
-        let asking = self.sources.get(from.file as usize);
-        let asking = asking.map_or(String::new(), |f| f.source.name.clone());
-        match self.host.load(name, &asking) {
+        match self.find_file(name, from, false) {
             Ok(source) => self.counted(source, from).map(Ok),
             Err(error) => Ok(Err(error)),
         }

@@ -15,6 +15,7 @@ type Listener = dyn FnMut(Stream, &str) + Send;
 pub struct FolderHost {
     library: Vec<PathBuf>,
     fonts: FontFolders,
+    installed: Vec<PathBuf>,
     writable: Option<PathBuf>,
     max_file: u64,
     on_message: Option<Box<Listener>>,
@@ -25,6 +26,7 @@ impl std::fmt::Debug for FolderHost {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("FolderHost")
             .field("library", &self.library)
+            .field("installed", &self.installed)
             .field("writable", &self.writable)
             .field("max_file", &self.max_file)
             .finish_non_exhaustive()
@@ -37,6 +39,7 @@ impl FolderHost {
         Self {
             library: library.into_iter().collect(),
             fonts: FontFolders::default(),
+            installed: vec![],
             writable: None,
             max_file: u64::from(u32::MAX) - 1,
             on_message: None,
@@ -48,6 +51,13 @@ impl FolderHost {
     #[must_use]
     pub fn with_fonts(mut self, folders: impl IntoIterator<Item = PathBuf>) -> Self {
         self.fonts = FontFolders::new(folders);
+        self
+    }
+
+    /// Searches these folders last, after the built-in includes: those of an installed POV-Ray.
+    #[must_use]
+    pub fn with_installed(mut self, folders: impl IntoIterator<Item = PathBuf>) -> Self {
+        self.installed.extend(folders);
         self
     }
 
@@ -79,6 +89,32 @@ impl FolderHost {
         self
     }
 
+    /// Looks for a file in folders, in order.
+    fn search(&self, name: &str, folders: &[PathBuf]) -> Result<Source, HostError> {
+        // Scenes from Windows write backslashes.
+        let names = if name.contains('\\') && !cfg!(windows) {
+            vec![name.to_owned(), name.replace('\\', "/")]
+        } else {
+            vec![name.to_owned()]
+        };
+        for name in &names {
+            for folder in folders {
+                let path = folder.join(name);
+                if let Some(bytes) = self.read(&path)? {
+                    return Ok(Source::new(path.display().to_string(), bytes));
+                }
+            }
+        }
+        let show = |folder: &PathBuf| match folder.as_os_str().is_empty() {
+            true => "the current folder".to_owned(),
+            false => folder.display().to_string(),
+        };
+        Err(HostError::NotFound {
+            name: name.to_owned(),
+            searched: folders.iter().map(show).collect(),
+        })
+    }
+
     fn read(&self, path: &Path) -> Result<Option<Vec<u8>>, HostError> {
         let shown = path.display().to_string();
         let io = |error: std::io::Error| HostError::Io {
@@ -107,30 +143,13 @@ impl FolderHost {
 
 impl Host for FolderHost {
     fn load(&mut self, name: &str, from: &str) -> Result<Source, HostError> {
-        // Scenes from Windows write backslashes.
-        let names = if name.contains('\\') && !cfg!(windows) {
-            vec![name.to_owned(), name.replace('\\', "/")]
-        } else {
-            vec![name.to_owned()]
-        };
         let beside = Path::new(from).parent().map(Path::to_path_buf);
         let folders: Vec<PathBuf> = beside.into_iter().chain(self.library.clone()).collect();
-        for name in &names {
-            for folder in &folders {
-                let path = folder.join(name);
-                if let Some(bytes) = self.read(&path)? {
-                    return Ok(Source::new(path.display().to_string(), bytes));
-                }
-            }
-        }
-        let show = |folder: &PathBuf| match folder.as_os_str().is_empty() {
-            true => "the current folder".to_owned(),
-            false => folder.display().to_string(),
-        };
-        Err(HostError::NotFound {
-            name: name.to_owned(),
-            searched: folders.iter().map(show).collect(),
-        })
+        self.search(name, &folders)
+    }
+
+    fn load_installed(&mut self, name: &str) -> Result<Source, HostError> {
+        self.search(name, &self.installed)
     }
 
     fn load_font(&mut self, file: &str) -> Result<Option<Source>, HostError> {
@@ -219,6 +238,16 @@ mod tests {
             small.load("x.inc", ""),
             Err(HostError::TooLarge { .. })
         ));
+    }
+
+    #[test]
+    fn installed_files_are_another_question() {
+        let root = tempfile::tempdir().unwrap();
+        fs::write(root.path().join("x.inc"), "1").unwrap();
+        let mut host = FolderHost::new([]).with_installed([root.path().to_owned()]);
+        assert!(host.load("x.inc", "").is_err());
+        assert_eq!(host.load_installed("x.inc").unwrap().bytes, b"1");
+        assert!(FolderHost::new([]).load_installed("x.inc").is_err());
     }
 
     #[test]

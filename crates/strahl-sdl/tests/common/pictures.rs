@@ -98,13 +98,18 @@ pub(crate) fn compare(povray: &Path, text: &str) -> (f64, f64) {
 
 /// All of these must agree but for `most_off` of their pixels.
 pub(crate) fn agree(most_off: f64, scenes: &[(&str, String)]) {
+    agree_within(0.5 / 255.0, most_off, scenes);
+}
+
+/// All of these must agree but for so much on the mean and for `most_off` of their pixels.
+pub(crate) fn agree_within(most_mean: f64, most_off: f64, scenes: &[(&str, String)]) {
     let Some(povray) = tool("povray") else {
         return;
     };
     let mut failed = vec![];
     for (name, text) in scenes {
         let (mean, off) = compare(&povray, text);
-        if !(mean < 0.5 / 255.0 && off <= most_off) {
+        if !(mean < most_mean && off <= most_off) {
             failed.push(format!(
                 "{name}: mean difference {:.3}/255, {:.2} % of pixels differ visibly",
                 mean * 255.0,

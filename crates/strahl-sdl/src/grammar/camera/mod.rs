@@ -1,8 +1,17 @@
+//! `camera { ... }`: the view; what bends and blurs it is read in [`effects`].
+
+mod effects;
+mod mesh;
+
 use crate::keywords::Word;
 use crate::parser::{PResult, Parser, Place};
 use crate::token::Token;
+use effects::LensDraft;
+use mesh::MeshDraft;
+use std::sync::Arc;
 use strahl_math::{DVec3, Transform, det};
 use strahl_scene::{Camera, Projection};
+use strahl_shade::normal::PovNormal;
 
 /// `camera { ... }` as a statement: the last one counts.
 pub(super) fn camera_statement(p: &mut Parser<'_>) -> PResult<()> {
@@ -25,6 +34,12 @@ struct Draft {
     /// Horizontal and vertical angle in degrees.
     angle: Option<(f64, Option<f64>)>,
     projection: Projection,
+    /// The meshes of `mesh_camera`.
+    mesh: Option<MeshDraft>,
+    /// Whether the interpolated normals of a mesh camera count.
+    smooth: bool,
+    lens: LensDraft,
+    normal: Option<Arc<PovNormal>>,
     /// Whether `right` or `up` was given.
     sized: bool,
     /// Whether it began as a declared camera, whose view is already made.
@@ -43,6 +58,10 @@ impl Draft {
             look_at: None,
             angle: None,
             projection: Projection::Perspective,
+            mesh: None,
+            smooth: false,
+            lens: LensDraft::default(),
+            normal: None,
             sized: false,
             named: false,
             transform: Transform::IDENTITY,
@@ -55,7 +74,9 @@ impl Draft {
             direction: camera.direction,
             right: camera.right * 2.0,
             up: camera.up * 2.0,
-            projection: camera.projection,
+            projection: camera.projection.clone(),
+            lens: LensDraft::of(camera),
+            normal: camera.normal.clone(),
             sized: true,
             named: true,
             ..Self::new()
@@ -90,7 +111,7 @@ impl Draft {
         let slope = self
             .angle
             .map(|(angle, _)| det::tan(angle.to_radians() * 0.5));
-        match (self.projection, slope) {
+        match (&self.projection, slope) {
             (Projection::Perspective, Some(slope)) => {
                 let distance = self.right.length() * 0.5 / slope;
                 self.direction = self.direction.normalize_or_zero() * distance;
@@ -109,6 +130,44 @@ impl Draft {
             _ => {}
         }
     }
+
+    /// Puts the angle into projections that have one; without, what POV-Ray takes stays.
+    fn fill_angle(&mut self) {
+        let Some((across, upwards)) = self.angle else {
+            return;
+        };
+        match &mut self.projection {
+            Projection::Fisheye { angle }
+            | Projection::UltraWideAngle { angle }
+            | Projection::Cylinder { angle, .. } => *angle = across.to_radians(),
+            Projection::Spherical {
+                horizontal,
+                vertical,
+            } => {
+                *horizontal = across.to_radians();
+                *vertical = upwards.unwrap_or(0.5 * across).to_radians();
+            }
+            _ => {}
+        }
+    }
+}
+
+/// The projection that a word names, with its angle if none is given (measured with POV-Ray 3.7).
+fn projection_of(word: Word) -> Option<Projection> {
+    let angle = std::f64::consts::FRAC_PI_2;
+    Some(match word {
+        Word::Perspective => Projection::Perspective,
+        Word::Orthographic => Projection::Orthographic,
+        Word::Fisheye => Projection::Fisheye { angle },
+        Word::UltraWideAngle => Projection::UltraWideAngle { angle },
+        Word::Omnimax => Projection::Omnimax,
+        Word::Panoramic => Projection::Panoramic,
+        Word::Spherical => Projection::Spherical {
+            horizontal: 4.0 * angle,
+            vertical: 2.0 * angle,
+        },
+        _ => return None,
+    })
 }
 
 impl Parser<'_> {
@@ -140,33 +199,23 @@ impl Parser<'_> {
         let Some(word) = token.word() else {
             return Err(self.unexpected(token, "an item of `camera`, or `}`"));
         };
-        let place = self.place_of(token);
+        if let Some(projection) = projection_of(word) {
+            self.take(token)?;
+            draft.projection = projection;
+            return Ok(());
+        }
         match word {
-            Word::Perspective | Word::Orthographic => {
+            Word::Cylinder => {
                 self.take(token)?;
-                draft.projection = match word {
-                    Word::Perspective => Projection::Perspective,
-                    _ => Projection::Orthographic,
-                };
+                draft.projection = self.cylinder_camera()?;
             }
-            Word::Fisheye
-            | Word::UltraWideAngle
-            | Word::Omnimax
-            | Word::Panoramic
-            | Word::Spherical
-            | Word::Cylinder
-            | Word::MeshCamera => {
+            Word::MeshCamera => {
                 self.take(token)?;
-                self.warn_hint(
-                    place,
-                    format!("the `{}` camera is not supported yet", word.text()),
-                    "a perspective camera takes its place: the picture will show another view",
-                );
-                match word {
-                    Word::Cylinder => drop(self.float()?),
-                    Word::MeshCamera => self.skip_body()?,
-                    _ => {}
-                }
+                draft.mesh = Some(self.mesh_camera()?);
+            }
+            Word::Smooth => {
+                self.take(token)?;
+                draft.smooth = self.switched()?;
             }
             Word::Angle => {
                 self.take(token)?;
@@ -205,63 +254,49 @@ impl Parser<'_> {
                 draft.up = self.vector3()?;
                 draft.sized = true;
             }
-            _ => return self.camera_effect(token, word),
+            _ => return self.camera_effect(draft, token, word),
         }
         Ok(())
     }
 
-    /// Items that blur or bend the view: read, and named as missing where they matter.
-    fn camera_effect(&mut self, token: Token, word: Word) -> PResult<()> {
-        let place = self.place_of(token);
-        match word {
-            Word::Aperture => {
-                self.take(token)?;
-                if self.float()? != 0.0 {
-                    self.warn_hint(
-                        place,
-                        "`aperture`: focal blur is not supported yet",
-                        "the picture will be sharp everywhere",
-                    );
-                }
+    /// The type behind `cylinder`, 1 to 4.
+    fn cylinder_camera(&mut self) -> PResult<Projection> {
+        let number = self.float()?;
+        let (upright, moving) = match number {
+            1.0 => (true, false),
+            2.0 => (false, false),
+            3.0 => (true, true),
+            4.0 => (false, true),
+            other => {
+                let place = self.place();
+                let message = format!("the type of a cylinder camera is 1, 2, 3 or 4, not {other}");
+                return Err(self.fail(place, message));
             }
-            Word::BlurSamples => {
-                self.take(token)?;
-                self.float()?;
-                self.comma()?;
-                if self.number_follows()? {
-                    self.float()?;
-                }
-            }
-            Word::Confidence | Word::Variance => {
-                self.take(token)?;
-                self.float()?;
-            }
-            Word::FocalPoint => {
-                self.take(token)?;
-                self.vector3()?;
-            }
-            Word::Normal | Word::Bokeh => {
-                self.take(token)?;
-                let message = format!("`{}` in `camera` is not supported yet", word.text());
-                self.warn_hint(place, message, "the picture will lack its effect");
-                self.skip_body()?;
-            }
-            _ => return self.skip_item(token, "`camera`"),
-        }
-        Ok(())
+        };
+        Ok(Projection::Cylinder {
+            upright,
+            moving,
+            angle: std::f64::consts::FRAC_PI_2,
+        })
     }
 
     fn finish_camera(&mut self, mut draft: Draft, place: Place) -> PResult<Camera> {
         if let (Some((angle, _)), Projection::Perspective | Projection::Orthographic) =
-            (draft.angle, draft.projection)
+            (draft.angle, &draft.projection)
             && !(angle > 0.0 && angle < 180.0)
         {
             let message =
                 format!("the angle of this camera must be between 0 and 180 degrees, not {angle}");
             return Err(self.fail(place, message));
         }
+        draft.fill_angle();
         if !draft.named || draft.angle.is_some() {
             draft.apply_angle();
+        }
+        if let Some(mesh) = draft.mesh.take() {
+            // Here `location` and `direction` say how far from its face a ray begins, and to which side it goes.
+            let camera = mesh.finish(draft.location.z, draft.direction.z < 0.0, draft.smooth);
+            draft.projection = Projection::Mesh(Arc::new(camera));
         }
         if let Some(point) = draft.look_at
             && !draft.turn_to(point)
@@ -277,6 +312,8 @@ impl Parser<'_> {
             direction: t.vector_to_world(draft.direction),
             right: t.vector_to_world(draft.right) * 0.5,
             up: t.vector_to_world(draft.up) * 0.5,
+            lens: draft.lens.finish(t),
+            normal: draft.normal,
             projection: draft.projection,
             aspect: Some(1.0),
             span: self.span_at(place),

@@ -1,0 +1,189 @@
+use std::sync::Arc;
+use strahl_math::{DVec3, Ray, det};
+use strahl_scene::{Bokeh, Camera, Projection};
+use strahl_shade::Color;
+
+/// Sends rays through a lens.
+#[derive(Clone, Debug)]
+pub(super) struct LensSampler {
+    /// Half the width and height of the lens.
+    side: DVec3,
+    above: DVec3,
+    forward: DVec3,
+    eye: DVec3,
+    /// From the eye to the plane of focus, or to the sphere of focus for cameras that see more than a half space.
+    distance: f64,
+    flat: bool,
+    samples: (u32, u32),
+    /// Half the width of the interval that holds the mean, over its standard deviation, and how wide it may be.
+    quantile: f64,
+    tolerance: f64,
+    bokeh: Option<Arc<Bokeh>>,
+}
+
+impl LensSampler {
+    /// `None` if the camera is sharp everywhere.
+    pub(super) fn new(camera: &Camera) -> Option<Self> {
+        let lens = camera.lens.as_ref()?;
+        let forward = camera.direction.normalize_or_zero();
+        let distance = (lens.focal_point - camera.eye).dot(forward);
+        if !(lens.aperture > 0.0 && lens.max_samples > 0 && distance != 0.0) {
+            return None;
+        }
+        let radius = 0.25 * lens.aperture;
+        Some(Self {
+            side: camera.right.normalize_or_zero() * radius,
+            above: camera.up.normalize_or_zero() * radius,
+            forward,
+            eye: camera.eye,
+            distance,
+            flat: matches!(
+                camera.projection,
+                Projection::Perspective | Projection::Orthographic
+            ),
+            samples: (lens.min_samples.max(1), lens.max_samples),
+            quantile: quantile(lens.confidence),
+            tolerance: lens.variance,
+            bokeh: lens.bokeh.clone(),
+        })
+    }
+
+    /// The mean of the rays through the lens that meet where the ray through its centre meets the plane of focus.
+    pub(super) fn color(
+        &self,
+        center: &Ray,
+        place: (f64, f64),
+        mut trace: impl FnMut(&Ray) -> Color,
+    ) -> Color {
+        let ahead = center.direction.dot(self.forward);
+        let before = (center.origin - self.eye).dot(self.forward);
+        let t = if self.flat && ahead != 0.0 {
+            (self.distance - before) / ahead
+        } else {
+            self.distance.abs()
+        };
+        let focus = center.at(t);
+        let shift = scramble(place);
+        let (mut sum, mut squares, mut count) = (Color::BLACK, Color::BLACK, 0u32);
+        let (fewest, most) = self.samples;
+        while count < most {
+            let (a, b) = sample(count, shift);
+            let (x, y) = match &self.bokeh {
+                Some(bokeh) => bokeh.point(a, b),
+                None => disc(a, b),
+            };
+            let origin = center.origin + self.side * x + self.above * y;
+            let direction = (focus - origin).normalize_or(center.direction);
+            // Behind the camera the plane of focus is looked away from.
+            let direction = if t < 0.0 { -direction } else { direction };
+            let color = trace(&Ray::new(origin, direction));
+            sum += color;
+            squares += color * color;
+            count += 1;
+            if count >= fewest && self.settled(sum, squares, count) {
+                break;
+            }
+        }
+        sum / f64::from(count.max(1))
+    }
+
+    /// Whether the mean is known as well as asked for: its standard error, times the quantile of the confidence, is small.
+    fn settled(&self, sum: Color, squares: Color, count: u32) -> bool {
+        let n = f64::from(count);
+        if count < 2 {
+            return false;
+        }
+        let mean = sum / n;
+        let variance = (squares / n - mean * mean) * (1.0 / (n - 1.0));
+        let worst = variance.max_component();
+        let worst = if worst > 0.0 { worst } else { 0.0 };
+        self.quantile * worst.sqrt() <= self.tolerance
+    }
+}
+
+/// Half the width, in standard deviations, of the interval around the mean of a normal distribution that holds this part of it
+/// (Abramowitz and Stegun, formula 26.2.23).
+fn quantile(confidence: f64) -> f64 {
+    let tail = 0.5 * (1.0 - confidence.clamp(0.0, 1.0 - 1e-9));
+    let t = (-2.0 * det::ln(tail)).sqrt();
+    let above = 2.515_517 + t * (0.802_853 + t * 0.010_328);
+    let below = 1.0 + t * (1.432_788 + t * (0.189_269 + t * 0.001_308));
+    let x = t - above / below;
+    if x > 0.0 { x } else { 0.0 }
+}
+
+/// Two numbers in `0..1` that differ from place to place of the picture (the mixer of SplitMix64).
+fn scramble((x, y): (f64, f64)) -> (f64, f64) {
+    let mix = |mut z: u64| {
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    };
+    let first = mix(x.to_bits().wrapping_add(0x9e37_79b9_7f4a_7c15));
+    let bits = mix(first ^ y.to_bits().rotate_left(32));
+    let unit = |bits: u64| (bits >> 40) as f64 / (1u64 << 24) as f64;
+    (unit(bits), unit(bits << 24))
+}
+
+/// Point `index` of an even sequence in the unit square (M. Roberts' R2 sequence, 2018), shifted.
+fn sample(index: u32, (a, b): (f64, f64)) -> (f64, f64) {
+    // One over the plastic number, and over its square.
+    const STEPS: (f64, f64) = (0.754_877_666_246_692_7, 0.569_840_290_998_053_3);
+    let n = f64::from(index);
+    let wrap = |x: f64| x - x.floor();
+    (wrap(a + n * STEPS.0), wrap(b + n * STEPS.1))
+}
+
+/// A point of the unit disc, evenly spread.
+fn disc(a: f64, b: f64) -> (f64, f64) {
+    let (radius, angle) = (a.sqrt(), std::f64::consts::TAU * b);
+    (radius * det::cos(angle), radius * det::sin(angle))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use strahl_scene::Lens;
+
+    fn blurred(max_samples: u32) -> LensSampler {
+        let mut camera = Camera::perspective(DVec3::ZERO, DVec3::Z, DVec3::Y, 1.0);
+        camera.lens = Some(Lens::new(2.0, DVec3::Z * 5.0, max_samples));
+        LensSampler::new(&camera).expect("a lens")
+    }
+
+    #[test]
+    fn rays_meet_in_the_plane_of_focus() {
+        let lens = blurred(100);
+        let center = Ray::new(DVec3::ZERO, DVec3::new(0.3, -0.2, 1.0).normalize());
+        let meeting = DVec3::new(1.5, -1.0, 5.0);
+        let mut widest: f64 = 0.0;
+        let mut count = 0;
+        lens.color(&center, (0.5, 0.5), |ray| {
+            assert!((ray.origin - DVec3::ZERO).length() <= 0.5 + 1e-12);
+            let t = (5.0 - ray.origin.z) / ray.direction.z;
+            assert!((ray.at(t) - meeting).length() < 1e-12);
+            widest = widest.max(ray.origin.length());
+            count += 1;
+            Color::gray(f64::from(count % 2))
+        });
+        assert!(widest > 0.45 && count == 100, "{widest} {count}");
+    }
+
+    #[test]
+    fn what_is_certain_takes_few_rays() {
+        let mut count = 0;
+        let color = blurred(1000).color(&Ray::new(DVec3::ZERO, DVec3::Z), (3.5, 2.5), |_| {
+            count += 1;
+            Color::gray(0.25)
+        });
+        assert_eq!((color, count), (Color::gray(0.25), 7));
+    }
+
+    #[test]
+    fn quantiles_are_those_of_the_tables() {
+        for (confidence, expected) in [(0.9, 1.6449), (0.95, 1.9600), (0.99, 2.5758)] {
+            assert!((quantile(confidence) - expected).abs() < 5e-4);
+        }
+        assert!(quantile(1.0).is_finite() && quantile(0.0) < 1e-3);
+    }
+}

@@ -1,0 +1,205 @@
+//! Primary rays: one or more for each place of the picture.
+
+mod lens;
+mod mesh;
+
+use lens::LensSampler;
+use strahl_math::{DVec3, Ray, det};
+use strahl_scene::{Camera, Projection};
+use strahl_shade::Color;
+use strahl_shade::patterns::TexturePoint;
+
+/// Makes the primary rays of a picture.
+#[derive(Clone, Debug)]
+pub struct PrimaryRays {
+    camera: Camera,
+    width: f64,
+    height: f64,
+    lens: Option<LensSampler>,
+}
+
+impl PrimaryRays {
+    /// For a picture of `width` by `height` pixels.
+    pub fn new(camera: &Camera, width: u32, height: u32) -> Self {
+        let (width, height) = (f64::from(width), f64::from(height));
+        let mut camera = camera.clone();
+        camera.right *= camera.aspect.unwrap_or(width / height);
+        Self {
+            lens: LensSampler::new(&camera),
+            camera,
+            width,
+            height,
+        }
+    }
+
+    /// The colour of a place of the picture, in pixels: `(0, 0)` is the top left corner of the picture, `(0.5, 0.5)` the
+    /// centre of its first pixel. `trace` gets each ray, with a unit direction; where the camera sees nothing it gets none.
+    pub fn color(&self, x: f64, y: f64, mut trace: impl FnMut(&Ray) -> Color) -> Color {
+        if let Projection::Mesh(mesh) = &self.camera.projection {
+            return self.mesh_color(mesh, x, y, trace);
+        }
+        let Some(ray) = self.ray(x, y) else {
+            return Color::BLACK;
+        };
+        match &self.lens {
+            None => trace(&ray),
+            Some(lens) => lens.color(&ray, (x, y), trace),
+        }
+    }
+
+    /// The ray through the centre of the lens; `None` where the camera sees nothing, and for cameras made of meshes.
+    pub fn ray(&self, x: f64, y: f64) -> Option<Ray> {
+        let c = &self.camera;
+        // From -1 to 1, x to the right and y upwards.
+        let (u, v) = (2.0 * x / self.width - 1.0, 1.0 - 2.0 * y / self.height);
+        let sideways = c.right * u + c.up * v;
+        let (ray, place) = match &c.projection {
+            Projection::Perspective => {
+                let direction = (c.direction + sideways).normalize();
+                (Ray::new(c.eye, direction), [0.5 * u, 0.5 * v])
+            }
+            Projection::Orthographic => {
+                let direction = c.direction.normalize();
+                (Ray::new(c.eye + sideways, direction), [0.5 * u, 0.5 * v])
+            }
+            _ => self.wide_ray(u, v)?,
+        };
+        Some(match &c.normal {
+            None => ray,
+            Some(normal) => {
+                let place = TexturePoint::in_space(DVec3::new(place[0], place[1], 0.0));
+                let bent = normal.tilt(&place, ray.direction);
+                Ray::new(ray.origin, bent.normalize_or(ray.direction))
+            }
+        })
+    }
+
+    /// The ray of a camera that is neither perspective nor orthographic, at coordinates from -1 to 1, and the place where a
+    /// normal of the camera is looked up: the angles, as far as the projection has some (measured with POV-Ray 3.7, but for
+    /// panoramic cameras).
+    fn wide_ray(&self, u: f64, v: f64) -> Option<(Ray, [f64; 2])> {
+        let c = &self.camera;
+        let (right, up) = (c.right * 2.0, c.up * 2.0);
+        let (side, above, forward) = (
+            right.normalize_or_zero(),
+            up.normalize_or_zero(),
+            c.direction.normalize_or_zero(),
+        );
+        let (half_u, half_v) = (0.5 * u, 0.5 * v);
+        let mut eye = c.eye;
+        let (direction, place) = match c.projection {
+            Projection::Fisheye { angle } => {
+                let (a, b) = (u * right.length(), v * up.length());
+                let radius = (a * a + b * b).sqrt();
+                if radius > 1.0 {
+                    return None;
+                }
+                let theta = radius * angle * 0.5;
+                let direction = polar(theta, [a, b], [side, above, forward]);
+                (direction, [det::atan2(b, a), theta])
+            }
+            Projection::Omnimax => {
+                let [a, b] = omnimax_film([u, v], right.length() / up.length());
+                let r = (a * a + b * b).sqrt();
+                if r > 1.0 {
+                    return None;
+                }
+                // The lens of Omnimax projectors, as angle by distance from the axis of the film (N. Max, "Computer graphics
+                // distortion for IMAX and OMNIMAX projection", Nicograph 1983).
+                let theta = r * (1.411_269 + r * r * (r * r * 0.256_74 - 0.094_39));
+                let direction = polar(theta, [a, b], [side, above, forward]);
+                if direction.dot(above) < -direction.dot(forward) {
+                    return None;
+                }
+                (direction, [det::atan2(b, a), theta])
+            }
+            Projection::UltraWideAngle { angle } => {
+                let a = half_u * angle;
+                let b = half_v * angle * up.length() / right.length();
+                let flat = side * det::sin(a) + above * det::sin(b);
+                (flat + forward * (det::cos(a) * det::cos(b)), [a, b])
+            }
+            Projection::Panoramic => {
+                let (a, b) = (half_u * std::f64::consts::PI, half_v * std::f64::consts::PI);
+                let level = right * det::sin(a) + c.direction * det::cos(a);
+                (level * det::cos(b) + up * det::sin(b), [a, b])
+            }
+            Projection::Cylinder {
+                upright,
+                moving,
+                angle,
+            } => {
+                let (axis, along, around, across) = if upright {
+                    (up, half_v, half_u * angle, side)
+                } else {
+                    (right, half_u, half_v * angle, above)
+                };
+                let straight = across * det::sin(around) + forward * det::cos(around);
+                let distance = along * axis.length();
+                let place = if upright {
+                    [around, distance]
+                } else {
+                    [distance, around]
+                };
+                if moving {
+                    eye += axis * along;
+                    (straight, place)
+                } else {
+                    (straight + axis * along, place)
+                }
+            }
+            Projection::Spherical {
+                horizontal,
+                vertical,
+            } => {
+                // First up or down about the axis to the right, then round about the upright one.
+                let (a, b) = (half_u * horizontal, half_v * vertical);
+                let tilted = turned(forward, side, -b);
+                (turned(tilted, above, a), [a, b])
+            }
+            Projection::Perspective | Projection::Orthographic | Projection::Mesh(_) => {
+                return None;
+            }
+        };
+        let length = direction.length();
+        (length > 0.0).then(|| (Ray::new(eye, direction / length), place))
+    }
+}
+
+/// The place on the film of an Omnimax projector for a place in a picture so many times as wide as high: what is seen of the
+/// dome reaches the picture's top, and in wide pictures its bottom too (measured with POV-Ray 3.7).
+fn omnimax_film([u, v]: [f64; 2], aspect: f64) -> [f64; 2] {
+    /// Half the height of the film from the top of the dome down to 45 degrees below the horizon.
+    const HALF_HEIGHT: f64 = 0.779_14;
+    let tall = 1.0 / aspect;
+    let scale = if tall > HALF_HEIGHT {
+        tall
+    } else {
+        HALF_HEIGHT
+    };
+    let (wide, raised) = (scale * aspect, 1.0 - scale);
+    [
+        if wide > 1.0 { u * wide } else { u },
+        scale * v + if raised > 0.0 { raised } else { 0.0 },
+    ]
+}
+
+/// The direction at the angle `theta` from the last axis, turned to the point `[a, b]` on the first two.
+fn polar(theta: f64, [a, b]: [f64; 2], [side, above, forward]: [DVec3; 3]) -> DVec3 {
+    let radius = (a * a + b * b).sqrt();
+    let ahead = forward * det::cos(theta);
+    if radius > 0.0 {
+        ahead + (side * a + above * b) * (det::sin(theta) / radius)
+    } else {
+        ahead
+    }
+}
+
+/// A vector rotated about a unit axis by an angle (Rodrigues' formula).
+fn turned(v: DVec3, axis: DVec3, angle: f64) -> DVec3 {
+    let (sin, cos) = (det::sin(angle), det::cos(angle));
+    v * cos + axis.cross(v) * sin + axis * (axis.dot(v) * (1.0 - cos))
+}
+
+#[cfg(test)]
+mod tests;

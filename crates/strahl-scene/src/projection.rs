@@ -1,0 +1,120 @@
+use std::sync::Arc;
+use strahl_math::{DVec2, DVec3};
+
+/// How rays leave the camera. Angles are full angles in radians, from edge to edge of the picture.
+///
+/// The cameras besides perspective and orthographic ones are those of POV-Ray (manual, "Types of Projection"; the formulas were
+/// found by measuring the directions of its rays).
+#[derive(Clone, Debug, PartialEq)]
+pub enum Projection {
+    /// All through the eye.
+    Perspective,
+    /// Parallel to the viewing direction, from the plane through the eye.
+    Orthographic,
+    /// The angle to the viewing direction grows with the distance from the centre of the picture; beyond the circle of the
+    /// picture that the lengths of `right` and `up` leave, nothing is seen.
+    Fisheye {
+        /// Across the whole circle.
+        angle: f64,
+    },
+    /// A fisheye that fills the rectangle.
+    UltraWideAngle {
+        /// From the left to the right edge; from bottom to top it is this times the ratio of `up` to `right`.
+        angle: f64,
+    },
+    /// A fisheye of 180 degrees with the lens of Omnimax projectors: nothing is seen more than 45 degrees below the horizon.
+    Omnimax,
+    /// Onto an ellipsoid whose axes are `right`, `up` and `direction`: 180 degrees in both directions.
+    Panoramic,
+    /// Onto a cylinder around the eye.
+    Cylinder {
+        /// Whether the axis of the cylinder is `up`, and not `right`.
+        upright: bool,
+        /// Whether the eye moves along the axis, so that rays stand at right angles to it.
+        moving: bool,
+        /// Around the axis.
+        angle: f64,
+    },
+    /// Onto a sphere by longitude and latitude.
+    Spherical {
+        /// From the left to the right edge.
+        horizontal: f64,
+        /// From the bottom to the top edge.
+        vertical: f64,
+    },
+    /// A ray for each face of a mesh.
+    Mesh(Arc<MeshCamera>),
+}
+
+impl Projection {
+    /// Its name.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Perspective => "perspective",
+            Self::Orthographic => "orthographic",
+            Self::Fisheye { .. } => "fisheye",
+            Self::UltraWideAngle { .. } => "ultra wide angle",
+            Self::Omnimax => "omnimax",
+            Self::Panoramic => "panoramic",
+            Self::Cylinder { .. } => "cylindrical",
+            Self::Spherical { .. } => "spherical",
+            Self::Mesh(_) => "mesh",
+        }
+    }
+
+    /// The angles, if there are any.
+    pub(crate) fn angles(&self) -> impl Iterator<Item = f64> {
+        let (a, b) = match self {
+            Self::Fisheye { angle }
+            | Self::UltraWideAngle { angle }
+            | Self::Cylinder { angle, .. } => (Some(*angle), None),
+            Self::Spherical {
+                horizontal,
+                vertical,
+            } => (Some(*horizontal), Some(*vertical)),
+            _ => (None, None),
+        };
+        a.into_iter().chain(b)
+    }
+}
+
+/// Rays from the faces of meshes, along their normals (POV-Ray manual, "Mesh projection").
+#[derive(Clone, Debug, PartialEq)]
+pub struct MeshCamera {
+    /// Which face a pixel gets.
+    pub layout: MeshLayout,
+    /// The faces, mesh by mesh.
+    pub meshes: Vec<Vec<CameraFace>>,
+    /// How far along its direction a ray begins in front of its face.
+    pub offset: f64,
+    /// Whether rays leave by the back of the faces.
+    pub reversed: bool,
+    /// Whether directions are interpolated between the normals of the corners, in the layout by uv coordinates.
+    pub smooth: bool,
+}
+
+/// Which face of a mesh camera a pixel gets. Pixels are counted row by row.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MeshLayout {
+    /// Its own number, in each of so many meshes; the mean of their rays is seen.
+    Each(u32),
+    /// Its own number, and that number after each further picture, in all meshes together; the mean of so many rays is seen.
+    Joined(u32),
+    /// Its own number in the mesh of its part of the picture, which the meshes share from left to right.
+    SideBySide,
+    /// The face of the first mesh that its place in the picture lies in, by uv coordinates.
+    ByUv,
+}
+
+/// A face of a mesh that serves as camera.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CameraFace {
+    /// The corners.
+    pub corners: [DVec3; 3],
+    /// The unit normal of the plane.
+    pub normal: DVec3,
+    /// The unit normals at the corners.
+    pub normals: Option<[DVec3; 3]>,
+    /// The uv coordinates of the corners.
+    pub uv: Option<[DVec2; 3]>,
+}

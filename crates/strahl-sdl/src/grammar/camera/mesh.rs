@@ -1,0 +1,134 @@
+//! `mesh_camera { ... }`: a camera whose rays start at the faces of meshes.
+
+use crate::grammar::objects::expanded;
+use crate::keywords::Word;
+use crate::parser::{PResult, Parser};
+use strahl_geometry::{Shape, TriangleMesh};
+use strahl_math::{DVec3, Transform};
+use strahl_scene::{CameraFace, MeshCamera, MeshLayout, Object, ObjectKind};
+
+/// A mesh camera being read; `location`, `direction` and `smooth` stand outside of its braces.
+pub(super) struct MeshDraft {
+    layout: MeshLayout,
+    meshes: Vec<Vec<CameraFace>>,
+}
+
+impl MeshDraft {
+    pub(super) fn finish(self, offset: f64, reversed: bool, smooth: bool) -> MeshCamera {
+        MeshCamera {
+            layout: self.layout,
+            meshes: self.meshes,
+            offset,
+            reversed,
+            smooth,
+        }
+    }
+}
+
+impl Parser<'_> {
+    /// `{ rays, layout [, distance] meshes }` behind `mesh_camera`.
+    pub(super) fn mesh_camera(&mut self) -> PResult<MeshDraft> {
+        /// More rays than this through a pixel are a mistake.
+        const MOST: f64 = 65_536.0;
+        self.braces(|p| {
+            let place = p.place();
+            let rays = p.float()?;
+            p.comma()?;
+            let number = p.float()?;
+            p.comma()?;
+            if !(1.0..=MOST).contains(&rays) {
+                let message = format!("a mesh camera has 1 to {MOST} rays per pixel, not {rays}");
+                return Err(p.fail(place, message));
+            }
+            let layout = match number {
+                0.0 => MeshLayout::Each(rays as u32),
+                1.0 => MeshLayout::Joined(rays as u32),
+                2.0 => MeshLayout::SideBySide,
+                3.0 => MeshLayout::ByUv,
+                other => {
+                    let message =
+                        format!("the distribution of a mesh camera is 0, 1, 2 or 3, not {other}");
+                    return Err(p.fail(place, message));
+                }
+            };
+            if p.number_follows()? {
+                let distance = p.float()?;
+                p.comma()?;
+                if distance > 0.0 {
+                    p.warn_hint(
+                        place,
+                        "the maximal distance of `mesh_camera` is not supported yet",
+                        "its rays see all objects, however far",
+                    );
+                }
+            }
+            let mut meshes = vec![];
+            while let Some(object) = p.object()? {
+                let object = expanded(&object, &p.state.shared);
+                let mut faces = vec![];
+                collect(&object, &Transform::IDENTITY, &mut faces);
+                p.spend_elements(faces.len() as u64)?;
+                meshes.push(faces);
+                p.comma()?;
+            }
+            if meshes.iter().all(Vec::is_empty) {
+                return Err(p.fail_hint(
+                    place,
+                    "this mesh camera has no faces to look from",
+                    "name a mesh: `mesh { Name }`",
+                ));
+            }
+            let needed = match layout {
+                MeshLayout::Each(rays) => rays as usize,
+                _ => 1,
+            };
+            if meshes.len() < needed {
+                let count = meshes.len();
+                let message =
+                    format!("{needed} rays per pixel need as many meshes, but there are {count}");
+                return Err(p.fail(place, message));
+            }
+            // What is left can only be words that say something about the meshes.
+            p.items("`mesh_camera`", |p, token| {
+                if token.is(Word::Smooth) {
+                    return p.take(token);
+                }
+                p.skip_item(token, "`mesh_camera`")
+            })?;
+            Ok(MeshDraft { layout, meshes })
+        })
+    }
+}
+
+/// The faces of all meshes in an object, in the space around `outer`. Unions are not nested deeper than the parser allows.
+fn collect(object: &Object, outer: &Transform, faces: &mut Vec<CameraFace>) {
+    let map = match object.transform.as_deref() {
+        Some(inner) => inner.then(outer),
+        None => *outer,
+    };
+    match &object.kind {
+        ObjectKind::Csg { children, .. } => {
+            for child in &children.0 {
+                collect(child, &map, faces);
+            }
+        }
+        ObjectKind::Shape(Shape::TriangleMesh(mesh)) => add_faces(mesh, &map, faces),
+        ObjectKind::Shape(Shape::Brep(solid)) => add_faces(solid.mesh(), &map, faces),
+        _ => {}
+    }
+}
+
+fn add_faces(mesh: &TriangleMesh, map: &Transform, faces: &mut Vec<CameraFace>) {
+    for number in 0..mesh.triangle_count() {
+        let corners = mesh.corners(number).map(|c| map.point_to_world(c));
+        let [a, b, c] = corners;
+        let turned = |n: DVec3| map.normal_to_world(n).normalize_or_zero();
+        let at = |u: f64, v: f64| mesh.surface_at_element(number, [u, v]).uv;
+        faces.push(CameraFace {
+            corners,
+            normal: (b - a).cross(c - a).normalize_or(DVec3::Z),
+            normals: mesh.corner_normals(number).map(|n| n.map(turned)),
+            uv: Some([at(0.0, 0.0), at(1.0, 0.0), at(0.0, 1.0)]),
+        });
+    }
+}
