@@ -441,3 +441,13 @@ fn media_around_everything_are_named_as_missing() {
             .contains("`media` is not supported")
     );
 }
+
+#[test]
+fn division_by_zero_is_told_and_goes_on() {
+    let parsed = parse_with(
+        &mut MemoryHost::new(),
+        "#declare A = 1 / 0; sphere { 0, 1 }",
+    );
+    assert_eq!(parsed.scene.expect("no errors").objects.0.len(), 1);
+    assert!(parsed.diagnostics[0].message.contains("division by zero"));
+}

@@ -530,3 +530,14 @@ fn descriptions_of_objects_are_small() {
     // A million spheres are a million of these.
     assert!(size_of::<Object>() <= 176, "{}", size_of::<Object>());
 }
+
+#[test]
+fn a_declared_object_may_stand_in_the_braces_of_any() {
+    let (scene, messages) = scene(
+        "#declare S = sphere { 0, 1 } #declare M = mesh { triangle { 0, x, y } }
+         sphere { S translate x } union { S pigment { rgb 1 } } mesh { M } box { M scale 2 }
+         union { object { S } sphere { x, 1 } }",
+    );
+    assert_eq!(scene.objects.0.len(), 5, "{messages:?}");
+    assert!(messages.is_empty(), "{messages:?}");
+}

@@ -203,7 +203,7 @@ fn meshes_see_as_povrays() {
         ("each", "mesh_camera { 1 0 mesh { G } }"),
         (
             "backwards",
-            "mesh_camera { 1 0 mesh { G } } location <0, 0, 0.5> direction -z",
+            "mesh_camera { 1 0 mesh { G translate 8 * z } } location <0, 0, 0.5> direction -z",
         ),
         (
             "several",
@@ -223,7 +223,8 @@ fn meshes_see_as_povrays() {
         let text = seen(camera).replace("\ncamera {", &format!("\n{face}camera {{"));
         (name, text)
     });
-    agree(0.02, &scenes);
+    // POV-Ray takes the faces of the row above, but for the first row, so the pictures are a pixel apart.
+    agree_within(3.0 / 255.0, 0.15, &scenes);
 }
 
 #[test]

@@ -96,7 +96,7 @@ impl PrimaryRays {
                 }
                 let theta = radius * angle * 0.5;
                 let direction = polar(theta, [a, b], [side, above, forward]);
-                (direction, [det::atan2(b, a), theta])
+                (direction, [turn(a, b), theta])
             }
             Projection::Omnimax => {
                 let [a, b] = omnimax_film([u, v], right.length() / up.length());
@@ -111,7 +111,7 @@ impl PrimaryRays {
                 if direction.dot(above) < -direction.dot(forward) {
                     return None;
                 }
-                (direction, [det::atan2(b, a), theta])
+                (direction, [turn(a, b), theta])
             }
             Projection::UltraWideAngle { angle } => {
                 let a = half_u * angle;
@@ -192,6 +192,16 @@ fn polar(theta: f64, [a, b]: [f64; 2], [side, above, forward]: [DVec3; 3]) -> DV
         ahead + (side * a + above * b) * (det::sin(theta) / radius)
     } else {
         ahead
+    }
+}
+
+/// The angle of a point in the plane, from -90 to 270 degrees as POV-Ray counts it.
+fn turn(a: f64, b: f64) -> f64 {
+    let angle = det::atan2(b, a);
+    if angle < -std::f64::consts::FRAC_PI_2 {
+        angle + std::f64::consts::TAU
+    } else {
+        angle
     }
 }
 

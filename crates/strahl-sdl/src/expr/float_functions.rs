@@ -12,9 +12,9 @@ impl Parser<'_> {
         self.expect(Kind::LeftParen)?;
         let value = match word {
             Word::Abs => self.full_float()?.abs(),
-            Word::Acos => self.inverse(place, "acos", |x| (-1.0..=1.0).contains(&x), det::acos)?,
+            Word::Acos => det::acos(self.full_float()?.clamp(-1.0, 1.0)),
             Word::Acosh => self.inverse(place, "acosh", |x| x >= 1.0, det::acosh)?,
-            Word::Asin => self.inverse(place, "asin", |x| (-1.0..=1.0).contains(&x), det::asin)?,
+            Word::Asin => det::asin(self.full_float()?.clamp(-1.0, 1.0)),
             Word::Asinh => det::asinh(self.full_float()?),
             Word::Atan => det::atan(self.full_float()?),
             Word::Atanh => self.inverse(place, "atanh", |x| x.abs() < 1.0, det::atanh)?,
@@ -91,14 +91,11 @@ impl Parser<'_> {
                 let a = self.string()?;
                 self.comma()?;
                 let b = self.string()?;
-                f64::from(a.as_bytes().cmp(b.as_bytes()) as i8)
+                difference(&a, &b)
             }
             Word::Asc => {
                 let text = self.string()?;
-                match text.chars().next() {
-                    Some(c) => f64::from(u32::from(c)),
-                    None => return Err(self.fail(place, "`asc` needs a string that is not empty")),
-                }
+                text.chars().next().map_or(0.0, |c| f64::from(u32::from(c)))
             }
             Word::Val => {
                 let text = self.string()?;
@@ -191,4 +188,12 @@ impl Parser<'_> {
             d
         })
     }
+}
+
+/// How much the first byte in which two strings differ is larger in the first; strings end with a zero.
+fn difference(a: &str, b: &str) -> f64 {
+    let (a, b) = (a.as_bytes(), b.as_bytes());
+    let at = a.iter().zip(b).take_while(|(x, y)| x == y).count();
+    let byte = |text: &[u8]| text.get(at).copied().map_or(0.0, f64::from);
+    byte(a) - byte(b)
 }

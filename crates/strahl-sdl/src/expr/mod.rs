@@ -215,7 +215,11 @@ impl Parser<'_> {
             Kind::Slash => {
                 let divisor = b.promoted(a.len().max(b.len()));
                 if divisor.as_slice().contains(&0.0) {
-                    return Err(self.fail(place, "division by zero"));
+                    self.warn_hint(
+                        place,
+                        "division by zero gives an infinite number, or none",
+                        "objects and colours made of it will be refused",
+                    );
                 }
                 a.zip(b, |x, y| x / y)
             }

@@ -159,7 +159,7 @@ impl Parser<'_> {
         Ok(text)
     }
 
-    /// `datetime(days, format)`: the letters of C's `strftime` that don't depend on a language.
+    /// `datetime(days, format)`: the letters of C's `strftime`, in English.
     fn datetime(&mut self, place: Place) -> PResult<String> {
         let days = self.full_float()?;
         let format = if self.accept(Kind::Comma)? {
@@ -204,6 +204,31 @@ pub(super) fn leading_number(text: &str) -> f64 {
     text[..sign + end].parse().unwrap_or(0.0)
 }
 
+const DAYS: [&str; 7] = [
+    "Sunday",
+    "Monday",
+    "Tuesday",
+    "Wednesday",
+    "Thursday",
+    "Friday",
+    "Saturday",
+];
+
+const MONTHS: [&str; 12] = [
+    "January",
+    "February",
+    "March",
+    "April",
+    "May",
+    "June",
+    "July",
+    "August",
+    "September",
+    "October",
+    "November",
+    "December",
+];
+
 /// Days since the beginning of 2000, in the proleptic Gregorian calendar (Howard Hinnant, "chrono-compatible low-level date
 /// algorithms", `civil_from_days`).
 fn date(days: f64, format: &str) -> String {
@@ -220,6 +245,27 @@ fn date(days: f64, format: &str) -> String {
     let day = day_of_year - (153 * m + 2) / 5 + 1;
     let month = if m < 10 { m + 3 } else { m - 9 };
     let year = year_of_era + era * 400 + i64::from(month <= 2);
+    let leap = year % 4 == 0 && (year % 100 != 0 || year % 400 == 0);
+    // The year of the algorithm begins in March.
+    let since_january = if month <= 2 {
+        day_of_year - 305
+    } else {
+        day_of_year + 60 + i64::from(leap)
+    };
+    // The first day of 2000 was a Saturday.
+    let weekday = (whole as i64 + 6).rem_euclid(7);
+    let name = |names: &[&'static str], index: i64| {
+        let index = usize::try_from(index).unwrap_or(0);
+        names.get(index).copied().unwrap_or("")
+    };
+    let short = |text: &'static str| text.get(..3).unwrap_or(text);
+    let (month_name, day_name) = (name(&MONTHS, month - 1), name(&DAYS, weekday));
+    let clock = format!(
+        "{:02}:{:02}:{:02}",
+        seconds / 3600,
+        seconds / 60 % 60,
+        seconds % 60
+    );
     let mut out = String::new();
     let mut chars = format.chars();
     while let Some(c) = chars.next() {
@@ -235,6 +281,23 @@ fn date(days: f64, format: &str) -> String {
             Some('H') => out.push_str(&format!("{:02}", seconds / 3600)),
             Some('M') => out.push_str(&format!("{:02}", seconds / 60 % 60)),
             Some('S') => out.push_str(&format!("{:02}", seconds % 60)),
+            Some('I') => out.push_str(&format!("{:02}", (seconds / 3600 + 11) % 12 + 1)),
+            Some('p') => out.push_str(if seconds < 43_200 { "AM" } else { "PM" }),
+            Some('j') => out.push_str(&format!("{since_january:03}")),
+            Some('w') => out.push_str(&weekday.to_string()),
+            Some('A') => out.push_str(day_name),
+            Some('a') => out.push_str(short(day_name)),
+            Some('B') => out.push_str(month_name),
+            Some('b') => out.push_str(short(month_name)),
+            Some('X') => out.push_str(&clock),
+            Some('x') => {
+                let year = year.rem_euclid(100);
+                out.push_str(&format!("{month:02}/{day:02}/{year:02}"));
+            }
+            Some('c') => {
+                let (weekday, month) = (short(day_name), short(month_name));
+                out.push_str(&format!("{weekday} {month} {day:2} {clock} {year}"));
+            }
             Some('%') => out.push('%'),
             Some(other) => {
                 out.push('%');
@@ -272,5 +335,12 @@ mod tests {
         assert_eq!(date(59.5, "%d.%m.%y %H%%%M"), "29.02.00 12%00");
         assert_eq!(date(-1.0, "%Y-%m-%d"), "1999-12-31");
         assert_eq!(date(9000.0, "%Y-%m-%d"), "2024-08-22");
+        // As POV-Ray 3.7 writes them.
+        let all = "%j %p %I %a %A %b %B|%c|%x %X";
+        let expected =
+            "061 AM 06 Sat Saturday Mar March|Sat Mar  2 06:00:00 2019|03/02/19 06:00:00";
+        assert_eq!(date(7000.25, all), expected);
+        assert_eq!(date(0.75, "%j %p %I %w"), "001 PM 06 6");
+        assert_eq!(date(59.0 + 306.0, "%j"), "366");
     }
 }

@@ -126,7 +126,8 @@ fn add_faces(mesh: &TriangleMesh, map: &Transform, faces: &mut Vec<CameraFace>) 
         let at = |u: f64, v: f64| mesh.surface_at_element(number, [u, v]).uv;
         faces.push(CameraFace {
             corners,
-            normal: (b - a).cross(c - a).normalize_or(DVec3::Z),
+            // To the side from which the corners go round as the clock does, in left-handed space (measured with POV-Ray 3.7).
+            normal: (c - a).cross(b - a).normalize_or(DVec3::Z),
             normals: mesh.corner_normals(number).map(|n| n.map(turned)),
             uv: Some([at(0.0, 0.0), at(1.0, 0.0), at(0.0, 1.0)]),
         });

@@ -31,9 +31,11 @@ pub(super) use named::object;
 pub(crate) use reuse::{Shared, Tally, expanded};
 pub(super) use text::KnownFont;
 
-use super::{Entity, by_word};
+use super::{Entity, Thing, by_word};
 use crate::keywords::{Word, WordKind};
 use crate::parser::{PResult, Parser};
+use crate::token::Kind;
+use crate::value::Value;
 use strahl_scene::Object;
 
 /// Reads an object from its `{` to its `}`; its word is already taken.
@@ -81,6 +83,19 @@ impl Parser<'_> {
         Ok(self.entity()?.map(|entity| entity.object))
     }
 
+    /// Whether a brace and the name of an object come next, and not a further object.
+    fn object_name_follows(&self) -> bool {
+        if self.raw().kind != Kind::LeftBrace {
+            return false;
+        }
+        let name = self.raw_ahead(1);
+        let found = match (name.kind, name.symbol()) {
+            (Kind::Name, Some(symbol)) => self.scopes.find(symbol),
+            _ => None,
+        };
+        matches!(found, Some(Value::Thing(Thing::Object(_))))
+    }
+
     /// If an object stands here, reads it with its texture. One that is not supported yet leaves nothing.
     ///
     /// # Errors
@@ -92,6 +107,12 @@ impl Parser<'_> {
         };
         if let Some(parse) = OBJECTS.get(word as usize).copied().flatten() {
             self.take(token)?;
+            // A declared object may stand in the braces of any: `sphere { Name ... }` is `object { Name ... }`.
+            let parse = if word != Word::LightSource && self.object_name_follows() {
+                object
+            } else {
+                parse
+            };
             return self.nested(parse).map(Some);
         }
         if word.kind() != WordKind::Object || word == Word::LightSource {

@@ -132,7 +132,8 @@ impl Parser<'_> {
                 q.bounds.max
             }
         });
-        Ok(corner.clamp(-FAR, FAR))
+        // Adding zero makes a zero of a negative zero.
+        Ok(corner.clamp(-FAR, FAR) + DVec3::ZERO)
     }
 
     /// `trace(Object, origin, direction [, Normal])` behind the parenthesis: the first point of the object on the ray, or the
