@@ -152,6 +152,43 @@ impl<const N: usize> Bernstein<N> {
         }
     }
 
+    /// The polynomial `power[0] + power[1] s + power[2] s² + ...` on `0 <= s <= 1`, faster than by [`Bernstein::from_power`].
+    ///
+    /// `error` bounds the sum of the errors of the given coefficients; the rounding here is added to it.
+    pub fn on_unit_interval(power: &[f64; N], error: f64) -> Self {
+        let degree = N.saturating_sub(1);
+        let (mut b, mut binomial, mut magnitude) = (*power, 1.0, 0.0);
+        for (k, c) in b.iter_mut().enumerate() {
+            magnitude += c.abs();
+            *c /= binomial;
+            binomial = binomial * (degree - k) as f64 / (k + 1) as f64;
+        }
+        for i in 1..N {
+            for j in (i..N).rev() {
+                b[j] += b[j - 1];
+            }
+        }
+        let error = error + gamma(4 * N as u32) * magnitude + f64::MIN_POSITIVE;
+        Self {
+            coefficients: b,
+            // Of what overflows nothing is known.
+            error: if magnitude.is_finite() {
+                error
+            } else {
+                f64::INFINITY
+            },
+            low: 0.0,
+            high: 1.0,
+        }
+    }
+
+    /// The polynomial seen from the other end: its value at `low + high - t`.
+    #[must_use]
+    pub fn mirrored(mut self) -> Self {
+        self.coefficients.reverse();
+        self
+    }
+
     /// The same with an error bound larger by `error`.
     #[must_use]
     pub fn with_error(self, error: f64) -> Self {
@@ -205,53 +242,39 @@ impl<const N: usize> Bernstein<N> {
         else {
             return ControlFlow::Continue(());
         };
-        self.search(*first >= 0.0, *last >= 0.0, 0, visit)
+        let mut search = Search {
+            from: f64::NEG_INFINITY,
+            to: f64::INFINITY,
+            starts_negative: None,
+            visit,
+        };
+        search.run(self, *first >= 0.0, *last >= 0.0, 0)
     }
 
-    /// `first` and `last` are the signs that the two ends count as (true for positive), whatever their error: neighbouring
-    /// intervals agree about the point between them, so changes of sign are neither lost nor made up there.
-    fn search(
+    /// Like [`Bernstein::isolate`], but passes over what lies before `window.from` or behind `window.to`, and takes the signs at the two
+    /// ends of the interval from the caller (`true` for positive), so that pieces of a larger function agree where they meet.
+    ///
+    /// What is visited does not depend on the window in any bit; parts that reach into it are visited as a whole. If
+    /// `window.starts_negative` is `None`, it becomes the sign of the polynomial at the lower end of the first part that was not
+    /// passed over, whether there is a root in it or not.
+    ///
+    /// # Errors
+    /// `Break` if the visitor said so, or the end of the window has been passed.
+    pub fn isolate_within(
         &self,
-        first: bool,
-        last: bool,
-        depth: u32,
+        (first, last): (bool, bool),
+        window: &mut Window,
         visit: &mut impl FnMut(&Isolated<N>) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
-        let (fewest, most) = self.variations(first, last);
-        if most == 0 {
-            return ControlFlow::Continue(());
-        }
-        let isolated = |count| Isolated {
-            piece: *self,
-            rising: last,
-            count,
+        let mut search = Search {
+            from: window.from,
+            to: window.to,
+            starts_negative: window.starts_negative,
+            visit,
         };
-        if fewest == 1 && most == 1 {
-            return visit(&isolated(RootCount::One));
-        }
-        let middle = 0.5 * (self.low + self.high);
-        let undecidable = self.coefficients.iter().all(|c| c.abs() <= self.error);
-        let splits = depth < MAX_DEPTH && self.low < middle && middle < self.high;
-        // Nothing is to be found where nothing is known.
-        let finite = self.error.is_finite();
-        if !finite {
-            return ControlFlow::Continue(());
-        }
-        if undecidable || !splits {
-            let count = if first == last {
-                RootCount::Even
-            } else {
-                RootCount::Odd
-            };
-            return visit(&isolated(count));
-        }
-        let (left, right) = self.halves(middle);
-        let between = right
-            .coefficients
-            .first()
-            .is_some_and(|value| *value >= 0.0);
-        left.search(first, between, depth + 1, visit)?;
-        right.search(between, last, depth + 1, visit)
+        let flow = search.run(self, first, last, 0);
+        window.starts_negative = search.starts_negative;
+        flow
     }
 
     /// The smallest and the largest number of sign changes that the coefficients may have, given their errors.
@@ -332,6 +355,81 @@ impl<const N: usize> Bernstein<N> {
             }
         }
         (b.first().copied().unwrap_or(0.0), slope)
+    }
+}
+
+/// The part of an interval that roots are looked for in, see [`Bernstein::isolate_within`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Window {
+    /// The lower end.
+    pub from: f64,
+    /// The upper end.
+    pub to: f64,
+    /// Whether the polynomial is negative where the search began.
+    pub starts_negative: Option<bool>,
+}
+
+/// A search for roots on its way.
+struct Search<'a, V> {
+    from: f64,
+    to: f64,
+    starts_negative: Option<bool>,
+    visit: &'a mut V,
+}
+
+impl<V> Search<'_, V> {
+    /// `first` and `last` are the signs that the two ends count as (true for positive), whatever their error: neighbouring
+    /// intervals agree about the point between them, so changes of sign are neither lost nor made up there.
+    fn run<const N: usize>(
+        &mut self,
+        piece: &Bernstein<N>,
+        first: bool,
+        last: bool,
+        depth: u32,
+    ) -> ControlFlow<()>
+    where
+        V: FnMut(&Isolated<N>) -> ControlFlow<()>,
+    {
+        if piece.high <= self.from {
+            return ControlFlow::Continue(());
+        }
+        if piece.low > self.to && self.starts_negative.is_some() {
+            return ControlFlow::Break(());
+        }
+        let (fewest, most) = piece.variations(first, last);
+        let isolated = |count| Isolated {
+            piece: *piece,
+            rising: last,
+            count,
+        };
+        // Nothing is to be found where nothing is known.
+        if most == 0 || !piece.error.is_finite() {
+            self.starts_negative.get_or_insert(!first);
+            return ControlFlow::Continue(());
+        }
+        if fewest == 1 && most == 1 {
+            self.starts_negative.get_or_insert(!first);
+            return (self.visit)(&isolated(RootCount::One));
+        }
+        let middle = 0.5 * (piece.low + piece.high);
+        let undecidable = piece.coefficients.iter().all(|c| c.abs() <= piece.error);
+        let splits = depth < MAX_DEPTH && piece.low < middle && middle < piece.high;
+        if undecidable || !splits {
+            self.starts_negative.get_or_insert(!first);
+            let count = if first == last {
+                RootCount::Even
+            } else {
+                RootCount::Odd
+            };
+            return (self.visit)(&isolated(count));
+        }
+        let (left, right) = piece.halves(middle);
+        let between = right
+            .coefficients
+            .first()
+            .is_some_and(|value| *value >= 0.0);
+        self.run(&left, first, between, depth + 1)?;
+        self.run(&right, between, last, depth + 1)
     }
 }
 

@@ -9,6 +9,6 @@ mod bernstein;
 mod bracket;
 mod quadratic;
 
-pub use bernstein::{Bernstein, Isolated, RootCount, Roots};
+pub use bernstein::{Bernstein, Isolated, RootCount, Roots, Window};
 pub use bracket::{find_crossing, find_root};
 pub use quadratic::quadratic;
