@@ -5,6 +5,7 @@
 //! * [`Csg`]: solids combined to one, by trees of any depth.
 //! * [`mod@conformance`]: the battery of tests every primitive must pass.
 
+pub mod algebraic;
 pub mod blocks;
 pub mod conformance;
 pub mod csg;
@@ -17,6 +18,7 @@ mod shape;
 mod spans;
 pub mod swept;
 
+pub use algebraic::{Blob, BlobComponent, Polynomial, Superellipsoid};
 pub use csg::{Csg, CsgNode, Operands};
 pub use fractal::{HypercomplexFunction, Julia, JuliaAlgebra, JuliaOptions, QuaternionFunction};
 pub use implicit::{

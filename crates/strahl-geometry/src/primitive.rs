@@ -1,3 +1,4 @@
+use crate::algebraic::Pieces;
 use crate::csg::Workspace;
 use crate::{Crossings, Shape};
 use std::sync::Arc;
@@ -79,6 +80,7 @@ impl SurfacePoint {
 pub struct Scratch {
     pool: Vec<Crossings>,
     csg: Vec<Workspace>,
+    pieces: Vec<Pieces>,
 }
 
 impl Scratch {
@@ -101,6 +103,17 @@ impl Scratch {
     /// Returns them.
     pub(crate) fn give_csg(&mut self, workspace: Workspace) {
         self.csg.push(workspace);
+    }
+
+    /// Borrows the lists that rays through blobs are followed with.
+    pub(crate) fn take_pieces(&mut self) -> Pieces {
+        self.pieces.pop().unwrap_or_default()
+    }
+
+    /// Returns them.
+    pub(crate) fn give_pieces(&mut self, mut pieces: Pieces) {
+        pieces.clear();
+        self.pieces.push(pieces);
     }
 }
 

@@ -1,3 +1,4 @@
+use crate::algebraic::{Blob, Polynomial, Superellipsoid};
 use crate::fractal::Julia;
 use crate::implicit::{HeightField, Isosurface, Parametric};
 use crate::mesh::{Brep, Polygon, SmoothTriangle, Triangle, TriangleMesh};
@@ -111,6 +112,12 @@ shapes! {
     Sor(Arc<Sor>),
     /// The space that a moving sphere covers.
     SphereSweep(Arc<SphereSweep>),
+    /// A surface of a degree up to 35.
+    Polynomial(Arc<Polynomial>),
+    /// Balls and capsules that flow together.
+    Blob(Arc<Blob>),
+    /// A superquadric ellipsoid.
+    Superellipsoid(Superellipsoid),
     /// A flat triangle.
     Triangle(Triangle),
     /// A triangle with a normal at each corner.
@@ -157,6 +164,8 @@ shared!(
     Isosurface,
     Parametric,
     Julia,
+    Polynomial,
+    Blob,
     Csg,
     Brep
 );

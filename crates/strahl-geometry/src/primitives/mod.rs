@@ -1,11 +1,11 @@
 //! The analytic shapes: surfaces with a formula of their own, one file each.
 
 mod cone;
-mod convex;
+pub(crate) mod convex;
 mod cuboid;
 mod cylinder;
 mod disc;
-mod frame;
+pub(crate) mod frame;
 mod frustum;
 mod plane;
 mod quadric;
@@ -52,7 +52,7 @@ pub(crate) fn check_positive(what: &'static str, found: f64) -> Result<(), Geome
 }
 
 /// Checks that a length is finite and not negative.
-fn check_length(what: &'static str, found: f64) -> Result<(), GeometryError> {
+pub(crate) fn check_length(what: &'static str, found: f64) -> Result<(), GeometryError> {
     if !found.is_finite() {
         return Err(GeometryError::NotFinite { what });
     }
@@ -68,7 +68,7 @@ fn check_length(what: &'static str, found: f64) -> Result<(), GeometryError> {
 }
 
 /// Checks a direction that was normalised on construction, where a vector without direction became zero.
-fn check_direction(
+pub(crate) fn check_direction(
     what: &'static str,
     shape: &'static str,
     unit: DVec3,

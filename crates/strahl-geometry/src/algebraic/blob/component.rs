@@ -1,0 +1,256 @@
+use crate::GeometryError;
+use crate::primitives::frame::{basis, similarity};
+use crate::primitives::{check_finite, check_positive, point_error, unit_vector};
+use strahl_math::error::gamma;
+use strahl_math::{Aabb, DMat3, DVec3, Transform};
+
+/// A source of a blob's field: a ball or a capsule, perhaps stretched.
+///
+/// At the distance d from its centre (of a capsule: from its axis, or from the nearer end beyond the ends) the field is
+/// `strength (1 - d²/radius²)²`, and zero from the radius on.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BlobComponent {
+    strength: f64,
+    /// The centre, or the first end of the axis.
+    center: DVec3,
+    /// From differences from the centre to the unit ball; the axis of a capsule becomes the z axis.
+    linear: DMat3,
+    /// If `linear` is a multiple of the identity, the factor.
+    scale: Option<f64>,
+    /// The length of the axis in units of the radius, 0 for balls.
+    length: f64,
+    radius: f64,
+}
+
+/// A ray in a component's own space: `start + s along`.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Inner {
+    pub(super) start: DVec3,
+    pub(super) along: DVec3,
+}
+
+/// A part of a component, on which the squared distance is one polynomial of degree 2.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Part {
+    /// A ball, or the cap before the first end.
+    Ball,
+    /// The side of a capsule.
+    Side,
+    /// The cap behind the second end.
+    Tip,
+}
+
+impl BlobComponent {
+    /// A ball.
+    pub fn sphere(center: DVec3, radius: f64, strength: f64) -> Self {
+        Self {
+            strength,
+            center,
+            linear: DMat3::from_diagonal(DVec3::splat(1.0 / radius)),
+            scale: Some(1.0 / radius),
+            length: 0.0,
+            radius,
+        }
+    }
+
+    /// A capsule: a cylinder between two points with a half ball at each end. Without length it is a ball.
+    pub fn cylinder(first: DVec3, second: DVec3, radius: f64, strength: f64) -> Self {
+        let axis = second - first;
+        let z = unit_vector(axis);
+        if z == DVec3::ZERO {
+            return Self::sphere(first, radius, strength);
+        }
+        Self {
+            strength,
+            center: first,
+            linear: basis(z).transpose() * (1.0 / radius),
+            scale: None,
+            length: axis.length() / radius,
+            radius,
+        }
+    }
+
+    /// The component moved, turned and stretched by a map.
+    #[must_use]
+    pub fn transformed(&self, map: &Transform) -> Self {
+        let center = map.point_to_world(self.center);
+        // Turning a ball changes nothing.
+        if let (Some(scale), Some((factor, _))) = (self.scale, similarity(map)) {
+            let scale = scale / factor;
+            return Self {
+                center,
+                linear: DMat3::from_diagonal(DVec3::splat(scale)),
+                scale: Some(scale),
+                ..self.clone()
+            };
+        }
+        Self {
+            center,
+            linear: self.linear * map.inverted().linear(),
+            scale: None,
+            ..self.clone()
+        }
+    }
+
+    /// The strength of the field at the centre; negative ones repel.
+    pub fn strength(&self) -> f64 {
+        self.strength
+    }
+
+    pub(super) fn validate(&self) -> Result<(), GeometryError> {
+        check_positive("radius of the blob component", self.radius)?;
+        check_finite("place of the blob component", self.center)?;
+        if self.linear.is_finite() && self.strength.is_finite() && self.length.is_finite() {
+            return Ok(());
+        }
+        Err(GeometryError::NotFinite {
+            what: "size or strength of the blob component",
+        })
+    }
+
+    /// Where its field is not zero.
+    pub(super) fn bounds(&self) -> Aabb {
+        let back = self.linear.inverse();
+        // The image of the unit ball reaches as far along each axis as the rows of the map are long.
+        let rows = back.transpose();
+        let reach = DVec3::new(
+            rows.x_axis.length(),
+            rows.y_axis.length(),
+            rows.z_axis.length(),
+        );
+        let tip = self.center + back * DVec3::new(0.0, 0.0, self.length);
+        let (low, high) = (self.center.min(tip), self.center.max(tip));
+        let rounding = point_error(low.abs().max(high.abs()) + reach, reach.max_element(), 16)
+            + reach * gamma(64);
+        Aabb::new(low - reach, high + reach).padded(rounding)
+    }
+
+    /// A ray, or a point and a vector, in the component's own space.
+    #[inline]
+    pub(super) fn inner(&self, start: DVec3, along: DVec3) -> Inner {
+        let from_center = start - self.center;
+        match self.scale {
+            Some(scale) => Inner {
+                start: from_center * scale,
+                along: along * scale,
+            },
+            None => Inner {
+                start: self.linear * from_center,
+                along: self.linear * along,
+            },
+        }
+    }
+
+    /// The stretches of a ray on which it is in the field, by parts.
+    #[inline]
+    pub(super) fn stretches(&self, inner: &Inner, mut visit: impl FnMut(Part, f64, f64)) {
+        if self.length == 0.0 {
+            if let Some((low, high)) = in_unit_ball(inner.start, inner.along) {
+                visit(Part::Ball, low, high);
+            }
+            return;
+        }
+        let (height, climb) = (inner.start.z, inner.along.z);
+        // The ray passes the planes of both ends here, ascending.
+        let (first, last) = if climb == 0.0 {
+            match height {
+                h if h < 0.0 => (f64::INFINITY, f64::INFINITY),
+                h if h > self.length => (f64::NEG_INFINITY, f64::NEG_INFINITY),
+                _ => (f64::NEG_INFINITY, f64::INFINITY),
+            }
+        } else {
+            let (a, b) = (-height / climb, (self.length - height) / climb);
+            if a < b { (a, b) } else { (b, a) }
+        };
+        let (before, behind) = if climb < 0.0 {
+            (Part::Tip, Part::Ball)
+        } else {
+            (Part::Ball, Part::Tip)
+        };
+        for (part, from, to) in [
+            (before, f64::NEG_INFINITY, first),
+            (Part::Side, first, last),
+            (behind, last, f64::INFINITY),
+        ] {
+            let (start, along) = self.metric(part, inner);
+            if let Some((low, high)) = in_unit_ball(start, along) {
+                let low = if low > from { low } else { from };
+                let high = if high < to { high } else { to };
+                if low < high {
+                    visit(part, low, high);
+                }
+            }
+        }
+    }
+
+    /// What the distance of a part is measured by: the length of `start + s along`.
+    #[inline]
+    fn metric(&self, part: Part, inner: &Inner) -> (DVec3, DVec3) {
+        let Inner { start, along } = *inner;
+        match part {
+            Part::Ball => (start, along),
+            Part::Side => (
+                DVec3::new(start.x, start.y, 0.0),
+                DVec3::new(along.x, along.y, 0.0),
+            ),
+            Part::Tip => (start - DVec3::new(0.0, 0.0, self.length), along),
+        }
+    }
+
+    /// `1 - d²/radius²` on a part, as a polynomial in s about the start.
+    #[inline]
+    pub(super) fn closeness(&self, part: Part, inner: &Inner) -> [f64; 3] {
+        let (start, along) = self.metric(part, inner);
+        [
+            1.0 - start.length_squared(),
+            -2.0 * start.dot(along),
+            -along.length_squared(),
+        ]
+    }
+
+    /// The part that a point of the component's own space belongs to.
+    fn part_at(&self, p: DVec3) -> Part {
+        if self.length == 0.0 || p.z < 0.0 {
+            Part::Ball
+        } else if p.z > self.length {
+            Part::Tip
+        } else {
+            Part::Side
+        }
+    }
+
+    /// The field at a point and its gradient.
+    pub(super) fn field(&self, point: DVec3) -> (f64, DVec3) {
+        let inner = self.inner(point, DVec3::ZERO);
+        let (p, _) = self.metric(self.part_at(inner.start), &inner);
+        let close = 1.0 - p.length_squared();
+        if !(close > 0.0) {
+            return (0.0, DVec3::ZERO);
+        }
+        let outward = match self.scale {
+            Some(scale) => p * scale,
+            None => self.linear.transpose() * p,
+        };
+        (
+            self.strength * close * close,
+            outward * (-4.0 * self.strength * close),
+        )
+    }
+}
+
+/// Where a line is in the unit ball about the origin; for a point (no direction) everywhere or nowhere.
+#[inline]
+fn in_unit_ball(start: DVec3, along: DVec3) -> Option<(f64, f64)> {
+    let square = along.length_squared();
+    if square == 0.0 {
+        return (start.length_squared() < 1.0).then_some((f64::NEG_INFINITY, f64::INFINITY));
+    }
+    let middle = -start.dot(along) / square;
+    let half = (1.0 - (start + along * middle).length_squared()) / square;
+    // Refuses NaN too.
+    if !(half > 0.0) {
+        return None;
+    }
+    let half = half.sqrt();
+    Some((middle - half, middle + half))
+}

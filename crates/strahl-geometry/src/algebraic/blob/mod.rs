@@ -1,0 +1,231 @@
+//! Blobs: the surface where the fields of several sources add up to a threshold.
+
+mod component;
+mod walk;
+
+pub use component::BlobComponent;
+pub(crate) use walk::Pieces;
+
+use super::event;
+use crate::primitives::{check_positive, point_error};
+use crate::{
+    Crossings, GeometryError, PrimHit, Primitive, Scratch, Shape, Solid, SurfaceId, SurfacePoint,
+};
+use strahl_accel::{Accelerator, Bvh2, TraversalStats, Visitor};
+use strahl_math::error::gamma;
+use strahl_math::{Aabb, DVec3, Interval, Ray, Transform};
+
+/// The body in which the sum of the fields of its components is above a threshold.
+///
+/// Balls and capsules flow together where they come close; components of negative strength make dents. No texture coordinates.
+/// Facets: one, 0. A ray that touches it does not hit it.
+///
+/// Along a ray the field is a polynomial of degree 4 between the places where it enters or leaves the field of a component (after
+/// J. F. Blinn, "A generalization of algebraic surface drawing", ACM Transactions on Graphics 1 (1982), with G. and B. Wyvill's finite
+/// fields). These are visited in order, each set up about its own beginning, and their roots isolated in Bernstein form.
+#[derive(Clone, Debug)]
+pub struct Blob {
+    threshold: f64,
+    components: Vec<BlobComponent>,
+    /// Over the components, if they are many.
+    hierarchy: Option<Bvh2>,
+    /// Around all attracting components.
+    bounds: Aabb,
+}
+
+/// Up to so many components are looked at one by one.
+const FEW: usize = 6;
+
+impl Blob {
+    /// The blob of a threshold and components.
+    pub fn new(threshold: f64, components: Vec<BlobComponent>) -> Self {
+        let boxes: Vec<Aabb> = components.iter().map(BlobComponent::bounds).collect();
+        let attracting = components
+            .iter()
+            .zip(&boxes)
+            .filter(|(c, _)| c.strength() > 0.0);
+        Self {
+            threshold,
+            bounds: attracting.fold(Aabb::EMPTY, |sum, (_, b)| sum.union(b)),
+            hierarchy: (components.len() > FEW).then(|| Bvh2::build(&boxes)),
+            components,
+        }
+    }
+
+    /// Like [`Blob::new`], checked.
+    ///
+    /// # Errors
+    /// A number is not finite, the threshold or a radius is not positive, or all components together don't reach the threshold.
+    pub fn try_new(threshold: f64, components: Vec<BlobComponent>) -> Result<Self, GeometryError> {
+        let blob = Self::new(threshold, components);
+        blob.validate().map(|()| blob)
+    }
+
+    /// The value that the field has on the surface.
+    pub fn threshold(&self) -> f64 {
+        self.threshold
+    }
+
+    /// The sources of the field.
+    pub fn components(&self) -> &[BlobComponent] {
+        &self.components
+    }
+
+    /// Calls `visit` with the number of each component whose field reaches a point, the field there and its gradient, in
+    /// ascending order of the numbers.
+    pub fn fields_at(&self, point: DVec3, mut visit: impl FnMut(usize, f64, DVec3)) {
+        let Some(hierarchy) = &self.hierarchy else {
+            for (i, component) in self.components.iter().enumerate() {
+                let (field, gradient) = component.field(point);
+                if field != 0.0 {
+                    visit(i, field, gradient);
+                }
+            }
+            return;
+        };
+        let mut found = Found {
+            blob: self,
+            point,
+            list: Vec::new(),
+        };
+        let ray = Ray::new(point, DVec3::X);
+        // A ray hardly longer than a point.
+        let range = Interval::new(-f64::MIN_POSITIVE, f64::MIN_POSITIVE);
+        hierarchy.traverse(&ray, range, &mut found, &mut TraversalStats::default());
+        found.list.sort_by_key(|(i, ..)| *i);
+        for (i, field, gradient) in found.list {
+            visit(i as usize, field, gradient);
+        }
+    }
+
+    /// The field at a point and its gradient.
+    fn field(&self, point: DVec3) -> (f64, DVec3) {
+        let (mut field, mut gradient) = (0.0, DVec3::ZERO);
+        self.fields_at(point, |_, f, g| {
+            field += f;
+            gradient += g;
+        });
+        (field, gradient)
+    }
+
+    /// The sum of the magnitudes of what is added up at a point.
+    fn magnitude(&self, point: DVec3) -> f64 {
+        let mut sum = self.threshold;
+        self.fields_at(point, |i, _, _| {
+            sum += self.components.get(i).map_or(0.0, |c| c.strength().abs());
+        });
+        sum
+    }
+}
+
+/// Collects the components whose field reaches a point.
+struct Found<'a> {
+    blob: &'a Blob,
+    point: DVec3,
+    list: Vec<(u32, f64, DVec3)>,
+}
+
+impl Visitor for Found<'_> {
+    fn visit(&mut self, id: u32, t_max: f64) -> f64 {
+        if let Some(component) = self.blob.components.get(id as usize) {
+            let (field, gradient) = component.field(self.point);
+            if field != 0.0 {
+                self.list.push((id, field, gradient));
+            }
+        }
+        t_max
+    }
+}
+
+impl Primitive for Blob {
+    fn kind(&self) -> &'static str {
+        "blob"
+    }
+
+    fn validate(&self) -> Result<(), GeometryError> {
+        check_positive("threshold of the blob", self.threshold)?;
+        for component in &self.components {
+            component.validate()?;
+        }
+        let strengths = self.components.iter().map(BlobComponent::strength);
+        let most: f64 = strengths.filter(|s| *s > 0.0).sum();
+        if most > self.threshold {
+            return Ok(());
+        }
+        Err(GeometryError::Degenerate {
+            what: "blob",
+            why: "all components together don't reach the threshold",
+        })
+    }
+
+    fn bounds(&self) -> Aabb {
+        self.bounds
+    }
+
+    fn closest_hit(
+        &self,
+        ray: &Ray,
+        range: Interval,
+        from: Option<SurfaceId>,
+        scratch: &mut Scratch,
+    ) -> Option<PrimHit> {
+        let mut pieces = scratch.take_pieces();
+        let hit = event::closest(range, from, |question, visit| {
+            self.walk(ray, question, &mut pieces, visit);
+        });
+        scratch.give_pieces(pieces);
+        hit
+    }
+
+    fn surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
+        let p = ray.at(hit.t);
+        let (field, gradient) = self.field(p);
+        // One Newton step along the gradient.
+        let step = gradient * ((self.threshold - field) / gradient.length_squared());
+        let size = self.bounds.size().max_element();
+        let position = if step.length() < size { p + step } else { p };
+        let (_, gradient) = self.field(position);
+        let n = (-gradient).normalize_or(DVec3::Y);
+        let (across, most) = (
+            gamma(32) * self.magnitude(position) / gradient.length(),
+            gamma(1).sqrt() * size,
+        );
+        let across = if across < most { across } else { most };
+        let error = point_error(position, size, 2) + DVec3::splat(across);
+        SurfacePoint::bare(position, error, n)
+    }
+
+    fn as_solid(&self) -> Option<&dyn Solid> {
+        Some(self)
+    }
+
+    /// Any map makes a blob of a blob.
+    fn baked(&self, map: &Transform) -> Option<Shape> {
+        let components = self.components.iter().map(|c| c.transformed(map));
+        Some(Shape::from(Self::new(self.threshold, components.collect())))
+    }
+}
+
+impl Solid for Blob {
+    fn crossings(
+        &self,
+        ray: &Ray,
+        range: Interval,
+        from: Option<SurfaceId>,
+        scratch: &mut Scratch,
+        out: &mut Crossings,
+    ) {
+        let mut pieces = scratch.take_pieces();
+        event::list(range, from, out, |question, visit| {
+            self.walk(ray, question, &mut pieces, visit);
+        });
+        scratch.give_pieces(pieces);
+    }
+
+    fn contains(&self, point: DVec3) -> bool {
+        self.field(point).0 >= self.threshold
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,73 @@
+use crate::primitives::convex::start_of;
+use crate::{Crossing, Crossings, PrimHit, Side, SurfaceId};
+use std::ops::ControlFlow;
+use strahl_math::Interval;
+
+/// What happens along a ray, in this order.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Event {
+    /// Just behind the start of what is looked at. Without it that is outside.
+    Start { inside: bool },
+    /// The surface is crossed.
+    Crossing { t: f64, t_error: f64, enters: bool },
+}
+
+/// What is asked of a ray.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Question {
+    pub(super) range: Interval,
+    /// Whether the ray starts on the surface.
+    pub(super) on_surface: bool,
+    /// Whether the errors of the parameters are wanted.
+    pub(super) errors: bool,
+}
+
+/// The first crossing in the range.
+pub(super) fn closest(
+    range: Interval,
+    from: Option<SurfaceId>,
+    walk: impl FnOnce(&Question, &mut dyn FnMut(Event) -> ControlFlow<()>),
+) -> Option<PrimHit> {
+    let question = Question {
+        range,
+        on_surface: from.is_some(),
+        errors: false,
+    };
+    let mut closest = None;
+    walk(&question, &mut |event| match event {
+        Event::Crossing { t, .. } if range.accepts(t) && t.is_finite() => {
+            closest = Some(PrimHit::simple(t, 0));
+            ControlFlow::Break(())
+        }
+        _ => ControlFlow::Continue(()),
+    });
+    closest
+}
+
+/// Lists the crossings as [`crate::Solid::crossings`] wants them.
+pub(super) fn list(
+    range: Interval,
+    from: Option<SurfaceId>,
+    out: &mut Crossings,
+    walk: impl FnOnce(&Question, &mut dyn FnMut(Event) -> ControlFlow<()>),
+) {
+    let question = Question {
+        range,
+        on_surface: from.is_some(),
+        errors: true,
+    };
+    let start = start_of(range, from);
+    walk(&question, &mut |event| {
+        match event {
+            Event::Start { inside } => out.inside_at_start = inside,
+            Event::Crossing { t, enters, .. } if t <= start => out.inside_at_start = enters,
+            Event::Crossing { t, t_error, enters } if t <= range.max && t.is_finite() => {
+                let side = if enters { Side::Enter } else { Side::Exit };
+                out.list
+                    .push(Crossing::new(PrimHit::simple(t, 0), t_error, side));
+            }
+            Event::Crossing { .. } => return ControlFlow::Break(()),
+        }
+        ControlFlow::Continue(())
+    });
+}

@@ -1,0 +1,318 @@
+use std::ops::ControlFlow;
+use strahl_math::error::ROUNDOFF;
+use strahl_math::roots::find_root;
+use strahl_math::{DVec3, det};
+
+/// The gauge of a superellipsoid: the factor by which it must grow to reach a point, `N = (g^q + |z|^q)^(1/q)` with
+/// `g = (|x|^p + |y|^p)^(1/p)`, which is 1 on the surface and proportional to the distance from the centre along each ray from
+/// there.
+///
+/// Powers are taken of ratios below 1 only, so nothing overflows and large powers, those of sharp edges, lose no digits.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Gauge {
+    p: f64,
+    q: f64,
+}
+
+/// A range of numbers that are not negative.
+#[derive(Clone, Copy, Debug)]
+struct Bounds {
+    low: f64,
+    high: f64,
+}
+
+impl Bounds {
+    /// From the smaller of two numbers to the larger.
+    fn between(a: f64, b: f64) -> Self {
+        if a < b {
+            Self { low: a, high: b }
+        } else {
+            Self { low: b, high: a }
+        }
+    }
+}
+
+/// A stretch of a line between two of the planes of symmetry, and part of it: the coordinates' magnitudes are linear here.
+#[derive(Clone, Copy)]
+struct Stretch {
+    low: f64,
+    high: f64,
+    depth: u32,
+}
+
+/// How often a stretch is halved at most: what happens on less than 1e-12 of it is not seen.
+const MAX_DEPTH: u32 = 40;
+
+impl Gauge {
+    pub(super) const fn new(p: f64, q: f64) -> Self {
+        Self { p, q }
+    }
+
+    /// Whether the body is convex; the gauge is a norm then.
+    pub(super) fn is_convex(&self) -> bool {
+        self.p >= 1.0 && self.q >= 1.0
+    }
+
+    /// A bound on the relative error of the value: roots of small exponents are powers that magnify errors.
+    pub(super) fn error(&self) -> f64 {
+        6.0 * ROUNDOFF * (2.0 + 1.0 / self.p + 1.0 / self.q)
+    }
+
+    /// The value and its derivatives.
+    #[inline]
+    pub(super) fn value_and_gradient(&self, point: DVec3) -> (f64, DVec3) {
+        let a = point.abs();
+        let (g, by_x, by_y) = combine(self.p, a.x, a.y);
+        let (value, by_g, by_z) = combine(self.q, g, a.z);
+        let gradient = DVec3::new(by_g * by_x, by_g * by_y, by_z);
+        // At cusps, where a derivative is infinite, only its direction is left.
+        let gradient = if gradient.is_finite() {
+            gradient
+        } else {
+            let steep = |x: f64| if x == f64::INFINITY { 1.0 } else { 0.0 };
+            DVec3::new(steep(gradient.x), steep(gradient.y), steep(gradient.z))
+        };
+        (value, gradient * point.signum())
+    }
+
+    /// The value and its derivative along a direction.
+    #[inline]
+    pub(super) fn along(&self, point: DVec3, direction: DVec3) -> (f64, f64) {
+        let (value, gradient) = self.value_and_gradient(point);
+        (value, gradient.dot(direction))
+    }
+
+    /// Bounds on the derivative along the line where the magnitudes of the coordinates are within bounds and change at these
+    /// paces.
+    fn slope(&self, [x, y, z]: &[Bounds; 3], pace: DVec3) -> Bounds {
+        let (by_x, by_y) = derivative_bounds(self.p, *x, *y);
+        let g = Bounds {
+            low: combine(self.p, x.low, y.low).0,
+            high: combine(self.p, x.high, y.high).0,
+        };
+        let (by_g, by_z) = derivative_bounds(self.q, g, *z);
+        let product = |a: Bounds, b: Bounds| Bounds {
+            low: a.low * b.low,
+            high: a.high * b.high,
+        };
+        let mut sum = Bounds {
+            low: 0.0,
+            high: 0.0,
+        };
+        for (derivative, pace) in [
+            (product(by_g, by_x), pace.x),
+            (product(by_g, by_y), pace.y),
+            (by_z, pace.z),
+        ] {
+            if pace > 0.0 {
+                sum.low += derivative.low * pace;
+                sum.high += derivative.high * pace;
+            } else if pace < 0.0 {
+                sum.low += derivative.high * pace;
+                sum.high += derivative.low * pace;
+            }
+        }
+        // Widened by the rounding of the powers; NaN (0 times infinity) bounds nothing.
+        let slack = 1e-12 * (sum.low.abs() + sum.high.abs());
+        if slack.is_finite() {
+            Bounds {
+                low: sum.low - slack,
+                high: sum.high + slack,
+            }
+        } else {
+            Bounds {
+                low: f64::NEG_INFINITY,
+                high: f64::INFINITY,
+            }
+        }
+    }
+}
+
+/// A line through a gauge that is not convex, followed from crossing to crossing.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct GaugeLine {
+    pub(super) gauge: Gauge,
+    pub(super) start: DVec3,
+    pub(super) direction: DVec3,
+    /// The gauge of the surface: 1, or that of the start of a line that starts on it.
+    pub(super) level: f64,
+    /// Where to begin.
+    pub(super) from: f64,
+    /// Whether the line is inside behind its start, and later behind the last crossing.
+    pub(super) inside: bool,
+}
+
+impl GaugeLine {
+    fn at(&self, s: f64) -> DVec3 {
+        self.start + self.direction * s
+    }
+
+    /// Visits where `start + s direction`, `from < s < length`, crosses the surface.
+    pub(super) fn crossings(
+        &mut self,
+        length: f64,
+        visit: &mut impl FnMut(f64, bool) -> ControlFlow<()>,
+    ) -> ControlFlow<()> {
+        // Between the planes of symmetry the magnitudes of the coordinates are linear.
+        let mut planes = [length; 4];
+        for (axis, plane) in planes.iter_mut().enumerate().take(3) {
+            let s = -self.start[axis] / self.direction[axis];
+            if self.from < s && s < length {
+                *plane = s;
+            }
+        }
+        planes.sort_by(f64::total_cmp);
+        let mut low = self.from;
+        for high in planes {
+            if high > low {
+                let depth = 0;
+                self.search(Stretch { low, high, depth }, visit)?;
+                low = high;
+            }
+        }
+        ControlFlow::Continue(())
+    }
+
+    /// Halves a stretch until the gauge is on one side of the level or monotone on each part.
+    fn search(
+        &mut self,
+        stretch: Stretch,
+        visit: &mut impl FnMut(f64, bool) -> ControlFlow<()>,
+    ) -> ControlFlow<()> {
+        let Stretch { low, high, depth } = stretch;
+        let (a, b) = (self.at(low), self.at(high));
+        let middle = 0.5 * (low + high);
+        // A coordinate whose plane bounds the stretch is zero there but for rounding; its sign is that within.
+        let pace = self.direction * self.at(middle).signum();
+        let ranges = [0, 1, 2].map(|axis| Bounds::between(a[axis].abs(), b[axis].abs()));
+        let gauge = self.gauge;
+        let corner = |pick: fn(Bounds) -> f64| {
+            let corner = DVec3::from(ranges.map(pick));
+            gauge.value_and_gradient(corner).0 / self.level
+        };
+        let (least, most) = (corner(|r| r.low), corner(|r| r.high));
+        let slope = gauge.slope(&ranges, pace);
+        let monotone = slope.low > 0.0 || slope.high < 0.0;
+        let crossing = if least > 1.0 + gauge.error() || most < 1.0 - gauge.error() {
+            // No crossing here; one before it that rounding has hidden is made up for.
+            (self.inside != (most < 1.0)).then_some(low)
+        } else if monotone || depth >= MAX_DEPTH || !(low < middle && middle < high) {
+            let ends_inside = gauge.value_and_gradient(b).0 <= self.level;
+            (ends_inside != self.inside).then(|| {
+                find_root(low, high, self.inside, f64::NAN, |s| {
+                    let (value, slope) = gauge.along(self.at(s), self.direction);
+                    (value - self.level, slope)
+                })
+            })
+        } else {
+            for (low, high) in [(low, middle), (middle, high)] {
+                let depth = depth + 1;
+                self.search(Stretch { low, high, depth }, visit)?;
+            }
+            None
+        };
+        if let Some(s) = crossing {
+            self.inside = !self.inside;
+            visit(s, self.inside)?;
+        }
+        ControlFlow::Continue(())
+    }
+}
+
+/// `(a^p + b^p)^(1/p)` for numbers that are not negative, and its derivatives by both.
+#[inline]
+fn combine(p: f64, a: f64, b: f64) -> (f64, f64, f64) {
+    let (large, small) = if a > b { (a, b) } else { (b, a) };
+    if large == 0.0 {
+        return (a + b, 1.0, 1.0);
+    }
+    let ratio = small / large;
+    let power = raise(ratio, p);
+    let root = raise(1.0 + power, 1.0 / p);
+    let by_large = root / (1.0 + power);
+    let by_small = by_large * steepness(p, ratio, power);
+    let value = large * root;
+    if a > b {
+        (value, by_large, by_small)
+    } else {
+        (value, by_small, by_large)
+    }
+}
+
+/// `ratio^(p - 1)`, given `ratio^p`.
+#[inline]
+fn steepness(p: f64, ratio: f64, power: f64) -> f64 {
+    if ratio > 0.0 {
+        power / ratio
+    } else if p > 1.0 {
+        0.0
+    } else if p == 1.0 {
+        1.0
+    } else {
+        f64::INFINITY
+    }
+}
+
+/// Bounds on the derivatives of [`combine`] over ranges of its arguments.
+fn derivative_bounds(p: f64, a: Bounds, b: Bounds) -> (Bounds, Bounds) {
+    // (a / value)^(p - 1) is monotone in the ratio of a and b.
+    let (_, a_first, b_last) = combine(p, a.low, b.high);
+    let (_, a_last, b_first) = combine(p, a.high, b.low);
+    (
+        Bounds::between(a_first, a_last),
+        Bounds::between(b_first, b_last),
+    )
+}
+
+/// A power of a number that is not negative.
+#[inline]
+fn raise(base: f64, exponent: f64) -> f64 {
+    if exponent == 0.5 {
+        base.sqrt()
+    } else {
+        det::pow_fast(base, exponent)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_gauge_is_the_formula() {
+        for (p, q) in [(2.0, 2.0), (10.0, 3.0), (0.7, 1.5), (1.0, 0.5), (60.0, 0.9)] {
+            let point = DVec3::new(0.5, -0.3, 0.7);
+            let (value, gradient) = Gauge::new(p, q).value_and_gradient(point);
+            let a = point.abs();
+            let g = det::pow(det::pow(a.x, p) + det::pow(a.y, p), q / p);
+            let expected = det::pow(g + det::pow(a.z, q), 1.0 / q);
+            assert!((value - expected).abs() < 1e-15 * expected, "{p} {q}");
+            // Euler's theorem on homogeneous functions.
+            assert!((gradient.dot(point) - value).abs() < 1e-14, "{p} {q}");
+            for axis in 0..3 {
+                let h = DVec3::AXES[axis] * 1e-6;
+                let value = |p_: DVec3| Gauge::new(p, q).value_and_gradient(p_).0;
+                let slope = (value(point + h) - value(point - h)) / 2e-6;
+                assert!((slope - gradient[axis]).abs() < 1e-7, "{p} {q} {axis}");
+            }
+        }
+    }
+
+    #[test]
+    fn slopes_are_within_their_bounds() {
+        for (p, q) in [(0.7, 0.6), (0.5, 4.0), (5.0, 0.8)] {
+            let gauge = Gauge::new(p, q);
+            let (a, b) = (DVec3::new(0.2, 0.5, 0.3), DVec3::new(0.4, 0.1, 0.6));
+            let pace = b - a;
+            let ranges = [0, 1, 2].map(|axis| Bounds::between(a[axis], b[axis]));
+            let slope = gauge.slope(&ranges, pace);
+            for i in 0..=20 {
+                let (_, found) = gauge.along(a + pace * (f64::from(i) / 20.0), pace);
+                assert!(
+                    slope.low <= found && found <= slope.high,
+                    "{p} {q} {slope:?}"
+                );
+            }
+        }
+    }
+}

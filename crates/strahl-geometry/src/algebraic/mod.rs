@@ -1,0 +1,17 @@
+//! Algebraic surfaces: where a polynomial of any degree, or a sum of them, vanishes.
+//!
+//! All of them restrict themselves to the ray and isolate the roots of what they get in Bernstein form
+//! ([`strahl_math::roots::Bernstein`]): certified, ascending, without the tolerances of Sturm sequences.
+
+mod blob;
+mod event;
+mod gauge;
+mod line;
+mod polynomial;
+mod superellipsoid;
+mod terms;
+
+pub(crate) use blob::Pieces;
+pub use blob::{Blob, BlobComponent};
+pub use polynomial::Polynomial;
+pub use superellipsoid::Superellipsoid;
