@@ -105,6 +105,62 @@ const SCENES: &[(&str, &str)] = &[
         "quadric { <1, 2, 1>, <0.3, 0, 0>, 0, -1 texture { Red } }",
     ),
     (
+        "quartic",
+        "quartic { <1, 0, 0, 0, 2, 0, 0, 2, 0, -2.5, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 2, 0, 1.5, 0, 0, 0, 0, 1, 0, -2.5, 0, 0.5625> sturm texture { Red } rotate <-40, 0, 10> bounded_by { sphere { 0, 2 } } }",
+    ),
+    (
+        "cubic",
+        "cubic { <1, 0, 0, 0, -3, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, -1, 0> sturm texture { Red } clipped_by { sphere { 0, 1.4 } } rotate x * 60 }",
+    ),
+    (
+        "poly",
+        "intersection { poly { 6, <4, 0, 0, 0, 0, 0, 0, 0, 0, -4, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0> sturm } box { <-1.5, -1, -1>, <1.5, 1, 1> } texture { Red } rotate y * 30 }",
+    ),
+    (
+        "polynomial",
+        "intersection { polynomial { 4, xyz(4, 0, 0): 4, xyz(3, 0, 0): -4, xyz(0, 2, 0): 1, xyz(0, 0, 2): 1 sturm } sphere { 0, 2 } texture { Red } rotate y * 30 }",
+    ),
+    (
+        "inverse polynomial",
+        "difference { box { -1, 1 } polynomial { 4, xyz(4, 0, 0): 1, xyz(0, 4, 0): 1, xyz(0, 0, 4): 1, xyz(0, 0, 0): -1.2 sturm inverse scale 1.1 } texture { Red } rotate <30, 40, 0> }",
+    ),
+    (
+        "blob",
+        "blob { threshold 0.6 sphere { <0.75, 0, 0>, 1, 1 } sphere { <-0.375, 0.65, 0>, 1, 1 } sphere { <-0.375, -0.65, 0>, 1, 1.3 } texture { Red } scale 1.1 }",
+    ),
+    (
+        "blob of stretched components",
+        "blob { threshold 0.5 cylinder { -x, x, 0.7, strength 1 rotate z * 20 } cylinder { -y, <0, 1, -0.3>, 0.5, 0.9 scale <1.4, 0.8, 1> } sphere { <0.2, 0.3, -0.6>, 0.8, -0.7 } component 1, 0.8, <1, 1, 0> sturm hierarchy off texture { Red } }",
+    ),
+    (
+        "textures of a blob",
+        "blob { threshold 0.4 sphere { -0.7 * x, 1.2, 1 texture { Red } } sphere { 0.7 * x, 1.2, 1 texture { Green } } cylinder { -y, y, 0.7, 1 } texture { Flat } }",
+    ),
+    (
+        "textures of a blob that moves",
+        "blob { threshold 0.4 sphere { 0, 1.2, 1 pigment { gradient x } translate -0.7 * x } sphere { 0, 1.2, 1 pigment { gradient y } finish { ambient 1 diffuse 0 } rotate z * 30 translate 0.7 * x } rotate y * 20 }",
+    ),
+    (
+        "blob in a difference",
+        "difference { box { -1, 1 } blob { threshold 0.5 sphere { <-0.6, 0.5, -1>, 1, 1 } sphere { <0.7, 0.5, -1>, 1, 1 } cylinder { <0, -2, -1>, <0, 1, -1>, 0.5, 1 } } texture { Red } rotate <20, 20, 0> }",
+    ),
+    (
+        "superellipsoid",
+        "superellipsoid { <0.3, 0.2> texture { Red } rotate <30, 40, 0> }",
+    ),
+    (
+        "superellipsoid with a round outline",
+        "superellipsoid { <1, 0.1> texture { Red } rotate <60, 40, 0> }",
+    ),
+    (
+        "star",
+        "superellipsoid { <2.5, 2.8> texture { Red } rotate <30, 40, 0> }",
+    ),
+    (
+        "superellipsoid in a difference",
+        "difference { sphere { 0, 1.3 } superellipsoid { <0.5, 1.5> rotate y * 30 } box { <-2, 0, -2>, 0 } texture { Red } }",
+    ),
+    (
         "triangle",
         "triangle { <-1.5, -1, 0>, <1.5, -0.8, 0.5>, <0.2, 1.2, -0.5> texture { Red } }",
     ),

@@ -39,10 +39,18 @@ pub enum Texture {
     /// The texture whose number a picture's texel holds (`material_map`): red · 255, or the code of a grey picture, modulo the
     /// number of textures.
     MaterialMap(Arc<ImageMap>, Box<Modifiers>, Vec<Texture>),
+    /// Textures mixed by shares that depend on the place in a way of their own, as those of a blob's components are.
+    Shared(Arc<dyn Shares>, Vec<Texture>),
     /// A texture in a space of its own.
     Transformed(Box<Transform>, Box<Texture>),
     /// A texture at the surface's own coordinates: (u, v, 0) takes the place of the point.
     UvMapped(Box<Texture>),
+}
+
+/// Says how much each of several textures counts at a point.
+pub trait Shares: std::fmt::Debug + Send + Sync {
+    /// Calls `visit` with the number of each texture that counts at a point and its share; the shares sum to 1.
+    fn shares_at(&self, point: DVec3, visit: &mut dyn FnMut(usize, f64));
 }
 
 impl Default for Texture {
@@ -162,9 +170,9 @@ impl Texture {
             // What one layer stops does not pass.
             Self::Layered(layers) => layers.iter().all(Self::may_transmit),
             Self::Map(_, map) => map.entries.iter().any(|(_, t)| t.may_transmit()),
-            Self::Blocks(_, textures) | Self::MaterialMap(_, _, textures) => {
-                textures.iter().any(Self::may_transmit)
-            }
+            Self::Blocks(_, textures)
+            | Self::MaterialMap(_, _, textures)
+            | Self::Shared(_, textures) => textures.iter().any(Self::may_transmit),
             Self::Average(members, _) => members.iter().any(|(_, t)| t.may_transmit()),
             Self::Transformed(_, texture) | Self::UvMapped(texture) => texture.may_transmit(),
         }
@@ -284,6 +292,13 @@ impl Texture {
                 if let Some(texture) = textures.get(index % textures.len().max(1)) {
                     visit(texture, &inner, &modifiers.warps, 1.0);
                 }
+            }
+            Self::Shared(shares, textures) => {
+                shares.shares_at(point.position, &mut |index, share| {
+                    if let Some(texture) = textures.get(index) {
+                        visit(texture, point, &Identity, share);
+                    }
+                });
             }
             Self::Transformed(transform, texture) => {
                 let inner = point.at(transform.point_to_object(point.position));

@@ -61,6 +61,10 @@ fn transform(texture: &mut Surface, by: &Transform, uv: bool) {
         Surface::Average(_, modifiers) | Surface::MaterialMap(_, modifiers, _) => {
             modifiers::transform(&mut modifiers.warps, by);
         }
+        Surface::Shared(..) => {
+            let own = std::mem::take(texture);
+            *texture = Surface::Transformed(Box::new(*by), Box::new(own));
+        }
         Surface::Transformed(own, _) => **own = own.then(by),
         Surface::UvMapped(inner) => {
             if uv {

@@ -2,6 +2,7 @@
 //!
 //! `modifiers` reads what all objects may have; `reuse` lets uses of a declared object share one group.
 
+mod blob;
 mod boxes;
 mod cone;
 mod csg;
@@ -17,12 +18,14 @@ mod named;
 mod parametric;
 mod plane;
 mod polygon;
+mod polynomial;
 mod prism;
 mod quadric;
 mod reuse;
 mod sor;
 mod sphere;
 mod sphere_sweep;
+mod superellipsoid;
 mod text;
 mod torus;
 mod triangle;
@@ -43,6 +46,7 @@ type ObjectParser = fn(&mut Parser<'_>) -> PResult<Entity>;
 
 /// All objects by their words.
 static OBJECTS: [Option<ObjectParser>; Word::ALL.len()] = by_word::<ObjectParser, _>([
+    (Word::Blob, blob::blob),
     (Word::Box, boxes::cuboid),
     (Word::Isosurface, isosurface::isosurface),
     (Word::JuliaFractal, julia_fractal::julia_fractal),
@@ -50,6 +54,7 @@ static OBJECTS: [Option<ObjectParser>; Word::ALL.len()] = by_word::<ObjectParser
     (Word::LightGroup, super::lights::light_group),
     (Word::LightSource, super::lights::light_source),
     (Word::Cone, cone::cone),
+    (Word::Cubic, polynomial::cubic),
     (Word::Cylinder, cylinder::cylinder),
     (Word::Difference, csg::difference),
     (Word::Disc, disc::disc),
@@ -61,14 +66,18 @@ static OBJECTS: [Option<ObjectParser>; Word::ALL.len()] = by_word::<ObjectParser
     (Word::Object, object),
     (Word::Parametric, parametric::parametric),
     (Word::Plane, plane::plane),
+    (Word::Poly, polynomial::poly),
     (Word::Polygon, polygon::polygon),
     (Word::Prism, prism::prism),
+    (Word::Polynomial, polynomial::polynomial),
     (Word::Quadric, quadric::quadric),
+    (Word::Quartic, polynomial::quartic),
     (Word::SmoothTriangle, triangle::smooth_triangle),
     (Word::Sor, sor::sor),
     (Word::Sphere, sphere::sphere),
     (Word::SphereSweep, sphere_sweep::sphere_sweep),
     (Word::Text, text::text),
+    (Word::Superellipsoid, superellipsoid::superellipsoid),
     (Word::Torus, torus::torus),
     (Word::Triangle, triangle::triangle),
     (Word::Union, csg::union),
