@@ -4,6 +4,7 @@
 mod bench;
 mod bench_parse;
 mod compare_pov;
+mod gallery;
 mod peers;
 mod pov;
 
@@ -18,6 +19,8 @@ const USAGE: &str = "usage: cargo xtask COMMAND
                                   rays a second on meshes and spheres against Embree, one thread
   compare-pov [FOLDER] [--size 160x120] [--limit N] [--only PART] [--jobs 2] [--out DIR]
                                   pictures of POV-Ray's example scenes by both programs, with their differences
+  gallery [--only PART] [--check]
+                                  the pictures and pages of scenes/gallery in the manual; --check says what is missing
   nff2pov SCENE OUTPUT.pov        the scene as POV-Ray takes it, doing the same work";
 
 fn main() -> Result<()> {
@@ -28,6 +31,7 @@ fn main() -> Result<()> {
         ["bench", "parse", rest @ ..] => bench_parse::parse(rest),
         ["bench", "peers", rest @ ..] => peers::run(rest),
         ["compare-pov", rest @ ..] => compare_pov::run(rest),
+        ["gallery", rest @ ..] => gallery::run(rest),
         ["nff2pov", scene, output] => pov::convert(Path::new(scene), Path::new(output)),
         _ => bail!("{USAGE}"),
     }

@@ -50,7 +50,9 @@ mod token;
 mod value;
 
 pub use expr::{Array, Dictionary, Spline, SplineKind};
-pub use grammar::{Declared, Entity, GlobalSettings, State, Texture, Thing};
+pub use grammar::{
+    Declared, Entity, GlobalSettings, State, Texture, Thing, object_words, pattern_words,
+};
 pub use keywords::{Word, WordKind};
 pub use options::{Frame, Limits, Options};
 pub use parser::{Failed, Macro, PResult, Parser, Place};

@@ -342,6 +342,23 @@ fn declared_layers_and_patterned_textures() {
 }
 
 #[test]
+fn uv_mapping_of_an_object_is_for_what_follows_it() {
+    let found = textures(
+        "#declare T = texture { pigment { checker } }
+         sphere { 0, 1 uv_mapping texture { T } }
+         sphere { 0, 1 uv_mapping pigment { checker } }
+         sphere { 0, 1 uv_mapping texture { T } texture { pigment { rgbt 1 } } }
+         sphere { 0, 1 uv_mapping off texture { T } }",
+    );
+    assert!(matches!(&*found[0], Texture::UvMapped(_)));
+    assert!(matches!(&*found[1], Texture::UvMapped(_)));
+    assert!(
+        matches!(&*found[2], Texture::Layered(all) if all.iter().all(|t| matches!(t, Texture::UvMapped(_))))
+    );
+    assert!(matches!(&*found[3], Texture::Plain(_)));
+}
+
+#[test]
 fn normals_of_all_kinds() {
     let kind = |items: &str| plain(&format!("normal {{ {items} }}")).normal.unwrap();
     let bumps = kind("bumps 0.3 scale 0.1 scale 2");

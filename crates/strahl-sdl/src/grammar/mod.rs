@@ -24,7 +24,8 @@ pub use defaults::State;
 pub(crate) use defaults::default_items;
 pub use entity::{Declared, Entity};
 pub use global_settings::GlobalSettings;
-pub use texture::Texture;
+pub use objects::object_words;
+pub use texture::{Texture, pattern_words};
 pub use thing::Thing;
 
 use crate::keywords::{Word, WordKind};
@@ -65,6 +66,12 @@ const fn by_word<F: Copy, const N: usize>(table: [(Word, F); N]) -> [Option<F>; 
         row += 1;
     }
     out
+}
+
+/// The words that stand in such a table.
+fn words_of<F>(table: &'static [Option<F>]) -> impl Iterator<Item = Word> {
+    let rows = Word::ALL.iter().zip(table);
+    rows.filter_map(|((word, _, _), row)| row.as_ref().map(|_| *word))
 }
 
 /// Whether a statement can begin with this token: where to go on after an error.

@@ -24,6 +24,8 @@ mod statement;
 pub(super) use bitmap::KnownPicture;
 pub(super) use material::{KnownMaterials, fill_parts};
 
+pub use pattern::pattern_words;
+
 use crate::keywords::Word;
 use crate::parser::{PResult, Parser};
 use crate::token::Token;
@@ -43,6 +45,8 @@ pub struct Texture {
     pub interior: Option<Interior>,
     /// Whether `surface` has been written and is not the default: further textures are then laid over it.
     pub(super) written: bool,
+    /// Whether `uv_mapping` has been said for all that is written after it.
+    pub(super) uv_mapped: bool,
 }
 
 /// Moves a texture. With `uv`, also what lies in surface coordinates; objects that are moved leave that alone.
@@ -124,6 +128,7 @@ impl Texture {
             inner_surface: self.inner_surface.as_ref().map(moved),
             interior: self.interior,
             written: self.written,
+            uv_mapped: self.uv_mapped,
         }
     }
 
@@ -145,7 +150,10 @@ impl Texture {
     }
 
     /// Lays a texture over what has been written, or puts it in the place of the default.
-    fn cover(&mut self, surface: Arc<Surface>) {
+    fn cover(&mut self, mut surface: Arc<Surface>) {
+        if self.uv_mapped && !matches!(*surface, Surface::UvMapped(_)) {
+            surface = Arc::new(Surface::UvMapped(Box::new(Surface::clone(&surface))));
+        }
         self.surface = if self.written {
             let lower = Surface::clone(&self.surface);
             Arc::new(layered(lower, Surface::clone(&surface)))
@@ -196,7 +204,8 @@ impl Parser<'_> {
             }
             Some(Word::UvMapping) => {
                 self.take(token)?;
-                if self.flag()? && !matches!(*texture.surface, Surface::UvMapped(_)) {
+                texture.uv_mapped = self.flag()?;
+                if texture.uv_mapped && !matches!(*texture.surface, Surface::UvMapped(_)) {
                     let inner = Surface::clone(&texture.surface);
                     texture.surface = Arc::new(Surface::UvMapped(Box::new(inner)));
                 }

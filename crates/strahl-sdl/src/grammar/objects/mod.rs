@@ -34,7 +34,7 @@ pub(super) use named::object;
 pub(crate) use reuse::{Shared, Tally, expanded};
 pub(super) use text::KnownFont;
 
-use super::{Entity, Thing, by_word};
+use super::{Entity, Thing, by_word, words_of};
 use crate::keywords::{Word, WordKind};
 use crate::parser::{PResult, Parser};
 use crate::token::Kind;
@@ -82,6 +82,11 @@ static OBJECTS: [Option<ObjectParser>; Word::ALL.len()] = by_word::<ObjectParser
     (Word::Triangle, triangle::triangle),
     (Word::Union, csg::union),
 ]);
+
+/// The words of all objects that are supported.
+pub fn object_words() -> impl Iterator<Item = Word> {
+    words_of(&OBJECTS)
+}
 
 impl Parser<'_> {
     /// If an object stands here, reads it.

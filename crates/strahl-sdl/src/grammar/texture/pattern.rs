@@ -1,7 +1,7 @@
 //! Patterns: THE table from words to patterns, and the parameters that belong to single patterns.
 
 use super::inside::ObjectInside;
-use crate::grammar::{Declared, Thing, by_word};
+use crate::grammar::{Declared, Thing, by_word, words_of};
 use crate::keywords::Word;
 use crate::parser::{PResult, Parser};
 use crate::token::{Kind, Token};
@@ -84,6 +84,11 @@ static PATTERNS: [Option<PatternParser>; Word::ALL.len()] = by_word::<PatternPar
     (Word::Wood, |_| Ok(Pattern::Wood)),
     (Word::Wrinkles, |_| Ok(Pattern::Wrinkles)),
 ]);
+
+/// The words of all patterns that are supported; some stand for the same pattern.
+pub fn pattern_words() -> impl Iterator<Item = Word> {
+    words_of(&PATTERNS)
+}
 
 /// The most steps of a fractal: a point of the set takes all of them.
 const MAX_ITERATIONS: f64 = 1e6;

@@ -1,0 +1,12 @@
+// Light from an area, as a grid of points: soft shadows. `circular` and `orient` make it a disc that looks at what it lights.
+#declare Gallery_Light = 0;
+#include "../gallery.inc"
+
+light_source { <-4, 6, -4>, rgb 1.1 area_light 3 * x, 3 * z, 8, 8 adaptive 1 circular orient }
+
+union {
+  sphere { <-1, 0.55, 0.3>, 0.55 }
+  box { <-0.4, 0, -0.4>, <0.4, 1.3, 0.4> rotate 30 * y translate <0.25, 0, 0.9> }
+  cone { <1.25, 0, 0>, 0.5, <1.25, 1.1, 0>, 0 }
+  texture { Ivory }
+}

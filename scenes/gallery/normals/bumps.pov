@@ -1,0 +1,9 @@
+// Soft bumps: the surface stays where it is, only the light falls on it as on a bumpy one.
+#include "../gallery.inc"
+
+#declare Look = texture {
+  pigment { srgb <0.80, 0.62, 0.45> }
+  normal { bumps 0.8 scale 0.12 }
+  finish { ambient 0.08 diffuse 0.7 specular 0.5 roughness 0.02 }
+}
+Bodies(Look)

@@ -1,0 +1,9 @@
+// Dents, sparse and deep.
+#include "../gallery.inc"
+
+#declare Look = texture {
+  pigment { srgb <0.80, 0.62, 0.45> }
+  normal { dents 1.2 scale 0.15 }
+  finish { ambient 0.08 diffuse 0.7 specular 0.5 roughness 0.02 }
+}
+Bodies(Look)

@@ -1,0 +1,9 @@
+// Waves of many lengths.
+#include "../gallery.inc"
+
+#declare Look = texture {
+  pigment { srgb <0.80, 0.62, 0.45> }
+  normal { waves 0.7 frequency 1 scale 0.25 }
+  finish { ambient 0.08 diffuse 0.7 specular 0.5 roughness 0.02 }
+}
+Bodies(Look)

@@ -1,0 +1,9 @@
+// Crumpled paper.
+#include "../gallery.inc"
+
+#declare Look = texture {
+  pigment { srgb <0.80, 0.62, 0.45> }
+  normal { wrinkles 0.9 scale 0.35 }
+  finish { ambient 0.08 diffuse 0.7 specular 0.5 roughness 0.02 }
+}
+Bodies(Look)

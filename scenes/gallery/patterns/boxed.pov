@@ -1,0 +1,13 @@
+// The distance from the origin by the largest coordinate: 1 in the middle, 0 from 1 on outwards.
+#include "../gallery.inc"
+
+#declare Look = texture {
+  pigment {
+    boxed
+    color_map { [0.0 srgb <0.08, 0.16, 0.32>] [0.5 srgb <0.30, 0.58, 0.70>] [1.0 srgb <0.95, 0.97, 0.92>] }
+    scale 1.1
+    translate <-0.5, 1.1, -0.4>
+  }
+  finish { Matt }
+}
+Bodies(Look)

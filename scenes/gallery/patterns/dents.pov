@@ -1,0 +1,12 @@
+// Noise to the third power: mostly low, with peaks.
+#include "../gallery.inc"
+
+#declare Look = texture {
+  pigment {
+    dents
+    color_map { [0.0 srgb <0.20, 0.10, 0.08>] [0.5 srgb <0.80, 0.42, 0.20>] [1.0 srgb <0.98, 0.90, 0.72>] }
+    scale 0.22
+  }
+  finish { Matt }
+}
+Bodies(Look)

@@ -1,0 +1,13 @@
+// Shells around the origin, one per unit.
+#include "../gallery.inc"
+
+#declare Look = texture {
+  pigment {
+    onion
+    color_map { [0.0 srgb <0.20, 0.10, 0.08>] [0.5 srgb <0.80, 0.42, 0.20>] [1.0 srgb <0.98, 0.90, 0.72>] }
+    scale 0.35
+    translate <-0.3, 1, -0.2>
+  }
+  finish { Matt }
+}
+Bodies(Look)
