@@ -3,6 +3,10 @@
 // One picture with every kind of ray: primary rays see the floor, the mirror and the glass ball; shadow rays find the light or
 // something in its way; the mirror sends reflection rays, the glass transparency rays. What happens at a hit does not depend on how
 // the ray came there, so the mirror shows the glass and the glass the mirror.
+//
+//     strahl explain scenes/lecture/01_principle.pov --size 320x180 --sampling center --pixel 205,100
+//
+// prints the tree of rays of a pixel on the glass ball; with `--format dot` it is a graph.
 #version 3.7;
 global_settings { assumed_gamma 1 max_trace_level 8 }
 camera { location <0, 2, -6> right x * image_width / image_height angle 48 look_at <0, 0.9, 0> }

@@ -1,6 +1,10 @@
 // Parallel primary rays: orthographic projection.
 //
 // All rays are normal to the plane of the picture. The same columns as before are all of one height, and parallel lines stay parallel.
+//
+//     strahl info scenes/lecture/03_orthographic.pov
+//
+// tells the camera, the objects and their bounds.
 #version 3.7;
 global_settings { assumed_gamma 1 max_trace_level 8 }
 camera { orthographic location <-6, 7, -8> right 11 * x * image_width / image_height up 11 * y look_at <0, 0.3, 4> }

@@ -1,9 +1,13 @@
 // The local part of shading: I = ka Ia + kd (n.l) + ks (h.n)^p for a light that is visible.
 //
 // From the left: the ambient term alone, the diffuse term alone, the highlight alone, and their sum.
+//
+//     strahl explain scenes/lecture/04_shading.pov --size 320x180 --sampling center --pixel 245,70
+//
+// prints every term with its numbers. `--shading blinn-phong` or `--shading normals` choose other models.
 #version 3.7;
 global_settings { assumed_gamma 1 max_trace_level 8 }
-camera { location <0, 1.6, -7> right x * image_width / image_height angle 44 look_at <0, 0.75, 0> }
+camera { location <0, 1.6, -7> right x * image_width / image_height angle 54 look_at <0, 0.75, 0> }
 light_source { <-5, 8, -6>, rgb 1 }
 background { srgb <0.16, 0.18, 0.21> }
 

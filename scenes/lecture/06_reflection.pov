@@ -2,9 +2,13 @@
 //
 // Two mirrors face each other, so the tree of rays is deep: images of images, each darker by kr. Curved mirrors need no code of their
 // own, as reflection looks at the normal of one point only.
+//
+//     strahl render scenes/lecture/06_reflection.pov --max-depth 2 -o two.png
+//
+// ends the tree after one mirror image.
 #version 3.7;
 global_settings { assumed_gamma 1 max_trace_level 8 }
-camera { location <0.7, 2.3, -4.6> right x * image_width / image_height angle 56 look_at <0, 0.9, 0.4> }
+camera { location <0.7, 2.3, -4.6> right x * image_width / image_height angle 70 look_at <0, 0.9, 0.4> }
 light_source { <-2, 7, -4>, rgb 1 }
 background { srgb <0.72, 0.82, 0.93> }
 

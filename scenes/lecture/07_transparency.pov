@@ -2,9 +2,13 @@
 //
 // From the left a ball of index 1, which bends nothing, one of water, 1.33, one of glass, 1.5, and a bubble of air in a block of glass,
 // where the roles of the two sides are exchanged.
+//
+//     strahl explain scenes/lecture/07_transparency.pov --size 320x180 --sampling center --pixel 182,95
+//
+// names the indices of both sides and the angles at every surface.
 #version 3.7;
 global_settings { assumed_gamma 1 max_trace_level 8 }
-camera { location <0, 1.8, -7.4> right x * image_width / image_height angle 46 look_at <0.1, 0.75, 0> }
+camera { location <0, 1.8, -7.4> right x * image_width / image_height angle 58 look_at <0.1, 0.75, 0> }
 light_source { <-5, 8, -6>, rgb 1 }
 background { srgb <0.72, 0.82, 0.93> }
 plane { y, 0 pigment { checker srgb <0.55, 0.60, 0.66>, srgb <0.93, 0.91, 0.86> scale 0.5 } finish { ambient 0.1 diffuse 0.75 } }

@@ -2,9 +2,13 @@
 // largest component of n leaves.
 //
 // An icosahedron of triangles, a wall with a window as one polygon with a hole, and a star whose outline is not convex.
+//
+//     strahl render scenes/lecture/10_polygon.pov --shading normals -o normals.png
+//
+// shows which faces look at the eye.
 #version 3.7;
 global_settings { assumed_gamma 1 max_trace_level 8 }
-camera { location <0, 2.2, -7> right x * image_width / image_height angle 46 look_at <0, 1.1, 0> }
+camera { location <0, 2.2, -7> right x * image_width / image_height angle 56 look_at <0, 1.0, 0> }
 light_source { <-5, 8, -6>, rgb 1 }
 background { srgb <0.72, 0.82, 0.93> }
 plane { y, 0 pigment { checker srgb <0.55, 0.60, 0.66>, srgb <0.93, 0.91, 0.86> } finish { ambient 0.1 diffuse 0.75 } }

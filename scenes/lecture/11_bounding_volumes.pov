@@ -2,9 +2,15 @@
 //
 // A chain of balls and what a program knows about it: bounding spheres around each four, around each sixteen, and around all. A ray
 // that meets the outer sphere tries four, and of those only the ones it meets: about log n tests instead of n.
+//
+//     strahl render scenes/lecture/11_bounding_volumes.pov --accelerator list --stats list.json
+//     strahl render scenes/lecture/11_bounding_volumes.pov --accelerator spheres --stats spheres.json
+//     strahl render scenes/lecture/11_bounding_volumes.pov --accelerator bvh --stats bvh.json
+//
+// write how many nodes were visited and how many objects tried; the pictures are the same to the last bit.
 #version 3.7;
 global_settings { assumed_gamma 1 max_trace_level 8 }
-camera { location <0, 2.4, -8.5> right x * image_width / image_height angle 42 look_at <0, 1.2, 0> }
+camera { location <0, 2.4, -8.5> right x * image_width / image_height angle 56 look_at <0, 1.2, 0> }
 light_source { <-5, 8, -6>, rgb 1 }
 background { srgb <0.72, 0.82, 0.93> }
 

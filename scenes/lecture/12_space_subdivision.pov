@@ -2,6 +2,11 @@
 //
 // The scene walks a grid itself, in the manner of a 3-D Bresenham: from cell to cell through the face that is left first, the smallest
 // t_k = (-D_k - n_k.p) / (n_k.d). The cells that the ray visits are drawn as glass; of all balls only those in them are tried (red).
+//
+//     strahl render scenes/lecture/12_space_subdivision.pov --accelerator grid --stats grid.json
+//     strahl render scenes/lecture/12_space_subdivision.pov --accelerator octree --stats octree.json
+//
+// write the cells visited (`node_visits`) and the tests; `--layers` with a picture `.exr` has the tests of every pixel.
 #version 3.7;
 global_settings { assumed_gamma 1 max_trace_level 8 }
 camera { orthographic location <-5, 6.5, -9> right 7.6 * x * image_width / image_height up 7.6 * y look_at <3, 1.3, 1.8> }

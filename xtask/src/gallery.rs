@@ -1,4 +1,4 @@
-//! The gallery: renders the scenes of `scenes/gallery` and writes the manual's pages about them.
+//! The gallery: renders the scenes of `scenes/` and writes the manual's pages about them.
 //!
 //! A page shows each scene of a folder: its name, its picture, the comment that it begins with, and its text. So the manual
 //! cannot say what the program does not do.
@@ -10,55 +10,86 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use strahl::sdl::{Word, object_words, pattern_words};
 
-const SCENES: &str = "scenes/gallery";
-const PAGES: &str = "docs/src/gallery";
-const SIZE: &str = "192x144";
-
 /// Most bytes of all pictures: the book stays light.
 const MOST_BYTES: u64 = 3 << 20;
 
-/// The pages: folder, title, and what stands above the scenes.
-const FAMILIES: [(&str, &str, &str); 8] = [
-    (
-        "objects",
+/// A page of the manual about the scenes of a folder.
+struct Page {
+    /// Below `scenes/`; the page and its pictures lie at the same place below `docs/src/`.
+    folder: &'static str,
+    title: &'static str,
+    /// What stands above the scenes.
+    intro: &'static str,
+    size: &'static str,
+    /// Whether the page shows the text of the scenes: from behind this line on.
+    listing: Option<&'static str>,
+}
+
+const fn gallery(folder: &'static str, title: &'static str, intro: &'static str) -> Page {
+    Page {
+        folder,
+        title,
+        intro,
+        size: "192x144",
+        listing: Some("#include \"../gallery.inc\"\n"),
+    }
+}
+
+const PAGES: [Page; 10] = [
+    gallery(
+        "gallery/objects",
         "Objects",
         "Shapes, and what is made of them. Most of them are solid, and can be cut and joined.",
     ),
-    (
-        "patterns",
+    gallery(
+        "gallery/patterns",
         "Patterns",
         "A pattern gives a number to every point of space; a map makes colours, textures or normals of it.",
     ),
-    (
-        "normals",
+    gallery(
+        "gallery/normals",
         "Normals",
         "Patterns that bend the normal: light falls on the surface as if it were uneven.",
     ),
-    (
-        "finish",
+    gallery(
+        "gallery/finish",
         "Finishes and textures",
         "What a surface does with light, and textures of several parts.",
     ),
-    (
-        "interior",
+    gallery(
+        "gallery/interior",
         "Glass",
         "What light meets inside of transparent things.",
     ),
-    (
-        "lights",
+    gallery(
+        "gallery/lights",
         "Lights",
         "The same things, lit in different ways.",
     ),
-    (
-        "cameras",
+    gallery(
+        "gallery/cameras",
         "Cameras",
         "The same things, seen in different ways.",
     ),
-    (
-        "atmosphere",
+    gallery(
+        "gallery/atmosphere",
         "Sky and fog",
         "What is behind all things, and between them.",
     ),
+    Page {
+        folder: "lecture",
+        title: "Ray tracing in fourteen pictures",
+        intro: "The method, a scene for each of its ideas. The commands are meant to be run in the folder of the repository.",
+        size: "320x180",
+        listing: None,
+    },
+    Page {
+        folder: "showcase",
+        title: "Showcase",
+        intro: "Scenes of our own that take a minute or less. The pictures here are small; the scenes know no size.",
+        size: "480x270",
+        listing: None,
+    },
 ];
 
 /// One scene with what its page says.
@@ -92,27 +123,27 @@ pub(crate) fn run(args: &[&str]) -> Result<()> {
     }
     let mut problems = vec![];
     let mut bytes = 0;
-    for (folder, title, intro) in FAMILIES {
-        let scenes = scenes(folder)?;
+    for page in &PAGES {
+        let scenes = page.scenes()?;
         for scene in &scenes {
-            let picture = picture(folder, scene);
+            let picture = page.picture(scene);
             if !check && scene.file.to_string_lossy().contains(only) {
                 println!("{}", scene.file.display());
-                render(&scene.file, &picture)?;
+                render(&scene.file, page.size, &picture)?;
             }
             match std::fs::metadata(&picture) {
                 Ok(found) => bytes += found.len(),
                 Err(_) => problems.push(format!("{} is missing", picture.display())),
             }
         }
-        let page = Path::new(PAGES).join(format!("{folder}.md"));
-        let text = page_text(folder, title, intro, &scenes);
+        let file = format!("docs/src/{}.md", page.folder);
+        let text = page.text(&scenes);
         if !check {
-            std::fs::write(&page, text)?;
-        } else if std::fs::read_to_string(&page).unwrap_or_default() != text {
-            problems.push(format!("{} is not what the scenes say", page.display()));
+            std::fs::write(&file, text)?;
+        } else if std::fs::read_to_string(&file).unwrap_or_default() != text {
+            problems.push(format!("{file} is not what the scenes say"));
         }
-        problems.extend(missing(folder, &scenes));
+        problems.extend(page.missing(&scenes));
     }
     if bytes > MOST_BYTES {
         problems.push(format!(
@@ -129,50 +160,98 @@ pub(crate) fn run(args: &[&str]) -> Result<()> {
     Ok(())
 }
 
-/// What is supported, but has no scene of its name.
-fn missing(folder: &str, scenes: &[Scene]) -> Vec<String> {
-    let known: BTreeSet<&str> = scenes.iter().map(|s| s.name.as_str()).collect();
-    let words: Vec<Word> = match folder {
-        // Lights have a page of their own.
-        "objects" => object_words()
-            .filter(|word| *word != Word::LightSource)
-            .collect(),
-        "patterns" => pattern_words().collect(),
-        _ => vec![],
-    };
-    let words = words.iter().map(|word| word.text());
-    let lacking = words.filter(|word| !known.contains(word));
-    lacking
-        .map(|word| format!("`{word}` has no scene {SCENES}/{folder}/{word}.pov"))
-        .collect()
+impl Page {
+    /// The scenes of the folder by name.
+    fn scenes(&self) -> Result<Vec<Scene>> {
+        let folder = Path::new("scenes").join(self.folder);
+        let entries = std::fs::read_dir(&folder)
+            .with_context(|| format!("cannot read {}", folder.display()))?;
+        let mut files = entries
+            .map(|entry| Ok(entry?.path()))
+            .collect::<Result<Vec<_>>>()?;
+        files.retain(|file| file.extension().is_some_and(|ending| ending == "pov"));
+        files.sort();
+        files
+            .into_iter()
+            .map(|file| read(file, self.listing))
+            .collect()
+    }
+
+    fn picture(&self, scene: &Scene) -> PathBuf {
+        let folder = Path::new("docs/src").join(self.folder);
+        folder.join(format!("{}.png", scene.name))
+    }
+
+    /// What is supported, but has no scene of its name.
+    fn missing(&self, scenes: &[Scene]) -> Vec<String> {
+        let known: BTreeSet<&str> = scenes.iter().map(|s| s.name.as_str()).collect();
+        let words: Vec<Word> = match self.folder {
+            // Lights have a page of their own.
+            "gallery/objects" => object_words()
+                .filter(|word| *word != Word::LightSource)
+                .collect(),
+            "gallery/patterns" => pattern_words().collect(),
+            _ => vec![],
+        };
+        let words = words.iter().map(|word| word.text());
+        let lacking = words.filter(|word| !known.contains(word));
+        lacking
+            .map(|word| format!("`{word}` has no scene scenes/{}/{word}.pov", self.folder))
+            .collect()
+    }
+
+    fn text(&self, scenes: &[Scene]) -> String {
+        let Self {
+            folder,
+            title,
+            intro,
+            ..
+        } = self;
+        let pictures = Path::new(folder).file_name().unwrap_or_default();
+        let pictures = pictures.to_string_lossy();
+        let mut out = format!(
+            "<!-- Written by `cargo xtask gallery` from scenes/{folder}: change the scenes, not this page. -->\n# {title}\n\n{intro}\n"
+        );
+        for scene in scenes {
+            let Scene {
+                name, about, text, ..
+            } = scene;
+            let heading = name.replace('_', " ");
+            // Writing to a string does not fail.
+            let _ = write!(
+                out,
+                "\n## {heading}\n\n![{heading}]({pictures}/{name}.png)\n\n{about}\n"
+            );
+            let _ = match self.listing {
+                Some(_) => write!(out, "\n```pov\n{text}\n```\n"),
+                None => write!(out, "\nThe scene: `{}`\n", scene.file.display()),
+            };
+        }
+        out
+    }
 }
 
-/// The scenes of a folder by name.
-fn scenes(folder: &str) -> Result<Vec<Scene>> {
-    let folder = Path::new(SCENES).join(folder);
-    let entries =
-        std::fs::read_dir(&folder).with_context(|| format!("cannot read {}", folder.display()))?;
-    let mut files = entries
-        .map(|entry| Ok(entry?.path()))
-        .collect::<Result<Vec<_>>>()?;
-    files.retain(|file| file.extension().is_some_and(|ending| ending == "pov"));
-    files.sort();
-    files.into_iter().map(read).collect()
-}
-
-fn read(file: PathBuf) -> Result<Scene> {
+fn read(file: PathBuf, listing: Option<&str>) -> Result<Scene> {
     let text = std::fs::read_to_string(&file)?;
     let comment = text.lines().map_while(|line| line.strip_prefix("//"));
-    let about: Vec<&str> = comment.map(str::trim).collect();
+    let about: Vec<&str> = comment
+        .map(|line| line.strip_prefix(' ').unwrap_or(line))
+        .collect();
     if about.is_empty() {
         bail!(
             "{} must begin with a comment that says what it shows",
             file.display()
         );
     }
-    let (_, shown) = text
-        .split_once("#include \"../gallery.inc\"\n")
-        .with_context(|| format!("{} does not include ../gallery.inc", file.display()))?;
+    let shown = match listing {
+        None => "",
+        Some(behind) => {
+            let split = text.split_once(behind);
+            let (_, shown) = split
+                .with_context(|| format!("{} has no line {}", file.display(), behind.trim()))?;
+            shown
+        }
+    };
     let name = file.file_stem().context("a scene has a name")?;
     Ok(Scene {
         name: name.to_string_lossy().into_owned(),
@@ -182,20 +261,14 @@ fn read(file: PathBuf) -> Result<Scene> {
     })
 }
 
-fn picture(folder: &str, scene: &Scene) -> PathBuf {
-    Path::new(PAGES)
-        .join(folder)
-        .join(format!("{}.png", scene.name))
-}
-
-fn render(scene: &Path, picture: &Path) -> Result<()> {
+fn render(scene: &Path, size: &str, picture: &Path) -> Result<()> {
     if let Some(folder) = picture.parent() {
         std::fs::create_dir_all(folder)?;
     }
     let done = Command::new(crate::bench::strahl_binary()?)
         .arg("render")
         .arg(scene)
-        .args(["--size", SIZE, "--quiet", "--output"])
+        .args(["--size", size, "--quiet", "--output"])
         .arg(picture)
         .output()
         .context("cannot run strahl")?;
@@ -204,21 +277,4 @@ fn render(scene: &Path, picture: &Path) -> Result<()> {
         bail!("{}: {said}", scene.display());
     }
     Ok(())
-}
-
-fn page_text(folder: &str, title: &str, intro: &str, scenes: &[Scene]) -> String {
-    let mut out = format!(
-        "<!-- Written by `cargo xtask gallery` from {SCENES}/{folder}: change the scenes, not this page. -->\n# {title}\n\n{intro}\n"
-    );
-    for Scene {
-        name, about, text, ..
-    } in scenes
-    {
-        // Writing to a string does not fail.
-        let _ = write!(
-            out,
-            "\n## {name}\n\n![{name}]({folder}/{name}.png)\n\n{about}\n\n```pov\n{text}\n```\n"
-        );
-    }
-    out
 }

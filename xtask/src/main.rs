@@ -20,7 +20,8 @@ const USAGE: &str = "usage: cargo xtask COMMAND
   compare-pov [FOLDER] [--size 160x120] [--limit N] [--only PART] [--jobs 2] [--out DIR]
                                   pictures of POV-Ray's example scenes by both programs, with their differences
   gallery [--only PART] [--check]
-                                  the pictures and pages of scenes/gallery in the manual; --check says what is missing
+                                  the manual's pictures and pages of scenes/{gallery,lecture,showcase};
+                                  --check says what is missing
   nff2pov SCENE OUTPUT.pov        the scene as POV-Ray takes it, doing the same work";
 
 fn main() -> Result<()> {
