@@ -9,7 +9,7 @@
 // prints the tree of rays of a pixel on the glass ball; with `--format dot` it is a graph.
 #version 3.7;
 global_settings { assumed_gamma 1 max_trace_level 8 }
-camera { location <0, 2, -6> right x * image_width / image_height angle 48 look_at <0, 0.9, 0> }
+camera { location <0, 2, -6> right x * image_width / image_height angle 58 look_at <0, 0.75, 0> }
 light_source { <-5, 8, -6>, rgb 1 }
 background { srgb <0.72, 0.82, 0.93> }
 plane { y, 0 pigment { checker srgb <0.55, 0.60, 0.66>, srgb <0.93, 0.91, 0.86> } finish { ambient 0.1 diffuse 0.75 } }

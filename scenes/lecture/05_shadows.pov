@@ -8,11 +8,11 @@
 // shows a shadow ray that meets the glass, and the part of the light it lets through.
 #version 3.7;
 global_settings { assumed_gamma 1 max_trace_level 8 }
-camera { location <0, 2.6, -6.5> right x * image_width / image_height angle 48 look_at <0, 0.8, 0> }
+camera { location <0, 2.6, -6.5> right x * image_width / image_height angle 56 look_at <0, 0.8, 0> }
 background { srgb <0.10, 0.11, 0.14> }
 
 light_source {
-  <-0.6, 3, 0.5>, rgb 1.6 fade_distance 3 fade_power 2
+  <-0.6, 2, 0.4>, rgb 1.6 fade_distance 2.2 fade_power 2
   looks_like { sphere { 0, 0.14 pigment { rgb 1 } finish { ambient 0 diffuse 0 emission 1.5 } } }
 }
 plane { y, 0 pigment { srgb <0.85, 0.84, 0.80> } finish { ambient 0.05 diffuse 0.8 } }

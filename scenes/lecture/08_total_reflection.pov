@@ -20,7 +20,7 @@ box {
 }
 plane { y, 0 pigment { checker srgb <0.20, 0.45, 0.55>, srgb <0.80, 0.90, 0.90> scale 0.7 } finish { ambient 0.25 diffuse 0.6 } }
 sphere { <-0.9, 1.1, -0.4>, 0.5 pigment { srgb <0.95, 0.65, 0.15> } finish { ambient 0.2 diffuse 0.7 } }
-sphere { <1.3, 0.6, 0.8>, 0.6 pigment { srgb <0.85, 0.25, 0.18> } finish { ambient 0.2 diffuse 0.7 } }
+sphere { <1.3, 0.85, 0.8>, 0.6 pigment { srgb <0.85, 0.25, 0.18> } finish { ambient 0.2 diffuse 0.7 } }
 #for (I, 0, 5)
   cylinder { <2.6, 3.2, 0>, <2.6, 6, 0>, 0.25 rotate 60 * I * y pigment { srgb <0.55, 0.40, 0.25> } finish { ambient 0.2 diffuse 0.7 } }
 #end

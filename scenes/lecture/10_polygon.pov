@@ -43,7 +43,7 @@ polygon {
   11
   #for (I, 0, 10)
     #local R = (mod(I, 2) ? 0.45 : 1.1);
-    , <R * sin(2 * pi * I / 10), R * cos(2 * pi * I / 10)>
+    , <R * sin(2 * pi * mod(I, 10) / 10), R * cos(2 * pi * mod(I, 10) / 10)>
   #end
   translate 1.1 * y
   rotate 25 * y

@@ -25,7 +25,8 @@ global_settings { assumed_gamma 1 max_trace_level 4 }
 // The lie of the land: a valley with the lake in the middle, mountains behind and beside it.
 #declare Lie = function(x, y) { 0.62 * exp(-pow((y - 17) / 7.5, 2)) + 0.34 * exp(-pow((x + 7) / 3.6, 2)) * exp(-pow((y - 8) / 6, 2)) + 0.26 * exp(-pow((x - 8.5) / 3.8, 2)) * exp(-pow((y - 7) / 6, 2)) }
 #declare Height = function(x, y) {
-  -0.42 + Rough(0.155 * x + 3.7, 0.155 * y + 1.3) * (0.35 + 4.2 * Lie(x, y)) + 0.9 * Lie(x, y)
+  -0.42 + Rough(0.155 * x + 3.7, 0.155 * y + 1.3) * (0.46 + 8 * Lie(x, y)) + 0.9 * Lie(x, y)
+  - 0.5 * exp(-pow((y - 4.5) / 3.4, 2)) * exp(-pow((x - 0.6) / (0.6 + 0.6 * y), 2))
 }
 
 // Where the point (I, J) of the mesh lies: rows are closer to each other towards the eye, and as wide as the view.
@@ -92,14 +93,14 @@ global_settings { assumed_gamma 1 max_trace_level 4 }
 }
 // By slope (0 is upright, 1 is level): rock, and what lies on it.
 #declare Lowland = texture { slope y texture_map { [0.60 Rock] [0.78 Grass] } }
-#declare Highland = texture { slope y texture_map { [0.54 Rock] [0.66 Snow] } }
+#declare Highland = texture { slope y texture_map { [0.60 Rock] [0.72 Snow] } }
 
 object {
   Land
   texture {
     gradient y
-    turbulence 0.05 octaves 3
-    texture_map { [0.00 Lowland] [0.27 Lowland] [0.35 Highland] [1.00 Highland] }
+    turbulence 0.1 octaves 4
+    texture_map { [0.00 Lowland] [0.26 Lowland] [0.36 Highland] [1.00 Highland] }
     scale 8
     translate -y
   }
@@ -115,8 +116,8 @@ plane {
 }
 
 // A low sun from the left, the sky from above.
-#declare Sun = vnormalize(<-1, 0.33, 0.28>);
-light_source { 1000 * Sun, rgb <2.3, 1.55, 0.95> parallel point_at 0 }
+#declare Sun = vnormalize(<-1, 0.42, -0.35>);
+light_source { 1000 * Sun, rgb <2.6, 1.8, 1.15> parallel point_at 0 }
 light_source { <300, 900, -400>, rgb <0.16, 0.22, 0.36> parallel point_at 0 shadowless }
 
 sky_sphere {
@@ -142,11 +143,11 @@ sky_sphere {
     rotate 8 * z
   }
 }
-fog { fog_type 2 distance 30 fog_offset 0 fog_alt 1.5 color srgb <0.80, 0.68, 0.68> }
+fog { fog_type 2 distance 34 fog_offset 0 fog_alt 1.2 color srgb <0.76, 0.74, 0.82> }
 
 camera {
-  location <0, 0.82, -1.2>
+  location <0, 0.55, -1.2>
   right x * image_width / image_height
   angle 62
-  look_at <0.2, 1.02, 6>
+  look_at <0.2, 1.15, 6>
 }

@@ -5,7 +5,7 @@
 #version 3.7;
 global_settings { assumed_gamma 1 max_trace_level 7 }
 
-#declare Generations = 4;
+#ifndef (Generations) #declare Generations = 4; #end
 
 camera {
   location <0, 2.3, -8.2>

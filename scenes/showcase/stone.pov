@@ -43,21 +43,22 @@ global_settings { assumed_gamma 1 max_trace_level 5 }
 
 // Widths of the letters, of a height of 1: Roman capitals are circles, squares and half squares.
 #macro Width(Letter)
+  #local Wide = 0.6;
   #switch (asc(Letter))
-    #case (asc("I")) 0.0 #break
-    #case (asc(".")) 0.0 #break
-    #case (asc(",")) 0.06 #break
-    #case (asc(" ")) 0.26 #break
-    #case (asc("E")) #case (asc("F")) #case (asc("L")) #case (asc("S")) 0.42 #break
-    #case (asc("B")) #case (asc("P")) #case (asc("R")) 0.46 #break
-    #case (asc("K")) #case (asc("T")) #case (asc("Y")) 0.56 #break
-    #case (asc("A")) #case (asc("H")) #case (asc("N")) #case (asc("U")) #case (asc("V")) 0.66 #break
-    #case (asc("C")) #case (asc("D")) #case (asc("G")) 0.68 #break
-    #case (asc("M")) 0.82 #break
-    #case (asc("O")) #case (asc("Q")) 0.9 #break
-    #case (asc("W")) 1.0 #break
-    #else 0.6
+    #case (asc("I")) #local Wide = 0.0; #break
+    #case (asc(".")) #local Wide = 0.0; #break
+    #case (asc(",")) #local Wide = 0.06; #break
+    #case (asc(" ")) #local Wide = 0.26; #break
+    #case (asc("E")) #case (asc("F")) #case (asc("L")) #case (asc("S")) #local Wide = 0.42; #break
+    #case (asc("B")) #case (asc("P")) #case (asc("R")) #local Wide = 0.46; #break
+    #case (asc("K")) #case (asc("T")) #case (asc("Y")) #local Wide = 0.56; #break
+    #case (asc("A")) #case (asc("H")) #case (asc("N")) #case (asc("U")) #case (asc("V")) #local Wide = 0.66; #break
+    #case (asc("C")) #case (asc("D")) #case (asc("G")) #local Wide = 0.68; #break
+    #case (asc("M")) #local Wide = 0.82; #break
+    #case (asc("O")) #case (asc("Q")) #local Wide = 0.9; #break
+    #case (asc("W")) #local Wide = 1.0; #break
   #end
+  Wide
 #end
 
 #macro Strokes(Letter)
@@ -100,7 +101,7 @@ global_settings { assumed_gamma 1 max_trace_level 5 }
   (Sum - Gap)
 #end
 
-#declare Half = 9.2;    // half the width of the slab
+#declare Half = 12;     // half the width of the slab
 #declare Pitch = 1.6;   // from line to line
 #declare Thick = 0.6;
 
@@ -195,7 +196,7 @@ camera {
   location <-3.4, -5.4, -13.4>
   right x * image_width / image_height
   angle 62
-  look_at <-0.1, -2.62, 0>
+  look_at <0.05, -2.95, 0>
 }
 background { srgb <0.05, 0.04, 0.035> }
 // Evening sun that grazes the stone from the upper left: grooves live by their shadows.

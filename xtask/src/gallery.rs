@@ -30,7 +30,7 @@ const fn gallery(folder: &'static str, title: &'static str, intro: &'static str)
         folder,
         title,
         intro,
-        size: "192x144",
+        size: "168x126",
         listing: Some("#include \"../gallery.inc\"\n"),
     }
 }
@@ -80,14 +80,14 @@ const PAGES: [Page; 10] = [
         folder: "lecture",
         title: "Ray tracing in fourteen pictures",
         intro: "The method, a scene for each of its ideas. The commands are meant to be run in the folder of the repository.",
-        size: "320x180",
+        size: "288x162",
         listing: None,
     },
     Page {
         folder: "showcase",
         title: "Showcase",
         intro: "Scenes of our own that take a minute or less. The pictures here are small; the scenes know no size.",
-        size: "480x270",
+        size: "400x225",
         listing: None,
     },
 ];
@@ -186,9 +186,9 @@ impl Page {
     fn missing(&self, scenes: &[Scene]) -> Vec<String> {
         let known: BTreeSet<&str> = scenes.iter().map(|s| s.name.as_str()).collect();
         let words: Vec<Word> = match self.folder {
-            // Lights have a page of their own.
+            // Lights have a page of their own; groups of lights are read as unions so far.
             "gallery/objects" => object_words()
-                .filter(|word| *word != Word::LightSource)
+                .filter(|word| !matches!(word, Word::LightSource | Word::LightGroup))
                 .collect(),
             "gallery/patterns" => pattern_words().collect(),
             _ => vec![],
