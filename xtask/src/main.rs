@@ -5,6 +5,7 @@ mod bench;
 mod bench_parse;
 mod compare_pov;
 mod gallery;
+mod lab;
 mod peers;
 mod pov;
 
@@ -22,6 +23,10 @@ const USAGE: &str = "usage: cargo xtask COMMAND
   gallery [--only PART] [--check]
                                   the manual's pictures and pages of scenes/{gallery,lecture,showcase};
                                   --check says what is missing
+  generate sphereflake|tetra LEVELS OUTPUT.nff
+  generate stadium OUTPUT.nff     scenes of any size, and one that grids don't like
+  growth OUTPUT.csv [--size WxH]  the cost of a ray for every accelerator, over scenes that grow
+  plot-growth TABLE.csv FOLDER    the same as double logarithmic plots
   nff2pov SCENE OUTPUT.pov        the scene as POV-Ray takes it, doing the same work";
 
 fn main() -> Result<()> {
@@ -33,6 +38,13 @@ fn main() -> Result<()> {
         ["bench", "peers", rest @ ..] => peers::run(rest),
         ["compare-pov", rest @ ..] => compare_pov::run(rest),
         ["gallery", rest @ ..] => gallery::run(rest),
+        ["generate", what, levels, output] => {
+            Ok(std::fs::write(output, lab::generate(what, Some(levels))?)?)
+        }
+        ["generate", what, output] => Ok(std::fs::write(output, lab::generate(what, None)?)?),
+        ["growth", output] => lab::measure(Path::new(output), "256x256"),
+        ["growth", output, "--size", size] => lab::measure(Path::new(output), size),
+        ["plot-growth", table, folder] => lab::plot_growth(Path::new(table), Path::new(folder)),
         ["nff2pov", scene, output] => pov::convert(Path::new(scene), Path::new(output)),
         _ => bail!("{USAGE}"),
     }

@@ -1,24 +1,49 @@
-use crate::{Accelerator, Bvh2, Bvh8, List, TraversalStats, Visitor};
+use crate::parameters::{self, NoParameters, Parameter, Parameters};
+use crate::shapes::all_bounds;
+use crate::{
+    Accelerator, Boxes, Bvh2, Bvh8, Grid, GridParameters, Grids, List, Octree, OctreeParameters,
+    Shapes, Spheres, SpheresParameters, TraversalStats, Visitor,
+};
 use std::{fmt, str::FromStr};
 use strahl_math::{Aabb, Interval, Ray};
 
 /// Makes the enum of all structures from the table below.
 macro_rules! accelerators {
-    ($($(#[$doc:meta])* $name:literal $variant:ident = $build:expr,)+) => {
-        /// Which acceleration structure.
-        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+    ($($(#[$doc:meta])* $name:literal $variant:ident($parameters:ty) = $build:expr,)+) => {
+        /// Which acceleration structure, with its parameters.
+        ///
+        /// As text: `NAME` or `NAME:PARAMETER=VALUE,...`, as `grid:density=10`. See [`AcceleratorKind::parameters`].
+        #[derive(Clone, Copy, Debug, PartialEq)]
         #[non_exhaustive]
         pub enum AcceleratorKind {
-            $($(#[$doc])* $variant,)+
+            $($(#[$doc])* $variant($parameters),)+
         }
 
         impl AcceleratorKind {
-            /// All of them.
-            pub const ALL: &[Self] = &[$(Self::$variant,)+];
+            /// All of them, with the default parameters.
+            pub const ALL: &[Self] = &[$(Self::$variant(<$parameters>::DEFAULT),)+];
 
             /// The name on the command line.
             pub const fn name(self) -> &'static str {
-                match self { $(Self::$variant => $name,)+ }
+                match self { $(Self::$variant(_) => $name,)+ }
+            }
+
+            /// The parameters there are.
+            pub const fn parameters(self) -> &'static [Parameter] {
+                match self { $(Self::$variant(_) => <$parameters>::ALL,)+ }
+            }
+
+            fn with_parameters(self, text: &str) -> Result<Self, String> {
+                match self {
+                    $(Self::$variant(_) => parameters::parse($name, text).map(Self::$variant),)+
+                }
+            }
+        }
+
+        impl fmt::Display for AcceleratorKind {
+            fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str(self.name())?;
+                match self { $(Self::$variant(p) => parameters::write(p, f),)+ }
             }
         }
 
@@ -30,17 +55,12 @@ macro_rules! accelerators {
         }
 
         impl AnyAccelerator {
-            /// Builds the structure over boxes `0..n`.
-            pub fn build(kind: AcceleratorKind, bounds: &[Aabb]) -> Self {
-                Self::build_classed(kind, bounds, &|_| 0)
-            }
-
-            /// Builds the structure over boxes `0..n`, with leaves of one class each (see [`Bvh8`]).
-            pub fn build_classed(kind: AcceleratorKind, bounds: &[Aabb], class: &dyn Fn(u32) -> u8) -> Self {
+            /// Builds the structure over primitives `0..n`.
+            pub fn build_from(kind: AcceleratorKind, shapes: &dyn Shapes) -> Self {
                 match kind {
-                    $(AcceleratorKind::$variant => {
-                        let build: fn(&[Aabb], &dyn Fn(u32) -> u8) -> $variant = $build;
-                        Self::$variant(build(bounds, class))
+                    $(AcceleratorKind::$variant(p) => {
+                        let build: fn(&dyn Shapes, &$parameters) -> $variant = $build;
+                        Self::$variant(build(shapes, &p))
                     })+
                 }
             }
@@ -81,45 +101,44 @@ macro_rules! accelerators {
     };
 }
 
-// THE table of accelerators: a new one is one line here.
+// THE table of accelerators: a new one is one line here (its name, its type with its parameters, how it is built).
 accelerators! {
     /// No structure: every primitive for every ray.
-    "list" List = |b, _| List::build(b),
+    "list" List(NoParameters) = |shapes, _| List::build(&all_bounds(shapes)),
+    /// The hierarchy of bounding spheres.
+    "spheres" Spheres(SpheresParameters) = Spheres::build,
     /// The binary bounding volume hierarchy: the readable reference.
-    "bvh2" Bvh2 = |b, _| Bvh2::build(b),
+    "bvh2" Bvh2(NoParameters) = |shapes, _| Bvh2::build(&all_bounds(shapes)),
     /// The bounding volume hierarchy of width eight.
-    "bvh" Bvh8 = |b, class| Bvh8::build(b, class),
+    "bvh" Bvh8(NoParameters) = |shapes, _| Bvh8::build(&all_bounds(shapes), |id| shapes.class(id)),
+    /// A regular grid.
+    "grid" Grid(GridParameters) = Grid::build,
+    /// Grids within the crowded cells of grids.
+    "grids" Grids(GridParameters) = Grids::build,
+    /// The octree.
+    "octree" Octree(OctreeParameters) = Octree::build,
 }
 
-#[expect(
-    clippy::derivable_impls,
-    reason = "the table's macro makes the variants, this one is chosen outside of it"
-)]
+impl AnyAccelerator {
+    /// Builds the structure over boxes `0..n`.
+    pub fn build(kind: AcceleratorKind, bounds: &[Aabb]) -> Self {
+        Self::build_from(kind, &Boxes(bounds))
+    }
+}
+
 impl Default for AcceleratorKind {
     fn default() -> Self {
-        Self::Bvh8
+        Self::Bvh8(NoParameters)
     }
 }
 
-impl fmt::Display for AcceleratorKind {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name())
-    }
-}
-
-/// There is no accelerator of that name.
+/// There is no accelerator of that name, or it has no such parameter.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct UnknownAccelerator(String);
 
 impl fmt::Display for UnknownAccelerator {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let names: Vec<&str> = AcceleratorKind::ALL.iter().map(|k| k.name()).collect();
-        write!(
-            f,
-            "unknown accelerator `{}`; there are: {}",
-            self.0,
-            names.join(", ")
-        )
+        f.write_str(&self.0)
     }
 }
 
@@ -129,10 +148,15 @@ impl FromStr for AcceleratorKind {
     type Err = UnknownAccelerator;
 
     fn from_str(s: &str) -> Result<Self, Self::Err> {
-        Self::ALL
-            .iter()
-            .copied()
-            .find(|k| k.name() == s)
-            .ok_or_else(|| UnknownAccelerator(s.to_owned()))
+        let (name, parameters) = s.split_once(':').unwrap_or((s, ""));
+        let kind = Self::ALL.iter().copied().find(|k| k.name() == name);
+        let Some(kind) = kind else {
+            let names: Vec<&str> = Self::ALL.iter().map(|k| k.name()).collect();
+            return Err(UnknownAccelerator(format!(
+                "unknown accelerator `{name}`; there are: {}",
+                names.join(", ")
+            )));
+        };
+        kind.with_parameters(parameters).map_err(UnknownAccelerator)
     }
 }

@@ -29,6 +29,12 @@ impl CullBounds {
     pub(crate) fn bounds(&self) -> &Aabb {
         &self.bounds
     }
+
+    /// B: no plane of the structure is further from the coordinate planes.
+    #[inline(always)]
+    pub(crate) fn max_abs(&self) -> f64 {
+        self.max_abs
+    }
 }
 
 /// A ray as the culling tests see it: in f32, with all rounding folded into two constants per axis.
@@ -153,7 +159,7 @@ impl CullRay {
 
 /// The largest absolute component; infinite if any is infinite or NaN.
 #[inline]
-fn largest(v: DVec3) -> f64 {
+pub(crate) fn largest(v: DVec3) -> f64 {
     let v = v.abs();
     let m = if v.y > v.x { v.y } else { v.x };
     let m = if v.z > m { v.z } else { m };
@@ -168,7 +174,7 @@ fn largest(v: DVec3) -> f64 {
 /// The direction divided by a power of two that brings its largest component into `1..2`, and that power; `None` for zero
 /// and for what is not finite.
 #[inline]
-fn scaled(direction: DVec3) -> Option<(DVec3, f64)> {
+pub(crate) fn scaled(direction: DVec3) -> Option<(DVec3, f64)> {
     let length = largest(direction);
     if !(length > 0.0 && length < f64::INFINITY) {
         return None;
@@ -195,7 +201,7 @@ fn power_of_two(x: f64) -> f64 {
 /// A bound of `t` in f32 and what its rounding may have changed at most, generously: `t` itself, the difference and the
 /// product it comes from, and the sum that this is added by.
 #[inline]
-fn rounded(t: f64) -> (f32, f32) {
+pub(crate) fn rounded(t: f64) -> (f32, f32) {
     let t = t as f32;
     (t, t.abs() * (2.0 * f32::EPSILON) + f32::MIN_POSITIVE)
 }

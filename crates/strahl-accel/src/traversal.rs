@@ -1,4 +1,4 @@
-use strahl_math::{Interval, Ray};
+use strahl_math::{Aabb, DVec3, Interval, Ray};
 use strahl_simd::Isa;
 
 /// What is done with the primitives a ray may meet.
@@ -26,6 +26,12 @@ pub trait Visitor {
         }
         t_max
     }
+
+    /// Whether [`Visitor::step`] wants to hear of the way; it costs nothing otherwise.
+    const WATCHES: bool = false;
+
+    /// The traversal looks at a node or a cell; the primitives visited next are in it, if it is a leaf.
+    fn step(&mut self, _step: Step) {}
 }
 
 /// A leaf of a structure with blocks of slots.
@@ -39,6 +45,51 @@ pub struct Leaf<'a> {
     pub blocks: usize,
     /// Its primitives, at least one.
     pub ids: &'a [u32],
+}
+
+/// A station on a ray's way through a structure, for those who want to see it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Step {
+    /// What is looked at.
+    pub place: Place,
+    /// Level in the structure, 0 at the root.
+    pub level: u32,
+    /// Where the ray gets there; `t` as the visitor counts it, with the margin of conservative culling.
+    pub near: f64,
+    /// Where it leaves; infinite where the traversal need not know.
+    pub far: f64,
+    /// How it leaves, where the traversal decides that.
+    pub exit: Option<Exit>,
+}
+
+/// A place in a structure.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Place {
+    /// An inner node with its box.
+    Node(Aabb),
+    /// A leaf with its box; primitives visited next are in it.
+    Leaf(Aabb),
+    /// A bounding sphere (centre and radius) of inner nodes.
+    Sphere(DVec3, f64),
+    /// A bounding sphere of primitives.
+    LeafSphere(DVec3, f64),
+    /// A cell of a grid with its place in it.
+    Cell([u32; 3], Aabb),
+    /// Several empty cells passed in one step.
+    Empty(Aabb),
+}
+
+/// How a ray leaves a cell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Exit {
+    /// The axis its exit face is perpendicular to.
+    pub axis: usize,
+    /// Whether it leaves towards larger coordinates.
+    pub up: bool,
+    /// Where it meets the trial exit plane, if that was used: 0 inside the face, 1 to 4 beyond an edge, 5 to 8 beyond a
+    /// corner.
+    pub region: Option<u8>,
 }
 
 /// What a traversal cost.

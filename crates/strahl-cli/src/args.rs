@@ -21,6 +21,12 @@ pub(crate) enum Command {
     Render(RenderArgs),
     /// Print the ray tree of a pixel: every ray with its numbers and the line of the scene that caused it
     Explain(ExplainArgs),
+    /// Render with every accelerator: one table of their costs, one and the same picture
+    Compare(CompareArgs),
+    /// Draw what each pixel costs
+    Heatmap(HeatmapArgs),
+    /// Follow the ray of a pixel through an accelerator: every cell, sphere or node with its tests
+    TraceRay(TraceRayArgs),
     /// Tell what is in a scene
     Info(SceneArgs),
     /// Look for errors in a scene without rendering it
@@ -126,8 +132,14 @@ pub(crate) struct PictureArgs {
     /// Shading model of everything: lambert, phong, blinn-phong, or to look at the geometry: normals, depth, object-id, uv
     #[arg(long, value_name = "MODEL")]
     pub(crate) shading: Option<ShadingModel>,
-    /// Acceleration structure: list, bvh2 or bvh; the picture is the same
-    #[arg(long, value_name = "NAME", default_value_t)]
+}
+
+/// The structure that finds what rays hit.
+#[derive(Debug, Args)]
+pub(crate) struct AcceleratorArgs {
+    /// Acceleration structure with its parameters, such as bvh, grid:density=4 or octree:traversal=trial-plane (see
+    /// `strahl formats`); the picture is the same
+    #[arg(long, value_name = "NAME[:PARAMETER=VALUE,...]", default_value_t)]
     pub(crate) accelerator: AcceleratorKind,
 }
 
@@ -143,6 +155,8 @@ pub(crate) struct RenderArgs {
     pub(crate) output: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) picture: PictureArgs,
+    #[command(flatten)]
+    pub(crate) accelerator: AcceleratorArgs,
     /// Render this part of the picture only: left, top, width, height in pixels
     #[arg(long, value_name = "X,Y,WxH", value_parser = parse_region)]
     pub(crate) region: Option<Region>,
@@ -224,6 +238,8 @@ pub(crate) struct ExplainArgs {
     #[command(flatten)]
     pub(crate) picture: PictureArgs,
     #[command(flatten)]
+    pub(crate) accelerator: AcceleratorArgs,
+    #[command(flatten)]
     pub(crate) pov: PovArgs,
 }
 
@@ -235,6 +251,88 @@ pub(crate) enum ExplainForm {
     Json,
     /// For Graphviz
     Dot,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct CompareArgs {
+    #[command(flatten)]
+    pub(crate) scene: SceneArgs,
+    #[command(flatten)]
+    pub(crate) picture: PictureArgs,
+    /// Compare this one; may be given several times [default: all, the octree with each of its traversals]
+    #[arg(long = "with", value_name = "NAME[:PARAMETER=VALUE,...]")]
+    pub(crate) with: Vec<AcceleratorKind>,
+    /// Number of threads; 0 takes one per processor
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub(crate) threads: usize,
+    /// Render this many times with each, taking turns; the median of the times counts
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=99))]
+    pub(crate) runs: u32,
+    /// Search for every shadow ray in full, as the published figures do, instead of first looking at what was in the way of
+    /// its light before
+    #[arg(long)]
+    pub(crate) no_shadow_cache: bool,
+    /// Print JSON
+    #[arg(long, conflicts_with = "csv")]
+    pub(crate) json: bool,
+    /// Print comma-separated values
+    #[arg(long)]
+    pub(crate) csv: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct HeatmapArgs {
+    #[command(flatten)]
+    pub(crate) scene: SceneArgs,
+    #[command(flatten)]
+    pub(crate) picture: PictureArgs,
+    #[command(flatten)]
+    pub(crate) accelerator: AcceleratorArgs,
+    /// What to draw
+    #[arg(long, value_enum, value_name = "METRIC", default_value_t = Metric::Tests)]
+    pub(crate) metric: Metric,
+    /// The value of the brightest colour, to compare pictures; larger values look the same [default: the largest of all
+    /// pixels but one in a thousand]
+    #[arg(long, value_name = "MAX", value_parser = parse_positive)]
+    pub(crate) scale: Option<f64>,
+    /// Picture file; an EXR file has the values themselves, too, as the layer `cost`
+    #[arg(short, long, value_name = "PICTURE")]
+    pub(crate) output: PathBuf,
+    /// Number of threads; 0 takes one per processor
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub(crate) threads: usize,
+}
+
+/// What a pixel can cost.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Metric {
+    /// Primitives tested
+    Tests,
+    /// Nodes and cells looked at
+    Steps,
+    /// Microseconds
+    Time,
+    /// Levels of the ray tree
+    Depth,
+    /// Rays, shadow rays included
+    Rays,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct TraceRayArgs {
+    #[command(flatten)]
+    pub(crate) scene: SceneArgs,
+    /// The pixel, counted from 0,0 at the top left; the ray goes through its centre
+    #[arg(long, value_name = "X,Y", value_parser = parse_pixel)]
+    pub(crate) pixel: (u32, u32),
+    /// Size of the picture in pixels, such as 1280x720 [default: what the scene says, or 800x600]
+    #[arg(long, value_name = "WxH", value_parser = parse_size)]
+    pub(crate) size: Option<(u32, u32)>,
+    #[command(flatten)]
+    pub(crate) accelerator: AcceleratorArgs,
+    /// Print JSON
+    #[arg(long)]
+    pub(crate) json: bool,
 }
 
 fn parse_pair(s: &str, separator: char) -> Option<(u32, u32)> {
@@ -261,6 +359,11 @@ fn parse_region(s: &str) -> Result<Region, String> {
         })
     });
     parsed.ok_or_else(|| "expected X,Y,WIDTHxHEIGHT in pixels, such as 100,50,64x64".to_owned())
+}
+
+fn parse_positive(s: &str) -> Result<f64, String> {
+    let number = s.parse().ok().filter(|x: &f64| *x > 0.0 && x.is_finite());
+    number.ok_or_else(|| "expected a number above 0".to_owned())
 }
 
 fn parse_weight(s: &str) -> Result<f64, String> {

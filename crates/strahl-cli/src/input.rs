@@ -1,4 +1,4 @@
-use crate::args::{PictureArgs, PovArgs, SceneArgs};
+use crate::args::{AcceleratorArgs, PictureArgs, PovArgs, SceneArgs};
 use crate::fonts::font_folders;
 use crate::report::{Failure, Reporter};
 use std::io::Read;
@@ -194,13 +194,12 @@ impl<'a> Input<'a> {
         }
     }
 
-    /// Reads and compiles the scene.
-    pub(crate) fn compiled(
+    /// Reads and compiles the scene, all but its accelerator.
+    pub(crate) fn prepared(
         &self,
         moment: Moment,
-        picture: &PictureArgs,
         reporter: &Reporter,
-    ) -> Result<(RenderScene, LoadTimes), Failure> {
+    ) -> Result<(Prepared, LoadTimes), Failure> {
         let start = Instant::now();
         let scene = self.load(moment, reporter)?;
         let loaded = Instant::now();
@@ -213,13 +212,26 @@ impl<'a> Input<'a> {
         };
         reporter.print(prepared.warnings(), Some(&scene.sources));
         drop(scene);
-        let build_start = Instant::now();
-        let compiled = prepared.build(picture.accelerator);
         let times = LoadTimes {
             load: (loaded - start).as_secs_f64(),
             compile: loaded.elapsed().as_secs_f64(),
-            build: build_start.elapsed().as_secs_f64(),
+            build: 0.0,
         };
+        Ok((prepared, times))
+    }
+
+    /// Reads and compiles the scene.
+    pub(crate) fn compiled(
+        &self,
+        moment: Moment,
+        accelerator: &AcceleratorArgs,
+        reporter: &Reporter,
+    ) -> Result<(RenderScene, LoadTimes), Failure> {
+        let (prepared, mut times) = self.prepared(moment, reporter)?;
+        let start = Instant::now();
+        let compiled = prepared.build(accelerator.accelerator);
+        times.build = start.elapsed().as_secs_f64();
+        times.compile += times.build;
         Ok((compiled, times))
     }
 }

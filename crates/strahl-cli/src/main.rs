@@ -10,6 +10,7 @@ mod args;
 mod commands;
 mod explain;
 mod fonts;
+mod heat;
 mod input;
 mod interrupt;
 mod pov;
@@ -38,6 +39,9 @@ fn main() -> ExitCode {
     let outcome = match &cli.command {
         Command::Render(args) => commands::render(args),
         Command::Explain(args) => commands::explain(args),
+        Command::Compare(args) => commands::compare(args),
+        Command::Heatmap(args) => commands::heatmap(args),
+        Command::TraceRay(args) => commands::trace_ray(args),
         Command::Info(args) => commands::info(args),
         Command::Check(args) => commands::check(args),
         Command::Formats => commands::formats(),

@@ -1,7 +1,8 @@
 use crate::blocks::{LaneTests, LeafClass};
 use crate::hit::{Hit, Origin, RayClass};
 use crate::scene::{Prim, PrimKind, RenderGroup, RenderScene};
-use strahl_accel::{Accelerator, BLOCK, Leaf, TraversalStats, Visitor};
+use crate::walk::WalkEvent;
+use strahl_accel::{Accelerator, BLOCK, Leaf, Step, TraversalStats, Visitor};
 use strahl_geometry::{PrimHit, Primitive, RayShear, Scratch, SurfaceId};
 use strahl_math::{Interval, Ray};
 use strahl_shade::Sides;
@@ -16,6 +17,8 @@ pub struct Tracer<'s> {
     pub stats: TraversalStats,
     /// Per light the primitive of the world that was last found in the way: likely to be in the way again.
     occluders: Vec<u32>,
+    /// Whether to look there first.
+    pub(crate) remembers: bool,
 }
 
 /// No primitive.
@@ -29,6 +32,7 @@ impl<'s> Tracer<'s> {
             scratch: Scratch::default(),
             stats: TraversalStats::default(),
             occluders: vec![NONE; scene.lights.len()],
+            remembers: true,
         }
     }
 
@@ -44,6 +48,20 @@ impl<'s> Tracer<'s> {
         let mut query = Closest { best: None };
         self.search(ray, range, from, class, NONE, &mut query);
         query.best
+    }
+
+    /// The same, telling all that happens on the way.
+    pub(crate) fn watched_hit(
+        &mut self,
+        ray: &Ray,
+        range: Interval,
+        class: RayClass,
+        events: &mut Vec<WalkEvent>,
+    ) -> Option<Hit> {
+        let closest = Closest { best: None };
+        let mut query = Watched { closest, events };
+        self.search(ray, range, None, class, NONE, &mut query);
+        query.closest.best
     }
 
     /// Whether something that lets no light through is in `range`.
@@ -73,7 +91,9 @@ impl<'s> Tracer<'s> {
             self.occluders[light],
             &mut query,
         );
-        if let Some(id) = query.found {
+        if let Some(id) = query.found
+            && self.remembers
+        {
             self.occluders[light] = self.scene.groups[0].prim_of(id);
         }
         query.found.is_some()
@@ -84,7 +104,8 @@ impl<'s> Tracer<'s> {
         self.occluders.fill(NONE);
     }
 
-    /// All hits in `range` on things that may let light through, in no particular order.
+    /// All hits in `range` on things that may let light through, in no particular order; those of a primitive that lies in
+    /// several cells perhaps more than once.
     pub(crate) fn transmitting_hits(
         &mut self,
         ray: &Ray,
@@ -141,6 +162,12 @@ trait Query {
     /// Whether a hit on an element of a material that lets light through (or not) is of interest; asked only on
     /// primitives with both kinds.
     fn wants_hit(transmits: bool) -> bool;
+
+    /// Whether [`Query::tell`] wants to hear what happens; it costs nothing otherwise.
+    const WATCHES: bool = false;
+
+    /// Something happened.
+    fn tell(&mut self, _event: WalkEvent) {}
 }
 
 struct Closest {
@@ -166,6 +193,33 @@ impl Query for Closest {
 
     fn wants_hit(_: bool) -> bool {
         true
+    }
+}
+
+/// The closest hit with what happens on the way to it.
+struct Watched<'e> {
+    closest: Closest,
+    events: &'e mut Vec<WalkEvent>,
+}
+
+impl Query for Watched<'_> {
+    const ALL: bool = false;
+    const WATCHES: bool = true;
+
+    fn wants(flags: u8) -> bool {
+        Closest::wants(flags)
+    }
+
+    fn take(&mut self, hit: Hit, t_max: f64) -> f64 {
+        self.closest.take(hit, t_max)
+    }
+
+    fn wants_hit(transmits: bool) -> bool {
+        Closest::wants_hit(transmits)
+    }
+
+    fn tell(&mut self, event: WalkEvent) {
+        self.events.push(event);
     }
 }
 
@@ -285,13 +339,19 @@ struct GroupVisitor<'v, 'a, 's, Q> {
 }
 
 impl<Q: Query> Visitor for GroupVisitor<'_, '_, '_, Q> {
+    const WATCHES: bool = Q::WATCHES;
     const ANY: bool = Q::ANY;
 
     #[inline(always)]
     fn visit_leaf<I: Isa>(&mut self, isa: I, leaf: &Leaf<'_>, t_max: f64) -> f64 {
         let group = self.group;
         let blocks = leaf.first_block..leaf.first_block + leaf.blocks;
-        match LeafClass::from_number(leaf.class) {
+        // Who watches hears of every test.
+        let class = match Q::WATCHES {
+            true => LeafClass::Single,
+            false => LeafClass::from_number(leaf.class),
+        };
+        match class {
             LeafClass::Mesh => {
                 self.lanes(isa, leaf.ids, blocks.map(|b| group.blocks.mesh(b)), t_max)
             }
@@ -320,6 +380,10 @@ impl<Q: Query> Visitor for GroupVisitor<'_, '_, '_, Q> {
         }
     }
 
+    fn step(&mut self, step: Step) {
+        self.search.query.tell(WalkEvent::Step(step));
+    }
+
     #[inline]
     fn visit(&mut self, id: u32, t_max: f64) -> f64 {
         let prim = self.group.prims[id as usize];
@@ -336,6 +400,14 @@ impl<Q: Query> Visitor for GroupVisitor<'_, '_, '_, Q> {
             PrimKind::Instance(index) => self.instance(index, t_max, from, first),
             _ => self.simple(id, prim, t_max, from, first),
         };
+        if Q::WATCHES && !matches!(prim.kind, PrimKind::Instance(_)) {
+            self.search.query.tell(WalkEvent::Test {
+                id: self.base + first,
+                object: self.group.look(id, 0).object,
+                closest: self.t_max.is_finite().then_some(self.t_max),
+                found: self.t_max < t_max,
+            });
+        }
         self.t_max
     }
 }
@@ -403,8 +475,17 @@ impl<Q: Query> GroupVisitor<'_, '_, '_, Q> {
             }
         }
         let range = Interval::new(self.range_min, t_max);
-        self.search
-            .group(inner, &ray, range, from, self.base + first, NONE)
+        if Q::WATCHES {
+            let id = self.base + first;
+            self.search.query.tell(WalkEvent::Enter { id });
+        }
+        let t_max = self
+            .search
+            .group(inner, &ray, range, from, self.base + first, NONE);
+        if Q::WATCHES {
+            self.search.query.tell(WalkEvent::Leave);
+        }
+        t_max
     }
 
     #[inline]

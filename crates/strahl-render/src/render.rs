@@ -1,4 +1,5 @@
 use crate::camera::PrimaryRays;
+use crate::cost::PixelCost;
 use crate::film::{Film, FilmError, PixelInfo, Region, try_filled};
 use crate::sampling::{Sampling, contrast};
 use crate::scene::RenderScene;
@@ -29,6 +30,8 @@ pub struct RenderOptions {
     pub trace: TraceSettings,
     /// Whether to fill [`Film::info`].
     pub info: bool,
+    /// Whether to fill [`Rendered::costs`].
+    pub costs: bool,
 }
 
 impl RenderOptions {
@@ -44,7 +47,14 @@ impl RenderOptions {
             tile_order: TileOrder::Rows,
             trace: TraceSettings::of(scene),
             info: false,
+            costs: false,
         }
+    }
+
+    /// The part of the picture that the film holds.
+    fn film_region(&self) -> Region {
+        let whole = Region::full(self.width, self.height);
+        self.region.unwrap_or(whole)
     }
 }
 
@@ -55,6 +65,11 @@ pub trait Progress: Sync {
 
     /// A tile is done; it took this many rays.
     fn tile(&self, _rays: u64) {}
+
+    /// A clock in nanoseconds, for the time each pixel takes: nothing here reads the clock itself.
+    fn now(&self) -> u64 {
+        0
+    }
 
     /// Whether to stop at the next tile.
     fn cancelled(&self) -> bool {
@@ -90,6 +105,9 @@ pub struct Rendered {
     pub traversal: TraversalStats,
     /// Threads used.
     pub threads: usize,
+    /// What each pixel of the film cost, row by row, if asked for. A picture of corners has the cost of a pixel's top left
+    /// corner.
+    pub costs: Option<Vec<PixelCost>>,
 }
 
 /// Renders a picture.
@@ -113,6 +131,10 @@ pub fn render(
         rays: PrimaryRays::new(scene.camera(), options.width, options.height),
         counts: RayCounts::default(),
         traversal: TraversalStats::default(),
+        costs: match options.costs {
+            true => Some(try_filled(film.region, PixelCost::default())?),
+            false => None,
+        },
     };
     pool.install(|| match options.sampling {
         Sampling::Corners => job.corners(&mut film),
@@ -125,6 +147,7 @@ pub fn render(
         rays: job.counts,
         traversal: job.traversal,
         threads,
+        costs: job.costs,
     })
 }
 
@@ -147,6 +170,7 @@ pub(crate) fn passes_of_pixel(
         rays,
         counts,
         traversal,
+        costs: None,
     };
     let pixel = Region {
         x,
@@ -166,6 +190,8 @@ struct Job<'a> {
     rays: PrimaryRays,
     counts: RayCounts,
     traversal: TraversalStats,
+    /// Of the pixels of the film.
+    costs: Option<Vec<PixelCost>>,
 }
 
 /// What a tile brings home.
@@ -174,6 +200,8 @@ struct TileResult<T> {
     values: Vec<T>,
     /// One for each value, if asked for.
     infos: Vec<PixelInfo>,
+    /// One for each value, if asked for.
+    costs: Vec<PixelCost>,
     counts: RayCounts,
     traversal: TraversalStats,
 }
@@ -227,7 +255,9 @@ impl Job<'_> {
                         tree: TreeTracer::new(scene, options.trace),
                         rays,
                         options,
+                        progress,
                         infos: Vec::new(),
+                        depth: 0,
                     },
                     |tracer, tile| {
                         (!progress.cancelled()).then(|| {
@@ -242,6 +272,14 @@ impl Job<'_> {
                 let result = result.ok_or(RenderError::Cancelled)?;
                 self.counts += result.counts;
                 self.traversal += result.traversal;
+                if let Some(all) = &mut self.costs {
+                    let film = options.film_region();
+                    for ((x, y), cost) in result.tile.positions().zip(&result.costs) {
+                        if film.contains(x, y) {
+                            all[film.index(x, y)] += *cost;
+                        }
+                    }
+                }
                 store(result);
             }
         }
@@ -396,8 +434,11 @@ struct PixelTracer<'s> {
     tree: TreeTracer<'s>,
     rays: &'s PrimaryRays,
     options: &'s RenderOptions,
+    progress: &'s dyn Progress,
     /// Of the pixels of the tile so far.
     infos: Vec<PixelInfo>,
+    /// Deepest level of the trees of the pixel so far.
+    depth: u32,
 }
 
 impl PixelTracer<'_> {
@@ -405,13 +446,43 @@ impl PixelTracer<'_> {
         self.tree.counts = RayCounts::default();
         self.tree.tracer.stats = TraversalStats::default();
         self.tree.tracer.forget_occluders();
-        let values = tile.positions().map(|(x, y)| trace(self, x, y)).collect();
+        let mut costs = Vec::new();
+        let values = tile.positions().map(|(x, y)| {
+            if !self.options.costs {
+                return trace(self, x, y);
+            }
+            let (before, start) = (self.spent(), self.progress.now());
+            self.depth = 0;
+            let value = trace(self, x, y);
+            let after = self.spent();
+            costs.push(PixelCost {
+                tests: after.tests - before.tests,
+                steps: after.steps - before.steps,
+                rays: after.rays - before.rays,
+                depth: self.depth,
+                nanoseconds: self.progress.now().saturating_sub(start),
+            });
+            value
+        });
+        let values = values.collect();
         TileResult {
             tile,
             values,
+            costs,
             infos: std::mem::take(&mut self.infos),
             counts: self.tree.counts,
             traversal: self.tree.tracer.stats,
+        }
+    }
+
+    /// What the tile has cost so far.
+    fn spent(&self) -> PixelCost {
+        let stats = self.tree.tracer.stats;
+        PixelCost {
+            tests: stats.primitive_tests,
+            steps: stats.node_visits,
+            rays: self.tree.counts.total(),
+            ..PixelCost::default()
         }
     }
 
@@ -435,9 +506,10 @@ impl PixelTracer<'_> {
     fn sample(&mut self, x: f64, y: f64, keep: bool) -> Color {
         let before = self.tree.tracer.stats.primitive_tests;
         let mut first = SampleResult::NOTHING;
-        let tree = &mut self.tree;
+        let (tree, depth) = (&mut self.tree, &mut self.depth);
         let color = self.rays.color(x, y, |ray| {
             let sample = tree.trace(ray, &mut ());
+            *depth = (*depth).max(sample.depth);
             if first.rays == 0 {
                 first = sample;
             }

@@ -60,6 +60,8 @@ impl Tracer<'_> {
         hits.clear();
         self.transmitting_hits(ray, *range, Some(from), hits);
         hits.sort_unstable_by(|a, b| a.t.total_cmp(&b.t).then(a.id.cmp(&b.id)));
+        // A grid may have shown a primitive more than once; an element has one hit at one t.
+        hits.dedup_by(|a, b| a.t == b.t && a.id == b.id);
         let mut visible = Color::WHITE;
         let (mut inside, mut entered_at) = (*media, 0.0);
         for hit in hits.iter() {

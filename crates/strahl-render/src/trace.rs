@@ -43,6 +43,9 @@ pub struct TraceSettings {
     pub working_space: WorkingSpace,
     /// Whether a transparency ray that goes straight on counts as a level.
     pub straight_counts: bool,
+    /// Whether shadow rays first look at what was last in the way of their light. The picture is the same; the published
+    /// costs of accelerators are without.
+    pub shadow_cache: bool,
 }
 
 impl TraceSettings {
@@ -60,6 +63,7 @@ impl TraceSettings {
             max_tree_rays: Self::MAX_TREE_RAYS,
             working_space: s.working_space,
             straight_counts: s.straight_counts,
+            shadow_cache: true,
         }
     }
 
@@ -219,8 +223,10 @@ impl<'s> TreeTracer<'s> {
         let uv_shown = shown(settings.force_shading)
             || shown(Some(settings.shading))
             || scene.materials.iter().any(|m| shown(m.model));
+        let mut tracer = Tracer::new(scene);
+        tracer.remembers = settings.shadow_cache;
         Self {
-            tracer: Tracer::new(scene),
+            tracer,
             uv: if uv_shown { Uv::Always } else { Uv::IfTextured },
             counts: RayCounts::default(),
             settings,

@@ -18,16 +18,38 @@ const SAMPLINGS: [Sampling; 4] = [
     },
 ];
 
+/// Every accelerator, the octree with each of its traversals.
+fn accelerators() -> Vec<AcceleratorKind> {
+    let variants = [
+        "spheres:build=agglomerative",
+        "grid:density=1",
+        "octree:split=centre,traversal=exit-face",
+        "octree:traversal=trial-plane",
+        "octree:traversal=neighbours",
+    ];
+    let variants = variants.iter().map(|v| v.parse().expect("an accelerator"));
+    AcceleratorKind::ALL
+        .iter()
+        .copied()
+        .chain(variants)
+        .collect()
+}
+
 #[test]
-fn list_and_bvh_give_the_same_bits() {
+fn all_accelerators_give_the_same_bits() {
     for scene in [glass_and_mirrors(), every_shape()] {
         let mut hashes = Vec::new();
-        for accelerator in AcceleratorKind::ALL.iter().copied() {
+        for accelerator in accelerators() {
             let scene = compile(&scene, &CompileOptions { accelerator }).expect("valid");
-            let picture = rendered(&scene, |o| o.sampling = Sampling::Grid(2));
-            hashes.push((accelerator.to_string(), picture.film.sha256(), picture.rays));
+            for (threads, order) in [(1, TileOrder::Rows), (2, TileOrder::Reverse)] {
+                let picture = rendered(&scene, |o| {
+                    o.sampling = Sampling::Grid(2);
+                    (o.threads, o.tile_order) = (threads, order);
+                });
+                hashes.push((accelerator.to_string(), picture.film.sha256(), picture.rays));
+            }
         }
-        assert!(hashes.len() >= 2);
+        assert!(hashes.len() >= 20);
         for other in &hashes[1..] {
             assert_eq!(
                 (&hashes[0].1, hashes[0].2),

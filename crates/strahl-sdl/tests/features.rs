@@ -54,7 +54,10 @@ fn is_done(scene: &str) -> bool {
 fn table() -> String {
     let mut groups: Vec<(&str, Vec<&str>, Vec<&str>)> = vec![];
     for feature in features() {
-        if groups.last().is_none_or(|(name, ..)| *name != feature.group) {
+        if groups
+            .last()
+            .is_none_or(|(name, ..)| *name != feature.group)
+        {
             groups.push((feature.group, vec![], vec![]));
         }
         let Some((_, done, open)) = groups.last_mut() else {

@@ -4,10 +4,12 @@
 
 mod bins;
 mod build;
+mod fold;
 mod node;
 pub(crate) mod split;
 mod traverse;
 pub(crate) mod validate;
+mod watch;
 
 use crate::List;
 use crate::cull::CullBounds;

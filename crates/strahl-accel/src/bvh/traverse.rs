@@ -23,7 +23,7 @@ impl Accelerator for Bvh2 {
             && let Some(tree) = &self.tree
             && let Some(cull) = CullRay::new(ray, range, &tree.bounds)
         {
-            tree.walk(&cull, t_max, visitor, stats);
+            tree.walk(ray, range.with_max(t_max), &cull, visitor, stats);
         }
     }
 
@@ -48,17 +48,22 @@ impl Tree {
     #[inline]
     fn walk<V: Visitor>(
         &self,
+        ray: &Ray,
+        range: Interval,
         cull: &CullRay,
-        mut t_max: f64,
         visitor: &mut V,
         stats: &mut TraversalStats,
     ) {
+        let mut t_max = range.max;
         let mut far = cull.t_max(t_max);
         let mut current = self.root;
         // What is left to visit, with the parameter at which the ray gets there: at most one child of each level.
         let mut stack = [(Child::default(), 0.0f32); MAX_DEPTH];
         let mut depth = 0;
         loop {
+            if V::WATCHES {
+                self.report(ray, range.with_max(t_max), current, visitor);
+            }
             if !current.is_leaf() {
                 stats.node_visits += 1;
                 let node = &self.nodes[current.first as usize];

@@ -7,7 +7,7 @@ use crate::report::{Failure, Reporter};
 pub(crate) fn explain(args: &ExplainArgs) -> Result<(), Failure> {
     let (scene_file, format) = (Some(args.scene.as_path()), args.scene_format);
     let input = Input::new(scene_file, format, &args.pov, args.picture.size)?;
-    let (scene, _) = input.compiled(input.still(), &args.picture, &Reporter::new(false))?;
+    let (scene, _) = input.compiled(input.still(), &args.accelerator, &Reporter::new(false))?;
     let options = render_options(&scene, &args.picture);
     let (x, y) = args.pixel;
     if x >= options.width || y >= options.height {

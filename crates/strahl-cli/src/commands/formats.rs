@@ -1,5 +1,6 @@
 use crate::report::Failure;
 use strahl::Format;
+use strahl::accel::AcceleratorKind;
 
 /// `strahl formats`: the tables of formats.
 pub(crate) fn formats() -> Result<(), Failure> {
@@ -17,6 +18,13 @@ pub(crate) fn formats() -> Result<(), Failure> {
             extensions(format.extensions),
             format.description
         );
+    }
+    println!("Accelerators (NAME or NAME:PARAMETER=VALUE,...; the picture is the same):");
+    for kind in AcceleratorKind::ALL {
+        println!("  {}", kind.name());
+        for parameter in kind.parameters() {
+            println!("    {:12} {}", parameter.to_string(), parameter.about);
+        }
     }
     Ok(())
 }

@@ -151,7 +151,10 @@ impl Job<'_> {
         }
         let args = self.args;
         let picture = &args.picture;
-        let load = || self.input.compiled(moment, picture, &self.reporter);
+        let load = || {
+            self.input
+                .compiled(moment, &args.accelerator, &self.reporter)
+        };
         let (scene, times) = watch.suspend(load)?;
         let mut options = render_options(&scene, picture);
         options.region = args.region;

@@ -5,7 +5,7 @@ use strahl_math::Aabb;
 use strahl_scene::{Diagnostic, Scene};
 
 /// A group with its element numbers and bounds.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Assembled {
     pub(super) prims: Vec<Prim>,
     pub(super) shapes: Vec<ShapeUse>,

@@ -10,13 +10,15 @@
 mod assemble;
 mod flatten;
 mod materials;
+mod shapes;
 mod spaces;
 mod view;
 
-use crate::blocks::{Blocks, LeafClass};
+use crate::blocks::Blocks;
 use crate::scene::{ObjectInfo, RenderGroup, RenderScene};
 use assemble::Assembled;
 pub(crate) use materials::material_transmits;
+use shapes::GroupShapes;
 use std::sync::Arc;
 use strahl_accel::{Accelerator, AcceleratorKind, AnyAccelerator};
 use strahl_math::{Aabb, Transform};
@@ -24,14 +26,14 @@ use strahl_scene::{Background, Camera, Diagnostic, Fog, Scene, SceneLight, Setti
 use strahl_shade::{Color, Material};
 
 /// How to compile a scene.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct CompileOptions {
     /// The acceleration structure.
     pub accelerator: AcceleratorKind,
 }
 
 /// A scene after all passes but the last: everything except the acceleration structures.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Prepared {
     groups: Vec<Assembled>,
     objects: Vec<ObjectInfo>,
@@ -109,8 +111,7 @@ impl Prepared {
         let last = self.groups.len().saturating_sub(1) as u32;
         let renumber = |group: u32| last - group;
         let groups = self.groups.into_iter().rev().map(|g| {
-            let class = |id: u32| LeafClass::of(&g.prims[id as usize], &g.shapes, &g.meshes) as u8;
-            let accelerator = AnyAccelerator::build_classed(kind, &g.prim_bounds, &class);
+            let accelerator = AnyAccelerator::build_from(kind, &GroupShapes(&g));
             let blocks = Blocks::new(accelerator.slots(), &g.prims, &g.shapes, &g.meshes);
             let mut instances = g.instances;
             for instance in &mut instances {

@@ -1,0 +1,207 @@
+//! What walks through cells have in common: grids and octrees.
+//!
+//! # Why no hit is lost
+//! A walk is a sequence of cells with the parameters at which the ray passes from one to the next. Planes are f64 and every crossing
+//! is computed from its plane (nothing is added up), so where the walk says "in this cell from t₁ to t₂" the
+//! point of the ray at such a t is at most a few ε(B + |o|) outside of the cell: ε = 2⁻⁵³, B the largest coordinate, |o| <= 4B
+//! (see [`Moved`]). Primitives are entered into every cell that they, or hits up to 8u(B + |o|) beside them (u = 2⁻²⁴), may
+//! reach into: cells are padded by 48uB for the question, which covers both. Hence a primitive hit at t is in the cell that
+//! the walk gives for t, and the walk may end as soon as the closest hit is before the next crossing; not if it is at it.
+//!
+//! Rays that start so far away that their own rounding exceeds the pad are led through all cells within their margin instead
+//! ([`Walk::is_thick`]).
+
+use crate::cull::CullBounds;
+use crate::moved::{FAR, Moved, SLACK};
+use strahl_math::{Aabb, DVec3, Interval, Ray};
+
+/// Cells are padded by this times B, when primitives are entered.
+const PAD: f64 = SLACK * (1.0 + FAR + 1.0);
+
+/// The box whose cells are walked through, and its pad.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Room {
+    /// The box around everything, and the pad.
+    pub(crate) root: Aabb,
+    /// What cells grow by when primitives are entered.
+    pub(crate) pad: f64,
+    bounds: CullBounds,
+}
+
+impl Room {
+    /// The room of things that all lie in a bounded box.
+    pub(crate) fn new(bounds: Aabb) -> Self {
+        let cull = CullBounds::new(bounds);
+        let pad = PAD * cull.max_abs();
+        Self {
+            root: bounds.padded(DVec3::splat(2.0 * pad)),
+            pad,
+            bounds: cull,
+        }
+    }
+
+    /// The same, larger by a thousandth on every side: as GOLEM's seems to be, for no plane of its cells coincides with the
+    /// planes of `tetra`. See docs/src/accelerators.md.
+    pub(crate) fn published(bounds: Aabb) -> Self {
+        Self::new(bounds.padded(bounds.size() * 1e-3))
+    }
+
+    /// Cells must not become smaller: they would hold little but their pads.
+    pub(crate) fn smallest_cell(&self) -> f64 {
+        8.0 * self.pad
+    }
+}
+
+/// A ray on its way through a room.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Walk {
+    pub(crate) moved: Moved,
+    /// 1/d; 0 along axes the ray is parallel to.
+    inverse: [f64; 3],
+    /// -o/d; infinite along axes the ray is parallel to.
+    start: [f64; 3],
+    /// Where the ray enters the room.
+    pub(crate) near: f64,
+}
+
+/// Components of a direction below this part of the largest are none: while it crosses the room the ray moves by less than
+/// 2⁻⁵⁷(B + |o|) along them.
+const PARALLEL: f64 = 1.0 / (1u64 << 60) as f64;
+
+impl Walk {
+    /// The walk of a ray, or `None` if it misses the room.
+    #[inline(always)]
+    pub(crate) fn new(ray: &Ray, range: Interval, room: &Room) -> Option<Self> {
+        let mut moved = Moved::new(ray, range, &room.bounds)?;
+        let (mut inverse, mut start) = ([0.0; 3], [f64::INFINITY; 3]);
+        for axis in 0..3 {
+            let d = &mut moved.direction[axis];
+            if d.abs() < PARALLEL {
+                *d = 0.0;
+            } else {
+                inverse[axis] = 1.0 / *d;
+                start[axis] = -(moved.origin[axis] * inverse[axis]);
+            }
+        }
+        let root = match moved.margin > 0.0 {
+            true => room.root.padded(DVec3::splat(moved.margin)),
+            false => room.root,
+        };
+        let inside = root.clip(&Ray::new(moved.origin, moved.direction), moved.range)?;
+        Some(Self {
+            moved,
+            inverse,
+            start,
+            near: inside.min,
+        })
+    }
+
+    /// Whether the ray's own rounding exceeds what cells are padded by.
+    pub(crate) fn is_thick(&self, room: &Room) -> bool {
+        self.moved.margin > room.pad / 8.0
+    }
+
+    /// Whether a thick ray may meet a cell before `far`; where it enters.
+    pub(crate) fn meets(&self, cell: &Aabb, far: f64) -> Option<f64> {
+        let padded = cell.padded(DVec3::splat(self.moved.margin));
+        let ray = Ray::new(self.moved.origin, self.moved.direction);
+        let range = Interval::new(self.near, far);
+        padded.clip(&ray, range).map(|inside| inside.min)
+    }
+
+    /// Where the ray crosses the plane of an axis; never (infinite) if it is parallel to it.
+    #[inline(always)]
+    pub(crate) fn cross(&self, axis: usize, plane: f64) -> f64 {
+        plane * self.inverse[axis] + self.start[axis]
+    }
+
+    /// Whether the ray moves towards larger coordinates; so it is said of one that does not move, too.
+    #[inline(always)]
+    pub(crate) fn up(&self, axis: usize) -> bool {
+        self.moved.direction[axis] >= 0.0
+    }
+
+    /// A point of the ray, kept within a box.
+    #[inline(always)]
+    pub(crate) fn at_within(&self, t: f64, b: &Aabb) -> DVec3 {
+        let mut p = self.moved.at(t);
+        for axis in 0..3 {
+            p[axis] = clamp(p[axis], b.min[axis], b.max[axis]);
+        }
+        p
+    }
+
+    /// A parameter of the ray as the visitor counts it.
+    pub(crate) fn original(&self, t: f64) -> f64 {
+        self.moved.original(t)
+    }
+}
+
+/// The nearest number in a range; the lower end for what is none.
+#[inline(always)]
+pub(crate) fn clamp(x: f64, min: f64, max: f64) -> f64 {
+    if x > max {
+        max
+    } else if x > min {
+        x
+    } else {
+        min
+    }
+}
+
+/// Remembers the primitives visited last, so that one which lies in several cells is not tested again: the inverse of a
+/// mailbox, nothing to clear and nothing to store with the primitives.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Mailbox {
+    last: [u32; Self::SIZE],
+    next: usize,
+}
+
+impl Mailbox {
+    const SIZE: usize = 8;
+
+    pub(crate) fn new() -> Self {
+        Self {
+            last: [u32::MAX; Self::SIZE],
+            next: 0,
+        }
+    }
+
+    /// Whether this primitive was not among the last; it is now.
+    #[inline(always)]
+    pub(crate) fn is_new(&mut self, id: u32) -> bool {
+        let mut known = false;
+        for other in self.last {
+            known |= other == id;
+        }
+        if !known {
+            self.last[self.next] = id;
+            self.next = (self.next + 1) % Self::SIZE;
+        }
+        !known
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_mailbox_knows_the_last_eight() {
+        let mut mailbox = Mailbox::new();
+        assert!((0..8).all(|id| mailbox.is_new(id)));
+        assert!((0..8).all(|id| !mailbox.is_new(id)));
+        assert!(mailbox.is_new(8) && mailbox.is_new(0) && !mailbox.is_new(2));
+    }
+
+    #[test]
+    fn a_parallel_ray_crosses_no_plane() {
+        let room = Room::new(Aabb::new(DVec3::ZERO, DVec3::ONE));
+        let ray = Ray::new(DVec3::new(0.0, 0.5, -1.0), DVec3::new(0.0, -0.0, 2.0));
+        let walk = Walk::new(&ray, Interval::FORWARD, &room).expect("through the room");
+        assert_eq!(walk.cross(0, 0.0), f64::INFINITY);
+        assert_eq!(walk.cross(1, -5.0), f64::INFINITY);
+        assert!((walk.original(walk.cross(2, 1.0)) - 1.0).abs() < 1e-12);
+        assert!(walk.original(walk.near) <= 0.5);
+    }
+}

@@ -1,0 +1,203 @@
+use crate::args::TraceRayArgs;
+use crate::input::{DEFAULT_SIZE, Input};
+use crate::report::{Failure, Reporter};
+use serde_json::{Value, json};
+use strahl::accel::{Exit, Place, Step};
+use strahl::math::{Aabb, DVec3};
+use strahl::tracing::{PrimaryRays, RayWalk, RenderScene, WalkEvent, walk};
+
+/// `strahl trace-ray`: the way of one ray through an accelerator.
+pub(crate) fn trace_ray(args: &TraceRayArgs) -> Result<(), Failure> {
+    let (input, reporter) = (Input::of(&args.scene)?, Reporter::new(false));
+    let (scene, _) = input.compiled(input.still(), &args.accelerator, &reporter)?;
+    let (width, height) = args.size.or(scene.settings().size).unwrap_or(DEFAULT_SIZE);
+    let (x, y) = args.pixel;
+    if x >= width || y >= height {
+        return Err(Failure::new(format!(
+            "there is no pixel {x},{y} in a picture of {width}x{height} pixels"
+        )));
+    }
+    let rays = PrimaryRays::new(scene.camera(), width, height);
+    let ray = rays.ray(f64::from(x) + 0.5, f64::from(y) + 0.5);
+    let way = walk(&scene, &ray);
+    let kind = args.accelerator.accelerator;
+    if args.json {
+        let all = json!({
+            "pixel": [x, y],
+            "size": [width, height],
+            "accelerator": kind.to_string(),
+            "ray": { "origin": point(ray.origin), "direction": point(ray.direction) },
+            "events": events_json(&scene, &way),
+            "steps": way.stats.node_visits,
+            "tests": way.stats.primitive_tests,
+            "hit": way.hit.map(|h| json!({ "t": h.t, "element": h.id })),
+        });
+        println!("{all:#}");
+        return Ok(());
+    }
+    println!("pixel {x},{y} of {width}x{height}, accelerator {kind}");
+    println!(
+        "ray   from {} along {}",
+        show(ray.origin),
+        show(ray.direction)
+    );
+    print_events(&scene, &way);
+    match way.hit {
+        Some(hit) => println!("hit   t = {}", hit.t),
+        None => println!("hit   none"),
+    }
+    println!(
+        "cost  {} steps, {} tests",
+        way.stats.node_visits, way.stats.primitive_tests
+    );
+    Ok(())
+}
+
+fn print_events(scene: &RenderScene, way: &RayWalk) {
+    // Tests stand below the leaf they are made in.
+    let (mut depth, mut level, mut inside) = (0, 0, Vec::new());
+    for event in &way.events {
+        let indent = "  ".repeat(depth);
+        match event {
+            WalkEvent::Step(step) => {
+                level = step.level as usize;
+                println!("{indent}{}", describe(step));
+            }
+            WalkEvent::Test {
+                id,
+                object,
+                found,
+                closest,
+            } => {
+                let object = &scene.objects()[*object as usize];
+                let name = object.name.as_deref().unwrap_or("");
+                let outcome = match (found, closest) {
+                    (true, Some(t)) => format!("hit at t = {t}"),
+                    _ => "no closer hit".to_owned(),
+                };
+                println!(
+                    "{indent}{}  test {} {name} (element {id}): {outcome}",
+                    "  ".repeat(level),
+                    object.kind
+                );
+            }
+            WalkEvent::Enter { id } => {
+                println!(
+                    "{indent}{}  instance (elements from {id}):",
+                    "  ".repeat(level)
+                );
+                depth += level + 2;
+                inside.push(level);
+            }
+            WalkEvent::Leave => {
+                level = inside.pop().unwrap_or(0);
+                depth = depth.saturating_sub(level + 2);
+            }
+        }
+    }
+}
+
+/// A station in words: what, where on the ray, and how the ray goes on.
+fn describe(step: &Step) -> String {
+    let place = match step.place {
+        Place::Node(b) => format!("node {}", extent(&b)),
+        Place::Leaf(b) => format!("leaf {}", extent(&b)),
+        Place::Sphere(c, r) => format!("sphere around {} radius {r:.6}", show(c)),
+        Place::LeafSphere(c, r) => format!("leaf sphere around {} radius {r:.6}", show(c)),
+        Place::Cell([x, y, z], b) => format!("cell {x},{y},{z} {}", extent(&b)),
+        Place::Empty(b) => format!("empty block {}", extent(&b)),
+        _ => "place".to_owned(),
+    };
+    let range = if step.far.is_finite() {
+        format!("t {:.6} to {:.6}", step.near, step.far)
+    } else {
+        format!("t from {:.6}", step.near)
+    };
+    let exit = step.exit.map_or(String::new(), |exit| {
+        let region = exit
+            .region
+            .map_or(String::new(), |r| format!(", region {r}"));
+        format!(", exit {}{region}", face(&exit))
+    });
+    format!("{}{place}, {range}{exit}", "  ".repeat(step.level as usize))
+}
+
+fn face(exit: &Exit) -> &'static str {
+    match (exit.axis, exit.up) {
+        (0, true) => "+x",
+        (0, false) => "-x",
+        (1, true) => "+y",
+        (1, false) => "-y",
+        (_, true) => "+z",
+        (_, false) => "-z",
+    }
+}
+
+fn events_json(scene: &RenderScene, way: &RayWalk) -> Vec<Value> {
+    let event = |event: &WalkEvent| match event {
+        WalkEvent::Step(step) => {
+            let (kind, place) = match step.place {
+                Place::Node(b) => ("node", bounds(&b)),
+                Place::Leaf(b) => ("leaf", bounds(&b)),
+                Place::Sphere(c, r) => ("sphere", json!({ "center": point(c), "radius": r })),
+                Place::LeafSphere(c, r) => {
+                    ("leaf sphere", json!({ "center": point(c), "radius": r }))
+                }
+                Place::Cell(index, b) => (
+                    "cell",
+                    json!({ "index": index, "min": point(b.min), "max": point(b.max) }),
+                ),
+                Place::Empty(b) => ("empty block", bounds(&b)),
+                _ => ("place", Value::Null),
+            };
+            json!({
+                "event": kind,
+                "place": place,
+                "level": step.level,
+                "near": number(step.near),
+                "far": number(step.far),
+                "exit": step.exit.map(|e| json!({ "face": face(&e), "region": e.region })),
+            })
+        }
+        WalkEvent::Test {
+            id,
+            object,
+            closest,
+            found,
+        } => {
+            let info = &scene.objects()[*object as usize];
+            json!({
+                "event": "test",
+                "element": id,
+                "object": object,
+                "kind": info.kind,
+                "name": info.name.as_deref(),
+                "hit": found.then_some(closest),
+            })
+        }
+        WalkEvent::Enter { id } => json!({ "event": "enter instance", "element": id }),
+        WalkEvent::Leave => json!({ "event": "leave instance" }),
+    };
+    way.events.iter().map(event).collect()
+}
+
+fn bounds(b: &Aabb) -> Value {
+    json!({ "min": point(b.min), "max": point(b.max) })
+}
+
+fn point(p: DVec3) -> [f64; 3] {
+    p.to_array()
+}
+
+/// JSON has no infinity.
+fn number(x: f64) -> Option<f64> {
+    x.is_finite().then_some(x)
+}
+
+fn show(p: DVec3) -> String {
+    format!("({:.6}, {:.6}, {:.6})", p.x, p.y, p.z)
+}
+
+fn extent(b: &Aabb) -> String {
+    format!("{} to {}", show(b.min), show(b.max))
+}

@@ -1,0 +1,231 @@
+//! What the builders of accelerators may know about primitives beyond their boxes.
+
+use super::assemble::Assembled;
+use crate::blocks::LeafClass;
+use crate::scene::PrimKind;
+use strahl_accel::Shapes;
+use strahl_geometry::Shape;
+use strahl_math::{Aabb, DVec3};
+
+/// The primitives of a group.
+pub(super) struct GroupShapes<'a>(pub(super) &'a Assembled);
+
+/// A primitive, as far as more is known than its box.
+enum Known<'a> {
+    Corners([DVec3; 3]),
+    Polygon(&'a [DVec3]),
+    Ball(DVec3, f64),
+    Box(Aabb),
+    Nothing,
+}
+
+impl GroupShapes<'_> {
+    fn known(&self, id: u32) -> Known<'_> {
+        let group = self.0;
+        match group.prims[id as usize].kind {
+            PrimKind::Triangle(mesh, triangle) => {
+                Known::Corners(group.meshes[mesh as usize].mesh.corners(triangle))
+            }
+            PrimKind::Shape(index) => match &group.shapes[index as usize].shape {
+                Shape::Sphere(s) => Known::Ball(s.center(), s.radius().abs()),
+                Shape::Cuboid(_) => Known::Box(self.bounds(id)),
+                Shape::Polygon(p) => {
+                    // The outer ring comes first; what is in a hole is kept, which is safe.
+                    p.rings().next().map_or(Known::Nothing, Known::Polygon)
+                }
+                _ => Known::Nothing,
+            },
+            PrimKind::Placed(_) | PrimKind::Instance(_) => Known::Nothing,
+        }
+    }
+}
+
+impl Shapes for GroupShapes<'_> {
+    fn count(&self) -> usize {
+        self.0.prims.len()
+    }
+
+    fn bounds(&self, id: u32) -> Aabb {
+        self.0.prim_bounds[id as usize]
+    }
+
+    fn class(&self, id: u32) -> u8 {
+        let group = self.0;
+        LeafClass::of(&group.prims[id as usize], &group.shapes, &group.meshes) as u8
+    }
+
+    fn overlaps(&self, id: u32, cell: &Aabb) -> bool {
+        match self.known(id) {
+            Known::Corners(corners) => triangle_meets(&corners, cell),
+            Known::Polygon(corners) => polygon_meets(corners, cell),
+            Known::Ball(center, radius) => {
+                let (nearest, farthest) = distances(center, cell);
+                nearest <= radius && radius <= farthest
+            }
+            Known::Box(b) => {
+                let inside = b.min.cmplt(cell.min).all() && cell.max.cmplt(b.max).all();
+                !inside
+            }
+            Known::Nothing => true,
+        }
+    }
+
+    fn sphere(&self, id: u32) -> Option<(DVec3, f64)> {
+        match self.known(id) {
+            Known::Corners(corners) => Some(ball_of_triangle(&corners)),
+            Known::Polygon(corners) => {
+                let center = corners.iter().sum::<DVec3>() / corners.len() as f64;
+                Some((center, reach(center, corners)))
+            }
+            Known::Ball(center, radius) => Some((center, radius)),
+            Known::Box(_) | Known::Nothing => None,
+        }
+    }
+}
+
+/// Distances of a point from the nearest and the farthest point of a box.
+fn distances(p: DVec3, b: &Aabb) -> (f64, f64) {
+    let (below, above) = (b.min - p, p - b.max);
+    let nearest = below.max(above).max(DVec3::ZERO);
+    let farthest = below.abs().max(above.abs());
+    (nearest.length(), farthest.length())
+}
+
+/// Whether a triangle meets a box: no axis separates them, neither a normal of one of the two nor a product of two edges.
+/// (Akenine-Möller: Fast 3D triangle-box overlap testing, 2001.) The accelerators pad the boxes by more than the
+/// rounding here.
+fn triangle_meets(corners: &[DVec3; 3], cell: &Aabb) -> bool {
+    let (center, half) = (cell.center(), cell.size() * 0.5);
+    let v = corners.map(|c| c - center);
+    let edges = [v[1] - v[0], v[2] - v[1], v[0] - v[2]];
+    let separates = |axis: DVec3| {
+        let [a, b, c] = v.map(|v| v.dot(axis));
+        let reach = half.dot(axis.abs());
+        a.min(b).min(c) > reach || a.max(b).max(c) < -reach
+    };
+    let units = [DVec3::X, DVec3::Y, DVec3::Z];
+    !(units.into_iter().any(separates)
+        || separates(edges[0].cross(edges[1]))
+        || units
+            .into_iter()
+            .any(|unit| edges.into_iter().any(|edge| separates(unit.cross(edge)))))
+}
+
+/// Whether a flat polygon meets a box: something is left when it is cut by the six planes. Of a polygon that is not
+/// convex an empty bridge may be left, which is safe. (Sutherland and Hodgman: Reentrant polygon clipping, 1974.)
+fn polygon_meets(corners: &[DVec3], cell: &Aabb) -> bool {
+    let mut left = corners.to_vec();
+    let mut next = Vec::with_capacity(left.len() + 6);
+    for axis in 0..3 {
+        for (plane, sign) in [(cell.min[axis], 1.0), (cell.max[axis], -1.0)] {
+            let height = |p: &DVec3| (p[axis] - plane) * sign;
+            next.clear();
+            for (i, b) in left.iter().enumerate() {
+                let a = &left[(i + left.len() - 1) % left.len()];
+                let (ha, hb) = (height(a), height(b));
+                if (ha < 0.0) != (hb < 0.0) {
+                    next.push(*a + (*b - *a) * (ha / (ha - hb)));
+                }
+                if hb >= 0.0 {
+                    next.push(*b);
+                }
+            }
+            std::mem::swap(&mut left, &mut next);
+        }
+    }
+    !left.is_empty()
+}
+
+/// The smallest ball around a triangle: around its longest edge, or through its corners.
+fn ball_of_triangle(corners: &[DVec3; 3]) -> (DVec3, f64) {
+    let mut best = (DVec3::ZERO, f64::INFINITY);
+    let [a, b, c] = *corners;
+    let (ab, ac) = (b - a, c - a);
+    let normal = ab.cross(ac);
+    let through = normal.cross(ab) * ac.length_squared() + ac.cross(normal) * ab.length_squared();
+    let centers = [
+        (a + b) * 0.5,
+        (b + c) * 0.5,
+        (c + a) * 0.5,
+        a + through / (2.0 * normal.length_squared()),
+    ];
+    for center in centers {
+        let radius = reach(center, corners);
+        // Without an area the last centre is none: NaN is not less.
+        if radius < best.1 {
+            best = (center, radius);
+        }
+    }
+    best
+}
+
+/// How far points are from a centre, rounded up.
+fn reach(center: DVec3, points: &[DVec3]) -> f64 {
+    let mut farthest = 0.0;
+    for p in points {
+        let distance = (*p - center).length();
+        if !(distance <= farthest) {
+            farthest = distance;
+        }
+    }
+    farthest * (1.0 + 8.0 * f64::EPSILON)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn cell(x: f64, y: f64, z: f64) -> Aabb {
+        Aabb::new(DVec3::new(x, y, z), DVec3::new(x + 1.0, y + 1.0, z + 1.0))
+    }
+
+    /// Points of a triangle or polygon tell which cells it certainly meets; the others it must mostly miss.
+    #[test]
+    fn triangles_and_polygons_meet_the_cells_they_have_points_in() {
+        let corners = [
+            DVec3::new(0.3, 0.2, 0.1),
+            DVec3::new(7.7, 2.4, 5.9),
+            DVec3::new(2.2, 6.8, 3.3),
+        ];
+        let mut met = std::collections::BTreeSet::new();
+        for i in 0..=400 {
+            for j in 0..=400 - i {
+                let (u, v) = (f64::from(i) / 400.0, f64::from(j) / 400.0);
+                let p = corners[0] * (1.0 - u - v) + corners[1] * u + corners[2] * v;
+                met.insert(p.floor().to_array().map(|x| x as i32));
+            }
+        }
+        let mut found = 0;
+        for index in 0..512 {
+            let [x, y, z] = [index % 8, index / 8 % 8, index / 64];
+            let c = cell(f64::from(x), f64::from(y), f64::from(z));
+            let meets = triangle_meets(&corners, &c);
+            assert!(meets || !met.contains(&[x, y, z]), "{x} {y} {z}");
+            assert_eq!(polygon_meets(&corners, &c), meets, "{x} {y} {z}");
+            found += usize::from(meets);
+        }
+        assert!(found < met.len() + 4, "{found} {}", met.len());
+    }
+
+    #[test]
+    fn a_ball_is_its_surface() {
+        let (near, far) = distances(DVec3::ZERO, &cell(1.0, 1.0, 1.0));
+        assert!((near - 3f64.sqrt()).abs() < 1e-15 && (far - 12f64.sqrt()).abs() < 1e-15);
+        assert_eq!(distances(DVec3::splat(1.5), &cell(1.0, 1.0, 1.0)).0, 0.0);
+    }
+
+    #[test]
+    fn the_ball_of_a_triangle_is_the_smallest() {
+        let right = [DVec3::ZERO, DVec3::X * 3.0, DVec3::Y * 4.0];
+        let (center, radius) = ball_of_triangle(&right);
+        assert!(
+            (radius - 2.5).abs() < 1e-12 && (center - DVec3::new(1.5, 2.0, 0.0)).length() < 1e-12
+        );
+        let even = [DVec3::X, DVec3::Y, DVec3::Z];
+        let (center, radius) = ball_of_triangle(&even);
+        assert!((center - DVec3::splat(1.0 / 3.0)).length() < 1e-12);
+        assert!((radius - (2.0f64 / 3.0).sqrt()).abs() < 1e-12);
+        let flat = [DVec3::ZERO, DVec3::X, DVec3::X * 4.0];
+        assert!((ball_of_triangle(&flat).1 - 2.0).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,108 @@
+//! The film of a scene has the same bits with every accelerator, number of threads and order of tiles: for every scene of the
+//! repository, and for the Standard Procedural Databases where they are at hand (`../shared/data/spd`, or the folder that
+//! `STRAHL_SPD` names).
+//!
+//! Pictures are small; `STRAHL_FULL=256x256 cargo test --release -p strahl --test accelerators` makes them larger.
+
+use std::path::{Path, PathBuf};
+use strahl::accel::AcceleratorKind;
+use strahl::tracing::{Prepared, RenderOptions, TileOrder};
+use strahl::{LoadOptions, load_path};
+
+fn accelerators() -> Vec<AcceleratorKind> {
+    let variants = [
+        "spheres:build=agglomerative",
+        "octree:traversal=exit-face",
+        "octree:traversal=trial-plane",
+        "octree:traversal=neighbours",
+    ];
+    let variants = variants.iter().map(|v| v.parse().expect("an accelerator"));
+    AcceleratorKind::ALL
+        .iter()
+        .copied()
+        .chain(variants)
+        .collect()
+}
+
+/// Size of the pictures, and whether the list has to render them too: it takes long.
+fn size() -> (u32, u32) {
+    let Ok(text) = std::env::var("STRAHL_FULL") else {
+        return (24, 18);
+    };
+    let (w, h) = text.split_once('x').expect("STRAHL_FULL is WIDTHxHEIGHT");
+    (w.parse().expect("a width"), h.parse().expect("a height"))
+}
+
+/// Compares all combinations for one scene; returns the number of pictures.
+fn compare(path: &Path) -> usize {
+    let loaded = load_path(path, LoadOptions::default());
+    let scene = loaded
+        .scene
+        .unwrap_or_else(|| panic!("{}: {:?}", path.display(), loaded.diagnostics));
+    let prepared = Prepared::new(&scene).expect("valid");
+    let (width, height) = size();
+    let mut first = None;
+    let mut pictures = 0;
+    for kind in accelerators() {
+        let scene = prepared.clone().build(kind);
+        for threads in [1, 2] {
+            for order in [TileOrder::Rows, TileOrder::Center] {
+                let options = RenderOptions {
+                    threads,
+                    tile_order: order,
+                    ..RenderOptions::new(&scene, width, height)
+                };
+                let done = strahl::render(&scene, &options, &()).expect("a picture");
+                let got = (done.film.sha256(), done.rays);
+                let expected = first.get_or_insert_with(|| got.clone());
+                assert_eq!(
+                    &got,
+                    expected,
+                    "{} {kind} {threads} {order:?}",
+                    path.display()
+                );
+                pictures += 1;
+            }
+        }
+    }
+    pictures
+}
+
+/// The files of a folder and those in it whose names end so.
+fn files(folder: &Path, endings: &[&str]) -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    let Ok(entries) = std::fs::read_dir(folder) else {
+        return found;
+    };
+    for entry in entries.flatten() {
+        let path = entry.path();
+        if path.is_dir() {
+            found.extend(files(&path, endings));
+        } else if endings.iter().any(|e| path.to_string_lossy().ends_with(e)) {
+            found.push(path);
+        }
+    }
+    found.sort();
+    found
+}
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+#[test]
+fn every_scene_of_the_repository_is_the_same_picture() {
+    let scenes = files(&root().join("scenes"), &[".pov", ".nff", ".gltf", ".glb"]);
+    assert!(scenes.len() >= 2);
+    let pictures: usize = scenes.iter().map(|scene| compare(scene)).sum();
+    assert_eq!(pictures, scenes.len() * accelerators().len() * 4);
+}
+
+#[test]
+fn the_procedural_databases_are_the_same_pictures() {
+    let folder = std::env::var_os("STRAHL_SPD")
+        .map_or_else(|| root().join("../shared/data/spd"), PathBuf::from);
+    for scene in files(&folder, &[".nff.gz"]) {
+        compare(&scene);
+    }
+}

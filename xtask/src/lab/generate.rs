@@ -1,0 +1,212 @@
+//! Scenes of any size, in the Neutral File Format.
+
+use anyhow::{Context, Result, bail};
+use std::f64::consts::TAU;
+use std::fmt::Write;
+use strahl::math::DVec3;
+
+/// Writes a scene: `sphereflake LEVELS`, `tetra LEVELS` or `stadium`.
+pub(crate) fn generate(what: &str, levels: Option<&str>) -> Result<String> {
+    let levels = || -> Result<u32> {
+        let levels = levels.context("how many levels?")?.parse()?;
+        if levels > 12 {
+            bail!("{levels} levels are more than any memory holds");
+        }
+        Ok(levels)
+    };
+    let mut scene = Scene::default();
+    match what {
+        "sphereflake" => {
+            scene.view([2.1, 1.3, 1.7], [0.0, 0.0, 0.0], 45.0);
+            scene.lights(&[[4.0, 3.0, 2.0], [1.0, -4.0, 4.0], [-3.0, 1.0, 5.0]]);
+            scene.ground(12.0, -0.5);
+            scene.fill("1 0.9 0.7 0.5 0.5 3 0 0");
+            scene.flake(DVec3::ZERO, 0.5, DVec3::Z, levels()?);
+        }
+        "tetra" => {
+            scene.view([1.0, -4.0, 1.8], [0.0, 0.0, 0.0], 40.0);
+            scene.lights(&[[2.0, -4.0, 6.0]]);
+            scene.fill("1 0.2 0.2 1 0 0 0 0");
+            let corners = [[1, 1, 1], [-1, -1, 1], [-1, 1, -1], [1, -1, -1]];
+            let corners = corners.map(|c| DVec3::from(c.map(f64::from)));
+            scene.tetra(corners, levels()?);
+        }
+        "stadium" => {
+            scene.view([0.0, -3.2, 1.4], [0.0, 0.0, 0.5], 40.0);
+            scene.lights(&[[30.0, -80.0, 120.0], [-90.0, 20.0, 60.0]]);
+            scene.fill("0.35 0.6 0.3 1 0 0 0 0");
+            scene.ground(60.0, 0.0);
+            scene.fill("0.7 0.7 0.75 1 0 0 0 0");
+            scene.tiers();
+            scene.fill("0.9 0.6 0.3 0.7 0.3 20 0 0");
+            scene.knot();
+        }
+        other => bail!("unknown scene `{other}`; there are: sphereflake, tetra, stadium"),
+    }
+    Ok(scene.0)
+}
+
+#[derive(Default)]
+struct Scene(String);
+
+impl Scene {
+    fn view(&mut self, from: [f64; 3], at: [f64; 3], angle: f64) {
+        self.line("b 0.08 0.36 0.57\nv");
+        self.point("from ", DVec3::from(from));
+        self.point("at ", DVec3::from(at));
+        self.line("up 0 0 1");
+        self.line(&format!("angle {angle}\nhither 0.01\nresolution 512 512"));
+    }
+
+    fn lights(&mut self, places: &[[f64; 3]]) {
+        for place in places {
+            self.point("l ", DVec3::from(*place));
+        }
+    }
+
+    fn fill(&mut self, numbers: &str) {
+        self.line(&format!("f {numbers}"));
+    }
+
+    fn ground(&mut self, half: f64, z: f64) {
+        if !self.0.contains("\nf ") {
+            self.fill("1 0.75 0.33 0.8 0 0 0 0");
+        }
+        let corners = [(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)];
+        self.polygon(&corners.map(|(x, y)| DVec3::new(x * half, y * half, z)));
+    }
+
+    /// A sphere with nine of a third of its size on it, six around its equator and three above, and so on.
+    fn flake(&mut self, center: DVec3, radius: f64, up: DVec3, levels: u32) {
+        self.point_and("s ", center, radius);
+        if levels == 0 {
+            return;
+        }
+        let side = up.any_orthonormal_vector();
+        let other = up.cross(side);
+        let above: [(f64, u32, f64); 2] = [(0.0, 6, 0.0), (0.955, 3, TAU / 12.0)];
+        for (elevation, count, turn) in above {
+            for i in 0..count {
+                let angle = TAU * f64::from(i) / f64::from(count) + turn;
+                let out = side * angle.cos() + other * angle.sin();
+                let direction = out * elevation.cos() + up * elevation.sin();
+                let place = center + direction * (radius * 4.0 / 3.0);
+                self.flake(place, radius / 3.0, direction, levels - 1);
+            }
+        }
+    }
+
+    /// A tetrahedron of four half its size, and so on; the smallest have faces.
+    fn tetra(&mut self, corners: [DVec3; 4], levels: u32) {
+        if levels == 0 {
+            for face in [[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]] {
+                self.polygon(&face.map(|i| corners[i]));
+            }
+            return;
+        }
+        for corner in corners {
+            self.tetra(corners.map(|c| (c + corner) * 0.5), levels - 1);
+        }
+    }
+
+    /// Rows of seats all around, as large as the thing in the middle is small.
+    fn tiers(&mut self) {
+        const SECTORS: u32 = 72;
+        for row in 0..24 {
+            let (r, z) = (60.0 + 1.5 * f64::from(row), 0.8 * f64::from(row));
+            for sector in 0..SECTORS {
+                let at = |sector: u32, r: f64, z: f64| {
+                    let angle = TAU * f64::from(sector) / f64::from(SECTORS);
+                    DVec3::new(r * angle.cos(), 0.8 * r * angle.sin(), z)
+                };
+                let (a, b) = (sector, sector + 1);
+                self.polygon(&[
+                    at(a, r, z),
+                    at(a, r, z + 0.8),
+                    at(b, r, z + 0.8),
+                    at(b, r, z),
+                ]);
+                let (near, far, top) = (r, r + 1.5, z + 0.8);
+                self.polygon(&[
+                    at(a, near, top),
+                    at(a, far, top),
+                    at(b, far, top),
+                    at(b, near, top),
+                ]);
+            }
+        }
+    }
+
+    /// A small knotted tube of 16,384 triangles in the middle: the teapot.
+    fn knot(&mut self) {
+        const AROUND: u32 = 512;
+        const ACROSS: u32 = 16;
+        let path = |u: f64| {
+            let r = 0.3 + 0.12 * (3.0 * u).cos();
+            DVec3::new(
+                r * (2.0 * u).cos(),
+                r * (2.0 * u).sin(),
+                0.5 + 0.15 * (3.0 * u).sin(),
+            )
+        };
+        let point = |i: u32, j: u32| {
+            let (u, v) = (
+                TAU * f64::from(i % AROUND) / f64::from(AROUND),
+                TAU * f64::from(j % ACROSS) / f64::from(ACROSS),
+            );
+            let along = (path(u + 1e-4) - path(u - 1e-4)).normalize();
+            let side = along.cross(DVec3::Z).normalize();
+            path(u) + (side * v.cos() + side.cross(along) * v.sin()) * 0.06
+        };
+        for i in 0..AROUND {
+            for j in 0..ACROSS {
+                let [a, b, c, d] = [
+                    point(i, j),
+                    point(i + 1, j),
+                    point(i + 1, j + 1),
+                    point(i, j + 1),
+                ];
+                self.polygon(&[a, b, c]);
+                self.polygon(&[a, c, d]);
+            }
+        }
+    }
+
+    fn polygon(&mut self, corners: &[DVec3]) {
+        self.line(&format!("p {}", corners.len()));
+        for corner in corners {
+            self.point("", *corner);
+        }
+    }
+
+    fn point(&mut self, word: &str, p: DVec3) {
+        self.line(&format!("{word}{} {} {}", p.x, p.y, p.z));
+    }
+
+    fn point_and(&mut self, word: &str, p: DVec3, number: f64) {
+        self.line(&format!("{word}{} {} {} {number}", p.x, p.y, p.z));
+    }
+
+    fn line(&mut self, text: &str) {
+        // Writing to a string never fails.
+        let _ = writeln!(self.0, "{text}");
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::generate;
+
+    #[test]
+    fn scenes_have_the_sizes_of_the_series() {
+        let count = |what, levels, word: &str| {
+            let scene = generate(what, levels).expect("a scene");
+            scene.lines().filter(|l| l.starts_with(word)).count()
+        };
+        assert_eq!(count("sphereflake", Some("3"), "s "), 820);
+        assert_eq!(count("sphereflake", Some("4"), "s "), 7381);
+        assert_eq!(count("tetra", Some("5"), "p "), 4096);
+        assert!(count("stadium", None, "p ") > 16_384);
+        assert!(generate("sphereflake", None).is_err() && generate("cube", None).is_err());
+    }
+}
