@@ -158,6 +158,7 @@ shared!(
     Prism,
     Lathe,
     Sor,
+    SphereSweep,
     SmoothTriangle,
     TriangleMesh,
     HeightField,

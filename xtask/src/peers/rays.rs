@@ -112,8 +112,11 @@ pub(super) fn make(
     };
     for i in 0..side * side {
         let centre = |(x, y): (u32, u32)| camera.ray(f64::from(x) + 0.5, f64::from(y) + 0.5);
-        batches[0].push(&centre((i % side, i / side)), f64::INFINITY, None);
-        batches[1].push(&centre(tile(i)), f64::INFINITY, None);
+        let (Some(in_row), Some(in_tile)) = (centre((i % side, i / side)), centre(tile(i))) else {
+            continue;
+        };
+        batches[0].push(&in_row, f64::INFINITY, None);
+        batches[1].push(&in_tile, f64::INFINITY, None);
         let ray = batches[0].rays[i as usize].0;
         let Some(hit) = tracer.closest_hit(&ray, Interval::FORWARD, None, RayClass::Camera) else {
             continue;

@@ -19,6 +19,8 @@ pub(crate) fn trace_ray(args: &TraceRayArgs) -> Result<(), Failure> {
     }
     let rays = PrimaryRays::new(scene.camera(), width, height);
     let ray = rays.ray(f64::from(x) + 0.5, f64::from(y) + 0.5);
+    let ray =
+        ray.ok_or_else(|| Failure::new(format!("the camera sees nothing through pixel {x},{y}")))?;
     let way = walk(&scene, &ray);
     let kind = args.accelerator.accelerator;
     if args.json {

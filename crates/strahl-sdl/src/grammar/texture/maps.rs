@@ -58,7 +58,7 @@ impl Parser<'_> {
             },
             |p, at, entries| {
                 // Entries change the default normal, as `normal { }` does.
-                let base = p.state.default_texture.top().normal.clone();
+                let base = p.state.default_texture.top().normal.as_deref().cloned();
                 let normal = p.nested(|p| p.normal_items(Kind::RightBracket, base))?;
                 entries.push((at, normal));
                 Ok(())

@@ -66,11 +66,11 @@ impl Parser<'_> {
         };
         self.take(token)?;
         match word {
-            Word::VertexVectors => lists.vertices = self.counted(Self::f32_vector)?,
-            Word::NormalVectors => lists.normals = self.counted(Self::f32_vector)?,
-            Word::UvVectors => lists.uvs = self.counted(Self::vector2)?,
+            Word::VertexVectors => lists.vertices = self.counted_list(Self::f32_vector)?,
+            Word::NormalVectors => lists.normals = self.counted_list(Self::f32_vector)?,
+            Word::UvVectors => lists.uvs = self.counted_list(Self::vector2)?,
             Word::TextureList => {
-                lists.textures = self.counted(|p| {
+                lists.textures = self.counted_list(|p| {
                     p.expect_word_texture()?;
                     p.texture_block()
                 })?;
@@ -78,11 +78,11 @@ impl Parser<'_> {
             Word::FaceIndices => self.face_indices(lists)?,
             Word::NormalIndices => {
                 let count = lists.normals.len();
-                lists.normal_faces = self.counted(|p| p.face(count, "normal_vectors"))?;
+                lists.normal_faces = self.counted_list(|p| p.face(count, "normal_vectors"))?;
             }
             Word::UvIndices => {
                 let count = lists.uvs.len();
-                lists.uv_faces = self.counted(|p| p.face(count, "uv_vectors"))?;
+                lists.uv_faces = self.counted_list(|p| p.face(count, "uv_vectors"))?;
             }
             _ => lists.has_inside = self.vector3()? != DVec3::ZERO,
         }
@@ -94,7 +94,7 @@ impl Parser<'_> {
         let (vertices, textures) = (lists.vertices.len(), lists.textures.len());
         let mut face_textures = HashMap::new();
         let mut index = 0;
-        lists.faces = self.counted(|p| {
+        lists.faces = self.counted_list(|p| {
             let face = p.face(vertices, "vertex_vectors")?;
             if textures > 0
                 && let Some(texture) = p.face_texture(textures)?
@@ -117,7 +117,10 @@ impl Parser<'_> {
     }
 
     /// `{ count, item, ... }`
-    fn counted<T>(&mut self, mut item: impl FnMut(&mut Self) -> PResult<T>) -> PResult<Vec<T>> {
+    fn counted_list<T>(
+        &mut self,
+        mut item: impl FnMut(&mut Self) -> PResult<T>,
+    ) -> PResult<Vec<T>> {
         self.braces(|p| {
             let token = p.peek()?;
             let place = p.place_of(token);
