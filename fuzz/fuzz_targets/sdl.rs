@@ -1,4 +1,5 @@
-//! Any bytes read as a scene in POV-Ray's language: no panic, no loop without end, and a scene or an error.
+//! Any bytes read as a scene in POV-Ray's language: no panic, no loop without end, and a scene or an error; a scene of a few
+//! objects can be made ready for rendering, or that ends in an error too.
 
 #![no_main]
 
@@ -7,12 +8,16 @@ use strahl_sdl::{MemoryHost, Options, Source, parse};
 
 fuzz_target!(|data: &[u8]| {
     let mut options = Options::default();
-    options.limits.steps = 100_000;
-    options.limits.array_elements = 1 << 16;
-    options.limits.string_bytes = 1 << 16;
-    options.limits.objects = 1 << 16;
-    options.limits.depth = 200;
-    options.limits.nesting = 200;
+    // Small enough for many runs in a second, and for loops that don't end to be told apart from slow ones.
+    options.limits.steps = 5_000;
+    options.limits.array_elements = 1 << 12;
+    options.limits.string_bytes = 1 << 12;
+    options.limits.all_strings = 1 << 16;
+    options.limits.objects = 1 << 10;
+    options.limits.parts = 1 << 14;
+    options.limits.written_bytes = 1 << 16;
+    options.limits.depth = 50;
+    options.limits.nesting = 50;
     let mut host = MemoryHost::new().with_file("a.inc", data.to_vec());
     let parsed = parse(Source::new("fuzz.pov", data), &options, &mut host);
     let failed = parsed.diagnostics.iter().any(|d| d.is_error());
@@ -21,5 +26,10 @@ fuzz_target!(|data: &[u8]| {
     for diagnostic in &parsed.diagnostics {
         // Placing a caret must not fail either.
         let _ = diagnostic.to_string();
+    }
+    if let Some(scene) = &parsed.scene
+        && scene.objects.0.len() < 20
+    {
+        let _ = strahl_render::Prepared::new(scene);
     }
 });

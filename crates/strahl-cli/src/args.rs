@@ -3,7 +3,7 @@ use std::path::PathBuf;
 use strahl::Format;
 use strahl::accel::AcceleratorKind;
 use strahl::formats::image::BitDepth;
-use strahl::sdl::Word;
+use strahl::sdl::{Limits, Word};
 use strahl::shade::ShadingModel;
 use strahl::tracing::{Region, Sampling, TileOrder};
 
@@ -63,6 +63,9 @@ pub(crate) struct PovArgs {
     /// Let the scene write files into this folder instead of its own
     #[arg(long, value_name = "DIR")]
     pub(crate) allow_write: Option<PathBuf>,
+    /// Raise (or lower) a bound on what a scene may use, as an error message names it; may be given several times
+    #[arg(long, value_name = "NAME=N", value_parser = parse_limit)]
+    pub(crate) limit: Vec<(String, u64)>,
     /// Language version of scenes that name none, such as 3.7
     #[arg(long, value_name = "VERSION", value_parser = parse_version)]
     pub(crate) language_version: Option<f64>,
@@ -396,6 +399,19 @@ fn parse_declaration(s: &str) -> Result<(String, f64), String> {
     number.map(|v| (name.to_owned(), v)).ok_or_else(|| {
         format!("`{value}` is no number: only numbers can be declared here, such as {name}=2.5")
     })
+}
+
+fn parse_limit(s: &str) -> Result<(String, u64), String> {
+    let (name, value) = s
+        .split_once('=')
+        .ok_or_else(|| "expected NAME=N, such as steps=1e11".to_owned())?;
+    let number = value.parse::<f64>().ok().filter(|v| *v >= 0.0 && *v < 1e18);
+    let number = number.ok_or_else(|| format!("`{value}` is no number from 0 to 1e18"))?;
+    if !Limits::default().set(name, number as u64) {
+        let known = Limits::NAMES.join(", ");
+        return Err(format!("there is no limit `{name}`; there are {known}"));
+    }
+    Ok((name.to_owned(), number as u64))
 }
 
 fn parse_version(s: &str) -> Result<f64, String> {

@@ -162,6 +162,9 @@ impl<'a> Input<'a> {
         if let Some(version) = self.pov.language_version {
             sdl.version = version;
         }
+        for (name, value) in &self.pov.limit {
+            sdl.limits.set(name, *value);
+        }
         let declared = self.pov.declare.iter();
         sdl.declare = declared
             .map(|(name, x)| (name.clone(), Value::Float(*x)))

@@ -81,8 +81,14 @@ pub struct Limits {
     pub array_elements: u64,
     /// Bytes of one string.
     pub string_bytes: usize,
-    /// Objects of the scene.
+    /// Bytes of all strings made.
+    pub all_strings: u64,
+    /// Objects made, with the parts of combined ones and all copies.
     pub objects: usize,
+    /// Entries of all textures and meshes: colours of maps, copied members, vertices, faces.
+    pub parts: u64,
+    /// Textures within each other.
+    pub texture_depth: u32,
     /// Bytes of all files read.
     pub read_bytes: u64,
     /// Files opened for writing.
@@ -96,16 +102,102 @@ pub struct Limits {
 impl Default for Limits {
     fn default() -> Self {
         Self {
-            steps: 20_000_000_000,
+            steps: 2_000_000_000,
             depth: 10_000,
             nesting: 1000,
-            array_elements: 1 << 27,
+            array_elements: 1 << 24,
             string_bytes: 1 << 24,
-            objects: 50_000_000,
+            all_strings: 1 << 30,
+            objects: 20_000_000,
+            parts: 1 << 28,
+            texture_depth: 100,
             read_bytes: 8 << 30,
             written_files: 1000,
             written_bytes: 1 << 30,
             errors: 20,
         }
+    }
+}
+
+impl Limits {
+    /// The names of all limits.
+    pub const NAMES: [&str; 13] = [
+        "steps",
+        "depth",
+        "nesting",
+        "array_elements",
+        "string_bytes",
+        "all_strings",
+        "objects",
+        "parts",
+        "texture_depth",
+        "read_bytes",
+        "written_files",
+        "written_bytes",
+        "errors",
+    ];
+
+    /// Sets the limit of this name; `false` if there is none, or its type does not hold the number.
+    pub fn set(&mut self, name: &str, value: u64) -> bool {
+        let size = usize::try_from(value);
+        match (name, size) {
+            ("steps", _) => self.steps = value,
+            ("depth", Ok(size)) => self.depth = size,
+            ("nesting", Ok(size)) => self.nesting = size,
+            ("array_elements", _) => self.array_elements = value,
+            ("string_bytes", Ok(size)) => self.string_bytes = size,
+            ("all_strings", _) => self.all_strings = value,
+            ("objects", Ok(size)) => self.objects = size,
+            ("parts", _) => self.parts = value,
+            ("texture_depth", _) => match u32::try_from(value) {
+                Ok(depth) => self.texture_depth = depth,
+                Err(_) => return false,
+            },
+            ("read_bytes", _) => self.read_bytes = value,
+            ("written_files", Ok(size)) => self.written_files = size,
+            ("written_bytes", _) => self.written_bytes = value,
+            ("errors", Ok(size)) => self.errors = size,
+            _ => return false,
+        }
+        true
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_limit_can_be_set() {
+        let mut limits = Limits::default();
+        for name in Limits::NAMES {
+            assert!(limits.set(name, 7), "{name}");
+        }
+        let Limits {
+            steps,
+            depth,
+            nesting,
+            array_elements,
+            string_bytes,
+            all_strings,
+            objects,
+            parts,
+            texture_depth,
+            read_bytes,
+            written_files,
+            written_bytes,
+            errors,
+        } = limits;
+        let wide = [
+            steps,
+            array_elements,
+            all_strings,
+            parts,
+            read_bytes,
+            written_bytes,
+        ];
+        let sizes = [depth, nesting, string_bytes, objects, written_files, errors];
+        assert_eq!((wide, sizes, texture_depth), ([7; 6], [7; 6], 7));
+        assert!(!limits.set("step", 7));
     }
 }

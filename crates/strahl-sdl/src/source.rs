@@ -4,9 +4,8 @@ use crate::lexer::{self, Lexed};
 use crate::symbol::Symbols;
 use crate::token::Token;
 use std::io::Write;
-use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::{Arc, OnceLock};
-use strahl_scene::{FileId, Span};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use strahl_scene::{Diagnostic, FileId, SourceLine, Span};
 
 mod folder;
 mod fonts;
@@ -146,8 +145,19 @@ pub(crate) struct SourceFile {
     pub(crate) bytes: Vec<u8>,
     /// Where the lines begin; made when first needed.
     lines: OnceLock<Vec<u32>>,
-    /// The place looked up last: byte offset above, number of line ends before it below.
-    last: AtomicU64,
+    /// The place looked up last.
+    last: Mutex<Line>,
+}
+
+/// The line that a place stands in.
+#[derive(Clone, Copy, Debug, Default)]
+struct Line {
+    /// The place.
+    at: u32,
+    /// How many lines end before it.
+    ends: u32,
+    /// Where its line begins.
+    begin: u32,
 }
 
 impl SourceFile {
@@ -158,7 +168,7 @@ impl SourceFile {
             name: source.name,
             bytes: source.bytes,
             lines: OnceLock::new(),
-            last: AtomicU64::new(0),
+            last: Mutex::default(),
         }
     }
 
@@ -171,33 +181,39 @@ impl SourceFile {
         })
     }
 
-    fn line_ends(&self, from: u32, to: u32) -> u32 {
-        let part = self.bytes.get(from as usize..to as usize).unwrap_or(&[]);
-        part.iter().filter(|b| **b == b'\n').count() as u32
-    }
-
-    /// How many lines end before a byte offset.
+    /// The line that a byte offset stands in.
     ///
-    /// Most places asked for are close to the one before, and counting from there needs no table of all lines, which takes
+    /// Most places asked for stand behind the one before, and going on from there needs no table of all lines, which takes
     /// a pass over the file and a search that misses the cache at every step.
-    fn ends_before(&self, start: u32) -> u32 {
+    fn line_of(&self, start: u32) -> Line {
         const NEAR: u32 = 4096;
         const FAR: u32 = 1 << 20;
-        let last = self.last.load(Ordering::Relaxed);
-        let (at, ends) = ((last >> 32) as u32, last as u32);
-        let distance = at.abs_diff(start);
-        let close = distance <= NEAR || (distance <= FAR && self.lines.get().is_none());
-        let ends = if !close {
-            let lines = self.lines();
-            lines.partition_point(|s| *s <= start).saturating_sub(1) as u32
-        } else if at <= start {
-            ends + self.line_ends(at, start)
+        let mut last = self.last.lock().unwrap_or_else(PoisonError::into_inner);
+        let far = if self.lines.get().is_none() {
+            FAR
         } else {
-            ends - self.line_ends(start, at)
+            NEAR
         };
-        let now = u64::from(start) << 32 | u64::from(ends);
-        self.last.store(now, Ordering::Relaxed);
-        ends
+        let passed = self.bytes.get(last.at as usize..start as usize);
+        match passed {
+            Some(passed) if passed.len() <= far as usize => {
+                let ends = passed.iter().filter(|b| **b == b'\n').count() as u32;
+                if ends > 0 {
+                    let end = passed.iter().rposition(|b| *b == b'\n').unwrap_or(0);
+                    last.begin = last.at + end as u32 + 1;
+                }
+                last.ends += ends;
+            }
+            // Back within the line.
+            None if start >= last.begin => {}
+            _ => {
+                let lines = self.lines();
+                last.ends = lines.partition_point(|s| *s <= start).saturating_sub(1) as u32;
+                last.begin = lines.get(last.ends as usize).copied().unwrap_or(0);
+            }
+        }
+        last.at = start;
+        *last
     }
 
     /// The place of the token at a byte offset.
@@ -206,28 +222,67 @@ impl SourceFile {
         const COUNTED: usize = 4096;
         // The place may be one behind the last byte.
         let start = start.min(self.bytes.len() as u32);
-        let ends = self.ends_before(start);
-        let end = start as usize;
-        let window = end.saturating_sub(COUNTED);
-        let before = self.bytes.get(window..end).unwrap_or(&[]);
-        let column = match before.iter().rposition(|b| *b == b'\n') {
-            Some(at) => characters(before.get(at + 1..).unwrap_or(&[])),
-            None if window == 0 => characters(before),
-            None => {
-                let begin = self.lines().get(ends as usize).copied().unwrap_or(0);
-                end - begin as usize
-            }
+        let line = self.line_of(start);
+        let before = self.bytes.get(line.begin as usize..start as usize);
+        let before = before.unwrap_or(&[]);
+        let column = if before.len() > COUNTED {
+            before.len()
+        } else {
+            // Continuation bytes of UTF-8 are no characters of their own.
+            before.iter().filter(|b| **b & 0xc0 != 0x80).count()
         };
         Span {
             file: self.id,
-            line: ends + 1,
+            line: line.ends + 1,
             column: column as u32 + 1,
-            length: lexer::token_length(&self.bytes, end) as u32,
+            length: lexer::token_length(&self.bytes, start as usize) as u32,
+        }
+    }
+
+    /// The line that a span of this file points into; of a very long one, as exporters write them, what stands around the
+    /// place.
+    pub(crate) fn excerpt(&self, start: u32, span: Span) -> SourceLine {
+        const AROUND: usize = 80;
+        let line = self.line_bytes(span.line);
+        if line.len() <= 4096 {
+            let shown = Diagnostic::error("").at(span);
+            let shown = shown.with_source(&self.name, &lexer::decode(line));
+            return shown.source.unwrap_or_else(|| SourceLine {
+                file: self.name.clone(),
+                text: String::new(),
+                column: 1,
+                length: 1,
+            });
+        }
+        let place = (start as usize).min(self.bytes.len());
+        let piece = |from: usize, to: usize| {
+            let bytes = self.bytes.get(from..to).unwrap_or(&[]);
+            bytes
+                .split(|b| *b == b'\n')
+                .map(lexer::decode)
+                .collect::<Vec<_>>()
+        };
+        let before = piece(place.saturating_sub(AROUND), place)
+            .pop()
+            .unwrap_or_default();
+        let end = (place + AROUND).min(self.bytes.len());
+        let behind = piece(place, end).into_iter().next().unwrap_or_default();
+        let length = (behind.chars().count() as u32).clamp(1, span.length.max(1));
+        SourceLine {
+            file: self.name.clone(),
+            column: before.chars().count() as u32 + 1,
+            text: before + &behind,
+            length,
         }
     }
 
     /// The text of a line, counted from 1.
+    #[cfg(test)]
     pub(crate) fn line_text(&self, line: u32) -> String {
+        lexer::decode(self.line_bytes(line))
+    }
+
+    fn line_bytes(&self, line: u32) -> &[u8] {
         let lines = self.lines();
         let index = (line as usize).saturating_sub(1);
         let begin = lines.get(index).map_or(self.bytes.len(), |s| *s as usize);
@@ -235,7 +290,7 @@ impl SourceFile {
             .get(index + 1)
             .map_or(self.bytes.len(), |s| *s as usize - 1);
         let text = self.bytes.get(begin..end).unwrap_or(&[]);
-        lexer::decode(text.strip_suffix(b"\r").unwrap_or(text))
+        text.strip_suffix(b"\r").unwrap_or(text)
     }
 
     /// The text between the quotation marks of a string, escapes left alone: file names of Windows need it.
@@ -244,12 +299,6 @@ impl SourceFile {
         let end = rest.iter().position(|b| *b == b'"').unwrap_or(rest.len());
         lexer::decode(&rest[..end])
     }
-}
-
-/// How many characters a text has.
-fn characters(text: &[u8]) -> usize {
-    // Continuation bytes of UTF-8 are no characters of their own.
-    text.iter().filter(|b| **b & 0xc0 != 0x80).count()
 }
 
 /// The tokens of a part of a file that nothing reaches into or out of; most files are one chunk.

@@ -172,3 +172,274 @@ fn words_in_any_order_are_read() {
         assert_eq!(failed, parsed.scene.is_none());
     }
 }
+
+/// A scene built up in steps: what the last step uses is not copied by each.
+#[test]
+fn drilling_in_a_loop_takes_linear_time() {
+    let drilled = |holes: usize| {
+        let text = format!(
+            "#declare A = box {{ -1, 1 }} #for (I, 1, {holes}) \
+             #declare A = difference {{ object {{ A }} cylinder {{ -2*z, 2*z, 0.01 translate x*I/{holes} }} }} #end \
+             object {{ A pigment {{ rgb 1 }} }}"
+        );
+        let mut options = Options::default();
+        // Copies would be counted: half the square of the holes.
+        options.limits.objects = 10 * holes;
+        let parsed = parse(
+            Source::new("test.pov", text),
+            &options,
+            &mut MemoryHost::new(),
+        );
+        let errors: Vec<String> = parsed.diagnostics.iter().map(ToString::to_string).collect();
+        let scene = parsed
+            .scene
+            .unwrap_or_else(|| panic!("{}", errors.join("\n")));
+        assert!(scene.groups.is_empty());
+        let (mut shapes, mut waiting) = (0, vec![&scene.objects.0[0]]);
+        while let Some(object) = waiting.pop() {
+            match &object.kind {
+                strahl_scene::ObjectKind::Csg { children, .. } => waiting.extend(&children.0),
+                strahl_scene::ObjectKind::Shape(_) => shapes += 1,
+                other => panic!("{other:?}"),
+            }
+        }
+        assert_eq!(shapes, holes + 1);
+    };
+    drilled(10);
+    drilled(20_000);
+}
+
+/// Parts that are used several times within one combined object are copied for each but the last use.
+#[test]
+fn combined_objects_have_all_their_parts() {
+    let text = "#declare Ball = union { #for (I, 1, 20) sphere { I * x, 0.3 } #end } \
+        #declare Two = difference { object { Ball } object { Ball translate y } } \
+        object { Two } object { Two translate z } object { Ball inverse } \
+        intersection { object { Two } object { Ball } }";
+    let parsed = parse_with(&mut MemoryHost::new(), text);
+    let scene = parsed.scene.unwrap();
+    let shapes = |objects: &[strahl_scene::Object]| {
+        let mut waiting: Vec<&strahl_scene::Object> = objects.iter().collect();
+        let (mut shapes, mut instances) = (0, 0);
+        while let Some(object) = waiting.pop() {
+            match &object.kind {
+                strahl_scene::ObjectKind::Csg { children, .. } => waiting.extend(&children.0),
+                strahl_scene::ObjectKind::Shape(_) => shapes += 1,
+                strahl_scene::ObjectKind::Instance(_) => instances += 1,
+                strahl_scene::ObjectKind::Light(_) => {}
+            }
+        }
+        (shapes, instances)
+    };
+    for group in &scene.groups {
+        assert_eq!(shapes(&group.objects.0).1, 0);
+    }
+    let each: Vec<_> = scene
+        .objects
+        .0
+        .iter()
+        .map(|o| shapes(std::slice::from_ref(o)))
+        .collect();
+    assert_eq!(each[2..], [(20, 0), (60, 0)]);
+    let (drawn, shared) = shapes(&scene.objects.0[..2]);
+    assert!(
+        (drawn, shared) == (80, 0) || (shared == 2 && scene.groups.len() == 1),
+        "{each:?}"
+    );
+}
+
+#[test]
+fn deep_and_endless_things_end_in_an_error() {
+    let steps = |o: &mut Options| o.limits.steps = 3_000_000;
+    for (text, expected) in [
+        ("union { ".repeat(100_000), "nested deeper than 1000"),
+        (
+            "difference { sphere { 0, 1 } ".repeat(100_000),
+            "nested deeper",
+        ),
+        (
+            format!("#declare F = function(x) {{ {}x }}", "(".repeat(100_000)),
+            "nested deeper",
+        ),
+        (
+            format!("#declare A = ({}", "1 ? 1 : ".repeat(100_000)),
+            "nested deeper",
+        ),
+        (
+            format!(
+                "#declare P = {}",
+                "pigment { bozo pigment_map { [0 ".repeat(100_000)
+            ),
+            "nested deeper",
+        ),
+        (
+            "#declare P = pigment { rgb 1 } #while (1) \
+             #declare P = pigment { bozo pigment_map { [0 P] } } #end"
+                .to_owned(),
+            "nested deeper than 100 levels",
+        ),
+        (
+            "#declare T = texture { pigment { rgb 1 } } #while (1) \
+             #declare T = texture { bozo texture_map { [0 T] } } #end"
+                .to_owned(),
+            "nested deeper than 100 levels",
+        ),
+        (
+            "#declare N = normal { bumps } #while (1) \
+             #declare N = normal { bozo normal_map { [0 N] } } #end"
+                .to_owned(),
+            "nested deeper than 100 levels",
+        ),
+        (
+            "#declare F = function(x) { F(x) } #debug str(F(1), 0, 0)".to_owned(),
+            "F",
+        ),
+        (
+            "#macro A(N) #if (N > 0) A(N - 1) A(N - 1) #end #end A(1000)".to_owned(),
+            "seems not to end",
+        ),
+        (
+            "#macro A() #macro A() A() #end A() #end A()".to_owned(),
+            "nested deeper",
+        ),
+        (
+            "#while (1) #declare R = seed(1); #end".to_owned(),
+            "seems not to end",
+        ),
+        ("#declare S = spline { }".to_owned(), "at least one point"),
+        (
+            "#declare S = spline { cubic_spline 1e400, x }".to_owned(),
+            "not a finite number",
+        ),
+    ] {
+        let found = limited(&text, steps);
+        let shown: String = text.chars().take(100).collect();
+        assert!(found.contains(expected), "{shown}\n{found}");
+        assert!(found.len() < 100_000, "{shown}");
+    }
+}
+
+#[test]
+fn numbers_out_of_all_bounds() {
+    for text in [
+        "sphere { 1e308 * 1e308, 1 }",
+        "sphere { 0, 1e400 }",
+        "sphere { (1e400 - 1e400) * x, 1 }",
+        "box { -1e400, 1e400 }",
+        "plane { y, 1e400 }",
+        "cylinder { 0, 1e400 * x, 1 }",
+        "cone { 0, 1e400, x, 1 }",
+        "torus { 1e400, 1 }",
+        "triangle { 0, x, 1e400 * y }",
+        "polygon { 4, <0, 0>, <1e400, 0>, <0, 1>, <0, 0> }",
+        "sphere { 0, 1 translate 1e400 }",
+        "sphere { 0, 1 scale 1e400 }",
+    ] {
+        assert!(!errors(text).is_empty(), "{text}");
+    }
+    // Nothing is wrong with these but what they mean.
+    for text in [
+        "sphere { 0, 1 pigment { rgb 1e400 } finish { phong_size 1e400 roughness 0 } }",
+        "#debug str(pow(10, 400) - pow(10, 400), 0, 3)",
+        "sphere { 0, 1 rotate 1e300 }",
+        "#declare A = mod(1e300, 3e-300) + int(1e300) + div(1e300, 3);",
+        "camera { location 1e300 look_at 0 }",
+    ] {
+        let _ = parse_with(&mut MemoryHost::new(), text);
+    }
+}
+
+#[test]
+fn bytes_that_are_no_text() {
+    let read = |bytes: Vec<u8>| {
+        let parsed = parse(
+            Source::new("test.pov", bytes),
+            &Options::default(),
+            &mut MemoryHost::new(),
+        );
+        let errors: Vec<String> = parsed.diagnostics.iter().map(ToString::to_string).collect();
+        (parsed.scene.is_some(), errors)
+    };
+    // Zeros are blanks; invalid UTF-8 in strings is Latin-1.
+    assert_eq!(read(vec![0; 1_000_000]), (true, vec![]));
+    assert_eq!(
+        read(b"#debug \"\xff\xfe\xe9\" sphere { 0, 1 }".to_vec()),
+        (true, vec![])
+    );
+    assert_eq!(
+        read(b"\xef\xbb\xbfsphere { 0, 1 }".to_vec()),
+        (true, vec![])
+    );
+    let (sound, errors) = read(b"sphere { 0, \xff }".to_vec());
+    assert!(!sound && errors[0].contains("the byte 0xff"), "{errors:?}");
+    let (sound, errors) = read(b"}".repeat(3_000_000));
+    assert!(!sound && errors.len() <= 20, "{}", errors.len());
+}
+
+#[test]
+fn a_scene_in_one_line_of_many_megabytes() {
+    let text = format!(
+        "{} sphere {{ 0, Q }} {}",
+        "sphere{0,1}".repeat(200_000),
+        "sphere{0,R}".repeat(200_000)
+    );
+    let found = errors(&text);
+    assert!(found.len() <= 20, "{}", found.len());
+    for (error, name) in found.iter().zip(["Q", "R"]) {
+        assert!(
+            error.contains(&format!("the undeclared name `{name}`")),
+            "{error}"
+        );
+        assert!(error.len() < 1000, "{error}");
+    }
+    let column = "sphere{0,1}".len() * 200_000 + " sphere { 0, ".len() + 1;
+    assert!(
+        found[0].contains(&format!("test.pov:1:{column}")),
+        "{}",
+        found[0]
+    );
+    // The caret stands under the name.
+    let lines: Vec<&str> = found[0].lines().collect();
+    assert_eq!(lines[3].find('Q'), lines[4].find('^'), "{}", found[0]);
+    let long = errors(&format!("sphere {{ 0, {} }}", "A".repeat(5_000_000)));
+    assert!(long[0].len() < 2000, "{}", long[0].len());
+}
+
+#[test]
+#[cfg(unix)]
+fn only_plain_files_are_read_and_only_allowed_ones_written() {
+    use strahl_sdl::FolderHost;
+    let root = tempfile::tempdir().unwrap();
+    let path = |name: &str| root.path().join(name).display().to_string();
+    let fifo = path("fifo");
+    let made = std::process::Command::new("mkfifo").arg(&fifo).status();
+    let folder = root.path().display();
+    let mut texts = vec![
+        format!("#fopen F \"{folder}\" read"),
+        format!("#include \"{folder}\""),
+        "#fopen F \"/dev/zero\" read".to_owned(),
+        "#include \"/dev/zero\"".to_owned(),
+        "sphere { 0, 1 pigment { image_map { png \"/dev/zero\" } } }".to_owned(),
+        format!("#fopen F \"{}\" write", path("out")),
+        "#fopen F \"../out\" append".to_owned(),
+        "#fopen F \"out\" write".to_owned(),
+        "#fopen F \"large\" read".to_owned(),
+    ];
+    if made.is_ok_and(|status| status.success()) {
+        texts.push(format!("#fopen F \"{fifo}\" read"));
+        texts.push(format!("#include \"{fifo}\""));
+    }
+    let large = std::fs::File::create(root.path().join("large")).unwrap();
+    // No block of the disk is taken.
+    large.set_len(1 << 40).unwrap();
+    for text in texts {
+        let mut host = FolderHost::new([root.path().to_path_buf()]);
+        let parsed = parse(
+            Source::new("test.pov", text.as_str()),
+            &Options::default(),
+            &mut host,
+        );
+        assert!(parsed.diagnostics.iter().any(|d| d.is_error()), "{text}");
+    }
+    assert!(!root.path().join("out").exists());
+}

@@ -52,7 +52,11 @@ impl Parser<'_> {
         self.io.opened += 1;
         if self.io.opened > limit {
             let message = format!("the scene opens more than {limit} files for writing");
-            return Err(self.fail_fatally(place, message, "raise the limit of files written"));
+            return Err(self.fail_fatally(
+                place,
+                message,
+                "raise the limit: `--limit written_files=N`",
+            ));
         }
         match self.host.create(name, append) {
             Ok(file) => Ok(file),
@@ -127,7 +131,11 @@ impl Parser<'_> {
         let limit = self.options.limits.written_bytes;
         if self.io.written > limit {
             let message = format!("the scene writes more than {limit} bytes");
-            return Err(self.fail_fatally(place, message, "raise the limit of bytes written"));
+            return Err(self.fail_fatally(
+                place,
+                message,
+                "raise the limit: `--limit written_bytes=N`",
+            ));
         }
         match self.io.open.get_mut(&handle) {
             Some(OpenFile::Write(file)) => match file.write_all(text.as_bytes()) {

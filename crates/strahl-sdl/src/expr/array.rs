@@ -153,7 +153,7 @@ impl Parser<'_> {
         Err(self.fail_fatally(
             place,
             message,
-            "make the arrays smaller, or raise the limit of array elements",
+            "make the arrays smaller, or raise the limit: `--limit array_elements=N`",
         ))
     }
 

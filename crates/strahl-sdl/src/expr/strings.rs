@@ -105,13 +105,23 @@ impl Parser<'_> {
 
     fn check_length(&mut self, bytes: usize, place: Place) -> PResult<()> {
         let limit = self.options.limits.string_bytes;
-        if bytes <= limit {
-            return Ok(());
+        if bytes > limit {
+            return Err(self.fail_fatally(
+                place,
+                format!("a string may have {limit} bytes; this one would be longer"),
+                "does a loop double it again and again? Otherwise raise the limit: `--limit string_bytes=N`",
+            ));
         }
-        Err(self.fail(
-            place,
-            format!("a string may have {limit} bytes; this one would be longer"),
-        ))
+        self.all_strings = self.all_strings.saturating_add(bytes as u64);
+        let limit = self.options.limits.all_strings;
+        if self.all_strings > limit {
+            return Err(self.fail_fatally(
+                place,
+                format!("the strings made by the scene have more than {limit} bytes together"),
+                "does a loop not end? Otherwise raise the limit: `--limit all_strings=N`",
+            ));
+        }
+        Ok(())
     }
 
     /// As C's `printf` does it: at least `length` characters, zeros in front if it is negative; six digits if `digits` is

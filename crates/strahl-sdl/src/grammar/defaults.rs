@@ -19,6 +19,10 @@ pub struct State {
     pub(super) last_finish: Arc<PovFinish>,
     /// The materials made, to be shared.
     pub(super) materials: KnownMaterials,
+    /// How many objects have been made.
+    pub(super) objects: u64,
+    /// How many parts of textures and meshes have been made.
+    pub(super) parts: u64,
     /// The pictures read so far.
     pub(super) pictures: Vec<KnownPicture>,
     /// The fonts read so far.

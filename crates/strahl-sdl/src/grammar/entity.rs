@@ -1,5 +1,5 @@
 use super::Texture;
-use super::objects::Tally;
+use super::objects::{Shared, Tally};
 use super::query::Query;
 use std::sync::atomic::AtomicU32;
 use std::sync::{Arc, OnceLock};
@@ -72,10 +72,11 @@ pub struct Declared {
     pub(crate) query: OnceLock<Option<Arc<Query>>>,
 }
 
-impl From<Entity> for Declared {
-    fn from(entity: Entity) -> Self {
+impl Declared {
+    /// Names an object; `shared` are the objects that its instances stand for.
+    pub(super) fn new(entity: Entity, shared: &Shared) -> Self {
         Self {
-            tally: Tally::of(&entity.object),
+            tally: Tally::of(&entity.object, shared),
             entity,
             uses: AtomicU32::new(0),
             shared: OnceLock::new(),

@@ -139,16 +139,6 @@ impl Parser<'_> {
         if is_nothing(&object) {
             return Ok(());
         }
-        let limit = self.options.limits.objects;
-        if self.scene.objects.0.len() >= limit {
-            let message = format!("the scene has more than {limit} objects");
-            let place = self.place();
-            return Err(self.fail_fatally(
-                place,
-                message,
-                "does a loop not end? Otherwise raise the limit of objects",
-            ));
-        }
         if object.material.is_none() {
             // The default texture does not move with the object.
             let texture = match &object.transform {
@@ -163,5 +153,42 @@ impl Parser<'_> {
         }
         self.scene.objects.0.push(object);
         Ok(())
+    }
+    /// Counts objects made or copied against the limit.
+    ///
+    /// # Errors
+    /// If they are too many.
+    pub(crate) fn count_objects(&mut self, count: u64) -> PResult<()> {
+        self.state.objects = self.state.objects.saturating_add(count);
+        let limit = self.options.limits.objects as u64;
+        if self.state.objects <= limit {
+            return Ok(());
+        }
+        let place = self.place();
+        let message = format!("the scene has more than {limit} objects, parts and copies counted");
+        Err(self.fail_fatally(
+            place,
+            message,
+            "does a loop not end, or a part double again and again? Otherwise raise the limit: `--limit objects=N`",
+        ))
+    }
+
+    /// Counts entries of textures and meshes against a limit of the caller.
+    ///
+    /// # Errors
+    /// If they are too many.
+    #[inline]
+    pub(crate) fn count_parts(&mut self, count: u64) -> PResult<()> {
+        self.state.parts = self.state.parts.saturating_add(count);
+        if self.state.parts <= self.options.limits.parts {
+            return Ok(());
+        }
+        let (place, limit) = (self.place(), self.options.limits.parts);
+        let message = format!("the textures and meshes of the scene have more than {limit} parts");
+        Err(self.fail_fatally(
+            place,
+            message,
+            "does a loop not end, or a texture double again and again? Otherwise raise the limit: `--limit parts=N`",
+        ))
     }
 }

@@ -20,6 +20,7 @@ mod normal;
 mod pattern;
 mod pigment;
 mod statement;
+mod weight;
 
 pub(super) use bitmap::KnownPicture;
 pub(super) use material::{KnownMaterials, fill_parts};
@@ -150,17 +151,19 @@ impl Texture {
     }
 
     /// Lays a texture over what has been written, or puts it in the place of the default.
-    fn cover(&mut self, mut surface: Arc<Surface>) {
+    fn cover(&mut self, p: &mut Parser<'_>, mut surface: Arc<Surface>) -> PResult<()> {
         if self.uv_mapped && !matches!(*surface, Surface::UvMapped(_)) {
             surface = Arc::new(Surface::UvMapped(Box::new(Surface::clone(&surface))));
         }
         self.surface = if self.written {
+            p.weigh(weight::of_texture(&self.surface))?;
             let lower = Surface::clone(&self.surface);
             Arc::new(layered(lower, Surface::clone(&surface)))
         } else {
             surface
         };
         self.written = true;
+        Ok(())
     }
 }
 
@@ -179,7 +182,7 @@ impl Parser<'_> {
             Some(Word::Texture) => {
                 self.take(token)?;
                 let surface = self.surface_block()?;
-                texture.cover(surface);
+                texture.cover(self, surface)?;
             }
             Some(Word::InteriorTexture) => {
                 self.take(token)?;
@@ -193,7 +196,7 @@ impl Parser<'_> {
                 self.take(token)?;
                 let material = self.material_block()?;
                 if material.written {
-                    texture.cover(material.surface);
+                    texture.cover(self, material.surface)?;
                 }
                 if material.inner_surface.is_some() {
                     texture.inner_surface = material.inner_surface;

@@ -112,7 +112,8 @@ impl Parser<'_> {
             return self.nested(parse).map(Some);
         }
         let entity = self.entity()?;
-        Ok(entity.map(|e| Thing::Object(Arc::new(Declared::from(e)))))
+        let declared = entity.map(|e| Declared::new(e, &self.state.shared));
+        Ok(declared.map(|d| Thing::Object(Arc::new(d))))
     }
 
     /// If a name of a thing of one kind stands here, takes it and gives the thing.

@@ -2,6 +2,8 @@
 //!
 //! Files of the user with the same name win; see [`Host`](crate::Host).
 
+use std::sync::LazyLock;
+
 macro_rules! built_in {
     ($($name:literal)*) => {
         /// Name and text of each built-in file.
@@ -63,9 +65,54 @@ pub(crate) fn internal_function(number: u32) -> Option<&'static str> {
     line.strip_prefix("#declare ")?.split(' ').next()
 }
 
+/// All names that the built-in files declare, sorted, with the first file that does.
+static DECLARED: LazyLock<Vec<(&str, &str)>> = LazyLock::new(|| {
+    let files = FILES.iter().enumerate();
+    let mut names: Vec<(&str, usize, &str)> = files
+        .flat_map(|(order, (file, text))| declared(text).map(move |name| (name, order, *file)))
+        .collect();
+    names.sort_unstable();
+    names.dedup_by_key(|(name, ..)| *name);
+    names
+        .into_iter()
+        .map(|(name, _, file)| (name, file))
+        .collect()
+});
+
+/// The first built-in file that declares a name.
+pub(crate) fn declaring(name: &str) -> Option<&'static str> {
+    let found = DECLARED.binary_search_by_key(&name, |(known, _)| known);
+    let entry = found.ok().and_then(|index| DECLARED.get(index));
+    entry.map(|(_, file)| *file)
+}
+
+/// All names that the built-in files declare.
+pub(crate) fn declared_names() -> impl Iterator<Item = &'static str> {
+    DECLARED.iter().map(|(name, _)| *name)
+}
+
+/// The names that a text declares.
+fn declared(text: &str) -> impl Iterator<Item = &str> {
+    text.split('#').skip(1).filter_map(|piece| {
+        let mut words = piece.split(|c: char| !c.is_ascii_alphanumeric() && c != '_');
+        let directive = words.next()?;
+        matches!(directive, "declare" | "macro")
+            .then(|| words.find(|w| !w.is_empty()))
+            .flatten()
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn declarations_are_found_in_a_text() {
+        let text = "// x\n#declare Red = rgb x;\n#macro Ball (R) #local N = 1; #end";
+        assert_eq!(declared(text).collect::<Vec<_>>(), ["Red", "Ball"]);
+        assert_eq!(declaring("Red"), Some("colors.inc"));
+        assert_eq!(declaring("Readd"), None);
+    }
 
     #[test]
     fn internal_functions_have_their_names() {

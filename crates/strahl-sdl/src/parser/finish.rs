@@ -21,12 +21,13 @@ impl Parser<'_> {
 
     /// What has become of the text.
     pub(crate) fn into_parsed(mut self) -> Parsed {
-        let (diagnostics, failed) = self.take_diagnostics();
-        if !failed {
+        if self.errors == 0 {
             // No name is needed any more: what only names hold can be moved into the scene.
             self.scopes = super::Scopes::default();
-            self.link_instances();
+            // What is wrong is reported.
+            let _ = self.link_instances();
         }
+        let (diagnostics, failed) = self.take_diagnostics();
         Parsed {
             scene: (!failed).then_some(self.scene),
             diagnostics,

@@ -54,6 +54,7 @@ impl<'h> Parser<'h> {
             random: vec![],
             workspace: strahl_function::Workspace::new(),
             io: Files::default(),
+            all_strings: 0,
             array_elements: 0,
             sources: vec![Arc::clone(&file)],
             position: 0,
@@ -162,7 +163,7 @@ impl<'h> Parser<'h> {
             return Err(self.fail_fatally(
                 from,
                 message,
-                "a macro that calls itself needs an `#if` that ends the recursion",
+                "a macro that calls itself needs an `#if` that ends the recursion; `--limit depth=N` raises the limit",
             ));
         }
         let back = (std::mem::replace(&mut self.file, file), self.position);
@@ -293,7 +294,7 @@ impl<'h> Parser<'h> {
             return Err(self.fail_fatally(
                 from,
                 message,
-                "raise the limit of bytes read, or split the file",
+                "split the file, or raise the limit: `--limit read_bytes=N`",
             ));
         }
         // A text that has changed since it was read the first time gets an entry of its own.
@@ -344,7 +345,11 @@ impl<'h> Parser<'h> {
         let limit = self.options.limits.read_bytes;
         if self.read_bytes > limit {
             let message = format!("`{name}` is too large: all files may have {limit} bytes");
-            return Err(self.fail_fatally(from, message, "raise the limit of bytes read"));
+            return Err(self.fail_fatally(
+                from,
+                message,
+                "raise the limit: `--limit read_bytes=N`",
+            ));
         }
         Ok(source)
     }

@@ -8,7 +8,11 @@ impl Parser<'_> {
         let limit = self.options.limits.written_bytes;
         if self.message_bytes > limit {
             let message = format!("the messages of the scene are longer than {limit} bytes");
-            return Err(self.fail_fatally(place, message, "write less, or raise the limit"));
+            return Err(self.fail_fatally(
+                place,
+                message,
+                "write less, or raise the limit: `--limit written_bytes=N`",
+            ));
         }
         self.host.message(stream, text);
         Ok(())

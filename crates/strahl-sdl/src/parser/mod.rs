@@ -66,6 +66,8 @@ pub struct Parser<'h> {
     pub(crate) io: Files,
     /// Memory for evaluating functions.
     pub(crate) workspace: Workspace,
+    /// Bytes of all strings made so far.
+    pub(crate) all_strings: u64,
     /// Elements of all arrays made so far.
     pub(crate) array_elements: u64,
     /// The first chunk of each file.
@@ -211,7 +213,7 @@ impl Parser<'_> {
         self.fail_fatally(
             self.place,
             message,
-            "raise the limit of nesting, or build the thing in steps with `#declare`",
+            "build the thing in steps with `#declare`, or raise the limit: `--limit nesting=N`",
         )
     }
 
@@ -222,7 +224,7 @@ impl Parser<'_> {
         self.fail_fatally(
             self.place,
             message,
-            "check that the condition of the loop becomes false, or raise the limit of steps",
+            "check that the condition of the loop becomes false, or raise the limit: `--limit steps=N`",
         )
     }
 }

@@ -4,6 +4,7 @@ use crate::lexer::LexProblem;
 use crate::suggest;
 use crate::symbol::Symbol;
 use crate::token::{Kind, Token};
+use std::borrow::Cow;
 use strahl_scene::{Diagnostic, Severity};
 
 /// Something went wrong and has been reported; the statement it happened in is given up.
@@ -78,8 +79,7 @@ impl Parser<'_> {
         }
         diagnostic = diagnostic.at(span);
         if let Some(chunk) = self.sources.get(place.file as usize) {
-            let file = &chunk.source;
-            diagnostic = diagnostic.with_source(&file.name, &file.line_text(span.line));
+            diagnostic.source = Some(chunk.source.excerpt(place.start, span));
         }
         for step in self.trace() {
             diagnostic = diagnostic.traced(step);
@@ -124,7 +124,7 @@ impl Parser<'_> {
                 None => self.undeclared(symbol, place, expected),
                 Some(value) => {
                     let is = value.describe();
-                    let name = self.symbols.text(symbol);
+                    let name = shortened(self.symbols.text(symbol));
                     let message = format!("expected {expected}, found `{name}`, which is {is}");
                     self.fail(place, message)
                 }
@@ -136,7 +136,7 @@ impl Parser<'_> {
 
     /// Reports a name that stands for nothing.
     pub(crate) fn undeclared(&mut self, symbol: Symbol, place: Place, expected: &str) -> Failed {
-        let name = self.symbols.text(symbol).to_owned();
+        let name = shortened(self.symbols.text(symbol)).into_owned();
         let mut diagnostic = Diagnostic::error(format!(
             "expected {expected}, found the undeclared name `{name}`"
         ));
@@ -148,33 +148,29 @@ impl Parser<'_> {
 
     /// What a misspelt name may mean.
     fn advice_for(&self, name: &str) -> Option<String> {
-        for (file, text) in crate::include::FILES {
-            if declares(text, name) {
-                return Some(format!(
-                    "`{name}` is declared in {file}: write `#include \"{file}\"` first"
-                ));
-            }
+        if let Some(file) = crate::include::declaring(name) {
+            return Some(format!(
+                "`{name}` is declared in {file}: write `#include \"{file}\"` first"
+            ));
         }
         let bound = self.scopes.bound().map(|s| self.symbols.text(s));
         let words = Word::ALL.iter().map(|(_, text, _)| *text);
         if let Some(close) = suggest::closest(name, bound.chain(words)) {
             return Some(format!("did you mean `{close}`?"));
         }
-        for (file, text) in crate::include::FILES {
-            if let Some(close) = suggest::closest(name, declared(text)) {
-                return Some(format!("did you mean `{close}`, from {file}?"));
-            }
-        }
-        None
+        let built_in = crate::include::declared_names();
+        let close = suggest::closest(name, built_in)?;
+        let file = crate::include::declaring(close)?;
+        Some(format!("did you mean `{close}`, from {file}?"))
     }
 
     /// A token in words.
     pub(crate) fn describe(&self, token: Token) -> String {
         match (token.kind, token.symbol()) {
             (Kind::Number, _) => format!("the number {}", token.number()),
-            (Kind::String, _) => format!("the string \"{}\"", self.string_of(token)),
+            (Kind::String, _) => format!("the string \"{}\"", shortened(&self.string_of(token))),
             (Kind::Word, Some(s)) => format!("`{}`", self.symbols.text(s)),
-            (Kind::Name, Some(s)) => format!("the name `{}`", self.symbols.text(s)),
+            (Kind::Name, Some(s)) => format!("the name `{}`", shortened(self.symbols.text(s))),
             (Kind::Unknown, _) => match token.bits as u8 {
                 b if b.is_ascii_graphic() => format!("`{}`", char::from(b)),
                 b => format!("the byte 0x{b:02x}"),
@@ -204,28 +200,11 @@ impl Parser<'_> {
     }
 }
 
-/// The names that a text declares.
-fn declared(text: &str) -> impl Iterator<Item = &str> {
-    text.split('#').skip(1).filter_map(|piece| {
-        let mut words = piece.split(|c: char| !c.is_ascii_alphanumeric() && c != '_');
-        let directive = words.next()?;
-        matches!(directive, "declare" | "macro")
-            .then(|| words.find(|w| !w.is_empty()))
-            .flatten()
-    })
-}
-
-fn declares(text: &str, name: &str) -> bool {
-    declared(text).any(|n| n == name)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn declarations_are_found_in_a_text() {
-        let text = "// x\n#declare Red = rgb x;\n#macro Ball (R) #local N = 1; #end";
-        assert_eq!(declared(text).collect::<Vec<_>>(), ["Red", "Ball"]);
+/// A name or text of the scene as messages show it: the beginning of a very long one.
+pub(crate) fn shortened(text: &str) -> Cow<'_, str> {
+    const SHOWN: usize = 200;
+    match text.char_indices().nth(SHOWN) {
+        None => Cow::Borrowed(text),
+        Some((end, _)) => Cow::Owned(format!("{}...", text.get(..end).unwrap_or(""))),
     }
 }

@@ -121,18 +121,29 @@ impl FolderHost {
             name: shown.clone(),
             message: error.to_string(),
         };
-        let file = match fs::File::open(path) {
-            Ok(file) => file,
+        // Asked before opening, which waits for a writer where the name is a pipe.
+        let metadata = match fs::metadata(path) {
+            Ok(metadata) => metadata,
             Err(e) if matches!(e.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => {
                 return Ok(None);
             }
             Err(e) => return Err(io(e)),
         };
-        if !file.metadata().map_err(io)?.is_file() {
+        if metadata.is_dir() {
             return Ok(None);
         }
-        let mut bytes = vec![];
+        if !metadata.is_file() {
+            return Err(HostError::Io {
+                name: shown,
+                message: "this is a device or pipe, no plain file".to_owned(),
+            });
+        }
         let limit = self.max_file;
+        if metadata.len() > limit {
+            return Err(HostError::TooLarge { name: shown, limit });
+        }
+        let file = fs::File::open(path).map_err(io)?;
+        let mut bytes = Vec::with_capacity(metadata.len() as usize);
         file.take(limit + 1).read_to_end(&mut bytes).map_err(io)?;
         if bytes.len() as u64 > limit {
             return Err(HostError::TooLarge { name: shown, limit });

@@ -27,12 +27,7 @@ impl Parser<'_> {
     fn csg(&mut self, op: CsgOp) -> PResult<Entity> {
         let place = self.place();
         self.braces(|p| {
-            // What is combined otherwise than by unions is copied at once.
-            let before = p.state.shared.copying;
-            p.state.shared.copying |= op != CsgOp::Union;
-            let children = p.parts();
-            p.state.shared.copying = before;
-            let children = children?;
+            let children = p.parts()?;
             if children.is_empty() {
                 p.warn(place, format!("the {} has no objects", op.name()));
             }

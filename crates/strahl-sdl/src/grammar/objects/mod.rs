@@ -127,6 +127,7 @@ impl Parser<'_> {
             } else {
                 parse
             };
+            self.count_objects(1)?;
             return self.nested(parse).map(Some);
         }
         if word.kind() != WordKind::Object || word == Word::LightSource {

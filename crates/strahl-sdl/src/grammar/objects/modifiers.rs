@@ -77,6 +77,9 @@ impl Parser<'_> {
         {
             entity.object.material = Some(self.material(texture));
             if let Some(interior) = texture.interior {
+                if combines(&entity.object) {
+                    self.expand_instances(&mut entity.object)?;
+                }
                 fill_parts(&mut entity.object, interior);
             }
         }
@@ -126,14 +129,14 @@ impl Parser<'_> {
             Some(Word::NoReflection) => visibility.secondary = false,
             Some(Word::Inverse) => {
                 self.take(token)?;
-                self.invert(&mut entity.object);
+                invert(&mut entity.object);
                 return Ok(true);
             }
             Some(Word::ClippedBy) => {
                 self.take(token)?;
                 let clips = self.enclosing("`clipped_by`", Word::BoundedBy, &draft.bounds)?;
                 draft.clips.clone_from(&clips);
-                self.clip(&mut entity.object, clips);
+                clip(&mut entity.object, clips);
                 return Ok(true);
             }
             Some(Word::BoundedBy) => {
@@ -207,35 +210,38 @@ impl Parser<'_> {
         }
         Ok(found)
     }
+}
 
-    /// Cuts an object, without a cap; the clipping objects stand in its parent's space.
-    fn clip(&mut self, object: &mut Object, clips: Vec<Object>) {
-        if clips.is_empty() || is_nothing(object) {
-            return;
-        }
-        let back = object.transform.as_deref().map(|t| t.inverted());
-        wrap(object, CsgOp::Clip);
-        if let ObjectKind::Csg { children, .. } = &mut object.kind {
-            children.0.extend(clips.into_iter().map(|mut clip| {
-                if let Some(back) = &back {
-                    transform(&mut clip, back);
-                }
-                clip
-            }));
-        }
-        self.expand_instances(object);
+/// Whether an object is an operation that wants all its parts.
+fn combines(object: &Object) -> bool {
+    matches!(&object.kind, ObjectKind::Csg { op, .. } if *op != CsgOp::Union)
+}
+
+/// Cuts an object, without a cap; the clipping objects stand in its parent's space.
+fn clip(object: &mut Object, clips: Vec<Object>) {
+    if clips.is_empty() || is_nothing(object) {
+        return;
     }
+    let back = object.transform.as_deref().map(|t| t.inverted());
+    wrap(object, CsgOp::Clip);
+    if let ObjectKind::Csg { children, .. } = &mut object.kind {
+        children.0.extend(clips.into_iter().map(|mut clip| {
+            if let Some(back) = &back {
+                transform(&mut clip, back);
+            }
+            clip
+        }));
+    }
+}
 
-    /// Turns inside and outside round; surfaces without an inside stay as they are.
-    fn invert(&mut self, object: &mut Object) {
-        let open = match &object.kind {
-            ObjectKind::Shape(shape) => shape.as_solid().is_none(),
-            _ => is_nothing(object),
-        };
-        if !open {
-            wrap(object, CsgOp::Inverse);
-            self.expand_instances(object);
-        }
+/// Turns inside and outside round; surfaces without an inside stay as they are.
+fn invert(object: &mut Object) {
+    let open = match &object.kind {
+        ObjectKind::Shape(shape) => shape.as_solid().is_none(),
+        _ => is_nothing(object),
+    };
+    if !open {
+        wrap(object, CsgOp::Inverse);
     }
 }
 

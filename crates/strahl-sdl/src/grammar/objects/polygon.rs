@@ -20,6 +20,7 @@ pub(super) fn polygon(p: &mut Parser<'_>) -> PResult<Entity> {
         let mut read = 0.0;
         while read < count {
             p.comma()?;
+            p.count_parts(1)?;
             let corner = p.vector3()?;
             read += 1.0;
             match rings.last_mut().filter(|_| open) {

@@ -4,11 +4,12 @@
 //! counts the declared objects ([`Shared`]), not yet the scene's groups. When all is read, [`link`] makes groups of them: one
 //! for each declared object and each material that its parts take from the use. What turns out to be used once is
 //! put in its place instead, so a scene built up step by step (`#declare All = union { object { All } ... }`) has no tower of
-//! instances. Operations other than unions want all their parts: [`expanded`] copies them.
+//! instances. Operations other than unions want all their parts: within them the last use of a declared object takes its parts,
+//! and the uses before it copy them.
 
 use crate::grammar::Entity;
 use crate::grammar::entity::{Declared, is_nothing};
-use crate::parser::Parser;
+use crate::parser::{PResult, Parser};
 use crate::symbol::Symbol;
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -38,15 +39,18 @@ pub(crate) struct Tally {
     inherits: bool,
     /// Whether a part is a light.
     lights: bool,
+    /// Shapes and operations, those of the declared objects in it counted too.
+    pub(in crate::grammar) expanded: u64,
 }
 
 impl Tally {
-    pub(crate) fn of(object: &Object) -> Self {
+    pub(crate) fn of(object: &Object, shared: &Shared) -> Self {
         let mut tally = Self::default();
         let mut waiting = vec![(object, false)];
         while let Some((object, above)) = waiting.pop() {
             let has_material = above || (tally.parts > 0 && object.material.is_some());
             tally.parts += 1;
+            tally.expanded = tally.expanded.saturating_add(1);
             match &object.kind {
                 ObjectKind::Csg { children, .. } => {
                     waiting.extend(children.0.iter().map(|child| (child, has_material)));
@@ -55,8 +59,13 @@ impl Tally {
                     tally.elements += u64::from(shape.elements());
                     tally.inherits |= !has_material;
                 }
-                // Its parts may; asking them would not be worth it.
-                ObjectKind::Instance(_) => tally.inherits |= !has_material,
+                ObjectKind::Instance(id) => {
+                    // Its parts may; asking them would not be worth it.
+                    tally.inherits |= !has_material;
+                    let inside = shared.objects.get(id.0 as usize);
+                    let parts = inside.map_or(0, |declared| declared.tally.expanded);
+                    tally.expanded = tally.expanded.saturating_add(parts);
+                }
                 ObjectKind::Light(_) => tally.lights = true,
             }
         }
@@ -69,8 +78,6 @@ impl Tally {
 pub(crate) struct Shared {
     objects: Vec<Arc<Declared>>,
     names: HashMap<Symbol, Arc<str>>,
-    /// Whether objects are read that are combined otherwise than by unions, which takes copies.
-    pub(super) copying: bool,
 }
 
 impl Shared {
@@ -94,12 +101,6 @@ impl Parser<'_> {
             parts, elements, ..
         } = declared.tally;
         let uses = declared.uses.fetch_add(1, Ordering::Relaxed);
-        if self.state.shared.copying {
-            return Entity {
-                object: expanded(&declared.entity.object, &self.state.shared),
-                texture: declared.entity.texture.clone(),
-            };
-        }
         // Lights shine where they stand, so each use needs its own.
         if declared.tally.lights {
             return declared.entity.clone();
@@ -121,18 +122,31 @@ impl Parser<'_> {
     }
 
     /// Puts the parts of declared objects in place of their instances.
-    pub(super) fn expand_instances(&self, object: &mut Object) {
+    ///
+    /// # Errors
+    /// If they are too many.
+    pub(super) fn expand_instances(&mut self, object: &mut Object) -> PResult<()> {
         if has_instances(object) {
+            self.count_objects(Tally::of(object, &self.state.shared).expanded)?;
             *object = expanded(object, &self.state.shared);
         }
+        Ok(())
     }
 
     /// Makes the scene's groups; called when the whole text is read and no name is needed any more.
-    pub(crate) fn link_instances(&mut self) {
+    ///
+    /// # Errors
+    /// If operations other than unions have too many parts when all declared objects in them are written out.
+    pub(crate) fn link_instances(&mut self) -> PResult<()> {
         let shared = std::mem::take(&mut self.state.shared);
-        if !shared.objects.is_empty() {
-            Linker::new(shared.objects).link(&mut self.scene);
+        if shared.objects.is_empty() {
+            return Ok(());
         }
+        let mut linker = Linker::new(shared.objects);
+        let copied = linker.count_all(&self.scene);
+        self.count_objects(copied)?;
+        linker.link(&mut self.scene);
+        Ok(())
     }
 }
 
@@ -216,8 +230,10 @@ struct Linker {
     uses: Vec<u32>,
     groups: Vec<Option<GroupId>>,
     known: HashMap<Key, usize>,
-    /// How many variants of each declared object are still to be made.
-    open: Vec<u32>,
+    /// How often each declared object is used within operations that want all its parts.
+    whole: Vec<u64>,
+    /// How often what each declared object is made of is still needed, for its variants and in such operations.
+    open: Vec<u64>,
 }
 
 // The pointers are keys only, of materials that `variants` keeps alive; they are never followed.
@@ -231,11 +247,13 @@ impl Linker {
             uses: vec![],
             groups: vec![],
             known: HashMap::new(),
+            whole: open.clone(),
             open,
         }
     }
 
-    fn link(mut self, scene: &mut Scene) {
+    /// Counts what is used how often; gives the number of parts that operations other than unions want.
+    fn count_all(&mut self, scene: &Scene) -> u64 {
         for object in &scene.objects.0 {
             self.count(object, None);
         }
@@ -248,6 +266,38 @@ impl Linker {
             }
             next += 1;
         }
+        // What a declared object is made of was declared before it, and so has a lower number.
+        let mut wanted = 0u64;
+        for id in (0..self.whole.len()).rev() {
+            let times = self.whole.get(id).copied().unwrap_or(0);
+            let declared = self.objects.get(id).cloned().flatten();
+            let Some(declared) = declared.filter(|_| times > 0) else {
+                continue;
+            };
+            wanted = wanted.saturating_add(times.saturating_mul(declared.tally.parts));
+            let mut waiting = vec![&declared.entity.object];
+            while let Some(object) = waiting.pop() {
+                match &object.kind {
+                    ObjectKind::Csg { children, .. } => waiting.extend(&children.0),
+                    ObjectKind::Instance(inner) => self.use_whole(inner.0, times),
+                    ObjectKind::Shape(_) | ObjectKind::Light(_) => {}
+                }
+            }
+        }
+        for (open, whole) in self.open.iter_mut().zip(&self.whole) {
+            *open = open.saturating_add(*whole);
+        }
+        wanted
+    }
+
+    /// Counts uses of a declared object within an operation that wants all its parts.
+    fn use_whole(&mut self, id: u32, times: u64) {
+        if let Some(whole) = self.whole.get_mut(id as usize) {
+            *whole = whole.saturating_add(times);
+        }
+    }
+
+    fn link(mut self, scene: &mut Scene) {
         let mut objects = std::mem::take(&mut scene.objects.0);
         let mut waiting = vec![];
         for object in &mut objects {
@@ -275,16 +325,18 @@ impl Linker {
 
     /// Counts the instances within an object whose parts take this material.
     fn count_kind(&mut self, object: &Object, material: Option<Arc<Material>>) {
-        let mut waiting = vec![(object, material)];
-        while let Some((object, material)) = waiting.pop() {
+        let mut waiting = vec![(object, material, false)];
+        while let Some((object, material, whole)) = waiting.pop() {
             match &object.kind {
                 ObjectKind::Shape(_) | ObjectKind::Light(_) => {}
-                ObjectKind::Csg { children, .. } => {
+                ObjectKind::Csg { op, children } => {
+                    let whole = whole || *op != CsgOp::Union;
                     waiting.extend(children.0.iter().rev().map(|child| {
                         let own = child.material.as_ref().or(material.as_ref());
-                        (child, own.cloned())
+                        (child, own.cloned(), whole)
                     }));
                 }
+                ObjectKind::Instance(id) if whole => self.use_whole(id.0, 1),
                 ObjectKind::Instance(id) => {
                     let variant = self.variant(id.0, material);
                     if let Some(uses) = self.uses.get_mut(variant) {
@@ -310,7 +362,7 @@ impl Linker {
         })
     }
 
-    /// What a declared object is; taken from it for its last variant, copied for the others.
+    /// What a declared object is; taken from it for its last use, copied for the others.
     fn kind(&mut self, id: u32) -> ObjectKind {
         let nothing = Object::csg(CsgOp::Union, vec![]).kind;
         let (Some(slot), Some(open)) = (
@@ -341,10 +393,14 @@ impl Linker {
         scene: &mut Scene,
         new: &mut Vec<(usize, usize)>,
     ) {
-        let mut waiting = vec![(object, inherited)];
-        while let Some((object, inherited)) = waiting.pop() {
+        let mut waiting = vec![(object, inherited, false)];
+        while let Some((object, inherited, whole)) = waiting.pop() {
             let material = object.material.clone().or(inherited);
             while let ObjectKind::Instance(id) = object.kind {
+                if whole {
+                    object.kind = self.kind(id.0);
+                    continue;
+                }
                 let variant = self.variant(id.0, material.clone());
                 if self.uses.get(variant).is_some_and(|uses| *uses > 1) {
                     let id = self.group(variant, &object.name, scene, new);
@@ -353,9 +409,10 @@ impl Linker {
                 }
                 object.kind = self.kind(id.0);
             }
-            if let ObjectKind::Csg { children, .. } = &mut object.kind {
+            if let ObjectKind::Csg { op, children } = &mut object.kind {
+                let whole = whole || *op != CsgOp::Union;
                 let children = children.0.iter_mut().rev();
-                waiting.extend(children.map(|child| (child, material.clone())));
+                waiting.extend(children.map(|child| (child, material.clone(), whole)));
             }
         }
     }

@@ -98,18 +98,26 @@ fn node(object: &Object) -> Option<CsgNode> {
 /// The box of an object that is clipped or inverted, which the language takes from the object as it was before, or of a
 /// shape, where the language takes the surface and not the inside.
 fn unclipped(object: &Object) -> Option<Aabb> {
-    let bounds = match &object.kind {
-        ObjectKind::Csg {
-            op: CsgOp::Clip | CsgOp::Inverse,
-            children,
-        } => Query::new(children.0.first()?)?.bounds,
-        ObjectKind::Shape(shape) => shape.bounds(),
-        _ => return None,
+    let mut maps = vec![];
+    let mut inner = object;
+    while let ObjectKind::Csg {
+        op: CsgOp::Clip | CsgOp::Inverse,
+        children,
+    } = &inner.kind
+    {
+        maps.push(inner.transform.as_deref());
+        inner = children.0.first()?;
+    }
+    let bounds = match &inner.kind {
+        ObjectKind::Shape(shape) => {
+            maps.push(inner.transform.as_deref());
+            shape.bounds()
+        }
+        _ if maps.is_empty() => return None,
+        _ => Csg::try_new(node(inner)?).ok()?.bounds(),
     };
-    Some(match object.transform.as_deref() {
-        Some(map) => map.bounds_to_world(&bounds),
-        None => bounds,
-    })
+    let outwards = maps.into_iter().rev().flatten();
+    Some(outwards.fold(bounds, |bounds, map| map.bounds_to_world(&bounds)))
 }
 
 impl Parser<'_> {
@@ -117,7 +125,7 @@ impl Parser<'_> {
     pub(crate) fn ask_inside(&mut self) -> PResult<bool> {
         let object = self.object_argument()?;
         let point = self.vector3()?;
-        Ok(self.query(&object).is_some_and(|q| q.contains(point)))
+        Ok(self.query(&object)?.is_some_and(|q| q.contains(point)))
     }
 
     /// `min_extent(Object)` and `max_extent(Object)` behind the parenthesis; unbounded objects reach to 1e10, as in
@@ -125,7 +133,7 @@ impl Parser<'_> {
     pub(crate) fn ask_extent(&mut self, word: Word) -> PResult<DVec3> {
         const FAR: DVec3 = DVec3::splat(1e10);
         let object = self.object_argument()?;
-        let corner = self.query(&object).map_or(DVec3::ZERO, |q| {
+        let corner = self.query(&object)?.map_or(DVec3::ZERO, |q| {
             if word == Word::MinExtent {
                 q.bounds.min
             } else {
@@ -152,7 +160,8 @@ impl Parser<'_> {
         if !(length > 0.0 && length.is_finite() && origin.is_finite()) {
             return Err(self.fail(place, "`trace` needs a direction that is not zero"));
         }
-        let hit = self.query(&object).and_then(|q| q.trace(origin, direction));
+        let query = self.query(&object)?;
+        let hit = query.and_then(|q| q.trace(origin, direction));
         if let Some(symbol) = normal_of {
             let normal = hit.map_or(DVec3::ZERO, |(_, n)| n);
             self.store_normal(symbol, normal);
@@ -183,11 +192,17 @@ impl Parser<'_> {
     }
 
     /// The object made ready, once for all questions; `None` if there is nothing to meet.
-    pub(super) fn query(&self, declared: &Declared) -> Option<Arc<Query>> {
+    ///
+    /// # Errors
+    /// If it has too many parts.
+    pub(super) fn query(&mut self, declared: &Declared) -> PResult<Option<Arc<Query>>> {
+        if declared.query.get().is_none() {
+            self.count_objects(declared.tally.expanded)?;
+        }
         let made = declared.query.get_or_init(|| {
             let object = expanded(&declared.entity.object, &self.state.shared);
             Query::new(&object).map(Arc::new)
         });
-        made.clone()
+        Ok(made.clone())
     }
 }

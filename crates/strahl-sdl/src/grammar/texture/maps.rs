@@ -117,6 +117,7 @@ impl Parser<'_> {
                     return Err(p.unexpected(token, "`[` before an entry of the map, or `}`"));
                 }
                 p.take(token)?;
+                p.count_parts(1)?;
                 // The weights of `average` may be left out.
                 let at = if p.starts_number()? { p.float()? } else { 1.0 };
                 p.comma()?;

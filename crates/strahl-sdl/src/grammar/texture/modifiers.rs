@@ -80,6 +80,7 @@ impl Parser<'_> {
             }
             Some(Word::Warp) => {
                 self.take(token)?;
+                self.count_parts(16)?;
                 let warp = self.braces(Self::warp)?;
                 modifiers.warps.extend(warp);
             }

@@ -1,6 +1,6 @@
 //! `normal { ... }`
 
-use super::modifiers;
+use super::{modifiers, weight};
 use crate::grammar::Thing;
 use crate::keywords::Word;
 use crate::parser::{PResult, Parser};
@@ -165,7 +165,9 @@ impl Parser<'_> {
         self.items_until(closing, "`normal`", |p, token| {
             p.normal_item(&mut draft, token)
         })?;
-        Ok(draft.finish())
+        let normal = draft.finish();
+        self.weigh(weight::of_normal(&normal))?;
+        Ok(normal)
     }
 
     fn normal_item(&mut self, draft: &mut Draft, token: Token) -> PResult<()> {

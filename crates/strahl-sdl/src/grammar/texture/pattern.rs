@@ -418,14 +418,14 @@ impl Parser<'_> {
         let object = match named {
             Some(named) => named,
             None => match self.entity()? {
-                Some(entity) => Arc::new(Declared::from(entity)),
+                Some(entity) => Arc::new(Declared::new(entity, &self.state.shared)),
                 None => {
                     let found = self.peek()?;
                     return Err(self.unexpected(found, "an object"));
                 }
             },
         };
-        let inside = self.query(&object);
+        let inside = self.query(&object)?;
         Ok(Pattern::Object(Arc::new(ObjectInside(inside))))
     }
 }

@@ -1,7 +1,7 @@
 //! `pigment { ... }`
 
 use super::maps::color_ft;
-use super::modifiers;
+use super::{modifiers, weight};
 use crate::grammar::Thing;
 use crate::keywords::{Word, WordKind};
 use crate::parser::{PResult, Parser};
@@ -259,7 +259,9 @@ impl Parser<'_> {
         self.items_until(closing, "`pigment`", |p, token| {
             p.pigment_item(&mut draft, token)
         })?;
-        Ok(draft.finish())
+        let pigment = draft.finish();
+        self.weigh(weight::of_pigment(&pigment))?;
+        Ok(pigment)
     }
 
     /// The pigment or colour that a name or an element of an array stands for, if one stands here.

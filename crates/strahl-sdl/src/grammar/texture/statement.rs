@@ -1,6 +1,6 @@
 //! `texture { ... }` and `material { ... }`
 
-use super::{Texture, layered, top_of, transform};
+use super::{Texture, layered, top_of, transform, weight};
 use crate::grammar::Thing;
 use crate::keywords::Word;
 use crate::parser::{PResult, Parser};
@@ -114,6 +114,7 @@ impl Parser<'_> {
         while self.raw().is(Word::Texture) {
             self.next()?;
             let upper = self.surface_block()?;
+            self.weigh(weight::of_texture(&all))?;
             all = Arc::new(layered(Surface::clone(&all), Surface::clone(&upper)));
         }
         Ok(all)
@@ -150,7 +151,9 @@ impl Parser<'_> {
         self.items_until(closing, "`texture`", |p, token| {
             p.texture_part(&mut draft, token)
         })?;
-        Ok(draft.finish())
+        let texture = draft.finish();
+        self.weigh(weight::of_texture(&texture))?;
+        Ok(texture)
     }
 
     fn texture_part(&mut self, draft: &mut Draft, token: Token) -> PResult<()> {

@@ -134,6 +134,7 @@ impl Parser<'_> {
                     let message = format!("the list should have {count} entries, found {found}");
                     return Err(p.fail(place, message));
                 }
+                p.count_parts(1)?;
                 list.push(item(p)?);
             }
             p.comma()?;

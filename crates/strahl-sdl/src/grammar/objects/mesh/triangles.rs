@@ -89,6 +89,8 @@ impl Parser<'_> {
         corners: [DVec3; 3],
         normals: Option<[DVec3; 3]>,
     ) -> PResult<()> {
+        // Three corners, with their normals and texture coordinates.
+        self.count_parts(3)?;
         let (mut texture, mut uvs) = (None, None);
         self.items("the triangle", |p, token| {
             match token.word() {

@@ -1,0 +1,127 @@
+//! How large a texture is, so that textures made of copies of each other end in an error and not in an exhausted machine.
+
+use crate::parser::{PResult, Parser};
+use strahl_shade::normal::{NormalKind, PovNormal};
+use strahl_shade::pigment::Pigment;
+use strahl_shade::texture::Texture;
+
+/// The size of something made of things of its kind.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Weight {
+    /// All things in it and itself.
+    count: u64,
+    /// How many are within each other.
+    depth: u32,
+}
+
+impl Weight {
+    const ONE: Self = Self { count: 1, depth: 1 };
+
+    /// Of what is made of things of these weights.
+    fn around(inner: impl Iterator<Item = Self>) -> Self {
+        let sum = inner.fold(Self { count: 0, depth: 0 }, |sum, w| Self {
+            count: sum.count.saturating_add(w.count),
+            depth: sum.depth.max(w.depth),
+        });
+        Self {
+            count: sum.count.saturating_add(1),
+            depth: sum.depth.saturating_add(1),
+        }
+    }
+}
+
+pub(super) fn of_pigment(pigment: &Pigment) -> Weight {
+    match pigment {
+        Pigment::Solid(_) | Pigment::ColorMap(..) | Pigment::Image(..) => Weight::ONE,
+        Pigment::PigmentMap(_, map) => Weight::around(map.entries.iter().map(|e| of_pigment(&e.1))),
+        Pigment::Average(list, _) => Weight::around(list.iter().map(|e| of_pigment(&e.1))),
+        Pigment::Blocks(_, list) => Weight::around(list.iter().map(of_pigment)),
+        Pigment::UvMapped(inner) => Weight::around(std::iter::once(of_pigment(inner))),
+    }
+}
+
+pub(super) fn of_normal(normal: &PovNormal) -> Weight {
+    match &normal.kind {
+        NormalKind::Map(_, map) => Weight::around(map.entries.iter().map(|e| of_normal(&e.1))),
+        NormalKind::Average(list) => Weight::around(list.iter().map(|e| of_normal(&e.1))),
+        NormalKind::Blocks(_, list) => Weight::around(list.iter().map(of_normal)),
+        NormalKind::Bumps
+        | NormalKind::Dents
+        | NormalKind::Wrinkles
+        | NormalKind::Ripples(_)
+        | NormalKind::Waves(_)
+        | NormalKind::Quilted(_)
+        | NormalKind::Height(..)
+        | NormalKind::BumpMap(_) => Weight::ONE,
+    }
+}
+
+pub(super) fn of_texture(texture: &Texture) -> Weight {
+    match texture {
+        Texture::Plain(plain) => {
+            let normal = plain.normal.as_deref().map(of_normal);
+            Weight::around(std::iter::once(of_pigment(&plain.pigment)).chain(normal))
+        }
+        Texture::Layered(list)
+        | Texture::Blocks(_, list)
+        | Texture::MaterialMap(_, _, list)
+        | Texture::Shared(_, list) => Weight::around(list.iter().map(of_texture)),
+        Texture::Map(_, map) => Weight::around(map.entries.iter().map(|e| of_texture(&e.1))),
+        Texture::Average(list, _) => Weight::around(list.iter().map(|e| of_texture(&e.1))),
+        Texture::Transformed(_, inner) | Texture::UvMapped(inner) => {
+            Weight::around(std::iter::once(of_texture(inner)))
+        }
+    }
+}
+
+impl Parser<'_> {
+    /// Counts what has been made against the limits.
+    ///
+    /// # Errors
+    /// If it is too deep, or all that has been made is too much.
+    pub(super) fn weigh(&mut self, weight: Weight) -> PResult<()> {
+        /// A pigment, normal or texture takes the memory of so many colours or vectors.
+        const SIZE: u64 = 16;
+        let limit = self.options.limits.texture_depth;
+        if weight.depth > limit {
+            let place = self.place();
+            return Err(self.fail_hint(
+                place,
+                format!("textures are nested deeper than {limit} levels"),
+                "write the texture in fewer levels, or raise the limit: `--limit texture_depth=N`",
+            ));
+        }
+        // One that doubles again and again is found long before it fills what all together may have.
+        let limit = self.options.limits.parts >> 11;
+        if weight.count > limit {
+            let place = self.place();
+            return Err(self.fail_fatally(
+                place,
+                format!("this texture has more than {limit} parts, copies of named ones counted"),
+                "does it double again and again? Otherwise raise the limit of all parts: `--limit parts=N`",
+            ));
+        }
+        // What has one part is counted with the object that has it.
+        if weight.count > 1 {
+            self.count_parts(weight.count.saturating_mul(SIZE))?;
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use strahl_shade::patterns::Pattern;
+    use strahl_shade::pigment::BlendMap;
+
+    #[test]
+    fn all_members_count() {
+        let solid = Pigment::default();
+        let map = BlendMap::new(vec![(0.0, solid.clone()), (1.0, solid.clone())]);
+        let two = Pigment::PigmentMap(Pattern::Bozo.into(), map);
+        assert_eq!(of_pigment(&two), Weight { count: 3, depth: 2 });
+        let outer = Pigment::Blocks(Pattern::Checker.into(), vec![solid, two]);
+        assert_eq!(of_pigment(&outer), Weight { count: 5, depth: 3 });
+    }
+}
