@@ -194,11 +194,28 @@ fn include_textures_look_as_povrays() {
          Blue_Sky2 Blue_Sky3 Blood_Sky Apocalypse Clouds FBM_Clouds Cherry_Wood Pine_Wood Dark_Wood Tan_Wood White_Wood Tom_Wood DMFWood1 \
          DMFWood2 DMFWood3 DMFWood4 DMFWood5 DMFLightOak DMFDarkOak P_Cloud1 P_Cloud2 P_Cloud3 P_Cloud4";
     let names: Vec<String> = pigments.split_whitespace().map(str::to_owned).collect();
-    let scenes = [(
-        "pigments",
-        tiles(include, &names, |name| {
-            format!("pigment {{ {name} scale 0.7 }}")
-        }),
-    )];
+    let stars: Vec<String> = numbered("Starfield", 1..=6).collect();
+    let scenes = [
+        (
+            "pigments",
+            tiles(include, &names, |name| {
+                format!("pigment {{ {name} scale 0.7 }}")
+            }),
+        ),
+        (
+            "stars",
+            tiles("#include \"stars.inc\"\n", &stars, |name| {
+                format!("texture {{ {name} }}")
+            }),
+        ),
+        (
+            "stage",
+            "#version 3.7; global_settings { assumed_gamma 1 }
+             #include \"colors.inc\"
+             #include \"stdcam.inc\"
+             sphere { y, 1 pigment { rgb x } }"
+                .to_owned(),
+        ),
+    ];
     agree(0.02, &scenes);
 }
