@@ -21,7 +21,7 @@ fn small() -> Options {
     options.limits.string_bytes = 1 << 20;
     options.limits.all_strings = 1 << 26;
     options.limits.objects = 50_000;
-    options.limits.parts = 1 << 22;
+    options.limits.parts = 1 << 19;
     options
 }
 

@@ -18,13 +18,24 @@ impl Parser<'_> {
         };
         self.take(token)?;
         let transform = match word {
-            Word::Translate => Transform::translate(self.vector3()?),
-            Word::Rotate => rotation(self.vector3()?),
+            Word::Translate => Transform::translate(self.finite_vector(word)?),
+            Word::Rotate => rotation(self.finite_vector(word)?),
             Word::Scale => self.scale()?,
             Word::Matrix => self.matrix()?,
             _ => self.transform_block()?,
         };
         Ok(Some(transform))
+    }
+
+    /// What stands behind `translate` or `rotate`.
+    fn finite_vector(&mut self, word: Word) -> PResult<DVec3> {
+        let place = self.place();
+        let vector = self.vector3()?;
+        if vector.is_finite() {
+            return Ok(vector);
+        }
+        let message = format!("`{}` needs finite numbers, found {vector}", word.text());
+        Err(self.fail(place, message))
     }
 
     /// Factors of zero count as 1, as the language has it, with a warning.
