@@ -416,6 +416,106 @@ const SCENES: &[(&str, &str)] = &[
         "object around an object",
         "object { object { Ball scale 0.5 } texture { Red } translate y * 0.5 }",
     ),
+    (
+        "linear prism",
+        "prism { linear_sweep linear_spline -0.3, 0.6, 10, <-1, -1>, <1.2, -1>, <0.9, 1>, <-1, 0.8>, <-1, -1>, <-0.5, -0.5>, <0.5, -0.5>, <0.5, 0.5>, <-0.5, 0.3>, <-0.5, -0.5> texture { Red } rotate <-35, 20, 0> }",
+    ),
+    (
+        "prism that is not closed",
+        "prism { 0, 0.5, 4, <-1, -1>, <1.2, -1>, <0.9, 1>, <-1, 0.8> texture { Red } rotate x * -50 }",
+    ),
+    (
+        "quadratic prism",
+        "prism { quadratic_spline 0.5, 0, 7, <-1, 0.5>, <0, -1>, <1.2, 0.1>, <0.1, 0.3>, <0.3, 1.1>, <-1, 0.5>, <0, -1> texture { Red } rotate x * -60 }",
+    ),
+    (
+        "cubic prism",
+        "prism { cubic_spline linear_sweep 0, 0.5, 8, <-1, 0.5>, <0, -1>, <1.2, 0.1>, <0.1, 0.3>, <0.3, 1.1>, <-1, 0.5>, <0, -1>, <1.2, 0.1> sturm texture { Red } rotate x * -60 }",
+    ),
+    (
+        "two cubic curves",
+        "prism { cubic_spline 0, 0.5, 14, <1, -1>, <-1, -1>, <1.2, -1>, <1.2, 1>, <-1, 1>, <-1, -1>, <1, -1>, <0.5, -0.5>, <-0.5, -0.5>, <0.5, -0.5>, <0.5, 0.5>, <-0.5, 0.5>, <-0.5, -0.5>, <0.5, -0.5> texture { Red } rotate x * -60 }",
+    ),
+    (
+        "bezier prism",
+        "prism { bezier_spline linear_sweep 0, 0.5, 8, <0, -1>, <1.5, -0.9>, <1.1, 0.8>, <0, 1>, <0, 1>, <-0.2, 0.2>, <-1.5, -0.2>, <0, -1> texture { Red } rotate <-60, 10, 0> }",
+    ),
+    (
+        "conic prism",
+        "prism { conic_sweep linear_spline 0.2, 1, 5, <-1, -1>, <1.2, -1>, <0.9, 1>, <-1, 0.8>, <-1, -1> texture { Red } rotate <150, 20, 0> translate y * 0.6 }",
+    ),
+    (
+        "conic prism through its apex",
+        "prism { conic_sweep cubic_spline -0.7, 1, 8, <-1, 0.5>, <0, -1>, <1.2, 0.1>, <0.1, 0.3>, <0.3, 1.1>, <-1, 0.5>, <0, -1>, <1.2, 0.1> texture { Red } rotate <-20, 20, 0> }",
+    ),
+    (
+        "open prism",
+        "prism { bezier_spline 0, 0.8, 8, <0, -1>, <1.5, -0.9>, <1.1, 0.8>, <0, 1>, <0, 1>, <-0.2, 0.2>, <-1.5, -0.2>, <0, -1> open texture { Red } rotate <-40, 10, 0> }",
+    ),
+    (
+        "prism in CSG",
+        "difference { prism { cubic_spline 0, 0.8, 8, <-1, 0.5>, <0, -1>, <1.2, 0.1>, <0.1, 0.3>, <0.3, 1.1>, <-1, 0.5>, <0, -1>, <1.2, 0.1> } sphere { <0.3, 0.8, -0.2>, 0.5 texture { Green } } prism { -1, 1, 4, <-0.6, 0.2>, <-0.3, 0.2>, <-0.4, 0.5>, <-0.6, 0.2> texture { Green } } texture { Red } rotate x * -50 }",
+    ),
+    (
+        "linear lathe",
+        "lathe { linear_spline 5, <0.5, 0>, <1.2, 0.1>, <1.1, 0.7>, <0.6, 0.5>, <0.5, 0> texture { Red } rotate <-30, 0, 10> }",
+    ),
+    (
+        "open lathe",
+        "lathe { 4, <0.3, -1>, <1.2, -0.6>, <0.8, 0.2>, <1, 0.9> texture { Red } rotate <-30, 0, 10> }",
+    ),
+    (
+        "quadratic lathe",
+        "lathe { quadratic_spline 7, <0.2, -1>, <0, -1>, <0.9, -0.6>, <0.3, 0.2>, <1, 0.9>, <0.3, 1>, <0, 0.9> texture { Red } rotate <-20, 0, 10> }",
+    ),
+    (
+        "cubic lathe",
+        "lathe { cubic_spline 8, <0, -0.8>, <0, -1>, <0.9, -0.6>, <0.3, 0.2>, <1, 0.9>, <0.3, 1>, <0, 0.9>, <0, 0.7> sturm texture { Red } rotate <-20, 0, 10> }",
+    ),
+    (
+        "bezier lathe",
+        "lathe { bezier_spline 8, <0.4, 0>, <1.3, 0.3>, <1.4, 0.7>, <0.5, 1>, <0.5, 1>, <0.2, 0.7>, <0.1, 0.4>, <0.4, 0> texture { Red } rotate <-30, 0, 10> translate -y * 0.4 }",
+    ),
+    (
+        "level view of a lathe",
+        "lathe { cubic_spline 8, <0, -0.8>, <0, -1>, <0.9, -0.6>, <0.3, 0.2>, <1, 0.9>, <0.3, 1>, <0, 0.9>, <0, 0.7> sturm texture { Red } translate <0.3, 1.2, 0> rotate x * 11 }",
+    ),
+    (
+        "lathe in CSG",
+        "difference { lathe { cubic_spline 8, <0, -0.8>, <0, -1>, <0.9, -0.6>, <0.3, 0.2>, <1, 0.9>, <0.3, 1>, <0, 0.9>, <0, 0.7> sturm } box { <0, -2, -2>, <2, 2, 0> texture { Green } } texture { Red } rotate <-20, 0, 10> }",
+    ),
+    (
+        "open lathe in CSG",
+        "difference { box { <-1.2, -0.8, -1.2>, <1.2, 0.8, 1.2> } lathe { cubic_spline 6, <0.5, -1.4>, <0.7, -1>, <1, -0.3>, <0.6, 0.4>, <0.8, 1>, <1, 1.5> sturm texture { Green } } texture { Red } rotate <-40, 20, 0> scale 0.8 }",
+    ),
+    (
+        "sor",
+        "sor { 7, <0, -1>, <0.5, -1>, <1.1, -0.3>, <0.4, 0.2>, <0.35, 0.6>, <0.6, 0.9>, <0.8, 1.2> texture { Red } rotate <-30, 0, 10> }",
+    ),
+    (
+        "open sor",
+        "sor { 7, <0, -1>, <0.5, -1>, <1.1, -0.3>, <0.4, 0.2>, <0.35, 0.6>, <0.6, 0.9>, <0.8, 1.2> open texture { Red } rotate <-30, 0, 10> }",
+    ),
+    (
+        "sor in CSG",
+        "difference { sor { 7, <0, -1>, <0.5, -1>, <1.1, -0.3>, <0.4, 0.2>, <0.35, 0.6>, <0.6, 0.9>, <0.8, 1.2> } cylinder { <0.3, -0.3, -2>, <0.3, -0.3, 2>, 0.4 texture { Green } } texture { Red } rotate <-20, 0, 10> }",
+    ),
+    (
+        "linear sphere sweep",
+        "sphere_sweep { linear_spline 4, <-1.3, -0.5, 0>, 0.3, <-0.5, 0.8, 0.5>, 0.5, <0.4, -0.6, 0>, 0.2, <1.2, 0.5, -0.5>, 0.4 texture { Red } }",
+    ),
+    (
+        "cubic sphere sweep",
+        "sphere_sweep { cubic_spline 6, <-1.5, 0, 0>, 0.2, <-1.3, -0.5, 0>, 0.3, <-0.5, 0.8, 0.5>, 0.5, <0.4, -0.6, 0>, 0.2, <1.2, 0.5, -0.5>, 0.4, <1, 1, 0>, 0.3 tolerance 1e-7 texture { Red } }",
+    ),
+    (
+        "smooth sphere sweep",
+        "sphere_sweep { b_spline 6, <-1.9, 0, 0>, 0.3, <-1.3, -0.9, 0>, 0.3, <-0.5, 1.2, 0.5>, 0.6, <0.4, -1, 0>, 0.2, <1.4, 0.8, -0.5>, 0.5, <1.5, 1, 0>, 0.3 texture { Red } }",
+    ),
+    (
+        "sphere sweep in CSG",
+        "difference { sphere_sweep { cubic_spline 6, <-1.5, 0, 0>, 0.2, <-1.3, -0.5, 0>, 0.3, <-0.5, 0.8, 0.5>, 0.5, <0.4, -0.6, 0>, 0.3, <1.2, 0.5, -0.5>, 0.4, <1, 1, 0>, 0.3 } plane { z, 0 texture { Green } } texture { Red } }",
+    ),
 ];
 
 /// The picture in sRGB, 0 to 1, by POV-Ray.
