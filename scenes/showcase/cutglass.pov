@@ -1,9 +1,9 @@
 // Cut glass on a chequered board: a brilliant, a ball of many facets and a step cut, each the intersection of planes. What sparkles is
-// total reflection: up to ten generations of rays.
+// total reflection: up to eight generations of rays.
 //
-//   strahl render cutglass.pov +W1280 +H720 +A0.3
+//     strahl render scenes/showcase/cutglass.pov +W1280 +H720 +A0.3
 #version 3.7;
-global_settings { assumed_gamma 1 max_trace_level 10 adc_bailout 0.02 }
+global_settings { assumed_gamma 1 max_trace_level 8 adc_bailout 0.03 }
 
 camera {
   location <0.4, 3.4, -8.4>

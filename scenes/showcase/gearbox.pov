@@ -1,6 +1,6 @@
 // Parts of a gearbox on their blueprint: cylinders, boxes, cones, tori and spheres, added, cut and drilled.
 //
-//   strahl render gearbox.pov +W1280 +H720 +A0.3
+//     strahl render scenes/showcase/gearbox.pov +W1280 +H720 +A0.3
 #version 3.7;
 global_settings { assumed_gamma 1 max_trace_level 6 }
 

@@ -1,7 +1,7 @@
 // A fractal landscape at the end of the day: ridges of noise at nine scales, each half as wide as the one before, sampled into a mesh
 // that is finer towards the eye. Snow lies where the ground is high and flat, grass where it is low; the lake lies at height 0.
 //
-//   strahl render landscape.pov +W1280 +H720 +A0.3
+//     strahl render scenes/showcase/landscape.pov +W1280 +H720 +A0.3
 #version 3.7;
 #include "functions.inc"
 global_settings { assumed_gamma 1 max_trace_level 4 }

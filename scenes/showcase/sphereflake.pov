@@ -1,7 +1,7 @@
 // The sphereflake: every ball carries nine balls of a third of its size, six around its equator and three above. The macro calls
 // itself; four generations are 7,381 balls. Each generation has its own metal.
 //
-//   strahl render sphereflake.pov +W1280 +H720 +A0.3
+//     strahl render scenes/showcase/sphereflake.pov +W1280 +H720 +A0.3
 #version 3.7;
 global_settings { assumed_gamma 1 max_trace_level 7 }
 

@@ -1,7 +1,7 @@
 // A page of text in stone. Each letter is cut by a conical chisel that is led along its strokes: the groove of a straight stroke is
 // two cones and the wedge between them. The letters are strokes on a grid of our own, so no font is needed.
 //
-//   strahl render stone.pov +W1280 +H720 +A0.3
+//     strahl render scenes/showcase/stone.pov +W1280 +H720 +A0.3
 #version 3.7;
 global_settings { assumed_gamma 1 max_trace_level 5 }
 

@@ -1,7 +1,7 @@
 // After Turner Whitted's picture of 1980, the first by recursive ray tracing: a sphere of glass and one of metal above a
 // chequered floor. The composition is our own: a bubble, a mirror ball and a handful of glass marbles in the evening.
 //
-//   strahl render whitted.pov +W1280 +H720 +A0.3
+//     strahl render scenes/showcase/whitted.pov +W1280 +H720 +A0.3
 #version 3.7;
 global_settings { assumed_gamma 1 max_trace_level 12 }
 

@@ -273,7 +273,7 @@ fn render(scene: &Path, size: &str, picture: &Path) -> Result<()> {
         .output()
         .context("cannot run strahl")?;
     let said = String::from_utf8_lossy(&done.stderr);
-    if !done.status.success() || said.contains("warning") {
+    if !done.status.success() || said.contains("left out") {
         bail!("{}: {said}", scene.display());
     }
     Ok(())

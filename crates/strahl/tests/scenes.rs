@@ -9,11 +9,20 @@ use strahl::tracing::CompileOptions;
 use strahl::{LoadOptions, load_path};
 
 /// Scenes that POV-Ray 3.7 shows differently, and why.
-const DIFFERENT: [(&str, &str); 2] = [
+const DIFFERENT: [(&str, &str); 5] = [
     (
         "patterns/cubic.pov",
         "the pattern is new in version 3.8 of the language",
     ),
+    (
+        "objects/polynomial.pov",
+        "the object is new in version 3.8 of the language",
+    ),
+    (
+        "objects/parametric.pov",
+        "POV-Ray takes minutes, and has holes",
+    ),
+    ("objects/text.pov", "the font may be another"),
     (
         "09_sphere.pov",
         "POV-Ray loses balls that are 100 million times their radius away",
@@ -22,6 +31,9 @@ const DIFFERENT: [(&str, &str); 2] = [
 
 /// Scenes of many parts that are read with fewer: what they take the number from.
 const COARSE: [(&str, f64); 3] = [("Across", 40.0), ("Deep", 40.0), ("Generations", 2.0)];
+
+/// Enough to see whether something is missing.
+const SIZE: (u32, u32) = (32, 24);
 
 /// 8-bit codes, row by row.
 type Codes = Vec<f64>;
@@ -45,9 +57,9 @@ fn scenes() -> Vec<PathBuf> {
 }
 
 /// Renders a scene without antialiasing; what is wrong with it otherwise.
-fn ours(scene: &Path, (width, height): (u32, u32)) -> Result<Codes, String> {
+fn ours(scene: &Path) -> Result<Codes, String> {
     let mut sdl = Options::default();
-    (sdl.image_width, sdl.image_height) = (width, height);
+    (sdl.image_width, sdl.image_height) = SIZE;
     sdl.declare = COARSE
         .map(|(name, value)| (name.to_owned(), Value::Float(value)))
         .to_vec();
@@ -58,19 +70,21 @@ fn ours(scene: &Path, (width, height): (u32, u32)) -> Result<Codes, String> {
             ..LoadOptions::default()
         },
     );
-    // What other programs export may deserve advice, but nothing of it may be left out.
-    let exported = scene.to_string_lossy().contains("exporters");
-    let said = loaded.diagnostics.iter().map(ToString::to_string);
-    let said: Vec<String> = said
-        .filter(|text| !exported || text.contains("left out") || text.contains("not supported"))
-        .collect();
+    let mut said: Vec<String> = loaded.diagnostics.iter().map(ToString::to_string).collect();
+    if scene.ends_with("text.pov") {
+        // Another font stands in for POV-Ray's, which may not be here.
+        said.retain(|text| !text.contains("stands in for it"));
+    } else if scene.to_string_lossy().contains("exporters") {
+        // What other programs export may deserve advice, but nothing of it may be left out.
+        said.retain(|text| text.contains("left out") || text.contains("not supported"));
+    }
     if !said.is_empty() {
         return Err(said.join("\n"));
     }
     let scene = loaded.scene.ok_or("there is no scene, and no error")?;
     let scene = strahl::compile(&scene, &CompileOptions::default())
         .map_err(|problems| format!("{problems:?}"))?;
-    let options = strahl::tracing::RenderOptions::new(&scene, width, height);
+    let options = strahl::tracing::RenderOptions::new(&scene, SIZE.0, SIZE.1);
     let film = strahl::render(&scene, &options, &()).map_err(|e| e.to_string())?;
     let values = film.film.pixels.iter().flatten();
     Ok(values
@@ -78,7 +92,7 @@ fn ours(scene: &Path, (width, height): (u32, u32)) -> Result<Codes, String> {
         .collect())
 }
 
-fn theirs(povray: &Path, scene: &Path, (width, height): (u32, u32)) -> Result<Codes, String> {
+fn theirs(povray: &Path, scene: &Path) -> Result<Codes, String> {
     let folder = tempfile::tempdir().expect("a folder");
     let picture = folder.path().join("picture.ppm");
     let run = Command::new(povray)
@@ -88,7 +102,7 @@ fn theirs(povray: &Path, scene: &Path, (width, height): (u32, u32)) -> Result<Co
             scene.file_name().expect("a name").to_string_lossy()
         ))
         .arg(format!("+O{}", picture.display()))
-        .args([format!("+W{width}"), format!("+H{height}")])
+        .args([format!("+W{}", SIZE.0), format!("+H{}", SIZE.1)])
         .args(COARSE.map(|(name, value)| format!("Declare={name}={value}")))
         .args(["-A", "-D", "-GA", "+FP", "+WT1"])
         .output()
@@ -99,7 +113,7 @@ fn theirs(povray: &Path, scene: &Path, (width, height): (u32, u32)) -> Result<Co
         return Err(format!("POV-Ray: {}", &log[from..]));
     }
     let bytes = std::fs::read(picture).expect("a picture");
-    let size = (width * height * 3) as usize;
+    let size = (SIZE.0 * SIZE.1 * 3) as usize;
     let codes = bytes[bytes.len() - size..].iter();
     Ok(codes.map(|code| f64::from(*code)).collect())
 }
@@ -115,7 +129,8 @@ fn try_all(check: impl Fn(&Path) -> Result<(), String> + Sync) -> Vec<String> {
                 let own = scenes.iter().skip(first).step_by(threads);
                 scope.spawn(move || {
                     own.filter_map(|scene| {
-                        let said = check(scene).err()?;
+                        // A machine without fonts cannot show letters.
+                        let said = check(scene).err().filter(|e| !e.contains("the font `"))?;
                         Some(format!("{}: {said}", scene.display()))
                     })
                     .collect::<Vec<_>>()
@@ -130,31 +145,23 @@ fn try_all(check: impl Fn(&Path) -> Result<(), String> + Sync) -> Vec<String> {
 }
 
 #[test]
-fn scenes_are_read_without_complaint_and_seen() {
+fn scenes_are_read_without_complaint_and_look_as_povray_shows_them() {
+    let povray = tool("povray");
     let failed = try_all(|scene| {
-        let codes = ours(scene, (32, 24))?;
-        let (least, most) = codes
+        let ours = ours(scene)?;
+        let (least, most) = ours
             .iter()
             .fold((255.0_f64, 0.0_f64), |(a, b), c| (a.min(*c), b.max(*c)));
         if most - least < 40.0 {
             return Err(format!("all codes are between {least} and {most}"));
         }
-        Ok(())
-    });
-    assert!(failed.is_empty(), "{}", failed.join("\n"));
-}
-
-#[test]
-fn scenes_look_as_povray_shows_them() {
-    let Some(povray) = tool("povray") else {
-        return;
-    };
-    let size = (48, 36);
-    let failed = try_all(|scene| {
+        let Some(povray) = &povray else {
+            return Ok(());
+        };
         if DIFFERENT.iter().any(|(name, _)| scene.ends_with(name)) {
             return Ok(());
         }
-        let (ours, theirs) = (ours(scene, size)?, theirs(&povray, scene, size)?);
+        let theirs = theirs(povray, scene)?;
         let apart = ours.iter().zip(&theirs).map(|(a, b)| (a - b).abs());
         let mean = apart.sum::<f64>() / ours.len() as f64;
         if mean >= 4.0 {
