@@ -219,7 +219,8 @@ impl Julia {
             self.fourth.1.dot(ray.direction),
         ])
         .sqrt();
-        let (length, shortest) = (end - start, self.shortest / ray.direction.length());
+        let fastest = ray.direction.abs().max_element();
+        let (length, shortest) = (end - start, self.shortest / fastest);
 
         let mut s = 0.0;
         let mut here = at(s);
@@ -244,7 +245,8 @@ impl Julia {
         }
         while s < length {
             let promised = CAUTION * here.value.abs() / (here.slope * speed);
-            let step = if promised > shortest {
+            // At poles the first derivative promises nothing.
+            let step = if promised > shortest && promised.is_finite() {
                 promised
             } else {
                 shortest
@@ -280,7 +282,7 @@ impl Julia {
         let gradient = self.gradient(p);
         let reach = (ray.origin.abs() + (ray.direction * t).abs()) * gamma(4);
         let error = (self.noise(p) + gradient.abs().dot(reach)) / gradient.dot(ray.direction).abs();
-        let longest = self.shortest / ray.direction.length();
+        let longest = self.shortest / ray.direction.abs().max_element();
         gamma(4) * t.abs() + if error < longest { error } else { longest }
     }
 }

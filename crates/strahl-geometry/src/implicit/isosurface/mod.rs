@@ -255,7 +255,8 @@ impl Isosurface {
     }
 
     fn search<'a>(&'a self, ray: &Ray, start: f64, workspace: &'a mut Workspace) -> Search<'a> {
-        let speed = ray.direction.length();
+        // The largest component neither overflows nor vanishes, and is the length but for a factor of at most the root of 3.
+        let speed = ray.direction.abs().max_element();
         let (least, most) = SHORTEST;
         let accuracy = self.options.accuracy;
         let shortest = accuracy.clamp(least * self.size(), most * self.size());
@@ -265,7 +266,7 @@ impl Isosurface {
             origin: ray.at(start),
             direction: ray.direction,
             shortest: shortest / speed,
-            slope: 0.5 * self.options.max_gradient * speed,
+            slope: self.options.max_gradient * speed,
         }
     }
 
@@ -304,7 +305,7 @@ impl Isosurface {
         let noise = self.noise(workspace, p, gradient) + gradient.abs().dot(reach);
         let error = noise / gradient.dot(ray.direction).abs();
         // Along the surface nothing is known but the length of what is not looked into.
-        let longest = SHORTEST.1 * self.size() / ray.direction.length();
+        let longest = SHORTEST.1 * self.size() / ray.direction.abs().max_element();
         gamma(4) * t.abs() + if error < longest { error } else { longest }
     }
 

@@ -14,7 +14,7 @@ pub(super) struct Search<'a> {
     pub(super) direction: DVec3,
     /// Parts of this length are not divided any more.
     pub(super) shortest: f64,
-    /// Half of the most the function changes per unit of `s`, where it has no bounds and the scene has to be trusted.
+    /// At least half of the most the function changes per unit of `s`, where it has no bounds and the scene has to be trusted.
     pub(super) slope: f64,
 }
 

@@ -57,8 +57,9 @@ const SURFACE: SurfaceId = SurfaceId {
     element: 0,
     facet: 0,
 };
-/// A piece is flat if the cosine between its normals at the corners and that in the middle is above this.
-const FLAT: f64 = 0.97;
+/// A ray is taken to meet a flat piece once at most if the cosine between it and the normal in the middle is above the spread of the
+/// normals by this factor: then it passes all of them in one direction.
+const STEEP: f64 = 2.0;
 /// How far beyond its piece, in parts of it, a point may be found: neighbours overlap, so that no ray slips through between
 /// them.
 const OVERLAP: f64 = 1e-6;
@@ -197,8 +198,15 @@ impl Parametric {
             normal(r.min.x, r.max.y),
             normal(r.max.x, r.max.y),
         ];
-        let is_flat = corners.iter().all(|n| n.dot(middle) > FLAT);
-        Some(Piece { bounds, is_flat })
+        let known = middle != DVec3::ZERO && corners.iter().all(|n| *n != DVec3::ZERO);
+        let spread = if known {
+            corners
+                .iter()
+                .fold(0.0, |spread: f64, n| spread.max((*n - middle).length()))
+        } else {
+            f64::INFINITY
+        };
+        Some(Piece { bounds, spread })
     }
 
     fn patches(&self, workspace: &mut Workspace) -> &Patches {
@@ -206,7 +214,8 @@ impl Parametric {
             .get_or_init(|| Patches::build(self.domain, |r| self.examine(workspace, r)))
     }
 
-    /// Looks for a hit on a piece; pieces that are not flat are quartered first.
+    /// Looks for a hit on a piece; pieces that are not flat are quartered first, those on which Newton's method was no proof
+    /// afterwards.
     fn search(
         &self,
         workspace: &mut Workspace,
@@ -216,8 +225,8 @@ impl Parametric {
         deeper: u32,
     ) {
         let small = piece.bounds.size().max_element() <= self.options.accuracy;
-        if piece.is_flat || small || deeper == 0 {
-            self.approach(workspace, quest, r);
+        let last = small || deeper == 0;
+        if (piece.is_flat() || last) && self.approach(workspace, quest, r, piece.spread) || last {
             return;
         }
         for quarter in r.quarters() {
@@ -229,13 +238,25 @@ impl Parametric {
         }
     }
 
-    /// Newton's method for the parameters at which the surface meets the ray, within (nearly) a rectangle.
-    fn approach(&self, workspace: &mut Workspace, quest: &mut Quest<'_>, r: &Rectangle) {
+    /// Newton's method for the parameters at which the surface meets the ray, within (nearly) a rectangle. Whether there
+    /// certainly is no other such place on a flat piece.
+    fn approach(
+        &self,
+        workspace: &mut Workspace,
+        quest: &mut Quest<'_>,
+        r: &Rectangle,
+        spread: f64,
+    ) -> bool {
         let ray = quest.ray;
         let [n1, n2] = quest.across;
         let (size, mut uv) = (r.size(), r.center());
+        let mut steep = false;
         for round in 0..ROUNDS {
             let jet = self.jet(workspace, uv);
+            if round == 0 {
+                let normal = jet.by_u.cross(jet.by_v).normalize_or_zero();
+                steep = normal.dot(n1.cross(n2)).abs() > STEEP * spread;
+            }
             let off = jet.point - ray.origin;
             let (e1, e2) = (off.dot(n1), off.dot(n2));
             let (a, b) = (jet.by_u.dot(n1), jet.by_v.dot(n1));
@@ -244,35 +265,39 @@ impl Parametric {
             let step = DVec2::new(e1 * d - b * e2, a * e2 - e1 * c) / determinant;
             // The ray runs along the surface, or the surface is singular.
             if !step.is_finite() {
-                return;
+                return false;
             }
             uv -= step;
             let away = ((uv - r.center()) / size).abs().max_element();
             // Gone for good.
             if away > 2.0 {
-                return;
+                return steep;
             }
-            let settled = (step / size).abs().max_element() < 1e-9;
-            if !settled && round + 1 < ROUNDS {
-                continue;
+            if (step / size).abs().max_element() < 1e-9 {
+                if away <= 0.5 + OVERLAP {
+                    self.accept(workspace, quest, uv);
+                }
+                return steep;
             }
-            if !settled || away > 0.5 + OVERLAP {
-                return;
-            }
-            let uv = uv.clamp(self.domain.min, self.domain.max);
-            let point = self.jet(workspace, uv).point;
-            let t = (point - ray.origin).dot(ray.direction) / ray.direction.dot(ray.direction);
-            if quest.range.accepts(t)
-                && quest.nearest.is_none_or(|best| t < best.t)
-                && self.container.contains(point)
-            {
-                quest.nearest = Some(PrimHit {
-                    t,
-                    surface: SURFACE,
-                    uv: uv.to_array(),
-                });
-            }
-            return;
+        }
+        false
+    }
+
+    /// Takes a place where the ray meets the surface, if it is the nearest so far.
+    fn accept(&self, workspace: &mut Workspace, quest: &mut Quest<'_>, uv: DVec2) {
+        let ray = quest.ray;
+        let uv = uv.clamp(self.domain.min, self.domain.max);
+        let point = self.jet(workspace, uv).point;
+        let t = (point - ray.origin).dot(ray.direction) / ray.direction.dot(ray.direction);
+        if quest.range.accepts(t)
+            && quest.nearest.is_none_or(|best| t < best.t)
+            && self.container.contains(point)
+        {
+            quest.nearest = Some(PrimHit {
+                t,
+                surface: SURFACE,
+                uv: uv.to_array(),
+            });
         }
     }
 

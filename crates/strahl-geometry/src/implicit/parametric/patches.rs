@@ -39,8 +39,18 @@ impl Rectangle {
 pub(super) struct Piece {
     /// Where it is.
     pub(super) bounds: Aabb,
-    /// Whether it is nearly a plane, so that a line meets it once.
-    pub(super) is_flat: bool,
+    /// How far the unit normals at its corners are from that in its middle; infinite where there are none.
+    pub(super) spread: f64,
+}
+
+/// Below this spread a piece is nearly a plane.
+const FLAT: f64 = 0.25;
+
+impl Piece {
+    /// Whether it is nearly a plane.
+    pub(super) fn is_flat(&self) -> bool {
+        self.spread < FLAT
+    }
 }
 
 /// A node of the tree.
@@ -71,7 +81,7 @@ impl Patches {
         let nowhere = Node {
             piece: Piece {
                 bounds: Aabb::EMPTY,
-                is_flat: true,
+                spread: 0.0,
             },
             children: 0,
         };
@@ -82,7 +92,7 @@ impl Patches {
         for level in 0..LEVELS.1 {
             let wanted = |index: usize| {
                 nodes.get(index).is_some_and(|n: &Node| {
-                    !n.piece.bounds.is_empty() && (level < LEVELS.0 || !n.piece.is_flat)
+                    !n.piece.bounds.is_empty() && (level < LEVELS.0 || !n.piece.is_flat())
                 })
             };
             leaves.retain(|&(index, _)| wanted(index));
