@@ -26,13 +26,13 @@ impl PrimaryRays {
         match mesh.layout {
             MeshLayout::Each(rays) => {
                 for faces in mesh.meshes.iter().take(rays as usize) {
-                    add(faces.get(pixel).map(|face| mesh.from_middle(face)));
+                    add(faces.get(pixel).map(|face| mesh.ray_through_middle(face)));
                 }
             }
             MeshLayout::Joined(rays) => {
                 for number in 0..rays as usize {
                     let index = pixel + number * width * height;
-                    add(mesh.joined(index).map(|face| mesh.from_middle(face)));
+                    add(mesh.joined(index).map(|face| mesh.ray_through_middle(face)));
                 }
             }
             MeshLayout::SideBySide => {
@@ -41,14 +41,14 @@ impl PrimaryRays {
                 let which = (column / part).min(count - 1);
                 let index = row * part + (column - which * part).min(part - 1);
                 let face = mesh.meshes.get(which).and_then(|faces| faces.get(index));
-                add(face.map(|face| mesh.from_middle(face)));
+                add(face.map(|face| mesh.ray_through_middle(face)));
             }
             MeshLayout::ByUv => {
                 let place = DVec2::new(x / self.width, 1.0 - y / self.height);
                 let faces = mesh.meshes.first().map_or(&[][..], Vec::as_slice);
                 let found = faces.iter().find_map(|face| {
                     let weights = barycentric(face.uv?, place)?;
-                    Some(mesh.from_place(face, weights))
+                    Some(mesh.ray_through(face, weights))
                 });
                 add(found);
             }
@@ -64,8 +64,8 @@ impl PrimaryRays {
 /// How a mesh camera makes rays of its faces.
 trait FaceRays {
     fn joined(&self, index: usize) -> Option<&CameraFace>;
-    fn from_middle(&self, face: &CameraFace) -> Ray;
-    fn from_place(&self, face: &CameraFace, weights: [f64; 3]) -> Ray;
+    fn ray_through_middle(&self, face: &CameraFace) -> Ray;
+    fn ray_through(&self, face: &CameraFace, weights: [f64; 3]) -> Ray;
     fn leaving(&self, point: DVec3, normal: DVec3) -> Ray;
 }
 
@@ -81,12 +81,12 @@ impl FaceRays for MeshCamera {
         None
     }
 
-    fn from_middle(&self, face: &CameraFace) -> Ray {
+    fn ray_through_middle(&self, face: &CameraFace) -> Ray {
         let [a, b, c] = face.corners;
         self.leaving((a + b + c) / 3.0, face.normal)
     }
 
-    fn from_place(&self, face: &CameraFace, [wa, wb, wc]: [f64; 3]) -> Ray {
+    fn ray_through(&self, face: &CameraFace, [wa, wb, wc]: [f64; 3]) -> Ray {
         let [a, b, c] = face.corners;
         let normal = match face.normals {
             Some([na, nb, nc]) if self.smooth => {

@@ -226,7 +226,8 @@ impl Parametric {
     ) {
         let small = piece.bounds.size().max_element() <= self.options.accuracy;
         let last = small || deeper == 0;
-        if (piece.is_flat() || last) && self.approach(workspace, quest, r, piece.spread) || last {
+        let settled = (piece.is_flat() || last) && self.approach(workspace, quest, r, piece.spread);
+        if settled || last {
             return;
         }
         for quarter in r.quarters() {
