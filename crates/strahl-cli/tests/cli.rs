@@ -381,7 +381,7 @@ fn bad_input_gives_one_clear_error() {
         f,
         &["render", "scene.nff", "-o", "x.png", "--accelerator", "kd"],
         2,
-        &["list, bvh2, bvh"],
+        &["list, spheres, bvh2, bvh, grid, grids, octree"],
     );
     fails(f, &["render", "-", "-o", "x.png"], 1, &["--format"]);
     fails(

@@ -48,7 +48,10 @@ fn is_done(scene: &str) -> bool {
     let parsed = parse_with(&mut MemoryHost::new(), scene);
     let lacks = ["not supported", "left out", "not shown", "not done"];
     let mut said = parsed.diagnostics.iter().map(ToString::to_string);
-    parsed.scene.is_some() && !said.any(|text| lacks.iter().any(|lack| text.contains(lack)))
+    // There are no fonts in memory.
+    let only_a_font = scene.starts_with("text {") && said.clone().all(|m| m.contains("the font `"));
+    (parsed.scene.is_some() || only_a_font)
+        && !said.any(|text| lacks.iter().any(|lack| text.contains(lack)))
 }
 
 fn table() -> String {

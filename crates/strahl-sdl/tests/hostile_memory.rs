@@ -135,7 +135,7 @@ fn nothing_fills_the_memory() {
             ),
             "elements",
         ),
-        (repeated("", "light_source { 0, 1 }"), "objects"),
+        (repeated("", "light_source { 0, 1 }"), ""),
         (
             "#macro A(X) #local B = array[1000]; A(X + 1) #end A(1)".to_owned(),
             "",

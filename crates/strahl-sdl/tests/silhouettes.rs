@@ -410,7 +410,7 @@ const SCENES: &[(&str, &str)] = &[
     ),
     (
         "parametric",
-        "parametric { function { (1 + 0.4 * cos(v)) * cos(u) } function { 0.4 * sin(v) } function { (1 + 0.4 * cos(v)) * sin(u) } <0, 0>, <2 * pi, 2 * pi> contained_by { box { -1.5, 1.5 } } max_gradient 3 accuracy 0.001 precompute 8 x, y, z texture { Red } no_shadow rotate <-40, 0, 10> }",
+        "parametric { function { (1 + 0.4 * cos(v)) * cos(u) } function { 0.4 * sin(v) } function { (1 + 0.4 * cos(v)) * sin(u) } <0, 0>, <2 * pi, 2 * pi> contained_by { box { -1.5, 1.5 } } max_gradient 3 accuracy 0.0001 precompute 8 x, y, z texture { Red } no_shadow rotate <-40, 0, 10> }",
     ),
     (
         "object around an object",

@@ -47,12 +47,15 @@ pub(super) fn text(p: &mut Parser<'_>) -> PResult<Entity> {
             Some(Err(error)) => return Err(p.fail(place, format!("`{name}`: {error}"))),
             None => vec![],
         };
+        // POV-Ray's texts start with the first letter's leftmost point, wherever the font puts that.
+        let first = letters.first().and_then(|letter| letter.outline.as_ref());
+        let left = first.map_or(0.0, |outline| outline.bounds()[0].x);
         let mut glyphs = vec![];
         for (index, letter) in letters.into_iter().enumerate() {
             let Some(outline) = letter.outline else {
                 continue;
             };
-            let origin = DVec3::X * letter.x + offset * index as f64;
+            let origin = DVec3::X * (letter.x - left) + offset * index as f64;
             match Glyph::try_new(outline, origin, thickness) {
                 Ok(glyph) => glyphs.push(glyph),
                 Err(error) => return Ok(Err::<_, GeometryError>(error)),

@@ -34,7 +34,15 @@ impl Parser<'_> {
                     }
                     Some(Word::Dispersion) => {
                         p.take(token)?;
+                        let place = p.place_of(token);
                         interior.dispersion = p.positive("dispersion")?;
+                        if interior.dispersion != 1.0 {
+                            p.warn_hint(
+                                place,
+                                "`dispersion` is not supported yet and is left out",
+                                "all colours are bent by the same angle",
+                            );
+                        }
                     }
                     Some(Word::Caustics) => {
                         p.take(token)?;
