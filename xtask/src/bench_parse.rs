@@ -249,7 +249,7 @@ fn exported(folder: &Path, size: u64) -> Result<Case> {
             Some(color) if objects % 4 != 0 => *color,
             _ => numbers.color(),
         };
-        let radius = numbers.below(1.0);
+        let radius = 0.1 + numbers.below(0.9);
         let [p, q, s] = [0; 3].map(|_| numbers.point());
         let color = format!("{r:.4},{g:.4},{b:.4}");
         let text = match objects % 8 {

@@ -14,7 +14,7 @@ use strahl_math::{Aabb, DVec3, Interval, Ray};
 /// make a sphere, small numbers a box with rounded edges, 2 an octahedron, larger ones stars. It touches the box from -1 to
 /// 1 on its axes. No texture coordinates. Facets: one, 0. A ray that touches it does not hit it.
 ///
-/// The gauge of the body (the factor by which it must grow to reach a point; see [`Gauge`]) is convex along rays if neither
+/// The gauge of the body (the factor by which it must grow to reach a point; see `Gauge`) is convex along rays if neither
 /// number is above 2; Newton's method then comes from the outside and cannot pass the surface. Otherwise the gauge is bounded over
 /// intervals until it is monotone on each. Powers are exact to about 1e-15 of the size.
 ///
