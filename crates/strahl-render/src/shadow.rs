@@ -72,7 +72,7 @@ impl Tracer<'_> {
             visible *= match material.texture_seen(entering) {
                 None => material.at(resolved.point.uv).finish.transmission,
                 Some(texture) => {
-                    let caustics = material.interior.map_or(0.0, |i| i.caustics);
+                    let caustics = material.interior.as_ref().map_or(0.0, |i| i.caustics);
                     self.scene
                         .attenuated(&texture.0, &resolved, ray.direction, hit, caustics)
                 }

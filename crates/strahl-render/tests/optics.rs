@@ -35,10 +35,7 @@ fn ten_thousand_levels_between_two_mirrors() {
             reflection: Color::gray(0.9999),
             ..Finish::BLACK
         };
-        Material {
-            finish,
-            ..Material::default()
-        }
+        Material::with_finish(finish)
     };
     let scene = Scene::new()
         .add(slab(-2.0, -1.0).material(mirror()))
@@ -63,9 +60,8 @@ fn snells_law_through_nested_media() {
             ..Finish::BLACK
         };
         Material {
-            finish,
             eta,
-            ..Material::default()
+            ..Material::with_finish(finish)
         }
     };
     let scene = Scene::new()
@@ -89,13 +85,10 @@ fn snells_law_through_nested_media() {
 
 #[test]
 fn an_index_of_one_does_not_bend_rays_at_all() {
-    let clear = Material {
-        finish: Finish {
-            transmission: Color::gray(0.5),
-            ..Finish::BLACK
-        },
-        ..Material::default()
-    };
+    let clear = Material::with_finish(Finish {
+        transmission: Color::gray(0.5),
+        ..Finish::BLACK
+    });
     let scene = Scene::new()
         .add(Sphere::new(DVec3::ZERO, 1.0).material(clear))
         .background(Background::Solid(Color::WHITE))
@@ -119,16 +112,15 @@ fn an_index_of_one_does_not_bend_rays_at_all() {
 fn total_reflection_keeps_the_light_inside() {
     // Inside a glass block, 45 degrees on its face: beyond the critical angle of 41.8 degrees.
     let glass = Material {
-        fresnel: false,
-        ..Material::glass(1.5)
-    };
-    let finish = Finish {
-        reflection: Color::gray(0.1),
-        transmission: Color::gray(0.9),
-        ..Finish::BLACK
+        eta: 1.5,
+        ..Material::with_finish(Finish {
+            reflection: Color::gray(0.1),
+            transmission: Color::gray(0.9),
+            ..Finish::BLACK
+        })
     };
     let scene = Scene::new()
-        .add(slab(-1.0, 1.0).material(Material { finish, ..glass }))
+        .add(slab(-1.0, 1.0).material(glass))
         .camera(Camera::perspective(DVec3::ZERO, DVec3::X, DVec3::Y, 1.0));
     let (_, tree) = follow(
         &scene,
@@ -161,9 +153,8 @@ fn light_is_absorbed_by_length() {
     let absorption = Color::new(0.0, 0.5, 2.0);
     let scene = Scene::new()
         .add(slab(0.0, 3.0).material(Material {
-            finish,
             absorption,
-            ..Material::default()
+            ..Material::with_finish(finish)
         }))
         .background(Background::Solid(Color::WHITE))
         .camera(Camera::perspective(DVec3::NEG_X, DVec3::X, DVec3::Y, 1.0));
@@ -174,13 +165,10 @@ fn light_is_absorbed_by_length() {
 
 #[test]
 fn shadows_are_filtered_by_what_is_transparent() {
-    let filter = Material {
-        finish: Finish {
-            transmission: Color::new(0.5, 1.0, 0.0),
-            ..Finish::BLACK
-        },
-        ..Material::default()
-    };
+    let filter = Material::with_finish(Finish {
+        transmission: Color::new(0.5, 1.0, 0.0),
+        ..Finish::BLACK
+    });
     let lit = |blocker: Option<Object>| {
         let mut scene = Scene::new()
             .add(slab(-1.0, 0.0).material(Material::matte(Color::WHITE)))

@@ -195,8 +195,9 @@ impl<'a> Lexer<'a> {
                 First::Blank => self.position += 1,
                 First::Digit => self.number(),
                 First::Name => {
-                    let name = self.name();
-                    let symbol = self.symbols.intern(name);
+                    let length = self.name().len();
+                    let rest = self.bytes.get(start..).unwrap_or(&[]);
+                    let symbol = self.symbols.intern_front(rest, length);
                     let known = (symbol.index()) < Word::ALL.len();
                     let kind = if known && !self.is_freed(symbol) {
                         Kind::Word

@@ -197,9 +197,8 @@ impl SourceFile {
         let passed = self.bytes.get(last.at as usize..start as usize);
         match passed {
             Some(passed) if passed.len() <= far as usize => {
-                let ends = passed.iter().filter(|b| **b == b'\n').count() as u32;
-                if ends > 0 {
-                    let end = passed.iter().rposition(|b| *b == b'\n').unwrap_or(0);
+                let ends = memchr::memchr_iter(b'\n', passed).count() as u32;
+                if let Some(end) = memchr::memrchr(b'\n', passed) {
                     last.begin = last.at + end as u32 + 1;
                 }
                 last.ends += ends;

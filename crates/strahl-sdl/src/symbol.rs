@@ -15,15 +15,47 @@ impl Symbol {
 /// All names met so far, each stored once: an open-addressing table of numbers over one string.
 ///
 /// Own code instead of a `HashMap<Box<str>, _>` because every identifier of the text passes here: one multiplication per
-/// eight bytes, no allocation for known names.
+/// eight bytes, no allocation for known names, no look at the text of names of up to 16 bytes.
 #[derive(Debug)]
 pub(crate) struct Symbols {
     text: String,
     ends: Vec<u32>,
-    /// Symbol number plus one; 0 is free. The length is a power of two.
-    table: Vec<u32>,
+    /// The length is a power of two.
+    table: Vec<Slot>,
     /// Reserved words that the scene has declared as names.
     freed: Vec<Symbol>,
+}
+
+/// A place in the table.
+#[derive(Clone, Copy, Debug, Default)]
+struct Slot {
+    /// The first bytes of the name, with zeros behind a shorter one.
+    head: u128,
+    /// How many bytes the name has.
+    length: u32,
+    /// Symbol number plus one; 0 is free.
+    number: u32,
+}
+
+/// How many bytes of a name its slot holds.
+const HEAD: usize = 16;
+
+/// The head of the name of this length that a text begins with.
+#[inline]
+fn head(text: &[u8], length: usize) -> u128 {
+    let mask = match length {
+        0..HEAD => (1 << (8 * length)) - 1,
+        _ => u128::MAX,
+    };
+    let bytes = match text.first_chunk() {
+        Some(bytes) => *bytes,
+        None => {
+            let mut bytes = [0; HEAD];
+            bytes.iter_mut().zip(text).for_each(|(b, t)| *b = *t);
+            bytes
+        }
+    };
+    u128::from_le_bytes(bytes) & mask
 }
 
 impl Symbols {
@@ -32,7 +64,7 @@ impl Symbols {
         let mut symbols = Self {
             text: String::new(),
             ends: vec![],
-            table: vec![0; 2048],
+            table: vec![Slot::default(); 2048],
             freed: vec![],
         };
         for (_, text, _) in Word::ALL {
@@ -69,19 +101,41 @@ impl Symbols {
 
     /// The symbol of a name, which is valid UTF-8: ASCII letters, digits and underscores, or the key of a dictionary.
     pub(crate) fn intern(&mut self, name: &[u8]) -> Symbol {
+        self.intern_front(name, name.len())
+    }
+
+    /// The symbol of the name of this many bytes that a text begins with.
+    pub(crate) fn intern_front(&mut self, text: &[u8], length: usize) -> Symbol {
+        let head = head(text, length);
+        let name = text.get(..length).unwrap_or(text);
         let mask = self.table.len() - 1;
-        let mut slot = hash(name) as usize & mask;
+        let mut slot = hash(head, name) as usize & mask;
         loop {
-            match self.table[slot] {
-                0 => break,
-                n if self.text(Symbol(n - 1)).as_bytes() == name => return Symbol(n - 1),
-                _ => slot = (slot + 1) & mask,
+            let Slot {
+                head: known,
+                length: known_length,
+                number,
+            } = self.table[slot];
+            if number == 0 {
+                break;
             }
+            let symbol = Symbol(number.wrapping_sub(1));
+            if known == head
+                && known_length as usize == length
+                && (length <= HEAD || self.text(symbol).as_bytes() == name)
+            {
+                return symbol;
+            }
+            slot = (slot + 1) & mask;
         }
         let symbol = Symbol(self.ends.len() as u32);
         self.text.push_str(std::str::from_utf8(name).unwrap_or(""));
         self.ends.push(self.text.len() as u32);
-        self.table[slot] = symbol.0 + 1;
+        self.table[slot] = Slot {
+            head,
+            length: length as u32,
+            number: symbol.0 + 1,
+        };
         if self.ends.len() * 2 > self.table.len() {
             self.grow();
         }
@@ -94,7 +148,7 @@ impl Symbols {
         *self = Self {
             text: String::with_capacity(self.text.len() * 2),
             ends: Vec::with_capacity(self.ends.len() * 2),
-            table: vec![0; size],
+            table: vec![Slot::default(); size],
             freed: std::mem::take(&mut self.freed),
         };
         for name in names {
@@ -103,16 +157,14 @@ impl Symbols {
     }
 }
 
-fn hash(name: &[u8]) -> u64 {
+#[inline]
+fn hash(head: u128, name: &[u8]) -> u64 {
     // 2^64 divided by the golden ratio; the upper bits of the product depend on all lower ones.
     const FACTOR: u64 = 0x9e37_79b9_7f4a_7c15;
-    let mut hash = name.len() as u64;
-    for part in name.chunks(8) {
-        let word = match <[u8; 8]>::try_from(part) {
-            Ok(word) => u64::from_le_bytes(word),
-            Err(_) => part.iter().fold(0, |word, b| word << 8 | u64::from(*b)),
-        };
-        hash = (hash.rotate_left(5) ^ word).wrapping_mul(FACTOR);
+    let mix = |hash: u64, word: u64| (hash.rotate_left(5) ^ word).wrapping_mul(FACTOR);
+    let mut hash = mix(mix(name.len() as u64, head as u64), (head >> 64) as u64);
+    for part in name.get(HEAD..).unwrap_or(&[]).chunks(8) {
+        hash = mix(hash, part.iter().fold(0, |w, b| w << 8 | u64::from(*b)));
     }
     hash >> 32
 }

@@ -4,8 +4,12 @@ mod common;
 
 use common::{debug, errors, parse_with};
 use strahl_geometry::Shape;
+use strahl_math::DVec3;
 use strahl_scene::{CsgOp, Object, ObjectKind, Scene};
 use strahl_sdl::MemoryHost;
+use strahl_shade::Color;
+use strahl_shade::patterns::TexturePoint;
+use strahl_shade::texture::Texture;
 
 /// The scene of a text without errors, and its warnings.
 fn scene(text: &str) -> (Scene, Vec<String>) {
@@ -314,8 +318,8 @@ fn items_act_in_the_order_they_stand() {
     let clip = |o: &Object| operation(o).1[1].transform.as_deref().copied();
     assert!(clip(&before).is_none());
     let turned_back = clip(&after).expect("moved against the object");
-    let image = turned_back.vector_to_world(strahl_math::DVec3::Y);
-    assert!((image - strahl_math::DVec3::X).length() < 1e-12, "{image}");
+    let image = turned_back.vector_to_world(DVec3::Y);
+    assert!((image - DVec3::X).length() < 1e-12, "{image}");
     assert!(before.transform.is_some() && after.transform.is_some());
 }
 
@@ -327,10 +331,12 @@ fn parts_take_the_material_of_the_whole_if_they_have_none() {
     assert!(whole.material.is_some() && parts[0].material.is_none() && parts[1].material.is_some());
     // Without a texture of its own, the default texture where it enters the scene.
     let text = "#declare S = sphere { 0, 1 } #default { pigment { rgb x } } object { S }";
-    let finish = |text: &str| object(text).material.map(|m| m.finish);
-    let expected = finish("sphere { 0, 1 pigment { rgb x } }");
-    assert!(expected.is_some());
-    assert_eq!(finish(text), expected);
+    let red = object(text).material.unwrap().texture.clone().unwrap();
+    let Texture::Plain(red) = &*red.0 else {
+        panic!("one pigment");
+    };
+    let color = red.pigment.color_at(&TexturePoint::in_space(DVec3::ZERO));
+    assert_eq!(color.rgb, Color::new(1.0, 0.0, 0.0));
 }
 
 #[test]

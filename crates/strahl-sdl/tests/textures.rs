@@ -336,7 +336,7 @@ fn declared_layers_and_patterned_textures() {
     let (scene, _) = scene(text);
     let glass = scene.objects.0[7].material.as_ref().unwrap();
     assert_eq!(
-        (glass.eta, glass.interior.unwrap().fade_distance),
+        (glass.eta, glass.interior.as_ref().unwrap().fade_distance),
         (1.5, 2.0)
     );
 }
@@ -473,8 +473,16 @@ fn defaults_and_shared_materials() {
         .iter()
         .map(|o| o.material.as_ref().unwrap())
         .collect();
-    assert_eq!(materials[0].finish.ambient, Color::new(0.5, 0.0, 0.0));
-    assert_eq!(materials[1].finish.specular, Color::WHITE);
+    let plain = |index: usize| match &*materials[index].texture.as_ref().unwrap().0 {
+        Texture::Plain(plain) => plain.clone(),
+        other => panic!("one pigment, not {other:?}"),
+    };
+    let color = plain(0)
+        .pigment
+        .color_at(&TexturePoint::in_space(DVec3::ZERO));
+    assert_eq!(color.rgb, Color::new(1.0, 0.0, 0.0));
+    assert_eq!(plain(0).finish.ambient, Color::gray(0.5));
+    assert_eq!((plain(1).finish.phong, plain(0).finish.phong), (1.0, 0.0));
     assert!(Arc::ptr_eq(materials[2], materials[3]));
 }
 

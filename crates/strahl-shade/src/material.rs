@@ -1,6 +1,7 @@
 use crate::interior::Interior;
 use crate::texture::SharedTexture;
 use crate::{Color, Pbr, ShadingModel};
+use std::sync::{Arc, LazyLock};
 use strahl_math::{DVec2, det};
 
 /// Index of a material in the scene's list.
@@ -56,8 +57,8 @@ pub struct Material {
     pub name: String,
     /// Shading model; `None` takes the scene's.
     pub model: Option<ShadingModel>,
-    /// The coefficients, unless `pbr` replaces them point by point.
-    pub finish: Finish,
+    /// The coefficients, unless `texture` or `pbr` gives them point by point.
+    pub finish: Arc<Finish>,
     /// η, the index of refraction of the inside; 1 lets rays pass straight.
     pub eta: f64,
     /// Absorption inside per unit length (Beer-Lambert): a path of length s keeps `exp(-absorption s)`.
@@ -78,7 +79,7 @@ pub struct Material {
     /// The texture that the surface shows to rays from inside, if that is another (`interior_texture`).
     pub inner_texture: Option<SharedTexture>,
     /// How light fades inside, as POV-Ray's `interior` has it, which takes the place of `absorption`; `eta` holds still.
-    pub interior: Option<Interior>,
+    pub interior: Option<Arc<Interior>>,
 }
 
 /// A material evaluated at a point.
@@ -136,16 +137,30 @@ impl Material {
         }
     }
 
+    /// A surface that a texture describes. Small, because a scene may have one for each of a million objects.
+    pub fn textured(texture: impl Into<SharedTexture>) -> Self {
+        static BLACK: LazyLock<Arc<Finish>> = LazyLock::new(|| Arc::new(Finish::BLACK));
+        Self {
+            texture: Some(texture.into()),
+            ..Self::with_finish(Arc::clone(&BLACK))
+        }
+    }
+
     /// A diffuse surface of the given colour, without highlight: kd = ka = colour.
     pub fn matte(color: Color) -> Self {
+        Self::with_finish(Arc::new(Finish {
+            ambient: color,
+            diffuse: color,
+            ..Finish::BLACK
+        }))
+    }
+
+    /// An opaque surface with these coefficients.
+    pub fn with_finish(finish: impl Into<Arc<Finish>>) -> Self {
         Self {
             name: String::new(),
             model: None,
-            finish: Finish {
-                ambient: color,
-                diffuse: color,
-                ..Finish::BLACK
-            },
+            finish: finish.into(),
             eta: 1.0,
             absorption: Color::BLACK,
             fresnel: false,
@@ -164,9 +179,12 @@ impl Material {
         let finish = Finish {
             specular: Color::gray(ks),
             shininess,
-            ..matte.finish
+            ..*matte.finish
         };
-        Self { finish, ..matte }
+        Self {
+            finish: Arc::new(finish),
+            ..matte
+        }
     }
 
     /// A mirror that reflects `kr` of the light, with a sharp highlight.
@@ -178,7 +196,7 @@ impl Material {
             ..Finish::BLACK
         };
         Self {
-            finish,
+            finish: Arc::new(finish),
             ..Self::matte(Color::BLACK)
         }
     }
@@ -193,7 +211,7 @@ impl Material {
             ..Finish::BLACK
         };
         Self {
-            finish,
+            finish: Arc::new(finish),
             eta,
             fresnel: true,
             ..Self::matte(Color::BLACK)
@@ -227,7 +245,7 @@ impl Material {
     /// Sets kr, the share of reflected light.
     #[must_use]
     pub fn with_reflection(mut self, kr: Color) -> Self {
-        self.finish.reflection = kr;
+        Arc::make_mut(&mut self.finish).reflection = kr;
         self
     }
 
@@ -235,11 +253,12 @@ impl Material {
     /// and `transmit` passes unchanged; kd and ka are weakened by what passes.
     #[must_use]
     pub fn with_transparency(mut self, pigment: Color, filter: f64, transmit: f64) -> Self {
-        self.finish.transmission = pigment * filter + Color::gray(transmit);
+        let finish = Arc::make_mut(&mut self.finish);
+        finish.transmission = pigment * filter + Color::gray(transmit);
         let rest = 1.0 - filter - transmit;
         let rest = if rest > 0.0 { rest } else { 0.0 };
-        self.finish.diffuse = self.finish.diffuse * rest;
-        self.finish.ambient = self.finish.ambient * rest;
+        finish.diffuse = finish.diffuse * rest;
+        finish.ambient = finish.ambient * rest;
         self
     }
 
@@ -247,7 +266,7 @@ impl Material {
     #[inline]
     pub fn at(&self, uv: DVec2) -> MaterialPoint {
         match &self.pbr {
-            None => MaterialPoint::classical(self.finish, self.fresnel),
+            None => MaterialPoint::classical(*self.finish, self.fresnel),
             Some(pbr) => pbr.at(uv),
         }
     }

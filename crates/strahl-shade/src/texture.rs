@@ -27,7 +27,7 @@ pub struct PlainTexture {
 #[derive(Clone, Debug)]
 pub enum Texture {
     /// One pigment, normal and finish.
-    Plain(Box<PlainTexture>),
+    Plain(PlainTexture),
     /// Textures laid over each other, the lowest first, as they are written.
     Layered(Vec<Texture>),
     /// Two textures blended by the value of a pattern (`texture_map`).
@@ -61,7 +61,7 @@ impl Default for Texture {
 
 impl From<PlainTexture> for Texture {
     fn from(texture: PlainTexture) -> Self {
-        Self::Plain(Box::new(texture))
+        Self::Plain(texture)
     }
 }
 

@@ -137,8 +137,8 @@ impl Parser<'_> {
         if let Some((components, count)) = self.lone_vector() {
             return Ok(Vector::of(components, count));
         }
-        if let Some(x) = self.quick(4) {
-            return Ok(Vector::float(x));
+        if let Some(number) = self.quick_number(4) {
+            return Ok(number);
         }
         self.binary(4)
     }

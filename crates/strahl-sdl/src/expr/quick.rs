@@ -1,6 +1,6 @@
-//! The short way for expressions of floats alone.
+//! The short way for expressions of floats and vectors alone.
 //!
-//! Most expressions are numbers, names of floats and the four operations. They are evaluated here from the tokens as they
+//! Most expressions are numbers, names, vectors of them and the four operations. They are evaluated here from the tokens as they
 //! stand, without unfolding, bookkeeping or errors; at the first token that needs any of that the attempt ends, nothing has
 //! changed, and the full evaluator begins anew. Both give the same bits: the operations are the same.
 
@@ -8,8 +8,11 @@ use super::{equal, precedence, truth};
 use crate::keywords::Word;
 use crate::parser::Parser;
 use crate::token::{Kind, Token};
-use crate::value::Value;
+use crate::value::{Value, Vector};
 use strahl_math::det;
+
+/// Parentheses within each other; deeper ones take the long way.
+const DEPTH: u32 = 8;
 
 /// Whether an expression surely ends before this token: nothing that could unfold to an operator, index or argument.
 const fn ends(kind: Kind) -> bool {
@@ -76,8 +79,6 @@ impl Parser<'_> {
     /// behind it; `None`, and nothing moved, if it takes more than floats.
     #[inline]
     pub(super) fn quick(&mut self, weakest: u8) -> Option<f64> {
-        /// Parentheses within each other; deeper ones take the long way.
-        const DEPTH: u32 = 8;
         let first = self.raw().kind;
         if !matches!(
             first,
@@ -90,6 +91,95 @@ impl Parser<'_> {
         let value = self.quick_binary(&mut position, weakest, DEPTH)?;
         self.pass(position - begin);
         Some(value)
+    }
+
+    /// The same for floats and vectors.
+    #[inline]
+    pub(super) fn quick_number(&mut self, weakest: u8) -> Option<Vector> {
+        let first = self.raw();
+        let vector = match first.kind {
+            Kind::Less => true,
+            Kind::Name => matches!(self.scopes.find(first.symbol()?)?, Value::Vector(_)),
+            _ => false,
+        };
+        if !vector && let Some(x) = self.quick(weakest) {
+            return Some(Vector::float(x));
+        }
+        let begin = self.position();
+        let mut position = begin;
+        let value = self.quick_vector_binary(&mut position, weakest)?;
+        self.pass(position - begin);
+        Some(value)
+    }
+
+    fn quick_vector_binary(&self, position: &mut usize, weakest: u8) -> Option<Vector> {
+        let mut left = self.quick_vector_operand(position)?;
+        loop {
+            let kind = self.token_at(*position).kind;
+            let binds = precedence(kind);
+            if binds == 0 || binds < weakest {
+                return (binds > 0 || ends(kind)).then_some(left);
+            }
+            *position += 1;
+            let right = if binds == 5 {
+                self.quick_vector_operand(position)?
+            } else {
+                self.quick_vector_binary(position, binds + 1)?
+            };
+            left = match kind {
+                Kind::Plus => left.zip(right, |a, b| a + b),
+                Kind::Minus => left.zip(right, |a, b| a - b),
+                Kind::Star => left.zip(right, |a, b| a * b),
+                Kind::Slash => {
+                    let divisor = right.promoted(left.len().max(right.len()));
+                    if divisor.as_slice().contains(&0.0) {
+                        return None;
+                    }
+                    left.zip(right, |a, b| a / b)
+                }
+                _ => return None,
+            };
+        }
+    }
+
+    fn quick_vector_operand(&self, position: &mut usize) -> Option<Vector> {
+        let token = self.token_at(*position);
+        let value = match token.kind {
+            Kind::Less => {
+                *position += 1;
+                self.quick_components(position)?
+            }
+            Kind::Name => match self.scopes.find(token.symbol()?)? {
+                Value::Float(x) => {
+                    *position += 1;
+                    Vector::float(*x)
+                }
+                Value::Vector(v) => {
+                    *position += 1;
+                    *v
+                }
+                _ => return None,
+            },
+            _ => Vector::float(self.quick_operand(position, DEPTH)?),
+        };
+        let after = self.token_at(*position).kind;
+        (ends(after) || precedence(after) > 0).then_some(value)
+    }
+
+    /// What stands behind a `<`, up to and with the `>`.
+    fn quick_components(&self, position: &mut usize) -> Option<Vector> {
+        let mut components = [0.0; 5];
+        for count in 0..5 {
+            *components.get_mut(count)? = self.quick_binary(position, 4, DEPTH)?;
+            let kind = self.token_at(*position).kind;
+            *position += 1;
+            match kind {
+                Kind::Comma => {}
+                Kind::Greater if count > 0 => return Some(Vector::of(components, count + 1)),
+                _ => return None,
+            }
+        }
+        None
     }
 
     #[inline]

@@ -19,22 +19,27 @@ impl Parser<'_> {
     }
 
     fn value_of_name(&mut self, token: Token) -> PResult<Value> {
-        if let Some(symbol) = token.symbol()
-            && !self.declare_internal(symbol)
-        {
-            return Err(self.unexpected(token, "a value"));
-        }
-        let value = self.variable(token)?;
-        let number = match value.numeric() {
+        let number = match self.quick_number(4) {
             Some(number) => number,
-            None if value.is_callable() && self.raw().kind == Kind::LeftParen => {
-                self.call_value(&value)?
+            None => {
+                if let Some(symbol) = token.symbol()
+                    && !self.declare_internal(symbol)
+                {
+                    return Err(self.unexpected(token, "a value"));
+                }
+                let value = self.variable(token)?;
+                let number = match value.numeric() {
+                    Some(number) => number,
+                    None if value.is_callable() && self.raw().kind == Kind::LeftParen => {
+                        self.call_value(&value)?
+                    }
+                    None => return Ok(value),
+                };
+                // The name may be the first operand of a longer expression.
+                let number = self.components_of(number)?;
+                self.binary_from(number, 4)?
             }
-            None => return Ok(value),
         };
-        // The name may be the first operand of a longer expression.
-        let number = self.components_of(number)?;
-        let number = self.binary_from(number, 4)?;
         let followed = self.peek()?;
         match followed.word().map(Word::kind) {
             Some(WordKind::Color) => {

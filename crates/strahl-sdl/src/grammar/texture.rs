@@ -43,7 +43,7 @@ pub struct Texture {
     /// What covers it as seen from inside, if that is something else.
     pub inner_surface: Option<Arc<Surface>>,
     /// What is inside.
-    pub interior: Option<Interior>,
+    pub interior: Option<Arc<Interior>>,
     /// Whether `surface` has been written and is not the default: further textures are then laid over it.
     pub(super) written: bool,
     /// Whether `uv_mapping` has been said for all that is written after it.
@@ -127,7 +127,7 @@ impl Texture {
         Self {
             surface: moved(&self.surface),
             inner_surface: self.inner_surface.as_ref().map(moved),
-            interior: self.interior,
+            interior: self.interior.clone(),
             written: self.written,
             uv_mapped: self.uv_mapped,
         }
@@ -190,7 +190,7 @@ impl Parser<'_> {
             }
             Some(Word::Interior) => {
                 self.take(token)?;
-                texture.interior = Some(self.interior_block()?);
+                texture.interior = Some(Arc::new(self.interior_block()?));
             }
             Some(Word::Material) => {
                 self.take(token)?;

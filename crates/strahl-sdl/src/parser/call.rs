@@ -26,7 +26,7 @@ pub(crate) struct Parameter {
 }
 
 /// What a parameter gets.
-enum Argument {
+pub(super) enum Argument {
     Value(Value),
     /// The variable itself: what the macro assigns to the parameter changes it.
     Variable(Target),
@@ -38,18 +38,19 @@ impl Parser<'_> {
     pub(super) fn call(&mut self, name: Token, called: Arc<Macro>) -> PResult<()> {
         self.take(name)?;
         let from = self.place();
-        let mut arguments = vec![];
+        let mut arguments = std::mem::take(&mut self.arguments);
         self.nested(|p| p.enclosed(|p| p.arguments(&called, &mut arguments)))?;
         let file = Arc::clone(&called.file);
         let entry = Entry::Macro(called.name);
         self.enter_frame(entry, from, file, called.begin, called.end)?;
-        for (parameter, argument) in called.parameters.iter().zip(arguments) {
+        for (parameter, argument) in called.parameters.iter().zip(arguments.drain(..)) {
             match argument {
                 Argument::Value(value) => self.scopes.bind_value(parameter.symbol, value),
                 Argument::Variable(target) => self.scopes.bind_alias(parameter.symbol, target),
                 Argument::Missing => {}
             }
         }
+        self.arguments = arguments;
         Ok(())
     }
 

@@ -61,6 +61,7 @@ impl<'h> Parser<'h> {
             frames: vec![],
             blocks: vec![],
             floor: Floor::default(),
+            arguments: vec![],
             place: Place { file: 0, start: 0 },
             mark: super::recover::Mark::default(),
             between: true,

@@ -15,6 +15,7 @@ mod report;
 mod scope;
 
 pub(crate) use blocks::{Block, BlockKind, Loop};
+use call::Argument;
 pub use call::Macro;
 pub(crate) use call::Parameter;
 pub(crate) use frames::Entry;
@@ -78,6 +79,8 @@ pub struct Parser<'h> {
     frames: Vec<Frame>,
     blocks: Vec<Block>,
     floor: Floor,
+    /// Memory for the arguments of the next call.
+    arguments: Vec<Argument>,
     place: Place,
     /// Where to begin skipping if the current statement fails.
     mark: recover::Mark,

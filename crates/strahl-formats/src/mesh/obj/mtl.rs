@@ -70,16 +70,12 @@ impl Statements {
     }
 
     fn classical(self) -> Material {
-        let base = Material {
-            name: self.name.clone(),
-            ..Material::matte(Color::BLACK)
-        };
         if self.illum == 0 {
             let finish = Finish {
                 emission: self.kd + self.ke,
                 ..Finish::BLACK
             };
-            return Material { finish, ..base };
+            return Material::with_finish(finish).named(self.name);
         }
         let (glass, reflecting) = (self.is_glass(), matches!(self.illum, 3 | 5 | 8));
         let passing = Color::gray(1.0 - self.d);
@@ -110,11 +106,10 @@ impl Statements {
         };
         let fresnel = glass || self.illum == 5;
         Material {
-            finish,
             eta: if fresnel { self.ni } else { 1.0 },
             fresnel,
             thin: matches!(self.illum, 4 | 9),
-            ..base
+            ..Material::with_finish(finish).named(self.name)
         }
     }
 

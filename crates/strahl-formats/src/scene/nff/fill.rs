@@ -51,9 +51,8 @@ impl Fill {
         let eta = if n.ior > 0.0 { n.ior } else { 1.0 };
         let base = Material {
             name: format!("fill {number} (line {line})"),
-            finish,
             eta,
-            ..Material::matte(Color::BLACK)
+            ..Material::with_finish(finish)
         };
         Self {
             number,

@@ -76,7 +76,7 @@ impl Parser<'_> {
             && let Some(texture) = &entity.texture
         {
             entity.object.material = Some(self.material(texture));
-            if let Some(interior) = texture.interior {
+            if let Some(interior) = &texture.interior {
                 if combines(&entity.object) {
                     self.expand_instances(&mut entity.object)?;
                 }

@@ -1,13 +1,11 @@
 use super::Texture;
 use crate::parser::Parser;
 use std::sync::Arc;
-use strahl_math::DVec3;
 use strahl_scene::{Object, ObjectKind};
+use strahl_shade::Material;
 use strahl_shade::interior::Interior;
-use strahl_shade::patterns::TexturePoint;
 use strahl_shade::pigment::Pigment;
 use strahl_shade::texture::{SharedTexture, Texture as Surface};
-use strahl_shade::{Color, Finish, Material, ShadingModel};
 
 /// How many of the last materials with patterns are kept to be shared.
 const RECENT: usize = 16;
@@ -42,47 +40,18 @@ impl PartialEq for Texture {
 }
 
 impl Texture {
-    /// The material, with coefficients of the classical model for who does not evaluate textures: those at the origin.
     fn to_material(&self) -> Material {
-        let top = self.top();
-        let origin = TexturePoint::in_space(DVec3::ZERO);
-        let pigment = top.pigment.color_at(&origin);
-        let (color, f) = (pigment.rgb, &top.finish);
-        let phong = f.phong > 0.0 && f.specular <= 0.0;
-        let (strength, shininess) = if phong {
-            (f.phong, f.phong_size)
-        } else {
-            (f.specular, 1.0 / f.roughness)
-        };
-        let model = if phong {
-            ShadingModel::Phong
-        } else {
-            ShadingModel::BlinnPhong
-        };
-        let finish = Finish {
-            ambient: color * f.ambient,
-            diffuse: color * f.diffuse,
-            specular: Color::gray(strength),
-            shininess,
-            reflection: f.reflection.max,
-            emission: color * f.emission,
-            ..Finish::BLACK
-        };
         Material {
-            model: Some(model),
-            finish,
-            eta: self.interior.map_or(1.0, |i| i.ior),
-            texture: Some(SharedTexture(Arc::clone(&self.surface))),
+            eta: self.interior.as_ref().map_or(1.0, |i| i.ior),
             inner_texture: self.inner_surface.clone().map(SharedTexture),
-            interior: self.interior,
-            ..Material::matte(color)
+            interior: self.interior.clone(),
+            ..Material::textured(SharedTexture(Arc::clone(&self.surface)))
         }
-        .with_transparency(color, pigment.filter, pigment.transmit)
     }
 }
 
 /// Fills the parts of a combined object that have a texture but no interior of their own.
-pub(in crate::grammar) fn fill_parts(object: &mut Object, interior: Interior) {
+pub(in crate::grammar) fn fill_parts(object: &mut Object, interior: &Arc<Interior>) {
     // Parts that shared a material go on sharing one.
     let mut filled: Vec<(Arc<Material>, Arc<Material>)> = vec![];
     let mut waiting = vec![object];
@@ -100,7 +69,7 @@ pub(in crate::grammar) fn fill_parts(object: &mut Object, interior: Interior) {
                     Some((_, after)) => Arc::clone(after),
                     None => {
                         let after = Arc::new(Material {
-                            interior: Some(interior),
+                            interior: Some(Arc::clone(interior)),
                             eta: interior.ior,
                             ..Material::clone(before)
                         });
