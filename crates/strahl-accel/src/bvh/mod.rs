@@ -9,7 +9,7 @@ mod node;
 pub(crate) mod split;
 mod traverse;
 pub(crate) mod validate;
-mod watch;
+pub(crate) mod watch;
 
 use crate::List;
 use crate::cull::CullBounds;

@@ -1,4 +1,5 @@
 use super::node::Child;
+use super::watch::BoxTree;
 use super::{Bvh2, MAX_DEPTH, Tree};
 use crate::cull::CullRay;
 use crate::list::visit_all;

@@ -1,23 +1,28 @@
-//! Tells of the way through the tree. Nodes know nothing of their parents, so this searches for them: slow, and only for those
-//! who watch.
+//! Tells of the way through a tree of boxes. Nodes know nothing of their parents, so this searches for them: slow, and only for
+//! those who watch.
 
 use super::Tree;
 use super::node::Child;
 use crate::{Place, Step, Visitor};
 use strahl_math::{Aabb, Interval, Ray};
 
-impl Tree {
+/// A tree whose boxes are kept in the parents of what is in them.
+pub(crate) trait BoxTree {
+    /// A node or a leaf.
+    type Child: Copy;
+
+    /// The box around everything: that of the root.
+    fn whole(&self) -> &Aabb;
+
+    /// Whether a child is a leaf.
+    fn is_leaf(child: Self::Child) -> bool;
+
+    /// The node a child belongs to, and the child's box; nothing for the root.
+    fn parent(&self, child: Self::Child) -> Option<(Self::Child, Aabb)>;
+
     /// Tells that the traversal looks at a node or a leaf.
-    pub(super) fn report<V: Visitor>(
-        &self,
-        ray: &Ray,
-        range: Interval,
-        child: Child,
-        visitor: &mut V,
-    ) {
-        let mut level = 0;
-        let mut bounds = *self.bounds.bounds();
-        let mut current = child;
+    fn report<V: Visitor>(&self, ray: &Ray, range: Interval, child: Self::Child, visitor: &mut V) {
+        let (mut level, mut bounds, mut current) = (0, *self.whole(), child);
         while let Some((parent, own)) = self.parent(current) {
             if level == 0 {
                 bounds = own;
@@ -27,7 +32,7 @@ impl Tree {
         }
         let inside = bounds.clip(ray, range);
         visitor.step(Step {
-            place: match child.is_leaf() {
+            place: match Self::is_leaf(child) {
                 true => Place::Leaf(bounds),
                 false => Place::Node(bounds),
             },
@@ -38,8 +43,19 @@ impl Tree {
             exit: None,
         });
     }
+}
 
-    /// The node a child belongs to, and the child's box.
+impl BoxTree for Tree {
+    type Child = Child;
+
+    fn whole(&self) -> &Aabb {
+        self.bounds.bounds()
+    }
+
+    fn is_leaf(child: Child) -> bool {
+        child.is_leaf()
+    }
+
     fn parent(&self, child: Child) -> Option<(Child, Aabb)> {
         self.nodes.iter().enumerate().find_map(|(index, node)| {
             let side = node.children.iter().position(|c| *c == child)?;

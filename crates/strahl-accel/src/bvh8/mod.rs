@@ -6,6 +6,7 @@ mod build;
 mod node;
 mod traverse;
 mod validate;
+mod watch;
 
 use crate::List;
 use crate::cull::CullBounds;

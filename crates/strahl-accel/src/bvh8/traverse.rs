@@ -1,6 +1,7 @@
 use super::node::{Child, Node, WIDTH};
 use super::{BLOCK, Bvh8, Tree};
 use crate::bvh::MAX_DEPTH;
+use crate::bvh::watch::BoxTree;
 use crate::cull::CullRay;
 use crate::list::visit_all;
 use crate::traversal::Leaf;
@@ -165,6 +166,9 @@ impl Tree {
         let mut stack = Stack::new();
         let mut current = self.root;
         loop {
+            if V::WATCHES {
+                self.report(ray, range.with_max(t_max), current, visitor);
+            }
             if !current.is_leaf() {
                 stats.node_visits += 1;
                 let node = &self.nodes[current.node()];
