@@ -9,6 +9,7 @@ mod any;
 mod boxes;
 mod bvh;
 mod bvh8;
+mod cells;
 mod cull;
 mod grid;
 mod list;

@@ -149,50 +149,9 @@ pub(crate) fn clamp(x: f64, min: f64, max: f64) -> f64 {
     }
 }
 
-/// Remembers the primitives visited last, so that one which lies in several cells is not tested again: the inverse of a
-/// mailbox, nothing to clear and nothing to store with the primitives.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Mailbox {
-    last: [u32; Self::SIZE],
-    next: usize,
-}
-
-impl Mailbox {
-    const SIZE: usize = 8;
-
-    pub(crate) fn new() -> Self {
-        Self {
-            last: [u32::MAX; Self::SIZE],
-            next: 0,
-        }
-    }
-
-    /// Whether this primitive was not among the last; it is now.
-    #[inline(always)]
-    pub(crate) fn is_new(&mut self, id: u32) -> bool {
-        let mut known = false;
-        for other in self.last {
-            known |= other == id;
-        }
-        if !known {
-            self.last[self.next] = id;
-            self.next = (self.next + 1) % Self::SIZE;
-        }
-        !known
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn a_mailbox_knows_the_last_eight() {
-        let mut mailbox = Mailbox::new();
-        assert!((0..8).all(|id| mailbox.is_new(id)));
-        assert!((0..8).all(|id| !mailbox.is_new(id)));
-        assert!(mailbox.is_new(8) && mailbox.is_new(0) && !mailbox.is_new(2));
-    }
 
     #[test]
     fn a_parallel_ray_crosses_no_plane() {

@@ -1,9 +1,9 @@
 use super::resolution::cubic;
 use super::{BLOCK, Block, Grid, GridParameters, Grids, NESTED, SubGrid};
-use crate::boxes::Box32;
+use crate::Shapes;
+use crate::cells::Base;
 use crate::shapes::BoxesOnly;
 use crate::walk::Room;
-use crate::{List, Shapes};
 use rayon::prelude::*;
 use strahl_math::{Aabb, DVec3};
 
@@ -31,31 +31,15 @@ impl Grids {
     }
 
     fn build_levels(shapes: &dyn Shapes, parameters: &GridParameters, levels: u32) -> Self {
-        let (mut ids, mut unbounded, mut whole) = (Vec::new(), Vec::new(), Aabb::EMPTY);
-        for id in 0..shapes.count() as u32 {
-            let bounds = shapes.bounds(id);
-            if Box32::try_new(&bounds).is_some() {
-                ids.push(id);
-                whole = whole.union(&bounds);
-            } else if !bounds.is_empty() {
-                unbounded.push(id);
-            }
-        }
+        let (base, ids) = Base::gather(shapes, parameters.havran);
         let mut grids = Self {
-            room: None,
+            base,
             grids: Vec::new(),
             blocks: Vec::new(),
             offsets: Vec::new(),
             ids: Vec::new(),
-            unbounded: List::of(unbounded),
-            plain: parameters.havran,
         };
-        if !ids.is_empty() {
-            let room = match parameters.havran {
-                true => Room::published(whole),
-                false => Room::new(whole),
-            };
-            grids.room = Some(room);
+        if let Some(room) = grids.base.room {
             let boxes = BoxesOnly(shapes);
             let builder = Builder {
                 shapes: if parameters.havran { &boxes } else { shapes },

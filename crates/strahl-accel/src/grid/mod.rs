@@ -6,9 +6,8 @@ mod build;
 mod resolution;
 mod traverse;
 
-use crate::List;
+use crate::cells::Base;
 use crate::parameters::{Parameter, Parameters};
-use crate::walk::Room;
 use strahl_math::{Aabb, DVec3};
 
 /// The parameters of [`Grid`], and with nested grids of its cells.
@@ -93,7 +92,7 @@ pub struct Grid(Grids);
 /// Primitives without bounds are kept in a list beside the grid and always visited.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Grids {
-    room: Option<Room>,
+    base: Base,
     /// Grid 0 is the outermost.
     grids: Vec<SubGrid>,
     blocks: Vec<Block>,
@@ -101,9 +100,6 @@ pub struct Grids {
     /// the number of a grid.
     offsets: Vec<u32>,
     ids: Vec<u32>,
-    unbounded: List,
-    /// Nothing is skipped or remembered.
-    plain: bool,
 }
 
 /// Marks a cell that is a grid.

@@ -1,7 +1,6 @@
 use super::{BLOCK, Grid, Grids, NESTED, SubGrid};
-use crate::list::visit_all;
-use crate::walk::{Mailbox, Walk};
-use crate::{Accelerator, Exit, Place, Step, TraversalStats, Visitor};
+use crate::cells::Search;
+use crate::{Accelerator, Exit, Place, TraversalStats, Visitor};
 use strahl_math::{Aabb, DVec3, Interval, Ray};
 
 impl Accelerator for Grid {
@@ -46,26 +45,18 @@ impl Accelerator for Grids {
         visitor: &mut V,
         stats: &mut TraversalStats,
     ) {
-        let t_max = visit_all(self.unbounded.ids(), range.max, visitor, stats);
-        if t_max > f64::NEG_INFINITY
-            && let Some(room) = &self.room
-            && let Some(walk) = Walk::new(ray, range, room)
-        {
+        self.base.search(ray, range, visitor, stats, |search| {
+            let (walk, room) = (search.walk, search.room);
             let mut walker = Walker {
                 grids: self,
-                walk: &walk,
-                t_max,
-                far: walk.moved.upper(t_max),
-                mailbox: Mailbox::new(),
-                visitor,
-                stats,
+                search,
             };
             if walk.is_thick(room) {
                 walker.thick(0);
             } else {
                 walker.grid(0, walk.near, 0);
             }
-        }
+        });
     }
 
     fn bytes(&self) -> usize {
@@ -73,7 +64,7 @@ impl Accelerator for Grids {
             + size_of_val(self.blocks.as_slice())
             + size_of_val(self.offsets.as_slice())
             + size_of_val(self.ids.as_slice())
-            + self.unbounded.bytes()
+            + self.base.unbounded.bytes()
     }
 
     fn nodes(&self) -> usize {
@@ -82,19 +73,13 @@ impl Accelerator for Grids {
 
     fn references(&self) -> usize {
         // Every grid but the outermost takes the place of one reference.
-        self.ids.len() + 1 - self.grids.len().max(1) + self.unbounded.references()
+        self.ids.len() + 1 - self.grids.len().max(1) + self.base.unbounded.references()
     }
 }
 
 struct Walker<'w, V> {
     grids: &'w Grids,
-    walk: &'w Walk,
-    t_max: f64,
-    /// `t_max` as the walk counts.
-    far: f64,
-    mailbox: Mailbox,
-    visitor: &'w mut V,
-    stats: &'w mut TraversalStats,
+    search: Search<'w, V>,
 }
 
 /// What is in a cell.
@@ -124,7 +109,7 @@ impl<V: Visitor> Walker<'_, V> {
     /// on behind it. (Amanatides and Woo: A fast voxel traversal algorithm, 1987; but every crossing is computed from
     /// the number of its plane.)
     fn grid(&mut self, number: u32, near: f64, level: u32) -> bool {
-        let (grids, walk) = (self.grids, self.walk);
+        let (grids, walk) = (self.grids, self.search.walk);
         let grid = &grids.grids[number as usize];
         let whole = Aabb::new(grid.min, grid.cell_box(grid.count.map(|n| n - 1)).max);
         let start = walk.at_within(near, &whole);
@@ -134,17 +119,17 @@ impl<V: Visitor> Walker<'_, V> {
             .map(|axis| walk.cross(axis, grid.plane(axis, index[axis] + u32::from(up[axis]))));
         let mut entered = near;
         loop {
-            self.stats.node_visits += 1;
+            self.search.stats.node_visits += 1;
             let (place, bit) = grid.place(index);
             let block = grids.blocks[place];
-            if block.filled == 0 && !grids.plain {
+            if block.filled == 0 && !grids.base.plain {
                 let skipped = self.skip(grid, &mut index, up);
                 let (axis, left) = skipped;
                 if V::WATCHES {
                     self.report_empty(grid, place, entered, left, axis, level);
                 }
-                if self.far < left || !step(grid, &mut index, axis, up[axis]) {
-                    return self.far >= left;
+                if self.search.far < left || !step(grid, &mut index, axis, up[axis]) {
+                    return self.search.far >= left;
                 }
                 next = [0, 1, 2].map(|axis| {
                     walk.cross(axis, grid.plane(axis, index[axis] + u32::from(up[axis])))
@@ -159,11 +144,11 @@ impl<V: Visitor> Walker<'_, V> {
             }
             let go_on = match grids.content(block.filled, block.first, bit) {
                 Content::Nothing => true,
-                Content::Primitives(ids) => self.visit(ids),
+                Content::Primitives(ids) => self.search.visit(ids),
                 Content::Grid(inner) => self.grid(inner, entered, level + 1),
             };
             // What is hit exactly at the crossing may be in the next cell only.
-            if !go_on || self.far < left {
+            if !go_on || self.search.far < left {
                 return false;
             }
             if !step(grid, &mut index, axis, up[axis]) {
@@ -185,10 +170,10 @@ impl<V: Visitor> Walker<'_, V> {
             } else {
                 first[axis]
             };
-            self.walk.cross(axis, grid.plane(axis, plane))
+            self.search.walk.cross(axis, grid.plane(axis, plane))
         });
         let axis = smallest(crossings);
-        let p = self.walk.moved.at(crossings[axis]);
+        let p = self.search.walk.moved.at(crossings[axis]);
         for other in 0..3 {
             // Never back: a coordinate rounded the wrong way must not make the walk go in circles.
             let (from, to) = match up[other] {
@@ -199,26 +184,6 @@ impl<V: Visitor> Walker<'_, V> {
         }
         index[axis] = if up[axis] { last[axis] } else { first[axis] };
         (axis, crossings[axis])
-    }
-
-    /// Shows the primitives of a cell to the visitor; returns whether it wants more.
-    #[inline(always)]
-    fn visit(&mut self, ids: &[u32]) -> bool {
-        for id in ids {
-            if !self.grids.plain && !self.mailbox.is_new(*id) {
-                continue;
-            }
-            self.stats.primitive_tests += 1;
-            let closest = self.visitor.visit(*id, self.t_max);
-            if closest < self.t_max {
-                if closest == f64::NEG_INFINITY {
-                    return false;
-                }
-                self.t_max = closest;
-                self.far = self.walk.moved.upper(closest);
-            }
-        }
-        true
     }
 
     /// Looks at all cells within the margin of a thick ray, in the order of the grid; returns whether to go on.
@@ -234,16 +199,17 @@ impl<V: Visitor> Walker<'_, V> {
                     let content = grids.content(block.filled, block.first, bit);
                     if matches!(content, Content::Nothing)
                         || self
+                            .search
                             .walk
-                            .meets(&grid.cell_box([i, j, k]), self.far)
+                            .meets(&grid.cell_box([i, j, k]), self.search.far)
                             .is_none()
                     {
                         continue;
                     }
-                    self.stats.node_visits += 1;
+                    self.search.stats.node_visits += 1;
                     let go_on = match content {
                         Content::Nothing => true,
-                        Content::Primitives(ids) => self.visit(ids),
+                        Content::Primitives(ids) => self.search.visit(ids),
                         Content::Grid(inner) => self.thick(inner),
                     };
                     if !go_on {
@@ -264,13 +230,8 @@ impl<V: Visitor> Walker<'_, V> {
         axis: usize,
         level: u32,
     ) {
-        self.tell(
-            Place::Cell(index, grid.cell_box(index)),
-            near,
-            far,
-            axis,
-            level,
-        );
+        let place = Place::Cell(index, grid.cell_box(index));
+        self.search.tell(place, level, near, far, self.exit(axis));
     }
 
     fn report_empty(
@@ -291,22 +252,16 @@ impl<V: Visitor> Walker<'_, V> {
             )
         };
         let b = Aabb::new(plane(0), plane(1 << BLOCK));
-        self.tell(Place::Empty(b), near, far, axis, level);
+        self.search
+            .tell(Place::Empty(b), level, near, far, self.exit(axis));
     }
 
-    fn tell(&mut self, place: Place, near: f64, far: f64, axis: usize, level: u32) {
-        let exit = Exit {
+    fn exit(&self, axis: usize) -> Option<Exit> {
+        Some(Exit {
             axis,
-            up: self.walk.up(axis),
+            up: self.search.walk.up(axis),
             region: None,
-        };
-        self.visitor.step(Step {
-            place,
-            level,
-            near: self.walk.original(near),
-            far: self.walk.original(far),
-            exit: Some(exit),
-        });
+        })
     }
 }
 

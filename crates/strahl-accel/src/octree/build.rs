@@ -1,8 +1,8 @@
 use super::{Block, Cell, Octree, OctreeParameters, Split, child_box};
-use crate::boxes::Box32;
+use crate::Shapes;
+use crate::cells::Base;
 use crate::shapes::BoxesOnly;
 use crate::walk::Room;
-use crate::{List, Shapes};
 use rayon::prelude::*;
 use strahl_math::{Aabb, DVec3};
 
@@ -18,31 +18,15 @@ const CANDIDATES: usize = 16;
 impl Octree {
     /// Divides space.
     pub fn build(shapes: &dyn Shapes, parameters: &OctreeParameters) -> Self {
-        let (mut ids, mut unbounded, mut whole) = (Vec::new(), Vec::new(), Aabb::EMPTY);
-        for id in 0..shapes.count() as u32 {
-            let bounds = shapes.bounds(id);
-            if Box32::try_new(&bounds).is_some() {
-                ids.push(id);
-                whole = whole.union(&bounds);
-            } else if !bounds.is_empty() {
-                unbounded.push(id);
-            }
-        }
+        let (base, ids) = Base::gather(shapes, parameters.havran);
         let mut octree = Self {
-            room: None,
+            base,
             root: Cell::default(),
             blocks: Vec::new(),
             ids: Vec::new(),
-            unbounded: List::of(unbounded),
             traversal: parameters.traversal,
-            plain: parameters.havran,
         };
-        if !ids.is_empty() {
-            let room = match parameters.havran {
-                true => Room::published(whole),
-                false => Room::new(whole),
-            };
-            octree.room = Some(room);
+        if let Some(room) = octree.base.room {
             let boxes = BoxesOnly(shapes);
             let builder = Builder {
                 shapes: if parameters.havran { &boxes } else { shapes },

@@ -9,9 +9,8 @@ mod parametric;
 mod step;
 mod traverse;
 
-use crate::List;
+use crate::cells::Base;
 use crate::parameters::{Parameter, Parameters, choice};
-use crate::walk::Room;
 use strahl_math::{Aabb, DVec3};
 
 choice! {
@@ -125,14 +124,11 @@ impl Parameters for OctreeParameters {
 /// Primitives without bounds are kept in a list beside the tree and always visited.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Octree {
-    room: Option<Room>,
+    base: Base,
     root: Cell,
     blocks: Vec<Block>,
     ids: Vec<u32>,
-    unbounded: List,
     traversal: Traversal,
-    /// Nothing is remembered.
-    plain: bool,
 }
 
 /// Levels below the root that paths have room for.

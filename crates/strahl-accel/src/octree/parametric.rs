@@ -17,7 +17,7 @@ impl<V: Visitor> Walker<'_, V> {
     /// order of the children. (Revelles, Ureña, Lastra: An efficient parametric algorithm for octree traversal, 2000;
     /// Gargantini and Atkinson, 1993.)
     pub(super) fn downwards(&mut self) {
-        let (walk, root) = (self.walk, self.room.root);
+        let (walk, root) = (self.search.walk, self.search.room.root);
         let mut crossings = Crossings {
             first: [f64::NEG_INFINITY; 3],
             last: [f64::INFINITY; 3],
@@ -51,10 +51,10 @@ impl<V: Visitor> Walker<'_, V> {
         if cell.is_leaf() {
             if V::WATCHES {
                 let (near, far) = (largest(at.first), at.last[smallest(at.last)]);
-                let near = if near > self.walk.near {
+                let near = if near > self.search.walk.near {
                     near
                 } else {
-                    self.walk.near
+                    self.search.walk.near
                 };
                 self.report(Place::Leaf(*bounds), level, near, far, None);
             }
@@ -64,10 +64,10 @@ impl<V: Visitor> Walker<'_, V> {
         let block = &octree.blocks[cell.first as usize];
         let middle = [0, 1, 2].map(|axis| self.middle(axis, block.split[axis]));
         let near = largest(at.first);
-        let near = if near > self.walk.near {
+        let near = if near > self.search.walk.near {
             near
         } else {
-            self.walk.near
+            self.search.walk.near
         };
         // A bit for each dividing plane that lies behind: of the first child, then of one after the other.
         let mut crossed = 0;
@@ -92,7 +92,7 @@ impl<V: Visitor> Walker<'_, V> {
             };
             // What is hit exactly at the crossing may be in the next child only.
             if !self.cell(block.children[child], &part, mirror, &inner, level + 1)
-                || self.far < left
+                || self.search.far < left
             {
                 return false;
             }
@@ -106,9 +106,9 @@ impl<V: Visitor> Walker<'_, V> {
     /// Where the ray crosses a dividing plane: a ray that runs along it is on one side, always.
     #[inline(always)]
     fn middle(&self, axis: usize, plane: f64) -> f64 {
-        if self.walk.moved.direction[axis] != 0.0 {
-            self.walk.cross(axis, plane)
-        } else if self.walk.moved.origin[axis] >= plane {
+        if self.search.walk.moved.direction[axis] != 0.0 {
+            self.search.walk.cross(axis, plane)
+        } else if self.search.walk.moved.origin[axis] >= plane {
             f64::NEG_INFINITY
         } else {
             f64::INFINITY

@@ -23,7 +23,7 @@ impl<V: Visitor> Walker<'_, V> {
     /// There is no point "a little behind the face": on its plane the ray's direction decides which side is meant, and
     /// the coordinates never run backwards, so every step gets further.
     pub(super) fn steps(&mut self, kind: Traversal) {
-        let (walk, root) = (self.walk, self.room.root);
+        let (walk, root) = (self.search.walk, self.search.room.root);
         let trial = trial_axis(walk, &root);
         let mut point = walk.at_within(walk.near, &root);
         let start = Ancestor {
@@ -45,7 +45,7 @@ impl<V: Visitor> Walker<'_, V> {
                 self.report(place, level, entered, leaving.t, Some(leaving));
             }
             // What is hit exactly at the crossing may be in the next leaf only.
-            if !self.leaf(leaf.cell) || self.far < leaving.t {
+            if !self.leaf(leaf.cell) || self.search.far < leaving.t {
                 return;
             }
             let plane = exit_plane(walk, &leaf.bounds, leaving.axis);
@@ -69,7 +69,7 @@ impl<V: Visitor> Walker<'_, V> {
         mut level: usize,
         point: DVec3,
     ) -> usize {
-        let up = [0, 1, 2].map(|axis| self.walk.up(axis));
+        let up = [0, 1, 2].map(|axis| self.search.walk.up(axis));
         while !path[level].cell.is_leaf() && level < MOST_LEVELS as usize {
             let parent = path[level];
             let block = &self.octree.blocks[parent.cell.first as usize];
@@ -92,11 +92,11 @@ impl<V: Visitor> Walker<'_, V> {
     /// Moves a point of the ray to where it leaves a leaf: exactly onto the plane, and never back.
     #[inline(always)]
     fn advance(&self, point: &mut DVec3, leaf: &Aabb, leaving: &Leaving, plane: f64) {
-        let p = self.walk.moved.at(leaving.t);
+        let p = self.search.walk.moved.at(leaving.t);
         for axis in 0..3 {
             point[axis] = if axis == leaving.axis {
                 plane
-            } else if self.walk.up(axis) {
+            } else if self.search.walk.up(axis) {
                 clamp(p[axis], point[axis], leaf.max[axis])
             } else {
                 clamp(p[axis], leaf.min[axis], point[axis])
@@ -112,7 +112,7 @@ impl<V: Visitor> Walker<'_, V> {
         mut level: usize,
         axis: usize,
     ) -> usize {
-        let far_side = usize::from(self.walk.up(axis));
+        let far_side = usize::from(self.search.walk.up(axis));
         while level > 0 && path[level].octant >> axis & 1 == far_side {
             level -= 1;
         }

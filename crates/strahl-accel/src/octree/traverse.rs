@@ -1,8 +1,7 @@
 use super::exit::Leaving;
 use super::{Block, Cell, Octree, Traversal, child_box};
-use crate::list::visit_all;
-use crate::walk::{Mailbox, Room, Walk};
-use crate::{Accelerator, Exit, Place, Step, TraversalStats, Visitor};
+use crate::cells::Search;
+use crate::{Accelerator, Exit, Place, TraversalStats, Visitor};
 use strahl_math::{Aabb, Interval, Ray};
 
 impl Accelerator for Octree {
@@ -18,20 +17,11 @@ impl Accelerator for Octree {
         visitor: &mut V,
         stats: &mut TraversalStats,
     ) {
-        let t_max = visit_all(self.unbounded.ids(), range.max, visitor, stats);
-        if t_max > f64::NEG_INFINITY
-            && let Some(room) = &self.room
-            && let Some(walk) = Walk::new(ray, range, room)
-        {
+        self.base.search(ray, range, visitor, stats, |search| {
+            let (walk, room) = (search.walk, search.room);
             let mut walker = Walker {
                 octree: self,
-                room,
-                walk: &walk,
-                t_max,
-                far: walk.moved.upper(t_max),
-                mailbox: Mailbox::new(),
-                visitor,
-                stats,
+                search,
             };
             if walk.is_thick(room) {
                 walker.thick(self.root, &room.root);
@@ -41,65 +31,44 @@ impl Accelerator for Octree {
                 Traversal::Parametric => walker.downwards(),
                 kind => walker.steps(kind),
             }
-        }
+        });
     }
 
     fn bytes(&self) -> usize {
         size_of_val(self.blocks.as_slice())
             + size_of_val(self.ids.as_slice())
-            + self.unbounded.bytes()
+            + self.base.unbounded.bytes()
     }
 
     /// The leaves, empty ones too.
     fn nodes(&self) -> usize {
-        usize::from(self.room.is_some()) + 7 * self.blocks.len()
+        usize::from(self.base.room.is_some()) + 7 * self.blocks.len()
     }
 
     fn references(&self) -> usize {
-        self.ids.len() + self.unbounded.references()
+        self.ids.len() + self.base.unbounded.references()
     }
 }
 
 /// A ray on its way through the leaves.
 pub(super) struct Walker<'w, V> {
     pub(super) octree: &'w Octree,
-    pub(super) room: &'w Room,
-    pub(super) walk: &'w Walk,
-    t_max: f64,
-    /// `t_max` as the walk counts.
-    pub(super) far: f64,
-    mailbox: Mailbox,
-    visitor: &'w mut V,
-    stats: &'w mut TraversalStats,
+    pub(super) search: Search<'w, V>,
 }
 
 impl<V: Visitor> Walker<'_, V> {
     /// Shows the primitives of a leaf to the visitor; returns whether it wants more.
     #[inline(always)]
     pub(super) fn leaf(&mut self, leaf: Cell) -> bool {
-        self.stats.node_visits += 1;
-        let octree = self.octree;
+        self.search.stats.node_visits += 1;
         let first = leaf.first as usize;
-        for id in &octree.ids[first..first + leaf.count as usize] {
-            if !octree.plain && !self.mailbox.is_new(*id) {
-                continue;
-            }
-            self.stats.primitive_tests += 1;
-            let closest = self.visitor.visit(*id, self.t_max);
-            if closest < self.t_max {
-                if closest == f64::NEG_INFINITY {
-                    return false;
-                }
-                self.t_max = closest;
-                self.far = self.walk.moved.upper(closest);
-            }
-        }
-        true
+        self.search
+            .visit(&self.octree.ids[first..first + leaf.count as usize])
     }
 
     /// Looks at all leaves within the margin of a thick ray; returns whether to go on. Not deeper than the tree.
     fn thick(&mut self, cell: Cell, bounds: &Aabb) -> bool {
-        if self.walk.meets(bounds, self.far).is_none() {
+        if self.search.walk.meets(bounds, self.search.far).is_none() {
             return true;
         }
         if cell.is_leaf() {
@@ -120,15 +89,9 @@ impl<V: Visitor> Walker<'_, V> {
     ) {
         let exit = leaving.map(|l| Exit {
             axis: l.axis,
-            up: self.walk.up(l.axis),
+            up: self.search.walk.up(l.axis),
             region: l.region,
         });
-        self.visitor.step(Step {
-            place,
-            level,
-            near: self.walk.original(near),
-            far: self.walk.original(far),
-            exit,
-        });
+        self.search.tell(place, level, near, far, exit);
     }
 }
