@@ -1,7 +1,7 @@
 use super::outline::{Cut, Outline, direction, slab};
-use super::spans::{report, snap};
+use super::spans::{WholeLine, snap};
 use crate::primitives::point_error;
-use crate::{Crossing, Crossings, PrimHit, Scratch, Side, SurfaceId, SurfacePoint};
+use crate::{Crossing, Crossings, PrimHit, Side, SurfaceId, SurfacePoint};
 use strahl_math::{Aabb, DVec2, DVec3, Interval, Ray};
 
 /// The facet of the cap at the lower height.
@@ -42,108 +42,6 @@ impl Extrusion<'_> {
         Aabb::from_points(
             corners.flat_map(|(scale, z)| [min, max].map(|corner| (corner * scale).extend(z))),
         )
-    }
-
-    pub(super) fn closest_hit(
-        &self,
-        ray: &Ray,
-        range: Interval,
-        from: Option<SurfaceId>,
-        scratch: &mut Scratch,
-    ) -> Option<PrimHit> {
-        let mut list = scratch.take();
-        self.walk(ray, from, &mut list);
-        let hit = report::first(&list, range, from);
-        scratch.give(list);
-        hit
-    }
-
-    pub(super) fn crossings(
-        &self,
-        ray: &Ray,
-        range: Interval,
-        from: Option<SurfaceId>,
-        scratch: &mut Scratch,
-        out: &mut Crossings,
-    ) {
-        let mut list = scratch.take();
-        self.walk(ray, from, &mut list);
-        report::all(&list, range, from, out, |hit| self.t_error(ray, hit));
-        scratch.give(list);
-    }
-
-    /// Fills the list with the crossings of the whole line.
-    fn walk(&self, ray: &Ray, from: Option<SurfaceId>, list: &mut Crossings) {
-        let Ray {
-            origin: o,
-            direction: d,
-        } = *ray;
-        let finite = o.is_finite() && d.is_finite();
-        if !finite || d == DVec3::ZERO || self.bounds().clip(ray, Interval::LINE).is_none() {
-            return;
-        }
-        let Some(heights) = slab(o.z, d.z, self.low, self.high) else {
-            return;
-        };
-        let always = self.walls(ray, list);
-        if list.list.is_empty() && !always {
-            return;
-        }
-        self.snap_walls(ray, from, &mut list.list);
-
-        let rising = d.z > 0.0;
-        let (first, last) = if rising {
-            (LOW_CAP, HIGH_CAP)
-        } else {
-            (HIGH_CAP, LOW_CAP)
-        };
-        let cap = |t: f64, facet: u32, side: Side| {
-            let on_it = from.is_some_and(|from| from.facet == facet);
-            Crossing::new(
-                PrimHit::simple(if on_it { 0.0 } else { t }, facet),
-                0.0,
-                side,
-            )
-        };
-        list.list.push(cap(heights.min, first, Side::Enter));
-        list.list.push(cap(heights.max, last, Side::Exit));
-        // Where a ray meets an edge it leaves before it enters: no span without length.
-        let rank = |side: Side| match side {
-            Side::Exit => 0,
-            Side::Inner => 1,
-            Side::Enter => 2,
-        };
-        let order = |c: &Crossing| (rank(c.side), c.hit.surface.facet);
-        list.list.sort_unstable_by(|a, b| {
-            a.hit
-                .t
-                .total_cmp(&b.hit.t)
-                .then_with(|| order(a).cmp(&order(b)))
-        });
-
-        let apex = self.apex(ray);
-        let before = |c: &&Crossing| c.side == Side::Inner && c.hit.t < apex;
-        let mut within = always || list.list.iter().filter(before).count() % 2 == 1;
-        let mut between = false;
-        list.list.retain_mut(|crossing| {
-            let inside = within && between;
-            match crossing.side {
-                Side::Enter => between = true,
-                Side::Exit => between = false,
-                Side::Inner => within = !within,
-            }
-            let enters = within && between;
-            if enters == inside || !crossing.hit.t.is_finite() {
-                return false;
-            }
-            if crossing.side == Side::Inner {
-                crossing.hit.uv[1] = self.outer_side(ray, &crossing.hit, enters);
-            } else {
-                crossing.visible = self.capped;
-            }
-            crossing.side = if enters { Side::Enter } else { Side::Exit };
-            true
-        });
     }
 
     /// Which side of the curve is outside where a ray crosses a wall: 1 for the right, -1 for the left. `hit.uv[1]` tells as yet
@@ -274,17 +172,6 @@ impl Extrusion<'_> {
         SurfacePoint::bare(position, point_error(position, extent, 32), normal)
     }
 
-    /// How far the parameter of a crossing may be off.
-    fn t_error(&self, ray: &Ray, hit: &PrimHit) -> f64 {
-        let normal = match hit.surface.facet {
-            LOW_CAP | HIGH_CAP => DVec3::Z,
-            _ => self.wall_normal(hit),
-        };
-        let size = self.bounds().max_abs();
-        let reach = ray.origin.length() + (ray.direction * hit.t).length() + size;
-        super::spans::t_error(ray, hit.t, normal, reach, size)
-    }
-
     pub(super) fn contains(&self, point: DVec3) -> bool {
         if !(self.low <= point.z && point.z <= self.high) {
             return false;
@@ -293,6 +180,93 @@ impl Extrusion<'_> {
             return self.outline.contains(point.truncate());
         }
         point.z != 0.0 && self.outline.contains(point.truncate() / point.z)
+    }
+}
+
+impl WholeLine for Extrusion<'_> {
+    fn walk(&self, ray: &Ray, from: Option<SurfaceId>, list: &mut Crossings) {
+        let Ray {
+            origin: o,
+            direction: d,
+        } = *ray;
+        let finite = o.is_finite() && d.is_finite();
+        if !finite || d == DVec3::ZERO || self.bounds().clip(ray, Interval::LINE).is_none() {
+            return;
+        }
+        let Some(heights) = slab(o.z, d.z, self.low, self.high) else {
+            return;
+        };
+        let always = self.walls(ray, list);
+        if list.list.is_empty() && !always {
+            return;
+        }
+        self.snap_walls(ray, from, &mut list.list);
+
+        let rising = d.z > 0.0;
+        let (first, last) = if rising {
+            (LOW_CAP, HIGH_CAP)
+        } else {
+            (HIGH_CAP, LOW_CAP)
+        };
+        let cap = |t: f64, facet: u32, side: Side| {
+            let on_it = from.is_some_and(|from| from.facet == facet);
+            Crossing::new(
+                PrimHit::simple(if on_it { 0.0 } else { t }, facet),
+                0.0,
+                side,
+            )
+        };
+        list.list.push(cap(heights.min, first, Side::Enter));
+        list.list.push(cap(heights.max, last, Side::Exit));
+        // Where a ray meets an edge it leaves before it enters: no span without length.
+        let rank = |side: Side| match side {
+            Side::Exit => 0,
+            Side::Inner => 1,
+            Side::Enter => 2,
+        };
+        let order = |c: &Crossing| (rank(c.side), c.hit.surface.facet);
+        list.list.sort_unstable_by(|a, b| {
+            a.hit
+                .t
+                .total_cmp(&b.hit.t)
+                .then_with(|| order(a).cmp(&order(b)))
+        });
+
+        let apex = self.apex(ray);
+        let before = |c: &&Crossing| c.side == Side::Inner && c.hit.t < apex;
+        let mut within = always || list.list.iter().filter(before).count() % 2 == 1;
+        let mut between = false;
+        list.list.retain_mut(|crossing| {
+            let inside = within && between;
+            match crossing.side {
+                Side::Enter => between = true,
+                Side::Exit => between = false,
+                Side::Inner => within = !within,
+            }
+            let enters = within && between;
+            if enters == inside || !crossing.hit.t.is_finite() {
+                return false;
+            }
+            if crossing.side == Side::Inner {
+                crossing.hit.uv[1] = self.outer_side(ray, &crossing.hit, enters);
+            } else {
+                crossing.visible = self.capped;
+            }
+            crossing.side = if enters { Side::Enter } else { Side::Exit };
+            true
+        });
+    }
+
+    fn normal(&self, _: &Ray, hit: &PrimHit) -> DVec3 {
+        match hit.surface.facet {
+            LOW_CAP => DVec3::NEG_Z,
+            HIGH_CAP => DVec3::Z,
+            _ => self.wall_normal(hit),
+        }
+    }
+
+    fn reach(&self) -> f64 {
+        self.bounds().max_abs()
     }
 }
 

@@ -1,5 +1,6 @@
 use super::extrusion::Extrusion;
 use super::outline::Outline;
+use super::spans::WholeLine;
 use crate::primitives::check_finite;
 use crate::{
     Crossings, GeometryError, PrimHit, Primitive, Scratch, Shape, Solid, SurfaceId, SurfacePoint,
@@ -95,7 +96,7 @@ impl Primitive for Glyph {
         scratch: &mut Scratch,
     ) -> Option<PrimHit> {
         self.extrusion()
-            .closest_hit(&self.local(ray), range, from, scratch)
+            .first_hit(&self.local(ray), range, from, scratch)
     }
 
     fn surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
@@ -131,7 +132,7 @@ impl Solid for Glyph {
         out: &mut Crossings,
     ) {
         self.extrusion()
-            .crossings(&self.local(ray), range, from, scratch, out);
+            .all_crossings(&self.local(ray), range, from, scratch, out);
     }
 
     fn contains(&self, point: DVec3) -> bool {

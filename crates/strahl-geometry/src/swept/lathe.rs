@@ -1,10 +1,7 @@
 use super::curve::{Piece, Spline};
 use super::meridian::{Meridian, MeridianBuilder};
-use super::revolution::Revolution;
-use crate::{
-    Crossings, GeometryError, PrimHit, Primitive, Scratch, Solid, SurfaceId, SurfacePoint,
-};
-use strahl_math::{Aabb, DVec2, DVec3, Interval, Ray};
+use crate::{GeometryError, Primitive};
+use strahl_math::DVec2;
 
 /// A curve turned about the y axis, like POV-Ray's `lathe`.
 ///
@@ -17,7 +14,7 @@ use strahl_math::{Aabb, DVec2, DVec3, Interval, Ray};
 /// the curve.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Lathe {
-    meridian: Meridian,
+    pub(super) meridian: Meridian,
 }
 
 impl Lathe {
@@ -59,10 +56,6 @@ impl Lathe {
         };
         lathe.validate().map(|()| lathe)
     }
-
-    fn solid(&self) -> Revolution<'_> {
-        Revolution(&self.meridian)
-    }
 }
 
 /// Closes a curve by lines that can't be seen: level to the inner radius, along it, and back.
@@ -87,64 +80,11 @@ fn close(builder: &mut MeridianBuilder, end: DVec2, start: DVec2, inner: f64) {
     }
 }
 
-impl Primitive for Lathe {
-    fn kind(&self) -> &'static str {
-        "lathe"
-    }
-
-    fn validate(&self) -> Result<(), GeometryError> {
-        if self.meridian.arcs.iter().any(|arc| arc.visible) {
-            return Ok(());
-        }
-        Err(GeometryError::Degenerate {
-            what: "lathe",
-            why: "its curve has too few points, is a point, or runs along the axis",
-        })
-    }
-
-    fn bounds(&self) -> Aabb {
-        self.solid().bounds()
-    }
-
-    fn closest_hit(
-        &self,
-        ray: &Ray,
-        range: Interval,
-        from: Option<SurfaceId>,
-        scratch: &mut Scratch,
-    ) -> Option<PrimHit> {
-        self.solid().closest_hit(ray, range, from, scratch)
-    }
-
-    fn surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
-        self.solid().surface_at(ray, hit)
-    }
-
-    fn as_solid(&self) -> Option<&dyn Solid> {
-        Some(self)
-    }
-}
-
-impl Solid for Lathe {
-    fn crossings(
-        &self,
-        ray: &Ray,
-        range: Interval,
-        from: Option<SurfaceId>,
-        scratch: &mut Scratch,
-        out: &mut Crossings,
-    ) {
-        self.solid().crossings(ray, range, from, scratch, out);
-    }
-
-    fn contains(&self, point: DVec3) -> bool {
-        self.solid().contains(point)
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::{Crossings, Scratch, Solid};
+    use strahl_math::{DVec3, Interval, Ray};
 
     fn lathe(spline: Spline, list: &[[f64; 2]]) -> Lathe {
         let points: Vec<_> = list.iter().map(|p| DVec2::from_array(*p)).collect();

@@ -16,6 +16,7 @@ mod runs;
 mod sor;
 mod spans;
 mod sphere_sweep;
+mod turned;
 
 pub use curve::Spline;
 pub use glyph::Glyph;

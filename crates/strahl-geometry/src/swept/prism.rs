@@ -1,6 +1,7 @@
 use super::curve::Spline;
 use super::extrusion::Extrusion;
 use super::outline::{Outline, OutlineBuilder};
+use super::spans::WholeLine;
 use crate::{
     Crossings, GeometryError, PrimHit, Primitive, Scratch, Solid, SurfaceId, SurfacePoint,
 };
@@ -155,7 +156,7 @@ impl Primitive for Prism {
         scratch: &mut Scratch,
     ) -> Option<PrimHit> {
         self.extrusion()
-            .closest_hit(&turned_ray(ray), range, from, scratch)
+            .first_hit(&turned_ray(ray), range, from, scratch)
     }
 
     fn surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
@@ -179,7 +180,7 @@ impl Solid for Prism {
         out: &mut Crossings,
     ) {
         self.extrusion()
-            .crossings(&turned_ray(ray), range, from, scratch, out);
+            .all_crossings(&turned_ray(ray), range, from, scratch, out);
     }
 
     fn contains(&self, point: DVec3) -> bool {

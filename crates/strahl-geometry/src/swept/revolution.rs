@@ -1,8 +1,8 @@
 use super::meridian::{Arc, ArcPoint, Meridian};
 use super::runs::Rect;
-use super::spans::{report, snap};
+use super::spans::{WholeLine, snap};
 use crate::primitives::{point_error, turn};
-use crate::{Crossing, Crossings, PrimHit, Scratch, Side, SurfaceId, SurfacePoint};
+use crate::{Crossing, Crossings, PrimHit, Side, SurfaceId, SurfacePoint};
 use std::f64::consts::TAU;
 use strahl_math::error::gamma;
 use strahl_math::roots::find_root;
@@ -242,39 +242,72 @@ impl Revolution<'_> {
         Aabb::new(DVec3::new(-r, min.y, -r), DVec3::new(r, max.y, r))
     }
 
-    pub(super) fn closest_hit(
-        &self,
-        ray: &Ray,
-        range: Interval,
-        from: Option<SurfaceId>,
-        scratch: &mut Scratch,
-    ) -> Option<PrimHit> {
-        let mut list = scratch.take();
-        self.walk(ray, from, &mut list);
-        let hit = report::first(&list, range, from);
-        scratch.give(list);
-        hit
+    fn arc(&self, hit: &PrimHit) -> Option<&Arc> {
+        self.0.arcs.get(hit.surface.facet as usize)
     }
 
-    pub(super) fn crossings(
-        &self,
-        ray: &Ray,
-        range: Interval,
-        from: Option<SurfaceId>,
-        scratch: &mut Scratch,
-        out: &mut Crossings,
-    ) {
-        let mut list = scratch.take();
-        self.walk(ray, from, &mut list);
-        let size = self.bounds().max_abs();
-        report::all(&list, range, from, out, |hit| {
-            let reach = ray.origin.length() + (ray.direction * hit.t).length() + size;
-            super::spans::t_error(ray, hit.t, self.normal(ray, hit), reach, size)
-        });
-        scratch.give(list);
+    /// The direction away from the axis at a hit (x, z).
+    fn outward(ray: &Ray, hit: &PrimHit) -> DVec2 {
+        let at = ray.at(hit.t);
+        let flat = DVec2::new(at.x, at.z);
+        let largest = flat.abs().max_element();
+        if largest > 0.0 && largest.is_finite() {
+            (flat / largest).normalize()
+        } else {
+            DVec2::X
+        }
     }
 
-    /// Fills the list with the crossings of the whole line.
+    /// The surface at a hit, with texture coordinates: `u` once around the axis, `v` as the arc says.
+    pub(super) fn surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
+        let outward = Self::outward(ray, hit);
+        let [s, _] = hit.uv;
+        let arc = self.arc(hit);
+        let (r, y) = arc.map_or((0.0, 0.0), |arc| (arc.radius(s), arc.at(s).y));
+        let position = DVec3::new(outward.x * r, y, outward.y * r);
+        let extent = self.bounds().max_abs();
+        let normal = self.normal(ray, hit);
+        let bare = SurfacePoint::bare(position, point_error(position, extent, 32), normal);
+        let Some(arc) = arc else { return bare };
+        let [from, to] = arc.v;
+        let right = arc.right(s);
+        // Along the curve, per unit of `v`.
+        let along = DVec2::new(-right.y, right.x);
+        let scale = if from == to { 0.0 } else { 1.0 / (to - from) };
+        let speed = if arc.is_squared() && r > 0.0 {
+            0.5 / r
+        } else {
+            1.0
+        };
+        let along = along * (scale * speed);
+        SurfacePoint {
+            uv: DVec2::new(turn(outward.y, outward.x), from + (to - from) * s),
+            dpdu: DVec3::new(-outward.y, 0.0, outward.x) * (TAU * r),
+            dpdv: DVec3::new(outward.x * along.x, along.y, outward.y * along.x),
+            ..bare
+        }
+    }
+
+    /// Whether a line away from the axis crosses the meridian an odd number of times.
+    pub(super) fn contains(&self, point: DVec3) -> bool {
+        let square = point.x * point.x + point.z * point.z;
+        let mut inside = false;
+        self.0.runs.visit(
+            |rect| rect.max.x >= square && rect.min.y <= point.y && point.y <= rect.max.y,
+            |index| {
+                let Some(arc) = self.0.arcs.get(index) else {
+                    return;
+                };
+                if (arc.at(0.0).y >= point.y) != (arc.at(1.0).y >= point.y) {
+                    inside ^= arc.at(arc.at_height(point.y)).square > square;
+                }
+            },
+        );
+        inside
+    }
+}
+
+impl WholeLine for Revolution<'_> {
     fn walk(&self, ray: &Ray, from: Option<SurfaceId>, list: &mut Crossings) {
         let (o, d) = (ray.origin, ray.direction);
         if !(o.is_finite() && d.is_finite())
@@ -329,23 +362,6 @@ impl Revolution<'_> {
         list.list.retain(|crossing| crossing.hit.t.is_finite());
     }
 
-    fn arc(&self, hit: &PrimHit) -> Option<&Arc> {
-        self.0.arcs.get(hit.surface.facet as usize)
-    }
-
-    /// The direction away from the axis at a hit (x, z).
-    fn outward(ray: &Ray, hit: &PrimHit) -> DVec2 {
-        let at = ray.at(hit.t);
-        let flat = DVec2::new(at.x, at.z);
-        let largest = flat.abs().max_element();
-        if largest > 0.0 && largest.is_finite() {
-            (flat / largest).normalize()
-        } else {
-            DVec2::X
-        }
-    }
-
-    /// The unit normal at a hit, on the outer side.
     fn normal(&self, ray: &Ray, hit: &PrimHit) -> DVec3 {
         let Some(arc) = self.arc(hit) else {
             return DVec3::Y; // A hit of another shape.
@@ -356,51 +372,7 @@ impl Revolution<'_> {
         DVec3::new(outward.x, right.y, outward.y).normalize_or(DVec3::Y)
     }
 
-    /// The surface at a hit, with texture coordinates: `u` once around the axis, `v` as the arc says.
-    pub(super) fn surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
-        let outward = Self::outward(ray, hit);
-        let [s, _] = hit.uv;
-        let arc = self.arc(hit);
-        let (r, y) = arc.map_or((0.0, 0.0), |arc| (arc.radius(s), arc.at(s).y));
-        let position = DVec3::new(outward.x * r, y, outward.y * r);
-        let extent = self.bounds().max_abs();
-        let normal = self.normal(ray, hit);
-        let bare = SurfacePoint::bare(position, point_error(position, extent, 32), normal);
-        let Some(arc) = arc else { return bare };
-        let [from, to] = arc.v;
-        let right = arc.right(s);
-        // Along the curve, per unit of `v`.
-        let along = DVec2::new(-right.y, right.x);
-        let scale = if from == to { 0.0 } else { 1.0 / (to - from) };
-        let speed = if arc.is_squared() && r > 0.0 {
-            0.5 / r
-        } else {
-            1.0
-        };
-        let along = along * (scale * speed);
-        SurfacePoint {
-            uv: DVec2::new(turn(outward.y, outward.x), from + (to - from) * s),
-            dpdu: DVec3::new(-outward.y, 0.0, outward.x) * (TAU * r),
-            dpdv: DVec3::new(outward.x * along.x, along.y, outward.y * along.x),
-            ..bare
-        }
-    }
-
-    /// Whether a line away from the axis crosses the meridian an odd number of times.
-    pub(super) fn contains(&self, point: DVec3) -> bool {
-        let square = point.x * point.x + point.z * point.z;
-        let mut inside = false;
-        self.0.runs.visit(
-            |rect| rect.max.x >= square && rect.min.y <= point.y && point.y <= rect.max.y,
-            |index| {
-                let Some(arc) = self.0.arcs.get(index) else {
-                    return;
-                };
-                if (arc.at(0.0).y >= point.y) != (arc.at(1.0).y >= point.y) {
-                    inside ^= arc.at(arc.at_height(point.y)).square > square;
-                }
-            },
-        );
-        inside
+    fn reach(&self) -> f64 {
+        self.bounds().max_abs()
     }
 }

@@ -1,10 +1,7 @@
 use super::curve::Piece;
 use super::meridian::{Meridian, MeridianBuilder};
-use super::revolution::Revolution;
-use crate::{
-    Crossings, GeometryError, PrimHit, Primitive, Scratch, Solid, SurfaceId, SurfacePoint,
-};
-use strahl_math::{Aabb, DVec2, DVec3, Interval, Ray};
+use crate::{GeometryError, Primitive};
+use strahl_math::DVec2;
 
 /// A surface of revolution about the y axis whose radius is a function of the height, like POV-Ray's `sor`.
 ///
@@ -16,7 +13,7 @@ use strahl_math::{Aabb, DVec2, DVec3, Interval, Ray};
 /// for every stretch on which the radius grows or shrinks, from the disc at the lower end to that at the upper.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sor {
-    meridian: Meridian,
+    pub(super) meridian: Meridian,
 }
 
 impl Sor {
@@ -72,10 +69,6 @@ impl Sor {
         };
         sor.validate().map(|()| sor)
     }
-
-    fn solid(&self) -> Revolution<'_> {
-        Revolution(&self.meridian)
-    }
 }
 
 /// Middle and rim of the disc that closes the surface at a point.
@@ -83,64 +76,11 @@ fn disc(point: DVec2) -> (DVec2, DVec2) {
     (DVec2::new(0.0, point.y), DVec2::new(point.x.abs(), point.y))
 }
 
-impl Primitive for Sor {
-    fn kind(&self) -> &'static str {
-        "sor"
-    }
-
-    fn validate(&self) -> Result<(), GeometryError> {
-        if self.meridian.arcs.iter().any(|arc| arc.visible) {
-            return Ok(());
-        }
-        Err(GeometryError::Degenerate {
-            what: "surface of revolution",
-            why: "it has fewer than four points, or all radii are 0",
-        })
-    }
-
-    fn bounds(&self) -> Aabb {
-        self.solid().bounds()
-    }
-
-    fn closest_hit(
-        &self,
-        ray: &Ray,
-        range: Interval,
-        from: Option<SurfaceId>,
-        scratch: &mut Scratch,
-    ) -> Option<PrimHit> {
-        self.solid().closest_hit(ray, range, from, scratch)
-    }
-
-    fn surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
-        self.solid().surface_at(ray, hit)
-    }
-
-    fn as_solid(&self) -> Option<&dyn Solid> {
-        Some(self)
-    }
-}
-
-impl Solid for Sor {
-    fn crossings(
-        &self,
-        ray: &Ray,
-        range: Interval,
-        from: Option<SurfaceId>,
-        scratch: &mut Scratch,
-        out: &mut Crossings,
-    ) {
-        self.solid().crossings(ray, range, from, scratch, out);
-    }
-
-    fn contains(&self, point: DVec3) -> bool {
-        self.solid().contains(point)
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Scratch;
+    use strahl_math::{DVec3, Interval, Ray};
 
     fn sor(list: &[[f64; 2]], open: bool) -> Result<Sor, GeometryError> {
         let points: Vec<_> = list.iter().map(|p| DVec2::from_array(*p)).collect();

@@ -1,35 +1,50 @@
 //! What the swept shapes do alike with the crossings of a whole line.
 
-use crate::{Crossing, PrimHit, Side, SurfaceId};
+use crate::primitives::start_of;
+use crate::{Crossing, Crossings, PrimHit, Scratch, Side, SurfaceId};
 use strahl_math::error::gamma;
 use strahl_math::{DVec3, Interval, Ray};
 
-/// From the crossings of a whole line to what was asked for.
-pub(super) mod report {
-    use super::{Interval, PrimHit, Side, SurfaceId};
-    use crate::Crossings;
-    use crate::primitives::start_of;
+/// A shape that looks for the crossings of a whole line, whatever was asked for.
+pub(super) trait WholeLine {
+    /// Fills the list with the crossings of the whole line, in the order along the ray.
+    fn walk(&self, ray: &Ray, from: Option<SurfaceId>, list: &mut Crossings);
+
+    /// The unit normal at a hit, on the outer side.
+    fn normal(&self, ray: &Ray, hit: &PrimHit) -> DVec3;
+
+    /// No point of the shape has a larger coordinate.
+    fn reach(&self) -> f64;
 
     /// The first hit in the range that can be seen.
-    pub(in crate::swept) fn first(
-        list: &Crossings,
+    fn first_hit(
+        &self,
+        ray: &Ray,
         range: Interval,
         from: Option<SurfaceId>,
+        scratch: &mut Scratch,
     ) -> Option<PrimHit> {
+        let mut list = scratch.take();
+        self.walk(ray, from, &mut list);
         let start = start_of(range, from);
         let counts = |t: f64| range.accepts(t) && start < t;
         let mut seen = list.list.iter().filter(|c| c.visible && counts(c.hit.t));
-        seen.next().map(|crossing| crossing.hit)
+        let hit = seen.next().map(|crossing| crossing.hit);
+        scratch.give(list);
+        hit
     }
 
     /// The crossings in the range with the errors of their parameters, and what is inside at its start.
-    pub(in crate::swept) fn all(
-        list: &Crossings,
+    fn all_crossings(
+        &self,
+        ray: &Ray,
         range: Interval,
         from: Option<SurfaceId>,
+        scratch: &mut Scratch,
         out: &mut Crossings,
-        t_error: impl Fn(&PrimHit) -> f64,
     ) {
+        let mut list = scratch.take();
+        self.walk(ray, from, &mut list);
         let start = start_of(range, from);
         for crossing in &list.list {
             let t = crossing.hit.t;
@@ -37,10 +52,11 @@ pub(super) mod report {
                 out.inside_at_start = crossing.side == Side::Enter;
             } else if range.accepts(t) {
                 let mut crossing = *crossing;
-                crossing.t_error = t_error(&crossing.hit);
+                crossing.t_error = t_error(ray, t, self.normal(ray, &crossing.hit), self.reach());
                 out.list.push(crossing);
             }
         }
+        scratch.give(list);
     }
 }
 
@@ -79,9 +95,9 @@ pub(super) fn snap(
 }
 
 /// How far the parameter may be off at which a ray crosses a surface with this normal, if points near it are known to
-/// within rounding of `reach`; a surface that is met at a flat angle has a curvature of about `size`.
-pub(super) fn t_error(ray: &Ray, t: f64, normal: DVec3, reach: f64, size: f64) -> f64 {
-    let point = gamma(48) * reach;
+/// within rounding of their coordinates; a surface that is met at a flat angle has a curvature of about `size`.
+fn t_error(ray: &Ray, t: f64, normal: DVec3, size: f64) -> f64 {
+    let point = gamma(48) * (ray.origin.length() + (ray.direction * t).length() + size);
     let speed = ray.direction.length();
     let straight = point / normal.dot(ray.direction).abs();
     let tangent = (2.0 * size * point).sqrt() / speed;

@@ -1,7 +1,7 @@
 use super::curve::Piece;
 use super::curve::catmull_rom;
 use super::round::{Line, Segment};
-use super::spans::{report, snap, t_error};
+use super::spans::{WholeLine, snap};
 use crate::primitives::point_error;
 use crate::{
     Crossings, GeometryError, PrimHit, Primitive, Scratch, Side, Solid, SurfaceId, SurfacePoint,
@@ -89,7 +89,12 @@ impl SphereSweep {
         sweep.validate().map(|()| sweep)
     }
 
-    /// Fills the list with the crossings of the whole line.
+    fn segment(&self, hit: &PrimHit) -> Option<&Segment> {
+        self.segments.get(hit.surface.facet as usize)
+    }
+}
+
+impl WholeLine for SphereSweep {
     fn walk(&self, ray: &Ray, from: Option<SurfaceId>, list: &mut Crossings) {
         let (o, d) = (ray.origin, ray.direction);
         if !(o.is_finite() && d.is_finite()) || self.bounds.clip(ray, Interval::LINE).is_none() {
@@ -130,11 +135,7 @@ impl SphereSweep {
         });
     }
 
-    fn segment(&self, hit: &PrimHit) -> Option<&Segment> {
-        self.segments.get(hit.surface.facet as usize)
-    }
-
-    /// The unit normal at a hit: from the sphere's centre to the point.
+    /// From the sphere's centre to the point.
     fn normal(&self, ray: &Ray, hit: &PrimHit) -> DVec3 {
         let center = self
             .segment(hit)
@@ -146,6 +147,10 @@ impl SphereSweep {
         } else {
             -ray.direction.normalize_or(DVec3::Y)
         }
+    }
+
+    fn reach(&self) -> f64 {
+        self.bounds.max_abs()
     }
 }
 
@@ -183,11 +188,7 @@ impl Primitive for SphereSweep {
         from: Option<SurfaceId>,
         scratch: &mut Scratch,
     ) -> Option<PrimHit> {
-        let mut list = scratch.take();
-        self.walk(ray, from, &mut list);
-        let hit = report::first(&list, range, from);
-        scratch.give(list);
-        hit
+        self.first_hit(ray, range, from, scratch)
     }
 
     fn surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
@@ -212,14 +213,7 @@ impl Solid for SphereSweep {
         scratch: &mut Scratch,
         out: &mut Crossings,
     ) {
-        let mut list = scratch.take();
-        self.walk(ray, from, &mut list);
-        let size = self.bounds.max_abs();
-        report::all(&list, range, from, out, |hit| {
-            let reach = ray.origin.length() + (ray.direction * hit.t).length() + size;
-            t_error(ray, hit.t, self.normal(ray, hit), reach, size)
-        });
-        scratch.give(list);
+        self.all_crossings(ray, range, from, scratch, out);
     }
 
     fn contains(&self, point: DVec3) -> bool {
