@@ -1,3 +1,4 @@
+use super::half_spaces::{HalfSpace, HalfSpaces};
 use super::leaf::{Leaf, Next, Placement};
 use super::solid::{Kind, Node};
 use super::sweep::Rule;
@@ -237,7 +238,7 @@ impl Compiler {
         let mut operands = Vec::new();
         for (proto, (bounds, far)) in self.nodes.iter().zip(&boxes) {
             let first = operands.len();
-            let mut core = 0;
+            let (mut core, mut half_spaces) = (0, None);
             if let Kind::Operation(rule) = proto.kind {
                 let far_of = |operand: &u32| boxes.get(*operand as usize).is_some_and(|b| b.1);
                 let is_core = |operand: &u32| far_of(operand) != rule.neutral();
@@ -247,6 +248,10 @@ impl Compiler {
                 if let Some(core) = operands.get_mut(first..) {
                     let area = |i: &u32| boxes.get(*i as usize).map_or(0.0, |b| b.0.half_area());
                     core.sort_by(|a, b| area(a).partial_cmp(&area(b)).unwrap_or(Ordering::Equal));
+                    if rule == Rule::Intersection {
+                        core.sort_by_key(|i| self.half_space(*i).is_some());
+                        half_spaces = self.half_spaces(core).map(Box::new);
+                    }
                 }
                 operands.extend(proto.operands.iter().copied().filter(|o| !is_core(o)));
             }
@@ -262,11 +267,36 @@ impl Compiler {
                 first: first as u32,
                 core: (first + core) as u32,
                 end: operands.len() as u32,
+                half_spaces,
                 hierarchy,
             });
         }
         let closed = self.leaves.iter().all(|leaf| leaf.solid().is_some());
         Csg::from_parts(nodes, operands, self.leaves, self.elements, closed)
+    }
+
+    /// The node as a half-space, if it is one.
+    fn half_space(&self, node: u32) -> Option<HalfSpace> {
+        let Kind::Leaf(index) = self.nodes.get(node as usize)?.kind else {
+            return None;
+        };
+        let leaf = self.leaves.get(index as usize)?;
+        match &leaf.shape {
+            Shape::Plane(plane) if leaf.placement.is_none() && !leaf.negative => Some(HalfSpace {
+                point: plane.point(),
+                normal: plane.normal(),
+                leaf: index,
+                element: leaf.first_element,
+                visible: leaf.visible,
+            }),
+            _ => None,
+        }
+    }
+
+    /// Those of the nodes that are half-spaces.
+    fn half_spaces(&self, nodes: &[u32]) -> Option<HalfSpaces> {
+        let all = nodes.iter().filter_map(|node| self.half_space(*node));
+        HalfSpaces::new(all.collect())
     }
 
     /// For each node a box, and whether what lies outside of that box is inside of the node. All surfaces are in
@@ -288,7 +318,14 @@ impl Compiler {
                         .peekable();
                     let far = rule.neutral() != decisive.peek().is_some();
                     let bounds = if decisive.peek().is_some() && rule != Rule::Union {
-                        decisive.fold(Aabb::EVERYTHING, |b, (other, _)| b.intersection(other))
+                        let gem = match rule {
+                            Rule::Intersection => self.half_spaces(&node.operands),
+                            _ => None,
+                        };
+                        let gem = gem.and_then(|planes| planes.bounds());
+                        decisive.fold(gem.unwrap_or(Aabb::EVERYTHING), |b, (other, _)| {
+                            b.intersection(other)
+                        })
                     } else {
                         operands().fold(Aabb::EMPTY, |b, (other, _)| b.union(other))
                     };

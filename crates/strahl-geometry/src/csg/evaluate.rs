@@ -109,6 +109,22 @@ impl<'a> Evaluation<'a> {
             let Some(node) = self.csg.node(frame.node) else {
                 return;
             };
+            if let Some(half_spaces) = &node.half_spaces
+                && frame.decided.is_none()
+                && frame.next as usize + half_spaces.len() == node.core as usize
+            {
+                let mut list = scratch.take();
+                let from = self.from.map(|(leaf, _)| leaf);
+                let leaving = self.from.is_some();
+                let (range, fusing) = (frame.range, &self.fusing);
+                if half_spaces.crossings(self.ray, range, from, leaving, fusing, &mut list) {
+                    frame.next = node.core;
+                    self.absorb(&list, work, scratch);
+                    scratch.give(list);
+                    continue;
+                }
+                scratch.give(list);
+            }
             match self.next_operand(node, frame, &mut work.candidates) {
                 Some(operand) => {
                     let range = frame.range;

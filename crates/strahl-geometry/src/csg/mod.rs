@@ -6,10 +6,12 @@
 //!
 //! * [`CsgNode`] describes a tree, [`Csg`] is the tree compiled: inversions pushed down to the leaves, nested equal
 //!   operations flattened, everything in flat lists that are walked without recursion.
-//! * `compile` makes the one from the other, `evaluate` walks the tree along a ray, `sweep` combines lists.
+//! * `compile` makes the one from the other, `evaluate` walks the tree along a ray, `sweep` combines lists, `half_spaces` meets all
+//!   planes of an intersection in one pass.
 
 mod compile;
 mod evaluate;
+mod half_spaces;
 mod leaf;
 mod solid;
 mod sweep;
@@ -22,5 +24,7 @@ pub(crate) use evaluate::Workspace;
 
 #[cfg(test)]
 mod fuzz_tests;
+#[cfg(test)]
+mod gem_tests;
 #[cfg(test)]
 mod tests;

@@ -1,6 +1,7 @@
 use super::CsgNode;
 use super::compile::Compiler;
 use super::evaluate::Evaluation;
+use super::half_spaces::HalfSpaces;
 use super::leaf::{Leaf, Next};
 use super::sweep::Rule;
 use crate::{
@@ -54,6 +55,8 @@ pub(super) struct Node {
     pub(super) first: u32,
     pub(super) core: u32,
     pub(super) end: u32,
+    /// The last ones of `first..core`, if they are half-spaces.
+    pub(super) half_spaces: Option<Box<HalfSpaces>>,
     /// Over the boxes of `core..end`, numbered from 0, if they are many.
     pub(super) hierarchy: Option<Box<Bvh2>>,
 }
@@ -83,6 +86,15 @@ impl Csg {
             elements,
             closed,
         }
+    }
+
+    /// The same tree with all planes evaluated one by one.
+    #[cfg(test)]
+    pub(super) fn without_half_spaces(mut self) -> Self {
+        for node in &mut self.nodes {
+            node.half_spaces = None;
+        }
+        self
     }
 
     /// The number of leaves, counted in the order of the description.
