@@ -15,7 +15,7 @@ camera {
 // A low sun from the left, soft because it is an area; the sky's blue from the right.
 light_source {
   <-9, 8.5, -6.5>, rgb <1.25, 1.12, 0.92>
-  area_light 1.4 * x, 1.4 * z, 4, 4 adaptive 1 circular orient
+  area_light 1.4 * x, 1.4 * z, 3, 3 adaptive 1 circular orient
 }
 light_source { <8, 10, -9>, rgb <0.12, 0.17, 0.28> shadowless }
 

@@ -134,8 +134,8 @@ impl Parser<'_> {
         Ok(true)
     }
 
-    fn add(&mut self, entity: Entity) -> PResult<()> {
-        let mut object = entity.object;
+    #[inline]
+    fn add(&mut self, Entity { mut object, .. }: Entity) -> PResult<()> {
         if is_nothing(&object) {
             return Ok(());
         }

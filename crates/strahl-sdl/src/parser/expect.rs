@@ -59,6 +59,7 @@ impl Parser<'_> {
     ///
     /// # Errors
     /// If a brace is missing, braces are nested too deep, or `f` fails.
+    #[inline]
     pub fn braces<T>(&mut self, f: impl FnOnce(&mut Self) -> PResult<T>) -> PResult<T> {
         self.expect(Kind::LeftBrace)?;
         let result = self.nested(f)?;

@@ -95,8 +95,18 @@ impl<'h> Parser<'h> {
         }
     }
 
-    /// See [`Parser::peek`].
+    /// See [`Parser::peek`]: most names are no macros.
     pub(super) fn expand(&mut self) -> PResult<Token> {
+        let token = self.raw();
+        if token.kind == Kind::Name && self.scopes.find_macro(Symbol(token.bits as u32)).is_none() {
+            return Ok(token);
+        }
+        self.run_on()
+    }
+
+    /// Carries out directives and calls macros up to the next token that is neither.
+    #[inline(never)]
+    fn run_on(&mut self) -> PResult<Token> {
         loop {
             self.steps += 1;
             if self.steps > self.options.limits.steps {

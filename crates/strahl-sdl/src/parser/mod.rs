@@ -203,9 +203,15 @@ impl Parser<'_> {
         }
         /// More than one level takes, expression, object and texture together.
         const LEVEL: usize = 128 << 10;
+        /// The stack is looked at for so many levels at once.
+        const LEVELS: usize = 4;
         const MORE: usize = 4 << 20;
         self.nesting += 1;
-        let result = stacker::maybe_grow(LEVEL, MORE, || f(self));
+        let result = if self.nesting % LEVELS == 1 {
+            stacker::maybe_grow(LEVELS * LEVEL, MORE, || f(self))
+        } else {
+            f(self)
+        };
         self.nesting -= 1;
         result
     }

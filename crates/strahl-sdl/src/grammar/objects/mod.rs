@@ -114,6 +114,7 @@ impl Parser<'_> {
     ///
     /// # Errors
     /// If the object is wrong.
+    #[inline]
     pub(crate) fn entity(&mut self) -> PResult<Option<Entity>> {
         let token = self.peek()?;
         let Some(word) = token.word() else {

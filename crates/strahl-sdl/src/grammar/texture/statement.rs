@@ -147,7 +147,22 @@ impl Parser<'_> {
 
     fn rest_of_texture(&mut self, closing: Kind, named: Option<Arc<Surface>>) -> PResult<Surface> {
         let base = named.unwrap_or_else(|| Arc::clone(&self.state.default_texture.surface));
-        let mut draft = Draft::from(Surface::clone(&base));
+        let mut single = Surface::clone(&base);
+        // Most textures are a pigment and a finish.
+        while matches!(single, Surface::Plain(_)) {
+            let token = self.peek()?;
+            match token.word() {
+                Some(Word::Pigment | Word::Normal | Word::Finish) => {
+                    self.plain_item(&mut single, token)?;
+                }
+                _ if token.kind == closing => {
+                    self.weigh(weight::of_texture(&single))?;
+                    return Ok(single);
+                }
+                _ => break,
+            }
+        }
+        let mut draft = Draft::from(single);
         self.items_until(closing, "`texture`", |p, token| {
             p.texture_part(&mut draft, token)
         })?;
