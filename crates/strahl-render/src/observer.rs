@@ -1,7 +1,7 @@
 use crate::hit::Hit;
 use std::fmt;
 use strahl_math::{DVec3, Ray};
-use strahl_shade::{Color, MaterialId};
+use strahl_shade::{Color, MaterialId, SpectralPart};
 
 /// The rays of a tree that see something (shadow rays belong to the node they start from).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -67,7 +67,9 @@ pub struct RayReport {
     pub hit: Option<HitReport>,
     /// The background's colour, if it hit nothing.
     pub background: Option<Color>,
-    /// What the medium it ran through kept of the light.
+    /// Which light it follows.
+    pub part: SpectralPart,
+    /// What the medium it ran through kept of the light; where light was divided into its spectrum, times the part's share.
     pub attenuation: Color,
     /// What fog in front of the hit adds to what is kept.
     pub fog: Color,

@@ -144,6 +144,8 @@ pub struct RenderScene {
     pub(crate) ambient: Color,
     pub(crate) background: Background,
     pub(crate) fogs: Vec<Fog>,
+    /// Whether some material bends colours by different angles.
+    pub(crate) disperses: bool,
     pub(crate) camera: Camera,
     pub(crate) settings: Settings,
     pub(crate) sources: SourceMap,

@@ -7,8 +7,22 @@ use crate::scene::{RenderScene, Resolved, Uv};
 use crate::trace::{Branch, FirstHit};
 use strahl_math::{DVec3, Ray, error};
 use strahl_shade::{
-    Color, MaterialId, MaterialPoint, ShadingModel, fresnel_dielectric, reflect, refract,
+    Color, MaterialId, MaterialPoint, ShadingModel, SpectralPart, fresnel_dielectric, reflect,
+    refract,
 };
+
+/// The index of refraction of a medium for light of a part of the spectrum; `None` is air.
+#[inline]
+fn index_of(scene: &RenderScene, medium: Option<MaterialId>, part: SpectralPart) -> f64 {
+    let Some(id) = medium else {
+        return 1.0;
+    };
+    let material = &scene.materials[id.0 as usize];
+    match &material.interior {
+        Some(interior) if !part.is_white() => interior.ior_of(part),
+        _ => material.eta,
+    }
+}
 
 /// How a surface divides light between reflection and transparency.
 #[derive(Clone, Copy, Debug)]
@@ -50,6 +64,9 @@ pub(crate) struct Surface {
     pub(crate) thin: bool,
     pub(crate) eta_1: f64,
     pub(crate) eta_2: f64,
+    /// What the ray comes from and what is behind the surface; `None` is air.
+    medium_1: Option<MaterialId>,
+    medium_2: Option<MaterialId>,
     /// Where rays towards the side of the viewer start, as nearly all do.
     front: (DVec3, Origin),
 }
@@ -73,23 +90,19 @@ impl Surface {
             None => point.n_shade,
             Some(pbr) => pbr.shading_normal(point.uv, point.n_shade, point.dpdu, point.dpdv),
         };
-        let index = |id: Option<MaterialId>| id.map_or(1.0, |m| scene.materials[m.0 as usize].eta);
-        let (eta_1, eta_2) = if entering {
-            (index(media.top(branch.media)), material.eta)
+        let own = Some(resolved.look.material);
+        // A thin sheet has the same medium on both sides and is met from outside.
+        let (medium_1, medium_2) = if entering || material.thin {
+            (media.top(branch.media), own)
         } else {
             // Without a known medium the ray must be inside of the material whose back it sees.
-            let inside = media.top(branch.media).or(Some(resolved.look.material));
             (
-                index(inside),
-                index(media.top_without(branch.media, resolved.look.material)),
+                media.top(branch.media).or(own),
+                media.top_without(branch.media, resolved.look.material),
             )
         };
-        // A thin sheet has the same medium on both sides and is met from outside.
-        let (eta_1, eta_2) = if material.thin {
-            (index(media.top(branch.media)), material.eta)
-        } else {
-            (eta_1, eta_2)
-        };
+        let index = |id| index_of(scene, id, branch.part);
+        let (eta_1, eta_2) = (index(medium_1), index(medium_2));
         Self {
             material: material.at(point.uv),
             v,
@@ -99,6 +112,8 @@ impl Surface {
             thin: material.thin,
             eta_1,
             eta_2,
+            medium_1,
+            medium_2,
             front: start(&resolved, hit, entering),
             resolved,
         }
@@ -177,16 +192,12 @@ impl Surface {
         if transmits {
             match refracted {
                 Some(r) => {
-                    // A shading normal may bend the ray to the wrong side: then the true normal decides, and without
-                    // refraction the ray goes straight on, to the last bit.
+                    // Without refraction the ray goes straight on, to the last bit.
                     let straight = self.thin || self.eta_1 == self.eta_2;
-                    let wrong = r.direction.dot(self.n_geom) >= 0.0;
                     split.refracted = if straight {
                         Some(ray.direction)
-                    } else if wrong {
-                        refract(self.n_geom, self.v, self.eta_1 / self.eta_2).map(|r| r.direction)
                     } else {
-                        Some(r.direction)
+                        self.bent(r.direction, self.eta_1 / self.eta_2)
                     };
                 }
                 None => {
@@ -206,6 +217,34 @@ impl Surface {
             r
         });
         split
+    }
+
+    /// The direction of a transparency ray. A shading normal may bend it to the wrong side: then the true normal decides.
+    fn bent(&self, direction: DVec3, eta: f64) -> Option<DVec3> {
+        if direction.dot(self.n_geom) >= 0.0 {
+            refract(self.n_geom, self.v, eta).map(|r| r.direction)
+        } else {
+            Some(direction)
+        }
+    }
+
+    /// How many parts the spectrum of white light falls into at the surface; 0 if it stays together.
+    pub(crate) fn spectral_parts(&self, scene: &RenderScene) -> u16 {
+        let parts = |id: Option<MaterialId>| {
+            let interior = scene.materials[id?.0 as usize].interior.as_ref()?;
+            interior.disperses().then_some(interior.dispersion_samples)
+        };
+        if self.thin {
+            return 0;
+        }
+        parts(self.medium_1).max(parts(self.medium_2)).unwrap_or(0)
+    }
+
+    /// The direction in which a part of the spectrum passes the surface; `None` if it is totally reflected.
+    pub(crate) fn bent_part(&self, scene: &RenderScene, part: SpectralPart) -> Option<DVec3> {
+        let index = |id| index_of(scene, id, part);
+        let eta = index(self.medium_1) / index(self.medium_2);
+        self.bent(refract(self.n_shade, self.v, eta)?.direction, eta)
     }
 
     pub(crate) fn report(&self, scene: &RenderScene, hit: &Hit, split: Split) -> HitReport {

@@ -23,7 +23,7 @@ use crate::surface::{Split, Surface};
 use strahl_math::{DVec3, Interval, Ray};
 use strahl_scene::WorkingSpace;
 use strahl_shade::texture::TexturePaint;
-use strahl_shade::{Color, Light, MaterialId, ShadingModel};
+use strahl_shade::{Color, Light, MaterialId, ShadingModel, SpectralPart};
 
 /// How trees are grown.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -195,8 +195,40 @@ pub(crate) struct Branch {
     pub(crate) kind: RayKind,
     pub(crate) parent: u32,
     pub(crate) depth: u32,
+    /// Which light it follows.
+    pub(crate) part: SpectralPart,
+    /// Whether it is the part of its parent's light, which was all light.
+    pub(crate) divided: bool,
     pub(crate) weight: f64,
     pub(crate) media: MediaStack,
+}
+
+/// A ray that a hit sends.
+struct Offshoot {
+    kind: RayKind,
+    /// What its light is multiplied by.
+    coefficient: Color,
+    direction: DVec3,
+    part: SpectralPart,
+    /// Whether all light came and a part of it goes.
+    divided: bool,
+    /// Whether it stays on its side of the surface, though it is no reflection ray: a part of the spectrum that is totally reflected
+    /// where the rest passes.
+    returned: bool,
+}
+
+impl Offshoot {
+    #[inline]
+    fn new(kind: RayKind, coefficient: Color, direction: DVec3, part: SpectralPart) -> Self {
+        Self {
+            kind,
+            coefficient,
+            direction,
+            part,
+            divided: false,
+            returned: false,
+        }
+    }
 }
 
 /// A ray that was traced, waiting for its branches.
@@ -253,6 +285,8 @@ impl<'s> TreeTracer<'s> {
             kind: RayKind::Primary,
             parent: 0,
             depth: 1,
+            part: SpectralPart::WHITE,
+            divided: false,
             weight: 1.0,
             media: MediaStack::VACUUM,
         });
@@ -296,7 +330,8 @@ impl<'s> TreeTracer<'s> {
             match node.kind {
                 RayKind::Primary => return total,
                 RayKind::Reflection => parent.reflected = total,
-                RayKind::Refraction => parent.transmitted = total,
+                // Of parts of the spectrum there are several.
+                RayKind::Refraction => parent.transmitted += total,
             }
         }
         Color::BLACK
@@ -329,6 +364,11 @@ impl<'s> TreeTracer<'s> {
         if !scene.fogs.is_empty() && medium.is_none() {
             (attenuation, fog) = scene.fog_along(&branch.ray, length);
         }
+        if branch.divided {
+            let share = branch.part.share();
+            attenuation *= share;
+            fog *= share;
+        }
         let mut node = Node {
             parent: branch.parent,
             kind: branch.kind,
@@ -351,6 +391,7 @@ impl<'s> TreeTracer<'s> {
             background,
             attenuation,
             fog,
+            part: branch.part,
         };
         let Some(hit) = hit else {
             node.local = scene.background.along(branch.ray.direction);
@@ -549,42 +590,92 @@ impl<'s> TreeTracer<'s> {
         if split.total_reflection && O::ACTIVE {
             observer.ended(index, RayKind::Refraction, 0.0, BranchEnd::TotalReflection);
         }
-        let refraction = split.refracted.map(|d| (RayKind::Refraction, split.kt, d));
-        let reflection = split.reflected.map(|d| (RayKind::Reflection, split.kr, d));
-        for (kind, coefficient, direction) in [refraction, reflection].into_iter().flatten() {
-            let weight = branch.weight * coefficient.max_component();
-            let end = if branch.depth >= self.settings.max_depth {
-                Some(BranchEnd::DepthLimit)
-            } else if weight < self.settings.adc_bailout {
-                Some(BranchEnd::WeightCutoff)
-            } else if self.nodes.len() + self.waiting.len() >= self.settings.max_tree_rays as usize
-            {
-                Some(BranchEnd::TreeLimit)
-            } else {
-                None
-            };
-            if let Some(end) = end {
-                self.counts.cut_trees += u64::from(end == BranchEnd::TreeLimit);
-                if O::ACTIVE {
-                    observer.ended(index, kind, weight, end);
-                }
-                continue;
+        if let Some(direction) = split.refracted {
+            let parts = self.parts_behind(branch, surface);
+            if parts == 0 {
+                let whole = Offshoot::new(RayKind::Refraction, split.kt, direction, branch.part);
+                self.queue(branch, index, surface, hit, &whole, observer);
             }
-            let media = match kind {
-                RayKind::Refraction => surface.media_behind(branch.media, &mut self.media),
-                _ => branch.media,
-            };
-            let straight = kind == RayKind::Refraction && direction == branch.ray.direction;
-            let (point, origin) = surface.start(hit, direction);
-            self.waiting.push(Branch {
-                ray: Ray::new(point, direction),
-                origin: Some(origin),
-                kind,
-                parent: index,
-                depth: branch.depth + u32::from(self.settings.straight_counts || !straight),
-                weight,
-                media,
-            });
+            for part in SpectralPart::all(parts) {
+                let through = surface.bent_part(self.tracer.scene, part);
+                let offshoot = Offshoot {
+                    divided: true,
+                    returned: through.is_none(),
+                    ..Offshoot::new(
+                        RayKind::Refraction,
+                        split.kt * part.share(),
+                        through.or(split.reflected).unwrap_or(direction),
+                        part,
+                    )
+                };
+                self.queue(branch, index, surface, hit, &offshoot, observer);
+            }
         }
+        if let Some(direction) = split.reflected {
+            let mirrored = Offshoot::new(RayKind::Reflection, split.kr, direction, branch.part);
+            self.queue(branch, index, surface, hit, &mirrored, observer);
+        }
+    }
+
+    /// How many parts the light of a branch falls into behind a surface; 0 if it stays together.
+    #[inline]
+    fn parts_behind(&self, branch: &Branch, surface: &Surface) -> u16 {
+        if self.tracer.scene.disperses && branch.part.is_white() {
+            surface.spectral_parts(self.tracer.scene)
+        } else {
+            0
+        }
+    }
+
+    /// Queues a ray that a hit sends, unless a limit is reached.
+    #[inline(always)]
+    fn queue<O: TraceObserver>(
+        &mut self,
+        branch: &Branch,
+        index: u32,
+        surface: &Surface,
+        hit: &Hit,
+        offshoot: &Offshoot,
+        observer: &mut O,
+    ) {
+        let Offshoot {
+            kind, direction, ..
+        } = *offshoot;
+        let weight = branch.weight * offshoot.coefficient.max_component();
+        let end = if branch.depth >= self.settings.max_depth {
+            Some(BranchEnd::DepthLimit)
+        } else if weight < self.settings.adc_bailout {
+            Some(BranchEnd::WeightCutoff)
+        } else if self.nodes.len() + self.waiting.len() >= self.settings.max_tree_rays as usize {
+            Some(BranchEnd::TreeLimit)
+        } else {
+            None
+        };
+        if let Some(end) = end {
+            self.counts.cut_trees += u64::from(end == BranchEnd::TreeLimit);
+            if O::ACTIVE {
+                observer.ended(index, kind, weight, end);
+            }
+            return;
+        }
+        let media = match kind {
+            RayKind::Refraction if !offshoot.returned => {
+                surface.media_behind(branch.media, &mut self.media)
+            }
+            _ => branch.media,
+        };
+        let straight = kind == RayKind::Refraction && direction == branch.ray.direction;
+        let (point, origin) = surface.start(hit, direction);
+        self.waiting.push(Branch {
+            ray: Ray::new(point, direction),
+            origin: Some(origin),
+            kind,
+            parent: index,
+            depth: branch.depth + u32::from(self.settings.straight_counts || !straight),
+            part: offshoot.part,
+            divided: offshoot.divided,
+            weight,
+            media,
+        });
     }
 }

@@ -6,9 +6,11 @@ use common::compiled;
 use strahl_geometry::{Cuboid, Sphere};
 use strahl_math::{DVec3, Interval, Ray};
 use strahl_render::{
-    BranchEnd, RayKind, RayTree, RenderOptions, TraceSettings, Tracer, explain, trace::TreeTracer,
+    BranchEnd, RayKind, RayNode, RayTree, RenderOptions, TraceSettings, Tracer, explain,
+    trace::TreeTracer,
 };
 use strahl_scene::{Background, Camera, Object, ObjectExt, Scene};
+use strahl_shade::interior::Interior;
 use strahl_shade::{Color, Finish, Light, Material, ShadingModel};
 
 fn slab(x0: f64, x1: f64) -> Cuboid {
@@ -81,6 +83,63 @@ fn snells_law_through_nested_media() {
     }
     assert!((directions[4] - direction).length() < 1e-14);
     assert_eq!(color, Color::WHITE);
+}
+
+/// POV-Ray 3.7.0.10 shows seven steps where a slab of this glass divides a step from black to white, at these indices.
+#[test]
+fn dispersion_divides_light_into_its_spectrum() {
+    let interior = Interior {
+        ior: 1.5,
+        dispersion: 1.5,
+        ..Interior::default()
+    };
+    let glass = Material {
+        eta: interior.ior,
+        interior: Some(interior.into()),
+        ..Material::with_finish(Finish {
+            transmission: Color::WHITE,
+            ..Finish::BLACK
+        })
+    };
+    let scene = Scene::new()
+        .add(slab(0.0, 4.0).material(glass))
+        .background(Background::Solid(Color::WHITE))
+        .camera(Camera::perspective(DVec3::NEG_X, DVec3::X, DVec3::Y, 1.0));
+    let direction = DVec3::new(1.0, 0.7, 0.0).normalize();
+    let (color, tree) = follow(&scene, Ray::new(DVec3::NEG_X, direction), |s| {
+        s.adc_bailout = 1e-9;
+    });
+    let inside: Vec<&RayNode> = tree.nodes.iter().filter(|n| n.report.depth == 2).collect();
+    let mut found: Vec<f64> = inside
+        .iter()
+        .map(|n| direction.y / n.report.ray.direction.y)
+        .collect();
+    found.sort_by(f64::total_cmp);
+    let measured = [1.2607, 1.3359, 1.4156, 1.5001, 1.5896, 1.6843, 1.7848];
+    assert_eq!(found.len(), measured.len());
+    for (found, measured) in found.iter().zip(measured) {
+        assert!((found - measured).abs() < 5e-4, "{found} is not {measured}");
+    }
+    // Each part leaves as it came, and is not divided again.
+    let outside: Vec<&RayNode> = tree.nodes.iter().filter(|n| n.report.depth == 3).collect();
+    assert_eq!(outside.len(), measured.len());
+    for node in outside {
+        assert!((node.report.ray.direction - direction).length() < 1e-12);
+        assert!(!node.report.part.is_white());
+    }
+    // The shares sum to POV-Ray's white.
+    let lost = Color::WHITE - color;
+    assert!(
+        lost.r > 0.0 && lost.map(f64::abs).max_component() < 0.007,
+        "{color:?}"
+    );
+    let sum = tree.nodes[0]
+        .children
+        .iter()
+        .fold(Color::BLACK, |sum, child| {
+            sum + tree.nodes[*child as usize].total
+        });
+    assert!((sum - color).map(f64::abs).max_component() < 1e-15);
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use strahl_math::det;
 
-use crate::Color;
+use crate::{Color, SpectralPart};
 
 /// The inside of a solid as POV-Ray's `interior` describes it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,6 +17,8 @@ pub struct Interior {
     pub fade_color: Color,
     /// Ratio of the indices of refraction for violet and red; 1 is no dispersion.
     pub dispersion: f64,
+    /// How many rays show the spectrum where `dispersion` is not 1, at least 2; 7 by default.
+    pub dispersion_samples: u16,
     /// How sharply light that passes straight on is gathered, in place of real caustics; 0 is not at all. See
     /// [`Interior::gathered`].
     pub caustics: f64,
@@ -31,12 +33,27 @@ impl Default for Interior {
             fade_power: 0.0,
             fade_color: Color::BLACK,
             dispersion: 1.0,
+            dispersion_samples: 7,
             caustics: 0.0,
         }
     }
 }
 
 impl Interior {
+    /// Whether the colours of light are bent by different angles.
+    #[inline]
+    pub fn disperses(&self) -> bool {
+        self.dispersion != 1.0
+    }
+
+    /// The index of refraction for a part of the spectrum: `ior · dispersion^(place - 1/2)` (as measured).
+    pub fn ior_of(&self, part: SpectralPart) -> f64 {
+        if part.is_white() || !self.disperses() {
+            return self.ior;
+        }
+        self.ior * det::pow(self.dispersion, part.place() - 0.5)
+    }
+
     /// What light is multiplied by where it passes a surface towards the lit point: `1 + |cos|^(45 caustics)`, with the cosine
     /// between the tilted normal and the light's direction (as measured).
     pub fn gathered(caustics: f64, cos: f64) -> f64 {

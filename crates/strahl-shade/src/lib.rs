@@ -22,6 +22,7 @@ pub mod pigment;
 pub mod pov_finish;
 mod reflectance;
 mod refraction;
+mod spectrum;
 pub mod srgb;
 pub mod texture;
 
@@ -33,3 +34,4 @@ pub use material::{Finish, Material, MaterialId, MaterialPoint, Sides};
 pub use pbr::{Pbr, TextureRef, Textures};
 pub use reflectance::{ShadingModel, UnknownShadingModel};
 pub use refraction::{Refracted, reflect, refract};
+pub use spectrum::SpectralPart;

@@ -42,6 +42,7 @@ fn ray_node(scene: &RenderScene, node: &RayNode) -> Value {
         "kind": report.kind.to_string(),
         "depth": report.depth,
         "weight": report.weight,
+        "spectrum": (!report.part.is_white()).then(|| report.part.place()),
         "ray": ray(&report.ray),
         "hit": report.hit.as_ref().map(|hit| hit_value(scene, hit)),
         "background": report.background.map(color),

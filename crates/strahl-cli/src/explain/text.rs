@@ -75,6 +75,17 @@ fn write_node(out: &mut String, scene: &RenderScene, tree: &RayTree, node: &RayN
         ),
     );
     let level = level + 1;
+    if !report.part.is_white() {
+        let place = report.part.place();
+        line(
+            out,
+            level,
+            format_args!(
+                "light at {place} of the spectrum from red (0) to violet (1), a share of {}",
+                color(report.part.share())
+            ),
+        );
+    }
     let ray = &report.ray;
     line(
         out,

@@ -131,7 +131,9 @@ impl Prepared {
             }
         });
         let transmits = self.materials.iter().any(|m| material_transmits(m));
+        let disperses = |m: &Arc<Material>| m.interior.as_ref().is_some_and(|i| i.disperses());
         RenderScene {
+            disperses: self.materials.iter().any(disperses),
             groups: groups.collect(),
             objects: self.objects,
             materials: self.materials,

@@ -34,24 +34,23 @@ impl Parser<'_> {
                     }
                     Some(Word::Dispersion) => {
                         p.take(token)?;
-                        let place = p.place_of(token);
                         interior.dispersion = p.positive("dispersion")?;
-                        if interior.dispersion != 1.0 {
-                            p.warn_hint(
-                                place,
-                                "`dispersion` is not supported yet and is left out",
-                                "all colours are bent by the same angle",
-                            );
-                        }
                     }
                     Some(Word::Caustics) => {
                         p.take(token)?;
                         interior.caustics = p.float()?;
                     }
-                    // How many rays show the spectrum is for the renderer to choose.
                     Some(Word::DispersionSamples) => {
+                        /// More show nothing more in a picture.
+                        const MOST: f64 = 512.0;
                         p.take(token)?;
-                        p.float()?;
+                        let place = p.place_of(token);
+                        let count = p.float()?;
+                        if !(2.0..=MOST).contains(&count) {
+                            let message = format!("expected 2 to {MOST} samples, found {count}");
+                            return Err(p.fail(place, message));
+                        }
+                        interior.dispersion_samples = count as u16;
                     }
                     _ => return p.skip_item(token, "`interior`"),
                 }
