@@ -563,6 +563,8 @@ fn compare_gives_one_row_for_each_accelerator_with_one_picture() {
             "bytes",
             "nodes",
             "references",
+            "rays",
+            "hits",
             "tests_per_ray",
             "rays_per_s",
         ] {
@@ -570,6 +572,8 @@ fn compare_gives_one_row_for_each_accelerator_with_one_picture() {
         }
         assert_eq!(row["sha256"], rows[0]["sha256"]);
         assert_eq!(row["equal"], true);
+        let (hits, rays) = (row["hits"].as_u64(), row["rays"].as_u64());
+        assert!(hits > Some(0) && hits < rays, "{hits:?} of {rays:?}");
     }
     let output = strahl(
         folder.path(),
@@ -657,6 +661,7 @@ fn trace_ray_tells_the_way() {
     let reference = ask("list");
     for (accelerator, place) in [
         ("spheres", "leaf sphere"),
+        ("bvh", "leaf"),
         ("bvh2", "leaf"),
         ("grid", "cell"),
         ("octree:traversal=trial-plane", "leaf"),

@@ -105,6 +105,11 @@ impl RayCounts {
         self.primary + self.shadow + self.reflection + self.refraction
     }
 
+    /// Those of them that met something.
+    pub fn hits(&self) -> u64 {
+        self.primary_hit + self.shadow_hit + self.reflection_hit + self.refraction_hit
+    }
+
     fn count(&mut self, kind: RayKind, hit: bool) {
         let (rays, hits) = match kind {
             RayKind::Primary => (&mut self.primary, &mut self.primary_hit),

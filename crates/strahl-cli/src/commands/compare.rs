@@ -16,6 +16,8 @@ struct Row {
     nodes: usize,
     references: usize,
     rays: u64,
+    /// Those of them that met something.
+    hits: u64,
     /// Nodes or cells looked at, and primitives tested, per ray.
     steps_per_ray: f64,
     tests_per_ray: f64,
@@ -211,7 +213,8 @@ impl Contender {
             references,
             ..
         } = self.scene.stats();
-        let (rays, cost) = (rendered.rays.total(), rendered.traversal);
+        let (counts, cost) = (rendered.rays, rendered.traversal);
+        let rays = counts.total();
         self.times.sort_by(f64::total_cmp);
         let trace = self.times[self.times.len() / 2];
         let per_ray = |n: u64| n as f64 / rays.max(1) as f64;
@@ -222,6 +225,7 @@ impl Contender {
             nodes,
             references,
             rays,
+            hits: counts.hits(),
             steps_per_ray: per_ray(cost.node_visits),
             tests_per_ray: per_ray(cost.primitive_tests),
             trace_s: trace,
@@ -330,18 +334,19 @@ fn table(rows: &[Row]) {
 
 fn csv(rows: &[Row]) {
     println!(
-        "accelerator,build_s,bytes,nodes,references,rays,steps_per_ray,tests_per_ray,trace_s,rays_per_s,faster_than_list,sampled,sha256,equal"
+        "accelerator,build_s,bytes,nodes,references,rays,hits,steps_per_ray,tests_per_ray,trace_s,rays_per_s,faster_than_list,sampled,sha256,equal"
     );
     let number = |x: Option<f64>| x.map_or(String::new(), |x| x.to_string());
     for r in rows {
         println!(
-            "\"{}\",{},{},{},{},{},{},{},{},{},{},{},{},{}",
+            "\"{}\",{},{},{},{},{},{},{},{},{},{},{},{},{},{}",
             r.accelerator,
             r.build_s,
             r.bytes,
             r.nodes,
             r.references,
             r.rays,
+            r.hits,
             r.steps_per_ray,
             r.tests_per_ray,
             r.trace_s,
