@@ -125,7 +125,7 @@ impl TreeTracer<'_> {
                     continue;
                 };
                 let n_dot_l = query.surface.n_shade.dot(sample.l);
-                if self.faces(sample.l, n_dot_l) {
+                if self.faces(query.surface, sample.l, n_dot_l) {
                     let light = sample.color * visible;
                     let (d, s) = self.reflected(
                         query.surface,

@@ -3,9 +3,9 @@ use strahl_math::DVec3;
 /// What kind of ray asks, for the visibility of objects.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RayClass {
-    /// From the eye.
+    /// From the eye, through transparent things too.
     Camera,
-    /// Reflection and transparency rays.
+    /// Reflection rays, and what they send through transparent things.
     Secondary,
     /// Towards a light.
     Shadow,

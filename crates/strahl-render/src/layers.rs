@@ -71,8 +71,15 @@ pub(crate) fn lit(
 ) -> (Color, Color) {
     let (mut diffuse, mut highlights) = (Color::BLACK, Color::BLACK);
     for layer in &paint.layers {
-        let factor = layer.finish.diffuse_factor(layer.normal.dot(l));
+        let cos = layer.normal.dot(l);
+        let both_sides = surface.lit.both_sides;
+        let factor = layer
+            .finish
+            .diffuse_factor(if both_sides { cos.abs() } else { cos });
         diffuse += body(layer) * light * factor;
+        if !(cos > 0.0 || both_sides) {
+            continue;
+        }
         let highlight = layer
             .finish
             .highlight(layer.normal, l, surface.v, layer.color.rgb);

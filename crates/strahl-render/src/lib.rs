@@ -20,6 +20,7 @@ mod film;
 mod fog;
 mod hit;
 mod layers;
+mod light_sets;
 mod media;
 mod observer;
 mod query;

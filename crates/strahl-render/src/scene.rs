@@ -1,5 +1,6 @@
 use crate::blocks::Blocks;
 use crate::hit::Hit;
+use crate::light_sets::{LightSets, Lit};
 use std::sync::Arc;
 use strahl_accel::{Accelerator, AnyAccelerator};
 use strahl_geometry::{PrimHit, Primitive, Shape, SurfaceId, SurfacePoint, TriangleMesh};
@@ -90,6 +91,8 @@ pub(crate) struct MeshUse {
 pub(crate) struct InstanceUse {
     pub(crate) group: u32,
     pub(crate) transform: Transform,
+    /// How all of it is lit; [`Lit::PLAIN`] leaves it to what is in the group.
+    pub(crate) lit: Lit,
 }
 
 /// A list of primitives with its accelerator: the world, an instanced group, or a space of its own for small far things.
@@ -141,6 +144,7 @@ pub struct RenderScene {
     /// From the spaces of textures to the groups'.
     pub(crate) texture_spaces: Vec<Transform>,
     pub(crate) lights: Vec<SceneLight>,
+    pub(crate) light_sets: LightSets,
     pub(crate) ambient: Color,
     pub(crate) background: Background,
     pub(crate) fogs: Vec<Fog>,

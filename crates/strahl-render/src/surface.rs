@@ -1,6 +1,7 @@
 //! What shading needs to know of a hit, and how the surface there divides light.
 
 use crate::hit::{Hit, Origin};
+use crate::light_sets::Lit;
 use crate::media::{MediaArena, MediaStack};
 use crate::observer::HitReport;
 use crate::scene::{RenderScene, Resolved, Uv};
@@ -62,6 +63,8 @@ pub(crate) struct Surface {
     pub(crate) entering: bool,
     /// Whether the material is a sheet without an inside.
     pub(crate) thin: bool,
+    /// Which light shows on it.
+    pub(crate) lit: Lit,
     pub(crate) eta_1: f64,
     pub(crate) eta_2: f64,
     /// What the ray comes from and what is behind the surface; `None` is air.
@@ -110,6 +113,7 @@ impl Surface {
             n_shade: n_shade * side,
             entering,
             thin: material.thin,
+            lit: scene.lit(hit.id, resolved.look.object),
             eta_1,
             eta_2,
             medium_1,
@@ -152,7 +156,8 @@ impl Surface {
         n_dot_l: f64,
     ) -> (Color, Color) {
         let finish = &self.material.finish;
-        let diffuse = finish.diffuse * arriving * n_dot_l;
+        // Only where light shows from both sides is it ever from behind.
+        let diffuse = finish.diffuse * arriving * n_dot_l.abs();
         if finish.specular.is_black() {
             return (diffuse, Color::BLACK);
         }

@@ -198,6 +198,8 @@ pub(crate) struct Branch {
     pub(crate) ray: Ray,
     pub(crate) origin: Option<Origin>,
     pub(crate) kind: RayKind,
+    /// What it sees: rays through transparent things see what the ray sees that sent them.
+    pub(crate) class: RayClass,
     pub(crate) parent: u32,
     pub(crate) depth: u32,
     /// Which light it follows.
@@ -288,6 +290,7 @@ impl<'s> TreeTracer<'s> {
             ray: *primary,
             origin: None,
             kind: RayKind::Primary,
+            class: RayClass::Camera,
             parent: 0,
             depth: 1,
             part: SpectralPart::WHITE,
@@ -345,16 +348,11 @@ impl<'s> TreeTracer<'s> {
     /// Traces one ray, shades its hit and queues its branches.
     fn follow<O: TraceObserver>(&mut self, branch: &Branch, observer: &mut O) -> Option<FirstHit> {
         let scene = self.tracer.scene;
-        let class = if branch.kind == RayKind::Primary {
-            RayClass::Camera
-        } else {
-            RayClass::Secondary
-        };
         let hit = self.tracer.closest_hit(
             &branch.ray,
             Interval::FORWARD,
             branch.origin.as_ref(),
-            class,
+            branch.class,
         );
         self.counts.count(branch.kind, hit.is_some());
 
@@ -434,7 +432,10 @@ impl<'s> TreeTracer<'s> {
         }
         let finish = &surface.material.finish;
         node.local = finish.ambient * scene.ambient + finish.emission;
-        for light in 0..scene.lights.len() {
+        // Groups of lights shine on their own objects only.
+        let shining = scene.lights_in(surface.lit.set);
+        for number in 0..shining.map_or(scene.lights.len(), <[u32]>::len) {
+            let light = shining.map_or(number, |list| list[number] as usize);
             let term = self.light(&surface, &hit, model, light, branch, index, observer);
             node.local += term.diffuse + term.specular;
             if O::ACTIVE {
@@ -490,7 +491,9 @@ impl<'s> TreeTracer<'s> {
         term.n_dot_l = surface.n_shade.dot(sample.l);
         term.color = sample.color;
         // Parts of a light that shades point by point may be seen where its centre is not.
-        if !self.faces(sample.l, term.n_dot_l) && scene_light.area.is_none_or(|a| !a.illumination) {
+        if !self.faces(surface, sample.l, term.n_dot_l)
+            && scene_light.area.is_none_or(|a| !a.illumination)
+        {
             return term;
         }
         term.visible = Color::WHITE;
@@ -550,8 +553,10 @@ impl<'s> TreeTracer<'s> {
 
     /// Whether light from the unit direction `l` shows on the surface at hand.
     #[inline]
-    pub(crate) fn faces(&self, l: DVec3, n_dot_l: f64) -> bool {
-        if self.paint.layers.is_empty() {
+    pub(crate) fn faces(&self, surface: &Surface, l: DVec3, n_dot_l: f64) -> bool {
+        if surface.lit.both_sides {
+            true
+        } else if self.paint.layers.is_empty() {
             n_dot_l > 0.0
         } else {
             layers::faces(&self.paint, l)
@@ -675,6 +680,10 @@ impl<'s> TreeTracer<'s> {
             ray: Ray::new(point, direction),
             origin: Some(origin),
             kind,
+            class: match kind {
+                RayKind::Refraction if !offshoot.returned => branch.class,
+                _ => RayClass::Secondary,
+            },
             parent: index,
             depth: branch.depth + u32::from(self.settings.straight_counts || !straight),
             part: offshoot.part,

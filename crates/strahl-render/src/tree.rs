@@ -11,7 +11,7 @@ use strahl_shade::Color;
 pub struct RayNode {
     /// The ray and what it hit.
     pub report: RayReport,
-    /// The lights looked at from the hit, in the order of the scene.
+    /// The lights looked at from the hit, in the order of the scene: those that shine on the object at all.
     pub lights: Vec<LightTerm>,
     /// Branches that were not followed: which, with what weight, why.
     pub ended: Vec<(RayKind, f64, BranchEnd)>,

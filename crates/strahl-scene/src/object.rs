@@ -24,9 +24,21 @@ pub enum CsgOp {
     Inverse,
     /// The surface of the first child as far as it is inside of the others; the cut is not closed by a cap.
     Clip,
+    /// A union whose own lights (those that are children themselves, not parts of children) shine on nothing but the other
+    /// children. A group within the group has its own lights only. Shadows are cast across the bounds of groups.
+    LightGroup {
+        /// Whether the lights that are in no group shine on the children too. Of groups within each other the outermost
+        /// decides for all.
+        global_lights: bool,
+    },
 }
 
 impl CsgOp {
+    /// Whether the children are put together without anything being taken from them.
+    pub const fn is_union(self) -> bool {
+        matches!(self, Self::Union | Self::LightGroup { .. })
+    }
+
     /// The word for it.
     pub const fn name(self) -> &'static str {
         match self {
@@ -36,6 +48,7 @@ impl CsgOp {
             Self::Difference => "difference",
             Self::Inverse => "inverse",
             Self::Clip => "clipped-by",
+            Self::LightGroup { .. } => "light group",
         }
     }
 }
@@ -76,9 +89,9 @@ pub enum ObjectKind {
 /// To which kinds of rays an object shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Visibility {
-    /// Rays from the eye.
+    /// Rays from the eye, through transparent things too.
     pub camera: bool,
-    /// Reflection and transparency rays.
+    /// Reflection rays, and what they send through transparent things.
     pub secondary: bool,
     /// Shadow rays.
     pub shadow: bool,
@@ -107,6 +120,8 @@ pub struct Object {
     pub transform: Option<Box<Transform>>,
     /// To which rays it shows.
     pub visibility: Visibility,
+    /// Whether light from behind its surface shows on it as light from the front does (POV-Ray's `double_illuminate`).
+    pub double_illuminated: bool,
     /// What it is.
     pub kind: ObjectKind,
 }
@@ -129,6 +144,7 @@ impl Object {
             material: None,
             transform: None,
             visibility: Visibility::default(),
+            double_illuminated: false,
             kind,
         }
     }

@@ -107,6 +107,138 @@ fn lights_shine_as_povrays() {
 }
 
 #[test]
+fn groups_of_lights_shine_on_their_own() {
+    let red = "light_source { <4, 6, -5>, rgb <1, 0.2, 0.1> }";
+    let ball = "sphere { <-0.9, 0, 0.5>, 1 pigment { rgb 0.9 } }";
+    let dice = "box { <0.6, -1, -1>, <1.4, -0.2, -0.2> pigment { rgb <0.4, 0.8, 0.5> } }";
+    let floor = "plane { y, -1 pigment { rgb <0.8, 0.7, 0.6> } }";
+    let sun = "light_source { <-3, 5, -6>, rgb <0.3, 0.4, 0.5> }";
+    let scenes = [
+        (
+            "alone",
+            format!("light_group {{ {red} {ball} }} {dice} {floor} {sun}"),
+        ),
+        (
+            "with the others",
+            format!("light_group {{ {red} {ball} global_lights on }} {dice} {floor} {sun}"),
+        ),
+        (
+            "shadows of strangers",
+            format!("light_group {{ {red} {floor} {ball} global_lights off }} {dice} {sun}"),
+        ),
+        (
+            "without lights",
+            format!("light_group {{ {ball} global_lights off }} {dice} {floor} {sun}"),
+        ),
+        (
+            "within each other",
+            format!(
+                "light_group {{ {red} {ball} light_group {{ light_source {{ <5, 3, -4>, rgb <0, 0, 1> }} {dice} }} global_lights on }} {floor} {sun}"
+            ),
+        ),
+        (
+            "the outermost decides",
+            format!(
+                "light_group {{ {red} {ball} union {{ light_group {{ light_source {{ <5, 3, -4>, rgb <0, 0, 1> }} {dice} global_lights on }} }} }} {floor} {sun}"
+            ),
+        ),
+        (
+            "lights of unions shine on all",
+            format!("light_group {{ union {{ {red} {ball} }} {dice} }} {floor} {sun}"),
+        ),
+        (
+            "in operations",
+            format!(
+                "light_group {{ {red} difference {{ {ball} sphere {{ <-0.6, 0.4, -0.5>, 0.6 }} pigment {{ rgb 0.7 }} }} }} {dice} {floor} {sun}"
+            ),
+        ),
+        (
+            "moved",
+            format!(
+                "#declare G = light_group {{ {red} {ball} }} object {{ G rotate 20 * y translate <0.3, 0.2, 0> }} object {{ G scale 0.4 translate 1.6 * x }} {floor} {sun}"
+            ),
+        ),
+        (
+            "shared",
+            format!(
+                "#declare U = union {{ #for (I, 0, 20) sphere {{ <I / 10 - 1, I / 10 - 1, 0>, 0.3 pigment {{ rgb <1, I / 20, 0.5> }} }} #end }}
+                 light_group {{ {red} object {{ U }} }} object {{ U translate x }} object {{ U translate -x }} {floor} {sun}"
+            ),
+        ),
+        (
+            "seen in a mirror",
+            format!(
+                "light_group {{ {red} {ball} }} {dice} plane {{ -z, -3 pigment {{ rgb 0 }} finish {{ reflection 0.9 }} }} {sun}"
+            ),
+        ),
+    ];
+    let scenes = scenes.map(|(name, text)| (name, format!("{SETTINGS}{CAMERA}{text}")));
+    agree(0.004, &scenes);
+}
+
+#[test]
+fn light_from_behind_shows_on_both_sides() {
+    let sheet = |rest: &str| {
+        format!(
+            "box {{ <-0.8, -0.8, 0>, <0.8, 0.8, 0.01> rotate <20, 30, 0> {rest} }} disc {{ <1.2, 0.8, 0>, <0.3, 0.2, -1>, 0.8 {rest} }}
+             triangle {{ <-2, -1, 0>, <-1, 1, 0.4>, <-2.4, 1, 0.2> {rest} }} sphere {{ <2.2, -0.8, 1>, 0.5 {rest} }}"
+        )
+    };
+    let color = "pigment { rgbt <0.9, 0.7, 0.4, 0.2> }";
+    let scenes = [
+        ("one side", sheet(color)),
+        ("both sides", sheet(&format!("{color} double_illuminate"))),
+        (
+            "both sides and back light",
+            sheet(&format!(
+                "{color} finish {{ diffuse 0.5, 0.2 brilliance 2 }} double_illuminate"
+            )),
+        ),
+        (
+            "highlights",
+            sheet(&format!(
+                "{color} finish {{ diffuse 0.4 specular 0.8 roughness 0.3 phong 0.5 phong_size 3 metallic }} double_illuminate"
+            )),
+        ),
+        (
+            "of a union",
+            format!("union {{ {} double_illuminate }}", sheet(color)),
+        ),
+        (
+            "switched off",
+            format!(
+                "union {{ {} }}",
+                sheet(&format!("{color} double_illuminate off"))
+            ),
+        ),
+        (
+            "with a normal",
+            sheet(&format!(
+                "{color} normal {{ bumps 0.3 scale 0.2 }} double_illuminate"
+            )),
+        ),
+    ];
+    let light =
+        "light_source { <3, 4, 6>, rgb 1 } light_source { <-2, 3, -6>, rgb <0.1, 0.1, 0.3> }";
+    let scenes = scenes.map(|(name, text)| (name, format!("{SETTINGS}{CAMERA}{light}{text}")));
+    agree(0.004, &scenes);
+}
+
+#[test]
+fn hidden_things_stay_hidden_behind_glass() {
+    let room = "plane { y, -1 pigment { checker rgb 0.3 rgb 0.8 } } plane { z, 6 pigment { rgb <0.3, 0.5, 0.6> } finish { reflection 0.7 } }
+                box { <-2, -1, -1>, <2, 1.5, -0.8> pigment { rgbt <0.9, 1, 0.9, 0.8> } interior { ior 1.3 } finish { reflection 0.3 } }";
+    let scenes = ["", "no_image", "no_reflection", "no_image no_reflection"].map(|words| {
+        let text = format!(
+            "{SETTINGS}{CAMERA}{LIGHT}{room} sphere {{ <0.5, 0, 1.5>, 0.8 pigment {{ rgb <0.9, 0.2, 0.1> }} {words} }}
+             sphere {{ <-0.8, 0, -2>, 0.5 pigment {{ rgb <0.1, 0.2, 0.9> }} {words} }}"
+        );
+        (words, text)
+    });
+    agree(0.01, &scenes);
+}
+
+#[test]
 fn lights_with_an_extent_shine_as_povrays() {
     let scenes = [
         (

@@ -3,7 +3,7 @@
 mod common;
 
 use common::{errors, parse_with};
-use strahl_scene::{Projection, Scene, WorkingSpace};
+use strahl_scene::{CsgOp, ObjectKind, Projection, Scene, WorkingSpace};
 use strahl_sdl::MemoryHost;
 use strahl_shade::{Color, LightKind};
 
@@ -20,8 +20,16 @@ fn a_group_of_lights_keeps_its_objects() {
     let (scene, messages) = scene(
         "light_group { light_source { y, rgb 1 } global_lights off sphere { 0, 1 } translate x }",
     );
-    assert_eq!(scene.objects.0.len(), 1);
-    assert!(messages.contains("`light_group` is not supported yet"));
+    let [group] = &scene.objects.0[..] else {
+        panic!("one group");
+    };
+    let ObjectKind::Csg { op, children } = &group.kind else {
+        panic!("a group");
+    };
+    let global_lights = false;
+    assert_eq!(*op, CsgOp::LightGroup { global_lights });
+    assert_eq!((children.0.len(), messages.as_str()), (2, ""));
+    assert!(group.transform.is_some());
 }
 
 #[test]

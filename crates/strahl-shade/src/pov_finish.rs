@@ -194,11 +194,11 @@ impl PovFinish {
 
     /// What both highlights add per unit of light: the factor of the light's colour. The opacity plays no part.
     ///
-    /// `n` is the tilted unit normal, `to_light` and `to_viewer` are unit vectors away from the surface. Nothing is added for
-    /// light from behind.
+    /// `n` is the tilted unit normal, `to_light` and `to_viewer` are unit vectors away from the surface. Light from behind
+    /// (`n·to_light` of 0 or less) is the caller's to leave out: it makes highlights where an object is lit from both sides.
     pub fn highlight(&self, n: DVec3, to_light: DVec3, to_viewer: DVec3, pigment: Color) -> Color {
         let cos_light = n.dot(to_light);
-        if !(cos_light > 0.0) || (self.phong == 0.0 && self.specular == 0.0) {
+        if self.phong == 0.0 && self.specular == 0.0 {
             return Color::BLACK;
         }
         let mut strength = 0.0;

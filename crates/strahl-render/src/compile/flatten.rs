@@ -2,12 +2,15 @@ use super::materials::{
     MaterialTable, material_filters, material_of, material_problem, material_transmits,
 };
 use crate::hit::RayClass;
+use crate::light_sets::{LightSetsDraft, Lit};
 use crate::scene::{InstanceUse, Look, Looks, MeshUse, ObjectInfo, Prim, PrimKind, ShapeUse};
 use std::collections::HashSet;
 use std::sync::Arc;
 use strahl_geometry::{Csg, CsgNode, GeometryError, Primitive, Shape};
 use strahl_math::Transform;
-use strahl_scene::{CsgOp, Diagnostic, Object, ObjectKind, Scene, SceneLight, Span, Visibility};
+use strahl_scene::{
+    Children, CsgOp, Diagnostic, Object, ObjectKind, Scene, SceneLight, Span, Visibility,
+};
 use strahl_shade::{Material, MaterialId};
 
 /// The lists of one group.
@@ -28,6 +31,7 @@ pub(super) struct Flat {
     pub(super) texture_spaces: Vec<Transform>,
     /// Lights found among the objects.
     pub(super) lights: Vec<SceneLight>,
+    pub(super) light_sets: LightSetsDraft,
     /// Warnings.
     pub(super) diagnostics: Vec<Diagnostic>,
 }
@@ -41,17 +45,18 @@ pub(super) fn flatten(scene: &Scene) -> Result<Flat, Vec<Diagnostic>> {
         flat: Flat::default(),
         errors: vec![],
         checked: HashSet::new(),
+        in_world: false,
     };
     let world = std::iter::once(&scene.objects);
     for objects in scene.groups.iter().map(|g| &g.objects).chain(world) {
         let mut group = FlatGroup::default();
-        let (lights, is_world) = (
-            pass.flat.lights.len(),
-            pass.flat.groups.len() == scene.groups.len(),
-        );
+        let lights = pass.flat.lights.len();
+        pass.in_world = pass.flat.groups.len() == scene.groups.len();
         pass.objects(&objects.0, scene, &mut group);
         pass.flat.groups.push(group);
-        if !is_world && let Some(light) = pass.flat.lights.get(lights) {
+        if !pass.in_world
+            && let Some(light) = pass.flat.lights.get(lights)
+        {
             let message =
                 "a light in a group that is instanced does not shine; put it beside the instances";
             let warning = Diagnostic::warning(message).at(light.span);
@@ -77,6 +82,8 @@ struct Pass {
     errors: Vec<Diagnostic>,
     /// Materials already found to be right.
     checked: HashSet<MaterialId>,
+    /// Whether it is the world that is being flattened, and not a group.
+    in_world: bool,
 }
 
 /// An object with what it inherits.
@@ -90,6 +97,7 @@ struct Todo<'a> {
     name: Option<&'a Arc<str>>,
     span: Span,
     visibility: Visibility,
+    lit: Lit,
 }
 
 impl<'a> Todo<'a> {
@@ -104,6 +112,10 @@ impl<'a> Todo<'a> {
                 name: object.name.as_ref(),
                 span: object.span,
                 visibility: object.visibility,
+                lit: Lit {
+                    both_sides: object.double_illuminated,
+                    ..Lit::PLAIN
+                },
             };
         };
         let (a, b) = (object.visibility, p.visibility);
@@ -128,6 +140,10 @@ impl<'a> Todo<'a> {
                 secondary: a.secondary && b.secondary,
                 shadow: a.shadow && b.shadow,
             },
+            lit: Lit {
+                set: p.lit.set,
+                both_sides: object.double_illuminated || p.lit.both_sides,
+            },
         }
     }
 }
@@ -136,13 +152,12 @@ impl Pass {
     fn objects(&mut self, objects: &[Object], scene: &Scene, group: &mut FlatGroup) {
         // A stack instead of recursion: unions may be nested arbitrarily deep.
         let mut waiting: Vec<Todo<'_>> = objects.iter().rev().map(|o| Todo::new(o, None)).collect();
-        while let Some(todo) = waiting.pop() {
-            match &todo.object.kind {
-                ObjectKind::Csg {
-                    op: CsgOp::Union,
-                    children,
-                } => {
-                    waiting.extend(children.0.iter().rev().map(|c| Todo::new(c, Some(&todo))));
+        while let Some(mut todo) = waiting.pop() {
+            let object = todo.object;
+            match &object.kind {
+                ObjectKind::Csg { op, children } if op.is_union() => {
+                    let children = self.union_parts(*op, children, &mut todo);
+                    waiting.extend(children.rev().map(|c| Todo::new(c, Some(&todo))));
                 }
                 ObjectKind::Csg { .. } => self.csg(&todo, group),
                 ObjectKind::Shape(shape) => self.shape(shape, &todo, group),
@@ -151,7 +166,9 @@ impl Pass {
                     group.instances.push(InstanceUse {
                         group: id.0,
                         transform: todo.transform,
+                        lit: todo.lit,
                     });
+                    self.flat.light_sets.add_instance(todo.lit);
                     let index = group.instances.len() as u32 - 1;
                     group.prims.push(Prim {
                         kind: PrimKind::Instance(index),
@@ -169,6 +186,29 @@ impl Pass {
                 }
             }
         }
+    }
+
+    /// The children of a union. Those of a group of lights get a set of lights, which its own lights join here.
+    fn union_parts<'a>(
+        &mut self,
+        op: CsgOp,
+        children: &'a Children,
+        todo: &mut Todo<'a>,
+    ) -> impl DoubleEndedIterator<Item = &'a Object> + use<'a> {
+        let is_group = self.in_world && matches!(op, CsgOp::LightGroup { .. });
+        let own_light =
+            move |child: &Object| is_group && matches!(child.kind, ObjectKind::Light(_));
+        if is_group {
+            todo.lit.set = self.flat.light_sets.open(op, todo.lit.set);
+            for child in children.0.iter().filter(|c| own_light(c)) {
+                if let ObjectKind::Light(light) = &child.kind {
+                    let number = self.flat.lights.len();
+                    self.flat.light_sets.add_light(todo.lit.set, number);
+                    self.light(light, &Todo::new(child, Some(todo)));
+                }
+            }
+        }
+        children.0.iter().filter(move |c| !own_light(c))
     }
 
     fn light(&mut self, light: &SceneLight, todo: &Todo<'_>) {
@@ -192,6 +232,8 @@ impl Pass {
             kind,
             span: todo.span,
         });
+        let object = self.flat.objects.len() as u32 - 1;
+        self.flat.light_sets.add_object(todo.lit, object);
         let spaces = &mut self.flat.texture_spaces;
         let textured = self.flat.materials.get(material).texture.is_some();
         let texture_space = if !textured || todo.material_space.is_identity() {
@@ -204,7 +246,7 @@ impl Pass {
             spaces.len() as u32 - 1
         };
         Look {
-            object: self.flat.objects.len() as u32 - 1,
+            object,
             material,
             texture_space,
         }
@@ -327,12 +369,12 @@ impl Pass {
                     let children = done.split_off(done.len() - count);
                     done.push(combine(op, children));
                 }
-                Step::Visit(todo) => match &todo.object.kind {
+                Step::Visit(mut todo) => match &todo.object.kind {
                     ObjectKind::Csg { op, children } => {
                         // Lights among the operands shine, but are none.
                         let is_light = |c: &Object| matches!(c.kind, ObjectKind::Light(_));
-                        let lights = children.0.iter().filter(|c| is_light(c)).count();
-                        let count = children.0.len() - lights;
+                        let count = children.0.iter().filter(|c| !is_light(c)).count();
+                        let children = self.union_parts(*op, children, &mut todo);
                         if let Some(problem) = wrong_count(*op, count) {
                             self.errors.push(Diagnostic::error(problem).at(todo.span));
                             return None;
@@ -340,8 +382,6 @@ impl Pass {
                         steps.push(Step::Combine(*op, count));
                         steps.extend(
                             children
-                                .0
-                                .iter()
                                 .rev()
                                 .map(|c| Step::Visit(Box::new(Todo::new(c, Some(&todo))))),
                         );
@@ -385,9 +425,11 @@ fn wrong_count(op: CsgOp, count: usize) -> Option<String> {
     let (right, expected) = match op {
         CsgOp::Inverse => (count == 1, "exactly one object"),
         CsgOp::Clip => (count >= 2, "an object and at least one to clip it by"),
-        CsgOp::Union | CsgOp::Merge | CsgOp::Intersection | CsgOp::Difference => {
-            (count >= 1, "at least one object")
-        }
+        CsgOp::Union
+        | CsgOp::Merge
+        | CsgOp::Intersection
+        | CsgOp::Difference
+        | CsgOp::LightGroup { .. } => (count >= 1, "at least one object"),
     };
     (!right).then(|| format!("{} takes {expected}, found {count}", op.name()))
 }
@@ -395,7 +437,7 @@ fn wrong_count(op: CsgOp, count: usize) -> Option<String> {
 fn combine(op: CsgOp, children: Vec<CsgNode>) -> CsgNode {
     let operands = children.into_iter().collect();
     match op {
-        CsgOp::Union => CsgNode::Union(operands),
+        CsgOp::Union | CsgOp::LightGroup { .. } => CsgNode::Union(operands),
         CsgOp::Merge => CsgNode::Merge(operands),
         CsgOp::Intersection => CsgNode::Intersection(operands),
         CsgOp::Difference => CsgNode::Difference(operands),

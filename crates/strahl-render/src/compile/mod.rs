@@ -15,6 +15,7 @@ mod spaces;
 mod view;
 
 use crate::blocks::Blocks;
+use crate::light_sets::LightSets;
 use crate::scene::{ObjectInfo, RenderGroup, RenderScene};
 use assemble::Assembled;
 pub(crate) use materials::material_transmits;
@@ -40,6 +41,7 @@ pub struct Prepared {
     materials: Vec<Arc<Material>>,
     texture_spaces: Vec<Transform>,
     lights: Vec<SceneLight>,
+    light_sets: LightSets,
     ambient: Color,
     background: Background,
     fogs: Vec<Fog>,
@@ -80,6 +82,9 @@ impl Prepared {
                 "the scene has no objects: the picture shows the background only",
             ));
         }
+        let light_sets = flat
+            .light_sets
+            .finished(scene.lights.len(), flat.lights.len());
         let (lights, ambient) = view::lights(scene, flat.lights, &camera, bounds);
         Ok(Self {
             groups,
@@ -87,6 +92,7 @@ impl Prepared {
             materials: flat.materials.into_list(),
             texture_spaces: flat.texture_spaces,
             lights,
+            light_sets,
             ambient,
             background: scene
                 .background
@@ -139,6 +145,7 @@ impl Prepared {
             materials: self.materials,
             texture_spaces: self.texture_spaces,
             lights: self.lights,
+            light_sets: self.light_sets,
             ambient: self.ambient,
             background: self.background,
             fogs: self.fogs,

@@ -1,4 +1,5 @@
 use super::flatten::{Flat, FlatGroup};
+use crate::light_sets::Lit;
 use crate::scene::{InstanceUse, Prim, PrimKind, ShapeUse};
 use strahl_geometry::Primitive;
 use strahl_math::{Aabb, DVec3, Transform};
@@ -40,6 +41,7 @@ pub(super) fn open_spaces(flat: &mut Flat) {
                     group.instances.push(InstanceUse {
                         group: first + *cluster as u32,
                         transform,
+                        lit: Lit::PLAIN,
                     });
                     let kind = PrimKind::Instance(group.instances.len() as u32 - 1);
                     prims.push(Prim {

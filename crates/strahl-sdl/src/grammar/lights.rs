@@ -1,3 +1,4 @@
+use crate::grammar::entity::is_nothing;
 use crate::grammar::{Entity, Thing};
 use crate::keywords::Word;
 use crate::parser::{PResult, Parser, Place};
@@ -38,30 +39,42 @@ pub(super) fn light_source(p: &mut Parser<'_>) -> PResult<Entity> {
     })
 }
 
-/// `light_group { lights and objects }`: for now a union whose lights shine on everything.
+/// `light_group { lights and objects }`: lights that shine on these objects only.
 pub(super) fn light_group(p: &mut Parser<'_>) -> PResult<Entity> {
     let place = p.place();
-    p.warn_hint(
-        place,
-        "`light_group` is not supported yet and counts as a union",
-        "its lights will shine on everything, and all other lights on its objects",
-    );
     p.braces(|p| {
         let mut parts = vec![];
+        let mut global_lights = false;
         loop {
             if p.accept_word(Word::GlobalLights)? {
-                p.switched()?;
-            } else if let Some(object) = p.object()? {
-                parts.push(object);
-            } else {
-                break;
+                global_lights = p.switched()?;
+                continue;
+            }
+            let is_lamp = p.peek()?.word() == Some(Word::LightSource);
+            match p.object()? {
+                Some(lamp) if is_lamp => add_lamp(lamp, &mut parts),
+                Some(object) => parts.push(object),
+                None => break,
             }
         }
-        let mut entity = Entity::from(Object::csg(CsgOp::Union, parts));
+        parts.retain(|part| !is_nothing(part));
+        let mut entity = Entity::from(Object::csg(CsgOp::LightGroup { global_lights }, parts));
         entity.object.span = p.span_at(place);
         p.modifiers(&mut entity)?;
         Ok(entity)
     })
+}
+
+/// Adds a light, and what it looks like as a part of its own: the light itself must be one of the group.
+fn add_lamp(mut lamp: Object, parts: &mut Vec<Object>) {
+    match &mut lamp.kind {
+        ObjectKind::Csg { children, .. } => {
+            let map = lamp.transform.as_deref().copied().unwrap_or_default();
+            let children = std::mem::take(&mut children.0);
+            parts.extend(children.into_iter().map(|part| part.transformed(&map)));
+        }
+        _ => parts.push(lamp),
+    }
 }
 
 /// Whether a light is what an object consists of: alone, or with its looks.

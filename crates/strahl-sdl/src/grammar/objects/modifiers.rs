@@ -124,9 +124,28 @@ impl Parser<'_> {
                 return Ok(true);
             }
             Some(Word::NoShadow) => visibility.shadow = false,
-            // Seen through transparent objects counts as neither.
             Some(Word::NoImage) => visibility.camera = false,
             Some(Word::NoReflection) => visibility.secondary = false,
+            Some(Word::DoubleIlluminate) => entity.object.double_illuminated = true,
+            Some(Word::GlobalLights) => {
+                let ObjectKind::Csg {
+                    op: CsgOp::LightGroup { .. },
+                    ..
+                } = entity.object.kind
+                else {
+                    return Ok(false);
+                };
+                self.take(token)?;
+                let on = self.switched()?;
+                if let ObjectKind::Csg {
+                    op: CsgOp::LightGroup { global_lights },
+                    ..
+                } = &mut entity.object.kind
+                {
+                    *global_lights = on;
+                }
+                return Ok(true);
+            }
             Some(Word::Inverse) => {
                 self.take(token)?;
                 invert(&mut entity.object);
@@ -155,6 +174,7 @@ impl Parser<'_> {
                 Some(Word::NoShadow) => visibility.shadow = true,
                 Some(Word::NoImage) => visibility.camera = true,
                 Some(Word::NoReflection) => visibility.secondary = true,
+                Some(Word::DoubleIlluminate) => entity.object.double_illuminated = false,
                 _ => {}
             }
         }
@@ -214,7 +234,7 @@ impl Parser<'_> {
 
 /// Whether an object is an operation that wants all its parts.
 fn combines(object: &Object) -> bool {
-    matches!(&object.kind, ObjectKind::Csg { op, .. } if *op != CsgOp::Union)
+    matches!(&object.kind, ObjectKind::Csg { op, .. } if !op.is_union())
 }
 
 /// Cuts an object, without a cap; the clipping objects stand in its parent's space.

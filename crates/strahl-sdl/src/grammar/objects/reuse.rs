@@ -37,7 +37,7 @@ pub(crate) struct Tally {
     elements: u64,
     /// Whether a part takes its material from the use.
     inherits: bool,
-    /// Whether a part is a light.
+    /// Whether a part is a light or a group of them.
     lights: bool,
     /// Shapes and operations, those of the declared objects in it counted too.
     pub(in crate::grammar) expanded: u64,
@@ -52,7 +52,9 @@ impl Tally {
             tally.parts += 1;
             tally.expanded = tally.expanded.saturating_add(1);
             match &object.kind {
-                ObjectKind::Csg { children, .. } => {
+                ObjectKind::Csg { op, children } => {
+                    // A group of lights decides what shines on its parts, even if it has no lights.
+                    tally.lights |= matches!(op, CsgOp::LightGroup { .. });
                     waiting.extend(children.0.iter().map(|child| (child, has_material)));
                 }
                 ObjectKind::Shape(shape) => {
@@ -158,6 +160,7 @@ fn attributes(object: &Object, kind: ObjectKind) -> Object {
         material: object.material.clone(),
         transform: object.transform.clone(),
         visibility: object.visibility,
+        double_illuminated: object.double_illuminated,
         kind,
     }
 }
@@ -330,7 +333,7 @@ impl Linker {
             match &object.kind {
                 ObjectKind::Shape(_) | ObjectKind::Light(_) => {}
                 ObjectKind::Csg { op, children } => {
-                    let whole = whole || *op != CsgOp::Union;
+                    let whole = whole || !op.is_union();
                     waiting.extend(children.0.iter().rev().map(|child| {
                         let own = child.material.as_ref().or(material.as_ref());
                         (child, own.cloned(), whole)
@@ -410,7 +413,7 @@ impl Linker {
                 object.kind = self.kind(id.0);
             }
             if let ObjectKind::Csg { op, children } = &mut object.kind {
-                let whole = whole || *op != CsgOp::Union;
+                let whole = whole || !op.is_union();
                 let children = children.0.iter_mut().rev();
                 waiting.extend(children.map(|child| (child, material.clone(), whole)));
             }

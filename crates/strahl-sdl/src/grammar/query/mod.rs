@@ -77,7 +77,7 @@ fn node(object: &Object) -> Option<CsgNode> {
             Step::Build(object, op, count) => {
                 let operands = done.split_off(done.len() - count).into();
                 let node = match op {
-                    CsgOp::Union => CsgNode::Union(operands),
+                    CsgOp::Union | CsgOp::LightGroup { .. } => CsgNode::Union(operands),
                     CsgOp::Merge => CsgNode::Merge(operands),
                     CsgOp::Intersection => CsgNode::Intersection(operands),
                     CsgOp::Difference => CsgNode::Difference(operands),

@@ -1,0 +1,171 @@
+use crate::scene::{PrimKind, RenderScene};
+use strahl_scene::CsgOp;
+
+/// How an object is lit.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Lit {
+    /// The set of lights that shine on it; 0 is that of everything in no group: the lights that are in none.
+    pub(crate) set: u32,
+    /// Whether light from behind shows too.
+    pub(crate) both_sides: bool,
+}
+
+impl Lit {
+    /// By the lights in no group, from the front: as nearly everything is.
+    pub(crate) const PLAIN: Self = Self {
+        set: 0,
+        both_sides: false,
+    };
+}
+
+/// Which lights shine on what: lists of lights that objects have in common, as groups of lights
+/// ([`CsgOp::LightGroup`]) make them.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct LightSets {
+    /// Numbers of the scene's lights, by set; empty in a scene without groups, where all lights shine on everything.
+    lists: Vec<Vec<u32>>,
+    /// How the objects are lit; those beyond the list are [`Lit::PLAIN`].
+    of_objects: Vec<Lit>,
+    /// Whether anything is lit otherwise.
+    special: bool,
+}
+
+impl RenderScene {
+    /// The numbers of the lights of a set; `None` if those are all.
+    #[inline]
+    pub(crate) fn lights_in(&self, set: u32) -> Option<&[u32]> {
+        if self.light_sets.lists.is_empty() {
+            return None;
+        }
+        let list = self.light_sets.lists.get(set as usize);
+        Some(list.map_or(&[], Vec::as_slice))
+    }
+
+    /// How an element of this object is lit.
+    #[inline]
+    pub(crate) fn lit(&self, element: u64, object: u32) -> Lit {
+        if self.light_sets.special {
+            self.lit_specially(element, object)
+        } else {
+            Lit::PLAIN
+        }
+    }
+
+    /// An instance in a group of lights decides for all that is in it.
+    #[cold]
+    fn lit_specially(&self, element: u64, object: u32) -> Lit {
+        let own = self.light_sets.of_objects.get(object as usize);
+        let own = own.copied().unwrap_or(Lit::PLAIN);
+        let mut around = Lit::PLAIN;
+        let (mut group, mut rest) = (&self.groups[0], element);
+        loop {
+            let prim = group.prim_of(rest);
+            let (outer, next) = match group.prims[prim as usize].kind {
+                PrimKind::Instance(index) => {
+                    let instance = &group.instances[index as usize];
+                    (instance.lit, Some(instance.group))
+                }
+                _ => (own, None),
+            };
+            around.both_sides |= outer.both_sides;
+            if around.set == Lit::PLAIN.set {
+                around.set = outer.set;
+            }
+            let Some(next) = next else {
+                return around;
+            };
+            rest -= group.first_id(prim);
+            group = &self.groups[next as usize];
+        }
+    }
+}
+
+/// The sets while the scene is flattened.
+#[derive(Debug, Default)]
+pub(crate) struct LightSetsDraft {
+    /// The groups met so far; the set of the first is 1.
+    groups: Vec<GroupDraft>,
+    of_objects: Vec<Lit>,
+    special: bool,
+}
+
+#[derive(Debug)]
+struct GroupDraft {
+    global_lights: bool,
+    /// Numbers of its own lights among those found in objects.
+    lights: Vec<u32>,
+}
+
+impl LightSetsDraft {
+    /// A new set for a group with this operation that is itself part of something with the set `outer`.
+    pub(crate) fn open(&mut self, op: CsgOp, outer: u32) -> u32 {
+        let global_lights = match (self.group(outer), op) {
+            (Some(outer), _) => outer.global_lights,
+            (None, CsgOp::LightGroup { global_lights }) => global_lights,
+            (None, _) => true,
+        };
+        self.groups.push(GroupDraft {
+            global_lights,
+            lights: vec![],
+        });
+        self.groups.len() as u32
+    }
+
+    fn group(&mut self, set: u32) -> Option<&mut GroupDraft> {
+        self.groups.get_mut((set as usize).checked_sub(1)?)
+    }
+
+    /// Puts a light into the group of a set.
+    pub(crate) fn add_light(&mut self, set: u32, light: usize) {
+        if let Some(group) = self.group(set) {
+            group.lights.push(light as u32);
+        }
+    }
+
+    /// Says how an object is lit; objects come in the order of their numbers.
+    pub(crate) fn add_object(&mut self, lit: Lit, object: u32) {
+        if lit != Lit::PLAIN {
+            self.of_objects.resize(object as usize, Lit::PLAIN);
+            self.of_objects.push(lit);
+            self.special = true;
+        }
+    }
+
+    /// Says how what an instance shows is lit.
+    pub(crate) fn add_instance(&mut self, lit: Lit) {
+        self.special |= lit != Lit::PLAIN;
+    }
+
+    /// The lists of lights, for a scene that has so many lights before those found in objects.
+    pub(crate) fn finished(self, before: usize, found: usize) -> LightSets {
+        if self.groups.is_empty() {
+            return LightSets {
+                lists: vec![],
+                of_objects: self.of_objects,
+                special: self.special,
+            };
+        }
+        let before = before as u32;
+        let mut in_group = vec![false; found];
+        for light in self.groups.iter().flat_map(|g| &g.lights) {
+            in_group[*light as usize] = true;
+        }
+        let outside = (0..found as u32).filter(|light| !in_group[*light as usize]);
+        let common: Vec<u32> = (0..before).chain(outside.map(|l| l + before)).collect();
+        let of_group = |group: &GroupDraft| {
+            let mut list = if group.global_lights {
+                common.clone()
+            } else {
+                vec![]
+            };
+            list.extend(group.lights.iter().map(|light| light + before));
+            list
+        };
+        let of_groups: Vec<Vec<u32>> = self.groups.iter().map(of_group).collect();
+        LightSets {
+            lists: std::iter::once(common).chain(of_groups).collect(),
+            of_objects: self.of_objects,
+            special: true,
+        }
+    }
+}
