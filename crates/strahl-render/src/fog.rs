@@ -3,6 +3,30 @@ use strahl_math::Ray;
 use strahl_shade::Color;
 
 impl RenderScene {
+    /// Whether the air changes what rays see.
+    pub(crate) fn has_air(&self) -> bool {
+        !self.fogs.is_empty() || !self.rainbows.is_empty()
+    }
+
+    /// What of the light from the far end of a ray of this length passes fogs and rainbows, and what they add. Fogs lie before
+    /// rainbows, and of several rainbows at one place the mean holds.
+    #[cold]
+    pub(crate) fn air_along(&self, ray: &Ray, length: f64) -> (Color, Color) {
+        let (keeps, adds) = self.fog_along(ray, length);
+        let (mut seen, mut kept, mut added) = (0.0, Color::BLACK, Color::BLACK);
+        for rainbow in &self.rainbows {
+            if let Some((k, a)) = rainbow.along(ray.direction, length) {
+                seen += 1.0;
+                kept += k;
+                added += a;
+            }
+        }
+        if seen == 0.0 {
+            return (keeps, adds);
+        }
+        (keeps * (kept / seen), adds + keeps * (added / seen))
+    }
+
     /// What of the light from the far end of a ray of this length (in world units) passes the scene's fogs, and what they
     /// add. As in POV-Ray fogs don't weaken each other's colours.
     #[cold]

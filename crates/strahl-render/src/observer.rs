@@ -71,7 +71,7 @@ pub struct RayReport {
     pub part: SpectralPart,
     /// What the medium it ran through kept of the light; where light was divided into its spectrum, times the part's share.
     pub attenuation: Color,
-    /// What fog in front of the hit adds to what is kept.
+    /// What fog and rainbows in front of the hit add to what is kept.
     pub fog: Color,
 }
 

@@ -1,6 +1,6 @@
 use crate::blocks::{LaneTests, LeafClass};
 use crate::hit::{Hit, Origin, RayClass};
-use crate::scene::{Prim, PrimKind, RenderGroup, RenderScene};
+use crate::scene::{InstanceUse, Prim, PrimKind, RenderGroup, RenderScene};
 use crate::walk::WalkEvent;
 use strahl_accel::{Accelerator, BLOCK, Leaf, Step, TraversalStats, Visitor};
 use strahl_geometry::{PrimHit, Primitive, RayShear, Scratch, SurfaceId};
@@ -97,6 +97,28 @@ impl<'s> Tracer<'s> {
             self.occluders[light] = self.scene.groups[0].prim_of(id);
         }
         query.found.is_some()
+    }
+
+    /// Where in `range` a ray first crosses something that no ray of the scene meets otherwise.
+    #[cold]
+    pub(crate) fn crossing(
+        &mut self,
+        mask: &InstanceUse,
+        ray: &Ray,
+        range: Interval,
+    ) -> Option<f64> {
+        let mut query = Closest { best: None };
+        let group = self.scene.groups.get(mask.group as usize)?;
+        let inner = mask.transform.ray_to_object(ray);
+        let mut search = Search {
+            scene: self.scene,
+            scratch: &mut self.scratch,
+            stats: &mut self.stats,
+            class: u8::MAX,
+            query: &mut query,
+        };
+        search.group(group, &inner, range, None, 0, NONE);
+        query.best.map(|hit| hit.t)
     }
 
     /// Forgets what was in the way, so that the cost of what follows does not depend on what came before.

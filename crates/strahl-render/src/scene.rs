@@ -5,7 +5,7 @@ use std::sync::Arc;
 use strahl_accel::{Accelerator, AnyAccelerator};
 use strahl_geometry::{PrimHit, Primitive, Shape, SurfaceId, SurfacePoint, TriangleMesh};
 use strahl_math::{Aabb, DVec3, Ray, Transform};
-use strahl_scene::{Background, Camera, Fog, SceneLight, Settings, SourceMap, Span};
+use strahl_scene::{Background, Camera, Fog, Rainbow, SceneLight, Settings, SourceMap, Span};
 use strahl_shade::patterns::TexturePoint;
 use strahl_shade::texture::Texture;
 use strahl_shade::{Color, Material, MaterialId};
@@ -145,11 +145,14 @@ pub struct RenderScene {
     pub(crate) texture_spaces: Vec<Transform>,
     pub(crate) lights: Vec<SceneLight>,
     pub(crate) light_sets: LightSets,
+    /// By light, what it has to cross; empty if no light has to cross anything.
+    pub(crate) masks: Vec<Option<InstanceUse>>,
     pub(crate) ambient: Color,
     pub(crate) background: Background,
     pub(crate) fogs: Vec<Fog>,
     /// Whether some material bends colours by different angles.
     pub(crate) disperses: bool,
+    pub(crate) rainbows: Vec<Rainbow>,
     pub(crate) camera: Camera,
     pub(crate) settings: Settings,
     pub(crate) sources: SourceMap,
@@ -227,6 +230,11 @@ impl RenderScene {
     /// The lights in use.
     pub fn lights(&self) -> &[SceneLight] {
         &self.lights
+    }
+
+    /// What a light has to cross.
+    pub(crate) fn mask(&self, light: usize) -> Option<&InstanceUse> {
+        self.masks.get(light)?.as_ref()
     }
 
     /// The ambient light Ia.

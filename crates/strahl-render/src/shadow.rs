@@ -28,7 +28,7 @@ pub(crate) struct ShadowRay {
 
 impl Tracer<'_> {
     /// Follows a shadow ray: nothing in between lets all light pass, something opaque none, transparent surfaces filter
-    /// by their kt and their insides by Beer-Lambert.
+    /// by their kt and their insides by Beer-Lambert. Light that has to cross a mask comes from where it does so.
     ///
     /// The filters are multiplied in the order of the hits along the ray, so the order in which the accelerator found them
     /// does not matter.
@@ -45,7 +45,24 @@ impl Tracer<'_> {
             light,
             media,
         } = shadow_ray;
-        if self.occluded(ray, *range, from, *light) {
+        let mut range = *range;
+        if let Some(mask) = self.scene.mask(*light) {
+            let Some(crossing) = self.crossing(mask, ray, range) else {
+                return Shadow {
+                    visible: Color::BLACK,
+                    hit: false,
+                };
+            };
+            // What is within the mask or beyond it casts no shadows.
+            range.max = crossing;
+            if !self.scene.lights[*light].light.casts_shadows {
+                return Shadow {
+                    visible: Color::WHITE,
+                    hit: false,
+                };
+            }
+        }
+        if self.occluded(ray, range, from, *light) {
             return Shadow {
                 visible: Color::BLACK,
                 hit: true,
@@ -58,7 +75,7 @@ impl Tracer<'_> {
             };
         }
         hits.clear();
-        self.transmitting_hits(ray, *range, Some(from), hits);
+        self.transmitting_hits(ray, range, Some(from), hits);
         hits.sort_unstable_by(|a, b| a.t.total_cmp(&b.t).then(a.id.cmp(&b.id)));
         // A grid may have shown a primitive more than once; an element has one hit at one t.
         hits.dedup_by(|a, b| a.t == b.t && a.id == b.id);

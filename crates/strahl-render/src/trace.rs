@@ -251,7 +251,7 @@ struct Node {
     transmitted: Color,
     /// What the medium in front of the hit keeps of all this.
     attenuation: Color,
-    /// What fog in front of the hit adds to what is kept.
+    /// What fog and rainbows in front of the hit add to what is kept.
     fog: Color,
 }
 
@@ -323,7 +323,7 @@ impl<'s> TreeTracer<'s> {
     /// Adds the tree up from its leaves: every ray sends its hit's own light, plus kr times what its reflection ray
     /// brought, plus kt times what its transparency ray brought.
     fn combine<O: TraceObserver>(&mut self, observer: &mut O) -> Color {
-        let fogged = !self.tracer.scene.fogs.is_empty();
+        let fogged = self.tracer.scene.has_air();
         for index in (0..self.nodes.len()).rev() {
             let node = self.nodes[index];
             let sum = node.local + node.kr * node.reflected + node.kt * node.transmitted;
@@ -363,9 +363,9 @@ impl<'s> TreeTracer<'s> {
             scene.materials[id.0 as usize].attenuation(length)
         });
         let mut fog = Color::BLACK;
-        // Fog is outside of solid things only.
-        if !scene.fogs.is_empty() && medium.is_none() {
-            (attenuation, fog) = scene.fog_along(&branch.ray, length);
+        // Fog and rainbows are outside of solid things only.
+        if scene.has_air() && medium.is_none() {
+            (attenuation, fog) = scene.air_along(&branch.ray, length);
         }
         if branch.divided {
             let share = branch.part.share();
@@ -497,7 +497,8 @@ impl<'s> TreeTracer<'s> {
             return term;
         }
         term.visible = Color::WHITE;
-        if scene_light.casts_shadows && !sample.range.is_empty() {
+        let masked = self.tracer.scene.mask(light).is_some();
+        if (scene_light.casts_shadows || masked) && !sample.range.is_empty() {
             let (origin_point, origin) = surface.start(hit, sample.shadow_direction);
             let ray = Ray::new(origin_point, sample.shadow_direction);
             term.shadow_ray = Some(ray);

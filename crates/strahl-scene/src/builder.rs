@@ -116,6 +116,7 @@ impl Scene {
         let span = self.caller(Location::caller());
         self.lights.push(SceneLight {
             light,
+            mask: None,
             name: None,
             span,
         });

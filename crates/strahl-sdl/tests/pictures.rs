@@ -239,6 +239,148 @@ fn hidden_things_stay_hidden_behind_glass() {
 }
 
 #[test]
+fn lights_shine_through_what_they_must_cross() {
+    let window = "union { box { <0.5, 2, -3>, <2, 3.5, -2.9> } sphere { <3, 2.5, -2>, 0.6 } }";
+    let scenes = [
+        (
+            "a window",
+            format!("light_source {{ <4, 6, -5>, rgb 1 projected_through {{ {window} }} }}"),
+        ),
+        (
+            "things before it",
+            format!(
+                "light_source {{ <4, 6, -5>, rgb 1 projected_through {{ {window} }} }} sphere {{ <2.4, 4.2, -3.9>, 0.5 }}"
+            ),
+        ),
+        (
+            "things behind it",
+            format!(
+                "light_source {{ <4, 6, -5>, rgb 1 projected_through {{ {window} }} }} sphere {{ <0.6, 1.6, -1.9>, 0.3 }}"
+            ),
+        ),
+        (
+            "no shadows",
+            format!(
+                "light_source {{ <4, 6, -5>, rgb 1 shadowless projected_through {{ {window} }} }}"
+            ),
+        ),
+        (
+            "from within",
+            "light_source { <1, 3, -2>, rgb 1 projected_through { box { <0, 0.5, -4>, <2, 4, 1> } } }"
+                .to_owned(),
+        ),
+        (
+            "a spot",
+            "light_source { <2, 5, -3>, rgb 1.2 spotlight point_at 0 radius 15 falloff 40 projected_through { disc { <1, 2.5, -1.5>, <2, 5, -3>, 0.5, 0.2 } } }"
+                .to_owned(),
+        ),
+        (
+            "declared and moved",
+            format!(
+                "#declare W = {window} #declare L = light_source {{ <4, 6, -5>, rgb 0.6 projected_through {{ W }} }}
+                 light_source {{ L }} light_source {{ L translate <-4, 0, 1> rotate 20 * y }}"
+            ),
+        ),
+        (
+            "of many parts",
+            "#declare W = union { #for (I, 0, 5) #for (J, 0, 5) box { <I / 2, 2, J / 2 - 3>, <I / 2 + 0.3, 2.1, J / 2 - 2.7> } #end #end }
+             light_source { <2, 6, -3>, rgb 1 projected_through { W } }"
+                .to_owned(),
+        ),
+        (
+            "in a group",
+            format!(
+                "light_group {{ light_source {{ <4, 6, -5>, rgb 1 projected_through {{ {window} }} }} sphere {{ <-0.9, 0, 0.5>, 1.01 pigment {{ rgb 1 }} }} translate 0.1 * y }} light_source {{ <-4, 6, -5>, rgb 0.3 }}"
+            ),
+        ),
+    ];
+    let scenes = scenes.map(|(name, light)| (name, lit(&light)));
+    agree(0.006, &scenes);
+    let area = "light_source { <4, 6, -5>, rgb 1 area_light 0.6 * x, 0.6 * z, 5, 5 projected_through { box { <0.5, 2, -3>, <2, 3.5, -2.9> } } }";
+    agree(0.02, &[("an area", lit(area))]);
+}
+
+#[test]
+fn rainbows_stand_where_povrays_do() {
+    let colors = "color_map { [0 rgbt <0.5, 0, 1, 1>] [0.2 rgbft <0.2, 0.4, 1, 0.3, 0.5>] [0.6 rgbt <1, 0.9, 0.2, 0.4>] [1 rgbt <1, 0, 0, 0.9>] }";
+    let sky = "background { rgb <0.3, 0.4, 0.5> }";
+    let scenes = [
+        (
+            "a ring",
+            format!("rainbow {{ direction <-0.2, -0.3, 1> angle 18 width 10 {colors} }} {sky}"),
+        ),
+        (
+            "an arc",
+            format!(
+                "rainbow {{ direction <-0.2, -0.3, 1> angle 18 width 10 arc_angle 150 falloff_angle 60 up <0.5, 1, 0> {colors} }} {sky}"
+            ),
+        ),
+        (
+            "sharp ends",
+            format!(
+                "rainbow {{ direction <-0.2, -0.3, 1> angle 18 width 10 arc_angle 150 {colors} }} {sky}"
+            ),
+        ),
+        (
+            "no ends",
+            format!(
+                "rainbow {{ direction <-0.2, -0.3, 1> angle 18 width 10 falloff_angle 50 {colors} }} {sky}"
+            ),
+        ),
+        (
+            "before things",
+            format!(
+                "rainbow {{ direction <-0.2, -0.3, 1> angle 16 width 14 distance 7 {colors} }} {sky}"
+            ),
+        ),
+        (
+            "in fog",
+            format!(
+                "rainbow {{ direction <-0.2, -0.3, 1> angle 16 width 14 distance 7 {colors} }} {sky} fog {{ distance 20 rgb <0.6, 0.6, 0.5> }}"
+            ),
+        ),
+        (
+            "two",
+            format!(
+                "rainbow {{ direction <-0.2, -0.3, 1> angle 16 width 10 {colors} }}
+                 rainbow {{ direction <-0.2, -0.3, 1> angle 20 width 10 up x arc_angle 200 falloff_angle 40 {colors} }} {sky}"
+            ),
+        ),
+    ];
+    let scenes = scenes.map(|(name, text)| (name, lit(&format!("{LIGHT}{text}"))));
+    agree(0.004, &scenes);
+}
+
+#[test]
+fn turbulent_fog_is_as_thin_as_povrays() {
+    let scenes = [
+        ("constant", "fog { distance 8 rgb 0.7 turbulence 0.4 }"),
+        (
+            "on the ground",
+            "fog { fog_type 2 distance 4 rgb <0.6, 0.7, 0.8> fog_offset -0.5 fog_alt 0.4 turbulence <0.7, 0.2, 1> turb_depth 0.8 }",
+        ),
+        (
+            "octaves",
+            "fog { distance 8 rgbt <0.6, 0.7, 0.8, 0.2> turbulence 1 turb_depth 1.5 octaves 2 omega 0.8 lambda 3 }",
+        ),
+        (
+            "declared",
+            "#declare F = fog { distance 8 rgb 0.7 turbulence 0.4 turb_depth 1 } fog { F } fog { F distance 30 rgb x turbulence 2 }",
+        ),
+        (
+            "another noise",
+            "global_settings { noise_generator 1 } fog { distance 8 rgb 0.7 turbulence 0.4 }",
+        ),
+        (
+            "on the way from the light",
+            "light_source { <-4, 5, -3>, rgb 1 media_attenuation on } fog { distance 12 rgb 0.3 turbulence 0.6 turb_depth 1 }",
+        ),
+    ];
+    let scenes = scenes.map(|(name, text)| (name, lit(&format!("{LIGHT}{text}"))));
+    agree(0.004, &scenes);
+}
+
+#[test]
 fn lights_with_an_extent_shine_as_povrays() {
     let scenes = [
         (

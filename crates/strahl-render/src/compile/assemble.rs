@@ -21,12 +21,14 @@ pub(super) struct Assembled {
 const MOST_LEVELS: u32 = 64;
 
 /// Orders the groups so that each comes after those it instances (the world, last on entry, stays last), drops those that are
-/// not used, and computes numbers and bounds.
+/// not used, and computes numbers and bounds. The masks of lights refer to groups too; their numbers become those of the result.
 pub(super) fn assemble(
     groups: Vec<FlatGroup>,
     scene: &Scene,
+    masks: &mut [Option<InstanceUse>],
 ) -> Result<Vec<Assembled>, Vec<Diagnostic>> {
-    let order = order(&groups, scene)?;
+    let roots: Vec<usize> = masks.iter().flatten().map(|m| m.group as usize).collect();
+    let order = order(&groups, scene, &roots)?;
     let mut place = vec![u32::MAX; groups.len()];
     let mut groups: Vec<Option<FlatGroup>> = groups.into_iter().map(Some).collect();
     let mut done: Vec<Assembled> = Vec::with_capacity(order.len());
@@ -40,11 +42,18 @@ pub(super) fn assemble(
         place[index] = done.len() as u32;
         done.push(number(group, &done)?);
     }
+    for mask in masks.iter_mut().flatten() {
+        mask.group = place[mask.group as usize];
+    }
     Ok(done)
 }
 
-/// The groups the world needs, each after those it instances itself.
-fn order(groups: &[FlatGroup], scene: &Scene) -> Result<Vec<usize>, Vec<Diagnostic>> {
+/// The groups that these roots need and then those that the world needs, each after those it instances itself.
+fn order(
+    groups: &[FlatGroup],
+    scene: &Scene,
+    roots: &[usize],
+) -> Result<Vec<usize>, Vec<Diagnostic>> {
     #[derive(Clone, Copy, PartialEq)]
     enum State {
         New,
@@ -57,9 +66,22 @@ fn order(groups: &[FlatGroup], scene: &Scene) -> Result<Vec<usize>, Vec<Diagnost
     let mut states = vec![State::New; groups.len()];
     let mut levels = vec![0u32; groups.len()];
     let mut order = Vec::new();
-    let mut path = vec![(world, 0)];
-    states[world] = State::Open;
-    while let Some((group, next)) = path.last_mut() {
+    // What comes last is on top: the world is done when all others are.
+    let mut path: Vec<(usize, usize)> = vec![];
+    let mut waiting: Vec<usize> = std::iter::once(world)
+        .chain(roots.iter().rev().copied())
+        .collect();
+    loop {
+        let Some((group, next)) = path.last_mut() else {
+            let Some(root) = waiting.pop() else {
+                return Ok(order);
+            };
+            if states[root] == State::New {
+                states[root] = State::Open;
+                path.push((root, 0));
+            }
+            continue;
+        };
         let (group, instances) = (*group, &groups[*group].instances);
         if let Some(instance) = instances.get(*next) {
             *next += 1;
@@ -93,7 +115,6 @@ fn order(groups: &[FlatGroup], scene: &Scene) -> Result<Vec<usize>, Vec<Diagnost
             levels[*parent] = levels[*parent].max(levels[group] + 1);
         }
     }
-    Ok(order)
 }
 
 /// Element numbers and bounds of a group whose instances refer to groups already done.

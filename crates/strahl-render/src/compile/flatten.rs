@@ -213,9 +213,8 @@ impl Pass {
 
     fn light(&mut self, light: &SceneLight, todo: &Todo<'_>) {
         self.flat.lights.push(SceneLight {
-            light: light.light.transformed(&todo.transform),
             name: light.name.as_ref().or(todo.name).cloned(),
-            span: light.span,
+            ..light.transformed(&todo.transform)
         });
     }
 

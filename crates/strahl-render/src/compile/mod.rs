@@ -15,15 +15,17 @@ mod spaces;
 mod view;
 
 use crate::blocks::Blocks;
-use crate::light_sets::LightSets;
-use crate::scene::{ObjectInfo, RenderGroup, RenderScene};
+use crate::light_sets::{LightSets, Lit};
+use crate::scene::{InstanceUse, ObjectInfo, RenderGroup, RenderScene};
 use assemble::Assembled;
 pub(crate) use materials::material_transmits;
 use shapes::GroupShapes;
 use std::sync::Arc;
 use strahl_accel::{Accelerator, AcceleratorKind, AnyAccelerator};
 use strahl_math::{Aabb, Transform};
-use strahl_scene::{Background, Camera, Diagnostic, Fog, Scene, SceneLight, Settings, SourceMap};
+use strahl_scene::{
+    Background, Camera, Diagnostic, Fog, Rainbow, Scene, SceneLight, Settings, SourceMap,
+};
 use strahl_shade::{Color, Material};
 
 /// How to compile a scene.
@@ -42,9 +44,11 @@ pub struct Prepared {
     texture_spaces: Vec<Transform>,
     lights: Vec<SceneLight>,
     light_sets: LightSets,
+    masks: Vec<Option<InstanceUse>>,
     ambient: Color,
     background: Background,
     fogs: Vec<Fog>,
+    rainbows: Vec<Rainbow>,
     camera: Camera,
     settings: Settings,
     sources: SourceMap,
@@ -67,7 +71,8 @@ impl Prepared {
     pub fn new(scene: &Scene) -> Result<Self, Vec<Diagnostic>> {
         let mut flat = flatten::flatten(scene)?;
         spaces::open_spaces(&mut flat);
-        let groups = assemble::assemble(flat.groups, scene)?;
+        let mut masks = masks(scene, &flat.lights)?;
+        let groups = assemble::assemble(flat.groups, scene, &mut masks)?;
         let bounds = groups.last().map_or(Aabb::EMPTY, |world| world.bounds);
         let mut warnings = flat.diagnostics;
         let camera = match &scene.camera {
@@ -93,12 +98,14 @@ impl Prepared {
             texture_spaces: flat.texture_spaces,
             lights,
             light_sets,
+            masks,
             ambient,
             background: scene
                 .background
                 .clone()
                 .unwrap_or_else(|| view::background(scene, &camera)),
             fogs: scene.fogs.clone(),
+            rainbows: scene.rainbows.clone(),
             camera,
             settings: scene.settings,
             sources: scene.sources.clone(),
@@ -136,6 +143,10 @@ impl Prepared {
                 blocks,
             }
         });
+        let mut masks = self.masks;
+        for mask in masks.iter_mut().flatten() {
+            mask.group = renumber(mask.group);
+        }
         let transmits = self.materials.iter().any(|m| material_transmits(m));
         let disperses = |m: &Arc<Material>| m.interior.as_ref().is_some_and(|i| i.disperses());
         RenderScene {
@@ -146,13 +157,43 @@ impl Prepared {
             texture_spaces: self.texture_spaces,
             lights: self.lights,
             light_sets: self.light_sets,
+            masks,
             ambient: self.ambient,
             background: self.background,
             fogs: self.fogs,
+            rainbows: self.rainbows,
             camera: self.camera,
             settings: self.settings,
             sources: self.sources,
             transmits,
         }
     }
+}
+
+/// What each light has to cross; nothing if that is so for all.
+fn masks(
+    scene: &Scene,
+    of_objects: &[SceneLight],
+) -> Result<Vec<Option<InstanceUse>>, Vec<Diagnostic>> {
+    let lights = || scene.lights.iter().chain(of_objects);
+    if lights().all(|light| light.mask.is_none()) {
+        return Ok(vec![]);
+    }
+    let masks = lights().map(|light| {
+        let Some(mask) = light.mask.as_deref() else {
+            return Ok(None);
+        };
+        let (id, count) = (mask.group.0, scene.groups.len());
+        if id as usize >= count {
+            let message =
+                format!("a light has to cross group {id}, but the scene has {count} groups");
+            return Err(vec![Diagnostic::error(message).at(light.span)]);
+        }
+        Ok(Some(InstanceUse {
+            group: id,
+            transform: mask.transform,
+            lit: Lit::PLAIN,
+        }))
+    });
+    masks.collect()
 }

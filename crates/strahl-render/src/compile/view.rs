@@ -58,6 +58,7 @@ pub(super) fn lights(
         light.casts_shadows = shadows;
         SceneLight {
             light,
+            mask: None,
             name: Some(name.into()),
             span: Span::NONE,
         }

@@ -3,7 +3,8 @@ use crate::keywords::{Word, WordKind};
 use crate::parser::{PResult, Parser, Place};
 use crate::token::Token;
 use strahl_math::DVec3;
-use strahl_scene::{Fog, FogKind};
+use strahl_math::noise::Turbulence;
+use strahl_scene::{Fog, FogKind, FogTurbulence};
 use strahl_shade::{Color, ColorFt};
 
 /// `fog { ... }` as a statement; several fill the scene together.
@@ -24,6 +25,9 @@ struct Draft {
     altitude: f64,
     distance: f64,
     color: ColorFt,
+    turbulence: DVec3,
+    turb_depth: f64,
+    octaves: Turbulence,
 }
 
 impl Draft {
@@ -35,6 +39,9 @@ impl Draft {
             altitude: 0.0,
             distance: 0.0,
             color: ColorFt::default(),
+            turbulence: DVec3::ZERO,
+            turb_depth: 0.5,
+            octaves: Turbulence::default(),
         }
     }
 
@@ -52,6 +59,11 @@ impl Draft {
         {
             draft.ground = true;
             (draft.up, draft.offset, draft.altitude) = (up, offset, altitude);
+        }
+        if let Some(turbulence) = fog.turbulence {
+            draft.turbulence = turbulence.scale;
+            draft.turb_depth = turbulence.strength;
+            draft.octaves = turbulence.octaves;
         }
         draft
     }
@@ -125,18 +137,13 @@ impl Parser<'_> {
             }
             Word::Turbulence => {
                 self.take(token)?;
-                if self.vector3()? != DVec3::ZERO {
-                    self.warn_hint(
-                        place,
-                        "`turbulence` in `fog` is not supported yet",
-                        "the fog will be smooth",
-                    );
-                }
+                draft.turbulence = self.vector3()?;
             }
-            Word::TurbDepth | Word::Octaves | Word::Omega | Word::Lambda => {
+            Word::TurbDepth => {
                 self.take(token)?;
-                self.float()?;
+                draft.turb_depth = self.float()?;
             }
+            _ if self.octave_item(&mut draft.octaves, token)? => {}
             _ => return self.skip_item(token, "`fog`"),
         }
         Ok(())
@@ -158,10 +165,17 @@ impl Parser<'_> {
                 "fog without a positive `distance` cannot be seen and is left out",
             );
         }
+        let turbulence = (draft.turbulence != DVec3::ZERO).then(|| FogTurbulence {
+            scale: draft.turbulence,
+            strength: draft.turb_depth,
+            octaves: draft.octaves,
+            noise: self.default_noise(),
+        });
         Fog {
             kind,
             distance: draft.distance,
             color: draft.color,
+            turbulence,
             span: self.span_at(place),
         }
     }

@@ -1,10 +1,10 @@
-use crate::grammar::entity::is_nothing;
+use crate::grammar::entity::{is_nothing, transform};
 use crate::grammar::{Entity, Thing};
 use crate::keywords::Word;
 use crate::parser::{PResult, Parser, Place};
 use crate::token::Token;
 use strahl_math::{DVec3, Transform, det};
-use strahl_scene::{CsgOp, Object, ObjectExt, ObjectKind, SceneLight};
+use strahl_scene::{CsgOp, LightMask, Object, ObjectExt, ObjectKind, SceneLight};
 use strahl_shade::{AreaLight, Color, Falloff, Light, LightKind};
 
 /// `light_source { ... }` as a statement.
@@ -13,11 +13,8 @@ pub(super) fn light_statement(p: &mut Parser<'_>) -> PResult<()> {
     let ObjectKind::Light(light) = entity.object.kind else {
         return p.add(entity);
     };
-    let moved = entity.object.transform.map(|t| light.light.transformed(&t));
-    p.scene.lights.push(SceneLight {
-        light: moved.unwrap_or(light.light),
-        ..*light
-    });
+    let moved = entity.object.transform.map(|t| light.transformed(&t));
+    p.scene.lights.push(moved.unwrap_or(*light));
     Ok(())
 }
 
@@ -116,6 +113,8 @@ struct Draft {
     fogged: bool,
     area: Option<AreaLight>,
     looks_like: Option<Object>,
+    /// What the light has to cross.
+    projected_through: Option<Object>,
 }
 
 impl Draft {
@@ -135,6 +134,7 @@ impl Draft {
             fogged: false,
             area: None,
             looks_like: None,
+            projected_through: None,
         }
     }
 
@@ -145,8 +145,10 @@ impl Draft {
             area.axis_1 = t.vector_to_world(area.axis_1);
             area.axis_2 = t.vector_to_world(area.axis_2);
         }
-        if let Some(object) = self.looks_like.take() {
-            self.looks_like = Some(object.transformed(t));
+        for object in [&mut self.looks_like, &mut self.projected_through] {
+            if let Some(object) = object {
+                transform(object, t);
+            }
         }
     }
 
@@ -268,14 +270,10 @@ impl Parser<'_> {
                 draft.fogged = self.switched()?;
             }
             Word::ProjectedThrough => {
-                let place = self.place_of(token);
                 self.take(token)?;
-                self.warn_hint(
-                    place,
-                    "projected_through is not supported yet and is left out",
-                    "the light will shine everywhere, not only through the object",
-                );
-                self.skip_body()?;
+                let mut object = super::objects::object(self)?.object;
+                self.expand_instances(&mut object)?;
+                draft.projected_through = Some(object);
             }
             _ => return self.area_item(draft, token, word),
         }
@@ -370,8 +368,14 @@ impl Parser<'_> {
             let reach = (draft.point_at - draft.position).length();
             area.reach = if reach > 0.0 { reach } else { 1.0 };
         }
+        let mask = draft.projected_through.map(|object| {
+            let group = self.scene.add_group(vec![object]);
+            let transform = Transform::IDENTITY;
+            Box::new(LightMask { group, transform })
+        });
         let object = Object::light(SceneLight {
             light,
+            mask,
             name: None,
             span,
         });

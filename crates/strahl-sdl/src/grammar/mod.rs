@@ -14,6 +14,7 @@ mod global_settings;
 mod lights;
 mod objects;
 mod query;
+mod rainbow;
 mod skip;
 mod sky;
 mod texture;
@@ -44,6 +45,7 @@ const STATEMENTS: &[(Word, StatementParser)] = &[
     (Word::GlobalSettings, global_settings::global_settings),
     (Word::LightSource, lights::light_statement),
     (Word::Media, media),
+    (Word::Rainbow, rainbow::rainbow_statement),
     (Word::SkySphere, sky::sky_statement),
 ];
 

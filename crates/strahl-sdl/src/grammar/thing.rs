@@ -5,7 +5,7 @@ use crate::token::{Kind, Token};
 use crate::value::Value;
 use std::sync::Arc;
 use strahl_math::Transform;
-use strahl_scene::{Camera, Fog, SkySphere};
+use strahl_scene::{Camera, Fog, Rainbow, SkySphere};
 use strahl_shade::ColorFt;
 use strahl_shade::interior::Interior;
 use strahl_shade::normal::PovNormal;
@@ -45,6 +45,7 @@ things! {
     Pigment(Pigment) "a pigment"
     PigmentFunction(Pigment) "a function made of a pigment"
     PigmentMap(BlendMap<Pigment>) "a pigment map"
+    Rainbow(Rainbow) "a rainbow"
     SkySphere(SkySphere) "a sky sphere"
     SlopeMap(BlendMap<[f64; 2]>) "a slope map"
     Texture(Surface) "a texture"
@@ -80,6 +81,9 @@ static THINGS: [Option<ThingParser>; Word::ALL.len()] = by_word::<ThingParser, _
     }),
     (Word::PigmentMap, |p| {
         Ok(Thing::PigmentMap(Arc::new(p.pigment_map()?)))
+    }),
+    (Word::Rainbow, |p| {
+        Ok(Thing::Rainbow(Arc::new(p.rainbow()?)))
     }),
     (Word::SkySphere, |p| {
         Ok(Thing::SkySphere(Arc::new(p.sky_sphere()?)))

@@ -216,6 +216,7 @@ impl Nodes<'_, '_> {
         let name = json.name.as_deref().unwrap_or(node);
         self.scene.lights.push(SceneLight {
             light,
+            mask: None,
             name: Some(name.into()),
             span: Span::NONE,
         });

@@ -159,6 +159,7 @@ impl Reader<'_, '_> {
             for (i, light) in self.lights.drain(..).enumerate() {
                 self.scene.lights.push(strahl_scene::SceneLight {
                     light: strahl_shade::Light::point(light.position, light.color * strength),
+                    mask: None,
                     name: Some(Arc::from(format!("light {}", i + 1))),
                     span: light.span,
                 });

@@ -127,7 +127,7 @@ impl Parser<'_> {
     ///
     /// # Errors
     /// If they are too many.
-    pub(super) fn expand_instances(&mut self, object: &mut Object) -> PResult<()> {
+    pub(in crate::grammar) fn expand_instances(&mut self, object: &mut Object) -> PResult<()> {
         if has_instances(object) {
             self.count_objects(Tally::of(object, &self.state.shared).expanded)?;
             *object = expanded(object, &self.state.shared);

@@ -90,7 +90,11 @@ impl Parser<'_> {
     }
 
     /// `octaves`, `omega`, `lambda`
-    fn octave_item(&mut self, octaves: &mut Turbulence, token: Token) -> PResult<bool> {
+    pub(in crate::grammar) fn octave_item(
+        &mut self,
+        octaves: &mut Turbulence,
+        token: Token,
+    ) -> PResult<bool> {
         match token.word() {
             Some(Word::Octaves) => {
                 self.take(token)?;

@@ -224,7 +224,7 @@ impl Parser<'_> {
     }
 
     /// The noise of patterns for which none is written.
-    pub(super) fn default_noise(&self) -> NoiseGenerator {
+    pub(in crate::grammar) fn default_noise(&self) -> NoiseGenerator {
         let number = self.state.global.noise_generator.map(u32::from);
         number
             .and_then(NoiseGenerator::from_number)
