@@ -1,8 +1,9 @@
 //! Surfaces with POV-Ray's textures: several layers, each with a colour, a normal and a finish of its own.
 
 use crate::hit::Hit;
+use crate::observer::Share;
 use crate::scene::RenderScene;
-use crate::surface::Surface;
+use crate::surface::{Split, Surface};
 use strahl_math::DVec3;
 use strahl_shade::patterns::TexturePoint;
 use strahl_shade::texture::{LayerPoint, TexturePaint};
@@ -51,7 +52,7 @@ pub(crate) fn paint<'s>(
         sum.diffuse += body * layer.finish.diffuse;
         let reflection = layer.reflectance * layer.share;
         sum.reflection += reflection;
-        // One reflection ray for all layers: where the one that reflects most sends it.
+        // What is said of the surface as a whole is where the layer that reflects most sends its ray.
         if reflection.max_component() > strongest {
             strongest = reflection.max_component();
             surface.n_shade = layer.normal;
@@ -60,6 +61,76 @@ pub(crate) fn paint<'s>(
     surface.material.finish = sum;
     surface.material.fresnel = false;
     surface.material.fresnel_reflection = Color::BLACK;
+}
+
+/// A reflection ray to be sent.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Mirror {
+    pub(crate) share: Share,
+    pub(crate) direction: DVec3,
+}
+
+/// The reflection rays of a surface: one for all layers with the same normal and `exponent`; a single one where all light is
+/// reflected.
+#[inline]
+pub(crate) fn mirrors(
+    paint: &TexturePaint<'_>,
+    surface: &Surface,
+    split: &Split,
+    out: &mut Vec<Mirror>,
+) {
+    out.clear();
+    let Some(direction) = split.reflected else {
+        return;
+    };
+    let (factor, power) = (split.kr, 1.0);
+    out.push(Mirror {
+        share: Share { factor, power },
+        direction,
+    });
+    let mut reflecting = paint
+        .layers
+        .iter()
+        .filter(|layer| !(layer.reflectance * layer.share).is_black());
+    if !split.total_reflection
+        && let Some(first) = reflecting.next()
+        && (first.finish.reflection.exponent != 1.0
+            || reflecting.any(|layer| !mirrors_alike(first, layer)))
+    {
+        mirrors_of_layers(paint, surface, out);
+    }
+}
+
+fn mirrors_alike(a: &LayerPoint<'_>, b: &LayerPoint<'_>) -> bool {
+    a.normal == b.normal && a.finish.reflection.exponent == b.finish.reflection.exponent
+}
+
+/// The rays of layers that mirror differently, or not in proportion to the light.
+#[cold]
+fn mirrors_of_layers(paint: &TexturePaint<'_>, surface: &Surface, out: &mut Vec<Mirror>) {
+    out.clear();
+    for (number, layer) in paint.layers.iter().enumerate() {
+        let before = &paint.layers[..number];
+        let exponent = layer.finish.reflection.exponent;
+        // Light to the power of infinity: black.
+        if exponent == 0.0 || before.iter().any(|other| mirrors_alike(layer, other)) {
+            continue;
+        }
+        let alike = paint.layers[number..]
+            .iter()
+            .filter(|other| mirrors_alike(layer, other));
+        let mut factor = Color::BLACK;
+        for other in alike {
+            factor += other.reflectance * other.share;
+        }
+        if !factor.is_black() {
+            let power = 1.0 / exponent;
+            out.push(Mirror {
+                share: Share { factor, power },
+                direction: surface.mirrored(layer.normal),
+            });
+        }
+    }
 }
 
 /// What the layers make of light of this colour from the direction `l`: the diffuse part and the highlights.

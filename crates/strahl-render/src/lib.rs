@@ -39,7 +39,7 @@ pub use compile::{CompileOptions, Prepared, compile};
 pub use cost::PixelCost;
 pub use film::{Film, FilmError, PixelInfo, Region};
 pub use hit::{Hit, Origin, RayClass};
-pub use observer::{BranchEnd, HitReport, LightTerm, RayKind, RayReport, TraceObserver};
+pub use observer::{BranchEnd, HitReport, LightTerm, RayKind, RayReport, Share, TraceObserver};
 pub use query::Tracer;
 pub use render::{Progress, RenderError, RenderOptions, Rendered, render};
 pub use sampling::{Sampling, UnknownSampling};

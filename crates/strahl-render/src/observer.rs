@@ -1,6 +1,6 @@
 use crate::hit::Hit;
 use std::fmt;
-use strahl_math::{DVec3, Ray};
+use strahl_math::{DVec3, Ray, det};
 use strahl_shade::{Color, MaterialId, SpectralPart};
 
 /// The rays of a tree that see something (shadow rays belong to the node they start from).
@@ -48,6 +48,40 @@ impl fmt::Display for BranchEnd {
     }
 }
 
+/// What of a ray's light the hit takes that sent it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Share {
+    /// kr or kt: the factor.
+    pub factor: Color,
+    /// What the light is raised to the power of before, channel by channel: 1 but for POV-Ray's reflections with an
+    /// `exponent`.
+    pub power: f64,
+}
+
+impl Share {
+    /// All of it.
+    pub const ALL: Self = Self {
+        factor: Color::WHITE,
+        power: 1.0,
+    };
+
+    /// `factor · light^power`
+    #[inline]
+    pub fn of(&self, light: Color) -> Color {
+        if self.power == 1.0 {
+            return self.factor * light;
+        }
+        let raised = |x: f64| {
+            if x > 0.0 {
+                det::pow(x, self.power)
+            } else {
+                0.0
+            }
+        };
+        self.factor * light.map(raised)
+    }
+}
+
 /// A ray of the tree and what became of it.
 #[derive(Clone, Debug)]
 pub struct RayReport {
@@ -61,6 +95,8 @@ pub struct RayReport {
     pub depth: u32,
     /// Largest channel of the product of all coefficients on the way to it.
     pub weight: f64,
+    /// What of its light the hit takes that sent it; several reflection rays of one hit each have their own.
+    pub share: Share,
     /// The ray.
     pub ray: Ray,
     /// What it hit, or `None` for the background.
@@ -114,7 +150,7 @@ pub struct HitReport {
     pub specular: Color,
     /// p.
     pub shininess: f64,
-    /// kr as it was applied (Fresnel and total reflection included).
+    /// kr as it was applied (Fresnel and total reflection included), all layers together.
     pub reflection: Color,
     /// kt as it was applied.
     pub transmission: Color,

@@ -214,14 +214,18 @@ impl Surface {
                 }
             }
         }
-        let r = reflect(self.n_shade, self.v);
-        let under = r.dot(self.n_geom) <= 0.0;
-        split.reflected = Some(if under {
+        split.reflected = Some(self.mirrored(self.n_shade));
+        split
+    }
+
+    /// The direction of a reflection ray at this normal, or at the true one if that would lead into the surface.
+    pub(crate) fn mirrored(&self, normal: DVec3) -> DVec3 {
+        let r = reflect(normal, self.v);
+        if r.dot(self.n_geom) <= 0.0 {
             reflect(self.n_geom, self.v)
         } else {
             r
-        });
-        split
+        }
     }
 
     /// The direction of a transparency ray. A shading normal may bend it to the wrong side: then the true normal decides.

@@ -10,12 +10,13 @@
 //!
 //! All rays but shadow rays are equal: what happens at a hit does not depend on whether the ray was primary or
 //! secondary. The tree is walked with a stack of its own, so its depth is not limited by the machine's stack, and combined
-//! bottom-up in the order reflection, transparency, so the sum does not depend on the order of tracing.
+//! bottom-up in the order reflection, transparency, so the sum does not depend on the order of tracing. Layers of a texture
+//! that mirror differently send a reflection ray each.
 
 use crate::hit::{Hit, Origin, RayClass};
-use crate::layers;
+use crate::layers::{self, Mirror};
 use crate::media::{MediaArena, MediaStack};
-use crate::observer::{BranchEnd, LightTerm, RayKind, RayReport, TraceObserver};
+use crate::observer::{BranchEnd, LightTerm, RayKind, RayReport, Share, TraceObserver};
 use crate::query::Tracer;
 use crate::scene::{RenderScene, Uv};
 use crate::shadow::ShadowRay;
@@ -190,6 +191,8 @@ pub struct TreeTracer<'s> {
     pub(crate) area_points: Vec<Option<Color>>,
     /// The layers of the hit at hand; none without a texture.
     pub(crate) paint: TexturePaint<'s>,
+    /// The reflection rays of the hit at hand.
+    mirrors: Vec<Mirror>,
 }
 
 /// A ray still to be traced.
@@ -207,13 +210,16 @@ pub(crate) struct Branch {
     /// Whether it is the part of its parent's light, which was all light.
     pub(crate) divided: bool,
     pub(crate) weight: f64,
+    pub(crate) share: Share,
     pub(crate) media: MediaStack,
 }
 
 /// A ray that a hit sends.
 struct Offshoot {
     kind: RayKind,
-    /// What its light is multiplied by.
+    /// What the hit takes of its light.
+    share: Share,
+    /// What that amounts to at most, for the weight.
     coefficient: Color,
     direction: DVec3,
     part: SpectralPart,
@@ -226,10 +232,11 @@ struct Offshoot {
 
 impl Offshoot {
     #[inline]
-    fn new(kind: RayKind, coefficient: Color, direction: DVec3, part: SpectralPart) -> Self {
+    fn new(kind: RayKind, share: Share, direction: DVec3, part: SpectralPart) -> Self {
         Self {
             kind,
-            coefficient,
+            share,
+            coefficient: share.factor,
             direction,
             part,
             divided: false,
@@ -245,8 +252,9 @@ struct Node {
     kind: RayKind,
     /// What the hit sends by itself, or the background.
     local: Color,
-    kr: Color,
-    kt: Color,
+    /// What of its light the parent takes.
+    share: Share,
+    /// What it takes of the light of its branches.
     reflected: Color,
     transmitted: Color,
     /// What the medium in front of the hit keeps of all this.
@@ -275,6 +283,7 @@ impl<'s> TreeTracer<'s> {
             shadow_hits: Vec::new(),
             paint: TexturePaint::default(),
             area_points: Vec::new(),
+            mirrors: Vec::new(),
         }
     }
 
@@ -296,6 +305,7 @@ impl<'s> TreeTracer<'s> {
             part: SpectralPart::WHITE,
             divided: false,
             weight: 1.0,
+            share: Share::ALL,
             media: MediaStack::VACUUM,
         });
         while let Some(branch) = self.waiting.pop() {
@@ -326,7 +336,7 @@ impl<'s> TreeTracer<'s> {
         let fogged = self.tracer.scene.has_air();
         for index in (0..self.nodes.len()).rev() {
             let node = self.nodes[index];
-            let sum = node.local + node.kr * node.reflected + node.kt * node.transmitted;
+            let sum = node.local + node.reflected + node.transmitted;
             let mut total = sum * node.attenuation;
             if fogged {
                 total += node.fog;
@@ -334,12 +344,13 @@ impl<'s> TreeTracer<'s> {
             if O::ACTIVE {
                 observer.combined(index as u32, node.local, total);
             }
+            let taken = node.share.of(total);
             let parent = &mut self.nodes[node.parent as usize];
             match node.kind {
                 RayKind::Primary => return total,
-                RayKind::Reflection => parent.reflected = total,
-                // Of parts of the spectrum there are several.
-                RayKind::Refraction => parent.transmitted += total,
+                // Of both there may be several: layers mirror on their own, parts of the spectrum are bent on their own.
+                RayKind::Reflection => parent.reflected += taken,
+                RayKind::Refraction => parent.transmitted += taken,
             }
         }
         Color::BLACK
@@ -376,8 +387,7 @@ impl<'s> TreeTracer<'s> {
             parent: branch.parent,
             kind: branch.kind,
             local: Color::BLACK,
-            kr: Color::BLACK,
-            kt: Color::BLACK,
+            share: branch.share,
             reflected: Color::BLACK,
             transmitted: Color::BLACK,
             attenuation,
@@ -389,6 +399,7 @@ impl<'s> TreeTracer<'s> {
             kind: branch.kind,
             depth: branch.depth,
             weight: branch.weight,
+            share: branch.share,
             ray: branch.ray,
             hit,
             background,
@@ -426,7 +437,11 @@ impl<'s> TreeTracer<'s> {
             return Some(first);
         }
 
-        let split = surface.split(&branch.ray);
+        let mut split = surface.split(&branch.ray);
+        if split.total_reflection && !self.paint.layers.is_empty() {
+            // As in POV-Ray (measured): total reflection takes no notice of colour and finish.
+            split.kr = Color::WHITE;
+        }
         if O::ACTIVE {
             observer.ray(report(Some(surface.report(scene, &hit, split)), None));
         }
@@ -443,8 +458,6 @@ impl<'s> TreeTracer<'s> {
             }
         }
         node.local = layers::grained(&self.paint, first.position, node.local);
-        node.kr = split.kr;
-        node.kt = split.kt;
         self.nodes.push(node);
         self.queue_branches(branch, index, &surface, &hit, &split, observer);
         Some(first)
@@ -602,30 +615,37 @@ impl<'s> TreeTracer<'s> {
             observer.ended(index, RayKind::Refraction, 0.0, BranchEnd::TotalReflection);
         }
         if let Some(direction) = split.refracted {
+            let (factor, power) = (split.kt, 1.0);
+            let through = Share { factor, power };
             let parts = self.parts_behind(branch, surface);
             if parts == 0 {
-                let whole = Offshoot::new(RayKind::Refraction, split.kt, direction, branch.part);
+                let whole = Offshoot::new(RayKind::Refraction, through, direction, branch.part);
                 self.queue(branch, index, surface, hit, &whole, observer);
             }
             for part in SpectralPart::all(parts) {
-                let through = surface.bent_part(self.tracer.scene, part);
+                let bent = surface.bent_part(self.tracer.scene, part);
                 let offshoot = Offshoot {
                     divided: true,
-                    returned: through.is_none(),
+                    returned: bent.is_none(),
+                    coefficient: split.kt * part.share(),
                     ..Offshoot::new(
                         RayKind::Refraction,
-                        split.kt * part.share(),
-                        through.or(split.reflected).unwrap_or(direction),
+                        through,
+                        bent.or(split.reflected).unwrap_or(direction),
                         part,
                     )
                 };
                 self.queue(branch, index, surface, hit, &offshoot, observer);
             }
         }
-        if let Some(direction) = split.reflected {
-            let mirrored = Offshoot::new(RayKind::Reflection, split.kr, direction, branch.part);
+        let mut mirrors = std::mem::take(&mut self.mirrors);
+        layers::mirrors(&self.paint, surface, split, &mut mirrors);
+        for mirror in mirrors.iter().rev() {
+            let Mirror { share, direction } = *mirror;
+            let mirrored = Offshoot::new(RayKind::Reflection, share, direction, branch.part);
             self.queue(branch, index, surface, hit, &mirrored, observer);
         }
+        self.mirrors = mirrors;
     }
 
     /// How many parts the light of a branch falls into behind a surface; 0 if it stays together.
@@ -688,6 +708,7 @@ impl<'s> TreeTracer<'s> {
             parent: index,
             depth: branch.depth + u32::from(self.settings.straight_counts || !straight),
             part: offshoot.part,
+            share: offshoot.share,
             divided: offshoot.divided,
             weight,
             media,

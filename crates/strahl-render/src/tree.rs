@@ -19,7 +19,7 @@ pub struct RayNode {
     pub children: Vec<u32>,
     /// What the hit sends by itself: ka·Ia, emission and the lights' terms (or the background).
     pub local: Color,
-    /// All it sends: `(local + kr·Xr + kt·Xt) · attenuation + fog`.
+    /// All it sends: `(local + reflected + transmitted) · attenuation + fog`, with each child's [`crate::Share`] of its total.
     pub total: Color,
 }
 

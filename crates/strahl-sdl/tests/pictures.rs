@@ -381,6 +381,63 @@ fn turbulent_fog_is_as_thin_as_povrays() {
 }
 
 #[test]
+fn layers_mirror_each_on_its_own() {
+    let sky = "sky_sphere { pigment { gradient y color_map { [0 rgb <0.9, 0.5, 0.2>] [0.3 rgb <0.3, 0.5, 0.9>] [1 rgb <0.1, 0.1, 0.6>] } } }";
+    let ball = |textures: &str| format!("{LIGHT}{sky} sphere {{ <0, 1, 0>, 1.4 {textures} }}");
+    let scenes = [
+        (
+            "an exponent",
+            ball("pigment { rgb 0.1 } finish { reflection { 0.7 exponent 0.5 } }"),
+        ),
+        (
+            "an exponent above 1",
+            ball("pigment { rgb 0.1 } finish { reflection { <0.7, 0.6, 0.3> exponent 1.8 } }"),
+        ),
+        (
+            "an exponent of 0",
+            ball("pigment { rgb 0.1 } finish { reflection { 0.7 exponent 0 } }"),
+        ),
+        (
+            "the old word",
+            ball("pigment { rgb 0.1 } finish { reflection 0.6 reflection_exponent 0.7 }"),
+        ),
+        (
+            "falling off, metallic",
+            ball("pigment { rgb <0.8, 0.6, 0.2> } finish { reflection { 0.1, 0.9 falloff 2 exponent 0.6 metallic } }"),
+        ),
+        (
+            "bent and flat",
+            ball(
+                "texture { pigment { rgb 0.1 } normal { gradient x 1.5 scale 0.8 } finish { reflection 0.5 } }
+                 texture { pigment { rgbt <0.5, 0.5, 0.5, 0.9> } finish { reflection 0.3 } }",
+            ),
+        ),
+        (
+            "two exponents",
+            ball(
+                "texture { pigment { rgb 0.1 } finish { reflection { 0.5 exponent 0.5 } } }
+                 texture { pigment { rgbt <0.5, 0.5, 0.5, 0.9> } normal { gradient x 0.8 } finish { reflection 0.3 } }",
+            ),
+        ),
+        (
+            "blended",
+            ball(
+                "texture { gradient y texture_map { [0 pigment { rgb 0.1 } normal { gradient x 1.5 scale 0.8 } finish { reflection 0.8 }]
+                   [1 pigment { rgb 0.2 } finish { reflection { 0.5 exponent 0.6 } }] } scale 3 translate -0.5 * y }",
+            ),
+        ),
+        (
+            "totally",
+            format!(
+                "{LIGHT}{sky} box {{ <-3, -0.5, -2>, <3, 0.2, 3> pigment {{ rgbt <1, 1, 1, 0.9> }} finish {{ reflection {{ 0.2 exponent 0.5 }} }} interior {{ ior 1.5 }} }} plane {{ y, -1 pigment {{ checker rgb 0.2 rgb 0.9 }} }}"
+            ),
+        ),
+    ];
+    let scenes = scenes.map(|(name, text)| (name, format!("{SETTINGS}{CAMERA}{text}")));
+    agree(0.01, &scenes);
+}
+
+#[test]
 fn lights_with_an_extent_shine_as_povrays() {
     let scenes = [
         (

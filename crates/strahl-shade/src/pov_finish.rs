@@ -80,7 +80,9 @@ impl PovReflection {
 
     /// The light that comes back: `reflectance · light^(1 / exponent)`.
     pub fn reflected(&self, reflectance: Color, light: Color) -> Color {
-        if self.exponent == 1.0 || !(self.exponent > 0.0) {
+        if self.exponent == 0.0 {
+            Color::BLACK
+        } else if self.exponent == 1.0 {
             reflectance * light
         } else {
             let power = 1.0 / self.exponent;

@@ -43,6 +43,8 @@ fn ray_node(scene: &RenderScene, node: &RayNode) -> Value {
         "depth": report.depth,
         "weight": report.weight,
         "spectrum": (!report.part.is_white()).then(|| report.part.place()),
+        "share": color(report.share.factor),
+        "power": report.share.power,
         "ray": ray(&report.ray),
         "hit": report.hit.as_ref().map(|hit| hit_value(scene, hit)),
         "background": report.background.map(color),

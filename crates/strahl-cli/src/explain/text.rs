@@ -118,18 +118,24 @@ fn write_node(out: &mut String, scene: &RenderScene, tree: &RayTree, node: &RayN
         );
     }
     for child in &node.children {
-        if let (Some(child), Some(hit)) = (tree.nodes.get(*child as usize), &report.hit) {
-            let (name, k) = match child.report.kind {
-                strahl::tracing::RayKind::Reflection => ("kr·Xr", hit.reflection),
-                _ => ("kt·Xt", hit.transmission),
+        if let Some(child) = tree.nodes.get(*child as usize) {
+            let name = match child.report.kind {
+                strahl::tracing::RayKind::Reflection => "kr·Xr",
+                _ => "kt·Xt",
             };
-            let product = k * child.total;
+            let share = child.report.share;
+            let product = share.of(child.total);
+            let power = if share.power == 1.0 {
+                String::new()
+            } else {
+                format!("^{}", share.power)
+            };
             line(
                 out,
                 level,
                 format_args!(
-                    "{name} = {} · {} = {} (ray #{})",
-                    color(k),
+                    "{name}{power} = {} · {}{power} = {} (ray #{})",
+                    color(share.factor),
                     color(child.total),
                     color(product),
                     child.report.node
