@@ -15,6 +15,7 @@ enum Known<'a> {
     Corners([DVec3; 3]),
     Polygon(&'a [DVec3]),
     Ball(DVec3, f64),
+    Frustum(Frustum),
     Box(Aabb),
     Nothing,
 }
@@ -28,6 +29,13 @@ impl GroupShapes<'_> {
             }
             PrimKind::Shape(index) => match &group.shapes[index as usize].shape {
                 Shape::Sphere(s) => Known::Ball(s.center(), s.radius().abs()),
+                Shape::Cylinder(c) => {
+                    Known::Frustum(Frustum([(c.base(), c.radius()), (c.apex(), c.radius())]))
+                }
+                Shape::Cone(c) => Known::Frustum(Frustum([
+                    (c.base(), c.base_radius()),
+                    (c.apex(), c.apex_radius()),
+                ])),
                 Shape::Cuboid(_) => Known::Box(self.bounds(id)),
                 Shape::Polygon(p) => {
                     // The outer ring comes first; what is in a hole is kept, which is safe.
@@ -62,6 +70,7 @@ impl Shapes for GroupShapes<'_> {
                 let (nearest, farthest) = distances(center, cell);
                 nearest <= radius && radius <= farthest
             }
+            Known::Frustum(frustum) => frustum.meets(cell) && !frustum.surrounds(cell),
             Known::Box(b) => {
                 let inside = b.min.cmplt(cell.min).all() && cell.max.cmplt(b.max).all();
                 !inside
@@ -78,6 +87,7 @@ impl Shapes for GroupShapes<'_> {
                 Some((center, reach(center, corners)))
             }
             Known::Ball(center, radius) => Some((center, radius)),
+            Known::Frustum(frustum) => Some(frustum.ball()),
             Known::Box(_) | Known::Nothing => None,
         }
     }
@@ -136,6 +146,71 @@ fn polygon_meets(corners: &[DVec3], cell: &Aabb) -> bool {
     !left.is_empty()
 }
 
+/// What lies between two discs upright on the same axis, given by centre and radius: a cylinder or a cone.
+struct Frustum([(DVec3, f64); 2]);
+
+impl Frustum {
+    fn axis(&self) -> DVec3 {
+        let [(base, _), (apex, _)] = self.0;
+        apex - base
+    }
+
+    /// Whether it may meet a box: no direction tried separates them. Tried are the axis and normals of the side: towards the box, and
+    /// those that are upright on an edge of the box. Those of the box's faces are left out, for the accelerators have
+    /// compared the boxes.
+    fn meets(&self, cell: &Aabb) -> bool {
+        let axis = self.axis().normalize_or_zero();
+        let (center, half) = (cell.center(), cell.size() * 0.5);
+        let separates = |direction: DVec3| {
+            let reach = half.dot(direction.abs());
+            let across = (direction - axis * axis.dot(direction)).length();
+            let discs = self.0.map(|(at, radius)| {
+                let (middle, radius) = ((at - center).dot(direction), radius * across);
+                (middle - radius, middle + radius)
+            });
+            discs.iter().all(|(low, _)| *low > reach)
+                || discs.iter().all(|(_, high)| *high < -reach)
+        };
+        let [(base, base_radius), (_, apex_radius)] = self.0;
+        let away = center - base;
+        let out = (away - axis * axis.dot(away)).normalize_or_zero();
+        let [x, y, z] =
+            [DVec3::X, DVec3::Y, DVec3::Z].map(|edge| edge.cross(axis).normalize_or_zero());
+        let (length, narrower) = (self.axis().length(), base_radius - apex_radius);
+        let side = |across: DVec3| across * length + axis * narrower;
+        let mut sides = [out, x, -x, y, -y, z, -z].into_iter().map(side);
+        !(separates(axis) || sides.any(separates))
+    }
+
+    /// Whether a box certainly is inside: all its corners are, and nothing of the surface is there.
+    fn surrounds(&self, cell: &Aabb) -> bool {
+        let [(base, base_radius), (_, apex_radius)] = self.0;
+        let axis = self.axis();
+        let square = axis.length_squared();
+        cell.corners().into_iter().all(|corner| {
+            let away = corner - base;
+            let height = away.dot(axis) / square;
+            let from_axis = (away - axis * height).length();
+            0.0 < height
+                && height < 1.0
+                && from_axis < base_radius + height * (apex_radius - base_radius)
+        })
+    }
+
+    /// The smallest ball around both discs.
+    fn ball(&self) -> (DVec3, f64) {
+        let [(base, base_radius), (apex, apex_radius)] = self.0;
+        let square = self.axis().length_squared();
+        let wider = (apex_radius * apex_radius - base_radius * base_radius) / square;
+        let center = base + self.axis() * (0.5 * (1.0 + wider)).clamp(0.0, 1.0);
+        let to_rim =
+            |at: DVec3, radius: f64| ((at - center).length_squared() + radius * radius).sqrt();
+        let (a, b) = (to_rim(base, base_radius), to_rim(apex, apex_radius));
+        let radius = if a > b { a } else { b };
+        (center, radius * (1.0 + 8.0 * f64::EPSILON))
+    }
+}
+
 /// The smallest ball around a triangle: around its longest edge, or through its corners.
 fn ball_of_triangle(corners: &[DVec3; 3]) -> (DVec3, f64) {
     let mut best = (DVec3::ZERO, f64::INFINITY);
@@ -174,6 +249,7 @@ fn reach(center: DVec3, points: &[DVec3]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::f64::consts::TAU;
 
     fn cell(x: f64, y: f64, z: f64) -> Aabb {
         Aabb::new(DVec3::new(x, y, z), DVec3::new(x + 1.0, y + 1.0, z + 1.0))
@@ -212,6 +288,61 @@ mod tests {
         let (near, far) = distances(DVec3::ZERO, &cell(1.0, 1.0, 1.0));
         assert!((near - 3f64.sqrt()).abs() < 1e-15 && (far - 12f64.sqrt()).abs() < 1e-15);
         assert_eq!(distances(DVec3::splat(1.5), &cell(1.0, 1.0, 1.0)).0, 0.0);
+    }
+
+    /// Points of the surface tell which cells it certainly meets.
+    #[test]
+    fn cylinders_and_cones_meet_the_cells_they_have_points_in() {
+        for (radii, most) in [([1.5, 1.5], 170), ([2.2, 0.0], 130), ([0.3, 0.4], 60)] {
+            let ends = [DVec3::new(2.1, 2.3, 1.9), DVec3::new(5.8, 5.2, 6.1)];
+            let frustum = Frustum([(ends[0], radii[0]), (ends[1], radii[1])]);
+            let axis = frustum.axis().normalize();
+            let u = axis.any_orthonormal_vector();
+            let v = axis.cross(u);
+            let mut met = std::collections::BTreeSet::new();
+            let mut see = |height: f64, part: f64, angle: f64| {
+                let radius = (radii[0] + height * (radii[1] - radii[0])) * part;
+                let across = (u * angle.cos() + v * angle.sin()) * radius;
+                let p = ends[0] + (ends[1] - ends[0]) * height + across;
+                met.insert(p.floor().to_array().map(|x| x as i32));
+            };
+            for i in 0..=200 {
+                for j in 0..400 {
+                    let (part, angle) = (f64::from(i) / 200.0, f64::from(j) / 400.0 * TAU);
+                    see(part, 1.0, angle);
+                    see(0.0, part, angle);
+                    see(1.0, part, angle);
+                }
+            }
+            let mut found = 0;
+            for index in 0..512 {
+                let [x, y, z] = [index % 8, index / 8 % 8, index / 64];
+                let c = cell(f64::from(x), f64::from(y), f64::from(z));
+                let meets = frustum.meets(&c) && !frustum.surrounds(&c);
+                assert!(meets || !met.contains(&[x, y, z]), "{radii:?} {x} {y} {z}");
+                found += usize::from(meets);
+            }
+            assert!(
+                found < most && found < met.len() + met.len() / 8,
+                "{radii:?}: {found} {}",
+                met.len()
+            );
+        }
+    }
+
+    #[test]
+    fn the_ball_of_a_cone_touches_its_rims() {
+        let ball =
+            |radii: [f64; 2]| Frustum([(DVec3::ZERO, radii[0]), (DVec3::Y * 4.0, radii[1])]).ball();
+        let (center, radius) = ball([3.0, 3.0]);
+        assert!(
+            (center - DVec3::Y * 2.0).length() < 1e-12 && (radius - 13f64.sqrt()).abs() < 1e-12
+        );
+        let (center, radius) = ball([2.0, 0.0]);
+        assert!((center - DVec3::Y * 1.5).length() < 1e-12 && (radius - 2.5).abs() < 1e-12);
+        // A flat one: the wide disc is enough.
+        let (center, radius) = ball([9.0, 1.0]);
+        assert!(center == DVec3::ZERO && (radius - 9.0).abs() < 1e-12);
     }
 
     #[test]
