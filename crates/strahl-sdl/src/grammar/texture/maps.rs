@@ -1,4 +1,4 @@
-//! Maps: lists of `[position thing]`, between whose entries the value of a pattern is looked up.
+//! Maps: lists of `[position thing]`, between whose entries the value of a pattern is looked up. Lists of blocks, from which it chooses.
 
 use crate::grammar::Thing;
 use crate::keywords::{Word, WordKind};
@@ -6,6 +6,7 @@ use crate::parser::{PResult, Parser};
 use crate::token::{Kind, Token};
 use strahl_shade::ColorFt;
 use strahl_shade::normal::{PovNormal, SlopeMap};
+use strahl_shade::patterns::Pattern;
 use strahl_shade::pigment::{BlendMap, Pigment};
 use strahl_shade::texture::Texture;
 
@@ -180,5 +181,44 @@ impl Parser<'_> {
             );
         }
         map
+    }
+
+    /// What stands for the blocks of a block pattern, each behind a word and perhaps what `between` takes; nothing if the pattern has no
+    /// blocks or none is there. What is missing at the end is filled up.
+    pub(super) fn blocks<T: Clone>(
+        &mut self,
+        pattern: &Pattern,
+        word: Word,
+        mut between: impl FnMut(&mut Self) -> PResult<()>,
+        mut block: impl FnMut(&mut Self) -> PResult<T>,
+        missing: impl FnOnce(&Self) -> T,
+    ) -> PResult<Option<Vec<T>>> {
+        let Some(count) = pattern.block_count() else {
+            return Ok(None);
+        };
+        // The object pattern's brace stands behind the object or behind the blocks.
+        let mut closed = !matches!(pattern, Pattern::Object(_));
+        let mut list = vec![];
+        while list.len() < count {
+            between(self)?;
+            let token = self.peek()?;
+            if token.is(word) {
+                self.take(token)?;
+                list.push(self.nested(&mut block)?);
+            } else if token.kind == Kind::RightBrace && !closed {
+                self.take(token)?;
+                closed = true;
+            } else {
+                break;
+            }
+        }
+        if !closed {
+            self.expect(Kind::RightBrace)?;
+        }
+        if list.is_empty() {
+            return Ok(None);
+        }
+        list.resize(count, missing(self));
+        Ok(Some(list))
     }
 }

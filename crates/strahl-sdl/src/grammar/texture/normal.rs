@@ -255,29 +255,14 @@ impl Parser<'_> {
 
     /// The normals of a block pattern's blocks, if they stand here.
     fn block_normals(&mut self, draft: &mut Draft, pattern: &Pattern) -> PResult<()> {
-        let Some(count) = pattern.block_count() else {
-            return Ok(());
-        };
-        let mut closed = !matches!(pattern, Pattern::Object(_));
-        let mut list = vec![];
-        while list.len() < count {
-            self.normal_amount(draft)?;
-            let token = self.peek()?;
-            if token.is(Word::Normal) {
-                self.take(token)?;
-                list.push(self.nested(Self::normal_block)?);
-            } else if token.kind == Kind::RightBrace && !closed {
-                self.take(token)?;
-                closed = true;
-            } else {
-                break;
-            }
-        }
-        if !closed {
-            self.expect(Kind::RightBrace)?;
-        }
-        if !list.is_empty() {
-            list.resize(count, flat());
+        let blocks = self.blocks(
+            pattern,
+            Word::Normal,
+            |p| p.normal_amount(draft),
+            Self::normal_block,
+            |_| flat(),
+        )?;
+        if let Some(list) = blocks {
             draft.choice = Choice::Blocks(list);
         }
         Ok(())

@@ -270,30 +270,14 @@ impl Parser<'_> {
 
     /// The textures of a block pattern's blocks.
     fn block_textures(&mut self, draft: &mut Draft, pattern: &Pattern) -> PResult<()> {
-        let Some(count) = pattern.block_count() else {
-            return Ok(());
-        };
-        let mut closed = !matches!(pattern, Pattern::Object(_));
-        let mut list = vec![];
-        while list.len() < count {
-            self.comma()?;
-            let token = self.peek()?;
-            if token.is(Word::Texture) {
-                self.take(token)?;
-                let texture = self.nested(Self::surface_block)?;
-                list.push(Surface::clone(&texture));
-            } else if token.kind == Kind::RightBrace && !closed {
-                self.take(token)?;
-                closed = true;
-            } else {
-                break;
-            }
-        }
-        if !closed {
-            self.expect(Kind::RightBrace)?;
-        }
-        if !list.is_empty() {
-            list.resize(count, Surface::clone(&self.state.default_texture.surface));
+        let blocks = self.blocks(
+            pattern,
+            Word::Texture,
+            Self::comma,
+            |p| p.surface_block().map(|texture| Surface::clone(&texture)),
+            |p| Surface::clone(&p.state.default_texture.surface),
+        )?;
+        if let Some(list) = blocks {
             draft.choice = Choice::Blocks(list);
         }
         Ok(())
