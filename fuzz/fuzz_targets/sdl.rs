@@ -18,6 +18,10 @@ fuzz_target!(|data: &[u8]| {
     options.limits.written_bytes = 1 << 16;
     options.limits.depth = 50;
     options.limits.nesting = 50;
+    options.limits.function_cost = 1 << 10;
+    options.limits.function_operations = 1 << 12;
+    // Finding advice for misspelt names is what most inputs would spend their time on.
+    options.limits.errors = 5;
     let mut host = MemoryHost::new().with_file("a.inc", data.to_vec());
     let parsed = parse(Source::new("fuzz.pov", data), &options, &mut host);
     let failed = parsed.diagnostics.iter().any(|d| d.is_error());

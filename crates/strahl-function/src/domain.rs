@@ -9,6 +9,8 @@ use crate::op::{BinaryOp, UnaryOp, power};
 pub(crate) enum Round<M> {
     /// It does, for the values of the mask.
     Go(M),
+    /// It would for the values of the mask, but they have no fuel for it; their fuel is taken away.
+    Starved(M),
     /// It is done.
     Done,
     /// That can't be said.
@@ -21,7 +23,10 @@ pub(crate) enum Round<M> {
 pub(crate) trait Domain: Copy {
     /// Which of the values takes part in a round of a loop.
     type Mask: Copy;
+    /// How many operations the loops of an evaluation may still take.
+    type Fuel: Copy;
 
+    fn fuel(operations: u64) -> Self::Fuel;
     fn constant(value: f64) -> Self;
     /// What is left when nothing can be said.
     fn unknown() -> Self;
@@ -29,15 +34,32 @@ pub(crate) trait Domain: Copy {
     fn binary(op: BinaryOp, a: Self, b: Self) -> Self;
     fn select(selector: Self, negative: Self, zero: Self, positive: Self) -> Self;
     fn field(field: &dyn ScalarField, arguments: &[Self]) -> Self;
-    /// Whether a loop whose counter stands at `counter` runs once more.
-    fn round(counter: Self, to: Self) -> Round<Self::Mask>;
+    /// Whether a loop whose counter stands at `counter` runs once more, which takes `price` operations.
+    ///
+    /// As all that follows, this must cost a value as much fuel by itself as within a batch: or else its bits would differ.
+    fn round(counter: Self, to: Self, fuel: &mut Self::Fuel, price: u64) -> Round<Self::Mask>;
+    /// Leaves only the values of the mask their fuel, for a round in which the others are computed in vain.
+    fn ration(_fuel: &mut Self::Fuel, _mask: Self::Mask) {}
+    /// Gives the others back what they had before.
+    fn restore(_fuel: &mut Self::Fuel, _mask: Self::Mask, _before: Self::Fuel) {}
     /// `new` where the mask says so, else `old`.
     fn blend(mask: Self::Mask, new: Self, old: Self) -> Self;
 }
 
+/// Takes the price away, or all there is if that is less.
+fn pay(fuel: &mut u64, price: u64) -> bool {
+    let rest = fuel.checked_sub(price);
+    *fuel = rest.unwrap_or(0);
+    rest.is_some()
+}
+
 impl Domain for f64 {
     type Mask = ();
+    type Fuel = u64;
 
+    fn fuel(operations: u64) -> u64 {
+        operations
+    }
     fn constant(value: f64) -> Self {
         value
     }
@@ -65,11 +87,13 @@ impl Domain for f64 {
     fn field(field: &dyn ScalarField, arguments: &[Self]) -> Self {
         field.value(arguments)
     }
-    fn round(counter: Self, to: Self) -> Round<()> {
-        if counter <= to {
+    fn round(counter: Self, to: Self, fuel: &mut u64, price: u64) -> Round<()> {
+        if !(counter <= to) {
+            Round::Done
+        } else if pay(fuel, price) {
             Round::Go(())
         } else {
-            Round::Done
+            Round::Starved(())
         }
     }
     fn blend((): (), new: Self, _old: Self) -> Self {
@@ -108,7 +132,11 @@ impl Lanes {
 
 impl Domain for Lanes {
     type Mask = [bool; LANES];
+    type Fuel = [u64; LANES];
 
+    fn fuel(operations: u64) -> [u64; LANES] {
+        [operations; LANES]
+    }
     fn constant(value: f64) -> Self {
         Self([value; LANES])
     }
@@ -175,15 +203,35 @@ impl Domain for Lanes {
         }
         Self(out)
     }
-    fn round(counter: Self, to: Self) -> Round<[bool; LANES]> {
+    fn round(counter: Self, to: Self, fuel: &mut [u64; LANES], price: u64) -> Round<[bool; LANES]> {
         let mut mask = [false; LANES];
+        let mut starved = [false; LANES];
         for (i, active) in mask.iter_mut().enumerate() {
             *active = counter.0[i] <= to.0[i];
+            starved[i] = *active && fuel[i] < price;
         }
-        if mask.contains(&true) {
-            Round::Go(mask)
-        } else {
-            Round::Done
+        if starved.contains(&true) {
+            for (fuel, starved) in fuel.iter_mut().zip(starved) {
+                *fuel = if starved { 0 } else { *fuel };
+            }
+            return Round::Starved(starved);
+        }
+        if !mask.contains(&true) {
+            return Round::Done;
+        }
+        for (fuel, active) in fuel.iter_mut().zip(mask) {
+            *fuel -= if active { price } else { 0 };
+        }
+        Round::Go(mask)
+    }
+    fn ration(fuel: &mut [u64; LANES], mask: [bool; LANES]) {
+        for (fuel, active) in fuel.iter_mut().zip(mask) {
+            *fuel = if active { *fuel } else { 0 };
+        }
+    }
+    fn restore(fuel: &mut [u64; LANES], mask: [bool; LANES], before: [u64; LANES]) {
+        for ((fuel, active), before) in fuel.iter_mut().zip(mask).zip(before) {
+            *fuel = if active { *fuel } else { before };
         }
     }
     fn blend(mask: [bool; LANES], new: Self, old: Self) -> Self {
@@ -199,7 +247,11 @@ impl Domain for Lanes {
 
 impl Domain for Bounds {
     type Mask = ();
+    type Fuel = u64;
 
+    fn fuel(operations: u64) -> u64 {
+        operations
+    }
     fn constant(value: f64) -> Self {
         Self::point(value)
     }
@@ -227,14 +279,16 @@ impl Domain for Bounds {
     fn field(field: &dyn ScalarField, arguments: &[Self]) -> Self {
         field.bounds(arguments)
     }
-    fn round(counter: Self, to: Self) -> Round<()> {
+    fn round(counter: Self, to: Self, fuel: &mut u64, price: u64) -> Round<()> {
         if counter.is_empty() || to.is_empty() || counter.min > to.max {
-            Round::Done
-        } else if counter.max <= to.min && !counter.nan && !to.nan {
-            Round::Go(())
-        } else {
-            Round::Unknown
+            return Round::Done;
         }
+        if counter.max <= to.min && !counter.nan && !to.nan && pay(fuel, price) {
+            return Round::Go(());
+        }
+        // How much the loop takes is not known either: one behind it may find no fuel.
+        *fuel = 0;
+        Round::Unknown
     }
     fn blend((): (), new: Self, _old: Self) -> Self {
         new
@@ -269,7 +323,11 @@ impl Dual {
 
 impl Domain for Dual {
     type Mask = ();
+    type Fuel = u64;
 
+    fn fuel(operations: u64) -> u64 {
+        operations
+    }
     fn constant(value: f64) -> Self {
         Self::number(value)
     }
@@ -309,8 +367,8 @@ impl Domain for Dual {
                 sum.along(dual, slope)
             })
     }
-    fn round(counter: Self, to: Self) -> Round<()> {
-        <f64 as Domain>::round(counter.value, to.value)
+    fn round(counter: Self, to: Self, fuel: &mut u64, price: u64) -> Round<()> {
+        <f64 as Domain>::round(counter.value, to.value, fuel, price)
     }
     fn blend((): (), new: Self, _old: Self) -> Self {
         new

@@ -12,6 +12,18 @@ pub enum FunctionError {
         /// The most operations there may be.
         limit: usize,
     },
+    /// One evaluation takes more operations than [`Graph::allow`](crate::Graph::allow)ed.
+    #[error(
+        "one evaluation of the function takes {} operations, at most {limit} are allowed; \
+         give its sums and products fewer terms, or let its functions call each other less often",
+        if *cost == u64::MAX { "endlessly many".to_owned() } else { cost.to_string() }
+    )]
+    TooCostly {
+        /// How many it takes, as far as that can be said before.
+        cost: u64,
+        /// The most there may be.
+        limit: u64,
+    },
     /// Calls and loops are nested deeper than [`limits::DEPTH`](crate::limits::DEPTH).
     #[error("calls, sums and products are nested more than {limit} deep")]
     TooDeep {

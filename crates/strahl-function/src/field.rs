@@ -1,4 +1,5 @@
 use crate::bounds::Bounds;
+use crate::cost::Cost;
 use std::fmt::Debug;
 
 /// A real function that expressions call but don't know the formula of: a pattern, one channel of a pigment, a spline, noise.
@@ -12,6 +13,11 @@ pub trait ScalarField: Debug + Send + Sync {
 
     /// The value at the arguments, [`arity`](Self::arity) many. The same arguments always give the same bits.
     fn value(&self, arguments: &[f64]) -> f64;
+
+    /// What [`value`](Self::value) takes. A field that evaluates others says so, or there may be no end to it.
+    fn cost(&self) -> Cost {
+        Cost::FORMULA
+    }
 
     /// Whether [`bounds`](Self::bounds) says something, and ever more the smaller the box: else a caller who needs to know where
     /// the field can't be zero has to trust in how steep it is.

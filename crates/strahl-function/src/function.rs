@@ -1,4 +1,5 @@
 use crate::bounds::Bounds;
+use crate::cost::Cost;
 use crate::domain::{Domain, Dual, LANES, Lanes};
 use crate::error::FunctionError;
 use crate::field::ScalarField;
@@ -22,6 +23,7 @@ struct Inner {
     root: Expr,
     tape: Tape,
     size: usize,
+    depth: u32,
 }
 
 /// Memory that evaluations share: one for each thread, used for any number of functions.
@@ -31,6 +33,7 @@ pub struct Workspace {
     lanes: Vec<Lanes>,
     bounds: Vec<Bounds>,
     duals: Vec<Dual>,
+    spent: u64,
 }
 
 impl Workspace {
@@ -38,18 +41,31 @@ impl Workspace {
     pub fn new() -> Self {
         Self::default()
     }
+
+    /// How many operations the loops of all calls of [`Function::value`] have taken, the only ones of which nobody knows before.
+    pub fn spent(&self) -> u64 {
+        self.spent
+    }
 }
 
 impl Function {
-    pub(crate) fn compile(graph: Graph, root: Expr) -> Result<Self, FunctionError> {
-        let tape = tape::compile(&graph, root)?;
+    pub(crate) fn compile(mut graph: Graph, root: Expr) -> Result<Self, FunctionError> {
+        let depth = graph.depth(root);
         let size = graph.reachable(root).len();
+        let tape = tape::compile(&graph, root)?;
+        let limit = graph.allowed();
+        if tape.cost > limit || tape.cost == u64::MAX {
+            let cost = tape.cost;
+            return Err(FunctionError::TooCostly { cost, limit });
+        }
+        graph.seal();
         Ok(Self {
             inner: Arc::new(Inner {
                 graph,
                 root,
                 tape,
                 size,
+                depth,
             }),
         })
     }
@@ -75,7 +91,25 @@ impl Function {
         let stack = reserve(&mut workspace.points, tape);
         fill(stack, arguments, tape.inputs);
         prepare(tape, stack);
-        run(tape, stack)
+        let mut fuel = self.fuel();
+        let result = run(tape, stack, &mut fuel);
+        workspace.spent = workspace.spent.wrapping_add(self.fuel() - fuel);
+        result
+    }
+
+    /// What a call of [`value`](Self::value) takes, but for rounds of loops that nobody knows before.
+    pub fn cost(&self) -> u64 {
+        self.tape().cost
+    }
+
+    /// How many operations building it took.
+    pub fn work(&self) -> u64 {
+        self.inner.graph.work()
+    }
+
+    /// What the loops of an evaluation may take.
+    fn fuel(&self) -> u64 {
+        self.inner.graph.allowed()
     }
 
     /// The values at many points: `arguments` has a column for each parameter, `values` says how many points there are.
@@ -100,7 +134,8 @@ impl Function {
                     }
                 }
             }
-            let result = run(tape, stack);
+            let mut fuel = Lanes::fuel(self.fuel());
+            let result = run(tape, stack, &mut fuel);
             out.copy_from_slice(&result.0[..out.len()]);
         }
     }
@@ -119,7 +154,7 @@ impl Function {
             });
         }
         prepare(tape, stack);
-        run(tape, stack)
+        run(tape, stack, &mut self.fuel())
     }
 
     /// Whether [`bounds`](Self::bounds) close in on the values as boxes become small: no field within lacks them.
@@ -140,13 +175,13 @@ impl Function {
             }
         }
         prepare(tape, stack);
-        let result = run(tape, stack);
+        let result = run(tape, stack, &mut self.fuel());
         (result.value, result.partials)
     }
 
-    /// Whether both are one compiled function.
-    pub(crate) fn is_same(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.inner, &other.inner)
+    /// Where it is: the same for all clones of one compiled function.
+    pub(crate) fn place(&self) -> usize {
+        Arc::as_ptr(&self.inner) as usize
     }
 
     pub(crate) fn graph(&self) -> &Graph {
@@ -162,7 +197,7 @@ impl Function {
     }
 
     pub(crate) fn depth(&self) -> u32 {
-        self.inner.graph.depth(self.inner.root)
+        self.inner.depth
     }
 }
 
@@ -183,6 +218,22 @@ fn fill(stack: &mut [f64], arguments: &[f64], inputs: usize) {
 impl ScalarField for Function {
     fn arity(&self) -> usize {
         self.parameters().len()
+    }
+
+    /// A loop of unknown length counts a part of what it may take: functions that call this one a few times are good, those
+    /// that do so a thousand times are not.
+    fn cost(&self) -> Cost {
+        const PART: u64 = 16;
+        let open = if self.tape().is_open {
+            self.fuel() / PART
+        } else {
+            0
+        };
+        Cost {
+            operations: self.tape().cost.saturating_add(open),
+            depth: self.depth(),
+        }
+        .around()
     }
 
     fn value(&self, arguments: &[f64]) -> f64 {

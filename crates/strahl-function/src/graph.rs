@@ -3,7 +3,7 @@ use crate::field::ScalarField;
 use crate::function::Function;
 use crate::limits;
 use crate::op::{BinaryOp, UnaryOp};
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
 /// A value within a [`Graph`]: a handle, cheap to copy.
@@ -66,12 +66,19 @@ pub struct Graph {
     lists: Vec<Box<[Expr]>>,
     list_index: HashMap<Box<[Expr]>, List>,
     fields: Vec<Arc<dyn ScalarField>>,
+    /// The numbers of the fields, by where they are.
+    field_index: HashMap<usize, u32>,
     functions: Vec<Function>,
+    function_index: HashMap<usize, u32>,
     /// The loop variables a node depends on that no loop within it binds, ascending; absent for most.
     free: HashMap<Expr, Box<[u32]>>,
     /// How deep loops and calls are nested in each node.
     depth: Vec<u32>,
     variables: u32,
+    /// How often a node was asked for.
+    work: u64,
+    /// The most operations of an evaluation; `None` is the usual number.
+    allowed: Option<u64>,
     failure: Option<FunctionError>,
 }
 
@@ -110,6 +117,31 @@ impl Graph {
     /// The first thing that went wrong so far.
     pub fn failure(&self) -> Option<&FunctionError> {
         self.failure.as_ref()
+    }
+
+    /// Sets how many operations an evaluation may take, instead of [`limits::COST`].
+    pub fn allow(&mut self, operations: u64) {
+        self.allowed = Some(operations);
+    }
+
+    pub(crate) fn allowed(&self) -> u64 {
+        self.allowed.unwrap_or(limits::COST)
+    }
+
+    /// How many operations building took so far; those count again that were there already.
+    pub fn work(&self) -> u64 {
+        self.work
+    }
+
+    /// Gives up the memory that is only needed to build it further.
+    pub(crate) fn seal(&mut self) {
+        self.index = HashMap::new();
+        self.list_index = HashMap::new();
+        self.field_index = HashMap::new();
+        self.function_index = HashMap::new();
+        self.free = HashMap::new();
+        self.depth = Vec::new();
+        self.nodes.shrink_to_fit();
     }
 
     /// Compiles the function whose value is `root`.
@@ -275,17 +307,21 @@ impl Graph {
                 found,
             });
         }
-        let known = self.fields.iter().position(|f| Arc::ptr_eq(f, field));
-        let id = known.unwrap_or_else(|| {
+        let place = Arc::as_ptr(field).cast::<()>() as usize;
+        let id = *self.field_index.entry(place).or_insert_with(|| {
             self.fields.push(Arc::clone(field));
-            self.fields.len() - 1
+            self.fields.len() as u32 - 1
         });
         let list = self.list(arguments);
-        self.push(Node::Field(id as u32, list))
+        self.push(Node::Field(id, list))
     }
 
     /// A call of another function: small ones become part of this graph, large ones are called.
     pub fn call(&mut self, function: &Function, arguments: &[Expr]) -> Expr {
+        if self.failure.is_some() {
+            // It has an end already; copying on and on would not have one.
+            return Expr(0);
+        }
         let expected = function.parameters().len();
         if arguments.len() != expected {
             let found = arguments.len();
@@ -298,13 +334,15 @@ impl Graph {
         if function.size() <= limits::INLINE {
             return self.inline(function, arguments);
         }
-        let known = self.functions.iter().position(|f| f.is_same(function));
-        let id = known.unwrap_or_else(|| {
-            self.functions.push(function.clone());
-            self.functions.len() - 1
-        });
+        let id = *self
+            .function_index
+            .entry(function.place())
+            .or_insert_with(|| {
+                self.functions.push(function.clone());
+                self.functions.len() as u32 - 1
+            });
         let list = self.list(arguments);
-        self.push(Node::Call(id as u32, list))
+        self.push(Node::Call(id, list))
     }
 
     /// A new loop variable, to be used in the body of one [`sum`](Self::sum) or [`prod`](Self::prod).
@@ -333,7 +371,9 @@ impl Graph {
         if let (Some(from), Some(to)) = (self.known(from), self.known(to)) {
             // Short loops are written out, with the additions a loop would do.
             let rounds = to - from;
-            let size = self.reachable(body).len() as f64;
+            let size = self.reachable(body).len();
+            self.work = self.work.saturating_add(size as u64);
+            let size = size as f64;
             if !(rounds >= 0.0) || (rounds < 256.0 && rounds * size < limits::UNROLL as f64) {
                 return self.unroll(product, counter, from, to, body);
             }
@@ -368,6 +408,13 @@ impl Graph {
 
     /// Adds a node, or finds an equal one.
     fn push(&mut self, node: Node) -> Expr {
+        self.work += 1;
+        if self.work > limits::WORK {
+            self.failure.get_or_insert(FunctionError::TooLarge {
+                limit: limits::NODES,
+            });
+            return Expr(0);
+        }
         if let Some(&e) = self.index.get(&node) {
             return e;
         }
@@ -424,6 +471,10 @@ impl Graph {
             Node::Call(id, _) => {
                 let callee = self.function_at(id).map_or(0, Function::depth);
                 inner.max(callee + 1)
+            }
+            Node::Field(id, _) => {
+                let field = self.field_at(id).map_or(0, |field| field.cost().depth);
+                inner.max(field)
             }
             _ => inner,
         }
@@ -495,13 +546,13 @@ impl Graph {
 
     /// All nodes an expression needs, operands first. Nodes are only ever made after their operands, so that is by number.
     pub(crate) fn reachable(&self, root: Expr) -> Vec<Expr> {
-        let mut seen = vec![false; self.nodes.len()];
+        // Not an array of marks for all nodes: what is asked about may be small in a large graph, and often.
+        let mut seen = HashSet::new();
         let mut stack = vec![root];
         let mut found = Vec::new();
         while let Some(e) = stack.pop() {
-            match seen.get_mut(e.0 as usize) {
-                Some(mark) if !*mark => *mark = true,
-                _ => continue,
+            if !seen.insert(e) {
+                continue;
             }
             found.push(e);
             stack.extend(self.children(self.node(e)));

@@ -10,11 +10,15 @@
 //! A function means what POV-Ray 3.7's `function { }` means, measured with that program: comparisons are exact, anything but
 //! zero is true, `select` takes NaN for positive, `mod` has the sign of the dividend, domain errors give NaN.
 //!
+//! Nothing runs without end: one evaluation takes at most so many operations as [`Graph::allow`] says. What takes more for
+//! certain can't be built; a loop whose length is known only when it runs and that would take more is NaN.
+//!
 //! All four ways to evaluate run the same instructions, so the value of a batch or of a gradient has the bits of the
 //! value at the point, and bounds contain it. Transcendental functions are those of [`strahl_math::det`].
 
 mod bounds;
 mod build;
+mod cost;
 mod domain;
 mod error;
 mod field;
@@ -27,6 +31,7 @@ mod run;
 mod tape;
 
 pub use bounds::Bounds;
+pub use cost::Cost;
 pub use error::FunctionError;
 pub use field::ScalarField;
 pub use function::{Function, Workspace};

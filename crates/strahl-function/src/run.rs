@@ -1,7 +1,6 @@
 //! The interpreter, once for all domains.
 
 use crate::domain::{Domain, Round};
-use crate::limits;
 use crate::op::BinaryOp;
 use crate::tape::{LoopCode, Op, Tape};
 
@@ -12,8 +11,9 @@ pub(crate) fn prepare<T: Domain>(tape: &Tape, stack: &mut [T]) {
     }
 }
 
-/// Runs a tape whose inputs and constants are in place at the start of `stack`, which has `tape.stack` registers.
-pub(crate) fn run<T: Domain>(tape: &Tape, stack: &mut [T]) -> T {
+/// Runs a tape whose inputs and constants are in place at the start of `stack`, which has `tape.stack` registers. Its loops
+/// take their rounds from `fuel`.
+pub(crate) fn run<T: Domain>(tape: &Tape, stack: &mut [T], fuel: &mut T::Fuel) -> T {
     let (r, rest) = stack.split_at_mut(tape.registers);
     for i in &tape.code {
         let (out, a, b) = (i.out as usize, i.a as usize, i.b as usize);
@@ -38,9 +38,9 @@ pub(crate) fn run<T: Domain>(tape: &Tape, stack: &mut [T]) -> T {
                 let (function, arguments) = &tape.calls[b];
                 gather(r, arguments, rest);
                 prepare(function.tape(), rest);
-                run(function.tape(), rest)
+                run(function.tape(), rest, fuel)
             }
-            Op::Loop => repeat(&tape.loops[b], r, rest),
+            Op::Loop => repeat(&tape.loops[b], r, rest, fuel),
         };
     }
     r[tape.result as usize]
@@ -52,7 +52,7 @@ fn gather<T: Domain>(registers: &[T], from: &[u32], to: &mut [T]) {
     }
 }
 
-fn repeat<T: Domain>(code: &LoopCode, registers: &[T], stack: &mut [T]) -> T {
+fn repeat<T: Domain>(code: &LoopCode, registers: &[T], stack: &mut [T], fuel: &mut T::Fuel) -> T {
     let (op, neutral) = if code.product {
         (BinaryOp::Mul, 1.0)
     } else {
@@ -63,19 +63,23 @@ fn repeat<T: Domain>(code: &LoopCode, registers: &[T], stack: &mut [T]) -> T {
     let mut total = T::constant(neutral);
     gather(registers, &code.captures, &mut stack[1..]);
     prepare(&code.body, stack);
-    let mut rounds = 0;
     loop {
-        let mask = match T::round(counter, to) {
+        let mask = match T::round(counter, to, fuel, code.price) {
             Round::Go(mask) => mask,
+            Round::Starved(mask) => {
+                // Without a counter they take no part in what follows.
+                total = T::blend(mask, T::constant(f64::NAN), total);
+                counter = T::blend(mask, T::constant(f64::NAN), counter);
+                continue;
+            }
             Round::Done => return total,
             Round::Unknown => return T::unknown(),
         };
-        if rounds == limits::ROUNDS {
-            return T::blend(mask, T::constant(f64::NAN), total);
-        }
-        rounds += 1;
+        let before = *fuel;
+        T::ration(fuel, mask);
         stack[0] = counter;
-        let term = run(&code.body, stack);
+        let term = run(&code.body, stack, fuel);
+        T::restore(fuel, mask, before);
         total = T::blend(mask, T::binary(op, total, term), total);
         counter = T::binary(BinaryOp::Add, counter, T::constant(1.0));
     }

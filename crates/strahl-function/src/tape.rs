@@ -45,9 +45,28 @@ pub(crate) struct Tape {
     pub(crate) fields: Vec<(Arc<dyn ScalarField>, Vec<u32>)>,
     pub(crate) calls: Vec<(Function, Vec<u32>)>,
     pub(crate) loops: Vec<LoopCode>,
+    /// What a run takes without the rounds of loops.
+    pub(crate) straight: u64,
+    /// What a run takes with the rounds of those loops whose number is known.
+    pub(crate) cost: u64,
+    /// Whether there are loops, which take fuel.
+    pub(crate) has_loops: bool,
+    /// Whether there are loops of which the number of rounds is not known.
+    pub(crate) is_open: bool,
 }
 
 impl Tape {
+    /// Counts what one instruction takes.
+    fn count(&mut self, straight: u64, rounds: u64) {
+        self.straight = self.straight.saturating_add(straight);
+        self.cost = self.cost.saturating_add(straight).saturating_add(rounds);
+    }
+
+    /// What it takes to put its arguments and constants in place.
+    fn entry(&self) -> u64 {
+        (self.inputs + self.constants.len()) as u64
+    }
+
     /// Whether all fields it reads have bounds.
     pub(crate) fn is_bounded(&self) -> bool {
         self.fields.iter().all(|(field, _)| field.is_bounded())
@@ -63,7 +82,19 @@ pub(crate) struct LoopCode {
     pub(crate) from: u32,
     pub(crate) to: u32,
     pub(crate) captures: Vec<u32>,
+    /// What a round takes, without those of loops within.
+    pub(crate) price: u64,
     pub(crate) body: Tape,
+}
+
+/// How many rounds a loop from one number to another has; endlessly many are as many as can be counted.
+fn rounds(from: f64, to: f64) -> u64 {
+    // The cast saturates; NaN and negative numbers have no rounds.
+    if from <= to {
+        ((to - from) as u64).saturating_add(1)
+    } else {
+        0
+    }
 }
 
 /// What a loop's body needs from outside of it.
@@ -203,6 +234,7 @@ fn assemble(
                 let field = graph.field_at(id).ok_or(FunctionError::ForeignExpression)?;
                 let arguments = many(graph.arguments(list))?;
                 nested = nested.max(arguments.len());
+                tape.count(field.cost().operations, 0);
                 tape.fields.push((Arc::clone(field), arguments));
                 (Op::Field, 0, tape.fields.len() as u32 - 1)
             }
@@ -210,7 +242,12 @@ fn assemble(
                 let callee = graph
                     .function_at(id)
                     .ok_or(FunctionError::ForeignExpression)?;
-                nested = nested.max(callee.tape().stack);
+                let inner = callee.tape();
+                nested = nested.max(inner.stack);
+                tape.count(inner.straight.saturating_add(inner.entry()), 0);
+                tape.count(0, inner.cost - inner.straight);
+                tape.has_loops |= inner.has_loops;
+                tape.is_open |= inner.is_open;
                 tape.calls
                     .push((callee.clone(), many(graph.arguments(list))?));
                 (Op::Call, 0, tape.calls.len() as u32 - 1)
@@ -219,7 +256,17 @@ fn assemble(
                 let outside = captures.get(&e).map_or(&[][..], |c| c);
                 let body = assemble_body(graph, l, outside, captures)?;
                 nested = nested.max(body.stack);
+                let known = graph.known(l.from).zip(graph.known(l.to));
+                let price = body.straight.saturating_add(1);
+                let all = known.map_or(0, |(from, to)| rounds(from, to));
+                tape.count(
+                    body.entry(),
+                    all.saturating_mul(body.cost.saturating_add(1)),
+                );
+                tape.has_loops = true;
+                tape.is_open |= known.is_none() || body.is_open;
                 tape.loops.push(LoopCode {
+                    price,
                     product: l.product,
                     from: at(l.from)?,
                     to: at(l.to)?,
@@ -247,6 +294,7 @@ fn assemble(
             used - 1
         });
         register.insert(e, out);
+        tape.count(1, 0);
         tape.code.push(Instruction { op, out, a, b });
     }
     tape.result = register

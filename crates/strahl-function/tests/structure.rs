@@ -115,6 +115,179 @@ fn a_loop_that_does_not_end_is_nan() {
     assert_eq!(value(&f, &[1.0, f64::NAN]), 0.0);
 }
 
+/// `sum(i, 1, n, sum(j, 1, i * m, j))`
+fn triangle() -> Function {
+    let mut g = Graph::new(["n", "m"]);
+    let (n, m, one) = (g.parameter("n"), g.parameter("m"), g.constant(1.0));
+    let (i, j) = (g.loop_variable(), g.loop_variable());
+    let to = g.mul(i, m);
+    let inner = g.sum(j, one, to, j);
+    let root = g.sum(i, one, n, inner);
+    g.finish(root).unwrap()
+}
+
+#[test]
+fn loops_take_no_more_than_allowed_and_batches_have_the_bits_of_points() {
+    let f = triangle();
+    let points = [
+        [3.0, 2.0],
+        [3.0, 1e300],
+        [0.0, 1e300],
+        [1e9, 0.0],
+        [900.0, 1.0],
+        [2000.0, 2000.0],
+        [f64::NAN, 1.0],
+        [1.0, f64::INFINITY],
+    ];
+    // Each point beside others that take longer, shorter, or for ever.
+    let n: Vec<f64> = (0..40).map(|i| points[i % 8][0]).collect();
+    let m: Vec<f64> = (0..40).map(|i| points[i * 7 / 5 % 8][1]).collect();
+    let mut ws = Workspace::new();
+    let mut values = vec![0.0; n.len()];
+    f.values(&mut ws, &[&n, &m], &mut values);
+    let mut without_end = 0;
+    for ((n, m), v) in n.iter().zip(&m).zip(values) {
+        let spent = ws.spent();
+        let alone = f.value(&mut ws, &[*n, *m]);
+        assert!(ws.spent() - spent <= limits::COST);
+        assert_eq!(alone.to_bits(), v.to_bits(), "{n} {m}");
+        assert_eq!(
+            alone.to_bits(),
+            f.gradient(&mut ws, &[*n, *m]).0.to_bits(),
+            "{n} {m}"
+        );
+        let bounds = f.bounds(&mut ws, &[Bounds::point(*n), Bounds::point(*m)]);
+        assert!(bounds.contains(alone) || alone.is_nan() && bounds.nan);
+        without_end += usize::from(alone.is_nan());
+    }
+    assert!((5..35).contains(&without_end), "{without_end}");
+}
+
+#[test]
+fn behind_a_loop_of_unknown_length_nothing_is_sure() {
+    // sum(i, 1, n, i) * 0 + sum(j, 1, 3 m, j): where the first one takes all, the second is not a number.
+    let mut g = Graph::new(["n", "m"]);
+    let (n, m, one) = (g.parameter("n"), g.parameter("m"), g.constant(1.0));
+    let (i, j) = (g.loop_variable(), g.loop_variable());
+    let first = g.sum(i, one, n, i);
+    let first = g.less(first, one);
+    let second = g.sum(j, one, m, j);
+    let root = g.add(first, second);
+    let f = g.finish(root).unwrap();
+    let mut ws = Workspace::new();
+    assert!(f.value(&mut ws, &[1e9, 2.0]).is_nan());
+    let b = f.bounds(&mut ws, &[Bounds::new(1.0, 1e9), Bounds::point(2.0)]);
+    assert!(b.nan);
+}
+
+#[test]
+fn what_would_take_for_ever_is_an_error() {
+    let mut g = Graph::new(["x"]);
+    let x = g.parameter("x");
+    let e = g.sin(x);
+    let mut f = g.finish(e).unwrap();
+    let mut rounds = 0;
+    let error = loop {
+        let mut g = Graph::new(["x"]);
+        let x = g.parameter("x");
+        let inner = g.call(&f, &[x]);
+        let shifted = g.offset(inner, f64::from(rounds));
+        let outer = g.call(&f, &[shifted]);
+        match g.finish(outer) {
+            Ok(next) => f = next,
+            Err(error) => break error,
+        }
+        rounds += 1;
+        assert!(rounds < 100);
+    };
+    assert!(matches!(error, FunctionError::TooCostly { .. }), "{error}");
+    assert!(f.cost() > limits::COST / 4 && f.cost() <= limits::COST);
+
+    for (to, allowed, good) in [
+        (1e9, limits::COST, false),
+        (f64::INFINITY, u64::MAX, false),
+        (1e5, limits::COST, true),
+        (1e5, 1000, false),
+    ] {
+        let mut g = Graph::new(["x"]);
+        g.allow(allowed);
+        let (x, one, to) = (g.parameter("x"), g.constant(1.0), g.constant(to));
+        let i = g.loop_variable();
+        let body = g.mul(x, i);
+        let e = g.sum(i, one, to, body);
+        match g.finish(e) {
+            Ok(f) => assert!(good && f.value(&mut Workspace::new(), &[1.0]) == 5_000_050_000.0),
+            Err(error) => assert!(!good, "{error}"),
+        }
+    }
+}
+
+#[test]
+fn building_the_same_again_and_again_has_an_end() {
+    let mut g = Graph::new(["x"]);
+    let mut e = g.parameter("x");
+    for _ in 0..1000 {
+        e = g.sin(e);
+    }
+    let f = g.finish(e).unwrap();
+    let mut g = Graph::new(["x"]);
+    let x = g.parameter("x");
+    for _ in 0..10_000_000 / 1000 {
+        e = g.call(&f, &[x]);
+    }
+    assert!(matches!(g.failure(), Some(FunctionError::TooLarge { .. })));
+    assert!(g.finish(e).is_err());
+}
+
+/// A function seen as a field only.
+#[derive(Debug)]
+struct Opaque(Function);
+
+impl ScalarField for Opaque {
+    fn arity(&self) -> usize {
+        1
+    }
+
+    fn value(&self, arguments: &[f64]) -> f64 {
+        ScalarField::value(&self.0, arguments)
+    }
+
+    fn cost(&self) -> strahl_function::Cost {
+        ScalarField::cost(&self.0)
+    }
+}
+
+#[test]
+fn fields_within_fields_are_counted() {
+    let around = |f: &Function, twice: bool| {
+        let field: Arc<dyn ScalarField> = Arc::new(Opaque(f.clone()));
+        let mut g = Graph::new(["x"]);
+        let x = g.parameter("x");
+        let mut e = g.field(&field, &[x]);
+        if twice {
+            let y = g.sin(e);
+            e = g.field(&field, &[y]);
+        }
+        g.finish(e)
+    };
+    let mut g = Graph::new(["x"]);
+    let x = g.parameter("x");
+    let e = g.sin(x);
+    let start = g.finish(e).unwrap();
+    let until_error = |twice: bool| {
+        let mut f = start.clone();
+        for _ in 0..1000 {
+            match around(&f, twice) {
+                Ok(next) => f = next,
+                Err(error) => return error,
+            }
+        }
+        panic!("no error");
+    };
+    assert!(matches!(until_error(false), FunctionError::TooDeep { .. }));
+    assert!(matches!(until_error(true), FunctionError::TooCostly { .. }));
+}
+
 #[test]
 fn deep_expressions_need_no_deep_stack() {
     let mut g = Graph::new(["x"]);

@@ -49,7 +49,7 @@ mod symbol;
 mod token;
 mod value;
 
-pub use expr::{Array, Dictionary, Spline, SplineKind};
+pub use expr::{Array, Dictionary, PigmentFunction, Spline, SplineKind};
 pub use grammar::{
     Declared, Entity, GlobalSettings, State, Texture, Thing, object_words, pattern_words,
 };

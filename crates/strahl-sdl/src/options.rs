@@ -73,6 +73,14 @@ impl Default for Frame {
 pub struct Limits {
     /// Tokens read in all, loops and macros counted as often as they run.
     pub steps: u64,
+    /// The same since the last object, or part of a mesh or texture: a loop that makes
+    /// nothing for so long does not end. 600 million take some four seconds; a loop of a million rounds with 20 directives in
+    /// each takes a third of that.
+    pub idle_steps: u64,
+    /// Operations that one evaluation of a function may take.
+    pub function_cost: u64,
+    /// Operations of all functions made, with those copied from the functions they call.
+    pub function_operations: u64,
     /// Macro calls and includes within each other.
     pub depth: usize,
     /// Braces and parentheses within each other.
@@ -103,6 +111,9 @@ impl Default for Limits {
     fn default() -> Self {
         Self {
             steps: 2_000_000_000,
+            idle_steps: 600_000_000,
+            function_cost: strahl_function::limits::COST,
+            function_operations: 1 << 24,
             depth: 10_000,
             nesting: 1000,
             array_elements: 1 << 24,
@@ -121,8 +132,11 @@ impl Default for Limits {
 
 impl Limits {
     /// The names of all limits.
-    pub const NAMES: [&str; 13] = [
+    pub const NAMES: [&str; 16] = [
         "steps",
+        "idle_steps",
+        "function_cost",
+        "function_operations",
         "depth",
         "nesting",
         "array_elements",
@@ -142,6 +156,9 @@ impl Limits {
         let size = usize::try_from(value);
         match (name, size) {
             ("steps", _) => self.steps = value,
+            ("idle_steps", _) => self.idle_steps = value,
+            ("function_cost", _) => self.function_cost = value,
+            ("function_operations", _) => self.function_operations = value,
             ("depth", Ok(size)) => self.depth = size,
             ("nesting", Ok(size)) => self.nesting = size,
             ("array_elements", _) => self.array_elements = value,
@@ -175,6 +192,9 @@ mod tests {
         }
         let Limits {
             steps,
+            idle_steps,
+            function_cost,
+            function_operations,
             depth,
             nesting,
             array_elements,
@@ -190,6 +210,9 @@ mod tests {
         } = limits;
         let wide = [
             steps,
+            idle_steps,
+            function_cost,
+            function_operations,
             array_elements,
             all_strings,
             parts,
@@ -197,7 +220,7 @@ mod tests {
             written_bytes,
         ];
         let sizes = [depth, nesting, string_bytes, objects, written_files, errors];
-        assert_eq!((wide, sizes, texture_depth), ([7; 6], [7; 6], 7));
+        assert_eq!((wide, sizes, texture_depth), ([7; 9], [7; 6], 7));
         assert!(!limits.set("step", 7));
     }
 }

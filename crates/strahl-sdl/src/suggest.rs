@@ -1,38 +1,74 @@
 //! Which known name a misspelt one may mean.
 
-/// The name with the smallest edit distance, if it is close enough: at most a third of the letters differ.
-pub(crate) fn closest<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Option<&'a str> {
-    let allowed = (name.chars().count() / 3).clamp(1, 4);
-    let mut best: Option<(usize, &str)> = None;
-    for candidate in known {
-        if candidate.len().abs_diff(name.len()) > allowed || candidate == name {
-            continue;
-        }
-        let distance = distance(name, candidate);
-        if distance <= allowed && best.is_none_or(|(d, _)| distance < d) {
-            best = Some((distance, candidate));
-        }
-    }
-    best.map(|(_, candidate)| candidate)
+/// A name that may be meant.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Candidate<'a> {
+    name: &'a str,
+    letters: u64,
 }
 
-/// Levenshtein's distance; capital and small letters count as half a difference would, that is as none.
+impl<'a> Candidate<'a> {
+    pub(crate) fn new(name: &'a str) -> Self {
+        let letters = letters(name);
+        Self { name, letters }
+    }
+}
+
+/// The set of letters in a name, a bit for each; small and capital ones are the same.
+fn letters(name: &str) -> u64 {
+    name.bytes()
+        .fold(0, |set, b| set | 1 << (b.to_ascii_lowercase() & 63))
+}
+
+/// The name with the smallest edit distance, the first of several, if it is close enough: at most a third of the letters
+/// differ. It comes with what is known about it.
+pub(crate) fn closest<'a, T>(
+    name: &str,
+    known: impl Iterator<Item = (Candidate<'a>, T)>,
+) -> Option<(&'a str, T)> {
+    let wanted = letters(name);
+    let mut allowed = (name.chars().count() / 3).clamp(1, 4);
+    let mut best = None;
+    for (candidate, about) in known {
+        // A letter in place of another changes the set by two at most, so that nearly all are passed over.
+        let differing = (candidate.letters ^ wanted).count_ones() as usize;
+        if differing > 2 * allowed
+            || candidate.name.len().abs_diff(name.len()) > allowed
+            || candidate.name == name
+        {
+            continue;
+        }
+        let distance = distance(name, candidate.name);
+        if distance <= allowed {
+            best = Some((candidate.name, about));
+            // Later ones have to be better.
+            match distance.checked_sub(1) {
+                Some(less) => allowed = less,
+                None => break,
+            }
+        }
+    }
+    best
+}
+
+/// Levenshtein's distance of the bytes; capital and small letters are the same.
 fn distance(a: &str, b: &str) -> usize {
-    let (a, b) = (a.to_ascii_lowercase(), b.to_ascii_lowercase());
-    let b: Vec<char> = b.chars().collect();
+    let (a, b) = (a.as_bytes(), b.as_bytes());
     let mut row: Vec<usize> = (0..=b.len()).collect();
-    for (i, x) in a.chars().enumerate() {
+    for (i, x) in a.iter().enumerate() {
         let mut diagonal = i;
         let mut left = i + 1;
-        for (j, y) in b.iter().enumerate() {
-            let replaced = diagonal + usize::from(x != *y);
-            diagonal = row[j + 1];
+        for (y, above) in b.iter().zip(row.iter_mut().skip(1)) {
+            let replaced = diagonal + usize::from(!x.eq_ignore_ascii_case(y));
+            diagonal = *above;
             left = replaced.min(diagonal + 1).min(left + 1);
-            row[j + 1] = left;
+            *above = left;
         }
-        row[0] = i + 1;
+        if let Some(first) = row.first_mut() {
+            *first = i + 1;
+        }
     }
-    row[b.len()]
+    row.last().copied().unwrap_or(0)
 }
 
 #[cfg(test)]
@@ -42,7 +78,9 @@ mod tests {
     #[test]
     fn the_closest_name_is_found() {
         let known = ["sphere", "Ruby_Glass", "box", "cylinder"];
-        let find = |name: &str| closest(name, known.iter().copied());
+        let find = |name: &str| {
+            closest(name, known.iter().map(|k| (Candidate::new(k), ()))).map(|(k, ())| k)
+        };
         assert_eq!(find("shpere"), Some("sphere"));
         assert_eq!(find("ruby_glass"), Some("Ruby_Glass"));
         assert_eq!(find("Ruby_Gless"), Some("Ruby_Glass"));

@@ -62,6 +62,72 @@ fn endless_loops_and_recursion() {
 }
 
 #[test]
+fn a_loop_that_makes_nothing_ends_long_before_one_that_does() {
+    let idle = |o: &mut Options| o.limits.idle_steps = 10_000;
+    let text = limited("#while (1) #end", idle);
+    assert!(text.contains("10000 steps since the last object"), "{text}");
+    assert!(text.contains("--limit idle_steps=N"), "{text}");
+    let mut options = Options::default();
+    options.limits.idle_steps = 10_000;
+    let text = "#for (I, 1, 2000) #declare A = I * 2; sphere { A, 1 } #end";
+    let parsed = parse(Source::new("x", text), &options, &mut MemoryHost::new());
+    assert_eq!(parsed.scene.expect("no errors").objects.0.len(), 2000);
+}
+
+#[test]
+fn functions_that_would_take_for_ever() {
+    let doubled = "#declare F = function(x) { x + 1 }
+        #for (I, 1, 200) #declare F = function(x) { F(sin(F(x)) * I) } #end";
+    let long_chain = "#declare F = function(x) { x + 1 }
+        #for (I, 1, 100000) #declare F = function(x) { sin(F(x)) + I } #end";
+    let through_patterns = "#declare F = function { x }
+        #for (I, 1, 200) #declare F = function { pattern { function { F(x, y, z) + F(y, x, z) } } } #end";
+    let nested_patterns = "#declare F = function { x }
+        #for (I, 1, 100000) #declare F = function { pattern { function { F(x, y, z) } } } #end";
+    let through_pigments = "#declare F = function { x }
+        #for (I, 1, 200) #declare P = function { pigment { average pigment_map {
+            [1 function { F(x, y, z) } color_map { [0 rgb 0] [1 rgb 1] }]
+            [1 function { F(y, x, z) } color_map { [0 rgb 0] [1 rgb 1] }] } } }
+        #declare F = function { P(x, y, z).red } #end";
+    let through_objects = "#declare F = function { x - 1 }
+        #for (I, 1, 200)
+        #declare O = isosurface { function { F(x, y, z) + F(y, x, z) } contained_by { box { -1, 1 } } }
+        #declare F = function { pattern { object { O } } } #end";
+    for (text, expected) in [
+        (doubled, "operations, at most 1048576 are allowed"),
+        (through_patterns, "operations, at most"),
+        (nested_patterns, "nested more than 128 deep"),
+        (through_pigments, "operations, at most"),
+        (through_objects, "operations, at most"),
+        (
+            "#declare F = function(x) { sum(i, 1, 1e5, sum(j, 1, 1e5, sin(x * i * j))) }",
+            "--limit function_cost=N",
+        ),
+        (
+            "#declare F = function(x) { prod(i, 1, 1e30, x) }",
+            "endlessly many operations",
+        ),
+    ] {
+        let found = errors(text);
+        assert!(found[0].contains(expected), "{text}: {}", found[0]);
+    }
+    let operations = |o: &mut Options| o.limits.function_operations = 1 << 20;
+    assert!(limited(long_chain, operations).contains("all functions together have more than"));
+    // Loops of unknown length end by themselves, and calls count as steps.
+    let endless = "#declare F = function(x) { sum(i, 1, x, sum(j, 1, x, i * j)) }\n";
+    let parsed = parse_with(
+        &mut MemoryHost::new(),
+        &format!("{endless} #if (F(1e30) = F(1e30)) #error \"a number\" #end"),
+    );
+    assert!(parsed.scene.is_some(), "{:?}", parsed.diagnostics);
+    let steps = |o: &mut Options| o.limits.steps = 2_000_000;
+    let text = format!("{endless} #for (I, 1, 1000000) #declare A = F(1e30); #end");
+    assert!(limited(&text, steps).contains("seems not to end"));
+    let text = "height_field { function 10000, 1000 { prod(i, 1, 100, x * i * 1.01) } }";
+    assert!(limited(text, steps).contains("seems not to end"));
+}
+
+#[test]
 fn deep_nesting() {
     for open in [
         "(",

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use strahl_function::ScalarField;
+use strahl_function::{Cost, ScalarField};
 use strahl_math::DVec3;
 
 use crate::patterns::{PatternField, TexturePoint};
@@ -18,6 +18,10 @@ fn place(arguments: &[f64]) -> TexturePoint {
 impl ScalarField for PatternField {
     fn value(&self, arguments: &[f64]) -> f64 {
         PatternField::value(self, &place(arguments))
+    }
+
+    fn cost(&self) -> Cost {
+        self.whole_cost()
     }
 }
 
@@ -58,6 +62,10 @@ impl ScalarField for PigmentChannel {
             Channel::Transmit => color.transmit,
             Channel::Gray => color.gray(),
         }
+    }
+
+    fn cost(&self) -> Cost {
+        self.pigment.cost()
     }
 }
 

@@ -5,6 +5,7 @@
 
 use super::{Formula, Internal};
 use crate::bounds::Bounds;
+use crate::cost::Cost;
 use crate::field::ScalarField;
 use crate::graph::{Expr, Graph};
 use std::sync::Arc;
@@ -97,6 +98,14 @@ impl ScalarField for NoiseFunction {
             (Kind::Ridge, rest) => ridge(p, rest),
             (Kind::Ridged, rest) => Octaves::new(p, rest).map_or(f64::NAN, |o| o.ridged()),
             (Kind::Generator, _) => f64::NAN,
+        }
+    }
+
+    fn cost(&self) -> Cost {
+        match self.kind {
+            Kind::Noise | Kind::Signed | Kind::Generator => Cost::FORMULA,
+            // An octave takes one noise or two.
+            Kind::Hetero | Kind::Ridge | Kind::Ridged => Cost::operations(1024),
         }
     }
 

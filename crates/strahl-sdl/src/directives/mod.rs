@@ -13,6 +13,7 @@ pub(crate) use files::Files;
 
 use crate::keywords::Word;
 use crate::parser::{PResult, Parser};
+use crate::suggest::{Candidate, closest};
 use crate::token::{Directive, Token};
 
 /// How to go on after a directive.
@@ -101,11 +102,13 @@ impl Parser<'_> {
             self.warn(place, "`#` without a directive behind it does nothing");
             return Ok(());
         }
-        let known = Directive::ALL.iter().map(|(_, text)| *text);
-        let close = crate::suggest::closest(&name, known.filter(|t| !t.is_empty()));
+        let known = Directive::ALL.iter().filter(|(_, text)| !text.is_empty());
+        let close = closest(&name, known.map(|(_, text)| (Candidate::new(text), ())));
         let message = format!("there is no directive `#{name}`");
         Err(match close {
-            Some(close) => self.fail_hint(place, message, format!("did you mean `#{close}`?")),
+            Some((close, ())) => {
+                self.fail_hint(place, message, format!("did you mean `#{close}`?"))
+            }
             None => self.fail(place, message),
         })
     }

@@ -8,7 +8,7 @@ use crate::symbol::Symbol;
 use crate::token::{Kind, Token};
 use crate::value::Value;
 use std::sync::Arc;
-use strahl_function::{BinaryOp, Expr, Function, Graph, UnaryOp, internal};
+use strahl_function::{BinaryOp, Expr, Function, FunctionError, Graph, UnaryOp, internal};
 use strahl_math::noise::NoiseGenerator;
 
 /// A function while its body is read.
@@ -142,10 +142,30 @@ impl Parser<'_> {
             parameters,
             loops: vec![],
         };
+        body.graph.allow(self.options.limits.function_cost);
         let root = self.braces(|p| p.formula(&mut body))?;
-        body.graph
-            .finish(root)
-            .map_err(|error| self.fail(place, error.to_string()))
+        self.finish_function(body.graph, root, place)
+    }
+
+    /// Compiles what has been read.
+    ///
+    /// # Errors
+    /// If it is wrong or too large.
+    pub(super) fn finish_function(
+        &mut self,
+        graph: Graph,
+        root: Expr,
+        place: Place,
+    ) -> PResult<Function> {
+        self.count_function(place, graph.work())?;
+        graph.finish(root).map_err(|error| match error {
+            FunctionError::TooCostly { .. } => self.fail_hint(
+                place,
+                error.to_string(),
+                "`--limit function_cost=N` raises the limit",
+            ),
+            _ => self.fail(place, error.to_string()),
+        })
     }
 
     /// A whole expression, `?:` included.
@@ -256,7 +276,11 @@ impl Parser<'_> {
             let place = self.place();
             let arguments = self.nested(|p| p.formula_arguments(body))?;
             self.check_arguments(function.parameters().len(), arguments.len(), place)?;
-            return Ok(body.graph.call(&function, &arguments));
+            let value = body.graph.call(&function, &arguments);
+            return match body.graph.failure().cloned() {
+                Some(error) => Err(self.fail(place, error.to_string())),
+                None => Ok(value),
+            };
         }
         let callee = match symbol.and_then(|s| self.scopes.find(s)) {
             Some(Value::Thing(Thing::PigmentFunction(pigment))) => Some(Arc::clone(pigment)),
@@ -422,7 +446,11 @@ impl Parser<'_> {
             self.comma()?;
         }
         self.check_arguments(function.parameters().len(), arguments.len(), place)?;
-        Ok(function.value(&mut self.workspace, &arguments))
+        let before = self.workspace.spent();
+        let value = function.value(&mut self.workspace, &arguments);
+        let loops = self.workspace.spent().wrapping_sub(before);
+        self.spend(function.cost().max(loops))?;
+        Ok(value)
     }
 
     pub(super) fn check_arguments(

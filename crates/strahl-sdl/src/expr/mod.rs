@@ -22,6 +22,7 @@ mod vector_functions;
 pub use array::Array;
 pub use dictionary::Dictionary;
 pub use spline::{Spline, SplineKind};
+pub use texture_function::PigmentFunction;
 pub(crate) use vector_functions::rotation;
 
 use crate::grammar::Thing;

@@ -6,11 +6,19 @@ use crate::parser::{PResult, Parser};
 use crate::token::Kind;
 use crate::value::{Value, Vector};
 use std::sync::Arc;
-use strahl_function::{Graph, ScalarField};
+use strahl_function::{Cost, Graph, ScalarField};
 use strahl_math::DVec3;
 use strahl_shade::ColorFt;
 use strahl_shade::patterns::{PatternField, TexturePoint};
 use strahl_shade::pigment::Pigment;
+
+/// A pigment that is called like a function.
+#[derive(Clone, Debug)]
+pub struct PigmentFunction {
+    pigment: Arc<Pigment>,
+    /// Of the pigment, which may be large.
+    cost: Cost,
+}
 
 /// A pattern's value as a function of space.
 #[derive(Debug)]
@@ -20,12 +28,16 @@ impl ScalarField for PatternValue {
     fn value(&self, arguments: &[f64]) -> f64 {
         self.0.value(&point(arguments))
     }
+
+    fn cost(&self) -> Cost {
+        self.0.cost()
+    }
 }
 
 /// One component of a pigment's colour as a function of space.
 #[derive(Debug)]
 struct PigmentComponent {
-    pigment: Arc<Pigment>,
+    function: PigmentFunction,
     component: Component,
 }
 
@@ -42,7 +54,7 @@ enum Component {
 
 impl ScalarField for PigmentComponent {
     fn value(&self, arguments: &[f64]) -> f64 {
-        let color = self.pigment.color_at(&point(arguments));
+        let color = self.function.pigment.color_at(&point(arguments));
         match self.component {
             Component::Red => color.rgb.r,
             Component::Green => color.rgb.g,
@@ -51,6 +63,10 @@ impl ScalarField for PigmentComponent {
             Component::Transmit => color.transmit,
             Component::Gray => color.gray(),
         }
+    }
+
+    fn cost(&self) -> Cost {
+        self.function.cost
     }
 }
 
@@ -71,10 +87,9 @@ impl Parser<'_> {
         let mut graph = Graph::new(["x", "y", "z"]);
         let arguments = graph.xyz();
         let root = graph.field(&field, &arguments);
-        match graph.finish(root) {
-            Ok(function) => Ok(Value::Function(function)),
-            Err(error) => Err(self.fail(place, error.to_string())),
-        }
+        graph.allow(self.options.limits.function_cost);
+        let function = self.finish_function(graph, root, place)?;
+        Ok(Value::Function(function))
     }
 
     /// `{ pigment { ... } }`: its value is a colour.
@@ -83,17 +98,22 @@ impl Parser<'_> {
             p.next()?;
             p.pigment_block()
         })?;
-        Ok(Value::Thing(Thing::PigmentFunction(Arc::new(pigment))))
+        let function = PigmentFunction {
+            cost: pigment.cost(),
+            pigment: Arc::new(pigment),
+        };
+        Ok(Value::Thing(Thing::PigmentFunction(Arc::new(function))))
     }
 
     /// `(x, y, z)` behind a function made of a pigment, in an expression.
-    pub(super) fn call_pigment(&mut self, pigment: &Pigment) -> PResult<Vector> {
+    pub(super) fn call_pigment(&mut self, function: &PigmentFunction) -> PResult<Vector> {
         let p = self.point_arguments()?;
+        self.spend(function.cost.operations)?;
         let ColorFt {
             rgb,
             filter,
             transmit,
-        } = pigment.color_at(&TexturePoint::in_space(p));
+        } = function.pigment.color_at(&TexturePoint::in_space(p));
         Ok(Vector::rgbft([rgb.r, rgb.g, rgb.b, filter, transmit]))
     }
 
@@ -112,7 +132,7 @@ impl Parser<'_> {
     /// `.red` behind a call of a function made of a pigment, within a function.
     pub(super) fn pigment_component(
         &mut self,
-        pigment: &Arc<Pigment>,
+        function: &PigmentFunction,
     ) -> PResult<Arc<dyn ScalarField>> {
         let place = self.place();
         if !self.accept(Kind::Dot)? {
@@ -133,7 +153,7 @@ impl Parser<'_> {
             _ => return Err(self.unexpected(name, "a component of a colour")),
         };
         Ok(Arc::new(PigmentComponent {
-            pigment: Arc::clone(pigment),
+            function: function.clone(),
             component,
         }))
     }

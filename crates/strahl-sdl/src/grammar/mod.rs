@@ -161,6 +161,7 @@ impl Parser<'_> {
     /// # Errors
     /// If they are too many.
     pub(crate) fn count_objects(&mut self, count: u64) -> PResult<()> {
+        self.made_progress();
         self.state.objects = self.state.objects.saturating_add(count);
         let limit = self.options.limits.objects as u64;
         if self.state.objects <= limit {
@@ -181,6 +182,7 @@ impl Parser<'_> {
     /// If they are too many.
     #[inline]
     pub(crate) fn count_parts(&mut self, count: u64) -> PResult<()> {
+        self.made_progress();
         self.state.parts = self.state.parts.saturating_add(count);
         if self.state.parts <= self.options.limits.parts {
             return Ok(());

@@ -1,4 +1,5 @@
 use super::{Declared, Texture, by_word};
+use crate::expr::PigmentFunction;
 use crate::keywords::Word;
 use crate::parser::{PResult, Parser};
 use crate::token::{Kind, Token};
@@ -43,7 +44,7 @@ things! {
     NormalMap(BlendMap<PovNormal>) "a normal map"
     Object(Declared) "an object"
     Pigment(Pigment) "a pigment"
-    PigmentFunction(Pigment) "a function made of a pigment"
+    PigmentFunction(PigmentFunction) "a function made of a pigment"
     PigmentMap(BlendMap<Pigment>) "a pigment map"
     Rainbow(Rainbow) "a rainbow"
     SkySphere(SkySphere) "a sky sphere"

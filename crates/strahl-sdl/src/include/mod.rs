@@ -2,6 +2,8 @@
 //!
 //! Files of the user with the same name win; see [`Host`](crate::Host).
 
+use crate::keywords::Word;
+use crate::suggest::Candidate;
 use std::sync::LazyLock;
 
 macro_rules! built_in {
@@ -69,7 +71,7 @@ pub(crate) fn internal_function(number: u32) -> Option<&'static str> {
 static DECLARED: LazyLock<Vec<(&str, &str)>> = LazyLock::new(|| {
     let files = FILES.iter().enumerate();
     let mut names: Vec<(&str, usize, &str)> = files
-        .flat_map(|(order, (file, text))| declared(text).map(move |name| (name, order, *file)))
+        .flat_map(|(order, (file, text))| declared_in(text).map(move |name| (name, order, *file)))
         .collect();
     names.sort_unstable();
     names.dedup_by_key(|(name, ..)| *name);
@@ -79,6 +81,22 @@ static DECLARED: LazyLock<Vec<(&str, &str)>> = LazyLock::new(|| {
         .collect()
 });
 
+/// All words of the language, and all names that the built-in files declare with the first file that does.
+static KNOWN: LazyLock<Vec<(Candidate<'static>, Option<&'static str>)>> = LazyLock::new(|| {
+    let words = Word::ALL
+        .iter()
+        .map(|(_, text, _)| (Candidate::new(text), None));
+    let names = DECLARED
+        .iter()
+        .map(|(name, file)| (Candidate::new(name), Some(*file)));
+    words.chain(names).collect()
+});
+
+/// What can be meant by a name that is misspelt: all words, and all names of the built-in files with their file.
+pub(crate) fn known<'a>() -> impl Iterator<Item = (Candidate<'a>, Option<&'static str>)> {
+    KNOWN.iter().map(|&(known, file)| (known, file))
+}
+
 /// The first built-in file that declares a name.
 pub(crate) fn declaring(name: &str) -> Option<&'static str> {
     let found = DECLARED.binary_search_by_key(&name, |(known, _)| known);
@@ -86,13 +104,8 @@ pub(crate) fn declaring(name: &str) -> Option<&'static str> {
     entry.map(|(_, file)| *file)
 }
 
-/// All names that the built-in files declare.
-pub(crate) fn declared_names() -> impl Iterator<Item = &'static str> {
-    DECLARED.iter().map(|(name, _)| *name)
-}
-
 /// The names that a text declares.
-fn declared(text: &str) -> impl Iterator<Item = &str> {
+fn declared_in(text: &str) -> impl Iterator<Item = &str> {
     text.split('#').skip(1).filter_map(|piece| {
         let mut words = piece.split(|c: char| !c.is_ascii_alphanumeric() && c != '_');
         let directive = words.next()?;
@@ -109,7 +122,7 @@ mod tests {
     #[test]
     fn declarations_are_found_in_a_text() {
         let text = "// x\n#declare Red = rgb x;\n#macro Ball (R) #local N = 1; #end";
-        assert_eq!(declared(text).collect::<Vec<_>>(), ["Red", "Ball"]);
+        assert_eq!(declared_in(text).collect::<Vec<_>>(), ["Red", "Ball"]);
         assert_eq!(declaring("Red"), Some("colors.inc"));
         assert_eq!(declaring("Readd"), None);
     }

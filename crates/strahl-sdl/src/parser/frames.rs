@@ -4,6 +4,7 @@ use crate::grammar::State;
 use crate::include;
 use crate::options::Options;
 use crate::source::{Chunk, Host, HostError, Source, SourceFile};
+use crate::suggest::{Candidate, closest};
 use crate::symbol::{Symbol, Symbols};
 use crate::token::{Kind, Token};
 use std::sync::Arc;
@@ -66,6 +67,8 @@ impl<'h> Parser<'h> {
             mark: super::recover::Mark::default(),
             between: true,
             steps: 0,
+            last_step: options.limits.steps.min(options.limits.idle_steps),
+            function_operations: 0,
             nesting: 0,
             read_bytes: file.source.bytes.len() as u64,
             message_bytes: 0,
@@ -109,7 +112,7 @@ impl<'h> Parser<'h> {
     fn run_on(&mut self) -> PResult<Token> {
         loop {
             self.steps += 1;
-            if self.steps > self.options.limits.steps {
+            if self.steps > self.last_step {
                 return Err(self.out_of_steps());
             }
             let token = self.raw();
@@ -370,8 +373,10 @@ impl<'h> Parser<'h> {
         if let HostError::NotFound { name, searched } = &error {
             let folders = searched.join(", ");
             diagnostic = diagnostic.hint(format!("it was searched in: {folders}"));
-            let built_in = include::FILES.iter().map(|(file, _)| *file);
-            if let Some(close) = crate::suggest::closest(name, built_in) {
+            let built_in = include::FILES
+                .iter()
+                .map(|(file, _)| (Candidate::new(file), ()));
+            if let Some((close, ())) = closest(name, built_in) {
                 diagnostic = diagnostic.hint(format!("did you mean `{close}`, which is built in?"));
             }
         }

@@ -87,6 +87,10 @@ pub struct Parser<'h> {
     /// Whether no statement has begun yet, so that directives are given up by themselves.
     between: bool,
     steps: u64,
+    /// Where the budget of steps ends, unless something is made before.
+    last_step: u64,
+    /// Operations of all functions made so far.
+    function_operations: u64,
     nesting: usize,
     read_bytes: u64,
     message_bytes: u64,
@@ -133,10 +137,51 @@ impl Parser<'_> {
             self.position += 1;
         }
         self.steps += 1;
-        if self.steps > self.options.limits.steps {
+        if self.steps > self.last_step {
             return Err(self.out_of_steps());
         }
         Ok(())
+    }
+
+    /// Counts operations of functions as steps.
+    ///
+    /// # Errors
+    /// If the budget of steps is used up.
+    pub(crate) fn spend(&mut self, operations: u64) -> PResult<()> {
+        /// So many take as long as a token does.
+        const OPERATIONS: u64 = 4;
+        self.steps = self.steps.saturating_add(operations / OPERATIONS);
+        if self.steps > self.last_step {
+            return Err(self.out_of_steps());
+        }
+        Ok(())
+    }
+
+    /// Counts what building a function took.
+    ///
+    /// # Errors
+    /// If all functions together are too large.
+    pub(crate) fn count_function(&mut self, place: Place, operations: u64) -> PResult<()> {
+        self.function_operations = self.function_operations.saturating_add(operations);
+        let limit = self.options.limits.function_operations;
+        if self.function_operations <= limit {
+            return Ok(());
+        }
+        Err(self.fail_fatally(
+            place,
+            format!("all functions together have more than {limit} operations"),
+            "each has those of the functions it calls, unless they are large; shorten chains of functions that call each other, \
+             or raise the limit: `--limit function_operations=N`",
+        ))
+    }
+
+    /// Tells that something has been made, so that what comes is no idle loop.
+    #[inline]
+    pub(crate) fn made_progress(&mut self) {
+        let limits = &self.options.limits;
+        self.last_step = limits
+            .steps
+            .min(self.steps.saturating_add(limits.idle_steps));
     }
 
     /// The token at the position as it stands in the file: no directive is carried out, no macro called.
@@ -227,13 +272,21 @@ impl Parser<'_> {
     }
 
     fn out_of_steps(&mut self) -> Failed {
-        let limit = self.options.limits.steps;
-        let message =
-            format!("the scene has read {limit} tokens: a loop or recursion seems not to end");
+        let limits = &self.options.limits;
+        let (name, count, since) = if self.last_step < limits.steps {
+            ("idle_steps", limits.idle_steps, " since the last object")
+        } else {
+            ("steps", limits.steps, "")
+        };
+        let message = format!(
+            "the scene has taken {count} steps{since}, tokens read and functions called: a loop or recursion seems not to end"
+        );
         self.fail_fatally(
             self.place,
             message,
-            "check that the condition of the loop becomes false, or raise the limit: `--limit steps=N`",
+            format!(
+                "check that the condition of the loop becomes false, or raise the limit: `--limit {name}=N`"
+            ),
         )
     }
 }

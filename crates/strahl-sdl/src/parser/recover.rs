@@ -53,6 +53,7 @@ impl Parser<'_> {
             return false;
         }
         self.position = 0;
+        self.made_progress();
         let problems = self.file.lexed.problems.clone();
         self.report_lexing(self.file.file.0, problems);
         true

@@ -1,7 +1,6 @@
 use super::{Entry, Parser, Place};
-use crate::keywords::Word;
 use crate::lexer::LexProblem;
-use crate::suggest;
+use crate::suggest::{self, Candidate};
 use crate::symbol::Symbol;
 use crate::token::{Kind, Token};
 use std::borrow::Cow;
@@ -69,11 +68,10 @@ impl Parser<'_> {
     /// `false` if the same was said of the same place before: loops would repeat it.
     fn report(&mut self, place: Place, mut diagnostic: Diagnostic) -> bool {
         const WARNINGS: usize = 200;
-        let span = self.span_at(place);
-        let same = |d: &Diagnostic| d.span == span && d.message == diagnostic.message;
-        if self.diagnostics.iter().any(same) {
+        if self.is_known(place, &diagnostic) {
             return false;
         }
+        let span = self.span_at(place);
         if diagnostic.severity == Severity::Warning && self.diagnostics.len() >= WARNINGS {
             return false;
         }
@@ -86,6 +84,13 @@ impl Parser<'_> {
         }
         self.diagnostics.push(diagnostic);
         true
+    }
+
+    /// Whether the same was said of the same place before.
+    fn is_known(&self, place: Place, diagnostic: &Diagnostic) -> bool {
+        let span = self.span_at(place);
+        let same = |d: &Diagnostic| d.span == span && d.message == diagnostic.message;
+        self.diagnostics.iter().any(same)
     }
 
     /// The macros and includes around the position, innermost first.
@@ -140,7 +145,10 @@ impl Parser<'_> {
         let mut diagnostic = Diagnostic::error(format!(
             "expected {expected}, found the undeclared name `{name}`"
         ));
-        if let Some(hint) = self.advice_for(&name) {
+        // Loops come by again and again, and advice takes time.
+        if !self.is_known(place, &diagnostic)
+            && let Some(hint) = self.advice_for(&name)
+        {
             diagnostic = diagnostic.hint(hint);
         }
         self.fail_with(place, diagnostic)
@@ -154,14 +162,13 @@ impl Parser<'_> {
             ));
         }
         let bound = self.scopes.bound().map(|s| self.symbols.text(s));
-        let words = Word::ALL.iter().map(|(_, text, _)| *text);
-        if let Some(close) = suggest::closest(name, bound.chain(words)) {
-            return Some(format!("did you mean `{close}`?"));
-        }
-        let built_in = crate::include::declared_names();
-        let close = suggest::closest(name, built_in)?;
-        let file = crate::include::declaring(close)?;
-        Some(format!("did you mean `{close}`, from {file}?"))
+        // What is at hand goes before what would have to be included, but only if it is as close.
+        let here = bound.map(|known| (Candidate::new(known), None));
+        let (close, file) = suggest::closest(name, here.chain(crate::include::known()))?;
+        Some(match file {
+            Some(file) => format!("did you mean `{close}`, from {file}?"),
+            None => format!("did you mean `{close}`?"),
+        })
     }
 
     /// A token in words.

@@ -19,7 +19,7 @@ pub(crate) mod water;
 
 use std::sync::Arc;
 
-use strahl_function::ScalarField;
+use strahl_function::{Cost, ScalarField};
 use strahl_math::{DVec2, DVec3};
 
 pub use crackle::{Crackle, CrackleMetric};
@@ -76,6 +76,11 @@ impl TexturePoint {
 pub trait Inside: std::fmt::Debug + Send + Sync {
     /// Whether the point lies inside.
     fn contains(&self, p: DVec3) -> bool;
+
+    /// What that takes.
+    fn cost(&self) -> Cost {
+        Cost::FORMULA
+    }
 }
 
 /// The patterns: name, parameters and formula. THE table.

@@ -15,7 +15,7 @@ use octree::Octree;
 use search::{Search, excludes_change};
 use std::ops::ControlFlow;
 use std::sync::OnceLock;
-use strahl_function::{Bounds, Function, Workspace};
+use strahl_function::{Bounds, Function, ScalarField, Workspace};
 use strahl_math::error::{ROUNDOFF, gamma};
 use strahl_math::{Aabb, DVec3, Interval, Ray};
 
@@ -158,7 +158,8 @@ impl Isosurface {
         self.octree.get_or_init(|| {
             let bounds = self.container.bounds();
             let pad = DVec3::splat(CELL_PAD * bounds.max_abs());
-            Octree::build(bounds, |cell| {
+            let cost = ScalarField::cost(&self.function).operations;
+            Octree::build(bounds, cost, |cell| {
                 let cell = cell.padded(pad);
                 if self.container.excludes(&cell) {
                     return false;

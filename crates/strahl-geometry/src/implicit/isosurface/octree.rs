@@ -7,6 +7,9 @@ use strahl_math::{Aabb, DVec3};
 const DEPTH: u32 = 7;
 /// So many cells are examined at most on one level; the next level is left out if it might have more.
 const CELLS: usize = 1 << 18;
+/// So many operations of the function are spent on a level: some ten seconds. Fewer cells fit in for functions of more than
+/// eight thousand operations.
+const OPERATIONS: u64 = 1 << 31;
 
 /// A child that certainly has no surface in it.
 const EMPTY: u32 = 0;
@@ -37,8 +40,13 @@ fn child(cell: &Aabb, octant: usize) -> Aabb {
 }
 
 impl Octree {
-    /// Builds the tree of a box by asking of each cell whether there may be a surface in it.
-    pub(super) fn build(bounds: Aabb, mut may_have_surface: impl FnMut(&Aabb) -> bool) -> Self {
+    /// Builds the tree of a box by asking of each cell whether there may be a surface in it, which takes so many operations.
+    pub(super) fn build(
+        bounds: Aabb,
+        cost: u64,
+        mut may_have_surface: impl FnMut(&Aabb) -> bool,
+    ) -> Self {
+        let cells = (OPERATIONS / cost.max(1)).min(CELLS as u64) as usize;
         let mut tree = Self {
             bounds,
             root: if may_have_surface(&bounds) {
@@ -54,7 +62,7 @@ impl Octree {
             leaves.push((None, bounds));
         }
         for _ in 0..DEPTH {
-            if leaves.len() * 8 > CELLS {
+            if leaves.len() * 8 > cells {
                 break;
             }
             let mut next = Vec::new();
@@ -168,7 +176,7 @@ mod tests {
     use super::*;
 
     fn shell() -> Octree {
-        Octree::build(Aabb::new(DVec3::NEG_ONE, DVec3::ONE), |cell| {
+        Octree::build(Aabb::new(DVec3::NEG_ONE, DVec3::ONE), 1, |cell| {
             let far = cell.min.abs().max(cell.max.abs()).length();
             let near = DVec3::ZERO.clamp(cell.min, cell.max).length();
             near <= 0.7 && far >= 0.7
@@ -208,12 +216,28 @@ mod tests {
     fn nothing_and_everything() {
         let bounds = Aabb::new(DVec3::NEG_ONE, DVec3::ONE);
         let mut count = 0;
-        let _ = Octree::build(bounds, |_| false).walk(DVec3::ZERO, DVec3::X, &mut |_, _| {
+        let _ = Octree::build(bounds, 1, |_| false).walk(DVec3::ZERO, DVec3::X, &mut |_, _| {
             count += 1;
             ControlFlow::Continue(())
         });
         assert_eq!(count, 0);
-        let full = Octree::build(bounds, |_| true);
+        let full = Octree::build(bounds, 1, |_| true);
         assert!(full.nodes.len() * 8 <= 2 * CELLS);
+    }
+
+    #[test]
+    fn dear_functions_are_asked_about_few_cells() {
+        let bounds = Aabb::new(DVec3::NEG_ONE, DVec3::ONE);
+        for cost in [1 << 20, 1 << 30, u64::MAX] {
+            let mut asked = 0_u64;
+            let _ = Octree::build(bounds, cost, |_| {
+                asked += 1;
+                true
+            });
+            assert!(
+                (1..=2 * OPERATIONS / cost.min(OPERATIONS)).contains(&asked),
+                "{asked}"
+            );
+        }
     }
 }

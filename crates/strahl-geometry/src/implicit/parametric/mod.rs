@@ -9,7 +9,7 @@ use super::workspace::with_workspace;
 use crate::{GeometryError, PrimHit, Primitive, Scratch, SurfaceId, SurfacePoint};
 use patches::{Patches, Piece, Rectangle};
 use std::sync::OnceLock;
-use strahl_function::{Bounds, Function, Workspace};
+use strahl_function::{Bounds, Function, ScalarField, Workspace};
 use strahl_math::error::gamma;
 use strahl_math::{Aabb, DVec2, DVec3, Interval, Ray};
 
@@ -210,8 +210,15 @@ impl Parametric {
     }
 
     fn patches(&self, workspace: &mut Workspace) -> &Patches {
-        self.patches
-            .get_or_init(|| Patches::build(self.domain, |r| self.examine(workspace, r)))
+        /// The box, and a gradient in the middle and at each corner.
+        const EVALUATIONS: u64 = 6;
+        self.patches.get_or_init(|| {
+            let once = self.functions.iter().fold(0_u64, |sum, f| {
+                sum.saturating_add(ScalarField::cost(f).operations)
+            });
+            let cost = once.saturating_mul(EVALUATIONS);
+            Patches::build(self.domain, cost, |r| self.examine(workspace, r))
+        })
     }
 
     /// Looks for a hit on a piece; pieces that are not flat are quartered first, those on which Newton's method was no proof

@@ -71,13 +71,18 @@ pub(super) struct Patches {
 const LEVELS: (u32, u32) = (3, 9);
 /// So many pieces are examined on one level at most; the next level is left out if it might have more.
 const PIECES: usize = 1 << 16;
+/// So many operations of the functions are spent on a level: some ten seconds, which leaves fewer pieces to dear ones.
+const OPERATIONS: u64 = 1 << 31;
 
 impl Patches {
-    /// Builds the tree of a domain. `examine` gives the piece over a rectangle, or `None` if nothing of it is wanted.
+    /// Builds the tree of a domain. `examine` gives the piece over a rectangle, or `None` if nothing of it is wanted; it takes
+    /// so many operations.
     pub(super) fn build(
         domain: Rectangle,
+        cost: u64,
         mut examine: impl FnMut(&Rectangle) -> Option<Piece>,
     ) -> Self {
+        let pieces = (OPERATIONS / cost.max(1)).min(PIECES as u64) as usize;
         let nowhere = Node {
             piece: Piece {
                 bounds: Aabb::EMPTY,
@@ -96,7 +101,7 @@ impl Patches {
                 })
             };
             leaves.retain(|&(index, _)| wanted(index));
-            if leaves.len() * 4 > PIECES {
+            if leaves.len() * 4 > pieces {
                 break;
             }
             let mut next = Vec::new();

@@ -12,6 +12,7 @@ use crate::token::Kind;
 use crate::value::{Value, Vector};
 use mesh::SearchableMesh;
 use std::sync::Arc;
+use strahl_function::{Cost, ScalarField};
 use strahl_geometry::{Csg, CsgNode, Primitive, Scratch, Shape, Solid};
 use strahl_math::{Aabb, DVec3, Interval, Ray};
 use strahl_scene::{CsgOp, Object, ObjectKind};
@@ -21,6 +22,10 @@ use strahl_scene::{CsgOp, Object, ObjectKind};
 pub(crate) struct Query {
     csg: Csg,
     bounds: Aabb,
+    /// What it takes to ask whether a point is inside.
+    cost: Cost,
+    /// How much of that its functions take.
+    functions: u64,
 }
 
 impl Query {
@@ -28,7 +33,18 @@ impl Query {
     fn new(object: &Object) -> Option<Self> {
         let csg = Csg::try_new(node(object)?).ok()?;
         let bounds = unclipped(object).unwrap_or_else(|| csg.bounds());
-        Some(Self { csg, bounds })
+        let (cost, functions) = cost(object);
+        Some(Self {
+            csg,
+            bounds,
+            cost,
+            functions,
+        })
+    }
+
+    /// What it takes to ask whether a point is inside.
+    pub(super) fn cost(&self) -> Cost {
+        self.cost
     }
 
     pub(super) fn contains(&self, point: DVec3) -> bool {
@@ -95,6 +111,25 @@ fn node(object: &Object) -> Option<CsgNode> {
     done.pop()
 }
 
+/// What the shapes of an object take, each asked about one point, and how much of that functions take.
+fn cost(object: &Object) -> (Cost, u64) {
+    let mut cost = Cost::FORMULA;
+    let mut functions = 0_u64;
+    let mut objects = vec![object];
+    while let Some(object) = objects.pop() {
+        match &object.kind {
+            ObjectKind::Csg { children, .. } => objects.extend(&children.0),
+            ObjectKind::Shape(Shape::Isosurface(surface)) => {
+                let function = ScalarField::cost(surface.function());
+                functions = functions.saturating_add(function.operations);
+                cost = cost.and(function);
+            }
+            _ => cost = cost.and(Cost::FORMULA),
+        }
+    }
+    (cost.around(), functions)
+}
+
 /// The box of an object that is clipped or inverted, which the language takes from the object as it was before, or of a
 /// shape, where the language takes the surface and not the inside.
 fn unclipped(object: &Object) -> Option<Aabb> {
@@ -125,7 +160,9 @@ impl Parser<'_> {
     pub(crate) fn ask_inside(&mut self) -> PResult<bool> {
         let object = self.object_argument()?;
         let point = self.vector3()?;
-        Ok(self.query(&object)?.is_some_and(|q| q.contains(point)))
+        let query = self.query(&object)?;
+        self.spend_on(query.as_deref(), 1)?;
+        Ok(query.is_some_and(|q| q.contains(point)))
     }
 
     /// `min_extent(Object)` and `max_extent(Object)` behind the parenthesis; unbounded objects reach to 1e10, as in
@@ -161,12 +198,21 @@ impl Parser<'_> {
             return Err(self.fail(place, "`trace` needs a direction that is not zero"));
         }
         let query = self.query(&object)?;
+        /// A ray is looked for at so many points of a surface without a formula for the crossings.
+        const POINTS: u64 = 64;
+        self.spend_on(query.as_deref(), POINTS)?;
         let hit = query.and_then(|q| q.trace(origin, direction));
         if let Some(symbol) = normal_of {
             let normal = hit.map_or(DVec3::ZERO, |(_, n)| n);
             self.store_normal(symbol, normal);
         }
         Ok(hit.map_or(DVec3::ZERO, |(point, _)| point))
+    }
+
+    /// Counts what functions take if they are asked about so many points.
+    fn spend_on(&mut self, query: Option<&Query>, points: u64) -> PResult<()> {
+        let operations = query.map_or(0, |q| q.functions);
+        self.spend(operations.saturating_mul(points))
     }
 
     fn store_normal(&mut self, symbol: Symbol, normal: DVec3) {

@@ -5,9 +5,13 @@ use crate::parser::{PResult, Parser, Place};
 use crate::token::{Kind, Token};
 use std::sync::Arc;
 use strahl_formats::image::{TextureUse, decode_texture};
+use strahl_function::Cost;
 use strahl_math::{DVec3, det};
 use strahl_shade::image_map::{ImageMap, Interpolation, MapType};
 use strahl_shade::image_texture::{ColorSpace, TexelChannels, TexelData, TextureImage};
+
+/// The red, green, blue and alpha at a point.
+type PictureFunction = Box<dyn Fn(DVec3) -> [f64; 4]>;
 
 /// How the codes of a file become numbers.
 #[derive(Clone, Copy, PartialEq)]
@@ -222,7 +226,9 @@ impl Parser<'_> {
             let message = format!("a picture of {width} x {height} texels is too large here");
             return Err(self.fail(place, message));
         }
-        let value = self.picture_function()?;
+        let (value, cost) = self.picture_function()?;
+        let texels = u64::from(width) * u64::from(height);
+        self.spend(texels.saturating_mul(cost.operations))?;
         for row in 0..height {
             for column in 0..width {
                 let p = DVec3::new(share(column, width), share(row, height), 0.0);
@@ -232,8 +238,9 @@ impl Parser<'_> {
         Ok((width, height))
     }
 
-    /// The red, green, blue and alpha of a picture made by `{ pigment ... }`, `{ pattern ... }` or a formula.
-    fn picture_function(&mut self) -> PResult<Box<dyn Fn(DVec3) -> [f64; 4]>> {
+    /// The red, green, blue and alpha of a picture made by `{ pigment ... }`, `{ pattern ... }` or a formula, and what a texel takes.
+    fn picture_function(&mut self) -> PResult<(PictureFunction, Cost)> {
+        use strahl_function::ScalarField;
         use strahl_shade::patterns::{PatternField, TexturePoint};
         let inner = self.raw_ahead(1);
         if inner.is(Word::Pigment) {
@@ -241,26 +248,32 @@ impl Parser<'_> {
                 p.next()?;
                 p.pigment_block()
             })?;
-            return Ok(Box::new(move |p| {
+            let cost = pigment.cost();
+            let value = move |p| {
                 let color = pigment.color_at(&TexturePoint::in_space(p));
                 [color.rgb.r, color.rgb.g, color.rgb.b, 1.0 - color.transmit]
-            }));
+            };
+            return Ok((Box::new(value), cost));
         }
         if inner.is(Word::Pattern) {
             let field: PatternField = self.braces(|p| {
                 p.next()?;
                 p.pattern_block()
             })?;
-            return Ok(Box::new(move |p| {
+            let cost = field.cost();
+            let value = move |p| {
                 let value = field.value(&TexturePoint::in_space(p));
                 [value, value, value, 1.0]
-            }));
+            };
+            return Ok((Box::new(value), cost));
         }
         let function = self.nested(Self::function)?;
-        Ok(Box::new(move |p| {
-            let value = strahl_function::ScalarField::value(&function, &p.to_array());
+        let cost = ScalarField::cost(&function);
+        let value = move |p: DVec3| {
+            let value = ScalarField::value(&function, &p.to_array());
             [value, value, value, 1.0]
-        }))
+        };
+        Ok((Box::new(value), cost))
     }
 
     fn bitmap_item(&mut self, map: &mut ImageMap, token: Token) -> PResult<bool> {

@@ -1,5 +1,6 @@
 use crate::grammar::query::Query;
 use std::sync::Arc;
+use strahl_function::Cost;
 use strahl_math::DVec3;
 use strahl_shade::patterns::Inside;
 
@@ -10,5 +11,10 @@ pub(super) struct ObjectInside(pub(super) Option<Arc<Query>>);
 impl Inside for ObjectInside {
     fn contains(&self, p: DVec3) -> bool {
         self.0.as_ref().is_some_and(|query| query.contains(p))
+    }
+
+    fn cost(&self) -> Cost {
+        let cost = self.0.as_ref().map(|query| query.cost());
+        cost.unwrap_or(Cost::FORMULA)
     }
 }

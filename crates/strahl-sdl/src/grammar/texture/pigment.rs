@@ -261,6 +261,7 @@ impl Parser<'_> {
         })?;
         let pigment = draft.finish();
         self.weigh(weight::of_pigment(&pigment))?;
+        self.check_cost(&pigment)?;
         Ok(pigment)
     }
 

@@ -107,6 +107,23 @@ impl Parser<'_> {
         }
         Ok(())
     }
+
+    /// Whether a colour of a pigment can be found within the time that a function may take.
+    ///
+    /// # Errors
+    /// If its functions take more.
+    pub(super) fn check_cost(&mut self, pigment: &Pigment) -> PResult<()> {
+        let (cost, limit) = (pigment.cost().operations, self.options.limits.function_cost);
+        if cost <= limit {
+            return Ok(());
+        }
+        let place = self.place();
+        Err(self.fail_hint(
+            place,
+            format!("a colour of this pigment takes {cost} operations, at most {limit} are allowed"),
+            "let its functions and averages have fewer parts, or raise the limit: `--limit function_cost=N`",
+        ))
+    }
 }
 
 #[cfg(test)]
