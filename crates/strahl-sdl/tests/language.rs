@@ -301,6 +301,30 @@ fn a_name_from_an_include_not_included_is_recognised() {
 }
 
 #[test]
+fn the_closest_name_of_all_includes_is_proposed() {
+    let text = "#include \"glass.inc\"\nsphere { 0, 1 texture { Ruby_Glas } }";
+    let found = errors(text);
+    let expected = "did you mean `Ruby_Glass`, from textures.inc?";
+    assert!(found[0].contains(expected), "{found:?}");
+    let found = errors("#include \"textures.inc\"\nsphere { 0, 1 texture { Ruby_Glas } }");
+    assert!(found[0].contains("did you mean `Ruby_Glass`?"), "{found:?}");
+}
+
+#[test]
+fn a_texture_within_a_texture_is_an_error() {
+    for inner in [
+        "texture { }",
+        "pigment { rgb 1 } texture { pigment { rgb 1 } }",
+    ] {
+        let found = errors(&format!("sphere {{ 0, 1 texture {{ {inner} }} }}"));
+        assert!(
+            found[0].contains("cannot stand within a texture"),
+            "{found:?}"
+        );
+    }
+}
+
+#[test]
 fn errors_name_the_place_and_the_way_there() {
     let found = errors("#macro Ball(R)\n  sphere { 0, Radius }\n#end\nBall(1)\n");
     assert_eq!(found.len(), 1);

@@ -144,7 +144,8 @@ impl Parser<'_> {
         })
     }
 
-    /// `vstr(count, vector, separator, length, digits)`
+    /// `vstr(count, vector, separator, length, digits)`: 2 to 5 components, whatever the count; those that are missing are zero,
+    /// also of a single number (measured).
     fn vstr(&mut self, place: Place) -> PResult<String> {
         let count = self.full_float()?;
         self.comma()?;
@@ -155,16 +156,14 @@ impl Parser<'_> {
         let length = self.full_float()?;
         self.comma()?;
         let digits = self.full_float()?;
-        if !(2.0..=5.0).contains(&count) {
-            return Err(self.fail(place, "`vstr` writes 2 to 5 components"));
-        }
         let mut text = String::new();
-        let vector = vector.promoted(count as usize);
-        for (index, component) in vector.as_slice().iter().enumerate() {
+        let components = vector.as_slice().iter().copied();
+        let components = components.chain(std::iter::repeat(0.0));
+        for (index, component) in components.take((count as usize).clamp(2, 5)).enumerate() {
             if index > 0 {
                 text.push_str(&separator);
             }
-            text.push_str(&self.formatted(*component, length, digits, place)?);
+            text.push_str(&self.formatted(component, length, digits, place)?);
         }
         Ok(text)
     }

@@ -204,6 +204,13 @@ impl Parser<'_> {
                 self.take(token)?;
                 return self.tiles(draft);
             }
+            Some(Word::Texture) => {
+                return Err(self.fail_hint(
+                    self.place_of(token),
+                    "a texture cannot stand within a texture",
+                    "write textures that lie over each other one behind the other, and those to choose from in a `texture_map`",
+                ));
+            }
             Some(Word::MaterialMap) => {
                 self.take(token)?;
                 return self.material_map(draft);
