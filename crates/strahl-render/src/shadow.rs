@@ -5,6 +5,10 @@ use crate::scene::Uv;
 use strahl_math::{DVec3, Interval, Ray};
 use strahl_shade::Color;
 
+/// The share of the way to a mask that does not count any more: a stencil that is also seen stands where its mask does, but for
+/// rounding, and must not shade what it lets through.
+const MASK_SKIN: f64 = 1e-6;
+
 /// What of a light reaches a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Shadow {
@@ -54,7 +58,7 @@ impl Tracer<'_> {
                 };
             };
             // What is within the mask or beyond it casts no shadows.
-            range.max = crossing;
+            range.max = crossing * (1.0 - MASK_SKIN);
             if !self.scene.lights[*light].light.casts_shadows {
                 return Shadow {
                     visible: Color::WHITE,

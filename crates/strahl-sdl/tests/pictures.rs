@@ -288,6 +288,12 @@ fn lights_shine_through_what_they_must_cross() {
                 .to_owned(),
         ),
         (
+            "that are seen too",
+            "#declare W = union { torus { 0.5, 0.15 } box { -0.3, 0.3 } rotate <40, 30, 20> translate <1.5, 1.5, -2> }
+             light_source { <4, 6, -5>, rgb 1 projected_through { W } } light_source { <-4, 6, -5>, rgb 0.3 } object { W pigment { rgb x } }"
+                .to_owned(),
+        ),
+        (
             "in a group",
             format!(
                 "light_group {{ light_source {{ <4, 6, -5>, rgb 1 projected_through {{ {window} }} }} sphere {{ <-0.9, 0, 0.5>, 1.01 pigment {{ rgb 1 }} }} translate 0.1 * y }} light_source {{ <-4, 6, -5>, rgb 0.3 }}"
