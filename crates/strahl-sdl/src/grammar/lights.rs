@@ -145,10 +145,9 @@ impl Draft {
             area.axis_1 = t.vector_to_world(area.axis_1);
             area.axis_2 = t.vector_to_world(area.axis_2);
         }
-        for object in [&mut self.looks_like, &mut self.projected_through] {
-            if let Some(object) = object {
-                transform(object, t);
-            }
+        let objects = [&mut self.looks_like, &mut self.projected_through];
+        for object in objects.into_iter().flatten() {
+            transform(object, t);
         }
     }
 
