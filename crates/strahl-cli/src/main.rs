@@ -13,6 +13,7 @@ mod fonts;
 mod heat;
 mod input;
 mod interrupt;
+mod output;
 mod pov;
 mod progress;
 mod report;

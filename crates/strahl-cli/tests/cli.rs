@@ -705,3 +705,18 @@ fn trace_ray_tells_the_way() {
         &["no pixel 99,0"],
     );
 }
+
+/// `strahl info ... | head -0`: whoever reads may have enough.
+#[test]
+fn a_reader_who_has_enough_is_no_error() {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_strahl"))
+        .arg("formats")
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("strahl runs");
+    drop(child.stdout.take());
+    let output = child.wait_with_output().expect("strahl ends");
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(said.is_empty() && output.status.success(), "{said}");
+}

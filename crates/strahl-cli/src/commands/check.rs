@@ -1,5 +1,6 @@
 use crate::args::CheckArgs;
 use crate::input::Input;
+use crate::output::say;
 use crate::report::{Failure, Reporter};
 use strahl::tracing::Prepared;
 
@@ -21,8 +22,8 @@ pub(crate) fn check(args: &CheckArgs) -> Result<(), Failure> {
         return Err(Failure::Reported);
     }
     match said {
-        0 => println!("{}: no problems", input.name()),
-        n => println!(
+        0 => say!("{}: no problems", input.name()),
+        n => say!(
             "{}: {}, with {n} warning{}",
             input.name(),
             if args.syntax {

@@ -1,5 +1,6 @@
 use crate::args::CompareArgs;
 use crate::input::{Input, render_options};
+use crate::output::say;
 use crate::report::{Failure, Reporter};
 use serde::Serialize;
 use std::time::Instant;
@@ -41,7 +42,7 @@ pub(crate) fn compare(args: &CompareArgs) -> Result<(), Failure> {
     let rows = Comparison::new(args, prepared).run(&kinds)?;
     if args.json {
         let text = serde_json::to_string_pretty(&rows).map_err(Failure::new)?;
-        println!("{text}");
+        say!("{text}");
     } else if args.csv {
         csv(&rows);
     } else {
@@ -288,7 +289,7 @@ fn squares(options: &RenderOptions, part: f64) -> Vec<Region> {
 }
 
 fn table(rows: &[Row]) {
-    println!(
+    say!(
         "{:34} {:>9} {:>11} {:>10} {:>11} {:>8} {:>9} {:>9} {:>9} {:>8}  sha256",
         "accelerator",
         "build s",
@@ -303,7 +304,7 @@ fn table(rows: &[Row]) {
     );
     for r in rows {
         let faster = r.faster_than_list.map_or("-".into(), |f| format!("{f:.1}"));
-        println!(
+        say!(
             "{:34} {:9.4} {:11} {:10} {:11} {:8.2} {:9.2} {:9.3} {:9.3} {:>8}  {}",
             r.accelerator,
             r.build_s,
@@ -320,25 +321,25 @@ fn table(rows: &[Row]) {
     }
     for r in rows {
         if let Some(part) = r.sampled {
-            println!(
+            say!(
                 "{}: measured on {:.3} % of the pixels, which are those of the other pictures",
                 r.accelerator,
                 part * 100.0
             );
         }
     }
-    println!(
+    say!(
         "steps (nodes or cells looked at) and tests of primitives are per ray, shadow rays included"
     );
 }
 
 fn csv(rows: &[Row]) {
-    println!(
+    say!(
         "accelerator,build_s,bytes,nodes,references,rays,hits,steps_per_ray,tests_per_ray,trace_s,rays_per_s,faster_than_list,sampled,sha256,equal"
     );
     let number = |x: Option<f64>| x.map_or(String::new(), |x| x.to_string());
     for r in rows {
-        println!(
+        say!(
             "\"{}\",{},{},{},{},{},{},{},{},{},{},{},{},{},{}",
             r.accelerator,
             r.build_s,

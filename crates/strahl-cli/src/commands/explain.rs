@@ -1,6 +1,7 @@
 use crate::args::{ExplainArgs, ExplainForm};
 use crate::explain::{dot, json, text};
 use crate::input::{Input, render_options};
+use crate::output::say;
 use crate::report::{Failure, Reporter};
 
 /// `strahl explain`: the ray tree of a pixel.
@@ -24,6 +25,6 @@ pub(crate) fn explain(args: &ExplainArgs) -> Result<(), Failure> {
         ExplainForm::Json => json(&scene, &tree, args.pixel),
         ExplainForm::Dot => dot(&scene, &tree, args.pixel),
     };
-    println!("{printed}");
+    say!("{printed}");
     Ok(())
 }

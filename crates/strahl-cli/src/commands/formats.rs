@@ -1,29 +1,30 @@
+use crate::output::say;
 use crate::report::Failure;
 use strahl::Format;
 use strahl::accel::AcceleratorKind;
 
 /// `strahl formats`: the tables of formats.
 pub(crate) fn formats() -> Result<(), Failure> {
-    println!("Scenes (each may be compressed with gzip):");
+    say!("Scenes (each may be compressed with gzip):");
     let files = strahl::formats::scene::formats().iter();
     let files = files.map(|f| (f.name, f.extensions, f.description));
     for (name, endings, description) in [Format::POV].into_iter().chain(files) {
-        println!("  {name:8} {:16} {description}", extensions(endings));
+        say!("  {name:8} {:16} {description}", extensions(endings));
     }
-    println!("Pictures:");
+    say!("Pictures:");
     for format in strahl::formats::image::formats() {
-        println!(
+        say!(
             "  {:8} {:16} {}",
             format.name,
             extensions(format.extensions),
             format.description
         );
     }
-    println!("Accelerators (NAME or NAME:PARAMETER=VALUE,...; the picture is the same):");
+    say!("Accelerators (NAME or NAME:PARAMETER=VALUE,...; the picture is the same):");
     for kind in AcceleratorKind::ALL {
-        println!("  {}", kind.name());
+        say!("  {}", kind.name());
         for parameter in kind.parameters() {
-            println!("    {:12} {}", parameter.to_string(), parameter.about);
+            say!("    {:12} {}", parameter.to_string(), parameter.about);
         }
     }
     Ok(())

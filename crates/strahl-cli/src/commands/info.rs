@@ -1,5 +1,6 @@
 use crate::args::SceneArgs;
 use crate::input::Input;
+use crate::output::say;
 use crate::report::{Failure, Reporter};
 use std::collections::BTreeMap;
 use strahl::accel::AcceleratorKind;
@@ -20,12 +21,12 @@ pub(crate) fn info(args: &SceneArgs) -> Result<(), Failure> {
     };
     let (own_camera, own_lights) = (description.camera.is_some(), !description.lights.is_empty());
     let scene = prepared.build(AcceleratorKind::default());
-    println!("scene       {}", args.scene.display());
+    say!("scene       {}", args.scene.display());
     objects(&scene);
     view(&scene, own_camera, own_lights);
     let s = scene.stats();
-    println!("materials   {}", s.materials);
-    println!(
+    say!("materials   {}", s.materials);
+    say!(
         "memory      geometry {}, {} {} ({} nodes, {} references)",
         bytes(s.geometry_bytes),
         scene.accelerator_name(),
@@ -51,19 +52,20 @@ fn objects(scene: &RenderScene) {
     } else {
         format!(": {}", kinds.join(", "))
     };
-    println!("objects     {}{kinds}", s.objects);
-    println!(
+    say!("objects     {}{kinds}", s.objects);
+    say!(
         "primitives  {} stored, {} with instances expanded",
-        s.primitives, s.elements
+        s.primitives,
+        s.elements
     );
     if s.instances > 0 {
-        println!("instances   {}", s.instances);
+        say!("instances   {}", s.instances);
     }
     let b = scene.bounds();
     if b.is_empty() {
-        println!("bounds      none");
+        say!("bounds      none");
     } else {
-        println!(
+        say!(
             "bounds      {} to {}, size {}",
             point(b.min),
             point(b.max),
@@ -80,13 +82,13 @@ fn view(scene: &RenderScene, own_camera: bool, own_lights: bool) {
     } else {
         " (chosen to frame the objects)"
     };
-    println!(
+    say!(
         "camera      {kind}, eye {}, direction {}{chosen}",
         point(c.eye),
         point(c.direction)
     );
     if let Some((w, h)) = scene.settings().size {
-        println!("size        {w}x{h}");
+        say!("size        {w}x{h}");
     }
     for light in scene.lights() {
         let place = match light.light.kind {
@@ -103,9 +105,11 @@ fn view(scene: &RenderScene, own_camera: bool, own_lights: bool) {
         };
         let c = light.light.color;
         let chosen = if own_lights { "" } else { " (added)" };
-        println!(
+        say!(
             "light       {place}, colour {} {} {}{chosen}",
-            c.r, c.g, c.b
+            c.r,
+            c.g,
+            c.b
         );
     }
 }

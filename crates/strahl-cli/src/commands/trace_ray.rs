@@ -1,5 +1,6 @@
 use crate::args::TraceRayArgs;
 use crate::input::{DEFAULT_SIZE, Input};
+use crate::output::say;
 use crate::report::{Failure, Reporter};
 use serde_json::{Value, json};
 use strahl::accel::{Exit, Place, Step};
@@ -34,23 +35,24 @@ pub(crate) fn trace_ray(args: &TraceRayArgs) -> Result<(), Failure> {
             "tests": way.stats.primitive_tests,
             "hit": way.hit.map(|h| json!({ "t": h.t, "element": h.id })),
         });
-        println!("{all:#}");
+        say!("{all:#}");
         return Ok(());
     }
-    println!("pixel {x},{y} of {width}x{height}, accelerator {kind}");
-    println!(
+    say!("pixel {x},{y} of {width}x{height}, accelerator {kind}");
+    say!(
         "ray   from {} along {}",
         show(ray.origin),
         show(ray.direction)
     );
     print_events(&scene, &way);
     match way.hit {
-        Some(hit) => println!("hit   t = {}", hit.t),
-        None => println!("hit   none"),
+        Some(hit) => say!("hit   t = {}", hit.t),
+        None => say!("hit   none"),
     }
-    println!(
+    say!(
         "cost  {} steps, {} tests",
-        way.stats.node_visits, way.stats.primitive_tests
+        way.stats.node_visits,
+        way.stats.primitive_tests
     );
     Ok(())
 }
@@ -63,7 +65,7 @@ fn print_events(scene: &RenderScene, way: &RayWalk) {
         match event {
             WalkEvent::Step(step) => {
                 level = step.level as usize;
-                println!("{indent}{}", describe(step));
+                say!("{indent}{}", describe(step));
             }
             WalkEvent::Test {
                 id,
@@ -77,14 +79,14 @@ fn print_events(scene: &RenderScene, way: &RayWalk) {
                     (true, Some(t)) => format!("hit at t = {t}"),
                     _ => "no closer hit".to_owned(),
                 };
-                println!(
+                say!(
                     "{indent}{}  test {} {name} (element {id}): {outcome}",
                     "  ".repeat(level),
                     object.kind
                 );
             }
             WalkEvent::Enter { id } => {
-                println!(
+                say!(
                     "{indent}{}  instance (elements from {id}):",
                     "  ".repeat(level)
                 );

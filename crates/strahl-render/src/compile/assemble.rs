@@ -13,7 +13,10 @@ pub(super) struct Assembled {
     pub(super) instances: Vec<InstanceUse>,
     pub(super) first_ids: Option<Vec<u64>>,
     pub(super) count: u64,
+    /// What is bounded of it: its size.
     pub(super) bounds: Aabb,
+    /// All of it.
+    reach: Aabb,
     pub(super) prim_bounds: Vec<Aabb>,
 }
 
@@ -136,7 +139,8 @@ fn number(group: FlatGroup, done: &[Assembled]) -> Result<Assembled, Vec<Diagnos
     let mut prim_bounds = Vec::with_capacity(prims.len());
     let mut first_ids = Vec::new();
     let mut simple = true;
-    let (mut count, mut bounds) = (0u64, Aabb::EMPTY);
+    let mut count = 0u64;
+    let (mut bounds, mut reach) = (Aabb::EMPTY, Aabb::EMPTY);
     for (index, prim) in prims.iter().enumerate() {
         let (elements, own) = match prim.kind {
             PrimKind::Triangle(mesh, triangle) => {
@@ -158,11 +162,15 @@ fn number(group: FlatGroup, done: &[Assembled]) -> Result<Assembled, Vec<Diagnos
             PrimKind::Instance(instance) => {
                 let instance = &instances[instance as usize];
                 let inner = &done[instance.group as usize];
+                let map = &instance.transform;
+                bounds = bounds.union(&map.bounds_to_world(&inner.bounds));
                 // An instance of an empty group has no elements and is never visited.
-                (
-                    inner.count,
-                    instance.transform.bounds_to_world(&inner.bounds),
-                )
+                let own = if inner.reach.is_bounded() || inner.reach.is_empty() {
+                    map.bounds_to_world(&inner.reach)
+                } else {
+                    Aabb::EVERYTHING
+                };
+                (inner.count, own)
             }
         };
         if elements != 1 && simple {
@@ -180,7 +188,10 @@ fn number(group: FlatGroup, done: &[Assembled]) -> Result<Assembled, Vec<Diagnos
                 )]);
             }
         };
-        bounds = bounds.union(&finite_part(&own));
+        if own.is_bounded() {
+            bounds = bounds.union(&own);
+        }
+        reach = reach.union(&own);
         prim_bounds.push(own);
     }
     let first_ids = (!simple).then_some(first_ids);
@@ -192,11 +203,7 @@ fn number(group: FlatGroup, done: &[Assembled]) -> Result<Assembled, Vec<Diagnos
         first_ids,
         count,
         bounds,
+        reach,
         prim_bounds,
     })
-}
-
-/// Unbounded things do not count for the size of a scene.
-fn finite_part(b: &Aabb) -> Aabb {
-    if b.is_bounded() { *b } else { Aabb::EMPTY }
 }
