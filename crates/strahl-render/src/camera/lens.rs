@@ -48,35 +48,28 @@ impl LensSampler {
         })
     }
 
-    /// The mean of the rays through the lens that meet where the ray through its centre meets the plane of focus.
+    /// The mean of the rays through the lens. Each meets the plane of focus where the ray through the lens's centre does that belongs to
+    /// a place up to half a pixel away along each axis: lenses are never sharper than pixels, as in POV-Ray (measured: the means over
+    /// pixels of what is in focus). `center` gives that ray, if the camera sees something there.
     pub(super) fn color(
         &self,
-        center: &Ray,
-        place: (f64, f64),
+        (x, y): (f64, f64),
+        center: impl Fn(f64, f64) -> Option<Ray>,
         mut trace: impl FnMut(&Ray) -> Color,
     ) -> Color {
-        let ahead = center.direction.dot(self.forward);
-        let before = (center.origin - self.eye).dot(self.forward);
-        let t = if self.flat && ahead != 0.0 {
-            (self.distance - before) / ahead
-        } else {
-            self.distance.abs()
-        };
-        let focus = center.at(t);
-        let shift = scramble(place);
+        let shift = scramble((x, y));
         let (mut sum, mut squares, mut count) = (Color::BLACK, Color::BLACK, 0u32);
         let (fewest, most) = self.samples;
         while count < most {
-            let (a, b) = sample(count, shift);
-            let (x, y) = match &self.bokeh {
+            let [a, b, c, d] = sample(count, shift);
+            let point = match &self.bokeh {
                 Some(bokeh) => bokeh.point(a, b),
                 None => disc(a, b),
             };
-            let origin = center.origin + self.side * x + self.above * y;
-            let direction = (focus - origin).normalize_or(center.direction);
-            // Behind the camera the plane of focus is looked away from.
-            let direction = if t < 0.0 { -direction } else { direction };
-            let color = trace(&Ray::new(origin, direction));
+            let color = match center(x + c - 0.5, y + d - 0.5) {
+                Some(center) => trace(&self.through(&center, point)),
+                None => Color::BLACK,
+            };
             sum += color;
             squares += color * color;
             count += 1;
@@ -85,6 +78,21 @@ impl LensSampler {
             }
         }
         sum / f64::from(count.max(1))
+    }
+
+    /// The ray through a point of the lens, which is 2 wide and high, that belongs to a ray through its centre.
+    fn through(&self, center: &Ray, (x, y): (f64, f64)) -> Ray {
+        let ahead = center.direction.dot(self.forward);
+        let before = (center.origin - self.eye).dot(self.forward);
+        let t = if self.flat && ahead != 0.0 {
+            (self.distance - before) / ahead
+        } else {
+            self.distance.abs()
+        };
+        let origin = center.origin + self.side * x + self.above * y;
+        let direction = (center.at(t) - origin).normalize_or(center.direction);
+        // Behind the camera the plane of focus is looked away from.
+        Ray::new(origin, if t < 0.0 { -direction } else { direction })
     }
 
     /// Whether the mean is known as well as asked for: its standard error, times the quantile of the confidence, is small.
@@ -112,8 +120,8 @@ fn quantile(confidence: f64) -> f64 {
     if x > 0.0 { x } else { 0.0 }
 }
 
-/// Two numbers in `0..1` that differ from place to place of the picture (the mixer of SplitMix64).
-fn scramble((x, y): (f64, f64)) -> (f64, f64) {
+/// Four numbers in `0..1` that differ from place to place of the picture (the mixer of SplitMix64).
+fn scramble((x, y): (f64, f64)) -> [f64; 4] {
     let mix = |mut z: u64| {
         z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
         z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
@@ -122,16 +130,26 @@ fn scramble((x, y): (f64, f64)) -> (f64, f64) {
     let first = mix(x.to_bits().wrapping_add(0x9e37_79b9_7f4a_7c15));
     let bits = mix(first ^ y.to_bits().rotate_left(32));
     let unit = |bits: u64| (bits >> 40) as f64 / (1u64 << 24) as f64;
-    (unit(bits), unit(bits << 24))
+    let more = mix(bits);
+    [unit(bits), unit(bits << 24), unit(more), unit(more << 24)]
 }
 
-/// Point `index` of an even sequence in the unit square (M. Roberts' R2 sequence, 2018), shifted.
-fn sample(index: u32, (a, b): (f64, f64)) -> (f64, f64) {
-    // One over the plastic number, and over its square.
-    const STEPS: (f64, f64) = (0.754_877_666_246_692_7, 0.569_840_290_998_053_3);
+/// Point `index` of an even sequence in the unit cube of four dimensions (M. Roberts' sequence, 2018), shifted.
+fn sample(index: u32, shift: [f64; 4]) -> [f64; 4] {
+    // One over the root of x^5 = x + 1, and over its powers.
+    const STEPS: [f64; 4] = [
+        0.856_674_883_854_502_9,
+        0.733_891_856_627_126_0,
+        0.628_706_721_037_808_7,
+        0.538_597_257_223_610_1,
+    ];
     let n = f64::from(index);
-    let wrap = |x: f64| x - x.floor();
-    (wrap(a + n * STEPS.0), wrap(b + n * STEPS.1))
+    let mut point = shift;
+    for (x, step) in point.iter_mut().zip(STEPS) {
+        let y = *x + n * step;
+        *x = y - y.floor();
+    }
+    point
 }
 
 /// A point of the unit disc, evenly spread.
@@ -158,7 +176,8 @@ mod tests {
         let meeting = DVec3::new(1.5, -1.0, 5.0);
         let mut widest: f64 = 0.0;
         let mut count = 0;
-        lens.color(&center, (0.5, 0.5), |ray| {
+        let same = |_, _| Some(center);
+        lens.color((0.5, 0.5), same, |ray| {
             assert!((ray.origin - DVec3::ZERO).length() <= 0.5 + 1e-12);
             let t = (5.0 - ray.origin.z) / ray.direction.z;
             assert!((ray.at(t) - meeting).length() < 1e-12);
@@ -171,12 +190,35 @@ mod tests {
 
     #[test]
     fn what_is_certain_takes_few_rays() {
+        let ray = Ray::new(DVec3::ZERO, DVec3::Z);
         let mut count = 0;
-        let color = blurred(1000).color(&Ray::new(DVec3::ZERO, DVec3::Z), (3.5, 2.5), |_| {
-            count += 1;
-            Color::gray(0.25)
-        });
+        let color = blurred(1000).color(
+            (3.5, 2.5),
+            |_, _| Some(ray),
+            |_| {
+                count += 1;
+                Color::gray(0.25)
+            },
+        );
         assert_eq!((color, count), (Color::gray(0.25), 7));
+    }
+
+    #[test]
+    fn rays_belong_to_all_of_a_pixel() {
+        let mut lens = blurred(400);
+        // Seven rays on one side would be enough otherwise.
+        lens.samples.0 = 400;
+        let at = |x: f64, _| Some(Ray::new(DVec3::X * x, DVec3::Z));
+        // What is in focus right of an edge through the pixel.
+        for edge in [3.2, 3.5, 3.9] {
+            let color = lens.color((3.5, 2.5), at, |ray| {
+                let x = ray.at((5.0 - ray.origin.z) / ray.direction.z).x;
+                Color::gray(f64::from(x > edge))
+            });
+            assert!((color.r - (4.0 - edge)).abs() < 0.01, "{edge}: {color:?}");
+        }
+        let blind = lens.color((3.5, 2.5), |_, _| None, |_| Color::WHITE);
+        assert_eq!(blind, Color::BLACK);
     }
 
     #[test]

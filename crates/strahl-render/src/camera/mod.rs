@@ -38,12 +38,9 @@ impl PrimaryRays {
         if let Projection::Mesh(mesh) = &self.camera.projection {
             return self.mesh_color(mesh, x, y, trace);
         }
-        let Some(ray) = self.ray(x, y) else {
-            return Color::BLACK;
-        };
         match &self.lens {
-            None => trace(&ray),
-            Some(lens) => lens.color(&ray, (x, y), trace),
+            Some(lens) => lens.color((x, y), |x, y| self.ray(x, y), trace),
+            None => self.ray(x, y).map_or(Color::BLACK, |ray| trace(&ray)),
         }
     }
 
