@@ -3,6 +3,7 @@
 mod common;
 
 use common::{errors, parse_with};
+use strahl_math::DVec3;
 use strahl_scene::{CsgOp, ObjectKind, Projection, Scene, WorkingSpace};
 use strahl_sdl::MemoryHost;
 use strahl_shade::{Color, LightKind};
@@ -113,4 +114,11 @@ fn a_light_that_points_at_itself_shines_everywhere() {
         LightKind::Point { .. }
     ));
     assert!(messages.contains("points at its own location"));
+}
+
+#[test]
+fn a_scene_without_camera_is_seen_from_the_origin() {
+    let camera = scene("sphere { 0, 1 }").0.camera.expect("a camera");
+    assert_eq!((camera.eye, camera.direction), (DVec3::ZERO, DVec3::Z));
+    assert_eq!((camera.right, camera.up), (DVec3::X * 0.665, DVec3::Y * 0.5));
 }

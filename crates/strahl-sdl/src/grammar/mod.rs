@@ -21,6 +21,7 @@ mod texture;
 mod thing;
 mod transform;
 
+pub(crate) use camera::default_camera;
 pub use defaults::State;
 pub(crate) use defaults::default_items;
 pub use entity::{Declared, Entity};

@@ -1,5 +1,6 @@
 use super::Parser;
 use crate::Parsed;
+use crate::grammar::default_camera;
 
 impl Parser<'_> {
     /// Declares the names that the caller gives.
@@ -27,6 +28,7 @@ impl Parser<'_> {
             // What is wrong is reported.
             let _ = self.link_instances();
         }
+        self.scene.camera.get_or_insert_with(default_camera);
         let (diagnostics, failed) = self.take_diagnostics();
         Parsed {
             scene: (!failed).then_some(self.scene),

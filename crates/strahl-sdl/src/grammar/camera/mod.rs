@@ -10,7 +10,7 @@ use effects::LensDraft;
 use mesh::MeshDraft;
 use std::sync::Arc;
 use strahl_math::{DVec3, Transform, det};
-use strahl_scene::{Camera, Projection};
+use strahl_scene::{Camera, Projection, Span};
 use strahl_shade::normal::PovNormal;
 
 /// `camera { ... }` as a statement: the last one counts.
@@ -18,6 +18,22 @@ pub(super) fn camera_statement(p: &mut Parser<'_>) -> PResult<()> {
     let camera = p.camera()?;
     p.scene.camera = Some(camera);
     Ok(())
+}
+
+/// The view of a scene without a `camera` statement: from the origin along z.
+pub(crate) fn default_camera() -> Camera {
+    let draft = Draft::new();
+    Camera {
+        eye: draft.location,
+        direction: draft.direction,
+        right: draft.right * 0.5,
+        up: draft.up * 0.5,
+        lens: None,
+        normal: None,
+        projection: draft.projection,
+        aspect: Some(1.0),
+        span: Span::NONE,
+    }
 }
 
 /// A camera being read. The order of items does not matter: the view is made of them at the closing brace, first the angle,
