@@ -547,3 +547,47 @@ fn mistakes_have_a_line_and_advice() {
     }
     assert!(!errors("sphere { 0, 1 pigment { color_map { [0 rgb 1] 3 } } }").is_empty());
 }
+
+/// A BMP of 2 x 1 texels with a palette whose entries are the same colour.
+fn picture_with_a_palette() -> Vec<u8> {
+    let mut bytes = b"BM".to_vec();
+    let (palette, row) = ([9u8, 9, 9, 0].repeat(2), [0u8, 1, 0, 0]);
+    let header = 14 + 40;
+    let offset = header + palette.len() as u32;
+    for number in [offset + row.len() as u32, 0, offset, 40, 2, 1] {
+        bytes.extend(number.to_le_bytes());
+    }
+    for number in [1u16, 8] {
+        bytes.extend(number.to_le_bytes());
+    }
+    for number in [0u32, 4, 0, 0, 2, 2] {
+        bytes.extend(number.to_le_bytes());
+    }
+    bytes.extend(palette);
+    bytes.extend(row);
+    bytes
+}
+
+#[test]
+fn material_maps_choose_by_the_index_in_a_palette() {
+    let mut host = MemoryHost::new().with_file("codes.bmp", picture_with_a_palette());
+    let text = "sphere { 0, 1 texture { material_map { bmp \"codes.bmp\"
+        texture { pigment { rgb x } } texture { pigment { rgb y } } } } }";
+    let parsed = parse_with(&mut host, text);
+    let scene = parsed.scene.expect("a scene");
+    let texture = scene.objects.0[0]
+        .material
+        .as_ref()
+        .unwrap()
+        .texture
+        .clone();
+    let texture = texture.unwrap().0;
+    let seen = |x: f64| {
+        let point = TexturePoint::in_space(DVec3::new(x, 0.5, 0.0));
+        let mut paint = strahl_shade::texture::TexturePaint::default();
+        texture.layers_at(&point, 1.0, &mut paint);
+        paint.layers[0].color.rgb
+    };
+    assert_eq!(seen(0.25), Color::new(1.0, 0.0, 0.0));
+    assert_eq!(seen(0.75), Color::new(0.0, 1.0, 0.0));
+}

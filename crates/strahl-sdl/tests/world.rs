@@ -120,5 +120,8 @@ fn a_light_that_points_at_itself_shines_everywhere() {
 fn a_scene_without_camera_is_seen_from_the_origin() {
     let camera = scene("sphere { 0, 1 }").0.camera.expect("a camera");
     assert_eq!((camera.eye, camera.direction), (DVec3::ZERO, DVec3::Z));
-    assert_eq!((camera.right, camera.up), (DVec3::X * 0.665, DVec3::Y * 0.5));
+    assert_eq!(
+        (camera.right, camera.up),
+        (DVec3::X * 0.665, DVec3::Y * 0.5)
+    );
 }

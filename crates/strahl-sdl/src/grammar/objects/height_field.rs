@@ -36,7 +36,7 @@ pub(super) fn height_field(p: &mut Parser<'_>) -> PResult<Entity> {
 impl Parser<'_> {
     /// `[type] "file" [gamma g] [premultiplied on]`
     fn height_file(&mut self) -> PResult<Heights> {
-        self.picture_type()?;
+        let kind = self.picture_type()?;
         let place = self.place();
         let name = self.file_name()?;
         let source = self.read_file(&name, place)?;
@@ -44,6 +44,9 @@ impl Parser<'_> {
             Ok(heights) => heights,
             Err(error) => return Err(self.fail(place, error.to_string())),
         };
+        if kind == Some(Word::Pot) {
+            heights = joined(&heights);
+        }
         loop {
             if self.accept_word(Word::Gamma)? {
                 let decode: Box<dyn Fn(f64) -> f64> = if self.accept_word(Word::Srgb)? {
@@ -87,8 +90,44 @@ impl Parser<'_> {
     }
 }
 
+/// Of a picture made by Fractint's continuous potential, whose right half has the lower bytes of the heights in the left half.
+fn joined(halves: &Heights) -> Heights {
+    let width = halves.width / 2;
+    let rows = halves.values.chunks(halves.width.max(1) as usize);
+    let values = rows.flat_map(|row| {
+        let (high, low) = row.split_at(width as usize);
+        high.iter().zip(low).map(|(high, low)| high | low >> 8)
+    });
+    Heights {
+        width,
+        values: values.collect(),
+        ..*halves
+    }
+}
+
 /// A height as 16 bits hold it; what does not fit loses its upper bits.
 fn in_16_bits(x: f64) -> u16 {
     // The first cast cuts off and takes NaN for 0.
     (x * 65535.0) as i64 as u16
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_right_half_of_a_potential_has_the_lower_bytes() {
+        let halves = Heights {
+            width: 4,
+            height: 2,
+            values: [1, 2, 30, 40, 3, 4, 50, 60]
+                .map(|index| index << 8)
+                .to_vec(),
+            gray: false,
+        };
+        let whole = joined(&halves);
+        let expected = [0x011e, 0x0228, 0x0332, 0x043c];
+        assert_eq!((whole.width, whole.height), (2, 2));
+        assert_eq!(whole.values, expected);
+    }
 }

@@ -4,7 +4,7 @@ use crate::keywords::Word;
 use crate::parser::{PResult, Parser, Place};
 use crate::token::{Kind, Token};
 use std::sync::Arc;
-use strahl_formats::image::{TextureUse, decode_texture};
+use strahl_formats::image::{TextureUse, decode_heights, decode_texture};
 use strahl_function::Cost;
 use strahl_math::{DVec3, det};
 use strahl_shade::image_map::{ImageMap, Interpolation, MapType};
@@ -38,26 +38,29 @@ const MAX_FUNCTION_TEXELS: u64 = 1 << 24;
 impl Parser<'_> {
     /// The braces of `image_map`; `None` for a picture that is not supported.
     pub(super) fn color_bitmap(&mut self) -> PResult<Option<Arc<ImageMap>>> {
-        self.bitmap(Gamma::Srgb, |_, _, _| Ok(false))
+        self.bitmap(|p| p.picture_file(Gamma::Srgb), |_, _, _| Ok(false))
     }
 
     /// The braces of `image_pattern`.
     pub(super) fn pattern_bitmap(&mut self) -> PResult<Arc<ImageMap>> {
-        let image = self.bitmap(Gamma::Linear, |_, _, _| Ok(false))?;
+        let image = self.bitmap(|p| p.picture_file(Gamma::Linear), |_, _, _| Ok(false))?;
         Ok(image.unwrap_or_else(|| Arc::new(ImageMap::new(blank()))))
     }
 
     /// The braces of `bump_map`, with the `bump_size` in them.
     pub(super) fn bump_bitmap(&mut self) -> PResult<(Option<Arc<ImageMap>>, Option<f64>)> {
         let mut size = None;
-        let image = self.bitmap(Gamma::Linear, |p, _, token| {
-            if !token.is(Word::BumpSize) {
-                return Ok(false);
-            }
-            p.take(token)?;
-            size = Some(p.float()?);
-            Ok(true)
-        })?;
+        let image = self.bitmap(
+            |p| p.picture_file(Gamma::Linear),
+            |p, _, token| {
+                if !token.is(Word::BumpSize) {
+                    return Ok(false);
+                }
+                p.take(token)?;
+                size = Some(p.float()?);
+                Ok(true)
+            },
+        )?;
         Ok((image, size))
     }
 
@@ -66,12 +69,37 @@ impl Parser<'_> {
         &mut self,
         mut other: impl FnMut(&mut Self, Token) -> PResult<bool>,
     ) -> PResult<Option<Arc<ImageMap>>> {
-        self.bitmap(Gamma::Linear, |p, _, token| other(p, token))
+        self.bitmap(Self::codes_file, |p, _, token| other(p, token))
+    }
+
+    /// `[type] "file"`: the code of each texel, as red. It is the index of pictures with a palette, red or the grey of others.
+    fn codes_file(&mut self) -> PResult<Option<Arc<TextureImage>>> {
+        self.picture_type()?;
+        let name = self.file_name()?;
+        let place = self.place();
+        let source = self.read_file(&name, place)?;
+        let codes = match decode_heights(&source.bytes, &name) {
+            Ok(codes) => codes,
+            Err(error) => return Err(self.fail(place, error.to_string())),
+        };
+        // Heights have the code in their upper byte.
+        let texels = codes.values.iter().map(|value| (value >> 8) as u8);
+        let image = TextureImage::try_new(
+            codes.width,
+            codes.height,
+            TexelChannels::Gray,
+            ColorSpace::Linear,
+            TexelData::U8(texels.collect()),
+        );
+        match image {
+            Ok(image) => Ok(Some(Arc::new(image))),
+            Err(error) => Err(self.fail(place, error.to_string())),
+        }
     }
 
     fn bitmap(
         &mut self,
-        gamma: Gamma,
+        picture_file: impl FnOnce(&mut Self) -> PResult<Option<Arc<TextureImage>>>,
         mut other: impl FnMut(&mut Self, &mut ImageMap, Token) -> PResult<bool>,
     ) -> PResult<Option<Arc<ImageMap>>> {
         self.braces(|p| {
@@ -80,7 +108,7 @@ impl Parser<'_> {
                 p.take(token)?;
                 Some(p.function_picture()?)
             } else {
-                p.picture_file(gamma)?
+                picture_file(p)?
             };
             let supported = image.is_some();
             let mut map = ImageMap::new(image.unwrap_or_else(blank));
