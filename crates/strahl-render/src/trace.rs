@@ -290,12 +290,10 @@ impl<'s> TreeTracer<'s> {
     /// Follows a primary ray with everything that comes of it.
     pub fn trace<O: TraceObserver>(&mut self, primary: &Ray, observer: &mut O) -> SampleResult {
         let shadow_before = self.counts.shadow;
-        let mut first = None;
-        let mut deepest = 1;
         self.media.clear();
         self.nodes.clear();
         self.waiting.clear();
-        self.waiting.push(Branch {
+        let mut branch = Branch {
             ray: *primary,
             origin: None,
             kind: RayKind::Primary,
@@ -307,16 +305,20 @@ impl<'s> TreeTracer<'s> {
             weight: 1.0,
             share: Share::ALL,
             media: MediaStack::VACUUM,
-        });
-        while let Some(branch) = self.waiting.pop() {
+        };
+        // Most trees are one ray: it does not go through the stack.
+        let (mut first, mut deepest) = (None, 1);
+        loop {
             let found = self.follow(&branch, observer);
-            deepest = if branch.depth > deepest {
-                branch.depth
-            } else {
-                deepest
-            };
             if branch.kind == RayKind::Primary {
                 first = found;
+            }
+            let Some(next) = self.waiting.pop() else {
+                break;
+            };
+            branch = next;
+            if branch.depth > deepest {
+                deepest = branch.depth;
             }
         }
         let color = self.combine(observer);
@@ -335,7 +337,7 @@ impl<'s> TreeTracer<'s> {
     fn combine<O: TraceObserver>(&mut self, observer: &mut O) -> Color {
         let fogged = self.tracer.scene.has_air();
         for index in (0..self.nodes.len()).rev() {
-            let node = self.nodes[index];
+            let node = &self.nodes[index];
             let sum = node.local + node.reflected + node.transmitted;
             let mut total = sum * node.attenuation;
             if fogged {
@@ -344,10 +346,15 @@ impl<'s> TreeTracer<'s> {
             if O::ACTIVE {
                 observer.combined(index as u32, node.local, total);
             }
+            let kind = node.kind;
+            if kind == RayKind::Primary {
+                return total;
+            }
             let taken = node.share.of(total);
-            let parent = &mut self.nodes[node.parent as usize];
-            match node.kind {
-                RayKind::Primary => return total,
+            let parent = node.parent as usize;
+            let parent = &mut self.nodes[parent];
+            match kind {
+                RayKind::Primary => {}
                 // Of both there may be several: layers mirror on their own, parts of the spectrum are bent on their own.
                 RayKind::Reflection => parent.reflected += taken,
                 RayKind::Refraction => parent.transmitted += taken,
