@@ -13,6 +13,12 @@
 //! bottom-up in the order reflection, transparency, so the sum does not depend on the order of tracing. Layers of a texture
 //! that mirror differently send a reflection ray each.
 
+mod outcome;
+mod settings;
+
+pub use outcome::{FirstHit, RayCounts, SampleResult};
+pub use settings::TraceSettings;
+
 use crate::hit::{Hit, Origin, RayClass};
 use crate::layers::{self, Mirror};
 use crate::media::{MediaArena, MediaStack};
@@ -22,157 +28,8 @@ use crate::scene::{RenderScene, Uv};
 use crate::shadow::ShadowRay;
 use crate::surface::{Split, Surface};
 use strahl_math::{DVec3, Interval, Ray};
-use strahl_scene::WorkingSpace;
 use strahl_shade::texture::TexturePaint;
-use strahl_shade::{Color, Light, MaterialId, ShadingModel, SpectralPart};
-
-/// How trees are grown.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct TraceSettings {
-    /// Deepest level of the tree; the primary ray is level 1.
-    pub max_depth: u32,
-    /// Branches of a smaller weight are not followed; 0 follows all.
-    pub adc_bailout: f64,
-    /// Shading model of materials that name none.
-    pub shading: ShadingModel,
-    /// Shading model of all materials, whatever they name.
-    pub force_shading: Option<ShadingModel>,
-    /// Most rays of one tree, shadow rays not counted: glass that reflects and refracts at every level grows trees of 2ⁿ
-    /// rays. Trees that were cut are counted in [`RayCounts::cut_trees`].
-    pub max_tree_rays: u32,
-    /// In which numbers the scene's colours are given.
-    pub working_space: WorkingSpace,
-    /// Whether a transparency ray that goes straight on counts as a level.
-    pub straight_counts: bool,
-    /// Whether shadow rays first look at what was last in the way of their light. The picture is the same; the published
-    /// costs of accelerators are without.
-    pub shadow_cache: bool,
-}
-
-impl TraceSettings {
-    /// Default of `max_tree_rays`.
-    pub const MAX_TREE_RAYS: u32 = 1 << 18;
-
-    /// What a scene asks for.
-    pub fn of(scene: &RenderScene) -> Self {
-        let s = scene.settings();
-        Self {
-            max_depth: s.max_depth,
-            adc_bailout: s.adc_bailout,
-            shading: s.shading,
-            force_shading: None,
-            max_tree_rays: Self::MAX_TREE_RAYS,
-            working_space: s.working_space,
-            straight_counts: s.straight_counts,
-            shadow_cache: true,
-        }
-    }
-
-    /// What is seen, in linear light; pictures of something other than light stay as they are.
-    fn decoded(&self, color: Color) -> Color {
-        match self.force_shading {
-            Some(model) if model.is_diagnostic() => color,
-            _ => self.working_space.decode(color),
-        }
-    }
-}
-
-/// Rays followed, by kind, and how many of them hit something.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct RayCounts {
-    /// Rays from the eye.
-    pub primary: u64,
-    /// Those that hit an object.
-    pub primary_hit: u64,
-    /// Rays to lights.
-    pub shadow: u64,
-    /// Those that met something before the light, transparent or not.
-    pub shadow_hit: u64,
-    /// Reflection rays.
-    pub reflection: u64,
-    /// Those that hit an object.
-    pub reflection_hit: u64,
-    /// Transparency rays.
-    pub refraction: u64,
-    /// Those that hit an object.
-    pub refraction_hit: u64,
-    /// Trees that reached the limit of rays.
-    pub cut_trees: u64,
-}
-
-impl RayCounts {
-    /// All rays.
-    pub fn total(&self) -> u64 {
-        self.primary + self.shadow + self.reflection + self.refraction
-    }
-
-    /// Those of them that met something.
-    pub fn hits(&self) -> u64 {
-        self.primary_hit + self.shadow_hit + self.reflection_hit + self.refraction_hit
-    }
-
-    fn count(&mut self, kind: RayKind, hit: bool) {
-        let (rays, hits) = match kind {
-            RayKind::Primary => (&mut self.primary, &mut self.primary_hit),
-            RayKind::Reflection => (&mut self.reflection, &mut self.reflection_hit),
-            RayKind::Refraction => (&mut self.refraction, &mut self.refraction_hit),
-        };
-        *rays += 1;
-        *hits += u64::from(hit);
-    }
-}
-
-impl std::ops::AddAssign for RayCounts {
-    fn add_assign(&mut self, o: Self) {
-        self.primary += o.primary;
-        self.primary_hit += o.primary_hit;
-        self.shadow += o.shadow;
-        self.shadow_hit += o.shadow_hit;
-        self.reflection += o.reflection;
-        self.reflection_hit += o.reflection_hit;
-        self.refraction += o.refraction;
-        self.refraction_hit += o.refraction_hit;
-        self.cut_trees += o.cut_trees;
-    }
-}
-
-/// What a primary ray hit.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FirstHit {
-    /// Distance from the ray's origin.
-    pub distance: f64,
-    /// World position.
-    pub position: DVec3,
-    /// Unit shading normal on the side of the viewer.
-    pub normal: DVec3,
-    /// Number of the object.
-    pub object: u32,
-    /// Number of the material.
-    pub material: MaterialId,
-}
-
-/// The outcome of one primary ray.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SampleResult {
-    /// Linear colour.
-    pub color: Color,
-    /// What was hit first.
-    pub first: Option<FirstHit>,
-    /// Deepest level of the tree reached.
-    pub depth: u32,
-    /// Rays of the tree, shadow rays included.
-    pub rays: u32,
-}
-
-impl SampleResult {
-    /// Where the camera sends no ray.
-    pub const NOTHING: Self = Self {
-        color: Color::BLACK,
-        first: None,
-        depth: 0,
-        rays: 0,
-    };
-}
+use strahl_shade::{Color, Light, ShadingModel, SpectralPart};
 
 /// Grows ray trees; owns the working memory of one thread.
 #[derive(Debug)]

@@ -1,0 +1,100 @@
+use crate::observer::RayKind;
+use strahl_math::DVec3;
+use strahl_shade::{Color, MaterialId};
+
+/// Rays followed, by kind, and how many of them hit something.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct RayCounts {
+    /// Rays from the eye.
+    pub primary: u64,
+    /// Those that hit an object.
+    pub primary_hit: u64,
+    /// Rays to lights.
+    pub shadow: u64,
+    /// Those that met something before the light, transparent or not.
+    pub shadow_hit: u64,
+    /// Reflection rays.
+    pub reflection: u64,
+    /// Those that hit an object.
+    pub reflection_hit: u64,
+    /// Transparency rays.
+    pub refraction: u64,
+    /// Those that hit an object.
+    pub refraction_hit: u64,
+    /// Trees that reached the limit of rays.
+    pub cut_trees: u64,
+}
+
+impl RayCounts {
+    /// All rays.
+    pub fn total(&self) -> u64 {
+        self.primary + self.shadow + self.reflection + self.refraction
+    }
+
+    /// Those of them that met something.
+    pub fn hits(&self) -> u64 {
+        self.primary_hit + self.shadow_hit + self.reflection_hit + self.refraction_hit
+    }
+
+    pub(super) fn count(&mut self, kind: RayKind, hit: bool) {
+        let (rays, hits) = match kind {
+            RayKind::Primary => (&mut self.primary, &mut self.primary_hit),
+            RayKind::Reflection => (&mut self.reflection, &mut self.reflection_hit),
+            RayKind::Refraction => (&mut self.refraction, &mut self.refraction_hit),
+        };
+        *rays += 1;
+        *hits += u64::from(hit);
+    }
+}
+
+impl std::ops::AddAssign for RayCounts {
+    fn add_assign(&mut self, o: Self) {
+        self.primary += o.primary;
+        self.primary_hit += o.primary_hit;
+        self.shadow += o.shadow;
+        self.shadow_hit += o.shadow_hit;
+        self.reflection += o.reflection;
+        self.reflection_hit += o.reflection_hit;
+        self.refraction += o.refraction;
+        self.refraction_hit += o.refraction_hit;
+        self.cut_trees += o.cut_trees;
+    }
+}
+
+/// What a primary ray hit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FirstHit {
+    /// Distance from the ray's origin.
+    pub distance: f64,
+    /// World position.
+    pub position: DVec3,
+    /// Unit shading normal on the side of the viewer.
+    pub normal: DVec3,
+    /// Number of the object.
+    pub object: u32,
+    /// Number of the material.
+    pub material: MaterialId,
+}
+
+/// The outcome of one primary ray.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SampleResult {
+    /// Linear colour.
+    pub color: Color,
+    /// What was hit first.
+    pub first: Option<FirstHit>,
+    /// Deepest level of the tree reached.
+    pub depth: u32,
+    /// Rays of the tree, shadow rays included.
+    pub rays: u32,
+}
+
+impl SampleResult {
+    /// Where the camera sends no ray.
+    pub const NOTHING: Self = Self {
+        color: Color::BLACK,
+        first: None,
+        depth: 0,
+        rays: 0,
+    };
+}
