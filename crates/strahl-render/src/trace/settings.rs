@@ -14,7 +14,7 @@ pub struct TraceSettings {
     /// Shading model of all materials, whatever they name.
     pub force_shading: Option<ShadingModel>,
     /// Most rays of one tree, shadow rays not counted: glass that reflects and refracts at every level grows trees of 2ⁿ
-    /// rays. Trees that were cut are counted in [`RayCounts::cut_trees`].
+    /// rays. Trees that were cut are counted in [`RayCounts::cut_trees`](super::RayCounts::cut_trees).
     pub max_tree_rays: u32,
     /// In which numbers the scene's colours are given.
     pub working_space: WorkingSpace,
