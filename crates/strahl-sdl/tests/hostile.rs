@@ -127,6 +127,16 @@ fn functions_that_would_take_for_ever() {
     assert!(limited(text, steps).contains("seems not to end"));
 }
 
+/// Found by fuzzing: `gray` counted as the beginning of a colour, and taken it was not.
+#[test]
+fn words_that_begin_nothing_are_no_endless_items() {
+    let found = errors("#declare P = pigment { bozo x 1, gray y 2 }");
+    assert!(
+        found[0].contains("expected a colour, found `gray`"),
+        "{found:?}"
+    );
+}
+
 #[test]
 fn deep_nesting() {
     for open in [

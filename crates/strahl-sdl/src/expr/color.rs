@@ -52,7 +52,10 @@ impl Parser<'_> {
             Some(Word::Srgbf) => self.rgb(4, true),
             Some(Word::Srgbt) => self.rgbt(true),
             Some(Word::Srgbft) => self.rgb(5, true),
-            _ => self.color_parts([0.0; 5]),
+            Some(Word::Red | Word::Green | Word::Blue | Word::Filter | Word::Transmit) => {
+                self.color_parts([0.0; 5])
+            }
+            _ => Err(self.unexpected(token, "a colour")),
         }
     }
 

@@ -102,7 +102,14 @@ impl Parser<'_> {
                 }
                 // Stray separators between items do no harm.
                 Kind::Comma | Kind::Semicolon => self.take(token)?,
-                _ => f(self, token)?,
+                _ => {
+                    let before = (self.steps, self.position);
+                    f(self, token)?;
+                    // Items that take nothing would be met for ever.
+                    if before == (self.steps, self.position) {
+                        return Err(self.unexpected(token, &format!("an item of {what}")));
+                    }
+                }
             }
         }
     }
