@@ -24,7 +24,8 @@ const USAGE: &str = "usage: cargo xtask COMMAND
                                   the manual's pictures and pages of scenes/{gallery,lecture,showcase};
                                   --check says what is missing
   generate sphereflake|tetra LEVELS OUTPUT.nff
-  generate stadium OUTPUT.nff     scenes of any size, and one that grids don't like
+  generate crystal SIDE OUTPUT.nff
+  generate stadium OUTPUT.nff     scenes of any size, one that grids like, and one that they don't
   growth OUTPUT.csv [--size WxH]  the cost of a ray for every accelerator, over scenes that grow
   plot-growth TABLE.csv FOLDER    the same as double logarithmic plots
   nff2pov SCENE OUTPUT.pov        the scene as POV-Ray takes it, doing the same work";
@@ -38,8 +39,8 @@ fn main() -> Result<()> {
         ["bench", "peers", rest @ ..] => peers::run(rest),
         ["compare-pov", rest @ ..] => compare_pov::run(rest),
         ["gallery", rest @ ..] => gallery::run(rest),
-        ["generate", what, levels, output] => {
-            Ok(std::fs::write(output, lab::generate(what, Some(levels))?)?)
+        ["generate", what, size, output] => {
+            Ok(std::fs::write(output, lab::generate(what, Some(size))?)?)
         }
         ["generate", what, output] => Ok(std::fs::write(output, lab::generate(what, None)?)?),
         ["growth", output] => lab::measure(Path::new(output), "256x256"),

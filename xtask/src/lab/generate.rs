@@ -5,15 +5,17 @@ use std::f64::consts::TAU;
 use std::fmt::Write;
 use strahl::math::DVec3;
 
-/// Writes a scene: `sphereflake LEVELS`, `tetra LEVELS` or `stadium`.
-pub(crate) fn generate(what: &str, levels: Option<&str>) -> Result<String> {
-    let levels = || -> Result<u32> {
-        let levels = levels.context("how many levels?")?.parse()?;
-        if levels > 12 {
-            bail!("{levels} levels are more than any memory holds");
+/// Writes a scene: `sphereflake LEVELS`, `tetra LEVELS`, `crystal SIDE` or `stadium`.
+pub(crate) fn generate(what: &str, size: Option<&str>) -> Result<String> {
+    let size_up_to = |most: u32| -> Result<u32> {
+        let size = size.with_context(|| format!("{what} of which size?"))?;
+        let size = size.parse()?;
+        if size > most {
+            bail!("{what} of size {size} is more than memory holds; up to {most} there are");
         }
-        Ok(levels)
+        Ok(size)
     };
+    let levels = || size_up_to(12);
     let mut scene = Scene::default();
     match what {
         "sphereflake" => {
@@ -31,6 +33,14 @@ pub(crate) fn generate(what: &str, levels: Option<&str>) -> Result<String> {
             let corners = corners.map(|c| DVec3::from(c.map(f64::from)));
             scene.tetra(corners, levels()?);
         }
+        "crystal" => {
+            let side = size_up_to(400)?;
+            let extent = f64::from(side);
+            scene.view([1.9, 1.3, 1.1].map(|x| x * extent), [0.0, 0.0, 0.0], 40.0);
+            scene.lights(&[[3.0, -1.0, 4.0].map(|x| x * extent)]);
+            scene.fill("0.9 0.7 0.4 0.8 0 0 0 0");
+            scene.crystal(side);
+        }
         "stadium" => {
             scene.view([0.0, -3.2, 1.4], [0.0, 0.0, 0.5], 40.0);
             scene.lights(&[[30.0, -80.0, 120.0], [-90.0, 20.0, 60.0]]);
@@ -41,7 +51,7 @@ pub(crate) fn generate(what: &str, levels: Option<&str>) -> Result<String> {
             scene.fill("0.9 0.6 0.3 0.7 0.3 20 0 0");
             scene.knot();
         }
-        other => bail!("unknown scene `{other}`; there are: sphereflake, tetra, stadium"),
+        other => bail!("unknown scene `{other}`; there are: sphereflake, tetra, crystal, stadium"),
     }
     Ok(scene.0)
 }
@@ -106,6 +116,19 @@ impl Scene {
         }
         for corner in corners {
             self.tetra(corners.map(|c| (c + corner) * 0.5), levels - 1);
+        }
+    }
+
+    /// Equal spheres at equal distances: as evenly filled as a scene can be.
+    fn crystal(&mut self, side: u32) {
+        let middle = (f64::from(side) - 1.0) / 2.0;
+        let along = |i: u32| f64::from(i) - middle;
+        for x in 0..side {
+            for y in 0..side {
+                for z in 0..side {
+                    self.point_and("s ", DVec3::new(along(x), along(y), along(z)), 0.35);
+                }
+            }
         }
     }
 
