@@ -2,6 +2,7 @@
 //! scene.pov`. `cargo xtask bench parse` compares these numbers with POV-Ray's.
 
 use std::io::Write;
+use std::path::Path;
 use std::time::Instant;
 use strahl_sdl::{FolderHost, Options, Source, parse};
 
@@ -24,10 +25,13 @@ fn main() -> std::io::Result<()> {
     let mut out = std::io::stdout().lock();
     for name in std::env::args().skip(1) {
         let (started, cpu) = (Instant::now(), cpu_seconds());
-        let bytes = std::fs::read(&name)?;
-        let size = bytes.len();
+        let source = match Source::large(Path::new(&name))? {
+            Some(source) => source,
+            None => Source::new(&name, std::fs::read(&name)?),
+        };
+        let size = source.length();
         let mut host = FolderHost::new([]);
-        let parsed = parse(Source::new(&name, bytes), &Options::default(), &mut host);
+        let parsed = parse(source, &Options::default(), &mut host);
         let wall = started.elapsed().as_secs_f64();
         let cpu = cpu_seconds().zip(cpu).map(|(now, then)| now - then);
         let objects = parsed.scene.as_ref().map_or(0, |s| s.objects.0.len());

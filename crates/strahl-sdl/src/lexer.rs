@@ -9,6 +9,7 @@
 //! stay in the processor's cache.
 
 use crate::keywords::{Word, WordKind};
+use crate::source::Part;
 use crate::symbol::{Symbol, Symbols};
 use crate::token::{Directive, Kind, Token};
 use std::sync::Arc;
@@ -32,14 +33,16 @@ pub(crate) struct Lexed {
     pub(crate) problems: Vec<LexProblem>,
     /// Byte offset at which the next chunk begins; `None` at the end of the file.
     pub(crate) rest: Option<usize>,
+    /// Whether the part of the text has ended before the chunk, so that this is good for nothing.
+    pub(crate) is_cut: bool,
 }
 
-/// Cuts a text into tokens, from a byte offset up to the first good place behind `wanted` tokens. The text must be shorter
-/// than 4 GiB (the source loader sees to it).
+/// Cuts a part of a text into tokens, from a byte offset (of the file) up to the first good place behind `wanted` tokens. The text
+/// must be shorter than 4 GiB (the source loader sees to it).
 ///
 /// The vectors of `used` are used again.
 pub(crate) fn lex(
-    bytes: &[u8],
+    part: &Part<'_>,
     begin: usize,
     wanted: usize,
     symbols: &mut Symbols,
@@ -50,9 +53,12 @@ pub(crate) fn lex(
     out.strings.clear();
     out.problems.clear();
     out.rest = None;
+    out.is_cut = false;
     let mut lexer = Lexer {
-        bytes,
-        position: begin,
+        bytes: part.bytes,
+        base: part.begin,
+        is_last: part.is_last,
+        position: begin.saturating_sub(part.begin),
         wanted,
         brackets: 0,
         symbols,
@@ -60,16 +66,15 @@ pub(crate) fn lex(
         out,
     };
     // A byte order mark is no character of the scene.
-    if begin == 0 && bytes.starts_with(b"\xef\xbb\xbf") {
+    if begin == 0 && part.bytes.starts_with(b"\xef\xbb\xbf") {
         lexer.position = 3;
     }
     lexer.run();
     lexer.out
 }
 
-/// The length in bytes of the token that starts at `start`, for underlining it.
-pub(crate) fn token_length(bytes: &[u8], start: usize) -> usize {
-    let rest = bytes.get(start..).unwrap_or(&[]);
+/// The length in bytes of the token that `rest` begins with, for underlining it.
+pub(crate) fn token_length(rest: &[u8]) -> usize {
     let count = |f: fn(&u8) -> bool| rest.iter().take_while(|b| f(b)).count();
     match rest.first() {
         None => 1,
@@ -94,6 +99,11 @@ pub(crate) const UNCLOSED: &str = "every `#if`, `#ifdef`, `#ifndef`, `#while`, `
 
 struct Lexer<'a> {
     bytes: &'a [u8],
+    /// The offset in the file of the first of the bytes.
+    base: usize,
+    /// Whether the file ends with the bytes.
+    is_last: bool,
+    /// Index of the next of the bytes.
     position: usize,
     /// How many tokens the chunk should have.
     wanted: usize,
@@ -172,7 +182,7 @@ impl<'a> Lexer<'a> {
     fn push(&mut self, kind: Kind, start: usize, bits: u64) {
         self.out.tokens.push(Token {
             kind,
-            start: start as u32,
+            start: (self.base + start) as u32,
             bits,
         });
     }
@@ -181,7 +191,7 @@ impl<'a> Lexer<'a> {
         // A binary file would give one problem per byte.
         if self.out.problems.len() < 20 {
             self.out.problems.push(LexProblem {
-                start: start as u32,
+                start: (self.base + start) as u32,
                 message: message.into(),
                 hint,
             });
@@ -225,12 +235,16 @@ impl<'a> Lexer<'a> {
                 _ => self.punctuation(byte),
             }
         }
+        if !self.is_last {
+            self.out.is_cut = true;
+            return;
+        }
         let end = self.bytes.len();
         self.push(Kind::End, end, 0);
         if let Some(token) = self.open.first().map(|index| self.out.tokens[*index]) {
             let word = token.directive().map_or("", Directive::text);
             let message = format!("`#{word}` has no `#end`");
-            self.problem(token.start as usize, message, UNCLOSED);
+            self.problem(token.start as usize - self.base, message, UNCLOSED);
         }
     }
 
@@ -253,7 +267,7 @@ impl<'a> Lexer<'a> {
     /// Ends the chunk before the token at `start`.
     fn end_chunk(&mut self, start: usize) {
         self.push(Kind::End, start, 0);
-        self.out.rest = Some(start);
+        self.out.rest = Some(self.base + start);
     }
 
     fn punctuation(&mut self, byte: u8) {
@@ -426,7 +440,7 @@ impl<'a> Lexer<'a> {
         };
         let directive = Directive::from_text(std::str::from_utf8(name).unwrap_or(""));
         let index = self.out.tokens.len();
-        let mut token = Token::new_directive(start as u32, directive);
+        let mut token = Token::new_directive((self.base + start) as u32, directive);
         if directive.opens() {
             self.open.push(index);
         } else if directive.divides() || directive == Directive::End {
@@ -614,7 +628,12 @@ mod tests {
     use super::*;
 
     fn whole(bytes: &[u8]) -> Lexed {
-        lex(bytes, 0, usize::MAX, &mut Symbols::new(), Lexed::default())
+        let part = Part {
+            bytes,
+            begin: 0,
+            is_last: true,
+        };
+        lex(&part, 0, usize::MAX, &mut Symbols::new(), Lexed::default())
     }
 
     fn kinds(text: &str) -> Vec<Kind> {
@@ -728,11 +747,12 @@ mod tests {
     #[test]
     fn lengths_for_carets() {
         let text = b"sphere <= 1.5e3 # include \"ab\"";
-        assert_eq!(token_length(text, 0), 6);
-        assert_eq!(token_length(text, 7), 2);
-        assert_eq!(token_length(text, 10), 5);
-        assert_eq!(token_length(text, 16), 9);
-        assert_eq!(token_length(text, 26), 4);
-        assert_eq!(token_length(text, 999), 1);
+        let length = |start: usize| token_length(text.get(start..).unwrap_or(&[]));
+        assert_eq!(length(0), 6);
+        assert_eq!(length(7), 2);
+        assert_eq!(length(10), 5);
+        assert_eq!(length(16), 9);
+        assert_eq!(length(26), 4);
+        assert_eq!(length(999), 1);
     }
 }

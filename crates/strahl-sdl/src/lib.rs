@@ -76,7 +76,7 @@ pub struct Parsed {
 ///
 /// Never panics and always ends, whatever the text: [`Options::limits`](Options) bound what it may use.
 pub fn parse(source: Source, options: &Options, host: &mut dyn Host) -> Parsed {
-    if source.bytes.len() >= u32::MAX as usize {
+    if source.length() >= u32::MAX as usize {
         let message = format!("`{}` is too large: a file may have 4 GiB", source.name);
         return Parsed {
             scene: None,

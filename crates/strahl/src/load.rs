@@ -108,7 +108,7 @@ impl fmt::Debug for LoadOptions {
 }
 
 impl LoadOptions {
-    fn parse(self, name: &str, bytes: Vec<u8>) -> Loaded {
+    fn parse(self, source: Source) -> Loaded {
         let mut host = FolderHost::new(self.library)
             .with_fonts(self.fonts)
             .with_installed(self.installed);
@@ -118,7 +118,7 @@ impl LoadOptions {
         if let Some(f) = self.on_message {
             host = host.on_message(f);
         }
-        let parsed = parse(Source::new(name, bytes), &self.sdl, &mut host);
+        let parsed = parse(source, &self.sdl, &mut host);
         Loaded {
             scene: parsed.scene,
             diagnostics: parsed.diagnostics,
@@ -174,8 +174,8 @@ pub fn load_path(path: &Path, options: LoadOptions) -> Loaded {
         );
     }
     match options.format.or_else(|| Format::of_path(path)) {
-        Some(Format::Pov) => match read_decompressed(path) {
-            Ok(bytes) => options.parse(&path.display().to_string(), bytes),
+        Some(Format::Pov) => match open(path) {
+            Ok(source) => options.parse(source),
             Err(problem) => failed(*problem),
         },
         Some(Format::File(format)) => scene::load_path(path, Some(format)),
@@ -183,10 +183,22 @@ pub fn load_path(path: &Path, options: LoadOptions) -> Loaded {
     }
 }
 
+/// The text of a scene: large ones are read while they are parsed, unless they are compressed.
+fn open(path: &Path) -> Result<Source, Box<Diagnostic>> {
+    const GZIP: &[u8] = &[0x1f, 0x8b];
+    if let Ok(Some(mut source)) = Source::large(path)
+        && !source.starts_with(GZIP)
+    {
+        return Ok(source);
+    }
+    let bytes = read_decompressed(path)?;
+    Ok(Source::new(path.display().to_string(), bytes))
+}
+
 /// Loads a scene from memory; `name` stands for the file in messages.
 pub fn load_bytes(bytes: Vec<u8>, name: &str, format: Format, options: LoadOptions) -> Loaded {
     match format {
-        Format::Pov => options.parse(name, bytes),
+        Format::Pov => options.parse(Source::new(name, bytes)),
         Format::File(format) => scene::load_bytes(bytes, name, format, None),
     }
 }

@@ -21,6 +21,13 @@ pub(crate) enum Entry {
     Macro(Symbol),
 }
 
+/// A file that is no text of the scene.
+#[derive(Debug)]
+pub(crate) struct Data {
+    pub(crate) name: String,
+    pub(crate) bytes: Vec<u8>,
+}
+
 /// Something that tokens are read from.
 #[derive(Debug)]
 pub(super) struct Frame {
@@ -44,6 +51,7 @@ impl<'h> Parser<'h> {
         let text = Arc::new(SourceFile::new(id, source));
         let file = Arc::new(Chunk::first(text, Chunk::TOKENS, &mut symbols));
         let problems = file.lexed.problems.clone();
+        let read_bytes = file.source.length() as u64;
         let mut parser = Self {
             options,
             host,
@@ -70,7 +78,7 @@ impl<'h> Parser<'h> {
             last_step: options.limits.steps.min(options.limits.idle_steps),
             function_operations: 0,
             nesting: 0,
-            read_bytes: file.source.bytes.len() as u64,
+            read_bytes,
             message_bytes: 0,
             diagnostics: vec![],
             errors: 0,
@@ -287,10 +295,7 @@ impl<'h> Parser<'h> {
             Ok(source) => source,
             Err(error) => return Err(self.unreadable(error, from)),
         };
-        let known = self
-            .sources
-            .iter()
-            .find(|f| f.source.name == source.name && f.source.bytes == source.bytes);
+        let known = self.sources.iter().find(|f| f.source.is(&source));
         if let Some(known) = known {
             if known.lexed.rest.is_none() || tokens == Chunk::TOKENS {
                 return Ok(Arc::clone(known));
@@ -298,9 +303,9 @@ impl<'h> Parser<'h> {
             let text = Arc::clone(&known.source);
             return Ok(Arc::new(Chunk::first(text, tokens, &mut self.symbols)));
         }
-        self.read_bytes = self.read_bytes.saturating_add(source.bytes.len() as u64);
+        self.read_bytes = self.read_bytes.saturating_add(source.length() as u64);
         let limit = self.options.limits.read_bytes;
-        if source.bytes.len() >= u32::MAX as usize || self.read_bytes > limit {
+        if source.length() >= u32::MAX as usize || self.read_bytes > limit {
             let message = format!(
                 "`{}` is too large: all files of a scene may have {limit} bytes, one file 4 GiB",
                 source.name
@@ -324,9 +329,9 @@ impl<'h> Parser<'h> {
     }
 
     /// The bytes of a file that is no text of the scene, such as a picture.
-    pub(crate) fn read_file(&mut self, name: &str, from: Place) -> PResult<Source> {
+    pub(crate) fn read_file(&mut self, name: &str, from: Place) -> PResult<Data> {
         match self.look_for_file(name, from)? {
-            Ok(source) => Ok(source),
+            Ok(data) => Ok(data),
             Err(error) => Err(self.unreadable(error, from)),
         }
     }
@@ -336,7 +341,7 @@ impl<'h> Parser<'h> {
         &mut self,
         name: &str,
         from: Place,
-    ) -> PResult<Result<Source, HostError>> {
+    ) -> PResult<Result<Data, HostError>> {
         match self.find_file(name, from, false) {
             Ok(source) => self.counted(source, from).map(Ok),
             Err(error) => Ok(Err(error)),
@@ -344,7 +349,7 @@ impl<'h> Parser<'h> {
     }
 
     /// The bytes of a font of the system, by the name of its file.
-    pub(crate) fn system_font(&mut self, file: &str, from: Place) -> PResult<Option<Source>> {
+    pub(crate) fn system_font(&mut self, file: &str, from: Place) -> PResult<Option<Data>> {
         match self.host.load_font(file) {
             Ok(Some(source)) => self.counted(source, from).map(Some),
             Ok(None) => Ok(None),
@@ -352,10 +357,10 @@ impl<'h> Parser<'h> {
         }
     }
 
-    /// Counts the bytes of a file to those read.
-    fn counted(&mut self, source: Source, from: Place) -> PResult<Source> {
-        let name = &source.name;
-        self.read_bytes = self.read_bytes.saturating_add(source.bytes.len() as u64);
+    /// The bytes of a file, counted to those read.
+    fn counted(&mut self, source: Source, from: Place) -> PResult<Data> {
+        let name = source.name.clone();
+        self.read_bytes = self.read_bytes.saturating_add(source.length() as u64);
         let limit = self.options.limits.read_bytes;
         if self.read_bytes > limit {
             let message = format!("`{name}` is too large: all files may have {limit} bytes");
@@ -365,7 +370,13 @@ impl<'h> Parser<'h> {
                 "raise the limit: `--limit read_bytes=N`",
             ));
         }
-        Ok(source)
+        match source.into_bytes() {
+            Ok(bytes) => Ok(Data { name, bytes }),
+            Err(error) => {
+                let message = error.to_string();
+                Err(self.unreadable(HostError::Io { name, message }, from))
+            }
+        }
     }
 
     fn unreadable(&mut self, error: HostError, from: Place) -> Failed {

@@ -100,8 +100,8 @@ impl FolderHost {
         for name in &names {
             for folder in folders {
                 let path = folder.join(name);
-                if let Some(bytes) = self.read(&path)? {
-                    return Ok(Source::new(path.display().to_string(), bytes));
+                if let Some(source) = self.read(&path)? {
+                    return Ok(source);
                 }
             }
         }
@@ -115,7 +115,7 @@ impl FolderHost {
         })
     }
 
-    fn read(&self, path: &Path) -> Result<Option<Vec<u8>>, HostError> {
+    fn read(&self, path: &Path) -> Result<Option<Source>, HostError> {
         let shown = path.display().to_string();
         let io = |error: std::io::Error| HostError::Io {
             name: shown.clone(),
@@ -142,13 +142,16 @@ impl FolderHost {
         if metadata.len() > limit {
             return Err(HostError::TooLarge { name: shown, limit });
         }
+        if let Some(source) = Source::large(path).map_err(io)? {
+            return Ok(Some(source));
+        }
         let file = fs::File::open(path).map_err(io)?;
         let mut bytes = Vec::with_capacity(metadata.len() as usize);
         file.take(limit + 1).read_to_end(&mut bytes).map_err(io)?;
         if bytes.len() as u64 > limit {
             return Err(HostError::TooLarge { name: shown, limit });
         }
-        Ok(Some(bytes))
+        Ok(Some(Source::new(shown, bytes)))
     }
 }
 
@@ -167,8 +170,7 @@ impl Host for FolderHost {
         let Some(path) = self.fonts.find(file) else {
             return Ok(None);
         };
-        let bytes = self.read(&path)?;
-        Ok(bytes.map(|bytes| Source::new(path.display().to_string(), bytes)))
+        self.read(&path)
     }
 
     fn create(&mut self, name: &str, append: bool) -> Result<Box<dyn Write + Send>, HostError> {
@@ -240,8 +242,11 @@ mod tests {
         }
         let mut host = FolderHost::new([root.path().join("b")]);
         let from = root.path().join("a/scene.pov").display().to_string();
-        assert_eq!(host.load("x.inc", &from).unwrap().bytes, b"1");
-        assert_eq!(host.load("x.inc", "").unwrap().bytes, b"2");
+        assert_eq!(
+            host.load("x.inc", &from).unwrap().into_bytes().unwrap(),
+            b"1"
+        );
+        assert_eq!(host.load("x.inc", "").unwrap().into_bytes().unwrap(), b"2");
         let missing = host.load("y.inc", &from).unwrap_err();
         assert!(matches!(missing, HostError::NotFound { searched, .. } if searched.len() == 2));
         let mut small = FolderHost::new([root.path().join("b")]).limit_file_size(0);
@@ -257,7 +262,10 @@ mod tests {
         fs::write(root.path().join("x.inc"), "1").unwrap();
         let mut host = FolderHost::new([]).with_installed([root.path().to_owned()]);
         assert!(host.load("x.inc", "").is_err());
-        assert_eq!(host.load_installed("x.inc").unwrap().bytes, b"1");
+        assert_eq!(
+            host.load_installed("x.inc").unwrap().into_bytes().unwrap(),
+            b"1"
+        );
         assert!(FolderHost::new([]).load_installed("x.inc").is_err());
     }
 

@@ -39,8 +39,8 @@ impl Parser<'_> {
         let kind = self.picture_type()?;
         let place = self.place();
         let name = self.file_name()?;
-        let source = self.read_file(&name, place)?;
-        let mut heights = match decode_heights(&source.bytes, &name) {
+        let file = self.read_file(&name, place)?;
+        let mut heights = match decode_heights(&file.bytes, &name) {
             Ok(heights) => heights,
             Err(error) => return Err(self.fail(place, error.to_string())),
         };

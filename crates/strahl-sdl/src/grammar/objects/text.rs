@@ -1,7 +1,7 @@
 use crate::grammar::Entity;
 use crate::keywords::Word;
-use crate::parser::{PResult, Parser, Place};
-use crate::source::{HostError, Source};
+use crate::parser::{Data, PResult, Parser, Place};
+use crate::source::HostError;
 use strahl_formats::font::{Font, substitutes};
 use strahl_geometry::{GeometryError, Glyph};
 use strahl_math::DVec3;
@@ -88,11 +88,10 @@ impl Parser<'_> {
         if let Some(known) = self.state.fonts.iter().position(|f| f.name == name) {
             return Ok(known);
         }
-        let source = self.font_file(name, place)?;
-        let file = source.name.clone();
-        let font = match Font::parse(source.bytes) {
+        let file = self.font_file(name, place)?;
+        let font = match Font::parse(file.bytes) {
             Ok(font) => font,
-            Err(error) => return Err(self.fail(place, format!("`{file}`: {error}"))),
+            Err(error) => return Err(self.fail(place, format!("`{}`: {error}", file.name))),
         };
         self.state.fonts.push(KnownFont {
             name: name.to_owned(),
@@ -102,7 +101,7 @@ impl Parser<'_> {
     }
 
     /// Looks for a font: by its name where all files are searched, then among the fonts of the system, then for one like it.
-    fn font_file(&mut self, name: &str, place: Place) -> PResult<Source> {
+    fn font_file(&mut self, name: &str, place: Place) -> PResult<Data> {
         let file = name.rsplit(['/', '\\']).next().unwrap_or(name);
         // The ending may be left out.
         let mut endings = vec![""];
@@ -112,24 +111,24 @@ impl Parser<'_> {
         let mut searched = vec![];
         for ending in &endings {
             match self.look_for_file(&format!("{name}{ending}"), place)? {
-                Ok(source) => return Ok(source),
+                Ok(found) => return Ok(found),
                 Err(HostError::NotFound { searched: here, .. }) => searched = here,
                 Err(error) => return Err(self.fail(place, error.to_string())),
             }
         }
         for ending in &endings {
-            if let Some(source) = self.system_font(&format!("{file}{ending}"), place)? {
-                return Ok(source);
+            if let Some(found) = self.system_font(&format!("{file}{ending}"), place)? {
+                return Ok(found);
             }
         }
         for other in substitutes(file) {
-            if let Some(source) = self.system_font(other, place)? {
+            if let Some(found) = self.system_font(other, place)? {
                 self.warn_hint(
                     place,
                     format!("the font `{name}` was not found; {other} stands in for it"),
                     "letters will look and be spaced differently; name its folder with `--library-path`",
                 );
-                return Ok(source);
+                return Ok(found);
             }
         }
         let searched = searched.join(", ");

@@ -77,8 +77,8 @@ impl Parser<'_> {
         self.picture_type()?;
         let name = self.file_name()?;
         let place = self.place();
-        let source = self.read_file(&name, place)?;
-        let codes = match decode_heights(&source.bytes, &name) {
+        let file = self.read_file(&name, place)?;
+        let codes = match decode_heights(&file.bytes, &name) {
             Ok(codes) => codes,
             Err(error) => return Err(self.fail(place, error.to_string())),
         };
@@ -199,13 +199,13 @@ impl Parser<'_> {
         let image = match known.next() {
             Some(known) => Arc::clone(&known.image),
             None => {
-                let source = self.read_file(name, place)?;
+                let file = self.read_file(name, place)?;
                 let texture_use = if linear {
                     TextureUse::Data
                 } else {
                     TextureUse::Color
                 };
-                let image = match decode_texture(&source.bytes, name, texture_use) {
+                let image = match decode_texture(&file.bytes, name, texture_use) {
                     Ok(image) => Arc::new(image),
                     Err(error) => return Err(self.fail(place, error.to_string())),
                 };

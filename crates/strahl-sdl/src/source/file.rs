@@ -1,0 +1,335 @@
+use super::{Source, Text};
+use crate::lexer::{self, LexProblem, Lexed};
+use crate::symbol::Symbols;
+use crate::token::Token;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use strahl_scene::{Diagnostic, FileId, SourceLine, Span};
+
+/// Lines up to so many bytes are shown whole, and columns in them are counted in characters: exporters write whole scenes into
+/// one line.
+const LONG: usize = 4096;
+
+/// A file that is being parsed.
+#[derive(Debug)]
+pub(crate) struct SourceFile {
+    pub(crate) id: FileId,
+    pub(crate) name: String,
+    reader: Mutex<Reader>,
+}
+
+/// The text of a file with its lines.
+#[derive(Debug)]
+struct Reader {
+    text: Text,
+    /// Where the lines begin; made when first needed.
+    lines: Option<Vec<u32>>,
+    /// The place looked up last.
+    last: Line,
+}
+
+/// The line that a place stands in.
+#[derive(Clone, Copy, Debug, Default)]
+struct Line {
+    /// The place.
+    at: u32,
+    /// How many lines end before it.
+    ends: u32,
+    /// Where its line begins.
+    begin: u32,
+}
+
+impl SourceFile {
+    /// `source` must be shorter than 4 GiB.
+    pub(crate) fn new(id: FileId, source: Source) -> Self {
+        Self {
+            id,
+            name: source.name,
+            reader: Mutex::new(Reader {
+                text: source.text,
+                lines: None,
+                last: Line::default(),
+            }),
+        }
+    }
+
+    fn reader(&self) -> MutexGuard<'_, Reader> {
+        self.reader.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Length in bytes.
+    pub(crate) fn length(&self) -> usize {
+        self.reader().text.len()
+    }
+
+    /// Whether this is certainly the file that `source` gives.
+    pub(crate) fn is(&self, source: &Source) -> bool {
+        self.name == source.name && self.reader().text.is(&source.text)
+    }
+
+    /// Cuts the text into tokens: see [`lexer::lex`].
+    pub(crate) fn lex(
+        &self,
+        begin: usize,
+        wanted: usize,
+        symbols: &mut Symbols,
+        mut used: Lexed,
+    ) -> Lexed {
+        /// More than most chunks take.
+        const AHEAD: usize = 64 << 10;
+        let text = &mut self.reader().text;
+        let mut reach = AHEAD;
+        loop {
+            let part = text.part(begin..begin.saturating_add(reach));
+            used = lexer::lex(&part, begin, wanted, symbols, used);
+            if !used.is_cut {
+                break;
+            }
+            // The chunk is longer than the part; longer parts make up for what is cut once more.
+            reach = reach.saturating_mul(4);
+        }
+        if used.rest.is_none()
+            && let Some(why) = text.failed()
+        {
+            used.problems.push(LexProblem {
+                start: text.len() as u32,
+                message: format!("the file can't be read further: {why}"),
+                hint: "render a copy if another program is writing to it",
+            });
+        }
+        used
+    }
+
+    /// The place of the token at a byte offset.
+    pub(crate) fn span(&self, start: u32) -> Span {
+        let reader = &mut *self.reader();
+        // The place may be one behind the last byte.
+        let start = start.min(reader.text.len() as u32);
+        let line = reader.line_of(start);
+        let (begin, start) = (line.begin as usize, start as usize);
+        let is_long = start - begin > LONG;
+        let part = reader
+            .text
+            .part(if is_long { start } else { begin }..start + LONG);
+        let column = if is_long {
+            start - begin
+        } else {
+            // Continuation bytes of UTF-8 are no characters of their own.
+            let before = part.get(begin..start).iter();
+            before.filter(|b| **b & 0xc0 != 0x80).count()
+        };
+        Span {
+            file: self.id,
+            line: line.ends + 1,
+            column: column as u32 + 1,
+            length: lexer::token_length(part.get(start..start + LONG)) as u32,
+        }
+    }
+
+    /// The line that a span of this file points into; of a very long one, as exporters write them, what stands around the
+    /// place.
+    pub(crate) fn excerpt(&self, start: u32, span: Span) -> SourceLine {
+        const AROUND: usize = 80;
+        let reader = &mut *self.reader();
+        let place = (start as usize).min(reader.text.len());
+        let begin = reader.line_of(place as u32).begin as usize;
+        if place - begin <= LONG {
+            let bytes = reader.text.part(begin..begin + LONG + 1);
+            let bytes = bytes.get(begin..begin + LONG + 1);
+            let end = memchr::memchr(b'\n', bytes);
+            if end.is_some() || bytes.len() <= LONG {
+                let line = bytes.get(..end.unwrap_or(bytes.len())).unwrap_or(bytes);
+                let line = line.strip_suffix(b"\r").unwrap_or(line);
+                let shown = Diagnostic::error("").at(span);
+                let shown = shown.with_source(&self.name, &lexer::decode(line));
+                return shown.source.unwrap_or_else(|| SourceLine {
+                    file: self.name.clone(),
+                    text: String::new(),
+                    column: 1,
+                    length: 1,
+                });
+            }
+        }
+        let (from, to) = (place.saturating_sub(AROUND).max(begin), place + AROUND);
+        let part = reader.text.part(from..to);
+        let before = lexer::decode(part.get(from..place));
+        let behind = part.get(place..to);
+        let end = memchr::memchr(b'\n', behind).unwrap_or(behind.len());
+        let behind = lexer::decode(behind.get(..end).unwrap_or(behind));
+        let length = (behind.chars().count() as u32).clamp(1, span.length.max(1));
+        SourceLine {
+            file: self.name.clone(),
+            column: before.chars().count() as u32 + 1,
+            text: before + &behind,
+            length,
+        }
+    }
+
+    /// The text between the quotation marks of a string, escapes left alone: file names of Windows need it.
+    pub(crate) fn raw_string(&self, token: Token) -> String {
+        let begin = token.start as usize + 1;
+        let reader = &mut *self.reader();
+        let rest = reader
+            .text
+            .part(begin..begin + LONG)
+            .get(begin..begin + LONG);
+        let end = rest.iter().position(|b| *b == b'"').unwrap_or(rest.len());
+        lexer::decode(&rest[..end])
+    }
+}
+
+impl Reader {
+    /// Where the lines begin.
+    fn lines(&mut self) -> &[u32] {
+        self.lines.get_or_insert_with(|| {
+            const PART: usize = 1 << 20;
+            let (mut starts, mut at) = (vec![0], 0);
+            while at < self.text.len() {
+                let part = self.text.part(at..at + PART);
+                let bytes = part.get(at..at + PART);
+                starts.extend(memchr::memchr_iter(b'\n', bytes).map(|end| (at + end) as u32 + 1));
+                at += bytes.len();
+            }
+            starts
+        })
+    }
+
+    /// The line that a byte offset stands in.
+    ///
+    /// Most places asked for stand behind the one before, and going on from there needs no table of all lines, which takes
+    /// a pass over the file and a search that misses the cache at every step.
+    fn line_of(&mut self, start: u32) -> Line {
+        const NEAR: u32 = 4096;
+        const FAR: u32 = 1 << 20;
+        let far = if self.lines.is_none() { FAR } else { NEAR };
+        let mut last = self.last;
+        match start.checked_sub(last.at) {
+            Some(passed) if passed <= far => {
+                let range = last.at as usize..start as usize;
+                let passed = self.text.part(range.clone()).get(range);
+                last.ends += memchr::memchr_iter(b'\n', passed).count() as u32;
+                if let Some(end) = memchr::memrchr(b'\n', passed) {
+                    last.begin = last.at + end as u32 + 1;
+                }
+            }
+            // Back within the line.
+            None if start >= last.begin => {}
+            _ => {
+                let lines = self.lines();
+                last.ends = lines.partition_point(|s| *s <= start).saturating_sub(1) as u32;
+                last.begin = lines.get(last.ends as usize).copied().unwrap_or(0);
+            }
+        }
+        last.at = start;
+        self.last = last;
+        last
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The text held in memory, and read in parts.
+    fn both(text: &str) -> [SourceFile; 2] {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.pov");
+        std::fs::write(&path, text).unwrap();
+        let in_parts = Source {
+            name: "a.pov".to_owned(),
+            text: Text::in_parts(&path, 512).unwrap(),
+        };
+        [Source::new("a.pov", text), in_parts].map(|source| SourceFile::new(FileId(3), source))
+    }
+
+    #[test]
+    fn places_are_lines_and_characters() {
+        let text = "sphere\n  \u{e9}\u{e9} box{\r\n";
+        for file in both(text) {
+            let start = text.find("box").unwrap() as u32;
+            let span = file.span(start);
+            assert_eq!((span.line, span.column, span.length), (2, 6, 3));
+            let shown = file.excerpt(start, span);
+            assert_eq!(shown.text, "  \u{e9}\u{e9} box{");
+            assert_eq!((shown.column, shown.length), (6, 3));
+            // Behind the last byte there is an empty line.
+            let end = file.span(999);
+            assert_eq!((end.line, end.column, end.length), (3, 1, 1));
+            assert_eq!(file.excerpt(999, end).text, "");
+        }
+    }
+
+    #[test]
+    fn of_long_lines_what_is_around_is_shown() {
+        let text = format!(
+            "box {{ 1 }}\n{} sphere {} \ncone",
+            "-".repeat(9000),
+            "+".repeat(9000)
+        );
+        for file in both(&text) {
+            let start = text.find("sphere").unwrap() as u32;
+            let span = file.span(start);
+            assert_eq!((span.line, span.column, span.length), (2, 9002, 6));
+            let shown = file.excerpt(start, span);
+            let expected = format!("{} sphere {}", "-".repeat(79), "+".repeat(73));
+            assert_eq!((shown.text.as_str(), shown.column), (expected.as_str(), 81));
+            let start = text.find("cone").unwrap() as u32;
+            assert_eq!(file.excerpt(start, file.span(start)).text, "cone");
+        }
+    }
+
+    #[test]
+    fn places_do_not_depend_on_those_asked_for_before() {
+        let mut text = String::new();
+        for line in 0..3000 {
+            let width = if line % 1000 == 7 { 9000 } else { line % 50 };
+            text.push_str(&"x".repeat(width));
+            text.push('\n');
+        }
+        let place = |start: usize| {
+            let line = text[..start].matches('\n').count();
+            let begin = text[..start].rfind('\n').map_or(0, |at| at + 1);
+            (line as u32 + 1, (start - begin) as u32 + 1)
+        };
+        for with_table in [false, true] {
+            for file in both(&text) {
+                if with_table {
+                    file.reader().lines();
+                }
+                let mut state = 1usize;
+                for round in 0..1000 {
+                    state = state.wrapping_mul(1_103_515_245).wrapping_add(12_345) % (1 << 31);
+                    let near = if round % 3 == 0 { text.len() } else { 5000 };
+                    let start = (state % near + round * 40) % (text.len() + 1);
+                    let span = file.span(start as u32);
+                    assert_eq!((span.line, span.column), place(start), "{start}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_text_in_parts_has_the_same_tokens() {
+        let object = "sphere { <1, -2.25, 3>, 4 /* a\n */ pigment { rgb <0, 1e-3, 0> } } // b\n";
+        let mut text = object.repeat(300);
+        text.push_str("mesh2 { vertex_vectors { 999");
+        text.push_str(&", <1, 2, 3>".repeat(999));
+        text.push_str("} } #if (1) #declare albedo = 3;");
+        text.push_str(&object.repeat(300));
+        text.push_str("#end box { 1, \"");
+        text.push_str(&"long ".repeat(2000));
+        text.push_str("\" } #while (0) sphere { \"open");
+        let [tokens, other] = both(&text).map(|file| {
+            let (mut symbols, mut begin, mut found) = (Symbols::new(), 0, vec![]);
+            loop {
+                let lexed = file.lex(begin, 100, &mut symbols, Lexed::default());
+                found.push((lexed.tokens, lexed.strings, lexed.problems));
+                match lexed.rest {
+                    Some(rest) => begin = rest,
+                    None => return found,
+                }
+            }
+        });
+        assert!(tokens.len() > 20 && tokens.last().is_some_and(|(_, _, p)| p.len() == 2));
+        assert_eq!(tokens, other);
+    }
+}
