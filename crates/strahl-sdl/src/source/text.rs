@@ -186,7 +186,7 @@ mod tests {
     fn parts_hold_what_the_file_holds() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("text");
-        let bytes: Vec<u8> = (0..9999u32).map(|i| (i * i >> 3) as u8).collect();
+        let bytes: Vec<u8> = (0..9999u32).map(|i| ((i * i) >> 3) as u8).collect();
         fs::write(&path, &bytes).unwrap();
         let mut text = Text::in_parts(&path, 64).unwrap();
         let mut state = 1usize;
