@@ -84,7 +84,7 @@ fn row(
     let mut seconds: Vec<f64> = costs.iter().map(|c| c.seconds).collect();
     let mut memory: Vec<f64> = costs.iter().map(|c| c.memory).collect();
     let (seconds, memory) = (median(&mut seconds), median(&mut memory));
-    let per_object = (memory - case.bytes).max(0.0) / case.objects;
+    let per_object = memory / case.objects;
     writeln!(
         table,
         "| {} | {program} | {seconds:.3} | {:.1} | {:.2} million | {:.0} MB | {per_object:.0} | {} |",

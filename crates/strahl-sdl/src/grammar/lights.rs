@@ -11,7 +11,8 @@ use strahl_shade::{AreaLight, Color, Falloff, Light, LightKind};
 pub(super) fn light_statement(p: &mut Parser<'_>) -> PResult<()> {
     let entity = light_source(p)?;
     let ObjectKind::Light(light) = entity.object.kind else {
-        return p.add(entity);
+        p.add(entity);
+        return Ok(());
     };
     let moved = entity.object.transform.map(|t| light.transformed(&t));
     p.scene.lights.push(moved.unwrap_or(*light));

@@ -120,17 +120,11 @@ impl Parser<'_> {
         if let Some((_, parse)) = STATEMENTS.iter().find(|(w, _)| *w == word) {
             self.take(token)?;
             parse(self)?;
-        } else if let Some(entity) = self.entity()? {
-            self.add(entity)?;
-        } else if word.kind() == WordKind::Statement || word.kind() == WordKind::Object {
-            self.take(token)?;
-            let text = word.text();
-            self.warn_hint(
-                self.place(),
-                format!("`{text}` is not supported yet and is left out"),
-                "the picture will lack it",
-            );
-            self.skip_body()?;
+        } else if let Some(parse) = self.object_parser(token)? {
+            let entity = self.nested(parse)?;
+            self.add(entity);
+        } else if opens_statement(token) {
+            self.leave_out(token)?;
         } else {
             return Err(self.unexpected(token, "an object or a directive"));
         }
@@ -138,9 +132,10 @@ impl Parser<'_> {
     }
 
     #[inline]
-    fn add(&mut self, Entity { mut object, .. }: Entity) -> PResult<()> {
-        if is_nothing(&object) {
-            return Ok(());
+    fn add(&mut self, mut entity: Entity) {
+        let object = &mut entity.object;
+        if is_nothing(object) {
+            return;
         }
         if object.material.is_none() {
             // The default texture does not move with the object.
@@ -154,9 +149,9 @@ impl Parser<'_> {
             };
             object.material = Some(self.material(&texture));
         }
-        self.scene.objects.0.push(object);
-        Ok(())
+        self.scene.objects.0.push(entity.object);
     }
+
     /// Counts objects made or copied against the limit.
     ///
     /// # Errors

@@ -104,8 +104,9 @@ impl Parser<'_> {
                 self.take(token)?;
                 return Ok(Argument::Variable(target));
             }
-            let is_array = matches!(self.scopes.at(&target), Some(Value::Array(_)));
-            if self.raw_ahead(1).kind == Kind::LeftBracket && is_array {
+            if self.raw_ahead(1).kind == Kind::LeftBracket
+                && matches!(self.scopes.at(&target), Some(Value::Array(_)))
+            {
                 self.take(token)?;
                 let index = self.array_index(&target)?;
                 if ends(self.raw()) && depth == self.frame_depth() {

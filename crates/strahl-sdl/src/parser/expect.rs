@@ -62,9 +62,11 @@ impl Parser<'_> {
     #[inline]
     pub fn braces<T>(&mut self, f: impl FnOnce(&mut Self) -> PResult<T>) -> PResult<T> {
         self.expect(Kind::LeftBrace)?;
-        let result = self.nested(f)?;
-        self.expect(Kind::RightBrace)?;
-        Ok(result)
+        self.nested(|p| {
+            let result = f(p)?;
+            p.expect(Kind::RightBrace)?;
+            Ok(result)
+        })
     }
 
     /// Reads items by `f` until the closing brace, which is left; `f` gets the word or token that opens the item, not yet

@@ -25,6 +25,8 @@ struct Reader {
     lines: Option<Vec<u32>>,
     /// The place looked up last.
     last: Line,
+    /// The last span made, and for which place: a macro in a loop asks for the same one again and again.
+    last_span: Option<(u32, Span)>,
 }
 
 /// The line that a place stands in.
@@ -48,6 +50,7 @@ impl SourceFile {
                 text: source.text,
                 lines: None,
                 last: Line::default(),
+                last_span: None,
             }),
         }
     }
@@ -102,6 +105,17 @@ impl SourceFile {
     /// The place of the token at a byte offset.
     pub(crate) fn span(&self, start: u32) -> Span {
         let reader = &mut *self.reader();
+        if let Some((place, span)) = reader.last_span
+            && place == start
+        {
+            return span;
+        }
+        let span = self.make_span(reader, start);
+        reader.last_span = Some((start, span));
+        span
+    }
+
+    fn make_span(&self, reader: &mut Reader, start: u32) -> Span {
         // The place may be one behind the last byte.
         let start = start.min(reader.text.len() as u32);
         let line = reader.line_of(start);

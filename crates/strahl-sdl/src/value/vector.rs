@@ -90,18 +90,25 @@ impl Vector {
     #[inline]
     #[must_use]
     pub fn promoted(&self, len: usize) -> Self {
-        let mut components = if self.len == 1 {
-            [self.components[0]; 5]
-        } else {
-            self.components
-        };
         let len = len.clamp(1, 5);
-        for c in components.iter_mut().skip(len) {
-            *c = 0.0;
+        let spread = self.spread();
+        let mut components = [0.0; 5];
+        // Written out in full by the compiler, as a loop over `len` components would not be.
+        for i in 0..5 {
+            components[i] = if i < len { spread[i] } else { 0.0 };
         }
         Self {
             len: len as u8,
             components,
+        }
+    }
+
+    /// The components, those of a float all equal.
+    #[inline]
+    const fn spread(&self) -> [f64; 5] {
+        match self.len {
+            1 => [self.components[0]; 5],
+            _ => self.components,
         }
     }
 
@@ -129,12 +136,13 @@ impl Vector {
         if self.len == 1 && other.len == 1 {
             return Self::float(f(self.components[0], other.components[0]));
         }
-        let len = self.len().max(other.len());
-        let (mut a, b) = (self.promoted(len), other.promoted(len));
-        for (c, d) in a.components.iter_mut().zip(b.components).take(len) {
-            *c = f(*c, d);
+        let len = self.len.max(other.len);
+        let (a, b) = (self.spread(), other.spread());
+        let mut components = [0.0; 5];
+        for i in 0..5 {
+            components[i] = if i < len as usize { f(a[i], b[i]) } else { 0.0 };
         }
-        a
+        Self { len, components }
     }
 }
 

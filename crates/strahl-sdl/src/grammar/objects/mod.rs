@@ -37,12 +37,12 @@ pub(super) use text::KnownFont;
 use super::{Entity, Thing, by_word, words_of};
 use crate::keywords::{Word, WordKind};
 use crate::parser::{PResult, Parser};
-use crate::token::Kind;
+use crate::token::{Kind, Token};
 use crate::value::Value;
 use strahl_scene::Object;
 
 /// Reads an object from its `{` to its `}`; its word is already taken.
-type ObjectParser = fn(&mut Parser<'_>) -> PResult<Entity>;
+pub(super) type ObjectParser = fn(&mut Parser<'_>) -> PResult<Entity>;
 
 /// All objects by their words.
 static OBJECTS: [Option<ObjectParser>; Word::ALL.len()] = by_word::<ObjectParser, _>([
@@ -114,34 +114,53 @@ impl Parser<'_> {
     ///
     /// # Errors
     /// If the object is wrong.
-    #[inline]
     pub(crate) fn entity(&mut self) -> PResult<Option<Entity>> {
         let token = self.peek()?;
+        if let Some(parse) = self.object_parser(token)? {
+            return self.nested(parse).map(Some);
+        }
+        let is_object = |word: Word| word.kind() == WordKind::Object;
+        if !token.word().is_some_and(is_object) {
+            return Ok(None);
+        }
+        self.leave_out(token)?;
+        Ok(Some(Entity::nothing()))
+    }
+
+    /// What reads the object that begins with a token, which is then taken.
+    ///
+    /// # Errors
+    /// If there are too many objects.
+    #[inline]
+    pub(in crate::grammar) fn object_parser(
+        &mut self,
+        token: Token,
+    ) -> PResult<Option<ObjectParser>> {
         let Some(word) = token.word() else {
             return Ok(None);
         };
-        if let Some(parse) = OBJECTS.get(word as usize).copied().flatten() {
-            self.take(token)?;
-            // A declared object may stand in the braces of any: `sphere { Name ... }` is `object { Name ... }`.
-            let parse = if word != Word::LightSource && self.object_name_follows() {
-                object
-            } else {
-                parse
-            };
-            self.count_objects(1)?;
-            return self.nested(parse).map(Some);
-        }
-        if word.kind() != WordKind::Object || word == Word::LightSource {
+        let Some(parse) = OBJECTS.get(word as usize).copied().flatten() else {
             return Ok(None);
-        }
+        };
         self.take(token)?;
-        let text = word.text();
+        self.count_objects(1)?;
+        // A declared object may stand in the braces of any: `sphere { Name ... }` is `object { Name ... }`.
+        let named = word != Word::LightSource && self.object_name_follows();
+        Ok(Some(if named { object } else { parse }))
+    }
+
+    /// Passes something that is not supported yet, with a warning; `token` is its word.
+    ///
+    /// # Errors
+    /// If it does not end.
+    pub(in crate::grammar) fn leave_out(&mut self, token: Token) -> PResult<()> {
+        self.take(token)?;
+        let text = token.word().map_or("", Word::text);
         self.warn_hint(
             self.place(),
             format!("`{text}` is not supported yet and is left out"),
             "the picture will lack it",
         );
-        self.skip_body()?;
-        Ok(Some(Entity::nothing()))
+        self.skip_body()
     }
 }
