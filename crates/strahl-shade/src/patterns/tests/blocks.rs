@@ -1,15 +1,11 @@
 //! Patterns of blocks.
 
-use super::{Measured, field};
+use super::{Built, field};
 use crate::patterns::*;
 
-pub(super) fn measured() -> Vec<Measured> {
+pub(super) fn built() -> Vec<Built> {
     vec![
-        (
-            "checker",
-            field(Pattern::Checker, Modifiers::default()),
-            [0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0],
-        ),
+        ("checker", field(Pattern::Checker, Modifiers::default())),
         (
             "brick",
             field(
@@ -19,7 +15,6 @@ pub(super) fn measured() -> Vec<Measured> {
                 },
                 Modifiers::default(),
             ),
-            [1.0, 0.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 0.0],
         ),
         (
             "brick brick_size <2,1,1.5> mortar .1",
@@ -30,27 +25,22 @@ pub(super) fn measured() -> Vec<Measured> {
                 },
                 Modifiers::default(),
             ),
-            [1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 0.0, 1.0, 1.0, 1.0, 1.0, 1.0],
         ),
         (
             "hexagon rgb 0 rgb 1 rgb 2",
             field(Pattern::Hexagon, Modifiers::default()),
-            [0.0, 0.0, 2.0, 0.0, 0.0, 2.0, 0.0, 1.0, 2.0, 0.0, 2.0, 2.0],
         ),
         (
             "square rgb 0 rgb 1 rgb 2 rgb 3",
             field(Pattern::Square, Modifiers::default()),
-            [0.0, 2.0, 3.0, 0.0, 1.0, 3.0, 3.0, 1.0, 3.0, 2.0, 2.0, 1.0],
         ),
         (
             "triangular rgb 0 rgb 1 rgb 2 rgb 3 rgb 4 rgb 5",
             field(Pattern::Triangular, Modifiers::default()),
-            [1.0, 3.0, 4.0, 0.0, 2.0, 4.0, 0.0, 1.0, 2.0, 0.0, 4.0, 3.0],
         ),
         (
             "cubic rgb 0 rgb 1 rgb 2 rgb 3 rgb 4 rgb 5",
             field(Pattern::Cubic, Modifiers::default()),
-            [2.0, 3.0, 2.0, 4.0, 5.0, 0.0, 2.0, 3.0, 5.0, 5.0, 5.0, 0.0],
         ),
     ]
 }
