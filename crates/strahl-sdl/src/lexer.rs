@@ -8,6 +8,13 @@
 //! with the next chunk. So nothing ever jumps from one chunk into another, and the tokens of an exported scene of any size
 //! stay in the processor's cache.
 
+mod number;
+#[cfg(test)]
+mod tests;
+mod text;
+
+pub(crate) use text::decode;
+
 use crate::keywords::{Word, WordKind};
 use crate::source::Part;
 use crate::symbol::{Symbol, Symbols};
@@ -88,7 +95,7 @@ pub(crate) fn token_length(rest: &[u8]) -> usize {
             let line = rest[1..].iter().take_while(|b| **b != b'"' && **b != b'\n');
             line.count() + 2
         }
-        Some(b) if b.is_ascii_digit() || *b == b'.' => Lexer::number_length(rest).max(1),
+        Some(b) if b.is_ascii_digit() || *b == b'.' => number::number_length(rest).max(1),
         Some(b'<' | b'>' | b'!') if rest.get(1) == Some(&b'=') => 2,
         Some(_) => 1,
     }
@@ -320,40 +327,10 @@ impl<'a> Lexer<'a> {
         &rest[..length]
     }
 
-    /// How many bytes at the front of `rest` are a number: digits, a point with digits around it, an exponent.
-    fn number_length(rest: &[u8]) -> usize {
-        let digits = |from: usize| {
-            let rest = rest.get(from..).unwrap_or(&[]);
-            rest.iter().take_while(|b| b.is_ascii_digit()).count()
-        };
-        let mut length = digits(0);
-        // `1.x` is the component of a number, not a number with an empty fraction.
-        if rest.get(length) == Some(&b'.')
-            && !rest
-                .get(length + 1)
-                .is_some_and(|b| is_name_start(*b) && !matches!(b, b'e' | b'E'))
-        {
-            length += 1 + digits(length + 1);
-        }
-        if matches!(rest.get(length), Some(b'e' | b'E')) {
-            let sign = usize::from(matches!(rest.get(length + 1), Some(b'+' | b'-')));
-            let exponent = digits(length + 1 + sign);
-            if exponent > 0 {
-                length += 1 + sign + exponent;
-            }
-        }
-        length
-    }
-
     fn number(&mut self) {
         let start = self.position;
         let rest = &self.bytes[start..];
-        let (value, length) = short_decimal(rest).unwrap_or_else(|| {
-            let length = Self::number_length(rest).max(1);
-            let text = std::str::from_utf8(&rest[..length]).unwrap_or("");
-            // The text has the form of a number, so parsing it cannot fail.
-            (text.parse().unwrap_or(0.0), length)
-        });
+        let (value, length) = number::number(rest);
         self.position += length;
         self.push(Kind::Number, start, value.to_bits());
     }
@@ -382,7 +359,7 @@ impl<'a> Lexer<'a> {
             }
         }
         let text = decode(rest.get(..end).unwrap_or(rest));
-        let text = if escaped { unescape(&text) } else { text };
+        let text = if escaped { text::unescape(&text) } else { text };
         let index = self.out.strings.len();
         self.out.strings.push(text.into());
         self.push(Kind::String, start, index as u64);
@@ -489,270 +466,5 @@ impl<'a> Lexer<'a> {
             "this comment does not end",
             "end it with `*/`; comments nest, so every `/*` inside needs a `*/` of its own",
         );
-    }
-}
-
-/// A decimal number of at most 19 digits with a value the processor computes exactly: the mantissa and the power of ten are
-/// both floats without rounding, so one division rounds correctly (Clinger, "How to read floating point numbers
-/// accurately", PLDI 1990). `None` if the number is longer or has an exponent.
-fn short_decimal(rest: &[u8]) -> Option<(f64, usize)> {
-    const POWERS: [f64; 23] = [
-        1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16,
-        1e17, 1e18, 1e19, 1e20, 1e21, 1e22,
-    ];
-    let mut mantissa = 0u64;
-    let whole = digits(rest, &mut mantissa)?;
-    let (mut length, mut fraction) = (whole, 0);
-    if rest.get(length) == Some(&b'.') {
-        fraction = digits(rest.get(length + 1..)?, &mut mantissa)?;
-        length += 1 + fraction;
-    }
-    // A name behind it is an exponent, or a component of a number.
-    let joined = rest.get(length).is_some_and(|b| is_name_start(*b));
-    // So many digits have not overflown the mantissa.
-    if joined || whole + fraction > 19 || mantissa > 1 << 53 {
-        return None;
-    }
-    let power = POWERS.get(fraction)?;
-    Some((mantissa as f64 / power, length))
-}
-
-/// Reads decimal digits on to a mantissa, modulo 2^64, and gives how many there are; `None` if they are too many.
-#[inline]
-fn digits(rest: &[u8], mantissa: &mut u64) -> Option<usize> {
-    const POWERS: [u64; 9] = [
-        1,
-        10,
-        100,
-        1000,
-        10_000,
-        100_000,
-        1_000_000,
-        10_000_000,
-        100_000_000,
-    ];
-    let mut count = 0;
-    while let Some((window, _)) = rest.get(count..)?.split_first_chunk() {
-        let (value, more) = leading_digits(u64::from_le_bytes(*window));
-        *mantissa = mantissa
-            .wrapping_mul(*POWERS.get(more)?)
-            .wrapping_add(value);
-        count += more;
-        if more < 8 {
-            return Some(count);
-        }
-        if count > 16 {
-            return None;
-        }
-    }
-    // Near the end of the text.
-    for byte in rest.get(count..)?.iter().take_while(|b| b.is_ascii_digit()) {
-        *mantissa = mantissa
-            .wrapping_mul(10)
-            .wrapping_add(u64::from(byte - b'0'));
-        count += 1;
-    }
-    Some(count)
-}
-
-/// The value of the digits at the front of eight bytes, and how many they are, all bytes at once.
-#[inline]
-fn leading_digits(window: u64) -> (u64, usize) {
-    const ZEROS: u64 = 0x3030_3030_3030_3030;
-    // The upper bit of each byte that is no digit is set: those above `9` by the sum, those below `0` by the difference. What
-    // is carried or borrowed changes only bytes behind the first of them.
-    let above = window.wrapping_add(0x4646_4646_4646_4646);
-    let below = window.wrapping_sub(ZEROS);
-    let count = (((above | below) & 0x8080_8080_8080_8080).trailing_zeros() / 8) as usize;
-    if count == 0 {
-        return (0, 0);
-    }
-    // Zeros take the place of the digits that are missing in front.
-    let d = below << (64 - 8 * count);
-    // Pairs of digits, then all: Lemire, "Quickly parsing eight digits", 2018.
-    let pairs = d.wrapping_mul(10).wrapping_add(d >> 8);
-    const MASK: u64 = 0x0000_00ff_0000_00ff;
-    let first = (pairs & MASK).wrapping_mul(100 + (1_000_000 << 32));
-    let second = (pairs >> 16 & MASK).wrapping_mul(1 + (10_000 << 32));
-    (first.wrapping_add(second) >> 32, count)
-}
-
-/// UTF-8 if it is, else Latin-1.
-pub(crate) fn decode(bytes: &[u8]) -> String {
-    match std::str::from_utf8(bytes) {
-        Ok(text) => text.to_owned(),
-        Err(_) => bytes.iter().map(|&b| char::from(b)).collect(),
-    }
-}
-
-/// Replaces the escape sequences of the language; an unknown one stands for its letter.
-fn unescape(text: &str) -> String {
-    let mut out = String::with_capacity(text.len());
-    let mut chars = text.chars();
-    while let Some(c) = chars.next() {
-        if c != '\\' {
-            out.push(c);
-            continue;
-        }
-        match chars.next() {
-            Some('n') => out.push('\n'),
-            Some('t') => out.push('\t'),
-            Some('r') => out.push('\r'),
-            Some('a') => out.push('\u{7}'),
-            Some('b') => out.push('\u{8}'),
-            Some('f') => out.push('\u{c}'),
-            Some('v') => out.push('\u{b}'),
-            Some('0') => out.push('\0'),
-            Some('u') => {
-                let code = chars.as_str().get(..4);
-                let decoded = code
-                    .and_then(|c| u32::from_str_radix(c, 16).ok())
-                    .and_then(char::from_u32);
-                match decoded {
-                    Some(c) => {
-                        out.push(c);
-                        chars = chars.as_str()[4..].chars();
-                    }
-                    None => out.push('u'),
-                }
-            }
-            Some(other) => out.push(other),
-            None => {}
-        }
-    }
-    out
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn whole(bytes: &[u8]) -> Lexed {
-        let part = Part {
-            bytes,
-            begin: 0,
-            is_last: true,
-        };
-        lex(&part, 0, usize::MAX, &mut Symbols::new(), Lexed::default())
-    }
-
-    fn kinds(text: &str) -> Vec<Kind> {
-        let lexed = whole(text.as_bytes());
-        assert_eq!(lexed.problems, []);
-        lexed.tokens.iter().map(|t| t.kind).collect()
-    }
-
-    fn numbers(text: &str) -> Vec<f64> {
-        let lexed = whole(text.as_bytes());
-        let numbers = lexed.tokens.iter().filter(|t| t.kind == Kind::Number);
-        numbers.map(|t| t.number()).collect()
-    }
-
-    #[test]
-    fn a_sphere_is_cut_into_its_tokens() {
-        use Kind::{Comma, End, Greater, LeftBrace, Less, Minus, Name, Number, RightBrace, Word};
-        let text = "sphere{<0,-1,My_2> .5}";
-        let expected = [
-            Word, LeftBrace, Less, Number, Comma, Minus, Number, Comma, Name, Greater, Number,
-            RightBrace, End,
-        ];
-        assert_eq!(kinds(text), expected);
-    }
-
-    #[test]
-    fn numbers_are_read_to_the_last_bit() {
-        let text = "0 1. .5 1e3 1.5E-3 2e+2 0.1 3.14159265358979323846 123456789012345678901234567890 1e400 4.35 007";
-        let expected = [
-            0.0,
-            1.0,
-            0.5,
-            1e3,
-            1.5e-3,
-            2e2,
-            0.1,
-            std::f64::consts::PI,
-            123456789012345678901234567890.0,
-            f64::INFINITY,
-            4.35,
-            7.0,
-        ];
-        assert_eq!(numbers(text), expected);
-        // Every way through the reader agrees with the standard library.
-        let mut state = 1u64;
-        for _ in 0..20_000 {
-            state = state
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1);
-            let digits = (state >> 60) as usize;
-            let text = format!("{:.*}", digits, (state >> 11) as f64 / 1e12);
-            assert_eq!(numbers(&text), [text.parse::<f64>().unwrap()], "{text}");
-        }
-    }
-
-    #[test]
-    fn points_that_are_no_fractions() {
-        assert_eq!(kinds("A.x"), [Kind::Name, Kind::Dot, Kind::Word, Kind::End]);
-        assert_eq!(
-            kinds("2.x"),
-            [Kind::Number, Kind::Dot, Kind::Word, Kind::End]
-        );
-        assert_eq!(numbers("1.5.5"), [1.5, 0.5]);
-    }
-
-    #[test]
-    fn comments_nest_and_strings_hide_them() {
-        assert_eq!(
-            kinds("1 /* a /* b */ // c */ 2 // d \n+"),
-            [Kind::Number, Kind::Number, Kind::Plus, Kind::End]
-        );
-        let lexed = whole(br#""/* \"quoted\" \u00e9\n""#);
-        assert_eq!(lexed.strings, [Arc::from("/* \"quoted\" \u{e9}\n")]);
-        let latin = whole(b"\"caf\xe9\"");
-        assert_eq!(latin.strings, [Arc::from("caf\u{e9}")]);
-    }
-
-    #[test]
-    fn unfinished_text_is_reported_where_it_starts() {
-        for (text, start) in [("1 /* /* */", 2), ("12 \"abc", 3), ("\"a\\", 0)] {
-            let lexed = whole(text.as_bytes());
-            assert_eq!(lexed.problems.len(), 1, "{text}");
-            assert_eq!(lexed.problems[0].start, start);
-            assert_eq!(lexed.tokens.last().map(|t| t.kind), Some(Kind::End));
-        }
-    }
-
-    #[test]
-    fn blocks_are_linked() {
-        let text =
-            "#if(1) #while(0) #end #else # switch(1) #case(1) #break #end #end #end #macro A()";
-        let lexed = whole(text.as_bytes());
-        let directives: Vec<&Token> = lexed
-            .tokens
-            .iter()
-            .filter(|t| t.kind == Kind::Directive)
-            .collect();
-        let place = |i: usize| {
-            let link = directives[i].link()?;
-            directives.iter().position(|d| **d == lexed.tokens[link])
-        };
-        // if 0, while 1, end 2, else 3, switch 4, case 5, break 6, end 7, end 8, end 9 (one too many), macro 10.
-        assert_eq!(place(0), Some(3));
-        assert_eq!(place(1), Some(2));
-        assert_eq!(place(3), Some(8));
-        assert_eq!(place(4), Some(5));
-        assert_eq!(place(5), Some(7));
-        assert_eq!((place(9), place(10)), (None, None));
-    }
-
-    #[test]
-    fn lengths_for_carets() {
-        let text = b"sphere <= 1.5e3 # include \"ab\"";
-        let length = |start: usize| token_length(text.get(start..).unwrap_or(&[]));
-        assert_eq!(length(0), 6);
-        assert_eq!(length(7), 2);
-        assert_eq!(length(10), 5);
-        assert_eq!(length(16), 9);
-        assert_eq!(length(26), 4);
-        assert_eq!(length(999), 1);
     }
 }
