@@ -45,3 +45,16 @@ pub(crate) fn tool(name: &str) -> Option<PathBuf> {
     }
     found
 }
+
+/// What `f` makes of each, in order, by several threads: much of the time other programs are waited for.
+pub(crate) fn each<T: Sync, R: Send>(items: &[T], f: impl Fn(&T) -> R + Sync) -> Vec<R> {
+    const THREADS: usize = 6;
+    let part = items.len().div_ceil(THREADS).max(1);
+    std::thread::scope(|scope| {
+        let f = &f;
+        let work = |part| scope.spawn(move || <[T]>::iter(part).map(f).collect::<Vec<R>>());
+        let threads: Vec<_> = items.chunks(part).map(work).collect();
+        let done = threads.into_iter().map(|t| t.join().expect("no panic"));
+        done.flatten().collect()
+    })
+}

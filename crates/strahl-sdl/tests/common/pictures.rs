@@ -1,16 +1,16 @@
 //! Small pictures rendered by POV-Ray 3.7 and here, and how far they are apart.
 
-use super::{parse_with, tool};
+use super::{each, parse_with, tool};
 use std::path::Path;
 use std::process::Command;
 use strahl_render::{CompileOptions, RenderOptions, compile, render};
 use strahl_sdl::MemoryHost;
 
 /// Width and height in pixels.
-const SIZE: (u32, u32) = (64, 48);
+pub(crate) const SIZE: (u32, u32) = (64, 48);
 
 /// Linear values of a picture, row by row.
-type Pixels = Vec<[f64; 3]>;
+pub(crate) type Pixels = Vec<[f64; 3]>;
 
 /// The pixels of a PPM file with 16 bits per channel: what its header leaves.
 fn read_ppm(bytes: &[u8]) -> Pixels {
@@ -26,7 +26,7 @@ fn read_ppm(bytes: &[u8]) -> Pixels {
         .collect()
 }
 
-fn theirs(povray: &Path, folder: &Path, text: &str) -> Pixels {
+fn theirs(povray: &Path, folder: &Path, text: &str) -> Result<Pixels, String> {
     let scene = folder.join("scene.pov");
     std::fs::write(&scene, text).expect("writable");
     let (w, h) = SIZE;
@@ -48,40 +48,47 @@ fn theirs(povray: &Path, folder: &Path, text: &str) -> Pixels {
         ])
         .output()
         .expect("the program starts");
-    let log = String::from_utf8_lossy(&run.stderr);
-    assert!(run.status.success(), "{text}\n{log}");
-    read_ppm(&std::fs::read(folder.join("out.ppm")).expect("a picture"))
+    if !run.status.success() {
+        let log = String::from_utf8_lossy(&run.stderr);
+        return Err(format!("{text}\n{log}"));
+    }
+    let bytes = std::fs::read(folder.join("out.ppm")).expect("a picture");
+    Ok(read_ppm(&bytes))
 }
 
-fn ours(text: &str) -> Pixels {
+fn ours(text: &str) -> Result<Pixels, String> {
     let parsed = parse_with(&mut MemoryHost::new(), text);
     let messages: Vec<String> = parsed.diagnostics.iter().map(ToString::to_string).collect();
     let scene = parsed
         .scene
-        .unwrap_or_else(|| panic!("{text}\n{}", messages.join("\n")));
-    let scene = compile(&scene, &CompileOptions::default()).expect("a scene");
+        .ok_or_else(|| format!("{text}\n{}", messages.join("\n")))?;
+    let scene = compile(&scene, &CompileOptions::default()).map_err(|e| format!("{e:?}"))?;
     let mut options = RenderOptions::new(&scene, SIZE.0, SIZE.1);
     options.threads = 1;
     let film = render(&scene, &options, &()).expect("a picture").film;
     let clipped = |p: &[f32; 3]| p.map(|c| f64::from(c).clamp(0.0, 1.0));
-    film.pixels.iter().map(clipped).collect()
+    Ok(film.pixels.iter().map(clipped).collect())
 }
 
-/// The same of a scene whose colours are the screen's: POV-Ray then writes them as they are.
-fn theirs_encoded(povray: &Path, folder: &Path, text: &str) -> Pixels {
-    let decoded = |p: [f64; 3]| p.map(strahl_shade::srgb::decode);
-    theirs(povray, folder, text)
-        .into_iter()
-        .map(decoded)
-        .collect()
+/// What both programs make of a scene: linear values, POV-Ray's first.
+///
+/// # Errors
+/// If one of them doesn't render it.
+pub(crate) fn pair(povray: &Path, text: &str) -> Result<(Pixels, Pixels), String> {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut theirs = theirs(povray, folder.path(), text)?;
+    // Colours of a scene without gamma are the screen's; POV-Ray writes them as they are.
+    if !text.contains("3.7") && !text.contains("assumed_gamma") {
+        for pixel in &mut theirs {
+            *pixel = pixel.map(strahl_shade::srgb::decode);
+        }
+    }
+    Ok((theirs, ours(text)?))
 }
 
 /// Renders by both; the mean difference of channels, and the share of pixels with a visible difference.
 pub(crate) fn compare(povray: &Path, text: &str) -> (f64, f64) {
-    let folder = tempfile::tempdir().expect("a folder");
-    let encoded = !text.contains("3.7") && !text.contains("assumed_gamma");
-    let read = if encoded { theirs_encoded } else { theirs };
-    let (a, b) = (read(povray, folder.path(), text), ours(text));
+    let (a, b) = pair(povray, text).unwrap_or_else(|why| panic!("{why}"));
     assert_eq!(a.len(), b.len());
     let count = a.len() as f64;
     let (mut sum, mut off) = (0.0, 0);
@@ -106,16 +113,17 @@ pub(crate) fn agree_within(most_mean: f64, most_off: f64, scenes: &[(&str, Strin
     let Some(povray) = tool("povray") else {
         return;
     };
-    let mut failed = vec![];
-    for (name, text) in scenes {
+    let failed = each(scenes, |(name, text)| {
         let (mean, off) = compare(&povray, text);
-        if !(mean < most_mean && off <= most_off) {
-            failed.push(format!(
+        let agrees = mean < most_mean && off <= most_off;
+        (!agrees).then(|| {
+            format!(
                 "{name}: mean difference {:.3}/255, {:.2} % of pixels differ visibly",
                 mean * 255.0,
                 off * 100.0
-            ));
-        }
-    }
+            )
+        })
+    });
+    let failed: Vec<String> = failed.into_iter().flatten().collect();
     assert!(failed.is_empty(), "{}", failed.join("\n"));
 }

@@ -1,34 +1,7 @@
-//! The same objects, rendered by POV-Ray 3.7 and here: more than 99 % of the pixels must be equal.
+//! What is compared.
 
-mod common;
-
-use common::parse_with;
-use std::path::{Path, PathBuf};
-use std::process::Command;
-use strahl_render::{CompileOptions, RenderOptions, compile, render};
-use strahl_sdl::MemoryHost;
-
-const WIDTH: u32 = 60;
-const HEIGHT: u32 = 45;
-
-/// A program to compare with; without it the caller skips, unless the environment requires all tools.
-fn tool(name: &str) -> Option<PathBuf> {
-    let path = std::env::var_os("PATH")?;
-    let found = std::env::split_paths(&path)
-        .map(|folder| folder.join(name))
-        .find(|p| p.is_file());
-    if found.is_none() {
-        assert!(
-            std::env::var_os("STRAHL_REQUIRE_TOOLS").is_none(),
-            "{name} is missing, but required"
-        );
-        use std::io::Write;
-        let _ = writeln!(std::io::stderr().lock(), "SKIPPED: {name} is not installed");
-    }
-    found
-}
-
-const SETUP: &str = "
+/// What stands before every scene.
+pub(crate) const SETUP: &str = "
 #version 3.7;
 global_settings { assumed_gamma 1 ambient_light 1 }
 camera { location <0.3, 1.2, -6> right x * 4 / 3 up y look_at <0, 0, 0> angle 40 }
@@ -47,7 +20,7 @@ background { rgb <0.1, 0.2, 0.4> }
 ";
 
 /// Names and bodies of the scenes.
-const SCENES: &[(&str, &str)] = &[
+pub(crate) const SCENES: &[(&str, &str)] = &[
     ("sphere", "sphere { <0.2, 0.1, 0>, 1.1 texture { Red } }"),
     (
         "ellipsoid",
@@ -517,115 +490,3 @@ const SCENES: &[(&str, &str)] = &[
         "difference { sphere_sweep { cubic_spline 6, <-1.5, 0, 0>, 0.2, <-1.3, -0.5, 0>, 0.3, <-0.5, 0.8, 0.5>, 0.5, <0.4, -0.6, 0>, 0.3, <1.2, 0.5, -0.5>, 0.4, <1, 1, 0>, 0.3 } plane { z, 0 texture { Green } } texture { Red } }",
     ),
 ];
-
-/// The picture in sRGB, 0 to 1, by POV-Ray.
-fn by_povray(povray: &Path, folder: &Path, text: &str) -> Result<Vec<f64>, String> {
-    std::fs::write(folder.join("scene.pov"), text).expect("writable");
-    let mut command = Command::new(povray);
-    command.current_dir(folder).args([
-        "+Iscene.pov",
-        "+Oscene.ppm",
-        "+FP16",
-        "-A",
-        "-D",
-        "+WT1",
-        "File_Gamma=srgb",
-        &format!("+W{WIDTH}"),
-        &format!("+H{HEIGHT}"),
-    ]);
-    let output = command.output().expect("POV-Ray starts");
-    let log = String::from_utf8_lossy(&output.stderr);
-    if !output.status.success() {
-        let errors = log.lines().filter(|line| line.contains("Error"));
-        return Err(errors.collect::<Vec<_>>().join("; "));
-    }
-    let bytes = std::fs::read(folder.join("scene.ppm")).expect("a picture");
-    let count = (WIDTH * HEIGHT * 3 * 2) as usize;
-    let pixels = &bytes[bytes.len() - count..];
-    let values = pixels.chunks_exact(2);
-    Ok(values
-        .map(|b| f64::from(u16::from_be_bytes([b[0], b[1]])) / 65535.0)
-        .collect::<Vec<_>>())
-}
-
-/// The picture in sRGB, 0 to 1, by us.
-fn by_us(text: &str) -> Result<Vec<f64>, String> {
-    let parsed = parse_with(&mut MemoryHost::new(), text);
-    let messages: Vec<String> = parsed.diagnostics.iter().map(ToString::to_string).collect();
-    let scene = parsed.scene.ok_or_else(|| messages.join("\n"))?;
-    let scene = compile(&scene, &CompileOptions::default()).map_err(|e| format!("{e:?}"))?;
-    let mut options = RenderOptions::new(&scene, WIDTH, HEIGHT);
-    options.threads = 1;
-    let rendered = render(&scene, &options, &()).expect("a picture");
-    let mut values = vec![];
-    for (y, x) in (0..HEIGHT).flat_map(|y| (0..WIDTH).map(move |x| (y, x))) {
-        let pixel = rendered.film.pixel(x, y).expect("inside");
-        values.extend(pixel.map(|c| encoded(f64::from(c.clamp(0.0, 1.0)))));
-    }
-    Ok(values)
-}
-
-/// The sRGB curve.
-fn encoded(x: f64) -> f64 {
-    if x <= 0.003_130_8 {
-        12.92 * x
-    } else {
-        1.055 * x.powf(1.0 / 2.4) - 0.055
-    }
-}
-
-#[test]
-fn objects_look_as_in_povray() {
-    let Some(povray) = tool("povray") else {
-        return;
-    };
-    let folder = tempfile::tempdir().expect("a folder");
-    let only = std::env::var("STRAHL_SILHOUETTE").ok();
-    let mut wrong = vec![];
-    for (name, body) in SCENES {
-        if only.as_deref().is_some_and(|only| only != *name) {
-            continue;
-        }
-        let text = format!("{SETUP}\n{body}\n");
-        let theirs = by_povray(&povray, folder.path(), &text);
-        let (Ok(theirs), Ok(ours)) = (&theirs, &by_us(&text)) else {
-            wrong.push(format!(
-                "{name}: {:?} {:?}",
-                theirs.err(),
-                by_us(&text).err()
-            ));
-            continue;
-        };
-        let pixels = (WIDTH * HEIGHT) as usize;
-        let differs = |pixel: &usize| {
-            let range = pixel * 3..pixel * 3 + 3;
-            let pairs = ours[range.clone()].iter().zip(&theirs[range]);
-            pairs.into_iter().any(|(a, b)| (a - b).abs() > 2.0 / 255.0)
-        };
-        let different = (0..pixels).filter(differs).count();
-        let background = &theirs[..3];
-        let seen = theirs.chunks(3).filter(|p| *p != background).count();
-        assert!(
-            seen > pixels / 50,
-            "{name}: there is hardly anything to see"
-        );
-        if different * 100 >= pixels {
-            wrong.push(format!("{name}: {different} of {pixels} pixels differ"));
-        }
-        if only.is_some() {
-            let rows = (0..HEIGHT as usize).map(|y| {
-                let row = (0..WIDTH as usize).map(|x| {
-                    let pixel = y * WIDTH as usize + x;
-                    if differs(&pixel) { '#' } else { '.' }
-                });
-                row.collect::<String>()
-            });
-            panic!(
-                "{}\n{}",
-                rows.collect::<Vec<_>>().join("\n"),
-                wrong.join("\n")
-            );
-        }
-    }
-    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
-}
