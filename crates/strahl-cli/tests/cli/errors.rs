@@ -1,0 +1,117 @@
+//! What goes wrong.
+
+use crate::{fails, folder_with_scene};
+
+#[test]
+fn bad_input_gives_one_clear_error() {
+    let folder = folder_with_scene();
+    let f = folder.path();
+    let write = |name: &str, bytes: &[u8]| std::fs::write(f.join(name), bytes).expect("writable");
+    fails(f, &["render", "none.nff", "-o", "x.png"], 1, &["none.nff"]);
+    fails(
+        f,
+        &["render", "scene.nff", "-o", "x.jpg"],
+        1,
+        &[".jpg", ".png"],
+    );
+    fails(f, &["render", "scene.nff", "-o", "no/x.png"], 1, &["no"]);
+    fails(
+        f,
+        &["render", "scene.nff", "-o", "x.png", "--size", "0x10"],
+        1,
+        &["0 x 10"],
+    );
+    fails(
+        f,
+        &["render", "scene.nff", "-o", "x.png", "--size", "wide"],
+        2,
+        &["1280x720"],
+    );
+    fails(
+        f,
+        &[
+            "render",
+            "scene.nff",
+            "-o",
+            "x.png",
+            "--region",
+            "40,0,10x10",
+        ],
+        1,
+        &["region", "48 x 40"],
+    );
+    fails(
+        f,
+        &[
+            "render",
+            "scene.nff",
+            "-o",
+            "x.png",
+            "--size",
+            "4000000000x4000000000",
+        ],
+        1,
+        &["memory", "--region"],
+    );
+    fails(
+        f,
+        &["render", "scene.nff", "-o", "x.png", "--layers"],
+        1,
+        &[".exr"],
+    );
+    fails(
+        f,
+        &["render", "scene.nff", "-o", "x.png", "--accelerator", "kd"],
+        2,
+        &["list, spheres, bvh2, bvh, grid, grids, octree"],
+    );
+    fails(f, &["render", "-", "-o", "x.png"], 1, &["--format"]);
+    fails(
+        f,
+        &["explain", "scene.nff", "--pixel", "48,0"],
+        1,
+        &["48,0", "47,39"],
+    );
+    write("what.xyz", b"hello");
+    fails(f, &["render", "what.xyz", "-o", "x.png"], 1, &["what.xyz"]);
+    write(
+        "garbage.nff",
+        &[0u8, 159, 146, 150, 255, 254, 7, 8, 9, 10, 200],
+    );
+    fails(
+        f,
+        &["render", "garbage.nff", "-o", "x.png"],
+        1,
+        &["garbage.nff"],
+    );
+    write("empty.ply", b"");
+    fails(f, &["render", "empty.ply", "-o", "x.png"], 1, &["empty"]);
+    write("nan.nff", b"f 1 1 1 1 0 1 0 1\ns 0 nan 0 1\n");
+    fails(
+        f,
+        &["render", "nan.nff", "-o", "x.png"],
+        1,
+        &["nan.nff:2:5", "^"],
+    );
+    let header = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
+                  element face 1\nproperty list uchar int vertex_indices\nend_header\n";
+    write("short.ply", format!("{header}0 0 0\n1 0 0\n").as_bytes());
+    fails(
+        f,
+        &["render", "short.ply", "-o", "x.png"],
+        1,
+        &["short.ply"],
+    );
+    write(
+        "range.ply",
+        format!("{header}0 0 0\n1 0 0\n0 1 0\n3 0 1 7\n").as_bytes(),
+    );
+    fails(f, &["render", "range.ply", "-o", "x.png"], 1, &["7"]);
+    write("range.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n");
+    fails(
+        f,
+        &["render", "range.obj", "-o", "x.png"],
+        1,
+        &["range.obj:4", "9"],
+    );
+}
