@@ -1,3 +1,6 @@
+mod copies;
+mod loops;
+
 use crate::error::FunctionError;
 use crate::field::ScalarField;
 use crate::function::Function;
@@ -345,65 +348,6 @@ impl Graph {
         self.push(Node::Call(id, list))
     }
 
-    /// A new loop variable, to be used in the body of one [`sum`](Self::sum) or [`prod`](Self::prod).
-    pub fn loop_variable(&mut self) -> Expr {
-        self.variables = self.variables.saturating_add(1);
-        self.push(Node::Variable(self.variables - 1))
-    }
-
-    /// The sum of `body` for `variable` = `from`, `from + 1`, ... as long as it is not above `to`; 0 if it is at once.
-    pub fn sum(&mut self, variable: Expr, from: Expr, to: Expr, body: Expr) -> Expr {
-        self.repeat(false, variable, from, to, body)
-    }
-
-    /// The product, like [`sum`](Self::sum); 1 if there is no factor.
-    pub fn prod(&mut self, variable: Expr, from: Expr, to: Expr, body: Expr) -> Expr {
-        self.repeat(true, variable, from, to, body)
-    }
-
-    fn repeat(&mut self, product: bool, counter: Expr, from: Expr, to: Expr, body: Expr) -> Expr {
-        let Some(&Node::Variable(variable)) = self.nodes.get(counter.0 as usize) else {
-            return self.fail(FunctionError::UnboundVariable);
-        };
-        if self.depends_on(from, variable) || self.depends_on(to, variable) {
-            return self.fail(FunctionError::UnboundVariable);
-        }
-        if let (Some(from), Some(to)) = (self.known(from), self.known(to)) {
-            // Short loops are written out, with the additions a loop would do.
-            let rounds = to - from;
-            let size = self.reachable(body).len();
-            self.work = self.work.saturating_add(size as u64);
-            let size = size as f64;
-            if !(rounds >= 0.0) || (rounds < 256.0 && rounds * size < limits::UNROLL as f64) {
-                return self.unroll(product, counter, from, to, body);
-            }
-        }
-        self.push(Node::Loop(Loop {
-            product,
-            variable,
-            from,
-            to,
-            body,
-        }))
-    }
-
-    fn unroll(&mut self, product: bool, counter: Expr, from: f64, to: f64, body: Expr) -> Expr {
-        let (op, neutral) = if product {
-            (BinaryOp::Mul, 1.0)
-        } else {
-            (BinaryOp::Add, 0.0)
-        };
-        let mut total = self.constant(neutral);
-        let mut i = from;
-        while i <= to {
-            let value = self.constant(i);
-            let term = self.replace(body, counter, value);
-            total = self.binary(op, total, term);
-            i += 1.0;
-        }
-        total
-    }
-
     // Structure
 
     /// Adds a node, or finds an equal one.
@@ -559,84 +503,5 @@ impl Graph {
         }
         found.sort_unstable_by_key(|e| e.0);
         found
-    }
-
-    /// `root` with `counter` replaced by `value`.
-    fn replace(&mut self, root: Expr, counter: Expr, value: Expr) -> Expr {
-        let Node::Variable(variable) = self.node(counter) else {
-            return root;
-        };
-        let mut image: HashMap<Expr, Expr> = HashMap::from([(counter, value)]);
-        for e in self.reachable(root) {
-            if e != counter && self.depends_on(e, variable) {
-                let copy = self.rebuild(self.node(e), |c| image.get(&c).copied().unwrap_or(c));
-                image.insert(e, copy);
-            }
-        }
-        image.get(&root).copied().unwrap_or(root)
-    }
-
-    /// A node of this graph with other operands, simplified anew.
-    fn rebuild(&mut self, node: Node, to: impl Fn(Expr) -> Expr) -> Expr {
-        match node {
-            Node::Constant(_) | Node::Parameter(_) | Node::Variable(_) => self.push(node),
-            Node::Unary(op, a) => self.unary(op, to(a)),
-            Node::Binary(op, a, b) => self.binary(op, to(a), to(b)),
-            Node::Select(s, n, z, p) => self.select(to(s), to(n), to(z), to(p)),
-            Node::Field(id, list) => {
-                let arguments: Vec<Expr> = self.arguments(list).iter().map(|&a| to(a)).collect();
-                let list = self.list(&arguments);
-                self.push(Node::Field(id, list))
-            }
-            Node::Call(id, list) => {
-                let arguments: Vec<Expr> = self.arguments(list).iter().map(|&a| to(a)).collect();
-                let list = self.list(&arguments);
-                self.push(Node::Call(id, list))
-            }
-            Node::Loop(l) => {
-                let counter = self.push(Node::Variable(l.variable));
-                self.repeat(l.product, counter, to(l.from), to(l.to), to(l.body))
-            }
-        }
-    }
-
-    /// Copies the graph of a function with its parameters replaced.
-    fn inline(&mut self, function: &Function, arguments: &[Expr]) -> Expr {
-        let source = function.graph();
-        let base = self.variables;
-        self.variables = self.variables.saturating_add(source.variables);
-        let mut image: HashMap<Expr, Expr> = HashMap::new();
-        for e in source.reachable(function.root()) {
-            let to = |c: Expr| image.get(&c).copied().unwrap_or(Expr(u32::MAX));
-            let many = |list: List| -> Vec<Expr> {
-                source.arguments(list).iter().map(|&a| to(a)).collect()
-            };
-            let copy = match source.node(e) {
-                Node::Parameter(i) => match arguments.get(i as usize) {
-                    Some(&a) => a,
-                    None => self.fail(FunctionError::ForeignExpression),
-                },
-                Node::Variable(v) => self.push(Node::Variable(base.saturating_add(v))),
-                Node::Field(id, list) => match source.field_at(id) {
-                    Some(field) => self.field(field, &many(list)),
-                    None => self.fail(FunctionError::ForeignExpression),
-                },
-                Node::Call(id, list) => match source.function_at(id) {
-                    Some(callee) => self.call(callee, &many(list)),
-                    None => self.fail(FunctionError::ForeignExpression),
-                },
-                Node::Loop(l) => {
-                    let counter = self.push(Node::Variable(base.saturating_add(l.variable)));
-                    self.repeat(l.product, counter, to(l.from), to(l.to), to(l.body))
-                }
-                node => self.rebuild(node, to),
-            };
-            image.insert(e, copy);
-        }
-        let root = function.root();
-        match image.get(&root) {
-            Some(&e) => e,
-            None => self.fail(FunctionError::ForeignExpression),
-        }
     }
 }
