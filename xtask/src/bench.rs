@@ -1,23 +1,26 @@
 //! Speed against other programs: interleaved runs, medians, ratios.
 
-use crate::pov;
+use crate::convert;
 use anyhow::{Context, Result, bail};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// Trace times of the SPD scenes at 512x512, one thread, no antialiasing, equal depth, against POV-Ray.
+/// Trace times of the SPD scenes at 512x512, no antialiasing, equal depth, against POV-Ray and Tachyon.
 pub(crate) fn spd(args: &[&str]) -> Result<()> {
-    let (mut folder, mut runs) = (PathBuf::from("../shared/data/spd"), 5);
+    let (mut folder, mut runs, mut threads) = (PathBuf::from("../shared/data/spd"), 5, 1);
     let mut rest = args.iter();
     while let Some(arg) = rest.next() {
         match *arg {
             "--runs" => runs = rest.next().context("--runs needs a number")?.parse()?,
+            "--threads" => {
+                threads = rest.next().context("--threads needs a number")?.parse()?;
+            }
             other => folder = PathBuf::from(other),
         }
     }
-    if runs == 0 {
-        bail!("--runs must be at least 1");
+    if runs == 0 || threads == 0 {
+        bail!("--runs and --threads must be at least 1");
     }
     let mut scenes: Vec<PathBuf> = std::fs::read_dir(&folder)
         .with_context(|| format!("cannot read {}", folder.display()))?
@@ -26,44 +29,82 @@ pub(crate) fn spd(args: &[&str]) -> Result<()> {
         .collect();
     scenes.sort();
     build_strahl()?;
-    println!("| scene | strahl s | Mrays/s | POV-Ray s | strahl is faster by |");
-    println!("|---|---|---|---|---|");
-    let mut product = 1.0;
+    println!(
+        "Trace time in seconds, {threads} thread(s), medians of {runs}; how many times as fast strahl is."
+    );
+    println!("| scene | strahl | Mrays/s | POV-Ray | faster by | Tachyon | faster by |");
+    println!("|---|---|---|---|---|---|---|");
+    let (mut povray, mut tachyon) = (vec![], vec![]);
     for scene in &scenes {
-        let ratio = one_scene(scene, runs)?;
-        product *= ratio;
+        let row = one_scene(scene, runs, threads)?;
+        povray.extend(row.povray);
+        tachyon.extend(row.tachyon);
     }
-    if !scenes.is_empty() {
-        println!(
-            "| geometric mean | | | | {:.2} |",
-            product.powf(1.0 / scenes.len() as f64)
-        );
-    }
+    println!(
+        "| geometric mean | | | | {} | | {} |",
+        geometric_mean(&povray),
+        geometric_mean(&tachyon)
+    );
     Ok(())
 }
 
-fn one_scene(scene: &Path, runs: usize) -> Result<f64> {
+fn geometric_mean(ratios: &[f64]) -> String {
+    let logarithms: f64 = ratios.iter().map(|r| r.ln()).sum();
+    match ratios.len() {
+        0 => String::new(),
+        n => format!("{:.2}", (logarithms / n as f64).exp()),
+    }
+}
+
+/// How many times as fast strahl is on a scene.
+struct Faster {
+    povray: Option<f64>,
+    /// Nothing for scenes it can't have.
+    tachyon: Option<f64>,
+}
+
+fn one_scene(scene: &Path, runs: usize, threads: u32) -> Result<Faster> {
     let folder = tempfile::tempdir()?;
-    let pov_scene = folder.path().join("scene.pov");
-    pov::convert(scene, &pov_scene)?;
-    let (mut ours, mut theirs, mut rays) = (vec![], vec![], 0.0);
+    let (pov, dat) = (
+        folder.path().join("scene.pov"),
+        folder.path().join("scene.dat"),
+    );
+    convert::to_pov(scene, &pov)?;
+    let has_dat = convert::to_dat(scene, &dat).is_ok();
+    let (mut ours, mut povray, mut tachyon, mut rays) = (vec![], vec![], vec![], 0.0);
     for _ in 0..runs {
-        let (time, count) = run_strahl(scene, folder.path())?;
+        let (time, count) = run_strahl(scene, folder.path(), threads)?;
         ours.push(time);
         rays = count;
-        theirs.push(run_povray(&pov_scene, folder.path())?);
+        povray.push(run_povray(&pov, folder.path(), threads)?);
+        if has_dat {
+            tachyon.push(run_tachyon(&dat, folder.path(), threads)?);
+        }
     }
-    let mut ratios: Vec<f64> = ours.iter().zip(&theirs).map(|(a, b)| b / a).collect();
-    let (ours, theirs, ratio) = (median(&mut ours), median(&mut theirs), median(&mut ratios));
+    let faster = |theirs: &[f64]| {
+        let mut ratios: Vec<f64> = ours.iter().zip(theirs).map(|(a, b)| b / a).collect();
+        (!ratios.is_empty()).then(|| median(&mut ratios))
+    };
+    let faster = Faster {
+        povray: faster(&povray),
+        tachyon: faster(&tachyon),
+    };
     let name = scene
         .file_name()
         .map(|n| n.to_string_lossy().replace(".nff.gz", ""))
         .unwrap_or_default();
+    let ours = median(&mut ours);
+    let peer = |times: &mut [f64], faster: Option<f64>| match faster {
+        Some(faster) => format!("{:.3} | {faster:.2}", median(times)),
+        None => "- | -".to_owned(),
+    };
     println!(
-        "| {name} | {ours:.3} | {:.2} | {theirs:.3} | {ratio:.2} |",
-        rays / ours / 1e6
+        "| {name} | {ours:.3} | {:.2} | {} | {} |",
+        rays / ours / 1e6,
+        peer(&mut povray, faster.povray),
+        peer(&mut tachyon, faster.tachyon),
     );
-    Ok(ratio)
+    Ok(faster)
 }
 
 /// The middle one of several values.
@@ -92,7 +133,7 @@ pub(crate) fn strahl_binary() -> Result<PathBuf> {
         .join("strahl"))
 }
 
-fn run_strahl(scene: &Path, folder: &Path) -> Result<(f64, f64)> {
+fn run_strahl(scene: &Path, folder: &Path, threads: u32) -> Result<(f64, f64)> {
     let stats = folder.join("stats.json");
     let status = Command::new(strahl_binary()?)
         .arg("render")
@@ -107,7 +148,7 @@ fn run_strahl(scene: &Path, folder: &Path) -> Result<(f64, f64)> {
             "--adc-bailout",
             "0",
         ])
-        .args(["--threads", "1", "--quiet", "--output"])
+        .args(["--threads", &threads.to_string(), "--quiet", "--output"])
         .arg(folder.join("out.png"))
         .arg("--stats")
         .arg(&stats)
@@ -127,20 +168,39 @@ fn run_strahl(scene: &Path, folder: &Path) -> Result<(f64, f64)> {
     ))
 }
 
-fn run_povray(scene: &Path, folder: &Path) -> Result<f64> {
+fn run_povray(scene: &Path, folder: &Path, threads: u32) -> Result<f64> {
     let output = Command::new("povray")
         .arg(format!("+I{}", scene.display()))
         .arg(format!("+O{}", folder.join("pov.png").display()))
-        .args(["+W512", "+H512", "+WT1", "-A", "-D"])
+        .args(["+W512", "+H512", "-A", "-D", &format!("+WT{threads}")])
         .output()
         .context("cannot run povray (Debian package povray)")?;
-    let log = String::from_utf8_lossy(&output.stderr);
     // "Trace Time:       0 hours  0 minutes  0 seconds (0.605 seconds)"
+    seconds_in(&output.stderr, "Trace Time", '(').context("povray printed no trace time")
+}
+
+fn run_tachyon(scene: &Path, folder: &Path, threads: u32) -> Result<f64> {
+    let output = Command::new("tachyon")
+        .arg(scene)
+        .arg("-o")
+        .arg(folder.join("tachyon.tga"))
+        // Mirroring has turned the normals of patches to the other side of their triangles.
+        .args(["-shade_phong", "-normalfixup", "flip", "+V"])
+        .args(["-numthreads", &threads.to_string()])
+        .output()
+        .context("cannot run tachyon (Debian package tachyon)")?;
+    // "  Ray Tracing Time:     0.0719 seconds"
+    seconds_in(&output.stdout, "Ray Tracing Time", ':').context("tachyon printed no trace time")
+}
+
+/// The number of seconds behind a character of the line that begins with some words.
+fn seconds_in(log: &[u8], words: &str, before: char) -> Result<f64> {
+    let log = String::from_utf8_lossy(log);
     let line = log
         .lines()
-        .rfind(|l| l.trim_start().starts_with("Trace Time"));
+        .rfind(|line| line.trim_start().starts_with(words));
     let seconds = line
-        .and_then(|l| l.rsplit_once('('))
-        .and_then(|(_, s)| s.split(' ').next()?.parse().ok());
-    seconds.with_context(|| format!("povray printed no trace time:\n{log}"))
+        .and_then(|line| line.rsplit_once(before))
+        .and_then(|(_, s)| s.split_whitespace().next()?.parse().ok());
+    seconds.with_context(|| format!("there is no line `{words}` in:\n{log}"))
 }

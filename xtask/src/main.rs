@@ -4,16 +4,17 @@
 mod bench;
 mod bench_parse;
 mod compare_pov;
+mod convert;
 mod gallery;
 mod lab;
 mod peers;
-mod pov;
 
 use anyhow::{Result, bail};
 use std::path::Path;
 
 const USAGE: &str = "usage: cargo xtask COMMAND
-  bench spd [FOLDER] [--runs N]   trace times of the SPD scenes (*.nff.gz) in FOLDER against POV-Ray, one thread
+  bench spd [FOLDER] [--runs N] [--threads N]
+                                  trace times of the SPD scenes (*.nff.gz) in FOLDER against POV-Ray and Tachyon
   bench parse [--runs N] [--megabytes N]
                                   time of reading a million spheres made by loops, and an exported scene, against POV-Ray
   bench peers [--rounds N] [--side PIXELS] [--only PART]
@@ -28,7 +29,8 @@ const USAGE: &str = "usage: cargo xtask COMMAND
   generate stadium OUTPUT.nff     scenes of any size, one that grids like, and one that they don't
   growth OUTPUT.csv [--size WxH]  the cost of a ray for every accelerator, over scenes that grow
   plot-growth TABLE.csv FOLDER    the same as double logarithmic plots
-  nff2pov SCENE OUTPUT.pov        the scene as POV-Ray takes it, doing the same work";
+  nff2pov SCENE OUTPUT.pov        the scene as POV-Ray takes it, doing the same work
+  nff2dat SCENE OUTPUT.dat        the scene as Tachyon takes it; it does not refract";
 
 fn main() -> Result<()> {
     let args: Vec<String> = std::env::args().skip(1).collect();
@@ -46,7 +48,8 @@ fn main() -> Result<()> {
         ["growth", output] => lab::measure(Path::new(output), "256x256"),
         ["growth", output, "--size", size] => lab::measure(Path::new(output), size),
         ["plot-growth", table, folder] => lab::plot_growth(Path::new(table), Path::new(folder)),
-        ["nff2pov", scene, output] => pov::convert(Path::new(scene), Path::new(output)),
+        ["nff2pov", scene, output] => convert::to_pov(Path::new(scene), Path::new(output)),
+        ["nff2dat", scene, output] => convert::to_dat(Path::new(scene), Path::new(output)),
         _ => bail!("{USAGE}"),
     }
 }

@@ -2,28 +2,13 @@
 
 use anyhow::{Context, Result, bail};
 use std::fmt::Write;
-use std::path::Path;
-use strahl::formats::scene::load_path;
 use strahl::geometry::mesh::triangulate;
 use strahl::geometry::{Shape, TriangleMesh};
 use strahl::math::DVec3;
 use strahl::scene::{Background, Camera, Object, ObjectKind, Scene};
 use strahl::shade::{Color, LightKind, Material};
 
-/// Converts a scene file.
-pub(crate) fn convert(scene: &Path, output: &Path) -> Result<()> {
-    let loaded = load_path(scene, None);
-    let Some(scene) = loaded.scene else {
-        for diagnostic in loaded.diagnostics {
-            eprintln!("{diagnostic}");
-        }
-        bail!("cannot read {}", scene.display());
-    };
-    std::fs::write(output, to_pov(&scene)?)
-        .with_context(|| format!("cannot write {}", output.display()))
-}
-
-fn to_pov(scene: &Scene) -> Result<String> {
+pub(super) fn to_pov(scene: &Scene) -> Result<String> {
     let mut out = String::new();
     // POV-Ray's level 4 is the Standard Procedural Databases' depth 5.
     writeln!(
