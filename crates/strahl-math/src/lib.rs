@@ -6,6 +6,7 @@
 //! machine, with every compiler flag.
 
 mod aabb;
+pub mod decimal;
 pub mod det;
 pub mod error;
 mod interval;

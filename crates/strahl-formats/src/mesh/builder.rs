@@ -22,13 +22,12 @@ impl Vertex {
     }
 }
 
-/// Gathers triangles whose corners are found again by a key: corners with the same key become one vertex.
+/// Gathers vertices and triangles.
 ///
 /// The mesh has normals if any vertex has one, and texture coordinates likewise. Corners that have none then get the
 /// zero vector and the origin; a reader that mixes both sees to it that this does not show.
-#[derive(Debug)]
-pub(crate) struct MeshBuilder<K> {
-    known: HashMap<K, u32>,
+#[derive(Debug, Default)]
+pub(crate) struct MeshParts {
     positions: Vec<DVec3>,
     normals: Vec<[f32; 3]>,
     uvs: Vec<[f32; 2]>,
@@ -36,46 +35,23 @@ pub(crate) struct MeshBuilder<K> {
     lines: Vec<u32>,
 }
 
-impl<K> Default for MeshBuilder<K> {
-    fn default() -> Self {
-        Self {
-            known: HashMap::new(),
-            positions: vec![],
-            normals: vec![],
-            uvs: vec![],
-            triangles: vec![],
-            lines: vec![],
-        }
-    }
-}
-
-impl<K: Eq + Hash> MeshBuilder<K> {
-    /// The number of the vertex with this key, which is made if it is new.
+impl MeshParts {
+    /// Adds a vertex; returns its number.
     ///
     /// Numbers end at `u32::MAX`; a mesh of more vertices takes more memory than is reasonable, and
-    /// [`MeshBuilder::finish`] reports it.
-    pub(crate) fn vertex(&mut self, key: K, make: impl FnOnce() -> Vertex) -> u32 {
-        let Self {
-            known,
-            positions,
-            normals,
-            uvs,
-            ..
-        } = self;
-        *known.entry(key).or_insert_with(|| {
-            let vertex = make();
-            let number = u32::try_from(positions.len()).unwrap_or(u32::MAX);
-            if let Some(n) = vertex.normal {
-                normals.resize(positions.len(), [0.0; 3]);
-                normals.push(n.as_vec3().to_array());
-            }
-            if let Some(uv) = vertex.uv {
-                uvs.resize(positions.len(), [0.0; 2]);
-                uvs.push(uv.as_vec2().to_array());
-            }
-            positions.push(vertex.position);
-            number
-        })
+    /// [`MeshParts::finish`] reports it.
+    pub(crate) fn push(&mut self, vertex: Vertex) -> u32 {
+        let count = self.positions.len();
+        if let Some(n) = vertex.normal {
+            self.normals.resize(count, [0.0; 3]);
+            self.normals.push(n.as_vec3().to_array());
+        }
+        if let Some(uv) = vertex.uv {
+            self.uvs.resize(count, [0.0; 2]);
+            self.uvs.push(uv.as_vec2().to_array());
+        }
+        self.positions.push(vertex.position);
+        u32::try_from(count).unwrap_or(u32::MAX)
     }
 
     /// Replaces the normal of a vertex that has been made with one.
@@ -94,14 +70,12 @@ impl<K: Eq + Hash> MeshBuilder<K> {
     /// The line of the first triangle and the mesh, if there is any triangle.
     pub(crate) fn finish(self) -> Option<(u32, Result<Arc<TriangleMesh>, GeometryError>)> {
         let Self {
-            known,
             positions,
             mut normals,
             mut uvs,
             triangles,
             lines,
         } = self;
-        drop(known);
         let first = *lines.first()?;
         let mut data = MeshData::from_f64(&positions, triangles);
         if !normals.is_empty() {
@@ -114,6 +88,41 @@ impl<K: Eq + Hash> MeshBuilder<K> {
         }
         data.face_lines = Some(lines);
         Some((first, TriangleMesh::try_new(data).map(Arc::new)))
+    }
+}
+
+/// Gathers triangles whose corners are found again by a key: corners with the same key become one vertex.
+#[derive(Debug)]
+pub(crate) struct MeshBuilder<K> {
+    known: HashMap<K, u32>,
+    parts: MeshParts,
+}
+
+impl<K> Default for MeshBuilder<K> {
+    fn default() -> Self {
+        Self {
+            known: HashMap::new(),
+            parts: MeshParts::default(),
+        }
+    }
+}
+
+impl<K: Eq + Hash> MeshBuilder<K> {
+    /// The number of the vertex with this key, which is made if it is new.
+    pub(crate) fn vertex(&mut self, key: K, make: impl FnOnce() -> Vertex) -> u32 {
+        let Self { known, parts } = self;
+        *known.entry(key).or_insert_with(|| parts.push(make()))
+    }
+
+    /// Adds a triangle of such vertices, which comes from this line of the file.
+    pub(crate) fn triangle(&mut self, vertices: [u32; 3], line: u32) {
+        self.parts.triangle(vertices, line);
+    }
+
+    /// The line of the first triangle and the mesh, if there is any triangle.
+    pub(crate) fn finish(self) -> Option<(u32, Result<Arc<TriangleMesh>, GeometryError>)> {
+        drop(self.known);
+        self.parts.finish()
     }
 }
 

@@ -8,7 +8,7 @@ pub(crate) mod stl;
 
 use std::sync::Arc;
 
-pub(crate) use builder::{MeshBuilder, Vertex};
+pub(crate) use builder::{MeshBuilder, MeshParts, Vertex};
 pub(crate) use polygon::{Triangulator, polygon_normal};
 
 /// The name of an object that is a whole file: the file's, without folders.

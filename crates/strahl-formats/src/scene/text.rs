@@ -1,6 +1,7 @@
 //! Words and numbers of text formats, each with its place.
 
 use super::Report;
+use strahl_math::decimal;
 use strahl_scene::{Diagnostic, FileId, Span};
 
 /// A text with the name it has in messages.
@@ -321,6 +322,16 @@ impl NumberError {
 
 /// A finite f64, the nearest to what is written.
 pub(crate) fn parse_f64(word: &[u8]) -> Result<f64, NumberError> {
+    // Nearly all numbers are short ones.
+    let (negative, number) = match word {
+        [b'-', rest @ ..] => (true, rest),
+        _ => (false, word),
+    };
+    if let Some((value, length)) = decimal::short(number)
+        && length == number.len()
+    {
+        return Ok(if negative { -value } else { value });
+    }
     let text = std::str::from_utf8(word).map_err(|_| NumberError::NotANumber)?;
     let value: f64 = text.parse().map_err(|_| NumberError::NotANumber)?;
     if value.is_finite() {

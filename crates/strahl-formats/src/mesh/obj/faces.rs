@@ -1,9 +1,10 @@
-use crate::mesh::{MeshBuilder, Triangulator, Vertex, object_name, polygon_normal};
+use super::vertices::{Key, Link, Vertices};
+use crate::mesh::{MeshParts, Triangulator, Vertex, object_name, polygon_normal};
 use crate::scene::report::Report;
 use crate::scene::text::Text;
 use std::collections::HashMap;
 use std::sync::Arc;
-use strahl_math::{DVec2, DVec3, det};
+use strahl_math::{DVec2, DVec3, decimal, det};
 use strahl_scene::{Diagnostic, Object, Span};
 
 /// A corner of a face: places in the lists of positions, texture coordinates and normals, counted from 0.
@@ -45,12 +46,17 @@ pub(super) fn corner(word: &[u8], counts: &Counts) -> Result<Corner, String> {
     })
 }
 
+fn whole_number(part: &[u8]) -> Option<i64> {
+    let mut number = 0;
+    if (1..19).contains(&part.len()) && decimal::digits(part, &mut number) == Some(part.len()) {
+        return i64::try_from(number).ok();
+    }
+    std::str::from_utf8(part).ok()?.parse().ok()
+}
+
 /// An index into a list of `count` entries: counted from 1, or back from the end.
 fn index(part: &[u8], count: usize, what: &str) -> Result<u32, String> {
-    let Some(number) = std::str::from_utf8(part)
-        .ok()
-        .and_then(|s| s.parse::<i64>().ok())
-    else {
+    let Some(number) = whole_number(part) else {
         let found = String::from_utf8_lossy(&part[..part.len().min(40)]);
         return Err(format!("expected the number of a {what}, found `{found}`"));
     };
@@ -83,8 +89,8 @@ pub(super) struct PartKey {
 }
 
 /// The normal of a vertex of a mesh.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-enum NormalKey {
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum NormalKey {
     /// None: flat faces.
     Flat,
     /// One of the list.
@@ -93,11 +99,10 @@ enum NormalKey {
     Group(u32),
 }
 
-type VertexKey = (u32, Option<u32>, NormalKey);
-
 #[derive(Debug, Default)]
 struct Part {
-    mesh: MeshBuilder<VertexKey>,
+    mesh: MeshParts,
+    links: Vec<Link>,
     /// Vertices that wait for the normal of a position in a smoothing group.
     waiting: Vec<(u32, (u32, u32))>,
 }
@@ -110,6 +115,7 @@ pub(super) struct Faces {
     pub(super) normals: Vec<DVec3>,
     /// The face being read.
     pub(super) corners: Vec<Corner>,
+    vertices: Vertices,
     parts: Vec<(PartKey, Part)>,
     index: HashMap<PartKey, usize>,
     /// The last part used.
@@ -157,9 +163,14 @@ impl Faces {
             uvs,
             normals,
             cut,
+            vertices: known,
             ..
         } = self;
-        let Part { mesh, waiting } = &mut parts[part].1;
+        let Part {
+            mesh,
+            links,
+            waiting,
+        } = &mut parts[part].1;
         for triangle in cut.iter() {
             let vertices = triangle.map(|i| {
                 let corner = corners[i as usize];
@@ -168,10 +179,12 @@ impl Faces {
                     None if smoothing > 0 => NormalKey::Group(smoothing),
                     None => NormalKey::Flat,
                 };
-                let mut is_new = false;
-                let vertex = mesh.vertex((corner.position, corner.uv, normal_key), || {
-                    is_new = true;
-                    Vertex {
+                let key = Key {
+                    uv: corner.uv,
+                    normal: normal_key,
+                };
+                known.find(part as u32, corner.position, key, links, || {
+                    let vertex = mesh.push(Vertex {
                         position: positions[corner.position as usize],
                         uv: corner.uv.map(|i| uvs[i as usize]),
                         normal: match normal_key {
@@ -179,12 +192,12 @@ impl Faces {
                             NormalKey::Given(i) => Some(normals[i as usize].normalize_or_zero()),
                             NormalKey::Group(_) => Some(DVec3::ZERO),
                         },
+                    });
+                    if matches!(normal_key, NormalKey::Group(_)) {
+                        waiting.push((vertex, (corner.position, smoothing)));
                     }
-                });
-                if is_new && matches!(normal_key, NormalKey::Group(_)) {
-                    waiting.push((vertex, (corner.position, smoothing)));
-                }
-                vertex
+                    vertex
+                })
             });
             mesh.triangle(vertices, line);
         }
@@ -227,7 +240,10 @@ impl Faces {
     pub(super) fn finish(self, text: Text<'_>, report: &mut Report) -> Vec<(Object, Arc<str>)> {
         let Self { parts, sums, .. } = self;
         let mut objects = vec![];
-        for (key, Part { mut mesh, waiting }) in parts {
+        for (key, part) in parts {
+            let Part {
+                mut mesh, waiting, ..
+            } = part;
             for (vertex, place) in waiting {
                 let sum = sums.get(&place).copied().unwrap_or_default();
                 mesh.set_normal(vertex, sum.normalize_or_zero());

@@ -17,6 +17,7 @@
 
 mod faces;
 mod mtl;
+mod vertices;
 
 use crate::scene::Input;
 use crate::scene::bytes::{path_beside, read_beside};
