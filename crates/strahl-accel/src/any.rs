@@ -1,11 +1,12 @@
 use crate::parameters::{self, NoParameters, Parameter, Parameters};
 use crate::shapes::all_bounds;
 use crate::{
-    Accelerator, Boxes, Bvh2, Bvh8, Grid, GridParameters, Grids, List, Octree, OctreeParameters,
-    Shapes, Spheres, SpheresParameters, TraversalStats, Visitor,
+    Accelerator, Boxes, Bvh2, Bvh8, Bvh8Parameters, Grid, GridParameters, Grids, List, Octree,
+    OctreeParameters, Shapes, Spheres, SpheresParameters, TraversalStats, Visitor,
 };
 use std::{fmt, str::FromStr};
 use strahl_math::{Aabb, Interval, Ray};
+use strahl_simd::{Level, Simd};
 
 /// Makes the enum of all structures from the table below.
 macro_rules! accelerators {
@@ -110,7 +111,13 @@ accelerators! {
     /// The binary bounding volume hierarchy: the readable reference.
     "bvh2" Bvh2(NoParameters) = |shapes, _| Bvh2::build(&all_bounds(shapes)),
     /// The bounding volume hierarchy of width eight.
-    "bvh" Bvh8(NoParameters) = |shapes, _| Bvh8::build(&all_bounds(shapes), |id| shapes.class(id)),
+    "bvh" Bvh8(Bvh8Parameters) = |shapes, parameters| {
+        let bvh = Bvh8::build(&all_bounds(shapes), |id| shapes.class(id));
+        match parameters.simd.and_then(Simd::of) {
+            Some(simd) => bvh.with_simd(simd),
+            None => bvh,
+        }
+    },
     /// A regular grid.
     "grid" Grid(GridParameters) = Grid::build,
     /// Grids within the crowded cells of grids.
@@ -124,11 +131,30 @@ impl AnyAccelerator {
     pub fn build(kind: AcceleratorKind, bounds: &[Aabb]) -> Self {
         Self::build_from(kind, &Boxes(bounds))
     }
+
+    /// The instructions it is walked with: only [`Bvh8`] has kernels of vectors.
+    pub fn simd(&self) -> Level {
+        match self {
+            Self::Bvh8(bvh) => bvh.simd(),
+            _ => Level::Portable,
+        }
+    }
+}
+
+impl AcceleratorKind {
+    /// The same, walked with the instructions of a level where it has kernels of vectors.
+    #[must_use]
+    pub fn with_simd(self, level: Level) -> Self {
+        match self {
+            Self::Bvh8(_) => Self::Bvh8(Bvh8Parameters { simd: Some(level) }),
+            other => other,
+        }
+    }
 }
 
 impl Default for AcceleratorKind {
     fn default() -> Self {
-        Self::Bvh8(NoParameters)
+        Self::Bvh8(Bvh8Parameters::DEFAULT)
     }
 }
 

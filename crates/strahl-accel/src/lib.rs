@@ -23,11 +23,12 @@ mod walk;
 
 pub use any::{AcceleratorKind, AnyAccelerator, UnknownAccelerator};
 pub use bvh::{BuildOptions, Bvh2};
-pub use bvh8::{BLOCK, Bvh8, NO_PRIMITIVE};
+pub use bvh8::{BLOCK, Bvh8, Bvh8Parameters, NO_PRIMITIVE};
 pub use grid::{Grid, GridParameters, Grids};
 pub use list::List;
 pub use octree::{Octree, OctreeParameters, Split, Traversal};
 pub use parameters::{NoParameters, Parameter, Parameters};
 pub use shapes::{Boxes, Shapes};
 pub use spheres::{Grouping, Spheres, SpheresParameters};
+pub use strahl_simd::{Level, UnknownLevel};
 pub use traversal::{Accelerator, Exit, Leaf, Place, Step, TraversalStats, Visitor};

@@ -37,6 +37,14 @@ pub trait Parameters: Copy + PartialEq + fmt::Debug + 'static {
 
     /// The value of one, as [`Parameters::set`] takes it; `None` for one that is only named, and is not.
     fn value(&self, name: &str) -> Option<String>;
+
+    /// Whether all this can be had here.
+    ///
+    /// # Errors
+    /// Why not, in words.
+    fn check(&self) -> Result<(), String> {
+        Ok(())
+    }
 }
 
 /// There is nothing to choose.
@@ -79,6 +87,7 @@ pub(crate) fn parse<P: Parameters>(kind: &str, text: &str) -> Result<P, String> 
             ));
         }
     }
+    parameters.check()?;
     Ok(parameters)
 }
 

@@ -1,7 +1,7 @@
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 use strahl::Format;
-use strahl::accel::AcceleratorKind;
+use strahl::accel::{AcceleratorKind, Bvh8Parameters, Level, Parameters, UnknownLevel};
 use strahl::formats::image::BitDepth;
 use strahl::sdl::{Limits, Word};
 use strahl::shade::ShadingModel;
@@ -143,7 +143,27 @@ pub(crate) struct AcceleratorArgs {
     /// Acceleration structure with its parameters, such as bvh, grid:density=4 or octree:traversal=trial-plane (see
     /// `strahl formats`); the picture is the same
     #[arg(long, value_name = "NAME[:PARAMETER=VALUE,...]", default_value_t)]
-    pub(crate) accelerator: AcceleratorKind,
+    accelerator: AcceleratorKind,
+    /// Use these vector instructions instead of the best the processor has: scalar, sse4, avx2 or avx512; the picture is the same
+    #[arg(long, value_name = "LEVEL", value_parser = parse_simd)]
+    simd: Option<Level>,
+}
+
+impl AcceleratorArgs {
+    /// The structure, with the instructions asked for.
+    pub(crate) fn kind(&self) -> AcceleratorKind {
+        match self.simd {
+            Some(level) => self.accelerator.with_simd(level),
+            None => self.accelerator,
+        }
+    }
+}
+
+/// A level that this processor has.
+fn parse_simd(text: &str) -> Result<Level, String> {
+    let level: Level = text.parse().map_err(|e: UnknownLevel| e.to_string())?;
+    Bvh8Parameters { simd: Some(level) }.check()?;
+    Ok(level)
 }
 
 #[derive(Debug, Args)]

@@ -232,7 +232,7 @@ impl<'a> Input<'a> {
     ) -> Result<(RenderScene, LoadTimes), Failure> {
         let (prepared, mut times) = self.prepared(moment, reporter)?;
         let start = Instant::now();
-        let compiled = prepared.build(accelerator.accelerator);
+        let compiled = prepared.build(accelerator.kind());
         times.build = start.elapsed().as_secs_f64();
         times.compile += times.build;
         Ok((compiled, times))

@@ -99,8 +99,7 @@ impl<'a> Stats<'a> {
                 total: render.total,
             },
             threads: rendered.threads,
-            // This engine has no vector kernels yet.
-            simd: "scalar",
+            simd: scene.simd().name(),
             image: Image {
                 width: rendered.film.region.width,
                 height: rendered.film.region.height,

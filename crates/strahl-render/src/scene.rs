@@ -282,6 +282,11 @@ impl RenderScene {
         self.groups[0].accelerator.name()
     }
 
+    /// The instructions its kernels are compiled for.
+    pub fn simd(&self) -> strahl_simd::Level {
+        self.groups[0].accelerator.simd()
+    }
+
     /// Sizes.
     pub fn stats(&self) -> SceneStats {
         let mut s = SceneStats {

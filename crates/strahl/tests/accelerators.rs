@@ -1,4 +1,4 @@
-//! The film of a scene has the same bits with every accelerator, number of threads and order of tiles: for every scene of the
+//! The film of a scene has the same bits with every accelerator, level of vector instructions, number of threads and order of tiles: for every scene of the
 //! repository, and for the Standard Procedural Databases where they are at hand (`../shared/data/spd`, or the folder that
 //! `STRAHL_SPD` names).
 //!
@@ -17,14 +17,20 @@ fn accelerators() -> Vec<AcceleratorKind> {
         "octree:traversal=neighbours",
     ];
     let variants = variants.iter().map(|v| v.parse().expect("an accelerator"));
+    // The levels of instructions that this processor has.
+    let levels = ["scalar", "sse4", "avx2", "avx512"];
+    let levels = levels
+        .iter()
+        .filter_map(|l| format!("bvh:simd={l}").parse().ok());
     AcceleratorKind::ALL
         .iter()
         .copied()
         .chain(variants)
+        .chain(levels)
         .collect()
 }
 
-/// Size of the pictures, and whether the list has to render them too: it takes long.
+/// Size of the pictures.
 fn size() -> (u32, u32) {
     let Ok(text) = std::env::var("STRAHL_FULL") else {
         return (24, 18);

@@ -10,14 +10,54 @@ mod watch;
 
 use crate::List;
 use crate::cull::CullBounds;
+use crate::parameters::{Parameter, Parameters};
 use node::{Child, Node};
-use strahl_simd::Simd;
+use strahl_simd::{Level, Simd};
 
 /// Primitives in a block of slots.
 pub const BLOCK: usize = 4;
 
 /// The slot of no primitive.
 pub const NO_PRIMITIVE: u32 = u32::MAX;
+
+/// The parameters of [`Bvh8`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bvh8Parameters {
+    /// The instructions it is walked with; those this processor does not have, and `None`, stand for the best it has.
+    pub simd: Option<Level>,
+}
+
+impl Parameters for Bvh8Parameters {
+    const DEFAULT: Self = Self { simd: None };
+    const ALL: &'static [Parameter] = &[Parameter {
+        name: "simd",
+        values: "scalar|sse4|avx2|avx512",
+        about: "walk with these instructions instead of the best that the processor has; the picture is the same",
+    }];
+
+    fn set(&mut self, _: &str, value: &str) -> Option<()> {
+        self.simd = Some(value.parse().ok()?);
+        Some(())
+    }
+
+    fn value(&self, _: &str) -> Option<String> {
+        self.simd.map(|level| level.to_string())
+    }
+
+    fn check(&self) -> Result<(), String> {
+        match self.simd {
+            Some(level) if Simd::of(level).is_none() => {
+                let all = Simd::available();
+                let names: Vec<&str> = all.iter().map(|simd| simd.level().name()).collect();
+                let names = names.join(", ");
+                Err(format!(
+                    "this processor does not have {level}; it has: {names}"
+                ))
+            }
+            _ => Ok(()),
+        }
+    }
+}
 
 /// A bounding volume hierarchy of width eight built by the surface area heuristic.
 ///
@@ -50,6 +90,11 @@ struct Tree {
 impl Bvh8 {
     /// The most primitives a hierarchy can hold.
     pub const MAX_PRIMITIVES: usize = Child::MAX_BLOCKS;
+
+    /// The instructions it is walked with.
+    pub fn simd(&self) -> Level {
+        self.simd.level()
+    }
 
     /// The same hierarchy walked with the instructions of another level.
     #[must_use]

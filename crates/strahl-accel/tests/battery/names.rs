@@ -39,6 +39,10 @@ fn wrong_parameters_are_answered_with_those_there_are() {
             "spheres:build",
             ["build=bvh|agglomerative", "found `build`", "spheres"],
         ),
+        (
+            "bvh:simd=mmx",
+            ["simd=scalar|sse4|avx2|avx512", "simd=mmx", "bvh"],
+        ),
         ("list:fast", ["`list` has no parameters", "fast", "list"]),
     ] {
         let error = text.parse::<AcceleratorKind>().expect_err(text).to_string();

@@ -23,7 +23,7 @@ pub(crate) fn trace_ray(args: &TraceRayArgs) -> Result<(), Failure> {
     let ray =
         ray.ok_or_else(|| Failure::new(format!("the camera sees nothing through pixel {x},{y}")))?;
     let way = walk(&scene, &ray);
-    let kind = args.accelerator.accelerator;
+    let kind = args.accelerator.kind();
     if args.json {
         let all = json!({
             "pixel": [x, y],

@@ -72,6 +72,12 @@ fn bad_input_gives_one_clear_error() {
         1,
         &["48,0", "47,39"],
     );
+    fails(
+        f,
+        &["render", "scene.nff", "-o", "x.png", "--simd", "mmx"],
+        2,
+        &["mmx", "scalar, sse4, avx2, avx512"],
+    );
     write("what.xyz", b"hello");
     fails(f, &["render", "what.xyz", "-o", "x.png"], 1, &["what.xyz"]);
     write(

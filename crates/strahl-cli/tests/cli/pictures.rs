@@ -65,6 +65,10 @@ fn the_film_is_the_same_for_accelerators_threads_and_tile_orders() {
         reference
     );
     assert_ne!(hash(&["--sampling", "center"]), reference);
+    let simd = |args: &[&str]| stats(folder.path(), args)["simd"].clone();
+    assert_eq!(hash(&["--simd", "scalar"]), reference);
+    assert_eq!(simd(&["--simd", "scalar"]), "scalar");
+    assert_eq!(simd(&["--accelerator", "grid"]), "scalar");
 }
 
 #[test]
