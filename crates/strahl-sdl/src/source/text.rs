@@ -163,17 +163,14 @@ impl Text {
                 .take((end - from) as u64)
                 .read_to_end(&mut self.held)
         });
-        match done {
-            Ok(count) if count < end - from => {
-                large.failed = Some("it has become shorter since".to_owned());
-            }
-            Ok(_) => {}
-            Err(error) => large.failed = Some(error.to_string()),
-        }
-        if large.failed.is_some() {
-            // So that nobody asks for what is behind it again.
-            self.length = self.begin + self.held.len();
-        }
+        let failure = match done {
+            Ok(count) if count < end - from => "it has become shorter since".to_owned(),
+            Ok(_) => return,
+            Err(error) => error.to_string(),
+        };
+        large.failed = Some(failure);
+        // So that nobody asks for what is behind it again.
+        self.length = self.begin + self.held.len();
     }
 }
 
@@ -221,6 +218,14 @@ mod tests {
         let part = text.part(1000..1010);
         assert_eq!((part.get(1000..1010), part.is_last), (&b""[..], true));
         assert!(text.failed().unwrap().contains("shorter"));
+        // What is left can still be shown.
+        fs::write(&path, vec![b'x'; 1000]).unwrap();
+        let mut text = Text::in_parts(&path, 64).unwrap();
+        text.part(0..10);
+        fs::write(&path, vec![b'x'; 900]).unwrap();
+        assert!(text.part(890..950).is_last);
+        assert_eq!(text.part(100..103).get(100..103), b"xxx");
+        assert_eq!(text.len(), 900);
     }
 
     #[test]
