@@ -114,28 +114,29 @@ impl Aabb {
     ///
     /// This is the f64 clip that re-bases rays (engine design 4.2), not the culling test of the accelerators.
     pub fn clip(&self, ray: &Ray, range: Interval) -> Option<Interval> {
-        let (mut lo, mut hi) = (range.min, range.max);
+        let mut inside = range;
         for axis in 0..3 {
-            let (o, d) = (ray.origin[axis], ray.direction[axis]);
-            if d == 0.0 {
-                if o < self.min[axis] || o > self.max[axis] {
-                    return None;
-                }
-                continue;
-            }
-            let (a, b) = ((self.min[axis] - o) / d, (self.max[axis] - o) / d);
-            let (near, far) = if a < b { (a, b) } else { (b, a) };
-            // Two roundings (difference, quotient), each within half an ulp: widen by two ulps.
-            let near = near - near.abs() * f64::EPSILON * 2.0;
-            let far = far + far.abs() * f64::EPSILON * 2.0;
-            if near > lo {
-                lo = near;
-            }
-            if far < hi {
-                hi = far;
-            }
+            let planes = [self.min[axis], self.max[axis]];
+            inside = Self::clip_axis(planes, ray.origin[axis], ray.direction[axis], inside)?;
         }
-        (lo <= hi).then_some(Interval::new(lo, hi))
+        (inside.min <= inside.max).then_some(inside)
+    }
+
+    /// The same for one axis: the part of the range (perhaps empty) where `o + t d` is between two planes; `None` if it never is.
+    #[inline]
+    pub fn clip_axis([low, high]: [f64; 2], o: f64, d: f64, range: Interval) -> Option<Interval> {
+        if d == 0.0 {
+            return (low <= o && o <= high).then_some(range);
+        }
+        let (a, b) = ((low - o) / d, (high - o) / d);
+        let (near, far) = if a < b { (a, b) } else { (b, a) };
+        // Two roundings (difference, quotient), each within half an ulp: widen by two ulps.
+        let near = near - near.abs() * f64::EPSILON * 2.0;
+        let far = far + far.abs() * f64::EPSILON * 2.0;
+        Some(Interval::new(
+            if near > range.min { near } else { range.min },
+            if far < range.max { far } else { range.max },
+        ))
     }
 }
 

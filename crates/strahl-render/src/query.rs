@@ -595,17 +595,17 @@ impl<Q: Query> GroupVisitor<'_, '_, '_, Q> {
             let look = self.group.look(prim, surface.element);
             &self.search.scene.materials[look.material.0 as usize]
         };
-        let point = self
-            .group
-            .surface_at(prim, self.ray, hit, surface.element, true);
-        let front = point.n_geom.dot(self.ray.direction) < 0.0;
-        if material.sides == Sides::Front && !front {
-            return false;
-        }
         let masked = material
             .pbr
             .as_ref()
             .is_some_and(|p| p.alpha_cutoff.is_some());
+        let point = self
+            .group
+            .surface_at(prim, self.ray, hit, surface.element, masked);
+        let front = point.n_geom.dot(self.ray.direction) < 0.0;
+        if material.sides == Sides::Front && !front {
+            return false;
+        }
         !masked || material.at(point.uv).opacity > 0.0
     }
 }

@@ -1,4 +1,5 @@
-use super::polygon::{largest_axis, other_axes};
+use super::inside_map::InsideMap;
+use super::polygon::other_axes;
 use strahl_math::DVec3;
 
 /// The edges of a polygon projected on its principal plane, in a hierarchy of boxes around runs of edges that follow each other.
@@ -15,7 +16,12 @@ pub(super) struct EdgeRuns {
     line: Box<[[f64; 2]]>,
     /// Boxes around runs of edges: first of `RUN` edges each, then of `RUN` boxes of the level before each, and so on.
     levels: Box<[Box<[Rect]>]>,
+    /// What is known without them, if they are many.
+    map: Option<InsideMap>,
 }
+
+/// More edges than this are worth a map (which takes 1 KiB).
+const MAPPED: usize = 32;
 
 /// Edges per run, and runs per longer run.
 const RUN: usize = 8;
@@ -87,8 +93,8 @@ impl Rect {
 
 impl EdgeRuns {
     /// Projects the rings and builds the boxes.
-    pub(super) fn build<'a>(rings: impl Iterator<Item = &'a [DVec3]>, normal: DVec3) -> Self {
-        let (i, j) = other_axes(largest_axis(normal));
+    pub(super) fn build<'a>(rings: impl Iterator<Item = &'a [DVec3]>, axis: usize) -> Self {
+        let (i, j) = other_axes(axis);
         let mut line = Vec::new();
         let mut starts = Vec::new();
         for ring in rings {
@@ -106,11 +112,16 @@ impl EdgeRuns {
         while let Some(last) = levels.last().filter(|last| last.len() > RUN) {
             levels.push(boxes_of_runs(last));
         }
-        Self {
+        let mut runs = Self {
             axes: [i, j],
             line: line.into(),
             levels: levels.into(),
+            map: None,
+        };
+        if runs.line.len() > MAPPED {
+            runs.map = InsideMap::build(&runs.line, |point| runs.locate_exactly(point, 0.0));
         }
+        runs
     }
 
     /// Whether a point that is known up to `error` in each coordinate is inside, by the even-odd rule; `None` if the error
@@ -123,6 +134,16 @@ impl EdgeRuns {
         if !(error.is_finite() && point[0].is_finite() && point[1].is_finite()) {
             return None;
         }
+        if let Some(map) = &self.map
+            && let Some(inside) = map.locate(point, error)
+        {
+            return Some(inside);
+        }
+        self.locate_exactly(point, error)
+    }
+
+    /// The same by the runs alone.
+    fn locate_exactly(&self, point: [f64; 2], error: f64) -> Option<bool> {
         let top = self.levels.len().checked_sub(1)?;
         self.odd_crossings(top, 0..self.levels[top].len(), point, error)
     }

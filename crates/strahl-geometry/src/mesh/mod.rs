@@ -11,6 +11,7 @@ mod closed;
 mod crack_tests;
 mod edge_runs;
 mod indexed;
+mod inside_map;
 mod pass;
 mod polygon;
 #[cfg(test)]

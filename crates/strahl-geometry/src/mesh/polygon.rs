@@ -8,8 +8,7 @@ use strahl_math::{Aabb, DVec2, DVec3, Interval, Ray, Transform};
 /// what coordinates printed with six digits are off.
 const PLANARITY: f64 = 1.0 / 65_536.0;
 
-/// Polygons with more edges than this find out with the help of boxes around runs of edges. It would be a little faster for
-/// small ones too (4 corners: 21 instead of 27 ns), but they are many, and it triples their size.
+/// Polygons with more edges than this find out with the help of boxes around runs of edges.
 const MANY_EDGES: usize = 8;
 
 /// A flat polygon with any number of corners, concave or touching itself if need be, possibly with holes.
@@ -20,8 +19,9 @@ const MANY_EDGES: usize = 8;
 /// The plane gives `t`; the corners are then projected *along the ray*, and the edges that cross a half-line from the
 /// ray's image are counted, by comparing products. A corner that two polygons share has the same image for both, so exactly one of two
 /// neighbours gets a ray along their common edge, whether they lie in one plane or not: there is no crack (where edges
-/// meet corner to corner). Polygons with more than 8 edges first project the hit on the principal plane, where boxes around runs of
-/// edges leave few of them to look at; the first method still decides what is too near an edge to tell there.
+/// meet corner to corner). Before that the hit is projected on the principal plane, where most points are certainly on one side of all
+/// edges; the first method decides what is too near an edge to tell there. For polygons with more than 8 edges boxes around runs of
+/// edges leave few of them to look at.
 ///
 /// Corners need not be in the plane exactly (see [`Polygon::try_new`]); the plane goes through the first one with the normal
 /// of Newell's method, and `position_error` covers how far the others are off it.
@@ -42,6 +42,8 @@ pub struct Polygon {
     reach: f64,
     /// The corner that is `(0, 1)` in the texture.
     up: u32,
+    /// The axis along which the normal is longest: that of the principal plane.
+    axis: u8,
     /// Whether the first ring runs clockwise as seen from the front, as it does after a mirroring transform.
     flipped: bool,
     pub(super) runs: Option<Box<EdgeRuns>>,
@@ -111,11 +113,13 @@ impl Polygon {
             deviation: 0.0,
             reach: 0.0,
             up,
+            axis: 0,
             flipped,
             runs: None,
         };
         let front = newell_normal(polygon.rings().next()?)?;
         polygon.normal = if flipped { -front } else { front };
+        polygon.axis = largest_axis(front) as u8;
         let off_plane = |p: &DVec3| polygon.normal.dot(*p - polygon.corners[0]).abs();
         polygon.deviation = polygon.corners.iter().map(off_plane).fold(0.0, f64::max);
         let largest = polygon
@@ -124,7 +128,10 @@ impl Polygon {
             .fold(DVec3::ZERO, |m, p| m.max(p.abs()));
         polygon.reach = largest.element_sum();
         if polygon.corners.len() > MANY_EDGES {
-            polygon.runs = Some(Box::new(EdgeRuns::build(polygon.rings(), polygon.normal)));
+            polygon.runs = Some(Box::new(EdgeRuns::build(
+                polygon.rings(),
+                polygon.axis.into(),
+            )));
         }
         Some(polygon)
     }
@@ -167,12 +174,18 @@ impl Polygon {
         if t + t_error < range.min || t - t_error > range.max {
             return None;
         }
+        // The projections along the ray and on the principal plane differ by less than this.
+        let error = t_error * speed;
         if let Some(runs) = &self.runs {
-            // The projections along the ray and on the principal plane differ by less than this.
-            let error = t_error * speed;
             if let Some(inside) = runs.locate(ray.at(t), error) {
                 return inside.then_some(t);
             }
+        } else if let Some(inside) = self.locate(ray.at(t), error) {
+            return if inside {
+                self.within_height(ray, t)
+            } else {
+                None
+            };
         }
         if !self.surrounds(&RayShear::new(ray)) {
             return None;
@@ -180,6 +193,42 @@ impl Polygon {
         // Seen nearly edge-on the plane's `t` is vague. That the hit is within the bounds is certain.
         let span = self.bounds().clip(ray, Interval::LINE)?;
         Some(t.clamp(span.min, span.max))
+    }
+
+    /// Whether a point of the plane that is known up to `error` in each coordinate is inside, told in the principal plane; `None` if
+    /// the error might change the answer. That far around the point all is on the same side of the lines through all edges.
+    #[inline]
+    fn locate(&self, point: DVec3, error: f64) -> Option<bool> {
+        let (i, j) = other_axes(self.axis.into());
+        let (x, y) = (point[i], point[j]);
+        let (mut odd, mut certain) = (false, true);
+        for ring in self.rings() {
+            let Some(last) = ring.last() else { continue };
+            let (mut ax, mut ay) = (last[i] - x, last[j] - y);
+            // No short cuts: which edge is crossed or near can't be predicted.
+            for corner in ring {
+                let (bx, by) = (corner[i] - x, corner[j] - y);
+                let cross = ax * by - ay * bx;
+                certain &= cross.abs() > error * ((bx - ax).abs() + (by - ay).abs());
+                odd ^= ((ay > 0.0) != (by > 0.0)) & ((cross > 0.0) == (by > ay));
+                (ax, ay) = (bx, by);
+            }
+        }
+        certain.then_some(odd)
+    }
+
+    /// Where the ray is within the bounds as [`Aabb::clip`] finds it, as near to `t` as that is, for a hit that is certainly inside in
+    /// the principal plane: only along the third axis may the rounding of `t` have taken it out.
+    #[inline]
+    fn within_height(&self, ray: &Ray, t: f64) -> Option<f64> {
+        let k = usize::from(self.axis);
+        let (mut low, mut high) = (self.corners[0][k], self.corners[0][k]);
+        for corner in &self.corners[1..] {
+            low = if corner[k] < low { corner[k] } else { low };
+            high = if corner[k] > high { corner[k] } else { high };
+        }
+        let span = Aabb::clip_axis([low, high], ray.origin[k], ray.direction[k], Interval::LINE)?;
+        (span.min <= span.max).then(|| t.clamp(span.min, span.max))
     }
 
     /// Whether the ray's line passes through the polygon, told in the ray's projection.
@@ -230,9 +279,9 @@ impl Primitive for Polygon {
 
     fn surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
         let bare = self.bare_surface_at(ray, hit);
-        let (n, origin) = (self.normal, self.corners[0]);
+        let origin = self.corners[0];
         // Coordinates with respect to two sides, solved in the principal plane.
-        let (i, j) = other_axes(largest_axis(n));
+        let (i, j) = other_axes(self.axis.into());
         let (right, up) = (
             self.corners[1] - origin,
             self.corners[self.up as usize] - origin,
