@@ -1,8 +1,8 @@
 use crate::parameters::{self, NoParameters, Parameter, Parameters};
 use crate::shapes::all_bounds;
 use crate::{
-    Accelerator, Boxes, Bvh2, Bvh8, Bvh8Parameters, Grid, GridParameters, Grids, List, Octree,
-    OctreeParameters, Shapes, Spheres, SpheresParameters, TraversalStats, Visitor,
+    Accelerator, Beam, Boxes, Bvh2, Bvh8, Bvh8Parameters, Grid, GridParameters, Grids, List,
+    Octree, OctreeParameters, Shapes, Spheres, SpheresParameters, TraversalStats, Visitor,
 };
 use std::{fmt, str::FromStr};
 use strahl_math::{Aabb, Interval, Ray};
@@ -81,6 +81,10 @@ macro_rules! accelerators {
                 stats: &mut TraversalStats,
             ) {
                 match self { $(Self::$variant(a) => a.traverse(ray, range, visitor, stats),)+ }
+            }
+
+            fn misses(&self, beam: &Beam) -> bool {
+                match self { $(Self::$variant(a) => a.misses(beam),)+ }
             }
 
             fn slots(&self) -> &[u32] {

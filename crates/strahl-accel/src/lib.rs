@@ -6,6 +6,7 @@
 //! ids, not by the order of visits). Hence the choice of structure changes the speed, never the picture.
 
 mod any;
+mod beam;
 mod boxes;
 mod bvh;
 mod bvh8;
@@ -22,6 +23,7 @@ mod traversal;
 mod walk;
 
 pub use any::{AcceleratorKind, AnyAccelerator, UnknownAccelerator};
+pub use beam::Beam;
 pub use bvh::{BuildOptions, Bvh2};
 pub use bvh8::{BLOCK, Bvh8, Bvh8Parameters, NO_PRIMITIVE};
 pub use grid::{Grid, GridParameters, Grids};

@@ -1,3 +1,4 @@
+use crate::Beam;
 use strahl_math::{Aabb, DVec3, Interval, Ray};
 use strahl_simd::Isa;
 
@@ -129,6 +130,11 @@ pub trait Accelerator: Send + Sync {
         visitor: &mut V,
         stats: &mut TraversalStats,
     );
+
+    /// Whether certainly no ray of a beam meets the box of any primitive; `false` from a structure that does not know.
+    fn misses(&self, _beam: &Beam) -> bool {
+        false
+    }
 
     /// The primitives in the order of the leaves' slots, for [`Visitor::visit_leaf`]; nothing if the structure has no slots.
     fn slots(&self) -> &[u32] {

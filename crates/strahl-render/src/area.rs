@@ -44,7 +44,7 @@ struct AreaQuery<'q> {
     area: &'q AreaLight,
     /// The centre of the light.
     center: &'q LightSample,
-    surface: &'q Surface,
+    surface: &'q Surface<'q>,
     hit: &'q Hit,
     model: ShadingModel,
     branch: &'q Branch,
@@ -75,7 +75,7 @@ impl TreeTracer<'_> {
         &mut self,
         area: &AreaLight,
         sample: &LightSample,
-        surface: &Surface,
+        surface: &Surface<'_>,
         hit: &Hit,
         model: ShadingModel,
         light: usize,

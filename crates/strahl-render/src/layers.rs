@@ -4,6 +4,7 @@ use crate::hit::Hit;
 use crate::observer::Share;
 use crate::scene::RenderScene;
 use crate::surface::{Split, Surface};
+use std::borrow::Cow;
 use strahl_math::DVec3;
 use strahl_shade::patterns::TexturePoint;
 use strahl_shade::texture::{LayerPoint, TexturePaint};
@@ -14,7 +15,7 @@ use strahl_shade::{Color, Finish};
 /// otherwise.
 pub(crate) fn paint<'s>(
     scene: &'s RenderScene,
-    surface: &mut Surface,
+    surface: &mut Surface<'_>,
     hit: &Hit,
     paint: &mut TexturePaint<'s>,
 ) {
@@ -58,7 +59,7 @@ pub(crate) fn paint<'s>(
             surface.n_shade = layer.normal;
         }
     }
-    surface.material.finish = sum;
+    surface.material.finish = Cow::Owned(sum);
     surface.material.fresnel = false;
     surface.material.fresnel_reflection = Color::BLACK;
 }
@@ -75,7 +76,7 @@ pub(crate) struct Mirror {
 #[inline]
 pub(crate) fn mirrors(
     paint: &TexturePaint<'_>,
-    surface: &Surface,
+    surface: &Surface<'_>,
     split: &Split,
     out: &mut Vec<Mirror>,
 ) {
@@ -107,7 +108,7 @@ fn mirrors_alike(a: &LayerPoint<'_>, b: &LayerPoint<'_>) -> bool {
 
 /// The rays of layers that mirror differently, or not in proportion to the light.
 #[cold]
-fn mirrors_of_layers(paint: &TexturePaint<'_>, surface: &Surface, out: &mut Vec<Mirror>) {
+fn mirrors_of_layers(paint: &TexturePaint<'_>, surface: &Surface<'_>, out: &mut Vec<Mirror>) {
     out.clear();
     for (number, layer) in paint.layers.iter().enumerate() {
         let before = &paint.layers[..number];
@@ -136,7 +137,7 @@ fn mirrors_of_layers(paint: &TexturePaint<'_>, surface: &Surface, out: &mut Vec<
 /// What the layers make of light of this colour from the direction `l`: the diffuse part and the highlights.
 pub(crate) fn lit(
     paint: &TexturePaint<'_>,
-    surface: &Surface,
+    surface: &Surface<'_>,
     l: DVec3,
     light: Color,
 ) -> (Color, Color) {

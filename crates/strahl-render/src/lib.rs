@@ -28,6 +28,7 @@ mod render;
 mod sampling;
 mod scene;
 mod shadow;
+mod sight;
 mod surface;
 mod tiles;
 pub mod trace;

@@ -3,6 +3,7 @@ use crate::cost::PixelCost;
 use crate::film::{Film, FilmError, PixelInfo, Region, try_filled};
 use crate::sampling::{Sampling, contrast};
 use crate::scene::RenderScene;
+use crate::sight::Sight;
 use crate::tiles::{TileOrder, tiles};
 use crate::trace::{RayCounts, SampleResult, TraceSettings, TreeTracer};
 use rayon::prelude::*;
@@ -258,6 +259,7 @@ impl Job<'_> {
                         progress,
                         infos: Vec::new(),
                         depth: 0,
+                        blind: false,
                     },
                     |tracer, tile| {
                         (!progress.cancelled()).then(|| {
@@ -439,6 +441,8 @@ struct PixelTracer<'s> {
     infos: Vec<PixelInfo>,
     /// Deepest level of the trees of the pixel so far.
     depth: u32,
+    /// Whether no ray of the pixel meets anything.
+    blind: bool,
 }
 
 impl PixelTracer<'_> {
@@ -447,7 +451,9 @@ impl PixelTracer<'_> {
         self.tree.tracer.stats = TraversalStats::default();
         self.tree.tracer.forget_occluders();
         let mut costs = Vec::new();
-        let values = tile.positions().map(|(x, y)| {
+        let sight = self.sight(tile);
+        let mut pixel = |x: u32, y: u32| {
+            self.blind = sight.is_empty(x, y);
             if !self.options.costs {
                 return trace(self, x, y);
             }
@@ -463,8 +469,11 @@ impl PixelTracer<'_> {
                 nanoseconds: self.progress.now().saturating_sub(start),
             });
             value
-        });
-        let values = values.collect();
+        };
+        let mut values = Vec::with_capacity(tile.pixels() as usize);
+        for y in tile.y..tile.y + tile.height {
+            values.extend((tile.x..tile.x + tile.width).map(|x| pixel(x, y)));
+        }
         TileResult {
             tile,
             values,
@@ -472,6 +481,16 @@ impl PixelTracer<'_> {
             infos: std::mem::take(&mut self.infos),
             counts: self.tree.counts,
             traversal: self.tree.tracer.stats,
+        }
+    }
+
+    /// What may be seen of a tile. Costs that are shown are those of rays that are followed one by one.
+    fn sight(&self, tile: Region) -> Sight {
+        let options = self.options;
+        if options.trace.beams && !options.costs && !options.info {
+            Sight::of(tile, self.tree.tracer.scene, self.rays)
+        } else {
+            Sight::all(tile)
         }
     }
 
@@ -504,11 +523,20 @@ impl PixelTracer<'_> {
 
     /// The light that comes through a place of the picture; `keep` says whether it stands for its pixel's other data.
     fn sample(&mut self, x: f64, y: f64, keep: bool) -> Color {
+        if self.blind
+            && let Some(color) = self.tree.same_nothing()
+        {
+            return color;
+        }
         let before = self.tree.tracer.stats.primitive_tests;
         let mut first = SampleResult::NOTHING;
-        let (tree, depth) = (&mut self.tree, &mut self.depth);
+        let (tree, depth, blind) = (&mut self.tree, &mut self.depth, self.blind);
         let color = self.rays.color(x, y, |ray| {
-            let sample = tree.trace(ray, &mut ());
+            let sample = if blind {
+                tree.nothing(ray)
+            } else {
+                tree.trace(ray, &mut ())
+            };
             *depth = (*depth).max(sample.depth);
             if first.rays == 0 {
                 first = sample;

@@ -52,9 +52,9 @@ impl Split {
 }
 
 /// Everything at a hit that shading needs, turned to the side of the ray.
-pub(crate) struct Surface {
+pub(crate) struct Surface<'s> {
     pub(crate) resolved: Resolved,
-    pub(crate) material: MaterialPoint,
+    pub(crate) material: MaterialPoint<'s>,
     /// Unit vector towards the viewer.
     pub(crate) v: DVec3,
     pub(crate) n_geom: DVec3,
@@ -74,10 +74,10 @@ pub(crate) struct Surface {
     front: (DVec3, Origin),
 }
 
-impl Surface {
-    #[inline]
+impl<'s> Surface<'s> {
+    #[inline(always)]
     pub(crate) fn at(
-        scene: &RenderScene,
+        scene: &'s RenderScene,
         branch: &Branch,
         hit: &Hit,
         media: &MediaArena,

@@ -13,7 +13,7 @@ pub enum TileOrder {
 }
 
 /// Edge length of a tile in pixels.
-const TILE: u32 = 32;
+pub(crate) const TILE: u32 = 32;
 
 /// Cuts a region into tiles.
 pub(crate) fn tiles(region: Region, order: TileOrder) -> Vec<Region> {

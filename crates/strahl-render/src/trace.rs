@@ -28,6 +28,7 @@ use crate::scene::{RenderScene, Uv};
 use crate::shadow::ShadowRay;
 use crate::surface::{Split, Surface};
 use strahl_math::{DVec3, Interval, Ray};
+use strahl_scene::Background;
 use strahl_shade::texture::TexturePaint;
 use strahl_shade::{Color, Light, ShadingModel, SpectralPart};
 
@@ -39,6 +40,8 @@ pub struct TreeTracer<'s> {
     /// Rays followed so far.
     pub counts: RayCounts,
     settings: TraceSettings,
+    /// What primary rays bring that meet nothing, if it is the same for all.
+    beyond: Option<Color>,
     uv: Uv,
     pub(crate) media: MediaArena,
     waiting: Vec<Branch>,
@@ -129,8 +132,15 @@ impl<'s> TreeTracer<'s> {
             || scene.materials.iter().any(|m| shown(m.model));
         let mut tracer = Tracer::new(scene);
         tracer.remembers = settings.shadow_cache;
+        let beyond = match &scene.background {
+            Background::Solid(color) if !scene.has_air() => {
+                Some(settings.decoded(*color + Color::BLACK))
+            }
+            _ => None,
+        };
         Self {
             tracer,
+            beyond,
             uv: if uv_shown { Uv::Always } else { Uv::IfTextured },
             counts: RayCounts::default(),
             settings,
@@ -144,8 +154,42 @@ impl<'s> TreeTracer<'s> {
         }
     }
 
+    /// What a primary ray brings that meets nothing.
+    pub(crate) fn nothing(&mut self, primary: &Ray) -> SampleResult {
+        self.counts.count(RayKind::Primary, false);
+        let color = self.beyond.unwrap_or_else(|| {
+            let scene = self.tracer.scene;
+            // As a tree without branches adds up, to the sign of a zero.
+            let mut color = scene.background.along(primary.direction) + Color::BLACK;
+            if scene.has_air() {
+                let (keeps, adds) = scene.air_along(primary, f64::INFINITY);
+                color = color * keeps + adds;
+            }
+            self.settings.decoded(color)
+        });
+        SampleResult {
+            color,
+            first: None,
+            depth: 1,
+            rays: 1,
+        }
+    }
+
+    /// The colour of a primary ray that meets nothing, if it is the same for all of them: then it is counted as followed.
+    #[inline]
+    pub(crate) fn same_nothing(&mut self) -> Option<Color> {
+        self.counts.primary += u64::from(self.beyond.is_some());
+        self.beyond
+    }
+
     /// Follows a primary ray with everything that comes of it.
     pub fn trace<O: TraceObserver>(&mut self, primary: &Ray, observer: &mut O) -> SampleResult {
+        let mut hit = self
+            .tracer
+            .closest_hit(primary, Interval::FORWARD, None, RayClass::Camera);
+        if hit.is_none() && !O::ACTIVE {
+            return self.nothing(primary);
+        }
         let shadow_before = self.counts.shadow;
         self.media.clear();
         self.nodes.clear();
@@ -166,7 +210,7 @@ impl<'s> TreeTracer<'s> {
         // Most trees are one ray: it does not go through the stack.
         let (mut first, mut deepest) = (None, 1);
         loop {
-            let found = self.follow(&branch, observer);
+            let found = self.follow(&branch, hit.as_ref(), observer);
             if branch.kind == RayKind::Primary {
                 first = found;
             }
@@ -174,6 +218,12 @@ impl<'s> TreeTracer<'s> {
                 break;
             };
             branch = next;
+            hit = self.tracer.closest_hit(
+                &branch.ray,
+                Interval::FORWARD,
+                branch.origin.as_ref(),
+                branch.class,
+            );
             if branch.depth > deepest {
                 deepest = branch.depth;
             }
@@ -220,15 +270,15 @@ impl<'s> TreeTracer<'s> {
         Color::BLACK
     }
 
-    /// Traces one ray, shades its hit and queues its branches.
-    fn follow<O: TraceObserver>(&mut self, branch: &Branch, observer: &mut O) -> Option<FirstHit> {
+    /// Takes a ray that was traced, shades its hit and queues its branches.
+    #[inline(always)]
+    fn follow<O: TraceObserver>(
+        &mut self,
+        branch: &Branch,
+        hit: Option<&Hit>,
+        observer: &mut O,
+    ) -> Option<FirstHit> {
         let scene = self.tracer.scene;
-        let hit = self.tracer.closest_hit(
-            &branch.ray,
-            Interval::FORWARD,
-            branch.origin.as_ref(),
-            branch.class,
-        );
         self.counts.count(branch.kind, hit.is_some());
 
         let index = self.nodes.len() as u32;
@@ -280,8 +330,8 @@ impl<'s> TreeTracer<'s> {
             return None;
         };
 
-        let mut surface = Surface::at(scene, branch, &hit, &self.media, self.uv);
-        layers::paint(scene, &mut surface, &hit, &mut self.paint);
+        let mut surface = Surface::at(scene, branch, hit, &self.media, self.uv);
+        layers::paint(scene, &mut surface, hit, &mut self.paint);
         let first = FirstHit {
             distance: length,
             position: surface.resolved.point.position,
@@ -293,7 +343,7 @@ impl<'s> TreeTracer<'s> {
         if model.is_diagnostic() {
             node.local = surface.diagnose(scene, model, &first);
             if O::ACTIVE {
-                let mut seen = surface.report(scene, &hit, Split::NONE);
+                let mut seen = surface.report(scene, hit, Split::NONE);
                 seen.diagnostic = true;
                 observer.ray(report(Some(seen), None));
             }
@@ -307,7 +357,7 @@ impl<'s> TreeTracer<'s> {
             split.kr = Color::WHITE;
         }
         if O::ACTIVE {
-            observer.ray(report(Some(surface.report(scene, &hit, split)), None));
+            observer.ray(report(Some(surface.report(scene, hit, split)), None));
         }
         let finish = &surface.material.finish;
         node.local = finish.ambient * scene.ambient + finish.emission;
@@ -315,7 +365,7 @@ impl<'s> TreeTracer<'s> {
         let shining = scene.lights_in(surface.lit.set);
         for number in 0..shining.map_or(scene.lights.len(), <[u32]>::len) {
             let light = shining.map_or(number, |list| list[number] as usize);
-            let term = self.light(&surface, &hit, model, light, branch, index, observer);
+            let term = self.light(&surface, hit, model, light, branch, index, observer);
             node.local += term.diffuse + term.specular;
             if O::ACTIVE {
                 observer.light(index, term);
@@ -323,11 +373,11 @@ impl<'s> TreeTracer<'s> {
         }
         node.local = layers::grained(&self.paint, first.position, node.local);
         self.nodes.push(node);
-        self.queue_branches(branch, index, &surface, &hit, &split, observer);
+        self.queue_branches(branch, index, &surface, hit, &split, observer);
         Some(first)
     }
 
-    fn model_of(&self, surface: &Surface) -> ShadingModel {
+    fn model_of(&self, surface: &Surface<'_>) -> ShadingModel {
         let material = &self.tracer.scene.materials[surface.resolved.look.material.0 as usize];
         self.settings
             .force_shading
@@ -343,7 +393,7 @@ impl<'s> TreeTracer<'s> {
     )]
     fn light<O: TraceObserver>(
         &mut self,
-        surface: &Surface,
+        surface: &Surface<'_>,
         hit: &Hit,
         model: ShadingModel,
         light: usize,
@@ -378,7 +428,9 @@ impl<'s> TreeTracer<'s> {
         if (scene_light.casts_shadows || masked) && !sample.range.is_empty() {
             let (origin_point, origin) = surface.start(hit, sample.shadow_direction);
             let ray = Ray::new(origin_point, sample.shadow_direction);
-            term.shadow_ray = Some(ray);
+            if O::ACTIVE {
+                term.shadow_ray = Some(ray);
+            }
             if let Some(area) = &scene_light.area {
                 self.area_light(
                     area, &sample, surface, hit, model, light, branch, node, &mut term, observer,
@@ -431,7 +483,7 @@ impl<'s> TreeTracer<'s> {
 
     /// Whether light from the unit direction `l` shows on the surface at hand.
     #[inline]
-    pub(crate) fn faces(&self, surface: &Surface, l: DVec3, n_dot_l: f64) -> bool {
+    pub(crate) fn faces(&self, surface: &Surface<'_>, l: DVec3, n_dot_l: f64) -> bool {
         if surface.lit.both_sides {
             true
         } else if self.paint.layers.is_empty() {
@@ -445,7 +497,7 @@ impl<'s> TreeTracer<'s> {
     #[inline]
     pub(crate) fn reflected(
         &self,
-        surface: &Surface,
+        surface: &Surface<'_>,
         light: &Light,
         model: ShadingModel,
         arriving: Color,
@@ -470,7 +522,7 @@ impl<'s> TreeTracer<'s> {
         &mut self,
         branch: &Branch,
         index: u32,
-        surface: &Surface,
+        surface: &Surface<'_>,
         hit: &Hit,
         split: &Split,
         observer: &mut O,
@@ -514,7 +566,7 @@ impl<'s> TreeTracer<'s> {
 
     /// How many parts the light of a branch falls into behind a surface; 0 if it stays together.
     #[inline]
-    fn parts_behind(&self, branch: &Branch, surface: &Surface) -> u16 {
+    fn parts_behind(&self, branch: &Branch, surface: &Surface<'_>) -> u16 {
         if self.tracer.scene.disperses && branch.part.is_white() {
             surface.spectral_parts(self.tracer.scene)
         } else {
@@ -528,7 +580,7 @@ impl<'s> TreeTracer<'s> {
         &mut self,
         branch: &Branch,
         index: u32,
-        surface: &Surface,
+        surface: &Surface<'_>,
         hit: &Hit,
         offshoot: &Offshoot,
         observer: &mut O,

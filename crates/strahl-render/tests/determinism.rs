@@ -6,7 +6,9 @@ use std::collections::BTreeMap;
 
 use common::{compiled, every_shape, glass_and_mirrors, rendered};
 use strahl_accel::AcceleratorKind;
+use strahl_geometry::Primitive;
 use strahl_render::{CompileOptions, Region, Sampling, TileOrder, compile};
+use strahl_scene::ObjectKind;
 
 const SAMPLINGS: [Sampling; 4] = [
     Sampling::Center,
@@ -62,6 +64,31 @@ fn all_accelerators_give_the_same_bits() {
     }
 }
 
+#[test]
+fn beams_change_nothing_but_the_work() {
+    // Parallel rays before one colour, and rays from one point before a sky.
+    let mut shapes = every_shape();
+    // Endless things are seen everywhere.
+    shapes
+        .objects
+        .0
+        .retain(|o| !matches!(&o.kind, ObjectKind::Shape(shape) if !shape.bounds().is_bounded()));
+    for scene in [shapes, glass_and_mirrors()] {
+        let scene = compiled(&scene);
+        for sampling in SAMPLINGS {
+            let [with, without] = [true, false].map(|beams| {
+                rendered(&scene, |o| {
+                    (o.width, o.height) = (150, 110);
+                    (o.sampling, o.trace.beams) = (sampling, beams);
+                })
+            });
+            assert!(with.film == without.film && with.rays == without.rays);
+            let [with, without] = [with, without].map(|r| r.traversal.node_visits);
+            assert!(with < without, "{with} of {without}, {sampling}");
+        }
+    }
+}
+
 /// What is compared is there: each kind of shape has pixels.
 #[test]
 fn every_shape_is_seen() {
@@ -85,7 +112,7 @@ fn every_shape_is_seen() {
 fn threads_and_tile_orders_give_the_same_bits() {
     let scene = compiled(&glass_and_mirrors());
     for sampling in SAMPLINGS {
-        let reference = rendered(&scene, |o| o.sampling = sampling);
+        let reference = rendered(&scene, |o| (o.sampling, o.info) = (sampling, true));
         for threads in [1, 2, 5] {
             for order in [TileOrder::Rows, TileOrder::Reverse, TileOrder::Center] {
                 let other = rendered(&scene, |o| {

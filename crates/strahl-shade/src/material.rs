@@ -1,6 +1,7 @@
 use crate::interior::Interior;
 use crate::texture::SharedTexture;
 use crate::{Color, Pbr, ShadingModel};
+use std::borrow::Cow;
 use std::sync::{Arc, LazyLock};
 use strahl_math::{DVec2, det};
 
@@ -83,10 +84,11 @@ pub struct Material {
 }
 
 /// A material evaluated at a point.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct MaterialPoint {
-    /// The coefficients; `reflection` is the part of kr that does not depend on the angle.
-    pub finish: Finish,
+#[derive(Clone, Debug, PartialEq)]
+pub struct MaterialPoint<'m> {
+    /// The coefficients; `reflection` is the part of kr that does not depend on the angle. Borrowed where they are the same
+    /// everywhere.
+    pub finish: Cow<'m, Finish>,
     /// The part of kr that Fresnel's F scales.
     pub fresnel_reflection: Color,
     /// Whether Fresnel's equations apply: kt is scaled by 1-F.
@@ -95,13 +97,13 @@ pub struct MaterialPoint {
     pub opacity: f64,
 }
 
-impl MaterialPoint {
+impl<'m> MaterialPoint<'m> {
     /// The coefficients as they are; with `fresnel`, all of kr depends on the angle.
     #[inline]
-    pub fn classical(finish: Finish, fresnel: bool) -> Self {
+    pub fn classical(finish: &'m Finish, fresnel: bool) -> Self {
         if !fresnel {
             return Self {
-                finish,
+                finish: Cow::Borrowed(finish),
                 fresnel_reflection: Color::BLACK,
                 fresnel,
                 opacity: 1.0,
@@ -110,10 +112,10 @@ impl MaterialPoint {
         let fresnel_reflection = finish.reflection;
         let finish = Finish {
             reflection: Color::BLACK,
-            ..finish
+            ..*finish
         };
         Self {
-            finish,
+            finish: Cow::Owned(finish),
             fresnel_reflection,
             fresnel,
             opacity: 1.0,
@@ -264,9 +266,9 @@ impl Material {
 
     /// The coefficients at texture coordinates `uv`.
     #[inline]
-    pub fn at(&self, uv: DVec2) -> MaterialPoint {
+    pub fn at(&self, uv: DVec2) -> MaterialPoint<'_> {
         match &self.pbr {
-            None => MaterialPoint::classical(*self.finish, self.fresnel),
+            None => MaterialPoint::classical(&self.finish, self.fresnel),
             Some(pbr) => pbr.at(uv),
         }
     }

@@ -1,5 +1,6 @@
 use crate::image_texture::{Filter, TextureImage, Wrap};
 use crate::{Color, Finish, MaterialPoint};
+use std::borrow::Cow;
 use std::sync::Arc;
 use strahl_math::{DVec2, DVec3};
 
@@ -90,7 +91,7 @@ pub struct Pbr {
 
 impl Pbr {
     /// The classical coefficients at `uv`.
-    pub fn at(&self, uv: DVec2) -> MaterialPoint {
+    pub fn at(&self, uv: DVec2) -> MaterialPoint<'static> {
         let sample =
             |texture: &Option<TextureRef>| texture.as_ref().map_or([1.0; 4], |t| t.sample(uv));
         let tex = &self.textures;
@@ -115,8 +116,10 @@ impl Pbr {
                 ..Finish::BLACK
             };
             return MaterialPoint {
+                finish: Cow::Owned(finish),
+                fresnel_reflection: Color::BLACK,
+                fresnel: false,
                 opacity,
-                ..MaterialPoint::classical(finish, false)
             };
         }
         let blend = if self.alpha_blend { alpha } else { 1.0 };
@@ -147,7 +150,7 @@ impl Pbr {
         // A metal's colour is its own F₀; Fresnel's equations scale the dielectric part.
         let fresnel_reflection = Color::gray((1.0 - metallic) * gloss * blend);
         MaterialPoint {
-            finish,
+            finish: Cow::Owned(finish),
             fresnel_reflection,
             fresnel: true,
             opacity,
@@ -199,7 +202,7 @@ mod tests {
             unlit: false,
             textures: Textures::default(),
         };
-        pbr.at(DVec2::ZERO).finish
+        pbr.at(DVec2::ZERO).finish.into_owned()
     }
 
     #[test]

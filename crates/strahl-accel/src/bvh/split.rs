@@ -93,12 +93,14 @@ impl Split {
         if depth + needed >= MAX_DEPTH - 1 {
             return (!fits).then(|| Self::without_plane(refs, extent));
         }
-        let Some(plane) = Plane::cheapest(refs, &extent.centers, log) else {
-            // All centres in one point: nothing to choose by.
-            return (!fits).then(|| Self::without_plane(refs, extent));
-        };
         let area = extent.bounds.half_area();
         let leaf_cost = leaf.block_cost * blocks(refs.len(), log) as f64 * area;
+        let Some(plane) = Plane::cheapest(refs, &extent.centers, log) else {
+            // All centres in one point: nothing to choose by. Crossed bars are better apart all the same.
+            let halves = Self::without_plane(refs, extent);
+            let cost = halves.cost(refs.len(), log);
+            return (!fits || leaf_cost > area + leaf.block_cost * cost).then_some(halves);
+        };
         if fits && leaf_cost <= area + leaf.block_cost * plane.cost {
             return None;
         }
@@ -118,6 +120,12 @@ impl Split {
             left: Extent::of(&refs[..middle]),
             right: Extent::of(&refs[middle..]),
         }
+    }
+
+    /// Half area times number of blocks of primitives, summed over both sides.
+    fn cost(&self, all: usize, log: u32) -> f64 {
+        let side = |extent: &Extent, n| extent.bounds.half_area() * blocks(n, log) as f64;
+        side(&self.left, self.middle) + side(&self.right, all - self.middle)
     }
 
     /// Exchanges primitives that are on the wrong side, from both ends: one thread does it, so the order is always the same.

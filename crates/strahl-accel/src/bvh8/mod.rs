@@ -2,6 +2,7 @@
 //!
 //! Split by phase as [`crate::Bvh2`]: `build` makes it, `traverse` walks it, `validate` proves that it is what the walk relies on.
 
+mod beam;
 mod build;
 mod node;
 mod traverse;

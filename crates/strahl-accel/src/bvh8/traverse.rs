@@ -5,7 +5,7 @@ use crate::bvh::watch::BoxTree;
 use crate::cull::CullRay;
 use crate::list::visit_all;
 use crate::traversal::Leaf;
-use crate::{Accelerator, TraversalStats, Visitor};
+use crate::{Accelerator, Beam, TraversalStats, Visitor};
 use arrayvec::ArrayVec;
 use strahl_math::{Interval, Ray};
 use strahl_simd::{Isa, dispatch};
@@ -54,6 +54,10 @@ impl Accelerator for Bvh8 {
         {
             dispatch!(self.simd, isa => tree.walk(isa, ray, range.with_max(t_max), visitor, stats));
         }
+    }
+
+    fn misses(&self, beam: &Beam) -> bool {
+        self.beam_misses(beam)
     }
 
     fn slots(&self) -> &[u32] {

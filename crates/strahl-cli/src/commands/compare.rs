@@ -144,6 +144,8 @@ impl<'a> Comparison<'a> {
         let mut options = render_options(scene, &self.args.picture);
         options.threads = self.args.threads;
         options.trace.shadow_cache = !self.args.no_shadow_cache;
+        // What structures cost is compared ray by ray.
+        options.trace.beams = false;
         options
     }
 

@@ -4,6 +4,7 @@ mod lens;
 mod mesh;
 
 use lens::LensSampler;
+use strahl_accel::Beam;
 use strahl_math::{DVec3, Ray, det};
 use strahl_scene::{Camera, Projection};
 use strahl_shade::Color;
@@ -69,6 +70,24 @@ impl PrimaryRays {
                 Ray::new(ray.origin, bent.normalize_or(ray.direction))
             }
         })
+    }
+
+    /// All rays through a rectangle of the picture, given by two opposite corners; `None` if the camera bends or spreads them.
+    pub(crate) fn beam(&self, low: [f64; 2], high: [f64; 2]) -> Option<Beam> {
+        let flat = matches!(
+            self.camera.projection,
+            Projection::Perspective | Projection::Orthographic
+        );
+        if !flat || self.lens.is_some() || self.camera.normal.is_some() {
+            return None;
+        }
+        let ([x0, y0], [x1, y1]) = (low, high);
+        Beam::between(&[
+            self.ray(x0, y0)?,
+            self.ray(x1, y0)?,
+            self.ray(x1, y1)?,
+            self.ray(x0, y1)?,
+        ])
     }
 
     /// The ray of a camera that is neither perspective nor orthographic, at coordinates from -1 to 1, and the place where a

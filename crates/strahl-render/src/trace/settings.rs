@@ -23,6 +23,9 @@ pub struct TraceSettings {
     /// Whether shadow rays first look at what was last in the way of their light. The picture is the same; the published
     /// costs of accelerators are without.
     pub shadow_cache: bool,
+    /// Whether pixels that see nothing are found out many at once. The picture is the same; the costs of accelerators and pixels are
+    /// told without.
+    pub beams: bool,
 }
 
 impl TraceSettings {
@@ -41,6 +44,7 @@ impl TraceSettings {
             working_space: s.working_space,
             straight_counts: s.straight_counts,
             shadow_cache: true,
+            beams: true,
         }
     }
 

@@ -1,0 +1,106 @@
+//! Which pixels of a tile see nothing but the background: found out for many at once.
+
+use crate::camera::PrimaryRays;
+use crate::film::Region;
+use crate::scene::RenderScene;
+use crate::tiles::TILE;
+use strahl_accel::Accelerator;
+
+/// Pixels along a side of the squares that are told apart.
+const SQUARE: u32 = 4;
+
+/// Such squares along a side of a tile.
+const SQUARES: u32 = TILE / SQUARE;
+
+const _: () = assert!(SQUARES * SQUARES == u64::BITS);
+
+/// The squares of a tile in which a ray may meet something.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Sight {
+    x: u32,
+    y: u32,
+    /// A bit per square, row by row.
+    seen: u64,
+}
+
+impl Sight {
+    /// Anything may be seen everywhere.
+    pub(crate) fn all(tile: Region) -> Self {
+        Self {
+            x: tile.x,
+            y: tile.y,
+            seen: u64::MAX,
+        }
+    }
+
+    /// Looks at a tile as a whole, then at its parts.
+    pub(crate) fn of(tile: Region, scene: &RenderScene, rays: &PrimaryRays) -> Self {
+        let looking = Looking { tile, scene, rays };
+        let mut seen = 0;
+        if looking.sees(0, 0, SQUARES) {
+            looking.look(0, 0, SQUARES, &mut seen);
+        }
+        Self {
+            x: tile.x,
+            y: tile.y,
+            seen,
+        }
+    }
+
+    /// Whether the rays of this pixel of the tile, its borders included, certainly meet nothing.
+    #[inline]
+    pub(crate) fn is_empty(&self, x: u32, y: u32) -> bool {
+        let square = (y - self.y) / SQUARE * SQUARES + (x - self.x) / SQUARE;
+        self.seen >> square & 1 == 0
+    }
+}
+
+struct Looking<'a> {
+    tile: Region,
+    scene: &'a RenderScene,
+    rays: &'a PrimaryRays,
+}
+
+impl Looking<'_> {
+    /// Marks what may be seen of a part with `size` squares along its sides, in which something may be seen.
+    fn look(&self, column: u32, row: u32, size: u32, seen: &mut u64) {
+        if size == 1 {
+            *seen |= 1 << (row * SQUARES + column);
+            return;
+        }
+        let half = size / 2;
+        let quarters =
+            [(0, 0), (half, 0), (0, half), (half, half)].map(|(dx, dy)| (column + dx, row + dy));
+        let sees = quarters.map(|(column, row)| self.sees(column, row, half));
+        // Single squares are looked at near the outlines of things only.
+        let outline = half > 2 || sees.contains(&false);
+        for ((column, row), _) in quarters.into_iter().zip(sees).filter(|(_, sees)| *sees) {
+            if outline {
+                self.look(column, row, half, seen);
+            } else {
+                mark(column, row, half, seen);
+            }
+        }
+    }
+
+    /// Whether a ray may meet something in a part of the tile.
+    fn sees(&self, column: u32, row: u32, size: u32) -> bool {
+        let (dx, dy) = (column * SQUARE, row * SQUARE);
+        if dx >= self.tile.width || dy >= self.tile.height {
+            return false;
+        }
+        let (x, y) = (f64::from(self.tile.x + dx), f64::from(self.tile.y + dy));
+        let side = f64::from(size * SQUARE);
+        let beam = self.rays.beam([x, y], [x + side, y + side]);
+        let world = &self.scene.groups[0].accelerator;
+        beam.is_none_or(|beam| !world.misses(&beam))
+    }
+}
+
+/// Marks all squares of a part.
+fn mark(column: u32, row: u32, size: u32, seen: &mut u64) {
+    let line = (1 << size) - 1;
+    for row in row..row + size {
+        *seen |= line << (row * SQUARES + column);
+    }
+}
