@@ -1,6 +1,6 @@
-use crate::blocks::{LaneTests, LeafClass};
+use crate::blocks::{Blocks, LaneTests, LeafClass};
 use crate::hit::{Hit, Origin, RayClass};
-use crate::scene::{InstanceUse, Prim, PrimKind, RenderGroup, RenderScene};
+use crate::scene::{InstanceUse, Part, Prim, PrimKind, RenderGroup, RenderScene};
 use crate::walk::WalkEvent;
 use strahl_accel::{Accelerator, BLOCK, Leaf, Step, TraversalStats, Visitor};
 use strahl_geometry::{PrimHit, Primitive, RayShear, Scratch, SurfaceId};
@@ -115,6 +115,7 @@ impl<'s> Tracer<'s> {
             scratch: &mut self.scratch,
             stats: &mut self.stats,
             class: u8::MAX,
+            parts: false,
             query: &mut query,
         };
         search.group(group, &inner, range, None, 0, NONE);
@@ -160,6 +161,7 @@ impl<'s> Tracer<'s> {
             scratch: &mut self.scratch,
             stats: &mut self.stats,
             class: class.bit(),
+            parts: self.remembers,
             query,
         };
         let from = from.map(|o| (o, o.id));
@@ -171,6 +173,11 @@ impl<'s> Tracer<'s> {
 trait Query {
     /// Whether primitives with these flags are of interest.
     fn wants(flags: u8) -> bool;
+
+    /// The part of a group in which all is that is of interest, if it is by itself.
+    fn part(_group: &RenderGroup) -> Option<&Part> {
+        None
+    }
 
     /// Takes a hit and returns the new upper end of the range, `-inf` to end the search.
     fn take(&mut self, hit: Hit, t_max: f64) -> f64;
@@ -257,6 +264,10 @@ impl Query for AnyOpaque {
         flags & Prim::STOPS != 0
     }
 
+    fn part(group: &RenderGroup) -> Option<&Part> {
+        group.stopping.as_deref()
+    }
+
     const ANY: bool = true;
 
     fn take(&mut self, hit: Hit, _: f64) -> f64 {
@@ -280,6 +291,10 @@ impl Query for Transmitting<'_> {
         flags & Prim::TRANSMITS != 0
     }
 
+    fn part(group: &RenderGroup) -> Option<&Part> {
+        group.transmitting.as_deref()
+    }
+
     fn take(&mut self, hit: Hit, t_max: f64) -> f64 {
         self.hits.push(hit);
         t_max
@@ -298,6 +313,8 @@ struct Search<'a, 's, Q> {
     scratch: &'a mut Scratch,
     stats: &'a mut TraversalStats,
     class: u8,
+    /// Whether to look only at the part of a group that the query is about.
+    parts: bool,
     query: &'a mut Q,
 }
 
@@ -321,9 +338,15 @@ impl<Q: Query> Search<'_, '_, Q> {
         } else {
             RayShear::UNUSED
         };
+        let part = if self.parts { Q::part(group) } else { None };
+        let (accelerator, blocks) = match part {
+            None => (&group.accelerator, &group.blocks),
+            Some(part) => (&part.accelerator, &part.blocks),
+        };
         let mut visitor = GroupVisitor {
             search: self,
             group,
+            blocks,
             ray,
             shear,
             range_min: range.min,
@@ -337,9 +360,7 @@ impl<Q: Query> Search<'_, '_, Q> {
             visitor.visit(first, range.max);
         }
         if visitor.t_max != f64::NEG_INFINITY {
-            group
-                .accelerator
-                .traverse(ray, range, &mut visitor, &mut stats);
+            accelerator.traverse(ray, range, &mut visitor, &mut stats);
         }
         let t_max = visitor.t_max;
         *self.stats += stats;
@@ -350,6 +371,8 @@ impl<Q: Query> Search<'_, '_, Q> {
 struct GroupVisitor<'v, 'a, 's, Q> {
     search: &'v mut Search<'a, 's, Q>,
     group: &'v RenderGroup,
+    /// The primitives in the order of the leaves that are visited.
+    blocks: &'v Blocks,
     ray: &'v Ray,
     shear: RayShear,
     range_min: f64,
@@ -366,7 +389,6 @@ impl<Q: Query> Visitor for GroupVisitor<'_, '_, '_, Q> {
 
     #[inline(always)]
     fn visit_leaf<I: Isa>(&mut self, isa: I, leaf: &Leaf<'_>, t_max: f64) -> f64 {
-        let group = self.group;
         let blocks = leaf.first_block..leaf.first_block + leaf.blocks;
         // Who watches hears of every test.
         let class = match Q::WATCHES {
@@ -375,20 +397,17 @@ impl<Q: Query> Visitor for GroupVisitor<'_, '_, '_, Q> {
         };
         match class {
             LeafClass::Mesh => {
-                self.lanes(isa, leaf.ids, blocks.map(|b| group.blocks.mesh(b)), t_max)
+                self.lanes(isa, leaf.ids, blocks.map(|b| self.blocks.mesh(b)), t_max)
             }
             LeafClass::Triangles => self.lanes(
                 isa,
                 leaf.ids,
-                blocks.map(|b| group.blocks.triangles(b)),
+                blocks.map(|b| self.blocks.triangles(b)),
                 t_max,
             ),
-            LeafClass::Spheres => self.lanes(
-                isa,
-                leaf.ids,
-                blocks.map(|b| group.blocks.spheres(b)),
-                t_max,
-            ),
+            LeafClass::Spheres => {
+                self.lanes(isa, leaf.ids, blocks.map(|b| self.blocks.spheres(b)), t_max)
+            }
             LeafClass::Single => {
                 let mut t_max = t_max;
                 for id in leaf.ids {
@@ -516,6 +535,14 @@ impl<Q: Query> GroupVisitor<'_, '_, '_, Q> {
             element: number as u32,
             facet: origin.facet,
         });
+        // Flat things that turn their back on the ray need no test.
+        let facing = match prim.flags & Prim::ONE_SIDED {
+            0 => None,
+            _ => self.group.shows_front(id, self.ray.direction),
+        };
+        if facing == Some(false) {
+            return t_max;
+        }
         let mixed = prim.flags & (Prim::TRANSMITS | Prim::STOPS) == Prim::TRANSMITS | Prim::STOPS;
         let (mut min, mut t_max) = (self.range_min, t_max);
         loop {
@@ -528,7 +555,8 @@ impl<Q: Query> GroupVisitor<'_, '_, '_, Q> {
                 facet: found.surface.facet,
                 uv: found.uv,
             };
-            let exists = prim.flags & Prim::FILTERED == 0 || self.exists(id, &hit, found.surface);
+            let exists = prim.flags & Prim::FILTERED == 0
+                || self.exists(id, &hit, found.surface, facing.is_some());
             let wanted = !mixed
                 || Q::wants_hit(
                     self.search
@@ -589,8 +617,9 @@ impl<Q: Query> GroupVisitor<'_, '_, '_, Q> {
         }
     }
 
-    /// Whether there is a surface at this hit: not on the back of a one-sided one, nor in a hole of an alpha mask.
-    fn exists(&self, prim: u32, hit: &Hit, surface: SurfaceId) -> bool {
+    /// Whether there is a surface at this hit: not on the back of a one-sided one, nor in a hole of an alpha mask. `front` tells that
+    /// it is known not to be on the back.
+    fn exists(&self, prim: u32, hit: &Hit, surface: SurfaceId, front: bool) -> bool {
         let material = {
             let look = self.group.look(prim, surface.element);
             &self.search.scene.materials[look.material.0 as usize]
@@ -599,6 +628,9 @@ impl<Q: Query> GroupVisitor<'_, '_, '_, Q> {
             .pbr
             .as_ref()
             .is_some_and(|p| p.alpha_cutoff.is_some());
+        if front && !masked {
+            return true;
+        }
         let point = self
             .group
             .surface_at(prim, self.ray, hit, surface.element, masked);

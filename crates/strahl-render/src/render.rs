@@ -294,12 +294,10 @@ impl Job<'_> {
         self.tiles(
             region,
             0,
-            |tracer, x, y| tracer.pixel(0, x, y),
+            |tracer, x, y| tracer.pixel(0, x, y).mean().to_f32(),
             |result| {
                 film.set_infos(result.tile, &result.infos);
-                for (pixel, samples) in result.tile.positions().zip(result.values) {
-                    film.set(pixel, samples.mean());
-                }
+                film.set_tile(result.tile, &result.values);
             },
         )
     }
@@ -417,6 +415,15 @@ impl Film {
     fn set(&mut self, (x, y): (u32, u32), color: Color) {
         let index = self.region.index(x, y);
         self.pixels[index] = color.to_f32();
+    }
+
+    /// Takes over the pixels of a tile that lies in the film.
+    fn set_tile(&mut self, tile: Region, values: &[[f32; 3]]) {
+        let width = tile.width as usize;
+        for (y, row) in (tile.y..).zip(values.chunks_exact(width)) {
+            let start = self.region.index(tile.x, y);
+            self.pixels[start..start + width].copy_from_slice(row);
+        }
     }
 
     /// Keeps what is known of the pixels of a tile, as far as they lie in the film.

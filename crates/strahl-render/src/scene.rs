@@ -38,6 +38,8 @@ impl Prim {
     pub(crate) const TRANSMITS: u8 = 2;
     /// May stop light.
     pub(crate) const STOPS: u8 = 4;
+    /// Exists from the front only, or one of its leaves does.
+    pub(crate) const ONE_SIDED: u8 = 8;
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -108,9 +110,19 @@ pub(crate) struct RenderGroup {
     pub(crate) count: u64,
     pub(crate) bounds: Aabb,
     pub(crate) accelerator: AnyAccelerator,
+    /// What may stop light and what may let it through, each by itself, where shadow rays have less to look at so.
+    pub(crate) stopping: Option<Box<Part>>,
+    pub(crate) transmitting: Option<Box<Part>>,
     /// Whether it has triangles that are tested by a shear of the ray.
     pub(crate) sheared: bool,
     /// The primitives in the order of the accelerator's leaves.
+    pub(crate) blocks: Blocks,
+}
+
+/// Some of a group's primitives with an accelerator of their own; the numbers are the group's.
+#[derive(Debug)]
+pub(crate) struct Part {
+    pub(crate) accelerator: AnyAccelerator,
     pub(crate) blocks: Blocks,
 }
 
@@ -302,6 +314,10 @@ impl RenderScene {
             s.accelerator_bytes += g.accelerator.bytes();
             s.nodes += g.accelerator.nodes();
             s.references += g.accelerator.references();
+            for part in [&g.stopping, &g.transmitting].into_iter().flatten() {
+                s.accelerator_bytes += part.accelerator.bytes();
+                s.geometry_bytes += part.blocks.bytes();
+            }
             s.geometry_bytes += size_of_val(g.prims.as_slice())
                 + size_of_val(g.shapes.as_slice())
                 + size_of_val(g.instances.as_slice())
@@ -483,6 +499,21 @@ impl RenderGroup {
                 }
             }
             PrimKind::Instance(_) => unreachable!("locate ends at a primitive that is no instance"),
+        }
+    }
+
+    /// Whether a flat primitive shows a ray of this direction its front; `None` if only its surface at the hit tells.
+    #[inline]
+    pub(crate) fn shows_front(&self, prim: u32, direction: DVec3) -> Option<bool> {
+        match self.prims[prim as usize].kind {
+            PrimKind::Triangle(mesh, triangle) => self.meshes[mesh as usize]
+                .mesh
+                .shows_front(triangle, direction),
+            PrimKind::Shape(index) => match &self.shapes[index as usize].shape {
+                Shape::Polygon(polygon) => Some(polygon.normal().dot(direction) < 0.0),
+                _ => None,
+            },
+            _ => None,
         }
     }
 

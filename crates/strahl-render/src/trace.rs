@@ -13,6 +13,7 @@
 //! bottom-up in the order reflection, transparency, so the sum does not depend on the order of tracing. Layers of a texture
 //! that mirror differently send a reflection ray each.
 
+mod nothing;
 mod outcome;
 mod settings;
 
@@ -28,7 +29,6 @@ use crate::scene::{RenderScene, Uv};
 use crate::shadow::ShadowRay;
 use crate::surface::{Split, Surface};
 use strahl_math::{DVec3, Interval, Ray};
-use strahl_scene::Background;
 use strahl_shade::texture::TexturePaint;
 use strahl_shade::{Color, Light, ShadingModel, SpectralPart};
 
@@ -132,15 +132,9 @@ impl<'s> TreeTracer<'s> {
             || scene.materials.iter().any(|m| shown(m.model));
         let mut tracer = Tracer::new(scene);
         tracer.remembers = settings.shadow_cache;
-        let beyond = match &scene.background {
-            Background::Solid(color) if !scene.has_air() => {
-                Some(settings.decoded(*color + Color::BLACK))
-            }
-            _ => None,
-        };
         Self {
             tracer,
-            beyond,
+            beyond: nothing::common(scene, &settings),
             uv: if uv_shown { Uv::Always } else { Uv::IfTextured },
             counts: RayCounts::default(),
             settings,
@@ -152,34 +146,6 @@ impl<'s> TreeTracer<'s> {
             area_points: Vec::new(),
             mirrors: Vec::new(),
         }
-    }
-
-    /// What a primary ray brings that meets nothing.
-    pub(crate) fn nothing(&mut self, primary: &Ray) -> SampleResult {
-        self.counts.count(RayKind::Primary, false);
-        let color = self.beyond.unwrap_or_else(|| {
-            let scene = self.tracer.scene;
-            // As a tree without branches adds up, to the sign of a zero.
-            let mut color = scene.background.along(primary.direction) + Color::BLACK;
-            if scene.has_air() {
-                let (keeps, adds) = scene.air_along(primary, f64::INFINITY);
-                color = color * keeps + adds;
-            }
-            self.settings.decoded(color)
-        });
-        SampleResult {
-            color,
-            first: None,
-            depth: 1,
-            rays: 1,
-        }
-    }
-
-    /// The colour of a primary ray that meets nothing, if it is the same for all of them: then it is counted as followed.
-    #[inline]
-    pub(crate) fn same_nothing(&mut self) -> Option<Color> {
-        self.counts.primary += u64::from(self.beyond.is_some());
-        self.beyond
     }
 
     /// Follows a primary ray with everything that comes of it.

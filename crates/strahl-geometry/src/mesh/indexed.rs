@@ -278,6 +278,20 @@ impl TriangleMesh {
             .map(|v| shear.apply_f32(&self.positions[v as usize]))
     }
 
+    /// Whether a triangle shows a ray of this direction its front: the side of the normal that
+    /// [`TriangleMesh::surface_at_element`] gives; `None` if it is seen so nearly edge-on that their roundings might differ.
+    #[inline]
+    pub fn shows_front(&self, triangle: u32, direction: DVec3) -> Option<bool> {
+        /// Far above the rounding of both, as a part of the magnitudes multiplied.
+        const CERTAIN: f64 = 1e-12;
+        let [a, b, c] = self.local_corners(triangle);
+        let (to_b, to_c) = (b - a, c - a);
+        let along = to_b.cross(to_c).dot(direction);
+        let size = |v: DVec3| v.abs().element_sum();
+        let certain = along.abs() > CERTAIN * size(to_b) * size(to_c) * size(direction);
+        certain.then_some((along < 0.0) != self.flipped)
+    }
+
     /// The surface of one triangle at barycentric coordinates, as reported in [`PrimHit::uv`].
     pub fn surface_at_element(&self, triangle: u32, uv: [f64; 2]) -> SurfacePoint {
         let [a, b, c] = self.local_corners(triangle);
@@ -469,6 +483,32 @@ mod tests {
     fn closest(mesh: &impl Primitive, ray: &Ray) -> Option<(PrimHit, SurfacePoint)> {
         let hit = mesh.closest_hit(ray, Interval::FORWARD, None, &mut Scratch::default())?;
         Some((hit, mesh.surface_at(ray, &hit)))
+    }
+
+    #[test]
+    fn which_side_is_shown_is_what_the_normal_says() {
+        let mut random = Random::new(5);
+        let (mut certain, mut fronts) = (0, 0);
+        let ring = || TriangleMesh::try_new(torus(12, 8, 1.0, 0.4)).expect("a torus");
+        for mesh in [ring(), ring().turned_inside_out()] {
+            for triangle in 0..mesh.triangle_count() {
+                let n = mesh.surface_at_element(triangle, [0.3, 0.3]).n_geom;
+                let edge = mesh.local_corners(triangle)[1] - mesh.local_corners(triangle)[0];
+                assert_eq!(mesh.shows_front(triangle, edge), None, "edge-on");
+                for _ in 0..10 {
+                    let d = random.direction() * 7.0;
+                    if let Some(front) = mesh.shows_front(triangle, d) {
+                        assert_eq!(front, n.dot(d) < 0.0);
+                        certain += 1;
+                        fronts += u32::from(front);
+                    }
+                }
+            }
+        }
+        assert!(
+            fronts > certain / 3 && fronts < certain * 2 / 3,
+            "{fronts} of {certain}"
+        );
     }
 
     #[test]

@@ -202,8 +202,8 @@ impl Polygon {
         let (i, j) = other_axes(self.axis.into());
         let (x, y) = (point[i], point[j]);
         let (mut odd, mut certain) = (false, true);
-        for ring in self.rings() {
-            let Some(last) = ring.last() else { continue };
+        let mut look = |ring: &[DVec3]| {
+            let Some(last) = ring.last() else { return };
             let (mut ax, mut ay) = (last[i] - x, last[j] - y);
             // No short cuts: which edge is crossed or near can't be predicted.
             for corner in ring {
@@ -213,6 +213,11 @@ impl Polygon {
                 odd ^= ((ay > 0.0) != (by > 0.0)) & ((cross > 0.0) == (by > ay));
                 (ax, ay) = (bx, by);
             }
+        };
+        if self.ring_ends.is_empty() {
+            look(&self.corners);
+        } else {
+            self.rings().for_each(look);
         }
         certain.then_some(odd)
     }

@@ -11,7 +11,7 @@ use strahl_math::Transform;
 use strahl_scene::{
     Children, CsgOp, Diagnostic, Object, ObjectKind, Scene, SceneLight, Span, Visibility,
 };
-use strahl_shade::{Material, MaterialId};
+use strahl_shade::{Material, MaterialId, Sides};
 
 /// The lists of one group.
 #[derive(Debug, Default)]
@@ -258,8 +258,12 @@ impl Pass {
         } else {
             Prim::STOPS
         };
+        let sides = match material.sides {
+            Sides::Front => Prim::ONE_SIDED,
+            Sides::Two => 0,
+        };
         if material_filters(material) {
-            light | Prim::FILTERED
+            light | sides | Prim::FILTERED
         } else {
             light
         }

@@ -16,10 +16,10 @@ mod view;
 
 use crate::blocks::Blocks;
 use crate::light_sets::{LightSets, Lit};
-use crate::scene::{InstanceUse, ObjectInfo, RenderGroup, RenderScene};
+use crate::scene::{InstanceUse, ObjectInfo, Part, Prim, RenderGroup, RenderScene};
 use assemble::Assembled;
 pub(crate) use materials::material_transmits;
-use shapes::GroupShapes;
+use shapes::{Flagged, GroupShapes};
 use std::sync::Arc;
 use strahl_accel::{Accelerator, AcceleratorKind, AnyAccelerator};
 use strahl_math::{Aabb, Transform};
@@ -126,6 +126,8 @@ impl Prepared {
         let groups = self.groups.into_iter().rev().map(|g| {
             let accelerator = AnyAccelerator::build_from(kind, &GroupShapes(&g));
             let blocks = Blocks::new(accelerator.slots(), &g.prims, &g.shapes, &g.meshes);
+            let [stopping, transmitting] =
+                [Prim::STOPS, Prim::TRANSMITS].map(|flag| part(kind, &g, flag));
             let mut instances = g.instances;
             for instance in &mut instances {
                 instance.group = renumber(instance.group);
@@ -141,6 +143,8 @@ impl Prepared {
                 bounds: g.bounds,
                 accelerator,
                 blocks,
+                stopping,
+                transmitting,
             }
         });
         let mut masks = self.masks;
@@ -168,6 +172,30 @@ impl Prepared {
             transmits,
         }
     }
+}
+
+/// The primitives of a group with a flag by themselves; `None` if those are so many that leaving out the others does not pay.
+fn part(kind: AcceleratorKind, group: &Assembled, flag: u8) -> Option<Box<Part>> {
+    let all = group.prims.len();
+    let some = group.prims.iter().filter(|p| p.flags & flag != 0).count();
+    if 4 * some > 3 * all {
+        return None;
+    }
+    let shapes = Flagged {
+        all: GroupShapes(group),
+        flag,
+    };
+    let accelerator = AnyAccelerator::build_from(kind, &shapes);
+    let blocks = Blocks::new(
+        accelerator.slots(),
+        &group.prims,
+        &group.shapes,
+        &group.meshes,
+    );
+    Some(Box::new(Part {
+        accelerator,
+        blocks,
+    }))
 }
 
 /// What each light has to cross; nothing if that is so for all.

@@ -93,6 +93,37 @@ impl Shapes for GroupShapes<'_> {
     }
 }
 
+/// The primitives with a flag: as if the others were nothing.
+pub(super) struct Flagged<'a> {
+    pub(super) all: GroupShapes<'a>,
+    pub(super) flag: u8,
+}
+
+impl Shapes for Flagged<'_> {
+    fn count(&self) -> usize {
+        self.all.count()
+    }
+
+    fn bounds(&self, id: u32) -> Aabb {
+        if self.all.0.prims[id as usize].flags & self.flag == 0 {
+            return Aabb::EMPTY;
+        }
+        self.all.bounds(id)
+    }
+
+    fn class(&self, id: u32) -> u8 {
+        self.all.class(id)
+    }
+
+    fn overlaps(&self, id: u32, cell: &Aabb) -> bool {
+        self.all.overlaps(id, cell)
+    }
+
+    fn sphere(&self, id: u32) -> Option<(DVec3, f64)> {
+        self.all.sphere(id)
+    }
+}
+
 /// Distances of a point from the nearest and the farthest point of a box.
 fn distances(p: DVec3, b: &Aabb) -> (f64, f64) {
     let (below, above) = (b.min - p, p - b.max);

@@ -20,8 +20,8 @@ pub struct TraceSettings {
     pub working_space: WorkingSpace,
     /// Whether a transparency ray that goes straight on counts as a level.
     pub straight_counts: bool,
-    /// Whether shadow rays first look at what was last in the way of their light. The picture is the same; the published
-    /// costs of accelerators are without.
+    /// Whether shadow rays first look at what was last in the way of their light, and what may stop light is searched apart from what
+    /// may let it through. The picture is the same; the published costs of accelerators are without.
     pub shadow_cache: bool,
     /// Whether pixels that see nothing are found out many at once. The picture is the same; the costs of accelerators and pixels are
     /// told without.

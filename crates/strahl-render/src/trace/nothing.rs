@@ -1,0 +1,48 @@
+//! What is seen where nothing is.
+
+use super::{SampleResult, TraceSettings, TreeTracer};
+use crate::observer::RayKind;
+use crate::scene::RenderScene;
+use strahl_math::Ray;
+use strahl_scene::Background;
+use strahl_shade::Color;
+
+/// What primary rays bring that meet nothing, if it is the same for all.
+pub(super) fn common(scene: &RenderScene, settings: &TraceSettings) -> Option<Color> {
+    match &scene.background {
+        Background::Solid(color) if !scene.has_air() => {
+            Some(settings.decoded(*color + Color::BLACK))
+        }
+        _ => None,
+    }
+}
+
+impl TreeTracer<'_> {
+    /// What a primary ray brings that meets nothing.
+    pub(crate) fn nothing(&mut self, primary: &Ray) -> SampleResult {
+        self.counts.count(RayKind::Primary, false);
+        let color = self.beyond.unwrap_or_else(|| {
+            let scene = self.tracer.scene;
+            // As a tree without branches adds up, to the sign of a zero.
+            let mut color = scene.background.along(primary.direction) + Color::BLACK;
+            if scene.has_air() {
+                let (keeps, adds) = scene.air_along(primary, f64::INFINITY);
+                color = color * keeps + adds;
+            }
+            self.settings.decoded(color)
+        });
+        SampleResult {
+            color,
+            first: None,
+            depth: 1,
+            rays: 1,
+        }
+    }
+
+    /// The colour of a primary ray that meets nothing, if it is the same for all of them: then it is counted as followed.
+    #[inline]
+    pub(crate) fn same_nothing(&mut self) -> Option<Color> {
+        self.counts.primary += u64::from(self.beyond.is_some());
+        self.beyond
+    }
+}
