@@ -17,7 +17,7 @@ const USAGE: &str = "usage: cargo xtask COMMAND
                                   trace times of the SPD scenes (*.nff.gz) in FOLDER against POV-Ray and Tachyon
   bench parse [--runs N] [--megabytes N]
                                   time of reading a million spheres made by loops, and an exported scene, against POV-Ray
-  bench peers [--rounds N] [--side PIXELS] [--only PART]
+  bench peers [--rounds N] [--side PIXELS] [--only PART,...] [--brief]
                                   rays a second on meshes and spheres against Embree, one thread
   compare-pov [FOLDER] [--size 160x120] [--limit N] [--only PART] [--jobs 2] [--out DIR]
                                   pictures of POV-Ray's example scenes by both programs, with their differences

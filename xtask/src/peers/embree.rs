@@ -136,6 +136,35 @@ impl Embree {
         }
     }
 
+    /// A device with threads of its own to build with. Making one takes milliseconds, which are no part of building.
+    pub(super) fn device(&self, threads: usize) -> Result<Device<'_>> {
+        let config = format!("threads={threads}\0");
+        // SAFETY: the text ends in zero.
+        let handle = unsafe { (self.new_device)(config.as_ptr().cast()) };
+        if handle.is_null() {
+            bail!("Embree gives no device");
+        }
+        Ok(Device {
+            embree: self,
+            handle,
+        })
+    }
+}
+
+/// What Embree's scenes belong to.
+pub(super) struct Device<'e> {
+    embree: &'e Embree,
+    handle: Handle,
+}
+
+impl Drop for Device<'_> {
+    fn drop(&mut self) {
+        // SAFETY: it was got from the library and is released here only; its scenes borrow it.
+        unsafe { (self.embree.release_device)(self.handle) };
+    }
+}
+
+impl Device<'_> {
     /// A scene of triangles; building it takes the time this call takes.
     pub(super) fn triangles(
         &self,
@@ -166,30 +195,22 @@ impl Embree {
         options: Options,
         fill: impl FnOnce(Handle) -> Result<()>,
     ) -> Result<EmbreeScene<'_>> {
-        let config = format!("threads={}\0", options.threads);
-        // SAFETY: the text ends in zero; handles are used in the order the API asks for and released once, by `Drop`.
+        let embree = self.embree;
+        // SAFETY: handles are used in the order the API asks for; the scene's is released once, by `Drop`.
         unsafe {
-            let device = (self.new_device)(config.as_ptr().cast());
-            if device.is_null() {
-                bail!("Embree gives no device");
-            }
-            let scene = (self.new_scene)(device);
-            let held = EmbreeScene {
-                embree: self,
-                device,
-                scene,
-            };
-            (self.set_quality)(scene, options.quality as c_uint);
-            (self.set_flags)(scene, if options.robust { ROBUST } else { 0 });
-            let geometry = (self.new_geometry)(device, kind);
+            let scene = (embree.new_scene)(self.handle);
+            let held = EmbreeScene { embree, scene };
+            (embree.set_quality)(scene, options.quality as c_uint);
+            (embree.set_flags)(scene, if options.robust { ROBUST } else { 0 });
+            let geometry = (embree.new_geometry)(self.handle, kind);
             let filled = fill(geometry);
             if filled.is_ok() {
-                (self.commit_geometry)(geometry);
-                (self.attach)(scene, geometry);
+                (embree.commit_geometry)(geometry);
+                (embree.attach)(scene, geometry);
             }
-            (self.release_geometry)(geometry);
+            (embree.release_geometry)(geometry);
             filled?;
-            (self.commit_scene)(scene);
+            (embree.commit_scene)(scene);
             Ok(held)
         }
     }
@@ -202,9 +223,10 @@ impl Embree {
         format: c_uint,
         items: &[T],
     ) -> Result<()> {
+        let new_buffer = self.embree.new_buffer;
         // SAFETY: Embree's buffers hold `len` items of `size` bytes, aligned to 16, and 16 bytes more.
         unsafe {
-            let to = (self.new_buffer)(geometry, buffer, 0, format, size_of::<T>(), items.len());
+            let to = new_buffer(geometry, buffer, 0, format, size_of::<T>(), items.len());
             if to.is_null() {
                 bail!("Embree gives no memory");
             }
@@ -219,23 +241,18 @@ impl Embree {
 pub(super) struct Options {
     pub(super) quality: Quality,
     pub(super) robust: bool,
-    pub(super) threads: usize,
 }
 
 /// A built scene.
 pub(super) struct EmbreeScene<'e> {
     embree: &'e Embree,
-    device: Handle,
     scene: Handle,
 }
 
 impl Drop for EmbreeScene<'_> {
     fn drop(&mut self) {
-        // SAFETY: both were got from the library and are released here only.
-        unsafe {
-            (self.embree.release_scene)(self.scene);
-            (self.embree.release_device)(self.device);
-        }
+        // SAFETY: it was got from the library and is released here only.
+        unsafe { (self.embree.release_scene)(self.scene) };
     }
 }
 

@@ -8,6 +8,12 @@ pub(super) struct Mesh {
     pub(super) name: &'static str,
     pub(super) positions: Vec<[f32; 3]>,
     pub(super) indices: Vec<[u32; 3]>,
+    pub(super) view: View,
+}
+
+/// From where a scene is seen, and lit.
+#[derive(Clone, Copy)]
+pub(super) struct View {
     /// Where the eye is.
     pub(super) eye: DVec3,
     /// Where it looks.
@@ -15,6 +21,13 @@ pub(super) struct Mesh {
     /// Where the light is.
     pub(super) light: DVec3,
 }
+
+/// The view of sphereflakes.
+pub(super) const FLAKE_VIEW: View = View {
+    eye: DVec3::new(2.1, 1.3, 1.7),
+    target: DVec3::new(0.0, 0.0, 0.1),
+    light: DVec3::new(4.0, 3.0, 2.0),
+};
 
 /// SplitMix64.
 pub(super) struct Rng(pub(super) u64);
@@ -85,9 +98,7 @@ pub(super) fn tessellated_flake(name: &'static str, levels: u32, divisions: u32)
         name,
         positions,
         indices,
-        eye: DVec3::new(2.1, 1.3, 1.7),
-        target: DVec3::new(0.0, 0.0, 0.1),
-        light: DVec3::new(4.0, 3.0, 2.0),
+        view: FLAKE_VIEW,
     }
 }
 
@@ -187,9 +198,11 @@ pub(super) fn terrain(name: &'static str, n: usize) -> Mesh {
         name,
         positions,
         indices,
-        eye: DVec3::new(0.2, 0.9, 1.6),
-        target: DVec3::ZERO,
-        light: DVec3::new(3.0, 2.5, 0.5),
+        view: View {
+            eye: DVec3::new(0.2, 0.9, 1.6),
+            target: DVec3::ZERO,
+            light: DVec3::new(3.0, 2.5, 0.5),
+        },
     }
 }
 
@@ -210,8 +223,10 @@ pub(super) fn soup(name: &'static str, count: u32) -> Mesh {
         name,
         positions,
         indices,
-        eye: DVec3::new(2.0, 1.5, 2.5),
-        target: DVec3::ZERO,
-        light: DVec3::new(3.0, 4.0, -1.0),
+        view: View {
+            eye: DVec3::new(2.0, 1.5, 2.5),
+            target: DVec3::ZERO,
+            light: DVec3::new(3.0, 4.0, -1.0),
+        },
     }
 }

@@ -4,130 +4,164 @@ mod embree;
 mod meshes;
 mod rays;
 
-use crate::bench::median;
+use crate::bench::{median, strahl_binary};
 use anyhow::{Context, Result, bail};
-use embree::{Embree, EmbreeScene, Options, Quality};
-use meshes::Mesh;
+use embree::{Device, Embree, EmbreeScene, Options, Quality};
+use meshes::{Mesh, View};
 use rays::{Batch, Kind, make};
 use std::time::Instant;
 use strahl::geometry::{MeshData, Sphere, TriangleMesh};
 use strahl::prelude::*;
-use strahl::tracing::{RayClass, Tracer};
+use strahl::tracing::{Prepared, RayClass, Tracer};
+
+/// How the benchmark is run.
+struct Plan<'a> {
+    rounds: usize,
+    side: u32,
+    /// Parts of names; of the scenes those that contain one of them. None: all.
+    only: Vec<&'a str>,
+    /// Without Embree's slower settings and packets.
+    brief: bool,
+}
+
+/// Builds of the same scene whose times are compared.
+const BUILDS: usize = 3;
 
 /// Mesh by mesh and kind by kind: millions of rays a second of strahl and of Embree, one thread.
 pub(crate) fn run(args: &[&str]) -> Result<()> {
-    let (mut rounds, mut side, mut only) = (7usize, 768u32, "");
+    let mut plan = Plan {
+        rounds: 7,
+        side: 768,
+        only: vec![],
+        brief: false,
+    };
     let mut rest = args.iter();
     while let Some(arg) = rest.next() {
         let mut value = || rest.next().with_context(|| format!("{arg} needs a value"));
         match *arg {
-            "--rounds" => rounds = value()?.parse()?,
-            "--side" => side = value()?.parse()?,
-            "--only" => only = value()?,
+            "--rounds" => plan.rounds = value()?.parse()?,
+            "--side" => plan.side = value()?.parse()?,
+            "--only" => plan.only = value()?.split(',').collect(),
+            "--brief" => plan.brief = true,
             other => bail!(
-                "unknown option {other}; there are --rounds N, --side PIXELS (a multiple of 4), --only PART"
+                "unknown option {other}; there are --rounds N, --side PIXELS (a multiple of 4), --only PART,PART..., --brief"
             ),
         }
     }
-    if rounds == 0 || side == 0 || !side.is_multiple_of(4) {
+    if plan.rounds == 0 || plan.side == 0 || !plan.side.is_multiple_of(4) {
         bail!("--rounds must be at least 1, --side a positive multiple of 4");
     }
     let embree = Embree::load()?;
-    println!(
-        "Mrays/s, one thread, medians of {rounds} rounds in turns; {side}x{side} primary rays\n"
+    let device = embree.device(1)?;
+    let mut table = Table::default();
+    table.line(format!(
+        "Mrays/s, one thread, medians of {} rounds in turns; {1}x{1} primary rays\n",
+        plan.rounds, plan.side
+    ));
+    table.line(
+        "| scene | rays | strahl | Embree | ratio | nodes | tests | Embree high | robust | x16 | differ |\n\
+         |---|---|---|---|---|---|---|---|---|---|---|"
+            .into(),
     );
-    println!(
-        "| scene | rays | strahl | Embree | ratio | Embree high | Embree robust | Embree x16 | differ |"
-    );
-    println!("|---|---|---|---|---|---|---|---|---|");
     let mut ratios: Vec<(Kind, f64)> = vec![];
-    let meshes: [fn() -> Mesh; 5] = [
-        || meshes::tessellated_flake("flake 66 k", 3, 1),
-        || meshes::terrain("terrain 524 k", 512),
-        || meshes::tessellated_flake("flake 945 k", 4, 2),
-        || meshes::soup("soup 200 k", 200_000),
-        || meshes::tessellated_flake("flake 1.9 M", 5, 1),
+    let meshes: [(&'static str, fn(&'static str) -> Mesh); 5] = [
+        ("flake 66 k", |name| meshes::tessellated_flake(name, 3, 1)),
+        ("terrain 524 k", |name| meshes::terrain(name, 512)),
+        ("flake 945 k", |name| meshes::tessellated_flake(name, 4, 2)),
+        ("soup 200 k", |name| meshes::soup(name, 200_000)),
+        ("flake 1.9 M", |name| meshes::tessellated_flake(name, 5, 1)),
     ];
-    for mesh in meshes {
-        let mesh = mesh();
-        if mesh.name.contains(only) {
-            ratios.extend(one_mesh(&embree, &mesh, rounds, side)?);
+    for (name, mesh) in meshes {
+        if plan.wants(name) {
+            ratios.extend(one_mesh(&device, &mesh(name), &plan, &mut table)?);
         }
     }
+    table.means("meshes", &ratios);
+    ratios.clear();
     for (name, levels) in [
         ("spheres 7 k", 4),
         ("spheres 66 k", 5),
         ("spheres 598 k", 6),
     ] {
-        if name.contains(only) {
-            one_flake(&embree, name, levels, rounds, side)?;
+        if plan.wants(name) {
+            ratios.extend(one_flake(&device, name, levels, &plan, &mut table)?);
         }
     }
-    for kind in Kind::ALL {
-        let of: Vec<f64> = ratios
-            .iter()
-            .filter(|(k, _)| *k == kind)
-            .map(|(_, r)| *r)
-            .collect();
-        if !of.is_empty() {
-            let mean = of.iter().product::<f64>().powf(1.0 / of.len() as f64);
-            println!(
-                "| geometric mean of meshes | {} | | | {mean:.2} | | | | |",
-                kind.name()
-            );
-        }
-    }
-    Ok(())
+    table.means("spheres", &ratios);
+    table.save()
 }
 
-fn one_mesh(embree: &Embree, mesh: &Mesh, rounds: usize, side: u32) -> Result<Vec<(Kind, f64)>> {
+impl Plan<'_> {
+    fn wants(&self, name: &str) -> bool {
+        self.only.is_empty() || self.only.iter().any(|part| name.contains(part))
+    }
+}
+
+/// The table, printed as it grows.
+#[derive(Default)]
+struct Table(String);
+
+impl Table {
+    fn line(&mut self, line: String) {
+        println!("{line}");
+        self.0.push_str(&line);
+        self.0.push('\n');
+    }
+
+    /// Geometric means of the ratios of each kind.
+    fn means(&mut self, of: &str, ratios: &[(Kind, f64)]) {
+        for kind in Kind::ALL {
+            let of_kind = || ratios.iter().filter(|(k, _)| *k == kind).map(|(_, r)| *r);
+            let count = of_kind().count();
+            if count > 0 {
+                let mean = of_kind().product::<f64>().powf(1.0 / count as f64);
+                self.line(format!(
+                    "| geometric mean of {of} | {} | | | {mean:.2} | | | | | | |",
+                    kind.name()
+                ));
+            }
+        }
+    }
+
+    /// Keeps it beside the programs: in `target/bench-peers`.
+    fn save(&self) -> Result<()> {
+        let program = strahl_binary()?;
+        let target = program.ancestors().nth(2);
+        let folder = target
+            .context("this program lies in a folder of target/")?
+            .join("bench-peers");
+        std::fs::create_dir_all(&folder)?;
+        let path = folder.join("table.md");
+        std::fs::write(&path, &self.0)?;
+        println!("saved as {}", path.display());
+        Ok(())
+    }
+}
+
+fn one_mesh(
+    device: &Device<'_>,
+    mesh: &Mesh,
+    plan: &Plan<'_>,
+    table: &mut Table,
+) -> Result<Vec<(Kind, f64)>> {
     let data = MeshData {
         positions: mesh.positions.clone(),
         indices: mesh.indices.clone(),
         ..MeshData::default()
     };
-    let object = TriangleMesh::try_new(data)?;
-    let scene = Scene::new().add(object);
-    let (ours, our_time) = compiled(&scene)?;
-    let build = |quality, robust| {
-        let options = Options {
-            quality,
-            robust,
-            threads: 1,
-        };
-        let start = Instant::now();
-        let scene = embree.triangles(&mesh.positions, &mesh.indices, options)?;
-        anyhow::Ok((scene, start.elapsed().as_secs_f64()))
-    };
-    let (medium, medium_time) = build(Quality::Medium, false)?;
-    let (high, _) = build(Quality::High, false)?;
-    let (robust, _) = build(Quality::Medium, true)?;
-    let triangles = mesh.indices.len();
-    let stats = ours.stats();
-    println!(
-        "| {} | build, s | {our_time:.3} | {medium_time:.3} | {:.2} | {:.0} + {:.0} B/triangle | | | |",
-        mesh.name,
-        medium_time / our_time,
-        stats.accelerator_bytes as f64 / triangles as f64,
-        stats.geometry_bytes as f64 / triangles as f64,
-    );
-    let batches = make(&ours, mesh.eye, mesh.target, mesh.light, side);
-    Ok(compare(
-        mesh.name,
-        &ours,
-        &[&medium, &high, &robust],
-        &batches,
-        rounds,
-    ))
+    let scene = Scene::new().add(TriangleMesh::try_new(data)?);
+    let build = |options| device.triangles(&mesh.positions, &mesh.indices, options);
+    let count = mesh.indices.len();
+    one_scene(mesh.name, &scene, count, &build, mesh.view, plan, table)
 }
 
 fn one_flake(
-    embree: &Embree,
-    name: &'static str,
+    device: &Device<'_>,
+    name: &str,
     levels: u32,
-    rounds: usize,
-    side: u32,
-) -> Result<()> {
+    plan: &Plan<'_>,
+    table: &mut Table,
+) -> Result<Vec<(Kind, f64)>> {
     let spheres = meshes::sphereflake(levels);
     let mut scene = Scene::new();
     let mut theirs = vec![];
@@ -136,113 +170,134 @@ fn one_flake(
         scene = scene.add(Sphere::new(center.as_dvec3(), f64::from(radius)));
         theirs.push([center.x, center.y, center.z, radius]);
     }
-    let (ours, _) = compiled(&scene)?;
-    let options = Options {
-        quality: Quality::Medium,
-        robust: false,
-        threads: 1,
-    };
-    let medium = embree.spheres(&theirs, options)?;
-    let view = (
-        DVec3::new(2.1, 1.3, 1.7),
-        DVec3::new(0.0, 0.0, 0.1),
-        DVec3::new(4.0, 3.0, 2.0),
-    );
-    let batches = make(&ours, view.0, view.1, view.2, side);
-    compare(name, &ours, &[&medium], &batches, rounds);
-    Ok(())
+    let build = |options| device.spheres(&theirs, options);
+    let view = meshes::FLAKE_VIEW;
+    one_scene(name, &scene, spheres.len(), &build, view, plan, table)
 }
 
-/// The compiled scene and how long building its accelerator took.
-fn compiled(scene: &Scene) -> Result<(RenderScene, f64)> {
+/// Builds a scene with both programs and lets its rays be traced; `count` is the number of its primitives.
+fn one_scene<'e>(
+    name: &str,
+    scene: &Scene,
+    count: usize,
+    build: &dyn Fn(Options) -> Result<EmbreeScene<'e>>,
+    view: View,
+    plan: &Plan<'_>,
+    table: &mut Table,
+) -> Result<Vec<(Kind, f64)>> {
+    let options = |quality, robust| Options { quality, robust };
+    let medium = options(Quality::Medium, false);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
-    let prepared = strahl::tracing::Prepared::new(scene).map_err(strahl::Problems)?;
-    let start = Instant::now();
-    let scene = pool.install(|| prepared.build(AcceleratorKind::default()));
-    Ok((scene, start.elapsed().as_secs_f64()))
+    let prepared = Prepared::new(scene).map_err(strahl::Problems)?;
+    let (mut our_times, mut their_times) = (vec![], vec![]);
+    let mut built = None;
+    for _ in 0..BUILDS {
+        // One pair at a time is in memory.
+        drop(built.take());
+        let prepared = prepared.clone();
+        let start = Instant::now();
+        let ours = pool.install(|| prepared.build(AcceleratorKind::default()));
+        our_times.push(start.elapsed().as_secs_f64());
+        let start = Instant::now();
+        let theirs = build(medium)?;
+        their_times.push(start.elapsed().as_secs_f64());
+        built = Some((ours, theirs));
+    }
+    drop(prepared);
+    let (ours, theirs) = built.context("BUILDS is not 0")?;
+    let (our_time, their_time) = (median(&mut our_times), median(&mut their_times));
+    let stats = ours.stats();
+    table.line(format!(
+        "| {name} | build, s | {our_time:.3} | {their_time:.3} | {:.2} | {:.1} + {:.1} bytes each | | | | | |",
+        their_time / our_time,
+        stats.accelerator_bytes as f64 / count as f64,
+        stats.geometry_bytes as f64 / count as f64,
+    ));
+    let mut theirs = vec![theirs];
+    if !plan.brief {
+        theirs.push(build(options(Quality::High, false))?);
+        theirs.push(build(options(Quality::Medium, true))?);
+    }
+    let batches = make(&ours, view, plan.side);
+    let compared = batches
+        .iter()
+        .map(|batch| compare(name, &ours, &theirs, batch, plan, table));
+    Ok(compared.collect())
 }
 
+/// Lets the programs take turns on a batch; returns how many times faster strahl was than Embree.
 fn compare(
     name: &str,
     ours: &RenderScene,
-    theirs: &[&EmbreeScene<'_>],
-    batches: &[Batch],
-    rounds: usize,
-) -> Vec<(Kind, f64)> {
-    let mut ratios = vec![];
-    for batch in batches {
-        let any = batch.kind.any();
-        let count = batch.segments.len() as f64 / 1e6;
-        let mut tracer = Tracer::new(ours);
-        let (mut t_ours, mut t_theirs) = (vec![], vec![vec![]; theirs.len() + 1]);
-        let (mut found, mut expected) = (vec![], vec![]);
-        let (mut hits, mut their_hits) = (0, 0);
-        for _ in 0..rounds {
+    theirs: &[EmbreeScene<'_>],
+    batch: &Batch,
+    plan: &Plan<'_>,
+    table: &mut Table,
+) -> (Kind, f64) {
+    let any = batch.kind.any();
+    let mut tracer = Tracer::new(ours);
+    // strahl, Embree in each setting, Embree's packets.
+    let programs = 1 + theirs.len() + usize::from(!plan.brief);
+    let mut times = vec![vec![]; programs];
+    let (mut found, mut expected) = (vec![], vec![]);
+    let (mut hits, mut their_hits) = (0, 0);
+    for round in 0..plan.rounds {
+        for turn in 0..programs {
+            // Everyone comes after everyone else.
+            let program = (round + turn) % programs;
             let start = Instant::now();
-            if any {
-                hits = batch
-                    .rays
-                    .iter()
-                    .filter(|(ray, range, from)| tracer.any_opaque(ray, *range, from.as_ref()))
-                    .count();
-            } else {
-                found.clear();
-                for (ray, range, from) in &batch.rays {
-                    let hit = tracer.closest_hit(ray, *range, from.as_ref(), RayClass::Secondary);
-                    found.push(hit.map_or(f32::INFINITY, |h| h.t as f32));
+            if program == 0 {
+                if any {
+                    hits = batch
+                        .rays()
+                        .filter(|(ray, from)| tracer.any_opaque(ray, batch.range, *from))
+                        .count();
+                } else {
+                    found.clear();
+                    found.extend(batch.rays().map(|(ray, from)| {
+                        let class = RayClass::Secondary;
+                        let hit = tracer.closest_hit(ray, batch.range, from, class);
+                        hit.map_or(f32::INFINITY, |h| h.t as f32)
+                    }));
                 }
-            }
-            t_ours.push(start.elapsed().as_secs_f64());
-            for (scene, times) in theirs.iter().zip(&mut t_theirs) {
-                let start = Instant::now();
+            } else if let Some(scene) = theirs.get(program - 1) {
                 if any {
                     their_hits = scene.occluded(&batch.segments);
                 } else {
                     scene.closest(&batch.segments, &mut expected);
                 }
-                times.push(start.elapsed().as_secs_f64());
+            } else {
+                std::hint::black_box(theirs[0].packets(&batch.segments, any));
             }
-            let start = Instant::now();
-            std::hint::black_box(theirs[0].packets(&batch.segments, any));
-            t_theirs[theirs.len()].push(start.elapsed().as_secs_f64());
+            times[program].push(start.elapsed().as_secs_f64());
         }
-        let differ = if any {
-            hits.abs_diff(their_hits)
-        } else {
-            let close = |a: f32, b: f32| a == b || (a - b).abs() <= 1e-4 * a.abs();
-            found
-                .iter()
-                .zip(&expected)
-                .filter(|(a, b)| !close(**a, **b))
-                .count()
-        };
-        let mut pairs: Vec<f64> = t_ours
-            .iter()
-            .zip(&t_theirs[0])
-            .map(|(a, b)| b / a)
-            .collect();
-        let ratio = median(&mut pairs);
-        let speed = |times: &mut Vec<f64>| count / median(times);
-        let packets = speed(&mut t_theirs[theirs.len()]);
-        let others: Vec<String> = (1..3)
-            .map(|i| {
-                if i < theirs.len() {
-                    format!("{:.1}", speed(&mut t_theirs[i]))
-                } else {
-                    String::new()
-                }
-            })
-            .collect();
-        println!(
-            "| {name} | {} | {:.1} | {:.1} | {ratio:.2} | {} | {} | {packets:.1} | {differ} of {} |",
-            batch.kind.name(),
-            speed(&mut t_ours),
-            speed(&mut t_theirs[0]),
-            others[0],
-            others[1],
-            batch.segments.len(),
-        );
-        ratios.push((batch.kind, ratio));
     }
-    ratios
+    let differ = if any {
+        hits.abs_diff(their_hits)
+    } else {
+        let close = |a: f32, b: f32| a == b || (a - b).abs() <= 1e-4 * a.abs();
+        let pairs = found.iter().zip(&expected);
+        pairs.filter(|(a, b)| !close(**a, **b)).count()
+    };
+    let pairs = times[0].iter().zip(&times[1]);
+    let ratio = median(&mut pairs.map(|(a, b)| b / a).collect::<Vec<f64>>());
+    let rays = batch.segments.len();
+    let speeds: Vec<String> = times
+        .iter_mut()
+        .map(|t| format!("{:.1}", rays as f64 / 1e6 / median(t)))
+        .collect();
+    let others = match speeds.get(2..) {
+        Some([high, robust, packets]) => format!("{high} | {robust} | {packets}"),
+        _ => "| |".to_owned(),
+    };
+    let per_ray = |n: u64| n as f64 / (rays * plan.rounds) as f64;
+    table.line(format!(
+        "| {name} | {} | {} | {} | {ratio:.2} | {:.1} | {:.1} | {others} | {differ} of {rays} |",
+        batch.kind.name(),
+        speeds[0],
+        speeds[1],
+        per_ray(tracer.stats.node_visits),
+        per_ray(tracer.stats.primitive_tests),
+    ));
+    (batch.kind, ratio)
 }

@@ -1,6 +1,6 @@
 //! The rays of the benchmark: made once from the hits of strahl, the same for everyone.
 
-use super::meshes::Rng;
+use super::meshes::{Rng, View};
 use strahl::math::{DVec3, Interval, Ray};
 use strahl::scene::Camera;
 use strahl::tracing::{Origin, PrimaryRays, RayClass, RenderScene, Tracer};
@@ -19,8 +19,12 @@ pub(super) struct Batch {
     pub(super) kind: Kind,
     /// What Embree traces.
     pub(super) segments: Vec<Segment>,
-    /// What strahl traces: the same rays, with where they start.
-    pub(super) rays: Vec<(Ray, Interval, Option<Origin>)>,
+    /// The same for strahl.
+    pub(super) rays: Vec<Ray>,
+    /// Their common range.
+    pub(super) range: Interval,
+    /// On which surfaces they start, which strahl is told; nothing for rays from the eye.
+    pub(super) starts: Vec<Origin>,
 }
 
 /// Kinds of rays.
@@ -64,40 +68,46 @@ impl Kind {
 }
 
 impl Batch {
+    /// Embree skips the first part of rays that start on a surface, strahl knows where they start.
     fn new(kind: Kind) -> Self {
+        let near = match kind {
+            Kind::Primary | Kind::PrimaryTiles => 0.0,
+            Kind::Shadow | Kind::Mirror | Kind::Diffuse => f64::from(1e-4f32),
+        };
+        let far = if kind.any() { 1.0 } else { f64::INFINITY };
         Self {
             kind,
             segments: vec![],
             rays: vec![],
+            range: Interval::new(near, far),
+            starts: vec![],
         }
     }
 
-    /// Adds a ray, rounded to f32 for everyone. Embree skips the first part of rays that start on a surface, strahl knows
-    /// where they start.
-    fn push(&mut self, ray: &Ray, far: f64, from: Option<Origin>) {
+    /// Adds a ray, rounded to f32 for everyone.
+    fn push(&mut self, ray: &Ray, from: Option<Origin>) {
         let (origin, direction) = (ray.origin.as_vec3(), ray.direction.as_vec3());
-        let near = if from.is_some() { 1e-4 } else { 0.0 };
         self.segments.push(Segment {
             origin: origin.to_array(),
-            near,
+            near: self.range.min as f32,
             direction: direction.to_array(),
-            far: far as f32,
+            far: self.range.max as f32,
         });
-        let ray = Ray::new(origin.as_dvec3(), direction.as_dvec3());
         self.rays
-            .push((ray, Interval::new(f64::from(near), far), from));
+            .push(Ray::new(origin.as_dvec3(), direction.as_dvec3()));
+        self.starts.extend(from);
+    }
+
+    /// The rays as strahl takes them.
+    pub(super) fn rays(&self) -> impl Iterator<Item = (&Ray, Option<&Origin>)> {
+        let rays = self.rays.iter().enumerate();
+        rays.map(|(i, ray)| (ray, self.starts.get(i)))
     }
 }
 
 /// All batches for a view.
-pub(super) fn make(
-    scene: &RenderScene,
-    eye: DVec3,
-    target: DVec3,
-    light: DVec3,
-    side: u32,
-) -> Vec<Batch> {
-    let camera = Camera::perspective(eye, target, DVec3::Y, 0.8);
+pub(super) fn make(scene: &RenderScene, view: View, side: u32) -> Vec<Batch> {
+    let camera = Camera::perspective(view.eye, view.target, DVec3::Y, 0.8);
     let camera = PrimaryRays::new(&camera, side, side);
     let mut batches = Kind::ALL.map(Batch::new);
     let mut tracer = Tracer::new(scene);
@@ -115,9 +125,11 @@ pub(super) fn make(
         let (Some(in_row), Some(in_tile)) = (centre((i % side, i / side)), centre(tile(i))) else {
             continue;
         };
-        batches[0].push(&in_row, f64::INFINITY, None);
-        batches[1].push(&in_tile, f64::INFINITY, None);
-        let ray = batches[0].rays[i as usize].0;
+        batches[0].push(&in_row, None);
+        batches[1].push(&in_tile, None);
+        let Some(ray) = batches[0].rays.last().copied() else {
+            continue;
+        };
         let Some(hit) = tracer.closest_hit(&ray, Interval::FORWARD, None, RayClass::Camera) else {
             continue;
         };
@@ -133,15 +145,15 @@ pub(super) fn make(
             local: point.position,
         });
         let position = point.position;
-        batches[2].push(&Ray::new(position, light - position), 1.0, from);
+        batches[2].push(&Ray::new(position, view.light - position), from);
         let mirrored = ray.direction - normal * (2.0 * normal.dot(ray.direction));
-        batches[3].push(&Ray::new(position, mirrored), f64::INFINITY, from);
+        batches[3].push(&Ray::new(position, mirrored), from);
         let (u, v) = (rng.unit(), rng.unit());
         let x = normal.any_orthonormal_vector();
         let (sin, cos) = (2.0 * std::f64::consts::PI * u).sin_cos();
         let around = x * cos + normal.cross(x) * sin;
         let diffuse = around * v.sqrt() + normal * (1.0 - v).sqrt();
-        batches[4].push(&Ray::new(position, diffuse), f64::INFINITY, from);
+        batches[4].push(&Ray::new(position, diffuse), from);
     }
     batches.into()
 }
