@@ -1,5 +1,6 @@
 use crate::boxes::BoxPair;
 use strahl_math::{Aabb, DVec3, Interval, Ray, Vec4, Vec4Swizzles};
+use strahl_simd::Isa;
 
 /// What the culling tests must know about a structure: its box, and the margin of their error bound.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,7 +46,7 @@ impl CullBounds {
 /// itself is rounded (u|c|): altogether at most `3u|r|(|b| + |o|)` to first order, `b` being exact; the f64 roundings of r and c
 /// are 2⁻²⁹ of that. So with `E = 8u|r|(B + |o|)`, B the largest coordinate of any plane, `ĉ = c + E` makes the computed near
 /// crossing never later than the true one, and `ĉ = c - E` the far crossing never earlier. The factor 8 instead of 3 also covers
-/// hits that a primitive's own rounding puts just outside of its box. A fused multiply-subtract rounds once less.
+/// hits that a primitive's own rounding puts just outside of its box. A fused multiply-add rounds once less.
 /// (Engine design, section 3.1.)
 ///
 /// E grows with |o|, so a ray that starts far away is first moved to where it enters the structure, in f64. Directions are scaled
@@ -54,28 +55,135 @@ impl CullBounds {
 /// Boxes end at 2⁶⁴ and scaled directions at 2⁻⁶⁰, so no product overflows and no difference is a NaN: the minima and maxima of
 /// the loop mean the same on every processor.
 pub(crate) struct CullRay {
-    pub(crate) axes: [CullAxis; 3],
+    axes: [CullAxis; 3],
+    clock: CullClock,
+    t_min: f32,
+}
+
+/// How the culling tests count `t`.
+#[derive(Clone, Copy)]
+pub(crate) struct CullClock {
     /// What was taken off `t`.
     offset: f64,
     /// The power of two that `t - offset` is multiplied by.
     scale: f64,
-    pub(crate) t_min: f32,
+}
+
+impl CullClock {
+    /// A lower end of the range: rounded down.
+    #[inline(always)]
+    pub(crate) fn t_min(&self, t_min: f64) -> f32 {
+        let (t_min, error) = rounded((t_min - self.offset) * self.scale);
+        t_min - error
+    }
+
+    /// An upper end of the range: rounded up.
+    #[inline(always)]
+    pub(crate) fn t_max(&self, t_max: f64) -> f32 {
+        let (t_max, error) = rounded((t_max - self.offset) * self.scale);
+        t_max + error
+    }
+}
+
+/// A ray near a structure, before its constants are made.
+pub(crate) struct CullStart {
+    origin: DVec3,
+    /// Not yet divided by `power`.
+    direction: DVec3,
+    power: f64,
+    /// The part of the error bound that is the same for all axes, without the factor |r|.
+    margin: f64,
+    pub(crate) clock: CullClock,
+}
+
+/// The constants of the three axes, and a fourth that means nothing.
+pub(crate) struct CullLanes {
+    /// 1/d, rounded.
+    pub(crate) rd: [f32; 4],
+    /// `-(c + E)`: added for the plane the ray meets first.
+    pub(crate) minus_near: [f32; 4],
+    /// `-(c - E)`: added for the plane the ray meets last.
+    pub(crate) minus_far: [f32; 4],
+    /// The axes along which the ray goes down, as bits.
+    pub(crate) down: u32,
+}
+
+impl CullStart {
+    /// The ray moved to a structure if that is far away, or `None` if it certainly misses it in `range`.
+    #[inline(always)]
+    pub(crate) fn new(ray: &Ray, range: Interval, structure: &CullBounds) -> Option<Self> {
+        let distance = largest(ray.origin);
+        let scaling = Scaling::of(ray.direction)?;
+        let scale = scaling.scale;
+        let (mut origin, mut offset) = (ray.origin, 0.0);
+        let mut margin = SLACK * structure.max_abs;
+        if distance > FAR * structure.max_abs {
+            if distance == f64::INFINITY {
+                return None;
+            }
+            margin += FAR_SLACK * distance;
+            let padded = structure.bounds.padded(DVec3::splat(margin));
+            offset = padded.clip(ray, range)?.min;
+            origin = ray.at(offset);
+            if !(largest(origin) <= FAR * (structure.max_abs + margin)) {
+                // The way to the structure has overflowed: no finite t reaches it.
+                return None;
+            }
+        }
+        Some(Self {
+            origin,
+            direction: scaling.direction,
+            power: scaling.power,
+            margin,
+            clock: CullClock { offset, scale },
+        })
+    }
+
+    /// 1/d for the scaled direction. The division need not wait for the scale, a power of two.
+    #[inline(always)]
+    fn reciprocal(&self, axis: usize) -> f64 {
+        let r = 1.0 / self.direction[axis] * self.power;
+        r.clamp(-MOST_RECIPROCAL, MOST_RECIPROCAL)
+    }
+
+    /// What [`CullRay::new`] computes, axis beside axis.
+    #[inline(always)]
+    pub(crate) fn lanes<I: Isa>(&self, isa: I) -> CullLanes {
+        let (o, d) = (self.origin, self.direction);
+        let o = isa.load(&[o.x, o.y, o.z, 0.0]);
+        let d = isa.load(&[d.x, d.y, d.z, 1.0]);
+        let (zero, most) = (isa.splat(0.0), isa.splat(MOST_RECIPROCAL));
+        let r = isa.mul(isa.div(isa.splat(1.0), d), isa.splat(self.power));
+        let r = isa.max(isa.min(r, most), isa.splat(-MOST_RECIPROCAL));
+        let minus_c = isa.mul(isa.sub(zero, o), r);
+        let reach = isa.add(
+            isa.splat(self.margin),
+            isa.mul(isa.splat(SLACK), isa.abs(o)),
+        );
+        let e = isa.mul(isa.abs(r), reach);
+        CullLanes {
+            rd: isa.narrow(r),
+            minus_near: isa.narrow(isa.sub(minus_c, e)),
+            minus_far: isa.narrow(isa.add(minus_c, e)),
+            down: isa.lt(r, zero),
+        }
+    }
 }
 
 /// Constants of one axis.
 #[derive(Clone, Copy, Default)]
-pub(crate) struct CullAxis {
+struct CullAxis {
     /// 1/d, rounded.
-    pub(crate) rd: f32,
+    rd: f32,
     /// `c + E`: subtracted for the plane the ray meets first.
-    pub(crate) near: f32,
+    near: f32,
     /// `c - E`: subtracted for the plane the ray meets last.
-    pub(crate) far: f32,
+    far: f32,
 }
 
-/// Components of a direction smaller than this part of the largest one are replaced by it. While it crosses the structure such
-/// a ray moves by less than 2⁻⁵⁷(B + |o|) along that axis, far less than E: it stays in the slab it is in, and so the test sees it.
-const SMALLEST_DIRECTION: f64 = 1.0 / (1u64 << 60) as f64;
+/// Reciprocals of components of a scaled direction end here: 2⁶⁰. While it crosses the structure a ray whose component is smaller
+/// moves by less than 2⁻⁵⁷(B + |o|) along that axis, far less than E: it stays in the slab it is in, and so the test sees it.
+const MOST_RECIPROCAL: f64 = (1u64 << 60) as f64;
 
 /// The least B: 2⁻⁹⁶.
 const SMALLEST_EXTENT: f64 = 1.0 / (1u128 << 96) as f64;
@@ -96,51 +204,29 @@ impl CullRay {
     /// A ray with a coordinate that is not finite, or without a direction, meets nothing.
     #[inline(always)]
     pub(crate) fn new(ray: &Ray, range: Interval, structure: &CullBounds) -> Option<Self> {
-        let distance = largest(ray.origin);
-        let (direction, scale) = scaled(ray.direction)?;
-        let (mut origin, mut offset) = (ray.origin, 0.0);
-        let mut margin = SLACK * structure.max_abs;
-        if distance > FAR * structure.max_abs {
-            if distance == f64::INFINITY {
-                return None;
-            }
-            margin += FAR_SLACK * distance;
-            let padded = structure.bounds.padded(DVec3::splat(margin));
-            offset = padded.clip(ray, range)?.min;
-            origin = ray.at(offset);
-            if !(largest(origin) <= FAR * (structure.max_abs + margin)) {
-                // The way to the structure has overflowed: no finite t reaches it.
-                return None;
-            }
-        }
+        let start = CullStart::new(ray, range, structure)?;
         let mut axes = [CullAxis::default(); 3];
         for (axis, constants) in axes.iter_mut().enumerate() {
-            let mut d = direction[axis];
-            if d.abs() < SMALLEST_DIRECTION {
-                d = SMALLEST_DIRECTION.copysign(d);
-            }
-            let (r, o) = (1.0 / d, origin[axis]);
-            let (c, e) = (o * r, r.abs() * (margin + SLACK * o.abs()));
+            let (r, o) = (start.reciprocal(axis), start.origin[axis]);
+            let (c, e) = (o * r, r.abs() * (start.margin + SLACK * o.abs()));
             *constants = CullAxis {
                 rd: r as f32,
                 near: (c + e) as f32,
                 far: (c - e) as f32,
             };
         }
-        let (t_min, error) = rounded((range.min - offset) * scale);
+        let clock = start.clock;
         Some(Self {
             axes,
-            offset,
-            scale,
-            t_min: t_min - error,
+            clock,
+            t_min: clock.t_min(range.min),
         })
     }
 
     /// An upper end of the range as the culling tests compare it: rounded up.
     #[inline]
     pub(crate) fn t_max(&self, t_max: f64) -> f32 {
-        let (t_max, error) = rounded((t_max - self.offset) * self.scale);
-        t_max + error
+        self.clock.t_max(t_max)
     }
 
     /// Where the ray enters two boxes, and which of them it may meet (bits 0 and 1).
@@ -171,26 +257,57 @@ pub(crate) fn largest(v: DVec3) -> f64 {
     }
 }
 
+/// A direction with the power of two that brings its largest component into `1..2` by division.
+struct Scaling {
+    /// The direction, or, if it is very short, [`LIFT`] times it.
+    direction: DVec3,
+    /// The power for that.
+    power: f64,
+    /// The power for the direction itself.
+    scale: f64,
+}
+
+/// Directions shorter than this are lifted, exactly: of others only components that are negligible have reciprocals beyond the
+/// range of f64. 2⁻⁹⁶⁰.
+const SHORT: f64 = f64::MIN_POSITIVE * (1u64 << 62) as f64;
+
+const LIFT: f64 = (1u64 << 54) as f64;
+
+impl Scaling {
+    /// `None` for no direction and for what is not finite.
+    #[inline(always)]
+    fn of(direction: DVec3) -> Option<Self> {
+        let length = largest(direction);
+        if (SHORT..=f64::MAX).contains(&length) {
+            let power = power_of_two(length);
+            return Some(Self {
+                direction,
+                power,
+                scale: power,
+            });
+        }
+        Self::unusual(direction, length)
+    }
+
+    #[cold]
+    fn unusual(direction: DVec3, length: f64) -> Option<Self> {
+        let power = power_of_two(length * LIFT);
+        (length > 0.0 && length < f64::INFINITY).then(|| Self {
+            direction: direction * LIFT,
+            power,
+            scale: power / LIFT,
+        })
+    }
+}
+
 /// The direction divided by a power of two that brings its largest component into `1..2`, and that power; `None` for zero
 /// and for what is not finite.
 #[inline]
 pub(crate) fn scaled(direction: DVec3) -> Option<(DVec3, f64)> {
-    let length = largest(direction);
-    if !(length > 0.0 && length < f64::INFINITY) {
-        return None;
-    }
-    if length >= f64::MIN_POSITIVE {
-        // Both the power and its inverse are exact, and so is the product but for components that are replaced anyway.
-        let power = power_of_two(length);
-        Some((direction * (1.0 / power), power))
-    } else {
-        // Subnormal numbers are lifted into the normal range first, exactly.
-        let power = power_of_two(length * LIFT);
-        Some((direction * LIFT * (1.0 / power), power / LIFT))
-    }
+    let s = Scaling::of(direction)?;
+    // The power is exact, and so is the quotient but for components that are negligible.
+    Some((s.direction / s.power, s.scale))
 }
-
-const LIFT: f64 = (1u64 << 54) as f64;
 
 /// The largest power of two that is not above a normal number: its exponent alone.
 #[inline]

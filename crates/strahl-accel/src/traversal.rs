@@ -1,4 +1,5 @@
 use crate::Beam;
+use crate::bvh8::{BLOCK, NO_PRIMITIVE};
 use strahl_math::{Aabb, DVec3, Interval, Ray};
 use strahl_simd::Isa;
 
@@ -19,7 +20,7 @@ pub trait Visitor {
     /// By itself it visits them one by one.
     #[inline(always)]
     fn visit_leaf<I: Isa>(&mut self, _isa: I, leaf: &Leaf<'_>, mut t_max: f64) -> f64 {
-        for id in leaf.ids {
+        for id in leaf.ids() {
             t_max = self.visit(*id, t_max);
             if t_max == f64::NEG_INFINITY {
                 break;
@@ -42,10 +43,32 @@ pub struct Leaf<'a> {
     pub class: u8,
     /// Its first block.
     pub first_block: usize,
+    /// How many primitives it has, at least one.
+    pub count: usize,
+    /// The slots of the structure.
+    pub slots: &'a [u32],
+}
+
+impl<'a> Leaf<'a> {
     /// How many blocks it has.
-    pub blocks: usize,
-    /// Its primitives, at least one.
-    pub ids: &'a [u32],
+    #[inline(always)]
+    pub const fn blocks(&self) -> usize {
+        self.count.div_ceil(BLOCK)
+    }
+
+    /// Its primitives.
+    #[inline(always)]
+    pub fn ids(&self) -> &'a [u32] {
+        let first = self.first_block * BLOCK;
+        &self.slots[first..first + self.count]
+    }
+
+    /// What is in the slot of one of its blocks: a primitive, or [`NO_PRIMITIVE`].
+    #[inline(always)]
+    pub fn id(&self, block: usize, lane: usize) -> u32 {
+        let slot = (self.first_block + block) * BLOCK + lane;
+        self.slots.get(slot).copied().unwrap_or(NO_PRIMITIVE)
+    }
 }
 
 /// A station on a ray's way through a structure, for those who want to see it.

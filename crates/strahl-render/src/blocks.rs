@@ -1,6 +1,6 @@
 use crate::scene::{MeshUse, Prim, PrimKind, ShapeUse};
 use strahl_accel::NO_PRIMITIVE;
-use strahl_geometry::blocks::{Coordinate, LANES, SphereBlock, TriangleBlock};
+use strahl_geometry::blocks::{Hits, LANES, SphereBlock, TriangleBlock};
 use strahl_geometry::{RayShear, Shape};
 use strahl_math::{Interval, Ray};
 use strahl_simd::Isa;
@@ -144,24 +144,16 @@ impl Blocks {
             self.places[block] as usize
         }
     }
+}
 
-    /// The block of triangles of meshes with a number.
-    #[inline(always)]
-    pub(crate) fn mesh(&self, block: usize) -> &TriangleBlock<f32> {
-        &self.mesh[self.place(block)]
-    }
-
-    /// The block of f64 triangles with a number.
-    #[inline(always)]
-    pub(crate) fn triangles(&self, block: usize) -> &TriangleBlock<f64> {
-        &self.triangles[self.place(block)]
-    }
-
-    /// The block of spheres with a number.
-    #[inline(always)]
-    pub(crate) fn spheres(&self, block: usize) -> &SphereBlock {
-        &self.spheres[self.place(block)]
-    }
+/// Visibility and flags of the primitives that are tested in blocks, if all have the same.
+pub(crate) fn common(prims: &[Prim], shapes: &[ShapeUse], meshes: &[MeshUse]) -> Option<(u8, u8)> {
+    let mut all = prims
+        .iter()
+        .filter(|p| LeafClass::of(p, shapes, meshes) != LeafClass::Single)
+        .map(|p| (p.visible, p.flags));
+    let first = all.next()?;
+    all.all(|p| p == first).then_some(first)
 }
 
 fn push<T>(list: &mut Vec<T>, item: T) -> u32 {
@@ -169,54 +161,86 @@ fn push<T>(list: &mut Vec<T>, item: T) -> u32 {
     list.len() as u32 - 1
 }
 
-/// What a block finds out about one of its lanes.
-pub(crate) trait LaneTests {
-    /// The lanes that may be hit, as bits.
-    fn candidates<I: Isa>(&self, isa: I, ray: &Ray, shear: &RayShear) -> u32;
+/// A block of primitives of one class.
+pub(crate) trait Block: Sized {
+    /// Whether a ray that starts on a primitive may meet that primitive again.
+    const CURVED: bool;
 
-    /// The hit on a lane: its parameter and two numbers.
-    fn hit(
+    /// The block of this class with a number.
+    fn of(blocks: &Blocks, number: usize) -> &Self;
+
+    /// The lanes to look at, as bits; and of these the ones that the ray meets in the range, with where, unless it starts on them.
+    fn hits<I: Isa>(
         &self,
-        lane: usize,
+        isa: I,
         ray: &Ray,
         shear: &RayShear,
         range: Interval,
-    ) -> Option<(f64, [f64; 2])>;
+        hits: &mut Hits,
+    ) -> (u32, u32);
 }
 
-impl<T: Coordinate> LaneTests for TriangleBlock<T> {
+impl Block for TriangleBlock<f32> {
+    const CURVED: bool = false;
+
     #[inline(always)]
-    fn candidates<I: Isa>(&self, isa: I, _: &Ray, shear: &RayShear) -> u32 {
-        self.candidates(isa, shear)
+    fn of(blocks: &Blocks, number: usize) -> &Self {
+        &blocks.mesh[blocks.place(number)]
     }
 
     #[inline(always)]
-    fn hit(
+    fn hits<I: Isa>(
         &self,
-        lane: usize,
+        isa: I,
         _: &Ray,
         shear: &RayShear,
         range: Interval,
-    ) -> Option<(f64, [f64; 2])> {
-        let hit = self.hit(lane, shear)?;
-        range.accepts(hit.t).then_some((hit.t, [hit.u, hit.v]))
+        hits: &mut Hits,
+    ) -> (u32, u32) {
+        let found = self.hits(isa, shear, range, hits);
+        (found, found)
     }
 }
 
-impl LaneTests for SphereBlock {
+impl Block for TriangleBlock<f64> {
+    const CURVED: bool = false;
+
     #[inline(always)]
-    fn candidates<I: Isa>(&self, isa: I, ray: &Ray, _: &RayShear) -> u32 {
-        self.candidates(isa, ray)
+    fn of(blocks: &Blocks, number: usize) -> &Self {
+        &blocks.triangles[blocks.place(number)]
     }
 
     #[inline(always)]
-    fn hit(
+    fn hits<I: Isa>(
         &self,
-        lane: usize,
+        isa: I,
+        _: &Ray,
+        shear: &RayShear,
+        range: Interval,
+        hits: &mut Hits,
+    ) -> (u32, u32) {
+        let found = self.hits(isa, shear, range, hits);
+        (found, found)
+    }
+}
+
+impl Block for SphereBlock {
+    const CURVED: bool = true;
+
+    #[inline(always)]
+    fn of(blocks: &Blocks, number: usize) -> &Self {
+        &blocks.spheres[blocks.place(number)]
+    }
+
+    #[inline(always)]
+    fn hits<I: Isa>(
+        &self,
+        isa: I,
         ray: &Ray,
         _: &RayShear,
         range: Interval,
-    ) -> Option<(f64, [f64; 2])> {
-        self.hit(lane, ray, range).map(|t| (t, [0.0; 2]))
+        hits: &mut Hits,
+    ) -> (u32, u32) {
+        self.hits(isa, ray, range, hits)
     }
 }

@@ -1,8 +1,9 @@
-use crate::blocks::{Blocks, LaneTests, LeafClass};
+use crate::blocks::{Block, Blocks, LeafClass};
 use crate::hit::{Hit, Origin, RayClass};
 use crate::scene::{InstanceUse, Part, Prim, PrimKind, RenderGroup, RenderScene};
 use crate::walk::WalkEvent;
-use strahl_accel::{Accelerator, BLOCK, Leaf, Step, TraversalStats, Visitor};
+use strahl_accel::{Accelerator, BLOCK, Leaf, NO_PRIMITIVE, Step, TraversalStats, Visitor};
+use strahl_geometry::blocks::{Hits, SphereBlock, TriangleBlock};
 use strahl_geometry::{PrimHit, Primitive, RayShear, Scratch, SurfaceId};
 use strahl_math::{Interval, Ray};
 use strahl_shade::Sides;
@@ -179,6 +180,13 @@ trait Query {
         None
     }
 
+    /// Whether any hit on a primitive of one element with these flags is of interest, and the first is all it takes to know.
+    #[inline(always)]
+    fn is_plain(flags: u8) -> bool {
+        let mixed = flags & (Prim::TRANSMITS | Prim::STOPS) == Prim::TRANSMITS | Prim::STOPS;
+        flags & Prim::FILTERED == 0 && !mixed && !Self::ALL && Self::wants(flags)
+    }
+
     /// Takes a hit and returns the new upper end of the range, `-inf` to end the search.
     fn take(&mut self, hit: Hit, t_max: f64) -> f64;
 
@@ -343,6 +351,9 @@ impl<Q: Query> Search<'_, '_, Q> {
             None => (&group.accelerator, &group.blocks),
             Some(part) => (&part.accelerator, &part.blocks),
         };
+        let plain = group
+            .common
+            .is_some_and(|(visible, flags)| visible & self.class != 0 && Q::is_plain(flags));
         let mut visitor = GroupVisitor {
             search: self,
             group,
@@ -354,6 +365,7 @@ impl<Q: Query> Search<'_, '_, Q> {
             from_prim,
             base,
             t_max: range.max,
+            plain,
         };
         if first != NONE {
             stats.primitive_tests += 1;
@@ -381,6 +393,8 @@ struct GroupVisitor<'v, 'a, 's, Q> {
     from_prim: u32,
     base: u64,
     t_max: f64,
+    /// Whether hits in blocks are taken as they are (see [`RenderGroup::common`]).
+    plain: bool,
 }
 
 impl<Q: Query> Visitor for GroupVisitor<'_, '_, '_, Q> {
@@ -389,28 +403,18 @@ impl<Q: Query> Visitor for GroupVisitor<'_, '_, '_, Q> {
 
     #[inline(always)]
     fn visit_leaf<I: Isa>(&mut self, isa: I, leaf: &Leaf<'_>, t_max: f64) -> f64 {
-        let blocks = leaf.first_block..leaf.first_block + leaf.blocks;
         // Who watches hears of every test.
         let class = match Q::WATCHES {
             true => LeafClass::Single,
             false => LeafClass::from_number(leaf.class),
         };
         match class {
-            LeafClass::Mesh => {
-                self.lanes(isa, leaf.ids, blocks.map(|b| self.blocks.mesh(b)), t_max)
-            }
-            LeafClass::Triangles => self.lanes(
-                isa,
-                leaf.ids,
-                blocks.map(|b| self.blocks.triangles(b)),
-                t_max,
-            ),
-            LeafClass::Spheres => {
-                self.lanes(isa, leaf.ids, blocks.map(|b| self.blocks.spheres(b)), t_max)
-            }
+            LeafClass::Mesh => self.blocks::<I, TriangleBlock<f32>>(isa, leaf, t_max),
+            LeafClass::Triangles => self.blocks::<I, TriangleBlock<f64>>(isa, leaf, t_max),
+            LeafClass::Spheres => self.blocks::<I, SphereBlock>(isa, leaf, t_max),
             LeafClass::Single => {
                 let mut t_max = t_max;
-                for id in leaf.ids {
+                for id in leaf.ids() {
                     t_max = self.visit(*id, t_max);
                     if t_max == f64::NEG_INFINITY {
                         break;
@@ -456,21 +460,32 @@ impl<Q: Query> Visitor for GroupVisitor<'_, '_, '_, Q> {
 impl<Q: Query> GroupVisitor<'_, '_, '_, Q> {
     /// Tests the primitives of a leaf four at a time.
     #[inline(always)]
-    fn lanes<'b, I: Isa, B: LaneTests + 'b>(
-        &mut self,
-        isa: I,
-        ids: &[u32],
-        blocks: impl Iterator<Item = &'b B>,
-        mut t_max: f64,
-    ) -> f64 {
-        let shear = self.shear;
-        for (ids, block) in ids.chunks(BLOCK).zip(blocks) {
-            let mut candidates = block.candidates(isa, self.ray, &shear);
-            while candidates != 0 {
-                let lane = candidates.trailing_zeros() as usize;
-                candidates &= candidates - 1;
-                let Some(id) = ids.get(lane) else { break };
-                t_max = self.lane(*id, block, lane, t_max);
+    fn blocks<I: Isa, B: Block>(&mut self, isa: I, leaf: &Leaf<'_>, mut t_max: f64) -> f64 {
+        let mut hits = Hits::default();
+        for index in 0..leaf.blocks() {
+            let block = B::of(self.blocks, leaf.first_block + index);
+            let range = Interval::new(self.range_min, t_max);
+            let (mut lanes, found) = block.hits(isa, self.ray, &self.shear, range, &mut hits);
+            while lanes != 0 {
+                // There are four lanes; said so, the compiler knows it too.
+                let lane = lanes.trailing_zeros() as usize % BLOCK;
+                lanes &= lanes - 1;
+                let id = leaf.id(index, lane);
+                if id == NO_PRIMITIVE {
+                    continue;
+                }
+                if id == self.from_prim {
+                    if B::CURVED {
+                        t_max = self.visit(id, t_max);
+                    }
+                } else if found >> lane & 1 == 0 {
+                    continue;
+                } else if self.plain || self.is_plain(id) {
+                    let uv = [hits.uv[0][lane], hits.uv[1][lane]];
+                    t_max = self.take(id, hits.t[lane], uv, t_max);
+                } else {
+                    t_max = self.visit(id, t_max);
+                }
                 if t_max == f64::NEG_INFINITY {
                     return t_max;
                 }
@@ -479,29 +494,24 @@ impl<Q: Query> GroupVisitor<'_, '_, '_, Q> {
         t_max
     }
 
-    /// Looks at a primitive that its block takes for a candidate.
+    /// Whether a hit on this primitive, which is tested in a block, is taken as it is.
     #[inline]
-    fn lane<B: LaneTests>(&mut self, id: u32, block: &B, lane: usize, t_max: f64) -> f64 {
+    fn is_plain(&self, id: u32) -> bool {
         let prim = self.group.prims[id as usize];
-        let plain = prim.flags & Prim::FILTERED == 0 && !Q::ALL && id != self.from_prim;
-        if !plain {
-            return self.visit(id, t_max);
+        prim.visible & self.search.class != 0 && Q::is_plain(prim.flags)
+    }
+
+    /// Takes a hit on a plain primitive.
+    #[inline(always)]
+    fn take(&mut self, id: u32, t: f64, uv: [f64; 2], t_max: f64) -> f64 {
+        // Another lane may have been closer.
+        if t <= t_max {
+            let id = self.base + self.group.first_id(id);
+            let facet = 0;
+            self.t_max = self.search.query.take(Hit { t, id, facet, uv }, t_max);
+            return self.t_max;
         }
-        if prim.visible & self.search.class == 0 || !Q::wants(prim.flags) {
-            return t_max;
-        }
-        let range = Interval::new(self.range_min, t_max);
-        let Some((t, uv)) = block.hit(lane, self.ray, &self.shear, range) else {
-            return t_max;
-        };
-        let hit = Hit {
-            t,
-            id: self.base + self.group.first_id(id),
-            facet: 0,
-            uv,
-        };
-        self.t_max = self.search.query.take(hit, t_max);
-        self.t_max
+        t_max
     }
 
     fn instance(&mut self, index: u32, t_max: f64, from: From<'_>, first: u64) -> f64 {

@@ -113,6 +113,8 @@ pub(crate) struct RenderGroup {
     /// What may stop light and what may let it through, each by itself, where shadow rays have less to look at so.
     pub(crate) stopping: Option<Box<Part>>,
     pub(crate) transmitting: Option<Box<Part>>,
+    /// Which rays see the primitives that are tested in blocks, and their flags, if these are the same for all of them.
+    pub(crate) common: Option<(u8, u8)>,
     /// Whether it has triangles that are tested by a shear of the ray.
     pub(crate) sheared: bool,
     /// The primitives in the order of the accelerator's leaves.

@@ -7,7 +7,7 @@
 //! # The same bits everywhere
 //! The f64 vectors offer `+ - * / sqrt` and comparisons only, each rounded as IEEE 754 says, lane by lane: no fused operations, no
 //! approximate reciprocals. So their results are those of scalar code on every level. The f32 vectors have a fused
-//! multiply-subtract where the processor does; they are for conservative culling, whose error bounds cover both.
+//! multiply-add where the processor does; they are for conservative culling, whose error bounds cover both.
 //!
 //! # Safety
 //! This crate is the home of the workspace's `unsafe` code. A value of a level's type ([`Avx2`], [`Avx512`], ...) can only be got
@@ -51,6 +51,8 @@ pub trait Isa: Copy + Send + Sync + 'static {
     fn store_f32(self, v: Self::F32x8) -> Lanes8;
     /// `a b - c`, rounded once or twice: for culling only.
     fn mul_sub(self, a: Self::F32x8, b: Self::F32x8, c: Self::F32x8) -> Self::F32x8;
+    /// `a b + c`, rounded once or twice: for culling only.
+    fn mul_add(self, a: Self::F32x8, b: Self::F32x8, c: Self::F32x8) -> Self::F32x8;
     /// The smaller ones; neither may be NaN.
     fn min_f32(self, a: Self::F32x8, b: Self::F32x8) -> Self::F32x8;
     /// The larger ones; neither may be NaN.
@@ -66,6 +68,8 @@ pub trait Isa: Copy + Send + Sync + 'static {
     fn load_wide(self, lanes: &[f32; 4]) -> Self::F64x4;
     /// To an array.
     fn store(self, v: Self::F64x4) -> [f64; 4];
+    /// To an array of f32, rounded to the nearest.
+    fn narrow(self, v: Self::F64x4) -> [f32; 4];
     /// `a + b`.
     fn add(self, a: Self::F64x4, b: Self::F64x4) -> Self::F64x4;
     /// `a - b`.
@@ -76,6 +80,20 @@ pub trait Isa: Copy + Send + Sync + 'static {
     fn div(self, a: Self::F64x4, b: Self::F64x4) -> Self::F64x4;
     /// The square root.
     fn sqrt(self, a: Self::F64x4) -> Self::F64x4;
+    /// Without the signs.
+    fn abs(self, a: Self::F64x4) -> Self::F64x4;
+    /// The smaller ones; of a NaN and a number, and of equal numbers, the second.
+    fn min(self, a: Self::F64x4, b: Self::F64x4) -> Self::F64x4;
+    /// The larger ones; of a NaN and a number, and of equal numbers, the second.
+    fn max(self, a: Self::F64x4, b: Self::F64x4) -> Self::F64x4;
+    /// `yes` where `a <= b`, else `no`.
+    fn choose_le(
+        self,
+        a: Self::F64x4,
+        b: Self::F64x4,
+        yes: Self::F64x4,
+        no: Self::F64x4,
+    ) -> Self::F64x4;
     /// Where `a <= b`; false for NaN.
     fn le(self, a: Self::F64x4, b: Self::F64x4) -> u32;
     /// Where `a < b`; false for NaN.

@@ -33,6 +33,11 @@ macro_rules! lane_by_lane {
         }
 
         #[inline(always)]
+        fn mul_add(self, a: [f32; 8], b: [f32; 8], c: [f32; 8]) -> [f32; 8] {
+            std::array::from_fn(|i| a[i] * b[i] + c[i])
+        }
+
+        #[inline(always)]
         fn min_f32(self, a: [f32; 8], b: [f32; 8]) -> [f32; 8] {
             std::array::from_fn(|i| if a[i] < b[i] { a[i] } else { b[i] })
         }
@@ -68,6 +73,11 @@ macro_rules! lane_by_lane {
         }
 
         #[inline(always)]
+        fn narrow(self, v: [f64; 4]) -> [f32; 4] {
+            std::array::from_fn(|i| v[i] as f32)
+        }
+
+        #[inline(always)]
         fn add(self, a: [f64; 4], b: [f64; 4]) -> [f64; 4] {
             std::array::from_fn(|i| a[i] + b[i])
         }
@@ -90,6 +100,26 @@ macro_rules! lane_by_lane {
         #[inline(always)]
         fn sqrt(self, a: [f64; 4]) -> [f64; 4] {
             a.map(f64::sqrt)
+        }
+
+        #[inline(always)]
+        fn abs(self, a: [f64; 4]) -> [f64; 4] {
+            std::array::from_fn(|i| a[i].abs())
+        }
+
+        #[inline(always)]
+        fn min(self, a: [f64; 4], b: [f64; 4]) -> [f64; 4] {
+            std::array::from_fn(|i| if a[i] < b[i] { a[i] } else { b[i] })
+        }
+
+        #[inline(always)]
+        fn max(self, a: [f64; 4], b: [f64; 4]) -> [f64; 4] {
+            std::array::from_fn(|i| if a[i] > b[i] { a[i] } else { b[i] })
+        }
+
+        #[inline(always)]
+        fn choose_le(self, a: [f64; 4], b: [f64; 4], yes: [f64; 4], no: [f64; 4]) -> [f64; 4] {
+            std::array::from_fn(|i| if a[i] <= b[i] { yes[i] } else { no[i] })
         }
 
         #[inline(always)]

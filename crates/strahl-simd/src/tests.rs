@@ -12,6 +12,11 @@ fn everything<I: Isa>(isa: I) -> Vec<u64> {
         isa.mul(a, b),
         isa.div(a, b),
         isa.sqrt(b),
+        isa.abs(a),
+        isa.min(a, b),
+        isa.max(b, a),
+        isa.min(isa.splat(0.0), isa.splat(-0.0)),
+        isa.choose_le(a, b, b, isa.sub(a, b)),
         isa.splat(0.7),
         isa.load_wide(&[0.1, -2.5, 1e-42, f32::INFINITY]),
     ];
@@ -20,6 +25,8 @@ fn everything<I: Isa>(isa: I) -> Vec<u64> {
         .flat_map(|v| isa.store(v))
         .map(|x| if x.is_nan() { 0 } else { x.to_bits() })
         .collect();
+    let narrow = isa.narrow(isa.load(&[0.1, -1e300, 1e-42, f64::MIN_POSITIVE]));
+    bits.extend(narrow.map(|x| u64::from(x.to_bits())));
     bits.extend([isa.le(a, b), isa.le(b, a), isa.lt(a, b), isa.lt(b, a)].map(u64::from));
     let p = isa.load_f32(&Lanes8([
         1.0,
@@ -33,8 +40,11 @@ fn everything<I: Isa>(isa: I) -> Vec<u64> {
     ]));
     let q = isa.splat_f32(0.5);
     // Exact products, so that fused and separate rounding agree.
-    let culled = isa.mul_sub(p, q, isa.splat_f32(0.25));
-    for v in [culled, isa.min_f32(p, q), isa.max_f32(p, q)] {
+    let culled = [
+        isa.mul_sub(p, q, isa.splat_f32(0.25)),
+        isa.mul_add(p, q, isa.splat_f32(0.25)),
+    ];
+    for v in [culled[0], culled[1], isa.min_f32(p, q), isa.max_f32(p, q)] {
         bits.extend(isa.store_f32(v).0.map(|x| u64::from(x.to_bits())));
     }
     bits.extend([isa.le_f32(p, q), isa.le_f32(q, p)].map(u64::from));

@@ -69,7 +69,8 @@ impl Isa for Sse4 {
     lane_by_lane!();
 }
 
-/// What AVX2 and AVX-512 have in common: everything but comparisons.
+/// The vectors of AVX2, which AVX-512 has more registers for. Comparisons give masks in vectors there too: in the registers that
+/// AVX-512 has for masks they would have a longer way to a branch.
 macro_rules! avx {
     () => {
         type F32x8 = __m256;
@@ -99,6 +100,12 @@ macro_rules! avx {
         fn mul_sub(self, a: __m256, b: __m256, c: __m256) -> __m256 {
             // SAFETY: `self` proves FMA.
             unsafe { _mm256_fmsub_ps(a, b, c) }
+        }
+
+        #[inline(always)]
+        fn mul_add(self, a: __m256, b: __m256, c: __m256) -> __m256 {
+            // SAFETY: `self` proves FMA.
+            unsafe { _mm256_fmadd_ps(a, b, c) }
         }
 
         #[inline(always)]
@@ -140,6 +147,14 @@ macro_rules! avx {
         }
 
         #[inline(always)]
+        fn narrow(self, v: __m256d) -> [f32; 4] {
+            let mut lanes = [0.0; 4];
+            // SAFETY: `self` proves AVX; there is room for four numbers, and the store needs no alignment.
+            unsafe { _mm_storeu_ps(lanes.as_mut_ptr(), _mm256_cvtpd_ps(v)) };
+            lanes
+        }
+
+        #[inline(always)]
         fn add(self, a: __m256d, b: __m256d) -> __m256d {
             // SAFETY: `self` proves AVX.
             unsafe { _mm256_add_pd(a, b) }
@@ -168,6 +183,48 @@ macro_rules! avx {
             // SAFETY: `self` proves AVX.
             unsafe { _mm256_sqrt_pd(a) }
         }
+
+        #[inline(always)]
+        fn abs(self, a: __m256d) -> __m256d {
+            // SAFETY: `self` proves AVX.
+            unsafe { _mm256_andnot_pd(_mm256_set1_pd(-0.0), a) }
+        }
+
+        #[inline(always)]
+        fn min(self, a: __m256d, b: __m256d) -> __m256d {
+            // SAFETY: `self` proves AVX.
+            unsafe { _mm256_min_pd(a, b) }
+        }
+
+        #[inline(always)]
+        fn max(self, a: __m256d, b: __m256d) -> __m256d {
+            // SAFETY: `self` proves AVX.
+            unsafe { _mm256_max_pd(a, b) }
+        }
+
+        #[inline(always)]
+        fn choose_le(self, a: __m256d, b: __m256d, yes: __m256d, no: __m256d) -> __m256d {
+            // SAFETY: `self` proves AVX.
+            unsafe { _mm256_blendv_pd(no, yes, _mm256_cmp_pd::<_CMP_LE_OQ>(a, b)) }
+        }
+
+        #[inline(always)]
+        fn le_f32(self, a: __m256, b: __m256) -> u32 {
+            // SAFETY: `self` proves AVX.
+            unsafe { _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(a, b)) as u32 }
+        }
+
+        #[inline(always)]
+        fn le(self, a: __m256d, b: __m256d) -> u32 {
+            // SAFETY: `self` proves AVX.
+            unsafe { _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_LE_OQ>(a, b)) as u32 }
+        }
+
+        #[inline(always)]
+        fn lt(self, a: __m256d, b: __m256d) -> u32 {
+            // SAFETY: `self` proves AVX.
+            unsafe { _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_LT_OQ>(a, b)) as u32 }
+        }
     };
 }
 
@@ -186,24 +243,6 @@ impl Isa for Avx2 {
     }
 
     avx!();
-
-    #[inline(always)]
-    fn le_f32(self, a: __m256, b: __m256) -> u32 {
-        // SAFETY: `self` proves AVX.
-        unsafe { _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(a, b)) as u32 }
-    }
-
-    #[inline(always)]
-    fn le(self, a: __m256d, b: __m256d) -> u32 {
-        // SAFETY: `self` proves AVX.
-        unsafe { _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_LE_OQ>(a, b)) as u32 }
-    }
-
-    #[inline(always)]
-    fn lt(self, a: __m256d, b: __m256d) -> u32 {
-        // SAFETY: `self` proves AVX.
-        unsafe { _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_LT_OQ>(a, b)) as u32 }
-    }
 }
 
 impl Isa for Avx512 {
@@ -223,22 +262,4 @@ impl Isa for Avx512 {
     }
 
     avx!();
-
-    #[inline(always)]
-    fn le_f32(self, a: __m256, b: __m256) -> u32 {
-        // SAFETY: `self` proves AVX-512 F and VL.
-        unsafe { u32::from(_mm256_cmp_ps_mask::<_CMP_LE_OQ>(a, b)) }
-    }
-
-    #[inline(always)]
-    fn le(self, a: __m256d, b: __m256d) -> u32 {
-        // SAFETY: `self` proves AVX-512 F and VL.
-        unsafe { u32::from(_mm256_cmp_pd_mask::<_CMP_LE_OQ>(a, b)) }
-    }
-
-    #[inline(always)]
-    fn lt(self, a: __m256d, b: __m256d) -> u32 {
-        // SAFETY: `self` proves AVX-512 F and VL.
-        unsafe { u32::from(_mm256_cmp_pd_mask::<_CMP_LT_OQ>(a, b)) }
-    }
 }

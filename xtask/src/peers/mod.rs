@@ -24,6 +24,9 @@ struct Plan<'a> {
     brief: bool,
 }
 
+/// Makes a mesh, given its name.
+type Maker = fn(&'static str) -> Mesh;
+
 /// Builds of the same scene whose times are compared.
 const BUILDS: usize = 3;
 
@@ -64,7 +67,7 @@ pub(crate) fn run(args: &[&str]) -> Result<()> {
             .into(),
     );
     let mut ratios: Vec<(Kind, f64)> = vec![];
-    let meshes: [(&'static str, fn(&'static str) -> Mesh); 5] = [
+    let meshes: [(&'static str, Maker); 5] = [
         ("flake 66 k", |name| meshes::tessellated_flake(name, 3, 1)),
         ("terrain 524 k", |name| meshes::terrain(name, 512)),
         ("flake 945 k", |name| meshes::tessellated_flake(name, 4, 2)),

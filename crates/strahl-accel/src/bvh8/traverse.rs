@@ -1,8 +1,8 @@
 use super::node::{Child, Node, WIDTH};
-use super::{BLOCK, Bvh8, Tree};
+use super::{Bvh8, Tree};
 use crate::bvh::MAX_DEPTH;
 use crate::bvh::watch::BoxTree;
-use crate::cull::CullRay;
+use crate::cull::CullStart;
 use crate::list::visit_all;
 use crate::traversal::Leaf;
 use crate::{Accelerator, Beam, TraversalStats, Visitor};
@@ -13,7 +13,8 @@ use strahl_simd::{Isa, dispatch};
 /// Children left to visit: at most all but one of each level.
 type Stack = ArrayVec<Waiting, { MAX_DEPTH * (WIDTH - 1) }>;
 
-/// A child to visit, with the parameter at which the ray gets there in the upper half: smaller numbers come first.
+/// A child to visit, with the parameter at which the ray gets there in the upper half: smaller numbers come first. One number
+/// is compared and moved without a branch.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Waiting(i64);
 
@@ -84,8 +85,8 @@ impl Accelerator for Bvh8 {
 /// The constants of the culling test in vectors.
 struct Slabs<I: Isa> {
     rd: [I::F32x8; 3],
-    near: [I::F32x8; 3],
-    far: [I::F32x8; 3],
+    minus_near: [I::F32x8; 3],
+    minus_far: [I::F32x8; 3],
     /// Per axis which of the two planes the ray meets first.
     first: [usize; 3],
     t_min: I::F32x8,
@@ -93,26 +94,31 @@ struct Slabs<I: Isa> {
 
 impl<I: Isa> Slabs<I> {
     #[inline(always)]
-    fn new(isa: I, cull: &CullRay) -> Self {
-        let [x, y, z] = &cull.axes;
+    fn new(isa: I, start: &CullStart, t_min: f64) -> Self {
+        let lanes = start.lanes(isa);
+        let [rd, near, far] = [lanes.rd, lanes.minus_near, lanes.minus_far];
         Self {
             rd: [
-                isa.splat_f32(x.rd),
-                isa.splat_f32(y.rd),
-                isa.splat_f32(z.rd),
+                isa.splat_f32(rd[0]),
+                isa.splat_f32(rd[1]),
+                isa.splat_f32(rd[2]),
             ],
-            near: [
-                isa.splat_f32(x.near),
-                isa.splat_f32(y.near),
-                isa.splat_f32(z.near),
+            minus_near: [
+                isa.splat_f32(near[0]),
+                isa.splat_f32(near[1]),
+                isa.splat_f32(near[2]),
             ],
-            far: [
-                isa.splat_f32(x.far),
-                isa.splat_f32(y.far),
-                isa.splat_f32(z.far),
+            minus_far: [
+                isa.splat_f32(far[0]),
+                isa.splat_f32(far[1]),
+                isa.splat_f32(far[2]),
             ],
-            first: [x.rd, y.rd, z.rd].map(|rd| usize::from(rd < 0.0)),
-            t_min: isa.splat_f32(cull.t_min),
+            first: [
+                (lanes.down & 1) as usize,
+                (lanes.down >> 1 & 1) as usize,
+                (lanes.down >> 2 & 1) as usize,
+            ],
+            t_min: isa.splat_f32(start.clock.t_min(t_min)),
         }
     }
 
@@ -120,14 +126,14 @@ impl<I: Isa> Slabs<I> {
     #[inline(always)]
     fn near(&self, isa: I, node: &Node, k: usize) -> I::F32x8 {
         let planes = isa.load_f32(&node.planes[2 * k + self.first[k]]);
-        isa.mul_sub(planes, self.rd[k], self.near[k])
+        isa.mul_add(planes, self.rd[k], self.minus_near[k])
     }
 
     /// Where the ray crosses the planes of an axis that it meets last.
     #[inline(always)]
     fn far(&self, isa: I, node: &Node, k: usize) -> I::F32x8 {
         let planes = isa.load_f32(&node.planes[2 * k + 1 - self.first[k]]);
-        isa.mul_sub(planes, self.rd[k], self.far[k])
+        isa.mul_add(planes, self.rd[k], self.minus_far[k])
     }
 
     /// Where the ray enters the children's boxes, and which of them it may meet.
@@ -160,21 +166,22 @@ impl Tree {
         visitor: &mut V,
         stats: &mut TraversalStats,
     ) {
-        let Some(cull) = CullRay::new(ray, range, &self.bounds) else {
+        let Some(start) = CullStart::new(ray, range, &self.bounds) else {
             return;
         };
-        let slabs = Slabs::new(isa, &cull);
+        let slabs = Slabs::new(isa, &start, range.min);
         let mut t_max = range.max;
-        let mut far = cull.t_max(t_max);
+        let mut far = start.clock.t_max(t_max);
         let mut far_lanes = isa.splat_f32(far);
         let mut stack = Stack::new();
         let mut current = self.root;
-        loop {
+        let mut cost = TraversalStats::default();
+        'walk: loop {
             if V::WATCHES {
                 self.report(ray, range.with_max(t_max), current, visitor);
             }
             if !current.is_leaf() {
-                stats.node_visits += 1;
+                cost.node_visits += 1;
                 let node = &self.nodes[current.node()];
                 let (near, mut hit) = slabs.enter(isa, node, far_lanes);
                 // Branches rather than arithmetic on masks: the processor goes on with the likely child before the test is done.
@@ -185,13 +192,27 @@ impl Tree {
                         current = node.children[first];
                         continue;
                     }
+                    if V::ANY {
+                        // As they lie, the largest first: there is no telling which is hit.
+                        while hit != 0 {
+                            let last = 31 - hit.leading_zeros() as usize;
+                            hit ^= 1 << last;
+                            stack.push(Waiting::new(node.children[last], 0.0));
+                        }
+                        current = node.children[first];
+                        continue;
+                    }
                     let near = isa.store_f32(near).0;
                     let waiting = |i: usize| Waiting::new(node.children[i], near[i]);
                     let a = waiting(first);
-                    let second = hit.trailing_zeros() as usize;
+                    let b = waiting(hit.trailing_zeros() as usize);
                     hit &= hit - 1;
-                    let b = waiting(second);
                     let (mut nearest, other) = if b < a { (b, a) } else { (a, b) };
+                    if hit == 0 {
+                        stack.push(other);
+                        current = nearest.child();
+                        continue;
+                    }
                     let bottom = stack.len();
                     stack.push(other);
                     while hit != 0 {
@@ -205,46 +226,41 @@ impl Tree {
                         };
                         stack.push(later);
                     }
-                    if !V::ANY && stack.len() > bottom + 1 {
-                        farthest_first(&mut stack[bottom..]);
-                    }
+                    farthest_first(&mut stack[bottom..]);
                     current = nearest.child();
                     continue;
                 }
             } else {
                 let leaf = current.parts();
-                let ids = &self.slots[leaf.slots()];
-                stats.primitive_tests += leaf.count as u64;
-                let closest = visitor.visit_leaf(
-                    isa,
-                    &Leaf {
-                        class: leaf.class,
-                        first_block: leaf.first_block,
-                        blocks: leaf.count.div_ceil(BLOCK),
-                        ids,
-                    },
-                    t_max,
-                );
+                cost.primitive_tests += leaf.count as u64;
+                let leaf = Leaf {
+                    class: leaf.class,
+                    first_block: leaf.first_block,
+                    count: leaf.count,
+                    slots: &self.slots,
+                };
+                let closest = visitor.visit_leaf(isa, &leaf, t_max);
                 if closest < t_max {
                     if closest == f64::NEG_INFINITY {
-                        return;
+                        break;
                     }
                     t_max = closest;
-                    far = cull.t_max(t_max);
+                    far = start.clock.t_max(t_max);
                     far_lanes = isa.splat_f32(far);
                 }
             }
             // A box that starts exactly at the closest hit is still visited: ids decide ties.
             loop {
                 let Some(next) = stack.pop() else {
-                    return;
+                    break 'walk;
                 };
-                if next.near() <= far {
+                if V::ANY || next.near() <= far {
                     current = next.child();
                     break;
                 }
             }
         }
+        *stats += cost;
     }
 }
 

@@ -12,3 +12,12 @@ pub use triangles::{Coordinate, TriangleBlock};
 
 /// Primitives in a block.
 pub const LANES: usize = strahl_accel::BLOCK;
+
+/// Where a ray meets the primitives of a block; only the lanes that were found hit mean anything.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Hits {
+    /// Ray parameters.
+    pub t: [f64; LANES],
+    /// The primitives' own two numbers.
+    pub uv: [[f64; LANES]; 2],
+}

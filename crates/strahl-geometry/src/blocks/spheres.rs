@@ -1,6 +1,6 @@
-use super::LANES;
+use super::{Hits, LANES};
 use crate::Sphere;
-use strahl_math::{DVec3, Interval, Ray};
+use strahl_math::{Interval, Ray};
 use strahl_simd::Isa;
 
 /// The scalar product, added up in the order of the scalar code.
@@ -24,7 +24,8 @@ impl SphereBlock {
     /// No spheres.
     pub const EMPTY: Self = Self {
         center: [[0.0; LANES]; 3],
-        radius: [f64::NAN; LANES],
+        // A point: no line crosses it.
+        radius: [0.0; LANES],
     };
 
     /// Puts a sphere into a lane.
@@ -35,10 +36,10 @@ impl SphereBlock {
         self.radius[lane] = sphere.radius().abs();
     }
 
-    /// Which spheres the ray's line crosses, as bits.
+    /// Which spheres the ray may meet in a range if it starts on them, as bits, and which it meets if it starts elsewhere, and
+    /// where for the first time: what [`Sphere`] finds, operation by operation. The former contain the latter.
     #[inline(always)]
-    pub fn candidates<I: Isa>(&self, isa: I, ray: &Ray) -> u32 {
-        // The discriminant of `Sphere`, operation by operation.
+    pub fn hits<I: Isa>(&self, isa: I, ray: &Ray, range: Interval, hits: &mut Hits) -> (u32, u32) {
         let [dx, dy, dz] = ray.direction.to_array();
         let d = [isa.splat(dx), isa.splat(dy), isa.splat(dz)];
         let f = [
@@ -47,38 +48,60 @@ impl SphereBlock {
             isa.sub(isa.splat(ray.origin.z), isa.load(&self.center[2])),
         ];
         let a = isa.splat(ray.direction.dot(ray.direction));
-        // -(f·d)/a, without the signs: they change no rounding.
-        let closest_t = isa.div(dot(isa, f, d), a);
+        let zero = isa.splat(0.0);
+        // Signs change no rounding: `-(f·d)` is what `Sphere` has for b.
+        let minus_b = dot(isa, f, d);
+        let (r, square) = (isa.load(&self.radius), dot(isa, f, f));
+        let r_square = isa.mul(r, r);
+        let minus_closest_t = isa.div(minus_b, a);
         let closest = [
-            isa.sub(f[0], isa.mul(d[0], closest_t)),
-            isa.sub(f[1], isa.mul(d[1], closest_t)),
-            isa.sub(f[2], isa.mul(d[2], closest_t)),
+            isa.sub(f[0], isa.mul(d[0], minus_closest_t)),
+            isa.sub(f[1], isa.mul(d[1], minus_closest_t)),
+            isa.sub(f[2], isa.mul(d[2], minus_closest_t)),
         ];
-        let r = isa.load(&self.radius);
-        let square = isa.sub(isa.mul(r, r), dot(isa, closest, closest));
-        isa.lt(isa.splat(0.0), isa.mul(a, square))
-    }
-
-    /// The first crossing of a lane's sphere in a range.
-    #[inline]
-    pub fn hit(&self, lane: usize, ray: &Ray, range: Interval) -> Option<f64> {
-        let center = DVec3::from_array(self.center.map(|axis| axis[lane]));
-        let (near, far) = Sphere::crossings_of(center, self.radius[lane], ray)?;
-        if range.accepts(near) {
-            return Some(near);
+        let discriminant = isa.mul(a, isa.sub(r_square, dot(isa, closest, closest)));
+        let crossed = isa.lt(zero, discriminant);
+        if crossed == 0 {
+            return (0, 0);
         }
-        range.accepts(far).then_some(far)
+        let s = isa.sqrt(discriminant);
+        let distance = isa.sqrt(square);
+        let c = isa.mul(isa.sub(distance, r), isa.add(distance, r));
+        let b = isa.sub(zero, minus_b);
+        let q = isa.choose_le(zero, b, isa.add(b, s), isa.sub(b, s));
+        let (one, other) = (isa.div(c, q), isa.div(q, a));
+        let near = isa.choose_le(zero, b, one, other);
+        let far = isa.choose_le(zero, b, other, one);
+        let (min, max) = (isa.splat(range.min), isa.splat(range.max));
+        let near_inside = isa.lt(min, near) & isa.le(near, max);
+        let far_inside = isa.lt(min, far) & isa.le(far, max);
+        let found = crossed & (near_inside | far_inside);
+        if found != 0 {
+            let (near, far) = (isa.store(near), isa.store(far));
+            for lane in 0..LANES {
+                let is_near = near_inside >> lane & 1 == 1;
+                hits.t[lane] = if is_near { near[lane] } else { far[lane] };
+            }
+        }
+        // From its surface a ray meets a sphere again only on the way in.
+        let again = if range.min >= 0.0 {
+            crossed & isa.lt(zero, b)
+        } else {
+            crossed
+        };
+        (again | found, found)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Primitive, Scratch};
+    use crate::{Primitive, Scratch, SurfaceId};
+    use strahl_math::DVec3;
     use strahl_simd::{Simd, dispatch};
 
     #[test]
-    fn candidates_are_exactly_those_the_line_crosses() {
+    fn hits_are_those_of_the_single_test() {
         let mut state = 7u64;
         let mut signed = || {
             state = state
@@ -86,8 +109,8 @@ mod tests {
                 .wrapping_add(1);
             (state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
         };
-        let mut hits = 0;
-        for _ in 0..20_000 {
+        let mut all = 0;
+        for i in 0..20_000 {
             let mut point = || DVec3::new(signed(), signed(), signed());
             let spheres: [Sphere; LANES] = std::array::from_fn(|i| {
                 let radius = point().x * [0.9, 1e-6, 1e3, 0.1][i];
@@ -101,18 +124,30 @@ mod tests {
             let target = spheres[2].center() + point() * spheres[2].radius().abs();
             let origin = point() * 3.0;
             let ray = Ray::new(origin, (target - origin) * 0.7);
+            let range = match i % 3 {
+                0 => Interval::LINE,
+                1 => Interval::FORWARD,
+                _ => Interval::new(0.9, 1.5),
+            };
             for simd in Simd::available() {
-                let found = dispatch!(simd, isa => block.candidates(isa, &ray));
-                assert_eq!(found & 1, 0, "the empty lane");
+                let mut hits = Hits::default();
+                let (again, found) =
+                    dispatch!(simd, isa => block.hits(isa, &ray, range, &mut hits));
+                assert_eq!(again & 1, 0, "the empty lane");
+                assert_eq!(found & !again, 0);
                 for (lane, s) in spheres.iter().enumerate().skip(1) {
-                    let everywhere = Interval::new(f64::NEG_INFINITY, f64::INFINITY);
-                    let hit = s.closest_hit(&ray, everywhere, None, &mut Scratch::default());
-                    assert_eq!(found >> lane & 1 == 1, hit.is_some());
-                    assert_eq!(block.hit(lane, &ray, everywhere), hit.map(|h| h.t));
-                    hits += u32::from(hit.is_some());
+                    let hit = |from| s.closest_hit(&ray, range, from, &mut Scratch::default());
+                    let t = (found >> lane & 1 == 1).then_some(hits.t[lane]);
+                    assert_eq!(t, hit(None).map(|h| h.t));
+                    all += u32::from(t.is_some());
+                    let (element, facet) = (0, 0);
+                    let from = Some(SurfaceId { element, facet });
+                    let everywhere = Interval::LINE;
+                    let line = s.closest_hit(&ray, everywhere, None, &mut Scratch::default());
+                    assert!(again >> lane & 1 == 1 || line.is_none() || hit(from).is_none());
                 }
             }
         }
-        assert!(hits > 10_000, "{hits}");
+        assert!(all > 10_000, "{all}");
     }
 }

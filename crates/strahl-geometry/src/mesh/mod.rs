@@ -25,7 +25,7 @@ mod triangulate;
 pub use brep::Brep;
 pub use indexed::{MeshData, TriangleMesh};
 pub use polygon::{Polygon, fan_triangles};
-pub(crate) use shear::intersect_sheared;
+pub(crate) use shear::{Axis, LOST_DIGITS, intersect_sheared};
 pub use shear::{RayShear, TriangleHit, intersect_triangle};
 pub(crate) use triangle::combine;
 pub use triangle::{SmoothTriangle, Triangle};

@@ -1,5 +1,21 @@
 use strahl_math::{DVec3, Ray};
 
+/// A coordinate axis: an index that is known to be below 3.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+pub(crate) enum Axis {
+    X,
+    Y,
+    Z,
+}
+
+/// The axes in cyclic order by the last.
+static ORDERS: [[Axis; 3]; 3] = [
+    [Axis::Y, Axis::Z, Axis::X],
+    [Axis::Z, Axis::X, Axis::Y],
+    [Axis::X, Axis::Y, Axis::Z],
+];
+
 /// What all triangle tests of one ray have in common: the shear that turns the ray into the z axis.
 ///
 /// The axes are permuted cyclically, so that z is the one along which the ray moves fastest, and a corner `v` becomes
@@ -13,7 +29,7 @@ use strahl_math::{DVec3, Ray};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RayShear {
     /// The axes in their new order.
-    axes: [usize; 3],
+    axes: [Axis; 3],
     /// The ray's origin in that order.
     origin: [f64; 3],
     /// `d_x / d_z` and `d_y / d_z`, at most 1 in magnitude.
@@ -25,36 +41,39 @@ pub struct RayShear {
 impl RayShear {
     /// That of no ray: it meets nothing.
     pub const UNUSED: Self = Self {
-        axes: [0, 1, 2],
+        axes: [Axis::X, Axis::Y, Axis::Z],
         origin: [f64::NAN; 3],
         shear: [f64::NAN; 2],
         direction_z: f64::NAN,
     };
 
     /// The shear of a ray: once per ray and space.
+    ///
+    /// Always inlined: returned through memory, it would be stored number by number and read again in larger pieces, which
+    /// waits until the stores are done.
+    #[inline(always)]
     pub fn new(ray: &Ray) -> Self {
-        let (d, size) = (ray.direction, ray.direction.abs());
-        let z = if size.x >= size.y && size.x >= size.z {
-            0
-        } else if size.y >= size.z {
-            1
-        } else {
-            2
-        };
-        let axes = [(z + 1) % 3, (z + 2) % 3, z];
-        let usable = d.is_finite() && size[z] > 0.0;
+        let size = ray.direction.abs();
+        // No branches: which axis it is can't be predicted.
+        let of_y_and_z = usize::from(!(size.y >= size.z)) + 1;
+        let x_is_largest = (size.x >= size.y) & (size.x >= size.z);
+        let axes = &ORDERS[if x_is_largest { 0 } else { of_y_and_z }];
+        let [x, y, z] = [axes[0] as usize, axes[1] as usize, axes[2] as usize];
+        let (origin, d): (&[f64; 3], &[f64; 3]) = (ray.origin.as_ref(), ray.direction.as_ref());
+        // What is infinite in any coordinate is so in the largest; and NaN makes one of the slopes NaN.
+        let usable = (d[z] != 0.0) & (d[z].abs() <= f64::MAX);
         let direction_z = if usable { d[z] } else { f64::NAN };
         Self {
-            axes,
-            origin: axes.map(|k| ray.origin[k]),
-            shear: [d[axes[0]] / direction_z, d[axes[1]] / direction_z],
+            axes: *axes,
+            origin: [origin[x], origin[y], origin[z]],
+            shear: [d[x] / direction_z, d[y] / direction_z],
             direction_z,
         }
     }
 
     /// The axes in their new order: the ray moves fastest along the last.
     #[inline(always)]
-    pub(crate) const fn axes(&self) -> [usize; 3] {
+    pub(crate) const fn axes(&self) -> [Axis; 3] {
         self.axes
     }
 
@@ -70,13 +89,19 @@ impl RayShear {
         self.shear
     }
 
+    /// The component of the ray's direction along the last axis.
+    #[inline(always)]
+    pub(crate) const fn direction_z(&self) -> f64 {
+        self.direction_z
+    }
+
     /// The shear of the same ray for corners that are given relative to `anchor`.
     #[inline]
     #[must_use]
     pub fn relative_to(&self, anchor: DVec3) -> Self {
         let mut moved = *self;
         for (o, k) in moved.origin.iter_mut().zip(self.axes) {
-            *o -= anchor[k];
+            *o -= anchor[k as usize];
         }
         moved
     }
@@ -85,13 +110,13 @@ impl RayShear {
     #[inline]
     pub fn apply(&self, corner: &DVec3) -> DVec3 {
         let corner: &[f64; 3] = corner.as_ref();
-        self.sheared(|k| corner[self.axes[k]])
+        self.sheared(|k| corner[self.axes[k] as usize])
     }
 
     /// The image of a corner that is stored in f32; the conversion is exact.
     #[inline]
     pub fn apply_f32(&self, corner: &[f32; 3]) -> DVec3 {
-        self.sheared(|k| f64::from(corner[self.axes[k]]))
+        self.sheared(|k| f64::from(corner[self.axes[k] as usize]))
     }
 
     /// Coordinates are picked from memory one by one: a branch on the axis would be mispredicted at every change of ray.
@@ -167,7 +192,7 @@ pub(crate) fn intersect_sheared(
 }
 
 /// Below this part of its products an edge function has lost too many digits to place a hit.
-const LOST_DIGITS: f64 = 1.0 / 256.0;
+pub(crate) const LOST_DIGITS: f64 = 1.0 / 256.0;
 
 /// The hit from the edge functions `weights`, which all have one sign up to rounding.
 #[inline]

@@ -133,6 +133,7 @@ impl Prepared {
                 instance.group = renumber(instance.group);
             }
             RenderGroup {
+                common: crate::blocks::common(&g.prims, &g.shapes, &g.meshes),
                 sheared: blocks.sheared() || !g.meshes.is_empty(),
                 prims: g.prims,
                 shapes: g.shapes,
