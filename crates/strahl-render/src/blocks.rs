@@ -22,7 +22,7 @@ pub(crate) enum LeafClass {
 impl LeafClass {
     /// The class of a primitive.
     pub(crate) fn of(prim: &Prim, shapes: &[ShapeUse], meshes: &[MeshUse]) -> Self {
-        match prim.kind {
+        match prim.kind() {
             PrimKind::Triangle(mesh, _)
                 if meshes[mesh as usize].mesh.anchor() == strahl_math::DVec3::ZERO =>
             {
@@ -77,7 +77,7 @@ impl Blocks {
                 .iter()
                 .enumerate()
                 .filter(|(_, id)| **id != NO_PRIMITIVE);
-            let used = used.map(|(lane, id)| (lane, prims[*id as usize].kind));
+            let used = used.map(|(lane, id)| (lane, prims[*id as usize].kind()));
             let shape = |kind| match kind {
                 PrimKind::Shape(index) => Some(&shapes[index as usize].shape),
                 _ => None,

@@ -441,11 +441,11 @@ impl<Q: Query> Visitor for GroupVisitor<'_, '_, '_, Q> {
         } else {
             None
         };
-        self.t_max = match prim.kind {
+        self.t_max = match prim.kind() {
             PrimKind::Instance(index) => self.instance(index, t_max, from, first),
             _ => self.simple(id, prim, t_max, from, first),
         };
-        if Q::WATCHES && !matches!(prim.kind, PrimKind::Instance(_)) {
+        if Q::WATCHES && !matches!(prim.kind(), PrimKind::Instance(_)) {
             self.search.query.tell(WalkEvent::Test {
                 id: self.base + first,
                 object: self.group.look(id, 0).object,
@@ -521,7 +521,7 @@ impl<Q: Query> GroupVisitor<'_, '_, '_, Q> {
         if let Some((origin, number)) = from {
             // The ray starts in this space, not in one further inside: its origin is known exactly here.
             let prim = inner.prims[inner.prim_of(number) as usize];
-            if !matches!(prim.kind, PrimKind::Instance(_)) {
+            if !matches!(prim.kind(), PrimKind::Instance(_)) {
                 ray.origin = origin.local;
             }
         }
@@ -556,7 +556,7 @@ impl<Q: Query> GroupVisitor<'_, '_, '_, Q> {
         let mixed = prim.flags & (Prim::TRANSMITS | Prim::STOPS) == Prim::TRANSMITS | Prim::STOPS;
         let (mut min, mut t_max) = (self.range_min, t_max);
         loop {
-            let Some(found) = self.test(prim.kind, Interval::new(min, t_max), from) else {
+            let Some(found) = self.test(prim.kind(), Interval::new(min, t_max), from) else {
                 return t_max;
             };
             let hit = Hit {

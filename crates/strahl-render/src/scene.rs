@@ -21,14 +21,42 @@ pub struct ObjectInfo {
     pub span: Span,
 }
 
-/// What the accelerator's ids stand for.
+/// What the accelerator's ids stand for: 12 bytes, because scenes have millions.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Prim {
-    pub(crate) kind: PrimKind,
+    /// Index of the mesh use, shape or instance.
+    index: u32,
+    triangle: u32,
+    tag: PrimTag,
     /// Which rays see it (bits of [`crate::RayClass`]).
     pub(crate) visible: u8,
     /// Bits of `Prim::*`.
     pub(crate) flags: u8,
+}
+
+const _: () = assert!(size_of::<Prim>() == 12);
+
+/// Of which kind a [`Prim`] is.
+#[derive(Clone, Copy, Debug)]
+#[repr(u8)]
+enum PrimTag {
+    Triangle,
+    Shape,
+    Placed,
+    Instance,
+}
+
+/// What a [`Prim`] is.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum PrimKind {
+    /// Triangle `1` of mesh use `0`.
+    Triangle(u32, u32),
+    /// A shape in the group's own space.
+    Shape(u32),
+    /// A shape with a transformation.
+    Placed(u32),
+    /// A group once more.
+    Instance(u32),
 }
 
 impl Prim {
@@ -40,18 +68,33 @@ impl Prim {
     pub(crate) const STOPS: u8 = 4;
     /// Exists from the front only, or one of its leaves does.
     pub(crate) const ONE_SIDED: u8 = 8;
-}
 
-#[derive(Clone, Copy, Debug)]
-pub(crate) enum PrimKind {
-    /// Triangle `1` of mesh use `0`.
-    Triangle(u32, u32),
-    /// A shape in the group's own space.
-    Shape(u32),
-    /// A shape with a transformation.
-    Placed(u32),
-    /// A group once more.
-    Instance(u32),
+    pub(crate) const fn new(kind: PrimKind, visible: u8, flags: u8) -> Self {
+        let (tag, index, triangle) = match kind {
+            PrimKind::Triangle(index, triangle) => (PrimTag::Triangle, index, triangle),
+            PrimKind::Shape(index) => (PrimTag::Shape, index, 0),
+            PrimKind::Placed(index) => (PrimTag::Placed, index, 0),
+            PrimKind::Instance(index) => (PrimTag::Instance, index, 0),
+        };
+        Self {
+            index,
+            triangle,
+            tag,
+            visible,
+            flags,
+        }
+    }
+
+    /// What it is.
+    #[inline(always)]
+    pub(crate) const fn kind(&self) -> PrimKind {
+        match self.tag {
+            PrimTag::Triangle => PrimKind::Triangle(self.index, self.triangle),
+            PrimTag::Shape => PrimKind::Shape(self.index),
+            PrimTag::Placed => PrimKind::Placed(self.index),
+            PrimTag::Instance => PrimKind::Instance(self.index),
+        }
+    }
 }
 
 #[derive(Clone, Debug)]
@@ -336,7 +379,7 @@ impl RenderScene {
         loop {
             let prim = group.prim_of(rest);
             rest -= group.first_id(prim);
-            let PrimKind::Instance(index) = group.prims[prim as usize].kind else {
+            let PrimKind::Instance(index) = group.prims[prim as usize].kind() else {
                 return Located {
                     group,
                     prim,
@@ -356,7 +399,7 @@ impl RenderScene {
     /// The line of the scene file that made the triangle with this number, if its mesh knows.
     pub(crate) fn face_line(&self, id: u64) -> Option<u32> {
         let at = self.locate(id);
-        match at.group.prims[at.prim as usize].kind {
+        match at.group.prims[at.prim as usize].kind() {
             PrimKind::Triangle(mesh, triangle) => {
                 at.group.meshes[mesh as usize].mesh.face_line(triangle)
             }
@@ -468,8 +511,8 @@ impl RenderScene {
         loop {
             let (prim_a, prim_b) = (group.prim_of(a), group.prim_of(b));
             let kinds = (
-                group.prims[prim_a as usize].kind,
-                group.prims[prim_b as usize].kind,
+                group.prims[prim_a as usize].kind(),
+                group.prims[prim_b as usize].kind(),
             );
             match kinds {
                 (PrimKind::Instance(index), PrimKind::Instance(_)) if prim_a == prim_b => {
@@ -488,7 +531,7 @@ impl RenderGroup {
     /// Object and material of an element of a primitive that is no instance.
     #[inline]
     pub(crate) fn look(&self, prim: u32, element: u32) -> Look {
-        match self.prims[prim as usize].kind {
+        match self.prims[prim as usize].kind() {
             PrimKind::Triangle(mesh, _) => self.meshes[mesh as usize].look,
             PrimKind::Shape(index) | PrimKind::Placed(index) => {
                 let used = &self.shapes[index as usize];
@@ -507,7 +550,7 @@ impl RenderGroup {
     /// Whether a flat primitive shows a ray of this direction its front; `None` if only its surface at the hit tells.
     #[inline]
     pub(crate) fn shows_front(&self, prim: u32, direction: DVec3) -> Option<bool> {
-        match self.prims[prim as usize].kind {
+        match self.prims[prim as usize].kind() {
             PrimKind::Triangle(mesh, triangle) => self.meshes[mesh as usize]
                 .mesh
                 .shows_front(triangle, direction),
@@ -545,7 +588,7 @@ impl RenderGroup {
                 shape.bare_surface_at(ray, &hit)
             }
         };
-        match self.prims[prim as usize].kind {
+        match self.prims[prim as usize].kind() {
             PrimKind::Triangle(mesh, triangle) => self.meshes[mesh as usize]
                 .mesh
                 .surface_at_element(triangle, hit.uv),

@@ -142,7 +142,7 @@ fn number(group: FlatGroup, done: &[Assembled]) -> Result<Assembled, Vec<Diagnos
     let mut count = 0u64;
     let (mut bounds, mut reach) = (Aabb::EMPTY, Aabb::EMPTY);
     for (index, prim) in prims.iter().enumerate() {
-        let (elements, own) = match prim.kind {
+        let (elements, own) = match prim.kind() {
             PrimKind::Triangle(mesh, triangle) => {
                 (1, meshes[mesh as usize].mesh.element_bounds(triangle))
             }

@@ -170,11 +170,11 @@ impl Pass {
                     });
                     self.flat.light_sets.add_instance(todo.lit);
                     let index = group.instances.len() as u32 - 1;
-                    group.prims.push(Prim {
-                        kind: PrimKind::Instance(index),
-                        visible: visible(todo.visibility),
-                        flags: Prim::STOPS | Prim::TRANSMITS,
-                    });
+                    group.prims.push(Prim::new(
+                        PrimKind::Instance(index),
+                        visible(todo.visibility),
+                        Prim::STOPS | Prim::TRANSMITS,
+                    ));
                 }
                 ObjectKind::Instance(id) => {
                     let message = format!(
@@ -297,11 +297,9 @@ impl Pass {
                 mesh: Arc::clone(mesh),
                 look,
             });
-            group.prims.extend((0..count).map(|t| Prim {
-                kind: PrimKind::Triangle(index, t),
-                visible,
-                flags,
-            }));
+            group.prims.extend(
+                (0..count).map(|t| Prim::new(PrimKind::Triangle(index, t), visible, flags)),
+            );
             return;
         }
         let index = group.shapes.len() as u32;
@@ -318,11 +316,7 @@ impl Pass {
             transform,
             look: Looks::One(look),
         });
-        group.prims.push(Prim {
-            kind,
-            visible,
-            flags,
-        });
+        group.prims.push(Prim::new(kind, visible, flags));
     }
 
     /// A CSG tree becomes one primitive whose leaves know their objects and materials.
@@ -349,11 +343,9 @@ impl Pass {
                     look,
                 });
                 let kind = PrimKind::Shape(index);
-                group.prims.push(Prim {
-                    kind,
-                    visible: visible(todo.visibility),
-                    flags,
-                });
+                group
+                    .prims
+                    .push(Prim::new(kind, visible(todo.visibility), flags));
             }
         }
     }

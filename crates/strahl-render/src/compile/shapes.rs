@@ -23,7 +23,7 @@ enum Known<'a> {
 impl GroupShapes<'_> {
     fn known(&self, id: u32) -> Known<'_> {
         let group = self.0;
-        match group.prims[id as usize].kind {
+        match group.prims[id as usize].kind() {
             PrimKind::Triangle(mesh, triangle) => {
                 Known::Corners(group.meshes[mesh as usize].mesh.corners(triangle))
             }

@@ -44,11 +44,7 @@ pub(super) fn open_spaces(flat: &mut Flat) {
                         lit: Lit::PLAIN,
                     });
                     let kind = PrimKind::Instance(group.instances.len() as u32 - 1);
-                    prims.push(Prim {
-                        kind,
-                        visible: u8::MAX,
-                        flags: Prim::STOPS | Prim::TRANSMITS,
-                    });
+                    prims.push(Prim::new(kind, u8::MAX, Prim::STOPS | Prim::TRANSMITS));
                 }
                 Some((_, false)) => {}
             }
@@ -75,7 +71,7 @@ fn keep_world_last(flat: &mut Flat, world: usize) {
 fn clusters(group: &FlatGroup) -> Vec<Vec<u32>> {
     let mut small: Vec<(u32, Aabb)> = Vec::new();
     for (index, prim) in group.prims.iter().enumerate() {
-        let PrimKind::Shape(shape) = prim.kind else {
+        let PrimKind::Shape(shape) = prim.kind() else {
             continue;
         };
         let shape = &group.shapes[shape as usize].shape;
@@ -134,7 +130,7 @@ fn extract(group: &mut FlatGroup, cluster: &[u32]) -> (FlatGroup, DVec3) {
     let mut anchor = None;
     for id in cluster {
         let prim = group.prims[*id as usize];
-        let PrimKind::Shape(index) = prim.kind else {
+        let PrimKind::Shape(index) = prim.kind() else {
             continue;
         };
         let used = &group.shapes[index as usize];
@@ -149,10 +145,8 @@ fn extract(group: &mut FlatGroup, cluster: &[u32]) -> (FlatGroup, DVec3) {
             transform: None,
             look: used.look.clone(),
         });
-        inner.prims.push(Prim {
-            kind: PrimKind::Shape(inner.shapes.len() as u32 - 1),
-            ..prim
-        });
+        let kind = PrimKind::Shape(inner.shapes.len() as u32 - 1);
+        inner.prims.push(Prim::new(kind, prim.visible, prim.flags));
     }
     (inner, anchor.unwrap_or_default())
 }
