@@ -513,10 +513,22 @@ impl PixelTracer<'_> {
     }
 
     /// The samples of one pass of a pixel.
+    // Inline: what is returned in pieces and read as a whole would wait for the stores.
+    #[inline(always)]
     fn pixel(&mut self, pass: u32, x: u32, y: u32) -> Samples {
         let mut samples = Samples::NONE;
-        let sampling = self.options.sampling;
-        for (dx, dy) in sampling.places(pass, x, y, self.options.seed) {
+        let options = self.options;
+        let places = options.sampling.places(pass, x, y, options.seed);
+        if self.blind
+            && let Some(color) = self.tree.same_nothing(places.len())
+        {
+            for _ in places {
+                samples.sum += color;
+                samples.count += 1;
+            }
+            return samples;
+        }
+        for (dx, dy) in places {
             let keep = pass == 0 && samples.count == 0;
             samples.sum += self.sample(f64::from(x) + dx, f64::from(y) + dy, keep);
             samples.count += 1;
@@ -525,16 +537,16 @@ impl PixelTracer<'_> {
     }
 
     fn corner(&mut self, x: u32, y: u32) -> Color {
+        if self.blind
+            && let Some(color) = self.tree.same_nothing(1)
+        {
+            return color;
+        }
         self.sample(f64::from(x), f64::from(y), true)
     }
 
     /// The light that comes through a place of the picture; `keep` says whether it stands for its pixel's other data.
     fn sample(&mut self, x: f64, y: f64, keep: bool) -> Color {
-        if self.blind
-            && let Some(color) = self.tree.same_nothing()
-        {
-            return color;
-        }
         let before = self.tree.tracer.stats.primitive_tests;
         let mut first = SampleResult::NOTHING;
         let (tree, depth, blind) = (&mut self.tree, &mut self.depth, self.blind);

@@ -39,10 +39,12 @@ impl TreeTracer<'_> {
         }
     }
 
-    /// The colour of a primary ray that meets nothing, if it is the same for all of them: then it is counted as followed.
+    /// The colour of primary rays that meet nothing, if it is the same for all of them: then so many are counted as followed.
     #[inline]
-    pub(crate) fn same_nothing(&mut self) -> Option<Color> {
-        self.counts.primary += u64::from(self.beyond.is_some());
+    pub(crate) fn same_nothing(&mut self, rays: usize) -> Option<Color> {
+        if self.beyond.is_some() {
+            self.counts.primary += rays as u64;
+        }
         self.beyond
     }
 }
