@@ -483,8 +483,11 @@ impl<Q: Query> GroupVisitor<'_, '_, '_, Q> {
                 } else if self.plain || self.is_plain(id) {
                     let uv = [hits.uv[0][lane], hits.uv[1][lane]];
                     t_max = self.take(id, hits.t[lane], uv, t_max);
-                } else {
+                } else if B::CURVED {
                     t_max = self.visit(id, t_max);
+                } else {
+                    let uv = [hits.uv[0][lane], hits.uv[1][lane]];
+                    t_max = self.take_filtered(id, hits.t[lane], uv, t_max);
                 }
                 if t_max == f64::NEG_INFINITY {
                     return t_max;
@@ -512,6 +515,40 @@ impl<Q: Query> GroupVisitor<'_, '_, '_, Q> {
             return self.t_max;
         }
         t_max
+    }
+
+    /// Takes a hit on a flat primitive, if that exists there.
+    #[inline]
+    fn take_filtered(&mut self, id: u32, t: f64, uv: [f64; 2], t_max: f64) -> f64 {
+        let prim = self.group.prims[id as usize];
+        if prim.visible & self.search.class == 0 || !Q::is_plain(prim.flags & !Prim::FILTERED) {
+            return self.visit(id, t_max);
+        }
+        let facing = self.facing(id, prim);
+        let hit = Hit {
+            t,
+            id: self.base + self.group.first_id(id),
+            facet: 0,
+            uv,
+        };
+        let surface = SurfaceId {
+            element: 0,
+            facet: 0,
+        };
+        if facing != Some(false) && t <= t_max && self.exists(id, &hit, surface, facing.is_some()) {
+            self.take(id, t, uv, t_max)
+        } else {
+            t_max
+        }
+    }
+
+    /// Whether a one-sided flat primitive shows the ray its front, as far as that can be told without a hit.
+    #[inline(always)]
+    fn facing(&self, id: u32, prim: Prim) -> Option<bool> {
+        match prim.flags & Prim::ONE_SIDED {
+            0 => None,
+            _ => self.group.shows_front(id, self.ray.direction),
+        }
     }
 
     fn instance(&mut self, index: u32, t_max: f64, from: From<'_>, first: u64) -> f64 {
@@ -546,10 +583,7 @@ impl<Q: Query> GroupVisitor<'_, '_, '_, Q> {
             facet: origin.facet,
         });
         // Flat things that turn their back on the ray need no test.
-        let facing = match prim.flags & Prim::ONE_SIDED {
-            0 => None,
-            _ => self.group.shows_front(id, self.ray.direction),
-        };
+        let facing = self.facing(id, prim);
         if facing == Some(false) {
             return t_max;
         }
