@@ -1,7 +1,10 @@
+mod kinds;
+
 use crate::blocks::{Block, Blocks, LeafClass};
 use crate::hit::{Hit, Origin, RayClass};
-use crate::scene::{InstanceUse, Part, Prim, PrimKind, RenderGroup, RenderScene};
+use crate::scene::{InstanceUse, Prim, PrimKind, RenderGroup, RenderScene};
 use crate::walk::WalkEvent;
+use kinds::{AnyOpaque, Closest, Query, Transmitting, Watched};
 use strahl_accel::{Accelerator, BLOCK, Leaf, NO_PRIMITIVE, Step, TraversalStats, Visitor};
 use strahl_geometry::blocks::{Hits, SphereBlock, TriangleBlock};
 use strahl_geometry::{PrimHit, Primitive, RayShear, Scratch, SurfaceId};
@@ -167,149 +170,6 @@ impl<'s> Tracer<'s> {
         };
         let from = from.map(|o| (o, o.id));
         search.group(&self.scene.groups[0], ray, range, from, 0, first);
-    }
-}
-
-/// What a search does with the primitives that rays may meet.
-trait Query {
-    /// Whether primitives with these flags are of interest.
-    fn wants(flags: u8) -> bool;
-
-    /// The part of a group in which all is that is of interest, if it is by itself.
-    fn part(_group: &RenderGroup) -> Option<&Part> {
-        None
-    }
-
-    /// Whether any hit on a primitive of one element with these flags is of interest, and the first is all it takes to know.
-    #[inline(always)]
-    fn is_plain(flags: u8) -> bool {
-        let mixed = flags & (Prim::TRANSMITS | Prim::STOPS) == Prim::TRANSMITS | Prim::STOPS;
-        flags & Prim::FILTERED == 0 && !mixed && !Self::ALL && Self::wants(flags)
-    }
-
-    /// Takes a hit and returns the new upper end of the range, `-inf` to end the search.
-    fn take(&mut self, hit: Hit, t_max: f64) -> f64;
-
-    /// Whether the hits behind the first one on the same primitive matter too.
-    const ALL: bool;
-
-    /// Whether any hit will do.
-    const ANY: bool = false;
-
-    /// Whether a hit on an element of a material that lets light through (or not) is of interest; asked only on
-    /// primitives with both kinds.
-    fn wants_hit(transmits: bool) -> bool;
-
-    /// Whether [`Query::tell`] wants to hear what happens; it costs nothing otherwise.
-    const WATCHES: bool = false;
-
-    /// Something happened.
-    fn tell(&mut self, _event: WalkEvent) {}
-}
-
-struct Closest {
-    best: Option<Hit>,
-}
-
-impl Query for Closest {
-    const ALL: bool = false;
-
-    fn wants(_: u8) -> bool {
-        true
-    }
-
-    #[inline]
-    fn take(&mut self, hit: Hit, t_max: f64) -> f64 {
-        if self.best.is_none_or(|best| hit.beats(&best)) {
-            self.best = Some(hit);
-            hit.t
-        } else {
-            t_max
-        }
-    }
-
-    fn wants_hit(_: bool) -> bool {
-        true
-    }
-}
-
-/// The closest hit with what happens on the way to it.
-struct Watched<'e> {
-    closest: Closest,
-    events: &'e mut Vec<WalkEvent>,
-}
-
-impl Query for Watched<'_> {
-    const ALL: bool = false;
-    const WATCHES: bool = true;
-
-    fn wants(flags: u8) -> bool {
-        Closest::wants(flags)
-    }
-
-    fn take(&mut self, hit: Hit, t_max: f64) -> f64 {
-        self.closest.take(hit, t_max)
-    }
-
-    fn wants_hit(transmits: bool) -> bool {
-        Closest::wants_hit(transmits)
-    }
-
-    fn tell(&mut self, event: WalkEvent) {
-        self.events.push(event);
-    }
-}
-
-struct AnyOpaque {
-    /// The element found.
-    found: Option<u64>,
-}
-
-impl Query for AnyOpaque {
-    const ALL: bool = false;
-
-    fn wants(flags: u8) -> bool {
-        flags & Prim::STOPS != 0
-    }
-
-    fn part(group: &RenderGroup) -> Option<&Part> {
-        group.stopping.as_deref()
-    }
-
-    const ANY: bool = true;
-
-    fn take(&mut self, hit: Hit, _: f64) -> f64 {
-        self.found = Some(hit.id);
-        f64::NEG_INFINITY
-    }
-
-    fn wants_hit(transmits: bool) -> bool {
-        !transmits
-    }
-}
-
-struct Transmitting<'h> {
-    hits: &'h mut Vec<Hit>,
-}
-
-impl Query for Transmitting<'_> {
-    const ALL: bool = true;
-
-    fn wants(flags: u8) -> bool {
-        flags & Prim::TRANSMITS != 0
-    }
-
-    fn part(group: &RenderGroup) -> Option<&Part> {
-        group.transmitting.as_deref()
-    }
-
-    fn take(&mut self, hit: Hit, t_max: f64) -> f64 {
-        self.hits.push(hit);
-        t_max
-    }
-
-    fn wants_hit(transmits: bool) -> bool {
-        transmits
     }
 }
 

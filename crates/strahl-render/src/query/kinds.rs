@@ -1,0 +1,151 @@
+//! What rays are searched for: the closest hit, anything that stops light, all that lets it through.
+
+use crate::hit::Hit;
+use crate::scene::{Part, Prim, RenderGroup};
+use crate::walk::WalkEvent;
+
+/// What a search does with the primitives that rays may meet.
+pub(super) trait Query {
+    /// Whether primitives with these flags are of interest.
+    fn wants(flags: u8) -> bool;
+
+    /// The part of a group in which all is that is of interest, if it is by itself.
+    fn part(_group: &RenderGroup) -> Option<&Part> {
+        None
+    }
+
+    /// Whether any hit on a primitive of one element with these flags is of interest, and the first is all it takes to know.
+    #[inline(always)]
+    fn is_plain(flags: u8) -> bool {
+        let mixed = flags & (Prim::TRANSMITS | Prim::STOPS) == Prim::TRANSMITS | Prim::STOPS;
+        flags & Prim::FILTERED == 0 && !mixed && !Self::ALL && Self::wants(flags)
+    }
+
+    /// Takes a hit and returns the new upper end of the range, `-inf` to end the search.
+    fn take(&mut self, hit: Hit, t_max: f64) -> f64;
+
+    /// Whether the hits behind the first one on the same primitive matter too.
+    const ALL: bool;
+
+    /// Whether any hit will do.
+    const ANY: bool = false;
+
+    /// Whether a hit on an element of a material that lets light through (or not) is of interest; asked only on
+    /// primitives with both kinds.
+    fn wants_hit(transmits: bool) -> bool;
+
+    /// Whether [`Query::tell`] wants to hear what happens; it costs nothing otherwise.
+    const WATCHES: bool = false;
+
+    /// Something happened.
+    fn tell(&mut self, _event: WalkEvent) {}
+}
+
+/// The closest hit; of several at the same place that with the smallest id.
+pub(super) struct Closest {
+    pub(super) best: Option<Hit>,
+}
+
+impl Query for Closest {
+    const ALL: bool = false;
+
+    fn wants(_: u8) -> bool {
+        true
+    }
+
+    #[inline]
+    fn take(&mut self, hit: Hit, t_max: f64) -> f64 {
+        if self.best.is_none_or(|best| hit.beats(&best)) {
+            self.best = Some(hit);
+            hit.t
+        } else {
+            t_max
+        }
+    }
+
+    fn wants_hit(_: bool) -> bool {
+        true
+    }
+}
+
+/// The closest hit with what happens on the way to it.
+pub(super) struct Watched<'e> {
+    pub(super) closest: Closest,
+    pub(super) events: &'e mut Vec<WalkEvent>,
+}
+
+impl Query for Watched<'_> {
+    const ALL: bool = false;
+    const WATCHES: bool = true;
+
+    fn wants(flags: u8) -> bool {
+        Closest::wants(flags)
+    }
+
+    fn take(&mut self, hit: Hit, t_max: f64) -> f64 {
+        self.closest.take(hit, t_max)
+    }
+
+    fn wants_hit(transmits: bool) -> bool {
+        Closest::wants_hit(transmits)
+    }
+
+    fn tell(&mut self, event: WalkEvent) {
+        self.events.push(event);
+    }
+}
+
+/// Anything that lets no light through.
+pub(super) struct AnyOpaque {
+    /// The element found.
+    pub(super) found: Option<u64>,
+}
+
+impl Query for AnyOpaque {
+    const ALL: bool = false;
+
+    fn wants(flags: u8) -> bool {
+        flags & Prim::STOPS != 0
+    }
+
+    fn part(group: &RenderGroup) -> Option<&Part> {
+        group.stopping.as_deref()
+    }
+
+    const ANY: bool = true;
+
+    fn take(&mut self, hit: Hit, _: f64) -> f64 {
+        self.found = Some(hit.id);
+        f64::NEG_INFINITY
+    }
+
+    fn wants_hit(transmits: bool) -> bool {
+        !transmits
+    }
+}
+
+/// All that may let light through.
+pub(super) struct Transmitting<'h> {
+    pub(super) hits: &'h mut Vec<Hit>,
+}
+
+impl Query for Transmitting<'_> {
+    const ALL: bool = true;
+
+    fn wants(flags: u8) -> bool {
+        flags & Prim::TRANSMITS != 0
+    }
+
+    fn part(group: &RenderGroup) -> Option<&Part> {
+        group.transmitting.as_deref()
+    }
+
+    fn take(&mut self, hit: Hit, t_max: f64) -> f64 {
+        self.hits.push(hit);
+        t_max
+    }
+
+    fn wants_hit(transmits: bool) -> bool {
+        transmits
+    }
+}
