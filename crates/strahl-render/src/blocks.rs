@@ -169,7 +169,7 @@ pub(crate) trait Block: Sized {
     /// The block of this class with a number.
     fn of(blocks: &Blocks, number: usize) -> &Self;
 
-    /// The lanes to look at, as bits; and of these the ones that the ray meets in the range, with where, unless it starts on them.
+    /// The lanes that the ray meets in the range, as bits, with where; those that it starts on mean nothing.
     fn hits<I: Isa>(
         &self,
         isa: I,
@@ -177,7 +177,12 @@ pub(crate) trait Block: Sized {
         shear: &RayShear,
         range: Interval,
         hits: &mut Hits,
-    ) -> (u32, u32);
+    ) -> u32;
+
+    /// Whether a ray that starts on the primitive of a lane may meet it again ahead.
+    fn is_entered(&self, _lane: usize, _ray: &Ray) -> bool {
+        Self::CURVED
+    }
 }
 
 impl Block for TriangleBlock<f32> {
@@ -196,9 +201,8 @@ impl Block for TriangleBlock<f32> {
         shear: &RayShear,
         range: Interval,
         hits: &mut Hits,
-    ) -> (u32, u32) {
-        let found = self.hits(isa, shear, range, hits);
-        (found, found)
+    ) -> u32 {
+        self.hits(isa, shear, range, hits)
     }
 }
 
@@ -218,9 +222,8 @@ impl Block for TriangleBlock<f64> {
         shear: &RayShear,
         range: Interval,
         hits: &mut Hits,
-    ) -> (u32, u32) {
-        let found = self.hits(isa, shear, range, hits);
-        (found, found)
+    ) -> u32 {
+        self.hits(isa, shear, range, hits)
     }
 }
 
@@ -240,7 +243,12 @@ impl Block for SphereBlock {
         _: &RayShear,
         range: Interval,
         hits: &mut Hits,
-    ) -> (u32, u32) {
+    ) -> u32 {
         self.hits(isa, ray, range, hits)
+    }
+
+    #[inline(always)]
+    fn is_entered(&self, lane: usize, ray: &Ray) -> bool {
+        self.is_entered(lane, ray)
     }
 }

@@ -199,7 +199,7 @@ impl<Q: Query> Search<'_, '_, Q> {
         base: u64,
         first: u32,
     ) -> f64 {
-        let from_prim = from.map_or(u32::MAX, |(_, id)| group.prim_of(id));
+        let from_prim = from.map_or(NONE, |(_, id)| group.prim_of(id));
         let mut stats = TraversalStats::default();
         let shear = if group.sheared {
             RayShear::new(ray)
@@ -324,21 +324,22 @@ impl<Q: Query> GroupVisitor<'_, '_, '_, Q> {
         let mut hits = Hits::default();
         for index in 0..leaf.blocks() {
             let block = B::of(self.blocks, leaf.first_block + index);
+            if let Some(lane) = self.lane_left::<B>(leaf, index)
+                && (self.range_min < 0.0 || block.is_entered(lane, self.ray))
+            {
+                t_max = self.visit(self.from_prim, t_max);
+                if t_max == f64::NEG_INFINITY {
+                    return t_max;
+                }
+            }
             let range = Interval::new(self.range_min, t_max);
-            let (mut lanes, found) = block.hits(isa, self.ray, &self.shear, range, &mut hits);
+            let mut lanes = block.hits(isa, self.ray, &self.shear, range, &mut hits);
             while lanes != 0 {
                 // There are four lanes; said so, the compiler knows it too.
                 let lane = lanes.trailing_zeros() as usize % BLOCK;
                 lanes &= lanes - 1;
                 let id = leaf.id(index, lane);
-                if id == NO_PRIMITIVE {
-                    continue;
-                }
-                if id == self.from_prim {
-                    if B::CURVED {
-                        t_max = self.visit(id, t_max);
-                    }
-                } else if found >> lane & 1 == 0 {
+                if id == NO_PRIMITIVE || id == self.from_prim {
                     continue;
                 } else if self.plain || self.is_plain(id) {
                     let uv = [hits.uv[0][lane], hits.uv[1][lane]];
@@ -355,6 +356,16 @@ impl<Q: Query> GroupVisitor<'_, '_, '_, Q> {
             }
         }
         t_max
+    }
+
+    /// The lane of a block with the primitive that the ray starts on, if the ray may meet that again. Its own test decides then:
+    /// it knows where the ray starts, which that of the block does not.
+    #[inline(always)]
+    fn lane_left<B: Block>(&self, leaf: &Leaf<'_>, index: usize) -> Option<usize> {
+        if !B::CURVED || self.from_prim == NONE {
+            return None;
+        }
+        (0..BLOCK).find(|lane| leaf.id(index, *lane) == self.from_prim)
     }
 
     /// Whether a hit on this primitive, which is tested in a block, is taken as it is.
