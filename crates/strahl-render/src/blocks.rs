@@ -1,4 +1,5 @@
-use crate::scene::{MeshUse, Prim, PrimKind, ShapeUse};
+use crate::prim::{Prim, PrimKind};
+use crate::scene::{MeshUse, ShapeUse};
 use strahl_accel::NO_PRIMITIVE;
 use strahl_geometry::blocks::{Hits, LANES, SphereBlock, TriangleBlock};
 use strahl_geometry::{RayShear, Shape};

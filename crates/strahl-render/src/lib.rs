@@ -23,6 +23,7 @@ mod layers;
 mod light_sets;
 mod media;
 mod observer;
+mod prim;
 mod query;
 mod render;
 mod sampling;

@@ -1,4 +1,5 @@
-use crate::scene::{PrimKind, RenderScene};
+use crate::prim::PrimKind;
+use crate::scene::RenderScene;
 use strahl_scene::CsgOp;
 
 /// How an object is lit.

@@ -2,7 +2,8 @@ mod kinds;
 
 use crate::blocks::{Block, Blocks, LeafClass};
 use crate::hit::{Hit, Origin, RayClass};
-use crate::scene::{InstanceUse, Prim, PrimKind, RenderGroup, RenderScene};
+use crate::prim::{Prim, PrimKind};
+use crate::scene::{InstanceUse, RenderGroup, RenderScene};
 use crate::walk::WalkEvent;
 use kinds::{AnyOpaque, Closest, Query, Transmitting, Watched};
 use strahl_accel::{Accelerator, BLOCK, Leaf, NO_PRIMITIVE, Step, TraversalStats, Visitor};

@@ -1,5 +1,6 @@
 use super::flatten::FlatGroup;
-use crate::scene::{InstanceUse, MeshUse, Prim, PrimKind, ShapeUse};
+use crate::prim::{Prim, PrimKind};
+use crate::scene::{InstanceUse, MeshUse, ShapeUse};
 use strahl_geometry::Primitive;
 use strahl_math::Aabb;
 use strahl_scene::{Diagnostic, Scene};

@@ -3,7 +3,8 @@ use super::materials::{
 };
 use crate::hit::RayClass;
 use crate::light_sets::{LightSetsDraft, Lit};
-use crate::scene::{InstanceUse, Look, Looks, MeshUse, ObjectInfo, Prim, PrimKind, ShapeUse};
+use crate::prim::{Prim, PrimKind};
+use crate::scene::{InstanceUse, Look, Looks, MeshUse, ObjectInfo, ShapeUse};
 use std::collections::HashSet;
 use std::sync::Arc;
 use strahl_geometry::{Csg, CsgNode, GeometryError, Primitive, Shape};

@@ -16,7 +16,8 @@ mod view;
 
 use crate::blocks::Blocks;
 use crate::light_sets::{LightSets, Lit};
-use crate::scene::{InstanceUse, ObjectInfo, Part, Prim, RenderGroup, RenderScene};
+use crate::prim::Prim;
+use crate::scene::{InstanceUse, ObjectInfo, Part, RenderGroup, RenderScene};
 use assemble::Assembled;
 pub(crate) use materials::material_transmits;
 use shapes::{Flagged, GroupShapes};

@@ -2,7 +2,7 @@
 
 use super::assemble::Assembled;
 use crate::blocks::LeafClass;
-use crate::scene::PrimKind;
+use crate::prim::PrimKind;
 use strahl_accel::Shapes;
 use strahl_geometry::Shape;
 use strahl_math::{Aabb, DVec3};

@@ -1,6 +1,7 @@
 use super::flatten::{Flat, FlatGroup};
 use crate::light_sets::Lit;
-use crate::scene::{InstanceUse, Prim, PrimKind, ShapeUse};
+use crate::prim::{Prim, PrimKind};
+use crate::scene::{InstanceUse, ShapeUse};
 use strahl_geometry::Primitive;
 use strahl_math::{Aabb, DVec3, Transform};
 

@@ -1,7 +1,8 @@
 //! What rays are searched for: the closest hit, anything that stops light, all that lets it through.
 
 use crate::hit::Hit;
-use crate::scene::{Part, Prim, RenderGroup};
+use crate::prim::Prim;
+use crate::scene::{Part, RenderGroup};
 use crate::walk::WalkEvent;
 
 /// What a search does with the primitives that rays may meet.

@@ -1,0 +1,77 @@
+//! What the ids of accelerators stand for.
+
+/// What the accelerator's ids stand for: 12 bytes, because scenes have millions.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Prim {
+    /// Index of the mesh use, shape or instance.
+    index: u32,
+    triangle: u32,
+    tag: PrimTag,
+    /// Which rays see it (bits of [`crate::RayClass`]).
+    pub(crate) visible: u8,
+    /// Bits of `Prim::*`.
+    pub(crate) flags: u8,
+}
+
+const _: () = assert!(size_of::<Prim>() == 12);
+
+/// Of which kind a [`Prim`] is.
+#[derive(Clone, Copy, Debug)]
+#[repr(u8)]
+enum PrimTag {
+    Triangle,
+    Shape,
+    Placed,
+    Instance,
+}
+
+/// What a [`Prim`] is.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum PrimKind {
+    /// Triangle `1` of mesh use `0`.
+    Triangle(u32, u32),
+    /// A shape in the group's own space.
+    Shape(u32),
+    /// A shape with a transformation.
+    Placed(u32),
+    /// A group once more.
+    Instance(u32),
+}
+
+impl Prim {
+    /// Exists from the front only, or has holes by alpha: each hit must be looked at.
+    pub(crate) const FILTERED: u8 = 1;
+    /// May let light through (its material transmits, or one of its leaves' does).
+    pub(crate) const TRANSMITS: u8 = 2;
+    /// May stop light.
+    pub(crate) const STOPS: u8 = 4;
+    /// Exists from the front only, or one of its leaves does.
+    pub(crate) const ONE_SIDED: u8 = 8;
+
+    pub(crate) const fn new(kind: PrimKind, visible: u8, flags: u8) -> Self {
+        let (tag, index, triangle) = match kind {
+            PrimKind::Triangle(index, triangle) => (PrimTag::Triangle, index, triangle),
+            PrimKind::Shape(index) => (PrimTag::Shape, index, 0),
+            PrimKind::Placed(index) => (PrimTag::Placed, index, 0),
+            PrimKind::Instance(index) => (PrimTag::Instance, index, 0),
+        };
+        Self {
+            index,
+            triangle,
+            tag,
+            visible,
+            flags,
+        }
+    }
+
+    /// What it is.
+    #[inline(always)]
+    pub(crate) const fn kind(&self) -> PrimKind {
+        match self.tag {
+            PrimTag::Triangle => PrimKind::Triangle(self.index, self.triangle),
+            PrimTag::Shape => PrimKind::Shape(self.index),
+            PrimTag::Placed => PrimKind::Placed(self.index),
+            PrimTag::Instance => PrimKind::Instance(self.index),
+        }
+    }
+}
