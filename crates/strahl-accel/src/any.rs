@@ -116,7 +116,7 @@ accelerators! {
     "bvh2" Bvh2(NoParameters) = |shapes, _| Bvh2::build(&all_bounds(shapes)),
     /// The bounding volume hierarchy of width eight.
     "bvh" Bvh8(Bvh8Parameters) = |shapes, parameters| {
-        let bvh = Bvh8::build(&all_bounds(shapes), |id| shapes.class(id));
+        let bvh = Bvh8::build_from(shapes);
         match parameters.simd.and_then(Simd::of) {
             Some(simd) => bvh.with_simd(simd),
             None => bvh,

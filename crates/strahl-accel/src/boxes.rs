@@ -1,5 +1,5 @@
 use strahl_math::error::{round_down_f32, round_up_f32};
-use strahl_math::{Aabb, DVec3, Vec4};
+use strahl_math::{Aabb, Vec4};
 
 /// An axis-aligned box in f32, rounded outwards: it contains the f64 box it was made from.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,15 +24,15 @@ impl Box32 {
     };
 
     /// The smallest f32 box around an f64 box, or `None` if that is empty or too large for f32 culling.
+    #[inline]
     pub(crate) fn try_new(b: &Aabb) -> Option<Self> {
         let fits = b.is_bounded() && b.max_abs() <= FARTHEST;
-        let corner = |v: DVec3, round: fn(f64) -> f32| {
-            let [x, y, z] = v.to_array().map(round);
-            Vec4::new(x, y, z, 0.0)
-        };
-        fits.then(|| Self {
-            lo: corner(b.min, round_down_f32),
-            hi: corner(b.max, round_up_f32),
+        let (lo, hi) = (b.min, b.max);
+        let down = round_down_f32;
+        let up = round_up_f32;
+        fits.then_some(Self {
+            lo: Vec4::new(down(lo.x), down(lo.y), down(lo.z), 0.0),
+            hi: Vec4::new(up(hi.x), up(hi.y), up(hi.z), 0.0),
         })
     }
 
@@ -55,14 +55,23 @@ impl Box32 {
         Self { lo, hi }
     }
 
+    #[inline(always)]
     pub(crate) fn lo(&self) -> Vec4 {
         self.lo
     }
 
+    #[inline(always)]
     pub(crate) fn hi(&self) -> Vec4 {
         self.hi
     }
 
+    /// The corners as arrays, to pick a coordinate whose number is not known at compile time.
+    #[inline(always)]
+    pub(crate) fn corners(&self) -> (&[f32; 4], &[f32; 4]) {
+        (self.lo.as_ref(), self.hi.as_ref())
+    }
+
+    #[inline(always)]
     pub(crate) fn size(&self) -> Vec4 {
         self.hi - self.lo
     }
@@ -109,6 +118,7 @@ impl Box32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use strahl_math::DVec3;
 
     #[test]
     fn rounding_is_outwards_and_tight() {

@@ -16,7 +16,7 @@ pub mod roots;
 mod transform;
 
 pub use aabb::Aabb;
-pub use glam::{DAffine3, DMat3, DQuat, DVec2, DVec3, DVec4, Vec4, Vec4Swizzles};
+pub use glam::{DAffine3, DMat3, DQuat, DVec2, DVec3, DVec4, Mat4, Vec4, Vec4Swizzles};
 pub use interval::Interval;
 pub use ray::Ray;
 pub use transform::{SingularTransform, Transform};

@@ -2,150 +2,259 @@
 //!
 //! I. Wald, "On fast construction of SAH-based bounding volume hierarchies" (2007).
 
-use super::split::{Ref, blocks};
+use super::refs::Ref;
 use crate::boxes::Box32;
 use rayon::prelude::*;
-use strahl_math::Vec4;
+use strahl_math::{Mat4, Vec4};
 
 /// Most bins per axis.
 const BINS: usize = 32;
 /// Sets larger than this are sorted into bins in parallel, in chunks of this size.
-const CHUNK: usize = 16 * 1024;
+pub(super) const CHUNK: usize = 16 * 1024;
+/// Numbers up to a few millions added to it are rounded to integers, which are the last bits of the sum.
+const ROUND: f32 = 12_582_912.0;
 
 /// A way to split: what falls into the bins up to one of an axis goes left.
 pub(super) struct Plane {
-    binning: Binning,
     axis: usize,
+    lo: f32,
+    scale: f32,
     last_left: usize,
-    /// Half area times number of blocks of primitives, summed over both sides.
-    pub(super) cost: f64,
+    /// Half area times number of blocks of primitives, summed over both sides; in the unit of [`Bins::area`].
+    pub(super) cost: f32,
 }
 
 impl Plane {
     #[inline(always)]
     pub(super) fn is_left(&self, r: &Ref) -> bool {
-        self.binning.bins_of(r)[self.axis] <= self.last_left
-    }
-
-    /// The cheapest way to split a set whose doubled centres span `centers`, with blocks of `2^block_log` primitives; `None`
-    /// if no plane separates any two of them.
-    pub(super) fn cheapest(refs: &[Ref], centers: &Box32, block_log: u32) -> Option<Self> {
-        let binning = Binning::new(refs.len(), centers);
-        let bins = if refs.len() > CHUNK {
-            // Minima, maxima and integer sums: exact in any grouping, so the threads leave no trace.
-            refs.par_chunks(CHUNK)
-                .map(|chunk| binning.fill(chunk))
-                .reduce_with(Bins::merged)?
-        } else {
-            binning.fill(refs)
-        };
-        (0..3)
-            .filter_map(|axis| bins.cheapest(axis, binning.count, block_log))
-            // Of equal ones the first, so that the choice is unique.
-            .reduce(|a, b| if b.0 < a.0 { b } else { a })
-            .map(|(cost, axis, last_left)| Self {
-                binning,
-                axis,
-                last_left,
-                cost,
-            })
+        let (lo, hi): (&[f32; 4], &[f32; 4]) = r.bounds().corners();
+        let center = lo[self.axis] + hi[self.axis];
+        // As `Binning::place` computes it. What that clamps is on the same side here.
+        (center - self.lo) * self.scale - 0.5 + ROUND <= ROUND + self.last_left as f32
     }
 }
 
 /// How doubled centres fall into bins.
+#[derive(Clone, Copy)]
 struct Binning {
     lo: Vec4,
     scale: Vec4,
-    count: usize,
+    last: Vec4,
 }
 
 impl Binning {
-    fn new(refs: usize, centers: &Box32) -> Self {
-        // Few primitives need few bins: sweeping over empty ones is most of the work near the leaves.
-        let count = (4 + refs / 2).min(BINS);
-        // An axis without extent gets an infinite or huge scale; its products are NaN or 0 and all end in bin 0.
+    /// How many bins a set of some primitives deserves: few primitives need few, as sweeping over empty ones is most of the work near
+    /// the leaves.
+    fn count(refs: usize) -> usize {
+        (4 + refs / 4).min(BINS)
+    }
+
+    fn new(count: usize, centers: &Box32) -> Self {
+        let size = centers.size();
+        // A little less, so that the last centre falls into the last bin. Centres in one plane all fall into the first.
+        let scale = (Vec4::splat(count as f32 * 0.9999) / size).min(Vec4::splat(f32::MAX));
         Self {
-            lo: centers.lo(),
-            scale: Vec4::splat(count as f32) / centers.size(),
-            count,
+            lo: centers.lo().with_w(0.0),
+            scale: Vec4::select(size.cmpgt(Vec4::ZERO), scale, Vec4::ZERO).with_w(0.0),
+            last: Vec4::splat((count - 1) as f32),
         }
     }
 
-    /// The bin on each axis. Casts saturate and take NaN to 0.
+    /// The bin on each axis.
     #[inline(always)]
-    fn bins_of(&self, r: &Ref) -> [usize; 3] {
-        let at = (r.bounds.center() - self.lo) * self.scale;
-        [at.x, at.y, at.z].map(|x| (x as u32 as usize).min(self.count - 1))
-    }
-
-    fn fill(&self, refs: &[Ref]) -> Bins {
-        let mut bins = Bins::default();
-        for r in refs {
-            for (axis, bin) in self.bins_of(r).into_iter().enumerate() {
-                bins.boxes[axis][bin].grow(&r.bounds);
-                bins.counts[axis][bin] += 1;
-            }
-        }
-        bins
+    fn place(&self, r: &Ref) -> [usize; 3] {
+        let at = (r.bounds().center() - self.lo) * self.scale - Vec4::splat(0.5);
+        let at = at.max(Vec4::ZERO).min(self.last) + Vec4::splat(ROUND);
+        let [x, y, z, _] = at.to_array();
+        // They are in range; the remainder tells the compiler.
+        [
+            x.to_bits() as usize % BINS,
+            y.to_bits() as usize % BINS,
+            z.to_bits() as usize % BINS,
+        ]
     }
 }
 
-/// What fell into each bin of each axis.
-struct Bins {
-    boxes: [[Box32; BINS]; 3],
-    counts: [[usize; BINS]; 3],
-}
-
-impl Default for Bins {
-    fn default() -> Self {
-        Self {
-            boxes: [[Box32::EMPTY; BINS]; 3],
-            counts: [[0; BINS]; 3],
-        }
-    }
+/// What fell into each bin of each axis. Made once and used for many sets.
+pub(crate) struct Bins {
+    boxes: [[Box32; 3]; BINS],
+    counts: [[u32; 4]; BINS],
+    /// Of the primitives from a bin on, per axis.
+    right_costs: [Vec4; BINS],
+    binning: Binning,
+    /// How many bins are used.
+    used: usize,
+    /// One over the largest extent of the set: areas are measured by it, so that none overflows.
+    unit: f32,
 }
 
 impl Bins {
-    fn merged(mut self, other: Self) -> Self {
-        for axis in 0..3 {
-            for bin in 0..BINS {
-                self.boxes[axis][bin].grow(&other.boxes[axis][bin]);
-                self.counts[axis][bin] += other.counts[axis][bin];
-            }
+    pub(crate) fn new() -> Self {
+        Self {
+            boxes: [[Box32::EMPTY; 3]; BINS],
+            counts: [[0; 4]; BINS],
+            right_costs: [Vec4::ZERO; BINS],
+            binning: Binning::new(1, &Box32::EMPTY),
+            used: 0,
+            unit: 1.0,
         }
-        self
     }
 
-    /// The cost, the axis and the last bin of the left side of an axis's cheapest plane.
-    fn cheapest(&self, axis: usize, bins: usize, log: u32) -> Option<(f64, usize, usize)> {
-        let (boxes, counts) = (&self.boxes[axis][..bins], &self.counts[axis][..bins]);
-        // Sweep from the right for the costs of all right sides, then from the left for the sums.
-        let mut right_costs = [0.0; BINS];
-        let (mut right, mut right_count) = (Box32::EMPTY, 0);
-        for bin in (1..bins).rev() {
-            right.grow(&boxes[bin]);
-            right_count += counts[bin];
-            if right_count > 0 {
-                right_costs[bin - 1] = right.half_area() * blocks(right_count, log) as f64;
-            }
+    /// Sorts a set into bins; its boxes span `bounds`, its doubled centres `centers`. Of large sets, what fell into the bins by chunks.
+    pub(super) fn fill(&mut self, refs: &[Ref], bounds: &Box32, centers: &Box32) -> Vec<Self> {
+        self.used = Binning::count(refs.len());
+        self.binning = Binning::new(self.used, centers);
+        self.unit = (1.0 / bounds.size().truncate().max_element()).min(f32::MAX);
+        self.clear();
+        if refs.len() <= CHUNK {
+            self.add(refs);
+            return vec![];
         }
-        let total = right_count + counts[0];
-        let mut best: Option<(f64, usize, usize)> = None;
-        let (mut left, mut left_count) = (Box32::EMPTY, 0);
-        for bin in 0..bins - 1 {
-            if counts[bin] == 0 {
-                continue;
-            }
-            left.grow(&boxes[bin]);
-            left_count += counts[bin];
-            if left_count == total {
-                break;
-            }
-            let cost = left.half_area() * blocks(left_count, log) as f64 + right_costs[bin];
-            if best.is_none_or(|b| cost < b.0) {
-                best = Some((cost, axis, bin));
-            }
+        let (binning, used) = (self.binning, self.used);
+        let chunks = refs.par_chunks(CHUNK).map(|chunk| {
+            let mut bins = Self {
+                binning,
+                used,
+                ..Self::new()
+            };
+            bins.add(chunk);
+            bins
+        });
+        let chunks: Vec<Self> = chunks.collect();
+        for chunk in &chunks {
+            self.merge(chunk);
         }
-        best
+        chunks
     }
+
+    fn clear(&mut self) {
+        for bin in 0..self.used.min(BINS) {
+            self.boxes[bin] = [Box32::EMPTY; 3];
+            self.counts[bin] = [0; 4];
+        }
+    }
+
+    fn add(&mut self, refs: &[Ref]) {
+        let binning = self.binning;
+        for r in refs {
+            let [x, y, z] = binning.place(r);
+            self.boxes[x][0].grow(r.bounds());
+            self.boxes[y][1].grow(r.bounds());
+            self.boxes[z][2].grow(r.bounds());
+            self.counts[x][0] += 1;
+            self.counts[y][1] += 1;
+            self.counts[z][2] += 1;
+        }
+    }
+
+    fn merge(&mut self, other: &Self) {
+        for bin in 0..self.used.min(BINS) {
+            for axis in 0..3 {
+                self.boxes[bin][axis].grow(&other.boxes[bin][axis]);
+                self.counts[bin][axis] += other.counts[bin][axis];
+            }
+        }
+    }
+
+    /// Half the surface area of a box in the unit of the costs.
+    pub(super) fn area(&self, bounds: &Box32) -> f32 {
+        areas(&[*bounds; 3], self.unit).x
+    }
+
+    /// The cheapest way to split the set, with blocks of `2^block_log` primitives; `None` if no plane separates any two of them.
+    pub(super) fn cheapest(&mut self, block_log: u32) -> Option<Plane> {
+        let used = self.used.min(BINS);
+        // Sweep from the right for the costs of all right sides, then from the left for the sums; all axes at once.
+        let mut side = Side::EMPTY;
+        for bin in (1..used).rev() {
+            side.grow(&self.boxes[bin], &self.counts[bin]);
+            self.right_costs[bin] = side.costs(self.unit, block_log);
+        }
+        let mut side = Side::EMPTY;
+        let mut best = Vec4::INFINITY;
+        let mut last_left = Vec4::ZERO;
+        for bin in 0..used - 1 {
+            side.grow(&self.boxes[bin], &self.counts[bin]);
+            let cost = side.costs(self.unit, block_log) + self.right_costs[bin + 1];
+            let better = cost.cmplt(best);
+            best = Vec4::select(better, cost, best);
+            last_left = Vec4::select(better, Vec4::splat(bin as f32), last_left);
+        }
+        // Of equal ones the first, so that the choice is unique.
+        let axis = (0..3).reduce(|a, b| if best[b] < best[a] { b } else { a })?;
+        (best[axis] < f32::INFINITY).then(|| Plane {
+            axis,
+            lo: self.binning.lo[axis],
+            scale: self.binning.scale[axis],
+            last_left: last_left[axis] as usize,
+            cost: best[axis],
+        })
+    }
+
+    /// What the boxes on both sides of a plane span.
+    pub(super) fn bounds(&self, plane: &Plane) -> [Box32; 2] {
+        let used = self.used.min(BINS);
+        let span = |bins: &[[Box32; 3]]| {
+            let mut span = Box32::EMPTY;
+            for bin in bins {
+                span.grow(&bin[plane.axis]);
+            }
+            span
+        };
+        let (left, right) = self.boxes[..used].split_at(plane.last_left + 1);
+        [span(left), span(right)]
+    }
+
+    /// How many are on the left side of a plane.
+    pub(super) fn left_count(&self, plane: &Plane) -> usize {
+        let left = &self.counts[..=plane.last_left];
+        left.iter().map(|n| n[plane.axis] as usize).sum()
+    }
+}
+
+/// One side of a plane, for each of the axes.
+struct Side {
+    boxes: [Box32; 3],
+    counts: [u32; 4],
+}
+
+impl Side {
+    const EMPTY: Self = Self {
+        boxes: [Box32::EMPTY; 3],
+        counts: [0; 4],
+    };
+
+    #[inline(always)]
+    fn grow(&mut self, boxes: &[Box32; 3], counts: &[u32; 4]) {
+        for (own, other) in self.boxes.iter_mut().zip(boxes) {
+            own.grow(other);
+        }
+        for (own, other) in self.counts.iter_mut().zip(counts) {
+            *own += other;
+        }
+    }
+
+    /// Half area times number of blocks; infinite where there is nothing on this side.
+    #[inline(always)]
+    fn costs(&self, unit: f32, block_log: u32) -> Vec4 {
+        let mut blocks = [0.0; 4];
+        for (blocks, count) in blocks.iter_mut().zip(self.counts) {
+            *blocks = ((count + (1 << block_log) - 1) >> block_log) as i32 as f32;
+        }
+        let blocks = Vec4::from_array(blocks);
+        let costs = areas(&self.boxes, unit) * blocks;
+        Vec4::select(blocks.cmpgt(Vec4::ZERO), costs, Vec4::INFINITY)
+    }
+}
+
+/// Half the surface areas of three boxes; 0 for empty ones.
+#[inline(always)]
+fn areas(boxes: &[Box32; 3], unit: f32) -> Vec4 {
+    let size = |b: &Box32| b.size().max(Vec4::ZERO);
+    let [a, b, c] = [size(&boxes[0]), size(&boxes[1]), size(&boxes[2])];
+    let sizes = Mat4::from_cols(a, b, c, Vec4::ZERO).transpose();
+    let [x, y, z] = [sizes.x_axis, sizes.y_axis, sizes.z_axis];
+    let unit = Vec4::splat(unit);
+    let (x, y, z) = (x * unit, y * unit, z * unit);
+    x * y + z * (x + y)
 }

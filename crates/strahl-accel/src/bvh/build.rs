@@ -1,7 +1,9 @@
 //! Builds the tree from the top, splitting by the surface area heuristic; the same tree for any number of threads.
 
+use super::bins::Bins;
 use super::node::{Child, Node};
-use super::split::{Extent, LeafModel, Ref, Split};
+use super::refs::{Ref, gather};
+use super::split::{LeafModel, Set};
 use super::{Bvh2, Tree};
 use crate::List;
 use crate::boxes::Box32;
@@ -39,19 +41,7 @@ impl Bvh2 {
 
     /// Builds the hierarchy over boxes `0..n`, n at most 2³¹, with options. They change the speed, never an answer.
     pub fn build_with(bounds: &[Aabb], options: &BuildOptions) -> Self {
-        let mut refs = Vec::with_capacity(bounds.len());
-        let mut unbounded = Vec::new();
-        for (id, b) in (0..).zip(bounds) {
-            if let Some(bounds) = Box32::try_new(b) {
-                refs.push(Ref {
-                    bounds,
-                    id,
-                    class: 0,
-                });
-            } else if !b.is_empty() {
-                unbounded.push(id);
-            }
-        }
+        let (mut refs, unbounded) = gather(bounds.len(), |id| (bounds[id as usize], 0));
         let bvh = Self {
             tree: (!refs.is_empty()).then(|| Tree::build(&mut refs, options)),
             unbounded: List::of(unbounded),
@@ -68,61 +58,61 @@ impl Tree {
             block_cost: options.primitive_cost,
             block_log: 0,
         };
-        let extent = Extent::of(refs);
-        let mut parts = Parts {
-            nodes: Vec::new(),
-            ids: Vec::with_capacity(refs.len()),
-        };
-        let root = parts.add(refs, &extent, 0, &leaf);
+        let mut spare = refs.to_vec();
+        let mut parts = Parts::new();
+        parts.ids.reserve_exact(refs.len());
+        let all = Set::all(refs, &mut spare);
+        let bounds = CullBounds::new(all.extent.bounds.to_aabb());
+        let root = parts.add(all, &leaf);
         Self {
             root,
             nodes: parts.nodes,
             ids: parts.ids,
-            bounds: CullBounds::new(extent.bounds.to_aabb()),
+            bounds,
         }
     }
 }
 
 /// A tree that grows. Depth first, the left child after its parent, as rays that go left walk it.
-#[derive(Default)]
 struct Parts {
     nodes: Vec<Node>,
     ids: Vec<u32>,
+    bins: Bins,
 }
 
 impl Parts {
-    /// Adds the subtree of a set that is not empty, at a depth below the root.
-    fn add(&mut self, refs: &mut [Ref], extent: &Extent, depth: usize, leaf: &LeafModel) -> Child {
-        let Some(split) = Split::choose(refs, extent, depth, leaf) else {
-            return self.add_leaf(refs);
+    fn new() -> Self {
+        Self {
+            nodes: Vec::new(),
+            ids: Vec::new(),
+            bins: Bins::new(),
+        }
+    }
+
+    /// Adds the subtree of a set.
+    fn add(&mut self, set: Set<'_>, leaf: &LeafModel) -> Child {
+        let parallel = set.refs.len() > PARALLEL && rayon::current_num_threads() > 1;
+        let [left, right] = match set.split(leaf, &mut self.bins) {
+            Ok(halves) => halves,
+            Err(set) => return self.add_leaf(set.refs),
         };
         let node = self.nodes.len();
         self.nodes.push(Node::default());
-        let parallel = refs.len() > PARALLEL;
-        let (left, right) = refs.split_at_mut(split.middle);
-        let add = |parts: &mut Self, refs: &mut [Ref], extent: &Extent| {
-            parts.add(refs, extent, depth + 1, leaf)
-        };
+        let boxes = Box32::pair(&left.extent.bounds, &right.extent.bounds);
         let children = if parallel {
-            let mut other = Self::default();
-            let (first, second) = rayon::join(
-                || add(self, left, &split.left),
-                || add(&mut other, right, &split.right),
-            );
+            let mut other = Self::new();
+            let (first, second) = rayon::join(|| self.add(left, leaf), || other.add(right, leaf));
             [first, self.append(other, second)]
         } else {
-            [add(self, left, &split.left), add(self, right, &split.right)]
+            [self.add(left, leaf), self.add(right, leaf)]
         };
-        self.nodes[node] = Node {
-            boxes: Box32::pair(&split.left.bounds, &split.right.bounds),
-            children,
-        };
+        self.nodes[node] = Node { boxes, children };
         Child::inner(node)
     }
 
     fn add_leaf(&mut self, refs: &[Ref]) -> Child {
         let first = self.ids.len();
-        self.ids.extend(refs.iter().map(|r| r.id));
+        self.ids.extend(refs.iter().map(Ref::id));
         self.ids[first..].sort_unstable();
         Child {
             first: first as u32,

@@ -2,10 +2,11 @@
 //!
 //! Split by phase: `build` makes it, `traverse` walks it, `validate` proves that it is what the walk relies on.
 
-mod bins;
+pub(crate) mod bins;
 mod build;
 mod fold;
 mod node;
+pub(crate) mod refs;
 pub(crate) mod split;
 mod traverse;
 pub(crate) mod validate;

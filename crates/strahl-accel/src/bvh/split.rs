@@ -1,17 +1,10 @@
-//! What builders of hierarchies have in common: sets of primitives, and where to split them by the surface area heuristic.
+//! What builders of hierarchies have in common: where to split sets of primitives by the surface area heuristic.
 
 use super::MAX_DEPTH;
-use super::bins::Plane;
+use super::bins::{Bins, CHUNK, Plane};
+use super::refs::{Extent, Ref, centers, classes};
 use crate::boxes::Box32;
-
-/// A primitive while a hierarchy is built.
-#[derive(Clone, Copy)]
-pub(crate) struct Ref {
-    pub(crate) bounds: Box32,
-    pub(crate) id: u32,
-    /// Leaves hold primitives of one class only.
-    pub(crate) class: u8,
-}
+use rayon::prelude::*;
 
 /// What leaves look like and cost.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,120 +26,180 @@ impl LeafModel {
 
 /// How many blocks hold `n` primitives.
 #[inline(always)]
-pub(super) fn blocks(n: usize, log: u32) -> usize {
+fn blocks(n: usize, log: u32) -> usize {
     (n + (1 << log) - 1) >> log
 }
 
-/// The extent of a set: what its primitives' boxes span, and what their (doubled) centres span.
-pub(crate) struct Extent {
-    pub(crate) bounds: Box32,
-    centers: Box32,
-    /// The classes in it, as bits.
-    pub(crate) classes: u8,
+/// Primitives that will be a subtree; at least one.
+pub(crate) struct Set<'a> {
+    pub(crate) refs: &'a mut [Ref],
+    /// As many places, to which its halves move.
+    spare: &'a mut [Ref],
+    pub(crate) extent: Extent,
+    /// How often the whole was split to get here.
+    depth: usize,
 }
 
-impl Extent {
-    const EMPTY: Self = Self {
-        bounds: Box32::EMPTY,
-        centers: Box32::EMPTY,
-        classes: 0,
-    };
-
-    pub(crate) fn of(refs: &[Ref]) -> Self {
-        let mut extent = Self::EMPTY;
-        for r in refs {
-            extent.grow(r);
+impl<'a> Set<'a> {
+    /// All primitives, and as many places.
+    pub(crate) fn all(refs: &'a mut [Ref], spare: &'a mut [Ref]) -> Self {
+        let extent = Extent::of_many(refs);
+        Self {
+            refs,
+            spare,
+            extent,
+            depth: 0,
         }
-        extent
     }
 
-    #[inline(always)]
-    fn grow(&mut self, r: &Ref) {
-        self.bounds.grow(&r.bounds);
-        self.centers.grow_to(r.bounds.center());
-        self.classes |= 1 << r.class;
-    }
-}
-
-/// A set after its primitives were ordered so that the left child's come first.
-pub(crate) struct Split {
-    pub(crate) middle: usize,
-    pub(crate) left: Extent,
-    pub(crate) right: Extent,
-}
-
-impl Split {
-    /// Splits a set, or decides (`None`) that it is a leaf.
-    pub(crate) fn choose(
-        refs: &mut [Ref],
-        extent: &Extent,
-        depth: usize,
-        leaf: &LeafModel,
-    ) -> Option<Self> {
-        if refs.len() == 1 {
-            return None;
+    /// Splits it, or gives it back because it is a leaf.
+    #[expect(
+        clippy::result_large_err,
+        reason = "both variants are the same sets on their way into the tree"
+    )]
+    pub(crate) fn split(self, leaf: &LeafModel, bins: &mut Bins) -> Result<[Self; 2], Self> {
+        let (count, classes) = (self.refs.len(), self.extent.classes);
+        if count == 1 {
+            return Err(self);
         }
-        let fits = refs.len() <= leaf.max_size && extent.classes.is_power_of_two();
-        let log = leaf.block_log(extent.classes);
+        let fits = count <= leaf.max_size && classes.is_power_of_two();
+        let log = leaf.block_log(classes);
         // From here on halving takes this many levels of nodes. It takes over while there are still that many.
-        let needed = (refs.len() - 1).ilog2() as usize + 1;
-        if depth + needed >= MAX_DEPTH - 1 {
-            return (!fits).then(|| Self::without_plane(refs, extent));
+        let needed = (count - 1).ilog2() as usize + 1;
+        if self.depth + needed >= MAX_DEPTH - 1 {
+            return if fits { Err(self) } else { Ok(self.halved()) };
         }
-        let area = extent.bounds.half_area();
-        let leaf_cost = leaf.block_cost * blocks(refs.len(), log) as f64 * area;
-        let Some(plane) = Plane::cheapest(refs, &extent.centers, log) else {
+        let chunks = bins.fill(self.refs, &self.extent.bounds, &self.extent.centers);
+        let area = f64::from(bins.area(&self.extent.bounds));
+        let leaf_cost = leaf.block_cost * blocks(count, log) as f64 * area;
+        let Some(plane) = bins.cheapest(log) else {
             // All centres in one point: nothing to choose by. Crossed bars are better apart all the same.
-            let halves = Self::without_plane(refs, extent);
-            let cost = halves.cost(refs.len(), log);
-            return (!fits || leaf_cost > area + leaf.block_cost * cost).then_some(halves);
+            if !fits {
+                return Ok(self.halved());
+            }
+            let middle = count / 2;
+            let cost = |refs: &[Ref]| {
+                let area = bins.area(&Extent::of(refs).bounds);
+                f64::from(area) * blocks(refs.len(), log) as f64
+            };
+            let halves = cost(&self.refs[..middle]) + cost(&self.refs[middle..]);
+            let pays = leaf_cost > area + leaf.block_cost * halves;
+            return if pays { Ok(self.halved()) } else { Err(self) };
         };
-        if fits && leaf_cost <= area + leaf.block_cost * plane.cost {
-            return None;
+        if fits && leaf_cost <= area + leaf.block_cost * f64::from(plane.cost) {
+            return Err(self);
         }
-        Some(Self::at(&plane, refs))
+        Ok(self.at(&plane, bins, &chunks))
     }
 
     /// By class while there is more than one, then in the middle of the list.
-    fn without_plane(refs: &mut [Ref], extent: &Extent) -> Self {
-        let mut middle = refs.len() / 2;
-        if !extent.classes.is_power_of_two() {
-            let lowest = extent.classes.trailing_zeros() as u8;
-            refs.sort_unstable_by_key(|r| (r.class, r.id));
-            middle = refs.partition_point(|r| r.class == lowest);
+    fn halved(self) -> [Self; 2] {
+        let mut middle = self.refs.len() / 2;
+        if !self.extent.classes.is_power_of_two() {
+            let lowest = self.extent.classes.trailing_zeros() as u8;
+            self.refs.sort_unstable_by_key(|r| (r.class(), r.id()));
+            middle = self.refs.partition_point(|r| r.class() == lowest);
         }
-        Self {
-            middle,
-            left: Extent::of(&refs[..middle]),
-            right: Extent::of(&refs[middle..]),
-        }
+        let (left, right) = self.refs.split_at_mut(middle);
+        let (left_spare, right_spare) = self.spare.split_at_mut(middle);
+        let half = |refs: &'a mut [Ref], spare| Self {
+            extent: Extent::of(refs),
+            refs,
+            spare,
+            depth: self.depth + 1,
+        };
+        [half(left, left_spare), half(right, right_spare)]
     }
 
-    /// Half area times number of blocks of primitives, summed over both sides.
-    fn cost(&self, all: usize, log: u32) -> f64 {
-        let side = |extent: &Extent, n| extent.bounds.half_area() * blocks(n, log) as f64;
-        side(&self.left, self.middle) + side(&self.right, all - self.middle)
-    }
-
-    /// Exchanges primitives that are on the wrong side, from both ends: one thread does it, so the order is always the same.
-    fn at(plane: &Plane, refs: &mut [Ref]) -> Self {
-        let (mut left, mut right) = (Extent::EMPTY, Extent::EMPTY);
-        let (mut middle, mut end) = (0, refs.len());
-        while middle < end {
-            let r = refs[middle];
-            if plane.is_left(&r) {
-                left.grow(&r);
-                middle += 1;
-            } else {
-                right.grow(&r);
-                end -= 1;
-                refs.swap(middle, end);
+    /// How the halves are put in order depends on the size of the set alone, not on the number of threads.
+    fn at(self, plane: &Plane, bins: &Bins, chunks: &[Bins]) -> [Self; 2] {
+        let (middle, centers) = match chunks {
+            [] => {
+                let middle = part(plane, self.refs, self.spare);
+                (
+                    middle,
+                    [&self.spare[..middle], &self.spare[middle..]].map(centers),
+                )
             }
-        }
-        Self {
-            middle,
-            left,
-            right,
-        }
+            _ => parts(plane, self.refs, self.spare, chunks),
+        };
+        let bounds = bins.bounds(plane);
+        let (left, right) = self.spare.split_at_mut(middle);
+        let (left_spare, right_spare) = self.refs.split_at_mut(middle);
+        let half = |refs: &'a mut [Ref], spare, side: usize| {
+            let mut extent = Extent {
+                bounds: bounds[side],
+                centers: centers[side],
+                classes: self.extent.classes,
+            };
+            if !extent.classes.is_power_of_two() {
+                extent.classes = classes(refs);
+            }
+            Self {
+                refs,
+                spare,
+                extent,
+                depth: self.depth + 1,
+            }
+        };
+        [half(left, left_spare, 0), half(right, right_spare, 1)]
     }
+}
+
+/// Puts primitives in order: those left of a plane first, then the others backwards. Returns how many are left.
+#[inline]
+fn part(plane: &Plane, refs: &[Ref], to: &mut [Ref]) -> usize {
+    let (mut left, mut right) = (0, to.len());
+    for r in refs {
+        // Without a branch, which would often be guessed wrong: both places are free, and the next primitive writes the one again that
+        // this one does not take.
+        to[left] = *r;
+        to[right - 1] = *r;
+        let is_left = usize::from(plane.is_left(r));
+        left += is_left;
+        right -= 1 - is_left;
+    }
+    left
+}
+
+/// Puts the chunks of a large set in order, in parallel. Returns how many are left, and what the doubled centres of both sides span.
+fn parts(plane: &Plane, refs: &[Ref], to: &mut [Ref], chunks: &[Bins]) -> (usize, [Box32; 2]) {
+    let counts: Vec<usize> = chunks.iter().map(|bins| bins.left_count(plane)).collect();
+    let middle = counts.iter().sum();
+    let (mut left, mut right) = to.split_at_mut(middle);
+    let mut tasks = Vec::with_capacity(chunks.len());
+    for (chunk, count) in refs.chunks(CHUNK).zip(counts) {
+        let (to_left, to_right);
+        (to_left, left) = left.split_at_mut(count);
+        (to_right, right) = right.split_at_mut(chunk.len() - count);
+        tasks.push((chunk, to_left, to_right));
+    }
+    // Minima and maxima: exact in any grouping, so the threads leave no trace.
+    let centers = tasks.into_par_iter().map(|(chunk, left, right)| {
+        const BLOCK: usize = 256;
+        let mut buffer = [chunk[0]; BLOCK];
+        let (mut l, mut r) = (0, 0);
+        let mut spans = [Box32::EMPTY; 2];
+        for block in chunk.chunks(BLOCK) {
+            let buffer = &mut buffer[..block.len()];
+            let middle = part(plane, block, buffer);
+            let (a, b) = buffer.split_at(middle);
+            spans[0].grow(&centers(a));
+            spans[1].grow(&centers(b));
+            left[l..l + a.len()].copy_from_slice(a);
+            right[r..r + b.len()].copy_from_slice(b);
+            l += a.len();
+            r += b.len();
+        }
+        spans
+    });
+    let centers = centers.reduce(
+        || [Box32::EMPTY; 2],
+        |mut a, b| {
+            a[0].grow(&b[0]);
+            a[1].grow(&b[1]);
+            a
+        },
+    );
+    (middle, centers)
 }

@@ -83,7 +83,8 @@ fn the_tree_does_not_depend_on_the_number_of_threads() {
     assert!(one.0.nodes() > 10_000);
     assert!(one.1.nodes() > 1000);
     for threads in [2, 7] {
-        assert_eq!(build(threads), one);
+        // Too much to print.
+        assert!(build(threads) == one, "{threads} threads");
     }
 }
 

@@ -1,0 +1,132 @@
+//! Primitives while a hierarchy is built, and what sets of them span.
+
+use super::bins::CHUNK;
+use crate::boxes::Box32;
+use rayon::prelude::*;
+use std::sync::atomic::{AtomicBool, Ordering};
+use strahl_math::Aabb;
+
+/// A primitive while a hierarchy is built: its box, whose fourth lanes hold its number and its class.
+#[derive(Clone, Copy)]
+pub(crate) struct Ref {
+    bounds: Box32,
+}
+
+impl Ref {
+    pub(crate) fn new(bounds: &Box32, id: u32, class: u8) -> Self {
+        let (lo, hi) = (bounds.lo(), bounds.hi());
+        Self {
+            bounds: Box32::of_corners(
+                lo.with_w(f32::from_bits(id)),
+                hi.with_w(f32::from_bits(u32::from(class))),
+            ),
+        }
+    }
+
+    #[inline(always)]
+    pub(crate) fn bounds(&self) -> &Box32 {
+        &self.bounds
+    }
+
+    #[inline(always)]
+    pub(crate) fn id(&self) -> u32 {
+        self.bounds.lo().w.to_bits()
+    }
+
+    /// Leaves hold primitives of one class only.
+    #[inline(always)]
+    pub(crate) fn class(&self) -> u8 {
+        self.bounds.hi().w.to_bits() as u8
+    }
+}
+
+/// The extent of a set: what its primitives' boxes span, and what their (doubled) centres span.
+#[derive(Clone, Copy)]
+pub(crate) struct Extent {
+    pub(crate) bounds: Box32,
+    pub(super) centers: Box32,
+    /// The classes in it, as bits.
+    pub(crate) classes: u8,
+}
+
+impl Extent {
+    pub(super) const EMPTY: Self = Self {
+        bounds: Box32::EMPTY,
+        centers: Box32::EMPTY,
+        classes: 0,
+    };
+
+    pub(crate) fn of(refs: &[Ref]) -> Self {
+        let mut bounds = Box32::EMPTY;
+        for r in refs {
+            bounds.grow(&r.bounds);
+        }
+        Self {
+            bounds,
+            centers: centers(refs),
+            classes: classes(refs),
+        }
+    }
+
+    /// The extent of a large set, in parallel: minima and maxima are exact in any grouping, so the threads leave no trace.
+    pub(super) fn of_many(refs: &[Ref]) -> Self {
+        let parts = refs.par_chunks(CHUNK).map(Self::of);
+        parts.reduce(|| Self::EMPTY, Self::joined)
+    }
+
+    fn joined(mut self, other: Self) -> Self {
+        self.bounds.grow(&other.bounds);
+        self.centers.grow(&other.centers);
+        self.classes |= other.classes;
+        self
+    }
+}
+
+/// Gathers what a hierarchy is built over: the bounded ones of `count` primitives, of which `primitive` tells the box and the class, and
+/// the numbers of those without bounds.
+pub(crate) fn gather(
+    count: usize,
+    primitive: impl Fn(u32) -> (Aabb, u8) + Sync,
+) -> (Vec<Ref>, Vec<u32>) {
+    let one = |id: u32| {
+        let (bounds, class) = primitive(id);
+        Some(Ref::new(&Box32::try_new(&bounds)?, id, class))
+    };
+    let all_bounded = AtomicBool::new(true);
+    let mut refs = Vec::with_capacity(count);
+    (0..count as u32)
+        .into_par_iter()
+        .with_min_len(CHUNK)
+        .map(|id| {
+            one(id).unwrap_or_else(|| {
+                all_bounded.store(false, Ordering::Relaxed);
+                Ref::new(&Box32::EMPTY, id, 0)
+            })
+        })
+        .collect_into_vec(&mut refs);
+    let mut unbounded = Vec::new();
+    if !all_bounded.into_inner() {
+        refs.retain(|r| {
+            let bounded = r.bounds.lo().x < f32::INFINITY;
+            if !bounded && !primitive(r.id()).0.is_empty() {
+                unbounded.push(r.id());
+            }
+            bounded
+        });
+    }
+    (refs, unbounded)
+}
+
+/// What the doubled centres of primitives span.
+pub(super) fn centers(refs: &[Ref]) -> Box32 {
+    let mut span = Box32::EMPTY;
+    for r in refs {
+        span.grow_to(r.bounds.center());
+    }
+    span
+}
+
+/// The classes of primitives, as bits.
+pub(super) fn classes(refs: &[Ref]) -> u8 {
+    refs.iter().fold(0, |all, r| all | 1 << r.class())
+}
