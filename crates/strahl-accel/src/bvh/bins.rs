@@ -54,7 +54,7 @@ impl Binning {
         // A little less, so that the last centre falls into the last bin. Centres in one plane all fall into the first.
         let scale = (Vec4::splat(count as f32 * 0.9999) / size).min(Vec4::splat(f32::MAX));
         Self {
-            lo: centers.lo().with_w(0.0),
+            lo: centers.lo(),
             scale: Vec4::select(size.cmpgt(Vec4::ZERO), scale, Vec4::ZERO).with_w(0.0),
             last: Vec4::splat((count - 1) as f32),
         }

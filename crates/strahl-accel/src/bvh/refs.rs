@@ -16,10 +16,7 @@ impl Ref {
     pub(crate) fn new(bounds: &Box32, id: u32, class: u8) -> Self {
         let (lo, hi) = (bounds.lo(), bounds.hi());
         Self {
-            bounds: Box32::of_corners(
-                lo.with_w(f32::from_bits(id)),
-                hi.with_w(f32::from_bits(u32::from(class))),
-            ),
+            bounds: Box32::of_corners(lo.with_w(to_lane(id)), hi.with_w(to_lane(u32::from(class)))),
         }
     }
 
@@ -30,14 +27,30 @@ impl Ref {
 
     #[inline(always)]
     pub(crate) fn id(&self) -> u32 {
-        self.bounds.lo().w.to_bits()
+        from_lane(self.bounds.lo().w)
     }
 
     /// Leaves hold primitives of one class only.
     #[inline(always)]
     pub(crate) fn class(&self) -> u8 {
-        self.bounds.hi().w.to_bits() as u8
+        from_lane(self.bounds.hi().w) as u8
     }
+}
+
+/// What the bits of numbers begin at. The lanes take part in arithmetic whose result nobody looks at, which is many times slower with
+/// subnormal numbers; these are not.
+const LANE: u32 = 0x3f80_0000;
+
+/// Any number as a lane of a vector.
+#[inline(always)]
+fn to_lane(number: u32) -> f32 {
+    f32::from_bits(number.wrapping_add(LANE))
+}
+
+/// What [`to_lane`] was given.
+#[inline(always)]
+fn from_lane(lane: f32) -> u32 {
+    lane.to_bits().wrapping_sub(LANE)
 }
 
 /// The extent of a set: what its primitives' boxes span, and what their (doubled) centres span.
