@@ -2,7 +2,8 @@ use crate::parameters::{self, NoParameters, Parameter, Parameters};
 use crate::shapes::all_bounds;
 use crate::{
     Accelerator, Beam, Boxes, Bvh2, Bvh8, Bvh8Parameters, Grid, GridParameters, Grids, List,
-    Octree, OctreeParameters, Shapes, Spheres, SpheresParameters, TraversalStats, Visitor,
+    Octree, OctreeParameters, Packet, PacketVisitor, Shapes, Spheres, SpheresParameters,
+    TraversalStats, Visitor,
 };
 use std::{fmt, str::FromStr};
 use strahl_math::{Aabb, Interval, Ray};
@@ -81,6 +82,16 @@ macro_rules! accelerators {
                 stats: &mut TraversalStats,
             ) {
                 match self { $(Self::$variant(a) => a.traverse(ray, range, visitor, stats),)+ }
+            }
+
+            #[inline]
+            fn traverse_packet<V: PacketVisitor>(
+                &self,
+                packet: &mut Packet<'_>,
+                visitor: &mut V,
+                stats: &mut TraversalStats,
+            ) -> bool {
+                match self { $(Self::$variant(a) => a.traverse_packet(packet, visitor, stats),)+ }
             }
 
             fn misses(&self, beam: &Beam) -> bool {

@@ -70,6 +70,12 @@ pub(crate) struct CullClock {
 }
 
 impl CullClock {
+    /// That of no ray.
+    pub(crate) const UNUSED: Self = Self {
+        offset: 0.0,
+        scale: 1.0,
+    };
+
     /// A lower end of the range: rounded down.
     #[inline(always)]
     pub(crate) fn t_min(&self, t_min: f64) -> f32 {
@@ -146,15 +152,23 @@ impl CullStart {
         r.clamp(-MOST_RECIPROCAL, MOST_RECIPROCAL)
     }
 
-    /// What [`CullRay::new`] computes, axis beside axis.
+    /// The origin and 1/d for the scaled direction, axis beside axis.
     #[inline(always)]
-    pub(crate) fn lanes<I: Isa>(&self, isa: I) -> CullLanes {
+    fn vectors<I: Isa>(&self, isa: I) -> (I::F64x4, I::F64x4) {
         let (o, d) = (self.origin, self.direction);
         let o = isa.load(&[o.x, o.y, o.z, 0.0]);
         let d = isa.load(&[d.x, d.y, d.z, 1.0]);
-        let (zero, most) = (isa.splat(0.0), isa.splat(MOST_RECIPROCAL));
+        let most = isa.splat(MOST_RECIPROCAL);
         let r = isa.mul(isa.div(isa.splat(1.0), d), isa.splat(self.power));
         let r = isa.max(isa.min(r, most), isa.splat(-MOST_RECIPROCAL));
+        (o, r)
+    }
+
+    /// What [`CullRay::new`] computes, axis beside axis.
+    #[inline(always)]
+    pub(crate) fn lanes<I: Isa>(&self, isa: I) -> CullLanes {
+        let (o, r) = self.vectors(isa);
+        let zero = isa.splat(0.0);
         let minus_c = isa.mul(isa.sub(zero, o), r);
         let reach = isa.add(
             isa.splat(self.margin),
@@ -167,6 +181,28 @@ impl CullStart {
             minus_far: isa.narrow(isa.add(minus_c, e)),
             down: isa.lt(r, zero),
         }
+    }
+
+    /// The constants for planes that are given relative to a point f: per axis what is added at least and at most, so that
+    /// the crossing of a plane b is between `(b - f) r` plus the one and plus the other.
+    ///
+    /// The crossing is at `(b - f) r - (o - f) r`. Rounded are the difference b - f, the product, their sum, r, and the constant: by
+    /// 5u|r|(B + |o| + |f|) at most. The margin is three times that, with room for a primitive's own rounding.
+    #[inline(always)]
+    pub(crate) fn relative_to<I: Isa>(&self, isa: I, point: &[f64; 4]) -> [[f32; 4]; 2] {
+        let (o, r) = self.vectors(isa);
+        let f = isa.load(point);
+        let minus_c = isa.mul(isa.sub(f, o), r);
+        let sizes = isa.add(isa.abs(o), isa.abs(f));
+        let reach = isa.add(
+            isa.splat(2.0 * self.margin),
+            isa.mul(isa.splat(2.0 * SLACK), sizes),
+        );
+        let e = isa.mul(isa.abs(r), reach);
+        [
+            isa.narrow(isa.sub(minus_c, e)),
+            isa.narrow(isa.add(minus_c, e)),
+        ]
     }
 }
 

@@ -1,5 +1,5 @@
-use crate::Beam;
 use crate::bvh8::{BLOCK, NO_PRIMITIVE};
+use crate::{Beam, Packet, PacketVisitor};
 use strahl_math::{Aabb, DVec3, Interval, Ray};
 use strahl_simd::Isa;
 
@@ -153,6 +153,17 @@ pub trait Accelerator: Send + Sync {
         visitor: &mut V,
         stats: &mut TraversalStats,
     );
+
+    /// Walks the structure along the rays of a packet, as [`Accelerator::traverse`] along each; `false` if it has no way to do
+    /// that, and nothing was done.
+    fn traverse_packet<V: PacketVisitor>(
+        &self,
+        _packet: &mut Packet<'_>,
+        _visitor: &mut V,
+        _stats: &mut TraversalStats,
+    ) -> bool {
+        false
+    }
 
     /// Whether certainly no ray of a beam meets the box of any primitive; `false` from a structure that does not know.
     fn misses(&self, _beam: &Beam) -> bool {

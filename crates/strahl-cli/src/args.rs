@@ -132,6 +132,9 @@ pub(crate) struct PictureArgs {
     /// Most rays of one tree, shadow rays not counted
     #[arg(long, value_name = "N", default_value_t = strahl::tracing::TraceSettings::MAX_TREE_RAYS)]
     pub(crate) max_tree_rays: u32,
+    /// Follow every ray by itself, not those of neighbouring pixels together; the picture is the same
+    #[arg(long)]
+    pub(crate) no_packets: bool,
     /// Shading model of everything: lambert, phong, blinn-phong, or to look at the geometry: normals, depth, object-id, uv
     #[arg(long, value_name = "MODEL")]
     pub(crate) shading: Option<ShadingModel>,

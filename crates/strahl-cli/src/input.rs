@@ -254,6 +254,7 @@ pub(crate) fn render_options(scene: &RenderScene, args: &PictureArgs) -> RenderO
     options.seed = args.seed;
     options.trace.max_tree_rays = args.max_tree_rays;
     options.trace.force_shading = args.shading;
+    options.trace.packets = !args.no_packets;
     if let Some(depth) = args.max_depth {
         options.trace.max_depth = depth;
     }

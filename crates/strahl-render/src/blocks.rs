@@ -1,7 +1,7 @@
 use crate::prim::{Prim, PrimKind};
 use crate::scene::{MeshUse, ShapeUse};
 use strahl_accel::NO_PRIMITIVE;
-use strahl_geometry::blocks::{Hits, LANES, SphereBlock, TriangleBlock};
+use strahl_geometry::blocks::{Hits, LANES, PacketLines, PacketShears, SphereBlock, TriangleBlock};
 use strahl_geometry::{RayShear, Shape};
 use strahl_math::{Interval, Ray};
 use strahl_simd::Isa;
@@ -129,6 +129,11 @@ impl Blocks {
         !self.mesh.is_empty() || !self.triangles.is_empty()
     }
 
+    /// Whether there are spheres among them.
+    pub(crate) fn has_spheres(&self) -> bool {
+        !self.spheres.is_empty()
+    }
+
     /// Bytes they occupy.
     pub(crate) fn bytes(&self) -> usize {
         size_of_val(self.places.as_slice())
@@ -162,6 +167,13 @@ fn push<T>(list: &mut Vec<T>, item: T) -> u32 {
     list.len() as u32 - 1
 }
 
+/// The rays of a packet as blocks see them; `None` where they have too little in common, or no block asks.
+#[derive(Debug, Default)]
+pub(crate) struct PacketCulls {
+    pub(crate) shears: Option<PacketShears>,
+    pub(crate) lines: Option<PacketLines>,
+}
+
 /// A block of primitives of one class.
 pub(crate) trait Block: Sized {
     /// Whether a ray that starts on a primitive may meet that primitive again.
@@ -179,6 +191,9 @@ pub(crate) trait Block: Sized {
         range: Interval,
         hits: &mut Hits,
     ) -> u32;
+
+    /// The rays of a packet that may meet one of the first `used` primitives, as bits: those that are missing certainly meet none.
+    fn may_hit<I: Isa>(&self, isa: I, packet: &PacketCulls, used: usize) -> u32;
 
     /// Whether a ray that starts on the primitive of a lane may meet it again ahead.
     fn is_entered(&self, _lane: usize, _ray: &Ray) -> bool {
@@ -205,6 +220,14 @@ impl Block for TriangleBlock<f32> {
     ) -> u32 {
         self.hits(isa, shear, range, hits)
     }
+
+    #[inline(always)]
+    fn may_hit<I: Isa>(&self, isa: I, packet: &PacketCulls, used: usize) -> u32 {
+        match &packet.shears {
+            Some(shears) => self.may_hit(isa, shears, used),
+            None => u32::MAX,
+        }
+    }
 }
 
 impl Block for TriangleBlock<f64> {
@@ -226,6 +249,14 @@ impl Block for TriangleBlock<f64> {
     ) -> u32 {
         self.hits(isa, shear, range, hits)
     }
+
+    #[inline(always)]
+    fn may_hit<I: Isa>(&self, isa: I, packet: &PacketCulls, used: usize) -> u32 {
+        match &packet.shears {
+            Some(shears) => self.may_hit(isa, shears, used),
+            None => u32::MAX,
+        }
+    }
 }
 
 impl Block for SphereBlock {
@@ -246,6 +277,14 @@ impl Block for SphereBlock {
         hits: &mut Hits,
     ) -> u32 {
         self.hits(isa, ray, range, hits)
+    }
+
+    #[inline(always)]
+    fn may_hit<I: Isa>(&self, isa: I, packet: &PacketCulls, used: usize) -> u32 {
+        match &packet.lines {
+            Some(lines) => self.may_hit(isa, lines, used),
+            None => u32::MAX,
+        }
     }
 
     #[inline(always)]

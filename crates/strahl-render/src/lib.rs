@@ -46,6 +46,7 @@ pub use query::Tracer;
 pub use render::{Progress, RenderError, RenderOptions, Rendered, render};
 pub use sampling::{Sampling, UnknownSampling};
 pub use scene::{ObjectInfo, RenderScene, SceneStats};
+pub use strahl_accel::PACKET;
 pub use tiles::TileOrder;
 pub use trace::{RayCounts, SampleResult, TraceSettings};
 pub use tree::{PixelTree, RayNode, RayTree, explain};

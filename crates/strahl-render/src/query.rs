@@ -1,4 +1,5 @@
 mod kinds;
+mod packet;
 
 use crate::blocks::{Block, Blocks, LeafClass};
 use crate::hit::{Hit, Origin, RayClass};
@@ -220,7 +221,7 @@ impl<Q: Query> Search<'_, '_, Q> {
             group,
             blocks,
             ray,
-            shear,
+            shear: &shear,
             range_min: range.min,
             from,
             from_prim,
@@ -247,7 +248,7 @@ struct GroupVisitor<'v, 'a, 's, Q> {
     /// The primitives in the order of the leaves that are visited.
     blocks: &'v Blocks,
     ray: &'v Ray,
-    shear: RayShear,
+    shear: &'v RayShear,
     range_min: f64,
     from: From<'v>,
     /// The primitive the ray starts on, or `u32::MAX`.
@@ -325,35 +326,53 @@ impl<Q: Query> GroupVisitor<'_, '_, '_, Q> {
         let mut hits = Hits::default();
         for index in 0..leaf.blocks() {
             let block = B::of(self.blocks, leaf.first_block + index);
-            if let Some(lane) = self.lane_left::<B>(leaf, index)
-                && (self.range_min < 0.0 || block.is_entered(lane, self.ray))
-            {
-                t_max = self.visit(self.from_prim, t_max);
-                if t_max == f64::NEG_INFINITY {
-                    return t_max;
-                }
+            t_max = self.block(isa, leaf, index, block, &mut hits, t_max);
+            if t_max == f64::NEG_INFINITY {
+                break;
             }
-            let range = Interval::new(self.range_min, t_max);
-            let mut lanes = block.hits(isa, self.ray, &self.shear, range, &mut hits);
-            while lanes != 0 {
-                // There are four lanes; said so, the compiler knows it too.
-                let lane = lanes.trailing_zeros() as usize % BLOCK;
-                lanes &= lanes - 1;
-                let id = leaf.id(index, lane);
-                if id == NO_PRIMITIVE || id == self.from_prim {
-                    continue;
-                } else if self.plain || self.is_plain(id) {
-                    let uv = [hits.uv[0][lane], hits.uv[1][lane]];
-                    t_max = self.take(id, hits.t[lane], uv, t_max);
-                } else if B::CURVED {
-                    t_max = self.visit(id, t_max);
-                } else {
-                    let uv = [hits.uv[0][lane], hits.uv[1][lane]];
-                    t_max = self.take_filtered(id, hits.t[lane], uv, t_max);
-                }
-                if t_max == f64::NEG_INFINITY {
-                    return t_max;
-                }
+        }
+        t_max
+    }
+
+    /// Tests the primitives of one block of a leaf.
+    #[inline(always)]
+    fn block<I: Isa, B: Block>(
+        &mut self,
+        isa: I,
+        leaf: &Leaf<'_>,
+        index: usize,
+        block: &B,
+        hits: &mut Hits,
+        mut t_max: f64,
+    ) -> f64 {
+        if let Some(lane) = self.lane_left::<B>(leaf, index)
+            && (self.range_min < 0.0 || block.is_entered(lane, self.ray))
+        {
+            t_max = self.visit(self.from_prim, t_max);
+            if t_max == f64::NEG_INFINITY {
+                return t_max;
+            }
+        }
+        let range = Interval::new(self.range_min, t_max);
+        let mut lanes = block.hits(isa, self.ray, self.shear, range, hits);
+        while lanes != 0 {
+            // There are four lanes; said so, the compiler knows it too.
+            let lane = lanes.trailing_zeros() as usize % BLOCK;
+            lanes &= lanes - 1;
+            let id = leaf.id(index, lane);
+            if id == NO_PRIMITIVE || id == self.from_prim {
+                continue;
+            } else if self.plain || self.is_plain(id) {
+                let uv = [hits.uv[0][lane], hits.uv[1][lane]];
+                t_max = self.take(id, hits.t[lane], uv, t_max);
+            } else if B::CURVED {
+                t_max = self.visit(id, t_max);
+            } else {
+                let uv = [hits.uv[0][lane], hits.uv[1][lane]];
+                t_max = self.take_filtered(id, hits.t[lane], uv, t_max);
+            }
+            if t_max == f64::NEG_INFINITY {
+                return t_max;
             }
         }
         t_max
@@ -506,7 +525,7 @@ impl<Q: Query> GroupVisitor<'_, '_, '_, Q> {
                     return None;
                 }
                 let mesh = &self.group.meshes[mesh as usize].mesh;
-                let hit = mesh.hit_element(triangle, &self.shear, range)?;
+                let hit = mesh.hit_element(triangle, self.shear, range)?;
                 // Seen from outside the mesh every triangle is a primitive of one element.
                 Some(PrimHit {
                     surface: SurfaceId {

@@ -38,6 +38,15 @@ impl Sampling {
         }
     }
 
+    /// The place in every pixel in pass `pass`, if there is one only.
+    pub(crate) fn common_place(self, pass: u32) -> Option<(f64, f64)> {
+        match (self, pass) {
+            (Self::Corners, _) => Some((0.0, 0.0)),
+            (Self::Center | Self::Grid(0 | 1), _) | (Self::Adaptive { .. }, 0) => Some((0.5, 0.5)),
+            _ => None,
+        }
+    }
+
     /// The places in pixel `(x, y)` of pass `pass`, in pixels from its top left corner; `Corners` has its own lattice.
     pub(crate) fn places(
         self,
@@ -46,15 +55,12 @@ impl Sampling {
         y: u32,
         seed: u64,
     ) -> impl ExactSizeIterator<Item = (f64, f64)> {
-        // Without cells there is one place, the same in every pixel.
-        let (cells, first_index, fixed) = match (self, pass) {
-            (Self::Corners, _) => (1, 0, Some((0.0, 0.0))),
-            (Self::Center | Self::Grid(0 | 1), _) | (Self::Adaptive { .. }, 0) => {
-                (1, 0, Some((0.5, 0.5)))
-            }
-            (Self::Grid(n), _) => (n, 0, None),
+        let fixed = self.common_place(pass);
+        let (cells, first_index) = match self {
+            Self::Corners | Self::Center => (1, 0),
+            Self::Grid(n) => (n.max(1), 0),
             // Passes draw from numbers of their own.
-            (Self::Adaptive { .. }, pass) => (1 << pass, 1 << (2 * pass), None),
+            Self::Adaptive { .. } => (1 << pass, 1 << (2 * pass)),
         };
         (0..cells * cells).map(move |index| {
             fixed.unwrap_or_else(|| {

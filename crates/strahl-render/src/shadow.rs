@@ -18,6 +18,20 @@ pub(crate) struct Shadow {
     pub(crate) hit: bool,
 }
 
+impl Shadow {
+    /// No light arrives.
+    pub(crate) const STOPPED: Self = Self {
+        visible: Color::BLACK,
+        hit: true,
+    };
+
+    /// All light arrives.
+    const NONE: Self = Self {
+        visible: Color::WHITE,
+        hit: false,
+    };
+}
+
 /// A ray towards a light.
 pub(crate) struct ShadowRay {
     pub(crate) ray: Ray,
@@ -42,16 +56,10 @@ impl Tracer<'_> {
         arena: &mut MediaArena,
         hits: &mut Vec<Hit>,
     ) -> Shadow {
-        let ShadowRay {
-            ray,
-            range,
-            from,
-            light,
-            media,
-        } = shadow_ray;
-        let mut range = *range;
-        if let Some(mask) = self.scene.mask(*light) {
-            let Some(crossing) = self.crossing(mask, ray, range) else {
+        let light = shadow_ray.light;
+        let mut range = shadow_ray.range;
+        if let Some(mask) = self.scene.mask(light) {
+            let Some(crossing) = self.crossing(mask, &shadow_ray.ray, range) else {
                 return Shadow {
                     visible: Color::BLACK,
                     hit: false,
@@ -59,25 +67,38 @@ impl Tracer<'_> {
             };
             // What is within the mask or beyond it casts no shadows.
             range.max = crossing * (1.0 - MASK_SKIN);
-            if !self.scene.lights[*light].light.casts_shadows {
-                return Shadow {
-                    visible: Color::WHITE,
-                    hit: false,
-                };
+            if !self.scene.lights[light].light.casts_shadows {
+                return Shadow::NONE;
             }
         }
-        if self.occluded(ray, range, from, *light) {
-            return Shadow {
-                visible: Color::BLACK,
-                hit: true,
-            };
+        if self.occluded(&shadow_ray.ray, range, &shadow_ray.from, light) {
+            return Shadow::STOPPED;
         }
+        let shadow_ray = ShadowRay {
+            range,
+            ..*shadow_ray
+        };
+        self.filtered(&shadow_ray, arena, hits)
+    }
+
+    /// What arrives of a light if nothing opaque is in between.
+    pub(crate) fn filtered(
+        &mut self,
+        shadow_ray: &ShadowRay,
+        arena: &mut MediaArena,
+        hits: &mut Vec<Hit>,
+    ) -> Shadow {
         if !self.scene.transmits {
-            return Shadow {
-                visible: Color::WHITE,
-                hit: false,
-            };
+            return Shadow::NONE;
         }
+        let ShadowRay {
+            ray,
+            range,
+            from,
+            media,
+            ..
+        } = shadow_ray;
+        let range = *range;
         hits.clear();
         self.transmitting_hits(ray, range, Some(from), hits);
         hits.sort_unstable_by(|a, b| a.t.total_cmp(&b.t).then(a.id.cmp(&b.id)));

@@ -7,7 +7,7 @@ use crate::tiles::TILE;
 use strahl_accel::Accelerator;
 
 /// Pixels along a side of the squares that are told apart.
-const SQUARE: u32 = 4;
+pub(crate) const SQUARE: u32 = 4;
 
 /// Such squares along a side of a tile.
 const SQUARES: u32 = TILE / SQUARE;

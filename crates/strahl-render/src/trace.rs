@@ -16,6 +16,9 @@
 mod nothing;
 mod outcome;
 mod settings;
+mod together;
+
+use together::{Ahead, KnownShadows};
 
 pub use outcome::{FirstHit, RayCounts, SampleResult};
 pub use settings::TraceSettings;
@@ -26,7 +29,7 @@ use crate::media::{MediaArena, MediaStack};
 use crate::observer::{BranchEnd, LightTerm, RayKind, RayReport, Share, TraceObserver};
 use crate::query::Tracer;
 use crate::scene::{RenderScene, Uv};
-use crate::shadow::ShadowRay;
+use crate::shadow::{Shadow, ShadowRay};
 use crate::surface::{Split, Surface};
 use strahl_math::{DVec3, Interval, Ray};
 use strahl_shade::texture::TexturePaint;
@@ -72,6 +75,25 @@ pub(crate) struct Branch {
     pub(crate) weight: f64,
     pub(crate) share: Share,
     pub(crate) media: MediaStack,
+}
+
+impl Branch {
+    /// The root of a tree.
+    fn primary(ray: &Ray) -> Self {
+        Self {
+            ray: *ray,
+            origin: None,
+            kind: RayKind::Primary,
+            class: RayClass::Camera,
+            parent: 0,
+            depth: 1,
+            part: SpectralPart::WHITE,
+            divided: false,
+            weight: 1.0,
+            share: Share::ALL,
+            media: MediaStack::VACUUM,
+        }
+    }
 }
 
 /// A ray that a hit sends.
@@ -150,9 +172,20 @@ impl<'s> TreeTracer<'s> {
 
     /// Follows a primary ray with everything that comes of it.
     pub fn trace<O: TraceObserver>(&mut self, primary: &Ray, observer: &mut O) -> SampleResult {
-        let mut hit = self
+        let hit = self
             .tracer
             .closest_hit(primary, Interval::FORWARD, None, RayClass::Camera);
+        self.grow(primary, hit, None, observer)
+    }
+
+    /// Grows the tree of a primary ray, given its hit, and what is known there ahead.
+    fn grow<O: TraceObserver>(
+        &mut self,
+        primary: &Ray,
+        mut hit: Option<Hit>,
+        mut ahead: Option<&mut Ahead<'s>>,
+        observer: &mut O,
+    ) -> SampleResult {
         if hit.is_none() && !O::ACTIVE {
             return self.nothing(primary);
         }
@@ -160,23 +193,11 @@ impl<'s> TreeTracer<'s> {
         self.media.clear();
         self.nodes.clear();
         self.waiting.clear();
-        let mut branch = Branch {
-            ray: *primary,
-            origin: None,
-            kind: RayKind::Primary,
-            class: RayClass::Camera,
-            parent: 0,
-            depth: 1,
-            part: SpectralPart::WHITE,
-            divided: false,
-            weight: 1.0,
-            share: Share::ALL,
-            media: MediaStack::VACUUM,
-        };
+        let mut branch = Branch::primary(primary);
         // Most trees are one ray: it does not go through the stack.
         let (mut first, mut deepest) = (None, 1);
         loop {
-            let found = self.follow(&branch, hit.as_ref(), observer);
+            let found = self.follow(&branch, hit.as_ref(), ahead.take(), observer);
             if branch.kind == RayKind::Primary {
                 first = found;
             }
@@ -242,6 +263,7 @@ impl<'s> TreeTracer<'s> {
         &mut self,
         branch: &Branch,
         hit: Option<&Hit>,
+        ahead: Option<&mut Ahead<'s>>,
         observer: &mut O,
     ) -> Option<FirstHit> {
         let scene = self.tracer.scene;
@@ -296,8 +318,16 @@ impl<'s> TreeTracer<'s> {
             return None;
         };
 
-        let mut surface = Surface::at(scene, branch, hit, &self.media, self.uv);
-        layers::paint(scene, &mut surface, hit, &mut self.paint);
+        let mut found;
+        let (surface, shadows) = match ahead {
+            Some(ahead) => (&mut ahead.surface, ahead.shadows),
+            None => {
+                found = Surface::at(scene, branch, hit, &self.media, self.uv);
+                (&mut found, KnownShadows::NONE)
+            }
+        };
+        layers::paint(scene, surface, hit, &mut self.paint);
+        let surface = &*surface;
         let first = FirstHit {
             distance: length,
             position: surface.resolved.point.position,
@@ -305,7 +335,7 @@ impl<'s> TreeTracer<'s> {
             object: surface.resolved.look.object,
             material: surface.resolved.look.material,
         };
-        let model = self.model_of(&surface);
+        let model = self.model_of(surface);
         if model.is_diagnostic() {
             node.local = surface.diagnose(scene, model, &first);
             if O::ACTIVE {
@@ -331,7 +361,8 @@ impl<'s> TreeTracer<'s> {
         let shining = scene.lights_in(surface.lit.set);
         for number in 0..shining.map_or(scene.lights.len(), <[u32]>::len) {
             let light = shining.map_or(number, |list| list[number] as usize);
-            let term = self.light(&surface, hit, model, light, branch, index, observer);
+            let known = shadows.of(light);
+            let term = self.light(surface, hit, model, light, known, branch, index, observer);
             node.local += term.diffuse + term.specular;
             if O::ACTIVE {
                 observer.light(index, term);
@@ -339,7 +370,7 @@ impl<'s> TreeTracer<'s> {
         }
         node.local = layers::grained(&self.paint, first.position, node.local);
         self.nodes.push(node);
-        self.queue_branches(branch, index, &surface, hit, &split, observer);
+        self.queue_branches(branch, index, surface, hit, &split, observer);
         Some(first)
     }
 
@@ -363,6 +394,7 @@ impl<'s> TreeTracer<'s> {
         hit: &Hit,
         model: ShadingModel,
         light: usize,
+        stopped: Option<bool>,
         branch: &Branch,
         node: u32,
         observer: &mut O,
@@ -412,9 +444,12 @@ impl<'s> TreeTracer<'s> {
                     light,
                     media: branch.media,
                 };
-                let shadow =
-                    self.tracer
-                        .shadow(&shadow_ray, &mut self.media, &mut self.shadow_hits);
+                let (media, hits) = (&mut self.media, &mut self.shadow_hits);
+                let shadow = match stopped {
+                    None => self.tracer.shadow(&shadow_ray, media, hits),
+                    Some(true) => Shadow::STOPPED,
+                    Some(false) => self.tracer.filtered(&shadow_ray, media, hits),
+                };
                 self.counts.shadow += 1;
                 self.counts.shadow_hit += u64::from(shadow.hit);
                 term.shadow_rays = 1;

@@ -89,6 +89,26 @@ fn beams_change_nothing_but_the_work() {
     }
 }
 
+#[test]
+fn packets_change_nothing() {
+    for scene in [every_shape(), glass_and_mirrors()] {
+        let scene = compiled(&scene);
+        for sampling in SAMPLINGS.into_iter().chain([Sampling::Grid(3)]) {
+            let [with, without] = [true, false].map(|packets| {
+                rendered(&scene, |o| {
+                    (o.width, o.height) = (150, 111);
+                    (o.sampling, o.trace.packets) = (sampling, packets);
+                })
+            });
+            assert!(
+                with.film == without.film && with.rays == without.rays,
+                "{sampling}"
+            );
+            assert_ne!(with.traversal, without.traversal, "{sampling}");
+        }
+    }
+}
+
 /// What is compared is there: each kind of shape has pixels.
 #[test]
 fn every_shape_is_seen() {

@@ -1,4 +1,4 @@
-//! Vectors for the kernels: eight lanes of f32 for culling, four of f64 for what decides.
+//! Vectors for the kernels: eight and sixteen lanes of f32 for culling, four of f64 for what decides.
 //!
 //! A kernel is written once, generic over an [`Isa`], and entered through [`Isa::call`], which compiles it for the instructions of
 //! that level. Everything in it that holds vectors must be an `#[inline(always)]` function: what is not (closures too, hence
@@ -28,12 +28,39 @@ pub use x86::{Avx2, Avx512, Sse4};
 #[repr(C, align(32))]
 pub struct Lanes8(pub [f32; 8]);
 
+/// Sixteen f32 next to each other, one for each ray of a packet.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C, align(64))]
+pub struct Lanes16(pub [Lanes8; 2]);
+
+impl Lanes16 {
+    /// The same number in all lanes.
+    #[inline(always)]
+    pub const fn splat(x: f32) -> Self {
+        Self([Lanes8([x; 8]); 2])
+    }
+
+    /// The number in a lane, of which there are sixteen.
+    #[inline(always)]
+    pub const fn get(&self, lane: usize) -> f32 {
+        self.0[lane / 8 % 2].0[lane % 8]
+    }
+
+    /// Puts a number into a lane, of which there are sixteen.
+    #[inline(always)]
+    pub const fn set(&mut self, lane: usize, x: f32) {
+        self.0[lane / 8 % 2].0[lane % 8] = x;
+    }
+}
+
 /// The vectors of one level of instructions. Values of implementing types are proofs that the instructions exist.
 ///
 /// Masks have one bit per lane, the first lane in bit 0.
 pub trait Isa: Copy + Send + Sync + 'static {
     /// Eight lanes of f32.
     type F32x8: Copy;
+    /// Sixteen lanes of f32.
+    type F32x16: Copy;
     /// Four lanes of f64.
     type F64x4: Copy;
 
@@ -57,8 +84,39 @@ pub trait Isa: Copy + Send + Sync + 'static {
     fn min_f32(self, a: Self::F32x8, b: Self::F32x8) -> Self::F32x8;
     /// The larger ones; neither may be NaN.
     fn max_f32(self, a: Self::F32x8, b: Self::F32x8) -> Self::F32x8;
-    /// Where `a <= b`.
+    /// `a b`.
+    fn mul_f32(self, a: Self::F32x8, b: Self::F32x8) -> Self::F32x8;
+    /// `a - b`.
+    fn sub_f32(self, a: Self::F32x8, b: Self::F32x8) -> Self::F32x8;
+    /// Without the signs.
+    fn abs_f32(self, a: Self::F32x8) -> Self::F32x8;
+    /// Where `a < b`; false for NaN.
+    fn lt_f32(self, a: Self::F32x8, b: Self::F32x8) -> u32;
+    /// Where `a <= b`; false for NaN.
     fn le_f32(self, a: Self::F32x8, b: Self::F32x8) -> u32;
+
+    /// The same number in all lanes.
+    fn splat_f32x16(self, x: f32) -> Self::F32x16;
+    /// Sixteen numbers from memory.
+    fn load_f32x16(self, lanes: &Lanes16) -> Self::F32x16;
+    /// `a b + c`, rounded once or twice: for culling only.
+    fn mul_add_f32x16(self, a: Self::F32x16, b: Self::F32x16, c: Self::F32x16) -> Self::F32x16;
+    /// `a b - c`, rounded once or twice: for culling only.
+    fn mul_sub_f32x16(self, a: Self::F32x16, b: Self::F32x16, c: Self::F32x16) -> Self::F32x16;
+    /// `a b`.
+    fn mul_f32x16(self, a: Self::F32x16, b: Self::F32x16) -> Self::F32x16;
+    /// `a - b`.
+    fn sub_f32x16(self, a: Self::F32x16, b: Self::F32x16) -> Self::F32x16;
+    /// Without the signs.
+    fn abs_f32x16(self, a: Self::F32x16) -> Self::F32x16;
+    /// The smaller ones; neither may be NaN.
+    fn min_f32x16(self, a: Self::F32x16, b: Self::F32x16) -> Self::F32x16;
+    /// The larger ones; neither may be NaN.
+    fn max_f32x16(self, a: Self::F32x16, b: Self::F32x16) -> Self::F32x16;
+    /// Where `a < b`; false for NaN.
+    fn lt_f32x16(self, a: Self::F32x16, b: Self::F32x16) -> u32;
+    /// Where `a <= b`; false for NaN.
+    fn le_f32x16(self, a: Self::F32x16, b: Self::F32x16) -> u32;
 
     /// The same number in all lanes.
     fn splat(self, x: f64) -> Self::F64x4;

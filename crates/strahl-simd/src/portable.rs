@@ -6,6 +6,74 @@ use crate::{Isa, Level};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Portable;
 
+/// The operations of [`Isa`] on sixteen lanes, for a level whose widest vectors have eight.
+macro_rules! pairs_of_eight {
+    () => {
+        type F32x16 = [Self::F32x8; 2];
+
+        #[inline(always)]
+        fn splat_f32x16(self, x: f32) -> Self::F32x16 {
+            [self.splat_f32(x); 2]
+        }
+
+        #[inline(always)]
+        fn load_f32x16(self, lanes: &$crate::Lanes16) -> Self::F32x16 {
+            [self.load_f32(&lanes.0[0]), self.load_f32(&lanes.0[1])]
+        }
+
+        #[inline(always)]
+        fn mul_add_f32x16(self, a: Self::F32x16, b: Self::F32x16, c: Self::F32x16) -> Self::F32x16 {
+            [
+                self.mul_add(a[0], b[0], c[0]),
+                self.mul_add(a[1], b[1], c[1]),
+            ]
+        }
+
+        #[inline(always)]
+        fn mul_sub_f32x16(self, a: Self::F32x16, b: Self::F32x16, c: Self::F32x16) -> Self::F32x16 {
+            [
+                self.mul_sub(a[0], b[0], c[0]),
+                self.mul_sub(a[1], b[1], c[1]),
+            ]
+        }
+
+        #[inline(always)]
+        fn mul_f32x16(self, a: Self::F32x16, b: Self::F32x16) -> Self::F32x16 {
+            [self.mul_f32(a[0], b[0]), self.mul_f32(a[1], b[1])]
+        }
+
+        #[inline(always)]
+        fn sub_f32x16(self, a: Self::F32x16, b: Self::F32x16) -> Self::F32x16 {
+            [self.sub_f32(a[0], b[0]), self.sub_f32(a[1], b[1])]
+        }
+
+        #[inline(always)]
+        fn abs_f32x16(self, a: Self::F32x16) -> Self::F32x16 {
+            [self.abs_f32(a[0]), self.abs_f32(a[1])]
+        }
+
+        #[inline(always)]
+        fn min_f32x16(self, a: Self::F32x16, b: Self::F32x16) -> Self::F32x16 {
+            [self.min_f32(a[0], b[0]), self.min_f32(a[1], b[1])]
+        }
+
+        #[inline(always)]
+        fn max_f32x16(self, a: Self::F32x16, b: Self::F32x16) -> Self::F32x16 {
+            [self.max_f32(a[0], b[0]), self.max_f32(a[1], b[1])]
+        }
+
+        #[inline(always)]
+        fn lt_f32x16(self, a: Self::F32x16, b: Self::F32x16) -> u32 {
+            self.lt_f32(a[0], b[0]) | self.lt_f32(a[1], b[1]) << 8
+        }
+
+        #[inline(always)]
+        fn le_f32x16(self, a: Self::F32x16, b: Self::F32x16) -> u32 {
+            self.le_f32(a[0], b[0]) | self.le_f32(a[1], b[1]) << 8
+        }
+    };
+}
+
 /// The operations of [`Isa`] lane by lane, for a level whose vectors are arrays.
 macro_rules! lane_by_lane {
     () => {
@@ -45,6 +113,26 @@ macro_rules! lane_by_lane {
         #[inline(always)]
         fn max_f32(self, a: [f32; 8], b: [f32; 8]) -> [f32; 8] {
             std::array::from_fn(|i| if a[i] > b[i] { a[i] } else { b[i] })
+        }
+
+        #[inline(always)]
+        fn mul_f32(self, a: [f32; 8], b: [f32; 8]) -> [f32; 8] {
+            std::array::from_fn(|i| a[i] * b[i])
+        }
+
+        #[inline(always)]
+        fn sub_f32(self, a: [f32; 8], b: [f32; 8]) -> [f32; 8] {
+            std::array::from_fn(|i| a[i] - b[i])
+        }
+
+        #[inline(always)]
+        fn abs_f32(self, a: [f32; 8]) -> [f32; 8] {
+            std::array::from_fn(|i| a[i].abs())
+        }
+
+        #[inline(always)]
+        fn lt_f32(self, a: [f32; 8], b: [f32; 8]) -> u32 {
+            (0..8).fold(0, |mask, i| mask | u32::from(a[i] < b[i]) << i)
         }
 
         #[inline(always)]
@@ -134,7 +222,7 @@ macro_rules! lane_by_lane {
     };
 }
 #[cfg(target_arch = "x86_64")]
-pub(crate) use lane_by_lane;
+pub(crate) use {lane_by_lane, pairs_of_eight};
 
 impl Isa for Portable {
     const LEVEL: Level = Level::Portable;
@@ -145,4 +233,5 @@ impl Isa for Portable {
     }
 
     lane_by_lane!();
+    pairs_of_eight!();
 }

@@ -4,8 +4,8 @@
     reason = "vector instructions: the home of the workspace's unsafe code, see the crate's documentation"
 )]
 
-use crate::portable::lane_by_lane;
-use crate::{Isa, Lanes8, Level};
+use crate::portable::{lane_by_lane, pairs_of_eight};
+use crate::{Isa, Lanes8, Lanes16, Level};
 use std::arch::x86_64::*;
 
 /// Proof of SSE 4.1. Its vectors are arrays that the compiler splits into two registers.
@@ -67,9 +67,10 @@ impl Isa for Sse4 {
     }
 
     lane_by_lane!();
+    pairs_of_eight!();
 }
 
-/// The vectors of AVX2, which AVX-512 has more registers for. Comparisons give masks in vectors there too: in the registers that
+/// The vectors of AVX2, which AVX-512 has more registers for, up to eight lanes. Comparisons give masks in vectors there too: in the registers that
 /// AVX-512 has for masks they would have a longer way to a branch.
 macro_rules! avx {
     () => {
@@ -118,6 +119,24 @@ macro_rules! avx {
         fn max_f32(self, a: __m256, b: __m256) -> __m256 {
             // SAFETY: `self` proves AVX.
             unsafe { _mm256_max_ps(a, b) }
+        }
+
+        #[inline(always)]
+        fn mul_f32(self, a: __m256, b: __m256) -> __m256 {
+            // SAFETY: `self` proves AVX.
+            unsafe { _mm256_mul_ps(a, b) }
+        }
+
+        #[inline(always)]
+        fn sub_f32(self, a: __m256, b: __m256) -> __m256 {
+            // SAFETY: `self` proves AVX.
+            unsafe { _mm256_sub_ps(a, b) }
+        }
+
+        #[inline(always)]
+        fn abs_f32(self, a: __m256) -> __m256 {
+            // SAFETY: `self` proves AVX.
+            unsafe { _mm256_andnot_ps(_mm256_set1_ps(-0.0), a) }
         }
 
         #[inline(always)]
@@ -209,6 +228,12 @@ macro_rules! avx {
         }
 
         #[inline(always)]
+        fn lt_f32(self, a: __m256, b: __m256) -> u32 {
+            // SAFETY: `self` proves AVX.
+            unsafe { _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LT_OQ>(a, b)) as u32 }
+        }
+
+        #[inline(always)]
         fn le_f32(self, a: __m256, b: __m256) -> u32 {
             // SAFETY: `self` proves AVX.
             unsafe { _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(a, b)) as u32 }
@@ -243,6 +268,7 @@ impl Isa for Avx2 {
     }
 
     avx!();
+    pairs_of_eight!();
 }
 
 impl Isa for Avx512 {
@@ -262,4 +288,72 @@ impl Isa for Avx512 {
     }
 
     avx!();
+
+    type F32x16 = __m512;
+
+    #[inline(always)]
+    fn splat_f32x16(self, x: f32) -> __m512 {
+        // SAFETY: `self` proves AVX-512.
+        unsafe { _mm512_set1_ps(x) }
+    }
+
+    #[inline(always)]
+    fn load_f32x16(self, lanes: &Lanes16) -> __m512 {
+        // SAFETY: `self` proves AVX-512; the sixteen floats are there, aligned to 64 bytes by their type.
+        unsafe { _mm512_load_ps(lanes.0.as_ptr().cast()) }
+    }
+
+    #[inline(always)]
+    fn mul_add_f32x16(self, a: __m512, b: __m512, c: __m512) -> __m512 {
+        // SAFETY: `self` proves AVX-512.
+        unsafe { _mm512_fmadd_ps(a, b, c) }
+    }
+
+    #[inline(always)]
+    fn mul_sub_f32x16(self, a: __m512, b: __m512, c: __m512) -> __m512 {
+        // SAFETY: `self` proves AVX-512.
+        unsafe { _mm512_fmsub_ps(a, b, c) }
+    }
+
+    #[inline(always)]
+    fn mul_f32x16(self, a: __m512, b: __m512) -> __m512 {
+        // SAFETY: `self` proves AVX-512.
+        unsafe { _mm512_mul_ps(a, b) }
+    }
+
+    #[inline(always)]
+    fn sub_f32x16(self, a: __m512, b: __m512) -> __m512 {
+        // SAFETY: `self` proves AVX-512.
+        unsafe { _mm512_sub_ps(a, b) }
+    }
+
+    #[inline(always)]
+    fn abs_f32x16(self, a: __m512) -> __m512 {
+        // SAFETY: `self` proves AVX-512.
+        unsafe { _mm512_abs_ps(a) }
+    }
+
+    #[inline(always)]
+    fn min_f32x16(self, a: __m512, b: __m512) -> __m512 {
+        // SAFETY: `self` proves AVX-512.
+        unsafe { _mm512_min_ps(a, b) }
+    }
+
+    #[inline(always)]
+    fn max_f32x16(self, a: __m512, b: __m512) -> __m512 {
+        // SAFETY: `self` proves AVX-512.
+        unsafe { _mm512_max_ps(a, b) }
+    }
+
+    #[inline(always)]
+    fn lt_f32x16(self, a: __m512, b: __m512) -> u32 {
+        // SAFETY: `self` proves AVX-512.
+        unsafe { u32::from(_mm512_cmp_ps_mask::<_CMP_LT_OQ>(a, b)) }
+    }
+
+    #[inline(always)]
+    fn le_f32x16(self, a: __m512, b: __m512) -> u32 {
+        // SAFETY: `self` proves AVX-512.
+        unsafe { u32::from(_mm512_cmp_ps_mask::<_CMP_LE_OQ>(a, b)) }
+    }
 }

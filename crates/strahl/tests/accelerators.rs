@@ -1,4 +1,4 @@
-//! The film of a scene has the same bits with every accelerator, level of vector instructions, number of threads and order of tiles: for every scene of the
+//! The film of a scene has the same bits with every accelerator, level of vector instructions, with packets and without, number of threads and order of tiles: for every scene of the
 //! repository, and for the Standard Procedural Databases where they are at hand (`../shared/data/spd`, or the folder that
 //! `STRAHL_SPD` names).
 //!
@@ -57,20 +57,26 @@ fn compare(path: &Path) {
     let mut first = None;
     for kind in accelerators() {
         let scene = prepared.clone().build(kind);
-        for threads in [1, 2] {
+        // Others than `bvh` follow every ray by itself.
+        let ways: &[bool] = match kind {
+            AcceleratorKind::Bvh8(_) => &[true, false],
+            _ => &[true],
+        };
+        for (packets, threads) in ways.iter().flat_map(|p| [(*p, 1), (*p, 2)]) {
             for order in [TileOrder::Rows, TileOrder::Center] {
-                let options = RenderOptions {
+                let mut options = RenderOptions {
                     threads,
                     tile_order: order,
                     ..RenderOptions::new(&scene, width, height)
                 };
+                options.trace.packets = packets;
                 let done = strahl::render(&scene, &options, &()).expect("a picture");
                 let got = (done.film.sha256(), done.rays);
                 let expected = first.get_or_insert_with(|| got.clone());
                 assert_eq!(
                     &got,
                     expected,
-                    "{} {kind} {threads} {order:?}",
+                    "{} {kind} {packets} {threads} {order:?}",
                     path.display()
                 );
             }

@@ -12,7 +12,7 @@ use rays::{Batch, Kind, make};
 use std::time::Instant;
 use strahl::geometry::{MeshData, Sphere, TriangleMesh};
 use strahl::prelude::*;
-use strahl::tracing::{Prepared, RayClass, Tracer};
+use strahl::tracing::{Hit, PACKET, Prepared, RayClass, Tracer};
 
 /// How the benchmark is run.
 struct Plan<'a> {
@@ -62,11 +62,11 @@ pub(crate) fn run(args: &[&str]) -> Result<()> {
         plan.rounds, plan.side
     ));
     table.line(
-        "| scene | rays | strahl | Embree | ratio | nodes | tests | Embree high | robust | x16 | differ |\n\
-         |---|---|---|---|---|---|---|---|---|---|---|"
+        "| scene | rays | strahl | Embree | ratio | nodes | tests | Embree high | robust | strahl x16 | Embree x16 | ratio | differ |\n\
+         |---|---|---|---|---|---|---|---|---|---|---|---|---|"
             .into(),
     );
-    let mut ratios: Vec<(Kind, f64)> = vec![];
+    let mut ratios: Vec<Ratios> = vec![];
     let meshes: [(&'static str, Maker); 5] = [
         ("flake 66 k", |name| meshes::tessellated_flake(name, 3, 1)),
         ("terrain 524 k", |name| meshes::terrain(name, 512)),
@@ -112,17 +112,18 @@ impl Table {
     }
 
     /// Geometric means of the ratios of each kind.
-    fn means(&mut self, of: &str, ratios: &[(Kind, f64)]) {
+    fn means(&mut self, of: &str, ratios: &[Ratios]) {
         for kind in Kind::ALL {
-            let of_kind = || ratios.iter().filter(|(k, _)| *k == kind).map(|(_, r)| *r);
-            let count = of_kind().count();
-            if count > 0 {
-                let mean = of_kind().product::<f64>().powf(1.0 / count as f64);
-                self.line(format!(
-                    "| geometric mean of {of} | {} | | | {mean:.2} | | | | | | |",
-                    kind.name()
-                ));
-            }
+            let of_kind = || ratios.iter().filter(|r| r.kind == kind);
+            let Some(single) = mean(of_kind().map(|r| r.single)) else {
+                continue;
+            };
+            let packets = mean(of_kind().filter_map(|r| r.packets));
+            let packets = packets.map_or(String::new(), |r| format!("{r:.2}"));
+            self.line(format!(
+                "| geometric mean of {of} | {} | | | {single:.2} | | | | | | | {packets} | |",
+                kind.name()
+            ));
         }
     }
 
@@ -141,12 +142,18 @@ impl Table {
     }
 }
 
+/// The geometric mean; `None` of nothing.
+fn mean(of: impl Iterator<Item = f64> + Clone) -> Option<f64> {
+    let count = of.clone().count();
+    (count > 0).then(|| of.product::<f64>().powf(1.0 / count as f64))
+}
+
 fn one_mesh(
     device: &Device<'_>,
     mesh: &Mesh,
     plan: &Plan<'_>,
     table: &mut Table,
-) -> Result<Vec<(Kind, f64)>> {
+) -> Result<Vec<Ratios>> {
     let data = MeshData {
         positions: mesh.positions.clone(),
         indices: mesh.indices.clone(),
@@ -164,7 +171,7 @@ fn one_flake(
     levels: u32,
     plan: &Plan<'_>,
     table: &mut Table,
-) -> Result<Vec<(Kind, f64)>> {
+) -> Result<Vec<Ratios>> {
     let spheres = meshes::sphereflake(levels);
     let mut scene = Scene::new();
     let mut theirs = vec![];
@@ -187,7 +194,7 @@ fn one_scene<'e>(
     view: View,
     plan: &Plan<'_>,
     table: &mut Table,
-) -> Result<Vec<(Kind, f64)>> {
+) -> Result<Vec<Ratios>> {
     let options = |quality, robust| Options { quality, robust };
     let medium = options(Quality::Medium, false);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
@@ -211,7 +218,7 @@ fn one_scene<'e>(
     let (our_time, their_time) = (median(&mut our_times), median(&mut their_times));
     let stats = ours.stats();
     table.line(format!(
-        "| {name} | build, s | {our_time:.3} | {their_time:.3} | {:.2} | {:.1} + {:.1} bytes each | | | | | |",
+        "| {name} | build, s | {our_time:.3} | {their_time:.3} | {:.2} | {:.1} + {:.1} bytes each | | | | | | | |",
         their_time / our_time,
         stats.accelerator_bytes as f64 / count as f64,
         stats.geometry_bytes as f64 / count as f64,
@@ -236,45 +243,59 @@ fn compare(
     batch: &Batch,
     plan: &Plan<'_>,
     table: &mut Table,
-) -> (Kind, f64) {
+) -> Ratios {
     let any = batch.kind.any();
     let mut tracer = Tracer::new(ours);
-    // strahl, Embree in each setting, Embree's packets.
-    let programs = 1 + theirs.len() + usize::from(!plan.brief);
-    let mut times = vec![vec![]; programs];
-    let (mut found, mut expected) = (vec![], vec![]);
-    let (mut hits, mut their_hits) = (0, 0);
+    let mut programs = vec![Program::Ours];
+    programs.extend((0..theirs.len()).map(Program::Embree));
+    if !plan.brief || batch.kind.in_tiles() {
+        programs.extend([Program::OurPackets, Program::EmbreePackets]);
+    }
+    let mut times = vec![vec![]; programs.len()];
+    let (mut found, mut together, mut expected) = (vec![], vec![], vec![]);
+    let (mut hits, mut hits_together, mut their_hits) = (0, 0, 0);
     for round in 0..plan.rounds {
-        for turn in 0..programs {
+        for turn in 0..programs.len() {
             // Everyone comes after everyone else.
-            let program = (round + turn) % programs;
+            let number = (round + turn) % programs.len();
             let start = Instant::now();
-            if program == 0 {
-                if any {
+            match programs[number] {
+                Program::Ours if any => {
                     hits = batch
                         .rays()
                         .filter(|(ray, from)| tracer.any_opaque(ray, batch.range, *from))
                         .count();
-                } else {
+                }
+                Program::Ours => {
                     found.clear();
                     found.extend(batch.rays().map(|(ray, from)| {
                         let class = RayClass::Secondary;
-                        let hit = tracer.closest_hit(ray, batch.range, from, class);
-                        hit.map_or(f32::INFINITY, |h| h.t as f32)
+                        distance(tracer.closest_hit(ray, batch.range, from, class))
                     }));
                 }
-            } else if let Some(scene) = theirs.get(program - 1) {
-                if any {
-                    their_hits = scene.occluded(&batch.segments);
-                } else {
-                    scene.closest(&batch.segments, &mut expected);
+                Program::OurPackets => {
+                    hits_together = packets(&mut tracer, batch, &mut together);
                 }
-            } else {
-                std::hint::black_box(theirs[0].packets(&batch.segments, any));
+                Program::Embree(setting) if any => {
+                    their_hits = theirs[setting].occluded(&batch.segments);
+                }
+                Program::Embree(setting) => {
+                    theirs[setting].closest(&batch.segments, &mut expected);
+                }
+                Program::EmbreePackets => {
+                    std::hint::black_box(theirs[0].packets(&batch.segments, any));
+                }
             }
-            times[program].push(start.elapsed().as_secs_f64());
+            times[number].push(start.elapsed().as_secs_f64());
         }
     }
+    if programs.contains(&Program::OurPackets) {
+        assert!(
+            hits == hits_together && found == together,
+            "packets find what single rays find"
+        );
+    }
+    let single = tracer.stats;
     let differ = if any {
         hits.abs_diff(their_hits)
     } else {
@@ -282,25 +303,83 @@ fn compare(
         let pairs = found.iter().zip(&expected);
         pairs.filter(|(a, b)| !close(**a, **b)).count()
     };
-    let pairs = times[0].iter().zip(&times[1]);
-    let ratio = median(&mut pairs.map(|(a, b)| b / a).collect::<Vec<f64>>());
-    let rays = batch.segments.len();
-    let speeds: Vec<String> = times
-        .iter_mut()
-        .map(|t| format!("{:.1}", rays as f64 / 1e6 / median(t)))
-        .collect();
-    let others = match speeds.get(2..) {
-        Some([high, robust, packets]) => format!("{high} | {robust} | {packets}"),
-        _ => "| |".to_owned(),
+    let time_of = |program| {
+        let number = programs.iter().position(|p| *p == program)?;
+        Some(&times[number])
     };
+    let faster = |program, peer| {
+        let pairs = time_of(program)?.iter().zip(time_of(peer)?);
+        Some(median(&mut pairs.map(|(a, b)| b / a).collect::<Vec<f64>>()))
+    };
+    let rays = batch.segments.len();
+    let speed = |program| {
+        let median = time_of(program).map(|t| median(&mut t.clone()));
+        median.map_or(String::new(), |m| format!("{:.1}", rays as f64 / 1e6 / m))
+    };
+    let ratio = faster(Program::Ours, Program::Embree(0)).unwrap_or(f64::NAN);
+    let of_packets = faster(Program::OurPackets, Program::EmbreePackets);
+    let others = [
+        speed(Program::Embree(1)),
+        speed(Program::Embree(2)),
+        speed(Program::OurPackets),
+        speed(Program::EmbreePackets),
+        of_packets.map_or(String::new(), |r| format!("{r:.2}")),
+    ]
+    .join(" | ");
     let per_ray = |n: u64| n as f64 / (rays * plan.rounds) as f64;
     table.line(format!(
         "| {name} | {} | {} | {} | {ratio:.2} | {:.1} | {:.1} | {others} | {differ} of {rays} |",
         batch.kind.name(),
-        speeds[0],
-        speeds[1],
-        per_ray(tracer.stats.node_visits),
-        per_ray(tracer.stats.primitive_tests),
+        speed(Program::Ours),
+        speed(Program::Embree(0)),
+        per_ray(single.node_visits),
+        per_ray(single.primitive_tests),
     ));
-    (batch.kind, ratio)
+    Ratios {
+        kind: batch.kind,
+        single: ratio,
+        packets: of_packets,
+    }
+}
+
+/// Who traces rays.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Program {
+    Ours,
+    /// Sixteen rays at once.
+    OurPackets,
+    /// In one of its settings.
+    Embree(usize),
+    /// Sixteen rays at once, in its first setting.
+    EmbreePackets,
+}
+
+/// How many times faster strahl was than Embree.
+struct Ratios {
+    kind: Kind,
+    single: f64,
+    packets: Option<f64>,
+}
+
+/// How far away a hit is, in the numbers of Embree.
+fn distance(hit: Option<Hit>) -> f32 {
+    hit.map_or(f32::INFINITY, |h| h.t as f32)
+}
+
+/// Follows sixteen rays at once: the distances of their hits, or, of rays that any hit will do for, the number of those that have one.
+fn packets(tracer: &mut Tracer<'_>, batch: &Batch, found: &mut Vec<f32>) -> usize {
+    found.clear();
+    let mut hits = 0;
+    for (number, rays) in batch.rays.chunks(PACKET).enumerate() {
+        let first = number * PACKET;
+        let from = std::array::from_fn(|lane| batch.starts.get(first + lane));
+        if batch.kind.any() {
+            hits += tracer.any_opaques(rays, batch.range, &from).count_ones() as usize;
+        } else {
+            let class = RayClass::Secondary;
+            let closest = tracer.closest_hits(rays, batch.range, &from, class);
+            found.extend(closest.into_iter().take(rays.len()).map(distance));
+        }
+    }
+    hits
 }

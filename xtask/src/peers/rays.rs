@@ -36,6 +36,8 @@ pub(super) enum Kind {
     PrimaryTiles,
     /// To a point light; any hit.
     Shadow,
+    /// The same from the hits of squares of 4 by 4 pixels.
+    ShadowTiles,
     /// Mirrored at the first hit.
     Mirror,
     /// From the first hit, cosine-distributed.
@@ -43,10 +45,11 @@ pub(super) enum Kind {
 }
 
 impl Kind {
-    pub(super) const ALL: [Self; 5] = [
+    pub(super) const ALL: [Self; 6] = [
         Self::Primary,
         Self::PrimaryTiles,
         Self::Shadow,
+        Self::ShadowTiles,
         Self::Mirror,
         Self::Diffuse,
     ];
@@ -56,6 +59,7 @@ impl Kind {
             Self::Primary => "primary",
             Self::PrimaryTiles => "primary, 4x4",
             Self::Shadow => "shadow",
+            Self::ShadowTiles => "shadow, 4x4",
             Self::Mirror => "mirror",
             Self::Diffuse => "diffuse",
         }
@@ -63,7 +67,12 @@ impl Kind {
 
     /// Whether any hit will do.
     pub(super) fn any(self) -> bool {
-        self == Self::Shadow
+        matches!(self, Self::Shadow | Self::ShadowTiles)
+    }
+
+    /// Whether rays that follow each other lie together, sixteen of them in a square.
+    pub(super) fn in_tiles(self) -> bool {
+        matches!(self, Self::PrimaryTiles | Self::ShadowTiles)
     }
 }
 
@@ -72,7 +81,7 @@ impl Batch {
     fn new(kind: Kind) -> Self {
         let near = match kind {
             Kind::Primary | Kind::PrimaryTiles => 0.0,
-            Kind::Shadow | Kind::Mirror | Kind::Diffuse => f64::from(1e-4f32),
+            Kind::Shadow | Kind::ShadowTiles | Kind::Mirror | Kind::Diffuse => f64::from(1e-4f32),
         };
         let far = if kind.any() { 1.0 } else { f64::INFINITY };
         Self {
@@ -120,6 +129,22 @@ pub(super) fn make(scene: &RenderScene, view: View, side: u32) -> Vec<Batch> {
             block / blocks * 4 + inside / 4,
         )
     };
+    // The point, the normal on the side of the eye, and what rays from there are told.
+    let mut first_hit = |ray: &Ray| {
+        let hit = tracer.closest_hit(ray, Interval::FORWARD, None, RayClass::Camera)?;
+        let point = scene.surface_at(ray, &hit);
+        let normal = if point.n_geom.dot(ray.direction) < 0.0 {
+            point.n_geom
+        } else {
+            -point.n_geom
+        };
+        let from = Origin {
+            id: hit.id,
+            facet: hit.facet,
+            local: point.position,
+        };
+        Some((point.position, normal, from))
+    };
     for i in 0..side * side {
         let centre = |(x, y): (u32, u32)| camera.ray(f64::from(x) + 0.5, f64::from(y) + 0.5);
         let (Some(in_row), Some(in_tile)) = (centre((i % side, i / side)), centre(tile(i))) else {
@@ -127,33 +152,26 @@ pub(super) fn make(scene: &RenderScene, view: View, side: u32) -> Vec<Batch> {
         };
         batches[0].push(&in_row, None);
         batches[1].push(&in_tile, None);
+        if let Some((point, _, from)) = batches[1].rays.last().and_then(&mut first_hit) {
+            let to_light = Ray::new(point, view.light - point);
+            batches[3].push(&to_light, Some(from));
+        }
         let Some(ray) = batches[0].rays.last().copied() else {
             continue;
         };
-        let Some(hit) = tracer.closest_hit(&ray, Interval::FORWARD, None, RayClass::Camera) else {
+        let Some((position, normal, from)) = first_hit(&ray) else {
             continue;
         };
-        let point = scene.surface_at(&ray, &hit);
-        let normal = if point.n_geom.dot(ray.direction) < 0.0 {
-            point.n_geom
-        } else {
-            -point.n_geom
-        };
-        let from = Some(Origin {
-            id: hit.id,
-            facet: hit.facet,
-            local: point.position,
-        });
-        let position = point.position;
+        let from = Some(from);
         batches[2].push(&Ray::new(position, view.light - position), from);
         let mirrored = ray.direction - normal * (2.0 * normal.dot(ray.direction));
-        batches[3].push(&Ray::new(position, mirrored), from);
+        batches[4].push(&Ray::new(position, mirrored), from);
         let (u, v) = (rng.unit(), rng.unit());
         let x = normal.any_orthonormal_vector();
         let (sin, cos) = (2.0 * std::f64::consts::PI * u).sin_cos();
         let around = x * cos + normal.cross(x) * sin;
         let diffuse = around * v.sqrt() + normal * (1.0 - v).sqrt();
-        batches[4].push(&Ray::new(position, diffuse), from);
+        batches[5].push(&Ray::new(position, diffuse), from);
     }
     batches.into()
 }

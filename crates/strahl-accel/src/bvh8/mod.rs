@@ -5,6 +5,7 @@
 mod beam;
 mod build;
 mod node;
+mod packet;
 mod traverse;
 mod validate;
 mod watch;

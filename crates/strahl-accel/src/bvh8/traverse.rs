@@ -2,10 +2,10 @@ use super::node::{Child, Node, WIDTH};
 use super::{Bvh8, Tree};
 use crate::bvh::MAX_DEPTH;
 use crate::bvh::watch::BoxTree;
-use crate::cull::CullStart;
+use crate::cull::{CullClock, CullStart};
 use crate::list::visit_all;
 use crate::traversal::Leaf;
-use crate::{Accelerator, Beam, TraversalStats, Visitor};
+use crate::{Accelerator, Beam, Packet, PacketVisitor, TraversalStats, Visitor};
 use arrayvec::ArrayVec;
 use strahl_math::{Interval, Ray};
 use strahl_simd::{Isa, dispatch};
@@ -57,6 +57,16 @@ impl Accelerator for Bvh8 {
         }
     }
 
+    fn traverse_packet<V: PacketVisitor>(
+        &self,
+        packet: &mut Packet<'_>,
+        visitor: &mut V,
+        stats: &mut TraversalStats,
+    ) -> bool {
+        self.walk_packet(packet, visitor, stats);
+        true
+    }
+
     fn misses(&self, beam: &Beam) -> bool {
         self.beam_misses(beam)
     }
@@ -83,7 +93,7 @@ impl Accelerator for Bvh8 {
 }
 
 /// The constants of the culling test in vectors.
-struct Slabs<I: Isa> {
+pub(super) struct Slabs<I: Isa> {
     rd: [I::F32x8; 3],
     minus_near: [I::F32x8; 3],
     minus_far: [I::F32x8; 3],
@@ -96,7 +106,27 @@ impl<I: Isa> Slabs<I> {
     #[inline(always)]
     fn new(isa: I, start: &CullStart, t_min: f64) -> Self {
         let lanes = start.lanes(isa);
-        let [rd, near, far] = [lanes.rd, lanes.minus_near, lanes.minus_far];
+        let t_min = start.clock.t_min(t_min);
+        Self::of(
+            isa,
+            lanes.rd,
+            lanes.minus_near,
+            lanes.minus_far,
+            lanes.down,
+            t_min,
+        )
+    }
+
+    /// Of the constants of the axes; `down` has a bit for each along which the ray goes down.
+    #[inline(always)]
+    pub(super) fn of(
+        isa: I,
+        rd: [f32; 4],
+        near: [f32; 4],
+        far: [f32; 4],
+        down: u32,
+        t_min: f32,
+    ) -> Self {
         Self {
             rd: [
                 isa.splat_f32(rd[0]),
@@ -114,11 +144,11 @@ impl<I: Isa> Slabs<I> {
                 isa.splat_f32(far[2]),
             ],
             first: [
-                (lanes.down & 1) as usize,
-                (lanes.down >> 1 & 1) as usize,
-                (lanes.down >> 2 & 1) as usize,
+                (down & 1) as usize,
+                (down >> 1 & 1) as usize,
+                (down >> 2 & 1) as usize,
             ],
-            t_min: isa.splat_f32(start.clock.t_min(t_min)),
+            t_min: isa.splat_f32(t_min),
         }
     }
 
@@ -170,11 +200,40 @@ impl Tree {
             return;
         };
         let slabs = Slabs::new(isa, &start, range.min);
+        self.walk_from(
+            isa,
+            self.root,
+            &slabs,
+            start.clock,
+            ray,
+            range,
+            visitor,
+            stats,
+        );
+    }
+
+    /// Walks a subtree, nearer children first; returns what the visitor made of the upper end of the range.
+    #[inline(always)]
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "the inner loop, inlined into its two callers"
+    )]
+    pub(super) fn walk_from<I: Isa, V: Visitor>(
+        &self,
+        isa: I,
+        subtree: Child,
+        slabs: &Slabs<I>,
+        clock: CullClock,
+        ray: &Ray,
+        range: Interval,
+        visitor: &mut V,
+        stats: &mut TraversalStats,
+    ) -> f64 {
         let mut t_max = range.max;
-        let mut far = start.clock.t_max(t_max);
+        let mut far = clock.t_max(t_max);
         let mut far_lanes = isa.splat_f32(far);
         let mut stack = Stack::new();
-        let mut current = self.root;
+        let mut current = subtree;
         let mut cost = TraversalStats::default();
         'walk: loop {
             if V::WATCHES {
@@ -241,11 +300,11 @@ impl Tree {
                 };
                 let closest = visitor.visit_leaf(isa, &leaf, t_max);
                 if closest < t_max {
+                    t_max = closest;
                     if closest == f64::NEG_INFINITY {
                         break;
                     }
-                    t_max = closest;
-                    far = start.clock.t_max(t_max);
+                    far = clock.t_max(t_max);
                     far_lanes = isa.splat_f32(far);
                 }
             }
@@ -261,6 +320,7 @@ impl Tree {
             }
         }
         *stats += cost;
+        t_max
     }
 }
 

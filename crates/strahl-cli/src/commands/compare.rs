@@ -146,6 +146,7 @@ impl<'a> Comparison<'a> {
         options.trace.shadow_cache = !self.args.no_shadow_cache;
         // What structures cost is compared ray by ray.
         options.trace.beams = false;
+        options.trace.packets = false;
         options
     }
 

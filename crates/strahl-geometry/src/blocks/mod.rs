@@ -4,9 +4,11 @@
 //! Where a block decides, it computes what the primitive's own test computes, operation by operation, so the answers have the
 //! same bits.
 
+mod packet;
 mod spheres;
 mod triangles;
 
+pub use packet::{PacketLines, PacketShears};
 pub use spheres::SphereBlock;
 pub use triangles::{Coordinate, TriangleBlock};
 

@@ -15,9 +15,9 @@ fn dot<I: Isa>(isa: I, p: [I::F64x4; 3], q: [I::F64x4; 3]) -> I::F64x4 {
 #[repr(C, align(32))]
 pub struct SphereBlock {
     /// Per axis the centres of all lanes.
-    center: [[f64; LANES]; 3],
+    pub(super) center: [[f64; LANES]; 3],
     /// The radii without their signs.
-    radius: [f64; LANES],
+    pub(super) radius: [f64; LANES],
 }
 
 impl SphereBlock {

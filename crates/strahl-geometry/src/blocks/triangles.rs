@@ -81,7 +81,7 @@ fn products<I: Isa>(isa: I, p: &Image<I>, q: &Image<I>) -> (I::F64x4, I::F64x4) 
 #[repr(C, align(16))]
 pub struct TriangleBlock<T> {
     /// Per corner, per axis, the coordinates of all lanes.
-    corners: [[[T; LANES]; 3]; 3],
+    pub(super) corners: [[[T; LANES]; 3]; 3],
 }
 
 impl<T: Coordinate> TriangleBlock<T> {

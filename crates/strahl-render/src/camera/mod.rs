@@ -72,6 +72,11 @@ impl PrimaryRays {
         })
     }
 
+    /// Whether each place of the picture has one ray at most, that of [`PrimaryRays::ray`].
+    pub(crate) fn is_sharp(&self) -> bool {
+        self.lens.is_none() && !matches!(self.camera.projection, Projection::Mesh(_))
+    }
+
     /// All rays through a rectangle of the picture, given by two opposite corners; `None` if the camera bends or spreads them.
     pub(crate) fn beam(&self, low: [f64; 2], high: [f64; 2]) -> Option<Beam> {
         let flat = matches!(

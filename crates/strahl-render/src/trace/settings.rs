@@ -26,6 +26,9 @@ pub struct TraceSettings {
     /// Whether pixels that see nothing are found out many at once. The picture is the same; the costs of accelerators and pixels are
     /// told without.
     pub beams: bool,
+    /// Whether the rays of neighbouring pixels are followed together, sixteen at once, where the acceleration structure knows how. The
+    /// picture is the same; the costs of accelerators and pixels are told without.
+    pub packets: bool,
 }
 
 impl TraceSettings {
@@ -45,6 +48,7 @@ impl TraceSettings {
             straight_counts: s.straight_counts,
             shadow_cache: true,
             beams: true,
+            packets: true,
         }
     }
 

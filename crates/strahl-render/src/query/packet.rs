@@ -1,0 +1,327 @@
+//! Searches for several rays at once: what can be told of all of them together is, the rest is what a single ray does.
+
+use super::kinds::{AnyOpaque, Closest, Query};
+use super::{From, GroupVisitor, NONE, Search, Tracer};
+use crate::blocks::{Block, Blocks, LeafClass, PacketCulls};
+use crate::hit::{Hit, Origin, RayClass};
+use crate::scene::{RenderGroup, RenderScene};
+use std::array;
+use strahl_accel::{
+    Accelerator, BLOCK, Leaf, PACKET, Packet, PacketVisitor, TraversalStats, Visitor, lanes_of,
+};
+use strahl_geometry::blocks::{Hits, PacketLines, PacketShears, SphereBlock, TriangleBlock};
+use strahl_geometry::{RayShear, Scratch};
+use strahl_math::{Interval, Ray};
+use strahl_simd::Isa;
+
+/// From fewer rays a block is not kept by a look at all of them together.
+const FEW: u32 = 3;
+
+impl Tracer<'_> {
+    /// [`Tracer::closest_hit`] of several rays, at most [`PACKET`], which should be close to each other: the same hits, sooner.
+    pub fn closest_hits(
+        &mut self,
+        rays: &[Ray],
+        range: Interval,
+        from: &[Option<&Origin>; PACKET],
+        class: RayClass,
+    ) -> [Option<Hit>; PACKET] {
+        let mut queries: [Closest; PACKET] = array::from_fn(|_| Closest { best: None });
+        let asked = Asked {
+            rays,
+            min: range.min,
+            from,
+            class,
+            first: NONE,
+        };
+        self.search_packet(&asked, common_end(rays, range), &mut queries);
+        queries.map(|q| q.best)
+    }
+
+    /// [`Tracer::any_opaque`] of several rays, at most [`PACKET`], as bits.
+    pub fn any_opaques(
+        &mut self,
+        rays: &[Ray],
+        range: Interval,
+        from: &[Option<&Origin>; PACKET],
+    ) -> u32 {
+        let asked = Asked {
+            rays,
+            min: range.min,
+            from,
+            class: RayClass::Shadow,
+            first: NONE,
+        };
+        self.search_any(&asked, common_end(rays, range)).0
+    }
+
+    /// [`Tracer::occluded`] of several rays to one light, as bits; each has a range from `min` to the `t_max` of its lane.
+    pub(crate) fn all_occluded(
+        &mut self,
+        rays: &[Ray],
+        min: f64,
+        t_max: [f64; PACKET],
+        from: &[Option<&Origin>; PACKET],
+        light: usize,
+    ) -> u32 {
+        let asked = Asked {
+            rays,
+            min,
+            from,
+            class: RayClass::Shadow,
+            first: self.occluders[light],
+        };
+        let (found, last) = self.search_any(&asked, t_max);
+        if let Some(id) = last
+            && self.remembers
+        {
+            self.occluders[light] = self.scene.groups[0].prim_of(id);
+        }
+        found
+    }
+
+    /// The rays that something stops, as bits, and what stops the last of them.
+    fn search_any(&mut self, asked: &Asked<'_>, t_max: [f64; PACKET]) -> (u32, Option<u64>) {
+        let mut queries: [AnyOpaque; PACKET] = array::from_fn(|_| AnyOpaque { found: None });
+        self.search_packet(asked, t_max, &mut queries);
+        let (mut found, mut last) = (0, None);
+        for (lane, query) in queries.iter().enumerate() {
+            found |= u32::from(query.found.is_some()) << lane;
+            last = query.found.or(last);
+        }
+        (found, last)
+    }
+
+    fn search_packet<Q: Query>(
+        &mut self,
+        asked: &Asked<'_>,
+        t_max: [f64; PACKET],
+        queries: &mut [Q; PACKET],
+    ) {
+        let group = &self.scene.groups[0];
+        let parts = self.remembers;
+        let part = if parts { Q::part(group) } else { None };
+        let (accelerator, blocks) = match part {
+            None => (&group.accelerator, &group.blocks),
+            Some(part) => (&part.accelerator, &part.blocks),
+        };
+        let class = asked.class.bit();
+        let mut stats = TraversalStats::default();
+        let mut nested = TraversalStats::default();
+        let mut shears = [RayShear::UNUSED; PACKET];
+        let mut culls = PacketCulls::default();
+        let max_abs = group.bounds.max_abs();
+        if group.sheared {
+            for (shear, ray) in shears.iter_mut().zip(asked.rays) {
+                *shear = RayShear::new(ray);
+            }
+            let used = asked.rays.len().min(PACKET);
+            culls.shears = PacketShears::new(&shears[..used], max_abs);
+        }
+        if blocks.has_spheres() {
+            culls.lines = Some(PacketLines::new(asked.rays, max_abs));
+        }
+        let mut visitor = Together {
+            scene: self.scene,
+            scratch: &mut self.scratch,
+            stats: &mut nested,
+            class,
+            parts,
+            group,
+            blocks,
+            asked,
+            from_prims: asked
+                .from
+                .map(|from| from.map_or(NONE, |o| group.prim_of(o.id))),
+            shears: &shears,
+            culls,
+            plain: group
+                .common
+                .is_some_and(|(visible, flags)| visible & class != 0 && Q::is_plain(flags)),
+            queries,
+        };
+        let mut packet = Packet {
+            rays: asked.rays,
+            min: asked.min,
+            t_max,
+        };
+        if asked.first != NONE {
+            for lane in 0..asked.rays.len().min(PACKET) {
+                let t_max = &mut packet.t_max[lane];
+                if *t_max > f64::NEG_INFINITY {
+                    *t_max = visitor.visit(asked.first, lane, *t_max);
+                    stats.primitive_tests += 1;
+                }
+            }
+        }
+        if !accelerator.traverse_packet(&mut packet, &mut visitor, &mut stats) {
+            for (lane, ray) in asked.rays.iter().enumerate().take(PACKET) {
+                let range = Interval::new(asked.min, packet.t_max[lane]);
+                if range.max > f64::NEG_INFINITY {
+                    let mut one = OfLane {
+                        visitor: &mut visitor,
+                        lane,
+                    };
+                    accelerator.traverse(ray, range, &mut one, &mut stats);
+                }
+            }
+        }
+        stats += nested;
+        self.stats += stats;
+    }
+}
+
+/// The upper end of a range in the lanes of these rays.
+fn common_end(rays: &[Ray], range: Interval) -> [f64; PACKET] {
+    array::from_fn(|lane| {
+        if lane < rays.len() {
+            range.max
+        } else {
+            f64::NEG_INFINITY
+        }
+    })
+}
+
+/// What is asked about several rays.
+struct Asked<'r> {
+    rays: &'r [Ray],
+    min: f64,
+    /// Where they start.
+    from: &'r [Option<&'r Origin>; PACKET],
+    class: RayClass,
+    /// The primitive to look at before all others, or [`NONE`].
+    first: u32,
+}
+
+/// A search for several rays in the world.
+struct Together<'v, 's, Q> {
+    scene: &'s RenderScene,
+    scratch: &'v mut Scratch,
+    /// Of searches in the groups within.
+    stats: &'v mut TraversalStats,
+    class: u8,
+    parts: bool,
+    group: &'s RenderGroup,
+    blocks: &'s Blocks,
+    asked: &'v Asked<'v>,
+    from_prims: [u32; PACKET],
+    shears: &'v [RayShear; PACKET],
+    culls: PacketCulls,
+    plain: bool,
+    queries: &'v mut [Q; PACKET],
+}
+
+/// Runs an expression with the visitor of a single ray: `of_lane!(self, lane, t_max, visitor => expression)`. No closure: that
+/// would not be compiled for the instructions of its caller.
+macro_rules! of_lane {
+    ($self:ident, $lane:expr, $t_max:expr, $visitor:ident => $body:expr) => {{
+        let lane = $lane % PACKET;
+        let mut search = Search {
+            scene: $self.scene,
+            scratch: $self.scratch,
+            stats: $self.stats,
+            class: $self.class,
+            parts: $self.parts,
+            query: &mut $self.queries[lane],
+        };
+        let from: From<'_> = $self.asked.from[lane].map(|o| (o, o.id));
+        let mut $visitor = GroupVisitor {
+            search: &mut search,
+            group: $self.group,
+            blocks: $self.blocks,
+            ray: &$self.asked.rays[lane],
+            shear: &$self.shears[lane],
+            range_min: $self.asked.min,
+            from,
+            from_prim: $self.from_prims[lane],
+            base: 0,
+            t_max: $t_max,
+            plain: $self.plain,
+        };
+        $body
+    }};
+}
+
+impl<Q: Query> Together<'_, '_, Q> {
+    /// Tests the primitives of a leaf for several rays.
+    #[inline(always)]
+    fn leaf_of_blocks<I: Isa, B: Block>(
+        &mut self,
+        isa: I,
+        leaf: &Leaf<'_>,
+        lanes: u32,
+        t_max: &mut [f64; PACKET],
+    ) {
+        let mut hits = Hits::default();
+        for index in 0..leaf.blocks() {
+            let block = B::of(self.blocks, leaf.first_block + index);
+            let used = leaf.count - index * BLOCK;
+            let mut left = lanes;
+            if lanes.count_ones() >= FEW {
+                left &= block.may_hit(isa, &self.culls, used);
+            }
+            for lane in lanes_of(left) {
+                let before = t_max[lane];
+                if before > f64::NEG_INFINITY {
+                    t_max[lane] = of_lane!(self, lane, before, visitor =>
+                        visitor.block(isa, leaf, index, block, &mut hits, before));
+                }
+            }
+        }
+    }
+}
+
+impl<Q: Query> PacketVisitor for Together<'_, '_, Q> {
+    const ANY: bool = Q::ANY;
+
+    fn visit(&mut self, id: u32, lane: usize, t_max: f64) -> f64 {
+        of_lane!(self, lane, t_max, visitor => visitor.visit(id, t_max))
+    }
+
+    #[inline(always)]
+    fn visit_leaf<I: Isa>(&mut self, isa: I, leaf: &Leaf<'_>, lane: usize, t_max: f64) -> f64 {
+        of_lane!(self, lane, t_max, visitor => visitor.visit_leaf(isa, leaf, t_max))
+    }
+
+    #[inline(always)]
+    fn visit_leaf_together<I: Isa>(
+        &mut self,
+        isa: I,
+        leaf: &Leaf<'_>,
+        lanes: u32,
+        t_max: &mut [f64; PACKET],
+    ) {
+        match LeafClass::from_number(leaf.class) {
+            LeafClass::Mesh => {
+                self.leaf_of_blocks::<I, TriangleBlock<f32>>(isa, leaf, lanes, t_max);
+            }
+            LeafClass::Triangles => {
+                self.leaf_of_blocks::<I, TriangleBlock<f64>>(isa, leaf, lanes, t_max);
+            }
+            LeafClass::Spheres => self.leaf_of_blocks::<I, SphereBlock>(isa, leaf, lanes, t_max),
+            LeafClass::Single => {
+                for id in leaf.ids() {
+                    for lane in lanes_of(lanes) {
+                        if t_max[lane] > f64::NEG_INFINITY {
+                            t_max[lane] = self.visit(*id, lane, t_max[lane]);
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// The visitor of one ray of a packet, for structures that have no way to follow packets.
+struct OfLane<'t, V> {
+    visitor: &'t mut V,
+    lane: usize,
+}
+
+impl<V: PacketVisitor> Visitor for OfLane<'_, V> {
+    const ANY: bool = V::ANY;
+
+    fn visit(&mut self, id: u32, t_max: f64) -> f64 {
+        self.visitor.visit(id, self.lane, t_max)
+    }
+}
