@@ -168,10 +168,10 @@ fn push<T>(list: &mut Vec<T>, item: T) -> u32 {
 }
 
 /// The rays of a packet as blocks see them; `None` where they have too little in common, or no block asks.
-#[derive(Debug, Default)]
-pub(crate) struct PacketCulls {
-    pub(crate) shears: Option<PacketShears>,
-    pub(crate) lines: Option<PacketLines>,
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PacketCulls<'c> {
+    pub(crate) shears: Option<&'c PacketShears>,
+    pub(crate) lines: Option<&'c PacketLines>,
 }
 
 /// A block of primitives of one class.
@@ -193,7 +193,7 @@ pub(crate) trait Block: Sized {
     ) -> u32;
 
     /// The rays of a packet that may meet one of the first `used` primitives, as bits: those that are missing certainly meet none.
-    fn may_hit<I: Isa>(&self, isa: I, packet: &PacketCulls, used: usize) -> u32;
+    fn may_hit<I: Isa>(&self, isa: I, packet: &PacketCulls<'_>, used: usize) -> u32;
 
     /// Whether a ray that starts on the primitive of a lane may meet it again ahead.
     fn is_entered(&self, _lane: usize, _ray: &Ray) -> bool {
@@ -222,8 +222,8 @@ impl Block for TriangleBlock<f32> {
     }
 
     #[inline(always)]
-    fn may_hit<I: Isa>(&self, isa: I, packet: &PacketCulls, used: usize) -> u32 {
-        match &packet.shears {
+    fn may_hit<I: Isa>(&self, isa: I, packet: &PacketCulls<'_>, used: usize) -> u32 {
+        match packet.shears {
             Some(shears) => self.may_hit(isa, shears, used),
             None => u32::MAX,
         }
@@ -251,8 +251,8 @@ impl Block for TriangleBlock<f64> {
     }
 
     #[inline(always)]
-    fn may_hit<I: Isa>(&self, isa: I, packet: &PacketCulls, used: usize) -> u32 {
-        match &packet.shears {
+    fn may_hit<I: Isa>(&self, isa: I, packet: &PacketCulls<'_>, used: usize) -> u32 {
+        match packet.shears {
             Some(shears) => self.may_hit(isa, shears, used),
             None => u32::MAX,
         }
@@ -280,8 +280,8 @@ impl Block for SphereBlock {
     }
 
     #[inline(always)]
-    fn may_hit<I: Isa>(&self, isa: I, packet: &PacketCulls, used: usize) -> u32 {
-        match &packet.lines {
+    fn may_hit<I: Isa>(&self, isa: I, packet: &PacketCulls<'_>, used: usize) -> u32 {
+        match packet.lines {
             Some(lines) => self.may_hit(isa, lines, used),
             None => u32::MAX,
         }

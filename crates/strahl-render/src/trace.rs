@@ -18,7 +18,7 @@ mod outcome;
 mod settings;
 mod together;
 
-use together::{Ahead, KnownShadows};
+use together::Ahead;
 
 pub use outcome::{FirstHit, RayCounts, SampleResult};
 pub use settings::TraceSettings;
@@ -33,7 +33,7 @@ use crate::shadow::{Shadow, ShadowRay};
 use crate::surface::{Split, Surface};
 use strahl_math::{DVec3, Interval, Ray};
 use strahl_shade::texture::TexturePaint;
-use strahl_shade::{Color, Light, ShadingModel, SpectralPart};
+use strahl_shade::{Color, Light, LightSample, ShadingModel, SpectralPart};
 
 /// Grows ray trees; owns the working memory of one thread.
 #[derive(Debug)]
@@ -319,11 +319,11 @@ impl<'s> TreeTracer<'s> {
         };
 
         let mut found;
-        let (surface, shadows) = match ahead {
-            Some(ahead) => (&mut ahead.surface, ahead.shadows),
+        let (surface, known) = match ahead {
+            Some(ahead) => (&mut ahead.surface, Some(&ahead.lights)),
             None => {
                 found = Surface::at(scene, branch, hit, &self.media, self.uv);
-                (&mut found, KnownShadows::NONE)
+                (&mut found, None)
             }
         };
         layers::paint(scene, surface, hit, &mut self.paint);
@@ -361,7 +361,7 @@ impl<'s> TreeTracer<'s> {
         let shining = scene.lights_in(surface.lit.set);
         for number in 0..shining.map_or(scene.lights.len(), <[u32]>::len) {
             let light = shining.map_or(number, |list| list[number] as usize);
-            let known = shadows.of(light);
+            let known = known.and_then(|k| k.of(light));
             let term = self.light(surface, hit, model, light, known, branch, index, observer);
             node.local += term.diffuse + term.specular;
             if O::ACTIVE {
@@ -394,7 +394,7 @@ impl<'s> TreeTracer<'s> {
         hit: &Hit,
         model: ShadingModel,
         light: usize,
-        stopped: Option<bool>,
+        known: Option<&(LightSample, bool)>,
         branch: &Branch,
         node: u32,
         observer: &mut O,
@@ -410,8 +410,12 @@ impl<'s> TreeTracer<'s> {
             diffuse: Color::BLACK,
             specular: Color::BLACK,
         };
-        let Some(sample) = scene_light.illuminate(surface.resolved.point.position) else {
-            return term;
+        let sample = match known {
+            Some((sample, _)) => *sample,
+            None => match scene_light.illuminate(surface.resolved.point.position) {
+                Some(sample) => sample,
+                None => return term,
+            },
         };
         term.n_dot_l = surface.n_shade.dot(sample.l);
         term.color = sample.color;
@@ -445,7 +449,7 @@ impl<'s> TreeTracer<'s> {
                     media: branch.media,
                 };
                 let (media, hits) = (&mut self.media, &mut self.shadow_hits);
-                let shadow = match stopped {
+                let shadow = match known.map(|(_, stopped)| *stopped) {
                     None => self.tracer.shadow(&shadow_ray, media, hits),
                     Some(true) => Shadow::STOPPED,
                     Some(false) => self.tracer.filtered(&shadow_ray, media, hits),

@@ -377,7 +377,8 @@ fn packets(tracer: &mut Tracer<'_>, batch: &Batch, found: &mut Vec<f32>) -> usiz
             hits += tracer.any_opaques(rays, batch.range, &from).count_ones() as usize;
         } else {
             let class = RayClass::Secondary;
-            let closest = tracer.closest_hits(rays, batch.range, &from, class);
+            let mut closest = [None; PACKET];
+            tracer.closest_hits(rays, batch.range, &from, class, &mut closest);
             found.extend(closest.into_iter().take(rays.len()).map(distance));
         }
     }

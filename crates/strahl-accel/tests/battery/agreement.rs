@@ -10,7 +10,7 @@ use strahl_simd::Simd;
 
 /// How many times the usual number of rays to try: `STRAHL_BATTERY=20 cargo test --release` makes it more than a million
 /// for each structure.
-fn effort() -> usize {
+pub(crate) fn effort() -> usize {
     let asked = std::env::var("STRAHL_BATTERY").ok();
     asked.map_or(1, |n| n.parse().expect("STRAHL_BATTERY is a number"))
 }

@@ -101,12 +101,12 @@ impl Visitor for Closest<'_> {
     }
 }
 
-struct Any<'a> {
-    hit: Hit,
-    boxes: &'a [Aabb],
-    ray: Ray,
-    range: Interval,
-    found: bool,
+pub(crate) struct Any<'a> {
+    pub(crate) hit: Hit,
+    pub(crate) boxes: &'a [Aabb],
+    pub(crate) ray: Ray,
+    pub(crate) range: Interval,
+    pub(crate) found: bool,
 }
 
 impl Visitor for Any<'_> {

@@ -6,6 +6,7 @@
 mod agreement;
 mod hits;
 mod names;
+mod packets;
 mod scenes;
 mod trees;
 mod way;

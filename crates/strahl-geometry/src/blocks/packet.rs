@@ -148,12 +148,14 @@ impl<T: Coordinate> TriangleBlock<T> {
 
 /// The lines of the rays of a packet, side by side, for spheres.
 ///
-/// With f the way from the centre to the origin, each coordinate rounded by 3uM, and e the unit direction, rounded by 2u, the nearest point
-/// of the line is at f - (f·e) e. Its coordinates are wrong by at most δ = 64uM, |f| being at most √3 M.
+/// With f the way from the centre to the origin, each coordinate rounded by 3uM, the nearest point of the line is at f - (f·d / d²) d. Its
+/// coordinates are wrong by at most δ = 64uM: |f| is at most √3 M, and d, 1/d², the sum and the products are rounded by 10u together.
 #[derive(Clone, Copy, Debug)]
 pub struct PacketLines {
     origin: [Lanes16; 3],
     direction: [Lanes16; 3],
+    /// 1/d².
+    inverse: Lanes16,
     /// √3 δ.
     margin: f64,
 }
@@ -165,15 +167,17 @@ impl PacketLines {
         let mut all = Self {
             origin: [nothing; 3],
             direction: [nothing; 3],
+            inverse: nothing,
             margin: 0.0,
         };
         let mut farthest = 0.0;
         for (lane, ray) in rays.iter().enumerate().take(PACKET) {
-            let unit = ray.direction * (1.0 / ray.direction.length());
+            let d = ray.direction;
             for axis in 0..3 {
                 all.origin[axis].set(lane, ray.origin[axis] as f32);
-                all.direction[axis].set(lane, unit[axis] as f32);
+                all.direction[axis].set(lane, d[axis] as f32);
             }
+            all.inverse.set(lane, (1.0 / d.dot(d)) as f32);
             let distance = ray.origin.abs().element_sum();
             // A NaN stays.
             farthest = if distance <= farthest {
@@ -210,6 +214,7 @@ impl SphereBlock {
             let along = isa.mul_f32x16(x, dx);
             let along = isa.mul_add_f32x16(y, dy, along);
             let along = isa.mul_add_f32x16(z, dz, along);
+            let along = isa.mul_f32x16(along, isa.load_f32x16(&rays.inverse));
             // The signs of the differences do not matter.
             let x = isa.mul_sub_f32x16(along, dx, x);
             let y = isa.mul_sub_f32x16(along, dy, y);
@@ -223,5 +228,112 @@ impl SphereBlock {
             met |= !isa.lt_f32x16(isa.splat_f32x16(limit as f32), square);
         }
         met
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Sphere;
+    use crate::blocks::Hits;
+    use strahl_math::{DVec3, Interval};
+    use strahl_simd::{Simd, dispatch};
+
+    /// Numbers in -1..1.
+    struct Signed(u64);
+
+    impl Signed {
+        fn next(&mut self) -> f64 {
+            self.0 = self
+                .0
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1);
+            (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+        }
+
+        fn point(&mut self) -> DVec3 {
+            DVec3::new(self.next(), self.next(), self.next())
+        }
+    }
+
+    /// Sixteen rays close to each other, towards points of things or just beside.
+    fn rays(random: &mut Signed, targets: &[DVec3], scale: f64) -> Vec<Ray> {
+        let eye = random.point() * scale * 3.0;
+        (0..PACKET)
+            .map(|lane| {
+                let beside = random.point() * scale * [0.0, 1e-7, 1e-3][lane % 3];
+                let target = targets[lane % targets.len()] + beside;
+                Ray::new(eye + random.point() * scale * 0.1, (target - eye) * 0.7)
+            })
+            .collect()
+    }
+
+    #[test]
+    fn no_ray_that_hits_a_triangle_is_left_out() {
+        let mut random = Signed(3);
+        let (mut hits, mut out) = (0, 0);
+        for round in 0..6000 {
+            let scale = [1.0, 1e-30, 1e6, 1e18, 1e25][round % 5];
+            let size = [1.0, 0.01, 1e-4][round / 5 % 3];
+            let place = random.point();
+            let corners: [[DVec3; 3]; LANES] = std::array::from_fn(|_| {
+                std::array::from_fn(|_| {
+                    let p = (place + random.point() * size) * scale;
+                    p.as_vec3().as_dvec3()
+                })
+            });
+            let mut block = TriangleBlock::<f32>::EMPTY;
+            for (lane, t) in corners.iter().enumerate().skip(1) {
+                block.set(lane - 1, t.map(|p| p.as_vec3().to_array()));
+            }
+            let [a, b, c] = corners[1];
+            let rays = rays(&mut random, &[a, (a + b) / 2.0, (a + b + c) / 3.0], scale);
+            let shears: Vec<RayShear> = rays.iter().map(RayShear::new).collect();
+            let Some(culls) = PacketShears::new(&shears, scale * 2.0) else {
+                continue;
+            };
+            for simd in Simd::available() {
+                let met = dispatch!(simd, isa => block.may_hit(isa, &culls, LANES - 1));
+                for (lane, shear) in shears.iter().enumerate() {
+                    let found = dispatch!(simd, isa =>
+                        block.hits(isa, shear, Interval::LINE, &mut Hits::default()));
+                    assert!(found == 0 || met >> lane & 1 == 1, "{round} {lane}");
+                    hits += u32::from(found != 0);
+                    out += u32::from(met >> lane & 1 == 0);
+                }
+            }
+        }
+        assert!(hits > 50_000 && out > 20_000, "{hits} hits, {out} out");
+    }
+
+    #[test]
+    fn no_ray_that_hits_a_sphere_is_left_out() {
+        let mut random = Signed(4);
+        let (mut hits, mut out) = (0, 0);
+        for round in 0..6000 {
+            let scale = [1.0, 1e-12, 1e6, 1e15][round % 4];
+            let size = [1.0, 0.01, 1e-4][round / 4 % 3] * scale;
+            let mut block = SphereBlock::EMPTY;
+            let mut targets = vec![];
+            for lane in 0..LANES - 1 {
+                let (center, radius) = (random.point() * scale, size * random.next().abs());
+                block.set(lane, &Sphere::new(center, radius));
+                // At the rim, where the line touches.
+                targets.push(center + random.point().normalize() * radius);
+            }
+            let rays = rays(&mut random, &targets, scale);
+            let culls = PacketLines::new(&rays, scale * 3.0);
+            for simd in Simd::available() {
+                let met = dispatch!(simd, isa => block.may_hit(isa, &culls, LANES - 1));
+                for (lane, ray) in rays.iter().enumerate() {
+                    let found = dispatch!(simd, isa =>
+                        block.hits(isa, ray, Interval::LINE, &mut Hits::default()));
+                    assert!(found == 0 || met >> lane & 1 == 1, "{round} {lane}");
+                    hits += u32::from(found != 0);
+                    out += u32::from(met >> lane & 1 == 0);
+                }
+            }
+        }
+        assert!(hits > 50_000 && out > 20_000, "{hits} hits, {out} out");
     }
 }

@@ -39,7 +39,9 @@ impl SphereBlock {
     /// Whether a ray that starts on the sphere of a lane goes inside, and so meets it again ahead.
     #[inline]
     pub fn is_entered(&self, lane: usize, ray: &Ray) -> bool {
-        let center = DVec3::from_array(self.center.map(|lanes| lanes[lane]));
+        // No `map`: it would not be inlined into kernels.
+        let [x, y, z] = &self.center;
+        let center = DVec3::new(x[lane], y[lane], z[lane]);
         (ray.origin - center).dot(ray.direction) < 0.0
     }
 

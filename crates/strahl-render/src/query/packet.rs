@@ -5,7 +5,7 @@ use super::{From, GroupVisitor, NONE, Search, Tracer};
 use crate::blocks::{Block, Blocks, LeafClass, PacketCulls};
 use crate::hit::{Hit, Origin, RayClass};
 use crate::scene::{RenderGroup, RenderScene};
-use std::array;
+use arrayvec::ArrayVec;
 use strahl_accel::{
     Accelerator, BLOCK, Leaf, PACKET, Packet, PacketVisitor, TraversalStats, Visitor, lanes_of,
 };
@@ -18,15 +18,17 @@ use strahl_simd::Isa;
 const FEW: u32 = 3;
 
 impl Tracer<'_> {
-    /// [`Tracer::closest_hit`] of several rays, at most [`PACKET`], which should be close to each other: the same hits, sooner.
+    /// [`Tracer::closest_hit`] of several rays, at most [`PACKET`], which should be close to each other: the same hits, sooner. `from` says
+    /// where each starts, `hits` takes what they meet.
     pub fn closest_hits(
         &mut self,
         rays: &[Ray],
         range: Interval,
         from: &[Option<&Origin>; PACKET],
         class: RayClass,
-    ) -> [Option<Hit>; PACKET] {
-        let mut queries: [Closest; PACKET] = array::from_fn(|_| Closest { best: None });
+        hits: &mut [Option<Hit>; PACKET],
+    ) {
+        let mut queries = [const { Closest { best: None } }; PACKET];
         let asked = Asked {
             rays,
             min: range.min,
@@ -35,7 +37,9 @@ impl Tracer<'_> {
             first: NONE,
         };
         self.search_packet(&asked, common_end(rays, range), &mut queries);
-        queries.map(|q| q.best)
+        for (hit, query) in hits.iter_mut().zip(queries) {
+            *hit = query.best;
+        }
     }
 
     /// [`Tracer::any_opaque`] of several rays, at most [`PACKET`], as bits.
@@ -82,7 +86,7 @@ impl Tracer<'_> {
 
     /// The rays that something stops, as bits, and what stops the last of them.
     fn search_any(&mut self, asked: &Asked<'_>, t_max: [f64; PACKET]) -> (u32, Option<u64>) {
-        let mut queries: [AnyOpaque; PACKET] = array::from_fn(|_| AnyOpaque { found: None });
+        let mut queries = [const { AnyOpaque { found: None } }; PACKET];
         self.search_packet(asked, t_max, &mut queries);
         let (mut found, mut last) = (0, None);
         for (lane, query) in queries.iter().enumerate() {
@@ -108,18 +112,29 @@ impl Tracer<'_> {
         let class = asked.class.bit();
         let mut stats = TraversalStats::default();
         let mut nested = TraversalStats::default();
-        let mut shears = [RayShear::UNUSED; PACKET];
-        let mut culls = PacketCulls::default();
+        let mut shears = ArrayVec::<RayShear, PACKET>::new();
         let max_abs = group.bounds.max_abs();
+        let (sheared, lines);
+        let mut culls = PacketCulls {
+            shears: None,
+            lines: None,
+        };
         if group.sheared {
-            for (shear, ray) in shears.iter_mut().zip(asked.rays) {
-                *shear = RayShear::new(ray);
+            for ray in asked.rays.iter().take(PACKET) {
+                shears.push(RayShear::new(ray));
             }
-            let used = asked.rays.len().min(PACKET);
-            culls.shears = PacketShears::new(&shears[..used], max_abs);
+            sheared = PacketShears::new(&shears, max_abs);
+            culls.shears = sheared.as_ref();
+        }
+        let mut from_prims = [NONE; PACKET];
+        for (prim, from) in from_prims.iter_mut().zip(asked.from) {
+            if let Some(origin) = from {
+                *prim = group.prim_of(origin.id);
+            }
         }
         if blocks.has_spheres() {
-            culls.lines = Some(PacketLines::new(asked.rays, max_abs));
+            lines = PacketLines::new(asked.rays, max_abs);
+            culls.lines = Some(&lines);
         }
         let mut visitor = Together {
             scene: self.scene,
@@ -130,9 +145,7 @@ impl Tracer<'_> {
             group,
             blocks,
             asked,
-            from_prims: asked
-                .from
-                .map(|from| from.map_or(NONE, |o| group.prim_of(o.id))),
+            from_prims,
             shears: &shears,
             culls,
             plain: group
@@ -173,13 +186,11 @@ impl Tracer<'_> {
 
 /// The upper end of a range in the lanes of these rays.
 fn common_end(rays: &[Ray], range: Interval) -> [f64; PACKET] {
-    array::from_fn(|lane| {
-        if lane < rays.len() {
-            range.max
-        } else {
-            f64::NEG_INFINITY
-        }
-    })
+    let mut t_max = [f64::NEG_INFINITY; PACKET];
+    for (t_max, _) in t_max.iter_mut().zip(rays) {
+        *t_max = range.max;
+    }
+    t_max
 }
 
 /// What is asked about several rays.
@@ -205,8 +216,9 @@ struct Together<'v, 's, Q> {
     blocks: &'s Blocks,
     asked: &'v Asked<'v>,
     from_prims: [u32; PACKET],
-    shears: &'v [RayShear; PACKET],
-    culls: PacketCulls,
+    /// None where no primitive asks.
+    shears: &'v [RayShear],
+    culls: PacketCulls<'v>,
     plain: bool,
     queries: &'v mut [Q; PACKET],
 }
@@ -230,7 +242,7 @@ macro_rules! of_lane {
             group: $self.group,
             blocks: $self.blocks,
             ray: &$self.asked.rays[lane],
-            shear: &$self.shears[lane],
+            shear: $self.shears.get(lane).unwrap_or(&RayShear::UNUSED),
             range_min: $self.asked.min,
             from,
             from_prim: $self.from_prims[lane],

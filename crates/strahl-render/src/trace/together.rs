@@ -7,35 +7,27 @@ use crate::surface::Surface;
 use arrayvec::ArrayVec;
 use strahl_accel::PACKET;
 use strahl_math::{Interval, Ray};
-use strahl_shade::Color;
+use strahl_shade::{Color, LightSample};
 
 /// What is known of a hit before its tree grows.
 pub(super) struct Ahead<'s> {
     pub(super) surface: Surface<'s>,
-    pub(super) shadows: KnownShadows,
+    pub(super) lights: KnownLights,
 }
 
-/// Which shadow rays of a hit have been followed, and what they met.
-#[derive(Clone, Copy)]
-pub(super) struct KnownShadows {
-    /// A bit for each light whose ray was followed.
-    followed: u32,
-    /// A bit for each that something opaque is in front of.
-    stopped: u32,
-}
+/// The first lights of a scene, of which shadow rays are followed together.
+const KNOWN: usize = 4;
 
-impl KnownShadows {
-    /// No shadow rays.
-    pub(super) const NONE: Self = Self {
-        followed: 0,
-        stopped: 0,
-    };
+/// What arrives at a hit of each of the first lights, and whether something opaque is in front of it, if that is known.
+pub(super) struct KnownLights([Option<(LightSample, bool)>; KNOWN]);
 
-    /// Whether a light is stopped, if that is known.
+impl KnownLights {
+    const NONE: Self = Self([None; KNOWN]);
+
+    /// What is known of a light.
     #[inline]
-    pub(super) fn of(self, light: usize) -> Option<bool> {
-        let bit = 1u32.checked_shl(light as u32)?;
-        (self.followed & bit != 0).then_some(self.stopped & bit != 0)
+    pub(super) fn of(&self, light: usize) -> Option<&(LightSample, bool)> {
+        self.0.get(light)?.as_ref()
     }
 }
 
@@ -44,8 +36,8 @@ impl KnownShadows {
 struct Bundle<'a> {
     rays: ArrayVec<Ray, PACKET>,
     starts: ArrayVec<Origin, PACKET>,
-    hits: ArrayVec<&'a mut KnownShadows, PACKET>,
-    t_max: ArrayVec<f64, PACKET>,
+    samples: ArrayVec<LightSample, PACKET>,
+    hits: ArrayVec<&'a mut Option<(LightSample, bool)>, PACKET>,
 }
 
 /// Fewer rays go one by one.
@@ -56,33 +48,38 @@ impl<'s> TreeTracer<'s> {
     /// to each other.
     pub(crate) fn trace_together(&mut self, rays: &[Ray]) -> ArrayVec<Color, PACKET> {
         let range = Interval::FORWARD;
-        let hits = self
-            .tracer
-            .closest_hits(rays, range, &[None; PACKET], RayClass::Camera);
-        let mut ahead: [Option<Ahead<'s>>; PACKET] = [const { None }; PACKET];
-        for ((ahead, hit), ray) in ahead.iter_mut().zip(&hits).zip(rays) {
-            *ahead = hit.as_ref().and_then(|hit| self.ahead(ray, hit));
+        let mut hits = [None; PACKET];
+        self.tracer
+            .closest_hits(rays, range, &[None; PACKET], RayClass::Camera, &mut hits);
+        let mut all = ArrayVec::<Ahead<'s>, PACKET>::new();
+        let scene = self.tracer.scene;
+        for (ray, hit) in rays.iter().zip(&hits) {
+            if let Some(hit) = hit {
+                all.push(Ahead {
+                    surface: Surface::at(scene, &Branch::primary(ray), hit, &self.media, self.uv),
+                    lights: KnownLights::NONE,
+                });
+            }
         }
-        for light in 0..self.tracer.scene.lights.len().min(u32::BITS as usize) {
-            self.shadows_together(light, &hits, &mut ahead);
+        for light in 0..scene.lights.len().min(KNOWN) {
+            self.shadows_together(light, &hits, &mut all);
         }
-        let each = rays.iter().zip(hits).zip(&mut ahead);
-        each.map(|((ray, hit), ahead)| self.grow(ray, hit, ahead.as_mut(), &mut ()).color)
-            .collect()
+        let mut ahead = all.iter_mut();
+        let mut colors = ArrayVec::new();
+        for (ray, hit) in rays.iter().zip(hits) {
+            let ahead = if hit.is_some() { ahead.next() } else { None };
+            colors.push(self.grow(ray, hit, ahead, &mut ()).color);
+        }
+        colors
     }
 
-    /// The surface at a hit, if its shadow rays can be told before it is painted.
-    fn ahead(&self, ray: &Ray, hit: &Hit) -> Option<Ahead<'s>> {
+    /// Whether the shadow rays of a surface can be told before it is painted.
+    fn is_plain(&self, surface: &Surface<'s>) -> bool {
         let scene = self.tracer.scene;
-        let surface = Surface::at(scene, &Branch::primary(ray), hit, &self.media, self.uv);
         let material = &scene.materials[surface.resolved.look.material.0 as usize];
-        let plain = material.texture_seen(surface.entering).is_none()
-            && !self.model_of(&surface).is_diagnostic()
-            && scene.lights_in(surface.lit.set).is_none();
-        plain.then_some(Ahead {
-            surface,
-            shadows: KnownShadows::NONE,
-        })
+        material.texture_seen(surface.entering).is_none()
+            && !self.model_of(surface).is_diagnostic()
+            && scene.lights_in(surface.lit.set).is_none()
     }
 
     /// Follows the shadow rays of several hits to one light.
@@ -90,7 +87,7 @@ impl<'s> TreeTracer<'s> {
         &mut self,
         number: usize,
         hits: &[Option<Hit>; PACKET],
-        ahead: &mut [Option<Ahead<'s>>; PACKET],
+        ahead: &mut [Ahead<'s>],
     ) {
         let scene = self.tracer.scene;
         let light = &scene.lights[number].light;
@@ -98,11 +95,11 @@ impl<'s> TreeTracer<'s> {
             return;
         }
         let mut bundle = Bundle::default();
-        let mut min = 0.0;
-        for (ahead, hit) in ahead.iter_mut().zip(hits) {
-            let (Some(Ahead { surface, shadows }), Some(hit)) = (ahead, hit) else {
+        let (mut min, mut t_max) = (0.0, [f64::NEG_INFINITY; PACKET]);
+        for (Ahead { surface, lights }, hit) in ahead.iter_mut().zip(hits.iter().flatten()) {
+            if !self.is_plain(surface) {
                 continue;
-            };
+            }
             let Some(sample) = light.illuminate(surface.resolved.point.position) else {
                 continue;
             };
@@ -118,23 +115,23 @@ impl<'s> TreeTracer<'s> {
             let (point, origin) = surface.start(hit, sample.shadow_direction);
             bundle.rays.push(Ray::new(point, sample.shadow_direction));
             bundle.starts.push(origin);
-            bundle.t_max.push(sample.range.max);
-            bundle.hits.push(shadows);
+            bundle.hits.push(&mut lights.0[number]);
+            t_max[bundle.rays.len() - 1] = sample.range.max;
+            bundle.samples.push(sample);
         }
-        let count = bundle.rays.len();
-        if count < FEW {
+        if bundle.rays.len() < FEW {
             return;
         }
-        let t_max = std::array::from_fn(|lane| {
-            bundle.t_max.get(lane).copied().unwrap_or(f64::NEG_INFINITY)
-        });
-        let from = std::array::from_fn(|lane| bundle.starts.get(lane));
+        let mut from = [None; PACKET];
+        for (from, origin) in from.iter_mut().zip(&bundle.starts) {
+            *from = Some(origin);
+        }
         let stopped = self
             .tracer
             .all_occluded(&bundle.rays, min, t_max, &from, number);
-        for (lane, shadows) in bundle.hits.iter_mut().enumerate() {
-            shadows.followed |= 1 << number;
-            shadows.stopped |= (stopped >> lane & 1) << number;
+        let each = bundle.hits.into_iter().zip(bundle.samples);
+        for (lane, (known, sample)) in each.enumerate() {
+            *known = Some((sample, stopped >> lane & 1 == 1));
         }
     }
 }
