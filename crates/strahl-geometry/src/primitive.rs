@@ -79,7 +79,11 @@ impl SurfacePoint {
 #[derive(Debug, Default)]
 pub struct Scratch {
     pool: Vec<Crossings>,
-    csg: Vec<Workspace>,
+    #[expect(
+        clippy::vec_box,
+        reason = "taken and given back for every ray: a pointer is moved instead of ten lists"
+    )]
+    csg: Vec<Box<Workspace>>,
     pieces: Vec<Pieces>,
 }
 
@@ -96,12 +100,12 @@ impl Scratch {
     }
 
     /// Borrows the stacks that CSG trees are evaluated with; several when a tree is a leaf of another.
-    pub(crate) fn take_csg(&mut self) -> Workspace {
+    pub(crate) fn take_csg(&mut self) -> Box<Workspace> {
         self.csg.pop().unwrap_or_default()
     }
 
     /// Returns them.
-    pub(crate) fn give_csg(&mut self, workspace: Workspace) {
+    pub(crate) fn give_csg(&mut self, workspace: Box<Workspace>) {
         self.csg.push(workspace);
     }
 

@@ -1,6 +1,6 @@
 use super::half_spaces::{HalfSpace, HalfSpaces};
 use super::leaf::{Leaf, Next, Placement};
-use super::solid::{Kind, Node};
+use super::solid::{Kind, NO_PARENT, Node};
 use super::sweep::Rule;
 use super::tree::CsgNode;
 use super::{Csg, Operands};
@@ -66,6 +66,7 @@ impl Context {
 /// A node under construction.
 struct Proto {
     kind: Kind,
+    parent: u32,
     operands: Vec<u32>,
 }
 
@@ -190,6 +191,7 @@ impl Compiler {
         let index = count(self.nodes.len(), "number of nodes of the CSG tree")?;
         self.nodes.push(Proto {
             kind,
+            parent: parent.unwrap_or(NO_PARENT),
             operands: Vec::new(),
         });
         if let Some(parent) = parent.and_then(|parent| self.nodes.get_mut(parent as usize)) {
@@ -262,6 +264,14 @@ impl Compiler {
             });
             nodes.push(Node {
                 kind: proto.kind,
+                parent: proto.parent,
+                quick: match proto.kind {
+                    Kind::Leaf(leaf) => self
+                        .leaves
+                        .get(leaf as usize)
+                        .is_some_and(|leaf| leaf.is_convex() && leaf.placement.is_none()),
+                    Kind::Operation(_) => false,
+                },
                 bounds: *bounds,
                 far: *far,
                 first: first as u32,

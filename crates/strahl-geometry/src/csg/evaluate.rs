@@ -1,4 +1,5 @@
 use super::Csg;
+use super::first::Lists;
 use super::leaf::Query;
 use super::solid::{Kind, Node};
 use super::sweep::{Event, Fusing, Rule, Slot, sort, sweep};
@@ -16,6 +17,8 @@ pub(crate) struct Workspace {
     slots: Vec<Slot>,
     /// The operands still to come whose boxes the ray meets, frame by frame, the next one last.
     candidates: Vec<u32>,
+    /// What the search for the first surface keeps.
+    pub(super) first: Lists,
 }
 
 impl Workspace {
@@ -79,7 +82,7 @@ impl<'a> Evaluation<'a> {
         let end = if start < range.max { range.max } else { start };
         let fusing = Fusing::new(ray);
         // What coincides with an end of the range has to be seen too, or the result at the end would depend on the range.
-        let wide = widened(Interval::new(start, end), &fusing);
+        let wide = fusing.widened(Interval::new(start, end));
         let evaluation = Self {
             csg,
             ray,
@@ -317,7 +320,7 @@ impl<'a> Evaluation<'a> {
         {
             // Later operands matter only where something is left.
             let alive = alive(slot, events, frame.range);
-            frame.range = frame.range.intersection(widened(alive, &self.fusing));
+            frame.range = frame.range.intersection(self.fusing.widened(alive));
         }
     }
 
@@ -390,14 +393,6 @@ fn alive(slot: &Slot, events: &[Event], range: Interval) -> Interval {
         at(events.last())
     };
     Interval::new(first.unwrap_or(range.min), last.unwrap_or(range.max))
-}
-
-/// The range with a few margins more at both ends.
-fn widened(range: Interval, fusing: &Fusing) -> Interval {
-    Interval::new(
-        range.min - 4.0 * fusing.margin(range.min),
-        range.max + 4.0 * fusing.margin(range.max),
-    )
 }
 
 /// Cuts a list to a range that is part of its own.

@@ -1,4 +1,5 @@
 use super::sweep::Fusing;
+use crate::primitives::convex::Span;
 use crate::{
     Crossing, Crossings, PrimHit, Primitive, Scratch, Shape, Side, Solid, SurfaceId, SurfacePoint,
 };
@@ -94,16 +95,91 @@ impl Leaf {
         (self.bounds.contains(point) && inside()) != self.negative
     }
 
+    /// Whether [`Leaf::span`] knows the shape.
+    pub(super) fn is_convex(&self) -> bool {
+        matches!(
+            self.shape,
+            Shape::Sphere(_)
+                | Shape::Cuboid(_)
+                | Shape::Cylinder(_)
+                | Shape::Cone(_)
+                | Shape::Plane(_)
+        )
+    }
+
+    /// The span in which the line is inside of a convex solid, if there is one; its ends are those that [`Leaf::crossings`]
+    /// lists. `None` for other shapes, and for rays along a plane.
+    pub(super) fn span(&self, ray: &Ray, from: Option<SurfaceId>) -> Option<Option<Span>> {
+        let placed;
+        let ray = match &self.placement {
+            None => ray,
+            Some(placement) => {
+                placed = placement.map.ray_to_object(ray);
+                &placed
+            }
+        };
+        match &self.shape {
+            Shape::Sphere(sphere) => Some(sphere.span(ray, from)),
+            Shape::Cuboid(cuboid) => Some(cuboid.span(ray, from)),
+            Shape::Cylinder(cylinder) => Some(cylinder.span(ray, from)),
+            Shape::Cone(cone) => Some(cone.span(ray, from)),
+            Shape::Plane(plane) => plane.span(ray, from).map(Some),
+            _ => None,
+        }
+    }
+
     /// Appends the crossings of a ray with this leaf's contribution, with the tree's element numbers.
     pub(super) fn crossings(&self, query: &Query<'_>, scratch: &mut Scratch, out: &mut Crossings) {
-        let Query {
-            ray, range, from, ..
-        } = *query;
-        let inner = self.ray_to_object(ray);
-        match self.solid() {
-            Some(solid) => solid.crossings(&inner, range, from, scratch, out),
-            None => self.list_hits(&inner, range, from, scratch, out),
+        let inner = self.ray_to_object(query.ray);
+        self.shape_crossings(&inner, query.range, query.from, scratch, out);
+        for crossing in &mut out.list {
+            let t = crossing.hit.t;
+            if let Some(placement) = &self.placement {
+                let n = self.shape.bare_surface_at(&inner, &crossing.hit).n_geom;
+                let error = placement.t_error(query.ray, &inner, t, n);
+                // Infinite where the ray runs along the surface; nothing is fused over more than the margin anyway.
+                let margin = query.fusing.margin(t);
+                crossing.t_error += if error < margin { error } else { margin };
+            }
+            if query.leaving && query.from.is_none() && t > 0.0 && t <= query.fusing.reach(crossing)
+            {
+                // This surface and the one the ray starts on are one: it has been crossed.
+                crossing.hit.t = 0.0;
+            }
         }
+        self.contribute(out);
+    }
+
+    /// The same for who does not compare the crossings with others: without the errors that the map adds.
+    pub(super) fn bare_crossings(
+        &self,
+        ray: &Ray,
+        range: Interval,
+        from: Option<SurfaceId>,
+        scratch: &mut Scratch,
+        out: &mut Crossings,
+    ) {
+        self.shape_crossings(&self.ray_to_object(ray), range, from, scratch, out);
+        self.contribute(out);
+    }
+
+    /// The crossings of a ray in the shape's space with the shape.
+    fn shape_crossings(
+        &self,
+        inner: &Ray,
+        range: Interval,
+        from: Option<SurfaceId>,
+        scratch: &mut Scratch,
+        out: &mut Crossings,
+    ) {
+        match self.solid() {
+            Some(solid) => solid.crossings(inner, range, from, scratch, out),
+            None => self.list_hits(inner, range, from, scratch, out),
+        }
+    }
+
+    /// Makes the shape's crossings those of the leaf: of the complement, numbered, visible or not.
+    fn contribute(&self, out: &mut Crossings) {
         if self.negative {
             out.inside_at_start = !out.inside_at_start;
             if self.solid().is_some() {
@@ -112,18 +188,6 @@ impl Leaf {
             }
         }
         for crossing in &mut out.list {
-            let t = crossing.hit.t;
-            if let Some(placement) = &self.placement {
-                let n = self.shape.surface_at(&inner, &crossing.hit).n_geom;
-                let error = placement.t_error(ray, &inner, t, n);
-                // Infinite where the ray runs along the surface; nothing is fused over more than the margin anyway.
-                let margin = query.fusing.margin(t);
-                crossing.t_error += if error < margin { error } else { margin };
-            }
-            if query.leaving && from.is_none() && t > 0.0 && t <= query.fusing.reach(crossing) {
-                // This surface and the one the ray starts on are one: it has been crossed.
-                crossing.hit.t = 0.0;
-            }
             let element = crossing.hit.surface.element;
             crossing.hit.surface.element = self.first_element.saturating_add(element);
             crossing.visible &= self.visible;
@@ -156,8 +220,8 @@ impl Leaf {
         }
     }
 
-    /// The surface at a hit, in the tree's space, with normals that point out of the tree's solid.
-    pub(super) fn surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
+    /// The surface at a hit, in the tree's space, with normals that point out of the tree's solid. `bare` leaves out what textures need.
+    pub(super) fn surface_at(&self, ray: &Ray, hit: &PrimHit, bare: bool) -> SurfacePoint {
         let local = PrimHit {
             surface: SurfaceId {
                 element: hit.surface.element.saturating_sub(self.first_element),
@@ -165,7 +229,12 @@ impl Leaf {
             },
             ..*hit
         };
-        let mut surface = self.shape.surface_at(&self.ray_to_object(ray), &local);
+        let ray = self.ray_to_object(ray);
+        let mut surface = if bare {
+            self.shape.bare_surface_at(&ray, &local)
+        } else {
+            self.shape.surface_at(&ray, &local)
+        };
         if let Some(placement) = &self.placement {
             let map = &placement.map;
             let position = map.point_to_world(surface.position);

@@ -8,13 +8,19 @@
 //!   operations flattened, everything in flat lists that are walked without recursion.
 //! * `compile` makes the one from the other, `evaluate` walks the tree along a ray, `sweep` combines lists, `half_spaces` meets all
 //!   planes of an intersection in one pass.
+//! * Who only asks for the first surface gets it without lists, from `first`, if no two crossings are close together: `course`
+//!   finds the crossings that matter, `timeline` goes through them.
 
+mod boxes;
 mod compile;
+mod course;
 mod evaluate;
+mod first;
 mod half_spaces;
 mod leaf;
 mod solid;
 mod sweep;
+mod timeline;
 mod tree;
 
 pub use solid::Csg;
@@ -22,6 +28,8 @@ pub use tree::{CsgNode, Operands};
 
 pub(crate) use evaluate::Workspace;
 
+#[cfg(test)]
+mod first_tests;
 #[cfg(test)]
 mod fuzz_tests;
 #[cfg(test)]

@@ -1,6 +1,7 @@
 use super::CsgNode;
 use super::compile::Compiler;
 use super::evaluate::Evaluation;
+use super::first::{Answer, first_visible};
 use super::half_spaces::HalfSpaces;
 use super::leaf::{Leaf, Next};
 use super::sweep::Rule;
@@ -31,6 +32,8 @@ pub struct Csg {
     elements: u32,
     /// Whether all leaves are solids.
     closed: bool,
+    /// Whether it is an operation on solids, nested only so deep that recursion may walk it.
+    shallow: bool,
 }
 
 /// What a compiled node is.
@@ -42,10 +45,20 @@ pub(super) enum Kind {
     Operation(Rule),
 }
 
+/// What the root has for a parent.
+pub(super) const NO_PARENT: u32 = u32::MAX;
+
+/// Trees that are nested deeper are walked with a stack of their own.
+const SHALLOW: u32 = 24;
+
 /// A compiled node.
 #[derive(Clone, Debug)]
 pub(super) struct Node {
     pub(super) kind: Kind,
+    /// The operation whose operand it is.
+    pub(super) parent: u32,
+    /// Whether it is a shape that is met as quickly as its box.
+    pub(super) quick: bool,
     /// Holds all surfaces of the node ...
     pub(super) bounds: Aabb,
     /// ... and beyond it everything is inside, or nothing.
@@ -79,12 +92,21 @@ impl Csg {
         elements: u32,
         closed: bool,
     ) -> Self {
+        let mut depths: Vec<u32> = Vec::with_capacity(nodes.len());
+        for node in &nodes {
+            // Parents stand before their operands.
+            let parent = depths.get(node.parent as usize);
+            depths.push(parent.map_or(0, |depth| depth + 1));
+        }
+        let combined = matches!(nodes.first(), Some(root) if root.kind != Kind::Leaf(0));
+        let shallow = closed && combined && depths.iter().all(|depth| *depth <= SHALLOW);
         Self {
             nodes,
             operands,
             leaves,
             elements,
             closed,
+            shallow,
         }
     }
 
@@ -122,6 +144,10 @@ impl Csg {
         self.leaves.get(leaf).map(|leaf| &leaf.shape)
     }
 
+    pub(super) fn node_count(&self) -> usize {
+        self.nodes.len()
+    }
+
     pub(super) fn node(&self, index: u32) -> Option<&Node> {
         self.nodes.get(index as usize)
     }
@@ -132,6 +158,15 @@ impl Csg {
 
     pub(super) fn leaf(&self, index: u32) -> Option<&Leaf> {
         self.leaves.get(index as usize)
+    }
+
+    fn surface(&self, ray: &Ray, hit: &PrimHit, bare: bool) -> SurfacePoint {
+        let (leaf, _) = self.leaf_of(hit.surface.element);
+        match self.leaves.get(leaf) {
+            Some(leaf) => leaf.surface_at(ray, hit, bare),
+            // A compiled tree has a leaf.
+            None => SurfacePoint::bare(ray.at(hit.t), DVec3::ZERO, DVec3::Z),
+        }
     }
 
     /// Whether the point is inside by the logic of the tree; open leaves have no inside.
@@ -186,6 +221,15 @@ impl Primitive for Csg {
         from: Option<SurfaceId>,
         scratch: &mut Scratch,
     ) -> Option<PrimHit> {
+        if self.shallow {
+            let mut workspace = scratch.take_csg();
+            let lists = &mut workspace.first;
+            let answer = first_visible(self, ray, range, from, lists, scratch);
+            scratch.give_csg(workspace);
+            if let Answer::Certain(hit) = answer {
+                return hit;
+            }
+        }
         let mut list = scratch.take();
         Evaluation::run(self, ray, range, from, scratch, &mut list);
         let first = list.list.iter().find(|crossing| crossing.visible);
@@ -195,20 +239,11 @@ impl Primitive for Csg {
     }
 
     fn surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
-        let (leaf, _) = self.leaf_of(hit.surface.element);
-        match self.leaves.get(leaf) {
-            Some(leaf) => leaf.surface_at(ray, hit),
-            // A compiled tree has a leaf.
-            None => SurfacePoint {
-                position: ray.at(hit.t),
-                position_error: DVec3::ZERO,
-                n_geom: DVec3::Z,
-                n_shade: DVec3::Z,
-                uv: strahl_math::DVec2::ZERO,
-                dpdu: DVec3::ZERO,
-                dpdv: DVec3::ZERO,
-            },
-        }
+        self.surface(ray, hit, false)
+    }
+
+    fn bare_surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
+        self.surface(ray, hit, true)
     }
 
     fn as_solid(&self) -> Option<&dyn Solid> {

@@ -1,5 +1,5 @@
 use crate::{Crossing, Crossings, Side};
-use strahl_math::Ray;
+use strahl_math::{Interval, Ray};
 
 /// How a node combines its operands. There is no difference and no inverse: those have been pushed down to the leaves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -43,6 +43,19 @@ impl Fusing {
     /// margins are those of the whole line, cut.
     pub(super) fn margin(&self, t: f64) -> f64 {
         Self::LIMIT * (t.abs() + self.scale)
+    }
+
+    /// Crossings further apart than this are certainly not one.
+    pub(super) fn gap(&self, a: f64, b: f64) -> f64 {
+        2.0 * (self.margin(a) + self.margin(b))
+    }
+
+    /// The range with a few margins more at both ends.
+    pub(super) fn widened(&self, range: Interval) -> Interval {
+        Interval::new(
+            range.min - 4.0 * self.margin(range.min),
+            range.max + 4.0 * self.margin(range.max),
+        )
     }
 
     /// The crossing's error, as far as it is honoured.

@@ -52,7 +52,7 @@ impl Cuboid {
 
     /// The span in which the line is inside. The face the ray starts on is at exactly `t = 0`.
     #[inline]
-    fn span(&self, ray: &Ray, from: Option<SurfaceId>) -> Option<Span> {
+    pub(crate) fn span(&self, ray: &Ray, from: Option<SurfaceId>) -> Option<Span> {
         let mut span = Span::LINE;
         for axis in 0..3 {
             let (o, d) = (ray.origin[axis], ray.direction[axis]);

@@ -1,4 +1,5 @@
 use super::check_positive;
+use super::convex::Span;
 use super::frustum::Frustum;
 use crate::{
     Crossings, GeometryError, PrimHit, Primitive, Scratch, Shape, Solid, SurfaceId, SurfacePoint,
@@ -51,6 +52,11 @@ impl Cylinder {
     /// Whether it has caps and hence an inside.
     pub fn is_capped(&self) -> bool {
         self.0.capped
+    }
+
+    /// The span in which the line is inside of the solid.
+    pub(crate) fn span(&self, ray: &Ray, from: Option<SurfaceId>) -> Option<Span> {
+        self.0.span(ray, from)
     }
 }
 

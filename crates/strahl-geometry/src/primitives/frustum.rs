@@ -222,7 +222,7 @@ impl Frustum {
 
     /// The span within the solid.
     #[inline]
-    fn span(&self, ray: &Ray, from: Option<SurfaceId>) -> Option<Span> {
+    pub(super) fn span(&self, ray: &Ray, from: Option<SurfaceId>) -> Option<Span> {
         let from = from.map(|surface| surface.facet);
         let r = self.axis_ray(ray);
         let (first, second) = self.side_span(&r, from == Some(SIDE))?;

@@ -52,6 +52,32 @@ impl Plane {
         let t = (self.point - ray.origin).dot(self.normal) / ray.direction.dot(self.normal);
         t.is_finite().then_some(t)
     }
+
+    /// The span in which the line is inside; `None` if it runs along the plane.
+    #[inline]
+    pub(crate) fn span(&self, ray: &Ray, from: Option<SurfaceId>) -> Option<Span> {
+        let speed = ray.direction.dot(self.normal);
+        if speed == 0.0 || speed.is_nan() {
+            return None;
+        }
+        let t = if from.is_some() {
+            0.0
+        } else {
+            self.crossing(ray)?
+        };
+        let end = End { t, facet: 0 };
+        Some(if speed < 0.0 {
+            Span {
+                enter: end,
+                ..Span::LINE
+            }
+        } else {
+            Span {
+                exit: end,
+                ..Span::LINE
+            }
+        })
+    }
 }
 
 impl Primitive for Plane {
@@ -146,25 +172,8 @@ impl Solid for Plane {
                 from.is_none() && (ray.origin - self.point).dot(self.normal) < 0.0;
             return;
         }
-        let t = if from.is_some() {
-            Some(0.0)
-        } else {
-            self.crossing(ray)
-        };
-        let Some(t) = t.filter(|_| !speed.is_nan()) else {
+        let Some(span) = self.span(ray, from) else {
             return;
-        };
-        let end = End { t, facet: 0 };
-        let span = if speed < 0.0 {
-            Span {
-                enter: end,
-                ..Span::LINE
-            }
-        } else {
-            Span {
-                exit: end,
-                ..Span::LINE
-            }
         };
         span.list(
             range,

@@ -104,6 +104,16 @@ impl Sphere {
         })
     }
 
+    /// The span in which the line is inside.
+    #[inline]
+    pub(crate) fn span(&self, ray: &Ray, from: Option<SurfaceId>) -> Option<Span> {
+        let end = |t| End { t, facet: 0 };
+        self.roots(ray, from.is_some()).map(|(near, far)| Span {
+            enter: end(near),
+            exit: end(far),
+        })
+    }
+
     /// How far the parameter of a hit may be off: the error of the point on the ray, divided by the speed at which the
     /// ray crosses the surface; near a tangent the error grows to the square root.
     fn t_error(&self, ray: &Ray, t: f64) -> f64 {
@@ -226,13 +236,8 @@ impl Solid for Sphere {
         _scratch: &mut Scratch,
         out: &mut Crossings,
     ) {
-        if let Some((near, far)) = self.roots(ray, from.is_some()) {
-            let end = |t| End { t, facet: 0 };
-            Span {
-                enter: end(near),
-                exit: end(far),
-            }
-            .list(range, from, |end| self.t_error(ray, end.t), out);
+        if let Some(span) = self.span(ray, from) {
+            span.list(range, from, |end| self.t_error(ray, end.t), out);
         }
     }
 

@@ -1,0 +1,331 @@
+//! The courses of nodes along a ray: what of a tree the search for the first surface looks at, and what it leaves out.
+
+use super::Csg;
+use super::first::Search;
+use super::half_spaces::HalfSpaces;
+use super::leaf::Leaf;
+use super::solid::{Kind, Node};
+use super::sweep::{Fusing, Rule};
+use super::timeline::{State, TooClose};
+use crate::{Crossings, PrimHit, Side, SurfaceId};
+use strahl_accel::{Accelerator, TraversalStats, Visitor};
+use strahl_math::Interval;
+
+/// What a node is along the part of the ray that matters.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Course {
+    /// The same all along.
+    Constant(bool),
+    /// The state where the ray starts, and the part of the line where it may be inside or have a surface.
+    Varies { inside: bool, alive: Interval },
+}
+
+impl Search<'_> {
+    /// The course of a node in the range; the crossings of its leaves are put on the list.
+    pub(super) fn course(
+        &mut self,
+        index: u32,
+        parent: u32,
+        range: Interval,
+    ) -> Result<Course, TooClose> {
+        let csg = self.csg;
+        let Some(node) = csg.node(index) else {
+            return Err(TooClose);
+        };
+        if !node.quick && index > 0 {
+            // Convex shapes are as quickly met as their boxes.
+            let Some(within) = self.slabs.clip(&node.bounds, range) else {
+                return Ok(Course::Constant(node.far));
+            };
+            if self.horizon.is_some_and(|horizon| within.min > horizon) {
+                self.leave_out(within.min);
+                return Ok(Course::Constant(node.far));
+            }
+        }
+        match node.kind {
+            Kind::Leaf(leaf) => self.leaf(leaf, parent, range),
+            Kind::Operation(rule) => self.operation(index, node, rule, range),
+        }
+    }
+
+    fn operation(
+        &mut self,
+        index: u32,
+        node: &Node,
+        rule: Rule,
+        range: Interval,
+    ) -> Result<Course, TooClose> {
+        let csg = self.csg;
+        let events = self.lists.timeline.len();
+        let candidates = self.lists.candidates.len();
+        let mut sum = Sum::new(rule, range);
+        'operands: {
+            // Convex operands first: what they leave over makes the others cheap, or superfluous.
+            let half_spaces = node.half_spaces.as_ref();
+            let planes = half_spaces.map_or(0, |planes| planes.len() as u32);
+            for quick in [true, false] {
+                for i in node.first..node.core - planes {
+                    let operand = csg.operand(i).unwrap_or_default();
+                    if csg.node(operand).is_some_and(|n| n.quick) == quick {
+                        let course = self.course(operand, index, sum.alive)?;
+                        if sum.add(course, &self.fusing) {
+                            break 'operands;
+                        }
+                    }
+                }
+                if quick && let Some(planes) = half_spaces {
+                    let course = self.half_spaces(planes, index, sum.alive)?;
+                    if sum.add(course, &self.fusing) {
+                        break 'operands;
+                    }
+                }
+            }
+            if index == 0 && self.horizon.is_none() && rule == Rule::Intersection {
+                let begin = if sum.alive.min > self.range.min {
+                    sum.alive.min
+                } else {
+                    self.range.min
+                };
+                self.horizon = Some(begin + 8.0 * self.fusing.gap(begin, begin));
+            }
+            if let Some(hierarchy) = &node.hierarchy {
+                let mut range = sum.alive;
+                if let Some(horizon) = self.horizon.filter(|horizon| *horizon < range.max) {
+                    range.max = horizon;
+                    self.leave_out(horizon);
+                }
+                let mut collector = Collector {
+                    csg,
+                    core: node.core,
+                    candidates: &mut self.lists.candidates,
+                };
+                let mut stats = TraversalStats::default();
+                hierarchy.traverse(self.ray, range, &mut collector, &mut stats);
+                while self.lists.candidates.len() > candidates {
+                    let operand = self.lists.candidates.pop().unwrap_or_default();
+                    let course = self.course(operand, index, sum.alive)?;
+                    if sum.add(course, &self.fusing) {
+                        break 'operands;
+                    }
+                }
+            } else {
+                for i in node.core..node.end {
+                    let operand = csg.operand(i).unwrap_or_default();
+                    let course = self.course(operand, index, sum.alive)?;
+                    if sum.add(course, &self.fusing) {
+                        break 'operands;
+                    }
+                }
+            }
+        }
+        self.lists.candidates.truncate(candidates);
+        let timeline = &mut self.lists.timeline;
+        if let Some(decided) = sum.decided {
+            timeline.truncate(events);
+            return Ok(Course::Constant(decided));
+        }
+        let inside = sum.state.holds(rule);
+        if timeline.len() == events {
+            return Ok(Course::Constant(inside));
+        }
+        timeline.set_state(index, sum.state);
+        let alive = match rule {
+            Rule::Intersection => sum.alive,
+            Rule::Union | Rule::Merge if node.far => Interval::LINE,
+            Rule::Union | Rule::Merge => sum.reach,
+        };
+        Ok(Course::Varies { inside, alive })
+    }
+
+    fn leaf(&mut self, index: u32, parent: u32, range: Interval) -> Result<Course, TooClose> {
+        let csg = self.csg;
+        let from = self.start_on(index);
+        let Some(leaf) = csg.leaf(index) else {
+            return Err(TooClose);
+        };
+        if leaf.is_convex() {
+            return self.convex(leaf, from, parent, range);
+        }
+        let mut list = self.scratch.take();
+        leaf.bare_crossings(self.ray, range, from, self.scratch, &mut list);
+        let course = self.listed(&list, parent, range);
+        self.scratch.give(list);
+        course
+    }
+
+    /// Puts the ends of a span on the list.
+    fn convex(
+        &mut self,
+        leaf: &Leaf,
+        from: Option<SurfaceId>,
+        parent: u32,
+        range: Interval,
+    ) -> Result<Course, TooClose> {
+        let outside = Course::Constant(leaf.negative);
+        let Some(span) = leaf.span(self.ray, from).ok_or(TooClose)? else {
+            return Ok(outside);
+        };
+        if span.exit.t < range.min || span.enter.t > range.max {
+            return Ok(outside);
+        }
+        let start = self.begin;
+        let mut constant = true;
+        for (end, enters) in [(span.enter, true), (span.exit, false)] {
+            let own = from.is_some_and(|surface| end.t == 0.0 && surface.facet == end.facet);
+            if own || end.t.is_infinite() {
+                continue;
+            }
+            self.check_start(end.t)?;
+            if end.t > start {
+                constant = false;
+                let surface = SurfaceId {
+                    element: leaf.first_element,
+                    facet: end.facet,
+                };
+                let hit = PrimHit {
+                    surface,
+                    ..PrimHit::simple(end.t, 0)
+                };
+                self.lists
+                    .timeline
+                    .push(hit, parent, enters != leaf.negative, leaf.visible);
+            }
+        }
+        let inside = (span.enter.t <= start && start < span.exit.t) != leaf.negative;
+        if constant {
+            return Ok(Course::Constant(inside));
+        }
+        let alive = if leaf.negative {
+            Interval::LINE
+        } else {
+            Interval::new(span.enter.t, span.exit.t)
+        };
+        Ok(Course::Varies { inside, alive })
+    }
+
+    /// The same for half-spaces.
+    fn half_spaces(
+        &mut self,
+        planes: &HalfSpaces,
+        parent: u32,
+        range: Interval,
+    ) -> Result<Course, TooClose> {
+        let mut list = self.scratch.take();
+        let from = self.from.map(|(leaf, _)| leaf as usize);
+        let leaving = self.from.is_some();
+        let sure = planes.crossings(self.ray, range, from, leaving, &self.fusing, &mut list);
+        let course = if sure {
+            self.listed(&list, parent, range)
+        } else {
+            Err(TooClose)
+        };
+        self.scratch.give(list);
+        course
+    }
+
+    /// Puts a list of crossings, made for a range, on the list.
+    fn listed(
+        &mut self,
+        list: &Crossings,
+        parent: u32,
+        range: Interval,
+    ) -> Result<Course, TooClose> {
+        let start = self.begin;
+        let mut inside = list.inside_at_start;
+        let (mut first, mut state) = (None, inside);
+        for crossing in &list.list {
+            if crossing.side == Side::Inner {
+                return Err(TooClose);
+            }
+            let t = crossing.hit.t;
+            self.check_start(t)?;
+            state = crossing.side == Side::Enter;
+            if t > start {
+                first.get_or_insert(t);
+                self.lists
+                    .timeline
+                    .push(crossing.hit, parent, state, crossing.visible);
+            } else {
+                inside = state;
+            }
+        }
+        let Some(first) = first else {
+            return Ok(Course::Constant(inside));
+        };
+        let last = list.list.last().map_or(range.max, |c| c.hit.t);
+        let alive = Interval::new(
+            if inside { range.min } else { first },
+            if state { range.max } else { last },
+        );
+        Ok(Course::Varies { inside, alive })
+    }
+}
+
+/// What the operands of an operation have come to so far.
+struct Sum {
+    rule: Rule,
+    state: State,
+    /// Where the operands to come matter.
+    alive: Interval,
+    /// From the first to the last point where an operand is alive.
+    reach: Interval,
+    /// The result, if it is the same all along, whatever the operands to come.
+    decided: Option<bool>,
+}
+
+impl Sum {
+    fn new(rule: Rule, range: Interval) -> Self {
+        Self {
+            rule,
+            state: State::default(),
+            alive: range,
+            reach: Interval::new(f64::INFINITY, f64::NEG_INFINITY),
+            decided: None,
+        }
+    }
+
+    /// Takes an operand in; true if the others don't matter any more.
+    fn add(&mut self, course: Course, fusing: &Fusing) -> bool {
+        match course {
+            Course::Constant(constant) if constant == self.rule.neutral() => {}
+            Course::Constant(_) if self.rule == Rule::Union => {
+                // Inner surfaces of the others still are seen.
+                self.reach = Interval::LINE;
+                self.state.inside += 1;
+                self.state.total += 1;
+            }
+            Course::Constant(constant) => self.decided = Some(constant),
+            Course::Varies { inside, alive } => {
+                self.state.inside += u32::from(inside);
+                self.state.total += 1;
+                if alive.min < self.reach.min {
+                    self.reach.min = alive.min;
+                }
+                if alive.max > self.reach.max {
+                    self.reach.max = alive.max;
+                }
+                if self.rule == Rule::Intersection {
+                    self.alive = self.alive.intersection(fusing.widened(alive));
+                    if !(self.alive.min <= self.alive.max) {
+                        self.decided = Some(false);
+                    }
+                }
+            }
+        }
+        self.decided.is_some()
+    }
+}
+
+/// Collects the operands a hierarchy finds.
+struct Collector<'a> {
+    csg: &'a Csg,
+    core: u32,
+    candidates: &'a mut Vec<u32>,
+}
+
+impl Visitor for Collector<'_> {
+    fn visit(&mut self, id: u32, t_max: f64) -> f64 {
+        self.candidates.extend(self.csg.operand(self.core + id));
+        t_max
+    }
+}
