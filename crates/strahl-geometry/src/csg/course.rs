@@ -1,19 +1,20 @@
 //! The courses of nodes along a ray: what of a tree the search for the first surface looks at, and what it leaves out.
 
 use super::Csg;
+use super::boxes::Slabs;
 use super::first::Search;
 use super::half_spaces::HalfSpaces;
 use super::leaf::Leaf;
 use super::solid::{Kind, Node};
 use super::sweep::{Fusing, Rule};
 use super::timeline::{State, TooClose};
-use crate::{Crossings, PrimHit, Side, SurfaceId};
+use crate::{Crossings, Side, SurfaceId};
 use strahl_accel::{Accelerator, TraversalStats, Visitor};
 use strahl_math::Interval;
 
 /// What a node is along the part of the ray that matters.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Course {
+enum Course {
     /// The same all along.
     Constant(bool),
     /// The state where the ray starts, and the part of the line where it may be inside or have a surface.
@@ -21,27 +22,36 @@ pub(super) enum Course {
 }
 
 impl Search<'_> {
-    /// The course of a node in the range; the crossings of its leaves are put on the list.
-    pub(super) fn course(
-        &mut self,
-        index: u32,
-        parent: u32,
-        range: Interval,
-    ) -> Result<Course, TooClose> {
+    /// The part of the range in which the ray meets the box of a node.
+    fn clip(&mut self, node: &Node, range: Interval) -> Option<Interval> {
+        let ray = self.ray;
+        let slabs = self.slabs.get_or_insert_with(|| Slabs::new(ray));
+        slabs.clip(&node.bounds, range)
+    }
+
+    /// The course of a node in the range; the crossings of its leaves are put on the timeline.
+    #[inline]
+    fn course(&mut self, index: u32, parent: u32, range: Interval) -> Result<Course, TooClose> {
         let csg = self.csg;
         let Some(node) = csg.node(index) else {
             return Err(TooClose);
         };
-        if !node.quick && index > 0 {
-            // Convex shapes are as quickly met as their boxes.
-            let Some(within) = self.slabs.clip(&node.bounds, range) else {
-                return Ok(Course::Constant(node.far));
-            };
-            if self.horizon.is_some_and(|horizon| within.min > horizon) {
-                self.leave_out(within.min);
-                return Ok(Course::Constant(node.far));
-            }
+        // Quick shapes are as quickly met as their boxes.
+        if !node.quick && self.clip(node, range).is_none() {
+            return Ok(Course::Constant(node.far));
         }
+        self.met(index, node, parent, range)
+    }
+
+    /// The same for a node whose box the ray meets.
+    #[inline]
+    fn met(
+        &mut self,
+        index: u32,
+        node: &Node,
+        parent: u32,
+        range: Interval,
+    ) -> Result<Course, TooClose> {
         match node.kind {
             Kind::Leaf(leaf) => self.leaf(leaf, parent, range),
             Kind::Operation(rule) => self.operation(index, node, rule, range),
@@ -55,70 +65,12 @@ impl Search<'_> {
         rule: Rule,
         range: Interval,
     ) -> Result<Course, TooClose> {
-        let csg = self.csg;
         let events = self.lists.timeline.len();
-        let candidates = self.lists.candidates.len();
         let mut sum = Sum::new(rule, range);
-        'operands: {
-            // Convex operands first: what they leave over makes the others cheap, or superfluous.
-            let half_spaces = node.half_spaces.as_ref();
-            let planes = half_spaces.map_or(0, |planes| planes.len() as u32);
-            for quick in [true, false] {
-                for i in node.first..node.core - planes {
-                    let operand = csg.operand(i).unwrap_or_default();
-                    if csg.node(operand).is_some_and(|n| n.quick) == quick {
-                        let course = self.course(operand, index, sum.alive)?;
-                        if sum.add(course, &self.fusing) {
-                            break 'operands;
-                        }
-                    }
-                }
-                if quick && let Some(planes) = half_spaces {
-                    let course = self.half_spaces(planes, index, sum.alive)?;
-                    if sum.add(course, &self.fusing) {
-                        break 'operands;
-                    }
-                }
-            }
-            if index == 0 && self.horizon.is_none() && rule == Rule::Intersection {
-                let begin = if sum.alive.min > self.range.min {
-                    sum.alive.min
-                } else {
-                    self.range.min
-                };
-                self.horizon = Some(begin + 8.0 * self.fusing.gap(begin, begin));
-            }
-            if let Some(hierarchy) = &node.hierarchy {
-                let mut range = sum.alive;
-                if let Some(horizon) = self.horizon.filter(|horizon| *horizon < range.max) {
-                    range.max = horizon;
-                    self.leave_out(horizon);
-                }
-                let mut collector = Collector {
-                    csg,
-                    core: node.core,
-                    candidates: &mut self.lists.candidates,
-                };
-                let mut stats = TraversalStats::default();
-                hierarchy.traverse(self.ray, range, &mut collector, &mut stats);
-                while self.lists.candidates.len() > candidates {
-                    let operand = self.lists.candidates.pop().unwrap_or_default();
-                    let course = self.course(operand, index, sum.alive)?;
-                    if sum.add(course, &self.fusing) {
-                        break 'operands;
-                    }
-                }
-            } else {
-                for i in node.core..node.end {
-                    let operand = csg.operand(i).unwrap_or_default();
-                    let course = self.course(operand, index, sum.alive)?;
-                    if sum.add(course, &self.fusing) {
-                        break 'operands;
-                    }
-                }
-            }
+        if !self.core(index, node, &mut sum)? {
+            let alive = sum.alive;
+            self.rest(index, node, Interval::LINE, alive, &mut sum)?;
         }
-        self.lists.candidates.truncate(candidates);
         let timeline = &mut self.lists.timeline;
         if let Some(decided) = sum.decided {
             timeline.truncate(events);
@@ -137,6 +89,118 @@ impl Search<'_> {
         Ok(Course::Varies { inside, alive })
     }
 
+    /// Adds up the operands of a node that decide wherever the ray misses them; true if the others don't matter.
+    pub(super) fn core(
+        &mut self,
+        index: u32,
+        node: &Node,
+        sum: &mut Sum,
+    ) -> Result<bool, TooClose> {
+        let csg = self.csg;
+        let half_spaces = node.half_spaces.as_ref();
+        let planes = half_spaces.map_or(0, |planes| planes.len() as u32);
+        // Quick ones first: what they leave over makes the others cheap, or superfluous.
+        let mut slow = false;
+        for i in node.first..node.core - planes {
+            let operand = csg.operand(i).unwrap_or_default();
+            if csg.node(operand).is_some_and(|n| n.quick) {
+                let course = self.course(operand, index, sum.alive)?;
+                if sum.add(course, &self.fusing) {
+                    return Ok(true);
+                }
+            } else {
+                slow = true;
+            }
+        }
+        if let Some(planes) = half_spaces {
+            let course = self.half_spaces(planes, index, sum.alive)?;
+            if sum.add(course, &self.fusing) {
+                return Ok(true);
+            }
+        }
+        if !slow {
+            return Ok(false);
+        }
+        for i in node.first..node.core - planes {
+            let operand = csg.operand(i).unwrap_or_default();
+            if !csg.node(operand).is_some_and(|n| n.quick) {
+                let course = self.course(operand, index, sum.alive)?;
+                if sum.add(course, &self.fusing) {
+                    return Ok(true);
+                }
+            }
+        }
+        Ok(false)
+    }
+
+    /// Adds up those of a node's other operands whose boxes begin in the window (behind its start, up to its end), as far as the
+    /// boxes lie in `alive`; true if all others don't matter.
+    pub(super) fn rest(
+        &mut self,
+        index: u32,
+        node: &Node,
+        window: Interval,
+        alive: Interval,
+        sum: &mut Sum,
+    ) -> Result<bool, TooClose> {
+        let csg = self.csg;
+        let Some(hierarchy) = &node.hierarchy else {
+            for i in node.core..node.end {
+                let operand = csg.operand(i).unwrap_or_default();
+                let quick = csg.node(operand).is_some_and(|n| n.quick);
+                // Quick ones have no window but the first.
+                if (!quick || window.min == f64::NEG_INFINITY)
+                    && self.add_operand(operand, index, quick, window, alive, sum)?
+                {
+                    return Ok(true);
+                }
+            }
+            return Ok(false);
+        };
+        let bottom = self.lists.candidates.len();
+        let mut collector = Collector {
+            csg,
+            core: node.core,
+            candidates: &mut self.lists.candidates,
+        };
+        let range = alive.intersection(window);
+        let mut stats = TraversalStats::default();
+        hierarchy.traverse(self.ray, range, &mut collector, &mut stats);
+        let everything = window == Interval::LINE;
+        let mut decided = false;
+        while !decided && self.lists.candidates.len() > bottom {
+            let operand = self.lists.candidates.pop().unwrap_or_default();
+            let quick = everything && csg.node(operand).is_some_and(|n| n.quick);
+            decided = self.add_operand(operand, index, quick, window, alive, sum)?;
+        }
+        self.lists.candidates.truncate(bottom);
+        Ok(decided)
+    }
+
+    /// Adds up an operand, if it is quick or if its box begins in the window.
+    #[inline]
+    fn add_operand(
+        &mut self,
+        operand: u32,
+        parent: u32,
+        quick: bool,
+        window: Interval,
+        alive: Interval,
+        sum: &mut Sum,
+    ) -> Result<bool, TooClose> {
+        let Some(node) = self.csg.node(operand) else {
+            return Err(TooClose);
+        };
+        if !quick {
+            match self.clip(node, alive) {
+                Some(within) if window.accepts(within.min) => {}
+                _ => return Ok(false),
+            }
+        }
+        let course = self.met(operand, node, parent, sum.alive)?;
+        Ok(sum.add(course, &self.fusing))
+    }
+
     fn leaf(&mut self, index: u32, parent: u32, range: Interval) -> Result<Course, TooClose> {
         let csg = self.csg;
         let from = self.start_on(index);
@@ -153,7 +217,7 @@ impl Search<'_> {
         course
     }
 
-    /// Puts the ends of a span on the list.
+    /// Puts the ends of a span on the timeline.
     fn convex(
         &mut self,
         leaf: &Leaf,
@@ -182,13 +246,9 @@ impl Search<'_> {
                     element: leaf.first_element,
                     facet: end.facet,
                 };
-                let hit = PrimHit {
-                    surface,
-                    ..PrimHit::simple(end.t, 0)
-                };
-                self.lists
-                    .timeline
-                    .push(hit, parent, enters != leaf.negative, leaf.visible);
+                let enters = enters != leaf.negative;
+                let timeline = &mut self.lists.timeline;
+                timeline.push(end.t, surface, parent, enters, leaf.visible);
             }
         }
         let inside = (span.enter.t <= start && start < span.exit.t) != leaf.negative;
@@ -223,7 +283,7 @@ impl Search<'_> {
         course
     }
 
-    /// Puts a list of crossings, made for a range, on the list.
+    /// Puts a list of crossings, made for a range, on the timeline.
     fn listed(
         &mut self,
         list: &Crossings,
@@ -242,9 +302,7 @@ impl Search<'_> {
             state = crossing.side == Side::Enter;
             if t > start {
                 first.get_or_insert(t);
-                self.lists
-                    .timeline
-                    .push(crossing.hit, parent, state, crossing.visible);
+                self.lists.timeline.push_hit(crossing, parent);
             } else {
                 inside = state;
             }
@@ -262,11 +320,11 @@ impl Search<'_> {
 }
 
 /// What the operands of an operation have come to so far.
-struct Sum {
+pub(super) struct Sum {
     rule: Rule,
-    state: State,
+    pub(super) state: State,
     /// Where the operands to come matter.
-    alive: Interval,
+    pub(super) alive: Interval,
     /// From the first to the last point where an operand is alive.
     reach: Interval,
     /// The result, if it is the same all along, whatever the operands to come.
@@ -274,7 +332,7 @@ struct Sum {
 }
 
 impl Sum {
-    fn new(rule: Rule, range: Interval) -> Self {
+    pub(super) fn new(rule: Rule, range: Interval) -> Self {
         Self {
             rule,
             state: State::default(),
@@ -285,6 +343,7 @@ impl Sum {
     }
 
     /// Takes an operand in; true if the others don't matter any more.
+    #[inline]
     fn add(&mut self, course: Course, fusing: &Fusing) -> bool {
         match course {
             Course::Constant(constant) if constant == self.rule.neutral() => {}

@@ -10,9 +10,9 @@
 
 use super::Csg;
 use super::boxes::Slabs;
-use super::course::Course;
-use super::solid::NO_PARENT;
-use super::sweep::Fusing;
+use super::course::Sum;
+use super::solid::Kind;
+use super::sweep::{Fusing, Rule};
 use super::timeline::{Timeline, TooClose};
 use crate::{PrimHit, Scratch, SurfaceId};
 use strahl_math::{Interval, Ray};
@@ -38,7 +38,8 @@ pub(super) struct Lists {
 pub(super) struct Search<'a> {
     pub(super) csg: &'a Csg,
     pub(super) ray: &'a Ray,
-    pub(super) slabs: Slabs,
+    /// Made when the first box is looked at.
+    pub(super) slabs: Option<Slabs>,
     /// The leaf on which the ray starts, and its surface there.
     pub(super) from: Option<(u32, SurfaceId)>,
     pub(super) fusing: Fusing,
@@ -47,10 +48,6 @@ pub(super) struct Search<'a> {
     /// Where the timeline begins: a little before the range, so that crossings on both sides of its start are told apart; but not
     /// behind the surface that the ray leaves.
     pub(super) begin: f64,
-    /// Operands that begin behind this are left out; `None` until the root knows where the first surface can be ...
-    pub(super) horizon: Option<f64>,
-    /// ... and this is where the first of them may begin.
-    pub(super) left_out: f64,
     pub(super) lists: &'a mut Lists,
     pub(super) scratch: &'a mut Scratch,
 }
@@ -72,12 +69,14 @@ pub(super) fn first_visible(
     if !(start < range.max) {
         return Answer::Certain(None);
     }
+    lists.timeline.clear(csg.node_count());
+    lists.candidates.clear();
     let fusing = Fusing::new(ray);
     let before = start - 4.0 * fusing.gap(start, start);
-    let mut search = Search {
+    let search = Search {
         csg,
         ray,
-        slabs: Slabs::new(ray),
+        slabs: None,
         from: from.map(|surface| {
             let (leaf, element) = csg.leaf_of(surface.element);
             (leaf as u32, SurfaceId { element, ..surface })
@@ -89,47 +88,57 @@ pub(super) fn first_visible(
         } else {
             before
         },
-        horizon: None,
-        left_out: f64::INFINITY,
         lists,
         scratch,
     };
-    // First with what begins before the first surface there can be, then with what begins before the one found, then with all.
-    for pass in 0..3 {
-        let found = match search.pass() {
-            Ok(found) => found,
-            Err(TooClose) => return Answer::Unclear,
-        };
-        let known = found.map(|hit| hit.t + search.fusing.gap(hit.t, hit.t));
-        let all = search.left_out == f64::INFINITY;
-        if all || known.is_some_and(|known| known < search.left_out) {
-            return Answer::Certain(found);
-        }
-        search.horizon = known.filter(|_| pass == 0).or(Some(f64::INFINITY));
+    match search.run() {
+        Ok(found) => Answer::Certain(found),
+        Err(TooClose) => Answer::Unclear,
     }
-    Answer::Unclear
 }
 
 impl Search<'_> {
-    /// The first visible surface of what begins before the horizon.
-    fn pass(&mut self) -> Result<Option<PrimHit>, TooClose> {
-        self.lists.timeline.clear(self.csg.node_count());
-        self.lists.candidates.clear();
-        self.left_out = f64::INFINITY;
+    /// Looks at the root's operands from near to far, until one that begins later can't change what is found.
+    fn run(mut self) -> Result<Option<PrimHit>, TooClose> {
+        let csg = self.csg;
+        let Some((root, Kind::Operation(rule))) = csg.node(0).map(|root| (root, root.kind)) else {
+            return Err(TooClose);
+        };
         let range = Interval::new(self.begin, self.fusing.widened(self.range).max);
-        match self.course(0, NO_PARENT, range)? {
-            Course::Constant(_) => Ok(None),
-            Course::Varies { .. } => {
-                let timeline = &mut self.lists.timeline;
-                timeline.first_seen(self.csg, self.range, &self.fusing)
+        let mut sum = Sum::new(rule, range);
+        if self.core(0, root, &mut sum)? {
+            return Ok(None);
+        }
+        let alive = sum.alive;
+        let mut window = Interval::LINE;
+        let mut step = 0.0;
+        if rule == Rule::Intersection {
+            // Nothing can be seen before this.
+            let first = if alive.min > self.range.min {
+                alive.min
+            } else {
+                self.range.min
+            };
+            step = 8.0 * self.fusing.gap(first, first);
+            if step.is_finite() {
+                window.max = first + step;
             }
         }
-    }
-
-    /// Notes that what begins here has been left out.
-    pub(super) fn leave_out(&mut self, begin: f64) {
-        if begin < self.left_out {
-            self.left_out = begin;
+        loop {
+            if self.rest(0, root, window, alive, &mut sum)? {
+                return Ok(None);
+            }
+            let timeline = &mut self.lists.timeline;
+            timeline.set_state(0, sum.state);
+            let found = timeline.first_seen(csg, self.range, &self.fusing)?;
+            let known = found.map_or(f64::INFINITY, |hit| hit.t + self.fusing.gap(hit.t, hit.t));
+            if known <= window.max || alive.max <= window.max {
+                return Ok(found);
+            }
+            // At least twice as far as the last time.
+            let far = window.max + 2.0 * step;
+            window = Interval::new(window.max, if known > far { known } else { far });
+            step = window.max - window.min;
         }
     }
 

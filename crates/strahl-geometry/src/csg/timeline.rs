@@ -1,7 +1,7 @@
 use super::Csg;
 use super::solid::Kind;
 use super::sweep::{Fusing, Rule};
-use crate::PrimHit;
+use crate::{Crossing, PrimHit, Side, SurfaceId};
 use strahl_math::Interval;
 
 /// Two crossings are so close together that they could be one, or another thing that only lists can decide.
@@ -12,10 +12,11 @@ pub(super) struct TooClose;
 #[derive(Clone, Copy, Debug)]
 struct Event {
     t: f64,
+    surface: SurfaceId,
     /// The operation whose operand changes its state.
     parent: u32,
-    /// Among the hits.
-    hit: u32,
+    /// One more than the place of the hit's coordinates; 0 if they are 0.
+    uv: u32,
     enters: bool,
     visible: bool,
 }
@@ -40,48 +41,75 @@ impl State {
 #[derive(Debug, Default)]
 pub(super) struct Timeline {
     events: Vec<Event>,
-    hits: Vec<PrimHit>,
-    /// One for each node; those of leaves and of what has no event are not used.
+    uvs: Vec<[f64; 2]>,
+    /// The states where the ray starts, of operations with events.
+    starts: Vec<(u32, State)>,
+    /// One for each node.
     states: Vec<State>,
 }
 
 impl Timeline {
-    /// Forgets all events. There is room for the states of `nodes` nodes then.
+    /// Forgets everything. There is room for the states of `nodes` nodes then.
     pub(super) fn clear(&mut self, nodes: usize) {
         self.events.clear();
-        self.hits.clear();
+        self.uvs.clear();
+        self.starts.clear();
         if self.states.len() < nodes {
             self.states.resize(nodes, State::default());
         }
     }
 
+    /// The number of crossings.
     pub(super) fn len(&self) -> usize {
         self.events.len()
     }
 
-    /// Forgets all but the first events.
+    /// Forgets all but the first crossings.
     pub(super) fn truncate(&mut self, len: usize) {
         self.events.truncate(len);
-        self.hits.truncate(len);
     }
 
-    /// The state of an operation where the ray starts.
+    /// The state of an operation where the ray starts; the last one counts.
     pub(super) fn set_state(&mut self, node: u32, state: State) {
-        if let Some(place) = self.states.get_mut(node as usize) {
-            *place = state;
-        }
+        self.starts.push((node, state));
     }
 
     /// Adds a crossing of an operand of `parent`.
-    pub(super) fn push(&mut self, hit: PrimHit, parent: u32, enters: bool, visible: bool) {
+    #[inline]
+    pub(super) fn push(
+        &mut self,
+        t: f64,
+        surface: SurfaceId,
+        parent: u32,
+        enters: bool,
+        visible: bool,
+    ) {
         self.events.push(Event {
-            t: hit.t,
+            t,
+            surface,
             parent,
-            hit: self.hits.len() as u32,
+            uv: 0,
             enters,
             visible,
         });
-        self.hits.push(hit);
+    }
+
+    /// Adds a crossing from a list, which enters or leaves.
+    pub(super) fn push_hit(&mut self, crossing: &Crossing, parent: u32) {
+        let PrimHit { t, surface, uv } = crossing.hit;
+        self.push(
+            t,
+            surface,
+            parent,
+            crossing.side == Side::Enter,
+            crossing.visible,
+        );
+        if uv != [0.0; 2] {
+            self.uvs.push(uv);
+            if let Some(event) = self.events.last_mut() {
+                event.uv = self.uvs.len() as u32;
+            }
+        }
     }
 
     /// Goes along the ray until a crossing in the range is seen from outside of the tree.
@@ -94,9 +122,15 @@ impl Timeline {
         self.events.sort_unstable_by(|a, b| a.t.total_cmp(&b.t));
         let Self {
             events,
-            hits,
+            uvs,
+            starts,
             states,
         } = self;
+        for (node, state) in starts {
+            if let Some(place) = states.get_mut(*node as usize) {
+                *place = *state;
+            }
+        }
         let followers = events.iter().skip(1).map(|next| next.t);
         let followers = followers.chain([f64::INFINITY]);
         for (event, next) in events.iter().zip(followers) {
@@ -107,7 +141,12 @@ impl Timeline {
                 return Err(TooClose);
             }
             if event.is_seen(csg, states) && event.t > range.min {
-                return Ok(hits.get(event.hit as usize).copied());
+                let uv = uvs.get((event.uv as usize).wrapping_sub(1));
+                return Ok(Some(PrimHit {
+                    t: event.t,
+                    surface: event.surface,
+                    uv: uv.copied().unwrap_or_default(),
+                }));
             }
         }
         Ok(None)
