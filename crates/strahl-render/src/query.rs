@@ -203,15 +203,15 @@ impl<Q: Query> Search<'_, '_, Q> {
     ) -> f64 {
         let from_prim = from.map_or(NONE, |(_, id)| group.prim_of(id));
         let mut stats = TraversalStats::default();
-        let shear = if group.sheared {
+        let part = if self.parts { Q::part(group) } else { None };
+        let (accelerator, blocks, sheared) = match part {
+            None => (&group.accelerator, &group.blocks, group.sheared),
+            Some(part) => (&part.accelerator, &part.blocks, part.sheared),
+        };
+        let shear = if sheared {
             RayShear::new(ray)
         } else {
             RayShear::UNUSED
-        };
-        let part = if self.parts { Q::part(group) } else { None };
-        let (accelerator, blocks) = match part {
-            None => (&group.accelerator, &group.blocks),
-            Some(part) => (&part.accelerator, &part.blocks),
         };
         let plain = group
             .common

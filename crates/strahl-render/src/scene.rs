@@ -94,6 +94,8 @@ pub(crate) struct RenderGroup {
 pub(crate) struct Part {
     pub(crate) accelerator: AnyAccelerator,
     pub(crate) blocks: Blocks,
+    /// Whether it has triangles that are tested by a shear of the ray.
+    pub(crate) sheared: bool,
 }
 
 impl RenderGroup {
@@ -346,9 +348,38 @@ impl RenderScene {
         hit: &Hit,
         uv: Uv,
     ) -> Resolved {
+        let world = &self.groups[0];
+        let prim = world.prim_of(hit.id);
+        if matches!(world.prims[prim as usize].kind(), PrimKind::Instance(_)) {
+            return self.resolve_within(ray, origin, hit, uv);
+        }
+        let element = (hit.id - world.first_id(prim)) as u32;
+        let look = world.look(prim, element);
+        let uv = self.wants_uv(&look, uv);
+        Resolved {
+            point: world.surface_at(prim, ray, hit, element, uv),
+            local: None,
+            look,
+        }
+    }
+
+    /// Whether texture coordinates are wanted for a material.
+    #[inline]
+    fn wants_uv(&self, look: &Look, uv: Uv) -> bool {
+        uv == Uv::Always || self.materials[look.material.0 as usize].is_textured()
+    }
+
+    /// [`RenderScene::resolve`] for a hit within an instance.
+    fn resolve_within(
+        &self,
+        ray: &Ray,
+        origin: Option<&crate::Origin>,
+        hit: &Hit,
+        uv: Uv,
+    ) -> Resolved {
         let at = self.locate(hit.id);
         let look = at.group.look(at.prim, at.element);
-        let uv = uv == Uv::Always || self.materials[look.material.0 as usize].is_textured();
+        let uv = self.wants_uv(&look, uv);
         let local_ray = match &at.to_world {
             None => *ray,
             Some(m) => {

@@ -146,6 +146,13 @@ impl<'s> Surface<'s> {
         }
     }
 
+    /// Where a ray in this direction starts, if it leads to the side of the viewer.
+    #[inline]
+    pub(crate) fn start_in_front(&self, direction: DVec3) -> Option<(DVec3, &Origin)> {
+        let (point, origin) = &self.front;
+        (self.n_geom.dot(direction) >= 0.0).then_some((*point, origin))
+    }
+
     /// What the surface makes of light arriving from the unit direction `l`: the diffuse part and the highlight.
     #[inline]
     pub(crate) fn reflected(

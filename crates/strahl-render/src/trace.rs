@@ -18,7 +18,7 @@ mod outcome;
 mod settings;
 mod together;
 
-use together::Ahead;
+use together::{Ahead, KnownLights};
 
 pub use outcome::{FirstHit, RayCounts, SampleResult};
 pub use settings::TraceSettings;
@@ -33,7 +33,7 @@ use crate::shadow::{Shadow, ShadowRay};
 use crate::surface::{Split, Surface};
 use strahl_math::{DVec3, Interval, Ray};
 use strahl_shade::texture::TexturePaint;
-use strahl_shade::{Color, Light, LightSample, ShadingModel, SpectralPart};
+use strahl_shade::{Color, Light, ShadingModel, SpectralPart};
 
 /// Grows ray trees; owns the working memory of one thread.
 #[derive(Debug)]
@@ -320,10 +320,10 @@ impl<'s> TreeTracer<'s> {
 
         let mut found;
         let (surface, known) = match ahead {
-            Some(ahead) => (&mut ahead.surface, Some(&ahead.lights)),
+            Some(ahead) => (&mut ahead.surface, ahead.lights),
             None => {
                 found = Surface::at(scene, branch, hit, &self.media, self.uv);
-                (&mut found, None)
+                (&mut found, KnownLights::default())
             }
         };
         layers::paint(scene, surface, hit, &mut self.paint);
@@ -361,8 +361,8 @@ impl<'s> TreeTracer<'s> {
         let shining = scene.lights_in(surface.lit.set);
         for number in 0..shining.map_or(scene.lights.len(), <[u32]>::len) {
             let light = shining.map_or(number, |list| list[number] as usize);
-            let known = known.and_then(|k| k.of(light));
-            let term = self.light(surface, hit, model, light, known, branch, index, observer);
+            let stopped = known.stopped(light);
+            let term = self.light(surface, hit, model, light, stopped, branch, index, observer);
             node.local += term.diffuse + term.specular;
             if O::ACTIVE {
                 observer.light(index, term);
@@ -394,7 +394,7 @@ impl<'s> TreeTracer<'s> {
         hit: &Hit,
         model: ShadingModel,
         light: usize,
-        known: Option<&(LightSample, bool)>,
+        stopped: Option<bool>,
         branch: &Branch,
         node: u32,
         observer: &mut O,
@@ -410,12 +410,8 @@ impl<'s> TreeTracer<'s> {
             diffuse: Color::BLACK,
             specular: Color::BLACK,
         };
-        let sample = match known {
-            Some((sample, _)) => *sample,
-            None => match scene_light.illuminate(surface.resolved.point.position) {
-                Some(sample) => sample,
-                None => return term,
-            },
+        let Some(sample) = scene_light.illuminate(surface.resolved.point.position) else {
+            return term;
         };
         term.n_dot_l = surface.n_shade.dot(sample.l);
         term.color = sample.color;
@@ -449,7 +445,7 @@ impl<'s> TreeTracer<'s> {
                     media: branch.media,
                 };
                 let (media, hits) = (&mut self.media, &mut self.shadow_hits);
-                let shadow = match known.map(|(_, stopped)| *stopped) {
+                let shadow = match stopped {
                     None => self.tracer.shadow(&shadow_ray, media, hits),
                     Some(true) => Shadow::STOPPED,
                     Some(false) => self.tracer.filtered(&shadow_ray, media, hits),

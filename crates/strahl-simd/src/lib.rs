@@ -31,27 +31,7 @@ pub struct Lanes8(pub [f32; 8]);
 /// Sixteen f32 next to each other, one for each ray of a packet.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C, align(64))]
-pub struct Lanes16(pub [Lanes8; 2]);
-
-impl Lanes16 {
-    /// The same number in all lanes.
-    #[inline(always)]
-    pub const fn splat(x: f32) -> Self {
-        Self([Lanes8([x; 8]); 2])
-    }
-
-    /// The number in a lane, of which there are sixteen.
-    #[inline(always)]
-    pub const fn get(&self, lane: usize) -> f32 {
-        self.0[lane / 8 % 2].0[lane % 8]
-    }
-
-    /// Puts a number into a lane, of which there are sixteen.
-    #[inline(always)]
-    pub const fn set(&mut self, lane: usize, x: f32) {
-        self.0[lane / 8 % 2].0[lane % 8] = x;
-    }
-}
+pub struct Lanes16(pub [f32; 16]);
 
 /// The vectors of one level of instructions. Values of implementing types are proofs that the instructions exist.
 ///
@@ -97,6 +77,8 @@ pub trait Isa: Copy + Send + Sync + 'static {
 
     /// The same number in all lanes.
     fn splat_f32x16(self, x: f32) -> Self::F32x16;
+    /// The first or the second eight of sixteen numbers from memory.
+    fn load_half(self, lanes: &Lanes16, half: usize) -> Self::F32x8;
     /// Sixteen numbers from memory.
     fn load_f32x16(self, lanes: &Lanes16) -> Self::F32x16;
     /// `a b + c`, rounded once or twice: for culling only.

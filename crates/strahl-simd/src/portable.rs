@@ -18,7 +18,7 @@ macro_rules! pairs_of_eight {
 
         #[inline(always)]
         fn load_f32x16(self, lanes: &$crate::Lanes16) -> Self::F32x16 {
-            [self.load_f32(&lanes.0[0]), self.load_f32(&lanes.0[1])]
+            [self.load_half(lanes, 0), self.load_half(lanes, 1)]
         }
 
         #[inline(always)]
@@ -88,6 +88,11 @@ macro_rules! lane_by_lane {
         #[inline(always)]
         fn load_f32(self, lanes: &$crate::Lanes8) -> [f32; 8] {
             lanes.0
+        }
+
+        #[inline(always)]
+        fn load_half(self, lanes: &$crate::Lanes16, half: usize) -> [f32; 8] {
+            std::array::from_fn(|i| lanes.0[half % 2 * 8 + i])
         }
 
         #[inline(always)]

@@ -48,7 +48,49 @@ fn everything<I: Isa>(isa: I) -> Vec<u64> {
         bits.extend(isa.store_f32(v).0.map(|x| u64::from(x.to_bits())));
     }
     bits.extend([isa.le_f32(p, q), isa.le_f32(q, p)].map(u64::from));
+    bits.extend([isa.lt_f32(p, q), isa.lt_f32(q, p)].map(u64::from));
     bits
+}
+
+/// Where each operation on sixteen lanes gives what it should; all products are exact.
+fn sixteen<I: Isa>(isa: I) -> [u32; 8] {
+    let x: [f32; 16] = std::array::from_fn(|i| i as f32 * 0.5 - 3.0);
+    let v = isa.load_f32x16(&Lanes16(x));
+    let two = isa.splat_f32x16(2.0);
+    let is = |found: I::F32x16, expected: fn(f32) -> f32| {
+        let expected = isa.load_f32x16(&Lanes16(x.map(expected)));
+        isa.le_f32x16(found, expected) & isa.le_f32x16(expected, found)
+    };
+    [
+        is(isa.mul_add_f32x16(v, two, v), |x| 3.0 * x),
+        is(isa.mul_sub_f32x16(v, v, two), |x| x * x - 2.0),
+        is(isa.mul_f32x16(v, v), |x| x * x),
+        is(isa.sub_f32x16(two, v), |x| 2.0 - x),
+        is(isa.abs_f32x16(v), f32::abs),
+        is(isa.min_f32x16(v, two), |x| x.min(2.0)),
+        is(isa.max_f32x16(v, two), |x| x.max(2.0)),
+        isa.lt_f32x16(v, two),
+    ]
+}
+
+#[test]
+fn sixteen_lanes_are_computed_like_one() {
+    let all = 0xffff;
+    for simd in Simd::available() {
+        let found = dispatch!(simd, isa => sixteen(isa));
+        // -3 + 0.5 i < 2 for the first ten.
+        assert_eq!(
+            found,
+            [all, all, all, all, all, all, all, 0x3ff],
+            "{}",
+            simd.level()
+        );
+        let nan = dispatch!(simd, isa => {
+            let (nan, one) = (isa.splat_f32x16(f32::NAN), isa.splat_f32x16(1.0));
+            isa.lt_f32x16(nan, one) | isa.le_f32x16(nan, one) | isa.lt_f32x16(one, nan)
+        });
+        assert_eq!(nan, 0);
+    }
 }
 
 #[test]

@@ -90,6 +90,12 @@ macro_rules! avx {
         }
 
         #[inline(always)]
+        fn load_half(self, lanes: &Lanes16, half: usize) -> __m256 {
+            // SAFETY: `self` proves AVX; both halves are eight floats, aligned to 32 bytes by the type.
+            unsafe { _mm256_load_ps(lanes.0.as_ptr().add(half % 2 * 8)) }
+        }
+
+        #[inline(always)]
         fn store_f32(self, v: __m256) -> Lanes8 {
             let mut lanes = Lanes8([0.0; 8]);
             // SAFETY: `self` proves AVX; there is room for eight floats, aligned to 32 bytes by their type.
@@ -300,7 +306,7 @@ impl Isa for Avx512 {
     #[inline(always)]
     fn load_f32x16(self, lanes: &Lanes16) -> __m512 {
         // SAFETY: `self` proves AVX-512; the sixteen floats are there, aligned to 64 bytes by their type.
-        unsafe { _mm512_load_ps(lanes.0.as_ptr().cast()) }
+        unsafe { _mm512_load_ps(lanes.0.as_ptr()) }
     }
 
     #[inline(always)]

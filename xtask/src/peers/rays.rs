@@ -1,6 +1,7 @@
 //! The rays of the benchmark: made once from the hits of strahl, the same for everyone.
 
 use super::meshes::{Rng, View};
+use std::ops::Range;
 use strahl::math::{DVec3, Interval, Ray};
 use strahl::scene::Camera;
 use strahl::tracing::{Origin, PrimaryRays, RayClass, RenderScene, Tracer};
@@ -107,9 +108,9 @@ impl Batch {
         self.starts.extend(from);
     }
 
-    /// The rays as strahl takes them.
-    pub(super) fn rays(&self) -> impl Iterator<Item = (&Ray, Option<&Origin>)> {
-        let rays = self.rays.iter().enumerate();
+    /// Some of the rays as strahl takes them.
+    pub(super) fn rays(&self, part: Range<usize>) -> impl Iterator<Item = (&Ray, Option<&Origin>)> {
+        let rays = part.clone().zip(&self.rays[part]);
         rays.map(|(i, ray)| (ray, self.starts.get(i)))
     }
 }

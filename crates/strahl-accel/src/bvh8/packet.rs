@@ -102,13 +102,13 @@ impl Tree {
         let Some(first) = packet.rays.first() else {
             return;
         };
-        let nothing = Lanes16::splat(0.0);
+        let nothing = Lanes16([0.0; PACKET]);
         let mut lanes = Lanes {
             rd: [nothing; 3],
             minus_near: [nothing; 3],
             minus_far: [nothing; 3],
             t_min: nothing,
-            far: Lanes16::splat(f32::NEG_INFINITY),
+            far: Lanes16([f32::NEG_INFINITY; PACKET]),
             clocks: [CullClock::UNUSED; PACKET],
         };
         // Planes are taken relative to where rays start: then what is common to all rays does not widen the intervals.
@@ -140,12 +140,12 @@ impl Tree {
             let shift = start.relative_to(isa, &reference);
             let t_min = start.clock.t_min(range.min);
             for axis in 0..3 {
-                lanes.rd[axis].set(lane, constants.rd[axis]);
-                lanes.minus_near[axis].set(lane, constants.minus_near[axis]);
-                lanes.minus_far[axis].set(lane, constants.minus_far[axis]);
+                lanes.rd[axis].0[lane] = constants.rd[axis];
+                lanes.minus_near[axis].0[lane] = constants.minus_near[axis];
+                lanes.minus_far[axis].0[lane] = constants.minus_far[axis];
             }
-            lanes.t_min.set(lane, t_min);
-            lanes.far.set(lane, start.clock.t_max(range.max));
+            lanes.t_min.0[lane] = t_min;
+            lanes.far.0[lane] = start.clock.t_max(range.max);
             lanes.clocks[lane] = start.clock;
             let octant = constants.down as usize % OCTANTS;
             hulls[octant].grow(&constants.rd, &shift, t_min);
@@ -437,7 +437,7 @@ impl Lanes {
             of_lane(&self.minus_near, lane),
             of_lane(&self.minus_far, lane),
             octant as u32,
-            self.t_min.get(lane),
+            self.t_min.0[lane],
         )
     }
 
@@ -449,14 +449,14 @@ impl Lanes {
         } else {
             self.clocks[lane].t_max(t_max)
         };
-        self.far.set(lane, far);
+        self.far.0[lane] = far;
     }
 
     /// The last parameter that any of some rays is interested in.
     #[inline(always)]
     fn farthest(&self, lanes: u32) -> f32 {
         lanes_of(lanes).fold(f32::NEG_INFINITY, |most, lane| {
-            let far = self.far.get(lane);
+            let far = self.far.0[lane];
             if far > most { far } else { most }
         })
     }
@@ -465,7 +465,7 @@ impl Lanes {
 /// The numbers of one lane.
 #[inline(always)]
 fn of_lane(axes: &[Lanes16; 3], lane: usize) -> [f32; 4] {
-    [axes[0].get(lane), axes[1].get(lane), axes[2].get(lane), 0.0]
+    [axes[0].0[lane], axes[1].0[lane], axes[2].0[lane], 0.0]
 }
 
 /// The visitor of one ray of a packet.

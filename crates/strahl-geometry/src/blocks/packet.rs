@@ -39,8 +39,8 @@ impl PacketShears {
         let axes = shears.first()?.axes();
         let mut all = Self {
             axes,
-            slope: [Lanes16::splat(0.0); 2],
-            start: [Lanes16::splat(0.0); 2],
+            slope: [Lanes16([0.0; PACKET]); 2],
+            start: [Lanes16([0.0; PACKET]); 2],
             margin: 0.0,
         };
         let mut farthest = 0.0;
@@ -50,8 +50,8 @@ impl PacketShears {
             }
             let (o, s) = (shear.origin(), shear.slope());
             for k in 0..2 {
-                all.slope[k].set(lane, s[k] as f32);
-                all.start[k].set(lane, (o[k] - s[k] * o[2]) as f32);
+                all.slope[k].0[lane] = s[k] as f32;
+                all.start[k].0[lane] = (o[k] - s[k] * o[2]) as f32;
             }
             let distance = o[0].abs() + o[1].abs() + o[2].abs();
             // A NaN stays.
@@ -163,7 +163,7 @@ pub struct PacketLines {
 impl PacketLines {
     /// Those of at most [`PACKET`] rays among primitives with coordinates of up to `max_abs`.
     pub fn new(rays: &[Ray], max_abs: f64) -> Self {
-        let nothing = Lanes16::splat(0.0);
+        let nothing = Lanes16([0.0; PACKET]);
         let mut all = Self {
             origin: [nothing; 3],
             direction: [nothing; 3],
@@ -174,10 +174,10 @@ impl PacketLines {
         for (lane, ray) in rays.iter().enumerate().take(PACKET) {
             let d = ray.direction;
             for axis in 0..3 {
-                all.origin[axis].set(lane, ray.origin[axis] as f32);
-                all.direction[axis].set(lane, d[axis] as f32);
+                all.origin[axis].0[lane] = ray.origin[axis] as f32;
+                all.direction[axis].0[lane] = d[axis] as f32;
             }
-            all.inverse.set(lane, (1.0 / d.dot(d)) as f32);
+            all.inverse.0[lane] = (1.0 / d.dot(d)) as f32;
             let distance = ray.origin.abs().element_sum();
             // A NaN stays.
             farthest = if distance <= farthest {

@@ -16,7 +16,7 @@ mod view;
 
 use crate::blocks::Blocks;
 use crate::light_sets::{LightSets, Lit};
-use crate::prim::Prim;
+use crate::prim::{Prim, PrimKind};
 use crate::scene::{InstanceUse, ObjectInfo, Part, RenderGroup, RenderScene};
 use assemble::Assembled;
 pub(crate) use materials::material_transmits;
@@ -194,7 +194,9 @@ fn part(kind: AcceleratorKind, group: &Assembled, flag: u8) -> Option<Box<Part>>
         &group.shapes,
         &group.meshes,
     );
+    let triangle = |p: &Prim| p.flags & flag != 0 && matches!(p.kind(), PrimKind::Triangle(..));
     Some(Box::new(Part {
+        sheared: blocks.sheared() || group.prims.iter().any(triangle),
         accelerator,
         blocks,
     }))

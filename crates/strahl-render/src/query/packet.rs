@@ -105,9 +105,9 @@ impl Tracer<'_> {
         let group = &self.scene.groups[0];
         let parts = self.remembers;
         let part = if parts { Q::part(group) } else { None };
-        let (accelerator, blocks) = match part {
-            None => (&group.accelerator, &group.blocks),
-            Some(part) => (&part.accelerator, &part.blocks),
+        let (accelerator, blocks, is_sheared) = match part {
+            None => (&group.accelerator, &group.blocks, group.sheared),
+            Some(part) => (&part.accelerator, &part.blocks, part.sheared),
         };
         let class = asked.class.bit();
         let mut stats = TraversalStats::default();
@@ -119,7 +119,7 @@ impl Tracer<'_> {
             shears: None,
             lines: None,
         };
-        if group.sheared {
+        if is_sheared {
             for ray in asked.rays.iter().take(PACKET) {
                 shears.push(RayShear::new(ray));
             }

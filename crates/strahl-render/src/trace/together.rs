@@ -2,12 +2,12 @@
 //! what it would be alone, to the last bit.
 
 use super::{Branch, TreeTracer};
-use crate::hit::{Hit, Origin, RayClass};
+use crate::hit::RayClass;
 use crate::surface::Surface;
 use arrayvec::ArrayVec;
 use strahl_accel::PACKET;
 use strahl_math::{Interval, Ray};
-use strahl_shade::{Color, LightSample};
+use strahl_shade::Color;
 
 /// What is known of a hit before its tree grows.
 pub(super) struct Ahead<'s> {
@@ -15,29 +15,21 @@ pub(super) struct Ahead<'s> {
     pub(super) lights: KnownLights,
 }
 
-/// The first lights of a scene, of which shadow rays are followed together.
-const KNOWN: usize = 4;
-
-/// What arrives at a hit of each of the first lights, and whether something opaque is in front of it, if that is known.
-pub(super) struct KnownLights([Option<(LightSample, bool)>; KNOWN]);
-
-impl KnownLights {
-    const NONE: Self = Self([None; KNOWN]);
-
-    /// What is known of a light.
-    #[inline]
-    pub(super) fn of(&self, light: usize) -> Option<&(LightSample, bool)> {
-        self.0.get(light)?.as_ref()
-    }
+/// Which shadow rays of a hit have been followed, and what they met: a bit for each light.
+#[derive(Clone, Copy, Default)]
+pub(super) struct KnownLights {
+    followed: u32,
+    /// Something opaque is in front of them.
+    stopped: u32,
 }
 
-/// Shadow rays to one light.
-#[derive(Default)]
-struct Bundle<'a> {
-    rays: ArrayVec<Ray, PACKET>,
-    starts: ArrayVec<Origin, PACKET>,
-    samples: ArrayVec<LightSample, PACKET>,
-    hits: ArrayVec<&'a mut Option<(LightSample, bool)>, PACKET>,
+impl KnownLights {
+    /// Whether a light is stopped, if that is known.
+    #[inline]
+    pub(super) fn stopped(self, light: usize) -> Option<bool> {
+        let bit = 1u32.checked_shl(light as u32)?;
+        (self.followed & bit != 0).then_some(self.stopped & bit != 0)
+    }
 }
 
 /// Fewer rays go one by one.
@@ -57,12 +49,12 @@ impl<'s> TreeTracer<'s> {
             if let Some(hit) = hit {
                 all.push(Ahead {
                     surface: Surface::at(scene, &Branch::primary(ray), hit, &self.media, self.uv),
-                    lights: KnownLights::NONE,
+                    lights: KnownLights::default(),
                 });
             }
         }
-        for light in 0..scene.lights.len().min(KNOWN) {
-            self.shadows_together(light, &hits, &mut all);
+        for light in 0..scene.lights.len().min(u32::BITS as usize) {
+            self.shadows_together(light, &mut all);
         }
         let mut ahead = all.iter_mut();
         let mut colors = ArrayVec::new();
@@ -83,20 +75,16 @@ impl<'s> TreeTracer<'s> {
     }
 
     /// Follows the shadow rays of several hits to one light.
-    fn shadows_together(
-        &mut self,
-        number: usize,
-        hits: &[Option<Hit>; PACKET],
-        ahead: &mut [Ahead<'s>],
-    ) {
+    fn shadows_together(&mut self, number: usize, ahead: &mut [Ahead<'s>]) {
         let scene = self.tracer.scene;
         let light = &scene.lights[number].light;
         if !light.casts_shadows || light.area.is_some() || scene.mask(number).is_some() {
             return;
         }
-        let mut bundle = Bundle::default();
+        let mut rays = ArrayVec::<Ray, PACKET>::new();
+        let (mut from, mut places) = ([None; PACKET], [0; PACKET]);
         let (mut min, mut t_max) = (0.0, [f64::NEG_INFINITY; PACKET]);
-        for (Ahead { surface, lights }, hit) in ahead.iter_mut().zip(hits.iter().flatten()) {
+        for (place, Ahead { surface, .. }) in ahead.iter().enumerate() {
             if !self.is_plain(surface) {
                 continue;
             }
@@ -107,31 +95,27 @@ impl<'s> TreeTracer<'s> {
             if !faces || sample.range.is_empty() {
                 continue;
             }
-            if bundle.rays.is_empty() {
+            let lane = rays.len();
+            if lane == 0 {
                 min = sample.range.min;
-            } else if sample.range.min != min {
+            }
+            let Some((point, origin)) = surface.start_in_front(sample.shadow_direction) else {
+                continue;
+            };
+            if sample.range.min != min {
                 continue;
             }
-            let (point, origin) = surface.start(hit, sample.shadow_direction);
-            bundle.rays.push(Ray::new(point, sample.shadow_direction));
-            bundle.starts.push(origin);
-            bundle.hits.push(&mut lights.0[number]);
-            t_max[bundle.rays.len() - 1] = sample.range.max;
-            bundle.samples.push(sample);
+            rays.push(Ray::new(point, sample.shadow_direction));
+            (from[lane], places[lane], t_max[lane]) = (Some(origin), place, sample.range.max);
         }
-        if bundle.rays.len() < FEW {
+        if rays.len() < FEW {
             return;
         }
-        let mut from = [None; PACKET];
-        for (from, origin) in from.iter_mut().zip(&bundle.starts) {
-            *from = Some(origin);
-        }
-        let stopped = self
-            .tracer
-            .all_occluded(&bundle.rays, min, t_max, &from, number);
-        let each = bundle.hits.into_iter().zip(bundle.samples);
-        for (lane, (known, sample)) in each.enumerate() {
-            *known = Some((sample, stopped >> lane & 1 == 1));
+        let stopped = self.tracer.all_occluded(&rays, min, t_max, &from, number);
+        for (lane, place) in places[..rays.len()].iter().enumerate() {
+            let lights = &mut ahead[*place].lights;
+            lights.followed |= 1 << number;
+            lights.stopped |= (stopped >> lane & 1) << number;
         }
     }
 }
