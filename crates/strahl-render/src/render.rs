@@ -258,6 +258,8 @@ impl Job<'_> {
         for batch in all.chunks(BATCH) {
             let results: Vec<Option<TileResult<T>>> = batch
                 .par_iter()
+                // Tile by tile: of larger pieces the last one would keep one thread busy and the others waiting.
+                .with_max_len(1)
                 .map_init(
                     || PixelTracer {
                         tree: TreeTracer::new(scene, options.trace),

@@ -26,7 +26,7 @@ impl Shadow {
     };
 
     /// All light arrives.
-    const NONE: Self = Self {
+    pub(crate) const NONE: Self = Self {
         visible: Color::WHITE,
         hit: false,
     };

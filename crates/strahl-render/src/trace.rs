@@ -13,12 +13,13 @@
 //! bottom-up in the order reflection, transparency, so the sum does not depend on the order of tracing. Layers of a texture
 //! that mirror differently send a reflection ray each.
 
+mod lights;
 mod nothing;
 mod outcome;
 mod settings;
 mod together;
 
-use together::{Ahead, KnownLights};
+use together::{Ahead, KnownLights, Samples};
 
 pub use outcome::{FirstHit, RayCounts, SampleResult};
 pub use settings::TraceSettings;
@@ -26,14 +27,13 @@ pub use settings::TraceSettings;
 use crate::hit::{Hit, Origin, RayClass};
 use crate::layers::{self, Mirror};
 use crate::media::{MediaArena, MediaStack};
-use crate::observer::{BranchEnd, LightTerm, RayKind, RayReport, Share, TraceObserver};
+use crate::observer::{BranchEnd, RayKind, RayReport, Share, TraceObserver};
 use crate::query::Tracer;
 use crate::scene::{RenderScene, Uv};
-use crate::shadow::{Shadow, ShadowRay};
 use crate::surface::{Split, Surface};
 use strahl_math::{DVec3, Interval, Ray};
 use strahl_shade::texture::TexturePaint;
-use strahl_shade::{Color, Light, ShadingModel, SpectralPart};
+use strahl_shade::{Color, ShadingModel, SpectralPart};
 
 /// Grows ray trees; owns the working memory of one thread.
 #[derive(Debug)]
@@ -56,6 +56,8 @@ pub struct TreeTracer<'s> {
     pub(crate) paint: TexturePaint<'s>,
     /// The reflection rays of the hit at hand.
     mirrors: Vec<Mirror>,
+    /// What arrives at the hits of the packet at hand.
+    samples: Samples,
 }
 
 /// A ray still to be traced.
@@ -167,6 +169,7 @@ impl<'s> TreeTracer<'s> {
             paint: TexturePaint::default(),
             area_points: Vec::new(),
             mirrors: Vec::new(),
+            samples: Samples::default(),
         }
     }
 
@@ -361,8 +364,7 @@ impl<'s> TreeTracer<'s> {
         let shining = scene.lights_in(surface.lit.set);
         for number in 0..shining.map_or(scene.lights.len(), <[u32]>::len) {
             let light = shining.map_or(number, |list| list[number] as usize);
-            let stopped = known.stopped(light);
-            let term = self.light(surface, hit, model, light, stopped, branch, index, observer);
+            let term = self.light(surface, hit, model, light, known, branch, index, observer);
             node.local += term.diffuse + term.specular;
             if O::ACTIVE {
                 observer.light(index, term);
@@ -380,142 +382,6 @@ impl<'s> TreeTracer<'s> {
             .force_shading
             .or(material.model)
             .unwrap_or(self.settings.shading)
-    }
-
-    /// One light's contribution: no shadow ray if the surface faces away.
-    #[inline(always)]
-    #[expect(
-        clippy::too_many_arguments,
-        reason = "inlined into its only caller; what belongs together is together already"
-    )]
-    fn light<O: TraceObserver>(
-        &mut self,
-        surface: &Surface<'_>,
-        hit: &Hit,
-        model: ShadingModel,
-        light: usize,
-        stopped: Option<bool>,
-        branch: &Branch,
-        node: u32,
-        observer: &mut O,
-    ) -> LightTerm {
-        let scene_light = &self.tracer.scene.lights[light].light;
-        let mut term = LightTerm {
-            light: light as u32,
-            n_dot_l: 0.0,
-            shadow_ray: None,
-            shadow_rays: 0,
-            visible: Color::BLACK,
-            color: Color::BLACK,
-            diffuse: Color::BLACK,
-            specular: Color::BLACK,
-        };
-        let Some(sample) = scene_light.illuminate(surface.resolved.point.position) else {
-            return term;
-        };
-        term.n_dot_l = surface.n_shade.dot(sample.l);
-        term.color = sample.color;
-        // Parts of a light that shades point by point may be seen where its centre is not.
-        if !self.faces(surface, sample.l, term.n_dot_l)
-            && scene_light.area.is_none_or(|a| !a.illumination)
-        {
-            return term;
-        }
-        term.visible = Color::WHITE;
-        let masked = self.tracer.scene.mask(light).is_some();
-        if (scene_light.casts_shadows || masked) && !sample.range.is_empty() {
-            let (origin_point, origin) = surface.start(hit, sample.shadow_direction);
-            let ray = Ray::new(origin_point, sample.shadow_direction);
-            if O::ACTIVE {
-                term.shadow_ray = Some(ray);
-            }
-            if let Some(area) = &scene_light.area {
-                self.area_light(
-                    area, &sample, surface, hit, model, light, branch, node, &mut term, observer,
-                );
-                if area.illumination {
-                    return term;
-                }
-            } else {
-                let shadow_ray = ShadowRay {
-                    ray,
-                    range: sample.range,
-                    from: origin,
-                    light,
-                    media: branch.media,
-                };
-                let (media, hits) = (&mut self.media, &mut self.shadow_hits);
-                let shadow = match stopped {
-                    None => self.tracer.shadow(&shadow_ray, media, hits),
-                    Some(true) => Shadow::STOPPED,
-                    Some(false) => self.tracer.filtered(&shadow_ray, media, hits),
-                };
-                self.counts.shadow += 1;
-                self.counts.shadow_hit += u64::from(shadow.hit);
-                term.shadow_rays = 1;
-                term.visible = shadow.visible;
-            }
-        }
-        if scene_light.fogged
-            && !self.tracer.scene.fogs.is_empty()
-            && self.media.top(branch.media).is_none()
-        {
-            let ray = Ray::new(surface.resolved.point.position, sample.l);
-            let length = if sample.range.max.is_infinite() {
-                f64::INFINITY
-            } else {
-                sample.shadow_direction.length()
-            };
-            term.visible *= self.tracer.scene.fog_along(&ray, length).0;
-        }
-        if !term.visible.is_black() {
-            let arriving = sample.color * term.visible;
-            (term.diffuse, term.specular) = self.reflected(
-                surface,
-                scene_light,
-                model,
-                arriving,
-                sample.l,
-                term.n_dot_l,
-            );
-        }
-        term
-    }
-
-    /// Whether light from the unit direction `l` shows on the surface at hand.
-    #[inline]
-    pub(crate) fn faces(&self, surface: &Surface<'_>, l: DVec3, n_dot_l: f64) -> bool {
-        if surface.lit.both_sides {
-            true
-        } else if self.paint.layers.is_empty() {
-            n_dot_l > 0.0
-        } else {
-            layers::faces(&self.paint, l)
-        }
-    }
-
-    /// What the surface at hand makes of light from the unit direction `l`: the diffuse part and the highlight.
-    #[inline]
-    pub(crate) fn reflected(
-        &self,
-        surface: &Surface<'_>,
-        light: &Light,
-        model: ShadingModel,
-        arriving: Color,
-        l: DVec3,
-        n_dot_l: f64,
-    ) -> (Color, Color) {
-        let (diffuse, highlight) = if self.paint.layers.is_empty() {
-            surface.reflected(model, arriving, l, n_dot_l)
-        } else {
-            layers::lit(&self.paint, surface, l, arriving)
-        };
-        let highlight = if light.highlights {
-            highlight
-        } else {
-            Color::BLACK
-        };
-        (diffuse, highlight)
     }
 
     /// Queues what the surface reflects and transmits; the reflection ray is traced first.

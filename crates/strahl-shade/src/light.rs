@@ -89,6 +89,16 @@ pub struct LightSample {
     pub color: Color,
 }
 
+impl LightSample {
+    /// No light.
+    pub const NONE: Self = Self {
+        l: DVec3::ZERO,
+        shadow_direction: DVec3::ZERO,
+        range: Interval::UNTIL_LIGHT,
+        color: Color::BLACK,
+    };
+}
+
 impl Light {
     /// A light that casts shadows and does not weaken.
     pub const fn new(kind: LightKind, color: Color) -> Self {

@@ -7,12 +7,14 @@ use crate::surface::Surface;
 use arrayvec::ArrayVec;
 use strahl_accel::PACKET;
 use strahl_math::{Interval, Ray};
-use strahl_shade::Color;
+use strahl_shade::{Color, LightSample};
 
 /// What is known of a hit before its tree grows.
 pub(super) struct Ahead<'s> {
     pub(super) surface: Surface<'s>,
     pub(super) lights: KnownLights,
+    /// Whether its shadow rays can be told before it is painted.
+    plain: bool,
 }
 
 /// Which shadow rays of a hit have been followed, and what they met: a bit for each light.
@@ -21,14 +23,31 @@ pub(super) struct KnownLights {
     followed: u32,
     /// Something opaque is in front of them.
     stopped: u32,
+    /// The lane of the hit in [`Samples`].
+    lane: u32,
 }
 
-impl KnownLights {
-    /// Whether a light is stopped, if that is known.
+/// What arrives from each light at the hits whose shadow rays have been followed.
+#[derive(Debug, Default)]
+pub(super) struct Samples(Vec<[LightSample; PACKET]>);
+
+impl Samples {
+    fn put(&mut self, light: usize, lane: usize, sample: LightSample) {
+        if self.0.len() <= light {
+            self.0.resize(light + 1, [LightSample::NONE; PACKET]);
+        }
+        self.0[light][lane % PACKET] = sample;
+    }
+
+    /// What arrives of a light if nothing is in between, and whether something opaque is, if both are known.
     #[inline]
-    pub(super) fn stopped(self, light: usize) -> Option<bool> {
+    pub(super) fn known(&self, light: usize, of: KnownLights) -> Option<(&LightSample, bool)> {
         let bit = 1u32.checked_shl(light as u32)?;
-        (self.followed & bit != 0).then_some(self.stopped & bit != 0)
+        if of.followed & bit == 0 {
+            return None;
+        }
+        let sample = self.0.get(light)?.get(of.lane as usize)?;
+        Some((sample, of.stopped & bit != 0))
     }
 }
 
@@ -47,9 +66,14 @@ impl<'s> TreeTracer<'s> {
         let scene = self.tracer.scene;
         for (ray, hit) in rays.iter().zip(&hits) {
             if let Some(hit) = hit {
+                let surface = Surface::at(scene, &Branch::primary(ray), hit, &self.media, self.uv);
                 all.push(Ahead {
-                    surface: Surface::at(scene, &Branch::primary(ray), hit, &self.media, self.uv),
-                    lights: KnownLights::default(),
+                    plain: self.is_plain(&surface),
+                    surface,
+                    lights: KnownLights {
+                        lane: all.len() as u32,
+                        ..KnownLights::default()
+                    },
                 });
             }
         }
@@ -84,10 +108,8 @@ impl<'s> TreeTracer<'s> {
         let mut rays = ArrayVec::<Ray, PACKET>::new();
         let (mut from, mut places) = ([None; PACKET], [0; PACKET]);
         let (mut min, mut t_max) = (0.0, [f64::NEG_INFINITY; PACKET]);
-        for (place, Ahead { surface, .. }) in ahead.iter().enumerate() {
-            if !self.is_plain(surface) {
-                continue;
-            }
+        for (place, hit) in ahead.iter().enumerate().filter(|(_, a)| a.plain) {
+            let surface = &hit.surface;
             let Some(sample) = light.illuminate(surface.resolved.point.position) else {
                 continue;
             };
@@ -107,6 +129,7 @@ impl<'s> TreeTracer<'s> {
             }
             rays.push(Ray::new(point, sample.shadow_direction));
             (from[lane], places[lane], t_max[lane]) = (Some(origin), place, sample.range.max);
+            self.samples.put(number, place, sample);
         }
         if rays.len() < FEW {
             return;

@@ -1,0 +1,169 @@
+//! What lights add to a hit: the second step of the loop.
+
+use super::together::KnownLights;
+use super::{Branch, TreeTracer};
+use crate::hit::Hit;
+use crate::layers;
+use crate::observer::{LightTerm, TraceObserver};
+use crate::shadow::{Shadow, ShadowRay};
+use crate::surface::Surface;
+use strahl_math::{DVec3, Ray};
+use strahl_shade::{Color, Light, ShadingModel};
+
+impl TreeTracer<'_> {
+    /// One light's contribution: no shadow ray if the surface faces away.
+    #[inline(always)]
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "inlined into its only caller; what belongs together is together already"
+    )]
+    pub(super) fn light<O: TraceObserver>(
+        &mut self,
+        surface: &Surface<'_>,
+        hit: &Hit,
+        model: ShadingModel,
+        light: usize,
+        known: KnownLights,
+        branch: &Branch,
+        node: u32,
+        observer: &mut O,
+    ) -> LightTerm {
+        let scene_light = &self.tracer.scene.lights[light].light;
+        let mut term = LightTerm {
+            light: light as u32,
+            n_dot_l: 0.0,
+            shadow_ray: None,
+            shadow_rays: 0,
+            visible: Color::BLACK,
+            color: Color::BLACK,
+            diffuse: Color::BLACK,
+            specular: Color::BLACK,
+        };
+        let (sample, stopped) = match self.samples.known(light, known) {
+            Some((sample, stopped)) => (*sample, Some(stopped)),
+            None => match scene_light.illuminate(surface.resolved.point.position) {
+                Some(sample) => (sample, None),
+                None => return term,
+            },
+        };
+        term.n_dot_l = surface.n_shade.dot(sample.l);
+        term.color = sample.color;
+        // Parts of a light that shades point by point may be seen where its centre is not.
+        if !self.faces(surface, sample.l, term.n_dot_l)
+            && scene_light.area.is_none_or(|a| !a.illumination)
+        {
+            return term;
+        }
+        term.visible = Color::WHITE;
+        let masked = self.tracer.scene.mask(light).is_some();
+        if let Some(stopped) = stopped
+            && (stopped || !self.tracer.scene.transmits)
+        {
+            self.count_shadow(
+                &mut term,
+                if stopped {
+                    Shadow::STOPPED
+                } else {
+                    Shadow::NONE
+                },
+            );
+        } else if (scene_light.casts_shadows || masked) && !sample.range.is_empty() {
+            let (origin_point, origin) = surface.start(hit, sample.shadow_direction);
+            let ray = Ray::new(origin_point, sample.shadow_direction);
+            if O::ACTIVE {
+                term.shadow_ray = Some(ray);
+            }
+            if let Some(area) = &scene_light.area {
+                self.area_light(
+                    area, &sample, surface, hit, model, light, branch, node, &mut term, observer,
+                );
+                if area.illumination {
+                    return term;
+                }
+            } else {
+                let shadow_ray = ShadowRay {
+                    ray,
+                    range: sample.range,
+                    from: origin,
+                    light,
+                    media: branch.media,
+                };
+                let (media, hits) = (&mut self.media, &mut self.shadow_hits);
+                let shadow = match stopped {
+                    None => self.tracer.shadow(&shadow_ray, media, hits),
+                    Some(_) => self.tracer.filtered(&shadow_ray, media, hits),
+                };
+                self.count_shadow(&mut term, shadow);
+            }
+        }
+        if scene_light.fogged
+            && !self.tracer.scene.fogs.is_empty()
+            && self.media.top(branch.media).is_none()
+        {
+            let ray = Ray::new(surface.resolved.point.position, sample.l);
+            let length = if sample.range.max.is_infinite() {
+                f64::INFINITY
+            } else {
+                sample.shadow_direction.length()
+            };
+            term.visible *= self.tracer.scene.fog_along(&ray, length).0;
+        }
+        if !term.visible.is_black() {
+            let arriving = sample.color * term.visible;
+            (term.diffuse, term.specular) = self.reflected(
+                surface,
+                scene_light,
+                model,
+                arriving,
+                sample.l,
+                term.n_dot_l,
+            );
+        }
+        term
+    }
+
+    /// Takes what a shadow ray brought.
+    #[inline]
+    fn count_shadow(&mut self, term: &mut LightTerm, shadow: Shadow) {
+        self.counts.shadow += 1;
+        self.counts.shadow_hit += u64::from(shadow.hit);
+        term.shadow_rays = 1;
+        term.visible = shadow.visible;
+    }
+
+    /// Whether light from the unit direction `l` shows on the surface at hand.
+    #[inline]
+    pub(crate) fn faces(&self, surface: &Surface<'_>, l: DVec3, n_dot_l: f64) -> bool {
+        if surface.lit.both_sides {
+            true
+        } else if self.paint.layers.is_empty() {
+            n_dot_l > 0.0
+        } else {
+            layers::faces(&self.paint, l)
+        }
+    }
+
+    /// What the surface at hand makes of light from the unit direction `l`: the diffuse part and the highlight.
+    #[inline]
+    pub(crate) fn reflected(
+        &self,
+        surface: &Surface<'_>,
+        light: &Light,
+        model: ShadingModel,
+        arriving: Color,
+        l: DVec3,
+        n_dot_l: f64,
+    ) -> (Color, Color) {
+        let (diffuse, highlight) = if self.paint.layers.is_empty() {
+            surface.reflected(model, arriving, l, n_dot_l)
+        } else {
+            layers::lit(&self.paint, surface, l, arriving)
+        };
+        let highlight = if light.highlights {
+            highlight
+        } else {
+            Color::BLACK
+        };
+        (diffuse, highlight)
+    }
+}
