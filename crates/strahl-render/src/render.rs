@@ -7,7 +7,7 @@ use crate::sight::{SQUARE, Sight};
 use crate::tiles::{TILE, TileOrder, tiles};
 use crate::trace::{RayCounts, SampleResult, TraceSettings, TreeTracer};
 use arrayvec::ArrayVec;
-use rayon::prelude::*;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use strahl_accel::{PACKET, TraversalStats};
 use strahl_math::Ray;
 use strahl_shade::Color;
@@ -256,33 +256,36 @@ impl Job<'_> {
         let (scene, options, progress) = (self.scene, self.options, self.progress);
         let rays = &self.rays;
         for batch in all.chunks(BATCH) {
-            let results: Vec<Option<TileResult<T>>> = batch
-                .par_iter()
-                // Tile by tile: of larger pieces the last one would keep one thread busy and the others waiting.
-                .with_max_len(1)
-                .map_init(
-                    || PixelTracer {
-                        tree: TreeTracer::new(scene, options.trace),
-                        rays,
-                        options,
-                        progress,
-                        infos: Vec::new(),
-                        depth: 0,
-                        blind: false,
-                        ahead: Ahead::default(),
-                        together: options.follows_together(rays),
-                    },
-                    |tracer, tile| {
-                        (!progress.cancelled()).then(|| {
-                            let result = tracer.tile(*tile, pass, &trace);
-                            progress.tile(result.counts.total());
-                            result
-                        })
-                    },
-                )
-                .collect();
-            for result in results {
-                let result = result.ok_or(RenderError::Cancelled)?;
+            // Whoever is free takes the next tile.
+            let next = AtomicUsize::new(0);
+            let results = rayon::broadcast(|_| {
+                let mut tracer = PixelTracer {
+                    tree: TreeTracer::new(scene, options.trace),
+                    rays,
+                    options,
+                    progress,
+                    infos: Vec::new(),
+                    depth: 0,
+                    blind: false,
+                    ahead: Ahead::default(),
+                    together: options.follows_together(rays),
+                };
+                let mut done = Vec::new();
+                while !progress.cancelled() {
+                    let number = next.fetch_add(1, Ordering::Relaxed);
+                    let Some(tile) = batch.get(number) else { break };
+                    let result = tracer.tile(*tile, pass, &trace);
+                    progress.tile(result.counts.total());
+                    done.push((number, result));
+                }
+                done
+            });
+            let mut results: Vec<_> = results.into_iter().flatten().collect();
+            if results.len() < batch.len() {
+                return Err(RenderError::Cancelled);
+            }
+            results.sort_by_key(|(number, _)| *number);
+            for (_, result) in results {
                 self.counts += result.counts;
                 self.traversal += result.traversal;
                 if let Some(all) = &mut self.costs {

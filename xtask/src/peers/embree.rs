@@ -279,6 +279,36 @@ impl RayHit {
     }
 }
 
+impl RayHit16 {
+    /// Sixteen rays side by side; those that are missing are zeros.
+    pub(super) fn of(rays: &[Segment]) -> Self {
+        let mut packet = Self {
+            origin: [[0.0; 16]; 3],
+            near: [0.0; 16],
+            direction: [[0.0; 16]; 3],
+            time: [0.0; 16],
+            far: [0.0; 16],
+            mask: [INVALID; 16],
+            id: [0; 16],
+            flags: [0; 16],
+            normal: [[0.0; 16]; 3],
+            uv: [[0.0; 16]; 2],
+            primitive: [INVALID; 16],
+            geometry: [INVALID; 16],
+            instance: [INVALID; 16],
+        };
+        for (lane, ray) in rays.iter().enumerate().take(16) {
+            for axis in 0..3 {
+                packet.origin[axis][lane] = ray.origin[axis];
+                packet.direction[axis][lane] = ray.direction[axis];
+            }
+            packet.near[lane] = ray.near;
+            packet.far[lane] = ray.far;
+        }
+        packet
+    }
+}
+
 impl Context1 {
     fn new(coherent: bool) -> Self {
         Self {
@@ -319,36 +349,13 @@ impl EmbreeScene<'_> {
         hits
     }
 
-    /// The same for packets of sixteen rays that follow each other in the list; returns the number of hits.
-    pub(super) fn packets(&self, rays: &[Segment], any: bool) -> usize {
+    /// The same for packets of sixteen rays; returns the number of hits.
+    pub(super) fn packets(&self, packets: &[RayHit16], any: bool) -> usize {
         let mut context = Context1::new(true);
         let valid = Valid([-1; 16]);
         let mut hits = 0;
-        for sixteen in rays.chunks_exact(16) {
-            let lanes = |f: fn(&Segment) -> f32| std::array::from_fn(|i| f(&sixteen[i]));
-            let mut query = RayHit16 {
-                origin: [
-                    lanes(|r| r.origin[0]),
-                    lanes(|r| r.origin[1]),
-                    lanes(|r| r.origin[2]),
-                ],
-                near: lanes(|r| r.near),
-                direction: [
-                    lanes(|r| r.direction[0]),
-                    lanes(|r| r.direction[1]),
-                    lanes(|r| r.direction[2]),
-                ],
-                time: [0.0; 16],
-                far: lanes(|r| r.far),
-                mask: [INVALID; 16],
-                id: [0; 16],
-                flags: [0; 16],
-                normal: [[0.0; 16]; 3],
-                uv: [[0.0; 16]; 2],
-                primitive: [INVALID; 16],
-                geometry: [INVALID; 16],
-                instance: [INVALID; 16],
-            };
+        for packet in packets {
+            let mut query = *packet;
             let function = if any {
                 self.embree.occluded16
             } else {

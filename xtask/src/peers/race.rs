@@ -1,6 +1,6 @@
 //! Who is faster: the programs take turns on the rays of a batch.
 
-use super::embree::EmbreeScene;
+use super::embree::{EmbreeScene, RayHit16};
 use super::rays::{Batch, Kind};
 use super::{Plan, Table};
 use crate::bench::median;
@@ -53,6 +53,12 @@ pub(super) fn compare(
     if !plan.brief || batch.kind.in_tiles() {
         programs.extend([Program::OurPackets, Program::EmbreePackets]);
     }
+    // Side by side, as a program that uses Embree would make them.
+    let sixteens: Vec<RayHit16> = batch
+        .segments
+        .chunks_exact(PACKET)
+        .map(RayHit16::of)
+        .collect();
     let mut times = vec![vec![]; programs.len()];
     let mut answers = vec![Answers::default(); programs.len()];
     for round in 0..plan.rounds {
@@ -61,7 +67,7 @@ pub(super) fn compare(
             let number = (round + turn) % programs.len();
             let start = Instant::now();
             let parts = in_parts(batch.segments.len(), plan.threads, |part| {
-                trace(programs[number], ours, theirs, batch, part)
+                trace(programs[number], ours, theirs, batch, &sixteens, part)
             });
             times[number].push(start.elapsed().as_secs_f64());
             answers[number] = joined(parts);
@@ -159,6 +165,7 @@ fn trace(
     ours: &RenderScene,
     theirs: &[EmbreeScene<'_>],
     batch: &Batch,
+    sixteens: &[RayHit16],
     part: Range<usize>,
 ) -> Answers {
     let any = batch.kind.any();
@@ -198,7 +205,8 @@ fn trace(
         Program::Embree(setting) if any => answers.hits = theirs[setting].occluded(segments),
         Program::Embree(setting) => theirs[setting].closest(segments, &mut answers.distances),
         Program::EmbreePackets => {
-            std::hint::black_box(theirs[0].packets(segments, any));
+            let packets = &sixteens[part.start / PACKET..part.end / PACKET];
+            std::hint::black_box(theirs[0].packets(packets, any));
         }
     }
     answers
