@@ -127,7 +127,10 @@ accelerators! {
     "bvh2" Bvh2(NoParameters) = |shapes, _| Bvh2::build(&all_bounds(shapes)),
     /// The bounding volume hierarchy of width eight.
     "bvh" Bvh8(Bvh8Parameters) = |shapes, parameters| {
-        let bvh = Bvh8::build_from(shapes);
+let mut bvh = Bvh8::build_from(shapes);
+        if parameters.compact {
+            bvh = bvh.compacted();
+        }
         match parameters.simd.and_then(Simd::of) {
             Some(simd) => bvh.with_simd(simd),
             None => bvh,
@@ -147,6 +150,11 @@ impl AnyAccelerator {
         Self::build_from(kind, &Boxes(bounds))
     }
 
+    /// Whether it is to spend as little memory as possible (see [`Bvh8::compacted`]).
+    pub fn is_compact(&self) -> bool {
+        matches!(self, Self::Bvh8(bvh) if bvh.is_compact())
+    }
+
     /// The instructions it is walked with: only [`Bvh8`] has kernels of vectors.
     pub fn simd(&self) -> Level {
         match self {
@@ -161,7 +169,10 @@ impl AcceleratorKind {
     #[must_use]
     pub fn with_simd(self, level: Level) -> Self {
         match self {
-            Self::Bvh8(_) => Self::Bvh8(Bvh8Parameters { simd: Some(level) }),
+            Self::Bvh8(parameters) => Self::Bvh8(Bvh8Parameters {
+                simd: Some(level),
+                ..parameters
+            }),
             other => other,
         }
     }

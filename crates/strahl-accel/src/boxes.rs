@@ -27,13 +27,27 @@ impl Box32 {
     #[inline]
     pub(crate) fn try_new(b: &Aabb) -> Option<Self> {
         let fits = b.is_bounded() && b.max_abs() <= FARTHEST;
+        fits.then(|| Self::around(b))
+    }
+
+    /// The smallest f32 box around an f64 box.
+    #[inline]
+    pub(crate) fn around(b: &Aabb) -> Self {
         let (lo, hi) = (b.min, b.max);
         let down = round_down_f32;
         let up = round_up_f32;
-        fits.then_some(Self {
+        Self {
             lo: Vec4::new(down(lo.x), down(lo.y), down(lo.z), 0.0),
             hi: Vec4::new(up(hi.x), up(hi.y), up(hi.z), 0.0),
-        })
+        }
+    }
+
+    /// What both boxes have in common.
+    pub(crate) fn intersection(&self, other: &Self) -> Self {
+        Self {
+            lo: self.lo.max(other.lo),
+            hi: self.hi.min(other.hi),
+        }
     }
 
     /// Enlarges the box to contain another.

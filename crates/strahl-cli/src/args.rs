@@ -165,7 +165,11 @@ impl AcceleratorArgs {
 /// A level that this processor has.
 fn parse_simd(text: &str) -> Result<Level, String> {
     let level: Level = text.parse().map_err(|e: UnknownLevel| e.to_string())?;
-    Bvh8Parameters { simd: Some(level) }.check()?;
+    Bvh8Parameters {
+        simd: Some(level),
+        ..Bvh8Parameters::DEFAULT
+    }
+    .check()?;
     Ok(level)
 }
 

@@ -1,8 +1,11 @@
 use crate::prim::{Prim, PrimKind};
-use crate::scene::{MeshUse, ShapeUse};
-use strahl_accel::NO_PRIMITIVE;
+use crate::runs::RunList;
+use crate::scene::{MeshUse, RenderGroup, ShapeUse};
+use crate::spheres::Spheres;
+use std::borrow::Borrow;
+use strahl_accel::{Accelerator, AnyAccelerator, Leaf, NO_PRIMITIVE};
 use strahl_geometry::blocks::{Hits, LANES, PacketLines, PacketShears, SphereBlock, TriangleBlock};
-use strahl_geometry::{RayShear, Shape};
+use strahl_geometry::{RayShear, Shape, Sphere};
 use strahl_math::{Interval, Ray};
 use strahl_simd::Isa;
 
@@ -20,16 +23,26 @@ pub(crate) enum LeafClass {
     Spheres = 3,
 }
 
+/// The lists that the primitives of a group are in.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Lists<'g> {
+    pub(crate) prims: &'g RunList<Prim>,
+    pub(crate) shapes: &'g [ShapeUse],
+    pub(crate) spheres: &'g Spheres,
+    pub(crate) meshes: &'g [MeshUse],
+}
+
 impl LeafClass {
     /// The class of a primitive.
-    pub(crate) fn of(prim: &Prim, shapes: &[ShapeUse], meshes: &[MeshUse]) -> Self {
+    pub(crate) fn of(prim: Prim, lists: &Lists<'_>) -> Self {
         match prim.kind() {
             PrimKind::Triangle(mesh, _)
-                if meshes[mesh as usize].mesh.anchor() == strahl_math::DVec3::ZERO =>
+                if lists.meshes[mesh as usize].mesh.anchor() == strahl_math::DVec3::ZERO =>
             {
                 Self::Mesh
             }
-            PrimKind::Shape(index) => match shapes[index as usize].shape {
+            PrimKind::Sphere(_) => Self::Spheres,
+            PrimKind::Shape(index) => match lists.shapes[index as usize].shape {
                 Shape::Triangle(_) => Self::Triangles,
                 Shape::Sphere(_) => Self::Spheres,
                 _ => Self::Single,
@@ -59,38 +72,49 @@ pub(crate) struct Blocks {
     mesh: Vec<TriangleBlock<f32>>,
     triangles: Vec<TriangleBlock<f64>>,
     spheres: Vec<SphereBlock>,
+    /// Whether there are none of triangles of meshes, to save memory: their corners are fetched from the meshes.
+    fetches: bool,
 }
 
 impl Blocks {
-    /// The blocks for the slots of an accelerator.
-    pub(crate) fn new(
-        slots: &[u32],
-        prims: &[Prim],
-        shapes: &[ShapeUse],
-        meshes: &[MeshUse],
-    ) -> Self {
-        let mut all = Self::default();
-        for block in slots.chunks(LANES) {
-            let class = prims
-                .get(block[0] as usize)
-                .map_or(LeafClass::Single, |p| LeafClass::of(p, shapes, meshes));
+    /// No blocks.
+    pub(crate) const NONE: Self = Self {
+        places: Vec::new(),
+        mesh: Vec::new(),
+        triangles: Vec::new(),
+        spheres: Vec::new(),
+        fetches: false,
+    };
+
+    /// The blocks for the leaves of an accelerator.
+    pub(crate) fn new(accelerator: &AnyAccelerator, lists: &Lists<'_>) -> Self {
+        let mut all = Self {
+            fetches: accelerator.is_compact(),
+            ..Self::default()
+        };
+        for block in accelerator.slots().chunks(LANES) {
+            let class = lists
+                .prims
+                .get(block[0])
+                .map_or(LeafClass::Single, |p| LeafClass::of(p, lists));
             let used = block
                 .iter()
                 .enumerate()
                 .filter(|(_, id)| **id != NO_PRIMITIVE);
-            let used = used.map(|(lane, id)| (lane, prims[*id as usize].kind()));
+            let used = used.map(|(lane, id)| (lane, lists.prims.at(*id).kind()));
             let shape = |kind| match kind {
-                PrimKind::Shape(index) => Some(&shapes[index as usize].shape),
+                PrimKind::Shape(index) => Some(&lists.shapes[index as usize].shape),
                 _ => None,
             };
             let place = match class {
                 LeafClass::Single => 0,
+                LeafClass::Mesh if all.fetches => 0,
                 LeafClass::Mesh => {
                     let mut four = TriangleBlock::EMPTY;
                     for (lane, kind) in used {
                         if let PrimKind::Triangle(mesh, triangle) = kind
                             && let Some(corners) =
-                                meshes[mesh as usize].mesh.stored_corners(triangle)
+                                lists.meshes[mesh as usize].mesh.stored_corners(triangle)
                         {
                             four.set(lane, corners);
                         }
@@ -109,7 +133,9 @@ impl Blocks {
                 LeafClass::Spheres => {
                     let mut four = SphereBlock::EMPTY;
                     for (lane, kind) in used {
-                        if let Some(Shape::Sphere(s)) = shape(kind) {
+                        if let PrimKind::Sphere(number) = kind {
+                            four.set(lane, &lists.spheres.loose(number));
+                        } else if let Some(Shape::Sphere(s)) = shape(kind) {
                             four.set(lane, s);
                         }
                     }
@@ -124,9 +150,15 @@ impl Blocks {
         all
     }
 
-    /// Whether there are triangles among them.
-    pub(crate) fn sheared(&self) -> bool {
-        !self.mesh.is_empty() || !self.triangles.is_empty()
+    /// Whether there are triangles with f64 corners among them.
+    pub(crate) fn has_triangles(&self) -> bool {
+        !self.triangles.is_empty()
+    }
+
+    /// Whether triangles of meshes are in no blocks.
+    #[inline(always)]
+    pub(crate) fn fetches(&self) -> bool {
+        self.fetches
     }
 
     /// Whether there are spheres among them.
@@ -142,8 +174,15 @@ impl Blocks {
             + size_of_val(self.spheres.as_slice())
     }
 
+    /// The sphere in a lane of one of the blocks of spheres, seen from outside.
     #[inline(always)]
-    fn place(&self, block: usize) -> usize {
+    pub(crate) fn sphere(&self, block: usize, lane: usize) -> Sphere {
+        self.spheres[block].sphere(lane)
+    }
+
+    /// The index of a block of slots in the list of its class.
+    #[inline(always)]
+    pub(crate) fn place(&self, block: usize) -> usize {
         if self.places.is_empty() {
             block
         } else {
@@ -153,10 +192,11 @@ impl Blocks {
 }
 
 /// Visibility and flags of the primitives that are tested in blocks, if all have the same.
-pub(crate) fn common(prims: &[Prim], shapes: &[ShapeUse], meshes: &[MeshUse]) -> Option<(u8, u8)> {
-    let mut all = prims
+pub(crate) fn common(lists: &Lists<'_>) -> Option<(u8, u8)> {
+    let mut all = lists
+        .prims
         .iter()
-        .filter(|p| LeafClass::of(p, shapes, meshes) != LeafClass::Single)
+        .filter(|p| LeafClass::of(*p, lists) != LeafClass::Single)
         .map(|p| (p.visible, p.flags));
     let first = all.next()?;
     all.all(|p| p == first).then_some(first)
@@ -176,11 +216,19 @@ pub(crate) struct PacketCulls<'c> {
 
 /// A block of primitives of one class.
 pub(crate) trait Block: Sized {
+    /// A block where it was found.
+    type Found<'b>: Borrow<Self>;
+
     /// Whether a ray that starts on a primitive may meet that primitive again.
     const CURVED: bool;
 
-    /// The block of this class with a number.
-    fn of(blocks: &Blocks, number: usize) -> &Self;
+    /// One of the blocks of a leaf of this class.
+    fn of<'b>(
+        group: &RenderGroup,
+        blocks: &'b Blocks,
+        leaf: &Leaf<'_>,
+        index: usize,
+    ) -> Self::Found<'b>;
 
     /// The lanes that the ray meets in the range, as bits, with where; those that it starts on mean nothing.
     fn hits<I: Isa>(
@@ -202,11 +250,13 @@ pub(crate) trait Block: Sized {
 }
 
 impl Block for TriangleBlock<f32> {
+    type Found<'b> = &'b Self;
+
     const CURVED: bool = false;
 
     #[inline(always)]
-    fn of(blocks: &Blocks, number: usize) -> &Self {
-        &blocks.mesh[blocks.place(number)]
+    fn of<'b>(_: &RenderGroup, blocks: &'b Blocks, leaf: &Leaf<'_>, index: usize) -> &'b Self {
+        &blocks.mesh[blocks.place(leaf.first_block + index)]
     }
 
     #[inline(always)]
@@ -231,11 +281,13 @@ impl Block for TriangleBlock<f32> {
 }
 
 impl Block for TriangleBlock<f64> {
+    type Found<'b> = &'b Self;
+
     const CURVED: bool = false;
 
     #[inline(always)]
-    fn of(blocks: &Blocks, number: usize) -> &Self {
-        &blocks.triangles[blocks.place(number)]
+    fn of<'b>(_: &RenderGroup, blocks: &'b Blocks, leaf: &Leaf<'_>, index: usize) -> &'b Self {
+        &blocks.triangles[blocks.place(leaf.first_block + index)]
     }
 
     #[inline(always)]
@@ -260,11 +312,13 @@ impl Block for TriangleBlock<f64> {
 }
 
 impl Block for SphereBlock {
+    type Found<'b> = &'b Self;
+
     const CURVED: bool = true;
 
     #[inline(always)]
-    fn of(blocks: &Blocks, number: usize) -> &Self {
-        &blocks.spheres[blocks.place(number)]
+    fn of<'b>(_: &RenderGroup, blocks: &'b Blocks, leaf: &Leaf<'_>, index: usize) -> &'b Self {
+        &blocks.spheres[blocks.place(leaf.first_block + index)]
     }
 
     #[inline(always)]
@@ -290,5 +344,42 @@ impl Block for SphereBlock {
     #[inline(always)]
     fn is_entered(&self, lane: usize, ray: &Ray) -> bool {
         self.is_entered(lane, ray)
+    }
+}
+
+/// Triangles of meshes with their corners as the meshes have them, four made to a block when a ray gets there.
+pub(crate) struct Fetched(TriangleBlock<f32>);
+
+impl Block for Fetched {
+    type Found<'b> = Self;
+
+    const CURVED: bool = false;
+
+    #[inline(always)]
+    fn of(group: &RenderGroup, _: &Blocks, leaf: &Leaf<'_>, index: usize) -> Self {
+        let mut four = TriangleBlock::EMPTY;
+        let used = leaf.count - index * LANES;
+        for lane in 0..used.min(LANES) {
+            if let Some(corners) = group.stored_corners(leaf.id(index, lane)) {
+                four.set(lane, corners);
+            }
+        }
+        Self(four)
+    }
+
+    #[inline(always)]
+    fn hits<I: Isa>(
+        &self,
+        isa: I,
+        _: &Ray,
+        shear: &RayShear,
+        range: Interval,
+        hits: &mut Hits,
+    ) -> u32 {
+        self.0.hits(isa, shear, range, hits)
+    }
+    #[inline(always)]
+    fn may_hit<I: Isa>(&self, isa: I, packet: &PacketCulls<'_>, used: usize) -> u32 {
+        Block::may_hit(&self.0, isa, packet, used)
     }
 }

@@ -61,7 +61,7 @@ impl RenderScene {
         let (mut group, mut rest) = (&self.groups[0], element);
         loop {
             let prim = group.prim_of(rest);
-            let (outer, next) = match group.prims[prim as usize].kind() {
+            let (outer, next) = match group.prims.at(prim).kind() {
                 PrimKind::Instance(index) => {
                     let instance = &group.instances[index as usize];
                     (instance.lit, Some(instance.group))

@@ -1,7 +1,9 @@
 //! What the ids of accelerators stand for.
 
+use crate::runs::Run;
+
 /// What the accelerator's ids stand for: 12 bytes, because scenes have millions.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Prim {
     /// Index of the mesh use, shape or instance.
     index: u32,
@@ -16,11 +18,12 @@ pub(crate) struct Prim {
 const _: () = assert!(size_of::<Prim>() == 12);
 
 /// Of which kind a [`Prim`] is.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(u8)]
 enum PrimTag {
     Triangle,
     Shape,
+    Sphere,
     Placed,
     Instance,
 }
@@ -32,6 +35,8 @@ pub(crate) enum PrimKind {
     Triangle(u32, u32),
     /// A shape in the group's own space.
     Shape(u32),
+    /// A plain sphere.
+    Sphere(u32),
     /// A shape with a transformation.
     Placed(u32),
     /// A group once more.
@@ -52,6 +57,7 @@ impl Prim {
         let (tag, index, triangle) = match kind {
             PrimKind::Triangle(index, triangle) => (PrimTag::Triangle, index, triangle),
             PrimKind::Shape(index) => (PrimTag::Shape, index, 0),
+            PrimKind::Sphere(index) => (PrimTag::Sphere, index, 0),
             PrimKind::Placed(index) => (PrimTag::Placed, index, 0),
             PrimKind::Instance(index) => (PrimTag::Instance, index, 0),
         };
@@ -70,8 +76,36 @@ impl Prim {
         match self.tag {
             PrimTag::Triangle => PrimKind::Triangle(self.index, self.triangle),
             PrimTag::Shape => PrimKind::Shape(self.index),
+            PrimTag::Sphere => PrimKind::Sphere(self.index),
             PrimTag::Placed => PrimKind::Placed(self.index),
             PrimTag::Instance => PrimKind::Instance(self.index),
+        }
+    }
+}
+
+/// Runs are the triangles of a mesh, or shapes of a kind that rays see alike.
+impl Run for Prim {
+    type Item = Self;
+
+    fn of(item: Self) -> Self {
+        item
+    }
+
+    fn goes_on(&mut self, len: u32, item: &Self) -> bool {
+        self.item(len) == *item
+    }
+
+    #[inline(always)]
+    fn item(&self, place: u32) -> Self {
+        match self.tag {
+            PrimTag::Triangle => Self {
+                triangle: self.triangle.wrapping_add(place),
+                ..*self
+            },
+            _ => Self {
+                index: self.index.wrapping_add(place),
+                ..*self
+            },
         }
     }
 }

@@ -1,12 +1,13 @@
 mod kinds;
 mod packet;
 
-use crate::blocks::{Block, Blocks, LeafClass};
+use crate::blocks::{Block, Blocks, Fetched, LeafClass};
 use crate::hit::{Hit, Origin, RayClass};
 use crate::prim::{Prim, PrimKind};
 use crate::scene::{InstanceUse, RenderGroup, RenderScene};
 use crate::walk::WalkEvent;
 use kinds::{AnyOpaque, Closest, Query, Transmitting, Watched};
+use std::borrow::Borrow;
 use strahl_accel::{Accelerator, BLOCK, Leaf, NO_PRIMITIVE, Step, TraversalStats, Visitor};
 use strahl_geometry::blocks::{Hits, SphereBlock, TriangleBlock};
 use strahl_geometry::{PrimHit, Primitive, RayShear, Scratch, SurfaceId};
@@ -271,6 +272,7 @@ impl<Q: Query> Visitor for GroupVisitor<'_, '_, '_, Q> {
             false => LeafClass::from_number(leaf.class),
         };
         match class {
+            LeafClass::Mesh if self.blocks.fetches() => self.blocks::<I, Fetched>(isa, leaf, t_max),
             LeafClass::Mesh => self.blocks::<I, TriangleBlock<f32>>(isa, leaf, t_max),
             LeafClass::Triangles => self.blocks::<I, TriangleBlock<f64>>(isa, leaf, t_max),
             LeafClass::Spheres => self.blocks::<I, SphereBlock>(isa, leaf, t_max),
@@ -293,7 +295,7 @@ impl<Q: Query> Visitor for GroupVisitor<'_, '_, '_, Q> {
 
     #[inline]
     fn visit(&mut self, id: u32, t_max: f64) -> f64 {
-        let prim = self.group.prims[id as usize];
+        let prim = self.group.prims.at(id);
         if prim.visible & self.search.class == 0 || !Q::wants(prim.flags) {
             return t_max;
         }
@@ -325,8 +327,8 @@ impl<Q: Query> GroupVisitor<'_, '_, '_, Q> {
     fn blocks<I: Isa, B: Block>(&mut self, isa: I, leaf: &Leaf<'_>, mut t_max: f64) -> f64 {
         let mut hits = Hits::default();
         for index in 0..leaf.blocks() {
-            let block = B::of(self.blocks, leaf.first_block + index);
-            t_max = self.block(isa, leaf, index, block, &mut hits, t_max);
+            let block = B::of(self.group, self.blocks, leaf, index);
+            t_max = self.block::<I, B>(isa, leaf, index, block.borrow(), &mut hits, t_max);
             if t_max == f64::NEG_INFINITY {
                 break;
             }
@@ -391,7 +393,7 @@ impl<Q: Query> GroupVisitor<'_, '_, '_, Q> {
     /// Whether a hit on this primitive, which is tested in a block, is taken as it is.
     #[inline]
     fn is_plain(&self, id: u32) -> bool {
-        let prim = self.group.prims[id as usize];
+        let prim = self.group.prims.at(id);
         prim.visible & self.search.class != 0 && Q::is_plain(prim.flags)
     }
 
@@ -411,7 +413,7 @@ impl<Q: Query> GroupVisitor<'_, '_, '_, Q> {
     /// Takes a hit on a flat primitive, if that exists there.
     #[inline]
     fn take_filtered(&mut self, id: u32, t: f64, uv: [f64; 2], t_max: f64) -> f64 {
-        let prim = self.group.prims[id as usize];
+        let prim = self.group.prims.at(id);
         if prim.visible & self.search.class == 0 || !Q::is_plain(prim.flags & !Prim::FILTERED) {
             return self.visit(id, t_max);
         }
@@ -448,7 +450,7 @@ impl<Q: Query> GroupVisitor<'_, '_, '_, Q> {
         let mut ray = instance.transform.ray_to_object(self.ray);
         if let Some((origin, number)) = from {
             // The ray starts in this space, not in one further inside: its origin is known exactly here.
-            let prim = inner.prims[inner.prim_of(number) as usize];
+            let prim = inner.prims.at(inner.prim_of(number));
             if !matches!(prim.kind(), PrimKind::Instance(_)) {
                 ray.origin = origin.local;
             }
@@ -534,6 +536,10 @@ impl<Q: Query> GroupVisitor<'_, '_, '_, Q> {
                     },
                     ..hit
                 })
+            }
+            PrimKind::Sphere(number) => {
+                let sphere = self.group.spheres.get(number, &self.group.blocks);
+                sphere.closest_hit(self.ray, range, from, self.search.scratch)
             }
             PrimKind::Shape(index) => {
                 let shape = &self.group.shapes[index as usize].shape;

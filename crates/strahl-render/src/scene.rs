@@ -1,26 +1,18 @@
 use crate::blocks::Blocks;
 use crate::hit::Hit;
 use crate::light_sets::{LightSets, Lit};
+use crate::objects::Objects;
 use crate::prim::{Prim, PrimKind};
+use crate::runs::{Run, RunList};
+use crate::spheres::Spheres;
 use std::sync::Arc;
 use strahl_accel::{Accelerator, AnyAccelerator};
 use strahl_geometry::{PrimHit, Primitive, Shape, SurfaceId, SurfacePoint, TriangleMesh};
 use strahl_math::{Aabb, DVec3, Ray, Transform};
-use strahl_scene::{Background, Camera, Fog, Rainbow, SceneLight, Settings, SourceMap, Span};
+use strahl_scene::{Background, Camera, Fog, Rainbow, SceneLight, Settings, SourceMap};
 use strahl_shade::patterns::TexturePoint;
 use strahl_shade::texture::Texture;
 use strahl_shade::{Color, Material, MaterialId};
-
-/// What is known of an object of the scene, for ray trees and layers.
-#[derive(Clone, Debug)]
-pub struct ObjectInfo {
-    /// Name given in the scene.
-    pub name: Option<Arc<str>>,
-    /// The field's word for it: `sphere`, `mesh`, ...
-    pub kind: &'static str,
-    /// The place in the scene that made it.
-    pub span: Span,
-}
 
 #[derive(Clone, Debug)]
 pub(crate) struct ShapeUse {
@@ -38,7 +30,7 @@ pub(crate) enum Looks {
     Leaves(Box<[Look]>),
 }
 
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Look {
     pub(crate) object: u32,
     pub(crate) material: MaterialId,
@@ -49,6 +41,27 @@ pub(crate) struct Look {
 impl Look {
     /// The texture's space is the group's.
     pub(crate) const NO_SPACE: u32 = u32::MAX;
+}
+
+/// Runs are objects of one material.
+impl Run for Look {
+    type Item = Self;
+
+    fn of(item: Self) -> Self {
+        item
+    }
+
+    fn goes_on(&mut self, len: u32, item: &Self) -> bool {
+        self.item(len) == *item
+    }
+
+    #[inline(always)]
+    fn item(&self, place: u32) -> Self {
+        Self {
+            object: self.object.wrapping_add(place),
+            ..*self
+        }
+    }
 }
 
 #[derive(Clone, Debug)]
@@ -68,8 +81,9 @@ pub(crate) struct InstanceUse {
 /// A list of primitives with its accelerator: the world, an instanced group, or a space of its own for small far things.
 #[derive(Debug)]
 pub(crate) struct RenderGroup {
-    pub(crate) prims: Vec<Prim>,
+    pub(crate) prims: RunList<Prim>,
     pub(crate) shapes: Vec<ShapeUse>,
+    pub(crate) spheres: Spheres,
     pub(crate) meshes: Vec<MeshUse>,
     pub(crate) instances: Vec<InstanceUse>,
     /// First element number of each primitive, if some primitive has more than one element.
@@ -123,7 +137,7 @@ impl RenderGroup {
 pub struct RenderScene {
     /// Group 0 is the world.
     pub(crate) groups: Vec<RenderGroup>,
-    pub(crate) objects: Vec<ObjectInfo>,
+    pub(crate) objects: Objects,
     pub(crate) materials: Vec<Arc<Material>>,
     /// From the spaces of textures to the groups'.
     pub(crate) texture_spaces: Vec<Transform>,
@@ -167,6 +181,8 @@ pub struct SceneStats {
     pub references: usize,
     /// Bytes of primitives and meshes.
     pub geometry_bytes: usize,
+    /// Bytes of what is known of objects: names and places.
+    pub object_bytes: usize,
 }
 
 /// Where an element of the scene is: the chain of instances and the primitive.
@@ -237,7 +253,7 @@ impl RenderScene {
     }
 
     /// The objects, indexed by object number.
-    pub fn objects(&self) -> &[ObjectInfo] {
+    pub fn objects(&self) -> &Objects {
         &self.objects
     }
 
@@ -278,6 +294,7 @@ impl RenderScene {
             elements: self.groups[0].count,
             materials: self.materials.len(),
             lights: self.lights.len(),
+            object_bytes: self.objects.bytes(),
             ..SceneStats::default()
         };
         for g in &self.groups {
@@ -290,8 +307,9 @@ impl RenderScene {
                 s.accelerator_bytes += part.accelerator.bytes();
                 s.geometry_bytes += part.blocks.bytes();
             }
-            s.geometry_bytes += size_of_val(g.prims.as_slice())
+            s.geometry_bytes += g.prims.bytes()
                 + size_of_val(g.shapes.as_slice())
+                + g.spheres.bytes()
                 + size_of_val(g.instances.as_slice())
                 + g.blocks.bytes()
                 + g.meshes.iter().map(|m| m.mesh.bytes()).sum::<usize>();
@@ -306,7 +324,7 @@ impl RenderScene {
         loop {
             let prim = group.prim_of(rest);
             rest -= group.first_id(prim);
-            let PrimKind::Instance(index) = group.prims[prim as usize].kind() else {
+            let PrimKind::Instance(index) = group.prims.at(prim).kind() else {
                 return Located {
                     group,
                     prim,
@@ -326,7 +344,7 @@ impl RenderScene {
     /// The line of the scene file that made the triangle with this number, if its mesh knows.
     pub(crate) fn face_line(&self, id: u64) -> Option<u32> {
         let at = self.locate(id);
-        match at.group.prims[at.prim as usize].kind() {
+        match at.group.prims.at(at.prim).kind() {
             PrimKind::Triangle(mesh, triangle) => {
                 at.group.meshes[mesh as usize].mesh.face_line(triangle)
             }
@@ -350,7 +368,7 @@ impl RenderScene {
     ) -> Resolved {
         let world = &self.groups[0];
         let prim = world.prim_of(hit.id);
-        if matches!(world.prims[prim as usize].kind(), PrimKind::Instance(_)) {
+        if matches!(world.prims.at(prim).kind(), PrimKind::Instance(_)) {
             return self.resolve_within(ray, origin, hit, uv);
         }
         let element = (hit.id - world.first_id(prim)) as u32;
@@ -466,10 +484,7 @@ impl RenderScene {
         let (mut group, mut a, mut b) = (&self.groups[0], a, b);
         loop {
             let (prim_a, prim_b) = (group.prim_of(a), group.prim_of(b));
-            let kinds = (
-                group.prims[prim_a as usize].kind(),
-                group.prims[prim_b as usize].kind(),
-            );
+            let kinds = (group.prims.at(prim_a).kind(), group.prims.at(prim_b).kind());
             match kinds {
                 (PrimKind::Instance(index), PrimKind::Instance(_)) if prim_a == prim_b => {
                     a -= group.first_id(prim_a);
@@ -487,8 +502,9 @@ impl RenderGroup {
     /// Object and material of an element of a primitive that is no instance.
     #[inline]
     pub(crate) fn look(&self, prim: u32, element: u32) -> Look {
-        match self.prims[prim as usize].kind() {
+        match self.prims.at(prim).kind() {
             PrimKind::Triangle(mesh, _) => self.meshes[mesh as usize].look,
+            PrimKind::Sphere(number) => self.spheres.look(number),
             PrimKind::Shape(index) | PrimKind::Placed(index) => {
                 let used = &self.shapes[index as usize];
                 match (&used.look, &used.shape) {
@@ -503,10 +519,21 @@ impl RenderGroup {
         }
     }
 
+    /// The corners of a triangle of a mesh, as that stores them.
+    #[inline(always)]
+    pub(crate) fn stored_corners(&self, prim: u32) -> Option<[[f32; 3]; 3]> {
+        match self.prims.at(prim).kind() {
+            PrimKind::Triangle(mesh, triangle) => {
+                self.meshes[mesh as usize].mesh.stored_corners(triangle)
+            }
+            _ => None,
+        }
+    }
+
     /// Whether a flat primitive shows a ray of this direction its front; `None` if only its surface at the hit tells.
     #[inline]
     pub(crate) fn shows_front(&self, prim: u32, direction: DVec3) -> Option<bool> {
-        match self.prims[prim as usize].kind() {
+        match self.prims.at(prim).kind() {
             PrimKind::Triangle(mesh, triangle) => self.meshes[mesh as usize]
                 .mesh
                 .shows_front(triangle, direction),
@@ -544,10 +571,18 @@ impl RenderGroup {
                 shape.bare_surface_at(ray, &hit)
             }
         };
-        match self.prims[prim as usize].kind() {
+        match self.prims.at(prim).kind() {
             PrimKind::Triangle(mesh, triangle) => self.meshes[mesh as usize]
                 .mesh
                 .surface_at_element(triangle, hit.uv),
+            PrimKind::Sphere(number) => {
+                let sphere = self.spheres.get(number, &self.blocks);
+                if uv {
+                    sphere.surface_at(ray, &hit)
+                } else {
+                    sphere.bare_surface_at(ray, &hit)
+                }
+            }
             PrimKind::Shape(index) => surface(&self.shapes[index as usize].shape, ray),
             PrimKind::Placed(index) => {
                 let used = &self.shapes[index as usize];

@@ -120,7 +120,11 @@ fn every_shape_is_seen() {
     let mut pixels: BTreeMap<&str, usize> = scene.objects().iter().map(|o| (o.kind, 0)).collect();
     for info in picture.film.info.expect("asked for") {
         if info.object > 0 {
-            let kind = scene.objects()[info.object as usize - 1].kind;
+            let kind = scene
+                .objects()
+                .get(info.object - 1)
+                .expect("an object")
+                .kind;
             pixels.entry(kind).and_modify(|n| *n += 1);
         }
     }

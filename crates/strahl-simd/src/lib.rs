@@ -75,6 +75,9 @@ pub trait Isa: Copy + Send + Sync + 'static {
     /// Where `a <= b`; false for NaN.
     fn le_f32(self, a: Self::F32x8, b: Self::F32x8) -> u32;
 
+    /// Eight bytes from memory, converted exactly.
+    fn load_bytes(self, lanes: &[u8; 8]) -> Self::F32x8;
+
     /// The same number in all lanes.
     fn splat_f32x16(self, x: f32) -> Self::F32x16;
     /// The first or the second eight of sixteen numbers from memory.

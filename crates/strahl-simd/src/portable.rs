@@ -146,6 +146,11 @@ macro_rules! lane_by_lane {
         }
 
         #[inline(always)]
+        fn load_bytes(self, lanes: &[u8; 8]) -> [f32; 8] {
+            lanes.map(f32::from)
+        }
+
+        #[inline(always)]
         fn splat(self, x: f64) -> [f64; 4] {
             [x; 4]
         }

@@ -44,6 +44,11 @@ fn everything<I: Isa>(isa: I) -> Vec<u64> {
         isa.mul_sub(p, q, isa.splat_f32(0.25)),
         isa.mul_add(p, q, isa.splat_f32(0.25)),
     ];
+    let bytes = isa.load_bytes(&[0, 1, 2, 127, 128, 254, 255, 17]);
+    assert_eq!(
+        isa.store_f32(bytes).0,
+        [0.0, 1.0, 2.0, 127.0, 128.0, 254.0, 255.0, 17.0]
+    );
     for v in [culled[0], culled[1], isa.min_f32(p, q), isa.max_f32(p, q)] {
         bits.extend(isa.store_f32(v).0.map(|x| u64::from(x.to_bits())));
     }

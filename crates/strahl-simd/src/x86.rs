@@ -146,6 +146,14 @@ macro_rules! avx {
         }
 
         #[inline(always)]
+        fn load_bytes(self, lanes: &[u8; 8]) -> __m256 {
+            // SAFETY: `self` proves AVX2; the eight bytes are there, and the load needs no alignment.
+            unsafe {
+                _mm256_cvtepi32_ps(_mm256_cvtepu8_epi32(_mm_loadl_epi64(lanes.as_ptr().cast())))
+            }
+        }
+
+        #[inline(always)]
         fn splat(self, x: f64) -> __m256d {
             // SAFETY: `self` proves AVX.
             unsafe { _mm256_set1_pd(x) }

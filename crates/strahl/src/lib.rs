@@ -43,7 +43,7 @@
 //! let primary = &pixel.samples[0].1.nodes[0];
 //! let hit = primary.report.hit.as_ref().expect("the ball is in the middle");
 //! assert_eq!(hit.hit.t, 4.0);
-//! assert_eq!(scene.objects()[hit.object as usize].name.as_deref(), Some("ball"));
+//! assert_eq!(scene.objects().get(hit.object).expect("its number is right").name.as_deref(), Some("ball"));
 //! assert_eq!(primary.total, pixel.color);
 //! # Ok(())
 //! # }

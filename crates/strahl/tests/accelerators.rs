@@ -15,6 +15,8 @@ fn accelerators() -> Vec<AcceleratorKind> {
         "octree:traversal=exit-face",
         "octree:traversal=trial-plane",
         "octree:traversal=neighbours",
+        "bvh:compact",
+        "bvh:compact,simd=scalar",
     ];
     let variants = variants.iter().map(|v| v.parse().expect("an accelerator"));
     // The levels of instructions that this processor has.

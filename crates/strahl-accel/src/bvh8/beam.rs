@@ -1,4 +1,4 @@
-use super::node::{Child, Node, WIDTH};
+use super::node::{Child, Nodes, WIDTH, WideNode};
 use super::{Bvh8, Tree};
 use crate::beam::{Beam, CullPlane};
 use crate::bvh::MAX_DEPTH;
@@ -13,7 +13,14 @@ impl Bvh8 {
         };
         self.unbounded.ids().is_empty()
             && (beam.misses(tree.bounds.bounds())
-                || dispatch!(self.simd, isa => !tree.meets(isa, beam)))
+                || match &tree.nodes {
+                    Nodes::Full(nodes) => {
+                        dispatch!(self.simd, isa => !tree.meets(isa, nodes, beam))
+                    }
+                    Nodes::Compact(nodes) => {
+                        dispatch!(self.simd, isa => !tree.meets(isa, nodes, beam))
+                    }
+                })
     }
 }
 
@@ -21,8 +28,8 @@ impl Bvh8 {
 struct Side<I: Isa> {
     normal: [I::F32x8; 3],
     offset: I::F32x8,
-    /// The planes of a node that the corners lie on which are farthest in the direction of the normal.
-    planes: [usize; 3],
+    /// Per axis the side of a box that the corner lies on which is farthest in the direction of the normal.
+    sides: [usize; 3],
 }
 
 impl<I: Isa> Side<I> {
@@ -33,20 +40,20 @@ impl<I: Isa> Side<I> {
             // The sign changes with each difference.
             normal: [isa.splat_f32(x), isa.splat_f32(-y), isa.splat_f32(z)],
             offset: isa.splat_f32(plane.offset),
-            planes: [
+            sides: [
                 usize::from(x > 0.0),
-                2 + usize::from(y > 0.0),
-                4 + usize::from(z > 0.0),
+                usize::from(y > 0.0),
+                usize::from(z > 0.0),
             ],
         }
     }
 
-    /// Which children have a corner on the inner side. (Places without a child have none: their box is empty.)
+    /// Which children have a corner on the inner side. (Empty boxes have none.)
     #[inline(always)]
-    fn inside(&self, isa: I, node: &Node) -> u32 {
-        let x = isa.load_f32(&node.planes[self.planes[0]]);
-        let y = isa.load_f32(&node.planes[self.planes[1]]);
-        let z = isa.load_f32(&node.planes[self.planes[2]]);
+    fn inside(&self, isa: I, node: &impl WideNode) -> u32 {
+        let x = node.planes(isa, 0, self.sides[0]);
+        let y = node.planes(isa, 1, self.sides[1]);
+        let z = node.planes(isa, 2, self.sides[2]);
         let rest = isa.mul_sub(z, self.normal[2], self.offset);
         let rest = isa.mul_sub(y, self.normal[1], rest);
         isa.le_f32(isa.splat_f32(0.0), isa.mul_sub(x, self.normal[0], rest))
@@ -56,7 +63,7 @@ impl<I: Isa> Side<I> {
 impl Tree {
     /// Whether a beam may meet a leaf.
     #[inline(always)]
-    fn meets<I: Isa>(&self, isa: I, beam: &Beam) -> bool {
+    fn meets<I: Isa, N: WideNode>(&self, isa: I, nodes: &[N], beam: &Beam) -> bool {
         let [a, b, c, d] = beam.planes(self.bounds.max_abs());
         let (a, b) = (Side::new(isa, &a), Side::new(isa, &b));
         let (c, d) = (Side::new(isa, &c), Side::new(isa, &d));
@@ -66,13 +73,14 @@ impl Tree {
             if child.is_leaf() {
                 return true;
             }
-            let node = &self.nodes[child.node()];
-            let mut met = a.inside(isa, node)
+            let node = &nodes[child.node()];
+            let mut met = node.used()
+                & a.inside(isa, node)
                 & b.inside(isa, node)
                 & c.inside(isa, node)
                 & d.inside(isa, node);
             while met != 0 {
-                waiting.push(node.children[met.trailing_zeros() as usize]);
+                waiting.push(node.child(met.trailing_zeros() as usize));
                 met &= met - 1;
             }
         }
@@ -116,6 +124,7 @@ mod tests {
         let (mut missed, mut met) = (0, 0);
         for simd in Simd::available() {
             let bvh = Bvh8::build(&boxes, |_| 0).with_simd(simd);
+            let compact = bvh.clone().compacted();
             for _ in 0..500 {
                 let eye = point() * 3.0;
                 let (toward, right) = (point() - eye, point() * 0.1);
@@ -133,6 +142,7 @@ mod tests {
                 });
                 let misses = bvh.misses(&beam);
                 assert!(!(misses && any));
+                assert!(misses || !compact.misses(&beam));
                 missed += u32::from(misses);
                 met += u32::from(any);
             }

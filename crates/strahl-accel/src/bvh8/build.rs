@@ -1,6 +1,6 @@
 //! Builds the tree from the top: the largest child is split until there are eight; the same tree for any number of threads.
 
-use super::node::{Child, Node, WIDTH};
+use super::node::{Child, Node, Nodes, WIDTH, WideNode};
 use super::{BLOCK, Bvh8, NO_PRIMITIVE, Tree};
 use crate::bvh::bins::Bins;
 use crate::bvh::refs::{Ref, gather};
@@ -74,7 +74,7 @@ impl Tree {
         parts.slots.shrink_to_fit();
         Self {
             root,
-            nodes: parts.nodes,
+            nodes: Nodes::Full(parts.nodes),
             slots: parts.slots,
             bounds,
         }

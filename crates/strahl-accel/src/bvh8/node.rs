@@ -1,7 +1,9 @@
 use super::BLOCK;
+use super::compact::CompactNode;
 use crate::boxes::Box32;
+use arrayvec::ArrayVec;
 use strahl_math::Vec4;
-use strahl_simd::Lanes8;
+use strahl_simd::{Isa, Lanes8};
 
 /// Children of a node.
 pub(super) const WIDTH: usize = 8;
@@ -114,9 +116,40 @@ impl Node {
         }
         self.children[place] = child;
     }
+}
+
+/// A node as the walks see it.
+pub(super) trait WideNode: Copy {
+    /// The lower (side 0) or upper planes (side 1) of all children across an axis.
+    fn planes<I: Isa>(&self, isa: I, axis: usize, side: usize) -> I::F32x8;
+
+    /// The places with a child, as bits; all if the others have empty boxes.
+    fn used(&self) -> u32;
+
+    /// A child.
+    fn child(&self, place: usize) -> Child;
 
     /// The children with their boxes.
-    pub(super) fn children(&self) -> impl Iterator<Item = (Child, Box32)> {
+    fn children(&self) -> impl Iterator<Item = (Child, Box32)>;
+}
+
+impl WideNode for Node {
+    #[inline(always)]
+    fn planes<I: Isa>(&self, isa: I, axis: usize, side: usize) -> I::F32x8 {
+        isa.load_f32(&self.planes[2 * axis + side])
+    }
+
+    #[inline(always)]
+    fn used(&self) -> u32 {
+        u32::MAX
+    }
+
+    #[inline(always)]
+    fn child(&self, place: usize) -> Child {
+        self.children[place]
+    }
+
+    fn children(&self) -> impl Iterator<Item = (Child, Box32)> {
         (0..WIDTH)
             .filter(|i| self.planes[0].0[*i] <= self.planes[1].0[*i])
             .map(|i| {
@@ -126,5 +159,45 @@ impl Node {
                 };
                 (self.children[i], Box32::of_corners(corner(0), corner(1)))
             })
+    }
+}
+
+/// The nodes of a tree, in one of two sizes.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Nodes {
+    Full(Vec<Node>),
+    Compact(Vec<CompactNode>),
+}
+
+impl Nodes {
+    pub(super) fn len(&self) -> usize {
+        match self {
+            Self::Full(nodes) => nodes.len(),
+            Self::Compact(nodes) => nodes.len(),
+        }
+    }
+
+    /// Bytes they occupy.
+    pub(super) fn bytes(&self) -> usize {
+        match self {
+            Self::Full(nodes) => size_of_val(nodes.as_slice()),
+            Self::Compact(nodes) => size_of_val(nodes.as_slice()),
+        }
+    }
+
+    /// The children of a node with their boxes, if there is a node of that number.
+    pub(super) fn children(&self, number: usize) -> Option<ArrayVec<(Child, Box32), WIDTH>> {
+        match self {
+            Self::Full(nodes) => nodes.get(number).map(|n| n.children().collect()),
+            Self::Compact(nodes) => nodes.get(number).map(|n| n.children().collect()),
+        }
+    }
+
+    /// The same nodes in little memory; their boxes may be larger.
+    pub(super) fn compacted(&self) -> Self {
+        match self {
+            Self::Full(nodes) => Self::Compact(nodes.iter().map(CompactNode::of).collect()),
+            Self::Compact(_) => self.clone(),
+        }
     }
 }

@@ -6,7 +6,7 @@
 //! S. Boulos, I. Wald, P. Shirley, "Geometric and Arithmetic Culling Methods for Entire Ray Packets" (2006); I. Wald et al.,
 //! "Embree: A Kernel Framework for Efficient CPU Ray Tracing" (2014), its hybrid traversal.
 
-use super::node::{Child, Node, WIDTH};
+use super::node::{Child, Node, Nodes, WIDTH};
 use super::traverse::Slabs;
 use super::{Bvh8, Tree};
 use crate::bvh::MAX_DEPTH;
@@ -19,14 +19,21 @@ use strahl_math::Interval;
 use strahl_simd::{Isa, Lanes16, dispatch};
 
 impl Bvh8 {
-    /// Walks the hierarchy with all rays of a packet.
+    /// Walks the hierarchy with all rays of a packet; `false` if it does so with single rays only, as a compact one.
     #[inline]
     pub(super) fn walk_packet<V: PacketVisitor>(
         &self,
         packet: &mut Packet<'_>,
         visitor: &mut V,
         stats: &mut TraversalStats,
-    ) {
+    ) -> bool {
+        let tree = match &self.tree {
+            None => None,
+            Some(tree) => match &tree.nodes {
+                Nodes::Full(nodes) => Some((tree, nodes)),
+                Nodes::Compact(_) => return false,
+            },
+        };
         for id in self.unbounded.ids() {
             for lane in 0..packet.rays.len().min(PACKET) {
                 let t_max = &mut packet.t_max[lane];
@@ -36,9 +43,10 @@ impl Bvh8 {
                 }
             }
         }
-        if let Some(tree) = &self.tree {
-            dispatch!(self.simd, isa => tree.walk_octants(isa, packet, visitor, stats));
+        if let Some((tree, nodes)) = tree {
+            dispatch!(self.simd, isa => tree.walk_octants(isa, nodes, packet, visitor, stats));
         }
+        true
     }
 }
 
@@ -94,6 +102,7 @@ impl Tree {
     fn walk_octants<I: Isa, V: PacketVisitor>(
         &self,
         isa: I,
+        nodes: &[Node],
         packet: &mut Packet<'_>,
         visitor: &mut V,
         stats: &mut TraversalStats,
@@ -160,6 +169,7 @@ impl Tree {
                 };
                 self.walk_together(
                     isa,
+                    nodes,
                     &walk,
                     members[octant],
                     &mut lanes,
@@ -176,6 +186,7 @@ impl Tree {
     fn walk_together<I: Isa, V: PacketVisitor>(
         &self,
         isa: I,
+        nodes: &[Node],
         walk: &Walk<I>,
         members: u32,
         lanes: &mut Lanes,
@@ -200,6 +211,7 @@ impl Tree {
                 };
                 let t_max = self.walk_from(
                     isa,
+                    nodes,
                     current,
                     &slabs,
                     lanes.clocks[lane],
@@ -218,7 +230,7 @@ impl Tree {
                 }
             } else if !current.is_leaf() {
                 cost.node_visits += u64::from(mask.count_ones());
-                let node = &self.nodes[current.node()];
+                let node = &nodes[current.node()];
                 let (keys, mut candidates) = walk.hull.enter(isa, node, farthest);
                 let keys = isa.store_f32(keys).0;
                 let bottom = stack.len();

@@ -1,4 +1,4 @@
-use super::node::{Child, Node, WIDTH};
+use super::node::{Child, Nodes, WIDTH, WideNode};
 use super::{Bvh8, Tree};
 use crate::bvh::MAX_DEPTH;
 use crate::bvh::watch::BoxTree;
@@ -53,7 +53,15 @@ impl Accelerator for Bvh8 {
         if t_max > f64::NEG_INFINITY
             && let Some(tree) = &self.tree
         {
-            dispatch!(self.simd, isa => tree.walk(isa, ray, range.with_max(t_max), visitor, stats));
+            let range = range.with_max(t_max);
+            match &tree.nodes {
+                Nodes::Full(nodes) => {
+                    dispatch!(self.simd, isa => tree.walk(isa, nodes, ray, range, visitor, stats));
+                }
+                Nodes::Compact(nodes) => {
+                    dispatch!(self.simd, isa => tree.walk(isa, nodes, ray, range, visitor, stats));
+                }
+            }
         }
     }
 
@@ -63,8 +71,7 @@ impl Accelerator for Bvh8 {
         visitor: &mut V,
         stats: &mut TraversalStats,
     ) -> bool {
-        self.walk_packet(packet, visitor, stats);
-        true
+        self.walk_packet(packet, visitor, stats)
     }
 
     fn misses(&self, beam: &Beam) -> bool {
@@ -76,9 +83,10 @@ impl Accelerator for Bvh8 {
     }
 
     fn bytes(&self) -> usize {
-        let tree = self.tree.as_ref().map_or(0, |t| {
-            size_of_val(t.nodes.as_slice()) + size_of_val(t.slots.as_slice())
-        });
+        let tree = self
+            .tree
+            .as_ref()
+            .map_or(0, |t| t.nodes.bytes() + size_of_val(t.slots.as_slice()));
         tree + self.unbounded.bytes()
     }
 
@@ -154,21 +162,21 @@ impl<I: Isa> Slabs<I> {
 
     /// Where the ray crosses the planes of an axis that it meets first.
     #[inline(always)]
-    fn near(&self, isa: I, node: &Node, k: usize) -> I::F32x8 {
-        let planes = isa.load_f32(&node.planes[2 * k + self.first[k]]);
+    fn near(&self, isa: I, node: &impl WideNode, k: usize) -> I::F32x8 {
+        let planes = node.planes(isa, k, self.first[k]);
         isa.mul_add(planes, self.rd[k], self.minus_near[k])
     }
 
     /// Where the ray crosses the planes of an axis that it meets last.
     #[inline(always)]
-    fn far(&self, isa: I, node: &Node, k: usize) -> I::F32x8 {
-        let planes = isa.load_f32(&node.planes[2 * k + 1 - self.first[k]]);
+    fn far(&self, isa: I, node: &impl WideNode, k: usize) -> I::F32x8 {
+        let planes = node.planes(isa, k, 1 - self.first[k]);
         isa.mul_add(planes, self.rd[k], self.minus_far[k])
     }
 
     /// Where the ray enters the children's boxes, and which of them it may meet.
     #[inline(always)]
-    fn enter(&self, isa: I, node: &Node, t_max: I::F32x8) -> (I::F32x8, u32) {
+    fn enter(&self, isa: I, node: &impl WideNode, t_max: I::F32x8) -> (I::F32x8, u32) {
         let (x, y, z) = (
             self.near(isa, node, 0),
             self.near(isa, node, 1),
@@ -181,16 +189,17 @@ impl<I: Isa> Slabs<I> {
             self.far(isa, node, 2),
         );
         let leave = isa.min_f32(isa.min_f32(x, y), isa.min_f32(z, t_max));
-        (enter, isa.le_f32(enter, leave))
+        (enter, isa.le_f32(enter, leave) & node.used())
     }
 }
 
 impl Tree {
     /// Walks the tree, nearer children first.
     #[inline(always)]
-    fn walk<I: Isa, V: Visitor>(
+    fn walk<I: Isa, N: WideNode, V: Visitor>(
         &self,
         isa: I,
+        nodes: &[N],
         ray: &Ray,
         range: Interval,
         visitor: &mut V,
@@ -202,6 +211,7 @@ impl Tree {
         let slabs = Slabs::new(isa, &start, range.min);
         self.walk_from(
             isa,
+            nodes,
             self.root,
             &slabs,
             start.clock,
@@ -218,9 +228,10 @@ impl Tree {
         clippy::too_many_arguments,
         reason = "the inner loop, inlined into its two callers"
     )]
-    pub(super) fn walk_from<I: Isa, V: Visitor>(
+    pub(super) fn walk_from<I: Isa, N: WideNode, V: Visitor>(
         &self,
         isa: I,
+        nodes: &[N],
         subtree: Child,
         slabs: &Slabs<I>,
         clock: CullClock,
@@ -241,14 +252,14 @@ impl Tree {
             }
             if !current.is_leaf() {
                 cost.node_visits += 1;
-                let node = &self.nodes[current.node()];
+                let node = &nodes[current.node()];
                 let (near, mut hit) = slabs.enter(isa, node, far_lanes);
                 // Branches rather than arithmetic on masks: the processor goes on with the likely child before the test is done.
                 if hit != 0 {
                     let first = hit.trailing_zeros() as usize;
                     hit &= hit - 1;
                     if hit == 0 {
-                        current = node.children[first];
+                        current = node.child(first);
                         continue;
                     }
                     if V::ANY {
@@ -256,13 +267,13 @@ impl Tree {
                         while hit != 0 {
                             let last = 31 - hit.leading_zeros() as usize;
                             hit ^= 1 << last;
-                            stack.push(Waiting::new(node.children[last], 0.0));
+                            stack.push(Waiting::new(node.child(last), 0.0));
                         }
-                        current = node.children[first];
+                        current = node.child(first);
                         continue;
                     }
                     let near = isa.store_f32(near).0;
-                    let waiting = |i: usize| Waiting::new(node.children[i], near[i]);
+                    let waiting = |i: usize| Waiting::new(node.child(i), near[i]);
                     let a = waiting(first);
                     let b = waiting(hit.trailing_zeros() as usize);
                     hit &= hit - 1;

@@ -15,8 +15,9 @@ impl BoxTree for Tree {
     }
 
     fn parent(&self, child: Child) -> Option<(Child, Aabb)> {
-        self.nodes.iter().enumerate().find_map(|(index, node)| {
-            let (_, bounds) = node.children().find(|(c, _)| *c == child)?;
+        (0..self.nodes.len()).find_map(|index| {
+            let children = self.nodes.children(index)?;
+            let (_, bounds) = children.iter().find(|(c, _)| *c == child)?;
             Some((Child::inner(index), bounds.to_aabb()))
         })
     }

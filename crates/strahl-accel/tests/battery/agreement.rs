@@ -40,8 +40,12 @@ fn compare(
     let classes = Bvh8::build(&boxes, |id| (id % 5 / 2) as u8);
     assert_eq!(classes.validate(&boxes), Ok(()));
     for simd in Simd::available() {
-        let wide = AnyAccelerator::Bvh8(classes.clone().with_simd(simd));
-        others.push((AcceleratorKind::default(), wide));
+        let wide = classes.clone().with_simd(simd);
+        let compact = wide.clone().compacted();
+        assert_eq!(compact.validate(&boxes), Ok(()));
+        for wide in [wide, compact].map(AnyAccelerator::Bvh8) {
+            others.push((AcceleratorKind::default(), wide));
+        }
     }
     let (mut compared, mut hits) = (0, 0);
     for _ in 0..rays * effort() {

@@ -16,6 +16,7 @@ use strahl_accel::AcceleratorKind;
 /// Every structure, with every choice that changes how it is built or walked.
 pub(crate) fn kinds() -> Vec<AcceleratorKind> {
     let variants = [
+        "bvh:compact",
         "spheres:build=agglomerative",
         "grid:density=1",
         "grid:resolution=3x20x7",

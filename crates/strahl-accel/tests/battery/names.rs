@@ -43,6 +43,7 @@ fn wrong_parameters_are_answered_with_those_there_are() {
             "bvh:simd=mmx",
             ["simd=scalar|sse4|avx2|avx512", "simd=mmx", "bvh"],
         ),
+        ("bvh:compact=1", ["expected `compact`", "compact=1", "bvh"]),
         ("list:fast", ["`list` has no parameters", "fast", "list"]),
     ] {
         let error = text.parse::<AcceleratorKind>().expect_err(text).to_string();

@@ -47,7 +47,12 @@ fn degenerate_builds_are_valid() {
             Aabb::new(p, p)
         })
         .collect();
+    // As far as f32 culls, and next to nothing.
+    let far = 2f64.powi(64);
+    let extremes = [far, -far, far * 0.1, 1e-40, -1e-40, 0.0]
+        .map(|x| Aabb::new(DVec3::splat(x * 0.999), DVec3::splat(x)).union(&point));
     for boxes in [
+        extremes.to_vec(),
         vec![],
         vec![Aabb::EMPTY; 3],
         vec![Aabb::EVERYTHING; 3],
@@ -59,6 +64,7 @@ fn degenerate_builds_are_valid() {
         assert_eq!(bvh.validate(&boxes), Ok(()));
         let wide = Bvh8::build(&boxes, |id| (id % 3) as u8);
         assert_eq!(wide.validate(&boxes), Ok(()));
+        assert_eq!(wide.clone().compacted().validate(&boxes), Ok(()));
         let expected = boxes.iter().filter(|b| !b.is_empty()).count();
         assert_eq!((bvh.references(), wide.references()), (expected, expected));
     }

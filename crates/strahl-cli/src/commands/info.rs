@@ -40,7 +40,7 @@ pub(crate) fn info(args: &SceneArgs) -> Result<(), Failure> {
 fn objects(scene: &RenderScene) {
     let s = scene.stats();
     let mut kinds: BTreeMap<&str, usize> = BTreeMap::new();
-    for object in scene.objects() {
+    for object in scene.objects().iter() {
         *kinds.entry(object.kind).or_default() += 1;
     }
     let kinds: Vec<String> = kinds

@@ -73,7 +73,9 @@ fn print_events(scene: &RenderScene, way: &RayWalk) {
                 found,
                 closest,
             } => {
-                let object = &scene.objects()[*object as usize];
+                let Some(object) = scene.objects().get(*object) else {
+                    continue;
+                };
                 let name = object.name.as_deref().unwrap_or("");
                 let outcome = match (found, closest) {
                     (true, Some(t)) => format!("hit at t = {t}"),
@@ -169,13 +171,14 @@ fn events_json(scene: &RenderScene, way: &RayWalk) -> Vec<Value> {
             closest,
             found,
         } => {
-            let info = &scene.objects()[*object as usize];
+            let info = scene.objects().get(*object);
+            let info = info.as_ref();
             json!({
                 "event": "test",
                 "element": id,
                 "object": object,
-                "kind": info.kind,
-                "name": info.name.as_deref(),
+                "kind": info.map(|i| i.kind),
+                "name": info.and_then(|i| i.name.as_deref()),
                 "hit": found.then_some(closest),
             })
         }

@@ -12,9 +12,9 @@ use strahl::tracing::RenderScene;
 
 /// Name and kind of an object: `sphere "ball"`.
 fn object_name(scene: &RenderScene, object: u32) -> String {
-    scene.objects().get(object as usize).map_or_else(
+    scene.objects().get(object).map_or_else(
         || format!("object {object}"),
-        |info| match &info.name {
+        |info| match info.name {
             Some(name) => format!("{} \"{name}\"", info.kind),
             None => info.kind.to_owned(),
         },
@@ -23,7 +23,7 @@ fn object_name(scene: &RenderScene, object: u32) -> String {
 
 /// The place in the scene that an object comes from.
 fn object_place(scene: &RenderScene, object: u32, line: Option<u32>) -> Option<String> {
-    let mut span = scene.objects().get(object as usize)?.span;
+    let mut span = scene.objects().get(object)?.span;
     if let Some(line) = line {
         span.line = line;
         span.column = 0;

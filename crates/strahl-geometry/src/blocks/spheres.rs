@@ -36,13 +36,22 @@ impl SphereBlock {
         self.radius[lane] = sphere.radius().abs();
     }
 
+    /// The sphere of a lane, seen from outside.
+    #[inline]
+    pub fn sphere(&self, lane: usize) -> Sphere {
+        Sphere::new(self.center(lane), self.radius[lane])
+    }
+
+    #[inline]
+    fn center(&self, lane: usize) -> DVec3 {
+        let [x, y, z] = &self.center;
+        DVec3::new(x[lane], y[lane], z[lane])
+    }
+
     /// Whether a ray that starts on the sphere of a lane goes inside, and so meets it again ahead.
     #[inline]
     pub fn is_entered(&self, lane: usize, ray: &Ray) -> bool {
-        // No `map`: it would not be inlined into kernels.
-        let [x, y, z] = &self.center;
-        let center = DVec3::new(x[lane], y[lane], z[lane]);
-        (ray.origin - center).dot(ray.direction) < 0.0
+        (ray.origin - self.center(lane)).dot(ray.direction) < 0.0
     }
 
     /// Which spheres the ray meets in a range, as bits, and where for the first time, if it does not start on them: what [`Sphere`]

@@ -19,6 +19,11 @@ impl UvFrame {
         }
     }
 
+    /// Whether a rotation was baked in.
+    pub(crate) fn is_turned(&self) -> bool {
+        self.0.is_some()
+    }
+
     /// The frame after an orthogonal map; `axis` is the axis before it.
     pub(crate) fn turned(&self, axis: DVec3, orthogonal: DMat3) -> Self {
         if orthogonal == DMat3::IDENTITY {

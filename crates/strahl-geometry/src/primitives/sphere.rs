@@ -55,6 +55,11 @@ impl Sphere {
         self.radius
     }
 
+    /// Whether a rotation was baked into its texture coordinates.
+    pub fn is_turned(&self) -> bool {
+        self.frame.is_turned()
+    }
+
     /// The two parameters at which the line crosses the sphere, `near < far`.
     ///
     /// With `f = origin - center` and `F(t) = |f + t d|² - r² = a t² - 2 b t + c`: the discriminant `b² - a c` is

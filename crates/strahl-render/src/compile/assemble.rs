@@ -1,6 +1,9 @@
 use super::flatten::FlatGroup;
+use crate::blocks::Lists;
 use crate::prim::{Prim, PrimKind};
+use crate::runs::RunList;
 use crate::scene::{InstanceUse, MeshUse, ShapeUse};
+use crate::spheres::Spheres;
 use strahl_geometry::Primitive;
 use strahl_math::Aabb;
 use strahl_scene::{Diagnostic, Scene};
@@ -8,8 +11,9 @@ use strahl_scene::{Diagnostic, Scene};
 /// A group with its element numbers and bounds.
 #[derive(Clone, Debug)]
 pub(super) struct Assembled {
-    pub(super) prims: Vec<Prim>,
+    pub(super) prims: RunList<Prim>,
     pub(super) shapes: Vec<ShapeUse>,
+    pub(super) spheres: Spheres,
     pub(super) meshes: Vec<MeshUse>,
     pub(super) instances: Vec<InstanceUse>,
     pub(super) first_ids: Option<Vec<u64>>,
@@ -19,6 +23,18 @@ pub(super) struct Assembled {
     /// All of it.
     reach: Aabb,
     pub(super) prim_bounds: Vec<Aabb>,
+}
+
+impl Assembled {
+    /// The lists of its primitives.
+    pub(super) const fn lists(&self) -> Lists<'_> {
+        Lists {
+            prims: &self.prims,
+            shapes: self.shapes.as_slice(),
+            spheres: &self.spheres,
+            meshes: self.meshes.as_slice(),
+        }
+    }
 }
 
 /// Deepest nesting of instances.
@@ -126,6 +142,7 @@ fn number(group: FlatGroup, done: &[Assembled]) -> Result<Assembled, Vec<Diagnos
     let FlatGroup {
         prims,
         shapes,
+        spheres,
         meshes,
         instances,
     } = group;
@@ -147,6 +164,7 @@ fn number(group: FlatGroup, done: &[Assembled]) -> Result<Assembled, Vec<Diagnos
             PrimKind::Triangle(mesh, triangle) => {
                 (1, meshes[mesh as usize].mesh.element_bounds(triangle))
             }
+            PrimKind::Sphere(number) => (1, spheres.loose(number).bounds()),
             PrimKind::Shape(shape) => {
                 let shape = &shapes[shape as usize].shape;
                 (u64::from(shape.elements()), shape.bounds())
@@ -197,8 +215,9 @@ fn number(group: FlatGroup, done: &[Assembled]) -> Result<Assembled, Vec<Diagnos
     }
     let first_ids = (!simple).then_some(first_ids);
     Ok(Assembled {
-        prims,
+        prims: prims.completed(),
         shapes,
+        spheres,
         meshes,
         instances,
         first_ids,

@@ -3,8 +3,11 @@ use super::materials::{
 };
 use crate::hit::RayClass;
 use crate::light_sets::{LightSetsDraft, Lit};
+use crate::objects::{ObjectInfo, Objects};
 use crate::prim::{Prim, PrimKind};
-use crate::scene::{InstanceUse, Look, Looks, MeshUse, ObjectInfo, ShapeUse};
+use crate::runs::RunList;
+use crate::scene::{InstanceUse, Look, Looks, MeshUse, ShapeUse};
+use crate::spheres::{PlainSphere, Spheres};
 use std::collections::HashSet;
 use std::sync::Arc;
 use strahl_geometry::{Csg, CsgNode, GeometryError, Primitive, Shape};
@@ -17,17 +20,40 @@ use strahl_shade::{Material, MaterialId, Sides};
 /// The lists of one group.
 #[derive(Debug, Default)]
 pub(super) struct FlatGroup {
-    pub(super) prims: Vec<Prim>,
+    pub(super) prims: RunList<Prim>,
     pub(super) shapes: Vec<ShapeUse>,
+    pub(super) spheres: Spheres,
     pub(super) meshes: Vec<MeshUse>,
     pub(super) instances: Vec<InstanceUse>,
+}
+
+impl FlatGroup {
+    /// Adds a shape in the group's own space.
+    pub(super) fn add_shape(&mut self, shape: Shape, look: Looks, visible: u8, flags: u8) {
+        let plain = match &shape {
+            Shape::Sphere(sphere) => PlainSphere::of(sphere),
+            _ => None,
+        };
+        let kind = match (plain, look) {
+            (Some(sphere), Looks::One(look)) => PrimKind::Sphere(self.spheres.push(sphere, look)),
+            (_, look) => {
+                self.shapes.push(ShapeUse {
+                    shape,
+                    transform: None,
+                    look,
+                });
+                PrimKind::Shape(self.shapes.len() as u32 - 1)
+            }
+        };
+        self.prims.push(Prim::new(kind, visible, flags));
+    }
 }
 
 /// The scene as lists: the scene's groups in their order, the world last.
 #[derive(Debug, Default)]
 pub(super) struct Flat {
     pub(super) groups: Vec<FlatGroup>,
-    pub(super) objects: Vec<ObjectInfo>,
+    pub(super) objects: Objects,
     pub(super) materials: MaterialTable,
     pub(super) texture_spaces: Vec<Transform>,
     /// Lights found among the objects.
@@ -152,8 +178,9 @@ impl<'a> Todo<'a> {
 impl Pass {
     fn objects(&mut self, objects: &[Object], scene: &Scene, group: &mut FlatGroup) {
         // A stack instead of recursion: unions may be nested arbitrarily deep.
-        let mut waiting: Vec<Todo<'_>> = objects.iter().rev().map(|o| Todo::new(o, None)).collect();
-        while let Some(mut todo) = waiting.pop() {
+        let mut waiting: Vec<Todo<'_>> = Vec::new();
+        let mut rest = objects.iter().map(|o| Todo::new(o, None));
+        while let Some(mut todo) = waiting.pop().or_else(|| rest.next()) {
             let object = todo.object;
             match &object.kind {
                 ObjectKind::Csg { op, children } if op.is_union() => {
@@ -298,25 +325,22 @@ impl Pass {
                 mesh: Arc::clone(mesh),
                 look,
             });
-            group.prims.extend(
-                (0..count).map(|t| Prim::new(PrimKind::Triangle(index, t), visible, flags)),
-            );
+            for triangle in 0..count {
+                let kind = PrimKind::Triangle(index, triangle);
+                group.prims.push(Prim::new(kind, visible, flags));
+            }
             return;
         }
-        let index = group.shapes.len() as u32;
-        let (shape, transform, kind) = match baked {
-            Some(baked) => (baked, None, PrimKind::Shape(index)),
-            None => (
-                shape.clone(),
-                Some(Box::new(todo.transform)),
-                PrimKind::Placed(index),
-            ),
-        };
+        if let Some(baked) = baked {
+            group.add_shape(baked, Looks::One(look), visible, flags);
+            return;
+        }
         group.shapes.push(ShapeUse {
-            shape,
-            transform,
+            shape: shape.clone(),
+            transform: Some(Box::new(todo.transform)),
             look: Looks::One(look),
         });
+        let kind = PrimKind::Placed(group.shapes.len() as u32 - 1);
         group.prims.push(Prim::new(kind, visible, flags));
     }
 
@@ -336,17 +360,9 @@ impl Pass {
                 let flags = looks
                     .iter()
                     .fold(0, |f, look| f | self.flags(look.material));
-                let index = group.shapes.len() as u32;
-                let look = Looks::Leaves(looks.into());
-                group.shapes.push(ShapeUse {
-                    shape: Arc::new(csg).into(),
-                    transform: None,
-                    look,
-                });
-                let kind = PrimKind::Shape(index);
-                group
-                    .prims
-                    .push(Prim::new(kind, visible(todo.visibility), flags));
+                let looks = Looks::Leaves(looks.into());
+                let visible = visible(todo.visibility);
+                group.add_shape(Arc::new(csg).into(), looks, visible, flags);
             }
         }
     }

@@ -16,8 +16,9 @@ mod view;
 
 use crate::blocks::Blocks;
 use crate::light_sets::{LightSets, Lit};
+use crate::objects::Objects;
 use crate::prim::{Prim, PrimKind};
-use crate::scene::{InstanceUse, ObjectInfo, Part, RenderGroup, RenderScene};
+use crate::scene::{InstanceUse, Part, RenderGroup, RenderScene};
 use assemble::Assembled;
 pub(crate) use materials::material_transmits;
 use shapes::{Flagged, GroupShapes};
@@ -40,7 +41,7 @@ pub struct CompileOptions {
 #[derive(Clone, Debug)]
 pub struct Prepared {
     groups: Vec<Assembled>,
-    objects: Vec<ObjectInfo>,
+    objects: Objects,
     materials: Vec<Arc<Material>>,
     texture_spaces: Vec<Transform>,
     lights: Vec<SceneLight>,
@@ -94,7 +95,7 @@ impl Prepared {
         let (lights, ambient) = view::lights(scene, flat.lights, &camera, bounds);
         Ok(Self {
             groups,
-            objects: flat.objects,
+            objects: flat.objects.completed(),
             materials: flat.materials.into_list(),
             texture_spaces: flat.texture_spaces,
             lights,
@@ -126,16 +127,18 @@ impl Prepared {
         let renumber = |group: u32| last - group;
         let groups = self.groups.into_iter().rev().map(|g| {
             let accelerator = AnyAccelerator::build_from(kind, &GroupShapes(&g));
-            let blocks = Blocks::new(accelerator.slots(), &g.prims, &g.shapes, &g.meshes);
+            let blocks = Blocks::new(&accelerator, &g.lists());
             let [stopping, transmitting] =
                 [Prim::STOPS, Prim::TRANSMITS].map(|flag| part(kind, &g, flag));
+            let common = crate::blocks::common(&g.lists());
             let mut instances = g.instances;
             for instance in &mut instances {
                 instance.group = renumber(instance.group);
             }
             RenderGroup {
-                common: crate::blocks::common(&g.prims, &g.shapes, &g.meshes),
-                sheared: blocks.sheared() || !g.meshes.is_empty(),
+                common,
+                sheared: blocks.has_triangles() || !g.meshes.is_empty(),
+                spheres: g.spheres.completed(accelerator.slots(), &g.prims, &blocks),
                 prims: g.prims,
                 shapes: g.shapes,
                 meshes: g.meshes,
@@ -188,15 +191,10 @@ fn part(kind: AcceleratorKind, group: &Assembled, flag: u8) -> Option<Box<Part>>
         flag,
     };
     let accelerator = AnyAccelerator::build_from(kind, &shapes);
-    let blocks = Blocks::new(
-        accelerator.slots(),
-        &group.prims,
-        &group.shapes,
-        &group.meshes,
-    );
-    let triangle = |p: &Prim| p.flags & flag != 0 && matches!(p.kind(), PrimKind::Triangle(..));
+    let blocks = Blocks::new(&accelerator, &group.lists());
+    let triangle = |p: Prim| p.flags & flag != 0 && matches!(p.kind(), PrimKind::Triangle(..));
     Some(Box::new(Part {
-        sheared: blocks.sheared() || group.prims.iter().any(triangle),
+        sheared: blocks.has_triangles() || group.prims.iter().any(triangle),
         accelerator,
         blocks,
     }))

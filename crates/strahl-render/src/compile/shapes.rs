@@ -23,9 +23,13 @@ enum Known<'a> {
 impl GroupShapes<'_> {
     fn known(&self, id: u32) -> Known<'_> {
         let group = self.0;
-        match group.prims[id as usize].kind() {
+        match group.prims.at(id).kind() {
             PrimKind::Triangle(mesh, triangle) => {
                 Known::Corners(group.meshes[mesh as usize].mesh.corners(triangle))
+            }
+            PrimKind::Sphere(number) => {
+                let sphere = group.spheres.loose(number);
+                Known::Ball(sphere.center(), sphere.radius())
             }
             PrimKind::Shape(index) => match &group.shapes[index as usize].shape {
                 Shape::Sphere(s) => Known::Ball(s.center(), s.radius().abs()),
@@ -59,7 +63,7 @@ impl Shapes for GroupShapes<'_> {
 
     fn class(&self, id: u32) -> u8 {
         let group = self.0;
-        LeafClass::of(&group.prims[id as usize], &group.shapes, &group.meshes) as u8
+        LeafClass::of(group.prims.at(id), &group.lists()) as u8
     }
 
     fn overlaps(&self, id: u32, cell: &Aabb) -> bool {
@@ -105,7 +109,7 @@ impl Shapes for Flagged<'_> {
     }
 
     fn bounds(&self, id: u32) -> Aabb {
-        if self.all.0.prims[id as usize].flags & self.flag == 0 {
+        if self.all.0.prims.at(id).flags & self.flag == 0 {
             return Aabb::EMPTY;
         }
         self.all.bounds(id)

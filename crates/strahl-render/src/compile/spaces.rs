@@ -1,8 +1,10 @@
 use super::flatten::{Flat, FlatGroup};
 use crate::light_sets::Lit;
 use crate::prim::{Prim, PrimKind};
-use crate::scene::{InstanceUse, ShapeUse};
-use strahl_geometry::Primitive;
+use crate::runs::RunList;
+use crate::scene::{InstanceUse, Looks};
+use std::borrow::Cow;
+use strahl_geometry::{Primitive, Shape};
 use strahl_math::{Aabb, DVec3, Transform};
 
 /// A thing is small and far if its extent is below this fraction of its largest coordinate: f32 boxes (24 bits) would then
@@ -32,10 +34,10 @@ pub(super) fn open_spaces(flat: &mut Flat) {
         }
         let first = flat.groups.len() as u32;
         let group = &mut flat.groups[index];
-        let mut prims = Vec::with_capacity(group.prims.len());
+        let mut prims = RunList::default();
         for (prim, moved) in group.prims.iter().zip(&moved) {
             match moved {
-                None => prims.push(*prim),
+                None => prims.push(prim),
                 // The cluster takes the place of its first member.
                 Some((cluster, true)) => {
                     let transform = Transform::translate(inner_groups[*cluster].1);
@@ -72,10 +74,9 @@ fn keep_world_last(flat: &mut Flat, world: usize) {
 fn clusters(group: &FlatGroup) -> Vec<Vec<u32>> {
     let mut small: Vec<(u32, Aabb)> = Vec::new();
     for (index, prim) in group.prims.iter().enumerate() {
-        let PrimKind::Shape(shape) = prim.kind() else {
+        let Some(shape) = shape(group, prim) else {
             continue;
         };
-        let shape = &group.shapes[shape as usize].shape;
         let bounds = shape.bounds();
         let far = bounds.max_abs() * SMALL_AND_FAR;
         if bounds.is_bounded()
@@ -107,6 +108,15 @@ fn clusters(group: &FlatGroup) -> Vec<Vec<u32>> {
     lists
 }
 
+/// The shape of a primitive that is one in the group's own space.
+fn shape(group: &FlatGroup, prim: Prim) -> Option<Cow<'_, Shape>> {
+    match prim.kind() {
+        PrimKind::Shape(index) => Some(Cow::Borrowed(&group.shapes[index as usize].shape)),
+        PrimKind::Sphere(number) => Some(Cow::Owned(group.spheres.loose(number).into())),
+        _ => None,
+    }
+}
+
 /// Splits a list where the next thing along an axis would make the cluster too large for one space.
 fn split_at_gaps(mut list: Vec<(u32, Aabb)>, axis: usize) -> Vec<Vec<(u32, Aabb)>> {
     list.sort_by(|a, b| a.1.min[axis].total_cmp(&b.1.min[axis]).then(a.0.cmp(&b.0)));
@@ -130,24 +140,19 @@ fn extract(group: &mut FlatGroup, cluster: &[u32]) -> (FlatGroup, DVec3) {
     let mut inner = FlatGroup::default();
     let mut anchor = None;
     for id in cluster {
-        let prim = group.prims[*id as usize];
-        let PrimKind::Shape(index) = prim.kind() else {
+        let prim = group.prims.at(*id);
+        let Some(shape) = shape(group, prim) else {
             continue;
         };
-        let used = &group.shapes[index as usize];
-        let anchor = *anchor.get_or_insert_with(|| used.shape.bounds().center());
+        let anchor = *anchor.get_or_insert_with(|| shape.bounds().center());
         let home = Transform::translate(-anchor);
-        let shape = used
-            .shape
-            .baked(&home)
-            .unwrap_or_else(|| used.shape.clone());
-        inner.shapes.push(ShapeUse {
-            shape,
-            transform: None,
-            look: used.look.clone(),
-        });
-        let kind = PrimKind::Shape(inner.shapes.len() as u32 - 1);
-        inner.prims.push(Prim::new(kind, prim.visible, prim.flags));
+        let shape = shape.baked(&home).unwrap_or_else(|| shape.into_owned());
+        let look = match prim.kind() {
+            PrimKind::Shape(index) => group.shapes[index as usize].look.clone(),
+            PrimKind::Sphere(number) => Looks::One(group.spheres.look(number)),
+            _ => continue,
+        };
+        inner.add_shape(shape, look, prim.visible, prim.flags);
     }
     (inner, anchor.unwrap_or_default())
 }

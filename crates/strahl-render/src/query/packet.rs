@@ -2,10 +2,11 @@
 
 use super::kinds::{AnyOpaque, Closest, Query};
 use super::{From, GroupVisitor, NONE, Search, Tracer};
-use crate::blocks::{Block, Blocks, LeafClass, PacketCulls};
+use crate::blocks::{Block, Blocks, Fetched, LeafClass, PacketCulls};
 use crate::hit::{Hit, Origin, RayClass};
 use crate::scene::{RenderGroup, RenderScene};
 use arrayvec::ArrayVec;
+use std::borrow::Borrow;
 use strahl_accel::{
     Accelerator, BLOCK, Leaf, PACKET, Packet, PacketVisitor, TraversalStats, Visitor, lanes_of,
 };
@@ -266,7 +267,8 @@ impl<Q: Query> Together<'_, '_, Q> {
     ) {
         let mut hits = Hits::default();
         for index in 0..leaf.blocks() {
-            let block = B::of(self.blocks, leaf.first_block + index);
+            let found = B::of(self.group, self.blocks, leaf, index);
+            let block: &B = found.borrow();
             let used = leaf.count - index * BLOCK;
             let mut left = lanes;
             if lanes.count_ones() >= FEW {
@@ -304,6 +306,9 @@ impl<Q: Query> PacketVisitor for Together<'_, '_, Q> {
         t_max: &mut [f64; PACKET],
     ) {
         match LeafClass::from_number(leaf.class) {
+            LeafClass::Mesh if self.blocks.fetches() => {
+                self.leaf_of_blocks::<I, Fetched>(isa, leaf, lanes, t_max);
+            }
             LeafClass::Mesh => {
                 self.leaf_of_blocks::<I, TriangleBlock<f32>>(isa, leaf, lanes, t_max);
             }
@@ -335,5 +340,10 @@ impl<V: PacketVisitor> Visitor for OfLane<'_, V> {
 
     fn visit(&mut self, id: u32, t_max: f64) -> f64 {
         self.visitor.visit(id, self.lane, t_max)
+    }
+
+    #[inline(always)]
+    fn visit_leaf<I: Isa>(&mut self, isa: I, leaf: &Leaf<'_>, t_max: f64) -> f64 {
+        self.visitor.visit_leaf(isa, leaf, self.lane, t_max)
     }
 }

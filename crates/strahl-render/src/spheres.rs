@@ -1,0 +1,116 @@
+use crate::blocks::Blocks;
+use crate::prim::{Prim, PrimKind};
+use crate::runs::RunList;
+use crate::scene::Look;
+use strahl_accel::{BLOCK, NO_PRIMITIVE};
+use strahl_geometry::Sphere;
+use strahl_math::DVec3;
+
+/// A sphere that is seen from outside and whose texture is not turned: scenes have millions of them.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PlainSphere {
+    center: DVec3,
+    radius: f64,
+}
+
+impl PlainSphere {
+    /// The same sphere, if it is plain.
+    pub(crate) fn of(sphere: &Sphere) -> Option<Self> {
+        let plain = sphere.radius() > 0.0 && !sphere.is_turned();
+        plain.then(|| Self {
+            center: sphere.center(),
+            radius: sphere.radius(),
+        })
+    }
+
+    #[inline(always)]
+    fn sphere(self) -> Sphere {
+        Sphere::new(self.center, self.radius)
+    }
+}
+
+/// The plain spheres of a group, each kept once: by number, or in the blocks of the accelerator's leaves.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Spheres {
+    kept: Kept,
+    looks: RunList<Look>,
+}
+
+#[derive(Clone, Debug)]
+enum Kept {
+    ByNumber(Vec<PlainSphere>),
+    /// By number the place in the blocks.
+    InBlocks(Vec<u32>),
+}
+
+impl Default for Kept {
+    fn default() -> Self {
+        Self::ByNumber(Vec::new())
+    }
+}
+
+impl Spheres {
+    /// Appends a sphere and returns its number.
+    pub(crate) fn push(&mut self, sphere: PlainSphere, look: Look) -> u32 {
+        let number = self.looks.len() as u32;
+        if let Kept::ByNumber(list) = &mut self.kept {
+            list.push(sphere);
+            self.looks.push(look);
+        }
+        number
+    }
+
+    /// A sphere; `blocks` are those it was put into, if it was.
+    #[inline(always)]
+    pub(crate) fn get(&self, number: u32, blocks: &Blocks) -> Sphere {
+        match &self.kept {
+            Kept::ByNumber(list) => list[number as usize].sphere(),
+            Kept::InBlocks(places) => {
+                let place = places[number as usize] as usize;
+                blocks.sphere(place / BLOCK, place % BLOCK)
+            }
+        }
+    }
+
+    /// A sphere that was not yet put into blocks.
+    pub(crate) fn loose(&self, number: u32) -> Sphere {
+        self.get(number, &Blocks::NONE)
+    }
+
+    /// Object and material of a sphere.
+    #[inline]
+    pub(crate) fn look(&self, number: u32) -> Look {
+        self.looks.at(number)
+    }
+
+    /// The spheres without those coordinates that are in the blocks made for these slots, if that is so of all.
+    pub(crate) fn completed(self, slots: &[u32], prims: &RunList<Prim>, blocks: &Blocks) -> Self {
+        let mut places = vec![u32::MAX; self.looks.len()];
+        for (slot, id) in slots
+            .iter()
+            .enumerate()
+            .filter(|(_, id)| **id != NO_PRIMITIVE)
+        {
+            if let PrimKind::Sphere(number) = prims.at(*id).kind() {
+                let place = blocks.place(slot / BLOCK) * BLOCK + slot % BLOCK;
+                places[number as usize] = place as u32;
+            }
+        }
+        let looks = self.looks.completed();
+        // Those without bounds that f32 can express are in no block.
+        let kept = match places.contains(&u32::MAX) {
+            true => self.kept,
+            false => Kept::InBlocks(places),
+        };
+        Self { kept, looks }
+    }
+
+    /// Bytes they occupy beside the blocks.
+    pub(crate) fn bytes(&self) -> usize {
+        let kept = match &self.kept {
+            Kept::ByNumber(list) => size_of_val(list.as_slice()),
+            Kept::InBlocks(places) => size_of_val(places.as_slice()),
+        };
+        kept + self.looks.bytes()
+    }
+}
