@@ -6,6 +6,9 @@ use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+/// What the SPD scenes are rendered with.
+const SPD: [&str; 4] = ["--max-depth", "5", "--adc-bailout", "0"];
+
 /// Trace times of the SPD scenes at 512x512, no antialiasing, equal depth, against POV-Ray and Tachyon.
 pub(crate) fn spd(args: &[&str]) -> Result<()> {
     let (mut folder, mut runs, mut threads) = (PathBuf::from("../shared/data/spd"), 5, 1);
@@ -48,7 +51,8 @@ pub(crate) fn spd(args: &[&str]) -> Result<()> {
     Ok(())
 }
 
-fn geometric_mean(ratios: &[f64]) -> String {
+/// The geometric mean as a table shows it.
+pub(crate) fn geometric_mean(ratios: &[f64]) -> String {
     let logarithms: f64 = ratios.iter().map(|r| r.ln()).sum();
     match ratios.len() {
         0 => String::new(),
@@ -73,10 +77,10 @@ fn one_scene(scene: &Path, runs: usize, threads: u32) -> Result<Faster> {
     let has_dat = convert::to_dat(scene, &dat).is_ok();
     let (mut ours, mut povray, mut tachyon, mut rays) = (vec![], vec![], vec![], 0.0);
     for _ in 0..runs {
-        let (time, count) = run_strahl(scene, folder.path(), threads)?;
+        let (time, count) = run_strahl(scene, &folder.path().join("out.png"), threads, &SPD)?;
         ours.push(time);
         rays = count;
-        povray.push(run_povray(&pov, folder.path(), threads)?);
+        povray.push(run_povray(&pov, &folder.path().join("pov.png"), threads)?);
         if has_dat {
             tachyon.push(run_tachyon(&dat, folder.path(), threads)?);
         }
@@ -133,23 +137,21 @@ pub(crate) fn strahl_binary() -> Result<PathBuf> {
         .join("strahl"))
 }
 
-fn run_strahl(scene: &Path, folder: &Path, threads: u32) -> Result<(f64, f64)> {
-    let stats = folder.join("stats.json");
+/// Renders a scene at 512x512 with one ray per pixel: trace time in seconds and number of rays.
+pub(crate) fn run_strahl(
+    scene: &Path,
+    picture: &Path,
+    threads: u32,
+    options: &[&str],
+) -> Result<(f64, f64)> {
+    let stats = picture.with_extension("json");
     let status = Command::new(strahl_binary()?)
         .arg("render")
         .arg(scene)
-        .args([
-            "--size",
-            "512x512",
-            "--sampling",
-            "center",
-            "--max-depth",
-            "5",
-            "--adc-bailout",
-            "0",
-        ])
+        .args(["--size", "512x512", "--sampling", "center"])
+        .args(options)
         .args(["--threads", &threads.to_string(), "--quiet", "--output"])
-        .arg(folder.join("out.png"))
+        .arg(picture)
         .arg("--stats")
         .arg(&stats)
         .status()
@@ -168,10 +170,11 @@ fn run_strahl(scene: &Path, folder: &Path, threads: u32) -> Result<(f64, f64)> {
     ))
 }
 
-fn run_povray(scene: &Path, folder: &Path, threads: u32) -> Result<f64> {
+/// The same with POV-Ray: trace time in seconds.
+pub(crate) fn run_povray(scene: &Path, picture: &Path, threads: u32) -> Result<f64> {
     let output = Command::new("povray")
         .arg(format!("+I{}", scene.display()))
-        .arg(format!("+O{}", folder.join("pov.png").display()))
+        .arg(format!("+O{}", picture.display()))
         .args(["+W512", "+H512", "-A", "-D", &format!("+WT{threads}")])
         .output()
         .context("cannot run povray (Debian package povray)")?;

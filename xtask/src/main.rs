@@ -2,6 +2,7 @@
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "a program talks")]
 
 mod bench;
+mod bench_csg;
 mod bench_parse;
 mod compare_pov;
 mod convert;
@@ -15,6 +16,8 @@ use std::path::Path;
 const USAGE: &str = "usage: cargo xtask COMMAND
   bench spd [FOLDER] [--runs N] [--threads N]
                                   trace times of the SPD scenes (*.nff.gz) in FOLDER against POV-Ray and Tachyon
+  bench csg [--runs N] [--threads N] [--only PART]
+                                  trace times of generated CSG scenes against POV-Ray
   bench parse [--runs N] [--megabytes N]
                                   time of reading a million spheres made by loops, and an exported scene, against POV-Ray
   bench peers [--rounds N] [--side PIXELS] [--only PART,...] [--brief]
@@ -37,6 +40,7 @@ fn main() -> Result<()> {
     let words: Vec<&str> = args.iter().map(String::as_str).collect();
     match words.as_slice() {
         ["bench", "spd", rest @ ..] => bench::spd(rest),
+        ["bench", "csg", rest @ ..] => bench_csg::run(rest),
         ["bench", "parse", rest @ ..] => bench_parse::parse(rest),
         ["bench", "peers", rest @ ..] => peers::run(rest),
         ["compare-pov", rest @ ..] => compare_pov::run(rest),

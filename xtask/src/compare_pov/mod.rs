@@ -2,7 +2,7 @@
 //!
 //! Nothing is written beside the scenes: both programs work in scratch folders, pictures and results go to `--out`.
 
-mod picture;
+pub(crate) mod picture;
 mod programs;
 mod report;
 

@@ -5,7 +5,7 @@ use std::io::{BufReader, BufWriter};
 use std::path::Path;
 
 /// A picture as a viewer shows it: 8-bit codes.
-pub(super) struct Shown {
+pub(crate) struct Shown {
     width: u32,
     height: u32,
     rgb: Vec<u8>,
@@ -15,7 +15,7 @@ pub(super) struct Shown {
 const AMPLIFIED: u32 = 4;
 
 /// Reads a PNG of any kind; alpha is left out.
-pub(super) fn read(file: &Path) -> Result<Shown> {
+pub(crate) fn read(file: &Path) -> Result<Shown> {
     let open = File::open(file).with_context(|| format!("cannot open {}", file.display()))?;
     let mut decoder = Decoder::new(BufReader::new(open));
     decoder.set_transformations(Transformations::normalize_to_color8());
@@ -44,7 +44,7 @@ pub(super) fn read(file: &Path) -> Result<Shown> {
 }
 
 /// Mean absolute difference of the channels and its root mean square; `None` for different sizes.
-pub(super) fn compare(a: &Shown, b: &Shown) -> Option<(f64, f64)> {
+pub(crate) fn compare(a: &Shown, b: &Shown) -> Option<(f64, f64)> {
     if (a.width, a.height) != (b.width, b.height) || a.rgb.is_empty() {
         return None;
     }
@@ -59,7 +59,7 @@ pub(super) fn compare(a: &Shown, b: &Shown) -> Option<(f64, f64)> {
 }
 
 /// Writes the amplified difference as a picture.
-pub(super) fn write_difference(a: &Shown, b: &Shown, file: &Path) -> Result<()> {
+pub(crate) fn write_difference(a: &Shown, b: &Shown, file: &Path) -> Result<()> {
     let amplified = |(a, b): (&u8, &u8)| (AMPLIFIED * u32::from(a.abs_diff(*b))).min(255) as u8;
     let rgb: Vec<u8> = a.rgb.iter().zip(&b.rgb).map(amplified).collect();
     let mut encoder = Encoder::new(BufWriter::new(File::create(file)?), a.width, a.height);

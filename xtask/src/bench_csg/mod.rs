@@ -1,0 +1,100 @@
+//! Speed of CSG against POV-Ray: both programs read the same generated scenes and take turns.
+
+mod scenes;
+
+use crate::bench::{build_strahl, geometric_mean, median, run_povray, run_strahl, strahl_binary};
+use crate::compare_pov::picture;
+use anyhow::{Context, Result, bail};
+use scenes::Scene;
+use std::fmt::Write as _;
+use std::path::Path;
+
+/// The pictures of both programs differ by less than this in the mean (of 255): single pixels at edges.
+const BOUND: f64 = 0.5;
+
+/// Prints and saves a table of trace times, one row per scene.
+pub(crate) fn run(args: &[&str]) -> Result<()> {
+    let (mut runs, mut threads, mut only) = (5, 1, "");
+    let mut rest = args.iter();
+    while let Some(arg) = rest.next() {
+        match *arg {
+            "--runs" => runs = rest.next().context("--runs needs a number")?.parse()?,
+            "--threads" => {
+                threads = rest.next().context("--threads needs a number")?.parse()?;
+            }
+            "--only" => only = rest.next().context("--only needs a part of a name")?,
+            other => bail!("unknown option {other}"),
+        }
+    }
+    if runs == 0 || threads == 0 {
+        bail!("--runs and --threads must be at least 1");
+    }
+    build_strahl()?;
+    let folder = strahl_binary()?
+        .ancestors()
+        .nth(2)
+        .context("the program lies in target/release")?
+        .join("bench-csg");
+    std::fs::create_dir_all(&folder)?;
+    let mut table = format!(
+        "Trace time in seconds, {threads} thread(s), medians of {runs}; how many times as fast strahl is.\n\n\
+         | scene | strahl | Mrays/s | POV-Ray | faster by | pictures differ by |\n|---|---|---|---|---|---|\n"
+    );
+    print!("{table}");
+    let mut ratios = vec![];
+    for scene in scenes::all().iter().filter(|s| s.name.contains(only)) {
+        let row = one_scene(scene, &folder, runs, threads, &mut ratios)?;
+        print!("{row}");
+        table += &row;
+    }
+    let last = format!("| geometric mean | | | | {} | |\n", geometric_mean(&ratios));
+    print!("{last}");
+    table += &last;
+    let report = folder.join(format!("table-{threads}.md"));
+    std::fs::write(&report, table)?;
+    println!("saved as {}", report.display());
+    Ok(())
+}
+
+/// The row of a scene. Its text and both pictures stay in the folder.
+fn one_scene(
+    scene: &Scene,
+    folder: &Path,
+    runs: usize,
+    threads: u32,
+    all: &mut Vec<f64>,
+) -> Result<String> {
+    let name = scene.name.replace([' ', ','], "-");
+    let [file, ours, theirs] =
+        [".pov", ".png", "-povray.png"].map(|end| folder.join(format!("{name}{end}")));
+    std::fs::write(&file, &scene.text)?;
+    let (mut strahl, mut povray, mut rays) = (vec![], vec![], 0.0);
+    for _ in 0..runs {
+        let (time, count) = run_strahl(&file, &ours, threads, &[])?;
+        strahl.push(time);
+        rays = count;
+        povray.push(run_povray(&file, &theirs, threads)?);
+    }
+    let (difference, _) = picture::compare(&picture::read(&ours)?, &picture::read(&theirs)?)
+        .context("the pictures have different sizes")?;
+    if difference > BOUND {
+        bail!(
+            "{}: the pictures differ by {difference:.2} in the mean, more than {BOUND}; look at {} and {}",
+            scene.name,
+            ours.display(),
+            theirs.display()
+        );
+    }
+    let mut ratios: Vec<f64> = strahl.iter().zip(&povray).map(|(a, b)| b / a).collect();
+    let (ratio, time) = (median(&mut ratios), median(&mut strahl));
+    all.push(ratio);
+    let mut row = String::new();
+    writeln!(
+        row,
+        "| {} | {time:.3} | {:.2} | {:.3} | {ratio:.2} | {difference:.2} |",
+        scene.name,
+        rays / time / 1e6,
+        median(&mut povray),
+    )?;
+    Ok(row)
+}
