@@ -87,6 +87,8 @@ impl Choices<'_> {
 fn kinds() -> Vec<AcceleratorKind> {
     let more = [
         "octree:traversal=neighbours",
+        "bvh:build=fast",
+        "bvh:build=high",
         "bvh:simd=scalar",
         "bvh:simd=sse4",
         "bvh:simd=avx2",

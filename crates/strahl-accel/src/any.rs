@@ -7,7 +7,7 @@ use crate::{
 };
 use std::{fmt, str::FromStr};
 use strahl_math::{Aabb, Interval, Ray};
-use strahl_simd::{Level, Simd};
+use strahl_simd::Level;
 
 /// Makes the enum of all structures from the table below.
 macro_rules! accelerators {
@@ -126,16 +126,7 @@ accelerators! {
     /// The binary bounding volume hierarchy: the readable reference.
     "bvh2" Bvh2(NoParameters) = |shapes, _| Bvh2::build(&all_bounds(shapes)),
     /// The bounding volume hierarchy of width eight.
-    "bvh" Bvh8(Bvh8Parameters) = |shapes, parameters| {
-let mut bvh = Bvh8::build_from(shapes);
-        if parameters.compact {
-            bvh = bvh.compacted();
-        }
-        match parameters.simd.and_then(Simd::of) {
-            Some(simd) => bvh.with_simd(simd),
-            None => bvh,
-        }
-    },
+    "bvh" Bvh8(Bvh8Parameters) = Bvh8::build_from,
     /// A regular grid.
     "grid" Grid(GridParameters) = Grid::build,
     /// Grids within the crowded cells of grids.

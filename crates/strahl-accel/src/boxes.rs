@@ -90,6 +90,11 @@ impl Box32 {
         self.hi - self.lo
     }
 
+    /// One over the largest extent: in this unit no area of a box inside overflows, nor is that of a small box too small.
+    pub(crate) fn unit(&self) -> f32 {
+        (1.0 / self.size().truncate().max_element()).min(f32::MAX)
+    }
+
     /// Twice the centre.
     #[inline(always)]
     pub(crate) fn center(&self) -> Vec4 {
@@ -102,6 +107,24 @@ impl Box32 {
         let size = self.size();
         let (x, y, z) = (f64::from(size.x), f64::from(size.y), f64::from(size.z));
         x * y + y * z + z * x
+    }
+
+    /// Whether nothing is in it.
+    pub(crate) fn is_empty(&self) -> bool {
+        (0..3).any(|axis| self.lo[axis] > self.hi[axis])
+    }
+
+    /// What is in both boxes; [`Box32::EMPTY`] if nothing is.
+    pub(crate) fn common(&self, other: &Self) -> Self {
+        let common = Self {
+            lo: self.lo.max(other.lo),
+            hi: self.hi.min(other.hi),
+        };
+        if common.is_empty() {
+            Self::EMPTY
+        } else {
+            common
+        }
     }
 
     pub(crate) fn contains(&self, other: &Self) -> bool {

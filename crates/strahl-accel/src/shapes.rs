@@ -22,10 +22,32 @@ pub trait Shapes: Sync {
         true
     }
 
+    /// Of the part of a bounded primitive that is in a box: boxes around what is on the lower and on the upper side of a plane across an axis, both
+    /// with what is in the plane. Empty where there is nothing.
+    ///
+    /// A point that is hit may be further away from them than from the primitive by the rounding of f64; culling allows for far more.
+    fn halves(&self, _id: u32, part: &Aabb, axis: usize, at: f64) -> [Aabb; 2] {
+        cut_box(part, axis, at)
+    }
+
+    /// Half the surface area, in total, of boxes around ever smaller parts of a flat primitive: where that is much less than that of its own box,
+    /// it pays to cut it. `None` for others.
+    fn flat_area(&self, _id: u32) -> Option<f64> {
+        None
+    }
+
     /// A sphere (centre and radius) around a bounded primitive that may be smaller than the one around its box.
     fn sphere(&self, _id: u32) -> Option<(DVec3, f64)> {
         None
     }
+}
+
+/// What is on the lower and on the upper side of a plane across an axis, of a box.
+pub fn cut_box(part: &Aabb, axis: usize, at: f64) -> [Aabb; 2] {
+    let (mut lower, mut upper) = (*part, *part);
+    lower.max[axis] = at;
+    upper.min[axis] = at;
+    [lower, upper]
 }
 
 /// Boxes alone: primitives fill their boxes as far as anybody knows.

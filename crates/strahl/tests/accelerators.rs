@@ -11,6 +11,8 @@ use strahl::{LoadOptions, load_path};
 
 fn accelerators() -> Vec<AcceleratorKind> {
     let variants = [
+        "bvh:build=fast",
+        "bvh:build=high",
         "spheres:build=agglomerative",
         "octree:traversal=exit-face",
         "octree:traversal=trial-plane",

@@ -29,6 +29,8 @@ struct Plan<'a> {
     threads: usize,
     /// A mesh from a file, besides those made here.
     model: Option<&'a str>,
+    /// What strahl finds hits with.
+    accelerator: AcceleratorKind,
 }
 
 /// Makes a mesh, given its name.
@@ -46,6 +48,7 @@ pub(crate) fn run(args: &[&str]) -> Result<()> {
         brief: false,
         threads: 1,
         model: None,
+        accelerator: AcceleratorKind::default(),
     };
     let mut rest = args.iter();
     while let Some(arg) = rest.next() {
@@ -57,8 +60,9 @@ pub(crate) fn run(args: &[&str]) -> Result<()> {
             "--brief" => plan.brief = true,
             "--threads" => plan.threads = value()?.parse()?,
             "--model" => plan.model = Some(value()?),
+            "--accelerator" => plan.accelerator = value()?.parse()?,
             other => bail!(
-                "unknown option {other}; there are --rounds N, --side PIXELS (a multiple of 4), --only PART,PART..., --threads N, --model FILE, --brief"
+                "unknown option {other}; there are --rounds N, --side PIXELS (a multiple of 4), --only PART,PART..., --threads N, --model FILE, --accelerator NAME, --brief"
             ),
         }
     }
@@ -228,7 +232,7 @@ fn one_scene<'e>(
         drop(built.take());
         let prepared = prepared.clone();
         let start = Instant::now();
-        let ours = pool.install(|| prepared.build(AcceleratorKind::default()));
+        let ours = pool.install(|| prepared.build(plan.accelerator));
         our_times.push(start.elapsed().as_secs_f64());
         let start = Instant::now();
         let theirs = build(medium)?;

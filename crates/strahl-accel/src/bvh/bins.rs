@@ -8,25 +8,25 @@ use rayon::prelude::*;
 use strahl_math::{Mat4, Vec4};
 
 /// Most bins per axis.
-const BINS: usize = 32;
+pub(crate) const BINS: usize = 32;
 /// Sets larger than this are sorted into bins in parallel, in chunks of this size.
-pub(super) const CHUNK: usize = 16 * 1024;
+pub(crate) const CHUNK: usize = 16 * 1024;
 /// Numbers up to a few millions added to it are rounded to integers, which are the last bits of the sum.
 const ROUND: f32 = 12_582_912.0;
 
 /// A way to split: what falls into the bins up to one of an axis goes left.
-pub(super) struct Plane {
+pub(crate) struct Plane {
     axis: usize,
     lo: f32,
     scale: f32,
     last_left: usize,
     /// Half area times number of blocks of primitives, summed over both sides; in the unit of [`Bins::area`].
-    pub(super) cost: f32,
+    pub(crate) cost: f32,
 }
 
 impl Plane {
     #[inline(always)]
-    pub(super) fn is_left(&self, r: &Ref) -> bool {
+    pub(crate) fn is_left(&self, r: &Ref) -> bool {
         let (lo, hi): (&[f32; 4], &[f32; 4]) = r.bounds().corners();
         let center = lo[self.axis] + hi[self.axis];
         // As `Binning::place` computes it. What that clamps is on the same side here.
@@ -84,7 +84,7 @@ pub(crate) struct Bins {
     binning: Binning,
     /// How many bins are used.
     used: usize,
-    /// One over the largest extent of the set: areas are measured by it, so that none overflows.
+    /// Areas are measured in it, so that none overflows.
     unit: f32,
 }
 
@@ -101,10 +101,10 @@ impl Bins {
     }
 
     /// Sorts a set into bins; its boxes span `bounds`, its doubled centres `centers`. Of large sets, what fell into the bins by chunks.
-    pub(super) fn fill(&mut self, refs: &[Ref], bounds: &Box32, centers: &Box32) -> Vec<Self> {
+    pub(crate) fn fill(&mut self, refs: &[Ref], bounds: &Box32, centers: &Box32) -> Vec<Self> {
         self.used = Binning::count(refs.len());
         self.binning = Binning::new(self.used, centers);
-        self.unit = (1.0 / bounds.size().truncate().max_element()).min(f32::MAX);
+        self.unit = bounds.unit();
         self.clear();
         if refs.len() <= CHUNK {
             self.add(refs);
@@ -157,42 +157,32 @@ impl Bins {
     }
 
     /// Half the surface area of a box in the unit of the costs.
-    pub(super) fn area(&self, bounds: &Box32) -> f32 {
+    pub(crate) fn area(&self, bounds: &Box32) -> f32 {
         areas(&[*bounds; 3], self.unit).x
     }
 
     /// The cheapest way to split the set, with blocks of `2^block_log` primitives; `None` if no plane separates any two of them.
-    pub(super) fn cheapest(&mut self, block_log: u32) -> Option<Plane> {
+    pub(crate) fn cheapest(&mut self, block_log: u32) -> Option<Plane> {
         let used = self.used.min(BINS);
-        // Sweep from the right for the costs of all right sides, then from the left for the sums; all axes at once.
-        let mut side = Side::EMPTY;
-        for bin in (1..used).rev() {
-            side.grow(&self.boxes[bin], &self.counts[bin]);
-            self.right_costs[bin] = side.costs(self.unit, block_log);
-        }
-        let mut side = Side::EMPTY;
-        let mut best = Vec4::INFINITY;
-        let mut last_left = Vec4::ZERO;
-        for bin in 0..used - 1 {
-            side.grow(&self.boxes[bin], &self.counts[bin]);
-            let cost = side.costs(self.unit, block_log) + self.right_costs[bin + 1];
-            let better = cost.cmplt(best);
-            best = Vec4::select(better, cost, best);
-            last_left = Vec4::select(better, Vec4::splat(bin as f32), last_left);
-        }
-        // Of equal ones the first, so that the choice is unique.
-        let axis = (0..3).reduce(|a, b| if best[b] < best[a] { b } else { a })?;
-        (best[axis] < f32::INFINITY).then(|| Plane {
-            axis,
-            lo: self.binning.lo[axis],
-            scale: self.binning.scale[axis],
-            last_left: last_left[axis] as usize,
-            cost: best[axis],
+        let counts = &self.counts[..used];
+        let model = (self.unit, block_log);
+        let cut = cheapest(
+            &self.boxes[..used],
+            [counts; 2],
+            &mut self.right_costs,
+            model,
+        )?;
+        Some(Plane {
+            axis: cut.axis,
+            lo: self.binning.lo[cut.axis],
+            scale: self.binning.scale[cut.axis],
+            last_left: cut.last_left,
+            cost: cut.cost,
         })
     }
 
     /// What the boxes on both sides of a plane span.
-    pub(super) fn bounds(&self, plane: &Plane) -> [Box32; 2] {
+    pub(crate) fn bounds(&self, plane: &Plane) -> [Box32; 2] {
         let used = self.used.min(BINS);
         let span = |bins: &[[Box32; 3]]| {
             let mut span = Box32::EMPTY;
@@ -206,10 +196,54 @@ impl Bins {
     }
 
     /// How many are on the left side of a plane.
-    pub(super) fn left_count(&self, plane: &Plane) -> usize {
+    pub(crate) fn left_count(&self, plane: &Plane) -> usize {
         let left = &self.counts[..=plane.last_left];
         left.iter().map(|n| n[plane.axis] as usize).sum()
     }
+}
+
+/// A place between two bins of an axis.
+pub(crate) struct Cut {
+    pub(crate) axis: usize,
+    /// The last bin on the left side.
+    pub(crate) last_left: usize,
+    /// Half area times number of blocks of primitives, summed over both sides.
+    pub(crate) cost: f32,
+}
+
+/// The cheapest place to split what fell into bins, per axis: their boxes, and how many count if the bin is on the left or on the right
+/// side. `model` is the unit of areas and the logarithm of the size of blocks. `None` if one side is empty wherever it is split.
+#[inline]
+pub(crate) fn cheapest(
+    boxes: &[[Box32; 3]],
+    [left_counts, right_counts]: [&[[u32; 4]]; 2],
+    right_costs: &mut [Vec4; BINS],
+    (unit, block_log): (f32, u32),
+) -> Option<Cut> {
+    // Sweep from the right for the costs of all right sides, then from the left for the sums; all axes at once.
+    let bins = boxes.len().min(BINS);
+    let mut side = Side::EMPTY;
+    for bin in (1..bins).rev() {
+        side.grow(&boxes[bin], &right_counts[bin]);
+        right_costs[bin] = side.costs(unit, block_log);
+    }
+    let mut side = Side::EMPTY;
+    let mut best = Vec4::INFINITY;
+    let mut last_left = Vec4::ZERO;
+    for bin in 0..bins.saturating_sub(1) {
+        side.grow(&boxes[bin], &left_counts[bin]);
+        let cost = side.costs(unit, block_log) + right_costs[bin + 1];
+        let better = cost.cmplt(best);
+        best = Vec4::select(better, cost, best);
+        last_left = Vec4::select(better, Vec4::splat(bin as f32), last_left);
+    }
+    // Of equal ones the first, so that the choice is unique.
+    let axis = (0..3).reduce(|a, b| if best[b] < best[a] { b } else { a })?;
+    (best[axis] < f32::INFINITY).then(|| Cut {
+        axis,
+        last_left: last_left[axis] as usize,
+        cost: best[axis],
+    })
 }
 
 /// One side of a plane, for each of the axes.

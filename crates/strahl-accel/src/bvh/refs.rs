@@ -1,6 +1,7 @@
 //! Primitives while a hierarchy is built, and what sets of them span.
 
 use super::bins::CHUNK;
+use crate::Shapes;
 use crate::boxes::Box32;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -18,6 +19,20 @@ impl Ref {
         Self {
             bounds: Box32::of_corners(lo.with_w(to_lane(id)), hi.with_w(to_lane(u32::from(class)))),
         }
+    }
+
+    /// The parts of it on both sides of a plane, with empty boxes where there is nothing.
+    pub(crate) fn halves(&self, shapes: &dyn Shapes, axis: usize, at: f32) -> [Self; 2] {
+        let own = &self.bounds;
+        let boxes = if own.is_empty() {
+            [Aabb::EMPTY; 2]
+        } else {
+            shapes.halves(self.id(), &own.to_aabb(), axis, f64::from(at))
+        };
+        boxes.map(|b| {
+            let part = Box32::try_new(&b).map_or(Box32::EMPTY, |b| b.common(own));
+            Self::new(&part, self.id(), self.class())
+        })
     }
 
     #[inline(always)]
@@ -43,13 +58,13 @@ const LANE: u32 = 0x3f80_0000;
 
 /// Any number as a lane of a vector.
 #[inline(always)]
-fn to_lane(number: u32) -> f32 {
+pub(crate) fn to_lane(number: u32) -> f32 {
     f32::from_bits(number.wrapping_add(LANE))
 }
 
 /// What [`to_lane`] was given.
 #[inline(always)]
-fn from_lane(lane: f32) -> u32 {
+pub(crate) fn from_lane(lane: f32) -> u32 {
     lane.to_bits().wrapping_sub(LANE)
 }
 
@@ -57,7 +72,7 @@ fn from_lane(lane: f32) -> u32 {
 #[derive(Clone, Copy)]
 pub(crate) struct Extent {
     pub(crate) bounds: Box32,
-    pub(super) centers: Box32,
+    pub(crate) centers: Box32,
     /// The classes in it, as bits.
     pub(crate) classes: u8,
 }
@@ -82,7 +97,7 @@ impl Extent {
     }
 
     /// The extent of a large set, in parallel: minima and maxima are exact in any grouping, so the threads leave no trace.
-    pub(super) fn of_many(refs: &[Ref]) -> Self {
+    pub(crate) fn of_many(refs: &[Ref]) -> Self {
         let parts = refs.par_chunks(CHUNK).map(Self::of);
         parts.reduce(|| Self::EMPTY, Self::joined)
     }

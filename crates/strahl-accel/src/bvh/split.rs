@@ -19,14 +19,14 @@ pub(crate) struct LeafModel {
 
 impl LeafModel {
     /// The logarithm of the size of blocks in sets of these classes.
-    fn block_log(&self, classes: u8) -> u32 {
+    pub(crate) fn block_log(&self, classes: u8) -> u32 {
         if classes & 1 == 0 { self.block_log } else { 0 }
     }
 }
 
 /// How many blocks hold `n` primitives.
 #[inline(always)]
-fn blocks(n: usize, log: u32) -> usize {
+pub(crate) fn blocks(n: usize, log: u32) -> usize {
     (n + (1 << log) - 1) >> log
 }
 
@@ -148,7 +148,7 @@ impl<'a> Set<'a> {
 
 /// Puts primitives in order: those left of a plane first, then the others backwards. Returns how many are left.
 #[inline]
-fn part(plane: &Plane, refs: &[Ref], to: &mut [Ref]) -> usize {
+pub(crate) fn part(plane: &Plane, refs: &[Ref], to: &mut [Ref]) -> usize {
     let (mut left, mut right) = (0, to.len());
     for r in refs {
         // Without a branch, which would often be guessed wrong: both places are free, and the next primitive writes the one again that

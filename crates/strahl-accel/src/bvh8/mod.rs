@@ -5,8 +5,13 @@
 mod beam;
 mod build;
 mod compact;
+mod fast;
+mod grow;
+mod high;
 mod node;
 mod packet;
+mod presplit;
+mod spatial;
 mod traverse;
 mod validate;
 mod watch;
@@ -18,6 +23,8 @@ use crate::parameters::{Parameter, Parameters};
 use node::{Child, Nodes};
 use strahl_simd::{Level, Simd};
 
+pub use build::Build;
+
 /// Primitives in a block of slots.
 pub const BLOCK: usize = 4;
 
@@ -27,6 +34,8 @@ pub const NO_PRIMITIVE: u32 = u32::MAX;
 /// The parameters of [`Bvh8`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bvh8Parameters {
+    /// How carefully it is built.
+    pub build: Build,
     /// The instructions it is walked with; those this processor does not have, and `None`, stand for the best it has.
     pub simd: Option<Level>,
     /// Whether to spend as little memory as possible, at the cost of time.
@@ -35,10 +44,16 @@ pub struct Bvh8Parameters {
 
 impl Parameters for Bvh8Parameters {
     const DEFAULT: Self = Self {
+        build: Build::Default,
         simd: None,
         compact: false,
     };
     const ALL: &'static [Parameter] = &[
+        Parameter {
+            name: "build",
+            values: "default|fast|high",
+            about: "how carefully it is built: `fast` is ready sooner, its rays take longer; `high` is ready later, its rays are faster",
+        },
         Parameter {
             name: "compact",
             values: "",
@@ -53,6 +68,7 @@ impl Parameters for Bvh8Parameters {
 
     fn set(&mut self, name: &str, value: &str) -> Option<()> {
         match name {
+            "build" => self.build = Build::of_name(value)?,
             "compact" => self.compact = true,
             _ => self.simd = Some(value.parse().ok()?),
         }
@@ -61,6 +77,7 @@ impl Parameters for Bvh8Parameters {
 
     fn value(&self, name: &str) -> Option<String> {
         match name {
+            "build" => Some(self.build.name().into()),
             "compact" => self.compact.then(String::new),
             _ => self.simd.map(|level| level.to_string()),
         }
@@ -89,6 +106,8 @@ impl Parameters for Bvh8Parameters {
 /// (see [`crate::Visitor::visit_leaf`]). All primitives of a leaf have the same class, a number from 0 to 3 that means
 /// nothing here but that the blocks of class 0 are looked at one by one.
 ///
+/// With [`Build::High`] a primitive may be in several leaves, with the part of it that is there, and be visited several times.
+///
 /// H. Dammertz, J. Hanika, A. Keller, "Shallow Bounding Volume Hierarchies for Fast SIMD Ray Tracing of Incoherent Rays" (2008); I. Wald,
 /// C. Benthin, S. Boulos, "Getting Rid of Packets" (2008).
 #[derive(Clone, Debug, PartialEq)]
@@ -107,6 +126,11 @@ struct Tree {
     /// The primitives of the leaves, leaf by leaf; leaves are filled up with [`NO_PRIMITIVE`] to whole blocks.
     slots: Vec<u32>,
     bounds: CullBounds,
+}
+
+impl Tree {
+    /// Numbers of primitives have so many bits.
+    const ID_BITS: u32 = Bvh8::MAX_PRIMITIVES.ilog2();
 }
 
 impl Bvh8 {

@@ -6,7 +6,7 @@ use strahl_math::Aabb;
 
 impl Bvh8 {
     /// Proves what the traversal relies on: indices in range, no circles, every box inside that of the tree, every
-    /// primitive that is not empty in exactly one place and inside all boxes on the way to it.
+    /// primitive that is not empty in one place and inside all boxes on the way to it; or in several, whose boxes span its own.
     ///
     /// # Errors
     /// The first thing found wrong, in words.
@@ -28,6 +28,7 @@ impl Tree {
         let whole = Box32::around(self.bounds.bounds());
         let mut waiting: Vec<(Child, Box32)> = vec![(self.root, whole)];
         let mut visited = 0;
+        let mut parts = vec![];
         while let Some((child, own)) = waiting.pop() {
             if child.is_leaf() {
                 let slots = child.parts().slots();
@@ -36,12 +37,10 @@ impl Tree {
                     if *id == NO_PRIMITIVE {
                         return Err(format!("an empty slot among {slots:?}"));
                     }
-                    places.note(*id)?;
-                    let inside =
-                        Box32::try_new(&bounds[*id as usize]).is_some_and(|b| own.contains(&b));
-                    if !inside {
-                        return Err(format!("primitive {id} sticks out of a box around it"));
-                    }
+                    let whole = bounds.get(*id as usize).and_then(Box32::try_new);
+                    let whole =
+                        whole.ok_or_else(|| format!("primitive {id} is none for a tree"))?;
+                    parts.push((*id, whole.common(&own)));
                 }
                 continue;
             }
@@ -59,6 +58,33 @@ impl Tree {
                 waiting.push((child, own.intersection(&inner)));
             }
         }
+        parts.sort_by_key(|(id, _)| *id);
+        for parts in parts.chunk_by(|a, b| a.0 == b.0) {
+            let id = parts[0].0;
+            places.note(id)?;
+            let covered = Box32::try_new(&bounds[id as usize])
+                .is_some_and(|whole| (0..3).all(|axis| covers(parts, &whole, axis)));
+            if !covered {
+                return Err(format!("primitive {id} sticks out of a box around it"));
+            }
+        }
         Ok(())
     }
+}
+
+/// Whether boxes reach from one end of another to the other along an axis, without gaps.
+fn covers(parts: &[(u32, Box32)], whole: &Box32, axis: usize) -> bool {
+    let mut spans: Vec<(f32, f32)> = parts
+        .iter()
+        .map(|(_, part)| (part.lo()[axis], part.hi()[axis]))
+        .collect();
+    spans.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut reached = whole.lo()[axis];
+    for (lo, hi) in spans {
+        if lo > reached {
+            return false;
+        }
+        reached = if hi > reached { hi } else { reached };
+    }
+    reached >= whole.hi()[axis]
 }

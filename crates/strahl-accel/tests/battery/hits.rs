@@ -13,6 +13,23 @@ impl Balls<'_> {
     }
 }
 
+/// Boxes that the builders take for thin things that hardly fill them.
+pub(crate) struct Thin<'b>(pub(crate) &'b [Aabb]);
+
+impl Shapes for Thin<'_> {
+    fn count(&self) -> usize {
+        self.0.len()
+    }
+
+    fn bounds(&self, id: u32) -> Aabb {
+        self.0[id as usize]
+    }
+
+    fn flat_area(&self, _: u32) -> Option<f64> {
+        Some(0.0)
+    }
+}
+
 impl Shapes for Balls<'_> {
     fn count(&self) -> usize {
         self.0.len()

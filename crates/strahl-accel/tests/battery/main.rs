@@ -17,6 +17,8 @@ use strahl_accel::AcceleratorKind;
 pub(crate) fn kinds() -> Vec<AcceleratorKind> {
     let variants = [
         "bvh:compact",
+        "bvh:build=fast",
+        "bvh:build=high",
         "spheres:build=agglomerative",
         "grid:density=1",
         "grid:resolution=3x20x7",

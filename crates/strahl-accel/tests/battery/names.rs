@@ -44,6 +44,10 @@ fn wrong_parameters_are_answered_with_those_there_are() {
             ["simd=scalar|sse4|avx2|avx512", "simd=mmx", "bvh"],
         ),
         ("bvh:compact=1", ["expected `compact`", "compact=1", "bvh"]),
+        (
+            "bvh:build=slow",
+            ["build=default|fast|high", "build=slow", "bvh"],
+        ),
         ("list:fast", ["`list` has no parameters", "fast", "list"]),
     ] {
         let error = text.parse::<AcceleratorKind>().expect_err(text).to_string();

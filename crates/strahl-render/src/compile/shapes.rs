@@ -1,9 +1,10 @@
 //! What the builders of accelerators may know about primitives beyond their boxes.
 
 use super::assemble::Assembled;
+use super::cut;
 use crate::blocks::LeafClass;
 use crate::prim::PrimKind;
-use strahl_accel::Shapes;
+use strahl_accel::{Shapes, cut_box};
 use strahl_geometry::Shape;
 use strahl_math::{Aabb, DVec3};
 
@@ -83,6 +84,22 @@ impl Shapes for GroupShapes<'_> {
         }
     }
 
+    fn halves(&self, id: u32, part: &Aabb, axis: usize, at: f64) -> [Aabb; 2] {
+        match self.known(id) {
+            Known::Corners(corners) => cut::halves(&corners, part, axis, at),
+            Known::Polygon(corners) => cut::halves(corners, part, axis, at),
+            _ => cut_box(part, axis, at),
+        }
+    }
+
+    fn flat_area(&self, id: u32) -> Option<f64> {
+        match self.known(id) {
+            Known::Corners(corners) => Some(cut::flat_area(&corners)),
+            Known::Polygon(corners) => Some(cut::flat_area(corners)),
+            _ => None,
+        }
+    }
+
     fn sphere(&self, id: u32) -> Option<(DVec3, f64)> {
         match self.known(id) {
             Known::Corners(corners) => Some(ball_of_triangle(&corners)),
@@ -121,6 +138,14 @@ impl Shapes for Flagged<'_> {
 
     fn overlaps(&self, id: u32, cell: &Aabb) -> bool {
         self.all.overlaps(id, cell)
+    }
+
+    fn halves(&self, id: u32, part: &Aabb, axis: usize, at: f64) -> [Aabb; 2] {
+        self.all.halves(id, part, axis, at)
+    }
+
+    fn flat_area(&self, id: u32) -> Option<f64> {
+        self.all.flat_area(id)
     }
 
     fn sphere(&self, id: u32) -> Option<(DVec3, f64)> {
