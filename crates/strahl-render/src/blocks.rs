@@ -4,7 +4,9 @@ use crate::scene::{MeshUse, RenderGroup, ShapeUse};
 use crate::spheres::Spheres;
 use std::borrow::Borrow;
 use strahl_accel::{Accelerator, AnyAccelerator, Leaf, NO_PRIMITIVE};
-use strahl_geometry::blocks::{Hits, LANES, PacketLines, PacketShears, SphereBlock, TriangleBlock};
+use strahl_geometry::blocks::{
+    Coordinate, Hits, LANES, PacketLines, PacketShears, SphereBlock, TriangleBlock,
+};
 use strahl_geometry::{RayShear, Shape, Sphere};
 use strahl_math::{Interval, Ray};
 use strahl_simd::Isa;
@@ -249,45 +251,34 @@ pub(crate) trait Block: Sized {
     }
 }
 
-impl Block for TriangleBlock<f32> {
-    type Found<'b> = &'b Self;
+/// What the corners of triangles in blocks are stored in.
+trait Stored: Coordinate {
+    /// The blocks of such triangles.
+    fn list(blocks: &Blocks) -> &[TriangleBlock<Self>];
+}
 
-    const CURVED: bool = false;
-
+impl Stored for f32 {
     #[inline(always)]
-    fn of<'b>(_: &RenderGroup, blocks: &'b Blocks, leaf: &Leaf<'_>, index: usize) -> &'b Self {
-        &blocks.mesh[blocks.place(leaf.first_block + index)]
-    }
-
-    #[inline(always)]
-    fn hits<I: Isa>(
-        &self,
-        isa: I,
-        _: &Ray,
-        shear: &RayShear,
-        range: Interval,
-        hits: &mut Hits,
-    ) -> u32 {
-        self.hits(isa, shear, range, hits)
-    }
-
-    #[inline(always)]
-    fn may_hit<I: Isa>(&self, isa: I, packet: &PacketCulls<'_>, used: usize) -> u32 {
-        match packet.shears {
-            Some(shears) => self.may_hit(isa, shears, used),
-            None => u32::MAX,
-        }
+    fn list(blocks: &Blocks) -> &[TriangleBlock<Self>] {
+        &blocks.mesh
     }
 }
 
-impl Block for TriangleBlock<f64> {
+impl Stored for f64 {
+    #[inline(always)]
+    fn list(blocks: &Blocks) -> &[TriangleBlock<Self>] {
+        &blocks.triangles
+    }
+}
+
+impl<T: Stored> Block for TriangleBlock<T> {
     type Found<'b> = &'b Self;
 
     const CURVED: bool = false;
 
     #[inline(always)]
     fn of<'b>(_: &RenderGroup, blocks: &'b Blocks, leaf: &Leaf<'_>, index: usize) -> &'b Self {
-        &blocks.triangles[blocks.place(leaf.first_block + index)]
+        &T::list(blocks)[blocks.place(leaf.first_block + index)]
     }
 
     #[inline(always)]

@@ -1,0 +1,294 @@
+//! Pixels, tile by tile, on one thread.
+
+use super::{RenderOptions, Samples, TileResult};
+use crate::camera::PrimaryRays;
+use crate::cost::PixelCost;
+use crate::film::{PixelInfo, Region};
+use crate::render::Progress;
+use crate::scene::RenderScene;
+use crate::sight::{SQUARE, Sight};
+use crate::tiles::TILE;
+use crate::trace::{RayCounts, SampleResult, TreeTracer};
+use arrayvec::ArrayVec;
+use strahl_accel::{PACKET, TraversalStats};
+use strahl_math::Ray;
+use strahl_shade::Color;
+
+/// What was found out of some rows of a tile before their pixels are looked at.
+#[derive(Default)]
+struct Ahead {
+    x: u32,
+    y: u32,
+    /// Row by row, each as wide as a tile may be.
+    colors: Vec<Option<Color>>,
+}
+
+impl Ahead {
+    /// Begins with the rows below a place.
+    fn start(&mut self, x: u32, y: u32) {
+        (self.x, self.y) = (x, y);
+        self.colors.clear();
+        self.colors.resize((TILE * SQUARE) as usize, None);
+    }
+
+    fn index(&self, x: u32, y: u32) -> usize {
+        ((y.wrapping_sub(self.y)).wrapping_mul(TILE)).wrapping_add(x.wrapping_sub(self.x)) as usize
+    }
+
+    fn put(&mut self, x: u32, y: u32, color: Color) {
+        let index = self.index(x, y);
+        if let Some(place) = self.colors.get_mut(index) {
+            *place = Some(color);
+        }
+    }
+
+    /// What is known of a pixel, once.
+    fn take(&mut self, x: u32, y: u32) -> Option<Color> {
+        let index = self.index(x, y);
+        self.colors.get_mut(index)?.take()
+    }
+}
+
+/// Fewer samples of a pixel are followed one by one.
+const FEW: usize = 4;
+
+/// Traces pixels on one thread.
+pub(super) struct PixelTracer<'s> {
+    pub(super) tree: TreeTracer<'s>,
+    rays: &'s PrimaryRays,
+    options: &'s RenderOptions,
+    progress: &'s dyn Progress,
+    /// Of the pixels of the tile so far.
+    infos: Vec<PixelInfo>,
+    /// Deepest level of the trees of the pixel so far.
+    depth: u32,
+    /// Whether no ray of the pixel meets anything.
+    blind: bool,
+    /// Whether rays that lie together are followed together.
+    together: bool,
+    /// What was found out before the pixel is looked at.
+    ahead: Ahead,
+}
+
+impl<'s> PixelTracer<'s> {
+    /// For one thread.
+    pub(super) fn new(
+        scene: &'s RenderScene,
+        rays: &'s PrimaryRays,
+        options: &'s RenderOptions,
+        progress: &'s dyn Progress,
+    ) -> Self {
+        Self {
+            tree: TreeTracer::new(scene, options.trace),
+            rays,
+            options,
+            progress,
+            infos: Vec::new(),
+            depth: 0,
+            blind: false,
+            ahead: Ahead::default(),
+            together: options.follows_together(rays),
+        }
+    }
+}
+
+impl PixelTracer<'_> {
+    pub(super) fn tile<T>(
+        &mut self,
+        tile: Region,
+        pass: u32,
+        trace: impl Fn(&mut Self, u32, u32) -> T,
+    ) -> TileResult<T> {
+        self.tree.counts = RayCounts::default();
+        self.tree.tracer.stats = TraversalStats::default();
+        self.tree.tracer.forget_occluders();
+        let mut costs = Vec::new();
+        let sight = self.sight(tile);
+        self.ahead.colors.clear();
+        let mut pixel = |tracer: &mut Self, x: u32, y: u32| {
+            tracer.blind = sight.is_empty(x, y);
+            if !tracer.options.costs {
+                return trace(tracer, x, y);
+            }
+            let (before, start) = (tracer.spent(), tracer.progress.now());
+            tracer.depth = 0;
+            let value = trace(tracer, x, y);
+            let after = tracer.spent();
+            costs.push(PixelCost {
+                tests: after.tests - before.tests,
+                steps: after.steps - before.steps,
+                rays: after.rays - before.rays,
+                depth: tracer.depth,
+                nanoseconds: tracer.progress.now().saturating_sub(start),
+            });
+            value
+        };
+        let mut values = Vec::with_capacity(tile.pixels() as usize);
+        let place = self.options.sampling.common_place(pass);
+        for y in tile.y..tile.y + tile.height {
+            if let Some(place) = place
+                && self.together
+                && (y - tile.y).is_multiple_of(SQUARE)
+            {
+                self.look_ahead(tile, y, place, &sight);
+            }
+            values.extend((tile.x..tile.x + tile.width).map(|x| pixel(self, x, y)));
+        }
+        TileResult {
+            tile,
+            values,
+            costs,
+            infos: std::mem::take(&mut self.infos),
+            counts: self.tree.counts,
+            traversal: self.tree.tracer.stats,
+        }
+    }
+
+    /// What may be seen of a tile. Costs that are shown are those of rays that are followed one by one.
+    fn sight(&self, tile: Region) -> Sight {
+        let options = self.options;
+        if options.trace.beams && !options.costs && !options.info {
+            Sight::of(tile, self.tree.tracer.scene, self.rays)
+        } else {
+            Sight::all(tile)
+        }
+    }
+
+    /// What the tile has cost so far.
+    fn spent(&self) -> PixelCost {
+        let stats = self.tree.tracer.stats;
+        PixelCost {
+            tests: stats.primitive_tests,
+            steps: stats.node_visits,
+            rays: self.tree.counts.total(),
+            ..PixelCost::default()
+        }
+    }
+
+    /// The samples of one pass of a pixel.
+    // Inline: what is returned in pieces and read as a whole would wait for the stores.
+    #[inline(always)]
+    pub(super) fn pixel(&mut self, pass: u32, x: u32, y: u32) -> Samples {
+        let mut samples = Samples::NONE;
+        let options = self.options;
+        let places = options.sampling.places(pass, x, y, options.seed);
+        if self.blind
+            && let Some(color) = self.tree.same_nothing(places.len())
+        {
+            for _ in places {
+                samples.sum += color;
+                samples.count += 1;
+            }
+            return samples;
+        }
+        if let Some(color) = self.ahead.take(x, y) {
+            samples.sum += color;
+            samples.count += 1;
+            return samples;
+        }
+        if self.together && !self.blind && places.len() >= FEW {
+            self.samples_together(x, y, places, &mut samples);
+            return samples;
+        }
+        for (dx, dy) in places {
+            let keep = pass == 0 && samples.count == 0;
+            samples.sum += self.sample(f64::from(x) + dx, f64::from(y) + dy, keep);
+            samples.count += 1;
+        }
+        samples
+    }
+
+    /// Adds the samples of a pixel, which lie close together.
+    fn samples_together(
+        &mut self,
+        x: u32,
+        y: u32,
+        places: impl Iterator<Item = (f64, f64)>,
+        samples: &mut Samples,
+    ) {
+        let mut places = places.peekable();
+        while places.peek().is_some() {
+            let few = places.by_ref().take(PACKET);
+            let rays: ArrayVec<Option<Ray>, PACKET> = few
+                .map(|(dx, dy)| self.rays.ray(f64::from(x) + dx, f64::from(y) + dy))
+                .collect();
+            for color in self.follow(&rays) {
+                samples.sum += color;
+                samples.count += 1;
+            }
+        }
+    }
+
+    /// The colours that rays bring; where the camera sees nothing there is none.
+    fn follow(&mut self, rays: &[Option<Ray>]) -> ArrayVec<Color, PACKET> {
+        let all: ArrayVec<Ray, PACKET> = rays.iter().copied().flatten().collect();
+        let mut colors = self.tree.trace_together(&all).into_iter();
+        let each = rays.iter();
+        each.map(|ray| ray.and_then(|_| colors.next()).unwrap_or(Color::BLACK))
+            .collect()
+    }
+
+    /// Finds out the colours of four rows of a tile, in squares of pixels, at the same place in each.
+    fn look_ahead(&mut self, tile: Region, y: u32, place: (f64, f64), sight: &Sight) {
+        self.ahead.start(tile.x, y);
+        let bottom = (tile.y + tile.height).min(y + SQUARE);
+        for left in (tile.x..tile.x + tile.width).step_by(SQUARE as usize) {
+            if sight.is_empty(left, y) {
+                continue;
+            }
+            let square = Region {
+                x: left,
+                y,
+                width: (tile.x + tile.width - left).min(SQUARE),
+                height: bottom - y,
+            };
+            let rays: ArrayVec<Option<Ray>, PACKET> = square
+                .positions()
+                .map(|(x, y)| {
+                    self.rays
+                        .ray(f64::from(x) + place.0, f64::from(y) + place.1)
+                })
+                .collect();
+            let colors = self.follow(&rays);
+            for ((x, y), color) in square.positions().zip(colors) {
+                self.ahead.put(x, y, color);
+            }
+        }
+    }
+
+    pub(super) fn corner(&mut self, x: u32, y: u32) -> Color {
+        if self.blind
+            && let Some(color) = self.tree.same_nothing(1)
+        {
+            return color;
+        }
+        if let Some(color) = self.ahead.take(x, y) {
+            return color;
+        }
+        self.sample(f64::from(x), f64::from(y), true)
+    }
+
+    /// The light that comes through a place of the picture; `keep` says whether it stands for its pixel's other data.
+    fn sample(&mut self, x: f64, y: f64, keep: bool) -> Color {
+        let before = self.tree.tracer.stats.primitive_tests;
+        let mut first = SampleResult::NOTHING;
+        let (tree, depth, blind) = (&mut self.tree, &mut self.depth, self.blind);
+        let color = self.rays.color(x, y, |ray| {
+            let sample = if blind {
+                tree.nothing(ray)
+            } else {
+                tree.trace(ray, &mut ())
+            };
+            *depth = (*depth).max(sample.depth);
+            if first.rays == 0 {
+                first = sample;
+            }
+            sample.color
+        });
+        if keep && self.options.info {
+            let tests = self.tree.tracer.stats.primitive_tests - before;
+            self.infos.push(PixelInfo::new(&first, tests));
+        }
+        color
+    }
+}
