@@ -77,6 +77,8 @@ impl<'a> Set<'a> {
             if !fits {
                 return Ok(self.halved());
             }
+            // In the order of the scene, whatever planes did to it: what was made together lies together.
+            self.refs.sort_unstable_by_key(Ref::id);
             let middle = count / 2;
             let cost = |refs: &[Ref]| {
                 let area = bins.area(&Extent::of(refs).bounds);
