@@ -93,8 +93,8 @@ pub(super) struct Embree {
     occluded1: unsafe extern "C" fn(Handle, *mut Context1, *mut RayHit),
     intersect16: unsafe extern "C" fn(*const i32, Handle, *mut Context1, *mut RayHit16),
     occluded16: unsafe extern "C" fn(*const i32, Handle, *mut Context1, *mut RayHit16),
-    /// Keeps the functions valid.
-    _library: Library,
+    /// Keeps the functions valid. Never unloaded: threads of its own may still run at the end.
+    _library: &'static Library,
 }
 
 impl Embree {
@@ -103,6 +103,7 @@ impl Embree {
         // SAFETY: Embree's initialisers have no preconditions.
         let library = unsafe { Library::new("libembree3.so.3") }
             .context("Embree 3 is missing: install Debian's package libembree-dev")?;
+        let library: &'static Library = Box::leak(Box::new(library));
         /// Looks a function up.
         ///
         /// # Safety
@@ -115,22 +116,22 @@ impl Embree {
         // SAFETY: the types of the fields are those of Embree 3's headers.
         unsafe {
             Ok(Self {
-                new_device: symbol(&library, "rtcNewDevice")?,
-                release_device: symbol(&library, "rtcReleaseDevice")?,
-                new_scene: symbol(&library, "rtcNewScene")?,
-                release_scene: symbol(&library, "rtcReleaseScene")?,
-                set_quality: symbol(&library, "rtcSetSceneBuildQuality")?,
-                set_flags: symbol(&library, "rtcSetSceneFlags")?,
-                commit_scene: symbol(&library, "rtcCommitScene")?,
-                new_geometry: symbol(&library, "rtcNewGeometry")?,
-                new_buffer: symbol(&library, "rtcSetNewGeometryBuffer")?,
-                commit_geometry: symbol(&library, "rtcCommitGeometry")?,
-                release_geometry: symbol(&library, "rtcReleaseGeometry")?,
-                attach: symbol(&library, "rtcAttachGeometry")?,
-                intersect1: symbol(&library, "rtcIntersect1")?,
-                occluded1: symbol(&library, "rtcOccluded1")?,
-                intersect16: symbol(&library, "rtcIntersect16")?,
-                occluded16: symbol(&library, "rtcOccluded16")?,
+                new_device: symbol(library, "rtcNewDevice")?,
+                release_device: symbol(library, "rtcReleaseDevice")?,
+                new_scene: symbol(library, "rtcNewScene")?,
+                release_scene: symbol(library, "rtcReleaseScene")?,
+                set_quality: symbol(library, "rtcSetSceneBuildQuality")?,
+                set_flags: symbol(library, "rtcSetSceneFlags")?,
+                commit_scene: symbol(library, "rtcCommitScene")?,
+                new_geometry: symbol(library, "rtcNewGeometry")?,
+                new_buffer: symbol(library, "rtcSetNewGeometryBuffer")?,
+                commit_geometry: symbol(library, "rtcCommitGeometry")?,
+                release_geometry: symbol(library, "rtcReleaseGeometry")?,
+                attach: symbol(library, "rtcAttachGeometry")?,
+                intersect1: symbol(library, "rtcIntersect1")?,
+                occluded1: symbol(library, "rtcOccluded1")?,
+                intersect16: symbol(library, "rtcIntersect16")?,
+                occluded16: symbol(library, "rtcOccluded16")?,
                 _library: library,
             })
         }
