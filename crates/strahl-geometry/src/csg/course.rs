@@ -1,7 +1,7 @@
 //! The courses of nodes along a ray: what of a tree the search for the first surface looks at, and what it leaves out.
 
-use super::Csg;
 use super::boxes::Slabs;
+use super::evaluate::Collector;
 use super::first::Search;
 use super::half_spaces::HalfSpaces;
 use super::leaf::Leaf;
@@ -9,7 +9,7 @@ use super::solid::{Kind, Node};
 use super::sweep::{Fusing, Rule};
 use super::timeline::{State, TooClose};
 use crate::{Crossings, Side, SurfaceId};
-use strahl_accel::{Accelerator, TraversalStats, Visitor};
+use strahl_accel::{Accelerator, TraversalStats};
 use strahl_math::Interval;
 
 /// What a node is along the part of the ray that matters.
@@ -372,19 +372,5 @@ impl Sum {
             }
         }
         self.decided.is_some()
-    }
-}
-
-/// Collects the operands a hierarchy finds.
-struct Collector<'a> {
-    csg: &'a Csg,
-    core: u32,
-    candidates: &'a mut Vec<u32>,
-}
-
-impl Visitor for Collector<'_> {
-    fn visit(&mut self, id: u32, t_max: f64) -> f64 {
-        self.candidates.extend(self.csg.operand(self.core + id));
-        t_max
     }
 }

@@ -341,10 +341,10 @@ impl<'a> Evaluation<'a> {
 }
 
 /// Collects the operands a hierarchy finds.
-struct Collector<'a> {
-    csg: &'a Csg,
-    core: u32,
-    candidates: &'a mut Vec<u32>,
+pub(super) struct Collector<'a> {
+    pub(super) csg: &'a Csg,
+    pub(super) core: u32,
+    pub(super) candidates: &'a mut Vec<u32>,
 }
 
 impl Visitor for Collector<'_> {
