@@ -21,6 +21,7 @@ mod fog;
 mod hit;
 mod layers;
 mod light_sets;
+mod look;
 mod media;
 mod objects;
 mod observer;

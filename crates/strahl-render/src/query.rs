@@ -585,7 +585,7 @@ impl<Q: Query> GroupVisitor<'_, '_, '_, Q> {
 
 impl RenderScene {
     /// Whether the material of an element lets light through.
-    pub(crate) fn transmits(&self, look: crate::scene::Look) -> bool {
+    pub(crate) fn transmits(&self, look: crate::look::Look) -> bool {
         crate::compile::material_transmits(&self.materials[look.material.0 as usize])
     }
 }

@@ -1,9 +1,10 @@
 use crate::blocks::Blocks;
 use crate::hit::Hit;
 use crate::light_sets::{LightSets, Lit};
+use crate::look::{Look, Looks};
 use crate::objects::Objects;
 use crate::prim::{Prim, PrimKind};
-use crate::runs::{Run, RunList};
+use crate::runs::RunList;
 use crate::spheres::Spheres;
 use std::sync::Arc;
 use strahl_accel::{Accelerator, AnyAccelerator};
@@ -12,7 +13,7 @@ use strahl_math::{Aabb, DVec3, Ray, Transform};
 use strahl_scene::{Background, Camera, Fog, Rainbow, SceneLight, Settings, SourceMap};
 use strahl_shade::patterns::TexturePoint;
 use strahl_shade::texture::Texture;
-use strahl_shade::{Color, Material, MaterialId};
+use strahl_shade::{Color, Material};
 
 #[derive(Clone, Debug)]
 pub(crate) struct ShapeUse {
@@ -20,48 +21,6 @@ pub(crate) struct ShapeUse {
     pub(crate) transform: Option<Box<Transform>>,
     /// Object and material; CSG trees have one per leaf instead.
     pub(crate) look: Looks,
-}
-
-/// Which object and material an element belongs to.
-#[derive(Clone, Debug)]
-pub(crate) enum Looks {
-    One(Look),
-    /// Indexed by the tags of a CSG tree's leaves.
-    Leaves(Box<[Look]>),
-}
-
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Look {
-    pub(crate) object: u32,
-    pub(crate) material: MaterialId,
-    /// Index in the list of texture spaces, or [`Look::NO_SPACE`].
-    pub(crate) texture_space: u32,
-}
-
-impl Look {
-    /// The texture's space is the group's.
-    pub(crate) const NO_SPACE: u32 = u32::MAX;
-}
-
-/// Runs are objects of one material.
-impl Run for Look {
-    type Item = Self;
-
-    fn of(item: Self) -> Self {
-        item
-    }
-
-    fn goes_on(&mut self, len: u32, item: &Self) -> bool {
-        self.item(len) == *item
-    }
-
-    #[inline(always)]
-    fn item(&self, place: u32) -> Self {
-        Self {
-            object: self.object.wrapping_add(place),
-            ..*self
-        }
-    }
 }
 
 #[derive(Clone, Debug)]

@@ -1,7 +1,7 @@
 use crate::blocks::Blocks;
+use crate::look::Look;
 use crate::prim::{Prim, PrimKind};
 use crate::runs::RunList;
-use crate::scene::Look;
 use strahl_accel::{BLOCK, NO_PRIMITIVE};
 use strahl_geometry::Sphere;
 use strahl_math::DVec3;

@@ -3,10 +3,11 @@ use super::materials::{
 };
 use crate::hit::RayClass;
 use crate::light_sets::{LightSetsDraft, Lit};
+use crate::look::{Look, Looks};
 use crate::objects::{ObjectInfo, Objects};
 use crate::prim::{Prim, PrimKind};
 use crate::runs::RunList;
-use crate::scene::{InstanceUse, Look, Looks, MeshUse, ShapeUse};
+use crate::scene::{InstanceUse, MeshUse, ShapeUse};
 use crate::spheres::{PlainSphere, Spheres};
 use std::collections::HashSet;
 use std::sync::Arc;

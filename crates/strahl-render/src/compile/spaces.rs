@@ -1,8 +1,9 @@
 use super::flatten::{Flat, FlatGroup};
 use crate::light_sets::Lit;
+use crate::look::Looks;
 use crate::prim::{Prim, PrimKind};
 use crate::runs::RunList;
-use crate::scene::{InstanceUse, Looks};
+use crate::scene::InstanceUse;
 use std::borrow::Cow;
 use strahl_geometry::{Primitive, Shape};
 use strahl_math::{Aabb, DVec3, Transform};
