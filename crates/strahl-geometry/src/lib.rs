@@ -24,7 +24,9 @@ pub use fractal::{HypercomplexFunction, Julia, JuliaAlgebra, JuliaOptions, Quate
 pub use implicit::{
     Container, HeightField, Isosurface, IsosurfaceOptions, Parametric, ParametricOptions,
 };
-pub use mesh::{Brep, MeshData, Polygon, RayShear, SmoothTriangle, Triangle, TriangleMesh};
+pub use mesh::{
+    Brep, MeshData, PlaneHit, Polygon, RayShear, SmoothTriangle, Triangle, TriangleMesh,
+};
 pub use primitive::{GeometryError, PrimHit, Primitive, Scratch, Solid, SurfaceId, SurfacePoint};
 pub use primitives::{Cone, Cuboid, Cylinder, Disc, Plane, Quadric, Sphere, Torus};
 pub use shape::Shape;

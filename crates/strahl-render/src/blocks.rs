@@ -5,7 +5,7 @@ use crate::spheres::Spheres;
 use std::borrow::Borrow;
 use strahl_accel::{Accelerator, AnyAccelerator, Leaf, NO_PRIMITIVE};
 use strahl_geometry::blocks::{
-    Coordinate, Hits, LANES, PacketLines, PacketShears, SphereBlock, TriangleBlock,
+    Coordinate, Hits, LANES, PacketLines, PacketShears, PolygonBlock, SphereBlock, TriangleBlock,
 };
 use strahl_geometry::{RayShear, Shape, Sphere};
 use strahl_math::{Interval, Ray};
@@ -19,8 +19,8 @@ pub(crate) enum LeafClass {
     Single = 0,
     /// Triangles of meshes, whose corners are f32.
     Mesh = 1,
-    /// Triangles with f64 corners.
-    Triangles = 2,
+    /// Triangles with f64 corners, and polygons.
+    Flats = 2,
     /// Spheres.
     Spheres = 3,
 }
@@ -45,7 +45,7 @@ impl LeafClass {
             }
             PrimKind::Sphere(_) => Self::Spheres,
             PrimKind::Shape(index) => match lists.shapes[index as usize].shape {
-                Shape::Triangle(_) => Self::Triangles,
+                Shape::Triangle(_) | Shape::Polygon(_) => Self::Flats,
                 Shape::Sphere(_) => Self::Spheres,
                 _ => Self::Single,
             },
@@ -58,7 +58,7 @@ impl LeafClass {
     pub(crate) const fn from_number(number: u8) -> Self {
         match number {
             1 => Self::Mesh,
-            2 => Self::Triangles,
+            2 => Self::Flats,
             3 => Self::Spheres,
             _ => Self::Single,
         }
@@ -73,6 +73,8 @@ pub(crate) struct Blocks {
     places: Vec<u32>,
     mesh: Vec<TriangleBlock<f32>>,
     triangles: Vec<TriangleBlock<f64>>,
+    /// Those flat things that are not all triangles; their places have [`Self::POLYGONS`] set.
+    polygons: Vec<PolygonBlock>,
     spheres: Vec<SphereBlock>,
     /// Whether there are none of triangles of meshes, to save memory: their corners are fetched from the meshes.
     fetches: bool,
@@ -84,9 +86,13 @@ impl Blocks {
         places: Vec::new(),
         mesh: Vec::new(),
         triangles: Vec::new(),
+        polygons: Vec::new(),
         spheres: Vec::new(),
         fetches: false,
     };
+
+    /// Tells the places of blocks of polygons from those of triangles.
+    const POLYGONS: u32 = 1 << 31;
 
     /// The blocks for the leaves of an accelerator.
     pub(crate) fn new(accelerator: &AnyAccelerator, lists: &Lists<'_>) -> Self {
@@ -103,7 +109,7 @@ impl Blocks {
                 .iter()
                 .enumerate()
                 .filter(|(_, id)| **id != NO_PRIMITIVE);
-            let used = used.map(|(lane, id)| (lane, lists.prims.at(*id).kind()));
+            let used = used.map(|(lane, id)| (lane, lists.prims.at(*id)));
             let shape = |kind| match kind {
                 PrimKind::Shape(index) => Some(&lists.shapes[index as usize].shape),
                 _ => None,
@@ -113,8 +119,8 @@ impl Blocks {
                 LeafClass::Mesh if all.fetches => 0,
                 LeafClass::Mesh => {
                     let mut four = TriangleBlock::EMPTY;
-                    for (lane, kind) in used {
-                        if let PrimKind::Triangle(mesh, triangle) = kind
+                    for (lane, prim) in used {
+                        if let PrimKind::Triangle(mesh, triangle) = prim.kind()
                             && let Some(corners) =
                                 lists.meshes[mesh as usize].mesh.stored_corners(triangle)
                         {
@@ -123,21 +129,34 @@ impl Blocks {
                     }
                     push(&mut all.mesh, four)
                 }
-                LeafClass::Triangles => {
-                    let mut four = TriangleBlock::EMPTY;
-                    for (lane, kind) in used {
-                        if let Some(Shape::Triangle(t)) = shape(kind) {
-                            four.set(lane, t.corners().map(|p| p.to_array()));
+                LeafClass::Flats => {
+                    let (mut triangles, mut polygons) = (TriangleBlock::EMPTY, PolygonBlock::EMPTY);
+                    let mut mixed = false;
+                    for (lane, prim) in used {
+                        match shape(prim.kind()) {
+                            Some(Shape::Triangle(t)) => {
+                                triangles.set(lane, t.corners().map(|p| p.to_array()));
+                                polygons.set_other(lane);
+                            }
+                            Some(Shape::Polygon(p)) => {
+                                mixed = true;
+                                polygons.set(lane, p, prim.flags & Prim::ONE_SIDED != 0);
+                            }
+                            _ => {}
                         }
                     }
-                    push(&mut all.triangles, four)
+                    if mixed {
+                        push(&mut all.polygons, polygons) | Self::POLYGONS
+                    } else {
+                        push(&mut all.triangles, triangles)
+                    }
                 }
                 LeafClass::Spheres => {
                     let mut four = SphereBlock::EMPTY;
-                    for (lane, kind) in used {
-                        if let PrimKind::Sphere(number) = kind {
+                    for (lane, prim) in used {
+                        if let PrimKind::Sphere(number) = prim.kind() {
                             four.set(lane, &lists.spheres.loose(number));
-                        } else if let Some(Shape::Sphere(s)) = shape(kind) {
+                        } else if let Some(Shape::Sphere(s)) = shape(prim.kind()) {
                             four.set(lane, s);
                         }
                     }
@@ -173,6 +192,7 @@ impl Blocks {
         size_of_val(self.places.as_slice())
             + size_of_val(self.mesh.as_slice())
             + size_of_val(self.triangles.as_slice())
+            + size_of_val(self.polygons.as_slice())
             + size_of_val(self.spheres.as_slice())
     }
 
@@ -180,6 +200,16 @@ impl Blocks {
     #[inline(always)]
     pub(crate) fn sphere(&self, block: usize, lane: usize) -> Sphere {
         self.spheres[block].sphere(lane)
+    }
+
+    /// A block of flat things.
+    #[inline(always)]
+    pub(crate) fn flats(&self, block: usize) -> Flats<'_> {
+        let place = self.place(block);
+        match place & Self::POLYGONS as usize {
+            0 => Flats::Triangles(&self.triangles[place]),
+            _ => Flats::Polygons(&self.polygons[place ^ Self::POLYGONS as usize]),
+        }
     }
 
     /// The index of a block of slots in the list of its class.
@@ -193,12 +223,26 @@ impl Blocks {
     }
 }
 
-/// Visibility and flags of the primitives that are tested in blocks, if all have the same.
+/// Flat things that are tested together.
+#[derive(Clone, Copy)]
+pub(crate) enum Flats<'b> {
+    Triangles(&'b TriangleBlock<f64>),
+    Polygons(&'b PolygonBlock),
+}
+
+/// Visibility and flags of the primitives whose hits blocks find, if all have the same.
 pub(crate) fn common(lists: &Lists<'_>) -> Option<(u8, u8)> {
+    let found = |p: &Prim| match p.kind() {
+        PrimKind::Shape(index) => {
+            let shape = &lists.shapes[index as usize].shape;
+            matches!(shape, Shape::Triangle(_) | Shape::Sphere(_))
+        }
+        _ => LeafClass::of(*p, lists) != LeafClass::Single,
+    };
     let mut all = lists
         .prims
         .iter()
-        .filter(|p| LeafClass::of(*p, lists) != LeafClass::Single)
+        .filter(found)
         .map(|p| (p.visible, p.flags));
     let first = all.next()?;
     all.all(|p| p == first).then_some(first)
@@ -216,13 +260,10 @@ pub(crate) struct PacketCulls<'c> {
     pub(crate) lines: Option<&'c PacketLines>,
 }
 
-/// A block of primitives of one class.
-pub(crate) trait Block: Sized {
+/// A block of all the blocks of a leaf, which are alike.
+pub(crate) trait BlockOfLeaf: Block {
     /// A block where it was found.
     type Found<'b>: Borrow<Self>;
-
-    /// Whether a ray that starts on a primitive may meet that primitive again.
-    const CURVED: bool;
 
     /// One of the blocks of a leaf of this class.
     fn of<'b>(
@@ -231,6 +272,12 @@ pub(crate) trait Block: Sized {
         leaf: &Leaf<'_>,
         index: usize,
     ) -> Self::Found<'b>;
+}
+
+/// A block of primitives of one class that finds their hits.
+pub(crate) trait Block: Sized {
+    /// Whether a ray that starts on a primitive may meet that primitive again.
+    const CURVED: bool;
 
     /// The lanes that the ray meets in the range, as bits, with where; those that it starts on mean nothing.
     fn hits<I: Isa>(
@@ -251,35 +298,17 @@ pub(crate) trait Block: Sized {
     }
 }
 
-/// What the corners of triangles in blocks are stored in.
-trait Stored: Coordinate {
-    /// The blocks of such triangles.
-    fn list(blocks: &Blocks) -> &[TriangleBlock<Self>];
-}
-
-impl Stored for f32 {
-    #[inline(always)]
-    fn list(blocks: &Blocks) -> &[TriangleBlock<Self>] {
-        &blocks.mesh
-    }
-}
-
-impl Stored for f64 {
-    #[inline(always)]
-    fn list(blocks: &Blocks) -> &[TriangleBlock<Self>] {
-        &blocks.triangles
-    }
-}
-
-impl<T: Stored> Block for TriangleBlock<T> {
+impl BlockOfLeaf for TriangleBlock<f32> {
     type Found<'b> = &'b Self;
-
-    const CURVED: bool = false;
 
     #[inline(always)]
     fn of<'b>(_: &RenderGroup, blocks: &'b Blocks, leaf: &Leaf<'_>, index: usize) -> &'b Self {
-        &T::list(blocks)[blocks.place(leaf.first_block + index)]
+        &blocks.mesh[blocks.place(leaf.first_block + index)]
     }
+}
+
+impl<T: Coordinate> Block for TriangleBlock<T> {
+    const CURVED: bool = false;
 
     #[inline(always)]
     fn hits<I: Isa>(
@@ -302,15 +331,17 @@ impl<T: Stored> Block for TriangleBlock<T> {
     }
 }
 
-impl Block for SphereBlock {
+impl BlockOfLeaf for SphereBlock {
     type Found<'b> = &'b Self;
-
-    const CURVED: bool = true;
 
     #[inline(always)]
     fn of<'b>(_: &RenderGroup, blocks: &'b Blocks, leaf: &Leaf<'_>, index: usize) -> &'b Self {
         &blocks.spheres[blocks.place(leaf.first_block + index)]
     }
+}
+
+impl Block for SphereBlock {
+    const CURVED: bool = true;
 
     #[inline(always)]
     fn hits<I: Isa>(
@@ -341,10 +372,8 @@ impl Block for SphereBlock {
 /// Triangles of meshes with their corners as the meshes have them, four made to a block when a ray gets there.
 pub(crate) struct Fetched(TriangleBlock<f32>);
 
-impl Block for Fetched {
+impl BlockOfLeaf for Fetched {
     type Found<'b> = Self;
-
-    const CURVED: bool = false;
 
     #[inline(always)]
     fn of(group: &RenderGroup, _: &Blocks, leaf: &Leaf<'_>, index: usize) -> Self {
@@ -357,6 +386,10 @@ impl Block for Fetched {
         }
         Self(four)
     }
+}
+
+impl Block for Fetched {
+    const CURVED: bool = false;
 
     #[inline(always)]
     fn hits<I: Isa>(

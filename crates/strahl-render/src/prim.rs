@@ -52,6 +52,8 @@ impl Prim {
     pub(crate) const STOPS: u8 = 4;
     /// Exists from the front only, or one of its leaves does.
     pub(crate) const ONE_SIDED: u8 = 8;
+    /// Has holes by alpha.
+    pub(crate) const MASKED: u8 = 16;
 
     pub(crate) const fn new(kind: PrimKind, visible: u8, flags: u8) -> Self {
         let (tag, index, triangle) = match kind {

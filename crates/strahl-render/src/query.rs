@@ -1,7 +1,7 @@
 mod kinds;
 mod packet;
 
-use crate::blocks::{Block, Blocks, Fetched, LeafClass};
+use crate::blocks::{Block, BlockOfLeaf, Blocks, Fetched, Flats, LeafClass};
 use crate::hit::{Hit, Origin, RayClass};
 use crate::prim::{Prim, PrimKind};
 use crate::scene::{InstanceUse, RenderGroup, RenderScene};
@@ -9,8 +9,8 @@ use crate::walk::WalkEvent;
 use kinds::{AnyOpaque, Closest, Query, Transmitting, Watched};
 use std::borrow::Borrow;
 use strahl_accel::{Accelerator, BLOCK, Leaf, NO_PRIMITIVE, Step, TraversalStats, Visitor};
-use strahl_geometry::blocks::{Hits, SphereBlock, TriangleBlock};
-use strahl_geometry::{PrimHit, Primitive, RayShear, Scratch, SurfaceId};
+use strahl_geometry::blocks::{Hits, PlaneHits, PolygonBlock, SphereBlock, TriangleBlock};
+use strahl_geometry::{PlaneHit, PrimHit, Primitive, RayShear, Scratch, Shape, SurfaceId};
 use strahl_math::{Interval, Ray};
 use strahl_shade::Sides;
 use strahl_simd::Isa;
@@ -98,12 +98,16 @@ impl<'s> Tracer<'s> {
             self.occluders[light],
             &mut query,
         );
-        if let Some(id) = query.found
-            && self.remembers
-        {
-            self.occluders[light] = self.scene.groups[0].prim_of(id);
-        }
+        self.remember(light, query.found);
         query.found.is_some()
+    }
+
+    /// Keeps in mind what was in the way of a light, or that nothing was: where one ray gets through, the next one will.
+    #[inline]
+    fn remember(&mut self, light: usize, found: Option<u64>) {
+        if self.remembers {
+            self.occluders[light] = found.map_or(NONE, |id| self.scene.groups[0].prim_of(id));
+        }
     }
 
     /// Where in `range` a ray first crosses something that no ray of the scene meets otherwise.
@@ -274,7 +278,7 @@ impl<Q: Query> Visitor for GroupVisitor<'_, '_, '_, Q> {
         match class {
             LeafClass::Mesh if self.blocks.fetches() => self.blocks::<I, Fetched>(isa, leaf, t_max),
             LeafClass::Mesh => self.blocks::<I, TriangleBlock<f32>>(isa, leaf, t_max),
-            LeafClass::Triangles => self.blocks::<I, TriangleBlock<f64>>(isa, leaf, t_max),
+            LeafClass::Flats => self.flats(isa, leaf, t_max),
             LeafClass::Spheres => self.blocks::<I, SphereBlock>(isa, leaf, t_max),
             LeafClass::Single => {
                 let mut t_max = t_max;
@@ -324,7 +328,7 @@ impl<Q: Query> Visitor for GroupVisitor<'_, '_, '_, Q> {
 impl<Q: Query> GroupVisitor<'_, '_, '_, Q> {
     /// Tests the primitives of a leaf four at a time.
     #[inline(always)]
-    fn blocks<I: Isa, B: Block>(&mut self, isa: I, leaf: &Leaf<'_>, mut t_max: f64) -> f64 {
+    fn blocks<I: Isa, B: BlockOfLeaf>(&mut self, isa: I, leaf: &Leaf<'_>, mut t_max: f64) -> f64 {
         let mut hits = Hits::default();
         for index in 0..leaf.blocks() {
             let block = B::of(self.group, self.blocks, leaf, index);
@@ -334,6 +338,78 @@ impl<Q: Query> GroupVisitor<'_, '_, '_, Q> {
             }
         }
         t_max
+    }
+
+    /// Tests the flat things of a leaf four at a time.
+    #[inline(always)]
+    fn flats<I: Isa>(&mut self, isa: I, leaf: &Leaf<'_>, mut t_max: f64) -> f64 {
+        let mut hits = Hits::default();
+        for index in 0..leaf.blocks() {
+            t_max = match self.blocks.flats(leaf.first_block + index) {
+                Flats::Triangles(block) => self.block(isa, leaf, index, block, &mut hits, t_max),
+                Flats::Polygons(block) => self.polygons(isa, leaf, index, block, t_max),
+            };
+            if t_max == f64::NEG_INFINITY {
+                break;
+            }
+        }
+        t_max
+    }
+
+    /// Tests those primitives of a block that the ray may meet.
+    #[inline(always)]
+    fn polygons<I: Isa>(
+        &mut self,
+        isa: I,
+        leaf: &Leaf<'_>,
+        index: usize,
+        block: &PolygonBlock,
+        mut t_max: f64,
+    ) -> f64 {
+        let range = Interval::new(self.range_min, t_max);
+        let mut at = PlaneHits::default();
+        let mut lanes = block.may_hit(isa, self.ray, range, &mut at);
+        while lanes != 0 {
+            let lane = lanes.trailing_zeros() as usize % BLOCK;
+            lanes &= lanes - 1;
+            t_max = self.polygon(
+                leaf.id(index, lane),
+                block.is_polygon(lane),
+                at.lane(lane),
+                t_max,
+            );
+            if t_max == f64::NEG_INFINITY {
+                break;
+            }
+        }
+        t_max
+    }
+
+    /// Tests a polygon in whose plane the ray is known to cross it, if it does.
+    #[inline(always)]
+    fn polygon(&mut self, id: u32, is_polygon: bool, at: PlaneHit, t_max: f64) -> f64 {
+        if id == self.from_prim {
+            return t_max;
+        }
+        let prim = self.group.prims.at(id);
+        // Its block has left it out if it shows its back.
+        let plain = is_polygon
+            && prim.visible & self.search.class != 0
+            && prim.flags & Prim::MASKED == 0
+            && Q::is_plain(prim.flags & !Prim::FILTERED);
+        let PrimKind::Shape(index) = prim.kind() else {
+            return self.visit(id, t_max);
+        };
+        match &self.group.shapes[index as usize].shape {
+            Shape::Polygon(polygon) if plain => {
+                let range = Interval::new(self.range_min, t_max);
+                match polygon.hit_in_plane(self.ray, range, at) {
+                    Some(t) => self.take(id, t, [0.0; 2], t_max),
+                    None => t_max,
+                }
+            }
+            _ => self.visit(id, t_max),
+        }
     }
 
     /// Tests the primitives of one block of a leaf.
@@ -428,7 +504,8 @@ impl<Q: Query> GroupVisitor<'_, '_, '_, Q> {
             element: 0,
             facet: 0,
         };
-        if facing != Some(false) && t <= t_max && self.exists(id, &hit, surface, facing.is_some()) {
+        let front = facing.is_some();
+        if facing != Some(false) && t <= t_max && self.exists(id, prim, &hit, surface, front) {
             self.take(id, t, uv, t_max)
         } else {
             t_max
@@ -493,7 +570,7 @@ impl<Q: Query> GroupVisitor<'_, '_, '_, Q> {
                 uv: found.uv,
             };
             let exists = prim.flags & Prim::FILTERED == 0
-                || self.exists(id, &hit, found.surface, facing.is_some());
+                || self.exists(id, prim, &hit, found.surface, facing.is_some());
             let wanted = !mixed
                 || Q::wants_hit(
                     self.search
@@ -560,21 +637,18 @@ impl<Q: Query> GroupVisitor<'_, '_, '_, Q> {
 
     /// Whether there is a surface at this hit: not on the back of a one-sided one, nor in a hole of an alpha mask. `front` tells that
     /// it is known not to be on the back.
-    fn exists(&self, prim: u32, hit: &Hit, surface: SurfaceId, front: bool) -> bool {
-        let material = {
-            let look = self.group.look(prim, surface.element);
-            &self.search.scene.materials[look.material.0 as usize]
-        };
-        let masked = material
-            .pbr
-            .as_ref()
-            .is_some_and(|p| p.alpha_cutoff.is_some());
-        if front && !masked {
-            return true;
-        }
+    #[inline]
+    fn exists(&self, id: u32, prim: Prim, hit: &Hit, surface: SurfaceId, front: bool) -> bool {
+        front && prim.flags & Prim::MASKED == 0 || self.exists_there(id, hit, surface)
+    }
+
+    fn exists_there(&self, id: u32, hit: &Hit, surface: SurfaceId) -> bool {
+        let look = self.group.look(id, surface.element);
+        let material = &self.search.scene.materials[look.material.0 as usize];
+        let masked = material.is_masked();
         let point = self
             .group
-            .surface_at(prim, self.ray, hit, surface.element, masked);
+            .surface_at(id, self.ray, hit, surface.element, masked);
         let front = point.n_geom.dot(self.ray.direction) < 0.0;
         if material.sides == Sides::Front && !front {
             return false;

@@ -220,6 +220,13 @@ impl Material {
         }
     }
 
+    /// Whether it has holes where its alpha is below a cutoff.
+    #[inline]
+    pub fn is_masked(&self) -> bool {
+        let cutoff = |p: &Pbr| p.alpha_cutoff.is_some();
+        self.pbr.as_deref().is_some_and(cutoff)
+    }
+
     /// Whether the material looks at texture coordinates.
     #[inline]
     pub fn is_textured(&self) -> bool {

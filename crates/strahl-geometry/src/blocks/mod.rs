@@ -5,12 +5,16 @@
 //! same bits.
 
 mod packet;
+mod polygons;
 mod spheres;
 mod triangles;
 
 pub use packet::{PacketLines, PacketShears};
+pub use polygons::{PlaneHits, PolygonBlock};
 pub use spheres::SphereBlock;
 pub use triangles::{Coordinate, TriangleBlock};
+
+use strahl_simd::Isa;
 
 /// Primitives in a block.
 pub const LANES: usize = strahl_accel::BLOCK;
@@ -22,4 +26,11 @@ pub struct Hits {
     pub t: [f64; LANES],
     /// The primitives' own two numbers.
     pub uv: [[f64; LANES]; 2],
+}
+
+/// The scalar product, added up in the order of the scalar code.
+#[inline(always)]
+fn dot<I: Isa>(isa: I, p: [I::F64x4; 3], q: [I::F64x4; 3]) -> I::F64x4 {
+    let xy = isa.add(isa.mul(p[0], q[0]), isa.mul(p[1], q[1]));
+    isa.add(xy, isa.mul(p[2], q[2]))
 }

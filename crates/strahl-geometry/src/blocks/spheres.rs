@@ -1,14 +1,7 @@
-use super::{Hits, LANES};
+use super::{Hits, LANES, dot};
 use crate::Sphere;
 use strahl_math::{DVec3, Interval, Ray};
 use strahl_simd::Isa;
-
-/// The scalar product, added up in the order of the scalar code.
-#[inline(always)]
-fn dot<I: Isa>(isa: I, p: [I::F64x4; 3], q: [I::F64x4; 3]) -> I::F64x4 {
-    let xy = isa.add(isa.mul(p[0], q[0]), isa.mul(p[1], q[1]));
-    isa.add(xy, isa.mul(p[2], q[2]))
-}
 
 /// Up to four spheres, tested as [`Sphere`] does.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -24,7 +24,7 @@ mod triangulate;
 
 pub use brep::Brep;
 pub use indexed::{MeshData, TriangleMesh};
-pub use polygon::{Polygon, fan_triangles};
+pub use polygon::{PlaneHit, Polygon, fan_triangles};
 pub(crate) use shear::{Axis, LOST_DIGITS, intersect_sheared};
 pub use shear::{RayShear, TriangleHit, intersect_triangle};
 pub(crate) use triangle::combine;

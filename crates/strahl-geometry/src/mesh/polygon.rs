@@ -49,6 +49,28 @@ pub struct Polygon {
     pub(super) runs: Option<Box<EdgeRuns>>,
 }
 
+/// Where a ray crosses the plane of a polygon.
+#[derive(Clone, Copy, Debug)]
+pub struct PlaneHit {
+    pub(crate) t: f64,
+    /// How far that may be off.
+    pub(crate) error: f64,
+}
+
+/// The plane of a polygon, and how far that reaches in it.
+pub(crate) struct PolygonPlane {
+    /// Unit normal of the front.
+    pub(crate) normal: DVec3,
+    /// A point of the plane.
+    pub(crate) corner: DVec3,
+    /// The box around the corners.
+    pub(crate) bounds: Aabb,
+    /// The largest distance of a corner from the plane.
+    pub(crate) deviation: f64,
+    /// No point of the polygon has a larger sum of absolute coordinates.
+    pub(crate) reach: f64,
+}
+
 impl Polygon {
     /// A polygon without holes. The last corner may repeat the first.
     ///
@@ -157,6 +179,17 @@ impl Polygon {
         self.normal
     }
 
+    /// What a look from afar needs.
+    pub(crate) fn plane(&self) -> PolygonPlane {
+        PolygonPlane {
+            normal: self.normal,
+            corner: self.corners[0],
+            bounds: self.bounds(),
+            deviation: self.deviation,
+            reach: self.reach,
+        }
+    }
+
     /// The ray parameter of the hit, if the ray's line passes through the polygon; `None` also where it certainly is not in
     /// the range.
     #[inline]
@@ -168,14 +201,25 @@ impl Polygon {
             return None; // Edge-on.
         }
         // How far the point at `t` may be from the polygon's own, which spans no more than `reach`, and `t` from the hit's.
-        let speed = l1(ray.direction);
-        let reach = l1(ray.origin) + t.abs() * speed + self.reach;
-        let t_error = (self.deviation + gamma(64) * reach) / along.abs();
-        if t + t_error < range.min || t - t_error > range.max {
+        let reach = l1(ray.origin) + t.abs() * l1(ray.direction) + self.reach;
+        let error = (self.deviation + gamma(64) * reach) / along.abs();
+        if t + error < range.min || t - error > range.max {
             return None;
         }
+        self.pierced_in_plane(ray, PlaneHit { t, error })
+    }
+
+    /// The ray parameter of the hit in a range, given where the ray's line crosses the plane.
+    #[inline]
+    pub fn hit_in_plane(&self, ray: &Ray, range: Interval, at: PlaneHit) -> Option<f64> {
+        self.pierced_in_plane(ray, at).filter(|t| range.accepts(*t))
+    }
+
+    #[inline]
+    fn pierced_in_plane(&self, ray: &Ray, at: PlaneHit) -> Option<f64> {
+        let t = at.t;
         // The projections along the ray and on the principal plane differ by less than this.
-        let error = t_error * speed;
+        let error = at.error * l1(ray.direction);
         if let Some(runs) = &self.runs {
             if let Some(inside) = runs.locate(ray.at(t), error) {
                 return inside.then_some(t);

@@ -1,6 +1,4 @@
-use super::materials::{
-    MaterialTable, material_filters, material_of, material_problem, material_transmits,
-};
+use super::materials::{MaterialTable, material_of, material_problem, material_transmits};
 use crate::hit::RayClass;
 use crate::light_sets::{LightSetsDraft, Lit};
 use crate::look::{Look, Looks};
@@ -291,11 +289,13 @@ impl Pass {
             Sides::Front => Prim::ONE_SIDED,
             Sides::Two => 0,
         };
-        if material_filters(material) {
-            light | sides | Prim::FILTERED
+        let mask = if material.is_masked() {
+            Prim::MASKED
         } else {
-            light
-        }
+            0
+        };
+        let filtered = if sides | mask == 0 { 0 } else { Prim::FILTERED };
+        light | sides | mask | filtered
     }
 
     fn invalid(&mut self, todo: &Todo<'_>, kind: &str, error: &GeometryError) {

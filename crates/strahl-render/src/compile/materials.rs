@@ -1,7 +1,7 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 use strahl_scene::Object;
-use strahl_shade::{Material, MaterialId, Sides};
+use strahl_shade::{Material, MaterialId};
 
 /// The materials met so far, each `Arc` once.
 #[derive(Debug, Default)]
@@ -47,15 +47,6 @@ pub(crate) fn material_transmits(material: &Material) -> bool {
         None => !material.finish.transmission.is_black(),
         Some(pbr) => pbr.transmission > 0.0 || pbr.alpha_blend,
     }
-}
-
-/// Whether hits must be looked at one by one: one-sided surfaces, holes by alpha mask.
-pub(super) fn material_filters(material: &Material) -> bool {
-    material.sides == Sides::Front
-        || material
-            .pbr
-            .as_ref()
-            .is_some_and(|p| p.alpha_cutoff.is_some())
 }
 
 /// What is wrong with a material's numbers, if anything.

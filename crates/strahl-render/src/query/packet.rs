@@ -2,7 +2,7 @@
 
 use super::kinds::{AnyOpaque, Closest, Query};
 use super::{From, GroupVisitor, NONE, Search, Tracer};
-use crate::blocks::{Block, Blocks, Fetched, LeafClass, PacketCulls};
+use crate::blocks::{Block, BlockOfLeaf, Blocks, Fetched, Flats, LeafClass, PacketCulls};
 use crate::hit::{Hit, Origin, RayClass};
 use crate::scene::{RenderGroup, RenderScene};
 use arrayvec::ArrayVec;
@@ -77,11 +77,7 @@ impl Tracer<'_> {
             first: self.occluders[light],
         };
         let (found, last) = self.search_any(&asked, t_max);
-        if let Some(id) = last
-            && self.remembers
-        {
-            self.occluders[light] = self.scene.groups[0].prim_of(id);
-        }
+        self.remember(light, last);
         found
     }
 
@@ -258,7 +254,7 @@ macro_rules! of_lane {
 impl<Q: Query> Together<'_, '_, Q> {
     /// Tests the primitives of a leaf for several rays.
     #[inline(always)]
-    fn leaf_of_blocks<I: Isa, B: Block>(
+    fn leaf_of_blocks<I: Isa, B: BlockOfLeaf>(
         &mut self,
         isa: I,
         leaf: &Leaf<'_>,
@@ -268,18 +264,64 @@ impl<Q: Query> Together<'_, '_, Q> {
         let mut hits = Hits::default();
         for index in 0..leaf.blocks() {
             let found = B::of(self.group, self.blocks, leaf, index);
-            let block: &B = found.borrow();
-            let used = leaf.count - index * BLOCK;
-            let mut left = lanes;
-            if lanes.count_ones() >= FEW {
-                left &= block.may_hit(isa, &self.culls, used);
-            }
-            for lane in lanes_of(left) {
-                let before = t_max[lane];
-                if before > f64::NEG_INFINITY {
-                    t_max[lane] = of_lane!(self, lane, before, visitor =>
-                        visitor.block(isa, leaf, index, block, &mut hits, before));
+            self.block::<I, B>(isa, leaf, index, found.borrow(), &mut hits, lanes, t_max);
+        }
+    }
+
+    /// Tests the flat things of a leaf for several rays.
+    #[inline(always)]
+    fn leaf_of_flats<I: Isa>(
+        &mut self,
+        isa: I,
+        leaf: &Leaf<'_>,
+        lanes: u32,
+        t_max: &mut [f64; PACKET],
+    ) {
+        let mut hits = Hits::default();
+        for index in 0..leaf.blocks() {
+            match self.blocks.flats(leaf.first_block + index) {
+                Flats::Triangles(block) => {
+                    self.block(isa, leaf, index, block, &mut hits, lanes, t_max);
                 }
+                Flats::Polygons(block) => {
+                    for lane in lanes_of(lanes) {
+                        let before = t_max[lane];
+                        if before > f64::NEG_INFINITY {
+                            t_max[lane] = of_lane!(self, lane, before, visitor =>
+                                visitor.polygons(isa, leaf, index, block, before));
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    /// Tests the primitives of one block of a leaf for several rays.
+    #[inline(always)]
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "the inner loop, inlined into its two callers"
+    )]
+    fn block<I: Isa, B: Block>(
+        &mut self,
+        isa: I,
+        leaf: &Leaf<'_>,
+        index: usize,
+        block: &B,
+        hits: &mut Hits,
+        lanes: u32,
+        t_max: &mut [f64; PACKET],
+    ) {
+        let used = leaf.count - index * BLOCK;
+        let mut left = lanes;
+        if lanes.count_ones() >= FEW {
+            left &= block.may_hit(isa, &self.culls, used);
+        }
+        for lane in lanes_of(left) {
+            let before = t_max[lane];
+            if before > f64::NEG_INFINITY {
+                t_max[lane] = of_lane!(self, lane, before, visitor =>
+                    visitor.block(isa, leaf, index, block, hits, before));
             }
         }
     }
@@ -312,9 +354,7 @@ impl<Q: Query> PacketVisitor for Together<'_, '_, Q> {
             LeafClass::Mesh => {
                 self.leaf_of_blocks::<I, TriangleBlock<f32>>(isa, leaf, lanes, t_max);
             }
-            LeafClass::Triangles => {
-                self.leaf_of_blocks::<I, TriangleBlock<f64>>(isa, leaf, lanes, t_max);
-            }
+            LeafClass::Flats => self.leaf_of_flats(isa, leaf, lanes, t_max),
             LeafClass::Spheres => self.leaf_of_blocks::<I, SphereBlock>(isa, leaf, lanes, t_max),
             LeafClass::Single => {
                 for id in leaf.ids() {
