@@ -296,6 +296,11 @@ pub(crate) trait Block: Sized {
     fn is_entered(&self, _lane: usize, _ray: &Ray) -> bool {
         Self::CURVED
     }
+
+    /// Where a ray that starts on the primitive of a lane meets it again in a range.
+    fn met_again(&self, _lane: usize, _ray: &Ray, _range: Interval) -> Option<f64> {
+        None
+    }
 }
 
 impl BlockOfLeaf for TriangleBlock<f32> {
@@ -366,6 +371,11 @@ impl Block for SphereBlock {
     #[inline(always)]
     fn is_entered(&self, lane: usize, ray: &Ray) -> bool {
         self.is_entered(lane, ray)
+    }
+
+    #[inline(always)]
+    fn met_again(&self, lane: usize, ray: &Ray, range: Interval) -> Option<f64> {
+        self.met_again(lane, ray, range)
     }
 }
 

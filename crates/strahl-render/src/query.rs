@@ -426,7 +426,16 @@ impl<Q: Query> GroupVisitor<'_, '_, '_, Q> {
         if let Some(lane) = self.lane_left::<B>(leaf, index)
             && (self.range_min < 0.0 || block.is_entered(lane, self.ray))
         {
-            t_max = self.visit(self.from_prim, t_max);
+            // Its own test decides: it knows where the ray starts, which that of the block does not.
+            let id = self.from_prim;
+            t_max = if self.plain || self.is_plain(id) {
+                match block.met_again(lane, self.ray, Interval::new(self.range_min, t_max)) {
+                    Some(t) => self.take(id, t, [0.0; 2], t_max),
+                    None => t_max,
+                }
+            } else {
+                self.visit(id, t_max)
+            };
             if t_max == f64::NEG_INFINITY {
                 return t_max;
             }
@@ -456,8 +465,7 @@ impl<Q: Query> GroupVisitor<'_, '_, '_, Q> {
         t_max
     }
 
-    /// The lane of a block with the primitive that the ray starts on, if the ray may meet that again. Its own test decides then:
-    /// it knows where the ray starts, which that of the block does not.
+    /// The lane of a block with the primitive that the ray starts on, if the ray may meet that again.
     #[inline(always)]
     fn lane_left<B: Block>(&self, leaf: &Leaf<'_>, index: usize) -> Option<usize> {
         if !B::CURVED || self.from_prim == NONE {

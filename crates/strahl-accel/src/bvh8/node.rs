@@ -69,6 +69,13 @@ impl Child {
         self.0 & Self::LEAF != 0
     }
 
+    /// Whether it is a leaf of one block that is tested as a whole.
+    #[inline(always)]
+    pub(super) const fn is_block(self) -> bool {
+        let parts = self.parts();
+        self.is_leaf() && parts.class != 0 && parts.count <= BLOCK
+    }
+
     /// The number of a node.
     #[inline(always)]
     pub(super) const fn node(self) -> usize {

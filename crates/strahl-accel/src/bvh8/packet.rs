@@ -250,14 +250,8 @@ impl Tree {
                     nearest_last(&mut stack[bottom..]);
                 }
             } else {
-                let parts = current.parts();
-                cost.primitive_tests += parts.count as u64 * u64::from(mask.count_ones());
-                let leaf = Leaf {
-                    class: parts.class,
-                    first_block: parts.first_block,
-                    count: parts.count,
-                    slots: &self.slots,
-                };
+                let leaf = self.leaf(current);
+                cost.primitive_tests += leaf.count as u64 * u64::from(mask.count_ones());
                 let before = packet.t_max;
                 visitor.visit_leaf_together(isa, &leaf, mask, &mut packet.t_max);
                 let mut changed = false;

@@ -205,6 +205,13 @@ impl Tree {
         visitor: &mut V,
         stats: &mut TraversalStats,
     ) {
+        if self.root.is_block() && !V::WATCHES {
+            // A look at their box would cost as much.
+            let leaf = self.leaf(self.root);
+            stats.primitive_tests += leaf.count as u64;
+            visitor.visit_leaf(isa, &leaf, range.max);
+            return;
+        }
         let Some(start) = CullStart::new(ray, range, &self.bounds) else {
             return;
         };
@@ -220,6 +227,18 @@ impl Tree {
             visitor,
             stats,
         );
+    }
+
+    /// The leaf that a child is.
+    #[inline(always)]
+    pub(super) fn leaf(&self, child: Child) -> Leaf<'_> {
+        let parts = child.parts();
+        Leaf {
+            class: parts.class,
+            first_block: parts.first_block,
+            count: parts.count,
+            slots: &self.slots,
+        }
     }
 
     /// Walks a subtree, nearer children first; returns what the visitor made of the upper end of the range.
@@ -301,14 +320,8 @@ impl Tree {
                     continue;
                 }
             } else {
-                let leaf = current.parts();
+                let leaf = self.leaf(current);
                 cost.primitive_tests += leaf.count as u64;
-                let leaf = Leaf {
-                    class: leaf.class,
-                    first_block: leaf.first_block,
-                    count: leaf.count,
-                    slots: &self.slots,
-                };
                 let closest = visitor.visit_leaf(isa, &leaf, t_max);
                 if closest < t_max {
                     t_max = closest;

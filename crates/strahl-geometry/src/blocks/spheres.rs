@@ -47,6 +47,13 @@ impl SphereBlock {
         (ray.origin - self.center(lane)).dot(ray.direction) < 0.0
     }
 
+    /// Where a ray that starts on the sphere of a lane meets it once more in a range, as [`Sphere`] finds it.
+    #[inline]
+    pub fn met_again(&self, lane: usize, ray: &Ray, range: Interval) -> Option<f64> {
+        let other = Sphere::other_root(self.center(lane), ray)?;
+        (range.accepts(other) && other != 0.0).then_some(other)
+    }
+
     /// Which spheres the ray meets in a range, as bits, and where for the first time, if it does not start on them: what [`Sphere`]
     /// finds, operation by operation.
     #[inline(always)]
@@ -165,6 +172,8 @@ mod tests {
             let ray = Ray::new(sphere.center() + up * 1.3, along - up * angle);
             let hit = sphere.closest_hit(&ray, Interval::FORWARD, from, &mut Scratch::default());
             assert!(hit.is_none() || block.is_entered(1, &ray), "{angle}");
+            let again = block.met_again(1, &ray, Interval::FORWARD);
+            assert_eq!(again, hit.as_ref().map(|h| h.t), "{angle}");
             assert!(angle >= 0.0 || !block.is_entered(1, &ray) || angle > -1e-15);
             met += u32::from(hit.is_some());
         }

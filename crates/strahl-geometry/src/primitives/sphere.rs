@@ -67,20 +67,27 @@ impl Sphere {
     #[inline(always)]
     fn roots(&self, ray: &Ray, on_surface: bool) -> Option<(f64, f64)> {
         if on_surface {
-            let d = ray.direction;
-            let f = ray.origin - self.center;
-            let b = -f.dot(d);
-            let closest_t = b / d.dot(d);
-            // c is zero: the roots are 0 and 2b/a. Below its own rounding error the sign of b says nothing: a tangent.
-            let other = 2.0 * closest_t;
-            let certain = b.abs() > gamma(4) * f.abs().dot(d.abs());
-            return (certain && other.is_finite()).then_some(if b > 0.0 {
+            let other = Self::other_root(self.center, ray)?;
+            return Some(if other > 0.0 {
                 (0.0, other)
             } else {
                 (other, 0.0)
             });
         }
         Self::crossings_of(self.center, self.radius.abs(), ray)
+    }
+
+    /// Where the line of a ray that starts on the sphere crosses it once more; `None` for a tangent.
+    #[inline(always)]
+    pub(crate) fn other_root(center: DVec3, ray: &Ray) -> Option<f64> {
+        let d = ray.direction;
+        let f = ray.origin - center;
+        let b = -f.dot(d);
+        let closest_t = b / d.dot(d);
+        // c is zero: the roots are 0 and 2b/a. Below its own rounding error the sign of b says nothing: a tangent.
+        let other = 2.0 * closest_t;
+        let certain = b.abs() > gamma(4) * f.abs().dot(d.abs());
+        (certain && other.is_finite()).then_some(other)
     }
 
     /// The roots for a ray that starts anywhere but on the sphere, whose radius is positive.
