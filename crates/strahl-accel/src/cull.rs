@@ -1,6 +1,6 @@
 use crate::boxes::BoxPair;
 use strahl_math::{Aabb, DVec3, Interval, Ray, Vec4, Vec4Swizzles};
-use strahl_simd::Isa;
+use strahl_simd::{Isa, Lanes8, Portable};
 
 /// What the culling tests must know about a structure: its box, and the margin of their error bound.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -9,6 +9,10 @@ pub(crate) struct CullBounds {
     bounds: Aabb,
     /// B: no plane of the structure is further from the coordinate planes.
     max_abs: f64,
+    /// Rays whose origins have no larger coordinates are near; negative if none is.
+    near: f32,
+    /// The part of the error bound of [`QuickLanes`] that is the same for all axes and near rays.
+    margin: f32,
 }
 
 impl CullBounds {
@@ -16,19 +20,38 @@ impl CullBounds {
     pub(crate) fn new(bounds: Aabb) -> Self {
         // A floor keeps the margins far above f32's subnormal numbers, whose absolute rounding the derivation leaves out.
         let max_abs = bounds.max_abs();
+        let max_abs = if max_abs > SMALLEST_EXTENT {
+            max_abs
+        } else {
+            SMALLEST_EXTENT
+        };
         Self {
             bounds,
-            max_abs: if max_abs > SMALLEST_EXTENT {
-                max_abs
+            max_abs,
+            near: if max_abs >= SMALLEST_QUICK {
+                (FAR * max_abs) as f32
             } else {
-                SMALLEST_EXTENT
+                -1.0
             },
+            margin: (QUICK_SLACK * max_abs) as f32,
         }
     }
 
     /// The box around everything bounded.
     pub(crate) fn bounds(&self) -> &Aabb {
         &self.bounds
+    }
+
+    /// Rays whose origins have no larger coordinates are near; negative if none is.
+    #[inline(always)]
+    pub(crate) fn near(&self) -> f32 {
+        self.near
+    }
+
+    /// The part of the error bound of [`QuickLanes`] that is the same for all axes and near rays.
+    #[inline(always)]
+    pub(crate) fn margin(&self) -> f32 {
+        self.margin
     }
 
     /// B: no plane of the structure is further from the coordinate planes.
@@ -70,7 +93,7 @@ pub(crate) struct CullClock {
 }
 
 impl CullClock {
-    /// That of no ray.
+    /// The parameter as it is, and that of no ray.
     pub(crate) const UNUSED: Self = Self {
         offset: 0.0,
         scale: 1.0,
@@ -206,6 +229,94 @@ impl CullStart {
     }
 }
 
+/// The constants of the three axes in the first three lanes of vectors.
+///
+/// # Why no box is lost
+/// For most rays they are made in f32: those that start near the structure, along directions whose largest component is between 2⁻²⁰ and
+/// 2²⁰, which need no scale. In the terms of [`CullRay`]: o and d are rounded first, so `rd = fl(1/fl(d))` is wrong by 2u|r|, and the
+/// constant, fused or not, by at most u|c| for o, 2u|c| for rd, u|c| for the product and u(|c| + E) for the sum with E. The loop adds
+/// u|br| for its product and u(|br| + |c| + E) for its difference: altogether at most `u|r|(4|b| + 6|o|)` to first order. E is
+/// `12u|r|(B + |o|)`, rounded by less than 6uE; what is left has room for a primitive's own rounding, as there.
+///
+/// Reciprocals end at 2⁶⁰ too. A ray with a component below 2⁻⁶⁰ moves by less than 2⁻³⁹(B + |o|) along that axis while it crosses the
+/// structure, far less than the E of the axis is wide. With B from 2⁻⁶⁴ to 2⁶⁴ no sum is above 2¹²⁷ and no E below 2⁻¹⁰⁵, so the
+/// subnormal numbers do not matter.
+pub(crate) struct QuickLanes<I: Isa> {
+    /// 1/d, rounded.
+    pub(crate) rd: I::F32x8,
+    /// `-(c + E)`.
+    pub(crate) minus_near: I::F32x8,
+    /// `-(c - E)`.
+    pub(crate) minus_far: I::F32x8,
+    /// The axes along which the ray goes down, as bits; others mean nothing.
+    pub(crate) down: u32,
+    pub(crate) clock: CullClock,
+}
+
+impl<I: Isa> QuickLanes<I> {
+    /// Those of a ray, or `None` if it certainly misses the structure in `range`.
+    #[inline(always)]
+    pub(crate) fn new(isa: I, ray: &Ray, range: Interval, structure: &CullBounds) -> Option<Self> {
+        let (o, d) = (ray.origin, ray.direction);
+        let o = isa.narrow_f32(isa.load(&[o.x, o.y, o.z, 0.0]));
+        let d = isa.narrow_f32(isa.load(&[d.x, d.y, d.z, 1.0]));
+        let (length, distance) = (isa.abs_f32(d), isa.abs_f32(o));
+        // The fourth lane is in order; what is not a number is not.
+        let usable = isa.le_f32(length, isa.splat_f32(LONGEST_QUICK))
+            & isa.le_f32(distance, isa.splat_f32(structure.near))
+            & 15;
+        let long = isa.le_f32(isa.splat_f32(1.0 / LONGEST_QUICK), length) & 7;
+        if usable != 15 || long == 0 {
+            return Self::unusual(isa, ray, range, structure);
+        }
+        let most = isa.splat_f32(MOST_RECIPROCAL as f32);
+        let zero = isa.splat_f32(0.0);
+        let r = isa.div_f32(isa.splat_f32(1.0), d);
+        let r = isa.max_f32(isa.min_f32(r, most), isa.sub_f32(zero, most));
+        let slack = isa.splat_f32(QUICK_SLACK as f32);
+        let reach = isa.mul_add(distance, slack, isa.splat_f32(structure.margin));
+        let e = isa.mul_f32(isa.abs_f32(r), reach);
+        let minus_o = isa.sub_f32(zero, o);
+        Some(Self {
+            rd: r,
+            minus_near: isa.mul_sub(minus_o, r, e),
+            minus_far: isa.mul_add(minus_o, r, e),
+            down: isa.lt_f32(r, zero),
+            clock: CullClock::UNUSED,
+        })
+    }
+
+    /// The same for rays from far away, along directions that need a scale, and for what is no ray.
+    #[inline(always)]
+    fn unusual(isa: I, ray: &Ray, range: Interval, structure: &CullBounds) -> Option<Self> {
+        let (lanes, clock) = of_unusual(ray, range, structure)?;
+        Some(Self {
+            rd: isa.load_f32(&eight(lanes.rd)),
+            minus_near: isa.load_f32(&eight(lanes.minus_near)),
+            minus_far: isa.load_f32(&eight(lanes.minus_far)),
+            down: lanes.down,
+            clock,
+        })
+    }
+}
+
+/// Four numbers, and zeros.
+fn eight([x, y, z, w]: [f32; 4]) -> Lanes8 {
+    Lanes8([x, y, z, w, 0.0, 0.0, 0.0, 0.0])
+}
+
+/// Not inlined where the constants of most rays are made.
+#[cold]
+#[inline(never)]
+fn of_unusual(
+    ray: &Ray,
+    range: Interval,
+    structure: &CullBounds,
+) -> Option<(CullLanes, CullClock)> {
+    let start = CullStart::new(ray, range, structure)?;
+    Some((start.lanes(Portable), start.clock))
+}
+
 /// Constants of one axis.
 #[derive(Clone, Copy, Default)]
 struct CullAxis {
@@ -219,10 +330,19 @@ struct CullAxis {
 
 /// Reciprocals of components of a scaled direction end here: 2⁶⁰. While it crosses the structure a ray whose component is smaller
 /// moves by less than 2⁻⁵⁷(B + |o|) along that axis, far less than E: it stays in the slab it is in, and so the test sees it.
-const MOST_RECIPROCAL: f64 = (1u64 << 60) as f64;
+pub(crate) const MOST_RECIPROCAL: f64 = (1u64 << 60) as f64;
 
 /// The least B: 2⁻⁹⁶.
 const SMALLEST_EXTENT: f64 = 1.0 / (1u128 << 96) as f64;
+
+/// Directions with a larger component are scaled.
+pub(crate) const LONGEST_QUICK: f32 = (1u32 << 20) as f32;
+
+/// Structures with a smaller B have no quick rays: 2⁻⁶⁴.
+const SMALLEST_QUICK: f64 = 1.0 / (1u128 << 64) as f64;
+
+/// The factor 12u of the error bound of [`QuickLanes`].
+pub(crate) const QUICK_SLACK: f64 = 12.0 / (1u64 << 24) as f64;
 
 /// The factor 8u of the error bound.
 const SLACK: f64 = 8.0 / (1u64 << 24) as f64;
@@ -357,4 +477,123 @@ fn power_of_two(x: f64) -> f64 {
 pub(crate) fn rounded(t: f64) -> (f32, f32) {
     let t = t as f32;
     (t, t.abs() * (2.0 * f32::EPSILON) + f32::MIN_POSITIVE)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use strahl_simd::{Simd, dispatch};
+
+    /// Numbers in 0..1.
+    struct Unit(u64);
+
+    impl Unit {
+        fn next(&mut self) -> f64 {
+            self.0 = self
+                .0
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1);
+            (self.0 >> 11) as f64 / (1u64 << 53) as f64
+        }
+
+        /// In -1..1, and some of them very small.
+        fn signed(&mut self) -> f64 {
+            let small = [1.0, 1.0, 1e-3, 1e-9, 1e-30][(self.next() * 5.0) as usize];
+            (2.0 * self.next() - 1.0) * small
+        }
+
+        fn point(&mut self) -> DVec3 {
+            DVec3::new(self.signed(), self.signed(), self.signed())
+        }
+    }
+
+    /// The constants of the first three lanes: 1/d, and what is added for near and for far planes.
+    fn constants(simd: Simd, ray: &Ray, structure: &CullBounds) -> Option<[[f32; 8]; 3]> {
+        dispatch!(simd, isa => {
+            QuickLanes::new(isa, ray, Interval::LINE, structure).map(|lanes| [
+                isa.store_f32(lanes.rd).0,
+                isa.store_f32(lanes.minus_near).0,
+                isa.store_f32(lanes.minus_far).0,
+            ])
+        })
+    }
+
+    #[test]
+    fn near_crossings_are_never_late_nor_far_ones_early() {
+        let mut unit = Unit(7);
+        let mut checked = 0;
+        for round in 0..40_000 {
+            let extent = [1.0, 1e-9, 1e6, 1e18, 2e-19][round % 5];
+            let structure = CullBounds::new(Aabb::new(DVec3::splat(-extent), DVec3::splat(extent)));
+            let length = [1.0, 1e-5, 9e5, 0.1][round / 5 % 4];
+            let ray = Ray::new(
+                unit.point() * extent * [0.9, 3.9][round % 2],
+                unit.point() * length,
+            );
+            let clock_is_plain = (1e-6..1e6).contains(&ray.direction.abs().max_element());
+            for simd in Simd::available() {
+                let Some([rd, near, far]) = constants(simd, &ray, &structure) else {
+                    panic!("{ray:?} is near");
+                };
+                for axis in (0..3).filter(|_| clock_is_plain) {
+                    let (o, d) = (ray.origin[axis], ray.direction[axis]);
+                    // A plane anywhere, and those beside the origin.
+                    let beside = o as f32;
+                    let planes = [
+                        (unit.signed() * extent) as f32,
+                        beside,
+                        beside.next_up(),
+                        beside.next_down(),
+                    ];
+                    for b in planes.into_iter().filter(|b| f64::from(b.abs()) <= extent) {
+                        let distance = f64::from(b) - o;
+                        let t = distance / d;
+                        let (fused, twice) =
+                            (b.mul_add(rd[axis], near[axis]), b * rd[axis] + near[axis]);
+                        let (late, last) =
+                            (b.mul_add(rd[axis], far[axis]), b * rd[axis] + far[axis]);
+                        if d.abs() >= 1.0 / MOST_RECIPROCAL {
+                            assert!(
+                                f64::from(fused) <= t && f64::from(twice) <= t,
+                                "{ray:?} {b}"
+                            );
+                            assert!(f64::from(late) >= t && f64::from(last) >= t, "{ray:?} {b}");
+                            checked += 1;
+                        } else if distance.abs() <= 2.0 * f64::from(f32::EPSILON) * o.abs() {
+                            // Beside the plane all the way, as far as the structure reaches.
+                            let way = 8.0 * extent / f64::from(1.0 / LONGEST_QUICK);
+                            assert!(f64::from(fused) <= -way && f64::from(twice) <= -way);
+                            assert!(f64::from(late) >= way && f64::from(last) >= way);
+                            checked += 1;
+                        }
+                    }
+                }
+            }
+        }
+        assert!(checked > 400_000, "{checked}");
+    }
+
+    #[test]
+    fn rays_that_are_none_and_far_ones_are_told_apart() {
+        let structure = CullBounds::new(Aabb::new(DVec3::ZERO, DVec3::ONE));
+        let simd = Simd::detect();
+        let none = [
+            Ray::new(DVec3::ZERO, DVec3::ZERO),
+            Ray::new(DVec3::splat(f64::NAN), DVec3::X),
+            Ray::new(DVec3::ZERO, DVec3::new(f64::INFINITY, 0.0, 0.0)),
+            Ray::new(DVec3::ZERO, DVec3::new(1.0, f64::NAN, 0.0)),
+            // From far away, past it.
+            Ray::new(DVec3::splat(1e6), DVec3::X),
+        ];
+        for ray in none {
+            assert_eq!(constants(simd, &ray, &structure), None, "{ray:?}");
+        }
+        for ray in [
+            Ray::new(DVec3::splat(-1e9), DVec3::ONE),
+            Ray::new(DVec3::ZERO, DVec3::X * 1e-200),
+            Ray::new(DVec3::ZERO, DVec3::X * 1e200),
+        ] {
+            assert!(constants(simd, &ray, &structure).is_some(), "{ray:?}");
+        }
+    }
 }

@@ -18,6 +18,18 @@ pub struct Packet<'r> {
     pub t_max: [f64; PACKET],
 }
 
+impl Packet<'_> {
+    /// The lanes that are followed, as bits.
+    #[inline(always)]
+    pub(crate) fn alive(&self) -> u32 {
+        let mut alive = 0;
+        for lane in 0..self.rays.len().min(PACKET) {
+            alive |= u32::from(self.t_max[lane] > f64::NEG_INFINITY) << lane;
+        }
+        alive
+    }
+}
+
 /// What is done with the primitives that the rays of a packet may meet: a [`Visitor`](crate::Visitor) for several rays.
 pub trait PacketVisitor {
     /// Whether the first hit of a ray ends its search: then there is no point in sorting what is on the way.

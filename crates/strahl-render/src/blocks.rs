@@ -182,6 +182,12 @@ impl Blocks {
         self.fetches
     }
 
+    /// The blocks of triangles of meshes in the order of the leaves, if there are no others.
+    #[inline(always)]
+    pub(crate) fn only_of_meshes(&self) -> Option<&[TriangleBlock<f32>]> {
+        (self.places.is_empty() && !self.mesh.is_empty()).then_some(&self.mesh)
+    }
+
     /// Whether there are spheres among them.
     pub(crate) fn has_spheres(&self) -> bool {
         !self.spheres.is_empty()

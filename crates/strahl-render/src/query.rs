@@ -1,5 +1,6 @@
 mod kinds;
 mod packet;
+mod triangles;
 
 use crate::blocks::{Block, BlockOfLeaf, Blocks, Fetched, Flats, LeafClass};
 use crate::hit::{Hit, Origin, RayClass};
@@ -8,12 +9,15 @@ use crate::scene::{InstanceUse, RenderGroup, RenderScene};
 use crate::walk::WalkEvent;
 use kinds::{AnyOpaque, Closest, Query, Transmitting, Watched};
 use std::borrow::Borrow;
-use strahl_accel::{Accelerator, BLOCK, Leaf, NO_PRIMITIVE, Step, TraversalStats, Visitor};
+use strahl_accel::{
+    Accelerator, AnyAccelerator, BLOCK, Leaf, NO_PRIMITIVE, Step, TraversalStats, Visitor,
+};
 use strahl_geometry::blocks::{Hits, PlaneHits, PolygonBlock, SphereBlock, TriangleBlock};
 use strahl_geometry::{PlaneHit, PrimHit, Primitive, RayShear, Scratch, Shape, SurfaceId};
 use strahl_math::{Interval, Ray};
 use strahl_shade::Sides;
-use strahl_simd::Isa;
+use strahl_simd::{Isa, dispatch};
+use triangles::PlainTriangles;
 
 /// Asks a scene what its rays meet; owns the working memory of one thread.
 #[derive(Debug)]
@@ -207,20 +211,36 @@ impl<Q: Query> Search<'_, '_, Q> {
         first: u32,
     ) -> f64 {
         let from_prim = from.map_or(NONE, |(_, id)| group.prim_of(id));
-        let mut stats = TraversalStats::default();
         let part = if self.parts { Q::part(group) } else { None };
         let (accelerator, blocks, sheared) = match part {
             None => (&group.accelerator, &group.blocks, group.sheared),
             Some(part) => (&part.accelerator, &part.blocks, part.sheared),
         };
+        let plain = group
+            .common
+            .is_some_and(|(visible, flags)| visible & self.class != 0 && Q::is_plain(flags));
+        if plain
+            && first == NONE
+            && !Q::WATCHES
+            && let AnyAccelerator::Bvh8(bvh) = accelerator
+            && let Some(blocks) = blocks.only_of_meshes()
+            && bvh.has_leaves_only()
+        {
+            let searched = PlainTriangles {
+                bvh,
+                blocks,
+                first_ids: group.first_ids.as_deref(),
+                from_prim,
+                base,
+            };
+            return dispatch!(bvh.proof(), isa => searched.search(isa, ray, range, self));
+        }
+        let mut stats = TraversalStats::default();
         let shear = if sheared {
             RayShear::new(ray)
         } else {
             RayShear::UNUSED
         };
-        let plain = group
-            .common
-            .is_some_and(|(visible, flags)| visible & self.class != 0 && Q::is_plain(flags));
         let mut visitor = GroupVisitor {
             search: self,
             group,

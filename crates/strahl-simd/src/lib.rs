@@ -68,6 +68,10 @@ pub trait Isa: Copy + Send + Sync + 'static {
     fn mul_f32(self, a: Self::F32x8, b: Self::F32x8) -> Self::F32x8;
     /// `a - b`.
     fn sub_f32(self, a: Self::F32x8, b: Self::F32x8) -> Self::F32x8;
+    /// `a / b`.
+    fn div_f32(self, a: Self::F32x8, b: Self::F32x8) -> Self::F32x8;
+    /// One lane in all lanes.
+    fn spread<const LANE: usize>(self, a: Self::F32x8) -> Self::F32x8;
     /// Without the signs.
     fn abs_f32(self, a: Self::F32x8) -> Self::F32x8;
     /// Where `a < b`; false for NaN.
@@ -92,6 +96,14 @@ pub trait Isa: Copy + Send + Sync + 'static {
     fn mul_f32x16(self, a: Self::F32x16, b: Self::F32x16) -> Self::F32x16;
     /// `a - b`.
     fn sub_f32x16(self, a: Self::F32x16, b: Self::F32x16) -> Self::F32x16;
+    /// `a / b`.
+    fn div_f32x16(self, a: Self::F32x16, b: Self::F32x16) -> Self::F32x16;
+    /// To an array.
+    fn store_f32x16(self, v: Self::F32x16) -> Lanes16;
+    /// The smallest lane; none may be NaN.
+    fn smallest_f32x16(self, v: Self::F32x16) -> f32;
+    /// The largest lane; none may be NaN.
+    fn largest_f32x16(self, v: Self::F32x16) -> f32;
     /// Without the signs.
     fn abs_f32x16(self, a: Self::F32x16) -> Self::F32x16;
     /// The smaller ones; neither may be NaN.
@@ -111,6 +123,8 @@ pub trait Isa: Copy + Send + Sync + 'static {
     fn load_wide(self, lanes: &[f32; 4]) -> Self::F64x4;
     /// To an array.
     fn store(self, v: Self::F64x4) -> [f64; 4];
+    /// The first four lanes of f32, rounded to the nearest; the others are zeros.
+    fn narrow_f32(self, v: Self::F64x4) -> Self::F32x8;
     /// To an array of f32, rounded to the nearest.
     fn narrow(self, v: Self::F64x4) -> [f32; 4];
     /// `a + b`.

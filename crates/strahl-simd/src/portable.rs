@@ -6,6 +6,18 @@ use crate::{Isa, Level};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Portable;
 
+/// The smaller of two numbers.
+#[inline(always)]
+pub(crate) fn smaller(a: f32, b: f32) -> f32 {
+    if a < b { a } else { b }
+}
+
+/// The larger of two numbers.
+#[inline(always)]
+pub(crate) fn larger(a: f32, b: f32) -> f32 {
+    if a > b { a } else { b }
+}
+
 /// The operations of [`Isa`] on sixteen lanes, for a level whose widest vectors have eight.
 macro_rules! pairs_of_eight {
     () => {
@@ -45,6 +57,38 @@ macro_rules! pairs_of_eight {
         #[inline(always)]
         fn sub_f32x16(self, a: Self::F32x16, b: Self::F32x16) -> Self::F32x16 {
             [self.sub_f32(a[0], b[0]), self.sub_f32(a[1], b[1])]
+        }
+
+        #[inline(always)]
+        fn div_f32x16(self, a: Self::F32x16, b: Self::F32x16) -> Self::F32x16 {
+            [self.div_f32(a[0], b[0]), self.div_f32(a[1], b[1])]
+        }
+
+        #[inline(always)]
+        fn store_f32x16(self, v: Self::F32x16) -> $crate::Lanes16 {
+            let (low, high) = (self.store_f32(v[0]).0, self.store_f32(v[1]).0);
+            let mut all = [0.0; 16];
+            all[..8].copy_from_slice(&low);
+            all[8..].copy_from_slice(&high);
+            $crate::Lanes16(all)
+        }
+
+        #[inline(always)]
+        fn smallest_f32x16(self, v: Self::F32x16) -> f32 {
+            let [a, b, c, d, e, f, g, h] = self.store_f32(self.min_f32(v[0], v[1])).0;
+            let smaller = $crate::portable::smaller;
+            let (a, c) = (smaller(a, b), smaller(c, d));
+            let (e, g) = (smaller(e, f), smaller(g, h));
+            smaller(smaller(a, c), smaller(e, g))
+        }
+
+        #[inline(always)]
+        fn largest_f32x16(self, v: Self::F32x16) -> f32 {
+            let [a, b, c, d, e, f, g, h] = self.store_f32(self.max_f32(v[0], v[1])).0;
+            let larger = $crate::portable::larger;
+            let (a, c) = (larger(a, b), larger(c, d));
+            let (e, g) = (larger(e, f), larger(g, h));
+            larger(larger(a, c), larger(e, g))
         }
 
         #[inline(always)]
@@ -131,6 +175,16 @@ macro_rules! lane_by_lane {
         }
 
         #[inline(always)]
+        fn div_f32(self, a: [f32; 8], b: [f32; 8]) -> [f32; 8] {
+            std::array::from_fn(|i| a[i] / b[i])
+        }
+
+        #[inline(always)]
+        fn spread<const LANE: usize>(self, a: [f32; 8]) -> [f32; 8] {
+            [a[LANE]; 8]
+        }
+
+        #[inline(always)]
         fn abs_f32(self, a: [f32; 8]) -> [f32; 8] {
             std::array::from_fn(|i| a[i].abs())
         }
@@ -168,6 +222,12 @@ macro_rules! lane_by_lane {
         #[inline(always)]
         fn store(self, v: [f64; 4]) -> [f64; 4] {
             v
+        }
+
+        #[inline(always)]
+        fn narrow_f32(self, v: [f64; 4]) -> [f32; 8] {
+            let [a, b, c, d] = v;
+            [a as f32, b as f32, c as f32, d as f32, 0.0, 0.0, 0.0, 0.0]
         }
 
         #[inline(always)]

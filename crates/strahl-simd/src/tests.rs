@@ -49,6 +49,17 @@ fn everything<I: Isa>(isa: I) -> Vec<u64> {
         isa.store_f32(bytes).0,
         [0.0, 1.0, 2.0, 127.0, 128.0, 254.0, 255.0, 17.0]
     );
+    let narrow = isa.narrow_f32(isa.load(&[0.1, -1e300, 1e-42, 3.0]));
+    let spread = [
+        isa.spread::<0>(narrow),
+        isa.spread::<1>(narrow),
+        isa.spread::<2>(narrow),
+        isa.spread::<3>(narrow),
+    ];
+    let more = [narrow, spread[0], spread[1], spread[2], spread[3]];
+    for v in more.into_iter().chain([isa.div_f32(q, p)]) {
+        bits.extend(isa.store_f32(v).0.map(|x| u64::from(x.to_bits())));
+    }
     for v in [culled[0], culled[1], isa.min_f32(p, q), isa.max_f32(p, q)] {
         bits.extend(isa.store_f32(v).0.map(|x| u64::from(x.to_bits())));
     }
@@ -58,7 +69,7 @@ fn everything<I: Isa>(isa: I) -> Vec<u64> {
 }
 
 /// Where each operation on sixteen lanes gives what it should; all products are exact.
-fn sixteen<I: Isa>(isa: I) -> [u32; 8] {
+fn sixteen<I: Isa>(isa: I) -> [u32; 9] {
     let x: [f32; 16] = std::array::from_fn(|i| i as f32 * 0.5 - 3.0);
     let v = isa.load_f32x16(&Lanes16(x));
     let two = isa.splat_f32x16(2.0);
@@ -71,6 +82,7 @@ fn sixteen<I: Isa>(isa: I) -> [u32; 8] {
         is(isa.mul_sub_f32x16(v, v, two), |x| x * x - 2.0),
         is(isa.mul_f32x16(v, v), |x| x * x),
         is(isa.sub_f32x16(two, v), |x| 2.0 - x),
+        is(isa.div_f32x16(v, two), |x| x / 2.0),
         is(isa.abs_f32x16(v), f32::abs),
         is(isa.min_f32x16(v, two), |x| x.min(2.0)),
         is(isa.max_f32x16(v, two), |x| x.max(2.0)),
@@ -86,7 +98,7 @@ fn sixteen_lanes_are_computed_like_one() {
         // -3 + 0.5 i < 2 for the first ten.
         assert_eq!(
             found,
-            [all, all, all, all, all, all, all, 0x3ff],
+            [all, all, all, all, all, all, all, all, 0x3ff],
             "{}",
             simd.level()
         );
@@ -95,6 +107,12 @@ fn sixteen_lanes_are_computed_like_one() {
             isa.lt_f32x16(nan, one) | isa.le_f32x16(nan, one) | isa.lt_f32x16(one, nan)
         });
         assert_eq!(nan, 0);
+        let x: [f32; 16] = std::array::from_fn(|i| ((i * 5 + 3) % 16) as f32 - 7.5);
+        let (stored, ends) = dispatch!(simd, isa => {
+            let v = isa.load_f32x16(&Lanes16(x));
+            (isa.store_f32x16(v), [isa.smallest_f32x16(v), isa.largest_f32x16(v)])
+        });
+        assert_eq!((stored.0, ends), (x, [-7.5, 7.5]));
     }
 }
 

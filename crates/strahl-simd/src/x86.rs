@@ -140,6 +140,18 @@ macro_rules! avx {
         }
 
         #[inline(always)]
+        fn div_f32(self, a: __m256, b: __m256) -> __m256 {
+            // SAFETY: `self` proves AVX.
+            unsafe { _mm256_div_ps(a, b) }
+        }
+
+        #[inline(always)]
+        fn spread<const LANE: usize>(self, a: __m256) -> __m256 {
+            // SAFETY: `self` proves AVX2.
+            unsafe { _mm256_permutevar8x32_ps(a, _mm256_set1_epi32(LANE as i32)) }
+        }
+
+        #[inline(always)]
         fn abs_f32(self, a: __m256) -> __m256 {
             // SAFETY: `self` proves AVX.
             unsafe { _mm256_andnot_ps(_mm256_set1_ps(-0.0), a) }
@@ -177,6 +189,12 @@ macro_rules! avx {
             // SAFETY: `self` proves AVX; there is room for four numbers, and the store needs no alignment.
             unsafe { _mm256_storeu_pd(lanes.as_mut_ptr(), v) };
             lanes
+        }
+
+        #[inline(always)]
+        fn narrow_f32(self, v: __m256d) -> __m256 {
+            // SAFETY: `self` proves AVX.
+            unsafe { _mm256_zextps128_ps256(_mm256_cvtpd_ps(v)) }
         }
 
         #[inline(always)]
@@ -339,6 +357,32 @@ impl Isa for Avx512 {
     fn sub_f32x16(self, a: __m512, b: __m512) -> __m512 {
         // SAFETY: `self` proves AVX-512.
         unsafe { _mm512_sub_ps(a, b) }
+    }
+
+    #[inline(always)]
+    fn div_f32x16(self, a: __m512, b: __m512) -> __m512 {
+        // SAFETY: `self` proves AVX-512.
+        unsafe { _mm512_div_ps(a, b) }
+    }
+
+    #[inline(always)]
+    fn store_f32x16(self, v: __m512) -> Lanes16 {
+        let mut lanes = Lanes16([0.0; 16]);
+        // SAFETY: `self` proves AVX-512; there is room for sixteen floats, aligned to 64 bytes by their type.
+        unsafe { _mm512_store_ps(lanes.0.as_mut_ptr(), v) };
+        lanes
+    }
+
+    #[inline(always)]
+    fn smallest_f32x16(self, v: __m512) -> f32 {
+        // SAFETY: `self` proves AVX-512.
+        unsafe { _mm512_reduce_min_ps(v) }
+    }
+
+    #[inline(always)]
+    fn largest_f32x16(self, v: __m512) -> f32 {
+        // SAFETY: `self` proves AVX-512.
+        unsafe { _mm512_reduce_max_ps(v) }
     }
 
     #[inline(always)]

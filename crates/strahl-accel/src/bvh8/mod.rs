@@ -142,6 +142,17 @@ impl Bvh8 {
         self.simd.level()
     }
 
+    /// The same with the proof that this processor has them.
+    pub fn proof(&self) -> Simd {
+        self.simd
+    }
+
+    /// Whether all primitives are in leaves.
+    #[inline(always)]
+    pub fn has_leaves_only(&self) -> bool {
+        self.unbounded.ids().is_empty()
+    }
+
     /// The same hierarchy in little memory: nodes whose boxes are less exact.
     #[must_use]
     pub fn compacted(self) -> Self {

@@ -10,7 +10,7 @@ use super::node::{Child, Node, Nodes, WIDTH};
 use super::traverse::Slabs;
 use super::{Bvh8, Tree};
 use crate::bvh::MAX_DEPTH;
-use crate::cull::{CullClock, CullStart};
+use crate::cull::{CullBounds, CullClock, CullStart, LONGEST_QUICK, MOST_RECIPROCAL, QUICK_SLACK};
 use crate::packet::{PACKET, Packet, PacketVisitor, lanes_of};
 use crate::traversal::Leaf;
 use crate::{TraversalStats, Visitor};
@@ -49,6 +49,9 @@ impl Bvh8 {
         true
     }
 }
+
+/// All lanes, as bits.
+const ALL: u32 = (1 << PACKET) - 1;
 
 /// The constants of the culling test by lane.
 struct Lanes {
@@ -129,6 +132,17 @@ impl Tree {
             self.bounds.bounds().center()
         };
         let point = point.as_vec3();
+        if let Some((hull, octant)) = lanes.fill(isa, packet, &self.bounds, point.to_array()) {
+            let walk = Walk {
+                hull: HullSlabs::new(isa, &hull, point.to_array(), octant),
+                octant,
+            };
+            let members = packet.alive();
+            self.walk_together(
+                isa, nodes, &walk, members, &mut lanes, packet, visitor, stats,
+            );
+            return;
+        }
         let reference = [
             f64::from(point.x),
             f64::from(point.y),
@@ -397,7 +411,101 @@ impl<I: Isa> HullSlabs<I> {
     }
 }
 
+/// The factor 20u of the error bound of constants relative to a point.
+const RELATIVE_SLACK: f64 = 20.0 / (1u64 << 24) as f64;
+
 impl Lanes {
+    /// Makes the constants of all rays at once, side by side in f32, if all are ordinary and go in the same octant; returns their hull and
+    /// that octant.
+    ///
+    /// They are those of [`crate::cull::QuickLanes`], where the error bound is derived. Planes relative to a point f are crossed at
+    /// `(b - f) r + (f - o) r`. In units of u|r| rounding changes the first product by at most 5|b - f| with what the loop adds, the second by
+    /// 6|f - o| and, for o, |o|: together by less than 5B + 7|o| + 11|f|, for which 20(B + |o| + |f|) has room.
+    #[inline(always)]
+    fn fill<I: Isa>(
+        &mut self,
+        isa: I,
+        packet: &Packet<'_>,
+        bounds: &CullBounds,
+        point: [f32; 3],
+    ) -> Option<(Hull, usize)> {
+        let first = packet.rays.get(packet.alive().trailing_zeros() as usize)?;
+        let nothing = Lanes16([0.0; PACKET]);
+        let (mut origins, mut directions) = ([nothing; 3], [nothing; 3]);
+        let plain = CullClock::UNUSED;
+        for lane in 0..PACKET {
+            // Lanes without a ray repeat one: they change no hull.
+            let t_max = packet.t_max[lane];
+            let ray = match packet.rays.get(lane) {
+                Some(ray) if t_max > f64::NEG_INFINITY => {
+                    self.far.0[lane] = plain.t_max(t_max);
+                    ray
+                }
+                _ => first,
+            };
+            for axis in 0..3 {
+                origins[axis].0[lane] = ray.origin[axis] as f32;
+                directions[axis].0[lane] = ray.direction[axis] as f32;
+            }
+        }
+        let near = isa.splat_f32x16(bounds.near());
+        let (longest, shortest) = (
+            isa.splat_f32x16(LONGEST_QUICK),
+            isa.splat_f32x16(1.0 / LONGEST_QUICK),
+        );
+        let (mut usable, mut long) = (ALL, 0);
+        for axis in 0..3 {
+            let distance = isa.abs_f32x16(isa.load_f32x16(&origins[axis]));
+            let length = isa.abs_f32x16(isa.load_f32x16(&directions[axis]));
+            usable &= isa.le_f32x16(distance, near) & isa.le_f32x16(length, longest);
+            long |= isa.le_f32x16(shortest, length);
+        }
+        if usable & long != ALL {
+            return None;
+        }
+        let (zero, one) = (isa.splat_f32x16(0.0), isa.splat_f32x16(1.0));
+        let most = isa.splat_f32x16(MOST_RECIPROCAL as f32);
+        let least = isa.sub_f32x16(zero, most);
+        let slack = isa.splat_f32x16(QUICK_SLACK as f32);
+        let relative_slack = isa.splat_f32x16(RELATIVE_SLACK as f32);
+        let margin = isa.splat_f32x16(bounds.margin());
+        let t_min = plain.t_min(packet.min);
+        let mut hull = Hull {
+            t_min,
+            ..Hull::NOTHING
+        };
+        let mut octant = 0;
+        for axis in 0..3 {
+            let o = isa.load_f32x16(&origins[axis]);
+            let r = isa.div_f32x16(one, isa.load_f32x16(&directions[axis]));
+            let r = isa.max_f32x16(isa.min_f32x16(r, most), least);
+            match isa.lt_f32x16(r, zero) {
+                0 => {}
+                ALL => octant |= 1 << axis,
+                _ => return None,
+            }
+            let (size, distance) = (isa.abs_f32x16(r), isa.abs_f32x16(o));
+            let reach = isa.mul_add_f32x16(distance, slack, margin);
+            let e = isa.mul_f32x16(size, reach);
+            let minus_o = isa.sub_f32x16(zero, o);
+            self.rd[axis] = isa.store_f32x16(r);
+            self.minus_near[axis] = isa.store_f32x16(isa.mul_sub_f32x16(minus_o, r, e));
+            self.minus_far[axis] = isa.store_f32x16(isa.mul_add_f32x16(minus_o, r, e));
+            let f = point[axis];
+            let rest = RELATIVE_SLACK * (bounds.max_abs() + f64::from(f.abs()));
+            let reach = isa.mul_add_f32x16(distance, relative_slack, isa.splat_f32x16(rest as f32));
+            let e = isa.mul_f32x16(size, reach);
+            let way = isa.sub_f32x16(isa.splat_f32x16(f), o);
+            hull.rd[axis] = [isa.smallest_f32x16(r), isa.largest_f32x16(r)];
+            hull.shift[axis] = [
+                isa.smallest_f32x16(isa.mul_sub_f32x16(way, r, e)),
+                isa.largest_f32x16(isa.mul_add_f32x16(way, r, e)),
+            ];
+        }
+        self.t_min = Lanes16([t_min; PACKET]);
+        Some((hull, octant))
+    }
+
     /// Which rays may meet the box of a child.
     #[inline(always)]
     fn enter<I: Isa>(&self, isa: I, node: &Node, child: usize, first: [usize; 3]) -> u32 {

@@ -1,8 +1,9 @@
+use super::compact::CompactNode;
 use super::node::{Child, Nodes, WIDTH, WideNode};
 use super::{Bvh8, Tree};
 use crate::bvh::MAX_DEPTH;
 use crate::bvh::watch::BoxTree;
-use crate::cull::{CullClock, CullStart};
+use crate::cull::{CullClock, QuickLanes};
 use crate::list::visit_all;
 use crate::traversal::Leaf;
 use crate::{Accelerator, Beam, Packet, PacketVisitor, TraversalStats, Visitor};
@@ -54,14 +55,7 @@ impl Accelerator for Bvh8 {
             && let Some(tree) = &self.tree
         {
             let range = range.with_max(t_max);
-            match &tree.nodes {
-                Nodes::Full(nodes) => {
-                    dispatch!(self.simd, isa => tree.walk(isa, nodes, ray, range, visitor, stats));
-                }
-                Nodes::Compact(nodes) => {
-                    dispatch!(self.simd, isa => tree.walk(isa, nodes, ray, range, visitor, stats));
-                }
-            }
+            dispatch!(self.simd, isa => tree.walk(isa, ray, range, visitor, stats));
         }
     }
 
@@ -100,6 +94,24 @@ impl Accelerator for Bvh8 {
     }
 }
 
+impl Bvh8 {
+    /// [`Accelerator::traverse`] inside of [`Isa::call`] with the instructions of [`Bvh8::simd`]: for a caller that has more to do with
+    /// them. Primitives that are in no leaf (see [`Bvh8::has_leaves_only`]) are not visited.
+    #[inline(always)]
+    pub fn traverse_leaves<I: Isa, V: Visitor>(
+        &self,
+        isa: I,
+        ray: &Ray,
+        range: Interval,
+        visitor: &mut V,
+        stats: &mut TraversalStats,
+    ) {
+        if let Some(tree) = &self.tree {
+            tree.walk_tree(isa, ray, range, visitor, stats);
+        }
+    }
+}
+
 /// The constants of the culling test in vectors.
 pub(super) struct Slabs<I: Isa> {
     rd: [I::F32x8; 3],
@@ -110,19 +122,39 @@ pub(super) struct Slabs<I: Isa> {
     t_min: I::F32x8,
 }
 
+/// The first three lanes, each in a vector of its own.
+#[inline(always)]
+fn spread<I: Isa>(isa: I, v: I::F32x8) -> [I::F32x8; 3] {
+    [isa.spread::<0>(v), isa.spread::<1>(v), isa.spread::<2>(v)]
+}
+
+/// Per axis which of two planes is met first.
+#[inline(always)]
+fn sides(down: u32) -> [usize; 3] {
+    [
+        (down & 1) as usize,
+        (down >> 1 & 1) as usize,
+        (down >> 2 & 1) as usize,
+    ]
+}
+
 impl<I: Isa> Slabs<I> {
     #[inline(always)]
-    fn new(isa: I, start: &CullStart, t_min: f64) -> Self {
-        let lanes = start.lanes(isa);
-        let t_min = start.clock.t_min(t_min);
-        Self::of(
-            isa,
-            lanes.rd,
-            lanes.minus_near,
-            lanes.minus_far,
-            lanes.down,
-            t_min,
-        )
+    fn new(isa: I, lanes: &QuickLanes<I>, t_min: f64) -> Self {
+        let QuickLanes {
+            rd,
+            minus_near: near,
+            minus_far: far,
+            down,
+            clock,
+        } = lanes;
+        Self {
+            rd: spread(isa, *rd),
+            minus_near: spread(isa, *near),
+            minus_far: spread(isa, *far),
+            first: sides(*down),
+            t_min: isa.splat_f32(clock.t_min(t_min)),
+        }
     }
 
     /// Of the constants of the axes; `down` has a bit for each along which the ray goes down.
@@ -151,11 +183,7 @@ impl<I: Isa> Slabs<I> {
                 isa.splat_f32(far[1]),
                 isa.splat_f32(far[2]),
             ],
-            first: [
-                (down & 1) as usize,
-                (down >> 1 & 1) as usize,
-                (down >> 2 & 1) as usize,
-            ],
+            first: sides(down),
             t_min: isa.splat_f32(t_min),
         }
     }
@@ -196,10 +224,9 @@ impl<I: Isa> Slabs<I> {
 impl Tree {
     /// Walks the tree, nearer children first.
     #[inline(always)]
-    fn walk<I: Isa, N: WideNode, V: Visitor>(
+    fn walk<I: Isa, V: Visitor>(
         &self,
         isa: I,
-        nodes: &[N],
         ray: &Ray,
         range: Interval,
         visitor: &mut V,
@@ -212,20 +239,58 @@ impl Tree {
             visitor.visit_leaf(isa, &leaf, range.max);
             return;
         }
-        let Some(start) = CullStart::new(ray, range, &self.bounds) else {
+        self.walk_tree(isa, ray, range, visitor, stats);
+    }
+
+    /// The same whatever the root is.
+    #[inline(always)]
+    fn walk_tree<I: Isa, V: Visitor>(
+        &self,
+        isa: I,
+        ray: &Ray,
+        range: Interval,
+        visitor: &mut V,
+        stats: &mut TraversalStats,
+    ) {
+        match &self.nodes {
+            Nodes::Full(nodes) => self.walk_nodes(isa, nodes, ray, range, visitor, stats),
+            Nodes::Compact(nodes) => self.walk_compact(isa, nodes, ray, range, visitor, stats),
+        }
+    }
+
+    #[inline(always)]
+    fn walk_nodes<I: Isa, N: WideNode, V: Visitor>(
+        &self,
+        isa: I,
+        nodes: &[N],
+        ray: &Ray,
+        range: Interval,
+        visitor: &mut V,
+        stats: &mut TraversalStats,
+    ) {
+        let Some(lanes) = QuickLanes::new(isa, ray, range, &self.bounds) else {
             return;
         };
-        let slabs = Slabs::new(isa, &start, range.min);
-        self.walk_from(
-            isa,
-            nodes,
-            self.root,
-            &slabs,
-            start.clock,
-            ray,
-            range,
-            visitor,
-            stats,
+        let (slabs, clock) = (Slabs::new(isa, &lanes, range.min), lanes.clock);
+        let root = self.root;
+        self.walk_from(isa, nodes, root, &slabs, clock, ray, range, visitor, stats);
+    }
+
+    /// A function of its own: two such loops in one would take registers from each other.
+    #[cold]
+    #[inline(never)]
+    fn walk_compact<I: Isa, V: Visitor>(
+        &self,
+        isa: I,
+        nodes: &[CompactNode],
+        ray: &Ray,
+        range: Interval,
+        visitor: &mut V,
+        stats: &mut TraversalStats,
+    ) {
+        isa.call(
+            #[inline(always)]
+            || self.walk_nodes(isa, nodes, ray, range, visitor, stats),
         );
     }
 

@@ -5,7 +5,6 @@ use super::{From, GroupVisitor, NONE, Search, Tracer};
 use crate::blocks::{Block, BlockOfLeaf, Blocks, Fetched, Flats, LeafClass, PacketCulls};
 use crate::hit::{Hit, Origin, RayClass};
 use crate::scene::{RenderGroup, RenderScene};
-use arrayvec::ArrayVec;
 use std::borrow::Borrow;
 use strahl_accel::{
     Accelerator, BLOCK, Leaf, PACKET, Packet, PacketVisitor, TraversalStats, Visitor, lanes_of,
@@ -109,7 +108,7 @@ impl Tracer<'_> {
         let class = asked.class.bit();
         let mut stats = TraversalStats::default();
         let mut nested = TraversalStats::default();
-        let mut shears = ArrayVec::<RayShear, PACKET>::new();
+        let mut shears = [RayShear::UNUSED; PACKET];
         let max_abs = group.bounds.max_abs();
         let (sheared, lines);
         let mut culls = PacketCulls {
@@ -117,10 +116,11 @@ impl Tracer<'_> {
             lines: None,
         };
         if is_sheared {
-            for ray in asked.rays.iter().take(PACKET) {
-                shears.push(RayShear::new(ray));
+            for (shear, ray) in shears.iter_mut().zip(asked.rays) {
+                *shear = RayShear::new(ray);
             }
-            sheared = PacketShears::new(&shears, max_abs);
+            let count = asked.rays.len().min(PACKET);
+            sheared = PacketShears::new(&shears[..count], max_abs);
             culls.shears = sheared.as_ref();
         }
         let mut from_prims = [NONE; PACKET];
