@@ -307,6 +307,11 @@ pub(crate) trait Block: Sized {
     fn met_again(&self, _lane: usize, _ray: &Ray, _range: Interval) -> Option<f64> {
         None
     }
+
+    /// Where a ray that starts elsewhere meets the curved primitive of a lane in a range.
+    fn all_hits(&self, _lane: usize, _ray: &Ray, _range: Interval) -> [Option<f64>; 2] {
+        [None; 2]
+    }
 }
 
 impl BlockOfLeaf for TriangleBlock<f32> {
@@ -382,6 +387,11 @@ impl Block for SphereBlock {
     #[inline(always)]
     fn met_again(&self, lane: usize, ray: &Ray, range: Interval) -> Option<f64> {
         self.met_again(lane, ray, range)
+    }
+
+    #[inline]
+    fn all_hits(&self, lane: usize, ray: &Ray, range: Interval) -> [Option<f64>; 2] {
+        self.all_hits(lane, ray, range)
     }
 }
 

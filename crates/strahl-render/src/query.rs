@@ -416,7 +416,7 @@ impl<Q: Query> GroupVisitor<'_, '_, '_, Q> {
         let plain = is_polygon
             && prim.visible & self.search.class != 0
             && prim.flags & Prim::MASKED == 0
-            && Q::is_plain(prim.flags & !Prim::FILTERED);
+            && Q::is_plain_flat(prim.flags & !Prim::FILTERED);
         let PrimKind::Shape(index) = prim.kind() else {
             return self.visit(id, t_max);
         };
@@ -446,9 +446,9 @@ impl<Q: Query> GroupVisitor<'_, '_, '_, Q> {
         if let Some(lane) = self.lane_left::<B>(leaf, index)
             && (self.range_min < 0.0 || block.is_entered(lane, self.ray))
         {
-            // Its own test decides: it knows where the ray starts, which that of the block does not.
+            // Its own test decides: it knows where the ray starts, which that of the block does not. There is one hit at most.
             let id = self.from_prim;
-            t_max = if self.plain || self.is_plain(id) {
+            t_max = if self.plain || self.is_plain(id, false) {
                 match block.met_again(lane, self.ray, Interval::new(self.range_min, t_max)) {
                     Some(t) => self.take(id, t, [0.0; 2], t_max),
                     None => t_max,
@@ -469,9 +469,13 @@ impl<Q: Query> GroupVisitor<'_, '_, '_, Q> {
             let id = leaf.id(index, lane);
             if id == NO_PRIMITIVE || id == self.from_prim {
                 continue;
-            } else if self.plain || self.is_plain(id) {
+            } else if self.plain || self.is_plain(id, B::CURVED) {
                 let uv = [hits.uv[0][lane], hits.uv[1][lane]];
                 t_max = self.take(id, hits.t[lane], uv, t_max);
+            } else if B::CURVED && Q::ALL && self.is_plain(id, false) {
+                for t in block.all_hits(lane, self.ray, range).into_iter().flatten() {
+                    t_max = self.take(id, t, [0.0; 2], t_max);
+                }
             } else if B::CURVED {
                 t_max = self.visit(id, t_max);
             } else {
@@ -496,9 +500,14 @@ impl<Q: Query> GroupVisitor<'_, '_, '_, Q> {
 
     /// Whether a hit on this primitive, which is tested in a block, is taken as it is.
     #[inline]
-    fn is_plain(&self, id: u32) -> bool {
+    fn is_plain(&self, id: u32, curved: bool) -> bool {
         let prim = self.group.prims.at(id);
-        prim.visible & self.search.class != 0 && Q::is_plain(prim.flags)
+        let plain = if curved {
+            Q::is_plain(prim.flags)
+        } else {
+            Q::is_plain_flat(prim.flags)
+        };
+        prim.visible & self.search.class != 0 && plain
     }
 
     /// Takes a hit on a plain primitive.
@@ -518,7 +527,8 @@ impl<Q: Query> GroupVisitor<'_, '_, '_, Q> {
     #[inline]
     fn take_filtered(&mut self, id: u32, t: f64, uv: [f64; 2], t_max: f64) -> f64 {
         let prim = self.group.prims.at(id);
-        if prim.visible & self.search.class == 0 || !Q::is_plain(prim.flags & !Prim::FILTERED) {
+        if prim.visible & self.search.class == 0 || !Q::is_plain_flat(prim.flags & !Prim::FILTERED)
+        {
             return self.visit(id, t_max);
         }
         let facing = self.facing(id, prim);

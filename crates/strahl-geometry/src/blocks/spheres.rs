@@ -54,6 +54,19 @@ impl SphereBlock {
         (range.accepts(other) && other != 0.0).then_some(other)
     }
 
+    /// Where a ray that does not start on the sphere of a lane meets it in a range.
+    #[inline]
+    pub fn all_hits(&self, lane: usize, ray: &Ray, range: Interval) -> [Option<f64>; 2] {
+        let center = self.center(lane);
+        let Some((near, far)) = Sphere::crossings_of(center, self.radius[lane], ray) else {
+            return [None; 2];
+        };
+        [
+            range.accepts(near).then_some(near),
+            (range.accepts(far) && near < far).then_some(far),
+        ]
+    }
+
     /// Which spheres the ray meets in a range, as bits, and where for the first time, if it does not start on them: what [`Sphere`]
     /// finds, operation by operation.
     #[inline(always)]
@@ -148,6 +161,18 @@ mod tests {
                     let hit = s.closest_hit(&ray, range, None, &mut Scratch::default());
                     let t = (found >> lane & 1 == 1).then_some(hits.t[lane]);
                     assert_eq!(t, hit.map(|h| h.t));
+                    // One after the other, as by the single test.
+                    let (mut one_by_one, mut rest) = (Vec::new(), range);
+                    while let Some(hit) = s.closest_hit(&ray, rest, None, &mut Scratch::default()) {
+                        one_by_one.push(hit.t);
+                        rest.min = hit.t;
+                    }
+                    let both: Vec<f64> = block
+                        .all_hits(lane, &ray, range)
+                        .into_iter()
+                        .flatten()
+                        .collect();
+                    assert_eq!(both, one_by_one);
                     all += u32::from(t.is_some());
                 }
             }

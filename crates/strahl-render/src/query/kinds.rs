@@ -18,8 +18,14 @@ pub(super) trait Query {
     /// Whether any hit on a primitive of one element with these flags is of interest, and the first is all it takes to know.
     #[inline(always)]
     fn is_plain(flags: u8) -> bool {
+        !Self::ALL && Self::is_plain_flat(flags)
+    }
+
+    /// The same for a flat primitive, which no ray meets twice.
+    #[inline(always)]
+    fn is_plain_flat(flags: u8) -> bool {
         let mixed = flags & (Prim::TRANSMITS | Prim::STOPS) == Prim::TRANSMITS | Prim::STOPS;
-        flags & Prim::FILTERED == 0 && !mixed && !Self::ALL && Self::wants(flags)
+        flags & Prim::FILTERED == 0 && !mixed && Self::wants(flags)
     }
 
     /// Takes a hit and returns the new upper end of the range, `-inf` to end the search.
