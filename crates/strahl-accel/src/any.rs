@@ -146,6 +146,13 @@ impl AnyAccelerator {
         matches!(self, Self::Bvh8(bvh) if bvh.is_compact())
     }
 
+    /// Asks the system for large pages where the structure is large, once it is built: rays then wait less for memory.
+    pub fn gather_pages(&self) {
+        if let Self::Bvh8(bvh) = self {
+            bvh.gather_pages();
+        }
+    }
+
     /// The instructions it is walked with: only [`Bvh8`] has kernels of vectors.
     pub fn simd(&self) -> Level {
         match self {

@@ -9,7 +9,7 @@ use strahl_geometry::blocks::{
 };
 use strahl_geometry::{RayShear, Shape, Sphere};
 use strahl_math::{Interval, Ray};
-use strahl_simd::Isa;
+use strahl_simd::{Isa, gather_pages};
 
 /// How the primitives of a leaf are tested; the numbers are the accelerator's classes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -191,6 +191,13 @@ impl Blocks {
     /// Whether there are spheres among them.
     pub(crate) fn has_spheres(&self) -> bool {
         !self.spheres.is_empty()
+    }
+
+    /// Asks the system for large pages where there are many.
+    pub(crate) fn gather_pages(&self) {
+        gather_pages(&self.mesh);
+        gather_pages(&self.triangles);
+        gather_pages(&self.spheres);
     }
 
     /// Bytes they occupy.

@@ -219,8 +219,8 @@ impl<Q: Query> Search<'_, '_, Q> {
         let plain = group
             .common
             .is_some_and(|(visible, flags)| visible & self.class != 0 && Q::is_plain(flags));
+        let mut triangles = None;
         if plain
-            && first == NONE
             && !Q::WATCHES
             && let AnyAccelerator::Bvh8(bvh) = accelerator
             && let Some(blocks) = blocks.only_of_meshes()
@@ -233,7 +233,10 @@ impl<Q: Query> Search<'_, '_, Q> {
                 from_prim,
                 base,
             };
-            return dispatch!(bvh.proof(), isa => searched.search(isa, ray, range, self));
+            if first == NONE {
+                return dispatch!(bvh.proof(), isa => searched.search(isa, ray, range, self));
+            }
+            triangles = Some(searched);
         }
         let mut stats = TraversalStats::default();
         let shear = if sheared {
@@ -259,6 +262,12 @@ impl<Q: Query> Search<'_, '_, Q> {
             visitor.visit(first, range.max);
         }
         if visitor.t_max != f64::NEG_INFINITY {
+            if let Some(searched) = triangles {
+                let range = range.with_max(visitor.t_max);
+                *self.stats += stats;
+                let simd = searched.bvh.proof();
+                return dispatch!(simd, isa => searched.search(isa, ray, range, self));
+            }
             accelerator.traverse(ray, range, &mut visitor, &mut stats);
         }
         let t_max = visitor.t_max;

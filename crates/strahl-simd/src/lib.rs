@@ -11,14 +11,17 @@
 //!
 //! # Safety
 //! This crate is the home of the workspace's `unsafe` code. A value of a level's type ([`Avx2`], [`Avx512`], ...) can only be got
-//! from the detection, so holding one proves that its instructions exist; that is what every `unsafe` block here relies on.
+//! from the detection, so holding one proves that its instructions exist; that is what every `unsafe` block here relies on, but for
+//! the one that asks for large pages ([`gather_pages`]).
 
 mod level;
+mod pages;
 mod portable;
 #[cfg(target_arch = "x86_64")]
 mod x86;
 
 pub use level::{Level, Simd, UnknownLevel};
+pub use pages::gather_pages;
 pub use portable::Portable;
 #[cfg(target_arch = "x86_64")]
 pub use x86::{Avx2, Avx512, Sse4};

@@ -21,7 +21,7 @@ use crate::boxes::Box32;
 use crate::cull::CullBounds;
 use crate::parameters::{Parameter, Parameters};
 use node::{Child, Nodes};
-use strahl_simd::{Level, Simd};
+use strahl_simd::{Level, Simd, gather_pages};
 
 pub use build::Build;
 
@@ -159,6 +159,17 @@ impl Bvh8 {
         Self {
             tree: self.tree.map(Tree::compacted),
             ..self
+        }
+    }
+
+    /// Asks the system for large pages where the hierarchy is large.
+    pub(crate) fn gather_pages(&self) {
+        if let Some(tree) = &self.tree {
+            match &tree.nodes {
+                Nodes::Full(nodes) => gather_pages(nodes),
+                Nodes::Compact(nodes) => gather_pages(nodes),
+            }
+            gather_pages(&tree.slots);
         }
     }
 

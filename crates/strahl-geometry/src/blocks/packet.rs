@@ -45,7 +45,7 @@ impl PacketShears {
         };
         let mut farthest = 0.0;
         for (lane, shear) in shears.iter().enumerate().take(PACKET) {
-            if shear.axes() != axes {
+            if shear.axes()[2] != axes[2] {
                 return None;
             }
             let (o, s) = (shear.origin(), shear.slope());

@@ -129,6 +129,8 @@ impl Prepared {
         let groups = self.groups.into_iter().rev().map(|g| {
             let accelerator = AnyAccelerator::build_from(kind, &GroupShapes(&g));
             let blocks = Blocks::new(&accelerator, &g.lists());
+            accelerator.gather_pages();
+            blocks.gather_pages();
             let [stopping, transmitting] =
                 [Prim::STOPS, Prim::TRANSMITS].map(|flag| part(kind, &g, flag));
             let common = crate::blocks::common(&g.lists());
@@ -193,6 +195,8 @@ fn part(kind: AcceleratorKind, group: &Assembled, flag: u8) -> Option<Box<Part>>
     };
     let accelerator = AnyAccelerator::build_from(kind, &shapes);
     let blocks = Blocks::new(&accelerator, &group.lists());
+    accelerator.gather_pages();
+    blocks.gather_pages();
     let triangle = |p: Prim| p.flags & flag != 0 && matches!(p.kind(), PrimKind::Triangle(..));
     Some(Box::new(Part {
         sheared: blocks.has_triangles() || group.prims.iter().any(triangle),
