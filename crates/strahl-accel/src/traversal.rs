@@ -29,6 +29,13 @@ pub trait Visitor {
         t_max
     }
 
+    /// Where the data of a block is that [`Visitor::visit_leaf`] will read, to be fetched ahead; nowhere if it does not matter. The number
+    /// may be that of no block.
+    #[inline(always)]
+    fn block_address(&self, _block: usize) -> *const u8 {
+        std::ptr::null()
+    }
+
     /// Whether [`Visitor::step`] wants to hear of the way; it costs nothing otherwise.
     const WATCHES: bool = false;
 

@@ -82,6 +82,9 @@ pub trait Isa: Copy + Send + Sync + 'static {
     /// Where `a <= b`; false for NaN.
     fn le_f32(self, a: Self::F32x8, b: Self::F32x8) -> u32;
 
+    /// Says that the memory at an address, which may be any, will be read soon.
+    fn prefetch(self, address: *const u8);
+
     /// Eight bytes from memory, converted exactly.
     fn load_bytes(self, lanes: &[u8; 8]) -> Self::F32x8;
 

@@ -200,6 +200,9 @@ macro_rules! lane_by_lane {
         }
 
         #[inline(always)]
+        fn prefetch(self, _: *const u8) {}
+
+        #[inline(always)]
         fn load_bytes(self, lanes: &[u8; 8]) -> [f32; 8] {
             lanes.map(f32::from)
         }

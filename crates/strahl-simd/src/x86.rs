@@ -158,6 +158,12 @@ macro_rules! avx {
         }
 
         #[inline(always)]
+        fn prefetch(self, address: *const u8) {
+            // SAFETY: every x86-64 processor has SSE; a prefetch of an address that is none does nothing.
+            unsafe { _mm_prefetch::<_MM_HINT_T0>(address.cast()) };
+        }
+
+        #[inline(always)]
         fn load_bytes(self, lanes: &[u8; 8]) -> __m256 {
             // SAFETY: `self` proves AVX2; the eight bytes are there, and the load needs no alignment.
             unsafe {

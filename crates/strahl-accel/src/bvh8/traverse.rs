@@ -362,6 +362,7 @@ impl Tree {
                     let b = waiting(hit.trailing_zeros() as usize);
                     hit &= hit - 1;
                     let (mut nearest, other) = if b < a { (b, a) } else { (a, b) };
+                    fetch_ahead(isa, nodes, visitor, other.child());
                     if hit == 0 {
                         stack.push(other);
                         current = nearest.child();
@@ -378,6 +379,7 @@ impl Tree {
                         } else {
                             (nearest, next)
                         };
+                        fetch_ahead(isa, nodes, visitor, later.child());
                         stack.push(later);
                     }
                     farthest_first(&mut stack[bottom..]);
@@ -411,6 +413,17 @@ impl Tree {
         *stats += cost;
         t_max
     }
+}
+
+/// Has the memory of a child fetched that will be visited later. Without a branch on what it is, which would be hard to predict.
+#[inline(always)]
+fn fetch_ahead<I: Isa, N, V: Visitor>(isa: I, nodes: &[N], visitor: &V, child: Child) {
+    let node: *const u8 = nodes.as_ptr().wrapping_add(child.node()).cast();
+    let block = visitor.block_address(child.parts().first_block);
+    let address = if child.is_leaf() { block } else { node };
+    isa.prefetch(address);
+    isa.prefetch(address.wrapping_add(64));
+    isa.prefetch(address.wrapping_add(128));
 }
 
 /// Sorts a few, the farthest first.

@@ -92,6 +92,11 @@ impl<Q: Query> Visitor for TriangleVisitor<'_, '_, Q> {
         t_max
     }
 
+    #[inline(always)]
+    fn block_address(&self, block: usize) -> *const u8 {
+        self.of.blocks.as_ptr().wrapping_add(block).cast()
+    }
+
     /// Never asked: all triangles are in blocks.
     fn visit(&mut self, _: u32, t_max: f64) -> f64 {
         t_max
