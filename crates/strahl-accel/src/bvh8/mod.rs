@@ -14,6 +14,7 @@ mod presplit;
 mod spatial;
 mod traverse;
 mod validate;
+mod view;
 mod watch;
 
 use crate::List;
@@ -24,6 +25,7 @@ use node::{Child, Nodes};
 use strahl_simd::{Level, Simd, gather_pages};
 
 pub use build::Build;
+pub use view::Content;
 
 /// Primitives in a block of slots.
 pub const BLOCK: usize = 4;
