@@ -18,14 +18,24 @@ pub const fn gamma(n: u32) -> f64 {
 #[inline]
 pub fn round_down_f32(x: f64) -> f32 {
     let y = x as f32;
-    if f64::from(y) > x { y.next_down() } else { y }
+    moved(y, -i32::from(f64::from(y) > x))
 }
 
 /// The smallest f32 not below `x` (`inf` if `x` is above every finite f32; NaN stays NaN).
 #[inline]
 pub fn round_up_f32(x: f64) -> f32 {
     let y = x as f32;
-    if f64::from(y) < x { y.next_up() } else { y }
+    moved(y, i32::from(f64::from(y) < x))
+}
+
+/// The f32 so many steps above another, without a branch, which would be guessed wrong half of the time. The two zeros are a step apart; that
+/// they have the sign of what was rounded to them makes up for it.
+#[inline(always)]
+fn moved(x: f32, steps: i32) -> f32 {
+    // In this order of integers numbers follow each other as they do by size, and back.
+    let ordered = |bits: i32| bits ^ (bits >> 31 & i32::MAX);
+    let bits = ordered(x.to_bits() as i32).wrapping_add(steps);
+    f32::from_bits(ordered(bits) as u32)
 }
 
 /// Moves a point off the surface it lies on, just far enough that it is certainly on the chosen side.
@@ -65,6 +75,40 @@ mod tests {
             );
         }
         assert_eq!(round_up_f32(1.0), 1.0);
+    }
+
+    #[test]
+    fn outward_rounding_takes_the_next_number_where_the_nearest_is_on_the_other_side() {
+        let least = f64::from(f32::from_bits(1));
+        let mut all = vec![
+            0.0,
+            least,
+            0.4 * least,
+            0.6 * least,
+            1e-300,
+            1e300,
+            f64::INFINITY,
+        ];
+        all.extend((-60..60).map(|i| 1.1f64.powi(7 * i)));
+        all.extend([
+            1.0,
+            1.0f64.next_up(),
+            1.0f64.next_down(),
+            f64::from(f32::MAX),
+            f64::NAN,
+        ]);
+        for x in all.into_iter().flat_map(|x| [x, -x]) {
+            let nearest = x as f32;
+            let (mut down, mut up) = (nearest, nearest);
+            if f64::from(nearest) > x {
+                down = nearest.next_down();
+            }
+            if f64::from(nearest) < x {
+                up = nearest.next_up();
+            }
+            assert_eq!(round_down_f32(x).to_bits(), down.to_bits(), "{x}");
+            assert_eq!(round_up_f32(x).to_bits(), up.to_bits(), "{x}");
+        }
     }
 
     #[test]

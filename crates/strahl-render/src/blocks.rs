@@ -252,11 +252,16 @@ pub(crate) fn common(lists: &Lists<'_>) -> Option<(u8, u8)> {
         }
         _ => LeafClass::of(*p, lists) != LeafClass::Single,
     };
-    let mut all = lists
-        .prims
-        .iter()
-        .filter(found)
-        .map(|p| (p.visible, p.flags));
+    let mut all = lists.prims.runs().filter_map(|(first, places)| {
+        // Shapes are of many kinds, of all others one tells of its run.
+        let asked = match first.kind() {
+            PrimKind::Shape(_) => places,
+            _ => places.start..places.start + 1,
+        };
+        let mut asked = asked.map(|index| lists.prims.at(index));
+        let any = asked.any(|p| found(&p));
+        any.then_some((first.visible, first.flags))
+    });
     let first = all.next()?;
     all.all(|p| p == first).then_some(first)
 }

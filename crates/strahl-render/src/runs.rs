@@ -1,6 +1,7 @@
 //! Lists of millions of things that follow from each other, in little memory.
 
 use std::fmt::Debug;
+use std::ops::Range;
 
 /// What a run of items is made from: the first of them, and how the others follow.
 pub(crate) trait Run: Clone + Debug {
@@ -112,6 +113,25 @@ impl<R: Run> RunList<R> {
         })
     }
 
+    /// The runs that the list is made of: their first items, and the places of all. What is kept item by item is so many runs.
+    pub(crate) fn runs(&self) -> impl Iterator<Item = (R::Item, Range<u32>)> {
+        let count = match &self.kept {
+            Kept::Items(items) => items.len(),
+            Kept::Runs(runs) => runs.len(),
+        };
+        (0..count).map(move |number| match &self.kept {
+            Kept::Items(items) => {
+                let place = number as u32;
+                (items[number].clone(), place..place + 1)
+            }
+            Kept::Runs(runs) => {
+                let (first, run) = &runs[number];
+                let end = runs.get(number + 1).map_or(self.len, |(next, _)| *next);
+                (run.item(0), *first..end)
+            }
+        })
+    }
+
     /// The list as it is read fastest, once it is complete: item by item if runs do not pay.
     pub(crate) fn completed(self) -> Self {
         match &self.kept {
@@ -187,6 +207,12 @@ mod tests {
                         assert_eq!(list.at(i), *number);
                     }
                     assert_eq!(list.get(numbers.len() as u32), None);
+                    let mut next = 0;
+                    for (first, places) in list.runs() {
+                        assert_eq!((first, places.start), (list.at(next), next));
+                        next = places.end;
+                    }
+                    assert_eq!(next as usize, numbers.len());
                 }
             }
         }

@@ -55,6 +55,7 @@ impl Tree {
     fn build(refs: &mut [Ref], options: &BuildOptions) -> Self {
         let leaf = LeafModel {
             max_size: options.max_leaf_size,
+            node_cost: 1.0,
             block_cost: options.primitive_cost,
             block_log: 0,
         };

@@ -85,15 +85,13 @@ impl Extent {
     };
 
     pub(crate) fn of(refs: &[Ref]) -> Self {
-        let mut bounds = Box32::EMPTY;
+        let mut extent = Self::EMPTY;
         for r in refs {
-            bounds.grow(&r.bounds);
+            extent.bounds.grow(&r.bounds);
+            extent.centers.grow_to(r.bounds.center());
+            extent.classes |= 1 << r.class();
         }
-        Self {
-            bounds,
-            centers: centers(refs),
-            classes: classes(refs),
-        }
+        extent
     }
 
     /// The extent of a large set, in parallel: minima and maxima are exact in any grouping, so the threads leave no trace.

@@ -11,6 +11,8 @@ use rayon::prelude::*;
 pub(crate) struct LeafModel {
     /// No leaf holds more primitives, at least 1.
     pub(crate) max_size: usize,
+    /// What the node costs that halves are put into: 1, the unit, or nothing if there is one anyway that has places left.
+    pub(crate) node_cost: f64,
     /// What a visit of a block of primitives costs, in units of a visit of a node.
     pub(crate) block_cost: f64,
     /// Logarithm of the number of primitives in a block, for classes other than 0.
@@ -21,6 +23,17 @@ impl LeafModel {
     /// The logarithm of the size of blocks in sets of these classes.
     pub(crate) fn block_log(&self, classes: u8) -> u32 {
         if classes & 1 == 0 { self.block_log } else { 0 }
+    }
+
+    /// Whether primitives of these classes are a leaf of one block, which is never split.
+    pub(crate) fn is_block(&self, count: usize, classes: u8) -> bool {
+        classes.is_power_of_two() && blocks(count, self.block_log(classes)) == 1
+    }
+
+    /// Whether a leaf of so many blocks in a box of some area costs no more than its halves, `halves` being the sum of their blocks by their areas.
+    pub(crate) fn is_cheaper(&self, blocks: usize, area: f64, halves: f64) -> bool {
+        let whole = self.block_cost * blocks as f64 * area;
+        whole <= self.node_cost * area + self.block_cost * halves
     }
 }
 
@@ -59,7 +72,7 @@ impl<'a> Set<'a> {
     )]
     pub(crate) fn split(self, leaf: &LeafModel, bins: &mut Bins) -> Result<[Self; 2], Self> {
         let (count, classes) = (self.refs.len(), self.extent.classes);
-        if count == 1 {
+        if leaf.is_block(count, classes) {
             return Err(self);
         }
         let fits = count <= leaf.max_size && classes.is_power_of_two();
@@ -71,7 +84,6 @@ impl<'a> Set<'a> {
         }
         let chunks = bins.fill(self.refs, &self.extent.bounds, &self.extent.centers);
         let area = f64::from(bins.area(&self.extent.bounds));
-        let leaf_cost = leaf.block_cost * blocks(count, log) as f64 * area;
         let Some(plane) = bins.cheapest(log) else {
             // All centres in one point: nothing to choose by. Crossed bars are better apart all the same.
             if !fits {
@@ -85,10 +97,14 @@ impl<'a> Set<'a> {
                 f64::from(area) * blocks(refs.len(), log) as f64
             };
             let halves = cost(&self.refs[..middle]) + cost(&self.refs[middle..]);
-            let pays = leaf_cost > area + leaf.block_cost * halves;
-            return if pays { Ok(self.halved()) } else { Err(self) };
+            let is_leaf = leaf.is_cheaper(blocks(count, log), area, halves);
+            return if is_leaf {
+                Err(self)
+            } else {
+                Ok(self.halved())
+            };
         };
-        if fits && leaf_cost <= area + leaf.block_cost * f64::from(plane.cost) {
+        if fits && leaf.is_cheaper(blocks(count, log), area, f64::from(plane.cost)) {
             return Err(self);
         }
         Ok(self.at(&plane, bins, &chunks))

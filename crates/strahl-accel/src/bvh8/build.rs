@@ -1,12 +1,12 @@
 //! How the tree is built: the choice of a builder, and the one that is used by default, which splits from the top by the surface area heuristic.
 
-use super::grow::{LEAF, Subtree};
+use super::grow::Subtree;
 use super::presplit::presplit;
 use super::{Bvh8, Bvh8Parameters, Tree, fast, high};
 use crate::boxes::Box32;
 use crate::bvh::bins::Bins;
 use crate::bvh::refs::{Ref, gather};
-use crate::bvh::split::Set;
+use crate::bvh::split::{LeafModel, Set};
 use crate::parameters::{Parameters, choice};
 use crate::shapes::all_bounds;
 use crate::{List, Shapes};
@@ -110,8 +110,8 @@ impl Subtree for Set<'_> {
         self.refs.len()
     }
 
-    fn split(self, bins: &mut Bins) -> Result<[Self; 2], Self> {
-        self.split(&LEAF, bins)
+    fn split(self, leaf: &LeafModel, bins: &mut Bins) -> Result<[Self; 2], Self> {
+        self.split(leaf, bins)
     }
 
     fn class(&self) -> u8 {

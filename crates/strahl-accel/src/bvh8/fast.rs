@@ -9,7 +9,7 @@ use super::grow::{LEAF, Subtree};
 use crate::boxes::Box32;
 use crate::bvh::MAX_DEPTH;
 use crate::bvh::refs::{Extent, Ref, from_lane, to_lane};
-use crate::bvh::split::blocks;
+use crate::bvh::split::{LeafModel, blocks};
 use arrayvec::ArrayVec;
 use rayon::prelude::*;
 use strahl_math::Vec4;
@@ -335,7 +335,7 @@ impl Subtree for Branch<'_> {
         self.cluster.count()
     }
 
-    fn split(self, (): &mut ()) -> Result<[Self; 2], Self> {
+    fn split(self, _: &LeafModel, (): &mut ()) -> Result<[Self; 2], Self> {
         if self.cluster.is_leaf() {
             return Err(self);
         }

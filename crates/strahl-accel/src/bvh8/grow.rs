@@ -14,8 +14,15 @@ const PARALLEL: usize = 4096;
 /// Leaves are up to four blocks; a block costs about as much as a node.
 pub(super) const LEAF: LeafModel = LeafModel {
     max_size: Child::MAX_LEAF,
+    node_cost: 1.0,
     block_cost: 1.0,
     block_log: BLOCK.ilog2(),
+};
+
+/// The same where a node has places left: boxes there cost nothing.
+const WITHIN: LeafModel = LeafModel {
+    node_cost: 0.0,
+    ..LEAF
 };
 
 /// Primitives that will be a child; at least one.
@@ -32,10 +39,10 @@ pub(super) trait Subtree: Sized + Send {
     /// How many there are.
     fn count(&self) -> usize;
 
-    /// Splits them, or gives them back because they are a leaf.
+    /// Splits them, or gives them back because they are a leaf by this model.
     ///
     /// There must be no more splits on the way from the root than the traversal's stack has levels.
-    fn split(self, scratch: &mut Self::Scratch) -> Result<[Self; 2], Self>;
+    fn split(self, leaf: &LeafModel, scratch: &mut Self::Scratch) -> Result<[Self; 2], Self>;
 
     /// The class of the primitives of a leaf.
     fn class(&self) -> u8;
@@ -97,7 +104,7 @@ impl<S: Subtree> Parts<S> {
 
     /// Adds the subtree of a set.
     fn add(&mut self, set: S) -> Child {
-        match set.split(&mut self.scratch) {
+        match set.split(&LEAF, &mut self.scratch) {
             Err(leaf) => self.add_leaf(&leaf),
             Ok(halves) => self.add_node(halves),
         }
@@ -112,7 +119,11 @@ impl<S: Subtree> Parts<S> {
             let inner = (0..open.len()).filter(|i| !open[*i].leaf);
             let largest = inner.reduce(|a, b| if open[b].area > open[a].area { b } else { a });
             let Some(largest) = largest else { break };
-            match open.swap_remove(largest).set.split(&mut self.scratch) {
+            match open
+                .swap_remove(largest)
+                .set
+                .split(&WITHIN, &mut self.scratch)
+            {
                 Ok([left, right]) => {
                     open.push(Open::new(left, false));
                     open.push(Open::new(right, false));

@@ -3,7 +3,7 @@
 //!
 //! M. Stich, H. Friedrich, A. Dietrich, "Spatial Splits in Bounding Volume Hierarchies" (2009).
 
-use super::grow::{LEAF, Subtree};
+use super::grow::Subtree;
 use super::presplit::presplit;
 use super::spatial::SpaceCut;
 use super::{Bvh8, Tree};
@@ -12,7 +12,7 @@ use crate::boxes::Box32;
 use crate::bvh::MAX_DEPTH;
 use crate::bvh::bins::{Bins, Plane};
 use crate::bvh::refs::{Extent, Ref};
-use crate::bvh::split::blocks;
+use crate::bvh::split::{LeafModel, blocks};
 
 /// Space is cut where the halves of a set overlap by more than this part of its area,
 const OVERLAP: f64 = 0.1;
@@ -60,14 +60,14 @@ enum Plan {
 }
 
 impl Pieces<'_> {
-    fn plan(&self, bins: &mut Bins) -> Plan {
+    fn plan(&self, leaf: &LeafModel, bins: &mut Bins) -> Plan {
         let (count, classes) = (self.refs.len(), self.extent.classes);
-        if count == 1 {
+        if leaf.is_block(count, classes) {
             return Plan::Leaf;
         }
-        let fits = count <= LEAF.max_size && classes.is_power_of_two();
+        let fits = count <= leaf.max_size && classes.is_power_of_two();
         let or_leaf = |plan| if fits { Plan::Leaf } else { plan };
-        let log = LEAF.block_log(classes);
+        let log = leaf.block_log(classes);
         // From here on halving takes this many levels of nodes, also if all parts that may be made are. It takes over while there are
         // still that many.
         let needed = (count + self.spare).ilog2() as usize + 1;
@@ -83,8 +83,7 @@ impl Pieces<'_> {
             (Some(plane), None) => (plane.cost, Plan::Plane(plane)),
             (None, None) => return or_leaf(Plan::Halves),
         };
-        let leaf_cost = LEAF.block_cost as f32 * blocks(count, log) as f32 * area;
-        if fits && leaf_cost <= area + LEAF.block_cost as f32 * cost {
+        if fits && leaf.is_cheaper(blocks(count, log), f64::from(area), f64::from(cost)) {
             return Plan::Leaf;
         }
         plan
@@ -166,8 +165,8 @@ impl Subtree for Pieces<'_> {
         self.refs.len()
     }
 
-    fn split(self, bins: &mut Bins) -> Result<[Self; 2], Self> {
-        match self.plan(bins) {
+    fn split(self, leaf: &LeafModel, bins: &mut Bins) -> Result<[Self; 2], Self> {
+        match self.plan(leaf, bins) {
             Plan::Leaf => Err(self),
             Plan::Halves => Ok(self.halved()),
             Plan::Plane(plane) => Ok(self.parted(&plane)),

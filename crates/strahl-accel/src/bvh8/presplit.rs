@@ -122,13 +122,16 @@ impl Grid {
         let thin = shapes
             .flat_area(r.id())
             .is_some_and(|flat| area > THIN * flat);
+        if !thin {
+            return 0.0;
+        }
         match self.plane(r.bounds()) {
-            Some((_, level, _)) if thin => {
+            Some((_, level, _)) => {
                 let unit = f64::from(self.unit);
                 // The flat area is next to nothing.
                 (area * unit * unit * 0.5f64.powi(level)).sqrt().sqrt() as f32
             }
-            _ => 0.0,
+            None => 0.0,
         }
     }
 

@@ -241,8 +241,8 @@ impl TriangleMesh {
 
     /// The corners of a triangle as they are stored, relative to the anchor; `None` if it has no area and is never hit.
     pub fn stored_corners(&self, triangle: u32) -> Option<[[f32; 3]; 3]> {
-        let corners = || self.triangle(triangle).map(|v| self.positions[v as usize]);
-        self.has_area(triangle).then(corners)
+        let corners = self.triangle(triangle).map(|v| self.positions[v as usize]);
+        span_area(corners.map(widened)).then_some(corners)
     }
 
     /// The box around a triangle.
@@ -366,15 +366,26 @@ impl TriangleMesh {
     #[inline]
     pub(super) fn local_corners(&self, triangle: u32) -> [DVec3; 3] {
         self.triangle(triangle)
-            .map(|v| DVec3::from(self.positions[v as usize].map(f64::from)))
+            .map(|v| widened(self.positions[v as usize]))
     }
 
     /// Whether a triangle is a surface; in the ray's projection rounding may give area to corners on a line.
     #[inline]
     pub(crate) fn has_area(&self, triangle: u32) -> bool {
-        let [a, b, c] = self.local_corners(triangle);
-        (b - a).cross(c - a) != DVec3::ZERO || front_normal(a, b, c).is_some()
+        span_area(self.local_corners(triangle))
     }
+}
+
+/// A vertex in f64.
+#[inline]
+fn widened(vertex: [f32; 3]) -> DVec3 {
+    DVec3::from(vertex.map(f64::from))
+}
+
+/// Whether a triangle is a surface.
+#[inline]
+fn span_area([a, b, c]: [DVec3; 3]) -> bool {
+    (b - a).cross(c - a) != DVec3::ZERO || front_normal(a, b, c).is_some()
 }
 
 impl Primitive for TriangleMesh {

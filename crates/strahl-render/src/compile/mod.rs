@@ -184,22 +184,26 @@ impl Prepared {
 
 /// The primitives of a group with a flag by themselves; `None` if those are so many that leaving out the others does not pay.
 fn part(kind: AcceleratorKind, group: &Assembled, flag: u8) -> Option<Box<Part>> {
-    let all = group.prims.len();
-    let some = group.prims.iter().filter(|p| p.flags & flag != 0).count();
-    if 4 * some > 3 * all {
+    // The flags of a run are those of its first.
+    let flagged = || group.prims.runs().filter(|(p, _)| p.flags & flag != 0);
+    let some: usize = flagged().map(|(_, places)| places.len()).sum();
+    if 4 * some > 3 * group.prims.len() {
         return None;
     }
     let shapes = Flagged {
         all: GroupShapes(group),
         flag,
     };
-    let accelerator = AnyAccelerator::build_from(kind, &shapes);
+    let accelerator = match some {
+        0 => AnyAccelerator::build(kind, &[]),
+        _ => AnyAccelerator::build_from(kind, &shapes),
+    };
     let blocks = Blocks::new(&accelerator, &group.lists());
     accelerator.gather_pages();
     blocks.gather_pages();
-    let triangle = |p: Prim| p.flags & flag != 0 && matches!(p.kind(), PrimKind::Triangle(..));
+    let is_triangle = |p: Prim| matches!(p.kind(), PrimKind::Triangle(..));
     Some(Box::new(Part {
-        sheared: blocks.has_triangles() || group.prims.iter().any(triangle),
+        sheared: blocks.has_triangles() || flagged().any(|(p, _)| is_triangle(p)),
         accelerator,
         blocks,
     }))
