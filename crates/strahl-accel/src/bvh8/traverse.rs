@@ -130,7 +130,7 @@ fn spread<I: Isa>(isa: I, v: I::F32x8) -> [I::F32x8; 3] {
 
 /// Per axis which of two planes is met first.
 #[inline(always)]
-fn sides(down: u32) -> [usize; 3] {
+pub(super) fn sides(down: u32) -> [usize; 3] {
     [
         (down & 1) as usize,
         (down >> 1 & 1) as usize,

@@ -1,0 +1,233 @@
+//! The constants of the rays of a packet side by side, and one child of a node tested with all of them.
+
+use super::hull::Hull;
+use crate::bvh8::node::Node;
+use crate::bvh8::traverse::Slabs;
+use crate::cull::{CullBounds, CullClock, CullLanes, LONGEST_QUICK, MOST_RECIPROCAL, QUICK_SLACK};
+use crate::packet::{PACKET, Packet, lanes_of};
+use strahl_math::Interval;
+use strahl_simd::{Isa, Lanes16};
+
+/// All lanes, as bits.
+const ALL: u32 = (1 << PACKET) - 1;
+
+/// The constants of the culling test by lane.
+pub(super) struct Lanes {
+    rd: [Lanes16; 3],
+    minus_near: [Lanes16; 3],
+    minus_far: [Lanes16; 3],
+    t_min: Lanes16,
+    /// The upper ends of the ranges.
+    far: Lanes16,
+    pub(super) clocks: [CullClock; PACKET],
+}
+
+/// The factor 20u of the error bound of constants relative to a point.
+const RELATIVE_SLACK: f64 = 20.0 / (1u64 << 24) as f64;
+
+impl Lanes {
+    /// The constants of no rays.
+    #[inline(always)]
+    pub(super) fn unused() -> Self {
+        let nothing = Lanes16([0.0; PACKET]);
+        Self {
+            rd: [nothing; 3],
+            minus_near: [nothing; 3],
+            minus_far: [nothing; 3],
+            t_min: nothing,
+            far: Lanes16([f32::NEG_INFINITY; PACKET]),
+            clocks: [CullClock::UNUSED; PACKET],
+        }
+    }
+
+    /// Makes the constants of all rays at once, side by side in f32, if all are ordinary and go in the same octant; returns their hull and
+    /// that octant.
+    ///
+    /// They are those of [`crate::cull::QuickLanes`], where the error bound is derived. Planes relative to a point f are crossed at
+    /// `(b - f) r + (f - o) r`. In units of u|r| rounding changes the first product by at most 5|b - f| with what the loop adds, the second by
+    /// 6|f - o| and, for o, |o|: together by less than 5B + 7|o| + 11|f|, for which 20(B + |o| + |f|) has room.
+    #[inline(always)]
+    pub(super) fn fill<I: Isa>(
+        &mut self,
+        isa: I,
+        packet: &Packet<'_>,
+        bounds: &CullBounds,
+        point: [f32; 3],
+    ) -> Option<(Hull, usize)> {
+        let first = packet.rays.get(packet.alive().trailing_zeros() as usize)?;
+        let nothing = Lanes16([0.0; PACKET]);
+        let (mut origins, mut directions) = ([nothing; 3], [nothing; 3]);
+        let plain = CullClock::UNUSED;
+        for lane in 0..PACKET {
+            // Lanes without a ray repeat one: they change no hull.
+            let t_max = packet.t_max[lane];
+            let ray = match packet.rays.get(lane) {
+                Some(ray) if t_max > f64::NEG_INFINITY => {
+                    self.far.0[lane] = plain.t_max(t_max);
+                    ray
+                }
+                _ => first,
+            };
+            for axis in 0..3 {
+                origins[axis].0[lane] = ray.origin[axis] as f32;
+                directions[axis].0[lane] = ray.direction[axis] as f32;
+            }
+        }
+        let near = isa.splat_f32x16(bounds.near());
+        let (longest, shortest) = (
+            isa.splat_f32x16(LONGEST_QUICK),
+            isa.splat_f32x16(1.0 / LONGEST_QUICK),
+        );
+        let (mut usable, mut long) = (ALL, 0);
+        for axis in 0..3 {
+            let distance = isa.abs_f32x16(isa.load_f32x16(&origins[axis]));
+            let length = isa.abs_f32x16(isa.load_f32x16(&directions[axis]));
+            usable &= isa.le_f32x16(distance, near) & isa.le_f32x16(length, longest);
+            long |= isa.le_f32x16(shortest, length);
+        }
+        if usable & long != ALL {
+            return None;
+        }
+        let (zero, one) = (isa.splat_f32x16(0.0), isa.splat_f32x16(1.0));
+        let most = isa.splat_f32x16(MOST_RECIPROCAL as f32);
+        let least = isa.sub_f32x16(zero, most);
+        let slack = isa.splat_f32x16(QUICK_SLACK as f32);
+        let relative_slack = isa.splat_f32x16(RELATIVE_SLACK as f32);
+        let margin = isa.splat_f32x16(bounds.margin());
+        let t_min = plain.t_min(packet.min);
+        let mut hull = Hull {
+            t_min,
+            ..Hull::NOTHING
+        };
+        let mut octant = 0;
+        for axis in 0..3 {
+            let o = isa.load_f32x16(&origins[axis]);
+            let r = isa.div_f32x16(one, isa.load_f32x16(&directions[axis]));
+            let r = isa.max_f32x16(isa.min_f32x16(r, most), least);
+            match isa.lt_f32x16(r, zero) {
+                0 => {}
+                ALL => octant |= 1 << axis,
+                _ => return None,
+            }
+            let (size, distance) = (isa.abs_f32x16(r), isa.abs_f32x16(o));
+            let reach = isa.mul_add_f32x16(distance, slack, margin);
+            let e = isa.mul_f32x16(size, reach);
+            let minus_o = isa.sub_f32x16(zero, o);
+            self.rd[axis] = isa.store_f32x16(r);
+            self.minus_near[axis] = isa.store_f32x16(isa.mul_sub_f32x16(minus_o, r, e));
+            self.minus_far[axis] = isa.store_f32x16(isa.mul_add_f32x16(minus_o, r, e));
+            let f = point[axis];
+            let rest = RELATIVE_SLACK * (bounds.max_abs() + f64::from(f.abs()));
+            let reach = isa.mul_add_f32x16(distance, relative_slack, isa.splat_f32x16(rest as f32));
+            let e = isa.mul_f32x16(size, reach);
+            let way = isa.sub_f32x16(isa.splat_f32x16(f), o);
+            hull.rd[axis] = [isa.smallest_f32x16(r), isa.largest_f32x16(r)];
+            hull.shift[axis] = [
+                isa.smallest_f32x16(isa.mul_sub_f32x16(way, r, e)),
+                isa.largest_f32x16(isa.mul_add_f32x16(way, r, e)),
+            ];
+        }
+        self.t_min = Lanes16([t_min; PACKET]);
+        Some((hull, octant))
+    }
+
+    /// Takes the constants of a single ray, whatever it is like.
+    #[inline(always)]
+    pub(super) fn set(
+        &mut self,
+        lane: usize,
+        constants: &CullLanes,
+        clock: CullClock,
+        range: Interval,
+    ) {
+        for axis in 0..3 {
+            self.rd[axis].0[lane] = constants.rd[axis];
+            self.minus_near[axis].0[lane] = constants.minus_near[axis];
+            self.minus_far[axis].0[lane] = constants.minus_far[axis];
+        }
+        self.t_min.0[lane] = clock.t_min(range.min);
+        self.far.0[lane] = clock.t_max(range.max);
+        self.clocks[lane] = clock;
+    }
+
+    /// Which rays may meet the box of a child.
+    #[inline(always)]
+    pub(super) fn enter<I: Isa>(
+        &self,
+        isa: I,
+        node: &Node,
+        child: usize,
+        first: [usize; 3],
+    ) -> u32 {
+        let [x, y, z] = [
+            self.crossed(isa, node, child, 0, first[0], &self.minus_near),
+            self.crossed(isa, node, child, 1, 2 + first[1], &self.minus_near),
+            self.crossed(isa, node, child, 2, 4 + first[2], &self.minus_near),
+        ];
+        let t_min = isa.load_f32x16(&self.t_min);
+        let enter = isa.max_f32x16(isa.max_f32x16(x, y), isa.max_f32x16(z, t_min));
+        let [x, y, z] = [
+            self.crossed(isa, node, child, 0, 1 - first[0], &self.minus_far),
+            self.crossed(isa, node, child, 1, 3 - first[1], &self.minus_far),
+            self.crossed(isa, node, child, 2, 5 - first[2], &self.minus_far),
+        ];
+        let far = isa.load_f32x16(&self.far);
+        let leave = isa.min_f32x16(isa.min_f32x16(x, y), isa.min_f32x16(z, far));
+        isa.le_f32x16(enter, leave)
+    }
+
+    /// Where the rays cross a plane of a child.
+    #[inline(always)]
+    fn crossed<I: Isa>(
+        &self,
+        isa: I,
+        node: &Node,
+        child: usize,
+        axis: usize,
+        plane: usize,
+        shift: &[Lanes16; 3],
+    ) -> I::F32x16 {
+        let plane = isa.splat_f32x16(node.planes[plane].0[child]);
+        let rd = isa.load_f32x16(&self.rd[axis]);
+        isa.mul_add_f32x16(plane, rd, isa.load_f32x16(&shift[axis]))
+    }
+
+    /// The constants of a single ray.
+    #[inline(always)]
+    pub(super) fn slabs<I: Isa>(&self, isa: I, lane: usize, octant: usize) -> Slabs<I> {
+        Slabs::of(
+            isa,
+            of_lane(&self.rd, lane),
+            of_lane(&self.minus_near, lane),
+            of_lane(&self.minus_far, lane),
+            octant as u32,
+            self.t_min.0[lane],
+        )
+    }
+
+    /// A hit was found: nothing behind it is of interest.
+    #[inline(always)]
+    pub(super) fn lower(&mut self, lane: usize, t_max: f64) {
+        let far = if t_max == f64::NEG_INFINITY {
+            f32::NEG_INFINITY
+        } else {
+            self.clocks[lane].t_max(t_max)
+        };
+        self.far.0[lane] = far;
+    }
+
+    /// The last parameter that any of some rays is interested in.
+    #[inline(always)]
+    pub(super) fn farthest(&self, lanes: u32) -> f32 {
+        lanes_of(lanes).fold(f32::NEG_INFINITY, |most, lane| {
+            let far = self.far.0[lane];
+            if far > most { far } else { most }
+        })
+    }
+}
+
+/// The numbers of one lane.
+#[inline(always)]
+fn of_lane(axes: &[Lanes16; 3], lane: usize) -> [f32; 4] {
+    [axes[0].0[lane], axes[1].0[lane], axes[2].0[lane], 0.0]
+}
