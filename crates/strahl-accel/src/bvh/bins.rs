@@ -88,8 +88,8 @@ pub(crate) struct Bins {
     unit: f32,
 }
 
-impl Bins {
-    pub(crate) fn new() -> Self {
+impl Default for Bins {
+    fn default() -> Self {
         Self {
             boxes: [[Box32::EMPTY; 3]; BINS],
             counts: [[0; 4]; BINS],
@@ -99,7 +99,9 @@ impl Bins {
             unit: 1.0,
         }
     }
+}
 
+impl Bins {
     /// Sorts a set into bins; its boxes span `bounds`, its doubled centres `centers`. Of large sets, what fell into the bins by chunks.
     pub(crate) fn fill(&mut self, refs: &[Ref], bounds: &Box32, centers: &Box32) -> Vec<Self> {
         self.used = Binning::count(refs.len());
@@ -115,7 +117,7 @@ impl Bins {
             let mut bins = Self {
                 binning,
                 used,
-                ..Self::new()
+                ..Self::default()
             };
             bins.add(chunk);
             bins

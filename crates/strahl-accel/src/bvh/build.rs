@@ -86,7 +86,7 @@ impl Parts {
         Self {
             nodes: Vec::new(),
             ids: Vec::new(),
-            bins: Bins::new(),
+            bins: Bins::default(),
         }
     }
 

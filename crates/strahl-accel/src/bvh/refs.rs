@@ -100,6 +100,11 @@ impl Extent {
         parts.reduce(|| Self::EMPTY, Self::joined)
     }
 
+    /// The lowest class in it; in a leaf there is no other.
+    pub(crate) fn lowest_class(&self) -> u8 {
+        self.classes.trailing_zeros() as u8
+    }
+
     fn joined(mut self, other: Self) -> Self {
         self.bounds.grow(&other.bounds);
         self.centers.grow(&other.centers);

@@ -110,14 +110,9 @@ impl<'a> Set<'a> {
         Ok(self.at(&plane, bins, &chunks))
     }
 
-    /// By class while there is more than one, then in the middle of the list.
+    /// Its [`middle`] parts them.
     fn halved(self) -> [Self; 2] {
-        let mut middle = self.refs.len() / 2;
-        if !self.extent.classes.is_power_of_two() {
-            let lowest = self.extent.classes.trailing_zeros() as u8;
-            self.refs.sort_unstable_by_key(|r| (r.class(), r.id()));
-            middle = self.refs.partition_point(|r| r.class() == lowest);
-        }
+        let middle = middle(self.refs, &self.extent);
         let (left, right) = self.refs.split_at_mut(middle);
         let (left_spare, right_spare) = self.spare.split_at_mut(middle);
         let half = |refs: &'a mut [Ref], spare| Self {
@@ -162,6 +157,16 @@ impl<'a> Set<'a> {
         };
         [half(left, left_spare, 0), half(right, right_spare, 1)]
     }
+}
+
+/// Where a list is cut that no plane parts: by class while there is more than one, for which it is sorted, then in the middle.
+pub(crate) fn middle(refs: &mut [Ref], extent: &Extent) -> usize {
+    if extent.classes.is_power_of_two() {
+        return refs.len() / 2;
+    }
+    let lowest = extent.lowest_class();
+    refs.sort_unstable_by_key(|r| (r.class(), r.id()));
+    refs.partition_point(|r| r.class() == lowest)
 }
 
 /// Puts primitives in order: those left of a plane first, then the others backwards. Returns how many are left.

@@ -98,10 +98,6 @@ impl Tree {
 impl Subtree for Set<'_> {
     type Scratch = Bins;
 
-    fn scratch() -> Bins {
-        Bins::new()
-    }
-
     fn bounds(&self) -> &Box32 {
         &self.extent.bounds
     }
@@ -115,7 +111,7 @@ impl Subtree for Set<'_> {
     }
 
     fn class(&self) -> u8 {
-        self.extent.classes.trailing_zeros() as u8
+        self.extent.lowest_class()
     }
 
     fn ids(&self, into: &mut Vec<u32>) {

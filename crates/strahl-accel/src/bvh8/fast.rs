@@ -325,8 +325,6 @@ struct Branch<'a> {
 impl Subtree for Branch<'_> {
     type Scratch = ();
 
-    fn scratch() {}
-
     fn bounds(&self) -> &Box32 {
         &self.cluster.bounds
     }

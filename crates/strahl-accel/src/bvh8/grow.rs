@@ -28,10 +28,7 @@ const WITHIN: LeafModel = LeafModel {
 /// Primitives that will be a child; at least one.
 pub(super) trait Subtree: Sized + Send {
     /// Memory to work with, of one thread.
-    type Scratch: Send;
-
-    /// New memory to work with.
-    fn scratch() -> Self::Scratch;
+    type Scratch: Default + Send;
 
     /// What their boxes span.
     fn bounds(&self) -> &Box32;
@@ -98,7 +95,7 @@ impl<S: Subtree> Parts<S> {
         Self {
             nodes: Vec::new(),
             slots: Vec::new(),
-            scratch: S::scratch(),
+            scratch: S::Scratch::default(),
         }
     }
 

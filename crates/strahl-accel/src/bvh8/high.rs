@@ -12,7 +12,7 @@ use crate::boxes::Box32;
 use crate::bvh::MAX_DEPTH;
 use crate::bvh::bins::{Bins, Plane};
 use crate::bvh::refs::{Extent, Ref};
-use crate::bvh::split::{LeafModel, blocks};
+use crate::bvh::split::{LeafModel, blocks, middle};
 
 /// Space is cut where the halves of a set overlap by more than this part of its area,
 const OVERLAP: f64 = 0.1;
@@ -137,14 +137,9 @@ impl<'a> Pieces<'a> {
         self.halves([left, right])
     }
 
-    /// By class while there is more than one, then in the middle of the list.
+    /// Its [`middle`] parts them.
     fn halved(mut self) -> [Self; 2] {
-        let mut middle = self.refs.len() / 2;
-        if !self.extent.classes.is_power_of_two() {
-            let lowest = self.extent.classes.trailing_zeros() as u8;
-            self.refs.sort_unstable_by_key(|r| (r.class(), r.id()));
-            middle = self.refs.partition_point(|r| r.class() == lowest);
-        }
+        let middle = middle(&mut self.refs, &self.extent);
         let parts = [self.refs[..middle].to_vec(), self.refs[middle..].to_vec()];
         self.halves(parts)
     }
@@ -152,10 +147,6 @@ impl<'a> Pieces<'a> {
 
 impl Subtree for Pieces<'_> {
     type Scratch = Bins;
-
-    fn scratch() -> Bins {
-        Bins::new()
-    }
 
     fn bounds(&self) -> &Box32 {
         &self.extent.bounds
@@ -184,7 +175,7 @@ impl Subtree for Pieces<'_> {
     }
 
     fn class(&self) -> u8 {
-        self.extent.classes.trailing_zeros() as u8
+        self.extent.lowest_class()
     }
 
     fn ids(&self, into: &mut Vec<u32>) {
