@@ -3,7 +3,7 @@ use super::node::{Child, Nodes, WIDTH, WideNode};
 use super::{Bvh8, Tree};
 use crate::bvh::MAX_DEPTH;
 use crate::bvh::watch::BoxTree;
-use crate::cull::{CullClock, QuickLanes};
+use crate::cull::{CullClock, CullLanes, QuickLanes};
 use crate::list::visit_all;
 use crate::traversal::Leaf;
 use crate::{Accelerator, Beam, Packet, PacketVisitor, TraversalStats, Visitor};
@@ -128,6 +128,12 @@ fn spread<I: Isa>(isa: I, v: I::F32x8) -> [I::F32x8; 3] {
     [isa.spread::<0>(v), isa.spread::<1>(v), isa.spread::<2>(v)]
 }
 
+/// Three numbers, each in a vector of its own.
+#[inline(always)]
+fn splats<I: Isa>(isa: I, [x, y, z, _]: [f32; 4]) -> [I::F32x8; 3] {
+    [isa.splat_f32(x), isa.splat_f32(y), isa.splat_f32(z)]
+}
+
 /// Per axis which of two planes is met first.
 #[inline(always)]
 pub(super) fn sides(down: u32) -> [usize; 3] {
@@ -157,33 +163,14 @@ impl<I: Isa> Slabs<I> {
         }
     }
 
-    /// Of the constants of the axes; `down` has a bit for each along which the ray goes down.
+    /// Of the constants of a ray by axis; `t_min` as the clock tells it.
     #[inline(always)]
-    pub(super) fn of(
-        isa: I,
-        rd: [f32; 4],
-        near: [f32; 4],
-        far: [f32; 4],
-        down: u32,
-        t_min: f32,
-    ) -> Self {
+    pub(super) fn of(isa: I, lanes: &CullLanes, t_min: f32) -> Self {
         Self {
-            rd: [
-                isa.splat_f32(rd[0]),
-                isa.splat_f32(rd[1]),
-                isa.splat_f32(rd[2]),
-            ],
-            minus_near: [
-                isa.splat_f32(near[0]),
-                isa.splat_f32(near[1]),
-                isa.splat_f32(near[2]),
-            ],
-            minus_far: [
-                isa.splat_f32(far[0]),
-                isa.splat_f32(far[1]),
-                isa.splat_f32(far[2]),
-            ],
-            first: sides(down),
+            rd: splats(isa, lanes.rd),
+            minus_near: splats(isa, lanes.minus_near),
+            minus_far: splats(isa, lanes.minus_far),
+            first: sides(lanes.down),
             t_min: isa.splat_f32(t_min),
         }
     }

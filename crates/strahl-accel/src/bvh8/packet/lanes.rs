@@ -195,14 +195,13 @@ impl Lanes {
     /// The constants of a single ray.
     #[inline(always)]
     pub(super) fn slabs<I: Isa>(&self, isa: I, lane: usize, octant: usize) -> Slabs<I> {
-        Slabs::of(
-            isa,
-            of_lane(&self.rd, lane),
-            of_lane(&self.minus_near, lane),
-            of_lane(&self.minus_far, lane),
-            octant as u32,
-            self.t_min.0[lane],
-        )
+        let constants = CullLanes {
+            rd: of_lane(&self.rd, lane),
+            minus_near: of_lane(&self.minus_near, lane),
+            minus_far: of_lane(&self.minus_far, lane),
+            down: octant as u32,
+        };
+        Slabs::of(isa, &constants, self.t_min.0[lane])
     }
 
     /// A hit was found: nothing behind it is of interest.
