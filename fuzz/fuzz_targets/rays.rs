@@ -1,4 +1,5 @@
-//! Any scene and any rays: every structure, every level of vector instructions and every packet finds the same hits.
+//! Any scene and any rays: every structure, every level of vector instructions and every packet finds the same hits. A third of the
+//! scenes are rendered too, for the rays that start on things.
 
 #![no_main]
 
@@ -51,24 +52,36 @@ impl Choices<'_> {
         }
     }
 
-    fn object(&mut self, scale: f64) -> Object {
-        let material = match self.below(4) {
+    fn material(&mut self) -> Material {
+        match self.below(4) {
             0 => Material::glass(1.5),
+            1 => Material::mirror(Color::gray(0.8)),
             _ => Material::matte(Color::WHITE),
+        }
+    }
+
+    fn sphere(&mut self) -> Object {
+        Sphere::new(self.point(), self.number()).into()
+    }
+
+    fn mesh(&mut self) -> Object {
+        let data = strahl::geometry::MeshData {
+            positions: (0..6).map(|_| self.point().as_vec3().to_array()).collect(),
+            indices: (0..5)
+                .map(|i| [i % 6, (i + 1) % 6, (i * 2 + 2) % 6])
+                .collect(),
+            ..Default::default()
         };
-        let object = match self.below(9) {
+        match TriangleMesh::try_new(data) {
+            Ok(mesh) => mesh.into(),
+            Err(_) => self.solid(),
+        }
+    }
+
+    fn object(&mut self) -> Object {
+        match self.below(9) {
             0 => Triangle::new(self.point(), self.point(), self.point()).into(),
-            1 | 2 => {
-                let data = strahl::geometry::MeshData {
-                    positions: (0..6).map(|_| self.point().as_vec3().to_array()).collect(),
-                    indices: (0..5).map(|i| [i % 6, (i + 1) % 6, (i * 2 + 2) % 6]).collect(),
-                    ..Default::default()
-                };
-                match TriangleMesh::try_new(data) {
-                    Ok(mesh) => mesh.into(),
-                    Err(_) => self.solid(),
-                }
-            }
+            1 | 2 => self.mesh(),
             3 => Plane::new(self.point(), DVec3::Y).into(),
             4 => {
                 let op = [CsgOp::Union, CsgOp::Difference, CsgOp::Intersection][self.below(3)];
@@ -76,10 +89,24 @@ impl Choices<'_> {
                 Object::csg(op, (0..count).map(|_| self.solid()).collect())
             }
             5 => self.solid(),
-            _ => Sphere::new(self.point(), self.number()).into(),
-        };
+            _ => self.sphere(),
+        }
+    }
+
+    /// Objects of all kinds, or of one kind and material: such are searched in another way.
+    fn scene(&mut self, scale: f64) -> Scene {
         let scaled = Transform::try_scale(DVec3::splat(scale)).expect("a scale that is not 0");
-        object.material(material).transformed(&scaled)
+        let (kind, common) = (self.below(6), self.material());
+        let mut scene = Scene::new();
+        for _ in 0..=self.below(24) {
+            let (object, material) = match kind {
+                0 => (self.sphere(), common.clone()),
+                1 => (self.mesh(), common.clone()),
+                _ => (self.object(), self.material()),
+            };
+            scene = scene.add(object.material(material).transformed(&scaled));
+        }
+        scene
     }
 }
 
@@ -100,19 +127,43 @@ fn kinds() -> Vec<AcceleratorKind> {
 fuzz_target!(|data: &[u8]| {
     let mut choices = Choices(data);
     let scale = [1.0, 1e-3, 1e5][choices.below(3)];
-    let mut scene = Scene::new();
-    for _ in 0..=choices.below(24) {
-        scene = scene.add(choices.object(scale));
+    let mut scene = choices.scene(scale);
+    let eye = choices.point() * scale * 2.0;
+    let rendered = choices.below(3) == 0;
+    if rendered {
+        let place = if eye == DVec3::ZERO {
+            DVec3::new(5.0, 4.0, 3.0) * scale
+        } else {
+            eye
+        };
+        scene = scene
+            .camera(Camera::perspective(
+                place,
+                DVec3::ZERO,
+                DVec3::new(0.3, 1.0, 0.2),
+                0.9,
+            ))
+            .light(Light::point(
+                choices.point() * scale * 3.0,
+                Color::gray(0.7),
+            ))
+            .light(Light::directional(
+                DVec3::new(-0.6, -1.0, 0.3),
+                Color::gray(0.5),
+            ));
     }
     // A scene with a shape that can't be is none.
     let Ok(prepared) = Prepared::new(&scene) else {
         return;
     };
-    let eye = choices.point() * scale * 2.0;
     let from_eye = choices.below(2) == 0;
     let mut rays = Vec::new();
     while rays.len() < PACKET {
-        let origin = if from_eye { eye } else { choices.point() * scale };
+        let origin = if from_eye {
+            eye
+        } else {
+            choices.point() * scale
+        };
         let direction = choices.point() * scale - origin;
         if direction != DVec3::ZERO {
             rays.push(Ray::new(origin, direction));
@@ -123,22 +174,39 @@ fuzz_target!(|data: &[u8]| {
     let range = [Interval::FORWARD, Interval::UNTIL_LIGHT][choices.below(2)];
     type Answers = (Vec<Option<Hit>>, Vec<bool>);
     let mut first: Option<Answers> = None;
+    let mut film: Option<(Film, u64)> = None;
     for kind in kinds() {
         let scene = prepared.clone().build(kind);
         let mut tracer = Tracer::new(&scene);
         let class = RayClass::Camera;
-        let closest = rays.iter().map(|r| tracer.closest_hit(r, range, None, class));
+        let closest = rays
+            .iter()
+            .map(|r| tracer.closest_hit(r, range, None, class));
         let closest: Vec<_> = closest.collect();
-        let any: Vec<_> = rays.iter().map(|r| tracer.any_opaque(r, range, None)).collect();
+        let any: Vec<_> = rays
+            .iter()
+            .map(|r| tracer.any_opaque(r, range, None))
+            .collect();
         let mut together = [None; PACKET];
         let nowhere = [None; PACKET];
         tracer.closest_hits(&rays, range, &nowhere, class, &mut together);
         assert_eq!(together[..rays.len()], closest, "{kind}: packets");
         let bits = tracer.any_opaques(&rays, range, &nowhere);
-        let told = any.iter().enumerate().fold(0, |b, (i, a)| b | u32::from(*a) << i);
+        let told = any
+            .iter()
+            .enumerate()
+            .fold(0, |b, (i, a)| b | u32::from(*a) << i);
         assert_eq!(bits, told, "{kind}: packets, any");
         let answers = (closest, any);
         let expected = first.get_or_insert_with(|| answers.clone());
         assert_eq!(&answers, expected, "{kind}");
+        if rendered {
+            let mut options = RenderOptions::new(&scene, 8, 8);
+            (options.threads, options.trace.max_depth) = (1, 5);
+            let picture = strahl::render(&scene, &options, &()).expect("a small picture");
+            let found = (picture.film, picture.rays.total());
+            let expected = film.get_or_insert_with(|| found.clone());
+            assert!(&found == expected, "{kind}: another picture");
+        }
     }
 });
