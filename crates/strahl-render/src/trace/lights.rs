@@ -74,9 +74,12 @@ impl TreeTracer<'_> {
                 term.shadow_ray = Some(ray);
             }
             if let Some(area) = &scene_light.area {
+                // Copies: what is lent to a function stays in memory, here for the sake of lights that are rare.
+                let (sample, mut seen) = (sample, term);
                 self.area_light(
-                    area, &sample, surface, hit, model, light, branch, node, &mut term, observer,
+                    area, &sample, surface, hit, model, light, branch, node, &mut seen, observer,
                 );
+                term = seen;
                 if area.illumination {
                     return term;
                 }
