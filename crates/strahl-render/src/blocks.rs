@@ -182,10 +182,18 @@ impl Blocks {
         self.fetches
     }
 
-    /// The blocks of triangles of meshes in the order of the leaves, if there are no others.
+    /// The blocks in the order of the leaves, if all are of one kind that is searched by itself.
     #[inline(always)]
-    pub(crate) fn only_of_meshes(&self) -> Option<&[TriangleBlock<f32>]> {
-        (self.places.is_empty() && !self.mesh.is_empty()).then_some(&self.mesh)
+    pub(crate) fn of_one_kind(&self) -> Option<OneKind<'_>> {
+        if !self.places.is_empty() {
+            None
+        } else if !self.mesh.is_empty() {
+            Some(OneKind::Triangles(&self.mesh))
+        } else if !self.spheres.is_empty() {
+            Some(OneKind::Spheres(&self.spheres))
+        } else {
+            None
+        }
     }
 
     /// Whether there are spheres among them.
@@ -234,6 +242,14 @@ impl Blocks {
             self.places[block] as usize
         }
     }
+}
+
+/// All blocks of a group that has but one kind of them.
+#[derive(Clone, Copy)]
+pub(crate) enum OneKind<'b> {
+    /// Of meshes.
+    Triangles(&'b [TriangleBlock<f32>]),
+    Spheres(&'b [SphereBlock]),
 }
 
 /// Flat things that are tested together.

@@ -1,7 +1,7 @@
 mod kinds;
 mod leaves;
 mod packet;
-mod triangles;
+mod plain;
 
 use crate::blocks::{Blocks, Fetched, LeafClass};
 use crate::hit::{Hit, Origin, RayClass};
@@ -9,13 +9,13 @@ use crate::prim::{Prim, PrimKind};
 use crate::scene::{InstanceUse, RenderGroup, RenderScene};
 use crate::walk::WalkEvent;
 use kinds::{AnyOpaque, Closest, Query, Transmitting, Watched};
+use plain::Plain;
 use strahl_accel::{Accelerator, AnyAccelerator, Leaf, Step, TraversalStats, Visitor};
 use strahl_geometry::blocks::{SphereBlock, TriangleBlock};
 use strahl_geometry::{PrimHit, Primitive, RayShear, Scratch, SurfaceId};
 use strahl_math::{Interval, Ray};
 use strahl_shade::Sides;
-use strahl_simd::{Isa, dispatch};
-use triangles::PlainTriangles;
+use strahl_simd::Isa;
 
 /// Asks a scene what its rays meet; owns the working memory of one thread.
 #[derive(Debug)]
@@ -217,24 +217,25 @@ impl<Q: Query> Search<'_, '_, Q> {
         let plain = group
             .common
             .is_some_and(|(visible, flags)| visible & self.class != 0 && Q::is_plain(flags));
-        let mut triangles = None;
+        let mut alone = None;
         if plain
             && !Q::WATCHES
             && let AnyAccelerator::Bvh8(bvh) = accelerator
-            && let Some(blocks) = blocks.only_of_meshes()
+            && let Some(blocks) = blocks.of_one_kind()
             && bvh.has_leaves_only()
         {
-            let searched = PlainTriangles {
+            let searched = Plain {
                 bvh,
                 blocks,
                 first_ids: group.first_ids.as_deref(),
                 from_prim,
                 base,
             };
-            if first == NONE {
-                return dispatch!(bvh.proof(), isa => searched.search(isa, ray, range, self));
+            let again = searched.may_meet_again(group, ray, range.min);
+            if first == NONE && !again {
+                return searched.search(ray, range, self);
             }
-            triangles = Some(searched);
+            alone = Some((searched, again));
         }
         let mut stats = TraversalStats::default();
         let shear = if sheared {
@@ -260,11 +261,17 @@ impl<Q: Query> Search<'_, '_, Q> {
             visitor.visit(first, range.max);
         }
         if visitor.t_max != f64::NEG_INFINITY {
-            if let Some(searched) = triangles {
-                let range = range.with_max(visitor.t_max);
+            if let Some((searched, again)) = alone {
+                let mut t_max = visitor.t_max;
+                if again {
+                    stats.primitive_tests += 1;
+                    t_max = visitor.visit(from_prim, t_max);
+                }
                 *self.stats += stats;
-                let simd = searched.bvh.proof();
-                return dispatch!(simd, isa => searched.search(isa, ray, range, self));
+                if t_max == f64::NEG_INFINITY {
+                    return t_max;
+                }
+                return searched.search(ray, range.with_max(t_max), self);
             }
             accelerator.traverse(ray, range, &mut visitor, &mut stats);
         }

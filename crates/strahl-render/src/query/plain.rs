@@ -1,0 +1,167 @@
+//! Searches among nothing but triangles of meshes, or nothing but spheres, of which every hit counts: what most scenes of many
+//! things are, without what others need.
+
+use super::kinds::Query;
+use super::{NONE, Search};
+use crate::blocks::{Block, OneKind};
+use crate::hit::Hit;
+use crate::prim::PrimKind;
+use crate::scene::RenderGroup;
+use strahl_accel::{BLOCK, Bvh8, Leaf, NO_PRIMITIVE, Visitor};
+use strahl_geometry::RayShear;
+use strahl_geometry::blocks::Hits;
+use strahl_math::{Interval, Ray};
+use strahl_simd::{Isa, dispatch};
+
+/// What is searched: primitives of a group, all of them tested in blocks of one kind, and hits on them taken as they are (see
+/// [`Query::is_plain`]).
+#[derive(Clone, Copy)]
+pub(super) struct Plain<'g> {
+    pub(super) bvh: &'g Bvh8,
+    pub(super) blocks: OneKind<'g>,
+    /// First element number of each primitive, if it is not the primitive's own.
+    pub(super) first_ids: Option<&'g [u64]>,
+    /// The primitive the ray starts on: it is not met, not even again.
+    pub(super) from_prim: u32,
+    /// The number of the group's first element.
+    pub(super) base: u64,
+}
+
+impl Plain<'_> {
+    /// Whether the ray may meet again the primitive that it starts on, which a search does not look for.
+    #[inline(always)]
+    pub(super) fn may_meet_again(&self, group: &RenderGroup, ray: &Ray, range_min: f64) -> bool {
+        match self.blocks {
+            OneKind::Triangles(_) => false,
+            OneKind::Spheres(_) if self.from_prim == NONE => false,
+            OneKind::Spheres(_) => {
+                range_min < 0.0 || enters(group, group.prims.at(self.from_prim).kind(), ray)
+            }
+        }
+    }
+
+    /// Searches them; returns the new upper end of the range.
+    #[inline(always)]
+    pub(super) fn search<Q: Query>(
+        &self,
+        ray: &Ray,
+        range: Interval,
+        search: &mut Search<'_, '_, Q>,
+    ) -> f64 {
+        let simd = self.bvh.proof();
+        match self.blocks {
+            OneKind::Triangles(blocks) => {
+                dispatch!(simd, isa => self.walk(isa, blocks, ray, range, search))
+            }
+            OneKind::Spheres(blocks) => {
+                dispatch!(simd, isa => self.walk(isa, blocks, ray, range, search))
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn walk<I: Isa, B: Block, Q: Query>(
+        &self,
+        isa: I,
+        blocks: &[B],
+        ray: &Ray,
+        range: Interval,
+        search: &mut Search<'_, '_, Q>,
+    ) -> f64 {
+        let mut visitor = BlockVisitor {
+            of: self,
+            blocks,
+            ray,
+            shear: if B::CURVED {
+                RayShear::UNUSED
+            } else {
+                RayShear::new(ray)
+            },
+            range_min: range.min,
+            t_max: range.max,
+            query: search.query,
+        };
+        self.bvh
+            .traverse_leaves(isa, ray, range, &mut visitor, search.stats);
+        visitor.t_max
+    }
+
+    #[inline(always)]
+    fn first_id(&self, prim: u32) -> u64 {
+        match self.first_ids {
+            None => u64::from(prim),
+            Some(first) => first.get(prim as usize).copied().unwrap_or_default(),
+        }
+    }
+}
+
+/// Whether a ray that starts on a sphere goes inside.
+#[inline(always)]
+fn enters(group: &RenderGroup, kind: PrimKind, ray: &Ray) -> bool {
+    match kind {
+        PrimKind::Sphere(number) => group.spheres.get(number, &group.blocks).is_entered(ray),
+        // Its own test tells.
+        _ => true,
+    }
+}
+
+struct BlockVisitor<'v, 'g, B, Q> {
+    of: &'v Plain<'g>,
+    /// By the blocks of the leaves.
+    blocks: &'v [B],
+    ray: &'v Ray,
+    shear: RayShear,
+    range_min: f64,
+    t_max: f64,
+    query: &'v mut Q,
+}
+
+impl<B: Block, Q: Query> Visitor for BlockVisitor<'_, '_, B, Q> {
+    const ANY: bool = Q::ANY;
+
+    #[inline(always)]
+    fn visit_leaf<I: Isa>(&mut self, isa: I, leaf: &Leaf<'_>, mut t_max: f64) -> f64 {
+        let first = leaf.first_block;
+        let Some(blocks) = self.blocks.get(first..first + leaf.blocks()) else {
+            return t_max;
+        };
+        for (index, block) in blocks.iter().enumerate() {
+            let mut hits = Hits::default();
+            let range = Interval::new(self.range_min, t_max);
+            let mut lanes = block.hits(isa, self.ray, &self.shear, range, &mut hits);
+            while lanes != 0 {
+                // There are four lanes; said so, the compiler knows it too.
+                let lane = lanes.trailing_zeros() as usize % BLOCK;
+                lanes &= lanes - 1;
+                let prim = leaf.id(index, lane);
+                let t = hits.t[lane];
+                // Another lane may have been closer.
+                if prim == NO_PRIMITIVE || prim == self.of.from_prim || t > t_max {
+                    continue;
+                }
+                let hit = Hit {
+                    t,
+                    id: self.of.base + self.of.first_id(prim),
+                    facet: 0,
+                    uv: [hits.uv[0][lane], hits.uv[1][lane]],
+                };
+                t_max = self.query.take(hit, t_max);
+                self.t_max = t_max;
+                if t_max == f64::NEG_INFINITY {
+                    return t_max;
+                }
+            }
+        }
+        t_max
+    }
+
+    #[inline(always)]
+    fn block_address(&self, block: usize) -> *const u8 {
+        self.blocks.as_ptr().wrapping_add(block).cast()
+    }
+
+    /// Never asked: all primitives are in blocks.
+    fn visit(&mut self, _: u32, t_max: f64) -> f64 {
+        t_max
+    }
+}
