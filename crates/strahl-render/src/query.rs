@@ -231,11 +231,10 @@ impl<Q: Query> Search<'_, '_, Q> {
                 from_prim,
                 base,
             };
-            let again = searched.may_meet_again(group, ray, range.min);
-            if first == NONE && !again {
+            if first == NONE {
                 return searched.search(ray, range, self);
             }
-            alone = Some((searched, again));
+            alone = Some(searched);
         }
         let mut stats = TraversalStats::default();
         let shear = if sheared {
@@ -261,17 +260,10 @@ impl<Q: Query> Search<'_, '_, Q> {
             visitor.visit(first, range.max);
         }
         if visitor.t_max != f64::NEG_INFINITY {
-            if let Some((searched, again)) = alone {
-                let mut t_max = visitor.t_max;
-                if again {
-                    stats.primitive_tests += 1;
-                    t_max = visitor.visit(from_prim, t_max);
-                }
+            if let Some(searched) = alone {
+                let range = range.with_max(visitor.t_max);
                 *self.stats += stats;
-                if t_max == f64::NEG_INFINITY {
-                    return t_max;
-                }
-                return searched.search(ray, range.with_max(t_max), self);
+                return searched.search(ray, range, self);
             }
             accelerator.traverse(ray, range, &mut visitor, &mut stats);
         }

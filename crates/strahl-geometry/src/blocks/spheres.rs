@@ -44,7 +44,7 @@ impl SphereBlock {
     /// Whether a ray that starts on the sphere of a lane goes inside, and so meets it again ahead.
     #[inline]
     pub fn is_entered(&self, lane: usize, ray: &Ray) -> bool {
-        self.sphere(lane).is_entered(ray)
+        (ray.origin - self.center(lane)).dot(ray.direction) < 0.0
     }
 
     /// Where a ray that starts on the sphere of a lane meets it once more in a range, as [`Sphere`] finds it.

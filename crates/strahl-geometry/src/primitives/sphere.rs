@@ -77,12 +77,6 @@ impl Sphere {
         Self::crossings_of(self.center, self.radius.abs(), ray)
     }
 
-    /// Whether a ray that starts on the sphere goes inside, and so meets it again ahead.
-    #[inline(always)]
-    pub fn is_entered(&self, ray: &Ray) -> bool {
-        (ray.origin - self.center).dot(ray.direction) < 0.0
-    }
-
     /// Where the line of a ray that starts on the sphere crosses it once more; `None` for a tangent.
     #[inline(always)]
     pub(crate) fn other_root(center: DVec3, ray: &Ray) -> Option<f64> {

@@ -9,8 +9,25 @@ use std::borrow::Borrow;
 use strahl_accel::{BLOCK, Leaf, NO_PRIMITIVE, Visitor};
 use strahl_geometry::blocks::{Hits, PlaneHits, PolygonBlock};
 use strahl_geometry::{PlaneHit, Shape, SurfaceId};
-use strahl_math::Interval;
+use strahl_math::{Interval, Ray};
 use strahl_simd::Isa;
+
+/// The lane of a block with the primitive that a ray starts on, if the ray may meet that again.
+#[inline(always)]
+pub(super) fn lane_entered<B: Block>(
+    block: &B,
+    leaf: &Leaf<'_>,
+    index: usize,
+    from_prim: u32,
+    ray: &Ray,
+    range_min: f64,
+) -> Option<usize> {
+    if !B::CURVED || from_prim == NONE {
+        return None;
+    }
+    let lane = (0..BLOCK).find(|lane| leaf.id(index, *lane) == from_prim)?;
+    (range_min < 0.0 || block.is_entered(lane, ray)).then_some(lane)
+}
 
 impl<Q: Query> GroupVisitor<'_, '_, '_, Q> {
     /// Tests the primitives of a leaf four at a time.
@@ -115,9 +132,8 @@ impl<Q: Query> GroupVisitor<'_, '_, '_, Q> {
         hits: &mut Hits,
         mut t_max: f64,
     ) -> f64 {
-        if let Some(lane) = self.lane_left::<B>(leaf, index)
-            && (self.range_min < 0.0 || block.is_entered(lane, self.ray))
-        {
+        let (from_prim, ray) = (self.from_prim, self.ray);
+        if let Some(lane) = lane_entered(block, leaf, index, from_prim, ray, self.range_min) {
             // Its own test decides: it knows where the ray starts, which that of the block does not. There is one hit at most.
             let id = self.from_prim;
             t_max = if self.plain || self.is_plain(id, false) {
@@ -159,15 +175,6 @@ impl<Q: Query> GroupVisitor<'_, '_, '_, Q> {
             }
         }
         t_max
-    }
-
-    /// The lane of a block with the primitive that the ray starts on, if the ray may meet that again.
-    #[inline(always)]
-    fn lane_left<B: Block>(&self, leaf: &Leaf<'_>, index: usize) -> Option<usize> {
-        if !B::CURVED || self.from_prim == NONE {
-            return None;
-        }
-        (0..BLOCK).find(|lane| leaf.id(index, *lane) == self.from_prim)
     }
 
     /// Whether a hit on this primitive, which is tested in a block, is taken as it is.

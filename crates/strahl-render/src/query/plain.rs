@@ -1,12 +1,11 @@
 //! Searches among nothing but triangles of meshes, or nothing but spheres, of which every hit counts: what most scenes of many
 //! things are, without what others need.
 
+use super::Search;
 use super::kinds::Query;
-use super::{NONE, Search};
+use super::leaves::lane_entered;
 use crate::blocks::{Block, OneKind};
 use crate::hit::Hit;
-use crate::prim::PrimKind;
-use crate::scene::RenderGroup;
 use strahl_accel::{BLOCK, Bvh8, Leaf, NO_PRIMITIVE, Visitor};
 use strahl_geometry::RayShear;
 use strahl_geometry::blocks::Hits;
@@ -21,25 +20,13 @@ pub(super) struct Plain<'g> {
     pub(super) blocks: OneKind<'g>,
     /// First element number of each primitive, if it is not the primitive's own.
     pub(super) first_ids: Option<&'g [u64]>,
-    /// The primitive the ray starts on: it is not met, not even again.
+    /// The primitive the ray starts on.
     pub(super) from_prim: u32,
     /// The number of the group's first element.
     pub(super) base: u64,
 }
 
 impl Plain<'_> {
-    /// Whether the ray may meet again the primitive that it starts on, which a search does not look for.
-    #[inline(always)]
-    pub(super) fn may_meet_again(&self, group: &RenderGroup, ray: &Ray, range_min: f64) -> bool {
-        match self.blocks {
-            OneKind::Triangles(_) => false,
-            OneKind::Spheres(_) if self.from_prim == NONE => false,
-            OneKind::Spheres(_) => {
-                range_min < 0.0 || enters(group, group.prims.at(self.from_prim).kind(), ray)
-            }
-        }
-    }
-
     /// Searches them; returns the new upper end of the range.
     #[inline(always)]
     pub(super) fn search<Q: Query>(
@@ -95,16 +82,6 @@ impl Plain<'_> {
     }
 }
 
-/// Whether a ray that starts on a sphere goes inside.
-#[inline(always)]
-fn enters(group: &RenderGroup, kind: PrimKind, ray: &Ray) -> bool {
-    match kind {
-        PrimKind::Sphere(number) => group.spheres.get(number, &group.blocks).is_entered(ray),
-        // Its own test tells.
-        _ => true,
-    }
-}
-
 struct BlockVisitor<'v, 'g, B, Q> {
     of: &'v Plain<'g>,
     /// By the blocks of the leaves.
@@ -125,9 +102,19 @@ impl<B: Block, Q: Query> Visitor for BlockVisitor<'_, '_, B, Q> {
         let Some(blocks) = self.blocks.get(first..first + leaf.blocks()) else {
             return t_max;
         };
+        let from_prim = self.of.from_prim;
         for (index, block) in blocks.iter().enumerate() {
-            let mut hits = Hits::default();
             let range = Interval::new(self.range_min, t_max);
+            if let Some(lane) = lane_entered(block, leaf, index, from_prim, self.ray, range.min)
+                && let Some(t) = block.met_again(lane, self.ray, range)
+            {
+                t_max = self.take(from_prim, t, [0.0; 2], t_max);
+                if t_max == f64::NEG_INFINITY {
+                    return t_max;
+                }
+            }
+            let mut hits = Hits::default();
+            let range = range.with_max(t_max);
             let mut lanes = block.hits(isa, self.ray, &self.shear, range, &mut hits);
             while lanes != 0 {
                 // There are four lanes; said so, the compiler knows it too.
@@ -136,17 +123,11 @@ impl<B: Block, Q: Query> Visitor for BlockVisitor<'_, '_, B, Q> {
                 let prim = leaf.id(index, lane);
                 let t = hits.t[lane];
                 // Another lane may have been closer.
-                if prim == NO_PRIMITIVE || prim == self.of.from_prim || t > t_max {
+                if prim == NO_PRIMITIVE || prim == from_prim || t > t_max {
                     continue;
                 }
-                let hit = Hit {
-                    t,
-                    id: self.of.base + self.of.first_id(prim),
-                    facet: 0,
-                    uv: [hits.uv[0][lane], hits.uv[1][lane]],
-                };
-                t_max = self.query.take(hit, t_max);
-                self.t_max = t_max;
+                let uv = [hits.uv[0][lane], hits.uv[1][lane]];
+                t_max = self.take(prim, t, uv, t_max);
                 if t_max == f64::NEG_INFINITY {
                     return t_max;
                 }
@@ -163,5 +144,19 @@ impl<B: Block, Q: Query> Visitor for BlockVisitor<'_, '_, B, Q> {
     /// Never asked: all primitives are in blocks.
     fn visit(&mut self, _: u32, t_max: f64) -> f64 {
         t_max
+    }
+}
+
+impl<B, Q: Query> BlockVisitor<'_, '_, B, Q> {
+    #[inline(always)]
+    fn take(&mut self, prim: u32, t: f64, uv: [f64; 2], t_max: f64) -> f64 {
+        let hit = Hit {
+            t,
+            id: self.of.base + self.of.first_id(prim),
+            facet: 0,
+            uv,
+        };
+        self.t_max = self.query.take(hit, t_max);
+        self.t_max
     }
 }
