@@ -240,11 +240,12 @@ impl Samples {
 }
 
 impl Job<'_> {
-    /// Traces the tiles of a region on all threads and hands each finished tile to `store`.
-    fn tiles<T: Send>(
+    /// Traces the tiles of a region on all threads (see [`PixelTracer::tile`]) and hands each finished tile to `store`.
+    fn tiles<T: Clone + Send>(
         &mut self,
         region: Region,
         pass: u32,
+        blank: impl Fn(&mut PixelTracer<'_>, u32) -> Option<T> + Sync,
         trace: impl Fn(&mut PixelTracer<'_>, u32, u32) -> T + Sync,
         mut store: impl FnMut(TileResult<T>),
     ) -> Result<(), RenderError> {
@@ -264,7 +265,7 @@ impl Job<'_> {
                 while !progress.cancelled() {
                     let number = next.fetch_add(1, Ordering::Relaxed);
                     let Some(tile) = batch.get(number) else { break };
-                    let result = tracer.tile(*tile, pass, &trace);
+                    let result = tracer.tile(*tile, pass, &blank, &trace);
                     progress.tile(result.counts.total());
                     done.push((number, result));
                 }
@@ -298,6 +299,7 @@ impl Job<'_> {
         self.tiles(
             region,
             0,
+            |tracer, pixels| Some(tracer.blank(pixels)?.mean().to_f32()),
             |tracer, x, y| tracer.pixel(0, x, y).mean().to_f32(),
             |result| {
                 film.set_infos(result.tile, &result.infos);
@@ -318,6 +320,7 @@ impl Job<'_> {
         self.tiles(
             lattice,
             0,
+            |tracer, corners| tracer.tree.same_nothing(corners as usize),
             |tracer, x, y| tracer.corner(x, y),
             |result| {
                 film.set_infos(result.tile, &result.infos);
@@ -365,6 +368,7 @@ impl Job<'_> {
         self.tiles(
             wide,
             0,
+            |tracer, pixels| tracer.blank(pixels),
             |tracer, x, y| tracer.pixel(0, x, y),
             |result| {
                 keep(result.tile, &result.infos);
@@ -392,7 +396,8 @@ impl Job<'_> {
             let refine = |tracer: &mut PixelTracer<'_>, x: u32, y: u32| {
                 rough(x, y).then(|| tracer.pixel(pass, x, y))
             };
-            self.tiles(part, pass, refine, |result| {
+            let blank = |_: &mut PixelTracer<'_>, _| None;
+            self.tiles(part, pass, blank, refine, |result| {
                 for ((x, y), more) in result.tile.positions().zip(result.values) {
                     if let Some(more) = more {
                         let samples = &mut all[wide.index(x, y)];

@@ -24,11 +24,10 @@ struct Ahead {
 }
 
 impl Ahead {
-    /// Begins with the rows below a place.
+    /// Begins with the rows below a place, of which nothing is known.
     fn start(&mut self, x: u32, y: u32) {
         (self.x, self.y) = (x, y);
         self.colors.clear();
-        self.colors.resize((TILE * SQUARE) as usize, None);
     }
 
     fn index(&self, x: u32, y: u32) -> usize {
@@ -37,6 +36,9 @@ impl Ahead {
 
     fn put(&mut self, x: u32, y: u32, color: Color) {
         let index = self.index(x, y);
+        if self.colors.is_empty() {
+            self.colors.resize((TILE * SQUARE) as usize, None);
+        }
         if let Some(place) = self.colors.get_mut(index) {
             *place = Some(color);
         }
@@ -93,10 +95,12 @@ impl<'s> PixelTracer<'s> {
 }
 
 impl PixelTracer<'_> {
-    pub(super) fn tile<T>(
+    /// Traces the pixels of a tile by `trace`. Of so many that see nothing `blank` tells what each is, if it is the same for all.
+    pub(super) fn tile<T: Clone>(
         &mut self,
         tile: Region,
         pass: u32,
+        blank: impl Fn(&mut Self, u32) -> Option<T>,
         trace: impl Fn(&mut Self, u32, u32) -> T,
     ) -> TileResult<T> {
         self.tree.counts = RayCounts::default();
@@ -106,7 +110,6 @@ impl PixelTracer<'_> {
         let sight = self.sight(tile);
         self.ahead.colors.clear();
         let mut pixel = |tracer: &mut Self, x: u32, y: u32| {
-            tracer.blind = sight.is_empty(x, y);
             if !tracer.options.costs {
                 return trace(tracer, x, y);
             }
@@ -132,7 +135,18 @@ impl PixelTracer<'_> {
             {
                 self.look_ahead(tile, y, place, &sight);
             }
-            values.extend((tile.x..tile.x + tile.width).map(|x| pixel(self, x, y)));
+            let end = tile.x + tile.width;
+            for left in (tile.x..end).step_by(SQUARE as usize) {
+                let width = (end - left).min(SQUARE);
+                self.blind = sight.is_empty(left, y);
+                if self.blind
+                    && let Some(value) = blank(self, width)
+                {
+                    values.extend(std::iter::repeat_n(value, width as usize));
+                } else {
+                    values.extend((left..left + width).map(|x| pixel(self, x, y)));
+                }
+            }
         }
         TileResult {
             tile,
@@ -165,6 +179,18 @@ impl PixelTracer<'_> {
         }
     }
 
+    /// The samples that each of so many pixels gets in the first pass if all of them see the same nothing.
+    pub(super) fn blank(&mut self, pixels: u32) -> Option<Samples> {
+        let each = self.options.sampling.places(0, 0, 0, 0).len();
+        let color = self.tree.same_nothing(pixels as usize * each)?;
+        let mut samples = Samples::NONE;
+        for _ in 0..each {
+            samples.sum += color;
+            samples.count += 1;
+        }
+        Some(samples)
+    }
+
     /// The samples of one pass of a pixel.
     // Inline: what is returned in pieces and read as a whole would wait for the stores.
     #[inline(always)]
@@ -172,15 +198,6 @@ impl PixelTracer<'_> {
         let mut samples = Samples::NONE;
         let options = self.options;
         let places = options.sampling.places(pass, x, y, options.seed);
-        if self.blind
-            && let Some(color) = self.tree.same_nothing(places.len())
-        {
-            for _ in places {
-                samples.sum += color;
-                samples.count += 1;
-            }
-            return samples;
-        }
         if let Some(color) = self.ahead.take(x, y) {
             samples.sum += color;
             samples.count += 1;
@@ -257,11 +274,6 @@ impl PixelTracer<'_> {
     }
 
     pub(super) fn corner(&mut self, x: u32, y: u32) -> Color {
-        if self.blind
-            && let Some(color) = self.tree.same_nothing(1)
-        {
-            return color;
-        }
         if let Some(color) = self.ahead.take(x, y) {
             return color;
         }
