@@ -243,15 +243,28 @@ impl Polygon {
     /// the error might change the answer. That far around the point all is on the same side of the lines through all edges.
     #[inline]
     fn locate(&self, point: DVec3, error: f64) -> Option<bool> {
-        let (i, j) = other_axes(self.axis.into());
-        let (x, y) = (point[i], point[j]);
+        match self.axis {
+            0 => self.locate_in::<1, 2>(point, error),
+            1 => self.locate_in::<2, 0>(point, error),
+            _ => self.locate_in::<0, 1>(point, error),
+        }
+    }
+
+    /// The same in the plane of two axes.
+    #[inline]
+    fn locate_in<const I: usize, const J: usize>(&self, point: DVec3, error: f64) -> Option<bool> {
+        let at = point.to_array();
+        let (x, y) = (at[I], at[J]);
         let (mut odd, mut certain) = (false, true);
         let mut look = |ring: &[DVec3]| {
-            let Some(last) = ring.last() else { return };
-            let (mut ax, mut ay) = (last[i] - x, last[j] - y);
+            let Some(last) = ring.last().map(DVec3::to_array) else {
+                return;
+            };
+            let (mut ax, mut ay) = (last[I] - x, last[J] - y);
             // No short cuts: which edge is crossed or near can't be predicted.
             for corner in ring {
-                let (bx, by) = (corner[i] - x, corner[j] - y);
+                let corner = corner.to_array();
+                let (bx, by) = (corner[I] - x, corner[J] - y);
                 let cross = ax * by - ay * bx;
                 certain &= cross.abs() > error * ((bx - ax).abs() + (by - ay).abs());
                 odd ^= ((ay > 0.0) != (by > 0.0)) & ((cross > 0.0) == (by > ay));
@@ -271,10 +284,12 @@ impl Polygon {
     #[inline]
     fn within_height(&self, ray: &Ray, t: f64) -> Option<f64> {
         let k = usize::from(self.axis);
-        let (mut low, mut high) = (self.corners[0][k], self.corners[0][k]);
+        let height = |p: &DVec3| AsRef::<[f64; 3]>::as_ref(p)[k];
+        let (mut low, mut high) = (height(&self.corners[0]), height(&self.corners[0]));
         for corner in &self.corners[1..] {
-            low = if corner[k] < low { corner[k] } else { low };
-            high = if corner[k] > high { corner[k] } else { high };
+            let h = height(corner);
+            low = if h < low { h } else { low };
+            high = if h > high { h } else { high };
         }
         let span = Aabb::clip_axis([low, high], ray.origin[k], ray.direction[k], Interval::LINE)?;
         (span.min <= span.max).then(|| t.clamp(span.min, span.max))
