@@ -9,6 +9,7 @@ use crate::tiles::{TileOrder, tiles};
 use crate::trace::{RayCounts, TraceSettings};
 use pixels::PixelTracer;
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
 use strahl_accel::TraversalStats;
 use strahl_shade::Color;
 
@@ -247,50 +248,45 @@ impl Job<'_> {
         pass: u32,
         blank: impl Fn(&mut PixelTracer<'_>, u32) -> Option<T> + Sync,
         trace: impl Fn(&mut PixelTracer<'_>, u32, u32) -> T + Sync,
-        mut store: impl FnMut(TileResult<T>),
+        mut store: impl FnMut(TileResult<T>) + Send,
     ) -> Result<(), RenderError> {
-        // In batches, so that a large picture does not wait in memory twice.
-        const BATCH: usize = 1024;
         let all = tiles(region, self.options.tile_order);
         self.progress
             .pass(pass, 1 + self.options.sampling.passes(), all.len());
         let (scene, options, progress) = (self.scene, self.options, self.progress);
         let rays = &self.rays;
-        for batch in all.chunks(BATCH) {
-            // Whoever is free takes the next tile.
-            let next = AtomicUsize::new(0);
-            let results = rayon::broadcast(|_| {
-                let mut tracer = PixelTracer::new(scene, rays, options, progress);
-                let mut done = Vec::new();
-                while !progress.cancelled() {
-                    let number = next.fetch_add(1, Ordering::Relaxed);
-                    let Some(tile) = batch.get(number) else { break };
-                    let result = tracer.tile(*tile, pass, &blank, &trace);
-                    progress.tile(result.counts.total());
-                    done.push((number, result));
-                }
-                done
-            });
-            let mut results: Vec<_> = results.into_iter().flatten().collect();
-            if results.len() < batch.len() {
-                return Err(RenderError::Cancelled);
-            }
-            results.sort_by_key(|(number, _)| *number);
-            for (_, result) in results {
-                self.counts += result.counts;
-                self.traversal += result.traversal;
-                if let Some(all) = &mut self.costs {
-                    let film = options.film_region();
-                    for ((x, y), cost) in result.tile.positions().zip(&result.costs) {
-                        if film.contains(x, y) {
-                            all[film.index(x, y)] += *cost;
-                        }
+        let mut stored = 0;
+        let mut take = |result: TileResult<T>| {
+            self.counts += result.counts;
+            self.traversal += result.traversal;
+            if let Some(all) = &mut self.costs {
+                let film = options.film_region();
+                for ((x, y), cost) in result.tile.positions().zip(&result.costs) {
+                    if film.contains(x, y) {
+                        all[film.index(x, y)] += *cost;
                     }
                 }
-                store(result);
             }
+            store(result);
+            stored += 1;
+        };
+        // Whoever is free takes the next tile. They end in any order; what is made of them does not depend on it.
+        let (next, take) = (AtomicUsize::new(0), Mutex::new(&mut take));
+        rayon::broadcast(|_| {
+            let mut tracer = PixelTracer::new(scene, rays, options, progress);
+            while !progress.cancelled() {
+                let number = next.fetch_add(1, Ordering::Relaxed);
+                let Some(tile) = all.get(number) else { break };
+                let result = tracer.tile(*tile, pass, &blank, &trace);
+                progress.tile(result.counts.total());
+                let mut take = take.lock().unwrap_or_else(PoisonError::into_inner);
+                (*take)(result);
+            }
+        });
+        match stored == all.len() {
+            true => Ok(()),
+            false => Err(RenderError::Cancelled),
         }
-        Ok(())
     }
 
     /// One pass is the picture.
@@ -360,7 +356,7 @@ impl Job<'_> {
         region: Region,
         threshold: f64,
         passes: u32,
-        mut keep: impl FnMut(Region, &[PixelInfo]),
+        mut keep: impl FnMut(Region, &[PixelInfo]) + Send,
     ) -> Result<(Region, Vec<Samples>), RenderError> {
         let (width, height) = (self.options.width, self.options.height);
         let wide = region.grown(passes, width, height);
