@@ -1,5 +1,6 @@
-use std::collections::HashMap;
-use std::hash::Hash;
+use hashbrown::hash_table::Entry;
+use hashbrown::{DefaultHashBuilder, HashTable};
+use std::hash::{BuildHasher, Hash};
 use std::sync::Arc;
 use strahl_geometry::{GeometryError, MeshData, TriangleMesh};
 use strahl_math::{DVec2, DVec3};
@@ -28,11 +29,11 @@ impl Vertex {
 /// zero vector and the origin; a reader that mixes both sees to it that this does not show.
 #[derive(Debug, Default)]
 pub(crate) struct MeshParts {
-    positions: Vec<DVec3>,
-    normals: Vec<[f32; 3]>,
-    uvs: Vec<[f32; 2]>,
-    triangles: Vec<[u32; 3]>,
-    lines: Vec<u32>,
+    pub(super) positions: Vec<DVec3>,
+    pub(super) normals: Vec<[f32; 3]>,
+    pub(super) uvs: Vec<[f32; 2]>,
+    pub(super) triangles: Vec<[u32; 3]>,
+    pub(super) lines: Vec<u32>,
 }
 
 impl MeshParts {
@@ -91,64 +92,68 @@ impl MeshParts {
     }
 }
 
-/// Gathers triangles whose corners are found again by a key: corners with the same key become one vertex.
+/// What vertices are told apart by, and all there is to them.
+pub(crate) trait VertexKey: Copy + Eq + Hash + Send + Sync {
+    /// The vertex.
+    fn vertex(self) -> Vertex;
+}
+
+/// Gathers triangles whose corners are found again: equal corners become one vertex.
 #[derive(Debug)]
 pub(crate) struct MeshBuilder<K> {
-    known: HashMap<K, u32>,
-    parts: MeshParts,
+    /// The numbers of the vertices.
+    known: HashTable<u32>,
+    hasher: DefaultHashBuilder,
+    /// In the order of their first corners.
+    pub(super) vertices: Vec<K>,
+    pub(super) triangles: Vec<[u32; 3]>,
+    pub(super) lines: Vec<u32>,
 }
 
 impl<K> Default for MeshBuilder<K> {
     fn default() -> Self {
         Self {
-            known: HashMap::new(),
-            parts: MeshParts::default(),
+            known: HashTable::new(),
+            hasher: DefaultHashBuilder::default(),
+            vertices: vec![],
+            triangles: vec![],
+            lines: vec![],
         }
     }
 }
 
-impl<K: Eq + Hash> MeshBuilder<K> {
-    /// The number of the vertex with this key, which is made if it is new.
-    pub(crate) fn vertex(&mut self, key: K, make: impl FnOnce() -> Vertex) -> u32 {
-        let Self { known, parts } = self;
-        *known.entry(key).or_insert_with(|| parts.push(make()))
+impl<K: VertexKey> MeshBuilder<K> {
+    /// Adds a triangle, which comes from this line of the file.
+    pub(crate) fn triangle(&mut self, corners: [K; 3], line: u32) {
+        let [a, b, c] = corners;
+        let triangle = [self.vertex(a), self.vertex(b), self.vertex(c)];
+        self.triangles.push(triangle);
+        self.lines.push(line);
     }
 
-    /// Adds a triangle of such vertices, which comes from this line of the file.
-    pub(crate) fn triangle(&mut self, vertices: [u32; 3], line: u32) {
-        self.parts.triangle(vertices, line);
-    }
-
-    /// The line of the first triangle and the mesh, if there is any triangle.
-    pub(crate) fn finish(self) -> Option<(u32, Result<Arc<TriangleMesh>, GeometryError>)> {
-        drop(self.known);
-        self.parts.finish()
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn corners_with_one_key_are_one_vertex() {
-        let mut mesh = MeshBuilder::default();
-        let points = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::ONE];
-        for (corners, line) in [([0, 1, 2], 7), ([2, 1, 3], 9)] {
-            let vertices = corners.map(|i| mesh.vertex(i, || Vertex::at(points[i])));
-            mesh.triangle(vertices, line);
-        }
-        let (line, mesh) = mesh.finish().expect("triangles");
-        let mesh = mesh.expect("valid");
-        assert_eq!(
-            (line, mesh.positions().len(), mesh.triangle_count()),
-            (7, 4, 2)
+    #[inline]
+    fn vertex(&mut self, corner: K) -> u32 {
+        let Self {
+            known,
+            hasher,
+            vertices,
+            ..
+        } = self;
+        let hash = hasher.hash_one(corner);
+        let entry = known.entry(
+            hash,
+            |vertex| vertices[*vertex as usize] == corner,
+            |vertex| hasher.hash_one(vertices[*vertex as usize]),
         );
-        assert_eq!(mesh.face_line(1), Some(9));
-    }
-
-    #[test]
-    fn nothing_is_no_mesh() {
-        assert!(MeshBuilder::<u32>::default().finish().is_none());
+        match entry {
+            Entry::Occupied(found) => *found.get(),
+            Entry::Vacant(free) => {
+                // More would take more memory than is reasonable; the mesh is refused then.
+                let vertex = u32::try_from(vertices.len()).unwrap_or(u32::MAX);
+                free.insert(vertex);
+                vertices.push(corner);
+                vertex
+            }
+        }
     }
 }

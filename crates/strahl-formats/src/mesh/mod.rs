@@ -1,6 +1,7 @@
 //! Formats that describe surfaces (OBJ, PLY, STL), and what turns their faces into meshes.
 
 mod builder;
+mod merge;
 pub(crate) mod obj;
 pub(crate) mod ply;
 mod polygon;
@@ -8,8 +9,9 @@ pub(crate) mod stl;
 
 use std::sync::Arc;
 
-pub(crate) use builder::{MeshBuilder, MeshParts, Vertex};
-pub(crate) use polygon::{Triangulator, polygon_normal};
+pub(crate) use builder::{MeshBuilder, MeshParts, Vertex, VertexKey};
+pub(crate) use merge::MeshPieces;
+pub(crate) use polygon::{NO_AREA, Triangulator, polygon_normal};
 
 /// The name of an object that is a whole file: the file's, without folders.
 pub(crate) fn object_name(file: &str) -> Arc<str> {

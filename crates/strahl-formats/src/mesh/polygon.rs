@@ -4,6 +4,9 @@ use strahl_math::{DVec2, DVec3};
 /// Most corners of a polygon that is not convex: cutting ears takes up to quadratic time.
 const MOST_CORNERS: usize = 1 << 16;
 
+/// Why a polygon without area is left out.
+pub(crate) const NO_AREA: &str = "it has no area";
+
 /// The vector area of a closed polygon: along the normal by the right-hand rule, of twice the area's length. (M. Newell's
 /// method; relative to the first corner, so that distance from the origin costs no digits.)
 ///
@@ -49,7 +52,6 @@ impl Triangulator {
         corners: &[DVec3],
         out: &mut Vec<[u32; 3]>,
     ) -> Result<(), &'static str> {
-        const NO_AREA: &str = "it has no area";
         let normal = polygon_normal(corners).ok_or(NO_AREA)?;
         if corners.len() == 3 {
             out.push([0, 1, 2]);

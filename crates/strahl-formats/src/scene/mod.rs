@@ -11,6 +11,7 @@
 //!
 //! A format that describes surfaces only (OBJ, PLY, STL) leaves camera and lights empty: the renderer frames the objects.
 
+pub(crate) mod ahead;
 pub(crate) mod bytes;
 mod detect;
 mod gltf;
@@ -54,7 +55,7 @@ pub fn load_path(path: &Path, format: Option<SceneFormat>) -> Loaded {
         Ok(bytes) => bytes,
         Err(problem) => return Loaded::failed(*problem),
     };
-    let bytes = match bytes::decompressed(Cow::Owned(bytes), &name) {
+    let bytes = match bytes::decompressed(Cow::Borrowed(&bytes), &name) {
         Ok(bytes) => bytes,
         Err(problem) => return Loaded::failed(*problem),
     };

@@ -1,4 +1,3 @@
-use std::collections::HashMap;
 use strahl_scene::{Diagnostic, Severity};
 
 /// A result whose error is already placed; boxed, because it is rare and large.
@@ -14,13 +13,13 @@ pub(crate) struct Report {
     shown: Vec<Diagnostic>,
     errors: usize,
     warnings: usize,
-    /// Repeated warnings: index in `counted` by key.
-    index: HashMap<&'static str, usize>,
+    /// Repeated warnings, by key: a reader has a handful of them.
     counted: Vec<Counted>,
 }
 
 #[derive(Debug)]
 struct Counted {
+    key: &'static str,
     first: Diagnostic,
     count: u64,
 }
@@ -44,14 +43,36 @@ impl Report {
 
     /// Adds a warning that may come up a million times: the first stands for all of its `key`, with their number.
     pub(crate) fn count(&mut self, key: &'static str, make: impl FnOnce() -> Diagnostic) {
-        match self.index.get(key) {
-            Some(&at) => self.counted[at].count += 1,
-            None => {
-                self.index.insert(key, self.counted.len());
-                self.counted.push(Counted {
-                    first: make(),
-                    count: 1,
-                });
+        match self.counted.iter_mut().find(|c| c.key == key) {
+            Some(counted) => counted.count += 1,
+            None => self.counted.push(Counted {
+                key,
+                first: make(),
+                count: 1,
+            }),
+        }
+    }
+
+    /// Adds what was said about what comes next.
+    pub(crate) fn append(&mut self, other: Self) {
+        let room = |n: usize| MOST_SHOWN.saturating_sub(n);
+        let mut room = (room(self.errors), room(self.warnings));
+        self.shown.extend(other.shown.into_iter().filter(|d| {
+            let room = if d.is_error() {
+                &mut room.0
+            } else {
+                &mut room.1
+            };
+            let shown = *room > 0;
+            *room = room.saturating_sub(1);
+            shown
+        }));
+        self.errors += other.errors;
+        self.warnings += other.warnings;
+        for counted in other.counted {
+            match self.counted.iter_mut().find(|c| c.key == counted.key) {
+                Some(known) => known.count += counted.count,
+                None => self.counted.push(counted),
             }
         }
     }
@@ -69,7 +90,10 @@ impl Report {
     /// Whether there was an error, and all that is to be shown: errors first come first, then what was counted.
     pub(crate) fn finish(self) -> (bool, Vec<Diagnostic>) {
         let mut all = self.shown;
-        for Counted { mut first, count } in self.counted {
+        for Counted {
+            mut first, count, ..
+        } in self.counted
+        {
             if count > 1 {
                 first.message = format!("{} ({count} times, this is the first)", first.message);
             }
@@ -108,6 +132,28 @@ mod tests {
         assert_eq!(all[0].message, "error 0");
         assert_eq!(all[20].message, "and 5 more errors");
         assert_eq!(all[21].message, "first a warning");
+    }
+
+    #[test]
+    fn reports_are_as_if_written_one_after_the_other() {
+        let say = |report: &mut Report, from: usize, to: usize| {
+            for i in from..to {
+                report.error(|| Diagnostic::error(format!("error {i}")));
+                report.warning(|| Diagnostic::warning(format!("warning {i}")));
+                report.count(["even", "odd"][i % 2], || {
+                    Diagnostic::warning(format!("number {i}"))
+                });
+            }
+        };
+        for middle in [0, 1, 7, 20, 23, 30] {
+            let (mut one, mut first, mut second) =
+                (Report::default(), Report::default(), Report::default());
+            say(&mut one, 0, 30);
+            say(&mut first, 0, middle);
+            say(&mut second, middle, 30);
+            first.append(second);
+            assert_eq!(first.finish(), one.finish(), "{middle}");
+        }
     }
 
     #[test]

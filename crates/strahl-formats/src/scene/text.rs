@@ -156,6 +156,53 @@ impl<'a> Words<'a> {
         self.word()
     }
 
+    /// The next word as a number, if it is one of not too many digits; if it is anything else, nothing is taken. What
+    /// [`parse_f64`] would say of the word, without looking for its end first.
+    #[inline]
+    pub(crate) fn short_number(&mut self) -> Option<f64> {
+        self.take_if(true, short_number)
+    }
+
+    /// The same if the word is in the line of the last one.
+    #[inline]
+    pub(crate) fn short_number_in_line(&mut self) -> Option<f64> {
+        self.take_if(false, short_number)
+    }
+
+    /// The next word of the line as a whole number, if it is one of at most nine digits; if it is anything else, nothing
+    /// is taken.
+    #[inline]
+    pub(crate) fn short_integer_in_line(&mut self) -> Option<i32> {
+        self.take_if(false, |rest| {
+            let mut number = 0;
+            let length = decimal::digits(rest, &mut number).filter(|n| (1..=9).contains(n))?;
+            Some((i32::try_from(number).ok()?, length))
+        })
+    }
+
+    /// Takes the next word if `read` makes something of its bytes, and tells how many it has.
+    #[inline]
+    fn take_if<T>(&mut self, lines: bool, read: impl Fn(&[u8]) -> Option<(T, usize)>) -> Option<T> {
+        let before = (self.at, self.line);
+        self.skip_blanks(lines);
+        let rest = self.text.bytes.get(self.at..)?;
+        let ends = |length| {
+            rest.get(length)
+                .is_none_or(|b: &u8| is_blank(*b) || is_end(*b))
+        };
+        let Some((value, length)) = read(rest).filter(|(_, length)| ends(*length)) else {
+            (self.at, self.line) = before;
+            return None;
+        };
+        self.last = Some(Word {
+            bytes: &rest[..length],
+            start: self.at,
+            line: self.line,
+        });
+        self.at += length;
+        Some(value)
+    }
+
     /// The next word of the line without taking it.
     pub(crate) fn peek_in_line(&self) -> Option<Word<'a>> {
         self.clone().next_in_line()
@@ -205,9 +252,35 @@ impl<'a> Words<'a> {
             && self.text.bytes.get(at + 1).is_some_and(|b| is_end(*b))
     }
 
+    /// Goes to the next word without taking it; says whether there is one.
+    pub(crate) fn advance(&mut self) -> bool {
+        self.skip_blanks(true);
+        self.at < self.text.bytes.len()
+    }
+
     /// Where the next byte is.
     pub(crate) fn position(&self) -> usize {
         self.at
+    }
+
+    /// The line of the next byte, counted from 1.
+    pub(crate) fn line(&self) -> u32 {
+        self.line
+    }
+
+    /// The same kind of words of the same text from another byte, which is in line `line`.
+    pub(crate) fn from(&self, start: usize, line: u32) -> Self {
+        Self {
+            at: start,
+            line,
+            last: None,
+            ..self.clone()
+        }
+    }
+
+    /// All of the text.
+    pub(crate) fn text(&self) -> &'a [u8] {
+        self.text.bytes
     }
 
     /// The word that was taken last.
@@ -320,17 +393,22 @@ impl NumberError {
     }
 }
 
+/// The number at the front of a text and how many bytes it takes, if it has not too many digits.
+#[inline]
+fn short_number(text: &[u8]) -> Option<(f64, usize)> {
+    match text {
+        [b'-', digits @ ..] => decimal::short(digits).map(|(value, n)| (-value, n + 1)),
+        _ => decimal::short(text),
+    }
+}
+
 /// A finite f64, the nearest to what is written.
 pub(crate) fn parse_f64(word: &[u8]) -> Result<f64, NumberError> {
     // Nearly all numbers are short ones.
-    let (negative, number) = match word {
-        [b'-', rest @ ..] => (true, rest),
-        _ => (false, word),
-    };
-    if let Some((value, length)) = decimal::short(number)
-        && length == number.len()
+    if let Some((value, length)) = short_number(word)
+        && length == word.len()
     {
-        return Ok(if negative { -value } else { value });
+        return Ok(value);
     }
     let text = std::str::from_utf8(word).map_err(|_| NumberError::NotANumber)?;
     let value: f64 = text.parse().map_err(|_| NumberError::NotANumber)?;

@@ -3,6 +3,7 @@ use crate::mesh::{MeshParts, Triangulator, Vertex, object_name, polygon_normal};
 use crate::scene::report::Report;
 use crate::scene::text::Text;
 use std::collections::HashMap;
+use std::ops::Add;
 use std::sync::Arc;
 use strahl_math::{DVec2, DVec3, decimal, det};
 use strahl_scene::{Diagnostic, Object, Span};
@@ -16,15 +17,91 @@ pub(super) struct Corner {
 }
 
 /// How many entries the lists have.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Counts {
     pub(super) positions: usize,
     pub(super) uvs: usize,
     pub(super) normals: usize,
 }
 
-/// Reads `v`, `v/vt`, `v//vn` or `v/vt/vn`.
-pub(super) fn corner(word: &[u8], counts: &Counts) -> Result<Corner, String> {
+impl Add for Counts {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self {
+            positions: self.positions + other.positions,
+            uvs: self.uvs + other.uvs,
+            normals: self.normals + other.normals,
+        }
+    }
+}
+
+/// The numbers of a corner as they are written: from 1 on, or back from the end. 0 is none.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct RawCorner {
+    position: i32,
+    uv: i32,
+    normal: i32,
+}
+
+/// Stands for numbers that are those of no entry, whatever they are.
+const NO_ENTRY: i32 = i32::MIN;
+
+impl RawCorner {
+    /// `v`
+    #[inline]
+    pub(super) fn plain(position: i32) -> Self {
+        Self {
+            position: if position == 0 { NO_ENTRY } else { position },
+            uv: 0,
+            normal: 0,
+        }
+    }
+
+    /// Reads `v`, `v/vt`, `v//vn` or `v/vt/vn`.
+    pub(super) fn parse(word: &[u8]) -> Result<Self, String> {
+        let numbers = numbers(word)?;
+        let small = |number: Option<i64>| match number {
+            None => 0,
+            Some(0) => NO_ENTRY,
+            Some(number) => i32::try_from(number).unwrap_or(NO_ENTRY),
+        };
+        let [position, uv, normal] = numbers.map(small);
+        Ok(Self {
+            position,
+            uv,
+            normal,
+        })
+    }
+
+    /// Finds the entries when the lists are so long.
+    #[inline]
+    pub(super) fn resolve(&self, counts: &Counts) -> Option<Corner> {
+        let optional = |number, count| match number {
+            0 => Some(None),
+            _ => entry(number, count).map(Some),
+        };
+        Some(Corner {
+            position: entry(self.position, counts.positions)?,
+            uv: optional(self.uv, counts.uvs)?,
+            normal: optional(self.normal, counts.normals)?,
+        })
+    }
+}
+
+/// An index into a list of `count` entries, if there is such an entry.
+#[inline]
+fn entry(number: i32, count: usize) -> Option<u32> {
+    let index = match number {
+        NO_ENTRY => return None,
+        1.. => number as usize - 1,
+        _ => count.checked_sub(number.unsigned_abs() as usize)?,
+    };
+    u32::try_from(index).ok().filter(|_| index < count)
+}
+
+/// The numbers of position, texture coordinates and normal.
+fn numbers(word: &[u8]) -> Result<[Option<i64>; 3], String> {
     let mut parts = word.split(|b| *b == b'/');
     let position = parts.next().unwrap_or_default();
     let uv = parts.next().filter(|part| !part.is_empty());
@@ -35,49 +112,56 @@ pub(super) fn corner(word: &[u8], counts: &Counts) -> Result<Corner, String> {
             "expected a corner such as `1`, `1/2`, `1//3` or `1/2/3`, found `{found}`"
         ));
     }
-    Ok(Corner {
-        position: index(position, counts.positions, "vertex")?,
-        uv: uv
-            .map(|part| index(part, counts.uvs, "texture coordinate"))
-            .transpose()?,
-        normal: normal
-            .map(|part| index(part, counts.normals, "normal"))
-            .transpose()?,
-    })
+    Ok([
+        Some(whole_number(position, VERTEX)?),
+        uv.map(|part| whole_number(part, UV)).transpose()?,
+        normal.map(|part| whole_number(part, NORMAL)).transpose()?,
+    ])
 }
 
-fn whole_number(part: &[u8]) -> Option<i64> {
-    let mut number = 0;
-    if (1..19).contains(&part.len()) && decimal::digits(part, &mut number) == Some(part.len()) {
-        return i64::try_from(number).ok();
-    }
-    std::str::from_utf8(part).ok()?.parse().ok()
-}
-
-/// An index into a list of `count` entries: counted from 1, or back from the end.
-fn index(part: &[u8], count: usize, what: &str) -> Result<u32, String> {
-    let Some(number) = whole_number(part) else {
-        let found = String::from_utf8_lossy(&part[..part.len().min(40)]);
-        return Err(format!("expected the number of a {what}, found `{found}`"));
-    };
-    let from_zero = if number > 0 {
-        usize::try_from(number - 1).ok()
-    } else {
-        usize::try_from(number.unsigned_abs())
-            .ok()
-            .filter(|back| *back > 0)
-            .and_then(|back| count.checked_sub(back))
-    };
-    match from_zero
-        .filter(|i| *i < count)
-        .and_then(|i| u32::try_from(i).ok())
+/// Tells what is wrong with a corner when the lists are so long.
+pub(super) fn check_corner(word: &[u8], counts: &Counts) -> Result<(), String> {
+    let counts = [counts.positions, counts.uvs, counts.normals];
+    for ((number, count), what) in numbers(word)?
+        .into_iter()
+        .zip(counts)
+        .zip([VERTEX, UV, NORMAL])
     {
-        Some(index) => Ok(index),
-        None if number == 0 => Err(format!("{what} 0 does not exist: OBJ counts from 1")),
-        None => Err(format!(
-            "{what} {number} does not exist: there are {count} so far"
-        )),
+        match number {
+            Some(0) => return Err(format!("{what} 0 does not exist: OBJ counts from 1")),
+            Some(n)
+                if i32::try_from(n)
+                    .ok()
+                    .and_then(|n| entry(n, count))
+                    .is_none() =>
+            {
+                return Err(format!(
+                    "{what} {n} does not exist: there are {count} so far"
+                ));
+            }
+            _ => {}
+        }
     }
+    Ok(())
+}
+
+const VERTEX: &str = "vertex";
+const UV: &str = "texture coordinate";
+const NORMAL: &str = "normal";
+
+fn whole_number(part: &[u8], what: &str) -> Result<i64, String> {
+    let mut number = 0;
+    if (1..19).contains(&part.len())
+        && decimal::digits(part, &mut number) == Some(part.len())
+        && let Ok(number) = i64::try_from(number)
+    {
+        return Ok(number);
+    }
+    let number = std::str::from_utf8(part).ok().and_then(|n| n.parse().ok());
+    number.ok_or_else(|| {
+        let found = String::from_utf8_lossy(&part[..part.len().min(40)]);
+        format!("expected the number of a {what}, found `{found}`")
+    })
 }
 
 /// What tells one mesh from another.

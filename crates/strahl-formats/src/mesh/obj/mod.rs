@@ -15,19 +15,22 @@
 //!
 //! What the statements of MTL become is told in the submodule `mtl`.
 
+mod block;
 mod faces;
 mod mtl;
 mod vertices;
 
 use crate::scene::Input;
+use crate::scene::ahead::{Ahead, Statements};
 use crate::scene::bytes::{path_beside, read_beside};
 use crate::scene::report::{Fallible, Report};
-use crate::scene::text::{Text, Word, Words, parse_f64};
+use crate::scene::text::Text;
 use crate::scene::textures::TextureFiles;
-use faces::{Counts, Faces, PartKey, corner};
+use block::{Block, Face, Parser, Place, Step, read_ahead};
+use faces::{Counts, Faces, PartKey, RawCorner, check_corner};
+use rayon::Scope;
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
-use strahl_math::{DVec2, DVec3};
 use strahl_scene::{Diagnostic, Scene};
 use strahl_shade::Material;
 
@@ -36,6 +39,11 @@ const MOST_LIBRARIES: usize = 256;
 
 /// Reads a scene; what is wrong goes to the report.
 pub(crate) fn read(input: &Input<'_>, report: &mut Report) -> Scene {
+    read_with(input, report, Ahead::default())
+}
+
+/// [`read`] with parts of another size, which makes no difference.
+fn read_with<'a>(input: &'a Input<'a>, report: &mut Report, ahead: Ahead<'a, Block>) -> Scene {
     let mut scene = Scene::default();
     let text = Text {
         bytes: input.bytes,
@@ -47,7 +55,6 @@ pub(crate) fn read(input: &Input<'_>, report: &mut Report) -> Scene {
     }
     let mut reader = Reader {
         text,
-        words: text.words(0, 1).with_continuation(),
         report,
         scene,
         libraries: HashSet::new(),
@@ -58,14 +65,14 @@ pub(crate) fn read(input: &Input<'_>, report: &mut Report) -> Scene {
         current: PartKey::default(),
         smoothing: 0,
     };
-    reader.statements();
+    rayon::in_place_scope(|scope| reader.statements(scope, ahead));
     reader.finish()
 }
 
+/// Puts together what statements say.
 struct Reader<'a, 'r> {
     input: &'a Input<'a>,
     text: Text<'a>,
-    words: Words<'a>,
     report: &'r mut Report,
     scene: Scene,
     /// The libraries read so far, by path.
@@ -79,133 +86,122 @@ struct Reader<'a, 'r> {
     smoothing: u32,
 }
 
-impl Reader<'_, '_> {
-    fn statements(&mut self) {
-        while let Some(word) = self.words.next() {
-            if let Err(problem) = self.statement(&word) {
-                self.report.error(|| *problem);
-                if self.report.is_hopeless() {
-                    return;
-                }
-            }
-            self.words.skip_line();
-        }
-    }
-
-    fn statement(&mut self, word: &Word<'_>) -> Fallible<()> {
-        match word.bytes {
-            b"v" => {
-                let position = DVec3::new(self.number("x")?, self.number("y")?, self.number("z")?);
-                self.faces.positions.push(position);
-            }
-            b"vn" => {
-                let normal = DVec3::new(self.number("x")?, self.number("y")?, self.number("z")?);
-                self.faces.normals.push(normal);
-            }
-            b"vt" => {
-                let u = self.number("u")?;
-                let v = if self.words.peek_in_line().is_some() {
-                    self.number("v")?
-                } else {
-                    0.0
-                };
-                self.faces.uvs.push(DVec2::new(u, 1.0 - v));
-            }
-            b"f" => return self.face(word),
-            b"o" => self.current.object = self.rest(),
-            b"g" => self.current.group = self.rest(),
-            b"usemtl" => self.current.material = self.rest(),
-            b"s" => return self.smoothing_group(),
-            b"mtllib" => self.library(word),
-            b"l" => self.ignored(word, "lines (`l`) are ignored: they have no surface"),
-            b"p" => self.ignored(word, "points (`p`) are ignored: they have no surface"),
-            b"curv" | b"curv2" | b"surf" => {
-                self.ignored(word, "free-form curves and surfaces are ignored")
-            }
-            // What belongs to free-form geometry, and hints for displays.
-            b"vp" | b"cstype" | b"deg" | b"bmat" | b"step" | b"parm" | b"trim" | b"hole"
-            | b"scrv" | b"sp" | b"end" | b"con" | b"mg" | b"bevel" | b"c_interp" | b"d_interp"
-            | b"lod" | b"ctech" | b"stech" | b"shadow_obj" | b"trace_obj" | b"maplib"
-            | b"usemap" => {}
-            _ => self.ignored(word, "an unknown statement is ignored"),
-        }
-        Ok(())
-    }
-
-    fn ignored(&mut self, word: &Word<'_>, what: &'static str) {
+impl<'a> Reader<'a, '_> {
+    fn statements<'s>(&mut self, scope: &Scope<'s>, mut ahead: Ahead<'a, Block>)
+    where
+        'a: 's,
+    {
         let text = self.text;
-        self.report
-            .count(what, || text.at(word, Diagnostic::warning(what)));
+        let mut parser = Parser {
+            text,
+            words: text.words(0, 1).with_continuation(),
+            block: Block::default(),
+        };
+        while parser.words.advance() && !self.report.is_hopeless() {
+            let read = move |words, end| read_ahead(text, words, end);
+            if let Some(piece) = ahead.piece(scope, &parser.words, read) {
+                self.add(piece.content);
+                parser.words = piece.rest;
+                continue;
+            }
+            parser.block = Block::from(parser.words.position());
+            match parser.statement() {
+                Ok(()) => self.add(std::mem::take(&mut parser.block)),
+                Err(problem) => self.report.error(|| *problem),
+            }
+        }
     }
 
-    fn face(&mut self, start: &Word<'_>) -> Fallible<()> {
-        let counts = self.faces.counts();
-        let mut corners = std::mem::take(&mut self.faces.corners);
-        corners.clear();
-        let read = self.corners(&counts, &mut corners);
-        let count = corners.len();
-        self.faces.corners = corners;
-        read?;
-        if count < 3 {
-            let word = self
-                .words
-                .expected_in_line("another corner (a face has at least three)");
-            return Err(Box::new(word));
+    fn add(&mut self, block: Block) {
+        let before = self.faces.counts();
+        self.faces.positions.extend(block.positions);
+        self.faces.uvs.extend(block.uvs);
+        self.faces.normals.extend(block.normals);
+        let mut corners = block.corners.as_slice();
+        let mut counts = before;
+        for step in block.steps {
+            match step {
+                Step::Counts(own) => counts = before + *own,
+                Step::Face(face) => {
+                    let Some((own, others)) = corners.split_at_checked(face.corners as usize)
+                    else {
+                        return;
+                    };
+                    corners = others;
+                    if let Err(problem) = self.face(block.start, &face, own, &counts) {
+                        self.report.error(|| *problem);
+                        if self.report.is_hopeless() {
+                            return;
+                        }
+                    }
+                }
+                Step::Object(name) => self.current.object = name,
+                Step::Group(name) => self.current.group = name,
+                Step::Material(name) => self.current.material = name,
+                Step::Smoothing(group) => self.smoothing = group,
+                Step::Libraries(names, place) => self.library(&names, *place),
+                Step::Ignored(what, place) => self.count(what, *place, || what.to_owned()),
+            }
         }
-        if let Err(why) = self.faces.add(&self.current, self.smoothing, start.line) {
-            let text = self.text;
-            self.report.count("skipped face", || {
-                text.at(
-                    start,
-                    Diagnostic::warning(format!("the face is left out: {why}")),
-                )
+    }
+
+    fn count(&mut self, key: &'static str, place: Place, what: impl FnOnce() -> String) {
+        let text = self.text;
+        self.report.count(key, || {
+            text.place(
+                Diagnostic::warning(what()),
+                place.start,
+                place.length,
+                place.line,
+            )
+        });
+    }
+
+    /// Adds a face of a block that starts at `block`.
+    fn face(
+        &mut self,
+        block: usize,
+        face: &Face,
+        corners: &[RawCorner],
+        counts: &Counts,
+    ) -> Fallible<()> {
+        let (start, line) = (block + face.start as usize, face.line);
+        self.faces.corners.clear();
+        for corner in corners {
+            match corner.resolve(counts) {
+                Some(corner) => self.faces.corners.push(corner),
+                None => return Err(self.wrong_corner(start, line, counts)),
+            }
+        }
+        if let Err(why) = self.faces.add(&self.current, self.smoothing, line) {
+            let place = Place {
+                start,
+                length: 1,
+                line,
+            };
+            self.count("skipped face", place, || {
+                format!("the face is left out: {why}")
             });
         }
         Ok(())
     }
 
-    fn corners(&mut self, counts: &Counts, out: &mut Vec<faces::Corner>) -> Fallible<()> {
-        while let Some(word) = self.words.next_in_line() {
-            match corner(word.bytes, counts) {
-                Ok(corner) => out.push(corner),
-                Err(problem) => {
-                    return Err(Box::new(self.text.at(&word, Diagnostic::error(problem))));
-                }
+    /// What is wrong with a face whose corners can't be resolved.
+    #[cold]
+    fn wrong_corner(&self, start: usize, line: u32, counts: &Counts) -> Box<Diagnostic> {
+        let mut words = self.text.words(start, line).with_continuation();
+        words.next();
+        while let Some(word) = words.next_in_line() {
+            if let Err(problem) = check_corner(word.bytes, counts) {
+                return Box::new(self.text.at(&word, Diagnostic::error(problem)));
             }
         }
-        Ok(())
-    }
-
-    fn smoothing_group(&mut self) -> Fallible<()> {
-        let Some(word) = self.words.next_in_line() else {
-            return Err(Box::new(
-                self.words.expected_in_line("a smoothing group, or `off`"),
-            ));
-        };
-        self.smoothing = match word.bytes {
-            b"off" => 0,
-            b"on" => 1,
-            number => match std::str::from_utf8(number)
-                .ok()
-                .and_then(|n| n.parse().ok())
-            {
-                Some(group) => group,
-                None => {
-                    let problem = format!(
-                        "expected the number of a smoothing group, or `off`, found `{}`",
-                        word.shown()
-                    );
-                    return Err(Box::new(self.text.at(&word, Diagnostic::error(problem))));
-                }
-            },
-        };
-        Ok(())
+        Box::new(words.expected_in_line("a corner"))
     }
 
     /// Reads material libraries. A name may have blanks, so the whole line is tried before its words.
-    fn library(&mut self, start: &Word<'_>) {
-        let line = self.rest();
-        let whole = path_beside(&line)
+    fn library(&mut self, line: &str, place: Place) {
+        let whole = path_beside(line)
             .and_then(|path| read_beside(self.input.folder, &path).map(|bytes| (path, bytes)));
         let found: Vec<_> = match whole {
             Ok(found) => vec![(line.to_string(), Ok(found))],
@@ -220,7 +216,6 @@ impl Reader<'_, '_> {
                 .collect(),
         };
         for (name, read) in found {
-            let text = self.text;
             match read {
                 Ok((path, bytes)) => {
                     let is_new = self.libraries.len() < MOST_LIBRARIES
@@ -229,15 +224,19 @@ impl Reader<'_, '_> {
                         self.materials_of(&path, &bytes);
                     }
                 }
-                Err(why) => self.report.count("missing library", || {
-                    text.at(
-                        start,
-                        Diagnostic::warning(format!(
-                            "the material library `{name}` is not read: {why}"
-                        )),
-                    )
-                    .hint("faces whose material is missing get the default material")
-                }),
+                Err(why) => {
+                    let text = self.text;
+                    self.report.count("missing library", || {
+                        let problem = format!("the material library `{name}` is not read: {why}");
+                        text.place(
+                            Diagnostic::warning(problem)
+                                .hint("faces whose material is missing get the default material"),
+                            place.start,
+                            place.length,
+                            place.line,
+                        )
+                    });
+                }
             }
         }
     }
@@ -288,26 +287,6 @@ impl Reader<'_, '_> {
             report.error(|| Diagnostic::error(format!("`{}` has no faces", text.name)));
         }
         scene
-    }
-
-    /// The rest of the line as a name.
-    fn rest(&mut self) -> Arc<str> {
-        let rest = self.words.skip_line();
-        Arc::from(String::from_utf8_lossy(rest.trim_ascii()))
-    }
-
-    fn number(&mut self, what: &str) -> Fallible<f64> {
-        let Some(word) = self.words.next_in_line() else {
-            return Err(Box::new(
-                self.words.expected_in_line(&format!("a number ({what})")),
-            ));
-        };
-        parse_f64(word.bytes).map_err(|e| {
-            Box::new(
-                self.text
-                    .at(&word, e.describe(&word, &format!("a number ({what})"))),
-            )
-        })
     }
 }
 

@@ -1,4 +1,6 @@
+use crate::scene::ahead::assert_parts_make_no_difference;
 use crate::scene::{Loaded, SceneFormat, load_bytes, load_path};
+use proptest::prelude::*;
 use std::fs;
 use std::sync::Arc;
 use strahl_geometry::{Primitive, Shape, TriangleMesh};
@@ -339,4 +341,50 @@ fn errors_in_libraries_are_placed_there() {
         ]
     );
     assert!(messages(&loaded)[1].contains("my colours.mtl:3:6\n"));
+}
+
+/// Statements right and wrong.
+const STATEMENTS: [&str; 28] = [
+    SQUARE,
+    "v 0 0 1\r\nv 1 0 1\r\n",
+    "vt 0.5 0.5\nvn 0 0 1 \\\n\n",
+    "f 1 2 3\n",
+    "f 1 2 \\\n3 4\n",
+    "f -1 -2 -3\n",
+    "f 1//1 2//1 3//1\r",
+    "f 1/1 2/1 3 # f 1 2 3 \\\n",
+    "f 2 3 4\n",
+    "f 1 1 2\n",
+    "# f 1 2 3\\\n",
+    "o thing\n",
+    "g a b\n",
+    "usemtl red\n",
+    "s 1\n",
+    "s off\n",
+    "mtllib none.mtl\n",
+    "l 1 2\np 1\n",
+    "what 1 2\nvp 1\n",
+    "\n \t\n",
+    "f 1/2/3 2/2/2 3/3/3\n",
+    "f 1 2 99\n",
+    "f 0 1 2\n",
+    "f 1 2\n",
+    "f 1 x 3\n",
+    "v 1 2\n",
+    "v 1 2 nan\n",
+    "s loud\n",
+];
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(300))]
+    #[test]
+    fn it_makes_no_difference_how_the_text_is_cut(
+        choices in prop::collection::vec(0..STATEMENTS.len(), 0..80),
+        wrong in any::<bool>(),
+    ) {
+        let right = STATEMENTS.len() - 8;
+        let statements = choices.into_iter().map(|i| STATEMENTS[if wrong { i } else { i % right }]);
+        let text: String = [SQUARE, STATEMENTS[2]].into_iter().chain(statements).collect();
+        assert_parts_make_no_difference(&text, super::read_with);
+    }
 }

@@ -10,7 +10,7 @@ use crate::mesh::{object_name, polygon_normal};
 use crate::scene::Input;
 use crate::scene::report::{Fallible, Report};
 use crate::scene::text::{Text, Word, Words, parse_f32};
-use std::collections::HashMap;
+use hashbrown::HashMap;
 use std::sync::Arc;
 use strahl_geometry::{MeshData, TriangleMesh};
 use strahl_math::DVec3;

@@ -1,16 +1,61 @@
-use crate::mesh::{MeshBuilder, Vertex};
+use crate::mesh::{MeshBuilder, MeshPieces, Vertex, VertexKey};
 use crate::scene::Report;
 use std::sync::Arc;
 use strahl_math::DVec3;
 use strahl_scene::{Diagnostic, FileId, Object, Span};
 use strahl_shade::{Color, Finish, Material, Sides};
 
-/// A point or vector for comparison, bit by bit.
-type PointKey = [u64; 3];
+/// A corner of flat triangles: its coordinates, bit by bit, with one zero.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) struct FlatCorner {
+    x: u64,
+    y: u64,
+    z: u64,
+}
 
-fn key(v: DVec3) -> PointKey {
-    // -0 + 0 is +0: the two zeros are one value.
-    v.to_array().map(|x| (x + 0.0).to_bits())
+impl From<DVec3> for FlatCorner {
+    fn from(v: DVec3) -> Self {
+        // -0 + 0 is +0.
+        let [x, y, z] = v.to_array().map(|x| (x + 0.0).to_bits());
+        Self { x, y, z }
+    }
+}
+
+impl From<FlatCorner> for DVec3 {
+    fn from(v: FlatCorner) -> Self {
+        Self::from([v.x, v.y, v.z].map(f64::from_bits))
+    }
+}
+
+impl VertexKey for FlatCorner {
+    fn vertex(self) -> Vertex {
+        Vertex::at(self.into())
+    }
+}
+
+/// A corner of smooth triangles.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) struct SmoothCorner {
+    position: FlatCorner,
+    normal: FlatCorner,
+}
+
+impl SmoothCorner {
+    pub(super) fn new(position: DVec3, normal: DVec3) -> Self {
+        Self {
+            position: position.into(),
+            normal: normal.into(),
+        }
+    }
+}
+
+impl VertexKey for SmoothCorner {
+    fn vertex(self) -> Vertex {
+        Vertex {
+            normal: Some(self.normal.into()),
+            ..self.position.vertex()
+        }
+    }
 }
 
 /// A fill: its material, seen from one side or both, and the triangles that wait to become one mesh.
@@ -22,11 +67,12 @@ pub(super) struct Fill {
     base: Material,
     two_sided: Option<Arc<Material>>,
     one_sided: Option<Arc<Material>>,
-    flat: MeshBuilder<PointKey>,
-    smooth: MeshBuilder<(PointKey, PointKey)>,
+    flat: MeshPieces<FlatCorner>,
+    smooth: MeshPieces<SmoothCorner>,
 }
 
 /// The numbers of an `f` statement.
+#[derive(Clone, Copy, Debug)]
 pub(super) struct FillNumbers {
     pub(super) color: Color,
     pub(super) kd: f64,
@@ -95,32 +141,10 @@ impl Fill {
         }
     }
 
-    /// Adds a flat triangle. Corners with the same coordinates become one vertex.
-    pub(super) fn add_flat(&mut self, corners: [DVec3; 3], line: u32) {
-        let mesh = &mut self.flat;
-        let vertices = corners.map(|p| mesh.vertex(key(p), || Vertex::at(p)));
-        mesh.triangle(vertices, line);
-    }
-
-    /// Adds the triangles of a smooth polygon; corners with the same coordinates and normal become one vertex.
-    pub(super) fn add_patch(
-        &mut self,
-        corners: &[DVec3],
-        normals: &[DVec3],
-        triangles: &[[u32; 3]],
-        line: u32,
-    ) {
-        let mesh = &mut self.smooth;
-        for triangle in triangles {
-            let vertices = triangle.map(|i| {
-                let (p, n) = (corners[i as usize], normals[i as usize]);
-                mesh.vertex((key(p), key(n)), || Vertex {
-                    normal: Some(n),
-                    ..Vertex::at(p)
-                })
-            });
-            mesh.triangle(vertices, line);
-        }
+    /// Adds triangles: flat ones, and those of smooth polygons.
+    pub(super) fn add(&mut self, flat: MeshBuilder<FlatCorner>, smooth: MeshBuilder<SmoothCorner>) {
+        self.flat.push(flat);
+        self.smooth.push(smooth);
     }
 
     /// The triangles gathered, as objects.

@@ -24,19 +24,28 @@
 //! Statements may spread over lines; a statement begins a line.
 
 mod fill;
+mod part;
 mod statements;
 
-use super::text::{Text, Word, Words};
+use super::ahead::{Ahead, Statements};
+use super::text::Text;
 use super::{Fallible, Input, Report};
-use crate::mesh::Triangulator;
 use fill::Fill;
+use part::{Kind, LightLine, Part, Parts, Placed, read_ahead};
+use rayon::Scope;
+use statements::Parser;
+use std::fmt::Write;
 use std::sync::Arc;
-use strahl_math::DVec3;
-use strahl_scene::{Diagnostic, Object, Scene, Span};
+use strahl_scene::{Background, Diagnostic, Object, Scene, Span};
 use strahl_shade::{Color, ShadingModel};
 
 /// Reads a scene; what is wrong goes to the report.
 pub(super) fn read(input: &Input<'_>, report: &mut Report) -> Scene {
+    read_with(input, report, Ahead::default())
+}
+
+/// [`read`] with parts of another size, which makes no difference.
+fn read_with<'a>(input: &'a Input<'a>, report: &mut Report, ahead: Ahead<'a, Parts>) -> Scene {
     let mut scene = Scene::default();
     scene.settings.shading = ShadingModel::Phong;
     let text = Text {
@@ -49,8 +58,8 @@ pub(super) fn read(input: &Input<'_>, report: &mut Report) -> Scene {
     }
     let mut reader = Reader {
         text,
-        words: text.words(0, 1),
-        report,
+        parser: Parser::new(text, text.words(0, 1), std::mem::take(report)),
+        ahead,
         scene,
         fill: Fill::default(),
         fills: 0,
@@ -59,16 +68,20 @@ pub(super) fn read(input: &Input<'_>, report: &mut Report) -> Scene {
         spheres: 0,
         cones: 0,
         polygons: 0,
-        triangulator: Triangulator::default(),
+        name: String::new(),
     };
-    reader.statements();
-    reader.finish()
+    rayon::in_place_scope(|scope| reader.statements(scope));
+    reader.finish();
+    *report = reader.parser.report;
+    reader.scene
 }
 
-struct Reader<'a, 'r> {
+/// Puts together what statements say.
+struct Reader<'a> {
     text: Text<'a>,
-    words: Words<'a>,
-    report: &'r mut Report,
+    /// Reads what is not read ahead, and has all that there is to say.
+    parser: Parser<'a>,
+    ahead: Ahead<'a, Parts>,
     scene: Scene,
     /// The current fill with the triangles it has gathered.
     fill: Fill,
@@ -79,78 +92,135 @@ struct Reader<'a, 'r> {
     spheres: usize,
     cones: usize,
     polygons: usize,
-    triangulator: Triangulator,
+    /// The last name.
+    name: String,
 }
 
-/// An `l` statement; the strength depends on how many there are.
-struct LightLine {
-    position: DVec3,
-    color: Color,
-    span: Span,
-}
-
-impl Reader<'_, '_> {
-    fn statements(&mut self) {
-        while let Some(word) = self.words.next() {
-            let line = word.line;
-            let done = match word.bytes {
-                b"v" => self.view(&word),
-                b"b" => self.background(),
-                b"l" => self.light(line),
-                b"f" => self.fill(line),
-                b"s" => self.sphere(&word),
-                b"c" => self.cone(&word),
-                b"p" => self.polygon(&word, false),
-                b"pp" => self.polygon(&word, true),
-                _ => Err(Box::new(
-                    self.text
-                        .at(
-                            &word,
-                            Diagnostic::error(format!(
-                                "expected a statement, found `{}`",
-                                word.shown()
-                            )),
-                        )
-                        .hint("the statements of NFF are v, b, l, f, s, c, p and pp"),
-                )),
+impl<'a> Reader<'a> {
+    fn statements<'s>(&mut self, scope: &Scope<'s>)
+    where
+        'a: 's,
+    {
+        let text = self.text;
+        while self.parser.words.advance() {
+            // What is before the first fill is little, and without a fill there is something to say about each object.
+            let piece = if self.parser.has_fill {
+                let read = move |words, end| read_ahead(text, words, end);
+                self.ahead.piece(scope, &self.parser.words, read)
+            } else {
+                None
             };
-            if let Err(problem) = done {
-                self.report.error(|| *problem);
-                if self.report.is_hopeless() {
+            if let Some(piece) = piece {
+                let (parts, report) = piece.content;
+                self.add_read(0);
+                parts.into_iter().for_each(|part| self.add(part));
+                self.parser.report.append(report);
+                self.parser.words = piece.rest;
+                continue;
+            }
+            if let Err(problem) = self.statement() {
+                self.parser.report.error(|| *problem);
+                if self.parser.report.is_hopeless() {
                     return;
                 }
-                self.recover();
+                self.parser.recover();
             }
+            self.add_read(1);
+        }
+        self.add_read(0);
+    }
+
+    fn statement(&mut self) -> Fallible<()> {
+        let Some(word) = self.parser.words.peek().filter(|word| word.bytes == b"v") else {
+            return self.parser.statement();
+        };
+        self.parser.words.next();
+        if std::mem::replace(&mut self.has_view, true) {
+            let problem = "there is a second `v` statement".into();
+            return Err(self.parser.fault(&word, problem));
+        }
+        let (camera, size) = self.parser.view(&word)?;
+        self.scene.camera = Some(camera);
+        self.scene.settings.size = size;
+        Ok(())
+    }
+
+    /// Adds the parts that the parser has read, but for the last `keep`.
+    fn add_read(&mut self, keep: usize) {
+        while self.parser.parts.len() > keep {
+            let part = self.parser.parts.remove(0);
+            self.add(part);
+        }
+        // What is wrong with a mesh is said as soon as it ends.
+        if self.parser.parts.iter().any(|part| part.fill.is_some()) {
+            self.flush_fill();
         }
     }
 
-    /// Goes to the next line that begins with a letter, if that is not the rest of a view: there a statement begins.
-    fn recover(&mut self) {
-        loop {
-            self.words.skip_line();
-            match self.words.peek() {
-                Some(word) if !word.bytes[0].is_ascii_alphabetic() || is_view_word(&word) => {
-                    self.words.next();
-                }
-                _ => return,
-            }
+    fn add(&mut self, part: Part) {
+        if let Some((numbers, line)) = part.fill {
+            self.flush_fill();
+            self.fills += 1;
+            self.fill = Fill::new(self.fills, line, &numbers);
         }
+        if let Some(color) = part.background {
+            self.scene.background = Some(Background::Solid(color));
+        }
+        self.lights.extend(part.lights);
+        for placed in part.objects {
+            self.add_object(placed);
+        }
+        self.polygons += part.polygons;
+        self.fill.add(part.flat, part.smooth);
+    }
+
+    fn add_object(&mut self, placed: Placed) {
+        let (what, number, material) = match placed.kind {
+            Kind::Sphere { inside_only } => {
+                self.spheres += 1;
+                let material = if inside_only {
+                    self.fill.one_sided()
+                } else {
+                    self.fill.two_sided()
+                };
+                ("sphere", self.spheres, material)
+            }
+            Kind::Cone | Kind::Cylinder => {
+                self.cones += 1;
+                let what = match placed.kind {
+                    Kind::Cone => "cone",
+                    _ => "cylinder",
+                };
+                (what, self.cones, self.fill.two_sided())
+            }
+            Kind::Polygon { number } => {
+                ("polygon", self.polygons + number, self.fill.of_polygons())
+            }
+        };
+        self.name.clear();
+        // Writing to a string cannot fail.
+        let _ = write!(self.name, "{what} {number}");
+        self.scene.objects.0.push(Object {
+            name: Some(Arc::from(self.name.as_str())),
+            span: Span::line(self.text.file, placed.line),
+            material: Some(material),
+            ..placed.shape.into()
+        });
     }
 
     /// What can only be said at the end.
-    fn finish(mut self) -> Scene {
+    fn finish(&mut self) {
         self.flush_fill();
-        let name = self.text.name;
-        if !self.has_view && !self.report.has_errors() {
-            self.report.warning(|| {
+        let (name, report) = (self.text.name, &mut self.parser.report);
+        if !self.has_view && !report.has_errors() {
+            report.warning(|| {
                 Diagnostic::warning(format!(
                     "`{name}` has no `v` statement: the camera is placed automatically"
                 ))
             });
         }
-        if self.scene.objects.0.is_empty() && !self.report.has_errors() {
-            self.report
-                .warning(|| Diagnostic::warning(format!("`{name}` has no objects")));
+        if self.scene.objects.0.is_empty() && !report.has_errors() {
+            report.warning(|| Diagnostic::warning(format!("`{name}` has no objects")));
         }
         let count = self.lights.len() as f64;
         if !self.lights.is_empty() {
@@ -165,38 +235,14 @@ impl Reader<'_, '_> {
                 });
             }
         }
-        self.scene
     }
 
     fn flush_fill(&mut self) {
         let file = self.text.file;
-        for object in self.fill.take_meshes(file, self.report) {
+        for object in self.fill.take_meshes(file, &mut self.parser.report) {
             self.scene.objects.0.push(object);
         }
     }
-
-    fn add(
-        &mut self,
-        object: impl Into<Object>,
-        name: String,
-        line: u32,
-        material: Arc<strahl_shade::Material>,
-    ) {
-        self.scene.objects.0.push(Object {
-            name: Some(name.into()),
-            span: Span::line(self.text.file, line),
-            material: Some(material),
-            ..object.into()
-        });
-    }
-}
-
-/// Whether a word belongs into a view.
-fn is_view_word(word: &Word<'_>) -> bool {
-    matches!(
-        word.bytes,
-        b"from" | b"at" | b"up" | b"angle" | b"hither" | b"resolution"
-    )
 }
 
 #[cfg(test)]

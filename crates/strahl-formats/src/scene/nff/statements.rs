@@ -1,22 +1,99 @@
-use super::fill::{Fill, FillNumbers};
-use super::{Fallible, LightLine, Reader, is_view_word};
-use crate::mesh::polygon_normal;
-use crate::scene::text::{Word, parse_f64, parse_integer};
+use super::fill::FillNumbers;
+use super::part::{Kind, LightLine, Part, Placed};
+use crate::mesh::{NO_AREA, Triangulator, polygon_normal};
+use crate::scene::ahead::Statements;
+use crate::scene::text::{Text, Word, Words, parse_f64, parse_integer};
+use crate::scene::{Fallible, Report};
 use std::f64::consts::PI;
 use strahl_geometry::{Cone, Cylinder, Polygon, Primitive, Shape, Sphere};
 use strahl_math::DVec3;
-use strahl_scene::{Background, Camera, Diagnostic, Span};
+use strahl_scene::{Camera, Diagnostic, Span};
 use strahl_shade::Color;
 
 /// Most pixels along an edge of the picture.
 const MOST_PIXELS: i64 = 1 << 20;
 
-impl Reader<'_, '_> {
-    /// The view, in any order; `hither` may be missing.
-    pub(super) fn view(&mut self, start: &Word<'_>) -> Fallible<()> {
-        if std::mem::replace(&mut self.has_view, true) {
-            return Err(self.fault(start, "there is a second `v` statement".into()));
+/// Reads statements, one after the other, without regard to what was before them.
+pub(super) struct Parser<'a> {
+    text: Text<'a>,
+    pub(super) words: Words<'a>,
+    pub(super) report: Report,
+    /// Whether there has been a fill.
+    pub(super) has_fill: bool,
+    /// What has been read.
+    pub(super) parts: Vec<Part>,
+    triangulator: Triangulator,
+}
+
+impl<'a> Statements<'a> for Parser<'a> {
+    fn words(&mut self) -> &mut Words<'a> {
+        &mut self.words
+    }
+
+    /// A view is not for here: it is a matter of the whole text.
+    fn statement(&mut self) -> Fallible<()> {
+        let Some(word) = self.words.next() else {
+            return Ok(());
+        };
+        match word.bytes {
+            b"b" => self.background(),
+            b"l" => self.light(word.line),
+            b"f" => self.fill(word.line),
+            b"s" => self.sphere(&word),
+            b"c" => self.cone(&word),
+            b"p" => self.polygon(&word, false),
+            b"pp" => self.polygon(&word, true),
+            _ => {
+                let problem = format!("expected a statement, found `{}`", word.shown());
+                Err(Box::new(
+                    self.text
+                        .at(&word, Diagnostic::error(problem))
+                        .hint("the statements of NFF are v, b, l, f, s, c, p and pp"),
+                ))
+            }
         }
+    }
+}
+
+impl<'a> Parser<'a> {
+    pub(super) fn new(text: Text<'a>, words: Words<'a>, report: Report) -> Self {
+        Self {
+            text,
+            words,
+            report,
+            has_fill: false,
+            parts: vec![],
+            triangulator: Triangulator::default(),
+        }
+    }
+
+    /// Goes to the next word before byte `end` that begins a statement, as the first of its line unless it is the very
+    /// next; says whether there is one.
+    pub(super) fn seek_statement(&mut self, end: usize) -> bool {
+        while self.words.advance() && self.words.position() < end {
+            if self.words.peek().is_some_and(|w| begins_statement(&w)) {
+                return true;
+            }
+            self.words.skip_line();
+        }
+        false
+    }
+
+    /// Goes to the next line that begins with a letter, if that is not the rest of a view: there a statement begins.
+    pub(super) fn recover(&mut self) {
+        loop {
+            self.words.skip_line();
+            match self.words.peek() {
+                Some(word) if !word.bytes[0].is_ascii_alphabetic() || is_view_word(&word) => {
+                    self.words.next();
+                }
+                _ => return,
+            }
+        }
+    }
+
+    /// The view, in any order; `hither` may be missing.
+    pub(super) fn view(&mut self, start: &Word<'_>) -> Fallible<(Camera, Option<(u32, u32)>)> {
         let (mut from, mut at, mut up, mut angle, mut size) = (None, None, None, None, None);
         while let Some(word) = self.words.peek().filter(is_view_word) {
             self.words.next();
@@ -75,18 +152,16 @@ impl Reader<'_, '_> {
         if let Some(problem) = camera.problem() {
             return Err(self.fault(start, problem.into()));
         }
-        self.scene.camera = Some(camera);
-        self.scene.settings.size = size;
-        Ok(())
+        Ok((camera, size))
     }
 
-    pub(super) fn background(&mut self) -> Fallible<()> {
+    fn background(&mut self) -> Fallible<()> {
         let color = self.color("the background")?;
-        self.scene.background = Some(Background::Solid(color));
+        self.part().background = Some(color);
         Ok(())
     }
 
-    pub(super) fn light(&mut self, line: u32) -> Fallible<()> {
+    fn light(&mut self, line: u32) -> Fallible<()> {
         let position = self.point("the light's position")?;
         let color = if self.words.peek_in_line().is_some() {
             self.color("the light")?
@@ -94,7 +169,7 @@ impl Reader<'_, '_> {
             Color::WHITE
         };
         let span = Span::line(self.text.file, line);
-        self.lights.push(LightLine {
+        self.part().lights.push(LightLine {
             position,
             color,
             span,
@@ -102,7 +177,7 @@ impl Reader<'_, '_> {
         Ok(())
     }
 
-    pub(super) fn fill(&mut self, line: u32) -> Fallible<()> {
+    fn fill(&mut self, line: u32) -> Fallible<()> {
         let color = self.color("the fill")?;
         let kd = self.at_least_0("Kd, the diffuse part")?;
         let ks = self.at_least_0("Ks, the specular part")?;
@@ -121,51 +196,41 @@ impl Reader<'_, '_> {
         } else {
             0.0
         };
-        self.flush_fill();
-        self.fills += 1;
-        self.fill = Fill::new(
-            self.fills,
-            line,
-            &FillNumbers {
-                color,
-                kd,
-                ks,
-                shine,
-                t,
-                ior,
-            },
-        );
+        self.has_fill = true;
+        let numbers = FillNumbers {
+            color,
+            kd,
+            ks,
+            shine,
+            t,
+            ior,
+        };
+        self.parts.push(Part {
+            fill: Some((numbers, line)),
+            ..Part::default()
+        });
         Ok(())
     }
 
-    pub(super) fn sphere(&mut self, start: &Word<'_>) -> Fallible<()> {
+    fn sphere(&mut self, start: &Word<'_>) -> Fallible<()> {
         self.needs_fill(start);
         let center = self.point("the sphere's centre")?;
         let radius = self.number("the sphere's radius")?;
-        self.spheres += 1;
         let sphere =
             Sphere::try_new(center, radius).map_err(|e| self.fault(start, e.to_string()))?;
-        let material = if radius < 0.0 {
-            self.fill.one_sided()
-        } else {
-            self.fill.two_sided()
+        let kind = Kind::Sphere {
+            inside_only: radius < 0.0,
         };
-        self.add(
-            sphere,
-            format!("sphere {}", self.spheres),
-            start.line,
-            material,
-        );
+        self.add(sphere.into(), kind, start.line);
         Ok(())
     }
 
-    pub(super) fn cone(&mut self, start: &Word<'_>) -> Fallible<()> {
+    fn cone(&mut self, start: &Word<'_>) -> Fallible<()> {
         self.needs_fill(start);
         let base = self.point("the centre of the cone's base")?;
         let base_radius = self.number("the radius of the base")?;
         let apex = self.point("the centre of the cone's apex")?;
         let apex_radius = self.number("the radius of the apex")?;
-        self.cones += 1;
         let inside_only =
             base_radius <= 0.0 && apex_radius <= 0.0 && base_radius + apex_radius < 0.0;
         let (r0, r1) = if inside_only {
@@ -173,10 +238,10 @@ impl Reader<'_, '_> {
         } else {
             (base_radius, apex_radius)
         };
-        let (shape, what): (Shape, _) = if r0 == r1 {
-            (Cylinder::open(base, apex, r0).into(), "cylinder")
+        let (shape, kind): (Shape, _) = if r0 == r1 {
+            (Cylinder::open(base, apex, r0).into(), Kind::Cylinder)
         } else {
-            (Cone::open(base, r0, apex, r1).into(), "cone")
+            (Cone::open(base, r0, apex, r1).into(), Kind::Cone)
         };
         shape
             .validate()
@@ -187,19 +252,27 @@ impl Reader<'_, '_> {
                 self.text.at(start, problem)
             });
         }
-        let material = self.fill.two_sided();
-        self.add(
-            shape,
-            format!("{what} {}", self.cones),
-            start.line,
-            material,
-        );
+        self.add(shape, kind, start.line);
         Ok(())
     }
 
-    pub(super) fn polygon(&mut self, start: &Word<'_>, smooth: bool) -> Fallible<()> {
+    fn polygon(&mut self, start: &Word<'_>, smooth: bool) -> Fallible<()> {
         self.needs_fill(start);
         let count = self.count("the number of corners", 3, i64::MAX)?;
+        if count == 3 && !smooth {
+            let corners = [
+                self.point("a corner")?,
+                self.point("a corner")?,
+                self.point("a corner")?,
+            ];
+            self.part().polygons += 1;
+            if polygon_normal(&corners).is_some() {
+                self.part().add_flat(corners, start.line);
+            } else {
+                self.skipped(start, NO_AREA);
+            }
+            return Ok(());
+        }
         let (mut corners, mut normals) = (vec![], vec![]);
         for _ in 0..count {
             corners.push(self.point("a corner")?);
@@ -207,9 +280,9 @@ impl Reader<'_, '_> {
                 normals.push(self.point("the normal of a corner")?);
             }
         }
-        self.polygons += 1;
+        self.part().polygons += 1;
         let Some(normal) = polygon_normal(&corners) else {
-            self.skipped(start, "it has no area");
+            self.skipped(start, NO_AREA);
             return Ok(());
         };
         if smooth {
@@ -217,12 +290,10 @@ impl Reader<'_, '_> {
             let mut triangles = vec![];
             match self.triangulator.triangulate(&corners, &mut triangles) {
                 Ok(()) => self
-                    .fill
+                    .part()
                     .add_patch(&corners, &normals, &triangles, start.line),
                 Err(why) => self.skipped(start, why),
             }
-        } else if let [a, b, c] = corners[..] {
-            self.fill.add_flat([a, b, c], start.line);
         } else {
             self.many_corners(start, &corners);
         }
@@ -233,13 +304,10 @@ impl Reader<'_, '_> {
         let text = self.text;
         match Polygon::try_new(corners) {
             Ok(polygon) => {
-                let material = self.fill.of_polygons();
-                self.add(
-                    polygon,
-                    format!("polygon {}", self.polygons),
-                    start.line,
-                    material,
-                );
+                let kind = Kind::Polygon {
+                    number: self.part().polygons,
+                };
+                self.add(polygon.into(), kind, start.line);
             }
             // Most likely the corners are not in one plane; triangles always are.
             Err(problem) => {
@@ -255,7 +323,7 @@ impl Reader<'_, '_> {
                             )
                         });
                         for triangle in triangles {
-                            self.fill
+                            self.part()
                                 .add_flat(triangle.map(|i| corners[i as usize]), start.line);
                         }
                     }
@@ -294,7 +362,7 @@ impl Reader<'_, '_> {
 
     fn needs_fill(&mut self, start: &Word<'_>) {
         let text = self.text;
-        if !self.fill.is_explicit() {
+        if !self.has_fill {
             self.report.count("no fill", || {
                 let problem = Diagnostic::warning(
                     "there is no `f` statement before this object: it gets a grey material",
@@ -304,11 +372,27 @@ impl Reader<'_, '_> {
         }
     }
 
-    fn fault(&self, word: &Word<'_>, problem: String) -> Box<Diagnostic> {
+    /// Where what comes next belongs.
+    fn part(&mut self) -> &mut Part {
+        if self.parts.is_empty() {
+            self.parts.push(Part::default());
+        }
+        let last = self.parts.len() - 1;
+        &mut self.parts[last]
+    }
+
+    fn add(&mut self, shape: Shape, kind: Kind, line: u32) {
+        self.part().objects.push(Placed { shape, kind, line });
+    }
+
+    pub(super) fn fault(&self, word: &Word<'_>, problem: String) -> Box<Diagnostic> {
         Box::new(self.text.at(word, Diagnostic::error(problem)))
     }
 
     fn number(&mut self, what: &str) -> Fallible<f64> {
+        if let Some(number) = self.words.short_number() {
+            return Ok(number);
+        }
         let before = self.words.clone();
         let Some(word) = self.words.next().filter(|word| !begins_statement(word)) else {
             // The statement is not taken, so that reading goes on there.
@@ -376,5 +460,13 @@ fn begins_statement(word: &Word<'_>) -> bool {
     matches!(
         word.bytes,
         b"v" | b"b" | b"l" | b"f" | b"s" | b"c" | b"p" | b"pp"
+    )
+}
+
+/// Whether a word belongs into a view.
+fn is_view_word(word: &Word<'_>) -> bool {
+    matches!(
+        word.bytes,
+        b"from" | b"at" | b"up" | b"angle" | b"hither" | b"resolution"
     )
 }

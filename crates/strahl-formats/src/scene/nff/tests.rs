@@ -1,4 +1,6 @@
+use crate::scene::ahead::assert_parts_make_no_difference;
 use crate::scene::{Loaded, SceneFormat, load_bytes, load_path};
+use proptest::prelude::*;
 use std::path::{Path, PathBuf};
 use strahl_geometry::{Shape, TriangleMesh};
 use strahl_math::DVec3;
@@ -172,6 +174,18 @@ fn errors_show_the_place_and_reading_goes_on() {
 }
 
 #[test]
+fn a_statement_that_comes_too_early_is_read() {
+    let loaded = load(&format!(
+        "{VIEW}f 1 1 1 1 0 0 0 0\np 3\n0 0 0\n1 0 0\ns 0 0 0 0\n"
+    ));
+    let problems = loaded.diagnostics.iter();
+    let firsts: Vec<_> = problems.map(|d| d.message.as_str()).collect();
+    assert_eq!(firsts.len(), 2, "{firsts:?}");
+    assert_eq!(firsts[0], "expected a number (a corner), found `s`");
+    assert!(firsts[1].contains("radius"), "{firsts:?}");
+}
+
+#[test]
 fn a_missing_number_is_asked_for_where_the_next_statement_stands() {
     let loaded = load(&format!("{VIEW}f 1 1 1 1 0 0 0 0\ns 0 0 0\ns 1 1 1 1\n"));
     assert_eq!(
@@ -298,4 +312,100 @@ fn the_standard_scenes_have_the_published_numbers_of_primitives_and_lights() {
         assert_eq!(scene.lights.len(), lights, "{name}");
         assert_eq!(scene.settings.size, Some((512, 512)));
     }
+}
+
+/// Statements right and wrong, with corners that meet.
+const STATEMENTS: [&str; 27] = [
+    "f 1 .5 0 .5 .5 3 0 0\n",
+    "f 0 1 1 1 0 0 .5 1.5\n",
+    "p 3\n0 0 0\n1 0 0\n0 1 0\n",
+    "p 3\r\n1 0 0\r\n1 1 0\r\n0 1 0\r\n",
+    "p 3 0 0 0 -0 1 0 0 0 1\n",
+    "p 3\r0 0 1\r1 0 0 0 1 0\r",
+    "p 3 # a comment\n1 1 1 # p 3\n\n0 1 0\n  1 0 0\n",
+    "p 3 0 0 0 0 0 0 1 1 1\n",
+    "p 4 0 0 0 1 0 0 1 1 0 0 1 0\n",
+    "p 4 0 0 0 1 0 0 1 1 1 0 1 0\n",
+    "pp 3\n0 0 0 0 0 1\n1 0 0 0 0 1\n0 1 0 0 0 1\n",
+    "pp 4 0 0 0 0 0 1\n1 0 0 0 0 0\n1 1 0 0 0 1\n0 1 0 0 1 1\n",
+    "s 0.123456789012345678901 0 1e-3 2\n",
+    "s 1 1 1 -0.5\n",
+    "c 0 0 0 1 0 0 2 0.5\n",
+    "c 0 0 0 -1 0 0 2 -1\n",
+    "l 1 2 3\n",
+    "l 3 2 1 .5 .5 .5\n",
+    "b .1 .2 .3\n",
+    "\n# p 3 0 0 0 1 0 0 0 1 0\n",
+    VIEW,
+    "p 3\n0 0 0\n1 0 0\n0 1 x\n",
+    "p 3\n0 0 0\n1 0 0\n",
+    "s 0 0 0 0\n",
+    "p 3 0 0 0 1e300 0 0 0 1 0\n",
+    "f 1 1 1 -1 0 0 0 0\n",
+    "q 1 2\n",
+];
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(300))]
+    #[test]
+    fn it_makes_no_difference_how_the_text_is_cut(
+        choices in prop::collection::vec(0..STATEMENTS.len(), 0..80),
+        wrong in any::<bool>(),
+    ) {
+        let right = STATEMENTS.len() - 7;
+        let statements = choices.into_iter().map(|i| STATEMENTS[if wrong { i } else { i % right }]);
+        let text: String = [STATEMENTS[0]].into_iter().chain(statements).collect();
+        assert_parts_make_no_difference(&text, super::read_with);
+    }
+}
+
+#[test]
+fn threads_that_wait_for_parts_read_parts() {
+    // As many texts at the same time as there are threads: none of these may only wait.
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build();
+    let text = format!("{VIEW}{}", STATEMENTS[..18].concat().repeat(50));
+    pool.expect("threads").install(|| {
+        rayon::join(
+            || assert_parts_make_no_difference(&text, super::read_with),
+            || assert_parts_make_no_difference(&text, super::read_with),
+        )
+    });
+}
+
+#[test]
+fn large_files_are_mapped_and_read_in_parts() {
+    use std::fmt::Write;
+    // A landscape, each of whose corners belongs to several triangles of several parts.
+    let mut text = format!("{VIEW}f 1 1 1 1 0 0 0 0\n");
+    let side = 360;
+    for (x, y) in (0..side * side).map(|i| (i % side, i / side)) {
+        let height = |x: i32, y: i32| f64::from(x * x % 7 + y * x % 5) / 8.0;
+        for corners in [[(0, 0), (1, 0), (1, 1)], [(0, 0), (1, 1), (0, 1)]] {
+            text.push_str("p 3\n");
+            for (x, y) in corners.map(|(i, j)| (x + i, y + j)) {
+                let height = height(x, y);
+                writeln!(text, "{x}.000000000000 {y}.00000000000 {height:.9}").expect("a string");
+            }
+        }
+    }
+    assert!(text.len() > 20 << 20);
+    let file = tempfile::Builder::new()
+        .suffix(".nff")
+        .tempfile()
+        .expect("a file");
+    std::fs::write(file.path(), &text).expect("written");
+    let loaded = load_path(file.path(), None);
+    assert_eq!(messages(&loaded), [""; 0]);
+    let scene = loaded.scene.expect("no errors");
+    let mesh = mesh(&scene.objects.0[0]);
+    let (triangles, vertices) = (mesh.triangle_count(), mesh.positions().len());
+    assert_eq!(triangles as i32, 2 * side * side);
+    assert_eq!(vertices as i32, (side + 1) * (side + 1));
+    // The line of the last triangle, and of an error at the end.
+    let lines = text.lines().count() as u32;
+    assert_eq!(mesh.face_line(triangles - 1), Some(lines - 3));
+    text.push_str("p 3 0 0\n");
+    let wrong = messages(&load(&text));
+    let place = format!("--> test.nff:{}:8", lines + 1);
+    assert!(wrong[0].contains(&place), "{wrong:?}");
 }

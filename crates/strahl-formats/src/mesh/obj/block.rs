@@ -1,0 +1,279 @@
+use super::faces::{Counts, RawCorner};
+use crate::scene::ahead::{Piece, Statements, read_statements};
+use crate::scene::report::Fallible;
+use crate::scene::text::{Text, Word, Words, parse_f64};
+use std::sync::Arc;
+use strahl_math::{DVec2, DVec3};
+use strahl_scene::Diagnostic;
+
+/// What statements say, one after the other.
+#[derive(Debug, Default)]
+pub(super) struct Block {
+    /// Where the first of them begins.
+    pub(super) start: usize,
+    pub(super) positions: Vec<DVec3>,
+    pub(super) uvs: Vec<DVec2>,
+    pub(super) normals: Vec<DVec3>,
+    /// Of all faces.
+    pub(super) corners: Vec<RawCorner>,
+    pub(super) steps: Vec<Step>,
+    /// How long the lists were at the last face.
+    counts: Counts,
+}
+
+/// All that is no entry of a list. Nearly all are faces, so that they are small.
+#[derive(Debug)]
+pub(super) enum Step {
+    /// The lists of the block have grown to this where the faces to come are.
+    Counts(Box<Counts>),
+    Face(Face),
+    Object(Arc<str>),
+    Group(Arc<str>),
+    Material(Arc<str>),
+    Smoothing(u32),
+    Libraries(Arc<str>, Box<Place>),
+    /// With the reason.
+    Ignored(&'static str, Box<Place>),
+}
+
+/// Where a statement begins.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Place {
+    pub(super) start: usize,
+    pub(super) length: usize,
+    pub(super) line: u32,
+}
+
+impl Place {
+    fn of(word: &Word<'_>) -> Box<Self> {
+        Box::new(Self {
+            start: word.start,
+            length: word.bytes.len(),
+            line: word.line,
+        })
+    }
+}
+
+/// A face; its corners are behind those of the face before it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Face {
+    /// From the start of the block.
+    pub(super) start: u32,
+    pub(super) line: u32,
+    pub(super) corners: u32,
+}
+
+impl Block {
+    /// A block of statements from this byte on.
+    pub(super) fn from(start: usize) -> Self {
+        Self {
+            start,
+            ..Self::default()
+        }
+    }
+
+    /// Notes how long the lists are, if they have grown since the last face.
+    fn count(&mut self) {
+        let counts = Counts {
+            positions: self.positions.len(),
+            uvs: self.uvs.len(),
+            normals: self.normals.len(),
+        };
+        if self.counts != counts {
+            self.counts = counts;
+            self.steps.push(Step::Counts(Box::new(counts)));
+        }
+    }
+}
+
+/// Reads statements, one after the other, without regard to what was before them.
+pub(super) struct Parser<'a> {
+    pub(super) text: Text<'a>,
+    pub(super) words: Words<'a>,
+    /// What has been read.
+    pub(super) block: Block,
+}
+
+/// Reads the statements that begin before `end`, up to the first that is wrong.
+pub(super) fn read_ahead<'a>(
+    text: Text<'a>,
+    words: Words<'a>,
+    end: usize,
+) -> Option<Piece<'a, Block>> {
+    let mut parser = Parser {
+        text,
+        words,
+        block: Block::default(),
+    };
+    parser.words.advance();
+    parser.block = Block::from(parser.words.position());
+    let (start, rest) = read_statements(&mut parser, end)?;
+    Some(Piece {
+        start,
+        content: parser.block,
+        rest,
+    })
+}
+
+impl<'a> Statements<'a> for Parser<'a> {
+    fn words(&mut self) -> &mut Words<'a> {
+        &mut self.words
+    }
+
+    /// It ends with its line.
+    fn statement(&mut self) -> Fallible<()> {
+        let Some(word) = self.words.next() else {
+            return Ok(());
+        };
+        let done = self.say(&word);
+        self.words.skip_line();
+        done
+    }
+}
+
+impl Parser<'_> {
+    fn say(&mut self, word: &Word<'_>) -> Fallible<()> {
+        let step = match word.bytes {
+            b"v" => {
+                let position = self.point()?;
+                self.block.positions.push(position);
+                return Ok(());
+            }
+            b"vn" => {
+                let normal = self.point()?;
+                self.block.normals.push(normal);
+                return Ok(());
+            }
+            b"vt" => {
+                let u = self.number("u")?;
+                let v = if self.words.peek_in_line().is_some() {
+                    self.number("v")?
+                } else {
+                    0.0
+                };
+                self.block.uvs.push(DVec2::new(u, 1.0 - v));
+                return Ok(());
+            }
+            b"f" => {
+                let before = self.block.corners.len();
+                let face = self.face(word);
+                if face.is_err() {
+                    self.block.corners.truncate(before);
+                }
+                let step = Step::Face(face?);
+                self.block.count();
+                step
+            }
+            b"o" => Step::Object(self.rest()),
+            b"g" => Step::Group(self.rest()),
+            b"usemtl" => Step::Material(self.rest()),
+            b"s" => Step::Smoothing(self.smoothing_group()?),
+            b"mtllib" => Step::Libraries(self.rest(), Place::of(word)),
+            b"l" => ignored(word, "lines (`l`) are ignored: they have no surface"),
+            b"p" => ignored(word, "points (`p`) are ignored: they have no surface"),
+            b"curv" | b"curv2" | b"surf" => {
+                ignored(word, "free-form curves and surfaces are ignored")
+            }
+            // What belongs to free-form geometry, and hints for displays.
+            b"vp" | b"cstype" | b"deg" | b"bmat" | b"step" | b"parm" | b"trim" | b"hole"
+            | b"scrv" | b"sp" | b"end" | b"con" | b"mg" | b"bevel" | b"c_interp" | b"d_interp"
+            | b"lod" | b"ctech" | b"stech" | b"shadow_obj" | b"trace_obj" | b"maplib"
+            | b"usemap" => return Ok(()),
+            _ => ignored(word, "an unknown statement is ignored"),
+        };
+        self.block.steps.push(step);
+        Ok(())
+    }
+
+    fn face(&mut self, start: &Word<'_>) -> Fallible<Face> {
+        let before = self.block.corners.len();
+        loop {
+            // Most corners are plain numbers.
+            if let Some(position) = self.words.short_integer_in_line() {
+                self.block.corners.push(RawCorner::plain(position));
+                continue;
+            }
+            let Some(word) = self.words.next_in_line() else {
+                break;
+            };
+            let corner = RawCorner::parse(word.bytes)
+                .map_err(|problem| self.text.at(&word, Diagnostic::error(problem)))?;
+            self.block.corners.push(corner);
+        }
+        let corners = self.block.corners.len() - before;
+        if corners < 3 {
+            let word = self
+                .words
+                .expected_in_line("another corner (a face has at least three)");
+            return Err(Box::new(word));
+        }
+        let small = |n: usize| {
+            u32::try_from(n).map_err(|_| {
+                let problem = "the face, or what is before it, is longer than 4 GiB";
+                Box::new(self.text.at(start, Diagnostic::error(problem)))
+            })
+        };
+        Ok(Face {
+            start: small(start.start - self.block.start)?,
+            line: start.line,
+            corners: small(corners)?,
+        })
+    }
+
+    fn smoothing_group(&mut self) -> Fallible<u32> {
+        let Some(word) = self.words.next_in_line() else {
+            return Err(Box::new(
+                self.words.expected_in_line("a smoothing group, or `off`"),
+            ));
+        };
+        match word.bytes {
+            b"off" => Ok(0),
+            b"on" => Ok(1),
+            number => std::str::from_utf8(number)
+                .ok()
+                .and_then(|n| n.parse().ok())
+                .ok_or_else(|| {
+                    let problem = format!(
+                        "expected the number of a smoothing group, or `off`, found `{}`",
+                        word.shown()
+                    );
+                    Box::new(self.text.at(&word, Diagnostic::error(problem)))
+                }),
+        }
+    }
+
+    /// The rest of the line as a name.
+    fn rest(&mut self) -> Arc<str> {
+        let rest = self.words.skip_line();
+        Arc::from(String::from_utf8_lossy(rest.trim_ascii()))
+    }
+
+    fn point(&mut self) -> Fallible<DVec3> {
+        Ok(DVec3::new(
+            self.number("x")?,
+            self.number("y")?,
+            self.number("z")?,
+        ))
+    }
+
+    fn number(&mut self, what: &str) -> Fallible<f64> {
+        if let Some(number) = self.words.short_number_in_line() {
+            return Ok(number);
+        }
+        let Some(word) = self.words.next_in_line() else {
+            return Err(Box::new(
+                self.words.expected_in_line(&format!("a number ({what})")),
+            ));
+        };
+        parse_f64(word.bytes).map_err(|e| {
+            Box::new(
+                self.text
+                    .at(&word, e.describe(&word, &format!("a number ({what})"))),
+            )
+        })
+    }
+}
+
+fn ignored(word: &Word<'_>, what: &'static str) -> Step {
+    Step::Ignored(what, Place::of(word))
+}

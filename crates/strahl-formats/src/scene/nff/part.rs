@@ -1,0 +1,100 @@
+use super::fill::{FillNumbers, FlatCorner, SmoothCorner};
+use super::statements::Parser;
+use crate::mesh::MeshBuilder;
+use crate::scene::ahead::{Piece, read_statements};
+use crate::scene::report::Report;
+use crate::scene::text::{Text, Words};
+use strahl_geometry::Shape;
+use strahl_math::DVec3;
+use strahl_scene::Span;
+use strahl_shade::Color;
+
+/// What one `f` statement and those behind it say; what is there before the first one, or how a piece begins, has none.
+#[derive(Debug, Default)]
+pub(super) struct Part {
+    /// The numbers of the fill and its line.
+    pub(super) fill: Option<(FillNumbers, u32)>,
+    /// All but what becomes meshes.
+    pub(super) objects: Vec<Placed>,
+    /// How many polygons there are, of all kinds.
+    pub(super) polygons: usize,
+    pub(super) flat: MeshBuilder<FlatCorner>,
+    pub(super) smooth: MeshBuilder<SmoothCorner>,
+    pub(super) lights: Vec<LightLine>,
+    pub(super) background: Option<Color>,
+}
+
+/// A shape and its line.
+#[derive(Debug)]
+pub(super) struct Placed {
+    pub(super) shape: Shape,
+    pub(super) kind: Kind,
+    pub(super) line: u32,
+}
+
+/// What gives a shape its name and material.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Kind {
+    Sphere {
+        inside_only: bool,
+    },
+    Cone,
+    Cylinder,
+    Polygon {
+        /// 1 for the first polygon of the part.
+        number: usize,
+    },
+}
+
+/// An `l` statement; the strength depends on how many there are.
+#[derive(Debug)]
+pub(super) struct LightLine {
+    pub(super) position: DVec3,
+    pub(super) color: Color,
+    pub(super) span: Span,
+}
+
+impl Part {
+    /// Adds a flat triangle. Corners with the same coordinates become one vertex.
+    pub(super) fn add_flat(&mut self, corners: [DVec3; 3], line: u32) {
+        self.flat.triangle(corners.map(FlatCorner::from), line);
+    }
+
+    /// Adds the triangles of a smooth polygon; corners with the same coordinates and normal become one vertex.
+    pub(super) fn add_patch(
+        &mut self,
+        corners: &[DVec3],
+        normals: &[DVec3],
+        triangles: &[[u32; 3]],
+        line: u32,
+    ) {
+        for triangle in triangles {
+            let corner = |i: u32| SmoothCorner::new(corners[i as usize], normals[i as usize]);
+            self.smooth.triangle(triangle.map(corner), line);
+        }
+    }
+}
+
+/// Parts of the text between two places, and what there is to say about them.
+pub(super) type Parts = (Vec<Part>, Report);
+
+/// Reads the statements that begin before `end`, up to the first that is wrong or a view.
+///
+/// A fill must have begun before, which is not known here.
+pub(super) fn read_ahead<'a>(
+    text: Text<'a>,
+    words: Words<'a>,
+    end: usize,
+) -> Option<Piece<'a, Parts>> {
+    let mut parser = Parser::new(text, words, Report::default());
+    parser.has_fill = true;
+    if !parser.seek_statement(end) {
+        return None;
+    }
+    let (start, rest) = read_statements(&mut parser, end)?;
+    Some(Piece {
+        start,
+        content: (parser.parts, parser.report),
+        rest,
+    })
+}
