@@ -3,6 +3,7 @@
 
 mod bench;
 mod bench_csg;
+mod bench_load;
 mod bench_parse;
 mod compare_pov;
 mod convert;
@@ -20,6 +21,8 @@ const USAGE: &str = "usage: cargo xtask COMMAND
                                   trace times of generated CSG scenes against POV-Ray
   bench parse [--runs N] [--megabytes N]
                                   time of reading a million spheres made by loops, and an exported scene, against POV-Ray
+  bench load [--runs N] [--side N]
+                                  time of reading files of 10 million triangles beside the time of building
   bench peers [--rounds N] [--side PIXELS] [--only PART,...] [--brief]
                                   rays a second on meshes and spheres against Embree, one thread
   compare-pov [FOLDER] [--size 160x120] [--limit N] [--only PART] [--jobs 2] [--out DIR]
@@ -41,6 +44,7 @@ fn main() -> Result<()> {
     match words.as_slice() {
         ["bench", "spd", rest @ ..] => bench::spd(rest),
         ["bench", "csg", rest @ ..] => bench_csg::run(rest),
+        ["bench", "load", rest @ ..] => bench_load::run(rest),
         ["bench", "parse", rest @ ..] => bench_parse::parse(rest),
         ["bench", "peers", rest @ ..] => peers::run(rest),
         ["compare-pov", rest @ ..] => compare_pov::run(rest),
