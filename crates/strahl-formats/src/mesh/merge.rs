@@ -42,13 +42,8 @@ impl<K: VertexKey> MeshPieces<K> {
         }
         let (vertices, triangles, lines) = match pieces.len() {
             0 | 1 => {
-                let MeshBuilder {
-                    vertices,
-                    triangles,
-                    lines,
-                    ..
-                } = pieces.pop()?;
-                (vertices, triangles, lines)
+                let piece = pieces.pop()?;
+                (piece.vertices, piece.triangles, piece.lines)
             }
             _ => merged(pieces),
         };
@@ -152,7 +147,7 @@ fn first_places<K: VertexKey>(pieces: &[MeshBuilder<K>], places: &[u32]) -> Vec<
         .into_par_iter()
         .map(|shard| {
             let mut known: HashTable<(K, u32)> = HashTable::new();
-            let find = |(key, vertex): &(K, u32), start: u32| {
+            let mut find = |(key, vertex): &(K, u32), start: u32| {
                 let entry = known.entry(
                     hasher.hash_one(key),
                     |(known, _)| known == key,
@@ -163,7 +158,6 @@ fn first_places<K: VertexKey>(pieces: &[MeshBuilder<K>], places: &[u32]) -> Vec<
                     Entry::Vacant(free) => free.insert((*key, start + vertex)).get().1,
                 }
             };
-            let mut find = find;
             sorted
                 .iter()
                 .zip(places)
