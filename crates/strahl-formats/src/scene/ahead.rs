@@ -16,8 +16,8 @@ use std::sync::mpsc::{Receiver, TryRecvError, sync_channel};
 #[cfg(test)]
 use {super::Input, super::Report, strahl_scene::Scene};
 
-/// Bytes of a part: what is made of it stays in the cache of a core.
-const PART: usize = 1 << 20;
+/// Bytes of a part: what is made of it stays in the cache of a core. Fuzzers' texts are short, and shall be cut too.
+const PART: usize = if cfg!(fuzzing) { 64 } else { 1 << 20 };
 
 /// Parts that are read at the same time; what is made of them waits in memory.
 const AT_ONCE: usize = 32;
