@@ -1,4 +1,4 @@
-//! Shadow rays to lights with an extent.
+//! Shadow rays to area lights.
 
 use crate::hit::Hit;
 use crate::observer::{LightTerm, TraceObserver};
@@ -8,11 +8,11 @@ use crate::trace::{Branch, TreeTracer};
 use strahl_math::{DVec3, Ray};
 use strahl_shade::{AreaLight, Color, Light, LightSample, ShadingModel};
 
-/// Visibilities of the corners of a cell that differ by more than this make an adaptive grid look closer: less than a step
-/// of an 8-bit channel.
+/// If the visibilities of the corners of a cell differ by more than this, an adaptive light subdivides the cell: less than a
+/// step of an 8-bit channel.
 const THRESHOLD: f64 = 1.0 / 256.0;
 
-/// The mean of four.
+/// The mean of four colours.
 fn mean([a, b, c, d]: [Color; 4]) -> Color {
     ((a + b) + (c + d)) * 0.25
 }
@@ -26,8 +26,8 @@ struct Cell {
     level: u32,
 }
 
-/// Halves a stretch of the grid: an even one at its middle point, which both halves share, an odd one in the gap between
-/// its two middle points. A stretch of one cell stays.
+/// Halves an interval of the grid: one with an even number of cells at its middle point, which both halves share, one with an
+/// odd number in the gap between its two middle points. An interval of one cell is not divided.
 fn halves([low, high]: [u32; 2]) -> ([[u32; 2]; 2], bool) {
     let width = high - low;
     if width <= 1 {
@@ -37,7 +37,7 @@ fn halves([low, high]: [u32; 2]) -> ([[u32; 2]; 2], bool) {
     ([[low, middle], [middle + width % 2, high]], true)
 }
 
-/// A light with an extent as seen from one lit point.
+/// An area light as seen from one lit point.
 struct AreaQuery<'q> {
     number: usize,
     light: &'q Light,
@@ -65,7 +65,7 @@ impl AreaQuery<'_> {
 }
 
 impl TreeTracer<'_> {
-    /// Fills in what arrives from a light with an extent: its shadow rays, one for each point of the grid that is needed.
+    /// Fills in the light that arrives from an area light: one shadow ray for each point of the grid that is needed.
     #[cold]
     #[expect(
         clippy::too_many_arguments,
@@ -112,14 +112,14 @@ impl TreeTracer<'_> {
         }
     }
 
-    /// What the surface makes of a light whose points shade one by one: their plain mean, weakened by what of the whole
-    /// light is visible (as POV-Ray does it).
+    /// The light reflected from an area light with `area_illumination`: the mean over its points, each shaded by itself, times
+    /// the visibility of the whole light (as in POV-Ray).
     fn area_shading(&self, query: &AreaQuery<'_>, visible: Color) -> (Color, Color) {
         let lit = query.surface.resolved.point.position;
         let (mut diffuse, mut specular) = (Color::BLACK, Color::BLACK);
         for j in 0..query.area.size_2 {
             for i in 0..query.area.size_1 {
-                // The point shines like the centre would from its place.
+                // The point has the intensity of the centre, seen from the point's position.
                 let offset = query.offset(i, j);
                 let Some(sample) = query.light.illuminate(lit - offset) else {
                     continue;
@@ -144,8 +144,8 @@ impl TreeTracer<'_> {
         (diffuse / count, specular / count)
     }
 
-    /// The mean over a cell: of its four corners, or of its four quarters if it has points inside that matter. Recursion
-    /// is as deep as the logarithm of [`AreaLight::MAX_SIZE`].
+    /// The mean over a cell: of its four corners, or of its four quarters if the corners differ too much. The depth of the
+    /// recursion is the logarithm of [`AreaLight::MAX_SIZE`].
     fn area_cell<O: TraceObserver>(
         &mut self,
         query: &AreaQuery<'_>,
@@ -180,7 +180,7 @@ impl TreeTracer<'_> {
         mean(quarters.map(|(i, j)| self.area_cell(query, Cell { i, j, level }, known, observer)))
     }
 
-    /// One point of the grid; its shadow ray is followed once.
+    /// The visibility of one point of the grid; its shadow ray is traced once.
     fn area_point<O: TraceObserver>(
         &mut self,
         query: &AreaQuery<'_>,

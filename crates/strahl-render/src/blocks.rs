@@ -11,7 +11,7 @@ use strahl_geometry::{RayShear, Shape, Sphere};
 use strahl_math::{Interval, Ray};
 use strahl_simd::{Isa, gather_pages};
 
-/// How the primitives of a leaf are tested; the numbers are the accelerator's classes.
+/// How the primitives of a leaf are tested; the discriminants are the accelerator's classes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub(crate) enum LeafClass {
@@ -25,7 +25,7 @@ pub(crate) enum LeafClass {
     Spheres = 3,
 }
 
-/// The lists that the primitives of a group are in.
+/// The lists that hold the primitives of a group.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Lists<'g> {
     pub(crate) prims: &'g RunList<Prim>,
@@ -53,7 +53,7 @@ impl LeafClass {
         }
     }
 
-    /// The class with a number.
+    /// The class with this number.
     #[inline(always)]
     pub(crate) const fn from_number(number: u8) -> Self {
         match number {
@@ -65,18 +65,18 @@ impl LeafClass {
     }
 }
 
-/// The primitives of a group once more, in the order of the leaves and side by side, for those classes that are tested four
-/// at a time.
+/// Copies of the primitives of a group, side by side in the order of the leaves, for those classes that are tested four at a
+/// time.
 #[derive(Debug, Default)]
 pub(crate) struct Blocks {
-    /// Per block of slots the index in the list of its class; empty if that is the block's own number.
+    /// For each block of slots its index in the list of its class; empty if the indices equal the numbers of the blocks.
     places: Vec<u32>,
     mesh: Vec<TriangleBlock<f32>>,
     triangles: Vec<TriangleBlock<f64>>,
-    /// Those flat things that are not all triangles; their places have [`Self::POLYGONS`] set.
+    /// Flat primitives that are not all triangles; their places have [`Self::POLYGONS`] set.
     polygons: Vec<PolygonBlock>,
     spheres: Vec<SphereBlock>,
-    /// Whether there are none of triangles of meshes, to save memory: their corners are fetched from the meshes.
+    /// Whether triangles of meshes have no blocks, to save memory: their corners are fetched from the meshes.
     fetches: bool,
 }
 
@@ -91,7 +91,7 @@ impl Blocks {
         fetches: false,
     };
 
-    /// Tells the places of blocks of polygons from those of triangles.
+    /// Distinguishes places of polygon blocks from those of triangle blocks.
     const POLYGONS: u32 = 1 << 31;
 
     /// The blocks for the leaves of an accelerator.
@@ -171,18 +171,18 @@ impl Blocks {
         all
     }
 
-    /// Whether there are triangles with f64 corners among them.
+    /// Whether there are triangles with f64 corners.
     pub(crate) fn has_triangles(&self) -> bool {
         !self.triangles.is_empty()
     }
 
-    /// Whether triangles of meshes are in no blocks.
+    /// Whether triangles of meshes have no blocks.
     #[inline(always)]
     pub(crate) fn fetches(&self) -> bool {
         self.fetches
     }
 
-    /// The blocks in the order of the leaves, if all are of one kind that is searched by itself.
+    /// All blocks in the order of the leaves, if they are of one kind that has a specialised search.
     #[inline(always)]
     pub(crate) fn of_one_kind(&self) -> Option<OneKind<'_>> {
         if !self.places.is_empty() {
@@ -196,12 +196,12 @@ impl Blocks {
         }
     }
 
-    /// Whether there are spheres among them.
+    /// Whether there are blocks of spheres.
     pub(crate) fn has_spheres(&self) -> bool {
         !self.spheres.is_empty()
     }
 
-    /// Asks the system for large pages where there are many.
+    /// Moves the blocks to large pages where there are many of them.
     pub(crate) fn gather_pages(&self) {
         gather_pages(&self.mesh);
         gather_pages(&self.triangles);
@@ -217,13 +217,13 @@ impl Blocks {
             + size_of_val(self.spheres.as_slice())
     }
 
-    /// The sphere in a lane of one of the blocks of spheres, seen from outside.
+    /// The sphere in a lane of a block of spheres, seen from outside.
     #[inline(always)]
     pub(crate) fn sphere(&self, block: usize, lane: usize) -> Sphere {
         self.spheres[block].sphere(lane)
     }
 
-    /// A block of flat things.
+    /// A block of flat primitives.
     #[inline(always)]
     pub(crate) fn flats(&self, block: usize) -> Flats<'_> {
         let place = self.place(block);
@@ -244,7 +244,7 @@ impl Blocks {
     }
 }
 
-/// All blocks of a group that has but one kind of them.
+/// All blocks of a group that has only one kind of block.
 #[derive(Clone, Copy)]
 pub(crate) enum OneKind<'b> {
     /// Of meshes.
@@ -252,14 +252,14 @@ pub(crate) enum OneKind<'b> {
     Spheres(&'b [SphereBlock]),
 }
 
-/// Flat things that are tested together.
+/// A block of flat primitives.
 #[derive(Clone, Copy)]
 pub(crate) enum Flats<'b> {
     Triangles(&'b TriangleBlock<f64>),
     Polygons(&'b PolygonBlock),
 }
 
-/// Visibility and flags of the primitives whose hits blocks find, if all have the same.
+/// Visibility and flags of the primitives that are tested in blocks, if they are the same for all.
 pub(crate) fn common(lists: &Lists<'_>) -> Option<(u8, u8)> {
     let found = |p: &Prim| match p.kind() {
         PrimKind::Shape(index) => {
@@ -269,7 +269,7 @@ pub(crate) fn common(lists: &Lists<'_>) -> Option<(u8, u8)> {
         _ => LeafClass::of(*p, lists) != LeafClass::Single,
     };
     let mut all = lists.prims.runs().filter_map(|(first, places)| {
-        // Shapes are of many kinds, of all others one tells of its run.
+        // Shapes may differ from each other within a run; of all other primitives the first of a run stands for the whole run.
         let asked = match first.kind() {
             PrimKind::Shape(_) => places,
             _ => places.start..places.start + 1,
@@ -287,16 +287,17 @@ fn push<T>(list: &mut Vec<T>, item: T) -> u32 {
     list.len() as u32 - 1
 }
 
-/// The rays of a packet as blocks see them; `None` where they have too little in common, or no block asks.
+/// The constants of a packet for the culling tests of blocks; `None` where the rays have too little in common or no block needs
+/// them.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PacketCulls<'c> {
     pub(crate) shears: Option<&'c PacketShears>,
     pub(crate) lines: Option<&'c PacketLines>,
 }
 
-/// A block of all the blocks of a leaf, which are alike.
+/// A block of a leaf all of whose blocks are of this kind.
 pub(crate) trait BlockOfLeaf: Block {
-    /// A block where it was found.
+    /// A reference to a block, or a block made on demand.
     type Found<'b>: Borrow<Self>;
 
     /// One of the blocks of a leaf of this class.
@@ -313,7 +314,8 @@ pub(crate) trait Block: Sized {
     /// Whether a ray that starts on a primitive may meet that primitive again.
     const CURVED: bool;
 
-    /// The lanes that the ray meets in the range, as bits, with where; those that it starts on mean nothing.
+    /// The lanes that the ray hits in the range, as bits, and the hits. The lane of the primitive that the ray starts on has no
+    /// meaning.
     fn hits<I: Isa>(
         &self,
         isa: I,
@@ -323,20 +325,20 @@ pub(crate) trait Block: Sized {
         hits: &mut Hits,
     ) -> u32;
 
-    /// The rays of a packet that may meet one of the first `used` primitives, as bits: those that are missing certainly meet none.
+    /// The rays of a packet that may hit one of the first `used` primitives, as bits; all others certainly miss them.
     fn may_hit<I: Isa>(&self, isa: I, packet: &PacketCulls<'_>, used: usize) -> u32;
 
-    /// Whether a ray that starts on the primitive of a lane may meet it again ahead.
+    /// Whether a ray that starts on the primitive of a lane may hit it again further on.
     fn is_entered(&self, _lane: usize, _ray: &Ray) -> bool {
         Self::CURVED
     }
 
-    /// Where a ray that starts on the primitive of a lane meets it again in a range.
+    /// Where a ray that starts on the primitive of a lane hits it again in a range.
     fn met_again(&self, _lane: usize, _ray: &Ray, _range: Interval) -> Option<f64> {
         None
     }
 
-    /// Where a ray that starts elsewhere meets the curved primitive of a lane in a range.
+    /// All hits in a range on the curved primitive of a lane, for a ray that starts elsewhere.
     fn all_hits(&self, _lane: usize, _ray: &Ray, _range: Interval) -> [Option<f64>; 2] {
         [None; 2]
     }
@@ -423,7 +425,7 @@ impl Block for SphereBlock {
     }
 }
 
-/// Triangles of meshes with their corners as the meshes have them, four made to a block when a ray gets there.
+/// Four triangles of meshes, fetched from the meshes when a ray visits their leaf.
 pub(crate) struct Fetched(TriangleBlock<f32>);
 
 impl BlockOfLeaf for Fetched {

@@ -1,11 +1,11 @@
-/// What a pixel cost, all its samples and passes together.
+/// The cost of a pixel: all its samples and passes together.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PixelCost {
     /// Primitives tested.
     pub tests: u64,
-    /// Nodes and cells looked at.
+    /// Nodes and cells visited.
     pub steps: u64,
-    /// Rays followed, shadow rays included.
+    /// Rays traced, shadow rays included.
     pub rays: u64,
     /// Deepest level of its ray trees.
     pub depth: u32,
@@ -14,7 +14,7 @@ pub struct PixelCost {
 }
 
 impl std::ops::AddAssign for PixelCost {
-    /// Adds what a further pass cost.
+    /// Adds the cost of a further pass.
     fn add_assign(&mut self, o: Self) {
         self.tests += o.tests;
         self.steps += o.steps;

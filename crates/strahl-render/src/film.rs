@@ -31,7 +31,7 @@ impl Region {
         self.width as u64 * self.height as u64
     }
 
-    /// The region grown by `margin` pixels as far as a picture of that size allows.
+    /// The region grown by `margin` pixels, clipped to a picture of that size.
     pub(crate) fn grown(&self, margin: u32, width: u32, height: u32) -> Self {
         let (x, y) = (self.x.saturating_sub(margin), self.y.saturating_sub(margin));
         let right = (self.x + self.width).saturating_add(margin).min(width);
@@ -55,7 +55,7 @@ impl Region {
     }
 }
 
-/// What is known of a pixel besides its colour, from its first sample.
+/// Data of a pixel besides its colour, from its first sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PixelInfo {
     /// Distance from the ray's origin; infinite for the background.
@@ -107,15 +107,15 @@ pub struct Film {
     pub width: u32,
     /// Height of the whole picture in pixels.
     pub height: u32,
-    /// The part of it that this film holds.
+    /// The part of the picture that this film holds.
     pub region: Region,
     /// Linear Rec. 709 RGB of the region, row by row from the top.
     pub pixels: Vec<[f32; 3]>,
-    /// More about each pixel, if asked for.
+    /// More data of each pixel, if requested.
     pub info: Option<Vec<PixelInfo>>,
 }
 
-/// There is no such picture.
+/// Why a film can't be made.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum FilmError {
@@ -124,9 +124,9 @@ pub enum FilmError {
         "a picture of {width} x {height} pixels has no pixels; both numbers must be at least 1"
     )]
     Empty {
-        /// Width asked for.
+        /// Width requested.
         width: u32,
-        /// Height asked for.
+        /// Height requested.
         height: u32,
     },
     /// The region is not within the picture.
@@ -165,8 +165,7 @@ pub enum FilmError {
 impl Film {
     /// A black film, or why there can't be one.
     ///
-    /// # Errors
-    /// [`FilmError`]: no pixels, a region outside, or not enough memory.
+    /// [`FilmError`]: no pixels, a region outside of the picture, or not enough memory.
     pub fn try_new(
         width: u32,
         height: u32,

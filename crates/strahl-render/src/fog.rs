@@ -3,13 +3,13 @@ use strahl_math::Ray;
 use strahl_shade::Color;
 
 impl RenderScene {
-    /// Whether the air changes what rays see.
+    /// Whether there is fog or a rainbow.
     pub(crate) fn has_air(&self) -> bool {
         !self.fogs.is_empty() || !self.rainbows.is_empty()
     }
 
-    /// What of the light from the far end of a ray of this length passes fogs and rainbows, and what they add. Fogs lie before
-    /// rainbows, and of several rainbows at one place the mean holds.
+    /// The attenuation of a ray of this length by fogs and rainbows, and the light they add. Fogs lie in front of rainbows;
+    /// where several rainbows overlap their mean counts.
     #[cold]
     pub(crate) fn air_along(&self, ray: &Ray, length: f64) -> (Color, Color) {
         let (keeps, adds) = self.fog_along(ray, length);
@@ -27,8 +27,8 @@ impl RenderScene {
         (keeps * (kept / seen), adds + keeps * (added / seen))
     }
 
-    /// What of the light from the far end of a ray of this length (in world units) passes the scene's fogs, and what they
-    /// add. As in POV-Ray fogs don't weaken each other's colours.
+    /// The attenuation of a ray of this length (in world units) by the scene's fogs, and the light they add. As in POV-Ray fogs
+    /// don't attenuate each other's colours.
     #[cold]
     pub(crate) fn fog_along(&self, ray: &Ray, length: f64) -> (Color, Color) {
         let direction = ray.direction.normalize_or_zero();

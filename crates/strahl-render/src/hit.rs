@@ -1,13 +1,13 @@
 use strahl_math::DVec3;
 
-/// What kind of ray asks, for the visibility of objects.
+/// The kind of a ray, for the visibility of objects.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RayClass {
-    /// From the eye, through transparent things too.
+    /// Camera rays, also behind transparent objects.
     Camera,
-    /// Reflection rays, and what they send through transparent things.
+    /// Reflection rays, also behind transparent objects.
     Secondary,
-    /// Towards a light.
+    /// Shadow rays, towards a light.
     Shadow,
 }
 
@@ -24,9 +24,9 @@ impl RayClass {
 
 /// A hit during traversal: small, `Copy`, ids only.
 ///
-/// `id` numbers every element of the scene, instances expanded: the world's primitives in the order of the scene, each
-/// taking as many numbers as it has elements, an instance as many as its group. Of two hits at equal `t` the smaller id
-/// wins, so the order of visits does not matter.
+/// `id` numbers every element of the scene with instances expanded: the world's primitives in the order of the scene, each
+/// taking as many numbers as it has elements, an instance as many as its group. Of two hits at equal `t` the smaller id wins,
+/// so the order of traversal does not matter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
     /// Ray parameter.
@@ -54,7 +54,7 @@ pub struct Origin {
     pub id: u64,
     /// The smooth piece of that element.
     pub facet: u32,
-    /// The ray's origin in the innermost space the element lies in: for tiny things far away it has digits that world
-    /// coordinates can't hold.
+    /// The ray's origin in the innermost space the element lies in: for tiny objects far from the origin it has digits that
+    /// world coordinates can't hold.
     pub local: DVec3,
 }

@@ -10,9 +10,8 @@ use strahl_shade::patterns::TexturePoint;
 use strahl_shade::texture::{LayerPoint, TexturePaint};
 use strahl_shade::{Color, Finish};
 
-/// Evaluates the texture at a surface, if its material has one: the layers into `paint`, what they amount to into the
-/// surface's coefficients (`specular` is left black: highlights are the layers' own). `paint` is left without layers
-/// otherwise.
+/// Evaluates the texture at a surface, if its material has one: the layers into `paint`, their sums into the surface's
+/// coefficients (`specular` stays black, because each layer has its own highlight). Otherwise `paint` has no layers.
 pub(crate) fn paint<'s>(
     scene: &'s RenderScene,
     surface: &mut Surface<'_>,
@@ -53,7 +52,7 @@ pub(crate) fn paint<'s>(
         sum.diffuse += body * layer.finish.diffuse;
         let reflection = layer.reflectance * layer.share;
         sum.reflection += reflection;
-        // What is said of the surface as a whole is where the layer that reflects most sends its ray.
+        // The reflected direction reported for the surface is that of the layer which reflects most.
         if reflection.max_component() > strongest {
             strongest = reflection.max_component();
             surface.n_shade = layer.normal;
@@ -71,8 +70,7 @@ pub(crate) struct Mirror {
     pub(crate) direction: DVec3,
 }
 
-/// The reflection rays of a surface: one for all layers with the same normal and `exponent`; a single one where all light is
-/// reflected.
+/// The reflection rays of a surface: one for all layers with the same normal and `exponent`; a single one on total reflection.
 #[inline]
 pub(crate) fn mirrors(
     paint: &TexturePaint<'_>,
@@ -106,7 +104,7 @@ fn mirrors_alike(a: &LayerPoint<'_>, b: &LayerPoint<'_>) -> bool {
     a.normal == b.normal && a.finish.reflection.exponent == b.finish.reflection.exponent
 }
 
-/// The rays of layers that mirror differently, or not in proportion to the light.
+/// The rays of layers that differ in normal or `exponent`.
 #[cold]
 fn mirrors_of_layers(paint: &TexturePaint<'_>, surface: &Surface<'_>, out: &mut Vec<Mirror>) {
     out.clear();
@@ -134,7 +132,8 @@ fn mirrors_of_layers(paint: &TexturePaint<'_>, surface: &Surface<'_>, out: &mut 
     }
 }
 
-/// What the layers make of light of this colour from the direction `l`: the diffuse part and the highlights.
+/// The light that the layers reflect if light of this colour arrives from the direction `l`: the diffuse part and the
+/// highlights.
 pub(crate) fn lit(
     paint: &TexturePaint<'_>,
     surface: &Surface<'_>,
@@ -160,7 +159,7 @@ pub(crate) fn lit(
     (diffuse, highlights)
 }
 
-/// Whether light from the direction `l` shows on any layer.
+/// Whether light from the direction `l` reaches the front of any layer.
 pub(crate) fn faces(paint: &TexturePaint<'_>, l: DVec3) -> bool {
     paint
         .layers
@@ -168,7 +167,7 @@ pub(crate) fn faces(paint: &TexturePaint<'_>, l: DVec3) -> bool {
         .any(|layer| layer.normal.dot(l) > 0.0 || layer.finish.diffuse_back != 0.0)
 }
 
-/// What `crand` takes from the surface's own light.
+/// Subtracts the grain of `crand` from the surface's own light.
 pub(crate) fn grained(paint: &TexturePaint<'_>, place: DVec3, light: Color) -> Color {
     let loss: f64 = paint
         .layers
@@ -181,7 +180,7 @@ pub(crate) fn grained(paint: &TexturePaint<'_>, place: DVec3, light: Color) -> C
     light.map(|x| if x > loss { x - loss } else { 0.0 })
 }
 
-/// The layer's colour as far as it is opaque and not hidden.
+/// The layer's colour, weighted by its opacity and by the transparency of the layers above.
 fn body(layer: &LayerPoint<'_>) -> Color {
     layer.color.rgb * layer.above * (layer.share * layer.color.opacity())
 }

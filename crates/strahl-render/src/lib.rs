@@ -4,9 +4,9 @@
 //! Scene --compile--> RenderScene --render--> Film
 //! ```
 //!
-//! [`compile()`] is a list of passes from value to value; [`render()`] sends the rays. The heart is [`trace`], the one trace loop
-//! there is: ray trees, counters and pictures all come from it, by way of a [`TraceObserver`]. Nothing here does I/O, reads
-//! the clock or prints.
+//! [`compile()`] is a list of passes from value to value; [`render()`] traces the rays. [`trace`] has the only trace loop:
+//! pictures and ray trees both come from it, the latter through a [`TraceObserver`]. Nothing here does I/O, reads the clock or
+//! prints.
 //!
 //! A pixel depends on the scene, its position and its samples only, so a film has the same bits for every accelerator,
 //! number of threads, order of tiles and split into regions.

@@ -5,34 +5,34 @@ use strahl_scene::CsgOp;
 /// How an object is lit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Lit {
-    /// The set of lights that shine on it; 0 is that of everything in no group: the lights that are in none.
+    /// The set of lights that shine on it; set 0 has the lights that are in no group.
     pub(crate) set: u32,
-    /// Whether light from behind shows too.
+    /// Whether light from behind counts too.
     pub(crate) both_sides: bool,
 }
 
 impl Lit {
-    /// By the lights in no group, from the front: as nearly everything is.
+    /// By the lights in no group, from the front: the ordinary case.
     pub(crate) const PLAIN: Self = Self {
         set: 0,
         both_sides: false,
     };
 }
 
-/// Which lights shine on what: lists of lights that objects have in common, as groups of lights
-/// ([`CsgOp::LightGroup`]) make them.
+/// Which lights shine on which objects, as light groups ([`CsgOp::LightGroup`]) decide: one list of lights for all objects with
+/// the same lights.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct LightSets {
     /// Numbers of the scene's lights, by set; empty in a scene without groups, where all lights shine on everything.
     lists: Vec<Vec<u32>>,
     /// How the objects are lit; those beyond the list are [`Lit::PLAIN`].
     of_objects: Vec<Lit>,
-    /// Whether anything is lit otherwise.
+    /// Whether an object is not [`Lit::PLAIN`].
     special: bool,
 }
 
 impl RenderScene {
-    /// The numbers of the lights of a set; `None` if those are all.
+    /// The numbers of the lights of a set; `None` if these are all lights.
     #[inline]
     pub(crate) fn lights_in(&self, set: u32) -> Option<&[u32]> {
         if self.light_sets.lists.is_empty() {
@@ -52,7 +52,7 @@ impl RenderScene {
         }
     }
 
-    /// An instance in a group of lights decides for all that is in it.
+    /// The lighting of an instance in a light group overrides that of its elements.
     #[cold]
     fn lit_specially(&self, element: u64, object: u32) -> Lit {
         let own = self.light_sets.of_objects.get(object as usize);
@@ -81,10 +81,10 @@ impl RenderScene {
     }
 }
 
-/// The sets while the scene is flattened.
+/// The sets, while the scene is flattened.
 #[derive(Debug, Default)]
 pub(crate) struct LightSetsDraft {
-    /// The groups met so far; the set of the first is 1.
+    /// The groups found so far; the set of the first is 1.
     groups: Vec<GroupDraft>,
     of_objects: Vec<Lit>,
     special: bool,
@@ -98,7 +98,7 @@ struct GroupDraft {
 }
 
 impl LightSetsDraft {
-    /// A new set for a group with this operation that is itself part of something with the set `outer`.
+    /// A new set for a group with this operation, whose parent has the set `outer`.
     pub(crate) fn open(&mut self, op: CsgOp, outer: u32) -> u32 {
         let global_lights = match (self.group(outer), op) {
             (Some(outer), _) => outer.global_lights,
@@ -123,7 +123,7 @@ impl LightSetsDraft {
         }
     }
 
-    /// Says how an object is lit; objects come in the order of their numbers.
+    /// Sets how an object is lit; objects come in the order of their numbers.
     pub(crate) fn add_object(&mut self, lit: Lit, object: u32) {
         if lit != Lit::PLAIN {
             self.of_objects.resize(object as usize, Lit::PLAIN);
@@ -132,12 +132,12 @@ impl LightSetsDraft {
         }
     }
 
-    /// Says how what an instance shows is lit.
+    /// Takes note of how an instance is lit.
     pub(crate) fn add_instance(&mut self, lit: Lit) {
         self.special |= lit != Lit::PLAIN;
     }
 
-    /// The lists of lights, for a scene that has so many lights before those found in objects.
+    /// The finished lists, for a scene with `before` lights of its own, followed by `found` lights among the objects.
     pub(crate) fn finished(self, before: usize, found: usize) -> LightSets {
         if self.groups.is_empty() {
             return LightSets {

@@ -1,9 +1,9 @@
-//! Which object and material something belongs to.
+//! Object and material of an element.
 
 use crate::runs::Run;
 use strahl_shade::MaterialId;
 
-/// Which object and material an element belongs to.
+/// Object and material of an element.
 #[derive(Clone, Debug)]
 pub(crate) enum Looks {
     One(Look),

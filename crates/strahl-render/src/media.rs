@@ -1,10 +1,10 @@
 use strahl_shade::MaterialId;
 
-/// What a ray is inside of: a stack of materials, shared between the branches of a ray tree.
+/// The media that a ray is inside of: a stack of materials, shared between the branches of a ray tree.
 ///
-/// Stacks are lists that grow at the front and share their tails; all of them live in one arena per sample. The medium is that
-/// entered last. Leaving a material takes out the entry made last for it, wherever it is: overlapping and nested glass
-/// works without the surfaces being in order, and closed hulls made of many polygons of one material count as one thing.
+/// Stacks are linked lists that share their tails; all of them live in one arena per sample. The current medium is the one
+/// entered last. Leaving a material removes its last entry, wherever that is: overlapping and nested glass works without
+/// priorities of surfaces, and a closed hull made of many polygons of one material is one medium.
 #[derive(Debug, Default)]
 pub(crate) struct MediaArena {
     entries: Vec<(MaterialId, MediaStack)>,
@@ -48,13 +48,13 @@ impl MediaArena {
             .map(|index| self.entries[index as usize])
     }
 
-    /// The stack after getting into `material`.
+    /// The stack after entering `material`.
     pub(crate) fn entered(&mut self, stack: MediaStack, material: MaterialId) -> MediaStack {
         self.entries.push((material, stack));
         MediaStack(self.entries.len() as u32)
     }
 
-    /// The stack after getting out of `material`; unchanged if the ray was not inside of it (the eye may have been).
+    /// The stack after leaving `material`; unchanged if the ray was not inside of it (the eye may have been).
     pub(crate) fn left(&mut self, stack: MediaStack, material: MaterialId) -> MediaStack {
         let (mut kept, mut rest) = (Vec::new(), stack);
         while let Some((top, below)) = self.entry(rest) {

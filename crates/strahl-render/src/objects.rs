@@ -2,7 +2,7 @@ use crate::runs::{Run, RunList};
 use std::sync::Arc;
 use strahl_scene::Span;
 
-/// What is known of an object of the scene, for ray trees and layers.
+/// Data of an object of the scene, for ray trees and layers.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ObjectInfo {
     /// Name given in the scene.
@@ -13,9 +13,9 @@ pub struct ObjectInfo {
     pub span: Span,
 }
 
-/// What is known of the objects of a scene, by their numbers.
+/// Data of the objects of a scene, by number.
 ///
-/// Millions of them come from a loop, or one from each line of a file: such runs take no more memory than one object.
+/// Millions of objects may come from a loop, or one from each line of a file: such a run takes no more memory than one object.
 #[derive(Clone, Debug, Default)]
 pub struct Objects(RunList<ObjectRun>);
 
@@ -54,11 +54,11 @@ impl Objects {
     }
 }
 
-/// Objects of a name and a kind from places at equal distances.
+/// Objects of the same name and kind whose places are at equal distances.
 #[derive(Clone, Debug)]
 struct ObjectRun {
     first: ObjectInfo,
-    /// From the line of one to that of the next.
+    /// Lines from one object to the next.
     lines: u32,
 }
 

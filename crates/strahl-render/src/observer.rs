@@ -3,7 +3,7 @@ use std::fmt;
 use strahl_math::{DVec3, Ray, det};
 use strahl_shade::{Color, MaterialId, SpectralPart};
 
-/// The rays of a tree that see something (shadow rays belong to the node they start from).
+/// The kinds of rays in a tree that see something (shadow rays belong to the node they start from).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum RayKind {
     /// From the eye.
@@ -24,7 +24,7 @@ impl fmt::Display for RayKind {
     }
 }
 
-/// Why a branch of the tree that the surface would allow was not followed.
+/// Why a branch that the surface would allow was not traced.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BranchEnd {
     /// The tree is as deep as allowed.
@@ -48,12 +48,12 @@ impl fmt::Display for BranchEnd {
     }
 }
 
-/// What of a ray's light the hit takes that sent it.
+/// How much a ray contributes to the hit that sent it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Share {
     /// kr or kt: the factor.
     pub factor: Color,
-    /// What the light is raised to the power of before, channel by channel: 1 but for POV-Ray's reflections with an
+    /// The exponent that is applied to the radiance before, channel by channel: 1 except for POV-Ray's reflections with an
     /// `exponent`.
     pub power: f64,
 }
@@ -82,32 +82,32 @@ impl Share {
     }
 }
 
-/// A ray of the tree and what became of it.
+/// A ray of the tree and its result.
 #[derive(Clone, Debug)]
 pub struct RayReport {
     /// Number of the ray in its tree, in the order of tracing; 0 is the primary ray.
     pub node: u32,
     /// The ray that sent it (itself for the primary ray).
     pub parent: u32,
-    /// What it is.
+    /// Its kind.
     pub kind: RayKind,
     /// Level in the tree, 1 for the primary ray.
     pub depth: u32,
-    /// Largest channel of the product of all coefficients on the way to it.
+    /// The throughput: the largest channel of the product of all coefficients on the way to it.
     pub weight: f64,
-    /// What of its light the hit takes that sent it; several reflection rays of one hit each have their own.
+    /// How much it contributes to the hit that sent it; several reflection rays of one hit each have their own.
     pub share: Share,
     /// The ray.
     pub ray: Ray,
-    /// What it hit, or `None` for the background.
+    /// The surface it hit, or `None` for the background.
     pub hit: Option<HitReport>,
     /// The background's colour, if it hit nothing.
     pub background: Option<Color>,
-    /// Which light it follows.
+    /// The part of the spectrum it stands for.
     pub part: SpectralPart,
-    /// What the medium it ran through kept of the light; where light was divided into its spectrum, times the part's share.
+    /// The attenuation by the medium it ran through; where light was divided into its spectrum, times the part's share.
     pub attenuation: Color,
-    /// What fog and rainbows in front of the hit add to what is kept.
+    /// The light that fog and rainbows in front of the hit add.
     pub fog: Color,
 }
 
@@ -120,9 +120,9 @@ pub struct HitReport {
     pub object: u32,
     /// Number of the material.
     pub material: MaterialId,
-    /// The line of the scene file that made this face, where faces of a mesh know it.
+    /// The line of the scene file that made this triangle, where a mesh stores it.
     pub line: Option<u32>,
-    /// Whether the shading model shows a property of the hit, so that there are no terms of light.
+    /// Whether the shading model shows a property of the hit instead of light.
     pub diagnostic: bool,
     /// World position.
     pub position: DVec3,
@@ -150,25 +150,25 @@ pub struct HitReport {
     pub specular: Color,
     /// p.
     pub shininess: f64,
-    /// kr as it was applied (Fresnel and total reflection included), all layers together.
+    /// kr as it was applied (including Fresnel and total reflection), all layers together.
     pub reflection: Color,
     /// kt as it was applied.
     pub transmission: Color,
 }
 
-/// One light at one hit.
+/// The contribution of one light to one hit.
 #[derive(Clone, Copy, Debug)]
 pub struct LightTerm {
     /// Index of the light.
     pub light: u32,
     /// n·l.
     pub n_dot_l: f64,
-    /// The shadow ray, of a light with an extent the one to its centre; `None` if none was sent because the surface faces
-    /// away, the light does not shine here or casts no shadows.
+    /// The shadow ray, for an area light the one to its centre; `None` if none was sent because the surface faces away, or the
+    /// light does not shine here or casts no shadows.
     pub shadow_ray: Option<Ray>,
-    /// How many shadow rays were followed: 1, or as many as points of a light with an extent were needed.
+    /// How many shadow rays were traced: 1, or for area lights as many as needed.
     pub shadow_rays: u32,
-    /// What arrives through whatever is in between: 0 in full shadow, 1 without any; the mean over a light's extent.
+    /// The visibility of the light: 0 in full shadow, 1 if nothing is in between; the mean over an area light.
     pub visible: Color,
     /// The light's colour at the point.
     pub color: Color,
@@ -178,25 +178,26 @@ pub struct LightTerm {
     pub specular: Color,
 }
 
-/// Watches the trace loop: ray trees, counters and heat maps are observers, `()` costs nothing.
+/// Is told what the trace loop does, and so records ray trees. The observer `()` costs nothing.
 pub trait TraceObserver {
-    /// Whether reports are wanted; they are not even made otherwise.
+    /// Whether reports are wanted; otherwise they are not even made.
     const ACTIVE: bool = true;
 
     /// A ray was traced (before its lights and branches are).
     fn ray(&mut self, _report: RayReport) {}
 
-    /// A light was looked at from the hit of a ray.
+    /// The contribution of a light to the hit of a ray was computed.
     fn light(&mut self, _node: u32, _term: LightTerm) {}
 
-    /// A shadow ray to a point of a light with an extent was followed, and this share of the light came through.
-    /// [`TraceObserver::light`] tells the mean when all are followed.
+    /// A shadow ray to a point of an area light was traced, and this share of the light is visible. [`TraceObserver::light`] is
+    /// called with the mean afterwards.
     fn area_shadow(&mut self, _node: u32, _light: u32, _ray: Ray, _visible: Color) {}
 
-    /// A branch was not followed.
+    /// A branch was not traced.
     fn ended(&mut self, _node: u32, _kind: RayKind, _weight: f64, _end: BranchEnd) {}
 
-    /// A ray's colour is known: `local` is what the hit itself sends, `total` all of it. Children come before parents.
+    /// A ray's radiance is known: `local` is what the hit itself contributes, `total` includes all branches. Children come
+    /// before parents.
     fn combined(&mut self, _node: u32, _local: Color, _total: Color) {}
 }
 

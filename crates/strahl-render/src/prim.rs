@@ -1,15 +1,15 @@
-//! What the ids of accelerators stand for.
+//! Primitives of a group: what the ids of accelerators stand for.
 
 use crate::runs::Run;
 
-/// What the accelerator's ids stand for: 12 bytes, because scenes have millions.
+/// A primitive of a group in 12 bytes, because scenes have millions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Prim {
     /// Index of the mesh use, shape or instance.
     index: u32,
     triangle: u32,
     tag: PrimTag,
-    /// Which rays see it (bits of [`crate::RayClass`]).
+    /// Which rays can see it (bits of [`crate::RayClass`]).
     pub(crate) visible: u8,
     /// Bits of `Prim::*`.
     pub(crate) flags: u8,
@@ -17,7 +17,7 @@ pub(crate) struct Prim {
 
 const _: () = assert!(size_of::<Prim>() == 12);
 
-/// Of which kind a [`Prim`] is.
+/// The kind of a [`Prim`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(u8)]
 enum PrimTag {
@@ -28,7 +28,7 @@ enum PrimTag {
     Instance,
 }
 
-/// What a [`Prim`] is.
+/// A [`Prim`], decoded.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum PrimKind {
     /// Triangle `1` of mesh use `0`.
@@ -39,20 +39,20 @@ pub(crate) enum PrimKind {
     Sphere(u32),
     /// A shape with a transformation.
     Placed(u32),
-    /// A group once more.
+    /// An instance of another group.
     Instance(u32),
 }
 
 impl Prim {
-    /// Exists from the front only, or has holes by alpha: each hit must be looked at.
+    /// One-sided or with an alpha mask: each hit must be checked.
     pub(crate) const FILTERED: u8 = 1;
-    /// May let light through (its material transmits, or one of its leaves' does).
+    /// May transmit light (its material transmits, or one of its leaves' does).
     pub(crate) const TRANSMITS: u8 = 2;
-    /// May stop light.
+    /// May block light.
     pub(crate) const STOPS: u8 = 4;
-    /// Exists from the front only, or one of its leaves does.
+    /// One-sided, or one of its leaves is.
     pub(crate) const ONE_SIDED: u8 = 8;
-    /// Has holes by alpha.
+    /// Has an alpha mask.
     pub(crate) const MASKED: u8 = 16;
 
     pub(crate) const fn new(kind: PrimKind, visible: u8, flags: u8) -> Self {
@@ -72,7 +72,7 @@ impl Prim {
         }
     }
 
-    /// What it is.
+    /// Decodes it.
     #[inline(always)]
     pub(crate) const fn kind(&self) -> PrimKind {
         match self.tag {
@@ -85,7 +85,7 @@ impl Prim {
     }
 }
 
-/// Runs are the triangles of a mesh, or shapes of a kind that rays see alike.
+/// Runs are the triangles of a mesh, or shapes of a kind with the same visibility and flags.
 impl Run for Prim {
     type Item = Self;
 

@@ -17,16 +17,16 @@ use strahl_math::{Interval, Ray};
 use strahl_shade::Sides;
 use strahl_simd::Isa;
 
-/// Asks a scene what its rays meet; owns the working memory of one thread.
+/// Finds the intersections of rays with a scene; owns the working memory of one thread.
 #[derive(Debug)]
 pub struct Tracer<'s> {
     pub(crate) scene: &'s RenderScene,
     pub(crate) scratch: Scratch,
-    /// What the queries so far have cost.
+    /// The cost of all queries so far.
     pub stats: TraversalStats,
-    /// Per light the primitive of the world that was last found in the way: likely to be in the way again.
+    /// For each light the primitive of the world that blocked it last: likely to block it again.
     occluders: Vec<u32>,
-    /// Whether to look there first.
+    /// Whether to test that primitive first.
     pub(crate) remembers: bool,
 }
 
@@ -59,7 +59,7 @@ impl<'s> Tracer<'s> {
         query.best
     }
 
-    /// The same, telling all that happens on the way.
+    /// [`Tracer::closest_hit`], reporting every step of the traversal.
     pub(crate) fn watched_hit(
         &mut self,
         ray: &Ray,
@@ -73,7 +73,7 @@ impl<'s> Tracer<'s> {
         query.closest.best
     }
 
-    /// Whether something that lets no light through is in `range`.
+    /// Whether an opaque surface is in `range`.
     #[inline]
     pub fn any_opaque(&mut self, ray: &Ray, range: Interval, from: Option<&Origin>) -> bool {
         let mut query = AnyOpaque { found: None };
@@ -81,8 +81,8 @@ impl<'s> Tracer<'s> {
         query.found.is_some()
     }
 
-    /// The same for a ray to a light, looking first at what was in the way of that light before: the answer is the same,
-    /// sooner.
+    /// [`Tracer::any_opaque`] for a ray to a light, testing the last occluder of that light first: the answer is the same,
+    /// found sooner.
     #[inline]
     pub(crate) fn occluded(
         &mut self,
@@ -104,7 +104,7 @@ impl<'s> Tracer<'s> {
         query.found.is_some()
     }
 
-    /// Keeps in mind what was in the way of a light, or that nothing was: where one ray gets through, the next one will.
+    /// Remembers what blocked a light, or that nothing did: where one ray reaches the light, the next one probably will.
     #[inline]
     fn remember(&mut self, light: usize, found: Option<u64>) {
         if self.remembers {
@@ -112,7 +112,7 @@ impl<'s> Tracer<'s> {
         }
     }
 
-    /// Where in `range` a ray first crosses something that no ray of the scene meets otherwise.
+    /// Where in `range` a ray first crosses the mask of a light, a group that other rays don't see.
     #[cold]
     pub(crate) fn crossing(
         &mut self,
@@ -135,13 +135,13 @@ impl<'s> Tracer<'s> {
         query.best.map(|hit| hit.t)
     }
 
-    /// Forgets what was in the way, so that the cost of what follows does not depend on what came before.
+    /// Forgets the last occluders, so that the cost of the following queries does not depend on earlier ones.
     pub(crate) fn forget_occluders(&mut self) {
         self.occluders.fill(NONE);
     }
 
-    /// All hits in `range` on things that may let light through, in no particular order; those of a primitive that lies in
-    /// several cells perhaps more than once.
+    /// All hits in `range` on primitives that may transmit light, in no particular order. Hits on a primitive that lies in
+    /// several cells may be repeated.
     pub(crate) fn transmitting_hits(
         &mut self,
         ray: &Ray,
@@ -182,7 +182,7 @@ impl<'s> Tracer<'s> {
     }
 }
 
-/// Where the ray started, and the number of that element relative to the group being searched.
+/// The origin of the ray, and the number of its element relative to the group being searched.
 type From<'o> = Option<(&'o Origin, u64)>;
 
 struct Search<'a, 's, Q> {
@@ -190,14 +190,14 @@ struct Search<'a, 's, Q> {
     scratch: &'a mut Scratch,
     stats: &'a mut TraversalStats,
     class: u8,
-    /// Whether to look only at the part of a group that the query is about.
+    /// Whether to search only the part of a group that matters to the query.
     parts: bool,
     query: &'a mut Q,
 }
 
 impl<Q: Query> Search<'_, '_, Q> {
-    /// Searches a group, looking at primitive `first` before all others if there is one; `base` is the number of the
-    /// group's first element. Returns the new upper end of the range.
+    /// Searches a group, testing primitive `first` before all others if there is one; `base` is the number of the group's first
+    /// element. Returns the new upper end of the range.
     #[inline]
     fn group(
         &mut self,
@@ -276,7 +276,7 @@ impl<Q: Query> Search<'_, '_, Q> {
 struct GroupVisitor<'v, 'a, 's, Q> {
     search: &'v mut Search<'a, 's, Q>,
     group: &'v RenderGroup,
-    /// The primitives in the order of the leaves that are visited.
+    /// The primitives in the order of the leaves.
     blocks: &'v Blocks,
     ray: &'v Ray,
     shear: &'v RayShear,
@@ -286,7 +286,7 @@ struct GroupVisitor<'v, 'a, 's, Q> {
     from_prim: u32,
     base: u64,
     t_max: f64,
-    /// Whether hits in blocks are taken as they are (see [`RenderGroup::common`]).
+    /// Whether hits in blocks need no further checks (see [`RenderGroup::common`]).
     plain: bool,
 }
 
@@ -296,7 +296,7 @@ impl<Q: Query> Visitor for GroupVisitor<'_, '_, '_, Q> {
 
     #[inline(always)]
     fn visit_leaf<I: Isa>(&mut self, isa: I, leaf: &Leaf<'_>, t_max: f64) -> f64 {
-        // Who watches hears of every test.
+        // With an observer every test is made and reported one by one.
         let class = match Q::WATCHES {
             true => LeafClass::Single,
             false => LeafClass::from_number(leaf.class),
@@ -352,7 +352,7 @@ impl<Q: Query> Visitor for GroupVisitor<'_, '_, '_, Q> {
 }
 
 impl<Q: Query> GroupVisitor<'_, '_, '_, Q> {
-    /// Whether a one-sided flat primitive shows the ray its front, as far as that can be told without a hit.
+    /// Whether the ray sees the front of a one-sided flat primitive, as far as that can be decided without a hit.
     #[inline(always)]
     fn facing(&self, id: u32, prim: Prim) -> Option<bool> {
         match prim.flags & Prim::ONE_SIDED {
@@ -366,7 +366,7 @@ impl<Q: Query> GroupVisitor<'_, '_, '_, Q> {
         let inner = &self.search.scene.groups[instance.group as usize];
         let mut ray = instance.transform.ray_to_object(self.ray);
         if let Some((origin, number)) = from {
-            // The ray starts in this space, not in one further inside: its origin is known exactly here.
+            // The origin lies in this space, not in one further inside, and is exact here.
             let prim = inner.prims.at(inner.prim_of(number));
             if !matches!(prim.kind(), PrimKind::Instance(_)) {
                 ray.origin = origin.local;
@@ -392,7 +392,7 @@ impl<Q: Query> GroupVisitor<'_, '_, '_, Q> {
             element: number as u32,
             facet: origin.facet,
         });
-        // Flat things that turn their back on the ray need no test.
+        // Flat primitives that face away need no test.
         let facing = self.facing(id, prim);
         if facing == Some(false) {
             return t_max;
@@ -423,7 +423,7 @@ impl<Q: Query> GroupVisitor<'_, '_, '_, Q> {
                     return t_max;
                 }
             }
-            // Go on behind this hit; the lower end of a range is open.
+            // Continue behind this hit; the lower end of a range is open.
             min = found.t;
             if min >= t_max {
                 return t_max;
@@ -445,7 +445,7 @@ impl<Q: Query> GroupVisitor<'_, '_, '_, Q> {
                 }
                 let mesh = &self.group.meshes[mesh as usize].mesh;
                 let hit = mesh.hit_element(triangle, self.shear, range)?;
-                // Seen from outside the mesh every triangle is a primitive of one element.
+                // Outside of the mesh every triangle counts as a primitive of one element.
                 Some(PrimHit {
                     surface: SurfaceId {
                         element: 0,
@@ -475,8 +475,8 @@ impl<Q: Query> GroupVisitor<'_, '_, '_, Q> {
         }
     }
 
-    /// Whether there is a surface at this hit: not on the back of a one-sided one, nor in a hole of an alpha mask. `front` tells that
-    /// it is known not to be on the back.
+    /// Whether a hit counts: not on the back of a one-sided surface, nor in a hole of an alpha mask. `front` says that it is
+    /// known not to be on the back.
     #[inline]
     fn exists(&self, id: u32, prim: Prim, hit: &Hit, surface: SurfaceId, front: bool) -> bool {
         front && prim.flags & Prim::MASKED == 0 || self.exists_there(id, hit, surface)
@@ -498,7 +498,7 @@ impl<Q: Query> GroupVisitor<'_, '_, '_, Q> {
 }
 
 impl RenderScene {
-    /// Whether the material of an element lets light through.
+    /// Whether the material of an element transmits light.
     pub(crate) fn transmits(&self, look: crate::look::Look) -> bool {
         crate::compile::material_transmits(&self.materials[look.material.0 as usize])
     }

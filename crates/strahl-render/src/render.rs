@@ -30,7 +30,7 @@ pub struct RenderOptions {
     pub threads: usize,
     /// Order of the tiles.
     pub tile_order: TileOrder,
-    /// How trees are grown.
+    /// How ray trees are grown.
     pub trace: TraceSettings,
     /// Whether to fill [`Film::info`].
     pub info: bool,
@@ -39,7 +39,7 @@ pub struct RenderOptions {
 }
 
 impl RenderOptions {
-    /// What the scene asks for, at this size, one ray per pixel, on all processors.
+    /// The scene's own settings at this size, one ray per pixel, on all processors.
     pub fn new(scene: &RenderScene, width: u32, height: u32) -> Self {
         Self {
             width,
@@ -55,7 +55,7 @@ impl RenderOptions {
         }
     }
 
-    /// Whether rays that lie together are followed together. Costs that are shown are those of rays that are followed one by one.
+    /// Whether neighbouring rays are traced in packets. Not where costs are shown, since these are the costs of single rays.
     fn follows_together(&self, rays: &PrimaryRays) -> bool {
         self.trace.packets && !self.costs && !self.info && rays.is_sharp()
     }
@@ -67,7 +67,7 @@ impl RenderOptions {
     }
 }
 
-/// Hears how far a render is, and may end it. Called from several threads.
+/// Is told the progress of a render, and may cancel it. Called from several threads.
 pub trait Progress: Sync {
     /// A pass begins; it has this many tiles.
     fn pass(&self, _pass: u32, _of: u32, _tiles: usize) {}
@@ -75,7 +75,7 @@ pub trait Progress: Sync {
     /// A tile is done; it took this many rays.
     fn tile(&self, _rays: u64) {}
 
-    /// A clock in nanoseconds, for the time each pixel takes: nothing here reads the clock itself.
+    /// A clock in nanoseconds, for the time of each pixel: nothing here reads the clock itself.
     fn now(&self) -> u64 {
         0
     }
@@ -92,10 +92,10 @@ impl Progress for () {}
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum RenderError {
-    /// There can't be such a picture.
+    /// The film can't be made.
     #[error(transparent)]
     Film(#[from] FilmError),
-    /// [`Progress::cancelled`] said so.
+    /// [`Progress::cancelled`] returned true.
     #[error("cancelled")]
     Cancelled,
     /// The system gives no threads.
@@ -103,18 +103,18 @@ pub enum RenderError {
     Threads(usize, String),
 }
 
-/// A finished picture with what it cost.
+/// A finished picture and its cost.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rendered {
     /// The picture.
     pub film: Film,
-    /// Rays followed.
+    /// Rays traced.
     pub rays: RayCounts,
-    /// What finding their hits cost.
+    /// The cost of finding their hits.
     pub traversal: TraversalStats,
     /// Threads used.
     pub threads: usize,
-    /// What each pixel of the film cost, row by row, if asked for. A picture of corners has the cost of a pixel's top left
+    /// The cost of each pixel of the film, row by row, if requested. With `Corners` a pixel has the cost of its top left
     /// corner.
     pub costs: Option<Vec<PixelCost>>,
 }
@@ -160,7 +160,7 @@ pub fn render(
     })
 }
 
-/// The refining passes that look at pixel `(x, y)` of the picture.
+/// The refining passes of pixel `(x, y)` of the picture.
 pub(crate) fn passes_of_pixel(
     scene: &RenderScene,
     options: &RenderOptions,
@@ -203,13 +203,13 @@ struct Job<'a> {
     costs: Option<Vec<PixelCost>>,
 }
 
-/// What a tile brings home.
+/// The result of a tile.
 struct TileResult<T> {
     tile: Region,
     values: Vec<T>,
-    /// One for each value, if asked for.
+    /// One for each value, if requested.
     infos: Vec<PixelInfo>,
-    /// One for each value, if asked for.
+    /// One for each value, if requested.
     costs: Vec<PixelCost>,
     counts: RayCounts,
     traversal: TraversalStats,
@@ -220,7 +220,7 @@ struct TileResult<T> {
 struct Samples {
     sum: Color,
     count: u32,
-    /// The refining passes that looked at it, as bits.
+    /// The refining passes it was part of, as bits.
     passes: u32,
 }
 
@@ -270,7 +270,7 @@ impl Job<'_> {
             store(result);
             stored += 1;
         };
-        // Whoever is free takes the next tile. They end in any order; what is made of them does not depend on it.
+        // A thread that is free takes the next tile. Tiles end in any order; the result does not depend on it.
         let (next, take) = (AtomicUsize::new(0), Mutex::new(&mut take));
         rayon::broadcast(|_| {
             let mut tracer = PixelTracer::new(scene, rays, options, progress);
@@ -289,7 +289,7 @@ impl Job<'_> {
         }
     }
 
-    /// One pass is the picture.
+    /// Renders with one pass.
     fn single_pass(&mut self, film: &mut Film) -> Result<(), RenderError> {
         let region = film.region;
         self.tiles(
@@ -304,7 +304,7 @@ impl Job<'_> {
         )
     }
 
-    /// The lattice of pixel corners first, then every pixel as the mean of its four.
+    /// Traces the lattice of pixel corners first, then makes every pixel the mean of its four.
     fn corners(&mut self, film: &mut Film) -> Result<(), RenderError> {
         let region = film.region;
         let lattice = Region {
@@ -350,7 +350,7 @@ impl Job<'_> {
         Ok(())
     }
 
-    /// The samples of a region and the margin around it; `keep` takes what is known of the first sample of each pixel.
+    /// The samples of a region and the margin around it; `keep` is called with the data of each pixel's first sample.
     fn refined(
         &mut self,
         region: Region,
@@ -422,7 +422,7 @@ impl Film {
         self.pixels[index] = color.to_f32();
     }
 
-    /// Takes over the pixels of a tile that lies in the film.
+    /// Writes the pixels of a tile, which lies in the film.
     fn set_tile(&mut self, tile: Region, values: &[[f32; 3]]) {
         let width = tile.width as usize;
         for (y, row) in (tile.y..).zip(values.chunks_exact(width)) {
@@ -431,7 +431,7 @@ impl Film {
         }
     }
 
-    /// Keeps what is known of the pixels of a tile, as far as they lie in the film.
+    /// Writes the further data of the pixels of a tile, as far as they lie in the film.
     fn set_infos(&mut self, tile: Region, infos: &[PixelInfo]) {
         if let Some(list) = &mut self.info {
             for ((x, y), info) in tile.positions().zip(infos) {

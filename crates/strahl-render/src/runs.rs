@@ -1,24 +1,24 @@
-//! Lists of millions of things that follow from each other, in little memory.
+//! Lists of millions of items that follow regularly from each other, in little memory.
 
 use std::fmt::Debug;
 use std::ops::Range;
 
-/// What a run of items is made from: the first of them, and how the others follow.
+/// A run of items: the first one and the rule by which the others follow.
 pub(crate) trait Run: Clone + Debug {
-    /// What the list is made of.
+    /// The items of the list.
     type Item: Clone + Debug;
 
     /// A run of one item.
     fn of(item: Self::Item) -> Self;
 
-    /// Whether an item goes on with a run of `len` items. (The second may decide by which steps.)
+    /// Whether an item continues a run of `len` items. (The second item may set the steps.)
     fn goes_on(&mut self, len: u32, item: &Self::Item) -> bool;
 
     /// The item at a place in the run.
     fn item(&self, place: u32) -> Self::Item;
 }
 
-/// A list that is kept as runs of items if these are few. It has less than 2³² items.
+/// A list that is stored as runs if these are few. It has less than 2³² items.
 #[derive(Clone, Debug)]
 pub(crate) struct RunList<R: Run> {
     len: u32,
@@ -32,10 +32,10 @@ enum Kept<R: Run> {
     Items(Vec<R::Item>),
 }
 
-/// In shorter lists looking for the right run is not worth the memory.
+/// In shorter lists the memory saved is not worth the search for the run.
 const SHORT: u32 = 1 << 16;
 
-/// Runs must have this many items on average, so that looking for the right one does not take long.
+/// Runs must have this many items on average, so that searching for one is fast.
 const WORTH_IT: usize = 64;
 
 impl<R: Run> Default for RunList<R> {
@@ -83,7 +83,7 @@ impl<R: Run> RunList<R> {
         }
     }
 
-    /// The last run that does not begin behind the item has it.
+    /// The run of an item is the last one that does not begin behind it.
     #[inline(always)]
     fn in_runs(runs: &[(u32, R)], index: u32) -> R::Item {
         let mut rest = runs;
@@ -113,7 +113,7 @@ impl<R: Run> RunList<R> {
         })
     }
 
-    /// The runs that the list is made of: their first items, and the places of all. What is kept item by item is so many runs.
+    /// The runs of the list: the first item and the positions of each. Where items are stored one by one, each is a run.
     pub(crate) fn runs(&self) -> impl Iterator<Item = (R::Item, Range<u32>)> {
         let count = match &self.kept {
             Kept::Items(items) => items.len(),
@@ -132,7 +132,7 @@ impl<R: Run> RunList<R> {
         })
     }
 
-    /// The list as it is read fastest, once it is complete: item by item if runs do not pay.
+    /// The finished list in the form that is read fastest: item by item if runs do not pay.
     pub(crate) fn completed(self) -> Self {
         match &self.kept {
             Kept::Runs(runs) if self.len < SHORT || runs.len() * WORTH_IT > self.len() => Self {
@@ -166,7 +166,7 @@ impl<R: Run> FromIterator<R::Item> for RunList<R> {
 mod tests {
     use super::*;
 
-    /// Numbers that grow by a step that the second decides.
+    /// Numbers with a constant step, which the second one sets.
     #[derive(Clone, Debug)]
     struct Steps {
         first: u32,

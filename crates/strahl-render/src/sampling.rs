@@ -1,16 +1,16 @@
 use std::{fmt, str::FromStr};
 use strahl_shade::Color;
 
-/// Where the rays of a pixel go through it.
+/// Where rays pass through a pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Sampling {
     /// One ray through the centre: no antialiasing.
     #[default]
     Center,
-    /// Rays through the corners of the pixels, shared by neighbours; a pixel is the mean of its four corners. What the
-    /// Standard Procedural Databases ask for.
+    /// Rays through the corners of the pixels, shared by neighbours; a pixel is the mean of its four corners. The Standard
+    /// Procedural Databases define it so.
     Corners,
-    /// n x n rays, one in each cell of a grid, at a random place that depends on pixel, cell and seed only; `n >= 1`.
+    /// n x n rays, one in each cell of a grid, at a random position that depends on pixel, cell and seed only; `n >= 1`.
     Grid(u32),
     /// One ray through the centre, then passes that refine the pixels which differ from a neighbour: pass k adds 2ᵏ x 2ᵏ rays.
     Adaptive {
@@ -24,13 +24,13 @@ pub enum Sampling {
 impl Sampling {
     /// Most cells on a side of the grid.
     pub const MAX_GRID: u32 = 64;
-    /// The adaptive sampling one gets by its bare name.
+    /// Adaptive sampling with the default parameters.
     pub const ADAPTIVE: Self = Self::Adaptive {
         threshold: 0.1,
         passes: 2,
     };
 
-    /// How many refining passes come after the first.
+    /// The number of refining passes after the first.
     pub(crate) fn passes(self) -> u32 {
         match self {
             Self::Adaptive { passes, .. } => passes,
@@ -38,7 +38,7 @@ impl Sampling {
         }
     }
 
-    /// The place in every pixel in pass `pass`, if there is one only.
+    /// The position in every pixel in pass `pass`, if each pixel has only one.
     pub(crate) fn common_place(self, pass: u32) -> Option<(f64, f64)> {
         match (self, pass) {
             (Self::Corners, _) => Some((0.0, 0.0)),
@@ -47,7 +47,7 @@ impl Sampling {
         }
     }
 
-    /// The places in pixel `(x, y)` of pass `pass`, in pixels from its top left corner; `Corners` has its own lattice.
+    /// The positions in pixel `(x, y)` in pass `pass`, in pixels from its top left corner; `Corners` has its own lattice.
     pub(crate) fn places(
         self,
         pass: u32,
@@ -59,7 +59,7 @@ impl Sampling {
         let (cells, first_index) = match self {
             Self::Corners | Self::Center => (1, 0),
             Self::Grid(n) => (n.max(1), 0),
-            // Passes draw from numbers of their own.
+            // Each pass has its own range of random numbers.
             Self::Adaptive { .. } => (1 << pass, 1 << (2 * pass)),
         };
         (0..cells * cells).map(move |index| {
@@ -90,7 +90,7 @@ fn jitter(seed: u64, x: u32, y: u32, index: u32) -> (f64, f64) {
     (unit(first), unit(first << 24))
 }
 
-/// How much two pixels differ to the eye: the largest difference of the square roots of their clamped channels.
+/// The visible difference of two pixels: the largest difference of the square roots of their clamped channels.
 pub(crate) fn contrast(a: Color, b: Color) -> f64 {
     let shown = |c: Color| {
         c.map(|v| {
@@ -106,7 +106,7 @@ pub(crate) fn contrast(a: Color, b: Color) -> f64 {
     (shown(a) - shown(b)).map(f64::abs).max_component()
 }
 
-/// The text names no way of sampling.
+/// The text is not a way of sampling.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
     "unknown sampling `{0}`; there are: center (or none), corners, NxN (such as 3x3, at most 64x64), adaptive, \

@@ -19,7 +19,7 @@ use strahl_shade::{Color, Material};
 pub(crate) struct ShapeUse {
     pub(crate) shape: Shape,
     pub(crate) transform: Option<Box<Transform>>,
-    /// Object and material; CSG trees have one per leaf instead.
+    /// Object and material; CSG trees have one per leaf.
     pub(crate) look: Looks,
 }
 
@@ -33,11 +33,12 @@ pub(crate) struct MeshUse {
 pub(crate) struct InstanceUse {
     pub(crate) group: u32,
     pub(crate) transform: Transform,
-    /// How all of it is lit; [`Lit::PLAIN`] leaves it to what is in the group.
+    /// How all its elements are lit; [`Lit::PLAIN`] leaves it to the objects in the group.
     pub(crate) lit: Lit,
 }
 
-/// A list of primitives with its accelerator: the world, an instanced group, or a space of its own for small far things.
+/// A list of primitives with its accelerator: the world, an instanced group, or the separate space of small objects far from
+/// the origin.
 #[derive(Debug)]
 pub(crate) struct RenderGroup {
     pub(crate) prims: RunList<Prim>,
@@ -51,23 +52,23 @@ pub(crate) struct RenderGroup {
     pub(crate) count: u64,
     pub(crate) bounds: Aabb,
     pub(crate) accelerator: AnyAccelerator,
-    /// What may stop light and what may let it through, each by itself, where shadow rays have less to look at so.
+    /// Separate accelerators for opaque and for transmitting primitives, where these save shadow rays work.
     pub(crate) stopping: Option<Box<Part>>,
     pub(crate) transmitting: Option<Box<Part>>,
-    /// Which rays see the primitives that are tested in blocks, and their flags, if these are the same for all of them.
+    /// Visibility and flags of the primitives that are tested in blocks, if these are the same for all of them.
     pub(crate) common: Option<(u8, u8)>,
-    /// Whether it has triangles that are tested by a shear of the ray.
+    /// Whether it has triangles, which are tested with the shear of the ray.
     pub(crate) sheared: bool,
     /// The primitives in the order of the accelerator's leaves.
     pub(crate) blocks: Blocks,
 }
 
-/// Some of a group's primitives with an accelerator of their own; the numbers are the group's.
+/// Some of a group's primitives with a separate accelerator; the numbers are the group's.
 #[derive(Debug)]
 pub(crate) struct Part {
     pub(crate) accelerator: AnyAccelerator,
     pub(crate) blocks: Blocks,
-    /// Whether it has triangles that are tested by a shear of the ray.
+    /// Whether it has triangles, which are tested with the shear of the ray.
     pub(crate) sheared: bool,
 }
 
@@ -98,16 +99,16 @@ pub struct RenderScene {
     pub(crate) groups: Vec<RenderGroup>,
     pub(crate) objects: Objects,
     pub(crate) materials: Vec<Arc<Material>>,
-    /// From the spaces of textures to the groups'.
+    /// Transforms from texture space to the group's space.
     pub(crate) texture_spaces: Vec<Transform>,
     pub(crate) lights: Vec<SceneLight>,
     pub(crate) light_sets: LightSets,
-    /// By light, what it has to cross; empty if no light has to cross anything.
+    /// By light, the group that its light has to pass through; empty if no light has one.
     pub(crate) masks: Vec<Option<InstanceUse>>,
     pub(crate) ambient: Color,
     pub(crate) background: Background,
     pub(crate) fogs: Vec<Fog>,
-    /// Whether some material bends colours by different angles.
+    /// Whether some material has dispersion.
     pub(crate) disperses: bool,
     pub(crate) rainbows: Vec<Rainbow>,
     pub(crate) camera: Camera,
@@ -126,7 +127,7 @@ pub struct SceneStats {
     pub primitives: usize,
     /// Primitive elements, instances expanded.
     pub elements: u64,
-    /// Instances, including the spaces opened for small far things.
+    /// Instances, including the spaces of small objects far from the origin.
     pub instances: usize,
     /// Materials.
     pub materials: usize,
@@ -140,7 +141,7 @@ pub struct SceneStats {
     pub references: usize,
     /// Bytes of primitives and meshes.
     pub geometry_bytes: usize,
-    /// Bytes of what is known of objects: names and places.
+    /// Bytes of names and places of objects.
     pub object_bytes: usize,
 }
 
@@ -162,12 +163,12 @@ pub(crate) struct Resolved {
     pub(crate) look: Look,
 }
 
-/// What of a surface point the start of a ray depends on.
+/// The properties of a surface point that determine the start of a ray.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LocalPoint {
     pub(crate) position: DVec3,
     pub(crate) error: DVec3,
-    /// Unit normal of the true surface.
+    /// Unit normal of the geometry.
     pub(crate) normal: DVec3,
 }
 
@@ -191,7 +192,7 @@ impl RenderScene {
         &self.lights
     }
 
-    /// What a light has to cross.
+    /// The group that a light has to pass through, if it is `projected_through` one.
     pub(crate) fn mask(&self, light: usize) -> Option<&InstanceUse> {
         self.masks.get(light)?.as_ref()
     }
@@ -201,7 +202,7 @@ impl RenderScene {
         self.ambient
     }
 
-    /// The settings the scene asks for.
+    /// The scene's own settings.
     pub fn settings(&self) -> &Settings {
         &self.settings
     }
@@ -305,7 +306,7 @@ impl RenderScene {
         }
     }
 
-    /// The line of the scene file that made the triangle with this number, if its mesh knows.
+    /// The line of the scene file that made the triangle with this number, if its mesh stores it.
     pub(crate) fn face_line(&self, id: u64) -> Option<u32> {
         let at = self.locate(id);
         match at.group.prims.at(at.prim).kind() {
@@ -316,7 +317,8 @@ impl RenderScene {
         }
     }
 
-    /// The surface at a hit, in world space: `ray` is the ray that found it, from a place of its own (no [`crate::Origin`]).
+    /// The surface at a hit, in world space: `ray` is the ray that found it, whose origin does not lie on a surface (no
+    /// [`crate::Origin`]).
     pub fn surface_at(&self, ray: &Ray, hit: &Hit) -> SurfacePoint {
         self.resolve(ray, None, hit, Uv::Always).point
     }
@@ -366,7 +368,7 @@ impl RenderScene {
             None => *ray,
             Some(m) => {
                 let entered = m.ray_to_object(ray);
-                // A ray that starts in this very space keeps the origin it has there.
+                // If the ray starts in this space, it keeps the exact origin.
                 match origin {
                     Some(o) if self.same_space(o.id, hit.id) => {
                         Ray::new(o.local, entered.direction)
@@ -407,7 +409,7 @@ impl RenderScene {
         }
     }
 
-    /// What the texture at a hit leaves of light along a direction; `caustics` is that of the interior.
+    /// The attenuation of light along a direction by the texture at a hit; `caustics` is that of the interior.
     pub(crate) fn attenuated(
         &self,
         texture: &Texture,
@@ -494,7 +496,7 @@ impl RenderGroup {
         }
     }
 
-    /// Whether a flat primitive shows a ray of this direction its front; `None` if only its surface at the hit tells.
+    /// Whether a ray of this direction sees the front of a flat primitive; `None` if only the surface at the hit can decide.
     #[inline]
     pub(crate) fn shows_front(&self, prim: u32, direction: DVec3) -> Option<bool> {
         match self.prims.at(prim).kind() {
@@ -560,10 +562,10 @@ impl RenderGroup {
     }
 }
 
-/// A surface point of object space, in the space around it.
+/// Transforms a surface point from object space to the space around it.
 pub(crate) fn surface_to_world(m: &Transform, p: &SurfacePoint) -> SurfacePoint {
     let position = m.point_to_world(p.position);
-    // The map itself rounds: three products and three sums per coordinate.
+    // The transformation rounds too: three products and three sums per coordinate.
     let magnitude = m.error_to_world(p.position.abs()) + m.translation().abs();
     let position_error =
         m.error_to_world(p.position_error) + magnitude * strahl_math::error::gamma(8);

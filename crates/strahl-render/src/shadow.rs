@@ -5,27 +5,27 @@ use crate::scene::Uv;
 use strahl_math::{DVec3, Interval, Ray};
 use strahl_shade::Color;
 
-/// The share of the way to a mask that does not count any more: a stencil that is also seen stands where its mask does, but for
-/// rounding, and must not shade what it lets through.
+/// The last part of the way to a mask, which is ignored: a stencil that is also visible lies in its mask except for rounding
+/// errors, and must not shade the light that it lets through.
 const MASK_SKIN: f64 = 1e-6;
 
-/// What of a light reaches a point.
+/// The visibility of a light from a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Shadow {
-    /// The share that arrives, per channel.
+    /// The share of the light that arrives, per channel.
     pub(crate) visible: Color,
     /// Whether anything was in between.
     pub(crate) hit: bool,
 }
 
 impl Shadow {
-    /// No light arrives.
+    /// The light is blocked.
     pub(crate) const STOPPED: Self = Self {
         visible: Color::BLACK,
         hit: true,
     };
 
-    /// All light arrives.
+    /// The light is not obstructed.
     pub(crate) const NONE: Self = Self {
         visible: Color::WHITE,
         hit: false,
@@ -35,18 +35,18 @@ impl Shadow {
 /// A ray towards a light.
 pub(crate) struct ShadowRay {
     pub(crate) ray: Ray,
-    /// Where something would be in the way.
+    /// Where occluders are looked for.
     pub(crate) range: Interval,
     pub(crate) from: Origin,
     /// Number of the light.
     pub(crate) light: usize,
-    /// What the ray starts in.
+    /// The media that the ray starts in.
     pub(crate) media: MediaStack,
 }
 
 impl Tracer<'_> {
-    /// Follows a shadow ray: nothing in between lets all light pass, something opaque none, transparent surfaces filter
-    /// by their kt and their insides by Beer-Lambert. Light that has to cross a mask comes from where it does so.
+    /// Traces a shadow ray: without any hit all light arrives, behind an opaque surface none; transparent surfaces filter it by
+    /// their kt and their insides by Beer-Lambert. Light that is projected through a mask starts at the mask.
     ///
     /// The filters are multiplied in the order of the hits along the ray, so the order in which the accelerator found them
     /// does not matter.
@@ -65,7 +65,7 @@ impl Tracer<'_> {
                     hit: false,
                 };
             };
-            // What is within the mask or beyond it casts no shadows.
+            // Objects within the mask or beyond it cast no shadows.
             range.max = crossing * (1.0 - MASK_SKIN);
             if !self.scene.lights[light].light.casts_shadows {
                 return Shadow::NONE;
@@ -81,7 +81,7 @@ impl Tracer<'_> {
         self.filtered(&shadow_ray, arena, hits)
     }
 
-    /// What arrives of a light if nothing opaque is in between.
+    /// The share of the light that arrives if nothing opaque is in between.
     pub(crate) fn filtered(
         &mut self,
         shadow_ray: &ShadowRay,
@@ -102,7 +102,7 @@ impl Tracer<'_> {
         hits.clear();
         self.transmitting_hits(ray, range, Some(from), hits);
         hits.sort_unstable_by(|a, b| a.t.total_cmp(&b.t).then(a.id.cmp(&b.id)));
-        // A grid may have shown a primitive more than once; an element has one hit at one t.
+        // A grid may report a primitive more than once; an element has one hit at one t.
         hits.dedup_by(|a, b| a.t == b.t && a.id == b.id);
         let mut visible = Color::WHITE;
         let (mut inside, mut entered_at) = (*media, 0.0);
@@ -136,7 +136,7 @@ impl Tracer<'_> {
         }
     }
 
-    /// What the medium keeps of the light on a stretch of the ray, in units of `t`.
+    /// The attenuation by the medium over a part of the ray, in units of `t`.
     fn absorbed(
         &self,
         arena: &MediaArena,

@@ -1,4 +1,4 @@
-//! Which pixels of a tile see nothing but the background: found out for many at once.
+//! Beam culling: finds the pixels of a tile that see only the background, many at once.
 
 use crate::camera::PrimaryRays;
 use crate::film::Region;
@@ -6,10 +6,10 @@ use crate::scene::RenderScene;
 use crate::tiles::TILE;
 use strahl_accel::Accelerator;
 
-/// Pixels along a side of the squares that are told apart.
+/// Pixels along a side of the smallest square that is tested.
 pub(crate) const SQUARE: u32 = 4;
 
-/// Such squares along a side of a tile.
+/// Squares along a side of a tile.
 const SQUARES: u32 = TILE / SQUARE;
 
 const _: () = assert!(SQUARES * SQUARES == u64::BITS);
@@ -24,7 +24,7 @@ pub(crate) struct Sight {
 }
 
 impl Sight {
-    /// Anything may be seen everywhere.
+    /// No square is culled.
     pub(crate) fn all(tile: Region) -> Self {
         Self {
             x: tile.x,
@@ -33,7 +33,7 @@ impl Sight {
         }
     }
 
-    /// Looks at a tile as a whole, then at its parts.
+    /// Tests the beam of a tile, then those of its parts.
     pub(crate) fn of(tile: Region, scene: &RenderScene, rays: &PrimaryRays) -> Self {
         let looking = Looking { tile, scene, rays };
         let mut seen = 0;
@@ -62,7 +62,7 @@ struct Looking<'a> {
 }
 
 impl Looking<'_> {
-    /// Marks what may be seen of a part with `size` squares along its sides, in which something may be seen.
+    /// Marks the squares of a part, `size` squares wide and high, that may see something, given that the part does.
     fn look(&self, column: u32, row: u32, size: u32, seen: &mut u64) {
         if size == 1 {
             *seen |= 1 << (row * SQUARES + column);
@@ -72,7 +72,7 @@ impl Looking<'_> {
         let quarters =
             [(0, 0), (half, 0), (0, half), (half, half)].map(|(dx, dy)| (column + dx, row + dy));
         let sees = quarters.map(|(column, row)| self.sees(column, row, half));
-        // Single squares are looked at near the outlines of things only.
+        // Single squares are tested only near the outlines of objects.
         let outline = half > 2 || sees.contains(&false);
         for ((column, row), _) in quarters.into_iter().zip(sees).filter(|(_, sees)| *sees) {
             if outline {
@@ -83,7 +83,7 @@ impl Looking<'_> {
         }
     }
 
-    /// Whether a ray may meet something in a part of the tile.
+    /// Whether a ray may hit something in a part of the tile.
     fn sees(&self, column: u32, row: u32, size: u32) -> bool {
         let (dx, dy) = (column * SQUARE, row * SQUARE);
         if dx >= self.tile.width || dy >= self.tile.height {

@@ -6,7 +6,7 @@ use strahl_accel::{BLOCK, NO_PRIMITIVE};
 use strahl_geometry::Sphere;
 use strahl_math::DVec3;
 
-/// A sphere that is seen from outside and whose texture is not turned: scenes have millions of them.
+/// A sphere that is seen from outside and whose texture is not rotated: scenes have millions of them.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PlainSphere {
     center: DVec3,
@@ -14,7 +14,7 @@ pub(crate) struct PlainSphere {
 }
 
 impl PlainSphere {
-    /// The same sphere, if it is plain.
+    /// The compact form of a sphere, if it has one.
     pub(crate) fn of(sphere: &Sphere) -> Option<Self> {
         let plain = sphere.radius() > 0.0 && !sphere.is_turned();
         plain.then(|| Self {
@@ -29,7 +29,7 @@ impl PlainSphere {
     }
 }
 
-/// The plain spheres of a group, each kept once: by number, or in the blocks of the accelerator's leaves.
+/// The plain spheres of a group, each stored once: in a list, or in the blocks of the accelerator's leaves.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Spheres {
     kept: Kept,
@@ -39,7 +39,7 @@ pub(crate) struct Spheres {
 #[derive(Clone, Debug)]
 enum Kept {
     ByNumber(Vec<PlainSphere>),
-    /// By number the place in the blocks.
+    /// For each sphere its position in the blocks.
     InBlocks(Vec<u32>),
 }
 
@@ -60,7 +60,7 @@ impl Spheres {
         number
     }
 
-    /// A sphere; `blocks` are those it was put into, if it was.
+    /// A sphere; `blocks` are the blocks it was moved to, if it was.
     #[inline(always)]
     pub(crate) fn get(&self, number: u32, blocks: &Blocks) -> Sphere {
         match &self.kept {
@@ -72,7 +72,7 @@ impl Spheres {
         }
     }
 
-    /// A sphere that was not yet put into blocks.
+    /// A sphere that is not yet in a block.
     pub(crate) fn loose(&self, number: u32) -> Sphere {
         self.get(number, &Blocks::NONE)
     }
@@ -83,7 +83,7 @@ impl Spheres {
         self.looks.at(number)
     }
 
-    /// The spheres without those coordinates that are in the blocks made for these slots, if that is so of all.
+    /// The spheres without their coordinates, if the blocks made for these slots contain all of them.
     pub(crate) fn completed(self, slots: &[u32], prims: &RunList<Prim>, blocks: &Blocks) -> Self {
         let mut places = vec![u32::MAX; self.looks.len()];
         for (slot, id) in slots
@@ -97,7 +97,7 @@ impl Spheres {
             }
         }
         let looks = self.looks.completed();
-        // Those without bounds that f32 can express are in no block.
+        // Spheres whose bounds don't fit f32 are in no block.
         let kept = match places.contains(&u32::MAX) {
             true => self.kept,
             false => Kept::InBlocks(places),

@@ -1,4 +1,4 @@
-//! What shading needs to know of a hit, and how the surface there divides light.
+//! The properties of a hit that shading needs, and how the surface divides light.
 
 use crate::hit::{Hit, Origin};
 use crate::light_sets::Lit;
@@ -12,7 +12,7 @@ use strahl_shade::{
     refract,
 };
 
-/// The index of refraction of a medium for light of a part of the spectrum; `None` is air.
+/// The index of refraction of a medium for a part of the spectrum; `None` is air.
 #[inline]
 fn index_of(scene: &RenderScene, medium: Option<MaterialId>, part: SpectralPart) -> f64 {
     let Some(id) = medium else {
@@ -30,8 +30,8 @@ fn index_of(scene: &RenderScene, medium: Option<MaterialId>, part: SpectralPart)
 pub(crate) struct Split {
     pub(crate) kr: Color,
     pub(crate) kt: Color,
-    /// Unit direction of the reflection ray, if the surface reflects (or transmits: then with kr = 0 unless Fresnel or
-    /// total reflection make it more; the cutoff decides).
+    /// Unit direction of the reflection ray, if the surface reflects. If it transmits there is one too, with kr = 0 unless
+    /// Fresnel or total reflection increase it; the cutoff decides.
     pub(crate) reflected: Option<DVec3>,
     pub(crate) refracted: Option<DVec3>,
     pub(crate) cos_2: Option<f64>,
@@ -51,7 +51,7 @@ impl Split {
     };
 }
 
-/// Everything at a hit that shading needs, turned to the side of the ray.
+/// The properties of a hit that shading needs, turned to the side of the ray.
 pub(crate) struct Surface<'s> {
     pub(crate) resolved: Resolved,
     pub(crate) material: MaterialPoint<'s>,
@@ -61,16 +61,16 @@ pub(crate) struct Surface<'s> {
     pub(crate) n_shade: DVec3,
     /// Whether the ray meets the front (or outside).
     pub(crate) entering: bool,
-    /// Whether the material is a sheet without an inside.
+    /// Whether the material is a thin sheet without an inside.
     pub(crate) thin: bool,
-    /// Which light shows on it.
+    /// Which lights shine on it.
     pub(crate) lit: Lit,
     pub(crate) eta_1: f64,
     pub(crate) eta_2: f64,
-    /// What the ray comes from and what is behind the surface; `None` is air.
+    /// The medium the ray comes from and the medium behind the surface; `None` is air.
     medium_1: Option<MaterialId>,
     medium_2: Option<MaterialId>,
-    /// Where rays towards the side of the viewer start, as nearly all do.
+    /// Where rays towards the side of the viewer start, which most do.
     front: (DVec3, Origin),
 }
 
@@ -94,11 +94,11 @@ impl<'s> Surface<'s> {
             Some(pbr) => pbr.shading_normal(point.uv, point.n_shade, point.dpdu, point.dpdv),
         };
         let own = Some(resolved.look.material);
-        // A thin sheet has the same medium on both sides and is met from outside.
+        // A thin sheet has the same medium on both sides and is always entered from outside.
         let (medium_1, medium_2) = if entering || material.thin {
             (media.top(branch.media), own)
         } else {
-            // Without a known medium the ray must be inside of the material whose back it sees.
+            // Without a known medium the ray must be inside of the material whose back it hits.
             (
                 media.top(branch.media).or(own),
                 media.top_without(branch.media, resolved.look.material),
@@ -136,7 +136,7 @@ impl<'s> Surface<'s> {
         }
     }
 
-    /// Where a ray in this direction starts: certainly on its side of the surface.
+    /// Where a ray in this direction starts: certainly on the right side of the surface.
     #[inline]
     pub(crate) fn start(&self, hit: &Hit, direction: DVec3) -> (DVec3, Origin) {
         if self.n_geom.dot(direction) >= 0.0 {
@@ -146,14 +146,14 @@ impl<'s> Surface<'s> {
         }
     }
 
-    /// Where a ray in this direction starts, if it leads to the side of the viewer.
+    /// Where a ray in this direction starts, if it is on the side of the viewer.
     #[inline]
     pub(crate) fn start_in_front(&self, direction: DVec3) -> Option<(DVec3, &Origin)> {
         let (point, origin) = &self.front;
         (self.n_geom.dot(direction) >= 0.0).then_some((*point, origin))
     }
 
-    /// What the surface makes of light arriving from the unit direction `l`: the diffuse part and the highlight.
+    /// The reflected light if light arrives from the unit direction `l`: the diffuse part and the highlight.
     #[inline]
     pub(crate) fn reflected(
         &self,
@@ -163,7 +163,7 @@ impl<'s> Surface<'s> {
         n_dot_l: f64,
     ) -> (Color, Color) {
         let finish = &self.material.finish;
-        // Only where light shows from both sides is it ever from behind.
+        // Light comes from behind only if it shows on both sides.
         let diffuse = finish.diffuse * arriving * n_dot_l.abs();
         if finish.specular.is_black() {
             return (diffuse, Color::BLACK);
@@ -172,8 +172,8 @@ impl<'s> Surface<'s> {
         (diffuse, finish.specular * arriving * highlight)
     }
 
-    /// Divides the light: reflection, transparency by Snell's law, Fresnel's equations on request. On total reflection kt is
-    /// added to kr.
+    /// Divides the light into reflection and transparency, by Snell's law and, if the material asks for it, Fresnel's
+    /// equations. On total reflection kt is added to kr.
     pub(crate) fn split(&self, ray: &Ray) -> Split {
         let finish = &self.material.finish;
         let transmits = !finish.transmission.is_black();
@@ -204,7 +204,7 @@ impl<'s> Surface<'s> {
         if transmits {
             match refracted {
                 Some(r) => {
-                    // Without refraction the ray goes straight on, to the last bit.
+                    // Without refraction the direction is unchanged to the last bit.
                     let straight = self.thin || self.eta_1 == self.eta_2;
                     split.refracted = if straight {
                         Some(ray.direction)
@@ -225,7 +225,7 @@ impl<'s> Surface<'s> {
         split
     }
 
-    /// The direction of a reflection ray at this normal, or at the true one if that would lead into the surface.
+    /// The direction of a reflection ray at this normal, or at the geometric normal if it would point into the surface.
     pub(crate) fn mirrored(&self, normal: DVec3) -> DVec3 {
         let r = reflect(normal, self.v);
         if r.dot(self.n_geom) <= 0.0 {
@@ -235,7 +235,7 @@ impl<'s> Surface<'s> {
         }
     }
 
-    /// The direction of a transparency ray. A shading normal may bend it to the wrong side: then the true normal decides.
+    /// The direction of a transparency ray. If the shading normal turns it to the wrong side, the geometric normal is used.
     fn bent(&self, direction: DVec3, eta: f64) -> Option<DVec3> {
         if direction.dot(self.n_geom) >= 0.0 {
             refract(self.n_geom, self.v, eta).map(|r| r.direction)
@@ -244,7 +244,7 @@ impl<'s> Surface<'s> {
         }
     }
 
-    /// How many parts the spectrum of white light falls into at the surface; 0 if it stays together.
+    /// The number of spectral parts into which the surface splits white light; 0 if it does not.
     pub(crate) fn spectral_parts(&self, scene: &RenderScene) -> u16 {
         let parts = |id: Option<MaterialId>| {
             let interior = scene.materials[id?.0 as usize].interior.as_ref()?;
@@ -256,7 +256,7 @@ impl<'s> Surface<'s> {
         parts(self.medium_1).max(parts(self.medium_2)).unwrap_or(0)
     }
 
-    /// The direction in which a part of the spectrum passes the surface; `None` if it is totally reflected.
+    /// The direction in which a part of the spectrum is refracted; `None` on total reflection.
     pub(crate) fn bent_part(&self, scene: &RenderScene, part: SpectralPart) -> Option<DVec3> {
         let index = |id| index_of(scene, id, part);
         let eta = index(self.medium_1) / index(self.medium_2);
@@ -289,7 +289,7 @@ impl<'s> Surface<'s> {
         }
     }
 
-    /// The colour of a diagnostic model.
+    /// The colour that a diagnostic shading model shows.
     pub(crate) fn diagnose(
         &self,
         scene: &RenderScene,
@@ -314,7 +314,7 @@ impl<'s> Surface<'s> {
     }
 }
 
-/// Where a ray that leaves a hit starts, on the side of the surface's own normal or on the other.
+/// Where a ray that leaves a hit starts, on the side of the surface's own normal or on the opposite side.
 #[inline]
 fn start(r: &Resolved, hit: &Hit, along_normal: bool) -> (DVec3, Origin) {
     // Both normals point to the same side of the surface in their spaces.
@@ -333,7 +333,7 @@ fn start(r: &Resolved, hit: &Hit, along_normal: bool) -> (DVec3, Origin) {
     (point, origin)
 }
 
-/// A colour of its own for every number: hues by the golden ratio, three levels of brightness.
+/// A distinct colour for every number: hues by the golden ratio, three levels of brightness.
 fn id_color(id: u32) -> Color {
     let hue = (f64::from(id) * 0.618_033_988_749_895).fract() * 6.0;
     let ramp = |shift: f64| {

@@ -1,6 +1,6 @@
 use crate::film::Region;
 
-/// In which order the tiles of a picture are rendered; the picture is the same for all.
+/// The order in which the tiles of a picture are rendered; the picture is the same with each.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum TileOrder {
     /// From the top left, row by row.
@@ -8,7 +8,7 @@ pub enum TileOrder {
     Rows,
     /// From the bottom right.
     Reverse,
-    /// From the centre outwards: the interesting part first.
+    /// From the centre outwards.
     Center,
 }
 

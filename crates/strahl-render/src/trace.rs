@@ -1,17 +1,17 @@
-//! The trace loop, the heart of the program: it exists once.
+//! The trace loop, the only one of the program.
 //!
 //! ```text
 //! for every primary ray
 //!   1. find the nearest hit
-//!   2. for every light the surface faces: follow a shadow ray; what arrives adds kd (n·l) + ks (h·n)^p
-//!   3. if the surface reflects:    follow the reflection ray, which adds kr·Xr
-//!   4. if the surface transmits:   follow the transparency ray, which adds kt·Xt
+//!   2. for every light the surface faces: trace a shadow ray; the light that arrives adds kd (n·l) + ks (h·n)^p
+//!   3. if the surface reflects:    trace the reflection ray, which adds kr·Xr
+//!   4. if the surface transmits:   trace the transparency ray, which adds kt·Xt
 //! ```
 //!
-//! All rays but shadow rays are equal: what happens at a hit does not depend on whether the ray was primary or
-//! secondary. The tree is walked with a stack of its own, so its depth is not limited by the machine's stack, and combined
+//! All rays but shadow rays are treated alike: what happens at a hit does not depend on whether the ray is primary or
+//! secondary. The tree is traversed with an explicit stack, so its depth is not limited by the machine's stack. It is combined
 //! bottom-up in the order reflection, transparency, so the sum does not depend on the order of tracing. Layers of a texture
-//! that mirror differently send a reflection ray each.
+//! with different reflections send a reflection ray each.
 
 mod lights;
 mod nothing;
@@ -40,23 +40,23 @@ use strahl_shade::{Color, ShadingModel, SpectralPart};
 pub struct TreeTracer<'s> {
     /// The queries.
     pub tracer: Tracer<'s>,
-    /// Rays followed so far.
+    /// Rays traced so far.
     pub counts: RayCounts,
     settings: TraceSettings,
-    /// What primary rays bring that meet nothing, if it is the same for all.
+    /// The radiance along primary rays that hit nothing, if it is the same for all.
     beyond: Option<Color>,
     uv: Uv,
     pub(crate) media: MediaArena,
     waiting: Vec<Branch>,
     nodes: Vec<Node>,
     pub(crate) shadow_hits: Vec<Hit>,
-    /// The points of an area light already looked at, for one lit point at a time.
+    /// The visibilities of the points of an area light that are known, for one lit point at a time.
     pub(crate) area_points: Vec<Option<Color>>,
-    /// The layers of the hit at hand; none without a texture.
+    /// The layers at the current hit; empty without a texture.
     pub(crate) paint: TexturePaint<'s>,
-    /// The reflection rays of the hit at hand.
+    /// The reflection rays of the current hit.
     mirrors: Vec<Mirror>,
-    /// What arrives at the hits of the packet at hand.
+    /// The light samples of the current packet.
     samples: Samples,
 }
 
@@ -66,13 +66,13 @@ pub(crate) struct Branch {
     pub(crate) ray: Ray,
     pub(crate) origin: Option<Origin>,
     pub(crate) kind: RayKind,
-    /// What it sees: rays through transparent things see what the ray sees that sent them.
+    /// Its visibility class: transmitted rays see the same objects as the ray that sent them.
     pub(crate) class: RayClass,
     pub(crate) parent: u32,
     pub(crate) depth: u32,
-    /// Which light it follows.
+    /// The part of the spectrum it stands for.
     pub(crate) part: SpectralPart,
-    /// Whether it is the part of its parent's light, which was all light.
+    /// Whether it stands for a part of the spectrum while its parent stands for all of it.
     pub(crate) divided: bool,
     pub(crate) weight: f64,
     pub(crate) share: Share,
@@ -98,19 +98,19 @@ impl Branch {
     }
 }
 
-/// A ray that a hit sends.
+/// A branch: a ray sent by a hit.
 struct Offshoot {
     kind: RayKind,
-    /// What the hit takes of its light.
+    /// How much it contributes to the hit.
     share: Share,
-    /// What that amounts to at most, for the weight.
+    /// The maximum of that contribution, for the weight.
     coefficient: Color,
     direction: DVec3,
     part: SpectralPart,
-    /// Whether all light came and a part of it goes.
+    /// Whether it stands for a part of the spectrum while the hit's ray stands for all of it.
     divided: bool,
-    /// Whether it stays on its side of the surface, though it is no reflection ray: a part of the spectrum that is totally reflected
-    /// where the rest passes.
+    /// Whether it stays on its side of the surface although it is no reflection ray: a part of the spectrum that is totally
+    /// reflected where the rest is refracted.
     returned: bool,
 }
 
@@ -129,21 +129,21 @@ impl Offshoot {
     }
 }
 
-/// A ray that was traced, waiting for its branches.
+/// A ray that was traced and waits for its branches.
 #[derive(Clone, Copy, Debug)]
 struct Node {
     parent: u32,
     kind: RayKind,
-    /// What the hit sends by itself, or the background.
+    /// The hit's own contribution, or the background.
     local: Color,
-    /// What of its light the parent takes.
+    /// How much it contributes to its parent.
     share: Share,
-    /// What it takes of the light of its branches.
+    /// The contributions of its branches.
     reflected: Color,
     transmitted: Color,
-    /// What the medium in front of the hit keeps of all this.
+    /// The attenuation by the medium in front of the hit.
     attenuation: Color,
-    /// What fog and rainbows in front of the hit add to what is kept.
+    /// The light that fog and rainbows in front of the hit add.
     fog: Color,
 }
 
@@ -173,7 +173,7 @@ impl<'s> TreeTracer<'s> {
         }
     }
 
-    /// Follows a primary ray with everything that comes of it.
+    /// Traces a primary ray with its whole tree.
     pub fn trace<O: TraceObserver>(&mut self, primary: &Ray, observer: &mut O) -> SampleResult {
         let hit = self
             .tracer
@@ -181,7 +181,7 @@ impl<'s> TreeTracer<'s> {
         self.grow(primary, hit, None, observer)
     }
 
-    /// Grows the tree of a primary ray, given its hit, and what is known there ahead.
+    /// Grows the tree of a primary ray from its hit; `ahead` has what a packet has already found out about the hit.
     fn grow<O: TraceObserver>(
         &mut self,
         primary: &Ray,
@@ -197,7 +197,7 @@ impl<'s> TreeTracer<'s> {
         self.nodes.clear();
         self.waiting.clear();
         let mut branch = Branch::primary(primary);
-        // Most trees are one ray: it does not go through the stack.
+        // Most trees have one ray, which needs no stack.
         let (mut first, mut deepest) = (None, 1);
         loop {
             let found = self.follow(&branch, hit.as_ref(), ahead.take(), observer);
@@ -229,8 +229,8 @@ impl<'s> TreeTracer<'s> {
         }
     }
 
-    /// Adds the tree up from its leaves: every ray sends its hit's own light, plus kr times what its reflection ray
-    /// brought, plus kt times what its transparency ray brought.
+    /// Sums the tree from its leaves: every ray has the hit's own light, plus kr times the radiance along its reflection ray,
+    /// plus kt times the radiance along its transparency ray.
     fn combine<O: TraceObserver>(&mut self, observer: &mut O) -> Color {
         let fogged = self.tracer.scene.has_air();
         for index in (0..self.nodes.len()).rev() {
@@ -252,7 +252,8 @@ impl<'s> TreeTracer<'s> {
             let parent = &mut self.nodes[parent];
             match kind {
                 RayKind::Primary => {}
-                // Of both there may be several: layers mirror on their own, parts of the spectrum are bent on their own.
+                // There may be several of each kind: layers reflect separately, and parts of the spectrum are refracted
+                // separately.
                 RayKind::Reflection => parent.reflected += taken,
                 RayKind::Refraction => parent.transmitted += taken,
             }
@@ -260,7 +261,7 @@ impl<'s> TreeTracer<'s> {
         Color::BLACK
     }
 
-    /// Takes a ray that was traced, shades its hit and queues its branches.
+    /// Shades the hit of a ray and queues its branches.
     #[inline(always)]
     fn follow<O: TraceObserver>(
         &mut self,
@@ -279,7 +280,7 @@ impl<'s> TreeTracer<'s> {
             scene.materials[id.0 as usize].attenuation(length)
         });
         let mut fog = Color::BLACK;
-        // Fog and rainbows are outside of solid things only.
+        // Fog and rainbows exist only outside of solid objects.
         if scene.has_air() && medium.is_none() {
             (attenuation, fog) = scene.air_along(&branch.ray, length);
         }
@@ -352,7 +353,7 @@ impl<'s> TreeTracer<'s> {
 
         let mut split = surface.split(&branch.ray);
         if split.total_reflection && !self.paint.layers.is_empty() {
-            // As in POV-Ray (measured): total reflection takes no notice of colour and finish.
+            // As in POV-Ray (measured): total reflection ignores colour and finish.
             split.kr = Color::WHITE;
         }
         if O::ACTIVE {
@@ -360,7 +361,7 @@ impl<'s> TreeTracer<'s> {
         }
         let finish = &surface.material.finish;
         node.local = finish.ambient * scene.ambient + finish.emission;
-        // Groups of lights shine on their own objects only.
+        // The lights of a light group shine on the objects of the group only.
         let shining = scene.lights_in(surface.lit.set);
         for number in 0..shining.map_or(scene.lights.len(), <[u32]>::len) {
             let light = shining.map_or(number, |list| list[number] as usize);
@@ -384,7 +385,7 @@ impl<'s> TreeTracer<'s> {
             .unwrap_or(self.settings.shading)
     }
 
-    /// Queues what the surface reflects and transmits; the reflection ray is traced first.
+    /// Queues the reflected and transmitted rays of a surface; the reflection ray is traced first.
     fn queue_branches<O: TraceObserver>(
         &mut self,
         branch: &Branch,
@@ -431,7 +432,7 @@ impl<'s> TreeTracer<'s> {
         self.mirrors = mirrors;
     }
 
-    /// How many parts the light of a branch falls into behind a surface; 0 if it stays together.
+    /// The number of spectral parts into which a branch is split behind a surface; 0 if it is not.
     #[inline]
     fn parts_behind(&self, branch: &Branch, surface: &Surface<'_>) -> u16 {
         if self.tracer.scene.disperses && branch.part.is_white() {
@@ -441,7 +442,7 @@ impl<'s> TreeTracer<'s> {
         }
     }
 
-    /// Queues a ray that a hit sends, unless a limit is reached.
+    /// Queues a branch, unless a limit is reached.
     #[inline(always)]
     fn queue<O: TraceObserver>(
         &mut self,

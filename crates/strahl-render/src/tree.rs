@@ -11,15 +11,16 @@ use strahl_shade::Color;
 pub struct RayNode {
     /// The ray and what it hit.
     pub report: RayReport,
-    /// The lights looked at from the hit, in the order of the scene: those that shine on the object at all.
+    /// The contributions of the lights that shine on the object, in the order of the scene.
     pub lights: Vec<LightTerm>,
-    /// Branches that were not followed: which, with what weight, why.
+    /// Branches that were not traced: kind, weight and reason.
     pub ended: Vec<(RayKind, f64, BranchEnd)>,
     /// Numbers of the rays it sent.
     pub children: Vec<u32>,
-    /// What the hit sends by itself: ka·Ia, emission and the lights' terms (or the background).
+    /// The hit's own contribution: ka·Ia, emission and the lights' terms (or the background).
     pub local: Color,
-    /// All it sends: `(local + reflected + transmitted) · attenuation + fog`, with each child's [`crate::Share`] of its total.
+    /// The radiance along the ray: `(local + reflected + transmitted) · attenuation + fog`, with each child's [`crate::Share`]
+    /// of its total.
     pub total: Color,
 }
 
@@ -30,10 +31,10 @@ pub struct RayTree {
     pub nodes: Vec<RayNode>,
 }
 
-/// All that happened in a pixel.
+/// Everything that was traced for a pixel.
 #[derive(Clone, Debug)]
 pub struct PixelTree {
-    /// The trees of its samples with the samples' places in the picture, in pixels.
+    /// The trees of its samples with the samples' positions in the picture, in pixels.
     pub samples: Vec<((f64, f64), RayTree)>,
     /// The pixel's linear colour before rounding: the mean of the samples.
     pub color: Color,
@@ -75,7 +76,7 @@ impl TraceObserver for RayTree {
     }
 }
 
-/// Records everything that happens in pixel `(x, y)`: the very samples a render with the same options takes.
+/// Records the ray trees of pixel `(x, y)`: those of exactly the samples that a render with the same options takes.
 ///
 /// # Errors
 /// [`RenderError`] if there is no such pixel.
@@ -92,7 +93,7 @@ pub fn explain(
         height: 1,
     });
     crate::Film::try_new(options.width, options.height, region, false)?;
-    // Samples are summed pass by pass, as the film does it: floating-point sums depend on the grouping.
+    // Samples are summed pass by pass, as for the film: floating-point sums depend on the grouping.
     let mut passes = Vec::new();
     if options.sampling == Sampling::Corners {
         passes.push(vec![(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)]);

@@ -4,21 +4,21 @@ use crate::scene::RenderScene;
 use strahl_accel::{Step, TraversalStats};
 use strahl_math::{Interval, Ray};
 
-/// What happened while the closest hit of one ray was searched, in order.
+/// The traversal of the accelerator by one ray that searches its closest hit, in order.
 #[derive(Clone, Debug, Default)]
 pub struct RayWalk {
-    /// The stations.
+    /// The events.
     pub events: Vec<WalkEvent>,
     /// The closest hit.
     pub hit: Option<Hit>,
-    /// What the search cost.
+    /// The cost of the search.
     pub stats: TraversalStats,
 }
 
-/// Something that happened on the way.
+/// An event of the traversal.
 #[derive(Clone, Copy, Debug)]
 pub enum WalkEvent {
-    /// The accelerator looked at a node or a cell; what follows is in it, if it is a leaf.
+    /// The accelerator visited a node or a cell; if it is a leaf, the following events belong to it.
     Step(Step),
     /// A primitive was tested.
     Test {
@@ -31,16 +31,16 @@ pub enum WalkEvent {
         /// Whether the test found that hit.
         found: bool,
     },
-    /// An instance was entered; what follows is in its space, whose `t` is the same.
+    /// An instance was entered; the following events are in its space, whose `t` is the same.
     Enter {
         /// Number of its first element.
         id: u64,
     },
-    /// It was left.
+    /// The instance was left.
     Leave,
 }
 
-/// Follows a camera ray to its closest hit and tells every node, cell and test on the way.
+/// Searches the closest hit of a camera ray and records every node, cell and test on the way.
 pub fn walk(scene: &RenderScene, ray: &Ray) -> RayWalk {
     let mut tracer = Tracer::new(scene);
     let mut events = Vec::new();

@@ -3,7 +3,7 @@ use strahl_math::{DVec3, Ray, det};
 use strahl_scene::{Bokeh, Camera, Projection};
 use strahl_shade::Color;
 
-/// Sends rays through a lens.
+/// Focal blur: traces rays through a lens.
 #[derive(Clone, Debug)]
 pub(super) struct LensSampler {
     /// Half the width and height of the lens.
@@ -11,11 +11,11 @@ pub(super) struct LensSampler {
     above: DVec3,
     forward: DVec3,
     eye: DVec3,
-    /// From the eye to the plane of focus, or to the sphere of focus for cameras that see more than a half space.
+    /// Distance from the eye to the plane of focus, or to the sphere of focus for cameras with more than 180 degrees.
     distance: f64,
     flat: bool,
     samples: (u32, u32),
-    /// Half the width of the interval that holds the mean, over its standard deviation, and how wide it may be.
+    /// Half the width of the confidence interval of the mean in standard deviations, and the width allowed.
     quantile: f64,
     tolerance: f64,
     bokeh: Option<Arc<Bokeh>>,
@@ -48,9 +48,9 @@ impl LensSampler {
         })
     }
 
-    /// The mean of the rays through the lens. Each meets the plane of focus where the ray through the lens's centre does that belongs to
-    /// a place up to half a pixel away along each axis: lenses are never sharper than pixels, as in POV-Ray (measured: the means over
-    /// pixels of what is in focus). `center` gives that ray, if the camera sees something there.
+    /// The mean of the rays through the lens. Each ray meets the plane of focus at the same point as the chief ray of a
+    /// position up to half a pixel away along each axis: like POV-Ray's, the lens is never sharper than a pixel (measured: the
+    /// means over pixels of objects in focus). `center` returns the chief ray, if the camera sees something there.
     pub(super) fn color(
         &self,
         (x, y): (f64, f64),
@@ -80,7 +80,7 @@ impl LensSampler {
         sum / f64::from(count.max(1))
     }
 
-    /// The ray through a point of the lens, which is 2 wide and high, that belongs to a ray through its centre.
+    /// The ray through a point of the lens (coordinates from -1 to 1) that belongs to a chief ray.
     fn through(&self, center: &Ray, (x, y): (f64, f64)) -> Ray {
         let ahead = center.direction.dot(self.forward);
         let before = (center.origin - self.eye).dot(self.forward);
@@ -91,11 +91,11 @@ impl LensSampler {
         };
         let origin = center.origin + self.side * x + self.above * y;
         let direction = (center.at(t) - origin).normalize_or(center.direction);
-        // Behind the camera the plane of focus is looked away from.
+        // If the intersection with the plane of focus lies behind the camera, the ray points away from it.
         Ray::new(origin, if t < 0.0 { -direction } else { direction })
     }
 
-    /// Whether the mean is known as well as asked for: its standard error, times the quantile of the confidence, is small.
+    /// Whether the mean is exact enough: its standard error times the quantile of the confidence is below the limit.
     fn settled(&self, sum: Color, squares: Color, count: u32) -> bool {
         let n = f64::from(count);
         if count < 2 {
@@ -109,8 +109,8 @@ impl LensSampler {
     }
 }
 
-/// Half the width, in standard deviations, of the interval around the mean of a normal distribution that holds this part of it
-/// (Abramowitz and Stegun, formula 26.2.23).
+/// Half the width, in standard deviations, of the interval around the mean of a normal distribution that contains this fraction
+/// of it (Abramowitz and Stegun, formula 26.2.23).
 fn quantile(confidence: f64) -> f64 {
     let tail = 0.5 * (1.0 - confidence.clamp(0.0, 1.0 - 1e-9));
     let t = (-2.0 * det::ln(tail)).sqrt();
@@ -120,7 +120,7 @@ fn quantile(confidence: f64) -> f64 {
     if x > 0.0 { x } else { 0.0 }
 }
 
-/// Four numbers in `0..1` that differ from place to place of the picture (the mixer of SplitMix64).
+/// Four numbers in `0..1` that differ for every position in the picture (the mixer of SplitMix64).
 fn scramble((x, y): (f64, f64)) -> [f64; 4] {
     let mix = |mut z: u64| {
         z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -134,7 +134,7 @@ fn scramble((x, y): (f64, f64)) -> [f64; 4] {
     [unit(bits), unit(bits << 24), unit(more), unit(more << 24)]
 }
 
-/// Point `index` of an even sequence in the unit cube of four dimensions (M. Roberts' sequence, 2018), shifted.
+/// Point `index` of a low-discrepancy sequence in the unit cube of four dimensions (M. Roberts' sequence, 2018), shifted.
 fn sample(index: u32, shift: [f64; 4]) -> [f64; 4] {
     // One over the root of x^5 = x + 1, and over its powers.
     const STEPS: [f64; 4] = [
@@ -152,7 +152,7 @@ fn sample(index: u32, shift: [f64; 4]) -> [f64; 4] {
     point
 }
 
-/// A point of the unit disc, evenly spread.
+/// Maps the unit square to the unit disc, uniformly.
 fn disc(a: f64, b: f64) -> (f64, f64) {
     let (radius, angle) = (a.sqrt(), std::f64::consts::TAU * b);
     (radius * det::cos(angle), radius * det::sin(angle))
@@ -206,10 +206,10 @@ mod tests {
     #[test]
     fn rays_belong_to_all_of_a_pixel() {
         let mut lens = blurred(400);
-        // Seven rays on one side would be enough otherwise.
+        // Seven rays that all hit the same side would already end the sampling.
         lens.samples.0 = 400;
         let at = |x: f64, _| Some(Ray::new(DVec3::X * x, DVec3::Z));
-        // What is in focus right of an edge through the pixel.
+        // An edge in focus through the pixel; the object is to its right.
         for edge in [3.2, 3.5, 3.9] {
             let color = lens.color((3.5, 2.5), at, |ray| {
                 let x = ray.at((5.0 - ray.origin.z) / ray.direction.z).x;

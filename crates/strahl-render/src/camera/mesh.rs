@@ -4,7 +4,7 @@ use strahl_scene::{CameraFace, MeshCamera, MeshLayout};
 use strahl_shade::Color;
 
 impl PrimaryRays {
-    /// The mean of the rays from the faces that belong to a place of the picture; black without any.
+    /// The mean of the rays from the faces that belong to a position in the picture; black if there are none.
     pub(super) fn mesh_color(
         &self,
         mesh: &MeshCamera,
@@ -61,7 +61,7 @@ impl PrimaryRays {
     }
 }
 
-/// How a mesh camera makes rays of its faces.
+/// How a mesh camera derives rays from its faces.
 trait FaceRays {
     fn joined(&self, index: usize) -> Option<&CameraFace>;
     fn ray_through_middle(&self, face: &CameraFace) -> Ray;
@@ -70,7 +70,7 @@ trait FaceRays {
 }
 
 impl FaceRays for MeshCamera {
-    /// A face of all meshes in a row.
+    /// A face, with the faces of all meshes numbered consecutively.
     fn joined(&self, mut index: usize) -> Option<&CameraFace> {
         for faces in &self.meshes {
             match index.checked_sub(faces.len()) {

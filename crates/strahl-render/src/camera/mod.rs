@@ -1,4 +1,4 @@
-//! Primary rays: one or more for each place of the picture.
+//! Primary rays: one or more for each position in the picture.
 
 mod lens;
 mod mesh;
@@ -33,8 +33,9 @@ impl PrimaryRays {
         }
     }
 
-    /// The colour of a place of the picture, in pixels: `(0, 0)` is the top left corner of the picture, `(0.5, 0.5)` the
-    /// centre of its first pixel. `trace` gets each ray, with a unit direction; where the camera sees nothing it gets none.
+    /// The colour of a position in the picture, in pixels: `(0, 0)` is the top left corner of the picture, `(0.5, 0.5)` the
+    /// centre of its first pixel. `trace` is called for each ray, with a unit direction; where the camera sees nothing it is
+    /// not called.
     pub fn color(&self, x: f64, y: f64, mut trace: impl FnMut(&Ray) -> Color) -> Color {
         if let Projection::Mesh(mesh) = &self.camera.projection {
             return self.mesh_color(mesh, x, y, trace);
@@ -45,7 +46,7 @@ impl PrimaryRays {
         }
     }
 
-    /// The ray through the centre of the lens; `None` where the camera sees nothing, and for cameras made of meshes.
+    /// The chief ray, through the centre of the lens; `None` where the camera sees nothing, and for mesh cameras.
     pub fn ray(&self, x: f64, y: f64) -> Option<Ray> {
         let c = &self.camera;
         // From -1 to 1, x to the right and y upwards.
@@ -72,12 +73,13 @@ impl PrimaryRays {
         })
     }
 
-    /// Whether each place of the picture has one ray at most, that of [`PrimaryRays::ray`].
+    /// Whether each position in the picture has at most one ray, that of [`PrimaryRays::ray`].
     pub(crate) fn is_sharp(&self) -> bool {
         self.lens.is_none() && !matches!(self.camera.projection, Projection::Mesh(_))
     }
 
-    /// All rays through a rectangle of the picture, given by two opposite corners; `None` if the camera bends or spreads them.
+    /// The beam of all rays through a rectangle of the picture, given by two opposite corners; `None` for other projections
+    /// than perspective and orthographic, and for cameras with a lens or a `normal`.
     pub(crate) fn beam(&self, low: [f64; 2], high: [f64; 2]) -> Option<Beam> {
         let flat = matches!(
             self.camera.projection,
@@ -95,8 +97,8 @@ impl PrimaryRays {
         ])
     }
 
-    /// The ray of a camera that is neither perspective nor orthographic, at coordinates from -1 to 1, and the place where a
-    /// normal of the camera is looked up: the angles, as far as the projection has some (measured with POV-Ray 3.7, but for
+    /// The ray of a camera that is neither perspective nor orthographic, at coordinates from -1 to 1, and the position at which
+    /// the camera's `normal` is evaluated: the two angles, where the projection has them (measured with POV-Ray 3.7, except for
     /// panoramic cameras).
     fn wide_ray(&self, u: f64, v: f64) -> Option<(Ray, [f64; 2])> {
         let c = &self.camera;
@@ -125,8 +127,8 @@ impl PrimaryRays {
                 if r > 1.0 {
                     return None;
                 }
-                // The lens of Omnimax projectors, as angle by distance from the axis of the film (N. Max, "Computer graphics
-                // distortion for IMAX and OMNIMAX projection", Nicograph 1983).
+                // The lens of Omnimax projectors: the angle as a function of the distance from the axis of the film (N. Max,
+                // "Computer graphics distortion for IMAX and OMNIMAX projection", Nicograph 1983).
                 let theta = r * (1.411_269 + r * r * (r * r * 0.256_74 - 0.094_39));
                 let direction = polar(theta, [a, b], [side, above, forward]);
                 if direction.dot(above) < -direction.dot(forward) {
@@ -173,7 +175,7 @@ impl PrimaryRays {
                 horizontal,
                 vertical,
             } => {
-                // First up or down about the axis to the right, then round about the upright one.
+                // First a rotation about the axis to the right, then one about the vertical axis.
                 let (a, b) = (half_u * horizontal, half_v * vertical);
                 let tilted = turned(forward, side, -b);
                 (turned(tilted, above, a), [a, b])
@@ -187,8 +189,8 @@ impl PrimaryRays {
     }
 }
 
-/// The place on the film of an Omnimax projector for a place in a picture so many times as wide as high: what is seen of the
-/// dome reaches the picture's top, and in wide pictures its bottom too (measured with POV-Ray 3.7).
+/// The position on the film of an Omnimax projector for a position in a picture with this aspect ratio: the visible part of the
+/// dome reaches the top of the picture, and in wide pictures the bottom too (measured with POV-Ray 3.7).
 fn omnimax_film([u, v]: [f64; 2], aspect: f64) -> [f64; 2] {
     /// Half the height of the film from the top of the dome down to 45 degrees below the horizon.
     const HALF_HEIGHT: f64 = 0.779_14;
@@ -205,7 +207,7 @@ fn omnimax_film([u, v]: [f64; 2], aspect: f64) -> [f64; 2] {
     ]
 }
 
-/// The direction at the angle `theta` from the last axis, turned to the point `[a, b]` on the first two.
+/// The direction at the angle `theta` from the third axis, on the side of the point `[a, b]` in the plane of the first two.
 fn polar(theta: f64, [a, b]: [f64; 2], [side, above, forward]: [DVec3; 3]) -> DVec3 {
     let radius = (a * a + b * b).sqrt();
     let ahead = forward * det::cos(theta);
@@ -216,7 +218,7 @@ fn polar(theta: f64, [a, b]: [f64; 2], [side, above, forward]: [DVec3; 3]) -> DV
     }
 }
 
-/// The angle of a point in the plane, from -90 to 270 degrees as POV-Ray counts it.
+/// The polar angle of a point in the plane, from -90 to 270 degrees as POV-Ray counts it.
 fn turn(a: f64, b: f64) -> f64 {
     let angle = det::atan2(b, a);
     if angle < -std::f64::consts::FRAC_PI_2 {
@@ -226,7 +228,7 @@ fn turn(a: f64, b: f64) -> f64 {
     }
 }
 
-/// A vector rotated about a unit axis by an angle (Rodrigues' formula).
+/// A vector rotated by an angle about a unit axis (Rodrigues' formula).
 fn turned(v: DVec3, axis: DVec3, angle: f64) -> DVec3 {
     let (sin, cos) = (det::sin(angle), det::cos(angle));
     v * cos + axis.cross(v) * sin + axis * (axis.dot(v) * (1.0 - cos))

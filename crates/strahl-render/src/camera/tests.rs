@@ -20,8 +20,8 @@ fn orthographic_rays_are_parallel() {
     assert!((a.origin - DVec3::new(-1.0, 1.0, 1.0)).length() < 1e-15);
 }
 
-/// Directions of POV-Ray 3.7 at some pixels of a picture of 24 by 16, `right 1.5*x up y`, measured through a sky that shows
-/// its own direction; three zeros where nothing is seen.
+/// Directions of POV-Ray 3.7 at some pixels of a picture of 24 by 16, `right 1.5*x up y`, measured with a sky whose colour
+/// shows the direction; three zeros where the camera sees nothing.
 #[test]
 fn directions_are_those_of_povray() {
     let degrees = |d: f64| d.to_radians();

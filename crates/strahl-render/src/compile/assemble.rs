@@ -18,9 +18,9 @@ pub(super) struct Assembled {
     pub(super) instances: Vec<InstanceUse>,
     pub(super) first_ids: Option<Vec<u64>>,
     pub(super) count: u64,
-    /// What is bounded of it: its size.
+    /// Bounds of its bounded primitives.
     pub(super) bounds: Aabb,
-    /// All of it.
+    /// Bounds of all its primitives; unbounded if one of them is.
     reach: Aabb,
     pub(super) prim_bounds: Vec<Aabb>,
 }
@@ -40,8 +40,8 @@ impl Assembled {
 /// Deepest nesting of instances.
 const MOST_LEVELS: u32 = 64;
 
-/// Orders the groups so that each comes after those it instances (the world, last on entry, stays last), drops those that are
-/// not used, and computes numbers and bounds. The masks of lights refer to groups too; their numbers become those of the result.
+/// Orders the groups so that each comes after those it instances (the world, last on entry, stays last), drops unused groups,
+/// and computes element numbers and bounds. The masks of lights refer to groups by number too; these are renumbered.
 pub(super) fn assemble(
     groups: Vec<FlatGroup>,
     scene: &Scene,
@@ -68,7 +68,7 @@ pub(super) fn assemble(
     Ok(done)
 }
 
-/// The groups that these roots need and then those that the world needs, each after those it instances itself.
+/// The groups that these roots need, then those that the world needs, each after those it instances.
 fn order(
     groups: &[FlatGroup],
     scene: &Scene,
@@ -86,7 +86,7 @@ fn order(
     let mut states = vec![State::New; groups.len()];
     let mut levels = vec![0u32; groups.len()];
     let mut order = Vec::new();
-    // What comes last is on top: the world is done when all others are.
+    // A stack: the world, pushed first, is finished after all others.
     let mut path: Vec<(usize, usize)> = vec![];
     let mut waiting: Vec<usize> = std::iter::once(world)
         .chain(roots.iter().rev().copied())
@@ -137,7 +137,7 @@ fn order(
     }
 }
 
-/// Element numbers and bounds of a group whose instances refer to groups already done.
+/// Element numbers and bounds of a group whose instances refer to groups that are already assembled.
 fn number(group: FlatGroup, done: &[Assembled]) -> Result<Assembled, Vec<Diagnostic>> {
     let FlatGroup {
         prims,

@@ -1,13 +1,14 @@
-//! Parts of flat primitives, for builders that cut long thin ones.
+//! Parts of flat primitives, for builders that split long thin ones.
 
 use strahl_math::{Aabb, DVec3};
 
-/// Boxes around what is on the lower and on the upper side of a plane across an axis, of the part of a flat polygon that is in a box: around the
-/// corners there and the points where edges cross the plane, no larger than the box.
+/// Boxes around the parts of a flat polygon below and above a plane across an axis, where only the part within the box `part`
+/// counts. Each surrounds the corners on its side and the points where edges cross the plane, and is not larger than `part`.
 ///
-/// Watertight: every point of the polygon is on one of the sides, points in the plane on both. Where edges cross the plane is computed in f64 and
-/// padded by more than the rounding; and a point that counts as hit although it lies beside the polygon, by the rounding of the test, is as close
-/// to one of the parts as to the whole, which is what culling allows for.
+/// Watertight: every point of the polygon is on one of the sides, points in the plane are on both. The crossings of edges with
+/// the plane are computed in f64 and padded by more than the rounding error. A point beside the polygon that counts as a hit
+/// because of the rounding of the intersection test is as close to one of the parts as to the whole, and culling allows for
+/// that.
 pub(super) fn halves(corners: &[DVec3], part: &Aabb, axis: usize, at: f64) -> [Aabb; 2] {
     let (mut lower, mut upper) = (Aabb::EMPTY, Aabb::EMPTY);
     let point = |p: DVec3| Aabb::new(p, p);
@@ -31,7 +32,7 @@ pub(super) fn halves(corners: &[DVec3], part: &Aabb, axis: usize, at: f64) -> [A
     [lower, upper].map(|b| Aabb::new(b.min.max(part.min), b.max.min(part.max)))
 }
 
-/// Half the surface area of boxes around ever smaller parts of a flat polygon: what it covers when seen along each of the axes.
+/// Half the surface area of boxes around ever smaller parts of a flat polygon: the sum of its projections along the axes.
 pub(super) fn flat_area(corners: &[DVec3]) -> f64 {
     let Some(first) = corners.first() else {
         return 0.0;
@@ -46,7 +47,7 @@ pub(super) fn flat_area(corners: &[DVec3]) -> f64 {
 mod tests {
     use super::*;
 
-    /// Cut again and again, the boxes still have all points of the triangle in them; and hardly anything else, if it is thin.
+    /// However often a triangle is split, its boxes contain all its points; and hardly anything else, if it is thin.
     #[test]
     fn the_parts_cover_the_triangle() {
         for (third, most) in [

@@ -65,7 +65,7 @@ pub(super) struct Flat {
 /// Most errors reported in one run.
 const MOST_ERRORS: usize = 20;
 
-/// Makes the lists, or tells everything that is wrong.
+/// Makes the lists, or returns all errors.
 pub(super) fn flatten(scene: &Scene) -> Result<Flat, Vec<Diagnostic>> {
     let mut pass = Pass {
         flat: Flat::default(),
@@ -106,13 +106,13 @@ pub(super) fn flatten(scene: &Scene) -> Result<Flat, Vec<Diagnostic>> {
 struct Pass {
     flat: Flat,
     errors: Vec<Diagnostic>,
-    /// Materials already found to be right.
+    /// Materials already validated.
     checked: HashSet<MaterialId>,
-    /// Whether it is the world that is being flattened, and not a group.
+    /// Whether the world is being flattened, not a group.
     in_world: bool,
 }
 
-/// An object with what it inherits.
+/// An object with the attributes it inherits.
 #[derive(Clone)]
 struct Todo<'a> {
     object: &'a Object,
@@ -215,7 +215,7 @@ impl Pass {
         }
     }
 
-    /// The children of a union. Those of a group of lights get a set of lights, which its own lights join here.
+    /// The children of a union. Those of a light group get a light set, which the lights of the group join here.
     fn union_parts<'a>(
         &mut self,
         op: CsgOp,
@@ -265,7 +265,7 @@ impl Pass {
         let texture_space = if !textured || todo.material_space.is_identity() {
             Look::NO_SPACE
         } else {
-            // Neighbours often share one: the parts of a union.
+            // Neighbours, such as the parts of a union, often have the same one.
             if spaces.last() != Some(&todo.material_space) {
                 spaces.push(todo.material_space);
             }
@@ -384,7 +384,7 @@ impl Pass {
                 }
                 Step::Visit(mut todo) => match &todo.object.kind {
                     ObjectKind::Csg { op, children } => {
-                        // Lights among the operands shine, but are none.
+                        // Lights among the operands shine, but are not operands.
                         let is_light = |c: &Object| matches!(c.kind, ObjectKind::Light(_));
                         let count = children.0.iter().filter(|c| !is_light(c)).count();
                         let children = self.union_parts(*op, children, &mut todo);

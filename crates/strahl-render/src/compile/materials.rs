@@ -3,7 +3,7 @@ use std::sync::Arc;
 use strahl_scene::Object;
 use strahl_shade::{Material, MaterialId};
 
-/// The materials met so far, each `Arc` once.
+/// The materials found so far, each `Arc` once.
 #[derive(Debug, Default)]
 pub(super) struct MaterialTable {
     list: Vec<Arc<Material>>,
@@ -37,7 +37,7 @@ impl MaterialTable {
     }
 }
 
-/// Whether shadow rays pass the material at all.
+/// Whether shadow rays pass through the material.
 pub(crate) fn material_transmits(material: &Material) -> bool {
     if let Some(texture) = &material.texture {
         let inner = material.inner_texture.as_ref();
@@ -49,7 +49,7 @@ pub(crate) fn material_transmits(material: &Material) -> bool {
     }
 }
 
-/// What is wrong with a material's numbers, if anything.
+/// The error in a material's numbers, if there is one.
 pub(super) fn material_problem(material: &Material) -> Option<String> {
     let f = &material.finish;
     let colors = [

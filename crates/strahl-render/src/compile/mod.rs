@@ -2,9 +2,9 @@
 //!
 //! 1. [`flatten`]: the tree of objects becomes lists of primitives per group; unions are dissolved, transformations
 //!    baked where that is exact, CSG trees built, everything validated.
-//! 2. [`spaces`]: small things far from the origin move into spaces of their own.
+//! 2. [`spaces`]: small objects far from the origin move into coordinate systems of their own.
 //! 3. [`assemble`]: groups in order of dependence, with element numbers and bounds.
-//! 4. [`view`]: camera and lights, where the scene has none.
+//! 4. [`view`]: camera and lights, if the scene has none.
 //! 5. the acceleration structures ([`Prepared::build`]).
 
 mod assemble;
@@ -61,7 +61,7 @@ pub struct Prepared {
 /// Compiles a scene.
 ///
 /// # Errors
-/// Everything that is wrong with it, each with its place.
+/// All errors of the scene, each with its place.
 pub fn compile(scene: &Scene, options: &CompileOptions) -> Result<RenderScene, Vec<Diagnostic>> {
     Ok(Prepared::new(scene)?.build(options.accelerator))
 }
@@ -70,7 +70,7 @@ impl Prepared {
     /// All passes but the last.
     ///
     /// # Errors
-    /// Everything that is wrong with the scene, each with its place.
+    /// All errors of the scene, each with its place.
     pub fn new(scene: &Scene) -> Result<Self, Vec<Diagnostic>> {
         let mut flat = flatten::flatten(scene)?;
         spaces::open_spaces(&mut flat);
@@ -116,14 +116,14 @@ impl Prepared {
         })
     }
 
-    /// What deserves attention.
+    /// The warnings.
     pub fn warnings(&self) -> &[Diagnostic] {
         &self.warnings
     }
 
     /// Builds the acceleration structures.
     pub fn build(self, kind: AcceleratorKind) -> RenderScene {
-        // The world was assembled last, after everything it refers to; the scene wants it first.
+        // The world was assembled last, after all groups it refers to; the scene expects it first.
         let last = self.groups.len().saturating_sub(1) as u32;
         let renumber = |group: u32| last - group;
         let groups = self.groups.into_iter().rev().map(|g| {
@@ -182,9 +182,10 @@ impl Prepared {
     }
 }
 
-/// The primitives of a group with a flag by themselves; `None` if those are so many that leaving out the others does not pay.
+/// A separate accelerator over the primitives of a group that have a flag; `None` if these are so many that leaving out the
+/// others does not pay.
 fn part(kind: AcceleratorKind, group: &Assembled, flag: u8) -> Option<Box<Part>> {
-    // The flags of a run are those of its first.
+    // The flags of a run are those of its first primitive.
     let flagged = || group.prims.runs().filter(|(p, _)| p.flags & flag != 0);
     let some: usize = flagged().map(|(_, places)| places.len()).sum();
     if 4 * some > 3 * group.prims.len() {
@@ -209,7 +210,7 @@ fn part(kind: AcceleratorKind, group: &Assembled, flag: u8) -> Option<Box<Part>>
     }))
 }
 
-/// What each light has to cross; nothing if that is so for all.
+/// The mask that the light of each light source has to pass through; empty if none has one.
 fn masks(
     scene: &Scene,
     of_objects: &[SceneLight],

@@ -1,4 +1,4 @@
-//! What the builders of accelerators may know about primitives beyond their boxes.
+//! The geometry that the builders of accelerators may use beyond boxes.
 
 use super::assemble::Assembled;
 use super::cut;
@@ -11,7 +11,7 @@ use strahl_math::{Aabb, DVec3};
 /// The primitives of a group.
 pub(super) struct GroupShapes<'a>(pub(super) &'a Assembled);
 
-/// A primitive, as far as more is known than its box.
+/// A primitive, if its builder can use more than its box.
 enum Known<'a> {
     Corners([DVec3; 3]),
     Polygon(&'a [DVec3]),
@@ -43,7 +43,7 @@ impl GroupShapes<'_> {
                 ])),
                 Shape::Cuboid(_) => Known::Box(self.bounds(id)),
                 Shape::Polygon(p) => {
-                    // The outer ring comes first; what is in a hole is kept, which is safe.
+                    // The outer ring comes first; holes are ignored, which is conservative.
                     p.rings().next().map_or(Known::Nothing, Known::Polygon)
                 }
                 _ => Known::Nothing,
@@ -114,7 +114,7 @@ impl Shapes for GroupShapes<'_> {
     }
 }
 
-/// The primitives with a flag: as if the others were nothing.
+/// The primitives with a flag; the others count as empty.
 pub(super) struct Flagged<'a> {
     pub(super) all: GroupShapes<'a>,
     pub(super) flag: u8,
@@ -161,9 +161,9 @@ fn distances(p: DVec3, b: &Aabb) -> (f64, f64) {
     (nearest.length(), farthest.length())
 }
 
-/// Whether a triangle meets a box: no axis separates them, neither a normal of one of the two nor a product of two edges.
-/// (Akenine-Möller: Fast 3D triangle-box overlap testing, 2001.) The accelerators pad the boxes by more than the
-/// rounding here.
+/// Whether a triangle meets a box: none of the axes separates them, neither the normals of the two nor the products of their
+/// edges (Akenine-Möller: Fast 3D triangle-box overlap testing, 2001). The accelerators pad the boxes by more than the rounding
+/// error here.
 fn triangle_meets(corners: &[DVec3; 3], cell: &Aabb) -> bool {
     let (center, half) = (cell.center(), cell.size() * 0.5);
     let v = corners.map(|c| c - center);
@@ -181,8 +181,8 @@ fn triangle_meets(corners: &[DVec3; 3], cell: &Aabb) -> bool {
             .any(|unit| edges.into_iter().any(|edge| separates(unit.cross(edge)))))
 }
 
-/// Whether a flat polygon meets a box: something is left when it is cut by the six planes. Of a polygon that is not
-/// convex an empty bridge may be left, which is safe. (Sutherland and Hodgman: Reentrant polygon clipping, 1974.)
+/// Whether a flat polygon meets a box: clipped by the six planes it is not empty. A polygon that is not convex may leave an
+/// empty bridge, which is conservative. (Sutherland and Hodgman: Reentrant polygon clipping, 1974.)
 fn polygon_meets(corners: &[DVec3], cell: &Aabb) -> bool {
     let mut left = corners.to_vec();
     let mut next = Vec::with_capacity(left.len() + 6);
@@ -206,7 +206,7 @@ fn polygon_meets(corners: &[DVec3], cell: &Aabb) -> bool {
     !left.is_empty()
 }
 
-/// What lies between two discs upright on the same axis, given by centre and radius: a cylinder or a cone.
+/// The convex hull of two discs perpendicular to a common axis, given by centre and radius: a cylinder or a cone.
 struct Frustum([(DVec3, f64); 2]);
 
 impl Frustum {
@@ -215,9 +215,9 @@ impl Frustum {
         apex - base
     }
 
-    /// Whether it may meet a box: no direction tried separates them. Tried are the axis and normals of the side: towards the box, and
-    /// those that are upright on an edge of the box. Those of the box's faces are left out, for the accelerators have
-    /// compared the boxes.
+    /// Whether it may meet a box: none of the directions tried separates them. These are the axis and normals of the side: the
+    /// one towards the box, and those perpendicular to an edge of the box. The normals of the box are left out, because the
+    /// accelerators have compared the boxes.
     fn meets(&self, cell: &Aabb) -> bool {
         let axis = self.axis().normalize_or_zero();
         let (center, half) = (cell.center(), cell.size() * 0.5);
@@ -242,7 +242,7 @@ impl Frustum {
         !(separates(axis) || sides.any(separates))
     }
 
-    /// Whether a box certainly is inside: all its corners are, and nothing of the surface is there.
+    /// Whether a box certainly lies inside: all its corners do, and it contains no part of the surface.
     fn surrounds(&self, cell: &Aabb) -> bool {
         let [(base, base_radius), (_, apex_radius)] = self.0;
         let axis = self.axis();
@@ -286,7 +286,7 @@ fn ball_of_triangle(corners: &[DVec3; 3]) -> (DVec3, f64) {
     ];
     for center in centers {
         let radius = reach(center, corners);
-        // Without an area the last centre is none: NaN is not less.
+        // Without an area the last centre is NaN, and NaN is not less.
         if radius < best.1 {
             best = (center, radius);
         }
@@ -294,7 +294,7 @@ fn ball_of_triangle(corners: &[DVec3; 3]) -> (DVec3, f64) {
     best
 }
 
-/// How far points are from a centre, rounded up.
+/// The largest distance of the points from a centre, rounded up.
 fn reach(center: DVec3, points: &[DVec3]) -> f64 {
     let mut farthest = 0.0;
     for p in points {
@@ -315,7 +315,7 @@ mod tests {
         Aabb::new(DVec3::new(x, y, z), DVec3::new(x + 1.0, y + 1.0, z + 1.0))
     }
 
-    /// Points of a triangle or polygon tell which cells it certainly meets; the others it must mostly miss.
+    /// Points of a triangle or polygon prove that their cells are met; of the other cells most must be missed.
     #[test]
     fn triangles_and_polygons_meet_the_cells_they_have_points_in() {
         let corners = [
@@ -350,7 +350,7 @@ mod tests {
         assert_eq!(distances(DVec3::splat(1.5), &cell(1.0, 1.0, 1.0)).0, 0.0);
     }
 
-    /// Points of the surface tell which cells it certainly meets.
+    /// Points of the surface prove that their cells are met.
     #[test]
     fn cylinders_and_cones_meet_the_cells_they_have_points_in() {
         for (radii, most) in [([1.5, 1.5], 170), ([2.2, 0.0], 130), ([0.3, 0.4], 60)] {

@@ -8,15 +8,15 @@ use std::borrow::Cow;
 use strahl_geometry::{Primitive, Shape};
 use strahl_math::{Aabb, DVec3, Transform};
 
-/// A thing is small and far if its extent is below this fraction of its largest coordinate: f32 boxes (24 bits) would then
-/// leave it fewer than 7 bits (engine design 1.1).
+/// An object is small and far if its extent is below this fraction of its largest coordinate: f32 boxes (24 bits) would then
+/// leave it fewer than 7 bits.
 const SMALL_AND_FAR: f64 = 1.0 / (1 << 17) as f64;
 
-/// Moves clusters of small things far from the origin into spaces of their own: groups whose origin is near them.
+/// Moves clusters of small objects far from the origin into spaces of their own: groups whose origin is near them.
 ///
 /// Positions relative to the space's anchor keep all their digits, the f32 boxes of its accelerator are tight, and rays that
-/// start in it keep an origin finer than world coordinates can express. The anchor is a coordinate of the things
-/// themselves, so that moving them is exact.
+/// start in it keep an origin finer than world coordinates can express. The anchor is a coordinate of the objects themselves,
+/// so moving them is exact.
 pub(super) fn open_spaces(flat: &mut Flat) {
     let groups = flat.groups.len();
     for index in 0..groups {
@@ -60,7 +60,7 @@ pub(super) fn open_spaces(flat: &mut Flat) {
     keep_world_last(flat, groups - 1);
 }
 
-/// The world must be the last group: it changes places with the last of the new ones.
+/// Swaps the world with the last of the new groups, because it must be the last group.
 fn keep_world_last(flat: &mut Flat, world: usize) {
     let last = flat.groups.len() - 1;
     flat.groups.swap(world, last);
@@ -71,7 +71,7 @@ fn keep_world_last(flat: &mut Flat, world: usize) {
     }
 }
 
-/// The shapes that are small and far, by neighbourhood. Triangles of meshes are anchored by their mesh already.
+/// The shapes that are small and far, in clusters. Triangles of meshes are relative to an anchor of their mesh already.
 fn clusters(group: &FlatGroup) -> Vec<Vec<u32>> {
     let mut small: Vec<(u32, Aabb)> = Vec::new();
     for (index, prim) in group.prims.iter().enumerate() {
@@ -87,7 +87,7 @@ fn clusters(group: &FlatGroup) -> Vec<Vec<u32>> {
             small.push((index as u32, bounds));
         }
     }
-    // Sweep along x, then y, then z: things closer than the threshold of their coordinates belong together.
+    // Sweep along x, then y, then z: objects closer than the threshold of their coordinates belong together.
     let mut clusters = vec![small];
     for axis in 0..3 {
         clusters = clusters
@@ -109,7 +109,7 @@ fn clusters(group: &FlatGroup) -> Vec<Vec<u32>> {
     lists
 }
 
-/// The shape of a primitive that is one in the group's own space.
+/// The shape of a primitive that has no transformation of its own; `None` for instances, placed shapes and triangles of meshes.
 fn shape(group: &FlatGroup, prim: Prim) -> Option<Cow<'_, Shape>> {
     match prim.kind() {
         PrimKind::Shape(index) => Some(Cow::Borrowed(&group.shapes[index as usize].shape)),
@@ -118,7 +118,7 @@ fn shape(group: &FlatGroup, prim: Prim) -> Option<Cow<'_, Shape>> {
     }
 }
 
-/// Splits a list where the next thing along an axis would make the cluster too large for one space.
+/// Splits a list where the next object along an axis would make the cluster too large for one space.
 fn split_at_gaps(mut list: Vec<(u32, Aabb)>, axis: usize) -> Vec<Vec<(u32, Aabb)>> {
     list.sort_by(|a, b| a.1.min[axis].total_cmp(&b.1.min[axis]).then(a.0.cmp(&b.0)));
     let mut parts: Vec<Vec<(u32, Aabb)>> = Vec::new();
@@ -136,7 +136,7 @@ fn split_at_gaps(mut list: Vec<(u32, Aabb)>, axis: usize) -> Vec<Vec<(u32, Aabb)
     parts
 }
 
-/// Takes shapes out of a group into one of their own around an anchor.
+/// Moves shapes from a group into a new one around an anchor.
 fn extract(group: &mut FlatGroup, cluster: &[u32]) -> (FlatGroup, DVec3) {
     let mut inner = FlatGroup::default();
     let mut anchor = None;

@@ -5,7 +5,7 @@ use strahl_shade::{Color, Light};
 /// Vertical angle of the camera that frames objects.
 const ANGLE: f64 = 35.0 * std::f64::consts::PI / 180.0;
 
-/// How much of the picture's height the objects' box may take.
+/// The part of the picture's height that the bounding box of the objects may take.
 const MARGIN: f64 = 0.95;
 
 /// A camera that sees all of a box from the front, a little from the right and from above (y is up).
@@ -34,8 +34,7 @@ pub(super) fn frame(bounds: Aabb) -> Camera {
 }
 
 /// The scene's lights and ambient light. A scene with neither camera nor lights (a bare mesh) gets a key light over the
-/// viewer's left shoulder, a weaker fill light from the right and a faint one from behind; they cast no shadows onto
-/// what the viewer wants to see but the key light's.
+/// viewer's left shoulder, a weaker fill light from the right and a faint one from behind; only the key light casts shadows.
 pub(super) fn lights(
     scene: &Scene,
     of_objects: Vec<SceneLight>,
@@ -71,7 +70,7 @@ pub(super) fn lights(
     (lights, ambient)
 }
 
-/// Behind objects framed by the renderer: a quiet gradient. Otherwise black.
+/// A gentle gradient behind objects that are framed by the renderer; black otherwise.
 pub(super) fn background(scene: &Scene, camera: &Camera) -> Background {
     if scene.camera.is_some() {
         return Background::default();

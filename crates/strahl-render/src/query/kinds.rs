@@ -1,27 +1,27 @@
-//! What rays are searched for: the closest hit, anything that stops light, all that lets it through.
+//! The kinds of queries: the closest hit, any opaque hit, all transmitting hits.
 
 use crate::hit::Hit;
 use crate::prim::Prim;
 use crate::scene::{Part, RenderGroup};
 use crate::walk::WalkEvent;
 
-/// What a search does with the primitives that rays may meet.
+/// What a search does with the primitives that its ray may hit.
 pub(super) trait Query {
-    /// Whether primitives with these flags are of interest.
+    /// Whether primitives with these flags matter.
     fn wants(flags: u8) -> bool;
 
-    /// The part of a group in which all is that is of interest, if it is by itself.
+    /// The part of a group that has all primitives that matter, if there is a separate accelerator for it.
     fn part(_group: &RenderGroup) -> Option<&Part> {
         None
     }
 
-    /// Whether any hit on a primitive of one element with these flags is of interest, and the first is all it takes to know.
+    /// Whether the first hit on a primitive with these flags, if it has only one element, can be taken without further checks.
     #[inline(always)]
     fn is_plain(flags: u8) -> bool {
         !Self::ALL && Self::is_plain_flat(flags)
     }
 
-    /// The same for a flat primitive, which no ray meets twice.
+    /// The same for a flat primitive, which a ray hits at most once.
     #[inline(always)]
     fn is_plain_flat(flags: u8) -> bool {
         let mixed = flags & (Prim::TRANSMITS | Prim::STOPS) == Prim::TRANSMITS | Prim::STOPS;
@@ -31,24 +31,23 @@ pub(super) trait Query {
     /// Takes a hit and returns the new upper end of the range, `-inf` to end the search.
     fn take(&mut self, hit: Hit, t_max: f64) -> f64;
 
-    /// Whether the hits behind the first one on the same primitive matter too.
+    /// Whether all hits on a primitive matter, not only the first.
     const ALL: bool;
 
     /// Whether any hit will do.
     const ANY: bool = false;
 
-    /// Whether a hit on an element of a material that lets light through (or not) is of interest; asked only on
-    /// primitives with both kinds.
+    /// Whether hits on elements with a transmitting (or opaque) material matter; called only for primitives with both kinds.
     fn wants_hit(transmits: bool) -> bool;
 
-    /// Whether [`Query::tell`] wants to hear what happens; it costs nothing otherwise.
+    /// Whether [`Query::tell`] is to be called; if not, it costs nothing.
     const WATCHES: bool = false;
 
-    /// Something happened.
+    /// Reports a step of the traversal.
     fn tell(&mut self, _event: WalkEvent) {}
 }
 
-/// The closest hit; of several at the same place that with the smallest id.
+/// Finds the closest hit; of several at the same `t` that with the smallest id.
 pub(super) struct Closest {
     pub(super) best: Option<Hit>,
 }
@@ -75,7 +74,7 @@ impl Query for Closest {
     }
 }
 
-/// The closest hit with what happens on the way to it.
+/// Finds the closest hit and records the traversal.
 pub(super) struct Watched<'e> {
     pub(super) closest: Closest,
     pub(super) events: &'e mut Vec<WalkEvent>,
@@ -102,7 +101,7 @@ impl Query for Watched<'_> {
     }
 }
 
-/// Anything that lets no light through.
+/// Finds any opaque surface.
 pub(super) struct AnyOpaque {
     /// The element found.
     pub(super) found: Option<u64>,
@@ -131,7 +130,7 @@ impl Query for AnyOpaque {
     }
 }
 
-/// All that may let light through.
+/// Collects all hits on surfaces that may transmit light.
 pub(super) struct Transmitting<'h> {
     pub(super) hits: &'h mut Vec<Hit>,
 }

@@ -1,4 +1,4 @@
-//! Leaves of blocks: which of four primitives a ray meets, and what is made of the hits.
+//! Leaves tested in blocks: which of four primitives a ray hits, and what becomes of these hits.
 
 use super::kinds::Query;
 use super::{GroupVisitor, NONE};
@@ -12,7 +12,7 @@ use strahl_geometry::{PlaneHit, Shape, SurfaceId};
 use strahl_math::{Interval, Ray};
 use strahl_simd::Isa;
 
-/// The lane of a block with the primitive that a ray starts on, if the ray may meet that again.
+/// The lane of a block with the primitive that a ray starts on, if the ray may hit that one again.
 #[inline(always)]
 pub(super) fn lane_entered<B: Block>(
     block: &B,
@@ -49,7 +49,7 @@ impl<Q: Query> GroupVisitor<'_, '_, '_, Q> {
         t_max
     }
 
-    /// Tests the flat things of a leaf four at a time.
+    /// Tests the flat primitives of a leaf four at a time.
     #[inline(always)]
     pub(super) fn flats<I: Isa>(&mut self, isa: I, leaf: &Leaf<'_>, mut t_max: f64) -> f64 {
         let mut hits = Hits::default();
@@ -65,7 +65,7 @@ impl<Q: Query> GroupVisitor<'_, '_, '_, Q> {
         t_max
     }
 
-    /// Tests those primitives of a block that the ray may meet.
+    /// Tests those primitives of a block whose lanes the block test has kept.
     #[inline(always)]
     pub(super) fn polygons<I: Isa>(
         &mut self,
@@ -94,14 +94,14 @@ impl<Q: Query> GroupVisitor<'_, '_, '_, Q> {
         t_max
     }
 
-    /// Tests a polygon in whose plane the ray is known to cross it, if it does.
+    /// Tests a polygon whose plane the ray is known to cross, if it does.
     #[inline(always)]
     fn polygon(&mut self, id: u32, is_polygon: bool, at: PlaneHit, t_max: f64) -> f64 {
         if id == self.from_prim {
             return t_max;
         }
         let prim = self.group.prims.at(id);
-        // Its block has left it out if it shows its back.
+        // Its block has already rejected it if it faces away.
         let plain = is_polygon
             && prim.visible & self.search.class != 0
             && prim.flags & Prim::MASKED == 0
@@ -134,7 +134,8 @@ impl<Q: Query> GroupVisitor<'_, '_, '_, Q> {
     ) -> f64 {
         let (from_prim, ray) = (self.from_prim, self.ray);
         if let Some(lane) = lane_entered(block, leaf, index, from_prim, ray, self.range_min) {
-            // Its own test decides: it knows where the ray starts, which that of the block does not. There is one hit at most.
+            // The primitive's own test decides, which, unlike the test of the block, knows where the ray starts. There is one
+            // hit at most.
             let id = self.from_prim;
             t_max = if self.plain || self.is_plain(id, false) {
                 match block.met_again(lane, self.ray, Interval::new(self.range_min, t_max)) {
@@ -151,7 +152,7 @@ impl<Q: Query> GroupVisitor<'_, '_, '_, Q> {
         let range = Interval::new(self.range_min, t_max);
         let mut lanes = block.hits(isa, self.ray, self.shear, range, hits);
         while lanes != 0 {
-            // There are four lanes; said so, the compiler knows it too.
+            // Lets the compiler see that there are four lanes.
             let lane = lanes.trailing_zeros() as usize % BLOCK;
             lanes &= lanes - 1;
             let id = leaf.id(index, lane);
@@ -177,7 +178,7 @@ impl<Q: Query> GroupVisitor<'_, '_, '_, Q> {
         t_max
     }
 
-    /// Whether a hit on this primitive, which is tested in a block, is taken as it is.
+    /// Whether hits of a block on this primitive need no further checks.
     #[inline]
     fn is_plain(&self, id: u32, curved: bool) -> bool {
         let prim = self.group.prims.at(id);
@@ -189,10 +190,10 @@ impl<Q: Query> GroupVisitor<'_, '_, '_, Q> {
         prim.visible & self.search.class != 0 && plain
     }
 
-    /// Takes a hit on a plain primitive.
+    /// Takes a hit that needs no further checks.
     #[inline(always)]
     fn take(&mut self, id: u32, t: f64, uv: [f64; 2], t_max: f64) -> f64 {
-        // Another lane may have been closer.
+        // An earlier lane may have been closer.
         if t <= t_max {
             let id = self.base + self.group.first_id(id);
             let facet = 0;
@@ -202,7 +203,7 @@ impl<Q: Query> GroupVisitor<'_, '_, '_, Q> {
         t_max
     }
 
-    /// Takes a hit on a flat primitive, if that exists there.
+    /// Takes a hit on a flat primitive, unless it is on the back or in a hole.
     #[inline]
     fn take_filtered(&mut self, id: u32, t: f64, uv: [f64; 2], t_max: f64) -> f64 {
         let prim = self.group.prims.at(id);

@@ -1,4 +1,5 @@
-//! Searches for several rays at once: what can be told of all of them together is, the rest is what a single ray does.
+//! Searches for several rays at once. Tests of the whole packet only cull; the remaining rays are tested one by one, as single
+//! rays are.
 
 use super::kinds::{AnyOpaque, Closest, Query};
 use super::{From, GroupVisitor, NONE, Search, Tracer};
@@ -14,12 +15,12 @@ use strahl_geometry::{RayShear, Scratch};
 use strahl_math::{Interval, Ray};
 use strahl_simd::Isa;
 
-/// From fewer rays a block is not kept by a look at all of them together.
+/// For fewer rays the culling test of a block does not pay.
 const FEW: u32 = 3;
 
 impl Tracer<'_> {
-    /// [`Tracer::closest_hit`] of several rays, at most [`PACKET`], which should be close to each other: the same hits, sooner. `from` says
-    /// where each starts, `hits` takes what they meet.
+    /// [`Tracer::closest_hit`] for several rays, at most [`PACKET`], which should be close to each other: the same hits, found
+    /// sooner. `from` has their origins; the results go to `hits`.
     pub fn closest_hits(
         &mut self,
         rays: &[Ray],
@@ -42,7 +43,7 @@ impl Tracer<'_> {
         }
     }
 
-    /// [`Tracer::any_opaque`] of several rays, at most [`PACKET`], as bits.
+    /// [`Tracer::any_opaque`] for several rays, at most [`PACKET`], as bits.
     pub fn any_opaques(
         &mut self,
         rays: &[Ray],
@@ -59,7 +60,7 @@ impl Tracer<'_> {
         self.search_any(&asked, common_end(rays, range)).0
     }
 
-    /// [`Tracer::occluded`] of several rays to one light, as bits; each has a range from `min` to the `t_max` of its lane.
+    /// [`Tracer::occluded`] for several rays to one light, as bits; each has a range from `min` to the `t_max` of its lane.
     pub(crate) fn all_occluded(
         &mut self,
         rays: &[Ray],
@@ -80,7 +81,7 @@ impl Tracer<'_> {
         found
     }
 
-    /// The rays that something stops, as bits, and what stops the last of them.
+    /// The occluded rays, as bits, and the occluder of the last of them.
     fn search_any(&mut self, asked: &Asked<'_>, t_max: [f64; PACKET]) -> (u32, Option<u64>) {
         let mut queries = [const { AnyOpaque { found: None } }; PACKET];
         self.search_packet(asked, t_max, &mut queries);
@@ -190,22 +191,22 @@ fn common_end(rays: &[Ray], range: Interval) -> [f64; PACKET] {
     t_max
 }
 
-/// What is asked about several rays.
+/// A query for several rays.
 struct Asked<'r> {
     rays: &'r [Ray],
     min: f64,
-    /// Where they start.
+    /// Their origins.
     from: &'r [Option<&'r Origin>; PACKET],
     class: RayClass,
-    /// The primitive to look at before all others, or [`NONE`].
+    /// The primitive to test before all others, or [`NONE`].
     first: u32,
 }
 
-/// A search for several rays in the world.
+/// A search of the world for several rays.
 struct Together<'v, 's, Q> {
     scene: &'s RenderScene,
     scratch: &'v mut Scratch,
-    /// Of searches in the groups within.
+    /// Of the searches in instanced groups.
     stats: &'v mut TraversalStats,
     class: u8,
     parts: bool,
@@ -213,15 +214,15 @@ struct Together<'v, 's, Q> {
     blocks: &'s Blocks,
     asked: &'v Asked<'v>,
     from_prims: [u32; PACKET],
-    /// None where no primitive asks.
+    /// Empty where no primitive needs them.
     shears: &'v [RayShear],
     culls: PacketCulls<'v>,
     plain: bool,
     queries: &'v mut [Q; PACKET],
 }
 
-/// Runs an expression with the visitor of a single ray: `of_lane!(self, lane, t_max, visitor => expression)`. No closure: that
-/// would not be compiled for the instructions of its caller.
+/// Evaluates an expression with the visitor of a single ray: `of_lane!(self, lane, t_max, visitor => expression)`. A macro,
+/// because a closure would not be compiled for the vector instructions of its caller.
 macro_rules! of_lane {
     ($self:ident, $lane:expr, $t_max:expr, $visitor:ident => $body:expr) => {{
         let lane = $lane % PACKET;
@@ -268,7 +269,7 @@ impl<Q: Query> Together<'_, '_, Q> {
         }
     }
 
-    /// Tests the flat things of a leaf for several rays.
+    /// Tests the flat primitives of a leaf for several rays.
     #[inline(always)]
     fn leaf_of_flats<I: Isa>(
         &mut self,
@@ -369,7 +370,7 @@ impl<Q: Query> PacketVisitor for Together<'_, '_, Q> {
     }
 }
 
-/// The visitor of one ray of a packet, for structures that have no way to follow packets.
+/// The visitor for one ray of a packet, for accelerators that can't traverse packets.
 struct OfLane<'t, V> {
     visitor: &'t mut V,
     lane: usize,

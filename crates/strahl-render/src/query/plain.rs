@@ -1,5 +1,5 @@
-//! Searches among nothing but triangles of meshes, or nothing but spheres, of which every hit counts: what most scenes of many
-//! things are, without what others need.
+//! Specialised searches of groups that have only triangles of meshes, or only spheres, whose hits need no further checks: the
+//! common case of large scenes, without the code for all others.
 
 use super::Search;
 use super::kinds::Query;
@@ -12,7 +12,7 @@ use strahl_geometry::blocks::Hits;
 use strahl_math::{Interval, Ray};
 use strahl_simd::{Isa, dispatch};
 
-/// What is searched: primitives of a group, all of them tested in blocks of one kind, and hits on them taken as they are (see
+/// A group all of whose primitives are tested in blocks of one kind, with hits that need no further checks (see
 /// [`Query::is_plain`]).
 #[derive(Clone, Copy)]
 pub(super) struct Plain<'g> {
@@ -27,7 +27,7 @@ pub(super) struct Plain<'g> {
 }
 
 impl Plain<'_> {
-    /// Searches them; returns the new upper end of the range.
+    /// Searches the group; returns the new upper end of the range.
     #[inline(always)]
     pub(super) fn search<Q: Query>(
         &self,
@@ -84,7 +84,7 @@ impl Plain<'_> {
 
 struct BlockVisitor<'v, 'g, B, Q> {
     of: &'v Plain<'g>,
-    /// By the blocks of the leaves.
+    /// In the order of the leaves.
     blocks: &'v [B],
     ray: &'v Ray,
     shear: RayShear,
@@ -117,12 +117,12 @@ impl<B: Block, Q: Query> Visitor for BlockVisitor<'_, '_, B, Q> {
             let range = range.with_max(t_max);
             let mut lanes = block.hits(isa, self.ray, &self.shear, range, &mut hits);
             while lanes != 0 {
-                // There are four lanes; said so, the compiler knows it too.
+                // Lets the compiler see that there are four lanes.
                 let lane = lanes.trailing_zeros() as usize % BLOCK;
                 lanes &= lanes - 1;
                 let prim = leaf.id(index, lane);
                 let t = hits.t[lane];
-                // Another lane may have been closer.
+                // An earlier lane may have been closer.
                 if prim == NO_PRIMITIVE || prim == from_prim || t > t_max {
                     continue;
                 }
@@ -141,7 +141,7 @@ impl<B: Block, Q: Query> Visitor for BlockVisitor<'_, '_, B, Q> {
         self.blocks.as_ptr().wrapping_add(block).cast()
     }
 
-    /// Never asked: all primitives are in blocks.
+    /// Never called: all primitives are in blocks.
     fn visit(&mut self, _: u32, t_max: f64) -> f64 {
         t_max
     }

@@ -1,4 +1,4 @@
-//! Pixels, tile by tile, on one thread.
+//! Traces the pixels of tiles on one thread.
 
 use super::{RenderOptions, Samples, TileResult};
 use crate::camera::PrimaryRays;
@@ -14,17 +14,17 @@ use strahl_accel::{PACKET, TraversalStats};
 use strahl_math::Ray;
 use strahl_shade::Color;
 
-/// What was found out of some rows of a tile before their pixels are looked at.
+/// Colours of four rows of a tile, traced in packets before the pixels are visited.
 #[derive(Default)]
 struct Ahead {
     x: u32,
     y: u32,
-    /// Row by row, each as wide as a tile may be.
+    /// Row by row, as wide as a tile.
     colors: Vec<Option<Color>>,
 }
 
 impl Ahead {
-    /// Begins with the rows below a place, of which nothing is known.
+    /// Begins with empty rows from this position on.
     fn start(&mut self, x: u32, y: u32) {
         (self.x, self.y) = (x, y);
         self.colors.clear();
@@ -44,14 +44,14 @@ impl Ahead {
         }
     }
 
-    /// What is known of a pixel, once.
+    /// The colour of a pixel, if it was traced in a packet; it is removed.
     fn take(&mut self, x: u32, y: u32) -> Option<Color> {
         let index = self.index(x, y);
         self.colors.get_mut(index)?.take()
     }
 }
 
-/// Fewer samples of a pixel are followed one by one.
+/// Fewer samples of a pixel are traced one by one.
 const FEW: usize = 4;
 
 /// Traces pixels on one thread.
@@ -64,11 +64,11 @@ pub(super) struct PixelTracer<'s> {
     infos: Vec<PixelInfo>,
     /// Deepest level of the trees of the pixel so far.
     depth: u32,
-    /// Whether no ray of the pixel meets anything.
+    /// Whether beam culling has shown that no ray of the pixel hits anything.
     blind: bool,
-    /// Whether rays that lie together are followed together.
+    /// Whether neighbouring rays are traced in packets.
     together: bool,
-    /// What was found out before the pixel is looked at.
+    /// Colours traced in packets.
     ahead: Ahead,
 }
 
@@ -95,7 +95,8 @@ impl<'s> PixelTracer<'s> {
 }
 
 impl PixelTracer<'_> {
-    /// Traces the pixels of a tile by `trace`. Of so many that see nothing `blank` tells what each is, if it is the same for all.
+    /// Traces the pixels of a tile with `trace`. Where beam culling shows that all pixels of a square see the background,
+    /// `blank` is called once with their number and returns the value of each, if it is the same for all.
     pub(super) fn tile<T: Clone>(
         &mut self,
         tile: Region,
@@ -158,7 +159,8 @@ impl PixelTracer<'_> {
         }
     }
 
-    /// What may be seen of a tile. Costs that are shown are those of rays that are followed one by one.
+    /// The pixels of a tile that may see something. All of them where costs are shown, since these are the costs of single
+    /// rays.
     fn sight(&self, tile: Region) -> Sight {
         let options = self.options;
         if options.trace.beams && !options.costs && !options.info {
@@ -168,7 +170,7 @@ impl PixelTracer<'_> {
         }
     }
 
-    /// What the tile has cost so far.
+    /// The cost of the tile so far.
     fn spent(&self) -> PixelCost {
         let stats = self.tree.tracer.stats;
         PixelCost {
@@ -179,7 +181,7 @@ impl PixelTracer<'_> {
         }
     }
 
-    /// The samples that each of so many pixels gets in the first pass if all of them see the same nothing.
+    /// The samples of each of `pixels` pixels in the first pass, if all of them see the same background colour.
     pub(super) fn blank(&mut self, pixels: u32) -> Option<Samples> {
         let each = self.options.sampling.places(0, 0, 0, 0).len();
         let color = self.tree.same_nothing(pixels as usize * each)?;
@@ -192,7 +194,7 @@ impl PixelTracer<'_> {
     }
 
     /// The samples of one pass of a pixel.
-    // Inline: what is returned in pieces and read as a whole would wait for the stores.
+    // Inline: a value that is returned in parts and then loaded as a whole would wait for the stores.
     #[inline(always)]
     pub(super) fn pixel(&mut self, pass: u32, x: u32, y: u32) -> Samples {
         let mut samples = Samples::NONE;
@@ -215,7 +217,7 @@ impl PixelTracer<'_> {
         samples
     }
 
-    /// Adds the samples of a pixel, which lie close together.
+    /// Adds the samples of a pixel, traced in packets.
     fn samples_together(
         &mut self,
         x: u32,
@@ -236,7 +238,7 @@ impl PixelTracer<'_> {
         }
     }
 
-    /// The colours that rays bring; where the camera sees nothing there is none.
+    /// The radiance along each ray; none where the camera sees nothing.
     fn follow(&mut self, rays: &[Option<Ray>]) -> ArrayVec<Color, PACKET> {
         let all: ArrayVec<Ray, PACKET> = rays.iter().copied().flatten().collect();
         let mut colors = self.tree.trace_together(&all).into_iter();
@@ -245,7 +247,7 @@ impl PixelTracer<'_> {
             .collect()
     }
 
-    /// Finds out the colours of four rows of a tile, in squares of pixels, at the same place in each.
+    /// Traces four rows of a tile in packets, square by square, through the same position in each pixel.
     fn look_ahead(&mut self, tile: Region, y: u32, place: (f64, f64), sight: &Sight) {
         self.ahead.start(tile.x, y);
         let bottom = (tile.y + tile.height).min(y + SQUARE);
@@ -280,7 +282,7 @@ impl PixelTracer<'_> {
         self.sample(f64::from(x), f64::from(y), true)
     }
 
-    /// The light that comes through a place of the picture; `keep` says whether it stands for its pixel's other data.
+    /// The radiance at a position in the picture; `keep` says whether to store the hit's other data for the pixel.
     fn sample(&mut self, x: f64, y: f64, keep: bool) -> Color {
         let before = self.tree.tracer.stats.primitive_tests;
         let mut first = SampleResult::NOTHING;

@@ -1,4 +1,4 @@
-//! What lights add to a hit: the second step of the loop.
+//! The contribution of lights to a hit: the second step of the loop.
 
 use super::together::KnownLights;
 use super::{Branch, TreeTracer};
@@ -11,7 +11,7 @@ use strahl_math::{DVec3, Ray};
 use strahl_shade::{Color, Light, ShadingModel};
 
 impl TreeTracer<'_> {
-    /// One light's contribution: no shadow ray if the surface faces away.
+    /// The contribution of one light; no shadow ray if the surface faces away.
     #[inline(always)]
     #[expect(
         clippy::too_many_arguments,
@@ -48,7 +48,7 @@ impl TreeTracer<'_> {
         };
         term.n_dot_l = surface.n_shade.dot(sample.l);
         term.color = sample.color;
-        // Parts of a light that shades point by point may be seen where its centre is not.
+        // Points of an area light with `area_illumination` may be above the horizon where its centre is not.
         if !self.faces(surface, sample.l, term.n_dot_l)
             && scene_light.area.is_none_or(|a| !a.illumination)
         {
@@ -74,7 +74,7 @@ impl TreeTracer<'_> {
                 term.shadow_ray = Some(ray);
             }
             if let Some(area) = &scene_light.area {
-                // Copies: what is lent to a function stays in memory, here for the sake of lights that are rare.
+                // Copies: what is passed by reference stays in memory, and only the rare area lights need that.
                 let (sample, mut seen) = (sample, term);
                 self.area_light(
                     area, &sample, surface, hit, model, light, branch, node, &mut seen, observer,
@@ -125,7 +125,7 @@ impl TreeTracer<'_> {
         term
     }
 
-    /// Takes what a shadow ray brought.
+    /// Adds the light that a shadow ray has let through.
     #[inline]
     fn count_shadow(&mut self, term: &mut LightTerm, shadow: Shadow) {
         self.counts.shadow += 1;
@@ -134,7 +134,7 @@ impl TreeTracer<'_> {
         term.visible = shadow.visible;
     }
 
-    /// Whether light from the unit direction `l` shows on the surface at hand.
+    /// Whether light from the unit direction `l` reaches the front of the current surface.
     #[inline]
     pub(crate) fn faces(&self, surface: &Surface<'_>, l: DVec3, n_dot_l: f64) -> bool {
         if surface.lit.both_sides {
@@ -146,7 +146,8 @@ impl TreeTracer<'_> {
         }
     }
 
-    /// What the surface at hand makes of light from the unit direction `l`: the diffuse part and the highlight.
+    /// The light that the current surface reflects if light arrives from the unit direction `l`: the diffuse part and the
+    /// highlight.
     #[inline]
     pub(crate) fn reflected(
         &self,

@@ -1,4 +1,4 @@
-//! What is seen where nothing is.
+//! Primary rays that hit nothing: the background.
 
 use super::{SampleResult, TraceSettings, TreeTracer};
 use crate::observer::RayKind;
@@ -7,7 +7,7 @@ use strahl_math::Ray;
 use strahl_scene::Background;
 use strahl_shade::Color;
 
-/// What primary rays bring that meet nothing, if it is the same for all.
+/// The radiance along primary rays that hit nothing, if it is the same for all.
 pub(super) fn common(scene: &RenderScene, settings: &TraceSettings) -> Option<Color> {
     match &scene.background {
         Background::Solid(color) if !scene.has_air() => {
@@ -18,12 +18,12 @@ pub(super) fn common(scene: &RenderScene, settings: &TraceSettings) -> Option<Co
 }
 
 impl TreeTracer<'_> {
-    /// What a primary ray brings that meets nothing.
+    /// The radiance along a primary ray that hits nothing.
     pub(crate) fn nothing(&mut self, primary: &Ray) -> SampleResult {
         self.counts.count(RayKind::Primary, false);
         let color = self.beyond.unwrap_or_else(|| {
             let scene = self.tracer.scene;
-            // As a tree without branches adds up, to the sign of a zero.
+            // The same sum as of a tree without branches, including the sign of zeros.
             let mut color = scene.background.along(primary.direction) + Color::BLACK;
             if scene.has_air() {
                 let (keeps, adds) = scene.air_along(primary, f64::INFINITY);
@@ -39,7 +39,7 @@ impl TreeTracer<'_> {
         }
     }
 
-    /// The colour of primary rays that meet nothing, if it is the same for all of them: then so many are counted as followed.
+    /// The radiance along primary rays that hit nothing, if it is the same for all; then `rays` rays are counted as traced.
     #[inline]
     pub(crate) fn same_nothing(&mut self, rays: usize) -> Option<Color> {
         if self.beyond.is_some() {

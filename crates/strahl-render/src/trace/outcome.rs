@@ -2,7 +2,7 @@ use crate::observer::RayKind;
 use strahl_math::DVec3;
 use strahl_shade::{Color, MaterialId};
 
-/// Rays followed, by kind, and how many of them hit something.
+/// Rays traced, by kind, and how many of them hit something.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct RayCounts {
     /// Rays from the eye.
@@ -11,7 +11,7 @@ pub struct RayCounts {
     pub primary_hit: u64,
     /// Rays to lights.
     pub shadow: u64,
-    /// Those that met something before the light, transparent or not.
+    /// Those with a hit before the light, opaque or transparent.
     pub shadow_hit: u64,
     /// Reflection rays.
     pub reflection: u64,
@@ -31,7 +31,7 @@ impl RayCounts {
         self.primary + self.shadow + self.reflection + self.refraction
     }
 
-    /// Those of them that met something.
+    /// Those of them that hit something.
     pub fn hits(&self) -> u64 {
         self.primary_hit + self.shadow_hit + self.reflection_hit + self.refraction_hit
     }
@@ -76,12 +76,12 @@ pub struct FirstHit {
     pub material: MaterialId,
 }
 
-/// The outcome of one primary ray.
+/// The result of one primary ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SampleResult {
     /// Linear colour.
     pub color: Color,
-    /// What was hit first.
+    /// The first hit.
     pub first: Option<FirstHit>,
     /// Deepest level of the tree reached.
     pub depth: u32,
@@ -90,7 +90,7 @@ pub struct SampleResult {
 }
 
 impl SampleResult {
-    /// Where the camera sends no ray.
+    /// The sample where the camera sends no ray.
     pub const NOTHING: Self = Self {
         color: Color::BLACK,
         first: None,

@@ -2,32 +2,32 @@ use crate::scene::RenderScene;
 use strahl_scene::WorkingSpace;
 use strahl_shade::{Color, ShadingModel};
 
-/// How trees are grown.
+/// How ray trees are grown.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TraceSettings {
     /// Deepest level of the tree; the primary ray is level 1.
     pub max_depth: u32,
-    /// Branches of a smaller weight are not followed; 0 follows all.
+    /// Branches of a smaller weight are not traced; 0 traces all.
     pub adc_bailout: f64,
-    /// Shading model of materials that name none.
+    /// Shading model of materials that don't set one.
     pub shading: ShadingModel,
-    /// Shading model of all materials, whatever they name.
+    /// Shading model of all materials, overriding their own.
     pub force_shading: Option<ShadingModel>,
-    /// Most rays of one tree, shadow rays not counted: glass that reflects and refracts at every level grows trees of 2ⁿ
-    /// rays. Trees that were cut are counted in [`RayCounts::cut_trees`](super::RayCounts::cut_trees).
+    /// Most rays of one tree, not counting shadow rays: glass that reflects and refracts at every level grows trees of 2ⁿ rays.
+    /// Trees that were cut are counted in [`RayCounts::cut_trees`](super::RayCounts::cut_trees).
     pub max_tree_rays: u32,
-    /// In which numbers the scene's colours are given.
+    /// The colour space in which the scene's colours are given.
     pub working_space: WorkingSpace,
-    /// Whether a transparency ray that goes straight on counts as a level.
+    /// Whether a transparency ray that is not refracted counts as a level.
     pub straight_counts: bool,
-    /// Whether shadow rays first look at what was last in the way of their light, and what may stop light is searched apart from what
-    /// may let it through. The picture is the same; the published costs of accelerators are without.
+    /// Whether shadow rays test the last occluder of their light first, and search opaque and transmitting primitives in
+    /// separate accelerators. The picture is the same; published costs of accelerators are without it.
     pub shadow_cache: bool,
-    /// Whether pixels that see nothing are found out many at once. The picture is the same; the costs of accelerators and pixels are
-    /// told without.
+    /// Whether beam culling finds pixels that see only the background. The picture is the same; costs of accelerators and
+    /// pixels are shown without it.
     pub beams: bool,
-    /// Whether the rays of neighbouring pixels are followed together, sixteen at once, where the acceleration structure knows how. The
-    /// picture is the same; the costs of accelerators and pixels are told without.
+    /// Whether neighbouring rays are traced in packets of sixteen, where the accelerator supports it. The picture is the same;
+    /// costs of accelerators and pixels are shown without it.
     pub packets: bool,
 }
 
@@ -35,7 +35,7 @@ impl TraceSettings {
     /// Default of `max_tree_rays`.
     pub const MAX_TREE_RAYS: u32 = 1 << 18;
 
-    /// What a scene asks for.
+    /// The scene's own settings.
     pub fn of(scene: &RenderScene) -> Self {
         let s = scene.settings();
         Self {
@@ -52,7 +52,7 @@ impl TraceSettings {
         }
     }
 
-    /// What is seen, in linear light; pictures of something other than light stay as they are.
+    /// A colour in linear light; diagnostic pictures are not converted.
     pub(super) fn decoded(&self, color: Color) -> Color {
         match self.force_shading {
             Some(model) if model.is_diagnostic() => color,

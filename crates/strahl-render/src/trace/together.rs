@@ -1,5 +1,5 @@
-//! Phases: the primary rays of neighbouring pixels are followed together, then their shadow rays, light by light. What comes of each is
-//! what it would be alone, to the last bit.
+//! Packets: the primary rays of neighbouring pixels are traced together, then their shadow rays, light by light. The results
+//! are the same to the last bit as those of single rays.
 
 use super::{Branch, TreeTracer};
 use crate::hit::RayClass;
@@ -9,25 +9,25 @@ use strahl_accel::PACKET;
 use strahl_math::{Interval, Ray};
 use strahl_shade::{Color, LightSample};
 
-/// What is known of a hit before its tree grows.
+/// A hit of a packet, before its tree grows.
 pub(super) struct Ahead<'s> {
     pub(super) surface: Surface<'s>,
     pub(super) lights: KnownLights,
-    /// Whether its shadow rays can be told before it is painted.
+    /// Whether its shadow rays can be traced before its texture is evaluated.
     plain: bool,
 }
 
-/// Which shadow rays of a hit have been followed, and what they met: a bit for each light.
+/// The shadow rays of a hit that were traced with the packet, and their results: a bit for each light.
 #[derive(Clone, Copy, Default)]
 pub(super) struct KnownLights {
     followed: u32,
-    /// Something opaque is in front of them.
+    /// The lights that are blocked by something opaque.
     stopped: u32,
     /// The lane of the hit in [`Samples`].
     lane: u32,
 }
 
-/// What arrives from each light at the hits whose shadow rays have been followed.
+/// The light sample of each light at the hits whose shadow rays were traced.
 #[derive(Debug, Default)]
 pub(super) struct Samples(Vec<[LightSample; PACKET]>);
 
@@ -39,7 +39,7 @@ impl Samples {
         self.0[light][lane % PACKET] = sample;
     }
 
-    /// What arrives of a light if nothing is in between, and whether something opaque is, if both are known.
+    /// The unobstructed sample of a light, and whether something opaque blocks it, if both are known.
     #[inline]
     pub(super) fn known(&self, light: usize, of: KnownLights) -> Option<(&LightSample, bool)> {
         let bit = 1u32.checked_shl(light as u32)?;
@@ -51,12 +51,12 @@ impl Samples {
     }
 }
 
-/// Fewer rays go one by one.
+/// Fewer rays are traced one by one.
 const FEW: usize = 3;
 
 impl<'s> TreeTracer<'s> {
-    /// Follows primary rays, at most [`PACKET`], with everything that comes of them: the colours they bring. It pays if they are close
-    /// to each other.
+    /// Traces the trees of primary rays, at most [`PACKET`], and returns their radiances. It pays if the rays are close to each
+    /// other.
     pub(crate) fn trace_together(&mut self, rays: &[Ray]) -> ArrayVec<Color, PACKET> {
         let range = Interval::FORWARD;
         let mut hits = [None; PACKET];
@@ -89,7 +89,7 @@ impl<'s> TreeTracer<'s> {
         colors
     }
 
-    /// Whether the shadow rays of a surface can be told before it is painted.
+    /// Whether the shadow rays of a surface can be traced before its texture is evaluated.
     fn is_plain(&self, surface: &Surface<'s>) -> bool {
         let scene = self.tracer.scene;
         let material = &scene.materials[surface.resolved.look.material.0 as usize];
@@ -98,7 +98,7 @@ impl<'s> TreeTracer<'s> {
             && scene.lights_in(surface.lit.set).is_none()
     }
 
-    /// Follows the shadow rays of several hits to one light.
+    /// Traces the shadow rays of several hits to one light.
     fn shadows_together(&mut self, number: usize, ahead: &mut [Ahead<'s>]) {
         let scene = self.tracer.scene;
         let light = &scene.lights[number].light;
