@@ -30,7 +30,7 @@ macro_rules! accelerators {
                 match self { $(Self::$variant(_) => $name,)+ }
             }
 
-            /// The parameters there are.
+            /// Its parameters.
             pub const fn parameters(self) -> &'static [Parameter] {
                 match self { $(Self::$variant(_) => <$parameters>::ALL,)+ }
             }
@@ -117,7 +117,7 @@ macro_rules! accelerators {
     };
 }
 
-// THE table of accelerators: a new one is one line here (its name, its type with its parameters, how it is built).
+// The table of accelerators: a new one is one line here (its name, its type with its parameters, how it is built).
 accelerators! {
     /// No structure: every primitive for every ray.
     "list" List(NoParameters) = |shapes, _| List::build(&all_bounds(shapes)),
@@ -141,19 +141,19 @@ impl AnyAccelerator {
         Self::build_from(kind, &Boxes(bounds))
     }
 
-    /// Whether it is to spend as little memory as possible (see [`Bvh8::compacted`]).
+    /// Whether it uses as little memory as possible (see [`Bvh8::compacted`]).
     pub fn is_compact(&self) -> bool {
         matches!(self, Self::Bvh8(bvh) if bvh.is_compact())
     }
 
-    /// Asks the system for large pages where the structure is large, once it is built: rays then wait less for memory.
+    /// Moves a large structure to large pages of memory once it is built, so that rays wait less for memory.
     pub fn gather_pages(&self) {
         if let Self::Bvh8(bvh) = self {
             bvh.gather_pages();
         }
     }
 
-    /// The instructions it is walked with: only [`Bvh8`] has kernels of vectors.
+    /// The instruction set of the traversal: only [`Bvh8`] has vector kernels.
     pub fn simd(&self) -> Level {
         match self {
             Self::Bvh8(bvh) => bvh.simd(),
@@ -163,7 +163,7 @@ impl AnyAccelerator {
 }
 
 impl AcceleratorKind {
-    /// The same, walked with the instructions of a level where it has kernels of vectors.
+    /// The same structure, traversed with another instruction set if it has vector kernels.
     #[must_use]
     pub fn with_simd(self, level: Level) -> Self {
         match self {

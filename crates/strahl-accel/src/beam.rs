@@ -2,9 +2,9 @@ use crate::cull::largest;
 use strahl_math::error::round_down_f32;
 use strahl_math::{Aabb, DVec3, Ray};
 
-/// What many rays lie in: the points on the inner side of four planes, as those of all rays through a rectangle of a picture.
+/// A beam: the convex region between four planes that contains many rays, such as all rays through a rectangle of a picture.
 ///
-/// For finding out that none of the rays meets anything, see [`Accelerator::misses`](crate::Accelerator::misses).
+/// Used to find out that none of the rays hits anything, see [`Accelerator::misses`](crate::Accelerator::misses).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Beam {
     planes: [Plane; 4],
@@ -18,7 +18,7 @@ struct Plane {
     point: DVec3,
 }
 
-/// A plane as the culling test sees it: points with `normal · p < offset` are certainly outside.
+/// A plane as the culling test uses it: points with `normal · p < offset` are certainly outside.
 #[derive(Clone, Copy)]
 pub(crate) struct CullPlane {
     pub(crate) normal: [f32; 3],
@@ -28,8 +28,8 @@ pub(crate) struct CullPlane {
 /// The margin of the culling test, as a part of B + |p|: 16u with u = 2⁻²⁴.
 ///
 /// B is the largest coordinate of any box, |p| that of the plane's point. The test rounds the normal (error uB) and the offset
-/// (u|p|), and multiplies and subtracts three times (6u(B + |p|) without fused operations): 8u(B + |p|) together. The other half
-/// covers hits that a primitive's own rounding puts just outside of its box, as the margin of single rays does.
+/// (u|p|), and multiplies and subtracts three times (6u(B + |p|) without fused operations): 8u(B + |p|) together. The other
+/// half covers hits that a primitive's own rounding puts just outside of its box, like the margin of single rays.
 const SLACK: f64 = 16.0 / (1u64 << 24) as f64;
 
 impl Beam {
@@ -46,7 +46,8 @@ impl Beam {
                 &corners[(side + 1) % 4],
                 &corners[(side + 2) % 4],
             );
-            // Two rays from one point span the plane with their directions, parallel ones with what is between them.
+            // Two rays from one point span the plane with their directions, parallel rays with a direction and the line between
+            // their origins.
             let normal = (b.origin - a.origin + b.direction).cross(a.direction);
             let size = normal.abs().element_sum();
             let inside = normal.dot(across.origin - a.origin + across.direction);

@@ -4,9 +4,9 @@ use strahl_math::{Aabb, Vec4};
 /// An axis-aligned box in f32, rounded outwards: it contains the f64 box it was made from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Box32 {
-    /// The lowest corner; the fourth lane means nothing.
+    /// The lowest corner; the fourth lane is not used.
     lo: Vec4,
-    /// The highest corner; the fourth lane means nothing.
+    /// The highest corner; the fourth lane is not used.
     hi: Vec4,
 }
 
@@ -42,7 +42,7 @@ impl Box32 {
         }
     }
 
-    /// What both boxes have in common.
+    /// The intersection with another box.
     pub(crate) fn intersection(&self, other: &Self) -> Self {
         Self {
             lo: self.lo.max(other.lo),
@@ -64,7 +64,7 @@ impl Box32 {
         self.hi = self.hi.max(point);
     }
 
-    /// The box with these corners, of which the fourth lane means nothing.
+    /// The box with these corners, whose fourth lanes are not used.
     pub(crate) const fn of_corners(lo: Vec4, hi: Vec4) -> Self {
         Self { lo, hi }
     }
@@ -90,7 +90,8 @@ impl Box32 {
         self.hi - self.lo
     }
 
-    /// One over the largest extent: in this unit no area of a box inside overflows, nor is that of a small box too small.
+    /// One over the largest extent. In this unit neither the areas of the boxes inside overflow nor do those of small boxes
+    /// underflow.
     pub(crate) fn unit(&self) -> f32 {
         (1.0 / self.size().truncate().max_element()).min(f32::MAX)
     }
@@ -109,12 +110,12 @@ impl Box32 {
         x * y + y * z + z * x
     }
 
-    /// Whether nothing is in it.
+    /// Whether it is empty.
     pub(crate) fn is_empty(&self) -> bool {
         (0..3).any(|axis| self.lo[axis] > self.hi[axis])
     }
 
-    /// What is in both boxes; [`Box32::EMPTY`] if nothing is.
+    /// The intersection with another box; [`Box32::EMPTY`] if there is none.
     pub(crate) fn common(&self, other: &Self) -> Self {
         let common = Self {
             lo: self.lo.max(other.lo),

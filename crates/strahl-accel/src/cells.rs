@@ -1,5 +1,4 @@
-//! What structures of cells have in common beside the way through them: how primitives come to them, and how what is in a cell is
-//! looked at.
+//! The common base of grids and octrees: which primitives go into cells, and how the primitives of a cell are visited.
 
 use crate::boxes::Box32;
 use crate::list::visit_all;
@@ -7,19 +6,19 @@ use crate::walk::{Room, Walk};
 use crate::{Exit, List, Place, Shapes, Step, TraversalStats, Visitor};
 use strahl_math::{Aabb, Interval, Ray};
 
-/// What every structure of cells has.
+/// The data that every structure of cells has.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Base {
-    /// The box that is divided, if anything is in it.
+    /// The box that is divided, if it is not empty.
     pub(crate) room: Option<Room>,
     /// The primitives that are in no cell: without bounds, or too far away for f32.
     pub(crate) unbounded: List,
-    /// The construction of V. Havran's published figures: nothing is remembered or skipped.
+    /// The construction of V. Havran's published figures: primitives may be tested repeatedly, and no empty cells are skipped.
     pub(crate) plain: bool,
 }
 
 impl Base {
-    /// The base for some primitives, and those of them that belong into cells.
+    /// The base for some primitives, and those of them that go into cells.
     pub(crate) fn gather(shapes: &dyn Shapes, plain: bool) -> (Self, Vec<u32>) {
         let (mut ids, mut unbounded, mut whole) = (Vec::new(), Vec::new(), Aabb::EMPTY);
         for id in 0..shapes.count() as u32 {
@@ -43,7 +42,7 @@ impl Base {
         (base, ids)
     }
 
-    /// Looks at what is in no cell, then at what lies in the cells that `walk` finds along the ray.
+    /// Visits the primitives that are in no cell, then those of the cells that `walk` finds along the ray.
     #[inline(always)]
     pub(crate) fn search<V: Visitor>(
         &self,
@@ -72,11 +71,11 @@ impl Base {
     }
 }
 
-/// A ray on its way through cells, with what it has found.
+/// A ray on its way through cells, and the state of its search.
 pub(crate) struct Search<'w, V> {
     pub(crate) room: &'w Room,
     pub(crate) walk: &'w Walk,
-    /// The upper end of the range, as the walk counts.
+    /// The upper end of the range, in the parameters of the walk.
     pub(crate) far: f64,
     t_max: f64,
     mailbox: Mailbox,
@@ -86,7 +85,7 @@ pub(crate) struct Search<'w, V> {
 }
 
 impl<V: Visitor> Search<'_, V> {
-    /// Shows the primitives of a cell to the visitor; returns whether it wants more.
+    /// Passes the primitives of a cell to the visitor; returns whether it wants more.
     #[inline(always)]
     pub(crate) fn visit(&mut self, ids: &[u32]) -> bool {
         for id in ids {
@@ -106,7 +105,7 @@ impl<V: Visitor> Search<'_, V> {
         true
     }
 
-    /// Tells those who watch of a cell.
+    /// Reports a cell to a visitor that watches.
     pub(crate) fn tell(
         &mut self,
         place: Place,
@@ -125,8 +124,8 @@ impl<V: Visitor> Search<'_, V> {
     }
 }
 
-/// Remembers the primitives visited last, so that one which lies in several cells is not tested again: the inverse of a
-/// mailbox, nothing to clear and nothing to store with the primitives.
+/// Remembers the primitives visited last, so that one which lies in several cells is not tested again. An inverse mailbox:
+/// nothing to clear, and nothing stored with the primitives.
 #[derive(Clone, Copy, Debug)]
 struct Mailbox {
     last: [u32; Self::SIZE],
@@ -143,7 +142,7 @@ impl Mailbox {
         }
     }
 
-    /// Whether this primitive was not among the last; it is now.
+    /// Whether this primitive is not among the last ones; it is added to them.
     #[inline(always)]
     fn is_new(&mut self, id: u32) -> bool {
         let mut known = false;

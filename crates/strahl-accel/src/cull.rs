@@ -2,14 +2,14 @@ use crate::boxes::BoxPair;
 use strahl_math::{Aabb, DVec3, Interval, Ray, Vec4, Vec4Swizzles};
 use strahl_simd::{Isa, Lanes8, Portable};
 
-/// What the culling tests must know about a structure: its box, and the margin of their error bound.
+/// The data of a structure that culling tests need: its box, and the margin of their error bound.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct CullBounds {
-    /// The box around everything bounded.
+    /// The box around all bounded primitives.
     bounds: Aabb,
-    /// B: no plane of the structure is further from the coordinate planes.
+    /// B: the largest absolute coordinate of any plane of the structure.
     max_abs: f64,
-    /// Rays whose origins have no larger coordinates are near; negative if none is.
+    /// Origins with no larger coordinates count as near; negative if none does.
     near: f32,
     /// The part of the error bound of [`QuickLanes`] that is the same for all axes and near rays.
     margin: f32,
@@ -37,12 +37,12 @@ impl CullBounds {
         }
     }
 
-    /// The box around everything bounded.
+    /// The box around all bounded primitives.
     pub(crate) fn bounds(&self) -> &Aabb {
         &self.bounds
     }
 
-    /// Rays whose origins have no larger coordinates are near; negative if none is.
+    /// Origins with no larger coordinates count as near; negative if none does.
     #[inline(always)]
     pub(crate) fn near(&self) -> f32 {
         self.near
@@ -54,14 +54,14 @@ impl CullBounds {
         self.margin
     }
 
-    /// B: no plane of the structure is further from the coordinate planes.
+    /// B: the largest absolute coordinate of any plane of the structure.
     #[inline(always)]
     pub(crate) fn max_abs(&self) -> f64 {
         self.max_abs
     }
 }
 
-/// A ray as the culling tests see it: in f32, with all rounding folded into two constants per axis.
+/// A ray for culling tests: in f32, with all rounding errors combined into two constants per axis.
 ///
 /// # Why no box is lost
 /// The parameter at which the ray crosses the plane `x = b` is `b r - c` with `r = 1/d` and `c = o r`. Let u = 2⁻²⁴. The loop
@@ -70,7 +70,6 @@ impl CullBounds {
 /// are 2⁻²⁹ of that. So with `E = 8u|r|(B + |o|)`, B the largest coordinate of any plane, `ĉ = c + E` makes the computed near
 /// crossing never later than the true one, and `ĉ = c - E` the far crossing never earlier. The factor 8 instead of 3 also covers
 /// hits that a primitive's own rounding puts just outside of its box. A fused multiply-add rounds once less.
-/// (Engine design, section 3.1.)
 ///
 /// E grows with |o|, so a ray that starts far away is first moved to where it enters the structure, in f64. Directions are scaled
 /// by a power of two so that their largest component is in `1..2`, which is exact; `t` is scaled with them.
@@ -83,17 +82,17 @@ pub(crate) struct CullRay {
     t_min: f32,
 }
 
-/// How the culling tests count `t`.
+/// The parameter `t` in the units of the culling tests.
 #[derive(Clone, Copy)]
 pub(crate) struct CullClock {
-    /// What was taken off `t`.
+    /// Subtracted from `t`.
     offset: f64,
     /// The power of two that `t - offset` is multiplied by.
     scale: f64,
 }
 
 impl CullClock {
-    /// The parameter as it is, and that of no ray.
+    /// The parameter unchanged, for rays that are not used.
     pub(crate) const UNUSED: Self = Self {
         offset: 0.0,
         scale: 1.0,
@@ -114,7 +113,7 @@ impl CullClock {
     }
 }
 
-/// A ray near a structure, before its constants are made.
+/// A ray near a structure, before its constants are computed.
 pub(crate) struct CullStart {
     origin: DVec3,
     /// Not yet divided by `power`.
@@ -125,7 +124,7 @@ pub(crate) struct CullStart {
     pub(crate) clock: CullClock,
 }
 
-/// The constants of the three axes, and a fourth that means nothing.
+/// The constants of the three axes, and an unused fourth lane.
 pub(crate) struct CullLanes {
     /// 1/d, rounded.
     pub(crate) rd: [f32; 4],
@@ -155,7 +154,7 @@ impl CullStart {
             offset = padded.clip(ray, range)?.min;
             origin = ray.at(offset);
             if !(largest(origin) <= FAR * (structure.max_abs + margin)) {
-                // The way to the structure has overflowed: no finite t reaches it.
+                // The way to the structure has overflowed, so no finite t reaches it.
                 return None;
             }
         }
@@ -206,8 +205,8 @@ impl CullStart {
         }
     }
 
-    /// The constants for planes that are given relative to a point f: per axis what is added at least and at most, so that
-    /// the crossing of a plane b is between `(b - f) r` plus the one and plus the other.
+    /// The constants for planes that are given relative to a point f: per axis the least and the greatest summand, so that the
+    /// crossing of a plane b is between `(b - f) r` plus the one and plus the other.
     ///
     /// The crossing is at `(b - f) r - (o - f) r`. Rounded are the difference b - f, the product, their sum, r, and the constant: by
     /// 5u|r|(B + |o| + |f|) at most. The margin is three times that, with room for a primitive's own rounding.
@@ -248,20 +247,20 @@ pub(crate) struct QuickLanes<I: Isa> {
     pub(crate) minus_near: I::F32x8,
     /// `-(c - E)`.
     pub(crate) minus_far: I::F32x8,
-    /// The axes along which the ray goes down, as bits; others mean nothing.
+    /// The axes along which the ray goes down, as bits; the other bits are not used.
     pub(crate) down: u32,
     pub(crate) clock: CullClock,
 }
 
 impl<I: Isa> QuickLanes<I> {
-    /// Those of a ray, or `None` if it certainly misses the structure in `range`.
+    /// The constants of a ray, or `None` if it certainly misses the structure in `range`.
     #[inline(always)]
     pub(crate) fn new(isa: I, ray: &Ray, range: Interval, structure: &CullBounds) -> Option<Self> {
         let (o, d) = (ray.origin, ray.direction);
         let o = isa.narrow_f32(isa.load(&[o.x, o.y, o.z, 0.0]));
         let d = isa.narrow_f32(isa.load(&[d.x, d.y, d.z, 1.0]));
         let (length, distance) = (isa.abs_f32(d), isa.abs_f32(o));
-        // The fourth lane is in order; what is not a number is not.
+        // The fourth lane passes; NaN does not.
         let usable = isa.le_f32(length, isa.splat_f32(LONGEST_QUICK))
             & isa.le_f32(distance, isa.splat_f32(structure.near))
             & 15;
@@ -286,7 +285,7 @@ impl<I: Isa> QuickLanes<I> {
         })
     }
 
-    /// The same for rays from far away, along directions that need a scale, and for what is no ray.
+    /// The same for rays from far away, for directions that need a scale, and for invalid rays.
     #[inline(always)]
     fn unusual(isa: I, ray: &Ray, range: Interval, structure: &CullBounds) -> Option<Self> {
         let (lanes, clock) = of_unusual(ray, range, structure)?;
@@ -379,13 +378,13 @@ impl CullRay {
         })
     }
 
-    /// An upper end of the range as the culling tests compare it: rounded up.
+    /// An upper end of the range for culling tests: rounded up.
     #[inline]
     pub(crate) fn t_max(&self, t_max: f64) -> f32 {
         self.clock.t_max(t_max)
     }
 
-    /// Where the ray enters two boxes, and which of them it may meet (bits 0 and 1).
+    /// The parameters at which the ray enters two boxes, and the boxes that it may meet (bits 0 and 1).
     #[inline(always)]
     pub(crate) fn enter(&self, pair: &BoxPair, t_max: f32) -> ([f32; 2], u32) {
         let (mut near, mut far) = (Vec4::splat(self.t_min), Vec4::splat(t_max));
@@ -405,7 +404,7 @@ pub(crate) fn largest(v: DVec3) -> f64 {
     let v = v.abs();
     let m = if v.y > v.x { v.y } else { v.x };
     let m = if v.z > m { v.z } else { m };
-    // Positive numbers make no NaN of their own.
+    // Adding positive numbers gives NaN only if one of them is NaN.
     if (v.x + v.y + v.z).is_nan() {
         f64::INFINITY
     } else {
@@ -471,8 +470,8 @@ fn power_of_two(x: f64) -> f64 {
     f64::from_bits(x.to_bits() & f64::INFINITY.to_bits())
 }
 
-/// A bound of `t` in f32 and what its rounding may have changed at most, generously: `t` itself, the difference and the
-/// product it comes from, and the sum that this is added by.
+/// A bound of `t` in f32, generously enlarged by the rounding errors of `t` itself, of the difference and the product that it
+/// is computed from, and of the sum that it is compared with.
 #[inline]
 pub(crate) fn rounded(t: f64) -> (f32, f32) {
     let t = t as f32;

@@ -1,9 +1,9 @@
-//! Acceleration structures: which primitives a ray may meet, and in which order to look at them.
+//! Acceleration structures: they find the primitives that a ray may meet, nearest first where they can.
 //!
 //! This crate knows boxes and ids, no shapes. Every structure keeps one promise, the **conservative culling contract**:
-//! it may skip a primitive only if the ray certainly misses the primitive's box within the range still of interest, or
-//! if that box certainly starts behind `t_max` (a box that starts exactly at `t_max` is visited: ties are decided by
-//! ids, not by the order of visits). Hence the choice of structure changes the speed, never the picture.
+//! it may skip a primitive only if the ray certainly misses the primitive's box within the current range, or if that box
+//! certainly starts behind `t_max` (a box that starts exactly at `t_max` is visited: ties are decided by ids, not by the order
+//! of visits). Hence the choice of structure changes the speed, never the picture.
 
 mod any;
 mod beam;

@@ -1,7 +1,7 @@
 use crate::{Accelerator, TraversalStats, Visitor};
 use strahl_math::{Aabb, Interval, Ray};
 
-/// No acceleration at all: looks at every primitive for every ray. The reference all others are compared with.
+/// No acceleration: visits every primitive for every ray. The reference for all other structures.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct List {
     ids: Vec<u32>,
@@ -14,7 +14,7 @@ impl List {
         Self::of(ids.map(|(id, _)| id).collect())
     }
 
-    /// The list of some primitives: for what a structure cannot sort, as the unbounded ones.
+    /// The list of some primitives, for those that a structure cannot sort, such as unbounded ones.
     pub(crate) fn of(ids: Vec<u32>) -> Self {
         Self { ids }
     }
@@ -24,7 +24,7 @@ impl List {
     }
 }
 
-/// Shows primitives to the visitor one by one and returns the new `t_max`; `f64::NEG_INFINITY` if the visitor wants no more.
+/// Passes primitives to the visitor one by one and returns the new `t_max`; `f64::NEG_INFINITY` if the visitor wants no more.
 #[inline(always)]
 pub(crate) fn visit_all<V: Visitor>(
     ids: &[u32],

@@ -1,7 +1,7 @@
 use crate::cull::{CullBounds, largest, scaled};
 use strahl_math::{DVec3, Interval, Ray};
 
-/// A ray as grids, octrees and spheres see it: in f64, its direction scaled and its origin near the structure.
+/// A ray for grids, octrees and spheres: in f64, its direction scaled and its origin near the structure.
 ///
 /// Directions are scaled by a power of two so that their largest component is in `1..2`; a ray that starts far away is first
 /// moved to where it enters the structure. `t` here is `(t - offset) scale` of the original ray.
@@ -10,7 +10,7 @@ pub(crate) struct Moved {
     pub(crate) origin: DVec3,
     pub(crate) direction: DVec3,
     pub(crate) range: Interval,
-    /// How far rounding may have moved the ray aside on its way, and primitives that do not move it.
+    /// A bound of the rounding errors of moving the ray, and of primitives that do not move it.
     pub(crate) margin: f64,
     offset: f64,
     scale: f64,
@@ -59,7 +59,7 @@ impl Moved {
         Some(moved)
     }
 
-    /// A `t` of the original ray as an upper end of what is of interest: rounded up.
+    /// The upper end of a range of the original ray, in this ray's parameters: rounded up.
     #[inline(always)]
     pub(crate) fn upper(&self, t: f64) -> f64 {
         self.scaled_up(t - self.offset)
@@ -88,6 +88,5 @@ impl Moved {
     }
 }
 
-/// 8u, u the roundoff of f32: by this part of the coordinates may hits lie outside of their primitives' boxes (engine
-/// design, section 3.1).
+/// 8u, u the roundoff of f32: hits may lie outside of their primitives' boxes by this part of the coordinates.
 pub(crate) const SLACK: f64 = 8.0 / (1u64 << 24) as f64;

@@ -2,24 +2,24 @@ use crate::traversal::Leaf;
 use strahl_math::Ray;
 use strahl_simd::Isa;
 
-/// Rays in a packet, at most.
+/// The largest number of rays in a packet.
 pub const PACKET: usize = 16;
 
-/// Rays that are followed together. It pays if they are close to each other: those of neighbouring pixels, or from neighbouring
-/// points to one light.
+/// Rays that are traversed together. It pays if they are close to each other: those of neighbouring pixels, or from
+/// neighbouring points to one light.
 #[derive(Debug)]
 pub struct Packet<'r> {
     /// The rays, at most [`PACKET`]; a ray's number is its lane.
     pub rays: &'r [Ray],
-    /// Hits at or before this parameter are of no interest to any of them.
+    /// The lower end of all ranges: hits at or before it don't count.
     pub min: f64,
-    /// By lane the parameter behind which nothing is of interest any more: the traversal lowers it to what the visitor returns. Lanes of
-    /// `f64::NEG_INFINITY` are not followed.
+    /// By lane the upper end of the range, which the traversal lowers to what the visitor returns. Lanes with
+    /// `f64::NEG_INFINITY` are not traced.
     pub t_max: [f64; PACKET],
 }
 
 impl Packet<'_> {
-    /// The lanes that are followed, as bits.
+    /// The lanes that are traced, as bits.
     #[inline(always)]
     pub(crate) fn alive(&self) -> u32 {
         let mut alive = 0;
@@ -30,15 +30,15 @@ impl Packet<'_> {
     }
 }
 
-/// What is done with the primitives that the rays of a packet may meet: a [`Visitor`](crate::Visitor) for several rays.
+/// Tests the primitives that the rays of a packet may meet: a [`Visitor`](crate::Visitor) for several rays.
 pub trait PacketVisitor {
-    /// Whether the first hit of a ray ends its search: then there is no point in sorting what is on the way.
+    /// Whether the first hit of a ray ends its search; then children need not be sorted.
     const ANY: bool;
 
-    /// Looks at primitive `id` for the ray of a lane, and returns its new `t_max`, as [`Visitor::visit`](crate::Visitor::visit).
+    /// Tests primitive `id` for the ray of a lane, and returns its new `t_max`, as [`Visitor::visit`](crate::Visitor::visit).
     fn visit(&mut self, id: u32, lane: usize, t_max: f64) -> f64;
 
-    /// Looks at all primitives of a leaf for the ray of a lane, as [`Visitor::visit_leaf`](crate::Visitor::visit_leaf).
+    /// Tests all primitives of a leaf for the ray of a lane, as [`Visitor::visit_leaf`](crate::Visitor::visit_leaf).
     fn visit_leaf<I: Isa>(&mut self, isa: I, leaf: &Leaf<'_>, lane: usize, t_max: f64) -> f64;
 
     /// The same for several lanes, given as bits; `t_max` is changed accordingly.
@@ -56,7 +56,7 @@ pub trait PacketVisitor {
     }
 }
 
-/// The lanes that bits stand for, the lowest first.
+/// The lanes of a bit mask, the lowest first.
 #[inline(always)]
 pub fn lanes_of(mut bits: u32) -> impl Iterator<Item = usize> {
     std::iter::from_fn(

@@ -1,15 +1,15 @@
-//! What can be chosen about a structure: `NAME:PARAMETER=VALUE,PARAMETER=VALUE`.
+//! Parameters of structures: `NAME:PARAMETER=VALUE,PARAMETER=VALUE`.
 
 use std::fmt;
 
-/// A parameter as the help and the error messages describe it.
+/// A parameter, for help texts and error messages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Parameter {
     /// Its name.
     pub name: &'static str,
-    /// What it may be, as `centre|cost` or `NUMBER`; empty for one that is only named.
+    /// Its possible values, as `centre|cost` or `NUMBER`; empty for a flag.
     pub values: &'static str,
-    /// What it does.
+    /// Its meaning.
     pub about: &'static str,
 }
 
@@ -25,29 +25,29 @@ impl fmt::Display for Parameter {
 
 /// The parameters of one kind of structure.
 pub trait Parameters: Copy + PartialEq + fmt::Debug + 'static {
-    /// What holds if nothing is said.
+    /// The default values.
     const DEFAULT: Self;
 
-    /// The parameters there are.
+    /// All parameters.
     const ALL: &'static [Parameter];
 
-    /// Sets one; `None` if that is no value for it. Only names of [`Parameters::ALL`] are asked for; `value` is empty if
-    /// none was given.
+    /// Sets one; `None` if the value is invalid. Called only with names of [`Parameters::ALL`]; `value` is empty if none was
+    /// given.
     fn set(&mut self, name: &str, value: &str) -> Option<()>;
 
-    /// The value of one, as [`Parameters::set`] takes it; `None` for one that is only named, and is not.
+    /// The value of one, as [`Parameters::set`] takes it; `None` for a flag that is not set.
     fn value(&self, name: &str) -> Option<String>;
 
-    /// Whether all this can be had here.
+    /// Checks that the values work together on this machine.
     ///
     /// # Errors
-    /// Why not, in words.
+    /// The problem, in words.
     fn check(&self) -> Result<(), String> {
         Ok(())
     }
 }
 
-/// There is nothing to choose.
+/// No parameters.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct NoParameters;
 
@@ -64,7 +64,7 @@ impl Parameters for NoParameters {
     }
 }
 
-/// Reads `PARAMETER=VALUE,...`; the error says what is wrong and what there is.
+/// Parses `PARAMETER=VALUE,...`; the error says what is wrong and which parameters there are.
 pub(crate) fn parse<P: Parameters>(kind: &str, text: &str) -> Result<P, String> {
     let mut parameters = P::DEFAULT;
     for item in text.split(',').map(str::trim).filter(|i| !i.is_empty()) {
@@ -91,7 +91,7 @@ pub(crate) fn parse<P: Parameters>(kind: &str, text: &str) -> Result<P, String> 
     Ok(parameters)
 }
 
-/// Writes what differs from the defaults, as [`parse`] reads it.
+/// Writes the parameters that differ from the defaults, in the form that [`parse`] reads.
 pub(crate) fn write<P: Parameters>(p: &P, f: &mut fmt::Formatter<'_>) -> fmt::Result {
     let mut separator = ':';
     for parameter in P::ALL {
@@ -109,7 +109,7 @@ pub(crate) fn write<P: Parameters>(p: &P, f: &mut fmt::Formatter<'_>) -> fmt::Re
     Ok(())
 }
 
-/// A choice by name: makes the enum with its names.
+/// Makes an enum whose variants have names.
 macro_rules! choice {
     ($(#[$doc:meta])* $name:ident { $($(#[$variant_doc:meta])* $text:literal $variant:ident,)+ }) => {
         $(#[$doc])*
@@ -127,7 +127,7 @@ macro_rules! choice {
                 match self { $(Self::$variant => $text,)+ }
             }
 
-            /// The one of a name.
+            /// The variant with this name.
             pub(crate) fn of_name(name: &str) -> Option<Self> {
                 Self::ALL.iter().copied().find(|c| c.name() == name)
             }

@@ -1,14 +1,14 @@
 use strahl_math::{Aabb, DVec3};
 
-/// What the builders may ask about the primitives `0..n`: their boxes, and more exactly where they are.
+/// The primitives `0..n` as builders see them: their boxes, and more exact geometry.
 ///
-/// Only [`Shapes::bounds`] must be known. The other answers make structures smaller and rays cheaper; a wrong `false` of
-/// [`Shapes::overlaps`], or a sphere that is too small, would lose hits.
+/// Only [`Shapes::bounds`] is required. The other methods make structures smaller and rays cheaper; if [`Shapes::overlaps`]
+/// wrongly returned `false`, or a sphere were too small, hits would be lost.
 pub trait Shapes: Sync {
     /// Number of primitives, at most 2³¹.
     fn count(&self) -> usize;
 
-    /// The box around a primitive; empty if it can't be hit, unbounded if need be.
+    /// The box around a primitive; empty if it can't be hit, unbounded if necessary.
     fn bounds(&self, id: u32) -> Aabb;
 
     /// The class of a primitive, from 0 to 3, for structures whose leaves have one class each (see [`Bvh8`](crate::Bvh8)).
@@ -16,22 +16,23 @@ pub trait Shapes: Sync {
         0
     }
 
-    /// Whether the surface of a bounded primitive may reach into a box that its own box reaches into: `false` only if it
-    /// certainly does not. The insides of a ball may say `false` too: rays hit surfaces.
+    /// Whether the surface of a bounded primitive may overlap a box that overlaps its own box: `false` only if it certainly
+    /// does not. For boxes inside of a ball the answer may be `false` too, because rays hit surfaces.
     fn overlaps(&self, _id: u32, _cell: &Aabb) -> bool {
         true
     }
 
-    /// Of the part of a bounded primitive that is in a box: boxes around what is on the lower and on the upper side of a plane across an axis, both
-    /// with what is in the plane. Empty where there is nothing.
+    /// Boxes around the lower and the upper side of a part of a bounded primitive, split by a plane across an axis; points in
+    /// the plane belong to both. The part is that within the box `part`. An empty side has an empty box.
     ///
-    /// A point that is hit may be further away from them than from the primitive by the rounding of f64; culling allows for far more.
+    /// Because of the rounding of f64 a hit may be further away from the boxes than from the primitive; culling allows for far
+    /// more.
     fn halves(&self, _id: u32, part: &Aabb, axis: usize, at: f64) -> [Aabb; 2] {
         cut_box(part, axis, at)
     }
 
-    /// Half the surface area, in total, of boxes around ever smaller parts of a flat primitive: where that is much less than that of its own box,
-    /// it pays to cut it. `None` for others.
+    /// Half the surface area of boxes around ever smaller parts of a flat primitive, summed up: if that is much less than that
+    /// of its own box, splitting it pays. `None` for primitives that are not flat.
     fn flat_area(&self, _id: u32) -> Option<f64> {
         None
     }
@@ -42,7 +43,7 @@ pub trait Shapes: Sync {
     }
 }
 
-/// What is on the lower and on the upper side of a plane across an axis, of a box.
+/// The parts of a box below and above a plane across an axis.
 pub fn cut_box(part: &Aabb, axis: usize, at: f64) -> [Aabb; 2] {
     let (mut lower, mut upper) = (*part, *part);
     lower.max[axis] = at;
@@ -50,7 +51,7 @@ pub fn cut_box(part: &Aabb, axis: usize, at: f64) -> [Aabb; 2] {
     [lower, upper]
 }
 
-/// Boxes alone: primitives fill their boxes as far as anybody knows.
+/// Primitives given by their boxes alone, which they are assumed to fill.
 #[derive(Clone, Copy, Debug)]
 pub struct Boxes<'b>(pub &'b [Aabb]);
 
@@ -64,7 +65,7 @@ impl Shapes for Boxes<'_> {
     }
 }
 
-/// The same without the exact answers: what structures look like if boxes decide.
+/// The same primitives without their exact geometry, for structures that only use boxes.
 pub(crate) struct BoxesOnly<'s>(pub(crate) &'s dyn Shapes);
 
 impl Shapes for BoxesOnly<'_> {

@@ -3,21 +3,21 @@ use crate::{Beam, Packet, PacketVisitor};
 use strahl_math::{Aabb, DVec3, Interval, Ray};
 use strahl_simd::Isa;
 
-/// What is done with the primitives a ray may meet.
+/// Tests the primitives that a ray may meet.
 pub trait Visitor {
-    /// Looks at primitive `id`, knowing that only `t <= t_max` is still of interest.
+    /// Tests primitive `id`, where only hits with `t <= t_max` count.
     ///
     /// Returns the new `t_max`: unchanged on a miss, the distance of the hit if one was found,
     /// `f64::NEG_INFINITY` to end the traversal at once.
     fn visit(&mut self, id: u32, t_max: f64) -> f64;
 
-    /// Whether the first hit ends the traversal: then there is no point in sorting what is on the way.
+    /// Whether the first hit ends the traversal; then children need not be sorted.
     const ANY: bool = false;
 
-    /// Looks at all primitives of a leaf of a structure with blocks of slots (see [`Bvh8`](crate::Bvh8)), knowing that only
-    /// `t <= t_max` is still of interest; returns as [`Visitor::visit`]. Called inside of [`Isa::call`].
+    /// Tests all primitives of a leaf of a structure with blocks of slots (see [`Bvh8`](crate::Bvh8)), where only hits with `t
+    /// <= t_max` count; returns as [`Visitor::visit`]. Called inside of [`Isa::call`].
     ///
-    /// By itself it visits them one by one.
+    /// The default visits them one by one.
     #[inline(always)]
     fn visit_leaf<I: Isa>(&mut self, _isa: I, leaf: &Leaf<'_>, mut t_max: f64) -> f64 {
         for id in leaf.ids() {
@@ -29,17 +29,17 @@ pub trait Visitor {
         t_max
     }
 
-    /// Where the data of a block is that [`Visitor::visit_leaf`] will read, to be fetched ahead; nowhere if it does not matter. The number
-    /// may be that of no block.
+    /// The address of the data of a block that [`Visitor::visit_leaf`] will read, to be prefetched; null to prefetch nothing.
+    /// The block need not exist.
     #[inline(always)]
     fn block_address(&self, _block: usize) -> *const u8 {
         std::ptr::null()
     }
 
-    /// Whether [`Visitor::step`] wants to hear of the way; it costs nothing otherwise.
+    /// Whether [`Visitor::step`] is to be called; if not, it costs nothing.
     const WATCHES: bool = false;
 
-    /// The traversal looks at a node or a cell; the primitives visited next are in it, if it is a leaf.
+    /// The traversal visits a node or a cell; if it is a leaf, the primitives visited next are in it.
     fn step(&mut self, _step: Step) {}
 }
 
@@ -50,14 +50,14 @@ pub struct Leaf<'a> {
     pub class: u8,
     /// Its first block.
     pub first_block: usize,
-    /// How many primitives it has, at least one.
+    /// Number of its primitives, at least one.
     pub count: usize,
     /// The slots of the structure.
     pub slots: &'a [u32],
 }
 
 impl<'a> Leaf<'a> {
-    /// How many blocks it has.
+    /// Number of its blocks.
     #[inline(always)]
     pub const fn blocks(&self) -> usize {
         self.count.div_ceil(BLOCK)
@@ -70,7 +70,7 @@ impl<'a> Leaf<'a> {
         &self.slots[first..first + self.count]
     }
 
-    /// What is in the slot of one of its blocks: a primitive, or [`NO_PRIMITIVE`].
+    /// The content of a slot of one of its blocks: a primitive, or [`NO_PRIMITIVE`].
     #[inline(always)]
     pub fn id(&self, block: usize, lane: usize) -> u32 {
         let slot = (self.first_block + block) * BLOCK + lane;
@@ -78,18 +78,18 @@ impl<'a> Leaf<'a> {
     }
 }
 
-/// A station on a ray's way through a structure, for those who want to see it.
+/// A step of a ray's traversal, for visitors that watch.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Step {
-    /// What is looked at.
+    /// The node or cell visited.
     pub place: Place,
     /// Level in the structure, 0 at the root.
     pub level: u32,
-    /// Where the ray gets there; `t` as the visitor counts it, with the margin of conservative culling.
+    /// The parameter at which the ray enters; `t` as the visitor counts it, with the margin of conservative culling.
     pub near: f64,
-    /// Where it leaves; infinite where the traversal need not know.
+    /// The parameter at which it leaves; infinite where the traversal need not know.
     pub far: f64,
-    /// How it leaves, where the traversal decides that.
+    /// How it leaves, where the traversal computes that.
     pub exit: Option<Exit>,
 }
 
@@ -105,9 +105,9 @@ pub enum Place {
     Sphere(DVec3, f64),
     /// A bounding sphere of primitives.
     LeafSphere(DVec3, f64),
-    /// A cell of a grid with its place in it.
+    /// A cell of a grid with its indices.
     Cell([u32; 3], Aabb),
-    /// Several empty cells passed in one step.
+    /// Several empty cells skipped in one step.
     Empty(Aabb),
 }
 
@@ -118,17 +118,17 @@ pub struct Exit {
     pub axis: usize,
     /// Whether it leaves towards larger coordinates.
     pub up: bool,
-    /// Where it meets the trial exit plane, if that was used: 0 inside the face, 1 to 4 beyond an edge, 5 to 8 beyond a
-    /// corner.
+    /// The region of its intersection with the trial exit plane, if that was used: 0 inside the face, 1 to 4 beyond an edge, 5
+    /// to 8 beyond a corner.
     pub region: Option<u8>,
 }
 
-/// What a traversal cost.
+/// The cost of a traversal.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct TraversalStats {
-    /// Nodes (or cells) looked at.
+    /// Nodes (or cells) visited.
     pub node_visits: u64,
-    /// Primitives looked at.
+    /// Primitives tested.
     pub primitive_tests: u64,
 }
 
@@ -146,13 +146,13 @@ impl std::ops::AddAssign for TraversalStats {
 /// order, each at most once unless the structure says otherwise, where `t_max` starts at `range.max` and becomes what
 /// the visitor returns. It skips others as it can. Boxes may be unbounded; an empty box is never visited.
 ///
-/// Directions may have any finite length but zero. A ray that is none (a coordinate that is not finite, no direction) does no
-/// harm: some primitives are visited, perhaps none.
+/// Directions may have any finite length but zero. An invalid ray (a coordinate that is not finite, a direction of length zero)
+/// does no harm: some primitives are visited, perhaps none.
 pub trait Accelerator: Send + Sync {
     /// The name used on the command line and in the statistics.
     fn name(&self) -> &'static str;
 
-    /// Walks the structure along the ray.
+    /// Traverses the structure along the ray.
     fn traverse<V: Visitor>(
         &self,
         ray: &Ray,
@@ -161,8 +161,8 @@ pub trait Accelerator: Send + Sync {
         stats: &mut TraversalStats,
     );
 
-    /// Walks the structure along the rays of a packet, as [`Accelerator::traverse`] along each; `false` if it has no way to do
-    /// that, and nothing was done.
+    /// Traverses the structure along the rays of a packet, as [`Accelerator::traverse`] along each. Returns `false`, having
+    /// done nothing, if it does not support packets.
     fn traverse_packet<V: PacketVisitor>(
         &self,
         _packet: &mut Packet<'_>,
@@ -172,12 +172,12 @@ pub trait Accelerator: Send + Sync {
         false
     }
 
-    /// Whether certainly no ray of a beam meets the box of any primitive; `false` from a structure that does not know.
+    /// Whether certainly no ray of a beam meets the box of any primitive; `false` from a structure without such a test.
     fn misses(&self, _beam: &Beam) -> bool {
         false
     }
 
-    /// The primitives in the order of the leaves' slots, for [`Visitor::visit_leaf`]; nothing if the structure has no slots.
+    /// The primitives in the order of the leaves' slots, for [`Visitor::visit_leaf`]; empty if the structure has no slots.
     fn slots(&self) -> &[u32] {
         &[]
     }

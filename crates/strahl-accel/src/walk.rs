@@ -1,35 +1,35 @@
-//! What walks through cells have in common: grids and octrees.
+//! The walk of a ray through cells, for grids and octrees.
 //!
 //! # Why no hit is lost
-//! A walk is a sequence of cells with the parameters at which the ray passes from one to the next. Planes are f64 and every crossing
-//! is computed from its plane (nothing is added up), so where the walk says "in this cell from t₁ to t₂" the
-//! point of the ray at such a t is at most a few ε(B + |o|) outside of the cell: ε = 2⁻⁵³, B the largest coordinate, |o| <= 4B
-//! (see [`Moved`]). Primitives are entered into every cell that they, or hits up to 8u(B + |o|) beside them (u = 2⁻²⁴), may
-//! reach into: cells are padded by 48uB for the question, which covers both. Hence a primitive hit at t is in the cell that
-//! the walk gives for t, and the walk may end as soon as the closest hit is before the next crossing; not if it is at it.
+//! A walk is a sequence of cells with the parameters at which the ray passes from one to the next. Planes are f64 and every
+//! crossing is computed from its plane (nothing is accumulated). So at any t in the interval that the walk gives for a cell,
+//! the point of the ray is at most a few ε(B + |o|) outside of the cell: ε = 2⁻⁵³, B the largest coordinate, |o| <= 4B (see
+//! [`Moved`]). Primitives are entered into every cell that they, or hits up to 8u(B + |o|) beside them (u = 2⁻²⁴), may reach
+//! into: cells are padded by 48uB for this test, which covers both. Hence a primitive hit at t is in the cell that the walk
+//! gives for t, and the walk may end as soon as the closest hit is before the next crossing, but not if it is exactly there.
 //!
-//! Rays that start so far away that their own rounding exceeds the pad are led through all cells within their margin instead
+//! Rays that start so far away that their own rounding exceeds the pad visit all cells within their margin instead
 //! ([`Walk::is_thick`]).
 
 use crate::cull::CullBounds;
 use crate::moved::{FAR, Moved, SLACK};
 use strahl_math::{Aabb, DVec3, Interval, Ray};
 
-/// Cells are padded by this times B, when primitives are entered.
+/// Cells are padded by this times B when primitives are entered.
 const PAD: f64 = SLACK * (1.0 + FAR + 1.0);
 
 /// The box whose cells are walked through, and its pad.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Room {
-    /// The box around everything, and the pad.
+    /// The box around all primitives, enlarged by the pad.
     pub(crate) root: Aabb,
-    /// What cells grow by when primitives are entered.
+    /// The pad of cells when primitives are entered.
     pub(crate) pad: f64,
     bounds: CullBounds,
 }
 
 impl Room {
-    /// The room of things that all lie in a bounded box.
+    /// The room of primitives that all lie in a bounded box.
     pub(crate) fn new(bounds: Aabb) -> Self {
         let cull = CullBounds::new(bounds);
         let pad = PAD * cull.max_abs();
@@ -40,13 +40,13 @@ impl Room {
         }
     }
 
-    /// The same, larger by a thousandth on every side: as GOLEM's seems to be, for no plane of its cells coincides with the
-    /// planes of `tetra`. See docs/src/accelerators.md.
+    /// The same, larger by a thousandth on every side: so V. Havran's seems to be, because no plane of its cells coincides with
+    /// the planes of `tetra`. See docs/src/laboratory.md.
     pub(crate) fn published(bounds: Aabb) -> Self {
         Self::new(bounds.padded(bounds.size() * 1e-3))
     }
 
-    /// Cells must not become smaller: they would hold little but their pads.
+    /// Smaller cells would consist of little but their pads.
     pub(crate) fn smallest_cell(&self) -> f64 {
         8.0 * self.pad
     }
@@ -64,8 +64,8 @@ pub(crate) struct Walk {
     pub(crate) near: f64,
 }
 
-/// Components of a direction below this part of the largest are none: while it crosses the room the ray moves by less than
-/// 2⁻⁵⁷(B + |o|) along them.
+/// Components of a direction below this part of the largest count as zero: while it crosses the room, the ray moves by less
+/// than 2⁻⁵⁷(B + |o|) along them.
 const PARALLEL: f64 = 1.0 / (1u64 << 60) as f64;
 
 impl Walk {
@@ -96,12 +96,12 @@ impl Walk {
         })
     }
 
-    /// Whether the ray's own rounding exceeds what cells are padded by.
+    /// Whether the ray's own rounding error exceeds the pad of cells.
     pub(crate) fn is_thick(&self, room: &Room) -> bool {
         self.moved.margin > room.pad / 8.0
     }
 
-    /// Whether a thick ray may meet a cell before `far`; where it enters.
+    /// The parameter at which a thick ray enters a cell, if it may meet it before `far`.
     pub(crate) fn meets(&self, cell: &Aabb, far: f64) -> Option<f64> {
         let padded = cell.padded(DVec3::splat(self.moved.margin));
         let ray = Ray::new(self.moved.origin, self.moved.direction);
@@ -115,7 +115,7 @@ impl Walk {
         plane * self.inverse[axis] + self.start[axis]
     }
 
-    /// Whether the ray moves towards larger coordinates; so it is said of one that does not move, too.
+    /// Whether the ray moves towards larger coordinates; also true if it does not move.
     #[inline(always)]
     pub(crate) fn up(&self, axis: usize) -> bool {
         self.moved.direction[axis] >= 0.0
@@ -137,7 +137,7 @@ impl Walk {
     }
 }
 
-/// The nearest number in a range; the lower end for what is none.
+/// The nearest number in a range; the lower end for NaN.
 #[inline(always)]
 pub(crate) fn clamp(x: f64, min: f64, max: f64) -> f64 {
     if x > max {

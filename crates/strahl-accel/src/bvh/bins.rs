@@ -11,10 +11,10 @@ use strahl_math::{Mat4, Vec4};
 pub(crate) const BINS: usize = 32;
 /// Sets larger than this are sorted into bins in parallel, in chunks of this size.
 pub(crate) const CHUNK: usize = 16 * 1024;
-/// Numbers up to a few millions added to it are rounded to integers, which are the last bits of the sum.
+/// Adding this to a number of up to a few millions rounds it to an integer, which is in the last bits of the sum.
 const ROUND: f32 = 12_582_912.0;
 
-/// A way to split: what falls into the bins up to one of an axis goes left.
+/// A split: primitives in the bins of an axis up to `last_left` go to the left.
 pub(crate) struct Plane {
     axis: usize,
     lo: f32,
@@ -29,12 +29,12 @@ impl Plane {
     pub(crate) fn is_left(&self, r: &Ref) -> bool {
         let (lo, hi): (&[f32; 4], &[f32; 4]) = r.bounds().corners();
         let center = lo[self.axis] + hi[self.axis];
-        // As `Binning::place` computes it. What that clamps is on the same side here.
+        // The same computation as in `Binning::place`; centres that are clamped there are on the same side here.
         (center - self.lo) * self.scale - 0.5 + ROUND <= ROUND + self.last_left as f32
     }
 }
 
-/// How doubled centres fall into bins.
+/// Maps doubled centres to bins.
 #[derive(Clone, Copy)]
 struct Binning {
     lo: Vec4,
@@ -43,15 +43,15 @@ struct Binning {
 }
 
 impl Binning {
-    /// How many bins a set of some primitives deserves: few primitives need few, as sweeping over empty ones is most of the work near
-    /// the leaves.
+    /// The number of bins for a set. Small sets get few bins, because sweeping over empty bins is most of the work near the
+    /// leaves.
     fn count(refs: usize) -> usize {
         (4 + refs / 4).min(BINS)
     }
 
     fn new(count: usize, centers: &Box32) -> Self {
         let size = centers.size();
-        // A little less, so that the last centre falls into the last bin. Centres in one plane all fall into the first.
+        // A little less, so that the last centre falls into the last bin. Centres in one plane all fall into the first bin.
         let scale = (Vec4::splat(count as f32 * 0.9999) / size).min(Vec4::splat(f32::MAX));
         Self {
             lo: centers.lo(),
@@ -66,7 +66,7 @@ impl Binning {
         let at = (r.bounds().center() - self.lo) * self.scale - Vec4::splat(0.5);
         let at = at.max(Vec4::ZERO).min(self.last) + Vec4::splat(ROUND);
         let [x, y, z, _] = at.to_array();
-        // They are in range; the remainder tells the compiler.
+        // They are in range; the remainder proves it to the compiler.
         [
             x.to_bits() as usize % BINS,
             y.to_bits() as usize % BINS,
@@ -75,16 +75,16 @@ impl Binning {
     }
 }
 
-/// What fell into each bin of each axis. Made once and used for many sets.
+/// Contents of each bin of each axis. Made once and used for many sets.
 pub(crate) struct Bins {
     boxes: [[Box32; 3]; BINS],
     counts: [[u32; 4]; BINS],
-    /// Of the primitives from a bin on, per axis.
+    /// Costs of the primitives from a bin on, per axis.
     right_costs: [Vec4; BINS],
     binning: Binning,
-    /// How many bins are used.
+    /// Number of bins in use.
     used: usize,
-    /// Areas are measured in it, so that none overflows.
+    /// Unit of areas, so that none overflows.
     unit: f32,
 }
 
@@ -102,7 +102,8 @@ impl Default for Bins {
 }
 
 impl Bins {
-    /// Sorts a set into bins; its boxes span `bounds`, its doubled centres `centers`. Of large sets, what fell into the bins by chunks.
+    /// Sorts a set into bins; its boxes span `bounds`, its doubled centres `centers`. For large sets it also returns the
+    /// contents of the bins for each chunk.
     pub(crate) fn fill(&mut self, refs: &[Ref], bounds: &Box32, centers: &Box32) -> Vec<Self> {
         self.used = Binning::count(refs.len());
         self.binning = Binning::new(self.used, centers);
@@ -183,7 +184,7 @@ impl Bins {
         })
     }
 
-    /// What the boxes on both sides of a plane span.
+    /// The bounds of the boxes on both sides of a plane.
     pub(crate) fn bounds(&self, plane: &Plane) -> [Box32; 2] {
         let used = self.used.min(BINS);
         let span = |bins: &[[Box32; 3]]| {
@@ -197,14 +198,14 @@ impl Bins {
         [span(left), span(right)]
     }
 
-    /// How many are on the left side of a plane.
+    /// The number of primitives on the left side of a plane.
     pub(crate) fn left_count(&self, plane: &Plane) -> usize {
         let left = &self.counts[..=plane.last_left];
         left.iter().map(|n| n[plane.axis] as usize).sum()
     }
 }
 
-/// A place between two bins of an axis.
+/// A split between two bins of an axis.
 pub(crate) struct Cut {
     pub(crate) axis: usize,
     /// The last bin on the left side.
@@ -213,8 +214,9 @@ pub(crate) struct Cut {
     pub(crate) cost: f32,
 }
 
-/// The cheapest place to split what fell into bins, per axis: their boxes, and how many count if the bin is on the left or on the right
-/// side. `model` is the unit of areas and the logarithm of the size of blocks. `None` if one side is empty wherever it is split.
+/// The cheapest split between bins, per axis, given their boxes and the numbers of primitives that count if the bin is on the
+/// left or on the right side. `model` is the unit of areas and the logarithm of the size of blocks. `None` if every split
+/// leaves one side empty.
 #[inline]
 pub(crate) fn cheapest(
     boxes: &[[Box32; 3]],
@@ -270,7 +272,7 @@ impl Side {
         }
     }
 
-    /// Half area times number of blocks; infinite where there is nothing on this side.
+    /// Half area times number of blocks; infinite if this side is empty.
     #[inline(always)]
     fn costs(&self, unit: f32, block_log: u32) -> Vec4 {
         let mut blocks = [0.0; 4];

@@ -1,4 +1,4 @@
-//! Builds the tree from the top, splitting by the surface area heuristic; the same tree for any number of threads.
+//! Builds the tree top-down, splitting by the surface area heuristic; the same tree for any number of threads.
 
 use super::bins::Bins;
 use super::node::{Child, Node};
@@ -10,17 +10,17 @@ use crate::boxes::Box32;
 use crate::cull::CullBounds;
 use strahl_math::Aabb;
 
-/// Sets with more primitives are split among threads.
+/// Larger sets are split among threads.
 const PARALLEL: usize = 4096;
 
 /// How to build a [`Bvh2`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BuildOptions {
-    /// No leaf holds more primitives, at least 1.
+    /// Most primitives in a leaf, at least 1.
     pub max_leaf_size: usize,
-    /// What a visit of a primitive costs, in units of a visit of a node: the larger, the smaller the leaves.
+    /// The cost of visiting a primitive, in units of visiting a node: the larger, the smaller the leaves.
     ///
-    /// The default fits spheres and triangles; solids that are costly to intersect deserve more.
+    /// The default fits spheres and triangles; use more for solids that are costly to intersect.
     pub primitive_cost: f64,
 }
 
@@ -74,7 +74,7 @@ impl Tree {
     }
 }
 
-/// A tree that grows. Depth first, the left child after its parent, as rays that go left walk it.
+/// A tree under construction. Depth first, the left child after its parent, in the order in which rays that go left visit it.
 struct Parts {
     nodes: Vec<Node>,
     ids: Vec<u32>,
@@ -121,7 +121,7 @@ impl Parts {
         }
     }
 
-    /// Puts another tree behind, exactly where it would be had it been built here, and returns its root.
+    /// Appends another tree so that it is the same as if it had been built here, and returns its root.
     fn append(&mut self, other: Self, root: Child) -> Child {
         let (nodes, ids) = (self.nodes.len(), self.ids.len());
         self.nodes.extend(other.nodes.into_iter().map(|n| Node {
@@ -147,7 +147,7 @@ mod tests {
         1 + below.map(|c| depth(tree, c)).into_iter().max().unwrap_or(0)
     }
 
-    /// Points ever further from the origin on six sides: every split takes off those of one place only.
+    /// Points at growing distances from the origin on six sides: every split separates those of one distance only.
     #[test]
     fn a_tree_that_would_be_too_deep_is_halved() {
         let boxes: Vec<Aabb> = (0..2000)
@@ -159,7 +159,7 @@ mod tests {
             .collect();
         let bvh = Bvh2::build(&boxes);
         let tree = bvh.tree.as_ref().expect("bounded boxes");
-        // Without the limit it would not fit the stack.
+        // Without the limit it would overflow the stack.
         let depth = depth(tree, tree.root);
         assert!((55..MAX_DEPTH).contains(&depth), "{depth}");
         assert_eq!(bvh.validate(&boxes), Ok(()));

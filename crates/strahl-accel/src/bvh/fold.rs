@@ -2,7 +2,8 @@ use super::node::Child;
 use super::{Bvh2, Tree};
 
 impl Bvh2 {
-    /// Goes up the tree: `leaf` makes a value of each primitive, `join` one of two. `None` for a tree without primitives.
+    /// Folds the tree bottom-up: `leaf` gives the value of a primitive, `join` combines two. `None` for a tree without
+    /// primitives.
     ///
     /// Primitives of one leaf are joined one by one; unbounded ones are left out.
     pub(crate) fn fold<T>(&self, leaf: impl Fn(u32) -> T, join: impl Fn(T, T) -> T) -> Option<T> {
@@ -12,7 +13,7 @@ impl Bvh2 {
 }
 
 impl Tree {
-    /// Not deeper than the tree.
+    /// Recursion is as deep as the tree.
     fn fold<T>(
         &self,
         child: Child,

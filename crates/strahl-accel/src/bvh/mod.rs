@@ -1,6 +1,6 @@
 //! The binary bounding volume hierarchy: scalar and readable, the reference of the wide one.
 //!
-//! Split by phase: `build` makes it, `traverse` walks it, `validate` proves that it is what the walk relies on.
+//! Split by phase: `build` makes it, `traverse` searches it, `validate` checks everything that the traversal relies on.
 
 pub(crate) mod bins;
 mod build;
@@ -28,7 +28,7 @@ pub struct Bvh2 {
     unbounded: List,
 }
 
-/// What holds all bounded primitives, at least one.
+/// The tree of all bounded primitives, at least one.
 #[derive(Clone, Debug, PartialEq)]
 struct Tree {
     root: Child,
@@ -40,5 +40,5 @@ struct Tree {
 
 /// Levels of the tree, and so the depth of the traversal's stack.
 ///
-/// The builder keeps to it by halving what the surface area heuristic would split too unevenly (see `build`).
+/// The builder ensures it by halving sets that the surface area heuristic would split too unevenly (see `build`).
 pub(crate) const MAX_DEPTH: usize = 64;

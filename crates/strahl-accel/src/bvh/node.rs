@@ -2,7 +2,7 @@ use crate::boxes::{Box32, BoxPair};
 
 /// A node: two children with their boxes, in one cache line.
 ///
-/// Both boxes are tested together in four lanes, so they lie with their parent.
+/// Both boxes are tested together in four lanes, so they are stored in their parent.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(C, align(64))]
 pub(super) struct Node {
@@ -10,7 +10,7 @@ pub(super) struct Node {
     pub(super) children: [Child; 2],
 }
 
-/// What is in a box.
+/// A child: a node or a leaf.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Child {
     /// Leaf: index of its first id. Otherwise: index of the node.
@@ -32,7 +32,7 @@ impl Child {
         self.count > 0
     }
 
-    /// The same child after `nodes` nodes and `ids` ids were put in front of what it points to.
+    /// The same child after `nodes` nodes and `ids` ids were inserted in front of those it refers to.
     pub(super) fn moved(self, nodes: usize, ids: usize) -> Self {
         let by = if self.is_leaf() { ids } else { nodes };
         Self {

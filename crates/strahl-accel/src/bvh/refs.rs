@@ -1,4 +1,4 @@
-//! Primitives while a hierarchy is built, and what sets of them span.
+//! References to primitives during construction, and the extents of sets of them.
 
 use super::bins::CHUNK;
 use crate::Shapes;
@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering};
 use strahl_math::Aabb;
 
-/// A primitive while a hierarchy is built: its box, whose fourth lanes hold its number and its class.
+/// A reference to a primitive during construction: its box, whose fourth lanes hold its number and its class.
 #[derive(Clone, Copy)]
 pub(crate) struct Ref {
     bounds: Box32,
@@ -21,7 +21,7 @@ impl Ref {
         }
     }
 
-    /// The parts of it on both sides of a plane, with empty boxes where there is nothing.
+    /// Its parts on both sides of a plane; an empty side has an empty box.
     pub(crate) fn halves(&self, shapes: &dyn Shapes, axis: usize, at: f32) -> [Self; 2] {
         let own = &self.bounds;
         let boxes = if own.is_empty() {
@@ -52,23 +52,23 @@ impl Ref {
     }
 }
 
-/// What the bits of numbers begin at. The lanes take part in arithmetic whose result nobody looks at, which is many times slower with
-/// subnormal numbers; these are not.
+/// Added to the bits of numbers. Arithmetic on whole vectors includes these lanes, although the results are ignored, and would
+/// be many times slower if they were subnormal numbers.
 const LANE: u32 = 0x3f80_0000;
 
-/// Any number as a lane of a vector.
+/// Stores any number as a lane of a vector.
 #[inline(always)]
 pub(crate) fn to_lane(number: u32) -> f32 {
     f32::from_bits(number.wrapping_add(LANE))
 }
 
-/// What [`to_lane`] was given.
+/// The inverse of [`to_lane`].
 #[inline(always)]
 pub(crate) fn from_lane(lane: f32) -> u32 {
     lane.to_bits().wrapping_sub(LANE)
 }
 
-/// The extent of a set: what its primitives' boxes span, and what their (doubled) centres span.
+/// The extent of a set: the bounds of its boxes, and the bounds of their (doubled) centres.
 #[derive(Clone, Copy)]
 pub(crate) struct Extent {
     pub(crate) bounds: Box32,
@@ -94,13 +94,14 @@ impl Extent {
         extent
     }
 
-    /// The extent of a large set, in parallel: minima and maxima are exact in any grouping, so the threads leave no trace.
+    /// The extent of a large set, computed in parallel: minima and maxima are exact in any grouping, so the result does not
+    /// depend on the threads.
     pub(crate) fn of_many(refs: &[Ref]) -> Self {
         let parts = refs.par_chunks(CHUNK).map(Self::of);
         parts.reduce(|| Self::EMPTY, Self::joined)
     }
 
-    /// The lowest class in it; in a leaf there is no other.
+    /// Its lowest class; a leaf has only one.
     pub(crate) fn lowest_class(&self) -> u8 {
         self.classes.trailing_zeros() as u8
     }
@@ -113,8 +114,8 @@ impl Extent {
     }
 }
 
-/// Gathers what a hierarchy is built over: the bounded ones of `count` primitives, of which `primitive` tells the box and the class, and
-/// the numbers of those without bounds.
+/// The references to the bounded ones of `count` primitives, whose box and class `primitive` returns, and the numbers of those
+/// without bounds.
 pub(crate) fn gather(
     count: usize,
     primitive: impl Fn(u32) -> (Aabb, u8) + Sync,
@@ -148,7 +149,7 @@ pub(crate) fn gather(
     (refs, unbounded)
 }
 
-/// What the doubled centres of primitives span.
+/// The bounds of the doubled centres of primitives.
 pub(super) fn centers(refs: &[Ref]) -> Box32 {
     let mut span = Box32::EMPTY;
     for r in refs {

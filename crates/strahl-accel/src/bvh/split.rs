@@ -1,4 +1,4 @@
-//! What builders of hierarchies have in common: where to split sets of primitives by the surface area heuristic.
+//! Splits sets of primitives by the surface area heuristic, for all top-down builders.
 
 use super::MAX_DEPTH;
 use super::bins::{Bins, CHUNK, Plane};
@@ -6,14 +6,14 @@ use super::refs::{Extent, Ref, centers, classes};
 use crate::boxes::Box32;
 use rayon::prelude::*;
 
-/// What leaves look like and cost.
+/// The size and cost of leaves.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct LeafModel {
-    /// No leaf holds more primitives, at least 1.
+    /// Most primitives in a leaf, at least 1.
     pub(crate) max_size: usize,
-    /// What the node costs that halves are put into: 1, the unit, or nothing if there is one anyway that has places left.
+    /// The cost of the additional node that a split needs: 1, the unit, or 0 if there is a node with free places.
     pub(crate) node_cost: f64,
-    /// What a visit of a block of primitives costs, in units of a visit of a node.
+    /// The cost of visiting a block of primitives, in units of visiting a node.
     pub(crate) block_cost: f64,
     /// Logarithm of the number of primitives in a block, for classes other than 0.
     pub(crate) block_log: u32,
@@ -30,7 +30,8 @@ impl LeafModel {
         classes.is_power_of_two() && blocks(count, self.block_log(classes)) == 1
     }
 
-    /// Whether a leaf of so many blocks in a box of some area costs no more than its halves, `halves` being the sum of their blocks by their areas.
+    /// Whether a leaf of so many blocks in a box of this area costs no more than its halves; `halves` is the sum of their
+    /// blocks times their areas.
     pub(crate) fn is_cheaper(&self, blocks: usize, area: f64, halves: f64) -> bool {
         let whole = self.block_cost * blocks as f64 * area;
         whole <= self.node_cost * area + self.block_cost * halves
@@ -43,13 +44,13 @@ pub(crate) fn blocks(n: usize, log: u32) -> usize {
     (n + (1 << log) - 1) >> log
 }
 
-/// Primitives that will be a subtree; at least one.
+/// Primitives that will become a subtree; at least one.
 pub(crate) struct Set<'a> {
     pub(crate) refs: &'a mut [Ref],
-    /// As many places, to which its halves move.
+    /// Space for as many references, to which its halves are moved.
     spare: &'a mut [Ref],
     pub(crate) extent: Extent,
-    /// How often the whole was split to get here.
+    /// The number of splits on the way from the root.
     depth: usize,
 }
 
@@ -65,7 +66,7 @@ impl<'a> Set<'a> {
         }
     }
 
-    /// Splits it, or gives it back because it is a leaf.
+    /// Splits it, or returns it as a leaf.
     #[expect(
         clippy::result_large_err,
         reason = "both variants are the same sets on their way into the tree"
@@ -77,7 +78,7 @@ impl<'a> Set<'a> {
         }
         let fits = count <= leaf.max_size && classes.is_power_of_two();
         let log = leaf.block_log(classes);
-        // From here on halving takes this many levels of nodes. It takes over while there are still that many.
+        // The number of levels that halving needs from here on. Halving takes over while there are still that many.
         let needed = (count - 1).ilog2() as usize + 1;
         if self.depth + needed >= MAX_DEPTH - 1 {
             return if fits { Err(self) } else { Ok(self.halved()) };
@@ -85,11 +86,12 @@ impl<'a> Set<'a> {
         let chunks = bins.fill(self.refs, &self.extent.bounds, &self.extent.centers);
         let area = f64::from(bins.area(&self.extent.bounds));
         let Some(plane) = bins.cheapest(log) else {
-            // All centres in one point: nothing to choose by. Crossed bars are better apart all the same.
+            // All centres coincide, so no plane separates them. Crossed bars are better apart nevertheless.
             if !fits {
                 return Ok(self.halved());
             }
-            // In the order of the scene, whatever planes did to it: what was made together lies together.
+            // In the order of the scene, independent of earlier splits: objects that were made together are usually close
+            // together.
             self.refs.sort_unstable_by_key(Ref::id);
             let middle = count / 2;
             let cost = |refs: &[Ref]| {
@@ -110,7 +112,7 @@ impl<'a> Set<'a> {
         Ok(self.at(&plane, bins, &chunks))
     }
 
-    /// Its [`middle`] parts them.
+    /// Splits it at its [`middle`].
     fn halved(self) -> [Self; 2] {
         let middle = middle(self.refs, &self.extent);
         let (left, right) = self.refs.split_at_mut(middle);
@@ -124,7 +126,7 @@ impl<'a> Set<'a> {
         [half(left, left_spare), half(right, right_spare)]
     }
 
-    /// How the halves are put in order depends on the size of the set alone, not on the number of threads.
+    /// The order within the halves depends on the size of the set alone, not on the number of threads.
     fn at(self, plane: &Plane, bins: &Bins, chunks: &[Bins]) -> [Self; 2] {
         let (middle, centers) = match chunks {
             [] => {
@@ -159,7 +161,8 @@ impl<'a> Set<'a> {
     }
 }
 
-/// Where a list is cut that no plane parts: by class while there is more than one, for which it is sorted, then in the middle.
+/// The position to cut a list that no plane separates: between classes while there is more than one (the list is sorted by
+/// class), then in the middle.
 pub(crate) fn middle(refs: &mut [Ref], extent: &Extent) -> usize {
     if extent.classes.is_power_of_two() {
         return refs.len() / 2;
@@ -169,13 +172,13 @@ pub(crate) fn middle(refs: &mut [Ref], extent: &Extent) -> usize {
     refs.partition_point(|r| r.class() == lowest)
 }
 
-/// Puts primitives in order: those left of a plane first, then the others backwards. Returns how many are left.
+/// Partitions primitives: those left of a plane first, then the others in reverse order. Returns the number on the left.
 #[inline]
 pub(crate) fn part(plane: &Plane, refs: &[Ref], to: &mut [Ref]) -> usize {
     let (mut left, mut right) = (0, to.len());
     for r in refs {
-        // Without a branch, which would often be guessed wrong: both places are free, and the next primitive writes the one again that
-        // this one does not take.
+        // Without a branch, which would often be mispredicted: the primitive is written to both places, and the next one
+        // overwrites the wrong copy.
         to[left] = *r;
         to[right - 1] = *r;
         let is_left = usize::from(plane.is_left(r));
@@ -185,7 +188,8 @@ pub(crate) fn part(plane: &Plane, refs: &[Ref], to: &mut [Ref]) -> usize {
     left
 }
 
-/// Puts the chunks of a large set in order, in parallel. Returns how many are left, and what the doubled centres of both sides span.
+/// Partitions the chunks of a large set in parallel. Returns the number on the left, and the bounds of the doubled centres of
+/// both sides.
 fn parts(plane: &Plane, refs: &[Ref], to: &mut [Ref], chunks: &[Bins]) -> (usize, [Box32; 2]) {
     let counts: Vec<usize> = chunks.iter().map(|bins| bins.left_count(plane)).collect();
     let middle = counts.iter().sum();
@@ -197,7 +201,7 @@ fn parts(plane: &Plane, refs: &[Ref], to: &mut [Ref], chunks: &[Bins]) -> (usize
         (to_right, right) = right.split_at_mut(chunk.len() - count);
         tasks.push((chunk, to_left, to_right));
     }
-    // Minima and maxima: exact in any grouping, so the threads leave no trace.
+    // Minima and maxima are exact in any grouping, so the result does not depend on the threads.
     let centers = tasks.into_par_iter().map(|(chunk, left, right)| {
         const BLOCK: usize = 256;
         let mut buffer = [chunk[0]; BLOCK];

@@ -45,7 +45,7 @@ impl Accelerator for Bvh2 {
 }
 
 impl Tree {
-    /// Walks the tree, the nearer child first.
+    /// Traverses the tree, the nearer child first.
     #[inline]
     fn walk<V: Visitor>(
         &self,
@@ -58,7 +58,7 @@ impl Tree {
         let mut t_max = range.max;
         let mut far = cull.t_max(t_max);
         let mut current = self.root;
-        // What is left to visit, with the parameter at which the ray gets there: at most one child of each level.
+        // The children still to visit, with the parameter at which the ray enters them: at most one of each level.
         let mut stack = [(Child::default(), 0.0f32); MAX_DEPTH];
         let mut depth = 0;
         loop {

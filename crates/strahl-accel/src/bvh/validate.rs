@@ -3,11 +3,11 @@ use crate::boxes::Box32;
 use strahl_math::Aabb;
 
 impl Bvh2 {
-    /// Proves what the traversal relies on: indices in range, no deeper than the stack, every box inside its parent's, every
-    /// primitive that is not empty in exactly one place and inside the box of its leaf.
+    /// Checks everything that the traversal relies on: indices are in range, the tree is not deeper than the stack, every box
+    /// lies inside its parent's, every primitive that is not empty is in exactly one leaf and inside its box.
     ///
     /// # Errors
-    /// The first thing found wrong, in words.
+    /// The first violation found.
     pub fn validate(&self, bounds: &[Aabb]) -> Result<(), String> {
         let mut places = Places::new(bounds);
         for id in self.unbounded.ids() {
@@ -20,7 +20,7 @@ impl Bvh2 {
     }
 }
 
-/// In how many places each primitive was found.
+/// The number of leaves in which each primitive was found.
 pub(crate) struct Places<'a> {
     seen: Vec<u32>,
     bounds: &'a [Aabb],
@@ -32,14 +32,14 @@ impl<'a> Places<'a> {
         Self { seen, bounds }
     }
 
-    /// A primitive was found.
+    /// Counts a primitive.
     pub(crate) fn note(&mut self, id: u32) -> Result<(), String> {
         let count = self.seen.get_mut(id as usize);
         *count.ok_or_else(|| format!("primitive {id} does not exist"))? += 1;
         Ok(())
     }
 
-    /// Whether each was found once, and empty ones never.
+    /// Whether each primitive was found once, and empty ones never.
     pub(crate) fn finish(self) -> Result<(), String> {
         for (id, (count, b)) in self.seen.iter().zip(self.bounds).enumerate() {
             let expected = u32::from(!b.is_empty());
@@ -54,7 +54,7 @@ impl<'a> Places<'a> {
 }
 
 impl Tree {
-    /// The part of the proof that is about the tree.
+    /// Checks the tree.
     fn validate(&self, bounds: &[Aabb], places: &mut Places<'_>) -> Result<(), String> {
         let whole = Box32::try_new(self.bounds.bounds()).ok_or("the tree has no bounds")?;
         let mut waiting = vec![(self.root, whole, 0)];
@@ -117,7 +117,7 @@ mod tests {
         (boxes, bvh)
     }
 
-    /// The complaint about a tree after one thing in it was changed.
+    /// The error message for a tree after one change to it.
     fn complaint(spoil: impl FnOnce(&mut Tree)) -> String {
         let (boxes, mut bvh) = row(100);
         assert_eq!(bvh.validate(&boxes), Ok(()));

@@ -1,26 +1,26 @@
-//! Tells of the way through a tree of boxes. Nodes know nothing of their parents, so this searches for them: slow, and only for
-//! those who watch.
+//! Reports the traversal of a tree of boxes to a visitor that watches. Nodes don't store their parents, so they are searched
+//! for: slow, but only done for such visitors.
 
 use super::Tree;
 use super::node::Child;
 use crate::{Place, Step, Visitor};
 use strahl_math::{Aabb, Interval, Ray};
 
-/// A tree whose boxes are kept in the parents of what is in them.
+/// A tree in which the box of a child is stored in its parent.
 pub(crate) trait BoxTree {
     /// A node or a leaf.
     type Child: Copy;
 
-    /// The box around everything: that of the root.
+    /// The box of the root.
     fn whole(&self) -> &Aabb;
 
     /// Whether a child is a leaf.
     fn is_leaf(child: Self::Child) -> bool;
 
-    /// The node a child belongs to, and the child's box; nothing for the root.
+    /// The parent of a child, and the child's box; `None` for the root.
     fn parent(&self, child: Self::Child) -> Option<(Self::Child, Aabb)>;
 
-    /// Tells that the traversal looks at a node or a leaf.
+    /// Reports that the traversal visits a node or a leaf.
     fn report<V: Visitor>(&self, ray: &Ray, range: Interval, child: Self::Child, visitor: &mut V) {
         let (mut level, mut bounds, mut current) = (0, *self.whole(), child);
         while let Some((parent, own)) = self.parent(current) {
@@ -37,7 +37,7 @@ pub(crate) trait BoxTree {
                 false => Place::Node(bounds),
             },
             level,
-            // Conservative culling also looks at boxes that the ray passes very closely.
+            // Conservative culling also visits boxes that the ray narrowly misses.
             near: inside.map_or(f64::NAN, |i| i.min),
             far: inside.map_or(f64::NAN, |i| i.max),
             exit: None,

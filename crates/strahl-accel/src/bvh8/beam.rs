@@ -28,7 +28,7 @@ impl Bvh8 {
 struct Side<I: Isa> {
     normal: [I::F32x8; 3],
     offset: I::F32x8,
-    /// Per axis the side of a box that the corner lies on which is farthest in the direction of the normal.
+    /// Per axis, whether the corner of a box that is farthest along the normal is on the lower or the upper side.
     sides: [usize; 3],
 }
 
@@ -48,7 +48,7 @@ impl<I: Isa> Side<I> {
         }
     }
 
-    /// Which children have a corner on the inner side. (Empty boxes have none.)
+    /// The children with a corner on the inner side. (Empty boxes have none.)
     #[inline(always)]
     fn inside(&self, isa: I, node: &impl WideNode) -> u32 {
         let x = node.planes(isa, 0, self.sides[0]);
@@ -95,7 +95,7 @@ mod tests {
     use strahl_math::{Aabb, DVec3, Interval, Ray};
     use strahl_simd::Simd;
 
-    /// Whether any box was looked at.
+    /// Whether any box was met.
     struct Met(bool);
 
     impl Visitor for Met {

@@ -1,4 +1,4 @@
-//! How the tree is built: the choice of a builder, and the one that is used by default, which splits from the top by the surface area heuristic.
+//! The choice of a builder, and the default one, which splits top-down by the surface area heuristic.
 
 use super::grow::Subtree;
 use super::presplit::presplit;
@@ -13,17 +13,18 @@ use crate::{List, Shapes};
 use strahl_math::Aabb;
 use strahl_simd::Simd;
 
-/// Thin primitives are cut beforehand into so many parts more, for each primitive.
+/// Thin primitives are split before the build into at most this many additional parts per primitive.
 const PRESPLIT: f64 = 0.3;
 
 choice! {
-    /// How carefully a [`Bvh8`] is built.
+    /// The builder of a [`Bvh8`].
     Build {
-        /// From the top, by the surface area heuristic over bins.
+        /// Top-down, by the surface area heuristic over bins.
         "default" Default,
-        /// From the bottom, neighbours joined: built faster, walked slower.
+        /// Bottom-up, joining neighbours: faster to build, slower to traverse.
         "fast" Fast,
-        /// As by default, and space is cut where sets would overlap: built slower, walked faster, in somewhat more memory.
+        /// As by default, but space is split where halves of a set would overlap: slower to build, faster to traverse, with
+        /// somewhat more memory.
         "high" High,
     }
 }
@@ -49,7 +50,7 @@ impl<F: Fn(u32) -> u8 + Sync> Shapes for Classed<'_, F> {
 }
 
 impl Bvh8 {
-    /// Builds the hierarchy over boxes `0..n`, n at most [`Bvh8::MAX_PRIMITIVES`]; `class` tells the class of each.
+    /// Builds the hierarchy over boxes `0..n`, n at most [`Bvh8::MAX_PRIMITIVES`]; `class` returns the class of each.
     pub fn build(bounds: &[Aabb], class: impl Fn(u32) -> u8 + Sync) -> Self {
         Self::build_with(bounds, class, &Bvh8Parameters::DEFAULT)
     }
@@ -88,7 +89,7 @@ impl Bvh8 {
 }
 
 impl Tree {
-    /// Splits from the top.
+    /// Builds the tree top-down.
     pub(super) fn build(mut refs: Vec<Ref>) -> Self {
         let mut spare = refs.clone();
         Self::grow(Set::all(&mut refs, &mut spare))

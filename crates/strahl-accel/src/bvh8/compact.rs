@@ -11,10 +11,10 @@ use strahl_simd::Isa;
 /// # Why no box is smaller than it was
 /// The origin is the least lower plane of all children, so `q = 0` is not above any of them. `e` is such that the decoded `q = 255` is not
 /// below any upper plane. Rounding is monotone, so decoded planes are in the order of their numbers; for each lower
-/// plane the number is one whose decoded plane, the very f32 that the walk computes, is not above it, and for each upper plane one whose
-/// decoded plane is not below it. So each decoded box contains the box it was made from, and the walk treats its planes as
-/// it does those of a [`Node`]: as exact. What remains is that they lie within the bound B of the culling test, which is made from the
-/// decoded boxes.
+/// plane the number is one whose decoded plane, the same f32 that the traversal computes, is not above it, and for each upper
+/// plane one whose decoded plane is not below it. So each decoded box contains the box it was made from, and the traversal can
+/// treat its planes as exact, like those of a [`Node`]. The bound B of the culling test is computed from the decoded boxes, so
+/// their planes are within it, too.
 ///
 /// C. Benthin, I. Wald, S. Woop, A. Áfra, "Compressed-Leaf Bounding Volume Hierarchies" (2018); H. Ylitie, T. Karras, S. Laine, "Efficient
 /// Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs" (2017).
@@ -66,7 +66,7 @@ impl Grid {
         grid
     }
 
-    /// What the walk computes.
+    /// The plane as the traversal computes it.
     fn plane(self, number: u8) -> f32 {
         f32::from(number) * step(self.exponent) + self.origin
     }
@@ -96,7 +96,7 @@ impl Grid {
 }
 
 impl CompactNode {
-    /// The same children in boxes that contain those of `node`.
+    /// A node with the same children in boxes that contain those of `node`.
     pub(super) fn of(node: &Node) -> Self {
         let mut whole = Box32::EMPTY;
         for (_, bounds) in node.children() {
@@ -165,7 +165,7 @@ mod tests {
     use strahl_math::{Aabb, DVec3};
     use strahl_simd::{Simd, dispatch};
 
-    /// Boxes of all sizes at places of all magnitudes, flat ones and points among them.
+    /// Boxes of all sizes and magnitudes of coordinates, including flat ones and points.
     fn nodes() -> Vec<Node> {
         let mut state = 5u64;
         let mut below = |n: u64| {
@@ -207,7 +207,7 @@ mod tests {
                 assert!(outer.contains(&inner), "{outer:?} {inner:?}");
                 whole.grow(&inner);
             }
-            // A step is at most 2/255 of the whole, or as little as f32 can tell apart there.
+            // A step is at most 2/255 of the extent, or the spacing of f32 numbers there.
             let far = whole.lo().abs().max(whole.hi().abs());
             let step = whole.size() * (2.0 / 255.0) + far * f32::EPSILON + Vec4::splat(1e-28);
             for ((_, outer), (_, inner)) in compact.children().zip(node.children()) {

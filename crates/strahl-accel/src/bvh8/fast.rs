@@ -1,8 +1,8 @@
-//! Builds the tree from the bottom: neighbours along a curve through all primitives are joined pair by pair, and the binary tree that this makes is
-//! folded to nodes of eight.
+//! Builds the tree bottom-up: neighbours along a space-filling curve are joined pair by pair, and the resulting binary tree is
+//! collapsed to nodes of eight.
 //!
-//! D. Meister, J. Bittner, "Parallel locally-ordered clustering for bounding volume hierarchy construction" (2018). Segments of the
-//! curve are joined by themselves at first: they fit the cache, and threads need not wait for each other.
+//! D. Meister, J. Bittner, "Parallel locally-ordered clustering for bounding volume hierarchy construction" (2018). Segments of
+//! the curve are joined separately at first: they fit the cache, and threads need not wait for each other.
 
 use super::Tree;
 use super::grow::{LEAF, Subtree};
@@ -14,16 +14,16 @@ use arrayvec::ArrayVec;
 use rayon::prelude::*;
 use strahl_math::Vec4;
 
-/// Clusters look this far for a partner, along the curve, in the first rounds and all later ones. With 8 in all rounds rays are
-/// some percent faster, but building takes nearly half as long again.
+/// The search radius along the curve in the first rounds and in all later ones. With 8 in all rounds rays are some percent
+/// faster, but building takes nearly half as long again.
 const RADII: [usize; 4] = [1, 1, 1, 4];
-/// Primitives of a segment of the curve that is joined by itself,
+/// Primitives in a segment of the curve that is joined separately,
 const SEGMENT: usize = 8192;
-/// until there is one cluster left for so many primitives.
+/// until there is one cluster left for this many primitives.
 const SEGMENT_TARGET: usize = 64;
-/// Rounds of joining take off a third of the clusters. Where they hardly take off any, this builder is the wrong one.
+/// A round of joining removes a third of the clusters. If rounds remove hardly any, this builder is the wrong one.
 const MOST_ROUNDS: usize = 200;
-/// A node of two costs less than one of eight, which replaces several.
+/// A node of two costs less than one of eight, which replaces several of them.
 const NODE_COST: f32 = 0.5;
 
 /// The tree over at least one primitive.
@@ -33,13 +33,13 @@ pub(super) fn build(refs: Vec<Ref>) -> Tree {
             joined: &joined,
             cluster: joined.root,
         }),
-        // Too deep for the traversal, or joined too slowly: things of very different sizes in one place.
+        // Too deep for the traversal, or too many rounds: objects of very different sizes in one place.
         None => Tree::build(refs),
     }
 }
 
-/// A subtree on its way up. The fourth lanes of its box tell what it is: a primitive or a node, and how many primitives of which
-/// classes are below.
+/// A subtree under construction. The fourth lanes of its box hold its kind (a primitive or a node), the number of primitives
+/// below it and their classes.
 #[derive(Clone, Copy)]
 struct Cluster {
     bounds: Box32,
@@ -49,7 +49,7 @@ impl Cluster {
     const COUNT_BITS: u32 = 26;
     /// Set for nodes.
     const NODE: u32 = 1 << 30;
-    /// Set for nodes that are better a leaf.
+    /// Set for nodes that are cheaper as a leaf.
     const LEAF: u32 = 1 << 31;
 
     fn new(bounds: Box32, link: u32, info: u32) -> Self {
@@ -89,17 +89,17 @@ impl Cluster {
     }
 }
 
-/// The clusters there are at a time, in the order of the curve.
+/// The current clusters, in the order of the curve.
 #[derive(Default)]
 struct Front {
     clusters: Vec<Cluster>,
     below: Vec<Below>,
 }
 
-/// What is known of a cluster beside its box.
+/// Data of a cluster besides its box.
 #[derive(Clone, Copy)]
 struct Below {
-    /// What rays that meet its box pay, by the surface area heuristic.
+    /// The cost of a ray that meets its box, by the surface area heuristic.
     cost: f32,
     /// Levels of nodes.
     depth: u32,
@@ -131,7 +131,7 @@ impl Segment {
                     next.clusters.push(*cluster);
                     next.below.push(*below);
                 } else if i < other {
-                    // Pairs that chose each other become one, at the place of the first.
+                    // Two clusters that chose each other are joined, at the place of the first.
                     let (joined, below) = self.pair(
                         [*cluster, front.clusters[other]],
                         [below, &front.below[other]],
@@ -183,9 +183,9 @@ fn joined_area(a: &Cluster, b: &Cluster, unit: f32) -> f32 {
     x * y + z * (x + y)
 }
 
-/// For each cluster the one with which it has the smallest box, as a number that is smaller the better the choice: the area, whether the two are no
-/// pair of places, the distance, whether the partner comes later. So the best choice of all is mutual, every round joins
-/// something, and among equals it joins half of them.
+/// For each cluster the partner with the smallest common box, encoded as a number that is smaller the better the choice: area,
+/// then whether the two places form a pair, then distance, then whether the partner comes later. So the best choice of all is
+/// mutual, every round joins something, and among equal ones half of the clusters are joined.
 fn find_partners(clusters: &[Cluster], radius: usize, unit: f32, best: &mut Vec<u64>) {
     best.clear();
     best.resize(clusters.len(), u64::MAX);
@@ -201,7 +201,7 @@ fn find_partners(clusters: &[Cluster], radius: usize, unit: f32, best: &mut Vec<
     }
 }
 
-/// The partner of a cluster by what [`find_partners`] tells of it.
+/// The partner of a cluster, decoded from the result of [`find_partners`].
 fn partner(i: usize, best: u64) -> usize {
     let distance = (best as u32 & 0x7fff_ffff) as usize >> 1;
     if best & 1 == 1 {
@@ -258,7 +258,7 @@ impl Joined {
         })
     }
 
-    /// What a node joins.
+    /// The children of a node.
     fn halves(&self, node: u32) -> &[Cluster; 2] {
         let top = self.segments.len() - 1;
         let segment = &self.segments[(node as usize / SEGMENT).min(top)];
@@ -266,13 +266,13 @@ impl Joined {
     }
 }
 
-/// The numbers of primitives in the order of a curve that keeps neighbours together: the bits of their centres' coordinates in turn.
+/// The numbers of primitives in Morton order: by the interleaved bits of their centres' coordinates.
 fn along_curve(refs: &[Ref], extent: &Extent) -> Vec<u32> {
     const BITS: u32 = 13;
     const DIGIT: u32 = 10;
     let centers = extent.centers;
     let cells = ((1 << BITS) - 1) as f32;
-    // Flat in a direction: 0/0, which the cast below takes to 0.
+    // If the scene is flat along an axis this is 0/0, which the cast below turns into 0.
     let scale = Vec4::splat(cells) / centers.size();
     let code = |(i, r): (usize, &Ref)| {
         let [x, y, z, _] = ((r.bounds().center() - centers.lo()) * scale).to_array();
@@ -282,7 +282,7 @@ fn along_curve(refs: &[Ref], extent: &Extent) -> Vec<u32> {
     };
     let mut codes: Vec<u64> = refs.par_iter().enumerate().map(code).collect();
     let mut sorted = vec![0; codes.len()];
-    // From the lowest digit to the highest, each keeping the order of those before.
+    // A radix sort: from the lowest digit to the highest, each pass being stable.
     for digit in 0..(3 * BITS).div_ceil(DIGIT) {
         let bucket = |code: u64| (code >> (Tree::ID_BITS + digit * DIGIT)) as usize % (1 << DIGIT);
         let mut places = [0usize; 1 << DIGIT];

@@ -1,5 +1,5 @@
-//! Grows the tree of nodes of eight from anything that can be split in two: the largest child is split until there are eight. The same tree for any
-//! number of threads.
+//! Builds the tree of nodes of eight from any set that can be split in two: the largest child is split until there are eight.
+//! The same tree for any number of threads.
 
 use super::node::{Child, Node, Nodes, WIDTH, WideNode};
 use super::{BLOCK, NO_PRIMITIVE, Tree};
@@ -8,7 +8,7 @@ use crate::bvh::split::LeafModel;
 use crate::cull::CullBounds;
 use arrayvec::ArrayVec;
 
-/// Sets with more primitives are split among threads.
+/// Larger sets are split among threads.
 const PARALLEL: usize = 4096;
 
 /// Leaves are up to four blocks; a block costs about as much as a node.
@@ -19,26 +19,26 @@ pub(super) const LEAF: LeafModel = LeafModel {
     block_log: BLOCK.ilog2(),
 };
 
-/// The same where a node has places left: boxes there cost nothing.
+/// The same in a node with free places, where further boxes cost nothing.
 const WITHIN: LeafModel = LeafModel {
     node_cost: 0.0,
     ..LEAF
 };
 
-/// Primitives that will be a child; at least one.
+/// Primitives that will become a child; at least one.
 pub(super) trait Subtree: Sized + Send {
-    /// Memory to work with, of one thread.
+    /// Working memory of one thread.
     type Scratch: Default + Send;
 
-    /// What their boxes span.
+    /// The bounds of their boxes.
     fn bounds(&self) -> &Box32;
 
-    /// How many there are.
+    /// The number of primitives.
     fn count(&self) -> usize;
 
-    /// Splits them, or gives them back because they are a leaf by this model.
+    /// Splits them, or returns them if they are a leaf by this model.
     ///
-    /// There must be no more splits on the way from the root than the traversal's stack has levels.
+    /// The number of splits on the way from the root must not exceed the levels of the traversal's stack.
     fn split(self, leaf: &LeafModel, scratch: &mut Self::Scratch) -> Result<[Self; 2], Self>;
 
     /// The class of the primitives of a leaf.
@@ -53,7 +53,7 @@ impl Tree {
     pub(super) fn grow<S: Subtree>(all: S) -> Self {
         let bounds = CullBounds::new(all.bounds().to_aabb());
         let mut parts = Parts::<S>::new();
-        // Memory that is not used in the end was never touched.
+        // Memory that is reserved but never used costs nothing.
         parts.nodes.reserve(all.count() / 8);
         parts.slots.reserve(2 * all.count());
         let root = parts.add(all);
@@ -68,7 +68,7 @@ impl Tree {
     }
 }
 
-/// A set on its way to be a child, with half its surface area.
+/// A set that will become a child, with half its surface area.
 struct Open<S> {
     set: S,
     area: f64,
@@ -83,7 +83,8 @@ impl<S: Subtree> Open<S> {
     }
 }
 
-/// A tree that grows. Depth first, the children with the largest boxes first, as rays are likely to walk it.
+/// A tree under construction. Depth first, the children with the largest boxes first, the order in which rays probably visit
+/// it.
 struct Parts<S: Subtree> {
     nodes: Vec<Node>,
     slots: Vec<u32>,
@@ -112,7 +113,7 @@ impl<S: Subtree> Parts<S> {
         let mut open: ArrayVec<Open<S>, WIDTH> =
             halves.into_iter().map(|s| Open::new(s, false)).collect();
         while open.len() < WIDTH {
-            // Of equal ones the first, so that the choice is unique.
+            // The first of equal ones, so that the choice is unique.
             let inner = (0..open.len()).filter(|i| !open[*i].leaf);
             let largest = inner.reduce(|a, b| if open[b].area > open[a].area { b } else { a });
             let Some(largest) = largest else { break };
@@ -128,7 +129,7 @@ impl<S: Subtree> Parts<S> {
                 Err(set) => open.push(Open::new(set, true)),
             }
         }
-        // Large ones first: rays that look for anything at all are likely to find it there. The sort is stable.
+        // Large ones first: any-hit rays probably find a hit there. The sort is stable.
         let mut order: ArrayVec<usize, WIDTH> = (0..open.len()).collect();
         order.sort_by(|a, b| open[*b].area.total_cmp(&open[*a].area));
         let number = self.nodes.len();
@@ -161,7 +162,7 @@ impl<S: Subtree> Parts<S> {
         }
     }
 
-    /// Adds several subtrees, each as if the ones before had been added first.
+    /// Adds several subtrees in parallel, with the same result as one after the other.
     fn add_parallel(&mut self, mut sets: Vec<Open<S>>) -> Vec<Child> {
         if sets.len() == 1 {
             return sets.into_iter().map(|set| self.add_open(set)).collect();
@@ -172,7 +173,7 @@ impl<S: Subtree> Parts<S> {
             rayon::join(|| self.add_parallel(sets), || other.add_parallel(later));
         let (nodes, blocks) = (self.nodes.len(), self.slots.len() / BLOCK);
         self.nodes.extend(other.nodes.into_iter().map(|mut node| {
-            // Not those of empty places, so that the tree is the one that a single thread makes.
+            // Empty places are not counted, so that the tree is the one that a single thread builds.
             let used = node.children().count();
             for child in &mut node.children[..used] {
                 *child = child.moved(nodes, blocks);
@@ -188,7 +189,7 @@ impl<S: Subtree> Parts<S> {
         let first = self.slots.len();
         set.ids(&mut self.slots);
         self.slots[first..].sort_unstable();
-        // Parts of the same primitive are one here.
+        // Several parts of the same primitive count once.
         let mut count = 1;
         for i in first + 1..self.slots.len() {
             if self.slots[i] != self.slots[first + count - 1] {

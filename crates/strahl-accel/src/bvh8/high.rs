@@ -1,5 +1,5 @@
-//! Builds the tree from the top as by default, but cuts thin primitives into more parts, and space where the halves of a set would overlap: slower to
-//! build, and rays meet fewer things.
+//! Builds the tree top-down as by default, but splits thin primitives into more parts, and splits space where the halves of a
+//! set would overlap: slower to build, and rays visit fewer nodes and primitives.
 //!
 //! M. Stich, H. Friedrich, A. Dietrich, "Spatial Splits in Bounding Volume Hierarchies" (2009).
 
@@ -14,16 +14,16 @@ use crate::bvh::bins::{Bins, Plane};
 use crate::bvh::refs::{Extent, Ref};
 use crate::bvh::split::{LeafModel, blocks, middle};
 
-/// Space is cut where the halves of a set overlap by more than this part of its area,
+/// Space is split where the halves of a set overlap by more than this part of its area,
 const OVERLAP: f64 = 0.1;
-/// and only if that makes rays so much cheaper.
+/// and only if that lowers the cost to this part.
 const GAIN: f32 = 0.99;
-/// Smaller sets are not cut: that would take most of the time and save next to nothing (945 k triangles: 7 s instead of 1.7, 0.5 % fewer
-/// blocks a ray).
+/// Smaller sets are not split in space: that would take most of the time and save next to nothing (945 k triangles: 7 s instead
+/// of 1.7, 0.5 % fewer blocks a ray).
 const LARGE: usize = 256;
-/// Cuts make one part more for so many primitives.
+/// Space splits may make one additional reference per this many primitives.
 const SPARE: usize = 3;
-/// Thin primitives are cut beforehand into so many parts more, for each primitive.
+/// Thin primitives are split before the build into at most this many additional parts per primitive.
 const PRESPLIT: f64 = 1.0;
 
 /// The tree over at least one primitive.
@@ -44,18 +44,18 @@ struct Pieces<'a> {
     shapes: &'a dyn Shapes,
     refs: Vec<Ref>,
     extent: Extent,
-    /// How often the whole was split to get here.
+    /// The number of splits on the way from the root.
     depth: usize,
-    /// How many more parts there may be in its subtree.
+    /// How many additional references its subtree may have.
     spare: usize,
 }
 
-/// What is to become of a set.
+/// How a set is divided.
 enum Plan {
     Leaf,
     Halves,
     Plane(Plane),
-    /// Where one side of the cut turns out empty, the plane.
+    /// A split of space, and the plane to use if one of its sides turns out to be empty.
     Cut(SpaceCut, Option<Plane>),
 }
 
@@ -68,8 +68,8 @@ impl Pieces<'_> {
         let fits = count <= leaf.max_size && classes.is_power_of_two();
         let or_leaf = |plan| if fits { Plan::Leaf } else { plan };
         let log = leaf.block_log(classes);
-        // From here on halving takes this many levels of nodes, also if all parts that may be made are. It takes over while there are
-        // still that many.
+        // The number of levels that halving needs from here on, even with all additional references. Halving takes over while
+        // there are still that many.
         let needed = (count + self.spare).ilog2() as usize + 1;
         if self.depth + needed >= MAX_DEPTH - 1 {
             return or_leaf(Plan::Halves);
@@ -89,7 +89,7 @@ impl Pieces<'_> {
         plan
     }
 
-    /// A cut of space, if that is better than the best plane between primitives.
+    /// A split of space, if it is better than the best plane between primitives.
     fn cut(&self, plane: Option<&Plane>, bins: &Bins, log: u32) -> Option<SpaceCut> {
         if self.spare == 0 || self.refs.len() < LARGE {
             return None;
@@ -131,13 +131,13 @@ impl<'a> Pieces<'a> {
         })
     }
 
-    /// What is left of a plane, and the others.
+    /// The primitives left of a plane, and the others.
     fn parted(self, plane: &Plane) -> [Self; 2] {
         let (left, right) = self.refs.iter().partition(|r| plane.is_left(r));
         self.halves([left, right])
     }
 
-    /// Its [`middle`] parts them.
+    /// Splits it at its [`middle`].
     fn halved(mut self) -> [Self; 2] {
         let middle = middle(&mut self.refs, &self.extent);
         let parts = [self.refs[..middle].to_vec(), self.refs[middle..].to_vec()];

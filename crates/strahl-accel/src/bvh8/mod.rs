@@ -1,6 +1,7 @@
-//! The bounding volume hierarchy of width eight: one vector instruction looks at all children of a node.
+//! The bounding volume hierarchy of width eight: one vector instruction tests all children of a node.
 //!
-//! Split by phase as [`crate::Bvh2`]: `build` makes it, `traverse` walks it, `validate` proves that it is what the walk relies on.
+//! Split by phase as [`crate::Bvh2`]: `build` makes it, `traverse` searches it, `validate` checks everything that the traversal
+//! relies on.
 
 mod beam;
 mod build;
@@ -30,17 +31,17 @@ pub use view::Content;
 /// Primitives in a block of slots.
 pub const BLOCK: usize = 4;
 
-/// The slot of no primitive.
+/// Marks a slot without a primitive.
 pub const NO_PRIMITIVE: u32 = u32::MAX;
 
 /// The parameters of [`Bvh8`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bvh8Parameters {
-    /// How carefully it is built.
+    /// The builder.
     pub build: Build,
-    /// The instructions it is walked with; those this processor does not have, and `None`, stand for the best it has.
+    /// The instruction set of the traversal; `None`, and those that this processor does not have, stand for the best it has.
     pub simd: Option<Level>,
-    /// Whether to spend as little memory as possible, at the cost of time.
+    /// Whether to use as little memory as possible, at the cost of time.
     pub compact: bool,
 }
 
@@ -104,11 +105,11 @@ impl Parameters for Bvh8Parameters {
 ///
 /// Boxes are f32, rounded outwards. Primitives without bounds are kept in a list beside the tree and always visited.
 ///
-/// Leaves are blocks of four slots, so that the owner of the primitives can keep them in the same order and look at four at once
-/// (see [`crate::Visitor::visit_leaf`]). All primitives of a leaf have the same class, a number from 0 to 3 that means
-/// nothing here but that the blocks of class 0 are looked at one by one.
+/// Leaves are blocks of four slots, so that the owner of the primitives can store them in the same order and test four at once
+/// (see [`crate::Visitor::visit_leaf`]). All primitives of a leaf have the same class, a number from 0 to 3. The only class
+/// with a meaning here is 0, whose primitives are tested one by one.
 ///
-/// With [`Build::High`] a primitive may be in several leaves, with the part of it that is there, and be visited several times.
+/// With [`Build::High`] a primitive may be in several leaves, each with a part of it, and be visited several times.
 ///
 /// H. Dammertz, J. Hanika, A. Keller, "Shallow Bounding Volume Hierarchies for Fast SIMD Ray Tracing of Incoherent Rays" (2008); I. Wald,
 /// C. Benthin, S. Boulos, "Getting Rid of Packets" (2008).
@@ -120,7 +121,7 @@ pub struct Bvh8 {
     simd: Simd,
 }
 
-/// What holds all bounded primitives, at least one.
+/// The tree of all bounded primitives, at least one.
 #[derive(Clone, Debug, PartialEq)]
 struct Tree {
     root: Child,
@@ -139,12 +140,12 @@ impl Bvh8 {
     /// The most primitives a hierarchy can hold.
     pub const MAX_PRIMITIVES: usize = Child::MAX_BLOCKS;
 
-    /// The instructions it is walked with.
+    /// The instruction set of the traversal.
     pub fn simd(&self) -> Level {
         self.simd.level()
     }
 
-    /// The same with the proof that this processor has them.
+    /// The same, with the proof that this processor has it.
     pub fn proof(&self) -> Simd {
         self.simd
     }
@@ -155,7 +156,7 @@ impl Bvh8 {
         self.unbounded.ids().is_empty()
     }
 
-    /// The same hierarchy in little memory: nodes whose boxes are less exact.
+    /// The same hierarchy in little memory: nodes with less exact boxes.
     #[must_use]
     pub fn compacted(self) -> Self {
         Self {
@@ -164,7 +165,7 @@ impl Bvh8 {
         }
     }
 
-    /// Asks the system for large pages where the hierarchy is large.
+    /// Moves a large hierarchy to large pages of memory.
     pub(crate) fn gather_pages(&self) {
         if let Some(tree) = &self.tree {
             match &tree.nodes {
@@ -175,13 +176,13 @@ impl Bvh8 {
         }
     }
 
-    /// Whether it spends as little memory as possible.
+    /// Whether it uses as little memory as possible.
     pub fn is_compact(&self) -> bool {
         let tree = self.tree.as_ref();
         tree.is_some_and(|t| matches!(t.nodes, Nodes::Compact(_)))
     }
 
-    /// The same hierarchy walked with the instructions of another level.
+    /// The same hierarchy, traversed with another instruction set.
     #[must_use]
     pub fn with_simd(self, simd: Simd) -> Self {
         Self { simd, ..self }

@@ -19,12 +19,12 @@ pub(super) struct Node {
 
 const _: () = assert!(size_of::<Node>() == 256);
 
-/// What is in a box: bit 31 tells leaves from nodes. A node's number; or a leaf's first block (25 bits), class (2 bits) and
-/// number of primitives less one (4 bits).
+/// A child. Bit 31 distinguishes leaves from nodes. The rest is the number of a node; or a leaf's first block (25 bits), class
+/// (2 bits) and number of primitives less one (4 bits).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Child(u32);
 
-/// What a [`Child`] says of a leaf.
+/// A leaf, decoded from a [`Child`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct LeafChild {
     pub(super) first_block: usize,
@@ -92,7 +92,7 @@ impl Child {
         }
     }
 
-    /// The same child after `nodes` nodes and `blocks` blocks were put in front of what it points to.
+    /// The same child after `nodes` nodes and `blocks` blocks were inserted in front of those it refers to.
     pub(super) fn moved(self, nodes: usize, blocks: usize) -> Self {
         Self(self.0 + if self.is_leaf() { blocks } else { nodes } as u32)
     }
@@ -125,7 +125,7 @@ impl Node {
     }
 }
 
-/// A node as the walks see it.
+/// A node as the traversals use it.
 pub(super) trait WideNode: Copy {
     /// The lower (side 0) or upper planes (side 1) of all children across an axis.
     fn planes<I: Isa>(&self, isa: I, axis: usize, side: usize) -> I::F32x8;
@@ -200,7 +200,7 @@ impl Nodes {
         }
     }
 
-    /// The same nodes in little memory; their boxes may be larger.
+    /// The same nodes in compact form; their boxes may be larger.
     pub(super) fn compacted(&self) -> Self {
         match self {
             Self::Full(nodes) => Self::Compact(nodes.iter().map(CompactNode::of).collect()),

@@ -1,8 +1,8 @@
-//! Packets of rays: what a node's boxes look like to all of them at once.
+//! Packets of rays: traversal with all rays of a packet at once.
 //!
-//! Rays that go in the same octant of directions are walked together. A node is looked at twice: all its children with intervals that
-//! hold the constants of all rays (`hull`), then each child that is left with all rays side by side (`lanes`). Where a single ray is left, it
-//! goes on by itself. The walk itself is here.
+//! Rays in the same octant of directions are traversed together. A node is tested in two steps: all its children against
+//! intervals that contain the constants of all rays (`hull`), then each remaining child against all rays side by side
+//! (`lanes`). A ray that is left alone continues as a single ray. The traversal itself is here.
 //!
 //! S. Boulos, I. Wald, P. Shirley, "Geometric and Arithmetic Culling Methods for Entire Ray Packets" (2006); I. Wald et al.,
 //! "Embree: A Kernel Framework for Efficient CPU Ray Tracing" (2014), its hybrid traversal.
@@ -24,7 +24,7 @@ use strahl_math::Interval;
 use strahl_simd::{Isa, dispatch};
 
 impl Bvh8 {
-    /// Walks the hierarchy with all rays of a packet; `false` if it does so with single rays only, as a compact one.
+    /// Traverses the hierarchy with all rays of a packet; `false` if it can traverse single rays only, as a compact one.
     #[inline]
     pub(super) fn walk_packet<V: PacketVisitor>(
         &self,
@@ -55,11 +55,11 @@ impl Bvh8 {
     }
 }
 
-/// The directions that rays go in, axis by axis: as bits for those along which they go down.
+/// The octants of directions, numbered by bits: one for each axis along which the rays go down.
 const OCTANTS: usize = 8;
 
 impl Tree {
-    /// Walks the tree with those rays together that go in the same octant.
+    /// Traverses the tree with the rays of each octant together.
     #[inline(always)]
     fn walk_octants<I: Isa, V: PacketVisitor>(
         &self,
@@ -74,7 +74,7 @@ impl Tree {
             return;
         };
         let mut lanes = Lanes::unused();
-        // Planes are taken relative to where rays start: then what is common to all rays does not widen the intervals.
+        // Planes are taken relative to an origin, so that the common part of the rays' origins does not widen the intervals.
         let o = first.origin;
         let near = o.abs().max_element() <= 4.0 * self.bounds.max_abs();
         let point = if near {
@@ -245,13 +245,13 @@ impl Tree {
 /// A child to visit with some of the rays.
 #[derive(Clone, Copy)]
 struct Waiting {
-    /// None of the rays gets there sooner.
+    /// A lower bound of the parameters at which the rays enter it.
     near: f32,
     child: Child,
     lanes: u32,
 }
 
-/// Sorts a few, the nearest last.
+/// Sorts a few children, the nearest last.
 #[inline(always)]
 fn nearest_last(list: &mut [Waiting]) {
     for i in 1..list.len() {
@@ -265,7 +265,7 @@ fn nearest_last(list: &mut [Waiting]) {
     }
 }
 
-/// What the rays of one octant have in common.
+/// The rays of one octant, and the constants they share.
 struct Walk<I: Isa> {
     hull: HullSlabs<I>,
     octant: usize,

@@ -1,4 +1,5 @@
-//! Where to cut space in two rather than a set of primitives: those that reach across the cut go to both sides, each with the part that is there.
+//! Splits space instead of a set of primitives: a primitive that straddles the plane goes to both sides, each with its part
+//! there.
 //!
 //! M. Stich, H. Friedrich, A. Dietrich, "Spatial Splits in Bounding Volume Hierarchies" (2009).
 
@@ -12,7 +13,7 @@ use strahl_math::Vec4;
 /// Cells per axis.
 const CELLS: usize = 16;
 
-/// A plane that cuts space.
+/// A plane that splits space.
 pub(super) struct SpaceCut {
     axis: usize,
     at: f32,
@@ -28,7 +29,7 @@ struct Cells {
 }
 
 impl Cells {
-    /// The upper end of a cell.
+    /// The upper plane of a cell.
     fn end(&self, axis: usize, cell: usize) -> f32 {
         self.lo[axis] + self.size[axis] * ((cell + 1) as f32 / CELLS as f32)
     }
@@ -40,12 +41,12 @@ impl Cells {
     }
 }
 
-/// What is in the cells of each axis.
+/// The contents of the cells of each axis.
 #[derive(Clone)]
 struct Content {
-    /// Around the parts of primitives in a cell.
+    /// The boxes around the parts of primitives in each cell.
     boxes: [[Box32; 3]; CELLS],
-    /// How many primitives begin and end in it.
+    /// The numbers of primitives that begin and end in each cell.
     begin: [[u32; 4]; CELLS],
     end: [[u32; 4]; CELLS],
 }
@@ -105,7 +106,7 @@ impl SpaceCut {
             lo: bounds.lo(),
             size: bounds.size(),
         };
-        // Minima, maxima and integer sums: exact in any grouping, so the threads leave no trace.
+        // Minima, maxima and integer sums are exact in any grouping, so the result does not depend on the threads.
         let content = refs
             .par_chunks(CHUNK)
             .map(|chunk| Content::of(shapes, chunk, &cells))
@@ -128,8 +129,8 @@ impl SpaceCut {
         Some(Self { axis, at, cost })
     }
 
-    /// Cuts a set: the parts on both sides. What reaches across goes as a whole to one side where that is cheaper than a part in each
-    /// (reference unsplitting); and where there is no place (`spare`) for more parts.
+    /// Splits a set into the parts on both sides. A primitive that straddles the plane goes to one side as a whole where that
+    /// is cheaper than a part on each (reference unsplitting), and where no more parts are allowed (`spare`).
     pub(super) fn apply(&self, shapes: &dyn Shapes, refs: &[Ref], spare: usize) -> [Vec<Ref>; 2] {
         let mut sides = [Side::new(refs.len()), Side::new(refs.len())];
         let mut across = vec![];
@@ -173,7 +174,7 @@ impl SpaceCut {
     }
 
     fn choose(&self, sides: &[Side; 2], r: &Ref, parts: &[Ref; 2], may_both: bool) -> Choice {
-        // Its box reaches across, but the primitive need not.
+        // Its box straddles the plane, but the primitive need not.
         if let Some(empty) = parts.iter().position(|p| p.bounds().is_empty()) {
             return Choice::Part(1 - empty);
         }
@@ -197,7 +198,7 @@ impl SpaceCut {
     }
 }
 
-/// Where a primitive goes that reaches across.
+/// Where a straddling primitive goes.
 enum Choice {
     Both,
     Whole(usize),
@@ -214,9 +215,9 @@ fn area(bounds: &Box32) -> f64 {
 /// One side of a cut.
 struct Side {
     refs: Vec<Ref>,
-    /// Around these and the parts expected.
+    /// The bounds of these and of the parts expected.
     bounds: Box32,
-    /// How many there will be if all that reaches across is cut.
+    /// The number of primitives if all straddling ones are split.
     expected: usize,
 }
 

@@ -11,11 +11,11 @@ use arrayvec::ArrayVec;
 use strahl_math::{Interval, Ray};
 use strahl_simd::{Isa, dispatch};
 
-/// Children left to visit: at most all but one of each level.
+/// Children still to visit: of each level at most all but one.
 type Stack = ArrayVec<Waiting, { MAX_DEPTH * (WIDTH - 1) }>;
 
-/// A child to visit, with the parameter at which the ray gets there in the upper half: smaller numbers come first. One number
-/// is compared and moved without a branch.
+/// A child to visit, with the parameter at which the ray enters it in the upper half: smaller numbers come first. A single
+/// number can be compared and moved without a branch.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Waiting(i64);
 
@@ -95,8 +95,8 @@ impl Accelerator for Bvh8 {
 }
 
 impl Bvh8 {
-    /// [`Accelerator::traverse`] inside of [`Isa::call`] with the instructions of [`Bvh8::simd`]: for a caller that has more to do with
-    /// them. Primitives that are in no leaf (see [`Bvh8::has_leaves_only`]) are not visited.
+    /// [`Accelerator::traverse`] for callers that are already inside of [`Isa::call`] with the instructions of [`Bvh8::simd`].
+    /// Primitives that are in no leaf (see [`Bvh8::has_leaves_only`]) are not visited.
     #[inline(always)]
     pub fn traverse_leaves<I: Isa, V: Visitor>(
         &self,
@@ -117,7 +117,7 @@ pub(super) struct Slabs<I: Isa> {
     rd: [I::F32x8; 3],
     minus_near: [I::F32x8; 3],
     minus_far: [I::F32x8; 3],
-    /// Per axis which of the two planes the ray meets first.
+    /// Per axis which of the two planes the ray crosses first.
     first: [usize; 3],
     t_min: I::F32x8,
 }
@@ -134,7 +134,7 @@ fn splats<I: Isa>(isa: I, [x, y, z, _]: [f32; 4]) -> [I::F32x8; 3] {
     [isa.splat_f32(x), isa.splat_f32(y), isa.splat_f32(z)]
 }
 
-/// Per axis which of two planes is met first.
+/// Per axis which of two planes is crossed first.
 #[inline(always)]
 pub(super) fn sides(down: u32) -> [usize; 3] {
     [
@@ -163,7 +163,7 @@ impl<I: Isa> Slabs<I> {
         }
     }
 
-    /// Of the constants of a ray by axis; `t_min` as the clock tells it.
+    /// From the constants of a ray by axis; `t_min` in the units of the culling test.
     #[inline(always)]
     pub(super) fn of(isa: I, lanes: &CullLanes, t_min: f32) -> Self {
         Self {
@@ -175,21 +175,21 @@ impl<I: Isa> Slabs<I> {
         }
     }
 
-    /// Where the ray crosses the planes of an axis that it meets first.
+    /// The parameters at which the ray crosses the first planes of an axis.
     #[inline(always)]
     fn near(&self, isa: I, node: &impl WideNode, k: usize) -> I::F32x8 {
         let planes = node.planes(isa, k, self.first[k]);
         isa.mul_add(planes, self.rd[k], self.minus_near[k])
     }
 
-    /// Where the ray crosses the planes of an axis that it meets last.
+    /// The parameters at which the ray crosses the last planes of an axis.
     #[inline(always)]
     fn far(&self, isa: I, node: &impl WideNode, k: usize) -> I::F32x8 {
         let planes = node.planes(isa, k, 1 - self.first[k]);
         isa.mul_add(planes, self.rd[k], self.minus_far[k])
     }
 
-    /// Where the ray enters the children's boxes, and which of them it may meet.
+    /// The parameters at which the ray enters the children's boxes, and the children that it may meet.
     #[inline(always)]
     fn enter(&self, isa: I, node: &impl WideNode, t_max: I::F32x8) -> (I::F32x8, u32) {
         let (x, y, z) = (
@@ -209,7 +209,7 @@ impl<I: Isa> Slabs<I> {
 }
 
 impl Tree {
-    /// Walks the tree, nearer children first.
+    /// Traverses the tree, nearer children first.
     #[inline(always)]
     fn walk<I: Isa, V: Visitor>(
         &self,
@@ -220,7 +220,7 @@ impl Tree {
         stats: &mut TraversalStats,
     ) {
         if self.root.is_block() && !V::WATCHES {
-            // A look at their box would cost as much.
+            // Testing their box would cost as much.
             let leaf = self.leaf(self.root);
             stats.primitive_tests += leaf.count as u64;
             visitor.visit_leaf(isa, &leaf, range.max);
@@ -229,7 +229,7 @@ impl Tree {
         self.walk_tree(isa, ray, range, visitor, stats);
     }
 
-    /// The same whatever the root is.
+    /// The same for any root.
     #[inline(always)]
     fn walk_tree<I: Isa, V: Visitor>(
         &self,
@@ -263,7 +263,7 @@ impl Tree {
         self.walk_from(isa, nodes, root, &slabs, clock, ray, range, visitor, stats);
     }
 
-    /// A function of its own: two such loops in one would take registers from each other.
+    /// A separate function: two such loops in one would compete for registers.
     #[cold]
     #[inline(never)]
     fn walk_compact<I: Isa, V: Visitor>(
@@ -281,7 +281,7 @@ impl Tree {
         );
     }
 
-    /// The leaf that a child is.
+    /// The leaf that a child stands for.
     #[inline(always)]
     pub(super) fn leaf(&self, child: Child) -> Leaf<'_> {
         let parts = child.parts();
@@ -293,7 +293,7 @@ impl Tree {
         }
     }
 
-    /// Walks a subtree, nearer children first; returns what the visitor made of the upper end of the range.
+    /// Traverses a subtree, nearer children first; returns the upper end of the range as the visitor left it.
     #[inline(always)]
     #[expect(
         clippy::too_many_arguments,
@@ -325,7 +325,8 @@ impl Tree {
                 cost.node_visits += 1;
                 let node = &nodes[current.node()];
                 let (near, mut hit) = slabs.enter(isa, node, far_lanes);
-                // Branches rather than arithmetic on masks: the processor goes on with the likely child before the test is done.
+                // Branches rather than arithmetic on masks: the processor speculates on the likely child before the test is
+                // done.
                 if hit != 0 {
                     let first = hit.trailing_zeros() as usize;
                     hit &= hit - 1;
@@ -334,7 +335,7 @@ impl Tree {
                         continue;
                     }
                     if V::ANY {
-                        // As they lie, the largest first: there is no telling which is hit.
+                        // In stored order, the largest first: it is unknown which of them are hit.
                         while hit != 0 {
                             let last = 31 - hit.leading_zeros() as usize;
                             hit ^= 1 << last;
@@ -402,7 +403,7 @@ impl Tree {
     }
 }
 
-/// Has the memory of a child fetched that will be visited later. Without a branch on what it is, which would be hard to predict.
+/// Prefetches the memory of a child that will be visited later. Without a branch on its kind, which would be hard to predict.
 #[inline(always)]
 fn fetch_ahead<I: Isa, N, V: Visitor>(isa: I, nodes: &[N], visitor: &V, child: Child) {
     let node: *const u8 = nodes.as_ptr().wrapping_add(child.node()).cast();
@@ -413,7 +414,7 @@ fn fetch_ahead<I: Isa, N, V: Visitor>(isa: I, nodes: &[N], visitor: &V, child: C
     isa.prefetch(address.wrapping_add(128));
 }
 
-/// Sorts a few, the farthest first.
+/// Sorts a few children, the farthest first.
 #[inline(always)]
 fn farthest_first(list: &mut [Waiting]) {
     for i in 1..list.len() {

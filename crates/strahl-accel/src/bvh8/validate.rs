@@ -5,11 +5,12 @@ use crate::bvh::validate::Places;
 use strahl_math::Aabb;
 
 impl Bvh8 {
-    /// Proves what the traversal relies on: indices in range, no circles, every box inside that of the tree, every
-    /// primitive that is not empty in one place and inside all boxes on the way to it; or in several, whose boxes span its own.
+    /// Checks everything that the traversal relies on: indices are in range, there are no cycles, every box lies inside that of
+    /// the tree, every primitive that is not empty is in one leaf and inside all boxes on the way to it; or in several, whose
+    /// boxes cover its own.
     ///
     /// # Errors
-    /// The first thing found wrong, in words.
+    /// The first violation found.
     pub fn validate(&self, bounds: &[Aabb]) -> Result<(), String> {
         let mut places = Places::new(bounds);
         for id in self.unbounded.ids() {
@@ -23,7 +24,7 @@ impl Bvh8 {
 }
 
 impl Tree {
-    /// The part of the proof that is about the tree.
+    /// Checks the tree.
     fn validate(&self, bounds: &[Aabb], places: &mut Places<'_>) -> Result<(), String> {
         let whole = Box32::around(self.bounds.bounds());
         let mut waiting: Vec<(Child, Box32)> = vec![(self.root, whole)];
@@ -54,7 +55,7 @@ impl Tree {
                 if !whole.contains(&inner) {
                     return Err(format!("a child of node {number} sticks out"));
                 }
-                // The boxes of compact nodes may be larger than what they are in.
+                // The boxes of compact nodes may be larger than their parent's.
                 waiting.push((child, own.intersection(&inner)));
             }
         }

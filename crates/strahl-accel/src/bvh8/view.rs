@@ -1,10 +1,10 @@
-//! The tree for those who want to look at it, as benchmarks do.
+//! Access to the tree, for benchmarks and tools.
 
 use super::node::Child;
 use super::{Bvh8, Tree};
 use strahl_math::Aabb;
 
-/// What is in a box of a [`Bvh8`].
+/// A node or a leaf of a [`Bvh8`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Content<'b> {
     /// A node with its number.
@@ -14,7 +14,7 @@ pub enum Content<'b> {
 }
 
 impl Bvh8 {
-    /// What holds all primitives that have bounds, if there are any, and its box.
+    /// The root of the tree of all bounded primitives, if there are any, with its box.
     pub fn root(&self) -> Option<(Aabb, Content<'_>)> {
         let tree = self.tree.as_ref()?;
         Some((*tree.bounds.bounds(), tree.content(tree.root)))

@@ -7,7 +7,7 @@ use crate::walk::Room;
 use rayon::prelude::*;
 use strahl_math::{Aabb, DVec3};
 
-/// Cells with more primitives become grids, if that helps.
+/// Cells with more primitives become grids, if that reduces the references.
 const CROWDED: usize = 16;
 
 /// Levels of grids.
@@ -64,7 +64,7 @@ impl Grids {
         self.grids.push(grid);
         let outermost = self.offsets.is_empty();
         if !outermost {
-            // The end of what is there becomes the beginning of what comes.
+            // The end of the last cell is the beginning of the first one added.
             self.offsets.pop();
         }
         let first_cell = self.offsets.len() as u32;
@@ -91,9 +91,9 @@ impl Grids {
 struct Cells {
     grid: SubGrid,
     blocks: Vec<Block>,
-    /// Where the ids of each cell that is not empty begin, and the end.
+    /// The beginning of the ids of each cell that is not empty, and the end of the last.
     offsets: Vec<u32>,
-    /// A nested grid has one entry that is not an id.
+    /// The ids; a cell with a nested grid has one entry, which is not an id.
     ids: Vec<u32>,
     nested: Vec<(usize, Cells)>,
 }
@@ -148,7 +148,7 @@ impl Builder<'_> {
         Some(cells)
     }
 
-    /// How a box is cut, for so many primitives.
+    /// The cells of a box, for so many primitives.
     fn empty(&self, primitives: usize, region: &Aabb, level: u32) -> SubGrid {
         let wanted = self.parameters.density * primitives as f64;
         let count = match self.parameters.resolution {
@@ -186,7 +186,7 @@ impl Builder<'_> {
         places
     }
 
-    /// The grid that a crowded cell becomes, if it takes references apart.
+    /// The nested grid of a crowded cell, if it separates the primitives.
     fn nested(
         &self,
         grid: &SubGrid,
@@ -211,7 +211,7 @@ impl Builder<'_> {
         }
         let cells = self.cells(ids, &region, level + 1, levels)?;
         let filled = cells.offsets.len() - 1;
-        // Where most primitives are in most cells nothing was won.
+        // If most primitives are in most cells, nothing is gained.
         let crowded = cells.references() * 2 > ids.len() * filled;
         (filled > 1 && !crowded).then_some(cells)
     }

@@ -1,6 +1,6 @@
 //! The regular grid of cells, and grids within the crowded cells of grids.
 //!
-//! `resolution` decides how fine, `build` sorts primitives into cells, `traverse` is the 3-D DDA.
+//! `resolution` chooses the number of cells, `build` sorts primitives into cells, `traverse` is the 3-D DDA.
 
 mod build;
 mod resolution;
@@ -17,8 +17,8 @@ pub struct GridParameters {
     pub density: f64,
     /// Number of cells along each axis of the outermost grid, instead of a density.
     pub resolution: Option<[u32; 3]>,
-    /// The construction of V. Havran's published figures: boxes decide what is in a cell, every cell is a step, nothing
-    /// is remembered.
+    /// The construction of V. Havran's published figures: boxes decide which primitives a cell lists, every cell is a step,
+    /// primitives may be tested repeatedly.
     pub havran: bool,
 }
 
@@ -88,7 +88,7 @@ pub struct Grid(Grids);
 
 /// A grid whose crowded cells are grids themselves.
 ///
-/// Cells are kept in blocks of 4 x 4 x 4 with a bit for each that is not empty; an empty block is passed in one step.
+/// Cells are stored in blocks of 4 x 4 x 4 with a bit for each that is not empty; an empty block is skipped in one step.
 /// Primitives without bounds are kept in a list beside the grid and always visited.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Grids {
@@ -96,13 +96,13 @@ pub struct Grids {
     /// Grid 0 is the outermost.
     grids: Vec<SubGrid>,
     blocks: Vec<Block>,
-    /// For each cell that is not empty where its primitives begin; one more at the end. With [`NESTED`] the one entry there is
-    /// the number of a grid.
+    /// For each cell that is not empty the beginning of its primitives; one more entry for the end. With [`NESTED`] the only
+    /// entry there is the number of a grid.
     offsets: Vec<u32>,
     ids: Vec<u32>,
 }
 
-/// Marks a cell that is a grid.
+/// Marks a cell with a nested grid.
 const NESTED: u32 = 1 << 31;
 
 /// A grid in a box.
@@ -145,7 +145,7 @@ impl SubGrid {
     /// The cell a coordinate is in, the nearest one if it is outside.
     #[inline(always)]
     fn index(&self, axis: usize, coordinate: f64) -> u32 {
-        // Conversions saturate; what is below becomes 0.
+        // Conversions saturate; negative numbers become 0.
         let index = ((coordinate - self.min[axis]) / self.cell[axis]) as u32;
         index.min(self.count[axis] - 1)
     }

@@ -1,14 +1,14 @@
 use super::{MOST_ALONG, MOST_CELLS};
 use strahl_math::DVec3;
 
-/// Number of cells along each axis: together about as many as wanted, as cubic as the box allows, none smaller than
+/// The number of cells along each axis: about as many as wanted in total, as cubic as the box allows, none smaller than
 /// `smallest`.
 pub(super) fn cubic(size: DVec3, wanted: f64, smallest: f64) -> [u32; 3] {
     let most = MOST_CELLS as f64;
     let wanted = if wanted < most { wanted } else { most };
     let mut count = [1.0; 3];
     let mut open = [true; 3];
-    // A box too flat for a second layer of cells leaves all of them to the other axes.
+    // If the box is too flat for a second layer of cells along an axis, the other axes get all of them.
     loop {
         let axes: Vec<usize> = (0..3).filter(|axis| open[*axis]).collect();
         let volume: f64 = axes.iter().map(|axis| size[*axis]).product();

@@ -72,7 +72,7 @@ impl Accelerator for Grids {
     }
 
     fn references(&self) -> usize {
-        // Every grid but the outermost takes the place of one reference.
+        // Every grid but the outermost replaces one reference.
         self.ids.len() + 1 - self.grids.len().max(1) + self.base.unbounded.references()
     }
 }
@@ -82,7 +82,7 @@ struct Walker<'w, V> {
     search: Search<'w, V>,
 }
 
-/// What is in a cell.
+/// The content of a cell.
 enum Content<'g> {
     Nothing,
     Primitives(&'g [u32]),
@@ -105,9 +105,9 @@ impl Grids {
 }
 
 impl<V: Visitor> Walker<'_, V> {
-    /// Walks through a grid from where the ray enters it, as far as anything may still be of interest; returns whether to go
-    /// on behind it. (Amanatides and Woo: A fast voxel traversal algorithm, 1987; but every crossing is computed from
-    /// the number of its plane.)
+    /// Walks through a grid from where the ray enters it until nothing beyond can matter; returns whether to continue behind
+    /// it. (Amanatides and Woo: A fast voxel traversal algorithm, 1987; but every crossing is computed from the number of its
+    /// plane.)
     fn grid(&mut self, number: u32, near: f64, level: u32) -> bool {
         let (grids, walk) = (self.grids, self.search.walk);
         let grid = &grids.grids[number as usize];
@@ -147,7 +147,7 @@ impl<V: Visitor> Walker<'_, V> {
                 Content::Primitives(ids) => self.search.visit(ids),
                 Content::Grid(inner) => self.grid(inner, entered, level + 1),
             };
-            // What is hit exactly at the crossing may be in the next cell only.
+            // A primitive hit exactly at the crossing may be listed in the next cell only.
             if !go_on || self.search.far < left {
                 return false;
             }
@@ -159,7 +159,7 @@ impl<V: Visitor> Walker<'_, V> {
         }
     }
 
-    /// Passes an empty block: moves to the cell at which the ray leaves it, and says by which axis and where.
+    /// Skips an empty block: moves to the cell at which the ray leaves it, and returns the axis and the parameter.
     fn skip(&self, grid: &SubGrid, index: &mut [u32; 3], up: [bool; 3]) -> (usize, f64) {
         let edge = 1 << BLOCK;
         let first = index.map(|i| i >> BLOCK << BLOCK);
@@ -175,7 +175,7 @@ impl<V: Visitor> Walker<'_, V> {
         let axis = smallest(crossings);
         let p = self.search.walk.moved.at(crossings[axis]);
         for other in 0..3 {
-            // Never back: a coordinate rounded the wrong way must not make the walk go in circles.
+            // Never backwards: a coordinate rounded in the wrong direction must not make the walk go in circles.
             let (from, to) = match up[other] {
                 true => (index[other], last[other]),
                 false => (first[other], index[other]),
@@ -186,7 +186,7 @@ impl<V: Visitor> Walker<'_, V> {
         (axis, crossings[axis])
     }
 
-    /// Looks at all cells within the margin of a thick ray, in the order of the grid; returns whether to go on.
+    /// Visits all cells within the margin of a thick ray, in the order of the grid; returns whether to continue.
     fn thick(&mut self, number: u32) -> bool {
         let grids = self.grids;
         let grid = &grids.grids[number as usize];
@@ -265,7 +265,7 @@ impl<V: Visitor> Walker<'_, V> {
     }
 }
 
-/// The axis whose crossing is the first; of equal ones the first axis.
+/// The axis of the first crossing; of equal ones the first axis.
 #[inline(always)]
 fn smallest(t: [f64; 3]) -> usize {
     let axis = usize::from(t[1] < t[0]);

@@ -9,7 +9,7 @@ use strahl_math::{Aabb, DVec3};
 /// Cells with more primitives are divided by several threads.
 const PARALLEL: usize = 1024;
 
-/// What a step into a cell costs, in units of a primitive test.
+/// The cost of a step into a cell, in units of a primitive test.
 const STEP_COST: f64 = 1.0;
 
 /// Planes tried along each axis.
@@ -38,7 +38,7 @@ impl Octree {
         octree
     }
 
-    /// Adds a cell with all below it, depth first; returns it. Not deeper than the tree.
+    /// Adds a cell and its subtree, depth first. Recursion is as deep as the tree.
     fn add(&mut self, part: Part) -> Cell {
         match part {
             Part::Leaf(ids) => {
@@ -128,8 +128,8 @@ impl Builder<'_> {
         }
     }
 
-    /// Whether rays are expected to cost less with these children than if all were tested: the chance that a ray through the
-    /// cell goes through a child is their ratio of areas.
+    /// Whether rays are expected to cost less with these children than if all primitives were tested: the probability that a
+    /// ray through the cell passes through a child is their ratio of areas.
     fn pays(&self, ids: &[u32], cell: &Aabb, children: &[(Aabb, Vec<u32>)]) -> bool {
         let area = cell.half_area();
         let cost: f64 = children
@@ -139,7 +139,7 @@ impl Builder<'_> {
         cost < LOOKAHEAD * ids.len() as f64
     }
 
-    /// Along each axis on its own the plane with the smallest sum of area times primitives on both sides. (Whang et al.:
+    /// For each axis separately the plane with the smallest sum of area times primitives on both sides. (Whang et al.:
     /// Octree-R, 1995.)
     fn cheapest_split(&self, ids: &[u32], cell: &Aabb) -> DVec3 {
         let mut split = cell.center();
@@ -168,7 +168,7 @@ impl Builder<'_> {
                 let above = ids.len() as u32 - done;
                 let cost = area(size * part) * f64::from(below)
                     + area(size * (1.0 - part)) * f64::from(above);
-                // Among equals the one nearest to the middle.
+                // Of equal ones the one nearest to the middle.
                 let candidate = (cost, (2 * plane).abs_diff(CANDIDATES + 1));
                 if candidate < best {
                     best = candidate;
@@ -180,5 +180,5 @@ impl Builder<'_> {
     }
 }
 
-/// A division may pay only further down: it may cost this much more at first.
+/// A division may pay only further down, so it may cost this much more at first.
 const LOOKAHEAD: f64 = 1.25;

@@ -1,4 +1,4 @@
-//! By which face a ray leaves a cell.
+//! Finds the face by which a ray leaves a cell.
 
 use crate::walk::Walk;
 use strahl_math::Aabb;
@@ -37,14 +37,14 @@ pub(super) fn by_three_faces(walk: &Walk, cell: &Aabb) -> Leaving {
     }
 }
 
-/// The axis whose face is tried first: the one along which the ray crosses a cell of this shape the fastest.
+/// The axis whose face is tried first: the one along which the ray crosses a cell of this shape fastest.
 pub(super) fn trial_axis(walk: &Walk, cell: &Aabb) -> usize {
     let speed = (walk.moved.direction / cell.size()).abs();
     let axis = usize::from(speed.y > speed.x);
     if speed.z > speed[axis] { 2 } else { axis }
 }
 
-/// Tries one face: computes where the ray meets its plane and sees where that is.
+/// Tries one face: computes the intersection of the ray with its plane and determines the region of that point.
 ///
 /// ```text
 ///      7 | 3 | 8        region 0: inside the face, which is the exit
@@ -53,8 +53,8 @@ pub(super) fn trial_axis(walk: &Walk, cell: &Aabb) -> usize {
 ///     ---+---+---               meets first
 ///      5 | 4 | 6
 /// ```
-/// The rest of the plane's axes are u to the right and v upwards, in the order of the axes. Points on an edge belong to
-/// region 0: the ray leaves by two faces at once, and either will do.
+/// The other two axes are u to the right and v upwards, in the order of the axes. Points on an edge belong to region 0: the ray
+/// leaves by two faces at once, and either will do.
 #[inline(always)]
 pub(super) fn by_trial_plane(walk: &Walk, cell: &Aabb, trial: usize) -> Leaving {
     let t = walk.cross(trial, exit_plane(walk, cell, trial));
@@ -163,7 +163,7 @@ mod tests {
                 let expected = match region {
                     0 => trial,
                     1 | 2 => a,
-                    // v is further beyond than u in all the corners above.
+                    // v is further outside than u in all the corners above.
                     _ => b,
                 };
                 assert_eq!(tried.axis, expected);

@@ -1,4 +1,4 @@
-//! The octree, with the four ways of walking through it.
+//! The octree, with four traversal methods.
 //!
 //! `build` divides space, `exit` finds the face by which a ray leaves a cell, `step` walks from leaf to leaf, `parametric` from
 //! the root downwards.
@@ -24,15 +24,15 @@ choice! {
 }
 
 choice! {
-    /// How rays walk through the leaves.
+    /// The traversal method.
     Traversal {
-        /// From the root downwards: the order of a cell's children follows from where the ray crosses its planes.
+        /// Top-down: the order of a cell's children follows from the crossings of its planes.
         "parametric" Parametric,
         /// From leaf to leaf: the first of the three faces ahead is the exit, the next leaf is searched from the root.
         "exit-face" ExitFace,
-        /// The same, but one face is tried first; where the ray meets its plane tells the exit.
+        /// The same, but one face is tried first; the intersection with its plane decides the exit.
         "trial-plane" TrialPlane,
-        /// The exit by three faces, the next leaf by way of the nearest common ancestor.
+        /// The exit by three faces; the next leaf is found from the nearest common ancestor.
         "neighbours" Neighbours,
     }
 }
@@ -46,10 +46,10 @@ pub struct OctreeParameters {
     pub split: Split,
     /// Cells with no more primitives are not divided.
     pub leaf: u32,
-    /// How rays walk.
+    /// The traversal method.
     pub traversal: Traversal,
-    /// The construction of V. Havran's published figures: boxes decide what is in a cell, every cell with too many
-    /// primitives is divided, nothing is remembered.
+    /// The construction of V. Havran's published figures: boxes decide which primitives a cell lists, every cell with too many
+    /// primitives is divided, primitives may be tested repeatedly.
     pub havran: bool,
 }
 
@@ -131,7 +131,7 @@ pub struct Octree {
     traversal: Traversal,
 }
 
-/// Levels below the root that paths have room for.
+/// Levels below the root that a path can store.
 const MOST_LEVELS: u32 = 20;
 
 /// A cell: divided, or a leaf with primitives.

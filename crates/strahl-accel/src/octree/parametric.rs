@@ -1,11 +1,11 @@
-//! From the root downwards.
+//! Top-down traversal.
 
 use super::traverse::Walker;
 use super::{Cell, child_box};
 use crate::{Place, Visitor};
 use strahl_math::Aabb;
 
-/// Where a ray crosses the planes of a cell that it meets first, and last, along each axis.
+/// The parameters at which a ray crosses the first and the last plane of a cell along each axis.
 #[derive(Clone, Copy)]
 struct Crossings {
     first: [f64; 3],
@@ -13,9 +13,9 @@ struct Crossings {
 }
 
 impl<V: Visitor> Walker<'_, V> {
-    /// Walks the tree from the top: in every cell the crossings of its planes and of the planes it is divided by tell the
-    /// order of the children. (Revelles, Ureña, Lastra: An efficient parametric algorithm for octree traversal, 2000;
-    /// Gargantini and Atkinson, 1993.)
+    /// Traverses the tree top-down: in every cell the crossings of its planes and of the planes that divide it give the order
+    /// of the children. (Revelles, Ureña, Lastra: An efficient parametric algorithm for octree traversal, 2000; Gargantini and
+    /// Atkinson, 1993.)
     pub(super) fn downwards(&mut self) {
         let (walk, root) = (self.search.walk, self.search.room.root);
         let mut crossings = Crossings {
@@ -38,8 +38,8 @@ impl<V: Visitor> Walker<'_, V> {
         self.cell(self.octree.root, &crossings, mirror, &root, 0);
     }
 
-    /// Walks a cell; returns whether to go on. `mirror` has a bit for each axis along which the ray goes down: there the
-    /// children are met in the opposite order. The box is kept for those who watch.
+    /// Traverses a cell; returns whether to continue. `mirror` has a bit for each axis along which the ray goes down, where the
+    /// children come in the opposite order. The box is only needed for reports.
     fn cell(
         &mut self,
         cell: Cell,
@@ -69,7 +69,7 @@ impl<V: Visitor> Walker<'_, V> {
         } else {
             self.search.walk.near
         };
-        // A bit for each dividing plane that lies behind: of the first child, then of one after the other.
+        // A bit for each dividing plane that the ray has crossed, updated from child to child.
         let mut crossed = 0;
         for (axis, middle) in middle.iter().enumerate() {
             crossed |= usize::from(*middle <= near) << axis;
@@ -90,7 +90,7 @@ impl<V: Visitor> Walker<'_, V> {
                 true => child_box(bounds, block.split, child),
                 false => *bounds,
             };
-            // What is hit exactly at the crossing may be in the next child only.
+            // A primitive hit exactly at the crossing may be listed in the next child only.
             if !self.cell(block.children[child], &part, mirror, &inner, level + 1)
                 || self.search.far < left
             {
@@ -103,7 +103,7 @@ impl<V: Visitor> Walker<'_, V> {
         }
     }
 
-    /// Where the ray crosses a dividing plane: a ray that runs along it is on one side, always.
+    /// The parameter at which the ray crosses a dividing plane; a parallel ray stays on one side.
     #[inline(always)]
     fn middle(&self, axis: usize, plane: f64) -> f64 {
         if self.search.walk.moved.direction[axis] != 0.0 {

@@ -1,4 +1,4 @@
-//! From leaf to leaf.
+//! Leaf-to-leaf traversal.
 
 use super::exit::{Leaving, by_three_faces, by_trial_plane, exit_plane, trial_axis};
 use super::traverse::Walker;
@@ -17,11 +17,11 @@ struct Ancestor {
 }
 
 impl<V: Visitor> Walker<'_, V> {
-    /// Walks from leaf to leaf. (Glassner: Space subdivision for fast ray tracing, 1984; with neighbours: Samet,
-    /// Implementing ray tracing with octrees and neighbor finding, 1989.)
+    /// Walks from leaf to leaf. (Glassner: Space subdivision for fast ray tracing, 1984; with neighbours: Samet, Implementing
+    /// ray tracing with octrees and neighbor finding, 1989.)
     ///
-    /// There is no point "a little behind the face": on its plane the ray's direction decides which side is meant, and
-    /// the coordinates never run backwards, so every step gets further.
+    /// No point "slightly behind the face" is needed: on its plane the ray's direction decides which side is meant. The
+    /// coordinates never go backwards, so every step makes progress.
     pub(super) fn steps(&mut self, kind: Traversal) {
         let (walk, root) = (self.search.walk, self.search.room.root);
         let trial = trial_axis(walk, &root);
@@ -44,7 +44,7 @@ impl<V: Visitor> Walker<'_, V> {
                 let (place, level) = (Place::Leaf(leaf.bounds), level as u32);
                 self.report(place, level, entered, leaving.t, Some(leaving));
             }
-            // What is hit exactly at the crossing may be in the next leaf only.
+            // A primitive hit exactly at the crossing may be listed in the next leaf only.
             if !self.leaf(leaf.cell) || self.search.far < leaving.t {
                 return;
             }
@@ -61,7 +61,7 @@ impl<V: Visitor> Walker<'_, V> {
         }
     }
 
-    /// Goes from a cell of the path down to the leaf with a point; returns its level.
+    /// Descends from a cell of the path to the leaf that contains a point; returns its level.
     #[inline(always)]
     fn descend(
         &mut self,
@@ -89,7 +89,7 @@ impl<V: Visitor> Walker<'_, V> {
         level
     }
 
-    /// Moves a point of the ray to where it leaves a leaf: exactly onto the plane, and never back.
+    /// Moves a point of the ray to the exit from a leaf: exactly onto the plane, and never backwards.
     #[inline(always)]
     fn advance(&self, point: &mut DVec3, leaf: &Aabb, leaving: &Leaving, plane: f64) {
         let p = self.search.walk.moved.at(leaving.t);
@@ -104,7 +104,7 @@ impl<V: Visitor> Walker<'_, V> {
         }
     }
 
-    /// The level of the nearest ancestor that the ray does not leave by the same face.
+    /// The level of the nearest ancestor that the ray does not leave through the same face.
     #[inline(always)]
     fn common(
         &self,

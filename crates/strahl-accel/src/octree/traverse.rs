@@ -40,7 +40,7 @@ impl Accelerator for Octree {
             + self.base.unbounded.bytes()
     }
 
-    /// The leaves, empty ones too.
+    /// The number of leaves, including empty ones.
     fn nodes(&self) -> usize {
         usize::from(self.base.room.is_some()) + 7 * self.blocks.len()
     }
@@ -57,7 +57,7 @@ pub(super) struct Walker<'w, V> {
 }
 
 impl<V: Visitor> Walker<'_, V> {
-    /// Shows the primitives of a leaf to the visitor; returns whether it wants more.
+    /// Passes the primitives of a leaf to the visitor; returns whether it wants more.
     #[inline(always)]
     pub(super) fn leaf(&mut self, leaf: Cell) -> bool {
         self.search.stats.node_visits += 1;
@@ -66,7 +66,7 @@ impl<V: Visitor> Walker<'_, V> {
             .visit(&self.octree.ids[first..first + leaf.count as usize])
     }
 
-    /// Looks at all leaves within the margin of a thick ray; returns whether to go on. Not deeper than the tree.
+    /// Visits all leaves within the margin of a thick ray; returns whether to continue. Recursion is as deep as the tree.
     fn thick(&mut self, cell: Cell, bounds: &Aabb) -> bool {
         if self.search.walk.meets(bounds, self.search.far).is_none() {
             return true;
@@ -78,7 +78,7 @@ impl<V: Visitor> Walker<'_, V> {
         (0..8).all(|child| self.thick(children[child], &child_box(bounds, split, child)))
     }
 
-    /// Tells those who watch.
+    /// Reports to a visitor that watches.
     pub(super) fn report(
         &mut self,
         place: Place,

@@ -7,7 +7,7 @@ pub(super) struct Ball {
     pub(super) radius: f64,
 }
 
-/// What a sum or root of a few roundings may be too small by, generously.
+/// A factor above the rounding error of a sum or square root of a few terms.
 const UP: f64 = 1.0 + 16.0 * f64::EPSILON;
 
 impl Ball {
@@ -31,19 +31,19 @@ impl Ball {
             return *b;
         }
         let radius = 0.5 * (distance + a.radius + b.radius);
-        // Not zero: else one would contain the other.
+        // Not zero, because otherwise one would contain the other.
         let center = a.center + way * ((radius - a.radius) / distance);
         let mut ball = Self { center, radius };
         ball.radius = longer(ball.reach(a), ball.reach(b));
         ball
     }
 
-    /// How far from the centre another ball reaches.
+    /// The distance from the centre to the farthest point of another ball.
     pub(super) fn reach(&self, other: &Self) -> f64 {
         ((other.center - self.center).length() + other.radius) * UP
     }
 
-    /// How far from the centre a primitive reaches, known its box and a ball around it.
+    /// The distance from the centre to the farthest point of a primitive, given its box and a ball around it.
     fn reach_of(&self, member: &Member) -> f64 {
         let (ball, corner) = (
             self.reach(&member.ball),

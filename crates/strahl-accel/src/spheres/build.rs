@@ -36,7 +36,7 @@ impl Spheres {
     }
 }
 
-/// The smaller of the ball of the box and the ball the primitive itself knows.
+/// The smaller of the ball around the box and the primitive's own ball.
 fn ball_of(shapes: &dyn Shapes, id: u32, bounds: &Aabb) -> Ball {
     let of_box = Ball::around_box(bounds);
     match shapes.sphere(id) {
@@ -146,7 +146,8 @@ impl Grown {
         }
     }
 
-    /// Up to eight subtrees that make this tree, with the places of their first primitives: the largest are opened first.
+    /// Up to eight subtrees that make up this tree, with the positions of their first primitives: the largest ones are opened
+    /// first.
     fn children(&self) -> Vec<(&Self, usize)> {
         let mut children = vec![(self, 0)];
         while children.len() < WIDTH {

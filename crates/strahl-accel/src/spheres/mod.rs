@@ -1,6 +1,6 @@
 //! The hierarchy of bounding spheres: a cheap test, a loose fit.
 //!
-//! `ball` has the geometry, `topology` decides what is grouped, `build` makes the tree, `traverse` walks it.
+//! `ball` has the geometry, `topology` decides the grouping, `build` makes the tree, `traverse` searches it.
 
 mod ball;
 mod build;
@@ -14,9 +14,9 @@ use crate::parameters::{Parameter, Parameters, choice};
 choice! {
     /// How primitives are grouped into spheres.
     Grouping {
-        /// As a hierarchy of boxes groups them, from the top.
+        /// Top-down, as a hierarchy of boxes.
         "bvh" Boxes,
-        /// From the bottom: neighbours with the smallest common sphere first.
+        /// Bottom-up: neighbours with the smallest common sphere first.
         "agglomerative" Agglomerative,
     }
 }
@@ -58,7 +58,7 @@ pub struct Spheres {
     unbounded: List,
 }
 
-/// What holds all bounded primitives, at least one.
+/// The tree of all bounded primitives, at least one.
 #[derive(Clone, Debug, PartialEq)]
 struct Tree {
     /// Node 0 is the root.
@@ -73,7 +73,7 @@ struct Tree {
 /// Children of a node.
 const WIDTH: usize = 8;
 
-/// Eight spheres with what is in them; the radius of those that do not exist is NaN.
+/// Eight spheres with their contents; the radius of unused ones is NaN.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C, align(64))]
 struct Node {

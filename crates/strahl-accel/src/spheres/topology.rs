@@ -1,4 +1,4 @@
-//! What is grouped with what: binary trees over the primitives.
+//! The grouping of primitives: binary trees over them.
 
 use super::ball::{Ball, Member};
 use crate::{BuildOptions, Bvh2};
@@ -27,10 +27,10 @@ impl Branch {
     }
 }
 
-/// Deeper trees would be walked too deeply; the hierarchy of boxes is never that deep.
+/// Deeper trees would need too much stack; the hierarchy of boxes is never that deep.
 const MOST_LEVELS: u32 = 64;
 
-/// The tree of the hierarchy of boxes.
+/// The grouping of the hierarchy of boxes.
 pub(super) fn by_boxes(members: &[Member]) -> Branch {
     let bounds: Vec<Aabb> = members.iter().map(|m| m.bounds).collect();
     let options = BuildOptions {
@@ -42,14 +42,14 @@ pub(super) fn by_boxes(members: &[Member]) -> Branch {
         .unwrap_or(Branch::Leaf(0))
 }
 
-/// A subtree on its way up.
+/// A subtree under construction.
 struct Cluster {
     ball: Ball,
     levels: u32,
     branch: Branch,
 }
 
-/// Clusters look this far for a partner, along a curve through all.
+/// The search radius of clusters along the space-filling curve.
 const RADIUS: usize = 16;
 
 /// Merges neighbours whose common ball is the smallest, from single primitives upwards. (Meister and Bittner: Parallel
@@ -75,7 +75,7 @@ pub(super) fn agglomerated(members: &[Member]) -> Branch {
         clusters = Vec::with_capacity(old.len());
         for i in 0..old.len() {
             let partner = nearest[i];
-            // Pairs that chose each other become one, at the place of the first.
+            // Two clusters that chose each other are joined, at the place of the first.
             let other = (nearest[partner] == i && i < partner).then(|| old[partner].take());
             match (old[i].take(), other.flatten()) {
                 (Some(a), Some(b)) => clusters.push(Cluster {
@@ -96,8 +96,8 @@ pub(super) fn agglomerated(members: &[Member]) -> Branch {
 
 /// The neighbour with which the common ball is the smallest.
 ///
-/// Of several the one of the same pair of places, then the nearest, then the first. So the two whose common ball is the
-/// smallest of all choose each other, every round merges something, and among equals it merges half of them.
+/// Of several equal ones the one in the same pair of places, then the nearest, then the first. So the two whose common ball is
+/// the smallest of all choose each other, every round joins something, and among equal ones half of the clusters are joined.
 fn nearest(clusters: &[Cluster], i: usize) -> usize {
     let range = i.saturating_sub(RADIUS)..(i + RADIUS + 1).min(clusters.len());
     let mut best = (f64::INFINITY, true, usize::MAX, i);
@@ -112,7 +112,7 @@ fn nearest(clusters: &[Cluster], i: usize) -> usize {
     best.3
 }
 
-/// Place on a curve that keeps neighbours together: the bits of the coordinates in turn.
+/// Morton code: the interleaved bits of the coordinates.
 fn morton(p: DVec3, all: &Aabb) -> u64 {
     const BITS: u32 = 20;
     let (place, size) = (p - all.min, all.size());

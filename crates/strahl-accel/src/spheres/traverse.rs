@@ -66,10 +66,10 @@ impl Accelerator for Spheres {
 struct SphereRay {
     origin: [f32; 3],
     direction: [f32; 3],
-    /// What radii grow by.
+    /// The increase of radii.
     pad: f32,
     near: f32,
-    /// From the moved ray's parameter to distances.
+    /// Factor from the moved ray's parameter to distances.
     length: f64,
     moved: Moved,
 }
@@ -103,7 +103,7 @@ impl SphereRay {
         far + error
     }
 
-    /// Where the ray enters eight spheres, and which of them it may meet before `far`.
+    /// The distances at which the ray enters eight spheres, and the spheres that it may meet before `far`.
     #[inline(always)]
     fn enter(&self, node: &Node, far: f32) -> ([f32; WIDTH], [bool; WIDTH]) {
         let (mut near, mut meets) = ([0.0; WIDTH], [false; WIDTH]);
@@ -138,7 +138,8 @@ struct Walk<'w, V> {
 }
 
 impl<V: Visitor> Walk<'_, V> {
-    /// Walks a subtree, the nearer spheres first; returns whether to go on. Nodes are at most as deep as the binary tree.
+    /// Traverses a subtree, the nearer spheres first; returns whether to continue. Nodes are at most as deep as the binary
+    /// tree.
     fn node(&mut self, number: u32, level: u32) -> bool {
         self.stats.node_visits += 1;
         let node = &self.tree.nodes[number as usize];

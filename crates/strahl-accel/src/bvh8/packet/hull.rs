@@ -1,14 +1,14 @@
-//! What all rays of a packet have in common: intervals that hold the constants of each, and all children of a node tested with them.
+//! The hull of a packet: intervals that contain the constants of each ray, and the test of all children of a node against them.
 
 use crate::bvh8::node::Node;
 use crate::bvh8::traverse::sides;
 use strahl_simd::Isa;
 
-/// What no lane's constants are beyond.
+/// Bounds of the constants of all lanes.
 #[derive(Clone, Copy)]
 pub(super) struct Hull {
     pub(super) rd: [[f32; 2]; 3],
-    /// What is added for planes relative to the hull's point.
+    /// The summand for planes relative to the hull's point.
     pub(super) shift: [[f32; 2]; 3],
     pub(super) t_min: f32,
 }
@@ -48,7 +48,7 @@ pub(super) struct HullSlabs<I: Isa> {
     rd: [[I::F32x8; 2]; 3],
     shift: [[I::F32x8; 2]; 3],
     t_min: I::F32x8,
-    /// Per axis which of the two planes the rays meet first.
+    /// Per axis which of the two planes the rays cross first.
     pub(super) first: [usize; 3],
 }
 
@@ -69,7 +69,7 @@ impl<I: Isa> HullSlabs<I> {
         }
     }
 
-    /// No ray crosses the planes of an axis that it meets first sooner.
+    /// A lower bound of the parameters at which rays cross the first planes of an axis.
     #[inline(always)]
     fn near(&self, isa: I, node: &Node, k: usize) -> I::F32x8 {
         let planes = isa.load_f32(&node.planes[2 * k + self.first[k]]);
@@ -81,7 +81,7 @@ impl<I: Isa> HullSlabs<I> {
         )
     }
 
-    /// No ray crosses the planes of an axis that it meets last later.
+    /// An upper bound of the parameters at which rays cross the last planes of an axis.
     #[inline(always)]
     fn far(&self, isa: I, node: &Node, k: usize) -> I::F32x8 {
         let planes = isa.load_f32(&node.planes[2 * k + 1 - self.first[k]]);
@@ -93,7 +93,7 @@ impl<I: Isa> HullSlabs<I> {
         )
     }
 
-    /// Where a ray enters the children's boxes at the soonest, and which of them a ray may meet.
+    /// A lower bound of the parameters at which rays enter the children's boxes, and the children that a ray may meet.
     #[inline(always)]
     pub(super) fn enter(&self, isa: I, node: &Node, farthest: f32) -> (I::F32x8, u32) {
         let (x, y, z) = (

@@ -1,4 +1,4 @@
-//! The constants of the rays of a packet side by side, and one child of a node tested with all of them.
+//! The constants of the rays of a packet side by side, and the test of one child of a node against all of them.
 
 use super::hull::Hull;
 use crate::bvh8::node::Node;
@@ -40,8 +40,8 @@ impl Lanes {
         }
     }
 
-    /// Makes the constants of all rays at once, side by side in f32, if all are ordinary and go in the same octant; returns their hull and
-    /// that octant.
+    /// Computes the constants of all rays at once, side by side in f32, if all are ordinary and go in the same octant; returns
+    /// their hull and that octant.
     ///
     /// They are those of [`crate::cull::QuickLanes`], where the error bound is derived. Planes relative to a point f are crossed at
     /// `(b - f) r + (f - o) r`. In units of u|r| rounding changes the first product by at most 5|b - f| with what the loop adds, the second by
@@ -59,7 +59,7 @@ impl Lanes {
         let (mut origins, mut directions) = ([nothing; 3], [nothing; 3]);
         let plain = CullClock::UNUSED;
         for lane in 0..PACKET {
-            // Lanes without a ray repeat one: they change no hull.
+            // Lanes without a ray repeat a ray, so they don't change the hull.
             let t_max = packet.t_max[lane];
             let ray = match packet.rays.get(lane) {
                 Some(ray) if t_max > f64::NEG_INFINITY => {
@@ -131,7 +131,7 @@ impl Lanes {
         Some((hull, octant))
     }
 
-    /// Takes the constants of a single ray, whatever it is like.
+    /// Sets the constants of a single ray of any kind.
     #[inline(always)]
     pub(super) fn set(
         &mut self,
@@ -150,7 +150,7 @@ impl Lanes {
         self.clocks[lane] = clock;
     }
 
-    /// Which rays may meet the box of a child.
+    /// The rays that may meet the box of a child.
     #[inline(always)]
     pub(super) fn enter<I: Isa>(
         &self,
@@ -204,7 +204,7 @@ impl Lanes {
         Slabs::of(isa, &constants, self.t_min.0[lane])
     }
 
-    /// A hit was found: nothing behind it is of interest.
+    /// Shortens the ray of a lane after a hit.
     #[inline(always)]
     pub(super) fn lower(&mut self, lane: usize, t_max: f64) {
         let far = if t_max == f64::NEG_INFINITY {
@@ -215,7 +215,7 @@ impl Lanes {
         self.far.0[lane] = far;
     }
 
-    /// The last parameter that any of some rays is interested in.
+    /// The largest upper end of the ranges of some rays.
     #[inline(always)]
     pub(super) fn farthest(&self, lanes: u32) -> f32 {
         lanes_of(lanes).fold(f32::NEG_INFINITY, |most, lane| {
