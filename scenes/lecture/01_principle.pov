@@ -12,7 +12,16 @@ global_settings { assumed_gamma 1 max_trace_level 8 }
 camera { location <0, 2, -6> right x * image_width / image_height angle 58 look_at <0, 0.75, 0> }
 light_source { <-5, 8, -6>, rgb 1 }
 background { srgb <0.72, 0.82, 0.93> }
-plane { y, 0 pigment { checker srgb <0.55, 0.60, 0.66>, srgb <0.93, 0.91, 0.86> } finish { ambient 0.1 diffuse 0.75 } }
+// The floor: fields that fade into their mean colour far away, where they are smaller than pixels.
+plane {
+  y, 0
+  pigment {
+    cylindrical
+    pigment_map { [0 rgb <0.555, 0.563, 0.552>] [0.6 checker srgb <0.55, 0.60, 0.66>, srgb <0.93, 0.91, 0.86> scale 1 / 18] }
+    scale 18
+  }
+  finish { ambient 0.1 diffuse 0.75 }
+}
 
 sphere {
   <-1.2, 1, 0.6>, 1

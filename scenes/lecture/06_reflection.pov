@@ -12,7 +12,16 @@ camera { location <0.7, 2.3, -4.6> right x * image_width / image_height angle 70
 light_source { <-2, 7, -4>, rgb 1 }
 background { srgb <0.72, 0.82, 0.93> }
 
-plane { y, 0 pigment { checker srgb <0.55, 0.60, 0.66>, srgb <0.93, 0.91, 0.86> scale 0.8 } finish { ambient 0.1 diffuse 0.75 } }
+// The floor: fields that fade into their mean colour far away, where they are smaller than pixels.
+plane {
+  y, 0
+  pigment {
+    cylindrical
+    pigment_map { [0 rgb <0.555, 0.563, 0.552>] [0.5 checker srgb <0.55, 0.60, 0.66>, srgb <0.93, 0.91, 0.86> scale 0.8 / 13] }
+    scale 13
+  }
+  finish { ambient 0.1 diffuse 0.75 }
+}
 #macro Mirror(Where, Turn)
   union {
     box { <-1.7, 0.05, 0>, <1.7, 2.3, 0.05> pigment { srgb 0.05 } finish { ambient 0 diffuse 0.1 reflection 0.85 } }

@@ -11,7 +11,16 @@ global_settings { assumed_gamma 1 max_trace_level 8 }
 camera { location <0, 1.8, -7.4> right x * image_width / image_height angle 58 look_at <0.1, 0.75, 0> }
 light_source { <-5, 8, -6>, rgb 1 }
 background { srgb <0.72, 0.82, 0.93> }
-plane { y, 0 pigment { checker srgb <0.55, 0.60, 0.66>, srgb <0.93, 0.91, 0.86> scale 0.5 } finish { ambient 0.1 diffuse 0.75 } }
+// The floor: fields that fade into their mean colour far away, where they are smaller than pixels.
+plane {
+  y, 0
+  pigment {
+    cylindrical
+    pigment_map { [0 rgb <0.555, 0.563, 0.552>] [0.5 checker srgb <0.55, 0.60, 0.66>, srgb <0.93, 0.91, 0.86> scale 0.5 / 10] }
+    scale 10
+  }
+  finish { ambient 0.1 diffuse 0.75 }
+}
 
 #declare Clear = finish { ambient 0 diffuse 0.03 phong 0.8 phong_size 200 reflection { 0, 1 fresnel on } conserve_energy }
 #macro Ball(X, Index)

@@ -18,7 +18,16 @@ box {
   finish { ambient 0 diffuse 0 reflection { 0, 1 fresnel on } conserve_energy }
   interior { ior 1.333 }
 }
-plane { y, 0 pigment { checker srgb <0.20, 0.45, 0.55>, srgb <0.80, 0.90, 0.90> scale 0.7 } finish { ambient 0.25 diffuse 0.6 } }
+// The floor: fields that fade into their mean colour far away, where they are smaller than pixels.
+plane {
+  y, 0
+  pigment {
+    cylindrical
+    pigment_map { [0 rgb <0.318, 0.479, 0.525>] [0.65 checker srgb <0.20, 0.45, 0.55>, srgb <0.80, 0.90, 0.90> scale 0.7 / 14] }
+    scale 14
+  }
+  finish { ambient 0.25 diffuse 0.6 }
+}
 sphere { <-0.9, 1.1, -0.4>, 0.5 pigment { srgb <0.95, 0.65, 0.15> } finish { ambient 0.2 diffuse 0.7 } }
 sphere { <1.3, 0.85, 0.8>, 0.6 pigment { srgb <0.85, 0.25, 0.18> } finish { ambient 0.2 diffuse 0.7 } }
 #for (I, 0, 5)

@@ -101,7 +101,7 @@ global_settings { assumed_gamma 1 max_trace_level 5 }
   (Sum - Gap)
 #end
 
-#declare Half = 12;     // half the width of the slab
+#declare Half = 16;     // half the width of the slab
 #declare Pitch = 1.6;   // from line to line
 #declare Thick = 0.6;
 
@@ -155,7 +155,7 @@ global_settings { assumed_gamma 1 max_trace_level 5 }
     box { <-Half, -3 * Pitch - 2.6, 0>, <Half, -3 * Pitch - 0.3, Thick> }
     union { Drawing() translate (-3 * Pitch - 1.42) * y }
   }
-  box { <-Half, Pitch - 0.3, 0>, <Half, Pitch + 2, Thick> }
+  box { <-Half, Pitch - 0.3, 0>, <Half, Pitch + 5, Thick> }
   box { <-Half, -3 * Pitch - 5, 0>, <Half, -3 * Pitch - 2.6, Thick> }
 }
 
@@ -193,15 +193,15 @@ texture {
 object { Page texture { Limestone } }
 
 camera {
-  location <-3.4, -5.4, -13.4>
+  location <-2.8, -5.4, -13.9>
   right x * image_width / image_height
   angle 62
-  look_at <0.05, -2.95, 0>
+  look_at <-0.35, -2.95, 0>
 }
 background { srgb <0.05, 0.04, 0.035> }
 // Evening sun that grazes the stone from the upper left: grooves live by their shadows.
 light_source {
-  <-16, 8, -5.5>, rgb <1.95, 1.6, 1.15>
-  area_light 1.2 * x, 1.2 * y, 4, 4 adaptive 1 circular orient
+  <-16, 8, -5.5>, rgb <2.3, 1.9, 1.38>
+  area_light 1.2 * x, 1.2 * y, 5, 5 adaptive 1 circular orient
 }
 light_source { <9, 3, -12>, rgb <0.11, 0.14, 0.2> }

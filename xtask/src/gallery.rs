@@ -1,7 +1,7 @@
 //! The gallery: renders the scenes of `scenes/` and writes the manual's pages about them.
 //!
 //! A page shows each scene of a folder: its name, its picture, the comment that it begins with, and its text. So the manual
-//! cannot say what the program does not do.
+//! shows only what the program can do.
 
 use anyhow::{Context, Result, bail};
 use std::collections::BTreeSet;
@@ -18,10 +18,10 @@ struct Page {
     /// Below `scenes/`; the page and its pictures lie at the same place below `docs/src/`.
     folder: &'static str,
     title: &'static str,
-    /// What stands above the scenes.
+    /// The text above the scenes.
     intro: &'static str,
     size: &'static str,
-    /// Whether the page shows the text of the scenes: from behind this line on.
+    /// If the page shows the text of the scenes: the line behind which it begins.
     listing: Option<&'static str>,
 }
 
@@ -39,7 +39,7 @@ const PAGES: [Page; 10] = [
     gallery(
         "gallery/objects",
         "Objects",
-        "Shapes, and what is made of them. Most of them are solid, and can be cut and joined.",
+        "Shapes and combinations of shapes. Most of them are solids, which can be cut and joined.",
     ),
     gallery(
         "gallery/patterns",
@@ -49,32 +49,32 @@ const PAGES: [Page; 10] = [
     gallery(
         "gallery/normals",
         "Normals",
-        "Patterns that bend the normal: light falls on the surface as if it were uneven.",
+        "Patterns that perturb the normal: the surface is shaded as if it were uneven.",
     ),
     gallery(
         "gallery/finish",
         "Finishes and textures",
-        "What a surface does with light, and textures of several parts.",
+        "How a surface reflects light, and textures composed of others.",
     ),
     gallery(
         "gallery/interior",
         "Glass",
-        "What light meets inside of transparent things.",
+        "The inside of transparent objects: refraction, absorption, dispersion.",
     ),
     gallery(
         "gallery/lights",
         "Lights",
-        "The same things, lit in different ways.",
+        "The same objects under different lights.",
     ),
     gallery(
         "gallery/cameras",
         "Cameras",
-        "The same things, seen in different ways.",
+        "The same objects through different cameras.",
     ),
     gallery(
         "gallery/atmosphere",
         "Sky and fog",
-        "What is behind all things, and between them.",
+        "The background, and the air between the objects.",
     ),
     Page {
         folder: "lecture",
@@ -182,11 +182,11 @@ impl Page {
         folder.join(format!("{}.png", scene.name))
     }
 
-    /// What is supported, but has no scene of its name.
+    /// Supported features without a scene of their name.
     fn missing(&self, scenes: &[Scene]) -> Vec<String> {
         let known: BTreeSet<&str> = scenes.iter().map(|s| s.name.as_str()).collect();
         let words: Vec<Word> = match self.folder {
-            // Lights have a page of their own; groups of lights are read as unions so far.
+            // Lights have a page of their own.
             "gallery/objects" => object_words()
                 .filter(|word| !matches!(word, Word::LightSource | Word::LightGroup))
                 .collect(),

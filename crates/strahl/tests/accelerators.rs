@@ -1,11 +1,12 @@
-//! The film of a scene has the same bits with every accelerator, level of vector instructions, with packets and without, number of threads and order of tiles: for every scene of the
-//! repository, and for the Standard Procedural Databases where they are at hand (`../shared/data/spd`, or the folder that
-//! `STRAHL_SPD` names).
+//! The film of a scene has the same bits with every accelerator, vector instruction set, number of threads and order of tiles, with
+//! packets and without: for every scene of the repository, and for the Standard Procedural Databases if they are there (in
+//! `shared/data/spd` beside the repository, or in the folder that `STRAHL_SPD` names).
 //!
 //! Pictures are small; `STRAHL_FULL=256x256 cargo test --release -p strahl --test accelerators` makes them larger.
 
 use std::path::{Path, PathBuf};
 use strahl::accel::AcceleratorKind;
+use strahl::sdl::{Options, Value};
 use strahl::tracing::{Prepared, RenderOptions, TileOrder};
 use strahl::{LoadOptions, load_path};
 
@@ -21,7 +22,7 @@ fn accelerators() -> Vec<AcceleratorKind> {
         "bvh:compact,simd=scalar",
     ];
     let variants = variants.iter().map(|v| v.parse().expect("an accelerator"));
-    // The levels of instructions that this processor has.
+    // The instruction sets that this processor has.
     let levels = ["scalar", "sse4", "avx2", "avx512"];
     let levels = levels
         .iter()
@@ -45,14 +46,20 @@ fn size() -> (u32, u32) {
 
 /// Compares all combinations for one scene.
 fn compare(path: &Path) {
+    // Scenes with many parts are made of fewer.
+    let coarse = ["Across", "Deep"].map(|name| (name.to_owned(), Value::Float(60.0)));
     let options = LoadOptions {
+        sdl: Options {
+            declare: coarse.to_vec(),
+            ..Options::default()
+        },
         fonts: vec!["/usr/share/fonts".into()],
         ..LoadOptions::default()
     };
     let loaded = load_path(path, options);
     let Some(scene) = loaded.scene else {
         let said = format!("{:?}", loaded.diagnostics);
-        // A machine without fonts cannot show letters.
+        // Without fonts there are no letters.
         assert!(said.contains("the font `"), "{}: {said}", path.display());
         return;
     };
@@ -61,7 +68,7 @@ fn compare(path: &Path) {
     let mut first = None;
     for kind in accelerators() {
         let scene = prepared.clone().build(kind);
-        // Others than `bvh` follow every ray by itself.
+        // Only `bvh` traverses packets.
         let ways: &[bool] = match kind {
             AcceleratorKind::Bvh8(_) => &[true, false],
             _ => &[true],

@@ -1,4 +1,4 @@
-// One colour where no object is.
+// One colour wherever a ray hits no object.
 #declare Gallery_Floor = 0;
 #include "../gallery.inc"
 

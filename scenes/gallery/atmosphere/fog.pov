@@ -1,4 +1,4 @@
-// Fog of one density: what is far takes its colour.
+// Fog of constant density: the farther an object, the more it takes the colour of the fog.
 #declare Gallery_Floor = 0;
 #include "../gallery.inc"
 

@@ -1,4 +1,4 @@
-// `turbulence` thins fog by noise, in clouds of about the reciprocal of its size; `turb_depth` says how thin.
+// `turbulence` lets noise thin the fog in clouds, whose size is about the reciprocal of its value; `turb_depth` says how much.
 #declare Gallery_Floor = 0;
 #include "../gallery.inc"
 

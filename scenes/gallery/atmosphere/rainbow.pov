@@ -1,5 +1,5 @@
-// A ring of colours around the direction in which the light travels. The map goes from its inner to its outer edge; `transmit` lets
-// what is behind shine through, and `arc_angle` and `falloff_angle` end the ring softly.
+// A ring of colours around the direction in which the light travels. The map goes from its inner to its outer edge; `transmit`
+// lets the background shine through, and `arc_angle` and `falloff_angle` end the ring softly.
 #declare Gallery_Camera = 0;
 #declare Gallery_Floor = 0;
 #include "../gallery.inc"

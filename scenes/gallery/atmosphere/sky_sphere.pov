@@ -1,4 +1,4 @@
-// Pigments on a sphere that is infinitely far: seen where no object is, and in mirrors.
+// Pigments on a sphere at infinite distance: visible wherever a ray hits no object, also in mirrors.
 #declare Gallery_Floor = 0;
 #include "../gallery.inc"
 

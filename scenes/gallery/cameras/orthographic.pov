@@ -1,4 +1,4 @@
-// All rays are parallel: what is far is as large as what is near, as on a drawing.
+// All rays are parallel: objects have the same size at any distance, as in a technical drawing.
 #declare Gallery_Camera = 0;
 #include "../gallery.inc"
 

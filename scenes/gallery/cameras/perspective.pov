@@ -1,4 +1,4 @@
-// All rays begin in the eye: what is far is small. `angle` is the width of the view.
+// All rays start at the eye: the farther an object, the smaller it is. `angle` is the width of the view.
 #declare Gallery_Camera = 0;
 #include "../gallery.inc"
 

@@ -1,4 +1,4 @@
-// Light that comes from everywhere: 0, 0.25 and 0.5. It lifts the shadows and flattens the form.
+// Light from all directions: 0, 0.25 and 0.5. It brightens the shadows and flattens the form.
 #include "../gallery.inc"
 
 #macro Ball(X, A)

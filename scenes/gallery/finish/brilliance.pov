@@ -1,4 +1,4 @@
-// How the scattered light falls off with the angle: 0.5, 1 and 4. High values look metallic.
+// How the diffuse reflection falls off with the angle: 0.5, 1 and 4. High values look metallic.
 #include "../gallery.inc"
 
 #macro Ball(X, Look)

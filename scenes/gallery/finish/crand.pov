@@ -1,4 +1,4 @@
-// Grain: every point is darkened at random. It needs no pattern, and so has no size.
+// Grain: every point is darkened at random. It is no pattern, so its size does not scale with the object.
 #include "../gallery.inc"
 
 #macro Ball(X, Look)

@@ -1,4 +1,4 @@
-// How much of the light is scattered evenly: 0.3, 0.6 and 0.9.
+// The part of the light that is scattered evenly: 0.3, 0.6 and 0.9.
 #include "../gallery.inc"
 
 #macro Ball(X, Look)

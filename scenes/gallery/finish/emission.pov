@@ -1,4 +1,4 @@
-// Light of its own, that nothing darkens: 0, 0.4 and 0.8. It lights nothing else.
+// Light that the surface emits, independent of all lights: 0, 0.4 and 0.8. It does not illuminate other objects.
 #include "../gallery.inc"
 
 #macro Ball(X, Look)

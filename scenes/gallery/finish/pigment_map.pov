@@ -1,4 +1,4 @@
-// Whole pigments where a pattern has different values.
+// A pattern chooses between whole pigments.
 #include "../gallery.inc"
 
 #declare Look = texture {

@@ -1,4 +1,4 @@
-// Reflection that grows from the middle to the rim, with `falloff` 1, 3 and 6: polish, as on a car.
+// Reflection that increases from the middle to the rim, with `falloff` 1, 3 and 6, as on car paint.
 #include "../gallery.inc"
 
 plane { y, 0 pigment { checker srgb <0.75, 0.25, 0.18>, srgb <0.95, 0.88, 0.72> scale 0.6 } finish { Matt } }

@@ -1,4 +1,4 @@
-// Layers: a texture with holes over another; the lower one is seen through what the upper one lets through.
+// Layers: a partly transparent texture over another one, which shows through.
 #include "../gallery.inc"
 
 #declare Worn = texture {

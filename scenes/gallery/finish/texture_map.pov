@@ -1,4 +1,4 @@
-// Whole textures where a pattern has different values: dull and polished fields.
+// A pattern chooses between whole textures: dull and polished fields.
 #include "../gallery.inc"
 
 #declare Dull = texture { pigment { srgb <0.45, 0.20, 0.14> } finish { ambient 0.08 diffuse 0.8 } }

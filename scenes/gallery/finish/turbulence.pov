@@ -1,4 +1,4 @@
-// The same marble with `turbulence` 0, 0.3 and 1: the pattern is looked up at a place that noise moved.
+// The same marble with `turbulence` 0, 0.3 and 1: the pattern is evaluated at a point that noise has displaced.
 #include "../gallery.inc"
 
 #macro Ball(X, T)

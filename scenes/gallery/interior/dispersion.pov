@@ -1,4 +1,5 @@
-// `dispersion` bends violet light more than red: white edges get the colours of the spectrum. More `dispersion_samples` make them smoother.
+// `dispersion` refracts violet light more than red: white edges show the colours of the spectrum. More `dispersion_samples`
+// make them smoother.
 #version 3.7;
 #declare Gallery_Camera = 0;
 #declare Gallery_Light = 0;

@@ -1,4 +1,5 @@
-// Glass that swallows light on its way: deep places are dark, as `fade_distance` grows they clear up. 0.3, 1 and 3.
+// Glass that absorbs light on its way: thick parts are dark, and the glass becomes clearer as `fade_distance` grows: 0.3, 1 and
+// 3.
 #include "../gallery.inc"
 
 #macro Ball(X, Depth)

@@ -1,4 +1,5 @@
-// Glass by its colour: `filter` tints what is behind, `transmit` lets it through as it is, and both leave a rest of the surface.
+// Coloured glass: `filter` tints the light that passes, `transmit` lets it pass unchanged, and the rest shows the surface
+// itself.
 #include "../gallery.inc"
 
 plane { y, 0 pigment { checker srgb <0.35, 0.38, 0.42>, srgb <0.95, 0.92, 0.85> scale 0.5 } finish { Matt } }

@@ -1,4 +1,4 @@
-// The index of refraction: 1 (nothing is bent), 1.33 as water, 1.5 as glass.
+// The index of refraction: 1 (no refraction), 1.33 as of water, 1.5 as of glass.
 #include "../gallery.inc"
 
 plane { y, 0 pigment { checker srgb <0.20, 0.30, 0.42>, srgb <0.95, 0.92, 0.85> scale 0.5 } finish { Matt } }

@@ -1,4 +1,4 @@
-// Light from an area, as a grid of points: soft shadows. `circular` and `orient` make it a disc that looks at what it lights.
+// An area light is a grid of points and casts soft shadows. `circular` and `orient` make it a disc that faces each lit point.
 #declare Gallery_Light = 0;
 #include "../gallery.inc"
 

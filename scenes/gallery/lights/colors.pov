@@ -1,4 +1,5 @@
-// Three lights, red, green and blue: where all of them shine the floor is white, their shadows are the colours between.
+// Three lights, red, green and blue: where all of them shine the floor is white; each shadow has the mixed colour of the other
+// two.
 #declare Gallery_Light = 0;
 #include "../gallery.inc"
 

@@ -1,4 +1,4 @@
-// A lamp behind sheets of paper: with `double_illuminate` (on the right) its light shows on their fronts.
+// A lamp behind sheets of paper: with `double_illuminate` (on the right) its light shines through to the front.
 #declare Gallery_Light = 0;
 #include "../gallery.inc"
 

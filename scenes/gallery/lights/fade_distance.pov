@@ -1,4 +1,4 @@
-// Light that fades: at `fade_distance` it has its colour, beyond it falls off with `fade_power`.
+// Light that fades: at `fade_distance` it has its own colour, beyond that it falls off with `fade_power`.
 #declare Gallery_Light = 0;
 #include "../gallery.inc"
 

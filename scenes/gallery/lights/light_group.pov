@@ -1,5 +1,5 @@
-// Lights that shine on the things of their group only, with `global_lights on` beside all others: the red lamp knows one ball, the other
-// ball and the floor know nothing of it.
+// The lights of a group shine only on the objects of the group; with `global_lights on` the other lights do, too. The red lamp
+// lights one ball, but neither the other ball nor the floor.
 #include "../gallery.inc"
 
 light_group {

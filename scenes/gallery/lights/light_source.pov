@@ -1,4 +1,4 @@
-// A point light: a place and a colour. Its shadows are sharp.
+// A point light: a position and a colour. Its shadows are sharp.
 #declare Gallery_Light = 0;
 #include "../gallery.inc"
 

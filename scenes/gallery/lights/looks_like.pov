@@ -1,4 +1,4 @@
-// An object in the place of the light, which does not cast its shadow: a lamp one can see.
+// An object at the position of the light that does not block its light: a visible lamp.
 #declare Gallery_Light = 0;
 #include "../gallery.inc"
 

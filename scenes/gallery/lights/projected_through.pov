@@ -1,5 +1,5 @@
-// Light that comes only through a thing that is not seen itself, here the panes of a window. What lies between it and the lamp casts
-// no shadow.
+// Light that only shines through an object which is invisible itself, here the panes of a window. Objects between that object
+// and the lamp cast no shadow.
 #declare Gallery_Light = 0;
 #include "../gallery.inc"
 

@@ -1,4 +1,4 @@
-// A light without shadows and highlights, to fill the dark; here alone.
+// A light without shadows and highlights, meant to brighten the shadows of other lights; here alone.
 #declare Gallery_Light = 0;
 #include "../gallery.inc"
 

@@ -1,4 +1,4 @@
-// Soft bumps: the surface stays where it is, only the light falls on it as on a bumpy one.
+// Soft bumps: the surface stays as it is, but is lit as if it were bumpy.
 #include "../gallery.inc"
 
 #declare Look = texture {

@@ -1,4 +1,4 @@
-// Grooves, shaped by a `slope_map`: height and slope along the way of the pattern.
+// Grooves, shaped by a `slope_map`, which gives height and slope over the value of the pattern.
 #include "../gallery.inc"
 
 #declare Look = texture {

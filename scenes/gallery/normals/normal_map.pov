@@ -1,4 +1,4 @@
-// Different normals where a pattern has different values.
+// A pattern chooses between normals.
 #include "../gallery.inc"
 
 #declare Look = texture {

@@ -1,4 +1,5 @@
-// Balls and cylinders whose fields add up: the surface is where the sum is the `threshold`. Negative strengths dig.
+// Balls and cylinders whose fields add up: the surface is where the sum equals the `threshold`. Components of negative strength
+// make dents.
 #include "../gallery.inc"
 
 blob {

@@ -1,4 +1,4 @@
-// What is in the first object and in none of the others. The cut surfaces take the texture of what cuts.
+// The part of the first object that is in none of the others. The cut surfaces have the textures of the objects that cut.
 #include "../gallery.inc"
 
 difference {

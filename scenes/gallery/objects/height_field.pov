@@ -1,4 +1,4 @@
-// A picture as a relief: bright is high. The picture may be made by a function, as here.
+// A picture as a relief: bright means high. A function can make the picture, as here.
 #include "../gallery.inc"
 
 height_field {

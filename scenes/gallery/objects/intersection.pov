@@ -1,4 +1,4 @@
-// What is in all of the objects: here a ball and a box become a die. Each face has the texture of the object it comes from.
+// The part that all objects have in common: here a ball and a box make a die. Each face has the texture of its object.
 #include "../gallery.inc"
 
 intersection {

@@ -1,4 +1,4 @@
-// Where a function is 0, within a box or a ball. Any formula is a shape.
+// The points where a function is 0, within a box or a ball. Any formula makes a shape.
 #include "../gallery.inc"
 
 isosurface {

@@ -1,4 +1,4 @@
-// An outline turned around the y axis; between its points are lines or splines.
+// An outline rotated about the y axis; its points are joined by lines or splines.
 #include "../gallery.inc"
 
 lathe {

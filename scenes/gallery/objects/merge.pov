@@ -1,4 +1,5 @@
-// All of the objects as one, without the surfaces inside: only visible through glass. The left pair is a union, the right one a merge.
+// Several objects as one, without their surfaces inside; the difference is visible only in transparent objects. The left pair
+// is a union, the right one a merge.
 #include "../gallery.inc"
 
 #declare Clear = texture {

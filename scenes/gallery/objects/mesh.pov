@@ -1,4 +1,4 @@
-// Triangles of one object, searched by a hierarchy of their own, so that millions of them are no trouble.
+// Triangles as one object with an acceleration structure of its own, so there may be millions of them.
 #include "../gallery.inc"
 
 // A tent of triangles over a circle, whose tip is off the centre.

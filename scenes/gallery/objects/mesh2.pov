@@ -1,4 +1,4 @@
-// The same as lists: points, normals, and triangles by the numbers of their points. This is what programs write.
+// A mesh given as lists: points, normals, and triangles by the numbers of their points. Most programs export this form.
 #include "../gallery.inc"
 
 // A sheet with waves, 20 by 20 fields, smooth by its normals.

@@ -1,4 +1,4 @@
-// A declared object once more, with its own place and texture: it is stored once, however often it is used.
+// Another copy of a declared object, with its own position and texture. The geometry is stored once, however often it is used.
 #include "../gallery.inc"
 
 #declare Pawn = union {

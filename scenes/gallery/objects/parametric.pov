@@ -1,4 +1,5 @@
-// Three functions of u and v: a sheet that is bent as they say.
+// A surface whose points are given by three functions of the parameters u and v.
+#declare Gallery_Points = 4;
 #include "../gallery.inc"
 
 parametric {

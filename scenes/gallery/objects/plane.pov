@@ -1,4 +1,4 @@
-// A normal and a distance: an endless plane, solid below. The floor of all these pictures is one; two more cut a corner here.
+// A normal and a distance: an infinite plane, solid below. The floor of all these pictures is one; two more cut a corner here.
 #include "../gallery.inc"
 
 intersection {

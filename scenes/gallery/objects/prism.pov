@@ -1,4 +1,4 @@
-// An outline in the plane of x and z, drawn up along y; rings within rings are holes. `conic_sweep` lets it taper to a point.
+// An outline in the xz plane, extruded along y; rings within rings are holes. With `conic_sweep` it tapers to a point.
 #include "../gallery.inc"
 
 // A star with a hole.

@@ -1,4 +1,4 @@
-// A surface of the fourth degree by its 35 coefficients: here the lemniscate of Gerono turned around, as a top.
+// A surface of the fourth degree by its 35 coefficients: here the lemniscate of Gerono rotated about its axis.
 #include "../gallery.inc"
 
 // x^4 - x^2 + y^2 + z^2 = 0

@@ -1,4 +1,4 @@
-// A triangle with a normal for each corner: light falls on it as on a bent surface.
+// A triangle with a normal for each corner: it is shaded as if it were curved.
 #include "../gallery.inc"
 
 smooth_triangle {

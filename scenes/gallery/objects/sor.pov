@@ -1,4 +1,5 @@
-// A surface of revolution: like a lathe, but no point may have the height of another, which makes it faster and closed at its ends.
+// A surface of revolution: like a lathe, but the heights of the points must increase. That makes it faster, and it is closed at
+// its ends.
 #include "../gallery.inc"
 
 sor {

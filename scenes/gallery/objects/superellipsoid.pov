@@ -1,4 +1,4 @@
-// A box whose edges and corners are rounded by two exponents: from a cube over a ball to an octahedron, and stars beyond.
+// A box whose edges and corners are rounded by two exponents: from a cube through a ball to an octahedron and to stars.
 #include "../gallery.inc"
 
 superellipsoid { <0.25, 0.25> scale 0.6 rotate 25 * y translate <-1.3, 0.6, 0.2> texture { Clay } }

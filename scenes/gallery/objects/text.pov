@@ -1,4 +1,4 @@
-// Letters of a font as solids: the font, the text, how deep it is, and what is added from letter to letter.
+// Letters of a font as solids: the font, the text, the thickness, and an additional offset per letter.
 #include "../gallery.inc"
 
 text {

@@ -1,4 +1,4 @@
-// A ring around y: the radius of the ring and that of its tube. Solved as a quartic, exact to the last digits.
+// A ring around the y axis: the radius of the ring and that of its tube. The quartic is solved exactly to the last digits.
 #include "../gallery.inc"
 
 torus { 0.8, 0.3 rotate <-62, 0, 0> rotate 22 * y translate 0.98 * y texture { Clay } }

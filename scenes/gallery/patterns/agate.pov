@@ -1,4 +1,4 @@
-// Bands around a noise with a turbulence of its own, `agate_turb`.
+// Bands of noise with a separate turbulence, `agate_turb`.
 #include "../gallery.inc"
 
 #declare Look = texture {

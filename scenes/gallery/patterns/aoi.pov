@@ -1,4 +1,4 @@
-// By the angle at which one looks at the surface: a rim of another colour.
+// The angle of incidence of the view: the rim has another colour.
 #include "../gallery.inc"
 
 #declare Look = texture {

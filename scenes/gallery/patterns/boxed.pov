@@ -1,4 +1,4 @@
-// The distance from the origin by the largest coordinate: 1 in the middle, 0 from 1 on outwards.
+// The largest coordinate: 1 at the origin, falling to 0 at the faces of a cube with half-width 1.
 #include "../gallery.inc"
 
 #declare Look = texture {

@@ -1,4 +1,4 @@
-// The same noise again, at home in normals.
+// The same noise as `bozo`; mostly used for normals.
 #include "../gallery.inc"
 
 #declare Look = texture {

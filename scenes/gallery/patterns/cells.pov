@@ -1,4 +1,4 @@
-// Cubes, each with a number of its own between 0 and 1.
+// Cubes, each with a random number between 0 and 1.
 #include "../gallery.inc"
 
 #declare Look = texture {

@@ -1,4 +1,4 @@
-// Cubes of two colours, in turn.
+// Cubes of two alternating colours.
 #include "../gallery.inc"
 
 #declare Look = texture {

@@ -1,4 +1,4 @@
-// Distances to points strewn in space: cells with walls, after Worley. `form` says which distances count.
+// Distances to random points in space: cells with walls (Worley). `form` weights the distances.
 #include "../gallery.inc"
 
 #declare Look = texture {

@@ -1,4 +1,4 @@
-// The distance from the y axis: 1 on it, 0 from 1 on outwards.
+// The distance from the y axis: 1 on the axis, falling to 0 at distance 1.
 #include "../gallery.inc"
 
 #declare Look = texture {

@@ -1,4 +1,4 @@
-// Rises from 0 to 1 along a direction, again and again.
+// Rises from 0 to 1 along a direction and repeats.
 #include "../gallery.inc"
 
 #declare Look = texture {

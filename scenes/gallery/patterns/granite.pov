@@ -1,4 +1,4 @@
-// Noise of six sizes, added: fine and rough.
+// Noise of six scales, added up.
 #include "../gallery.inc"
 
 #declare Look = texture {

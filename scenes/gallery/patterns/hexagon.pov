@@ -1,4 +1,4 @@
-// Columns of three colours, six-sided, along y.
+// Hexagonal columns of three colours along y.
 #include "../gallery.inc"
 
 #declare Look = texture {

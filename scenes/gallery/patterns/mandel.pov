@@ -1,4 +1,4 @@
-// The Mandelbrot set: how many steps a point takes to leave. `julia` and `magnet` are its kin.
+// The Mandelbrot set: the number of iterations until a point escapes. `julia` and `magnet` are related.
 #include "../gallery.inc"
 
 #declare Look = texture {

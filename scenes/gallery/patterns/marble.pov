@@ -1,4 +1,4 @@
-// Sheets along x; with turbulence they are marble.
+// Layers along x, which turbulence turns into marble.
 #include "../gallery.inc"
 
 #declare Look = texture {

@@ -1,4 +1,4 @@
-// The distance from the plane y = 0: 1 on it, 0 from 1 on outwards.
+// The distance from the plane y = 0: 1 on the plane, falling to 0 at distance 1.
 #include "../gallery.inc"
 
 #declare Look = texture {

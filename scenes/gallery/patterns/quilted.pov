@@ -1,4 +1,4 @@
-// Upholstered cubes; two numbers bend the slopes.
+// Cubes like upholstery; two numbers control the slopes.
 #include "../gallery.inc"
 
 #declare Look = texture {

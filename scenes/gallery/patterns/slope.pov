@@ -1,4 +1,4 @@
-// By how steep the surface is, against a direction: snow lies where it is level.
+// The slope of the surface relative to a direction: snow lies where the surface is level.
 #include "../gallery.inc"
 
 #declare Look = texture {

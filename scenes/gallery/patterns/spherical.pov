@@ -1,4 +1,4 @@
-// The distance from the origin: 1 in it, 0 from 1 on outwards.
+// The distance from the origin: 1 at the origin, falling to 0 at distance 1.
 #include "../gallery.inc"
 
 #declare Look = texture {

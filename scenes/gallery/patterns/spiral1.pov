@@ -1,4 +1,4 @@
-// Arms that wind around the z axis, as many as the number says.
+// Arms that wind around the z axis; the number says how many.
 #include "../gallery.inc"
 
 #declare Look = texture {

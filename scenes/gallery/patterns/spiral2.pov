@@ -1,4 +1,4 @@
-// The same, each arm rising and falling.
+// The same, but each arm rises and falls.
 #include "../gallery.inc"
 
 #declare Look = texture {

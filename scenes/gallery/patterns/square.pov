@@ -1,4 +1,4 @@
-// Squares of four colours in the plane of x and z.
+// Squares of four colours in the xz plane.
 #include "../gallery.inc"
 
 #declare Look = texture {

@@ -1,4 +1,4 @@
-// Triangles of six colours in the plane of x and z.
+// Triangles of six colours in the xz plane.
 #include "../gallery.inc"
 
 #declare Look = texture {

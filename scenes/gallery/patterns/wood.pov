@@ -1,4 +1,4 @@
-// Rings around the z axis; a little turbulence makes them grow.
+// Rings around the z axis; a little turbulence makes them look grown.
 #include "../gallery.inc"
 
 #declare Look = texture {

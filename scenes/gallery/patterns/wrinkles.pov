@@ -1,4 +1,4 @@
-// Noise of ten sizes, folded.
+// Noise of ten scales, folded.
 #include "../gallery.inc"
 
 #declare Look = texture {
