@@ -7,6 +7,7 @@ mod bench_load;
 mod bench_parse;
 mod compare_pov;
 mod convert;
+mod differ;
 mod gallery;
 mod lab;
 mod peers;
@@ -27,6 +28,8 @@ const USAGE: &str = "usage: cargo xtask COMMAND
                                   rays a second on meshes and spheres against Embree, one thread
   compare-pov [FOLDER] [--size 160x120] [--limit N] [--only PART] [--jobs 2] [--out DIR]
                                   pictures of POV-Ray's example scenes by both programs, with their differences
+  differ [--seed N] [--count M] [--first N] [--jobs 8] [--out DIR] [--strahl BINARY] [--print]
+                                  random scenes by both programs; what differs is reduced to its smallest scene
   gallery [--only PART] [--check]
                                   the manual's pictures and pages of scenes/{gallery,lecture,showcase};
                                   --check says what is missing
@@ -48,6 +51,7 @@ fn main() -> Result<()> {
         ["bench", "parse", rest @ ..] => bench_parse::parse(rest),
         ["bench", "peers", rest @ ..] => peers::run(rest),
         ["compare-pov", rest @ ..] => compare_pov::run(rest),
+        ["differ", rest @ ..] => differ::run(rest),
         ["gallery", rest @ ..] => gallery::run(rest),
         ["generate", what, size, output] => {
             Ok(std::fs::write(output, lab::generate(what, Some(size))?)?)

@@ -3,7 +3,7 @@
 //! Nothing is written beside the scenes: both programs work in scratch folders, pictures and results go to `--out`.
 
 pub(crate) mod picture;
-mod programs;
+pub(crate) mod programs;
 mod report;
 
 use anyhow::{Context, Result, bail};
@@ -97,7 +97,7 @@ pub(crate) fn run(args: &[&str]) -> Result<()> {
     if scenes.is_empty() {
         bail!("there are no .pov scenes below {}", folder.display());
     }
-    let programs = Programs::new(options.size)?;
+    let programs = Programs::new(options.size, None)?;
     let images = options.out.join("images");
     std::fs::create_dir_all(&images)
         .with_context(|| format!("cannot create {}", images.display()))?;

@@ -11,6 +11,23 @@ pub(crate) struct Shown {
     rgb: Vec<u8>,
 }
 
+impl Shown {
+    #[cfg(test)]
+    pub(crate) fn new(width: u32, height: u32, rgb: Vec<u8>) -> Self {
+        Self { width, height, rgb }
+    }
+
+    pub(crate) fn size(&self) -> (u32, u32) {
+        (self.width, self.height)
+    }
+
+    /// A channel of a pixel; 0 outside of the picture.
+    pub(crate) fn code(&self, x: u32, y: u32, channel: usize) -> u8 {
+        let at = 3 * (y as usize * self.width as usize + x as usize) + channel;
+        self.rgb.get(at).copied().unwrap_or_default()
+    }
+}
+
 /// Differences are shown four times as large.
 const AMPLIFIED: u32 = 4;
 
@@ -61,10 +78,17 @@ pub(crate) fn compare(a: &Shown, b: &Shown) -> Option<(f64, f64)> {
 /// Writes the amplified difference as a picture.
 pub(crate) fn write_difference(a: &Shown, b: &Shown, file: &Path) -> Result<()> {
     let amplified = |(a, b): (&u8, &u8)| (AMPLIFIED * u32::from(a.abs_diff(*b))).min(255) as u8;
-    let rgb: Vec<u8> = a.rgb.iter().zip(&b.rgb).map(amplified).collect();
-    let mut encoder = Encoder::new(BufWriter::new(File::create(file)?), a.width, a.height);
+    let rgb = a.rgb.iter().zip(&b.rgb).map(amplified).collect();
+    let (width, height) = (a.width, a.height);
+    write(&Shown { width, height, rgb }, file)
+}
+
+/// Writes a PNG.
+pub(crate) fn write(picture: &Shown, file: &Path) -> Result<()> {
+    let open = BufWriter::new(File::create(file)?);
+    let mut encoder = Encoder::new(open, picture.width, picture.height);
     encoder.set_color(ColorType::Rgb);
-    encoder.write_header()?.write_image_data(&rgb)?;
+    encoder.write_header()?.write_image_data(&picture.rgb)?;
     Ok(())
 }
 

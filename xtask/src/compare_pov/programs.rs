@@ -5,48 +5,57 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-/// How long a program may take for one scene.
+/// How long a program may take for one scene, if nothing else is said.
 const TIMEOUT: Duration = Duration::from_secs(120);
 
 /// What a program made of a scene.
 #[derive(Clone, Debug)]
-pub(super) struct Outcome {
+pub(crate) struct Outcome {
     /// Whether there is a picture.
-    pub(super) rendered: bool,
+    pub(crate) rendered: bool,
     /// Seconds by the clock on the wall, reading included.
-    pub(super) seconds: f64,
+    pub(crate) seconds: f64,
     /// The first error, or else the first warning.
-    pub(super) reason: String,
+    pub(crate) reason: String,
     /// What strahl says that it leaves out.
-    pub(super) lacks: BTreeSet<String>,
+    pub(crate) lacks: BTreeSet<String>,
 }
 
 /// Both programs, with the size of the pictures.
-pub(super) struct Programs {
+pub(crate) struct Programs {
     strahl: PathBuf,
     cache: PathBuf,
     size: (u32, u32),
+    /// How long a program may take for one scene.
+    pub(crate) timeout: Duration,
 }
 
 impl Programs {
-    /// Builds strahl and looks for POV-Ray.
-    pub(super) fn new(size: (u32, u32)) -> Result<Self> {
+    /// Looks for POV-Ray; without a binary of strahl, its release build is made and taken.
+    pub(crate) fn new(size: (u32, u32), strahl: Option<&Path>) -> Result<Self> {
         let known = Command::new("povray").arg("--version").output();
         if known.is_err() {
             bail!("POV-Ray is missing: install Debian's package povray");
         }
-        crate::bench::build_strahl()?;
+        let strahl = match strahl {
+            Some(binary) => std::path::absolute(binary)?,
+            None => {
+                crate::bench::build_strahl()?;
+                std::path::absolute(crate::bench::strahl_binary()?)?
+            }
+        };
         let cache = PathBuf::from("target/compare-pov/cache");
         std::fs::create_dir_all(&cache)?;
         Ok(Self {
-            strahl: std::path::absolute(crate::bench::strahl_binary()?)?,
+            strahl,
             cache,
             size,
+            timeout: TIMEOUT,
         })
     }
 
     /// POV-Ray's picture, from an earlier run if the scene is the same.
-    pub(super) fn povray(&self, scene: &Path, bytes: &[u8], picture: &Path) -> Result<Outcome> {
+    pub(crate) fn povray(&self, scene: &Path, bytes: &[u8], picture: &Path) -> Result<Outcome> {
         let (w, h) = self.size;
         let mut hash = Sha256::new();
         hash.update(bytes);
@@ -63,14 +72,7 @@ impl Programs {
         }
         let scratch = tempfile::tempdir()?;
         let output = scratch.path().join("picture.png");
-        let mut command = Command::new("povray");
-        command
-            .arg(format!("+I{}", scene.display()))
-            .arg(format!("+O{}", output.display()))
-            .arg(format!("+L{}", parent(scene).display()))
-            .args([format!("+W{w}"), format!("+H{h}")])
-            .args(["-A", "+FN", "-D", "-GA", "+GF", "+WT1"]);
-        let mut outcome = run(command, scratch.path(), &output)?;
+        let mut outcome = self.run_povray(scene, scratch.path(), &output)?;
         outcome.reason = match outcome.rendered {
             true => String::new(),
             false => povray_reason(&outcome.reason),
@@ -89,17 +91,35 @@ impl Programs {
         Ok(outcome)
     }
 
+    /// POV-Ray in a folder: no antialiasing, one thread; `reason` is all it said.
+    pub(crate) fn run_povray(&self, scene: &Path, folder: &Path, output: &Path) -> Result<Outcome> {
+        let (w, h) = self.size;
+        let mut command = Command::new("povray");
+        command
+            .arg(format!("+I{}", scene.display()))
+            .arg(format!("+O{}", output.display()))
+            .arg(format!("+L{}", parent(scene).display()))
+            .args([format!("+W{w}"), format!("+H{h}")])
+            .args(["-A", "+FN", "-D", "+WT1"]);
+        run(command, folder, output, self.timeout)
+    }
+
+    /// Strahl in a folder: no antialiasing, one thread; `reason` is all it said.
+    pub(crate) fn run_strahl(&self, scene: &Path, folder: &Path, output: &Path) -> Result<Outcome> {
+        let (w, h) = self.size;
+        let mut command = self.command("render", scene, folder);
+        command
+            .args(["--size", &format!("{w}x{h}")])
+            .args(["--sampling", "center", "--threads", "1", "--output"])
+            .arg(output);
+        run(command, folder, output, self.timeout)
+    }
+
     /// Strahl's picture.
-    pub(super) fn strahl(&self, scene: &Path, picture: &Path) -> Result<Outcome> {
+    pub(crate) fn strahl(&self, scene: &Path, picture: &Path) -> Result<Outcome> {
         let scratch = tempfile::tempdir()?;
         let output = scratch.path().join("picture.png");
-        let mut command = self.command("render", scene, scratch.path());
-        command
-            .arg("--size")
-            .arg(format!("{}x{}", self.size.0, self.size.1))
-            .args(["--sampling", "center", "--threads", "1", "--output"])
-            .arg(&output);
-        let mut outcome = run(command, scratch.path(), &output)?;
+        let mut outcome = self.run_strahl(scene, scratch.path(), &output)?;
         outcome.lacks = lacks(&outcome.reason);
         outcome.reason = strahl_reason(&outcome.reason);
         if outcome.rendered {
@@ -111,11 +131,12 @@ impl Programs {
     }
 
     /// Whether strahl reads the scene without an error.
-    pub(super) fn parses(&self, scene: &Path) -> Result<bool> {
+    pub(crate) fn parses(&self, scene: &Path) -> Result<bool> {
         let scratch = tempfile::tempdir()?;
         let mut command = self.command("check", scene, scratch.path());
         command.arg("--syntax");
-        Ok(run(command, scratch.path(), Path::new(""))?.rendered)
+        let outcome = run(command, scratch.path(), Path::new(""), self.timeout)?;
+        Ok(outcome.rendered)
     }
 
     fn command(&self, name: &str, scene: &Path, scratch: &Path) -> Command {
@@ -131,7 +152,7 @@ fn parent(scene: &Path) -> PathBuf {
 }
 
 /// Runs a program in a folder; `reason` of the outcome is all it said. Without an `output`, success counts as rendered.
-fn run(mut command: Command, folder: &Path, output: &Path) -> Result<Outcome> {
+fn run(mut command: Command, folder: &Path, output: &Path, timeout: Duration) -> Result<Outcome> {
     let log = folder.join("log");
     let start = Instant::now();
     let mut child = command
@@ -145,7 +166,7 @@ fn run(mut command: Command, folder: &Path, output: &Path) -> Result<Outcome> {
         if let Some(status) = child.try_wait()? {
             break Some(status);
         }
-        if start.elapsed() > TIMEOUT {
+        if start.elapsed() > timeout {
             child.kill()?;
             child.wait()?;
             break None;
@@ -156,7 +177,7 @@ fn run(mut command: Command, folder: &Path, output: &Path) -> Result<Outcome> {
     let said = std::fs::read(&log)?;
     let mut reason = String::from_utf8_lossy(&said).into_owned();
     if status.is_none() {
-        reason = format!("error: no end after {} s\n", TIMEOUT.as_secs());
+        reason = format!("error: no end after {} s\n", timeout.as_secs());
     }
     let success = status.is_some_and(|s| s.success());
     Ok(Outcome {
@@ -179,7 +200,7 @@ fn read_note(file: &Path) -> Option<Outcome> {
 }
 
 /// POV-Ray's first error, in one line.
-fn povray_reason(log: &str) -> String {
+pub(crate) fn povray_reason(log: &str) -> String {
     let at = log.find("Error:").or_else(|| log.find("error:"));
     let text = at.map_or(log, |at| &log[at..]);
     let words: Vec<&str> = text.split_whitespace().take(24).collect();
@@ -194,7 +215,7 @@ fn lacks(log: &str) -> BTreeSet<String> {
 }
 
 /// Strahl's first error, or else its first warning, with the place.
-fn strahl_reason(log: &str) -> String {
+pub(crate) fn strahl_reason(log: &str) -> String {
     let find = |kind: &str| {
         let mut lines = log.lines().skip_while(|l| !l.starts_with(kind));
         let message = lines.next()?;

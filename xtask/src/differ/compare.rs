@@ -1,0 +1,132 @@
+use crate::compare_pov::picture::Shown;
+
+/// A channel may be this far off before a pixel counts: rounding, and numerical normals.
+const SLACK: u8 = 8;
+
+/// So many pixels may differ: single points on edges, where a rounding decides.
+const FEW: usize = 6;
+
+/// A mean difference above this counts even where every pixel could be an edge's shift.
+const MEAN: f64 = 6.0;
+
+/// How far two pictures are apart.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Distance {
+    /// Pixels that differ by more than shifted edges explain, of all.
+    pub(super) share: f64,
+    /// The mean absolute difference of the channels, in 8-bit codes.
+    pub(super) mean: f64,
+    pixels: usize,
+}
+
+impl Distance {
+    /// Whether this is more than edges and roundings.
+    pub(super) fn counts(&self) -> bool {
+        self.pixels > FEW || self.mean > MEAN
+    }
+
+    /// Whether the pictures are about as far apart as before: so a reducer stays with its finding.
+    pub(super) fn is_like(&self, before: &Self) -> bool {
+        let near = |now: f64, before: f64| now >= 0.4 * before && now <= 3.0 * before;
+        self.counts()
+            && (near(self.share, before.share) || near(self.mean, before.mean))
+            && self.mean <= 4.0 * before.mean
+    }
+}
+
+/// `None` for different sizes.
+pub(super) fn distance(a: &Shown, b: &Shown) -> Option<Distance> {
+    let (mean, _) = crate::compare_pov::picture::compare(a, b)?;
+    let (width, height) = a.size();
+    let mut pixels = 0;
+    for y in 0..height {
+        for x in 0..width {
+            let differs = (0..3).any(|c| a.code(x, y, c).abs_diff(b.code(x, y, c)) > SLACK);
+            if differs && !(is_between(a, b, x, y) && is_between(b, a, x, y)) {
+                pixels += 1;
+            }
+        }
+    }
+    Some(Distance {
+        share: pixels as f64 / f64::from(width * height),
+        mean,
+        pixels,
+    })
+}
+
+/// Whether the pixel of `a` lies within what `b` shows at this place and its eight neighbours.
+fn is_between(a: &Shown, b: &Shown, x: u32, y: u32) -> bool {
+    let (width, height) = b.size();
+    (0..3).all(|c| {
+        let around = (y.saturating_sub(1)..(y + 2).min(height))
+            .flat_map(|v| (x.saturating_sub(1)..(x + 2).min(width)).map(move |u| (u, v)));
+        let (mut low, mut high) = (u8::MAX, 0);
+        for (u, v) in around {
+            let code = b.code(u, v, c);
+            (low, high) = (low.min(code), high.max(code));
+        }
+        let code = a.code(x, y, c);
+        code.saturating_add(SLACK) >= low && code <= high.saturating_add(SLACK)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// 16x8 pixels of one channel, repeated.
+    fn shown(code: impl Fn(u32, u32) -> u8) -> Shown {
+        let rgb = (0..8)
+            .flat_map(|y| (0..16).map(move |x| (x, y)))
+            .flat_map(|(x, y)| [code(x, y); 3])
+            .collect();
+        Shown::new(16, 8, rgb)
+    }
+
+    #[test]
+    fn equal_pictures_and_roundings_do_not_count() {
+        let a = shown(|x, y| (x * 7 + y) as u8);
+        let b = shown(|x, y| (x * 7 + y + 8) as u8);
+        assert_eq!(distance(&a, &a).unwrap().mean, 0.0);
+        assert!(!distance(&a, &a).unwrap().counts());
+        assert_eq!(distance(&a, &b).unwrap().share, 0.0);
+    }
+
+    #[test]
+    fn an_edge_one_pixel_off_does_not_count() {
+        let edge = |at| shown(move |x, _| if x < at { 100 } else { 140 });
+        assert_eq!(distance(&edge(7), &edge(8)).unwrap().share, 0.0);
+        assert!(!distance(&edge(7), &edge(8)).unwrap().counts());
+        // Two pixels off is one column too many.
+        assert_eq!(distance(&edge(7), &edge(9)).unwrap().pixels, 16);
+    }
+
+    #[test]
+    fn another_colour_counts() {
+        let (a, b) = (
+            shown(|_, _| 100),
+            shown(|x, _| if x < 4 { 120 } else { 100 }),
+        );
+        let far = distance(&a, &b).unwrap();
+        assert_eq!(far.pixels, 4 * 8);
+        assert!(far.counts() && far.is_like(&far));
+        let few = distance(&a, &shown(|x, y| if x < 2 && y < 2 { 120 } else { 100 })).unwrap();
+        assert!(!few.counts());
+    }
+
+    #[test]
+    fn swapped_fine_patterns_count_by_their_mean() {
+        let (a, b) = (
+            shown(|x, y| if (x + y) % 2 == 0 { 0 } else { 200 }),
+            shown(|x, y| if (x + y) % 2 == 1 { 0 } else { 200 }),
+        );
+        assert_eq!(distance(&a, &b).unwrap().share, 0.0);
+        assert!(distance(&a, &b).unwrap().counts());
+    }
+
+    #[test]
+    fn sizes_must_be_equal() {
+        let other = Shown::new(1, 1, vec![0; 3]);
+        assert!(distance(&other, &shown(|_, _| 0)).is_none());
+    }
+}

@@ -1,0 +1,35 @@
+/// Differences that are meant or belong to POV-Ray: words that the smallest scene has all of, and why.
+///
+/// docs/src/differ.md has the same list with more words.
+pub(super) const KNOWN: [(&[&str], &str); 0] = [];
+
+/// Why a smallest scene differs, if that is known.
+pub(super) fn reason(text: &str) -> Option<&'static str> {
+    find(&KNOWN, text)
+}
+
+fn find(known: &[(&'static [&'static str], &'static str)], text: &str) -> Option<&'static str> {
+    let has = |word: &&str| {
+        text.split(|c: char| !c.is_alphanumeric() && c != '_' && c != '#' && c != '.')
+            .any(|w| w == *word)
+    };
+    known
+        .iter()
+        .find(|(words, _)| words.iter().all(has))
+        .map(|(_, reason)| *reason)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn all_words_must_be_there() {
+        let known: [(&[&str], &str); 1] = [(&["crand", "finish"], "noise")];
+        assert_eq!(
+            find(&known, "sphere { finish { crand 0.1 } }"),
+            Some("noise")
+        );
+        assert_eq!(find(&known, "sphere { finish { crandy 0.1 } }"), None);
+    }
+}

@@ -1,0 +1,251 @@
+//! Random scenes by POV-Ray and strahl: what differs is reduced to its smallest scene.
+
+mod compare;
+mod dice;
+mod grammar;
+mod known;
+mod node;
+mod reduce;
+mod render;
+mod report;
+
+use crate::compare_pov::picture::Shown;
+use crate::compare_pov::programs::Programs;
+use anyhow::{Context, Result, bail};
+use render::Verdict;
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::{Duration, Instant};
+
+/// How large the pictures are: many scenes count more than many pixels.
+const SIZE: (u32, u32) = (32, 24);
+
+/// Seconds that a program may take for a scene.
+const TIMEOUT: Duration = Duration::from_secs(12);
+
+/// Scenes that a reducer tries at most.
+const TRIES: usize = 1500;
+
+/// A scene that the programs do not agree on.
+struct Finding {
+    number: u64,
+    verdict: Verdict,
+    whole: String,
+    smallest: String,
+    /// POV-Ray's picture of the smallest scene, and strahl's.
+    pictures: Option<(Shown, Shown)>,
+    known: Option<&'static str>,
+}
+
+struct Options {
+    seed: u64,
+    first: u64,
+    count: u64,
+    jobs: usize,
+    out: PathBuf,
+    strahl: Option<PathBuf>,
+    print: bool,
+}
+
+impl Options {
+    fn new(args: &[&str]) -> Result<Self> {
+        let mut options = Self {
+            seed: 1,
+            first: 0,
+            count: 200,
+            jobs: 8,
+            out: PathBuf::from("target/differ"),
+            strahl: None,
+            print: false,
+        };
+        let mut rest = args.iter();
+        while let Some(arg) = rest.next() {
+            let mut value = || {
+                rest.next()
+                    .copied()
+                    .with_context(|| format!("{arg} needs a value"))
+            };
+            let number = |text: &str| text.parse().with_context(|| format!("{arg} {text}?"));
+            match *arg {
+                "--seed" => options.seed = number(value()?)?,
+                "--first" => options.first = number(value()?)?,
+                "--count" => options.count = number(value()?)?,
+                "--jobs" => options.jobs = number(value()?)?.max(1) as usize,
+                "--out" => options.out = PathBuf::from(value()?),
+                "--strahl" => options.strahl = Some(PathBuf::from(value()?)),
+                "--print" => options.print = true,
+                other => bail!(
+                    "unknown option {other}: differ takes --seed N --first N --count M --jobs J --out DIR \
+                     --strahl BINARY --print"
+                ),
+            }
+        }
+        Ok(options)
+    }
+}
+
+/// `cargo xtask differ`
+pub(crate) fn run(args: &[&str]) -> Result<()> {
+    let options = Options::new(args)?;
+    let numbers: Vec<u64> = (options.first..options.first + options.count).collect();
+    if options.print {
+        for number in numbers {
+            print!("{}", grammar::scene(options.seed, number).text());
+        }
+        return Ok(());
+    }
+    let mut programs = Programs::new(SIZE, options.strahl.as_deref())?;
+    programs.timeout = TIMEOUT;
+    std::fs::create_dir_all(&options.out)
+        .with_context(|| format!("cannot create {}", options.out.display()))?;
+    let start = Instant::now();
+    let verdicts = in_parallel(&numbers, options.jobs, |number| {
+        render::judge(&programs, &grammar::scene(options.seed, *number).text())
+    })?;
+    let seconds = start.elapsed().as_secs_f64();
+    totals(&numbers, &verdicts, seconds);
+
+    let mut findings = vec![];
+    for (number, verdict) in numbers.iter().zip(verdicts) {
+        if verdict.is_finding() {
+            let finding = examine(&options, &programs, *number, verdict)?;
+            println!(
+                "\n--- {number}: {}{}\n{}",
+                report::describe(&finding.verdict),
+                finding
+                    .known
+                    .map_or_else(String::new, |r| format!(" (known: {r})")),
+                finding.smallest
+            );
+            report::save(&finding, &options.out)?;
+            findings.push(finding);
+        }
+    }
+    let unknown = findings.iter().filter(|f| f.known.is_none()).count();
+    println!(
+        "\n{} scenes differ, {unknown} of them without a known reason, by the words of their smallest scenes:",
+        findings.len()
+    );
+    print!("{}", report::groups(&findings));
+    println!("scenes and pictures: {}", options.out.display());
+    if unknown > 0 {
+        bail!("{unknown} of {} scenes differ", numbers.len());
+    }
+    Ok(())
+}
+
+/// Finds the smallest scene that differs in the same way.
+fn examine(
+    options: &Options,
+    programs: &Programs,
+    number: u64,
+    verdict: Verdict,
+) -> Result<Finding> {
+    let scene = grammar::scene(options.seed, number);
+    let mut failed = None;
+    let smallest = reduce::reduce(&scene, options.jobs, TRIES, |texts| {
+        let all = in_parallel(texts, options.jobs, |text| render::judge(programs, text));
+        match all {
+            Ok(all) => all.iter().map(|now| now.is_like(&verdict)).collect(),
+            Err(error) => {
+                failed.get_or_insert(error);
+                vec![false; texts.len()]
+            }
+        }
+    });
+    if let Some(error) = failed {
+        return Err(error);
+    }
+    let smallest = smallest.text();
+    let folder = tempfile::tempdir()?;
+    let (verdict, pictures) = render::judge_in(programs, &smallest, folder.path())?;
+    Ok(Finding {
+        number,
+        verdict,
+        whole: scene.text(),
+        known: known::reason(&smallest),
+        smallest,
+        pictures,
+    })
+}
+
+fn totals(numbers: &[u64], verdicts: &[Verdict], seconds: f64) {
+    let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
+    let mut theirs: BTreeMap<String, Vec<u64>> = BTreeMap::new();
+    for (number, verdict) in numbers.iter().zip(verdicts) {
+        let kind = match verdict {
+            Verdict::Same => "show the same",
+            Verdict::Differs(_) => "differ",
+            Verdict::OursFails(_) => "fail in strahl only",
+            Verdict::TheirsFails(message) => {
+                let message = render::plain(message);
+                theirs.entry(message).or_default().push(*number);
+                "fail in POV-Ray only"
+            }
+            Verdict::BothFail(message) => {
+                let message = render::plain(message);
+                theirs.entry(message).or_default().push(*number);
+                "fail in both"
+            }
+        };
+        *counts.entry(kind).or_default() += 1;
+    }
+    println!("{} scenes in {seconds:.0} s:", numbers.len());
+    for (kind, count) in counts {
+        println!("{count:6} {kind}");
+    }
+    for (message, numbers) in theirs {
+        println!(
+            "  POV-Ray ({} times, {:?}): {message}",
+            numbers.len(),
+            numbers[0]
+        );
+    }
+}
+
+/// Works through things with several threads; the results come back in their order.
+fn in_parallel<T: Sync, R: Send>(
+    things: &[T],
+    jobs: usize,
+    work: impl Fn(&T) -> Result<R> + Sync,
+) -> Result<Vec<R>> {
+    let next = AtomicUsize::new(0);
+    let results = Mutex::new(vec![]);
+    std::thread::scope(|scope| {
+        let one = || -> Result<()> {
+            while let Some(thing) = {
+                let index = next.fetch_add(1, Ordering::Relaxed);
+                things.get(index).map(|thing| (index, thing))
+            } {
+                let result = work(thing.1)?;
+                if let Ok(mut results) = results.lock() {
+                    results.push((thing.0, result));
+                }
+            }
+            Ok(())
+        };
+        let threads: Vec<_> = (0..jobs).map(|_| scope.spawn(one)).collect();
+        threads.into_iter().try_for_each(|t| match t.join() {
+            Ok(result) => result,
+            Err(_) => bail!("a thread panicked"),
+        })
+    })?;
+    let mut results = results.into_inner().unwrap_or_default();
+    results.sort_by_key(|(index, _)| *index);
+    Ok(results.into_iter().map(|(_, result)| result).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn results_come_in_order() {
+        let numbers: Vec<u64> = (0..50).collect();
+        let doubled = in_parallel(&numbers, 7, |n| Ok(2 * n)).unwrap();
+        assert_eq!(doubled, (0..50).map(|n| 2 * n).collect::<Vec<_>>());
+        assert!(in_parallel(&numbers, 3, |n| if *n == 9 { bail!("no") } else { Ok(()) }).is_err());
+    }
+}

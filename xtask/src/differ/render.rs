@@ -1,0 +1,90 @@
+use super::compare::{Distance, distance};
+use crate::compare_pov::picture::{self, Shown};
+use crate::compare_pov::programs::{Programs, povray_reason, strahl_reason};
+use anyhow::Result;
+use std::path::Path;
+
+/// What the two programs made of a scene.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Verdict {
+    /// The same, but for edges and roundings.
+    Same,
+    /// Two pictures.
+    Differs(Distance),
+    /// POV-Ray shows it; strahl says this.
+    OursFails(String),
+    /// Strahl shows it; POV-Ray says this.
+    TheirsFails(String),
+    /// Neither shows it; POV-Ray says this.
+    BothFail(String),
+}
+
+impl Verdict {
+    pub(super) fn is_finding(&self) -> bool {
+        matches!(self, Self::Differs(_) | Self::OursFails(_))
+    }
+
+    /// Whether this is the same finding as that.
+    pub(super) fn is_like(&self, before: &Self) -> bool {
+        match (self, before) {
+            (Self::Differs(now), Self::Differs(before)) => now.is_like(before),
+            (Self::OursFails(now), Self::OursFails(before)) => plain(now) == plain(before),
+            _ => false,
+        }
+    }
+}
+
+/// A message without its place, names and numbers.
+pub(super) fn plain(message: &str) -> String {
+    let text = message.split(" (").next().unwrap_or_default();
+    text.chars().filter(|c| !c.is_ascii_digit()).collect()
+}
+
+/// Renders a scene with both programs.
+pub(super) fn judge(programs: &Programs, text: &str) -> Result<Verdict> {
+    let folder = tempfile::tempdir()?;
+    Ok(judge_in(programs, text, folder.path())?.0)
+}
+
+/// The same in a folder, where the pictures stay: `scene.pov`, `povray.png`, `strahl.png`.
+pub(super) fn judge_in(
+    programs: &Programs,
+    text: &str,
+    folder: &Path,
+) -> Result<(Verdict, Option<(Shown, Shown)>)> {
+    let scene = folder.join("scene.pov");
+    std::fs::write(&scene, text)?;
+    let (theirs, ours) = (folder.join("povray.png"), folder.join("strahl.png"));
+    let strahl = programs.run_strahl(&scene, folder, &ours)?;
+    let povray = programs.run_povray(&scene, folder, &theirs)?;
+    let verdict = match (povray.rendered, strahl.rendered) {
+        (true, true) => {
+            let (a, b) = (picture::read(&theirs)?, picture::read(&ours)?);
+            let verdict = match distance(&a, &b) {
+                Some(far) if far.counts() => Verdict::Differs(far),
+                Some(_) => Verdict::Same,
+                None => Verdict::OursFails("another size".to_owned()),
+            };
+            return Ok((verdict, Some((a, b))));
+        }
+        (true, false) => Verdict::OursFails(strahl_reason(&strahl.reason)),
+        (false, true) => Verdict::TheirsFails(povray_reason(&povray.reason)),
+        (false, false) => Verdict::BothFail(povray_reason(&povray.reason)),
+    };
+    Ok((verdict, None))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn findings_are_alike_by_kind_and_message() {
+        let fails = |text: &str| Verdict::OursFails(text.to_owned());
+        let a = fails("error: no inside (scene.pov:3:5)");
+        assert!(a.is_like(&fails("error: no inside (scene.pov:12:1)")));
+        assert!(!a.is_like(&fails("error: unknown word (scene.pov:3:5)")));
+        assert!(!a.is_like(&Verdict::Same));
+        assert!(a.is_finding() && !Verdict::TheirsFails(String::new()).is_finding());
+    }
+}
