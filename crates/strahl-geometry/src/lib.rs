@@ -1,9 +1,9 @@
-//! Surfaces and solids: what a ray can meet, exactly.
+//! Surfaces and solids, and their exact intersections with rays.
 //!
 //! * [`Primitive`]: anything a ray can hit. [`Solid`]: a primitive with an inside; what CSG combines.
 //! * [`Shape`]: the table of all shapes, one enum generated from it.
-//! * [`Csg`]: solids combined to one, by trees of any depth.
-//! * [`mod@conformance`]: the battery of tests every primitive must pass.
+//! * [`Csg`]: several solids combined into one, by trees of any depth.
+//! * [`mod@conformance`]: tests that every primitive must pass.
 
 pub mod algebraic;
 pub mod blocks;

@@ -6,10 +6,9 @@ use strahl_math::{Aabb, DVec2, DVec3, Interval, Ray, Transform};
 
 /// Names one smooth piece of a primitive's surface.
 ///
-/// `element` counts the parts that primitives made of parts have: the triangles of a mesh, the leaves of a CSG tree (a mesh
-/// inside a tree takes as many numbers as it has triangles). Simple shapes have the one element 0. `facet` tells
-/// the smooth pieces of an element apart, as its documentation says: the side and the caps of a cylinder, the six faces of
-/// a box.
+/// `element` numbers the parts of a primitive: the triangles of a mesh, the leaves of a CSG tree (a mesh inside a tree takes as
+/// many numbers as it has triangles). Simple shapes have the single element 0. `facet` numbers the smooth pieces of an element,
+/// as its documentation says: the side and the caps of a cylinder, the six faces of a box.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct SurfaceId {
     /// The part, `0..primitive.elements()`.
@@ -18,14 +17,14 @@ pub struct SurfaceId {
     pub facet: u32,
 }
 
-/// What an intersection test reports: small, `Copy`, no more than is needed to find the rest later.
+/// The result of an intersection test: small, `Copy`, just enough to compute the surface later.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PrimHit {
     /// Ray parameter, in units of the ray's direction.
     pub t: f64,
     /// The piece of surface that was hit.
     pub surface: SurfaceId,
-    /// Two numbers of the primitive's own choice for [`Primitive::surface_at`]; barycentric coordinates of vertices 1
+    /// Two numbers for [`Primitive::surface_at`], whose meaning depends on the primitive; barycentric coordinates of vertices 1
     /// and 2 on triangles.
     pub uv: [f64; 2],
 }
@@ -41,14 +40,14 @@ impl PrimHit {
     }
 }
 
-/// Everything about a point on a surface, in the space of the ray that found it.
+/// A point on a surface with normals and texture coordinates, in the space of the ray that found it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SurfacePoint {
     /// The point, moved onto the surface as exactly as f64 allows (not merely `ray.at(t)`).
     pub position: DVec3,
     /// Bound on the absolute error of `position`, coordinate by coordinate.
     pub position_error: DVec3,
-    /// Unit normal of the true surface. On solids it points outwards, on open surfaces to the front.
+    /// Unit normal of the geometry. On solids it points outwards, on open surfaces to the front.
     pub n_geom: DVec3,
     /// Unit normal for shading: `n_geom`, or the interpolated normal of a smooth triangle.
     pub n_shade: DVec3,
@@ -75,7 +74,7 @@ impl SurfacePoint {
     }
 }
 
-/// Working memory of intersection tests, one per thread: primitives are immutable.
+/// Working memory of intersection tests, one per thread, because primitives are immutable.
 #[derive(Debug, Default)]
 pub struct Scratch {
     pool: Vec<Crossings>,
@@ -109,7 +108,7 @@ impl Scratch {
         self.csg.push(workspace);
     }
 
-    /// Borrows the lists that rays through blobs are followed with.
+    /// Borrows the lists for rays through blobs.
     pub(crate) fn take_pieces(&mut self) -> Pieces {
         self.pieces.pop().unwrap_or_default()
     }
@@ -121,7 +120,7 @@ impl Scratch {
     }
 }
 
-/// A surface that a ray can meet.
+/// A surface that a ray can hit.
 ///
 /// # Contract
 /// * A result depends on `(self, ray, range, from)` only: not on earlier calls, neighbours or the thread.
@@ -132,14 +131,13 @@ impl Scratch {
 ///   is not hit again; on a curved one the root at `t = 0` is removed exactly (the constant term of the polynomial is
 ///   taken as zero), so no tolerance is needed and the far side of the same surface is still found.
 pub trait Primitive: Send + Sync + std::fmt::Debug {
-    /// The field's word for this kind of thing, lower case: `sphere`, `torus`.
+    /// The name of this kind of primitive, lower case: `sphere`, `torus`.
     fn kind(&self) -> &'static str;
 
     /// Checks the parameters. Constructors named `new` accept anything; scenes are validated when they are compiled.
     ///
     /// # Errors
-    /// What is wrong with which parameter. Nothing is promised about queries on a primitive that is not valid, except
-    /// that they don't panic.
+    /// The parameter that is wrong, and why. Queries of an invalid primitive may return anything, but don't panic.
     fn validate(&self) -> Result<(), GeometryError>;
 
     /// A box around the surface; may be unbounded. Conservative: contains every point `ray.at(t)` of a hit up to the
@@ -160,7 +158,7 @@ pub trait Primitive: Send + Sync + std::fmt::Debug {
         scratch: &mut Scratch,
     ) -> Option<PrimHit>;
 
-    /// Whether there is a hit in `range`: the same answer as `closest_hit(..).is_some()`, possibly sooner.
+    /// Whether there is a hit in `range`: the same answer as `closest_hit(..).is_some()`, possibly faster.
     fn any_hit(
         &self,
         ray: &Ray,
@@ -174,7 +172,7 @@ pub trait Primitive: Send + Sync + std::fmt::Debug {
     /// The surface at a hit that this primitive reported for this ray.
     fn surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint;
 
-    /// The same surface, for those who don't look at `uv`, `dpdu` and `dpdv`, which mean nothing here: possibly sooner.
+    /// The same surface without `uv`, `dpdu` and `dpdv`, which have no meaning here: possibly faster.
     fn bare_surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
         self.surface_at(ray, hit)
     }
@@ -184,18 +182,18 @@ pub trait Primitive: Send + Sync + std::fmt::Debug {
         None
     }
 
-    /// The primitive with a map applied, if the result is again a shape of its kind: same points, same side in front,
-    /// same facets, same texture coordinates, up to rounding. `None` where that is not so; the renderer then takes rays
-    /// into the primitive's own space.
+    /// The primitive with a map applied, if the result is again a shape of this crate: same points, same front, same facets,
+    /// same texture coordinates, up to rounding. Otherwise `None`; the renderer then transforms rays into the primitive's own
+    /// space.
     fn baked(&self, _map: &Transform) -> Option<Shape> {
         None
     }
 }
 
-/// A primitive that encloses a volume: it has an inside.
+/// A primitive that encloses a volume.
 pub trait Solid: Primitive {
     /// A box around the inside. By default that of the surface, [`Primitive::bounds`]; they differ where the inside reaches
-    /// further than the surface that is seen, as below landscapes.
+    /// further than the visible surface, as below height fields.
     fn inside_bounds(&self) -> Aabb {
         self.bounds()
     }
@@ -203,10 +201,9 @@ pub trait Solid: Primitive {
     /// Appends all crossings of the surface with `range.min < t <= range.max`, ascending in `t`, and sets
     /// [`Crossings::inside_at_start`] to whether the ray just behind `range.min` is inside.
     ///
-    /// `out` is empty on entry. Every change from outside to inside is there, so entering and leaving alternate.
-    /// Touching the surface without getting inside is no crossing. `from` as in [`Primitive`]: the root at the start is
-    /// not listed, and `inside_at_start` tells the side that the ray leaves towards; nothing behind the start counts
-    /// then (a negative `range.min` is taken as 0).
+    /// `out` is empty on entry. Every change from outside to inside is listed, so entering and leaving alternate. Touching the
+    /// surface without getting inside is no crossing. `from` as in [`Primitive`]: the root at the start is not listed, and
+    /// `inside_at_start` is the state on the side that the ray leaves towards; a negative `range.min` is taken as 0 then.
     fn crossings(
         &self,
         ray: &Ray,
@@ -290,7 +287,7 @@ pub enum GeometryError {
     OutOfRange {
         /// The parameter.
         what: &'static str,
-        /// What would be right, in words.
+        /// The expected value, in words.
         expected: &'static str,
         /// The value given.
         found: f64,
@@ -300,7 +297,7 @@ pub enum GeometryError {
     Degenerate {
         /// The kind of shape.
         what: &'static str,
-        /// What is wrong, in words.
+        /// The reason, in words.
         why: &'static str,
     },
     /// An index of a mesh points outside of its list.
@@ -336,7 +333,7 @@ pub enum GeometryError {
     NotClosed {
         /// The object.
         what: &'static str,
-        /// What is open, in words.
+        /// The reason, in words.
         why: String,
     },
 }

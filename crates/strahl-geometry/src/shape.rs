@@ -13,7 +13,7 @@ macro_rules! shapes {
     ($($(#[$doc:meta])* $variant:ident($type:ty),)+) => {
         /// Any shape: what scenes store.
         ///
-        /// It is itself a [`Primitive`] and passes every question on to the shape within.
+        /// It is itself a [`Primitive`] and delegates to the shape within.
         #[derive(Clone, Debug)]
         #[non_exhaustive]
         pub enum Shape {
@@ -84,7 +84,7 @@ macro_rules! shapes {
     };
 }
 
-// THE table of shapes: a new one is one line here. Large shapes are held in an `Arc`, so that the enum stays small.
+// The table of shapes: a new one is one line here. Large shapes are held in an `Arc`, so that the enum stays small.
 shapes! {
     /// A sphere.
     Sphere(Sphere),
@@ -110,11 +110,11 @@ shapes! {
     Lathe(Arc<Lathe>),
     /// A surface of revolution whose radius is a function of the height.
     Sor(Arc<Sor>),
-    /// The space that a moving sphere covers.
+    /// The volume that a moving sphere sweeps.
     SphereSweep(Arc<SphereSweep>),
     /// A surface of a degree up to 35.
     Polynomial(Arc<Polynomial>),
-    /// Balls and capsules that flow together.
+    /// Balls and capsules that merge smoothly.
     Blob(Arc<Blob>),
     /// A superquadric ellipsoid.
     Superellipsoid(Superellipsoid),
@@ -126,7 +126,7 @@ shapes! {
     Polygon(Polygon),
     /// Triangles that share their vertices.
     TriangleMesh(Arc<TriangleMesh>),
-    /// A landscape over a grid of heights.
+    /// A height field.
     HeightField(Arc<HeightField>),
     /// A surface where a function has a given value.
     Isosurface(Arc<Isosurface>),
@@ -142,7 +142,7 @@ shapes! {
     Custom(Arc<dyn Primitive>),
 }
 
-/// The large shapes come into their `Arc` by themselves.
+/// Large shapes are put into their `Arc` automatically.
 macro_rules! shared {
     ($($type:ident),+) => {
         $(impl From<$type> for Shape {

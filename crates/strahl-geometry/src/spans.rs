@@ -1,27 +1,27 @@
 use crate::{PrimHit, SurfaceId};
 
-/// What a ray does at a crossing.
+/// The kind of a crossing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
-    /// It gets inside.
+    /// The ray gets inside.
     Enter,
-    /// It gets outside.
+    /// The ray gets outside.
     Exit,
-    /// It passes a piece of surface that lies within the solid: the inner surfaces that a CSG union keeps.
+    /// The ray passes an inner surface, which a CSG union keeps within the solid.
     Inner,
 }
 
 /// One crossing of a ray with the surface of a solid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Crossing {
-    /// Where and on which piece of surface.
+    /// The hit: parameter and piece of surface.
     pub hit: PrimHit,
     /// Bound on the absolute error of `hit.t`: crossings of different surfaces closer than the sum of their errors are
     /// one and the same (coincident faces).
     pub t_error: f64,
     /// What changes there.
     pub side: Side,
-    /// Whether there is a surface to see. Clipping changes the inside without adding a surface.
+    /// Whether the surface is visible. Clipping changes the inside without adding a surface.
     pub visible: bool,
 }
 
@@ -54,7 +54,7 @@ pub struct Crossings {
 }
 
 impl Crossings {
-    /// Makes the list empty (outside, nothing crossed), keeping its memory.
+    /// Empties the list (outside, nothing crossed), keeping its memory.
     pub fn clear(&mut self) {
         self.inside_at_start = false;
         self.list.clear();

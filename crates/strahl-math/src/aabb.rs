@@ -112,7 +112,7 @@ impl Aabb {
     /// The range of parameters for which the ray is inside the box, conservatively widened by the rounding of this very
     /// computation; `None` if the ray misses.
     ///
-    /// This is the f64 clip that re-bases rays (engine design 4.2), not the culling test of the accelerators.
+    /// This is the f64 clip that re-bases rays, not the culling test of the accelerators.
     pub fn clip(&self, ray: &Ray, range: Interval) -> Option<Interval> {
         let mut inside = range;
         for axis in 0..3 {

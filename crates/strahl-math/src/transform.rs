@@ -3,7 +3,7 @@ use crate::{Aabb, DMat3, DVec3, Ray};
 /// An invertible affine map between an object's space and the space around it, with its inverse.
 ///
 /// A point is taken into object space as `L⁻¹ (p - T)`, with the difference formed first: small objects far from the
-/// origin keep all their digits (engine design 4.5).
+/// origin keep all their digits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Transform {
     linear: DMat3,

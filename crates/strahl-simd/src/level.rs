@@ -3,11 +3,11 @@ use crate::Portable;
 use crate::{Avx2, Avx512, Sse4};
 use std::{fmt, str::FromStr};
 
-/// Instructions that kernels are compiled for. Each level includes those before it.
+/// A set of instructions that kernels are compiled for. Each level includes those before it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[non_exhaustive]
 pub enum Level {
-    /// What every processor of the target has: SSE2 on x86-64, NEON on AArch64.
+    /// The instructions that every processor of the target has: SSE2 on x86-64, NEON on AArch64.
     Portable,
     /// SSE 4.1.
     Sse4,
@@ -18,7 +18,7 @@ pub enum Level {
 }
 
 impl Level {
-    /// All of them, the lowest first.
+    /// All levels, the lowest first.
     pub const ALL: &[Self] = &[Self::Portable, Self::Sse4, Self::Avx2, Self::Avx512];
 
     /// The name on the command line.
@@ -61,7 +61,7 @@ impl FromStr for Level {
     }
 }
 
-/// A level that this processor has, with the proof. Goes into [`dispatch!`](crate::dispatch).
+/// A level that this processor has, with the proof. The argument of [`dispatch!`](crate::dispatch).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Simd {
     /// See [`Level::Portable`].

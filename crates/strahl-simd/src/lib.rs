@@ -1,8 +1,9 @@
-//! Vectors for the kernels: eight and sixteen lanes of f32 for culling, four of f64 for what decides.
+//! Vectors for kernels: eight and sixteen lanes of f32 for culling, four lanes of f64 for decisions.
 //!
-//! A kernel is written once, generic over an [`Isa`], and entered through [`Isa::call`], which compiles it for the instructions of
-//! that level. Everything in it that holds vectors must be an `#[inline(always)]` function: what is not (closures too, hence
-//! `array::map` and the like) would be compiled without those instructions, correct but many times slower. [`Simd::detect`] finds out at run time what the processor has; [`dispatch!`] picks the instantiation.
+//! A kernel is written once, generic over an [`Isa`], and entered through [`Isa::call`], which compiles it for the instructions
+//! of that level. Every function in it that holds vectors must be `#[inline(always)]`: others (including closures, hence
+//! `array::map` and the like) would be compiled without those instructions, which is correct but many times slower.
+//! [`Simd::detect`] finds out at run time what the processor has; [`dispatch!`] picks the instantiation.
 //!
 //! # The same bits everywhere
 //! The f64 vectors offer `+ - * / sqrt` and comparisons only, each rounded as IEEE 754 says, lane by lane: no fused operations, no
@@ -10,9 +11,9 @@
 //! multiply-add where the processor does; they are for conservative culling, whose error bounds cover both.
 //!
 //! # Safety
-//! This crate is the home of the workspace's `unsafe` code. A value of a level's type ([`Avx2`], [`Avx512`], ...) can only be got
-//! from the detection, so holding one proves that its instructions exist; that is what every `unsafe` block here relies on, but for
-//! the one that asks for large pages ([`gather_pages`]).
+//! This crate contains nearly all `unsafe` code of the workspace. A value of a level's type ([`Avx2`], [`Avx512`], ...) can
+//! only be obtained by detection, so holding one proves that its instructions exist. Every `unsafe` block here relies on that,
+//! except the one that asks for large pages ([`gather_pages`]).
 
 mod level;
 mod pages;
@@ -36,7 +37,7 @@ pub struct Lanes8(pub [f32; 8]);
 #[repr(C, align(64))]
 pub struct Lanes16(pub [f32; 16]);
 
-/// The vectors of one level of instructions. Values of implementing types are proofs that the instructions exist.
+/// The vectors of one level. Values of implementing types are proofs that the instructions exist.
 ///
 /// Masks have one bit per lane, the first lane in bit 0.
 pub trait Isa: Copy + Send + Sync + 'static {
@@ -63,9 +64,9 @@ pub trait Isa: Copy + Send + Sync + 'static {
     fn mul_sub(self, a: Self::F32x8, b: Self::F32x8, c: Self::F32x8) -> Self::F32x8;
     /// `a b + c`, rounded once or twice: for culling only.
     fn mul_add(self, a: Self::F32x8, b: Self::F32x8, c: Self::F32x8) -> Self::F32x8;
-    /// The smaller ones; neither may be NaN.
+    /// The smaller number in each lane; neither may be NaN.
     fn min_f32(self, a: Self::F32x8, b: Self::F32x8) -> Self::F32x8;
-    /// The larger ones; neither may be NaN.
+    /// The larger number in each lane; neither may be NaN.
     fn max_f32(self, a: Self::F32x8, b: Self::F32x8) -> Self::F32x8;
     /// `a b`.
     fn mul_f32(self, a: Self::F32x8, b: Self::F32x8) -> Self::F32x8;
@@ -75,14 +76,14 @@ pub trait Isa: Copy + Send + Sync + 'static {
     fn div_f32(self, a: Self::F32x8, b: Self::F32x8) -> Self::F32x8;
     /// One lane in all lanes.
     fn spread<const LANE: usize>(self, a: Self::F32x8) -> Self::F32x8;
-    /// Without the signs.
+    /// The absolute values.
     fn abs_f32(self, a: Self::F32x8) -> Self::F32x8;
-    /// Where `a < b`; false for NaN.
+    /// The lanes where `a < b`; false for NaN.
     fn lt_f32(self, a: Self::F32x8, b: Self::F32x8) -> u32;
-    /// Where `a <= b`; false for NaN.
+    /// The lanes where `a <= b`; false for NaN.
     fn le_f32(self, a: Self::F32x8, b: Self::F32x8) -> u32;
 
-    /// Says that the memory at an address, which may be any, will be read soon.
+    /// Prefetches the memory at an address, which may be any.
     fn prefetch(self, address: *const u8);
 
     /// Eight bytes from memory, converted exactly.
@@ -110,15 +111,15 @@ pub trait Isa: Copy + Send + Sync + 'static {
     fn smallest_f32x16(self, v: Self::F32x16) -> f32;
     /// The largest lane; none may be NaN.
     fn largest_f32x16(self, v: Self::F32x16) -> f32;
-    /// Without the signs.
+    /// The absolute values.
     fn abs_f32x16(self, a: Self::F32x16) -> Self::F32x16;
-    /// The smaller ones; neither may be NaN.
+    /// The smaller number in each lane; neither may be NaN.
     fn min_f32x16(self, a: Self::F32x16, b: Self::F32x16) -> Self::F32x16;
-    /// The larger ones; neither may be NaN.
+    /// The larger number in each lane; neither may be NaN.
     fn max_f32x16(self, a: Self::F32x16, b: Self::F32x16) -> Self::F32x16;
-    /// Where `a < b`; false for NaN.
+    /// The lanes where `a < b`; false for NaN.
     fn lt_f32x16(self, a: Self::F32x16, b: Self::F32x16) -> u32;
-    /// Where `a <= b`; false for NaN.
+    /// The lanes where `a <= b`; false for NaN.
     fn le_f32x16(self, a: Self::F32x16, b: Self::F32x16) -> u32;
 
     /// The same number in all lanes.
@@ -129,7 +130,7 @@ pub trait Isa: Copy + Send + Sync + 'static {
     fn load_wide(self, lanes: &[f32; 4]) -> Self::F64x4;
     /// To an array.
     fn store(self, v: Self::F64x4) -> [f64; 4];
-    /// The first four lanes of f32, rounded to the nearest; the others are zeros.
+    /// As the first four lanes of f32, rounded to the nearest; the others are zeros.
     fn narrow_f32(self, v: Self::F64x4) -> Self::F32x8;
     /// To an array of f32, rounded to the nearest.
     fn narrow(self, v: Self::F64x4) -> [f32; 4];
@@ -143,11 +144,11 @@ pub trait Isa: Copy + Send + Sync + 'static {
     fn div(self, a: Self::F64x4, b: Self::F64x4) -> Self::F64x4;
     /// The square root.
     fn sqrt(self, a: Self::F64x4) -> Self::F64x4;
-    /// Without the signs.
+    /// The absolute values.
     fn abs(self, a: Self::F64x4) -> Self::F64x4;
-    /// The smaller ones; of a NaN and a number, and of equal numbers, the second.
+    /// The smaller number in each lane; of a NaN and a number, and of equal numbers, the second.
     fn min(self, a: Self::F64x4, b: Self::F64x4) -> Self::F64x4;
-    /// The larger ones; of a NaN and a number, and of equal numbers, the second.
+    /// The larger number in each lane; of a NaN and a number, and of equal numbers, the second.
     fn max(self, a: Self::F64x4, b: Self::F64x4) -> Self::F64x4;
     /// `yes` where `a <= b`, else `no`.
     fn choose_le(
@@ -157,13 +158,13 @@ pub trait Isa: Copy + Send + Sync + 'static {
         yes: Self::F64x4,
         no: Self::F64x4,
     ) -> Self::F64x4;
-    /// Where `a <= b`; false for NaN.
+    /// The lanes where `a <= b`; false for NaN.
     fn le(self, a: Self::F64x4, b: Self::F64x4) -> u32;
-    /// Where `a < b`; false for NaN.
+    /// The lanes where `a < b`; false for NaN.
     fn lt(self, a: Self::F64x4, b: Self::F64x4) -> u32;
 }
 
-/// Runs an expression with the proof of a level, inside of [`Isa::call`].
+/// Evaluates an expression with the proof of a level, inside of [`Isa::call`].
 ///
 /// `dispatch!(simd, isa => expression)` takes a [`Simd`] and binds `isa` to the [`Isa`] in it.
 #[cfg(target_arch = "x86_64")]
@@ -195,7 +196,7 @@ macro_rules! dispatch {
     };
 }
 
-/// Runs an expression with the proof of a level, inside of [`Isa::call`].
+/// Evaluates an expression with the proof of a level, inside of [`Isa::call`].
 ///
 /// `dispatch!(simd, isa => expression)` takes a [`Simd`] and binds `isa` to the [`Isa`] in it.
 #[cfg(not(target_arch = "x86_64"))]

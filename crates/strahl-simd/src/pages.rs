@@ -1,21 +1,21 @@
-//! Large pages for large lists: a ray that jumps about in them then waits less often for the translation of an address.
+//! Large pages for large lists: random accesses then wait less often for the translation of addresses.
 #![expect(
     unsafe_code,
     reason = "a call of the C library, see the crate's documentation"
 )]
 
-/// Lists of fewer bytes are left alone: the translations of their addresses fit into the processor's caches anyway.
+/// Smaller lists are left alone: the translations of their addresses fit into the processor's caches anyway.
 const LEAST: usize = 8 << 20;
 
-/// Asks the system to gather the memory of a list in large pages, if it is large; whether it does changes nothing but the time that
-/// reading takes.
+/// Asks the system to move the memory of a list to large pages, if the list is large. Only the speed of reading depends on
+/// whether it does.
 pub fn gather_pages<T>(list: &[T]) {
     if size_of_val(list) >= LEAST {
         advise(list.as_ptr().cast_mut().cast(), size_of_val(list));
     }
 }
 
-/// Linux 6.1 and later gather the pages at once.
+/// Linux 6.1 and later do so at once.
 #[cfg(all(target_os = "linux", target_pointer_width = "64"))]
 fn advise(start: *mut std::ffi::c_void, bytes: usize) {
     use std::ffi::{c_int, c_void};

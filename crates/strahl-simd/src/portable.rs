@@ -1,8 +1,8 @@
-//! Vectors as arrays: the reference of all other levels, and what the compiler makes of it where there are none.
+//! Vectors as arrays: the reference of all other levels, and the fallback for targets without them.
 
 use crate::{Isa, Level};
 
-/// The instructions every processor of the target has.
+/// The instructions that every processor of the target has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Portable;
 

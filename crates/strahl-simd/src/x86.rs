@@ -70,8 +70,8 @@ impl Isa for Sse4 {
     pairs_of_eight!();
 }
 
-/// The vectors of AVX2, which AVX-512 has more registers for, up to eight lanes. Comparisons give masks in vectors there too: in the registers that
-/// AVX-512 has for masks they would have a longer way to a branch.
+/// The vectors of AVX2, which with AVX-512 have more registers, up to eight lanes. Comparisons give masks in vectors there too,
+/// because AVX-512's mask registers have a higher latency to a branch.
 macro_rules! avx {
     () => {
         type F32x8 = __m256;

@@ -3,16 +3,16 @@ use crate::{Crossing, Crossings, PrimHit, Side, SurfaceId};
 use std::ops::ControlFlow;
 use strahl_math::Interval;
 
-/// What happens along a ray, in this order.
+/// The events along a ray, in this order.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Event {
-    /// Just behind the start of what is looked at. Without it that is outside.
+    /// The state just behind the start of the range. Without this event it is outside.
     Start { inside: bool },
     /// The surface is crossed.
     Crossing { t: f64, t_error: f64, enters: bool },
 }
 
-/// What is asked of a ray.
+/// A query for the crossings of a ray.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Question {
     pub(super) range: Interval,

@@ -32,7 +32,8 @@ impl Bounds {
     }
 }
 
-/// A stretch of a line between two of the planes of symmetry, and part of it: the coordinates' magnitudes are linear here.
+/// An interval of a line between two of the planes of symmetry, or a part of it: the magnitudes of the coordinates are linear
+/// here.
 #[derive(Clone, Copy)]
 struct Stretch {
     low: f64,
@@ -40,7 +41,7 @@ struct Stretch {
     depth: u32,
 }
 
-/// How often a stretch is halved at most: what happens on less than 1e-12 of it is not seen.
+/// How often an interval is halved at most: features on less than 1e-12 of it are missed.
 const MAX_DEPTH: u32 = 40;
 
 impl Gauge {
@@ -82,8 +83,8 @@ impl Gauge {
         (value, gradient.dot(direction))
     }
 
-    /// Bounds on the derivative along the line where the magnitudes of the coordinates are within bounds and change at these
-    /// paces.
+    /// Bounds of the derivative along the line, where the magnitudes of the coordinates are within bounds and change at these
+    /// rates.
     fn slope(&self, [x, y, z]: &[Bounds; 3], pace: DVec3) -> Bounds {
         let (by_x, by_y) = derivative_bounds(self.p, *x, *y);
         let g = Bounds {
@@ -112,7 +113,7 @@ impl Gauge {
                 sum.high += derivative.low * pace;
             }
         }
-        // Widened by the rounding of the powers; NaN (0 times infinity) bounds nothing.
+        // Widened by the rounding of the powers; NaN (0 times infinity) gives no bounds.
         let slack = 1e-12 * (sum.low.abs() + sum.high.abs());
         if slack.is_finite() {
             Bounds {
@@ -136,9 +137,9 @@ pub(super) struct GaugeLine {
     pub(super) direction: DVec3,
     /// The gauge of the surface: 1, or that of the start of a line that starts on it.
     pub(super) level: f64,
-    /// Where to begin.
+    /// Where to start.
     pub(super) from: f64,
-    /// Whether the line is inside behind its start, and later behind the last crossing.
+    /// Whether the line is inside just behind its start, later just behind the last crossing.
     pub(super) inside: bool,
 }
 
@@ -173,7 +174,7 @@ impl GaugeLine {
         ControlFlow::Continue(())
     }
 
-    /// Halves a stretch until the gauge is on one side of the level or monotone on each part.
+    /// Halves an interval until each part is on one side of the level or monotone.
     fn search(
         &mut self,
         stretch: Stretch,
@@ -194,7 +195,7 @@ impl GaugeLine {
         let slope = gauge.slope(&ranges, pace);
         let monotone = slope.low > 0.0 || slope.high < 0.0;
         let crossing = if least > 1.0 + gauge.error() || most < 1.0 - gauge.error() {
-            // No crossing here; one before it that rounding has hidden is made up for.
+            // There is no crossing here; one before it that rounding has hidden is reported now.
             (self.inside != (most < 1.0)).then_some(low)
         } else if monotone || depth >= MAX_DEPTH || !(low < middle && middle < high) {
             let ends_inside = gauge.value_and_gradient(b).0 <= self.level;

@@ -2,15 +2,15 @@ use std::ops::ControlFlow;
 use strahl_math::error::gamma;
 use strahl_math::roots::{Bernstein, RootCount, Window, find_root};
 
-/// A polynomial `c[0] + c[1] s + ...` on the whole line `-∞ < s < ∞`, scaled so that what is interesting is near `|s| <= 1`.
+/// A polynomial `c[0] + c[1] s + ...` on the whole line `-∞ < s < ∞`, scaled so that its roots of interest are near `|s| <= 1`.
 ///
-/// The line is looked at in four pieces: `s < -1`, `-1..0`, `0..1` and `s > 1`, the outer ones in `u = 1/|s|` with the
-/// coefficients in reverse. On each the change to Bernstein form loses no digits, and what is found does not depend on where
-/// a query begins or ends.
+/// The line is divided into four pieces: `s < -1`, `-1..0`, `0..1` and `s > 1`, the outer ones in `u = 1/|s|` with the
+/// coefficients in reverse. On each the change to Bernstein form loses no digits, and the result does not depend on where a
+/// query begins or ends.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Line<const N: usize> {
     coefficients: [f64; N],
-    /// Of the leading coefficients those are zero that could be rounding errors: the last one that is not.
+    /// The number of the last coefficient that is certainly not a rounding error; those above are taken as zero.
     degree: usize,
     /// Bound on the sum of the errors of the coefficients.
     error: f64,
@@ -19,11 +19,11 @@ pub(super) struct Line<const N: usize> {
 /// A simple change of sign.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Root {
-    /// Where.
+    /// Its parameter.
     pub(super) s: f64,
     /// From negative to positive.
     pub(super) rising: bool,
-    /// A stretch that holds it and no other.
+    /// An interval that contains it and no other.
     pub(super) stretch: (f64, f64),
 }
 
@@ -41,7 +41,7 @@ struct Piece<const N: usize> {
 impl<const N: usize> Line<N> {
     /// The polynomial of these coefficients; `error` bounds the sum of their errors, `leading_error(k)` that of the k-th alone.
     ///
-    /// Leading coefficients that are rounding errors would make up roots at an endless distance, so they are cut off.
+    /// Leading coefficients that are rounding errors would cause roots near infinity, so they are dropped.
     pub(super) fn new(
         mut coefficients: [f64; N],
         error: f64,
@@ -63,7 +63,7 @@ impl<const N: usize> Line<N> {
         }
     }
 
-    /// The same with the root `s = 0`, which is known, divided out.
+    /// The same polynomial divided by its known root `s = 0`.
     ///
     /// In front of `s = 0` the quotient has the sign of the polynomial.
     pub(super) fn without_root_at_zero(self) -> Self {
@@ -81,9 +81,9 @@ impl<const N: usize> Line<N> {
         }
     }
 
-    /// Visits the changes of sign, ascending, that lie within the window or in a stretch that reaches into it.
+    /// Visits the changes of sign, ascending, that lie within the window or whose intervals overlap it.
     ///
-    /// Afterwards `window.starts_negative` tells the sign at the beginning of the first stretch that was looked at.
+    /// Afterwards `window.starts_negative` is the sign at the beginning of the first interval visited.
     pub(super) fn roots(
         &self,
         window: &mut Window,
@@ -113,7 +113,7 @@ impl<const N: usize> Line<N> {
         ControlFlow::Continue(())
     }
 
-    /// How far a root may be off, given a bound on the error of the value near `|s| <= 1`.
+    /// The error of a root, given a bound on the error of the value near `|s| <= 1`.
     pub(super) fn root_error(&self, s: f64) -> f64 {
         let (mut value, mut slope, mut bend) = (0.0, 0.0, 0.0);
         let (mut power, mut largest) = (1.0, 1.0);
@@ -135,7 +135,7 @@ impl<const N: usize> Line<N> {
         } else {
             tangent
         };
-        // Where even the second derivative vanishes, half of the digits are as good a guess as any.
+        // If even the second derivative vanishes, half of the digits are assumed to be correct.
         let most = gamma(1).sqrt() * if s.abs() > 1.0 { s.abs() } else { 1.0 };
         if error < most { error } else { most }
     }

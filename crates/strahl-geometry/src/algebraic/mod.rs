@@ -1,6 +1,6 @@
 //! Algebraic surfaces: where a polynomial of any degree, or a sum of them, vanishes.
 //!
-//! All of them restrict themselves to the ray and isolate the roots of what they get in Bernstein form
+//! All of them substitute the ray into the polynomial and isolate the roots of the result in Bernstein form
 //! ([`strahl_math::roots::Bernstein`]): certified, ascending, without the tolerances of Sturm sequences.
 
 mod blob;

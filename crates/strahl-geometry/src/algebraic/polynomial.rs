@@ -27,7 +27,7 @@ pub struct Polynomial {
     terms: Terms,
     /// The sum of the magnitudes of the coefficients of each degree.
     sums: Vec<f64>,
-    /// The length, a power of two, on which the terms of the highest degree begin to outweigh the others.
+    /// The length, a power of two, above which the terms of the highest degree outweigh the others.
     length: f64,
 }
 
@@ -39,7 +39,7 @@ struct Segment {
     t_per_s: f64,
 }
 
-/// Up to this degree the roots of the polynomial along the ray are as good as its terms.
+/// Up to this degree the roots of the polynomial along the ray are as exact as its terms.
 const ACCURATE_DEGREE: u32 = 6;
 
 /// The highest degree, POV-Ray's.
@@ -144,8 +144,8 @@ impl Polynomial {
         gamma(4 * self.degree() + 8) * magnitude
     }
 
-    /// About the nearest point to the origin, where the terms are smallest; about its own start for a ray that begins on the
-    /// surface, where the known root is.
+    /// The ray relative to its point nearest to the origin, where the terms are smallest; for a ray that starts on the surface
+    /// relative to its start, where the known root is.
     fn segment(&self, ray: &Ray, on_surface: bool) -> Option<Segment> {
         let (o, d) = (ray.origin / self.length, ray.direction / self.length);
         let square = d.length_squared();
@@ -177,7 +177,7 @@ impl Polynomial {
         })
     }
 
-    /// A root, refined on the terms themselves where powers of the length have cost digits of the polynomial along the ray.
+    /// A root, refined with the terms themselves where powers of the length have cost digits of the polynomial along the ray.
     fn polished<const N: usize>(&self, segment: &Segment, line: &Line<N>, root: &Root) -> f64 {
         if self.degree() <= ACCURATE_DEGREE {
             return root.s;
@@ -194,7 +194,7 @@ impl Polynomial {
         }
     }
 
-    /// Tells the visitor what happens along the ray, until it breaks off.
+    /// Reports the crossings along the ray to the visitor, until it stops.
     fn walk(
         &self,
         ray: &Ray,
@@ -204,7 +204,7 @@ impl Polynomial {
         let Some(segment) = self.segment(ray, question.on_surface) else {
             return;
         };
-        // The visitor has nothing left to stop.
+        // The result only matters while visiting.
         let _ = match self.degree() {
             0..=3 => self.walk_line::<4>(&segment, question, visit),
             4 => self.walk_line::<5>(&segment, question, visit),
@@ -340,7 +340,7 @@ impl Primitive for Polynomial {
         let p = ray.origin / self.length + (ray.direction / self.length) * hit.t;
         let Dual { value, gradient } = self.dual(p);
         let size = p.length() + 1.0;
-        // One Newton step along the gradient, unless the value is zero as far as rounding can tell.
+        // One Newton step along the gradient, unless the value is zero within its rounding error.
         let step = gradient * (value / gradient.length_squared());
         let error = self.value_error(p.abs().max_element());
         let local = if step.length() < size && value.abs() > error {
@@ -350,7 +350,7 @@ impl Primitive for Polynomial {
         };
         let gradient = self.dual(local).gradient;
         let steepness = gradient.length();
-        // Where sheets of the surface meet no more than half of the digits are known, and every direction is as good.
+        // Where sheets of the surface meet, at most half of the digits are known, and any direction will do.
         let n = gradient.normalize_or(DVec3::Y);
         let (across, most) = (error / steepness, gamma(1).sqrt() * size);
         let across = if across < most { across } else { most };

@@ -88,7 +88,7 @@ impl Superellipsoid {
         })
     }
 
-    /// Tells the visitor what happens along the ray, until it breaks off.
+    /// Reports the crossings along the ray to the visitor, until it stops.
     fn walk(
         &self,
         ray: &Ray,
@@ -115,7 +115,7 @@ impl Superellipsoid {
         };
         if on_surface {
             let (value, slope) = self.gauge.along(start, direction);
-            // Where the ray starts is the surface: that root is removed exactly.
+            // The start of the ray lies on the surface: that root is removed exactly.
             line.level = value;
             line.inside = slope < 0.0;
             line.from = self.blur(slope, direction);
@@ -133,7 +133,7 @@ impl Superellipsoid {
             };
             visit(Event::Crossing { t, t_error, enters })
         };
-        // The visitor has nothing left to stop.
+        // The result only matters while visiting.
         let _ = if self.gauge.is_convex() {
             self.walk_convex(&line, on_surface, length, &mut cross)
         } else {
@@ -165,12 +165,13 @@ impl Superellipsoid {
         let exit = self
             .approach(line.level, end, -direction, length)
             .map_or(enter, |s| length - s);
-        // A chord shorter than rounding has no length; from the surface on it ends where rounding lets the sides be told apart.
+        // A chord shorter than the rounding error has no length. From the surface it ends where rounding no longer hides on
+        // which side the ray is.
         let least = enter + line.from;
         cross(if exit > least { exit } else { least }, false)
     }
 
-    /// How far from a point of the surface on a ray that leaves it at this slope is certainly off it.
+    /// The distance after which a ray that leaves a point of the surface at this slope is certainly off it.
     fn blur(&self, slope: f64, direction: DVec3) -> f64 {
         let error = 2.0 * self.gauge.error();
         let (straight, tangent) = (error / slope.abs(), error.sqrt() / direction.length());
@@ -181,7 +182,7 @@ impl Superellipsoid {
         }
     }
 
-    /// How far from a point outside the surface of this gauge is, if it is met within `length`.
+    /// The distance from a point outside to the surface of this gauge, if it is reached within `length`.
     ///
     /// The gauge is convex: as long as it falls, Newton's steps end before the surface; once it rises, it has been missed.
     fn approach(&self, level: f64, start: DVec3, direction: DVec3, length: f64) -> Option<f64> {
@@ -206,7 +207,7 @@ impl Superellipsoid {
         None
     }
 
-    /// How far the parameter of a crossing may be off.
+    /// The error of the parameter of a crossing.
     fn t_error(&self, ray: &Ray, t: f64) -> f64 {
         let speed = ray.direction.length();
         let slope = self.gauge.along(ray.at(t), ray.direction).1.abs();
@@ -294,7 +295,7 @@ mod tests {
     crate::primitive_tests!(rounded_cylinder, || Superellipsoid::new(1.0, 0.1));
     crate::primitive_tests!(pillow, || Superellipsoid::new(0.4, 1.4));
     crate::primitive_tests!(octahedron, || Superellipsoid::new(2.0, 2.0));
-    /// All promises but those about leaving the surface: near their edges these bodies are thinner than any rounding.
+    /// All checks except those about leaving the surface: near their edges these bodies are thinner than any rounding error.
     #[test]
     fn stars_keep_most_promises() {
         for (e, n) in [(2.5, 2.5), (2.8, 0.5), (0.6, 3.0), (1.0, 2.2)] {

@@ -20,9 +20,9 @@ struct Row {
     end: u32,
 }
 
-/// What a polynomial is evaluated in: numbers, numbers with gradients, polynomials in one variable.
+/// The numbers in which a polynomial can be evaluated: plain ones, numbers with gradients, polynomials in one variable.
 pub(super) trait Value: Copy {
-    /// What is put in for x, y and z.
+    /// The values of x, y and z.
     type Variable: Copy;
     /// Zero.
     const ZERO: Self;

@@ -1,7 +1,7 @@
-//! Four primitives of a kind side by side, for the leaves of an accelerator: one pass of vector instructions finds out which of
-//! them a ray may hit.
+//! Four primitives of a kind side by side, for the leaves of an accelerator: one sequence of vector instructions finds those
+//! that a ray may hit.
 //!
-//! Where a block decides, it computes what the primitive's own test computes, operation by operation, so the answers have the
+//! Where a block decides, it performs the operations of the primitive's own test in the same order, so the results have the
 //! same bits.
 
 mod packet;
@@ -19,7 +19,7 @@ use strahl_simd::Isa;
 /// Primitives in a block.
 pub const LANES: usize = strahl_accel::BLOCK;
 
-/// Where a ray meets the primitives of a block; only the lanes that were found hit mean anything.
+/// The hits of a ray on the primitives of a block; the values of lanes without a hit have no meaning.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Hits {
     /// Ray parameters.
@@ -28,7 +28,7 @@ pub struct Hits {
     pub uv: [[f64; LANES]; 2],
 }
 
-/// The scalar product, added up in the order of the scalar code.
+/// The scalar product, with the terms added in the order of the scalar code.
 #[inline(always)]
 fn dot<I: Isa>(isa: I, p: [I::F64x4; 3], q: [I::F64x4; 3]) -> I::F64x4 {
     let xy = isa.add(isa.mul(p[0], q[0]), isa.mul(p[1], q[1]));

@@ -1,4 +1,5 @@
-//! Which rays of a packet a block may concern: sixteen rays at once, in f32, before the block's own test decides for each that is left.
+//! Culls the rays of a packet against a block: sixteen rays at once, in f32. The block's own test decides for each ray that is
+//! left.
 //!
 //! u is 2⁻²⁴ here, B the largest coordinate of the primitives, M = B + |o| with the largest origin of the packet.
 
@@ -54,7 +55,7 @@ impl PacketShears {
                 all.start[k].0[lane] = (o[k] - s[k] * o[2]) as f32;
             }
             let distance = o[0].abs() + o[1].abs() + o[2].abs();
-            // A NaN stays.
+            // NaN is kept.
             farthest = if distance <= farthest {
                 farthest
             } else {
@@ -114,11 +115,11 @@ fn reach<I: Isa>(isa: I, p: &Images<I>) -> I::F32x16 {
 }
 
 impl<T: Coordinate> TriangleBlock<T> {
-    /// The rays that may meet one of the first `used` triangles, as bits: those that are missing certainly meet none.
+    /// The rays that may hit one of the first `used` triangles, as bits; all others certainly miss them.
     ///
     /// With R the largest coordinate of the three images, or δ if that is larger, an edge function is wrong by at most 4δR + 2δ² for the
     /// images and 3uR² for its own rounding, less than `(8δ + 8uR) R`. A ray is out if one edge function is certainly positive and
-    /// another certainly negative. Whatever is not a number is in.
+    /// another certainly negative. NaN is never culled.
     #[inline(always)]
     pub fn may_hit<I: Isa>(&self, isa: I, rays: &PacketShears, used: usize) -> u32 {
         let mut met = 0;
@@ -179,7 +180,7 @@ impl PacketLines {
             }
             all.inverse.0[lane] = (1.0 / d.dot(d)) as f32;
             let distance = ray.origin.abs().element_sum();
-            // A NaN stays.
+            // NaN is kept.
             farthest = if distance <= farthest {
                 farthest
             } else {
@@ -192,8 +193,8 @@ impl PacketLines {
 }
 
 impl SphereBlock {
-    /// The rays whose lines may meet one of the first `used` spheres, as bits: those that are missing certainly meet none. Whatever is
-    /// not a number is in.
+    /// The rays whose lines may hit one of the first `used` spheres, as bits; all others certainly miss them. NaN is never
+    /// culled.
     #[inline(always)]
     pub fn may_hit<I: Isa>(&self, isa: I, rays: &PacketLines, used: usize) -> u32 {
         let mut met = 0;
@@ -256,7 +257,7 @@ mod tests {
         }
     }
 
-    /// Sixteen rays close to each other, towards points of things or just beside.
+    /// Sixteen rays close to each other, towards the targets or just beside them.
     fn rays(random: &mut Signed, targets: &[DVec3], scale: f64) -> Vec<Ray> {
         let eye = random.point() * scale * 3.0;
         (0..PACKET)

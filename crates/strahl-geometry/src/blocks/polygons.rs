@@ -4,7 +4,7 @@ use strahl_math::error::gamma;
 use strahl_math::{Interval, Ray};
 use strahl_simd::Isa;
 
-/// Where a ray crosses the planes of four polygons.
+/// The parameters at which a ray crosses the planes of four polygons.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct PlaneHits {
     t: [f64; LANES],
@@ -12,7 +12,7 @@ pub struct PlaneHits {
 }
 
 impl PlaneHits {
-    /// Where it crosses the plane of a lane.
+    /// The crossing of the plane of a lane.
     #[inline(always)]
     pub fn lane(&self, lane: usize) -> PlaneHit {
         PlaneHit {
@@ -22,8 +22,8 @@ impl PlaneHits {
     }
 }
 
-/// Up to four polygons, or things of other kinds beside them: not their own test, but one that leaves out what a ray certainly
-/// does not meet, which is most.
+/// Up to four polygons, or other primitives beside them. This is not their own test, but one that culls the polygons which a
+/// ray certainly misses, which are most.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C, align(32))]
 pub struct PolygonBlock {
@@ -31,22 +31,22 @@ pub struct PolygonBlock {
     normal: [[f64; LANES]; 3],
     /// Per axis a corner of each.
     corner: [[f64; LANES]; 3],
-    /// Per axis where the boxes begin.
+    /// Per axis the lower ends of the boxes.
     low: [[f64; LANES]; 3],
-    /// Per axis where the boxes end.
+    /// Per axis the upper ends of the boxes.
     high: [[f64; LANES]; 3],
-    /// How far corners are off the plane.
+    /// The largest distances of corners from the planes.
     deviation: [f64; LANES],
     /// The largest sum of absolute coordinates.
     reach: [f64; LANES],
-    /// The lanes that are seen from the front only, as bits.
+    /// The one-sided lanes, as bits.
     one_sided: u32,
-    /// The lanes of which nothing is known.
+    /// The lanes with primitives other than polygons, which are never culled.
     others: u32,
 }
 
 impl PolygonBlock {
-    /// Nothing.
+    /// No polygons.
     pub const EMPTY: Self = Self {
         // Edge-on to every ray.
         normal: [[0.0; LANES]; 3],
@@ -73,22 +73,22 @@ impl PolygonBlock {
         self.one_sided |= u32::from(one_sided) << lane;
     }
 
-    /// Puts something else into a lane: that any ray may meet.
+    /// Puts another primitive into a lane, which is never culled.
     pub fn set_other(&mut self, lane: usize) {
         self.others |= 1 << lane;
     }
 
-    /// Whether there is a polygon in a lane.
+    /// Whether a lane has a polygon.
     #[inline(always)]
     pub fn is_polygon(&self, lane: usize) -> bool {
         self.others >> lane & 1 == 0
     }
 
-    /// The lanes that the ray may meet in a range, as bits, with where in their planes: what is missing it certainly does not, by
-    /// [`Polygon`]'s own test.
+    /// The lanes that the ray may hit in a range, as bits, with the crossings of their planes. [`Polygon`]'s own test certainly
+    /// misses all others.
     ///
-    /// That finds t as here, and its error e, operation by operation. The point at t is off that of the polygon which the ray meets by
-    /// no more than e times the speed of the ray, in each coordinate; twice that leaves room for the rounding here.
+    /// That test computes t, and its error e, with the same operations. The point at t differs from the one of the polygon that
+    /// the ray hits by no more than e times the speed of the ray, in each coordinate; twice that covers the rounding here.
     #[inline(always)]
     pub fn may_hit<I: Isa>(&self, isa: I, ray: &Ray, range: Interval, at: &mut PlaneHits) -> u32 {
         let (o, d) = (ray.origin, ray.direction);
@@ -122,7 +122,7 @@ impl PolygonBlock {
             isa.mul(isa.splat(gamma(64)), reach),
         );
         let e = isa.div(off, isa.abs(along));
-        // Whatever is not a number stays.
+        // NaN is kept.
         left &= !isa.lt(isa.add(t, e), isa.splat(range.min));
         left &= !isa.lt(isa.splat(range.max), isa.sub(t, e));
         let slack = isa.mul(isa.mul(e, speed), isa.splat(2.0));

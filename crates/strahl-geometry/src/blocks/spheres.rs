@@ -9,7 +9,7 @@ use strahl_simd::Isa;
 pub struct SphereBlock {
     /// Per axis the centres of all lanes.
     pub(super) center: [[f64; LANES]; 3],
-    /// The radii without their signs.
+    /// The absolute values of the radii.
     pub(super) radius: [f64; LANES],
 }
 
@@ -41,20 +41,20 @@ impl SphereBlock {
         DVec3::new(x[lane], y[lane], z[lane])
     }
 
-    /// Whether a ray that starts on the sphere of a lane goes inside, and so meets it again ahead.
+    /// Whether a ray that starts on the sphere of a lane goes inside, and so hits it again.
     #[inline]
     pub fn is_entered(&self, lane: usize, ray: &Ray) -> bool {
         (ray.origin - self.center(lane)).dot(ray.direction) < 0.0
     }
 
-    /// Where a ray that starts on the sphere of a lane meets it once more in a range, as [`Sphere`] finds it.
+    /// The second hit of a ray that starts on the sphere of a lane, in a range, as [`Sphere`] finds it.
     #[inline]
     pub fn met_again(&self, lane: usize, ray: &Ray, range: Interval) -> Option<f64> {
         let other = Sphere::other_root(self.center(lane), ray)?;
         (range.accepts(other) && other != 0.0).then_some(other)
     }
 
-    /// Where a ray that does not start on the sphere of a lane meets it in a range.
+    /// All hits in a range of a ray that does not start on the sphere of a lane.
     #[inline]
     pub fn all_hits(&self, lane: usize, ray: &Ray, range: Interval) -> [Option<f64>; 2] {
         let center = self.center(lane);
@@ -67,8 +67,8 @@ impl SphereBlock {
         ]
     }
 
-    /// Which spheres the ray meets in a range, as bits, and where for the first time, if it does not start on them: what [`Sphere`]
-    /// finds, operation by operation.
+    /// The spheres that the ray hits in a range, as bits, and the first hit of each, if it does not start on them: the same
+    /// operations as of [`Sphere`].
     #[inline(always)]
     pub fn hits<I: Isa>(&self, isa: I, ray: &Ray, range: Interval, hits: &mut Hits) -> u32 {
         let [dx, dy, dz] = ray.direction.to_array();

@@ -3,9 +3,9 @@ use crate::mesh::{Axis, LOST_DIGITS, RayShear, intersect_triangle};
 use strahl_math::{DVec3, Interval};
 use strahl_simd::Isa;
 
-/// A type that corners are stored in. Its numbers are converted to f64 exactly.
+/// A type in which corners are stored. Its numbers are converted to f64 exactly.
 pub trait Coordinate: Copy + Into<f64> + 'static {
-    /// What an empty lane is filled with: no ray hits a triangle of these.
+    /// The content of empty lanes: no ray hits a triangle with such corners.
     const NAN: Self;
 
     /// Loads four of them.
@@ -106,7 +106,7 @@ impl<T: Coordinate> TriangleBlock<T> {
             .map(|c| DVec3::from_array(c.map(|axis| axis[lane].into())))
     }
 
-    /// Which triangles the ray meets in a range, as bits, and where: what [`intersect_triangle`] finds, operation by operation.
+    /// The triangles that the ray hits in a range, as bits, and the hits: the same operations as of [`intersect_triangle`].
     #[inline(always)]
     pub fn hits<I: Isa>(&self, isa: I, shear: &RayShear, range: Interval, hits: &mut Hits) -> u32 {
         let vectors = Vectors::new(isa, shear);
@@ -117,8 +117,8 @@ impl<T: Coordinate> TriangleBlock<T> {
         let (u0, u1) = products(isa, &b, &c);
         let (v0, v1) = products(isa, &c, &a);
         let (w0, w1) = products(isa, &a, &b);
-        // A difference has the sign that a comparison finds, if need be by a subnormal number; one that is none (of products
-        // that are infinite) makes a hit that is none.
+        // A difference has the sign that a comparison finds, if necessary as a subnormal number; NaN (from infinite products)
+        // leads to a hit that is not finite, hence to none.
         let (u, v, w) = (isa.sub(u0, u1), isa.sub(v0, v1), isa.sub(w0, w1));
         let (zero, least) = (isa.splat(0.0), isa.min(isa.min(u, v), w));
         let most = isa.max(isa.max(u, v), w);
@@ -137,7 +137,7 @@ impl<T: Coordinate> TriangleBlock<T> {
         let (u, v) = (isa.div(v, area), isa.div(w, area));
         let across = isa.add(isa.mul(u, isa.sub(b.z, a.z)), isa.mul(v, isa.sub(c.z, a.z)));
         let t = isa.div(isa.add(a.z, across), isa.splat(shear.direction_z()));
-        // What has no area or is beyond the range of f64 has no finite t.
+        // Triangles without area, or beyond the range of f64, have no finite t.
         let max = if range.max < f64::MAX {
             range.max
         } else {

@@ -25,7 +25,7 @@ impl Subject {
         );
     }
 
-    /// Shoots rays and looks at what they hit.
+    /// Shoots rays and calls `look` with their hits.
     fn for_random_hits(&self, seed: u64, mut look: impl FnMut(&Ray, &PrimHit, &SurfacePoint)) {
         let (mut random, mut scratch) = (Random::new(seed), Scratch::default());
         for _ in 0..self.rays {
@@ -39,8 +39,8 @@ impl Subject {
         }
     }
 
-    /// The reported position is near the point on the ray and truly on the surface: a second ray, sent straight down
-    /// on it, meets the surface there within `position_error`.
+    /// The reported position is near the point on the ray and on the surface: a second ray, sent straight down on it, hits the
+    /// surface there within `position_error`.
     pub fn hits_lie_on_the_surface(&self) {
         let mut scratch = Scratch::default();
         self.for_random_hits(2, |ray, hit, surface| {
@@ -277,8 +277,8 @@ impl Subject {
         });
     }
 
-    /// Two ways of computing one hit agree. Rays that graze the surface are left out: their `t` may move a lot. So are rays
-    /// that start on it: their `t` may become 0 or negative.
+    /// Checks that two computations of one hit agree. Rays that graze the surface are left out, because their `t` may change a
+    /// lot, and so are rays that start on it, because their `t` may become 0 or negative.
     fn assert_same_place(
         &self,
         ray: &Ray,
@@ -298,7 +298,8 @@ impl Subject {
         );
     }
 
-    /// Rotating, stretching and moving the shape and the ray alike leaves `t` as it is, through a space of its own as well as baked in.
+    /// Rotating, scaling and moving shape and ray together leaves `t` unchanged, whether the shape gets a space of its own or
+    /// is baked.
     pub fn maps_change_nothing(&self) {
         let (mut random, mut scratch) = (Random::new(9), Scratch::default());
         for round in 0..12 {
@@ -384,7 +385,7 @@ impl Subject {
         }
     }
 
-    /// All of this holds from 1e-6 to 1e6 times the size and up to 1e9 away, through a space of its own and baked in.
+    /// All checks hold from 1e-6 to 1e6 times the size and at distances up to 1e9, with a space of its own and baked.
     pub fn all_scales_and_places(&self) {
         let aside = DVec3::new(0.7, -1.0, 0.4);
         for scale in [1e-6, 1e-3, 1e3, 1e6] {

@@ -1,4 +1,4 @@
-//! The battery of tests every primitive must pass.
+//! Tests that every primitive must pass.
 //!
 //! ```
 //! # use strahl_geometry::{primitive_tests, Sphere};
@@ -7,12 +7,12 @@
 //! # fn main() {}
 //! ```
 //!
-//! makes a module `unit_sphere` with one test per promise of [`Primitive`] and [`Solid`]. The module is part of the
-//! library, so that primitives from outside of this crate can be held to the same contract. Its functions panic where a
-//! promise is broken, with the ray that shows it.
+//! makes a module `unit_sphere` with one test per promise of [`Primitive`] and [`Solid`]. The module is part of the library, so
+//! that primitives outside of this crate can be tested against the same contract. Its functions panic if a promise is broken,
+//! and name the ray that shows it.
 //!
-//! Rays come from a small deterministic generator: a failure repeats. Shapes without bounds are looked at
-//! within 3 units of the origin, so make them about one unit large and near it.
+//! Rays come from a small deterministic generator, so failures repeat. Shapes without bounds are tested within 3 units of the
+//! origin, so make them about one unit large and near it.
 //!
 //! [`Solid`]: crate::Solid
 
@@ -27,14 +27,14 @@ use strahl_math::{Aabb, DVec3, Ray, Transform};
 
 pub use rays::Random;
 
-/// Rounding allowed for, as a part of the largest magnitude in play: about a thousand times the unit of f64.
+/// The rounding error allowed, relative to the largest magnitude involved: about a thousand times the unit of f64.
 const TOLERANCE: f64 = 1.0 / (1u64 << 42) as f64;
 
 /// A primitive under test: each method checks one promise and panics if it is broken.
 #[derive(Clone, Debug)]
 pub struct Subject {
     shape: Arc<dyn Primitive>,
-    /// Where to look for the surface.
+    /// The region in which the surface is searched.
     region: Aabb,
     /// The largest extent of that region.
     size: f64,
@@ -78,7 +78,7 @@ impl Subject {
         Self::with_region(Arc::new(placed), region, 150)
     }
 
-    /// What rounding may do to a point found on a ray at `t`.
+    /// A bound of the rounding error of a point on a ray at `t`.
     fn tolerance(&self, ray: &Ray, t: f64) -> f64 {
         let reach = ray.origin.length() + (ray.direction * t).length() + self.region.max_abs();
         TOLERANCE * reach

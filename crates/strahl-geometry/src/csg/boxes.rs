@@ -1,6 +1,6 @@
 use strahl_math::{Aabb, DVec3, Interval, Ray};
 
-/// A ray that is held against many boxes: divided once, multiplied often.
+/// A ray that is tested against many boxes: divided once, multiplied often.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Slabs {
     origin: DVec3,
@@ -37,7 +37,7 @@ impl Slabs {
             let (a, b) = ((low - o) * inverse, (high - o) * inverse);
             let (near, far) = if inverse > 0.0 { (a, b) } else { (b, a) };
             let (near, far) = (near - near.abs() * SLACK, far + far.abs() * SLACK);
-            // NaN (an infinite reciprocal, a plane through the origin) cuts nothing away.
+            // NaN (an infinite reciprocal, a plane through the origin) clips nothing.
             if near > enter {
                 enter = near;
             }
@@ -85,7 +85,7 @@ mod tests {
                 }
                 (None, None) => missed += 1,
                 (ours, exact) => {
-                    // Only what is touched in a point may be told either way.
+                    // Only boxes touched in a point may be decided either way.
                     let found = ours.or(exact).expect("one of them");
                     assert!(
                         found.max - found.min < 1e-13,

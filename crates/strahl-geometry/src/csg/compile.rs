@@ -9,15 +9,15 @@ use std::cmp::Ordering;
 use strahl_accel::Bvh2;
 use strahl_math::{Aabb, Transform};
 
-/// Up to this many operands their boxes are looked at one by one.
+/// Up to this many operands the boxes are tested one by one.
 const FEW: usize = 8;
 
-/// What the nodes above say about a node.
+/// The context of a node: what the nodes above it determine.
 #[derive(Clone, Copy)]
 struct Context {
     /// The compiled operation it is an operand of; `None` at the root.
     parent: Option<u32>,
-    /// Whether its complement is wanted.
+    /// Whether its complement is taken.
     negative: bool,
     /// Whether its surface can be seen.
     visible: bool,
@@ -73,7 +73,7 @@ struct Proto {
 /// The passes from description to compiled tree. None recurses: trees may be deeper than the stack.
 #[derive(Default)]
 pub(super) struct Compiler {
-    /// Parents stand before their operands.
+    /// Parents come before their operands.
     nodes: Vec<Proto>,
     leaves: Vec<Leaf>,
     elements: u32,
@@ -152,7 +152,7 @@ impl Compiler {
         Ok(())
     }
 
-    /// Puts an operation's operands on the list; `rest` changes the context of all but the first.
+    /// Pushes an operation's operands on the list; `rest` changes the context of all but the first.
     fn expand(
         &mut self,
         what: &'static str,
@@ -246,7 +246,7 @@ impl Compiler {
                 let is_core = |operand: &u32| far_of(operand) != rule.neutral();
                 operands.extend(proto.operands.iter().copied().filter(is_core));
                 core = operands.len() - first;
-                // An intersection is done as soon as nothing is left: start with the smallest boxes.
+                // An intersection is finished as soon as nothing is left, so start with the smallest boxes.
                 if let Some(core) = operands.get_mut(first..) {
                     let area = |i: &u32| boxes.get(*i as usize).map_or(0.0, |b| b.0.half_area());
                     core.sort_by(|a, b| area(a).partial_cmp(&area(b)).unwrap_or(Ordering::Equal));
@@ -303,14 +303,13 @@ impl Compiler {
         }
     }
 
-    /// Those of the nodes that are half-spaces.
+    /// The half-spaces among the nodes.
     fn half_spaces(&self, nodes: &[u32]) -> Option<HalfSpaces> {
         let all = nodes.iter().filter_map(|node| self.half_space(*node));
         HalfSpaces::new(all.collect())
     }
 
-    /// For each node a box, and whether what lies outside of that box is inside of the node. All surfaces are in
-    /// the box.
+    /// For each node a box that contains all its surfaces, and whether the space outside of that box is inside of the node.
     fn boxes(&self) -> Vec<(Aabb, bool)> {
         let mut boxes = vec![(Aabb::EMPTY, false); self.nodes.len()];
         for (index, node) in self.nodes.iter().enumerate().rev() {
@@ -321,8 +320,8 @@ impl Compiler {
                     .get(leaf as usize)
                     .map_or((Aabb::EMPTY, false), |leaf| (leaf.bounds, leaf.negative)),
                 Kind::Operation(rule) => {
-                    // An operand whose outside decides (false under intersections, true under unions) leaves nothing to
-                    // happen beyond its box.
+                    // If the outside of an operand decides the result (false under intersections, true under unions), nothing
+                    // changes outside of its box.
                     let mut decisive = operands()
                         .filter(|(_, far)| *far != rule.neutral())
                         .peekable();
@@ -352,7 +351,7 @@ impl Compiler {
     /// Short-circuit evaluation of `contains` as jumps from leaf to leaf: within `a or b`, "inside of a" goes on where "inside of b"
     /// would, "outside of a" goes to b.
     fn compile_jumps(&mut self) {
-        // The leaf each node starts with: parents stand before operands, so the last node comes first.
+        // The first leaf of each node. Parents come before their operands, so go through the nodes backwards.
         let mut entry = vec![Next::Answer(false); self.nodes.len()];
         for (index, node) in self.nodes.iter().enumerate().rev() {
             let first = match node.kind {

@@ -1,4 +1,4 @@
-//! The courses of nodes along a ray: what of a tree the search for the first surface looks at, and what it leaves out.
+//! The courses of nodes along a ray: the parts of a tree that matter to the search for the first surface.
 
 use super::boxes::Slabs;
 use super::evaluate::Collector;
@@ -12,12 +12,12 @@ use crate::{Crossings, Side, SurfaceId};
 use strahl_accel::{Accelerator, TraversalStats};
 use strahl_math::Interval;
 
-/// What a node is along the part of the ray that matters.
+/// The states of a node along the relevant part of the ray.
 #[derive(Clone, Copy, Debug)]
 enum Course {
-    /// The same all along.
+    /// The same everywhere.
     Constant(bool),
-    /// The state where the ray starts, and the part of the line where it may be inside or have a surface.
+    /// The state where the ray starts, and the interval in which it may be inside or meet a surface.
     Varies { inside: bool, alive: Interval },
 }
 
@@ -29,14 +29,14 @@ impl Search<'_> {
         slabs.clip(&node.bounds, range)
     }
 
-    /// The course of a node in the range; the crossings of its leaves are put on the timeline.
+    /// The course of a node in the range; the crossings of its leaves are added to the timeline.
     #[inline]
     fn course(&mut self, index: u32, parent: u32, range: Interval) -> Result<Course, TooClose> {
         let csg = self.csg;
         let Some(node) = csg.node(index) else {
             return Err(TooClose);
         };
-        // Quick shapes are as quickly met as their boxes.
+        // Quick shapes are intersected as fast as their boxes.
         if !node.quick && self.clip(node, range).is_none() {
             return Ok(Course::Constant(node.far));
         }
@@ -89,7 +89,7 @@ impl Search<'_> {
         Ok(Course::Varies { inside, alive })
     }
 
-    /// Adds up the operands of a node that decide wherever the ray misses them; true if the others don't matter.
+    /// Combines the operands of a node that decide wherever the ray misses them; true if the others don't matter.
     pub(super) fn core(
         &mut self,
         index: u32,
@@ -99,7 +99,7 @@ impl Search<'_> {
         let csg = self.csg;
         let half_spaces = node.half_spaces.as_ref();
         let planes = half_spaces.map_or(0, |planes| planes.len() as u32);
-        // Quick ones first: what they leave over makes the others cheap, or superfluous.
+        // Quick ones first: they may make the others cheaper or unnecessary.
         let mut slow = false;
         for i in node.first..node.core - planes {
             let operand = csg.operand(i).unwrap_or_default();
@@ -133,8 +133,8 @@ impl Search<'_> {
         Ok(false)
     }
 
-    /// Adds up those of a node's other operands whose boxes begin in the window (behind its start, up to its end), as far as the
-    /// boxes lie in `alive`; true if all others don't matter.
+    /// Combines those of a node's other operands whose boxes begin in the window (behind its start, up to its end) and overlap
+    /// `alive`; true if all others don't matter.
     pub(super) fn rest(
         &mut self,
         index: u32,
@@ -148,7 +148,7 @@ impl Search<'_> {
             for i in node.core..node.end {
                 let operand = csg.operand(i).unwrap_or_default();
                 let quick = csg.node(operand).is_some_and(|n| n.quick);
-                // Quick ones have no window but the first.
+                // Quick operands belong to the first window.
                 if (!quick || window.min == f64::NEG_INFINITY)
                     && self.add_operand(operand, index, quick, window, alive, sum)?
                 {
@@ -177,7 +177,7 @@ impl Search<'_> {
         Ok(decided)
     }
 
-    /// Adds up an operand, if it is quick or if its box begins in the window.
+    /// Combines an operand, if it is quick or if its box begins in the window.
     #[inline]
     fn add_operand(
         &mut self,
@@ -217,7 +217,7 @@ impl Search<'_> {
         course
     }
 
-    /// Puts the ends of a span on the timeline.
+    /// Adds the ends of a span to the timeline.
     fn convex(
         &mut self,
         leaf: &Leaf,
@@ -283,7 +283,7 @@ impl Search<'_> {
         course
     }
 
-    /// Puts a list of crossings, made for a range, on the timeline.
+    /// Adds a list of crossings, made for a range, to the timeline.
     fn listed(
         &mut self,
         list: &Crossings,
@@ -319,15 +319,15 @@ impl Search<'_> {
     }
 }
 
-/// What the operands of an operation have come to so far.
+/// The operands of an operation, combined so far.
 pub(super) struct Sum {
     rule: Rule,
     pub(super) state: State,
-    /// Where the operands to come matter.
+    /// The interval in which further operands matter.
     pub(super) alive: Interval,
     /// From the first to the last point where an operand is alive.
     reach: Interval,
-    /// The result, if it is the same all along, whatever the operands to come.
+    /// The result, if it is constant whatever the further operands are.
     decided: Option<bool>,
 }
 
@@ -342,13 +342,13 @@ impl Sum {
         }
     }
 
-    /// Takes an operand in; true if the others don't matter any more.
+    /// Adds an operand; true if the others don't matter any more.
     #[inline]
     fn add(&mut self, course: Course, fusing: &Fusing) -> bool {
         match course {
             Course::Constant(constant) if constant == self.rule.neutral() => {}
             Course::Constant(_) if self.rule == Rule::Union => {
-                // Inner surfaces of the others still are seen.
+                // Inner surfaces of the others are still visible.
                 self.reach = Interval::LINE;
                 self.state.inside += 1;
                 self.state.total += 1;

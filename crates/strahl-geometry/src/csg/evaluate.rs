@@ -7,17 +7,17 @@ use crate::{Crossings, Scratch, Side, SurfaceId};
 use strahl_accel::{Accelerator, TraversalStats, Visitor};
 use strahl_math::{Aabb, Interval, Ray};
 
-/// The stacks of an evaluation, kept from ray to ray.
+/// The stacks of an evaluation, reused from ray to ray.
 #[derive(Debug, Default)]
 pub(crate) struct Workspace {
     frames: Vec<Frame>,
     /// The crossings of all operands of the frames, the topmost frame's last.
     events: Vec<Event>,
-    /// The operands that take part, frame by frame.
+    /// The operands with crossings, frame by frame.
     slots: Vec<Slot>,
-    /// The operands still to come whose boxes the ray meets, frame by frame, the next one last.
+    /// The remaining operands whose boxes the ray meets, frame by frame, the next one last.
     candidates: Vec<u32>,
-    /// What the search for the first surface keeps.
+    /// The lists of the search for the first surface.
     pub(super) first: Lists,
 }
 
@@ -35,23 +35,23 @@ impl Workspace {
 struct Frame {
     node: u32,
     rule: Rule,
-    /// Where its result still matters.
+    /// The range in which its result matters.
     range: Interval,
-    /// The next of the node's core operands; past them, `candidates` has the rest.
+    /// The next of the node's core operands; after them come the `candidates`.
     next: u32,
-    /// Whether the rest has been put among the candidates.
+    /// Whether the other operands have been added to the candidates.
     listed: bool,
-    /// Where its entries begin in the stacks.
+    /// The beginning of its entries in the stacks.
     events: usize,
     slots: usize,
     candidates: usize,
-    /// Whether there is an operand that the ray is inside of all along.
+    /// Whether the ray is inside of some operand in the whole range.
     always_inside: bool,
-    /// The result, if it has become the same all along the range, whatever the operands to come.
+    /// The result, if it has become constant in the range, whatever the remaining operands are.
     decided: Option<bool>,
 }
 
-/// One ray meeting one tree.
+/// The evaluation of one tree for one ray.
 pub(super) struct Evaluation<'a> {
     csg: &'a Csg,
     ray: &'a Ray,
@@ -81,7 +81,8 @@ impl<'a> Evaluation<'a> {
         // An empty range has a start, too.
         let end = if start < range.max { range.max } else { start };
         let fusing = Fusing::new(ray);
-        // What coincides with an end of the range has to be seen too, or the result at the end would depend on the range.
+        // Crossings that coincide with an end of the range must be included, or the result at the end would depend on the
+        // range.
         let wide = fusing.widened(Interval::new(start, end));
         let evaluation = Self {
             csg,
@@ -151,7 +152,7 @@ impl<'a> Evaluation<'a> {
         }
     }
 
-    /// Starts on a node: writes the crossings of a leaf (true) or puts an operation on the stack (false).
+    /// Begins a node: writes the crossings of a leaf (true) or pushes an operation on the stack (false).
     fn begin(
         &self,
         index: u32,
@@ -249,7 +250,7 @@ impl<'a> Evaluation<'a> {
             &mut collector,
             &mut TraversalStats::default(),
         );
-        // The hierarchy's boxes are wider; the order of its visits must not matter.
+        // The hierarchy's boxes are wider, and the order of its visits must not matter.
         if let Some(found) = candidates.get_mut(begin..) {
             found.sort_unstable_by(|a, b| b.cmp(a));
         }
@@ -267,7 +268,7 @@ impl<'a> Evaluation<'a> {
         bounds.is_empty() || bounds.clip(self.ray, range).is_none()
     }
 
-    /// Takes an operand's crossings into the topmost frame.
+    /// Adds an operand's crossings to the topmost frame.
     fn absorb(&self, list: &Crossings, work: &mut Workspace, scratch: &mut Scratch) {
         let Some(frame) = work.frames.last_mut() else {
             return;
@@ -275,7 +276,7 @@ impl<'a> Evaluation<'a> {
         let intersection = frame.rule == Rule::Intersection;
         let sequential = intersection && !frame.listed;
         if list.list.is_empty() && list.inside_at_start != frame.rule.neutral() {
-            // Nothing is left of an intersection, everything is in a merge. A union still has inner surfaces.
+            // Nothing is left of an intersection, or a merge is full. A union still has inner surfaces.
             if frame.rule == Rule::Union {
                 frame.always_inside = true;
             } else {
@@ -294,7 +295,7 @@ impl<'a> Evaluation<'a> {
             slot,
         }));
         if sequential && slot > 0 {
-            // The positive operands of an intersection are combined one by one, to see at once when nothing is left.
+            // The positive operands of an intersection are combined one by one, to notice immediately when nothing is left.
             let mut combined = scratch.take();
             combine(
                 frame,
@@ -318,13 +319,13 @@ impl<'a> Evaluation<'a> {
             && let (Some(slot), Some(events)) =
                 (work.slots.get(frame.slots), work.events.get(frame.events..))
         {
-            // Later operands matter only where something is left.
+            // Further operands matter only where something is left.
             let alive = alive(slot, events, frame.range);
             frame.range = frame.range.intersection(self.fusing.widened(alive));
         }
     }
 
-    /// Takes the topmost frame off and writes its result.
+    /// Removes the topmost frame and writes its result.
     fn conclude(&self, work: &mut Workspace, out: &mut Crossings) {
         let Some(frame) = work.frames.pop() else {
             return;
@@ -354,7 +355,7 @@ impl Visitor for Collector<'_> {
     }
 }
 
-/// Sweeps over what a frame has gathered and takes it off the stacks.
+/// Sweeps over the crossings of a frame and removes it from the stacks.
 fn combine(
     frame: &Frame,
     events: &mut Vec<Event>,
@@ -395,7 +396,7 @@ fn alive(slot: &Slot, events: &[Event], range: Interval) -> Interval {
     Interval::new(first.unwrap_or(range.min), last.unwrap_or(range.max))
 }
 
-/// Cuts a list to a range that is part of its own.
+/// Clips a list to a part of its range.
 fn cut(list: &mut Crossings, range: Interval) {
     list.inside_at_start = list.inside_after(range.min);
     list.list.retain(|crossing| range.accepts(crossing.hit.t));

@@ -1,12 +1,12 @@
 //! The first visible surface, without lists of crossings.
 //!
-//! Who only wants to know what a ray meets first need not combine lists node by node. The crossings of all leaves, sorted, tell
-//! it: each changes the state of its leaf, which may change that of the operation above, and so on; the first that reaches the
-//! root is the answer. That is right as long as no two crossings are so close together that they could be one ([`Fusing`]).
-//! Where they are, this way gives up, and the general one decides; so both give the same bits.
+//! If only the first hit is wanted, the lists need not be combined node by node. The sorted crossings of all leaves are enough:
+//! each changes the state of its leaf, which may change that of the operation above, and so on; the first crossing that changes
+//! the root is the answer. This is correct as long as no two crossings are so close together that they could coincide
+//! ([`Fusing`]). If they are, this search gives up and the general one decides; so both give the same bits.
 //!
-//! What can be left out is left out: operands whose boxes the ray misses, or that begin behind the first surface found without
-//! them; all others of an intersection, once nothing is left of it. (`course` decides that, `timeline` sorts.)
+//! Operands that don't matter are skipped: those whose boxes the ray misses, those that begin behind the first surface found
+//! without them, and all others of an intersection once nothing is left of it. (`course` decides that, `timeline` sorts.)
 
 use super::Csg;
 use super::boxes::Slabs;
@@ -17,42 +17,42 @@ use super::timeline::{Timeline, TooClose};
 use crate::{PrimHit, Scratch, SurfaceId};
 use strahl_math::{Interval, Ray};
 
-/// What this way has found out.
+/// The result of this search.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Answer {
-    /// The first visible hit, or that there is none.
+    /// The first visible hit, or none.
     Certain(Option<PrimHit>),
-    /// Nothing: crossings are too close together.
+    /// Unknown: crossings are too close together.
     Unclear,
 }
 
-/// The lists of a search, kept from ray to ray.
+/// The lists of a search, reused from ray to ray.
 #[derive(Debug, Default)]
 pub(super) struct Lists {
     pub(super) timeline: Timeline,
-    /// What hierarchies have found, operation by operation.
+    /// The operands found by hierarchies, operation by operation.
     pub(super) candidates: Vec<u32>,
 }
 
-/// One ray, looking for the first surface of one tree.
+/// The search of one ray for the first surface of one tree.
 pub(super) struct Search<'a> {
     pub(super) csg: &'a Csg,
     pub(super) ray: &'a Ray,
-    /// Made when the first box is looked at.
+    /// Computed when the first box is tested.
     pub(super) slabs: Option<Slabs>,
     /// The leaf on which the ray starts, and its surface there.
     pub(super) from: Option<(u32, SurfaceId)>,
     pub(super) fusing: Fusing,
-    /// What is asked for.
+    /// The range of the query.
     pub(super) range: Interval,
-    /// Where the timeline begins: a little before the range, so that crossings on both sides of its start are told apart; but not
-    /// behind the surface that the ray leaves.
+    /// The beginning of the timeline: a little before the range, so that crossings on both sides of its start are
+    /// distinguished, but not behind the surface that the ray leaves.
     pub(super) begin: f64,
     pub(super) lists: &'a mut Lists,
     pub(super) scratch: &'a mut Scratch,
 }
 
-/// Looks for the first visible surface with `range.min < t <= range.max` of a tree that is made of solids, and not too deep.
+/// Searches the first visible surface with `range.min < t <= range.max` of a tree of solids that is not too deep.
 pub(super) fn first_visible(
     csg: &Csg,
     ray: &Ray,
@@ -98,7 +98,7 @@ pub(super) fn first_visible(
 }
 
 impl Search<'_> {
-    /// Looks at the root's operands from near to far, until one that begins later can't change what is found.
+    /// Visits the root's operands from near to far, until those that begin later can't change the result.
     fn run(mut self) -> Result<Option<PrimHit>, TooClose> {
         let csg = self.csg;
         let Some((root, Kind::Operation(rule))) = csg.node(0).map(|root| (root, root.kind)) else {
@@ -113,7 +113,7 @@ impl Search<'_> {
         let mut window = Interval::LINE;
         let mut step = 0.0;
         if rule == Rule::Intersection {
-            // Nothing can be seen before this.
+            // Nothing is visible before this.
             let first = if alive.min > self.range.min {
                 alive.min
             } else {
@@ -142,13 +142,13 @@ impl Search<'_> {
         }
     }
 
-    /// The surface the ray starts on, if it is this leaf's.
+    /// The surface that the ray starts on, if it belongs to this leaf.
     pub(super) fn start_on(&self, leaf: u32) -> Option<SurfaceId> {
         let (other, surface) = self.from?;
         (other == leaf).then_some(surface)
     }
 
-    /// Refuses crossings that could be one with the surface that the ray leaves.
+    /// Fails for crossings that could coincide with the surface that the ray leaves.
     pub(super) fn check_start(&self, t: f64) -> Result<(), TooClose> {
         if self.from.is_none() || t.abs() > self.fusing.gap(t, 0.0) {
             Ok(())

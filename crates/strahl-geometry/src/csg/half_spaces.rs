@@ -1,9 +1,9 @@
-//! Intersections of half-spaces: gems, crystals, all that is cut by planes.
+//! Intersections of half-spaces, such as gems and crystals.
 //!
-//! Evaluated plane by plane, every plane would be combined with the list so far; but what a line has in common with all of them is
-//! one span, from the last plane it enters to the first one it leaves. One pass over the planes finds it. Where planes are met so
-//! closely together that crossings could be one ([`Fusing`]), the pass says so and the general way decides, so both give the same
-//! bits.
+//! Evaluated plane by plane, every plane would be combined with the list so far. But a line is inside of all of them in one
+//! span, from the last plane it enters to the first one it leaves, and one pass over the planes finds it. If planes are crossed
+//! so close together that crossings could coincide ([`Fusing`]), the pass reports it and the general evaluation decides, so
+//! both give the same bits.
 
 use super::sweep::Fusing;
 use crate::primitives::plane_t_error;
@@ -23,7 +23,7 @@ pub(super) struct HalfSpace {
     pub(super) visible: bool,
 }
 
-/// A crossing with one of the planes; `index` is meaningless while `t` is infinite.
+/// A crossing with one of the planes; `index` has no meaning while `t` is infinite.
 #[derive(Clone, Copy)]
 struct End {
     t: f64,
@@ -35,9 +35,9 @@ struct End {
 pub(super) struct HalfSpaces(Vec<HalfSpace>);
 
 impl HalfSpaces {
-    /// Fewer are not worth a pass of their own.
+    /// Fewer are not worth a separate pass.
     const FEWEST: usize = 2;
-    /// The box of more than this many is not looked for, because that takes a time that grows with the cube.
+    /// For more half-spaces no box is computed, because the time grows with the cube of their number.
     const BOXED: usize = 200;
 
     /// The half-spaces as one operand, if they are enough.
@@ -49,8 +49,8 @@ impl HalfSpaces {
         self.0.len()
     }
 
-    /// Writes the crossings of a ray with what all have in common; false, and nothing written, if the general way must be taken.
-    /// `from` is the leaf that the ray starts on, `leaving` tells whether it starts on a surface of the tree at all.
+    /// Writes the crossings of a ray with the intersection; false, with nothing written, if the general evaluation is needed.
+    /// `from` is the leaf that the ray starts on; `leaving` says whether it starts on a surface of the tree at all.
     pub(super) fn crossings(
         &self,
         ray: &Ray,
@@ -65,7 +65,7 @@ impl HalfSpaces {
         let shift = 2.0 * self.0.len() as f64;
         let none = |t| End { t, index: 0 };
         let (mut enter, mut exit) = (none(f64::NEG_INFINITY), none(f64::INFINITY));
-        // The ends that come next to them.
+        // The nearest crossings to them.
         let (mut before_enter, mut after_exit) = (f64::NEG_INFINITY, f64::INFINITY);
         for (index, plane) in self.0.iter().enumerate() {
             let speed = ray.direction.dot(plane.normal);
@@ -100,7 +100,7 @@ impl HalfSpaces {
                 return true;
             }
         }
-        // Of infinite ends, too, the differences are infinite.
+        // If an end is infinite, so are the differences.
         let apart =
             |a: f64, b: f64| a == f64::NEG_INFINITY || b == f64::INFINITY || b - a > gap(a, b);
         if !(apart(before_enter, enter.t) && apart(enter.t, exit.t) && apart(exit.t, after_exit)) {
@@ -132,12 +132,11 @@ impl HalfSpaces {
         true
     }
 
-    /// A box around what all have in common, unless that has no corner or is too much work.
+    /// A box around the intersection, unless it has no corner or would take too much work.
     ///
-    /// Every edge lies on the line of two planes, as far as that is behind all others; a set with a corner reaches as far as its
-    /// edges do.
+    /// Every edge lies on the line of two planes, where that is behind all others; a set with a corner is bounded by its edges.
     pub(super) fn bounds(&self) -> Option<Aabb> {
-        /// Of two unit normals: closer ones are parallel as far as rounding can tell, or make a line nobody can place.
+        /// Two unit normals that are closer are parallel within rounding, or their line can't be located.
         const PARALLEL: f64 = 1e-12;
         const NEARLY: f64 = 1e-6;
         /// Relative to the coordinates, far above the error of a corner.
@@ -196,7 +195,7 @@ impl HalfSpaces {
         ))
     }
 
-    /// The part of a line that is behind all planes, give or take `slack`.
+    /// The part of a line that is behind all planes, up to `slack`.
     fn clip(&self, center: DVec3, foot: DVec3, along: DVec3, slack: f64) -> Option<Interval> {
         let (mut min, mut max) = (f64::NEG_INFINITY, f64::INFINITY);
         for plane in &self.0 {

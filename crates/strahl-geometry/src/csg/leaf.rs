@@ -6,7 +6,7 @@ use crate::{
 use strahl_math::error::{ROUNDOFF, gamma};
 use strahl_math::{Aabb, DVec3, Interval, Ray, Transform};
 
-/// A shape of a compiled tree, with all that the operations above have decided about it.
+/// A shape of a compiled tree, with everything that the operations above determine about it.
 #[derive(Clone, Debug)]
 pub(super) struct Leaf {
     pub(super) shape: Shape,
@@ -16,17 +16,17 @@ pub(super) struct Leaf {
     pub(super) first_element: u32,
     /// Whether the tree combines the complement of the shape.
     pub(super) negative: bool,
-    /// False for what only clips.
+    /// False for shapes that only clip.
     pub(super) visible: bool,
     /// The box around the shape's inside, in the tree's space.
     pub(super) bounds: Aabb,
-    /// Which leaf decides whether a point is inside of the tree, once this one is known to contain it ...
+    /// The leaf that decides next whether a point is inside of the tree, if this one contains it ...
     pub(super) if_inside: Next,
-    /// ... or not to contain it.
+    /// ... or if it does not.
     pub(super) if_outside: Next,
 }
 
-/// A ray as a leaf meets it.
+/// A query to a leaf.
 pub(super) struct Query<'a> {
     /// In the tree's space.
     pub(super) ray: &'a Ray,
@@ -38,7 +38,7 @@ pub(super) struct Query<'a> {
     pub(super) fusing: &'a Fusing,
 }
 
-/// What follows from an answer when a point is classified: the tree's logic, compiled to jumps.
+/// The next step after an answer when a point is classified: the tree's logic, compiled to jumps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Next {
     /// Ask this leaf.
@@ -47,7 +47,7 @@ pub(super) enum Next {
     Answer(bool),
 }
 
-/// The map of a leaf that has a space of its own, both ways.
+/// The transform of a leaf with a space of its own, both ways.
 #[derive(Clone, Debug)]
 pub(super) struct Placement {
     map: Transform,
@@ -62,8 +62,8 @@ impl Placement {
         }
     }
 
-    /// By how much the rounding of `ray_to_object` may move the parameter at which a surface with normal `n` (object space)
-    /// is met: the error of the point on the ray, across the surface, over the speed across the surface.
+    /// The error caused by the rounding of `ray_to_object` in the parameter at which a surface with normal `n` (object space)
+    /// is hit: the error of the point on the ray, across the surface, divided by the speed across the surface.
     fn t_error(&self, outer: &Ray, inner: &Ray, t: f64, n: DVec3) -> f64 {
         let reach = (outer.origin - self.map.translation()).abs() + (outer.direction * t).abs();
         // A difference, three products and two sums each for origin and direction, and the entries of the inverse.
@@ -137,20 +137,20 @@ impl Leaf {
             if let Some(placement) = &self.placement {
                 let n = self.shape.bare_surface_at(&inner, &crossing.hit).n_geom;
                 let error = placement.t_error(query.ray, &inner, t, n);
-                // Infinite where the ray runs along the surface; nothing is fused over more than the margin anyway.
+                // Infinite if the ray runs along the surface; crossings further apart than the margin are never fused.
                 let margin = query.fusing.margin(t);
                 crossing.t_error += if error < margin { error } else { margin };
             }
             if query.leaving && query.from.is_none() && t > 0.0 && t <= query.fusing.reach(crossing)
             {
-                // This surface and the one the ray starts on are one: it has been crossed.
+                // This surface coincides with the one the ray starts on, so it has been crossed.
                 crossing.hit.t = 0.0;
             }
         }
         self.contribute(out);
     }
 
-    /// The same for who does not compare the crossings with others: without the errors that the map adds.
+    /// The same without the errors that the transform adds, if the crossings are not compared with others.
     pub(super) fn bare_crossings(
         &self,
         ray: &Ray,
@@ -178,7 +178,7 @@ impl Leaf {
         }
     }
 
-    /// Makes the shape's crossings those of the leaf: of the complement, numbered, visible or not.
+    /// Turns the shape's crossings into those of the leaf: of the complement, numbered, visible or not.
     fn contribute(&self, out: &mut Crossings) {
         if self.negative {
             out.inside_at_start = !out.inside_at_start;
@@ -201,7 +201,7 @@ impl Leaf {
         }
     }
 
-    /// The hits of an open surface, as crossings that change nothing.
+    /// The hits of an open surface, as crossings that don't change the state.
     fn list_hits(
         &self,
         inner: &Ray,
@@ -212,7 +212,7 @@ impl Leaf {
     ) {
         while let Some(hit) = self.shape.closest_hit(inner, range, from, scratch) {
             if !range.accepts(hit.t) {
-                // Against the contract; without progress this would not end.
+                // A violation of the contract; without progress this loop would not end.
                 return;
             }
             range.min = hit.t;

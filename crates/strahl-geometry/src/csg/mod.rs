@@ -4,12 +4,12 @@
 //! [`Crossings`](crate::Crossings), and every operation combines the sorted lists of its operands in one sweep; no hit is
 //! ever tested against the other operands point by point.
 //!
-//! * [`CsgNode`] describes a tree, [`Csg`] is the tree compiled: inversions pushed down to the leaves, nested equal
-//!   operations flattened, everything in flat lists that are walked without recursion.
-//! * `compile` makes the one from the other, `evaluate` walks the tree along a ray, `sweep` combines lists, `half_spaces` meets all
-//!   planes of an intersection in one pass.
-//! * Who only asks for the first surface gets it without lists, from `first`, if no two crossings are close together: `course`
-//!   finds the crossings that matter, `timeline` goes through them.
+//! * [`CsgNode`] describes a tree, [`Csg`] is the compiled tree: inversions pushed down to the leaves, nested equal operations
+//! flattened, everything in flat lists that are traversed without recursion.
+//! * `compile` makes the one from the other, `evaluate` traverses the tree for a ray, `sweep` combines lists, `half_spaces`
+//! intersects all planes of an intersection in one pass.
+//! * `first` finds the first surface without lists, if no two crossings are close together: `course` finds the crossings that
+//! matter, `timeline` goes through them.
 
 mod boxes;
 mod compile;

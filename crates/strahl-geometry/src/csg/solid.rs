@@ -11,14 +11,14 @@ use crate::{
 use strahl_accel::Bvh2;
 use strahl_math::{Aabb, DVec3, Interval, Ray};
 
-/// A compiled CSG tree: solids combined to one.
+/// A compiled CSG tree: several solids combined into one.
 ///
 /// Surface elements: each leaf takes as many numbers as its shape has elements, in the order of the description;
-/// [`Csg::leaf_of`] leads back. Facets and `uv` of a hit are the leaf's own. Where surfaces of several leaves coincide, the
-/// smallest element number shows, whatever the direction.
+/// [`Csg::leaf_of`] finds the leaf of a number. Facets and `uv` of a hit are the leaf's own. Where surfaces of several leaves
+/// coincide, the smallest element number counts, whatever the direction.
 ///
-/// `n_geom` points out of the combined solid: the normals of what is subtracted are turned round. On inner surfaces it is
-/// the leaf's.
+/// `n_geom` points out of the combined solid, so the normals of subtracted solids are reversed. On inner surfaces it is the
+/// leaf's.
 ///
 /// Limits: crossings of different leaves are fused where their error bounds overlap, so spans thinner than rounding vanish;
 /// and `contains` asks the leaves point by point, so on the boundary of a subtracted leaf it says "outside".
@@ -32,23 +32,23 @@ pub struct Csg {
     elements: u32,
     /// Whether all leaves are solids.
     closed: bool,
-    /// Whether it is an operation on solids, nested only so deep that recursion may walk it.
+    /// Whether it is an operation on solids that is not nested too deep for recursion.
     shallow: bool,
 }
 
-/// What a compiled node is.
+/// The kind of a compiled node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {
     /// The leaf of this index.
     Leaf(u32),
-    /// Operands combined.
+    /// An operation on operands.
     Operation(Rule),
 }
 
-/// What the root has for a parent.
+/// The parent of the root.
 pub(super) const NO_PARENT: u32 = u32::MAX;
 
-/// Trees that are nested deeper are walked with a stack of their own.
+/// Trees that are nested deeper are traversed with an explicit stack.
 const SHALLOW: u32 = 24;
 
 /// A compiled node.
@@ -57,11 +57,11 @@ pub(super) struct Node {
     pub(super) kind: Kind,
     /// The operation whose operand it is.
     pub(super) parent: u32,
-    /// Whether it is a shape that is met as quickly as its box.
+    /// Whether it is a shape that is intersected as fast as its box.
     pub(super) quick: bool,
     /// Holds all surfaces of the node ...
     pub(super) bounds: Aabb,
-    /// ... and beyond it everything is inside, or nothing.
+    /// ... and whether everything outside of it is inside of the node.
     pub(super) far: bool,
     /// Operands: `first..core` decide the result where a ray misses their boxes (the positive ones of an intersection),
     /// `core..end` don't matter there (the subtracted ones).
@@ -202,7 +202,7 @@ impl Primitive for Csg {
         Ok(())
     }
 
-    /// What the boxes of the leaves leave over: those of intersections are intersected, what is subtracted does not count.
+    /// The bounds of the tree: those of intersections are intersected, those of subtracted operands don't count.
     fn bounds(&self) -> Aabb {
         match self.node(0) {
             Some(root) if !(self.closed && root.far) => root.bounds,

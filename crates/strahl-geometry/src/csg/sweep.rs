@@ -13,13 +13,13 @@ pub(super) enum Rule {
 }
 
 impl Rule {
-    /// The operand that changes nothing: true (everything) for intersections, false (nothing) for unions.
+    /// The neutral operand: true (everything) for intersections, false (nothing) for unions.
     pub(super) fn neutral(self) -> bool {
         self == Self::Intersection
     }
 }
 
-/// Decides which crossings are one: coincident surfaces are found at parameters that differ by rounding.
+/// Decides which crossings coincide: coincident surfaces are hit at parameters that differ by rounding.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Fusing {
     /// The parameter at which the ray is as far from its origin as its origin is from that of space.
@@ -27,9 +27,8 @@ pub(super) struct Fusing {
 }
 
 impl Fusing {
-    /// The largest gap ever closed, relative to the magnitudes in play. Error bounds are far below (some 1e-15), except where a
-    /// ray grazes a surface; the limit is what makes lists independent of the range asked for, see
-    /// [`Fusing::margin`].
+    /// The largest gap that is ever closed, relative to the magnitudes involved. Error bounds are far below (some 1e-15),
+    /// except where a ray grazes a surface; the limit makes lists independent of the range asked for, see [`Fusing::margin`].
     const LIMIT: f64 = 1.0 / (1u64 << 20) as f64;
 
     pub(super) fn new(ray: &Ray) -> Self {
@@ -39,18 +38,18 @@ impl Fusing {
         }
     }
 
-    /// What may be fused with a crossing at `t` lies within this distance of it. Lists made for a range that is wider by a few
-    /// margins are those of the whole line, cut.
+    /// A bound of the distance between crossings that may be fused with one at `t`. Lists made for a range that is wider by a
+    /// few margins equal those of the whole line, clipped.
     pub(super) fn margin(&self, t: f64) -> f64 {
         Self::LIMIT * (t.abs() + self.scale)
     }
 
-    /// Crossings further apart than this are certainly not one.
+    /// Crossings further apart than this certainly don't coincide.
     pub(super) fn gap(&self, a: f64, b: f64) -> f64 {
         2.0 * (self.margin(a) + self.margin(b))
     }
 
-    /// The range with a few margins more at both ends.
+    /// The range, wider by a few margins at both ends.
     pub(super) fn widened(&self, range: Interval) -> Interval {
         Interval::new(
             range.min - 4.0 * self.margin(range.min),
@@ -58,7 +57,7 @@ impl Fusing {
         )
     }
 
-    /// The crossing's error, as far as it is honoured.
+    /// The crossing's error, up to the limit.
     pub(super) fn reach(&self, crossing: &Crossing) -> f64 {
         let margin = self.margin(crossing.hit.t);
         if crossing.t_error < margin {
@@ -77,7 +76,7 @@ impl Fusing {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Event {
     pub(super) crossing: Crossing,
-    /// Which operand.
+    /// The number of the operand.
     pub(super) slot: u32,
 }
 
@@ -107,11 +106,11 @@ pub(super) fn sort(events: &mut [Event]) {
     });
 }
 
-/// Combines the operands' sorted crossings to those of the node. `always_inside` tells that there is one more operand, with
-/// the ray inside of it all along.
+/// Combines the operands' sorted crossings into those of the node. `always_inside` says that there is one more operand, which
+/// the ray never leaves.
 ///
-/// Crossings of different operands that coincide are one event: all operands change their states, then the result is looked
-/// at. So spans without thickness vanish, and where faces coincide the one with the smallest element number shows.
+/// Coincident crossings of different operands are one event: all operands change their states, then the result is computed. So
+/// spans without thickness vanish, and of coincident faces the one with the smallest element number counts.
 pub(super) fn sweep(
     rule: Rule,
     events: &[Event],
@@ -130,8 +129,8 @@ pub(super) fn sweep(
 
     let (mut rest, mut group) = (events, 0);
     while let Some(first) = rest.first() {
-        // The group: what coincides with its first crossing, one crossing per operand (an operand's own list is in
-        // order already, however close its crossings are).
+        // The group: the crossings that coincide with its first one, one per operand (an operand's own list is already in
+        // order, however close its crossings are).
         group += 1;
         let before = count;
         let mut length = 0;
@@ -169,8 +168,8 @@ pub(super) fn sweep(
     }
 }
 
-/// The crossing that shows where the result changes: one that changes the same way, visible if there is one, of
-/// the smallest element.
+/// The crossing that represents a change of the result: one that changes in the same direction, visible if there is one, of the
+/// smallest element.
 fn choose(members: &[Event], side: Side) -> Option<Crossing> {
     members
         .iter()
@@ -186,7 +185,7 @@ fn choose(members: &[Event], side: Side) -> Option<Crossing> {
         .map(|c| Crossing { side, ..*c })
 }
 
-/// The inner surface that stays where the result does not change, if any.
+/// The inner surface that is kept where the result does not change, if there is one.
 fn choose_inner(
     rule: Rule,
     members: &[Event],
@@ -200,7 +199,7 @@ fn choose_inner(
         let own = slots
             .get(event.slot as usize)
             .is_some_and(|slot| slot.inside);
-        // How many of the *other* operands the ray is inside of, on either side.
+        // The number of *other* operands that contain the ray, on either side.
         let others_before = before.saturating_sub(usize::from(inner && own));
         let others_after = after.saturating_sub(usize::from(inner && own));
         event.crossing.visible

@@ -4,24 +4,24 @@ use super::sweep::{Fusing, Rule};
 use crate::{Crossing, PrimHit, Side, SurfaceId};
 use strahl_math::Interval;
 
-/// Two crossings are so close together that they could be one, or another thing that only lists can decide.
+/// Two crossings are so close together that they could coincide, or another case that only lists can decide.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct TooClose;
 
-/// A crossing of an operand that is not combined of others.
+/// A crossing of an operand that is a leaf.
 #[derive(Clone, Copy, Debug)]
 struct Event {
     t: f64,
     surface: SurfaceId,
     /// The operation whose operand changes its state.
     parent: u32,
-    /// One more than the place of the hit's coordinates; 0 if they are 0.
+    /// One plus the index of the hit's coordinates; 0 if they are zero.
     uv: u32,
     enters: bool,
     visible: bool,
 }
 
-/// Of how many operands the ray is inside, and of how many that may change.
+/// The number of operands that contain the ray, and the number that would change the result.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct State {
     pub(super) inside: u32,
@@ -37,19 +37,20 @@ impl State {
     }
 }
 
-/// The crossings of all leaves of a tree with one ray, and the states of its operations: where the ray starts, then further on.
+/// The crossings of all leaves of a tree with one ray, and the states of its operations: at the start of the ray, then further
+/// on.
 #[derive(Debug, Default)]
 pub(super) struct Timeline {
     events: Vec<Event>,
     uvs: Vec<[f64; 2]>,
-    /// The states where the ray starts, of operations with events.
+    /// The states of operations with crossings at the start of the ray.
     starts: Vec<(u32, State)>,
     /// One for each node.
     states: Vec<State>,
 }
 
 impl Timeline {
-    /// Forgets everything. There is room for the states of `nodes` nodes then.
+    /// Clears everything, and makes room for the states of `nodes` nodes.
     pub(super) fn clear(&mut self, nodes: usize) {
         self.events.clear();
         self.uvs.clear();
@@ -64,12 +65,12 @@ impl Timeline {
         self.events.len()
     }
 
-    /// Forgets all but the first crossings.
+    /// Keeps the first crossings only.
     pub(super) fn truncate(&mut self, len: usize) {
         self.events.truncate(len);
     }
 
-    /// The state of an operation where the ray starts; the last one counts.
+    /// Sets the state of an operation at the start of the ray; the last call counts.
     pub(super) fn set_state(&mut self, node: u32, state: State) {
         self.starts.push((node, state));
     }
@@ -112,7 +113,7 @@ impl Timeline {
         }
     }
 
-    /// Goes along the ray until a crossing in the range is seen from outside of the tree.
+    /// Goes along the ray to the first crossing in the range that is visible from outside of the tree.
     pub(super) fn first_seen(
         &mut self,
         csg: &Csg,
@@ -154,7 +155,7 @@ impl Timeline {
 }
 
 impl Event {
-    /// Changes the states of the operations above, and tells whether the crossing is seen from outside of the root.
+    /// Updates the states of the operations above, and returns whether the crossing is visible from outside of the root.
     fn is_seen(&self, csg: &Csg, states: &mut [State]) -> bool {
         let (mut index, mut inner) = (self.parent, false);
         // The root's parent is no node.

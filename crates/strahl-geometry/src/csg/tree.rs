@@ -7,9 +7,9 @@ use strahl_math::Transform;
 ///
 /// The operations mean what they mean in POV-Ray. Trees may be nested arbitrarily deep.
 ///
-/// Open surfaces (discs, patches, hollow spheres) may take part as leaves: they have no inside, so their points are outside for
-/// the other operands, and of their own surface what lies inside of all operands of an intersection (outside of all
-/// others of a merge) is kept. A tree with an open leaf is no [`Solid`](crate::Solid).
+/// Open surfaces (discs, patches, hollow spheres) may be leaves: they have no inside, so their points count as outside for the
+/// other operands. The part of their own surface is kept that lies inside of all other operands of an intersection, or outside
+/// of all others of a merge. A tree with an open leaf is no [`Solid`](crate::Solid).
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum CsgNode {
@@ -22,26 +22,26 @@ pub enum CsgNode {
         /// The caller's number for it, to find its material and name again: [`Csg::leaf_tag`](crate::Csg::leaf_tag).
         tag: u32,
     },
-    /// Everything inside of any operand. Surfaces inside of other operands stay, as [`Side::Inner`](crate::Side::Inner)
-    /// crossings: they show where the material in front of them is transparent.
+    /// The points inside of any operand. Surfaces inside of other operands are kept, as [`Side::Inner`](crate::Side::Inner)
+    /// crossings: they are visible if the material in front of them is transparent.
     Union(Operands),
-    /// Everything inside of any operand, without inner surfaces.
+    /// The points inside of any operand, without inner surfaces.
     Merge(Operands),
-    /// What is inside of all operands.
+    /// The points inside of all operands.
     Intersection(Operands),
     /// The first operand without the others.
     Difference(Operands),
-    /// Everything outside of all operands (usually one). Inner surfaces of unions below are gone: they lie outside, and
-    /// inverting twice does not bring them back.
+    /// The points outside of all operands (usually one). Inner surfaces of unions below are dropped: they lie outside, and a
+    /// second inversion does not restore them.
     Inverse(Operands),
-    /// The first operand as far as it is inside of all others, without a surface where they cut it. Its cut ends still are
-    /// boundaries for the operations above; they just can't be seen.
+    /// The part of the first operand that is inside of all others, without a surface where they cut it. The cuts are still
+    /// boundaries for the operations above, but invisible.
     Clip(Operands),
     /// The union of the operands (usually one), moved together.
     Transformed {
-        /// What is moved.
+        /// The operands.
         operands: Operands,
-        /// Where to.
+        /// The transform.
         transform: Box<Transform>,
     },
 }

@@ -1,4 +1,4 @@
-//! Sets that iterated functions make.
+//! Sets defined by iterated functions.
 
 mod julia;
 

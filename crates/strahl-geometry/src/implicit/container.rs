@@ -3,7 +3,7 @@ use crate::{
 };
 use strahl_math::{Aabb, DVec3, Interval, Ray};
 
-/// The volume within which a function is looked at: POV-Ray's `contained_by`.
+/// The volume within which a function is rendered: POV-Ray's `contained_by`.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Container {
     /// A sphere.
@@ -14,9 +14,9 @@ pub enum Container {
 
 /// The part of a ray within a container.
 pub(crate) struct Passage {
-    /// Where the ray gets in; none if it starts on the container and goes inwards.
+    /// The entry; `None` if the ray starts on the container and goes inwards.
     pub(crate) enter: Option<Crossing>,
-    /// Where it gets out.
+    /// The exit.
     pub(crate) exit: Crossing,
 }
 
@@ -64,7 +64,7 @@ impl Container {
         self.solid().contains(point)
     }
 
-    /// Whether nothing of a box is inside.
+    /// Whether a box lies completely outside.
     pub(crate) fn excludes(&self, cell: &Aabb) -> bool {
         match self {
             Self::Sphere(sphere) => {

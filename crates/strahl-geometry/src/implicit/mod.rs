@@ -1,4 +1,4 @@
-//! Surfaces given by numbers or functions rather than by a formula of their own: landscapes and level sets.
+//! Surfaces given by data or functions: height fields, isosurfaces and parametric surfaces.
 
 mod container;
 mod height_field;

@@ -3,7 +3,7 @@ use strahl_function::Workspace;
 
 /// Calls `f` with the thread's memory for evaluating functions.
 ///
-/// It is taken away and put back, so that a function that asks an object where it is may do the same within.
+/// It is removed and put back, so that a function that calls another object's function can do the same.
 pub(super) fn with_workspace<T>(f: impl FnOnce(&mut Workspace) -> T) -> T {
     thread_local! {
         static WORKSPACE: Cell<Workspace> = Cell::default();

@@ -12,14 +12,15 @@ use strahl_math::{Aabb, DVec3, Interval, Ray, Transform};
 
 /// A solid bounded by triangles: a closed mesh with an inside (boundary representation).
 ///
-/// Closed means: every edge is used as often in one direction as in the other. Vertices count as the same if they are at
-/// the same place, so texture seams and unindexed triangles do no harm. The normals point outwards; a mesh that is inside out as a
-/// whole is turned. A point is inside if the surface winds round it, so parts may overlap, and shells that are
-/// oriented the other way are cavities.
+/// Closed means: every edge is used as often in one direction as in the other. Vertices at the same position count as one, so
+/// texture seams and unindexed triangles do no harm. The normals point outwards; a mesh that is inside out as a whole is
+/// reversed. A point is inside if the surface winds around it, so parts may overlap, and shells with the opposite orientation
+/// are cavities.
 ///
-/// Elements are the triangles. A ray passes through the surface where it would if it were shifted by a hair, hence
-/// through one of the triangles that meet in an edge or a corner, not through all of them, and what enters leaves. Surfaces within the solid (where parts overlap) are [`Side::Inner`]. Where a ray grazes an
-/// edge, entry and exit may be so near that rounding exchanges them; they are `Inner` then too, there being no inside between them.
+/// Elements are the triangles. At an edge or a corner a ray passes through those triangles that it would pass if it were
+/// shifted by an infinitely small step, not through all of them, so entering and leaving alternate. Surfaces within the solid
+/// (where parts overlap) are [`Side::Inner`]. Where a ray grazes an edge, entry and exit may be so close that rounding
+/// exchanges them; then both are `Inner`, because there is no inside between them.
 #[derive(Clone, Debug)]
 pub struct Brep {
     mesh: TriangleMesh,
@@ -27,7 +28,7 @@ pub struct Brep {
     tree: Bvh2,
 }
 
-/// The direction in which [`Solid::contains`] looks: not along anything people build.
+/// The direction of the ray that [`Solid::contains`] uses: not parallel to anything that occurs in scenes.
 const ASKANCE: DVec3 = DVec3::new(0.526_438_109_1, 0.315_904_772_9, 0.789_365_214_7);
 
 impl Brep {
@@ -80,7 +81,7 @@ impl Brep {
         &self.mesh
     }
 
-    /// Shows the visitor all passes of the ray through triangles that `range` accepts.
+    /// Passes all passes of the ray through triangles that `range` accepts to the visitor.
     fn walk<F>(&self, ray: &Ray, range: Interval, from: Option<SurfaceId>, look: F)
     where
         F: FnMut(Pass, f64) -> f64,
@@ -101,7 +102,7 @@ impl Brep {
     fn t_error(&self, ray: &Ray, triangle: u32, t: f64) -> f64 {
         let [a, b, c] = self.mesh.local_corners(triangle);
         let origin = ray.origin - self.mesh.anchor();
-        // The images of the corners are off by a few roundings of the coordinates; the normal makes depth of that.
+        // The images of the corners have an error of a few roundings of the coordinates; the normal converts it to depth.
         let normal = (b - a).cross(c - a);
         let coordinates =
             origin.abs() + a.abs().max(b.abs()).max(c.abs()) + (ray.direction * t).abs();
@@ -123,7 +124,7 @@ struct Pass {
     enters: bool,
 }
 
-/// Tests triangles and shows passes to `look`, which gets and returns the `t` up to which they are of interest.
+/// Tests triangles and calls `look` with each pass; it returns the `t` up to which further ones matter.
 struct Passes<'a, F> {
     mesh: &'a TriangleMesh,
     /// Relative to the mesh's anchor.
@@ -164,7 +165,7 @@ impl Primitive for Brep {
         "brep"
     }
 
-    /// Nothing is left to check: [`Brep::try_new`] has done so.
+    /// [`Brep::try_new`] has validated everything.
     fn validate(&self) -> Result<(), GeometryError> {
         Ok(())
     }
@@ -241,7 +242,7 @@ impl Solid for Brep {
         } else {
             range.min
         };
-        // What lies behind the end is needed too: it tells how often the surface winds round the start.
+        // The crossings behind the end are needed, too: they show how often the surface winds around the start.
         let mut start = 0;
         self.walk(
             ray,
@@ -300,7 +301,7 @@ impl Solid for Brep {
     }
 }
 
-/// Counts how often the surface winds round a point.
+/// Counts how often the surface winds around a point.
 struct Count<'a> {
     mesh: &'a TriangleMesh,
     /// Relative to the mesh's anchor, as everything here.

@@ -4,9 +4,9 @@ use strahl_math::DVec3;
 
 /// The edges of a polygon projected on its principal plane, in a hierarchy of boxes around runs of edges that follow each other.
 ///
-/// Whether a point is inside is the parity of the edges that a half-line from it crosses. A run of edges that lies wholly
-/// on the side where the half-line goes need not be looked at: the parity of its crossings follows from its two ends. So only the
-/// runs whose box the point is in are opened, however long or spiky the polygon.
+/// Whether a point is inside is the parity of the edges that a half-line from it crosses. A run of edges that lies completely
+/// on the side of the half-line need not be opened: the parity of its crossings follows from its two ends. So only the runs
+/// whose boxes contain the point are opened, however long or spiky the polygon.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct EdgeRuns {
     /// The axes that are kept.
@@ -16,7 +16,7 @@ pub(super) struct EdgeRuns {
     line: Box<[[f64; 2]]>,
     /// Boxes around runs of edges: first of `RUN` edges each, then of `RUN` boxes of the level before each, and so on.
     levels: Box<[Box<[Rect]>]>,
-    /// What is known without them, if they are many.
+    /// A coarse map, if there are many edges.
     map: Option<InsideMap>,
 }
 
@@ -32,13 +32,13 @@ struct Rect {
     high: [f64; 2],
 }
 
-/// Where something lies as seen from a point that is known up to an error.
+/// The position of a box relative to a point that is known up to an error.
 enum Place {
-    /// Above, below or behind: a half-line along the first axis certainly doesn't cross it.
+    /// Above, below or behind: a half-line along the first axis certainly does not cross it.
     Aside,
-    /// Wholly in the direction of the half-line: it is crossed if its ends are above and below.
+    /// Completely in the direction of the half-line: it is crossed if its ends are above and below.
     Ahead,
-    /// Around the point, or too near to tell.
+    /// Around the point, or too close to decide.
     Here,
 }
 
@@ -127,8 +127,8 @@ impl EdgeRuns {
     /// Whether a point that is known up to `error` in each coordinate is inside, by the even-odd rule; `None` if the error
     /// might change the answer.
     ///
-    /// If no edge comes nearer than the error, all the places the point may have are on the same side of all edges.
-    /// Decisions about the heights of corners need no care then: both edges at a corner see the same height.
+    /// If no edge is nearer than the error, all possible positions of the point are on the same side of all edges. Ties in the
+    /// heights of corners need no care then: both edges at a corner see the same height.
     pub(super) fn locate(&self, point: DVec3, error: f64) -> Option<bool> {
         let point = self.axes.map(|k| point[k]);
         if !(error.is_finite() && point[0].is_finite() && point[1].is_finite()) {

@@ -5,12 +5,12 @@ use std::sync::Arc;
 use strahl_math::error::ROUNDOFF;
 use strahl_math::{Aabb, DVec2, DVec3, Interval, Ray, Transform};
 
-/// What a mesh is made from: plain data, checked by [`TriangleMesh::try_new`].
+/// The data of a mesh, checked by [`TriangleMesh::try_new`].
 ///
 /// The lists per vertex have as many entries as `positions`, the lists per face as many as `indices`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MeshData {
-    /// What `positions` are relative to. Zero, unless the mesh is small and far away.
+    /// The origin of `positions`. Zero, unless the mesh is small and far away.
     pub anchor: DVec3,
     /// The vertices, kept exactly as they are.
     pub positions: Vec<[f32; 3]>,
@@ -53,7 +53,7 @@ impl MeshData {
     }
 }
 
-/// Triangles that share their vertices: 12 bytes per vertex and 12 per triangle, and what is given beyond that.
+/// Triangles that share their vertices: 12 bytes per vertex and 12 per triangle, plus optional data.
 ///
 /// Elements are the triangles, in the order given. Each one behaves as a [`Triangle`](super::Triangle) does: its front
 /// is the side from which its vertices run counter-clockwise, rays hit it from both sides, and none slips through between
@@ -73,8 +73,8 @@ pub struct TriangleMesh {
     face_materials: Option<Box<[u16]>>,
     face_lines: Option<Box<[u32]>>,
     bounds: Aabb,
-    /// Whether fronts are clockwise: so after a mirroring transform, which leaves the order of the vertices (and with it
-    /// the barycentric coordinates) alone.
+    /// Whether fronts are clockwise, as after a mirroring transform, which keeps the order of the vertices (and with it the
+    /// barycentric coordinates).
     flipped: bool,
 }
 
@@ -169,7 +169,7 @@ impl TriangleMesh {
         self.indices.len() as u32
     }
 
-    /// What [`TriangleMesh::positions`] are relative to.
+    /// The origin of [`TriangleMesh::positions`].
     pub const fn anchor(&self) -> DVec3 {
         self.anchor
     }
@@ -234,7 +234,7 @@ impl TriangleMesh {
             .count() as u32
     }
 
-    /// The corners of a triangle. As everywhere here, the last triangle stands in for one that doesn't exist.
+    /// The corners of a triangle. As everywhere here, the last triangle is used if the number is too large.
     pub fn corners(&self, triangle: u32) -> [DVec3; 3] {
         self.local_corners(triangle).map(|p| self.anchor + p)
     }
@@ -278,8 +278,9 @@ impl TriangleMesh {
             .map(|v| shear.apply_f32(&self.positions[v as usize]))
     }
 
-    /// Whether a triangle shows a ray of this direction its front: the side of the normal that
-    /// [`TriangleMesh::surface_at_element`] gives; `None` if it is seen so nearly edge-on that their roundings might differ.
+    /// Whether a ray of this direction sees the front of a triangle: the side of the normal that
+    /// [`TriangleMesh::surface_at_element`] returns; `None` if it is seen so nearly edge-on that rounding might decide
+    /// differently.
     #[inline]
     pub fn shows_front(&self, triangle: u32, direction: DVec3) -> Option<bool> {
         /// Far above the rounding of both, as a part of the magnitudes multiplied.
@@ -369,7 +370,7 @@ impl TriangleMesh {
             .map(|v| widened(self.positions[v as usize]))
     }
 
-    /// Whether a triangle is a surface; in the ray's projection rounding may give area to corners on a line.
+    /// Whether a triangle has an area; in the ray's projection rounding may give one to collinear corners.
     #[inline]
     pub(crate) fn has_area(&self, triangle: u32) -> bool {
         span_area(self.local_corners(triangle))
@@ -393,7 +394,7 @@ impl Primitive for TriangleMesh {
         "mesh"
     }
 
-    /// Nothing is left to check: [`TriangleMesh::try_new`] has done so.
+    /// [`TriangleMesh::try_new`] has validated everything.
     fn validate(&self) -> Result<(), GeometryError> {
         Ok(())
     }

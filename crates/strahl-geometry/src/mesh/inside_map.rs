@@ -1,4 +1,4 @@
-/// A coarse picture of a polygon, so that most points are known to be inside or outside without a look at its edges.
+/// A coarse map of a polygon, which decides for most points whether they are inside without testing edges.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct InsideMap {
     low: [f64; 2],
@@ -11,22 +11,22 @@ pub(super) struct InsideMap {
 /// Cells along a side.
 const SIDE: usize = 64;
 
-/// Edges are kept this far from the cells that are told apart, in cells. Points may be off by half of it; the other half is far
-/// above the rounding here.
+/// Cells closer than this to an edge (in cells) count as near it. Points may have an error of half of it; the other half is far
+/// above the rounding error here.
 const MARGIN: f64 = 0.25;
 
-/// Of a row of cells a bit per cell.
+/// A row of cells, a bit per cell.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Row {
-    /// Whether an edge is in the cell, or nearer than the margin.
+    /// Whether an edge is in the cell, or closer than the margin.
     near: u64,
-    /// If none is: whether the cell is inside.
+    /// Otherwise: whether the cell is inside.
     inside: u64,
 }
 
 impl InsideMap {
-    /// The map of a closed line; `inside` tells of a point that is not near an edge whether it is inside. `None` if the line has no
-    /// extent.
+    /// The map of a closed line; `inside` returns for a point that is not near an edge whether it is inside. `None` if the line
+    /// has no extent.
     pub(super) fn build(
         line: &[[f64; 2]],
         inside: impl Fn([f64; 2]) -> Option<bool>,
@@ -67,7 +67,7 @@ impl InsideMap {
         let (a, b) = if a[1] < b[1] { (a, b) } else { (b, a) };
         let slope = (b[0] - a[0]) / (b[1] - a[1]);
         for row in cell(a[1] - MARGIN)..=cell(b[1] + MARGIN) {
-            // What of the edge is in the row, with its margins.
+            // The part of the edge that is in the row, with its margins.
             let at = |y: f64| {
                 let x = a[0] + (y - a[1]) * slope;
                 // An edge along the row has no slope.
@@ -81,7 +81,7 @@ impl InsideMap {
         }
     }
 
-    /// Finds out which cells of a row are inside: those next to each other are alike.
+    /// Decides which cells of a row are inside: adjacent cells without an edge are alike.
     fn fill(&mut self, row: usize, inside: &impl Fn([f64; 2]) -> Option<bool>) {
         let mut before = None;
         for column in 0..SIDE {
@@ -101,7 +101,8 @@ impl InsideMap {
         }
     }
 
-    /// Whether a point that is known up to `error` in each coordinate is inside; `None` if it may be near an edge, or beside the map.
+    /// Whether a point that is known up to `error` in each coordinate is inside; `None` if it may be near an edge, or outside
+    /// of the map.
     #[inline]
     pub(super) fn locate(&self, point: [f64; 2], error: f64) -> Option<bool> {
         let [x, y] = self.place(point);
@@ -115,7 +116,7 @@ impl InsideMap {
     }
 }
 
-/// The cell of a coordinate, the nearest one if it is beside the map.
+/// The cell of a coordinate, or the nearest one.
 fn cell(x: f64) -> usize {
     (x as usize).min(SIDE - 1)
 }

@@ -1,7 +1,7 @@
-//! Things made of flat pieces: triangles, polygons, meshes, and solids bounded by them.
+//! Flat primitives and what is built of them: triangles, polygons, meshes, and solids bounded by them.
 //!
-//! All of them decide hit or miss in the ray's own projection ([`RayShear`]), where a corner that several pieces share has
-//! one and the same image. No ray slips through between two pieces.
+//! All of them decide hits in the ray's own projection ([`RayShear`]), where a corner that several pieces share has one and the
+//! same image. No ray slips through between two pieces.
 
 mod brep;
 #[cfg(test)]

@@ -1,12 +1,12 @@
 use super::shear::{RayShear, TriangleHit, exact_cross, place};
 use strahl_math::DVec3;
 
-/// A ray passing through a triangle, for counting: of the pieces that meet in an edge or a corner it passes through
-/// as many as it would a hair beside them.
+/// A pass of a ray through a triangle, for counting: at an edge or a corner it passes through as many of the adjoining
+/// triangles as it would after an infinitely small shift.
 ///
-/// Ties are decided exactly (by error-free products), and what remains tied, as if the ray were shifted by an infinitely
-/// small step in x and a still infinitely smaller one in y ("simulation of simplicity", Edelsbrunner and Mücke 1990). The
-/// passes through a closed surface therefore always add up to zero. The `bool` tells whether the front was passed.
+/// Ties are decided exactly (by error-free products), and remaining ties as if the ray were shifted by an infinitely small step
+/// in x and an infinitely smaller one in y ("simulation of simplicity", Edelsbrunner and Mücke 1990). The passes through a
+/// closed surface therefore always add up to zero. The `bool` says whether the front was passed.
 #[inline]
 pub(crate) fn pass_triangle(
     shear: &RayShear,

@@ -4,17 +4,17 @@ use crate::{GeometryError, PrimHit, Primitive, Scratch, Shape, SurfaceId, Surfac
 use strahl_math::error::{ROUNDOFF, gamma};
 use strahl_math::{Aabb, DVec2, DVec3, Interval, Ray, Transform};
 
-/// How far corners may be off the polygon's plane, as a part of the largest coordinate: 2⁻¹⁶, some thirty times
-/// what coordinates printed with six digits are off.
+/// The largest distance of corners from the polygon's plane, relative to the largest coordinate: 2⁻¹⁶, some thirty times the
+/// error of coordinates printed with six digits.
 const PLANARITY: f64 = 1.0 / 65_536.0;
 
-/// Polygons with more edges than this find out with the help of boxes around runs of edges.
+/// Polygons with more edges than this have boxes around runs of edges.
 const MANY_EDGES: usize = 8;
 
 /// A flat polygon with any number of corners, concave or touching itself if need be, possibly with holes.
 ///
-/// What is inside follows from the even-odd rule: an outer ring and hole rings, which may run either way, islands in
-/// holes too. The front is the side from which the first ring runs counter-clockwise; rays hit it from both sides.
+/// The even-odd rule decides what is inside: an outer ring and hole rings, which may have any orientation, and islands in
+/// holes. The front is the side from which the first ring runs counter-clockwise; rays hit it from both sides.
 ///
 /// The plane gives `t`; the corners are then projected *along the ray*, and the edges that cross a half-line from the
 /// ray's image are counted, by comparing products. A corner that two polygons share has the same image for both, so exactly one of two
@@ -38,9 +38,9 @@ pub struct Polygon {
     normal: DVec3,
     /// The largest distance of a corner from the plane.
     deviation: f64,
-    /// No point of the polygon has a larger sum of absolute coordinates.
+    /// A bound of the sum of the absolute coordinates of all points.
     reach: f64,
-    /// The corner that is `(0, 1)` in the texture.
+    /// The corner with texture coordinates `(0, 1)`.
     up: u32,
     /// The axis along which the normal is longest: that of the principal plane.
     axis: u8,
@@ -53,11 +53,11 @@ pub struct Polygon {
 #[derive(Clone, Copy, Debug)]
 pub struct PlaneHit {
     pub(crate) t: f64,
-    /// How far that may be off.
+    /// A bound of its error.
     pub(crate) error: f64,
 }
 
-/// The plane of a polygon, and how far that reaches in it.
+/// The plane and the extent of a polygon.
 pub(crate) struct PolygonPlane {
     /// Unit normal of the front.
     pub(crate) normal: DVec3,
@@ -67,7 +67,7 @@ pub(crate) struct PolygonPlane {
     pub(crate) bounds: Aabb,
     /// The largest distance of a corner from the plane.
     pub(crate) deviation: f64,
-    /// No point of the polygon has a larger sum of absolute coordinates.
+    /// A bound of the sum of the absolute coordinates of all points.
     pub(crate) reach: f64,
 }
 
@@ -179,7 +179,7 @@ impl Polygon {
         self.normal
     }
 
-    /// What a look from afar needs.
+    /// The data of the culling test.
     pub(crate) fn plane(&self) -> PolygonPlane {
         PolygonPlane {
             normal: self.normal,
@@ -190,8 +190,8 @@ impl Polygon {
         }
     }
 
-    /// The ray parameter of the hit, if the ray's line passes through the polygon; `None` also where it certainly is not in
-    /// the range.
+    /// The ray parameter of the hit, if the ray's line passes through the polygon; `None` also if it certainly is not in the
+    /// range.
     #[inline]
     fn pierced_at(&self, ray: &Ray, range: Interval) -> Option<f64> {
         let along = self.normal.dot(ray.direction);
@@ -200,7 +200,8 @@ impl Polygon {
         if !t.is_finite() {
             return None; // Edge-on.
         }
-        // How far the point at `t` may be from the polygon's own, which spans no more than `reach`, and `t` from the hit's.
+        // A bound of the distance of the point at `t` from the polygon's point, which is within `reach`, and of the error of
+        // `t`.
         let reach = l1(ray.origin) + t.abs() * l1(ray.direction) + self.reach;
         let error = (self.deviation + gamma(64) * reach) / along.abs();
         if t + error < range.min || t - error > range.max {
@@ -209,7 +210,7 @@ impl Polygon {
         self.pierced_in_plane(ray, PlaneHit { t, error })
     }
 
-    /// The ray parameter of the hit in a range, given where the ray's line crosses the plane.
+    /// The ray parameter of the hit in a range, given the crossing of the ray's line with the plane.
     #[inline]
     pub fn hit_in_plane(&self, ray: &Ray, range: Interval, at: PlaneHit) -> Option<f64> {
         self.pierced_in_plane(ray, at).filter(|t| range.accepts(*t))
@@ -234,13 +235,14 @@ impl Polygon {
         if !self.surrounds(&RayShear::new(ray)) {
             return None;
         }
-        // Seen nearly edge-on the plane's `t` is vague. That the hit is within the bounds is certain.
+        // Seen nearly edge-on, the `t` of the plane is inexact, but the hit is certainly within the bounds.
         let span = self.bounds().clip(ray, Interval::LINE)?;
         Some(t.clamp(span.min, span.max))
     }
 
-    /// Whether a point of the plane that is known up to `error` in each coordinate is inside, told in the principal plane; `None` if
-    /// the error might change the answer. That far around the point all is on the same side of the lines through all edges.
+    /// Whether a point of the plane that is known up to `error` in each coordinate is inside, decided in the principal plane;
+    /// `None` if the error might change the answer. Otherwise all points within the error are on the same side of the lines
+    /// through all edges.
     #[inline]
     fn locate(&self, point: DVec3, error: f64) -> Option<bool> {
         match self.axis {
@@ -261,7 +263,7 @@ impl Polygon {
                 return;
             };
             let (mut ax, mut ay) = (last[I] - x, last[J] - y);
-            // No short cuts: which edge is crossed or near can't be predicted.
+            // No early exit: which edge is crossed or near can't be predicted.
             for corner in ring {
                 let corner = corner.to_array();
                 let (bx, by) = (corner[I] - x, corner[J] - y);
@@ -279,8 +281,8 @@ impl Polygon {
         certain.then_some(odd)
     }
 
-    /// Where the ray is within the bounds as [`Aabb::clip`] finds it, as near to `t` as that is, for a hit that is certainly inside in
-    /// the principal plane: only along the third axis may the rounding of `t` have taken it out.
+    /// The `t` within the bounds, as [`Aabb::clip`] finds them, that is closest to `t`, for a hit that is certainly inside in
+    /// the principal plane: the rounding of `t` may have moved it out along the third axis only.
     #[inline]
     fn within_height(&self, ray: &Ray, t: f64) -> Option<f64> {
         let k = usize::from(self.axis);
@@ -295,7 +297,7 @@ impl Polygon {
         (span.min <= span.max).then(|| t.clamp(span.min, span.max))
     }
 
-    /// Whether the ray's line passes through the polygon, told in the ray's projection.
+    /// Whether the ray's line passes through the polygon, decided in the ray's projection.
     #[inline]
     fn surrounds(&self, shear: &RayShear) -> bool {
         let mut odd = false;
@@ -317,7 +319,7 @@ impl Primitive for Polygon {
         "polygon"
     }
 
-    /// Nothing is left to check: [`Polygon::try_new`] has done so.
+    /// [`Polygon::try_new`] has validated everything.
     fn validate(&self) -> Result<(), GeometryError> {
         Ok(())
     }
@@ -387,8 +389,8 @@ impl Primitive for Polygon {
 
 /// The triangles `0 1 2`, `0 2 3`, ... of a ring of `n` corners, as NFF patches with normals are split.
 ///
-/// Right for convex rings, and for those that are seen as a whole from corner 0. Of other concave rings the triangles
-/// overlap or reach outside; [`triangulate`](super::triangulate) is for those.
+/// Correct for convex rings, and for those that are completely visible from corner 0. The triangles of other concave rings
+/// overlap or reach outside; use [`triangulate`](super::triangulate) for those.
 pub fn fan_triangles(n: u32) -> impl Iterator<Item = [u32; 3]> {
     (1..n.saturating_sub(1)).map(|i| [0, i, i + 1])
 }

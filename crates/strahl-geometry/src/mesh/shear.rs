@@ -16,7 +16,7 @@ static ORDERS: [[Axis; 3]; 3] = [
     [Axis::X, Axis::Y, Axis::Z],
 ];
 
-/// What all triangle tests of one ray have in common: the shear that turns the ray into the z axis.
+/// The part of a triangle test that all tests of one ray share: the shear that turns the ray into the z axis.
 ///
 /// The axes are permuted cyclically, so that z is the one along which the ray moves fastest, and a corner `v` becomes
 /// `(a_x - s_x a_z, a_y - s_y a_z, a_z)` with `a = v - origin`. In this picture the ray is the point `(0, 0)`. The image of
@@ -25,7 +25,7 @@ static ORDERS: [[Axis; 3]; 3] = [
 /// S. Woop, C. Benthin, I. Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013. Unlike there the edge functions
 /// are never formed for the decision: their two products are compared (see [`intersect_triangle`]), and everything is f64.
 ///
-/// A ray that has no direction, or one with NaN or infinite coordinates, meets nothing.
+/// A ray without a direction, or with NaN or infinite coordinates, hits nothing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RayShear {
     /// The axes in their new order.
@@ -34,12 +34,12 @@ pub struct RayShear {
     origin: [f64; 3],
     /// `d_x / d_z` and `d_y / d_z`, at most 1 in magnitude.
     shear: [f64; 2],
-    /// The largest coordinate of the direction, NaN if it is of no use.
+    /// The largest coordinate of the direction, NaN if the ray is invalid.
     direction_z: f64,
 }
 
 impl RayShear {
-    /// That of no ray: it meets nothing.
+    /// A shear that hits nothing.
     pub const UNUSED: Self = Self {
         axes: [Axis::X, Axis::Y, Axis::Z],
         origin: [f64::NAN; 3],
@@ -49,18 +49,18 @@ impl RayShear {
 
     /// The shear of a ray: once per ray and space.
     ///
-    /// Always inlined: returned through memory, it would be stored number by number and read again in larger pieces, which
-    /// waits until the stores are done.
+    /// Always inlined: returned through memory, it would be stored number by number and loaded in larger pieces, and such a
+    /// load waits for the stores.
     #[inline(always)]
     pub fn new(ray: &Ray) -> Self {
         let size = ray.direction.abs();
-        // No branches: which axis it is can't be predicted.
+        // No branches: the axis can't be predicted.
         let of_y_and_z = usize::from(!(size.y >= size.z)) + 1;
         let x_is_largest = (size.x >= size.y) & (size.x >= size.z);
         let axes = &ORDERS[if x_is_largest { 0 } else { of_y_and_z }];
         let [x, y, z] = [axes[0] as usize, axes[1] as usize, axes[2] as usize];
         let (origin, d): (&[f64; 3], &[f64; 3]) = (ray.origin.as_ref(), ray.direction.as_ref());
-        // What is infinite in any coordinate is so in the largest; and NaN makes one of the slopes NaN.
+        // An infinite coordinate is the largest one; and NaN makes one of the slopes NaN.
         let usable = (d[z] != 0.0) & (d[z].abs() <= f64::MAX);
         let direction_z = if usable { d[z] } else { f64::NAN };
         Self {
@@ -83,7 +83,7 @@ impl RayShear {
         self.origin
     }
 
-    /// By how much the picture is sheared per unit of z.
+    /// The shear in x and y per unit of z.
     #[inline(always)]
     pub(crate) const fn slope(&self) -> [f64; 2] {
         self.shear
@@ -119,7 +119,7 @@ impl RayShear {
         self.sheared(|k| f64::from(corner[self.axes[k] as usize]))
     }
 
-    /// Coordinates are picked from memory one by one: a branch on the axis would be mispredicted at every change of ray.
+    /// Coordinates are loaded one by one: a branch on the axis would be mispredicted at every change of ray.
     #[inline]
     fn sheared(&self, corner: impl Fn(usize) -> f64) -> DVec3 {
         let along = |k: usize| corner(k) - self.origin[k];
@@ -131,17 +131,17 @@ impl RayShear {
         )
     }
 
-    /// The ray parameter of a point of the picture.
+    /// The ray parameter of a point of the image.
     #[inline]
     pub fn parameter(&self, z: f64) -> f64 {
         z / self.direction_z
     }
 
-    /// Whether a triangle of counter-clockwise (`true`) or clockwise image shows its front: the side its normal by the
-    /// right-hand rule points to.
+    /// Whether the front of a triangle with counter-clockwise (`true`) or clockwise image is visible: the side of its
+    /// right-handed normal.
     #[inline]
     pub(crate) fn shows_front(&self, counter_clockwise: bool) -> bool {
-        // Looking up the z axis one sees the picture's back, so its fronts turn clockwise.
+        // Seen along the z axis the image is mirrored, so fronts are clockwise.
         counter_clockwise != (self.direction_z > 0.0)
     }
 }
@@ -153,16 +153,16 @@ pub struct TriangleHit {
     pub t: f64,
     /// Barycentric coordinate of the second corner.
     pub u: f64,
-    /// Barycentric coordinate of the third corner; the first has what is left to 1.
+    /// Barycentric coordinate of the third corner; that of the first is 1 - u - v.
     pub v: f64,
 }
 
 /// The one ray-triangle test: both sides are hit, edges and corners belong to the triangle.
 ///
-/// Watertight: whether the ray passes left or right of an edge is told by comparing two products, and a neighbour compares
-/// the same two the other way round. Rounding is monotone, so a comparison of rounded products never contradicts that of
-/// the exact ones; it can only become a tie, and then both neighbours accept.
-/// A triangle seen edge-on, without any area in the ray's projection, is missed.
+/// Watertight: whether the ray passes left or right of an edge is decided by comparing two products, and the neighbouring
+/// triangle compares the same two in reverse. Rounding is monotone, so a comparison of rounded products never contradicts that
+/// of the exact ones; it can only become a tie, and then both triangles accept. A triangle seen edge-on, without any area in
+/// the ray's projection, is missed.
 #[inline]
 pub fn intersect_triangle(shear: &RayShear, a: DVec3, b: DVec3, c: DVec3) -> Option<TriangleHit> {
     let [a, b, c] = [a, b, c].map(|p| shear.apply(&p));
@@ -180,7 +180,7 @@ pub(crate) fn intersect_sheared(
     let (u0, u1) = (b.x * c.y, b.y * c.x);
     let (v0, v1) = (c.x * a.y, c.y * a.x);
     let (w0, w1) = (a.x * b.y, a.y * b.x);
-    // No short cuts: which comparison fails first can't be predicted, that one does can.
+    // No early exit: which comparison fails first can't be predicted, but that one fails can.
     let counter_clockwise = (u0 >= u1) & (v0 >= v1) & (w0 >= w1);
     let clockwise = (u0 <= u1) & (v0 <= v1) & (w0 <= w1);
     if !(counter_clockwise | clockwise) {
@@ -215,7 +215,8 @@ pub(super) fn place(
     (t.is_finite() && area != 0.0).then_some(TriangleHit { t, u, v })
 }
 
-/// The edge functions of a sliver, each to the last digit. A point that only rounding let in is moved to the edge.
+/// The edge functions of a sliver, exact to the last digit. A point that is inside only because of rounding is moved to the
+/// edge.
 #[cold]
 fn careful_weights(a: DVec3, b: DVec3, c: DVec3) -> DVec3 {
     let weights = DVec3::new(exact_cross(b, c), exact_cross(c, a), exact_cross(a, b));

@@ -7,8 +7,8 @@ use strahl_math::{Aabb, DVec2, DVec3, Interval, Ray, Transform};
 /// A flat triangle.
 ///
 /// Its front is the side from which the corners run counter-clockwise; rays hit it from both sides. `uv` are the barycentric
-/// coordinates of the second and the third corner, so `dpdu` and `dpdv` are the edges at the first. A mirroring transform
-/// keeps the front on the side where it was carried, not on that of the right-hand rule.
+/// coordinates of the second and the third corner, so `dpdu` and `dpdv` are the edges at the first. A mirroring transform keeps
+/// the front where it moves it, not on the side of the right-handed normal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Triangle {
     corners: [DVec3; 3],
@@ -112,9 +112,9 @@ impl Primitive for Triangle {
 
 /// A triangle with a normal at each corner, which are interpolated for shading, and optional texture coordinates.
 ///
-/// Everything else is as for [`Triangle`]. The normals may have any length and point to either side: the side of the
-/// triangle they lie on as a whole is taken for the front's. Where the interpolated normal then still points to the back
-/// (corner normals more than a right angle from the plane) it is laid into the plane.
+/// Everything else is as for [`Triangle`]. The normals may have any length and point to either side: the side on which most of
+/// them lie counts as the front. Where the interpolated normal then still points to the back (corner normals more than a right
+/// angle apart) it is projected onto the plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SmoothTriangle {
     flat: Triangle,
@@ -219,7 +219,7 @@ impl Primitive for SmoothTriangle {
     fn baked(&self, map: &Transform) -> Option<Shape> {
         let mapped = Self {
             flat: self.flat.transformed(map),
-            // Of their new lengths, not normalised: so interpolation and the map may be exchanged.
+            // With their new lengths, not normalised, so that interpolation and map may be exchanged.
             normals: self.normals.map(|n| map.normal_to_world(n)),
             uvs: self.uvs,
         };
@@ -239,7 +239,7 @@ fn check_corners(corners: [DVec3; 3]) -> Result<(), GeometryError> {
     let longest = ab.length().max(ac.length()).max((c - b).length());
     let size = Aabb::from_points(corners).max_abs();
     let height = ab.cross(ac).length() / longest;
-    // No height at all, or one that is within the rounding of the coordinates.
+    // No height, or one within the rounding error of the coordinates.
     if !(height > gamma(4) * size) {
         return Err(GeometryError::Degenerate {
             what: "triangle",
@@ -278,7 +278,7 @@ pub(super) fn front_normal(a: DVec3, b: DVec3, c: DVec3) -> Option<DVec3> {
     (length > 0.0).then(|| n / length)
 }
 
-/// A unit vector across a triangle without area, for the sake of being total.
+/// A unit vector perpendicular to a triangle without area, so that there is always a result.
 pub(super) fn any_normal(a: DVec3, b: DVec3, c: DVec3) -> DVec3 {
     [b - a, c - a]
         .into_iter()
@@ -392,7 +392,7 @@ mod tests {
             assert!((point.n_shade - expected).length() < 1e-15);
             assert_eq!(point.n_geom, DVec3::Z);
         }
-        // Beyond the horizon at one corner only: laid into the plane there.
+        // Beyond the horizon at one corner only: projected onto the plane there.
         let tilted = [DVec3::new(3.0, 0.0, -1.0), DVec3::Z, DVec3::Z];
         let n = smooth_normal(tilted, [0.0, 0.0], DVec3::Z);
         assert_eq!(n, DVec3::X);

@@ -49,18 +49,18 @@ fn doubled_area([a, b, c]: [[f64; 2]; 3]) -> f64 {
 /// The edges of triangles by their ends: the triangle, and the number of the corner it starts at.
 type Edges = HashMap<(u32, u32), (usize, usize)>;
 
-/// Ear cutting leaves out corners on straight sides, and inside it may draw an edge right through a corner. Splits the
-/// triangles at such edges.
+/// Ear cutting omits corners on straight sides, and inside it may draw an edge right through a corner. Splits the triangles at
+/// such edges.
 ///
-/// What the triangles' edges and the rings don't cancel of each other are loops without area: a long edge, and the
-/// pieces it should have consisted of, on the way back.
+/// The edges of triangles and rings that don't cancel each other form loops without area: a long edge, and on the way back the
+/// pieces it should have consisted of.
 fn mend(triangles: &mut Vec<[u32; 3]>, ring_lengths: &[usize], flat: &[[f64; 2]]) {
     let place = first_at_place(flat);
     let square = |(a, b): (u32, u32)| {
         let ([ax, ay], [bx, by]) = (flat[a as usize], flat[b as usize]);
         (bx - ax) * (bx - ax) + (by - ay) * (by - ay)
     };
-    // A split may lay open another loop, so look again, but not for ever.
+    // A split may reveal another loop, so repeat, but not forever.
     for _ in 0..8 {
         let mut edges = Edges::new();
         for (index, t) in triangles.iter().enumerate() {
@@ -91,7 +91,7 @@ fn mend(triangles: &mut Vec<[u32; 3]>, ring_lengths: &[usize], flat: &[[f64; 2]]
 fn first_at_place(flat: &[[f64; 2]]) -> Vec<u32> {
     let mut places = HashMap::with_capacity(flat.len());
     let first = |(index, p): (usize, &[f64; 2])| {
-        // The sum makes one zero of both.
+        // The sum turns both zeros into the same one.
         let bits = p.map(|x| (x + 0.0).to_bits());
         *places.entry(bits).or_insert(index as u32)
     };
@@ -154,7 +154,7 @@ fn open_edges(
     open
 }
 
-/// Takes a set of directed edges apart into simple cycles; what leads nowhere is dropped.
+/// Splits a set of directed edges into simple cycles; dead ends are dropped.
 fn cycles(open: &[(u32, u32)]) -> Vec<Vec<u32>> {
     let mut next: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
     for &(a, b) in open {

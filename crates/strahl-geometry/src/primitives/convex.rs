@@ -1,9 +1,9 @@
-//! What convex solids have in common: a line is inside them on one span, between two ends.
+//! Convex solids: a line is inside them on one span, between two ends.
 
 use crate::{Crossing, Crossings, PrimHit, Side, SurfaceId};
 use strahl_math::Interval;
 
-/// One end of a span: where, and on which facet.
+/// One end of a span, with its facet.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct End {
     /// Ray parameter; infinite if the span has no end on this side.
@@ -35,7 +35,7 @@ impl Span {
         },
     };
 
-    /// The part that lies behind `enter` and before `exit` too; `None` if none is left or a parameter is NaN.
+    /// The part that lies behind `enter` and before `exit` too; `None` if it is empty or a parameter is NaN.
     ///
     /// An edge belongs to the facet that was there first: equal parameters change nothing.
     #[inline]
@@ -46,7 +46,7 @@ impl Span {
         if exit.t < self.exit.t {
             self.exit = exit;
         }
-        // The first comparison is false for NaN, which must not pass for "no restriction".
+        // The first comparison is false for NaN, which must not count as "no restriction".
         (enter.t <= exit.t && self.enter.t < self.exit.t).then_some(self)
     }
 
@@ -85,7 +85,7 @@ impl Span {
     }
 }
 
-/// Where a list of crossings begins: a ray that starts on the surface has nothing behind it.
+/// The beginning of a list of crossings: for a ray that starts on the surface, its start.
 pub(crate) fn start_of(range: Interval, from: Option<SurfaceId>) -> f64 {
     if from.is_some() && range.min < 0.0 {
         0.0

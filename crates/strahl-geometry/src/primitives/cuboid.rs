@@ -59,7 +59,7 @@ impl Cuboid {
             let (low, high) = (2 * axis as u32, 2 * axis as u32 + 1);
             let starts_on = |facet| from.is_some_and(|surface| surface.facet == facet);
             if d == 0.0 {
-                // Within a face is outside; NaN is nowhere.
+                // A ray within a face is outside; NaN is never between.
                 let between = self.min[axis] < o && o < self.max[axis];
                 if !between || starts_on(low) || starts_on(high) {
                     return None;
@@ -82,7 +82,7 @@ impl Cuboid {
             };
             span = span.cut(enter, exit)?;
         }
-        // Without a direction nothing was cut.
+        // A ray without a direction has not been clipped.
         span.enter.t.is_finite().then_some(span)
     }
 }
@@ -122,7 +122,7 @@ impl Primitive for Cuboid {
     fn surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
         let axis = (hit.surface.facet / 2).min(2) as usize;
         let at_max = hit.surface.facet % 2 == 1;
-        // Exactly on the plane; the other coordinates are kept from leaving the face by rounding.
+        // Exactly on the plane; the other coordinates are clamped, so that rounding does not move them off the face.
         let mut position = ray.at(hit.t).clamp(self.min, self.max);
         position[axis] = if at_max {
             self.max[axis]

@@ -5,13 +5,13 @@ use strahl_math::{DMat3, DVec3, Transform, det};
 
 /// The axes along which a round shape measures its texture coordinates.
 ///
-/// They follow from the shape's own axis until a rotation is baked in; only then is a matrix stored. Shapes stay small:
-/// a scene may have millions of them, and few are turned.
+/// They follow from the shape's own axis until a rotation is baked; only then is a matrix stored. Shapes stay small: a scene
+/// may have millions of them, and few are rotated.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct UvFrame(Option<Arc<DMat3>>);
 
 impl UvFrame {
-    /// Where angle 0 is, where a quarter turn is, and the axis itself.
+    /// The directions of angle 0 and of a quarter turn, and the axis itself.
     pub(crate) fn axes(&self, axis: DVec3) -> DMat3 {
         match &self.0 {
             Some(axes) => **axes,
@@ -54,8 +54,8 @@ pub(crate) fn turn(y: f64, x: f64) -> f64 {
 }
 
 /// The parts of a similarity: its scale factor (positive) and its orthogonal matrix (a rotation, or a rotation with a
-/// reflection). `None` if the linear part stretches or shears by more than the rounding of a few dozen operations, which is
-/// what a chain of rotations leaves behind.
+/// reflection). `None` if the linear part stretches or shears by more than the rounding error of a few dozen operations, as a
+/// chain of rotations may have.
 pub(crate) fn similarity(map: &Transform) -> Option<(f64, DMat3)> {
     let m = map.linear();
     let scale = m.x_axis.length();

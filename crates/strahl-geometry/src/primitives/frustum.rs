@@ -1,4 +1,4 @@
-//! The right circular frustum: what cylinder and cone are made of.
+//! The right circular frustum: the common geometry of cylinder and cone.
 
 use super::convex::{End, Span};
 use super::disc::circle_bounds;
@@ -155,7 +155,7 @@ impl Frustum {
             if a > 0.0 && !(discriminant > 0.0) {
                 return None;
             }
-            // A line steeper than the side always meets it; through the very tip rounding may say otherwise.
+            // A line steeper than the side always hits it; at the tip itself rounding may hide that.
             let s = if discriminant > 0.0 {
                 discriminant.sqrt()
             } else {
@@ -170,14 +170,14 @@ impl Frustum {
             if q == 0.0 { (0.0, 0.0) } else { (c / q, q / a) }
         };
         if a > 0.0 {
-            // Both ends are on the same half of the double cone; the slab cuts away what is on the wrong one.
+            // Both ends are on the same half of the double cone; the slab removes those on the wrong half.
             return Some(if first <= second {
                 (first, second)
             } else {
                 (second, first)
             });
         }
-        // Steeper than the side: inside from the one crossing with our half on, the way the radius grows.
+        // Steeper than the side: inside from the single crossing with our half on, in the direction of growing radius.
         if growth > 0.0 {
             let start = if a == 0.0 || first >= second {
                 first
@@ -231,7 +231,7 @@ impl Frustum {
         let span = Span::LINE
             .cut(side(first), side(second))?
             .cut(enter, exit)?;
-        // Without a direction nothing was cut.
+        // A ray without a direction has not been clipped.
         (span.enter.t.is_finite() || span.exit.t.is_finite()).then_some(span)
     }
 
@@ -275,7 +275,7 @@ impl Frustum {
         }
     }
 
-    /// How far the parameter of a hit may be off: as for the plane, or as for the sphere across the side.
+    /// The error of the parameter of a hit: as for the plane, or as for the sphere across the side.
     fn t_error(&self, ray: &Ray, end: End) -> f64 {
         match end.facet {
             BASE => plane_t_error(ray, end.t, self.base, self.axis),

@@ -98,16 +98,16 @@ pub(crate) fn unit_vector(v: DVec3) -> DVec3 {
     scaled / scaled.length()
 }
 
-/// The error of a point computed as `center + local` with about `operations` roundings on the way to `local`, whose
-/// coordinates are at most `extent`: the one place where the primitives' position errors are put together.
+/// The error of a point computed as `center + local` with about `operations` roundings on the way to `local`, whose coordinates
+/// are at most `extent`: the position errors of all primitives are computed here.
 ///
-/// Never zero, so that an offset by it does move the point.
+/// Never zero, so that an offset by it moves the point.
 pub(crate) fn point_error(position: DVec3, extent: f64, operations: u32) -> DVec3 {
     let local = gamma(operations) * extent;
     position.abs() * (2.0 * ROUNDOFF) + DVec3::splat(local + f64::MIN_POSITIVE)
 }
 
-/// How far the parameter may be off at which a ray crosses a plane, coordinates of both taken as rounded.
+/// The error of the parameter at which a ray crosses a plane, if the coordinates of both are rounded.
 pub(crate) fn plane_t_error(ray: &Ray, t: f64, point: DVec3, normal: DVec3) -> f64 {
     let n = normal.abs();
     let magnitude = (ray.origin.abs() + point.abs() + ray.direction.abs() * t.abs()).dot(n);

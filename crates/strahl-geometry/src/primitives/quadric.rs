@@ -19,7 +19,7 @@ use strahl_math::{Aabb, DMat3, DVec2, DVec3, Interval, Ray, Transform};
 /// have lost them already: describe it at the origin and move it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Quadric {
-    /// Where the polynomial's own coordinates begin.
+    /// The origin of the polynomial's own coordinates.
     origin: DVec3,
     /// The symmetric matrix of the terms of degree 2.
     square: DMat3,
@@ -107,7 +107,7 @@ impl Quadric {
         }
     }
 
-    /// Where the gradient vanishes, if there is one such point and rounding doesn't blur it.
+    /// The point where the gradient vanishes, if there is only one and rounding does not blur it.
     fn center(&self) -> Option<DVec3> {
         let inverse = self.well_conditioned_inverse()?;
         Some(self.origin - inverse * self.half_linear).filter(|center| center.is_finite())
@@ -222,7 +222,7 @@ impl Quadric {
             h_error,
         } = self.along(p, d);
         let c = self.value_at(p);
-        // A leading coefficient below its rounding error would make up a second crossing at an endless distance.
+        // A leading coefficient below its rounding error would cause a second crossing near infinity.
         if a.abs() <= a_error {
             if h.abs() <= h_error {
                 return none(c < 0.0);
@@ -252,8 +252,8 @@ impl Quadric {
         )
     }
 
-    /// How far the parameter of a crossing may be off: the error of the value divided by its slope along the ray; near a
-    /// tangent the error grows to the square root.
+    /// The error of the parameter of a crossing: the error of the value divided by its slope along the ray; near a tangent the
+    /// error grows to the square root.
     fn t_error(&self, ray: &Ray, t: f64) -> f64 {
         let p = (ray.origin - self.origin) + ray.direction * t;
         let Along { a, h, .. } = self.along(p, ray.direction);
@@ -355,7 +355,7 @@ impl Primitive for Quadric {
         let position = self.origin + local;
         let half_gradient = self.half_gradient_at(local);
         let steepness = half_gradient.length();
-        // At the tip of a cone every direction is as good.
+        // At the tip of a cone any direction will do.
         let n = half_gradient.normalize_or(DVec3::Y);
         let across = if steepness > 0.0 {
             gamma(8) * self.magnitude_at(local) / steepness

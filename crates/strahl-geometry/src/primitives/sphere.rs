@@ -10,8 +10,8 @@ use strahl_math::{Aabb, DVec2, DVec3, Interval, Ray, Transform, det};
 
 /// A sphere.
 ///
-/// A **negative radius** makes a sphere that is looked at from within, as NFF has it: the same points, but `n_geom` points
-/// to the centre, and it is an open surface, no [`Solid`].
+/// A **negative radius** makes a sphere that is seen from inside, as in NFF: the same points, but `n_geom` points to the
+/// centre, and it is an open surface, not a [`Solid`].
 ///
 /// Texture coordinates: `u` is the longitude, 0 on the side of +x, growing towards -z (to the right as seen from
 /// outside with +y up); `v` is the latitude, 0 at the pole -y, 1 at the pole +y; both run from 0 to 1. Facets: one, 0.
@@ -50,7 +50,7 @@ impl Sphere {
         self.center
     }
 
-    /// The radius as given, negative for a sphere looked at from within.
+    /// The radius as given, negative for a sphere seen from inside.
     pub fn radius(&self) -> f64 {
         self.radius
     }
@@ -77,7 +77,7 @@ impl Sphere {
         Self::crossings_of(self.center, self.radius.abs(), ray)
     }
 
-    /// Where the line of a ray that starts on the sphere crosses it once more; `None` for a tangent.
+    /// The second crossing of the line of a ray that starts on the sphere; `None` for a tangent.
     #[inline(always)]
     pub(crate) fn other_root(center: DVec3, ray: &Ray) -> Option<f64> {
         let d = ray.direction;
@@ -126,8 +126,8 @@ impl Sphere {
         })
     }
 
-    /// How far the parameter of a hit may be off: the error of the point on the ray, divided by the speed at which the
-    /// ray crosses the surface; near a tangent the error grows to the square root.
+    /// The error of the parameter of a hit: the error of the point on the ray, divided by the speed at which the ray crosses
+    /// the surface; near a tangent the error grows to the square root.
     fn t_error(&self, ray: &Ray, t: f64) -> f64 {
         let r = self.radius.abs();
         let f = ray.origin - self.center;
@@ -199,7 +199,7 @@ impl Primitive for Sphere {
         let local = axes.transpose() * outward;
         let ring = DVec2::new(local.x, local.y).length();
         let height = local.z.clamp(-1.0, 1.0);
-        // At a pole every longitude is right; the seam's is taken.
+        // At a pole every longitude is correct; that of the seam is used.
         let (east_x, east_y) = if ring > 0.0 {
             (local.x / ring, local.y / ring)
         } else {

@@ -43,7 +43,7 @@ struct Segment {
     high: f64,
 }
 
-/// What happens along a ray, in this order.
+/// The events along a ray, in this order.
 enum Event {
     /// The ray starts on the surface, and is inside from there on or not.
     Start {
@@ -55,23 +55,22 @@ enum Event {
     },
 }
 
-/// Follows a ray from root to root.
+/// Visits the roots along a ray.
 ///
-/// The roots only say where the sign *may* change. Whether it does is decided between them, so entering and leaving
-/// alternate even where rounding has lost or made up a root, and the inner surface of a spindle torus, which has
-/// roots too, does not count.
+/// At a root the sign *may* change. Whether it does is decided between the roots, so entering and leaving alternate even if
+/// rounding has lost or added a root, and the inner surface of a spindle torus, which has roots too, does not count.
 struct Walk<'a, V> {
     torus: &'a Torus,
     segment: Segment,
     on_surface: bool,
     inside: bool,
-    /// The last root, as long as it is not known what comes behind it.
+    /// The last root, until it is known whether the ray is inside behind it.
     pending: Option<f64>,
     visit: V,
 }
 
-/// A stretch of `s` between two roots that is long enough to look for a point inside or outside of it without knowing the
-/// second root exactly.
+/// The length of `s` between two roots above which a point between them can be classified before the second root is known
+/// exactly.
 const CLEAR: f64 = 1.0 / 64.0;
 
 impl<V: FnMut(Event) -> ControlFlow<()>> Walk<'_, V> {
@@ -103,13 +102,13 @@ impl<V: FnMut(Event) -> ControlFlow<()>> Walk<'_, V> {
             quartic.isolate(&mut |part| self.part(part))
         };
         if flow.is_continue() {
-            // The visitor has nothing left to stop.
+            // The result only matters while visiting.
             let _ = self.settle(None);
         }
     }
 
-    /// The next interval with a root. If that is clear of the last root, its own root is looked for only after the visitor has
-    /// been told about the last one, and perhaps needs no more.
+    /// The next interval with a root. If it is clear of the last root, its own root is computed only after the visitor has been
+    /// told about the last one, and perhaps needs no more.
     fn part<const N: usize>(&mut self, part: &Isolated<N>) -> ControlFlow<()> {
         if self.pending.is_some_and(|last| part.low() - last > CLEAR) {
             self.settle(Some(part.low()))?;
@@ -124,7 +123,7 @@ impl<V: FnMut(Event) -> ControlFlow<()>> Walk<'_, V> {
         ControlFlow::Continue(())
     }
 
-    /// Decides what is behind the pending root, where there is no root before `next`. Behind the last one is outside.
+    /// Decides the state behind the pending root, where there is no root before `next`. Behind the last one is outside.
     fn settle(&mut self, next: Option<f64>) -> ControlFlow<()> {
         let Some(s) = self.pending.take() else {
             return ControlFlow::Continue(());
@@ -132,7 +131,7 @@ impl<V: FnMut(Event) -> ControlFlow<()>> Walk<'_, V> {
         let Segment { low, high, .. } = self.segment;
         let rounding = gamma(8) * if high > -low { high } else { -low };
         let inside = match next {
-            // A gap no wider than rounding is none.
+            // A gap within the rounding error does not count.
             Some(next) if next - s <= rounding => self.inside,
             Some(next) => self.torus.value(self.segment.at(0.5 * (s + next))) < 0.0,
             None => false,
@@ -148,7 +147,7 @@ impl<V: FnMut(Event) -> ControlFlow<()>> Walk<'_, V> {
         }
     }
 
-    /// The root in an isolating interval: by the distance from the circle if that changes its sign there, else by the
+    /// The root in an isolating interval: found with the distance from the circle if that changes its sign there, else with the
     /// polynomial if that does.
     ///
     /// At the poles of a spindle torus outer and inner surface meet in a double root, where only the former does.
@@ -317,7 +316,7 @@ impl Torus {
         (coefficients, gamma(16) * magnitude)
     }
 
-    /// Tells the visitor what happens along the ray, until it breaks off.
+    /// Reports the events along the ray to the visitor, until it stops.
     fn walk(&self, ray: &Ray, on_surface: bool, visit: impl FnMut(Event) -> ControlFlow<()>) {
         if let Some(segment) = self.segment(ray, on_surface) {
             Walk {
@@ -332,7 +331,7 @@ impl Torus {
         }
     }
 
-    /// How far the parameter of a crossing may be off.
+    /// The error of the parameter of a crossing.
     fn t_error(&self, ray: &Ray, t: f64) -> f64 {
         let p = (ray.origin - self.center) + ray.direction * t;
         let size = self.major + self.minor;
@@ -350,8 +349,8 @@ impl Torus {
     }
 }
 
-/// How much larger than the torus the volume is that rays are clipped to. It only has to cover the rounding of the clipping
-/// itself; what lies between is empty.
+/// The size of the volume to which rays are clipped, relative to the torus. It only has to cover the rounding error of the
+/// clipping itself.
 const MARGIN: f64 = 1.0 + 1.0 / 1024.0;
 
 impl Primitive for Torus {

@@ -1,7 +1,7 @@
 use std::fmt::Debug;
 use std::ops::{Add, Mul, Sub};
 
-/// What curves are made of: numbers and vectors.
+/// The coefficients of curves: numbers and vectors.
 pub(crate) trait Linear:
     Copy + Debug + PartialEq + Add<Output = Self> + Sub<Output = Self> + Mul<f64, Output = Self>
 {
@@ -100,7 +100,7 @@ pub enum Spline {
 }
 
 impl Spline {
-    /// How many points there are before the first and behind the last point of the curve.
+    /// How many additional points there are before the first and behind the last point of the curve.
     pub(super) const fn surplus(self) -> (usize, usize) {
         match self {
             Self::Linear | Self::Bezier => (0, 0),
@@ -109,7 +109,7 @@ impl Spline {
         }
     }
 
-    /// The pieces of a curve; points too many (of Bézier curves) are left out.
+    /// The pieces of a curve; superfluous points (of Bézier curves) are ignored.
     pub(super) fn pieces<V: Linear>(self, points: &[V]) -> Vec<Piece<V>> {
         let straight = |pair: &[V]| match *pair {
             [a, b] => Some(Piece::Line([a, b])),

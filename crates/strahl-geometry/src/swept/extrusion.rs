@@ -11,11 +11,11 @@ const HIGH_CAP: u32 = 1;
 /// The facet of the first piece's wall.
 const FIRST_WALL: u32 = 2;
 
-/// An outline swept along the z axis from one height to another, seen by rays of its own space.
+/// An outline swept along the z axis from one height to another, for rays in its own space.
 ///
 /// A ray is inside where it is between the two heights and inside of the outline, so its crossings follow from two lists that
-/// are each right by themselves: the heights, and where the ray's image in the plane crosses the outline. What is inside at
-/// a cap follows from the walls crossed so far, never from a test of its own: walls and caps meet without a crack.
+/// are each correct by themselves: the heights, and the crossings of the ray's image in the plane with the outline. The state
+/// at a cap follows from the walls crossed so far, never from a separate test: walls and caps meet without a crack.
 ///
 /// With `conic` the outline is scaled by the height: it is as drawn at height 1, and a point at 0. The image is then the
 /// projection from that point.
@@ -26,7 +26,7 @@ pub(super) struct Extrusion<'a> {
     pub(super) conic: bool,
     pub(super) low: f64,
     pub(super) high: f64,
-    /// Whether there are caps to be seen.
+    /// Whether the caps are visible.
     pub(super) capped: bool,
 }
 
@@ -44,8 +44,8 @@ impl Extrusion<'_> {
         )
     }
 
-    /// Which side of the curve is outside where a ray crosses a wall: 1 for the right, -1 for the left. `hit.uv[1]` tells as yet
-    /// whether the curve gets to the left of the ray (1) there or to the right (-1).
+    /// The side of the curve that is outside where a ray crosses a wall: 1 for the right, -1 for the left. At this point
+    /// `hit.uv[1]` still says whether the curve passes to the left of the ray (1) or to the right (-1).
     fn outer_side(&self, ray: &Ray, hit: &PrimHit, enters: bool) -> f64 {
         let [s, rises] = hit.uv;
         if !self.conic {
@@ -61,7 +61,7 @@ impl Extrusion<'_> {
         if enters == in_front { -1.0 } else { 1.0 }
     }
 
-    /// Where on the ray the outline is scaled to a point, and nothing is inside: at the apex, or infinitely far away.
+    /// The ray parameter at which the outline shrinks to a point: at the apex, or infinitely far away.
     fn apex(&self, ray: &Ray) -> f64 {
         if self.conic && ray.direction.z != 0.0 {
             -ray.origin.z / ray.direction.z
@@ -70,7 +70,7 @@ impl Extrusion<'_> {
         }
     }
 
-    /// Lists where the ray's line crosses the infinite walls. `true` if the line's image is a point inside the outline.
+    /// Lists the crossings of the ray's line with the infinite walls. `true` if the line's image is a point inside the outline.
     fn walls(&self, ray: &Ray, list: &mut Crossings) -> bool {
         let Ray {
             origin: o,
@@ -118,7 +118,7 @@ impl Extrusion<'_> {
         false
     }
 
-    /// Root identity: puts the crossing that the ray starts on at exactly 0.
+    /// Root identity: moves the crossing that the ray starts on to exactly 0.
     fn snap_walls(&self, ray: &Ray, from: Option<SurfaceId>, walls: &mut [Crossing]) {
         let Some(start) = from.and_then(|from| from.facet.checked_sub(FIRST_WALL)) else {
             return;
@@ -218,7 +218,7 @@ impl WholeLine for Extrusion<'_> {
         };
         list.list.push(cap(heights.min, first, Side::Enter));
         list.list.push(cap(heights.max, last, Side::Exit));
-        // Where a ray meets an edge it leaves before it enters: no span without length.
+        // Where a ray meets an edge it leaves before it enters, so there is no span without length.
         let rank = |side: Side| match side {
             Side::Exit => 0,
             Side::Inner => 1,
@@ -270,7 +270,7 @@ impl WholeLine for Extrusion<'_> {
     }
 }
 
-/// The number by which `b` has to be multiplied to give `a`, which is parallel to it up to rounding.
+/// The factor between two vectors that are parallel up to rounding: `a` divided by `b`.
 fn quotient(a: DVec3, b: DVec3) -> f64 {
     let size = b.abs();
     if size.x >= size.y && size.x >= size.z {

@@ -8,7 +8,7 @@ use crate::{
 use std::sync::Arc;
 use strahl_math::{Aabb, DMat3, DVec3, Interval, Ray, Transform};
 
-/// A letter: an outline in the x-y plane, moved to its place and swept from there along the z axis.
+/// A letter: an outline in the x-y plane, moved to its position and swept from there along the z axis.
 ///
 /// Any number of letters share one outline. Facets: 0 the cap at the smaller z, 1 the cap at the greater one, then the walls of the
 /// outline's pieces in their order. There are no texture coordinates.
@@ -20,7 +20,7 @@ pub struct Glyph {
 }
 
 impl Glyph {
-    /// A letter with the outline's origin at `origin`; of a negative thickness it lies before that in z.
+    /// A letter with the outline's origin at `origin`; with a negative thickness it extends towards smaller z.
     ///
     /// # Errors
     /// A number is not finite, or the thickness is 0.
@@ -42,7 +42,7 @@ impl Glyph {
         &self.outline
     }
 
-    /// Where the outline's origin is.
+    /// The position of the outline's origin.
     pub fn origin(&self) -> DVec3 {
         self.origin
     }
@@ -111,7 +111,7 @@ impl Primitive for Glyph {
         Some(self)
     }
 
-    /// A letter that is only moved stays one.
+    /// A letter that is only translated stays a letter.
     fn baked(&self, map: &Transform) -> Option<Shape> {
         (map.linear() == DMat3::IDENTITY).then(|| {
             Shape::Glyph(Self {

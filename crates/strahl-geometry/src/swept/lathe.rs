@@ -5,13 +5,13 @@ use strahl_math::DVec2;
 
 /// A curve turned about the y axis, like POV-Ray's `lathe`.
 ///
-/// Parts of the curve with a negative radius count as if mirrored. Inside is, as in POV-Ray, what the curve surrounds an odd number of
-/// times, seen from its own smallest radius outwards: a curve that does not come back to its first point is a
-/// solid nonetheless, closed by level discs at its ends and an upright wall at its smallest radius, none of which can be seen.
+/// Parts of the curve with a negative radius count as if mirrored. As in POV-Ray, the inside is what the curve surrounds an odd
+/// number of times, seen from its smallest radius outwards. A curve that does not return to its first point still makes a
+/// solid, closed by horizontal discs at its ends and a vertical wall at its smallest radius, all invisible.
 ///
 /// Texture coordinates: `u` is the angle about the axis, `v` grows along the curve, each of its pieces taking an equal share;
-/// both run from 0 to 1. Facets: one for every stretch of the curve on which radius and height grow or shrink, in the order of
-/// the curve.
+/// both run from 0 to 1. Facets: one for every part of the curve on which radius and height are monotone, in the order of the
+/// curve.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Lathe {
     pub(super) meridian: Meridian,
@@ -44,7 +44,7 @@ impl Lathe {
                 piece.start()
             });
             builder.piece(piece, false, true, v(i));
-            // Only Bézier curves may go on elsewhere.
+            // Only Bézier curves may continue elsewhere.
             let end = piece.end();
             if pieces.get(i + 1).is_none_or(|next| next.start() != end) {
                 close(&mut builder, end, start, inner);
@@ -58,7 +58,7 @@ impl Lathe {
     }
 }
 
-/// Closes a curve by lines that can't be seen: level to the inner radius, along it, and back.
+/// Closes a curve by invisible lines: horizontally to the inner radius, along it, and back.
 fn close(builder: &mut MeridianBuilder, end: DVec2, start: DVec2, inner: f64) {
     if end == start {
         return;

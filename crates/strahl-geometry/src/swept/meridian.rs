@@ -5,7 +5,7 @@ use strahl_math::DVec2;
 use strahl_math::error::gamma;
 use strahl_math::roots::{Bernstein, find_root};
 
-/// A piece of a curve in the half-plane of radius and height, on which both only grow or only shrink.
+/// A piece of a curve in the half-plane of radius and height, on which both are monotone.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Arc {
     /// Bézier coefficients of the radius, or of its square; not negative.
@@ -13,7 +13,7 @@ pub(super) struct Arc {
     squared: bool,
     /// Bézier coefficients of the height.
     y: [f64; 4],
-    /// Whether there is a surface to be seen.
+    /// Whether the surface is visible.
     pub(super) visible: bool,
     /// The texture coordinate along the curve at both ends.
     pub(super) v: [f64; 2],
@@ -54,7 +54,7 @@ impl Arc {
 
     pub(super) fn radius(&self, s: f64) -> f64 {
         let x = Piece::Cubic(self.x).at(s);
-        // Rounding may lead below zero at the axis.
+        // Rounding may give a negative number at the axis.
         let x = if x > 0.0 { x } else { 0.0 };
         if self.squared { x.sqrt() } else { x }
     }
@@ -98,7 +98,7 @@ impl Arc {
         range(products.map(|product| 2.0 * product))
     }
 
-    /// Where the height is `y`, which it is somewhere.
+    /// The parameter at which the height is `y`, which it has somewhere.
     pub(super) fn at_height(&self, y: f64) -> f64 {
         let curve = Piece::Cubic(self.y);
         let rising = curve.end() > curve.start();
@@ -149,7 +149,7 @@ fn slope_range(c: &[f64; 4], a: f64, b: f64) -> [f64; 2] {
     range([blossom(a, a), blossom(a, b), blossom(b, b)].map(|slope| 3.0 * slope))
 }
 
-/// A curve that is turned about the axis: closed contours of arcs, some of which can't be seen.
+/// A curve that is rotated about the axis: closed contours of arcs, some of which are invisible.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Meridian {
     pub(super) arcs: Box<[Arc]>,
@@ -173,7 +173,7 @@ impl MeridianBuilder {
     }
 
     /// Appends a piece of the curve, whose `x` is the radius (of either sign: the other half of the plane is the same) or its
-    /// square. It is cut where radius or height turn back and where it meets the axis.
+    /// square. It is split where radius or height have an extremum and where it meets the axis.
     pub(super) fn piece(
         &mut self,
         piece: &Piece<DVec2>,
@@ -228,7 +228,7 @@ impl MeridianBuilder {
         });
     }
 
-    /// The range of radii of what has been appended, seen or not.
+    /// The range of radii of all appended pieces, visible or not.
     pub(super) fn radii(&self) -> [f64; 2] {
         let ends = self
             .arcs

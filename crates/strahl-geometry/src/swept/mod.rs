@@ -1,7 +1,7 @@
-//! Shapes swept by curves: prisms, letters, lathes, surfaces of revolution, and what spheres cover on their way.
+//! Shapes swept by curves: prisms, letters, lathes, surfaces of revolution, and sphere sweeps.
 //!
-//! The curves are pieces of degree 3 at most in Bézier form, kept under a hierarchy of boxes along the curve, so that a ray
-//! looks at few of many pieces.
+//! The curves consist of Bézier pieces of degree 3 at most, under a hierarchy of boxes along the curve, so that a ray tests few
+//! of many pieces.
 
 mod curve;
 mod extrusion;

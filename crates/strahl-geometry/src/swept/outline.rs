@@ -6,7 +6,7 @@ use strahl_math::error::gamma;
 use strahl_math::roots::{Bernstein, RootCount};
 use strahl_math::{DVec2, Interval};
 
-/// Closed curves in a plane, of lines, parabolas and cubics: what prisms and letters are swept from.
+/// Closed curves in a plane, made of lines, parabolas and cubics, from which prisms and letters are swept.
 ///
 /// A point is inside if a half-line from it crosses the curves an odd number of times (even-odd rule).
 ///
@@ -37,7 +37,7 @@ pub struct Outline {
 #[derive(Clone, Debug, Default)]
 pub struct OutlineBuilder {
     pieces: Vec<Piece<DVec2>>,
-    /// Where each contour begins.
+    /// The first piece of each contour.
     starts: Vec<usize>,
     first: Option<DVec2>,
     last: DVec2,
@@ -68,17 +68,17 @@ impl OutlineBuilder {
         self.piece(Piece::Cubic([self.last, control, other, point]));
     }
 
-    /// Appends a piece; it begins where the last one has ended.
+    /// Appends a piece, which begins at the end of the last one.
     pub(super) fn piece(&mut self, piece: Piece<DVec2>) {
         self.last = piece.end();
         let start = piece.start();
-        // What is no longer than a point has no direction.
+        // A piece that is a point has no direction.
         if piece.points().iter().any(|p| *p != start) {
             self.pieces.push(piece);
         }
     }
 
-    /// Closes the contour, by a line if need be.
+    /// Closes the contour, with a line if necessary.
     pub fn close(&mut self) {
         if let Some(first) = self.first.take()
             && first != self.last
@@ -91,7 +91,7 @@ impl OutlineBuilder {
     /// The outline; the last contour is closed.
     ///
     /// # Errors
-    /// A coordinate is not finite, or there is nothing but points.
+    /// A coordinate is not finite, or there are only points.
     pub fn finish(mut self) -> Result<Outline, GeometryError> {
         self.close();
         let all = self.pieces.iter().flat_map(|piece| piece.points());
@@ -132,12 +132,12 @@ pub(super) struct Cut {
     pub(super) offset: f64,
 }
 
-/// Where a line crosses an outline.
+/// A crossing of a line with an outline.
 pub(super) struct OutlineCrossing {
     pub(super) piece: u32,
     pub(super) s: f64,
     pub(super) point: DVec2,
-    /// Whether the curve gets to the side that the line's normal points to.
+    /// Whether the curve passes to the side of the line's normal.
     pub(super) rising: bool,
 }
 
@@ -147,7 +147,7 @@ impl Outline {
         self.pieces.len()
     }
 
-    /// How many contours were not closed, so that a line had to be drawn.
+    /// The number of contours that were not closed, so that a line was added.
     pub fn gaps(&self) -> usize {
         self.gaps
     }
@@ -174,8 +174,8 @@ impl Outline {
 
     /// Visits all crossings with a line, piece by piece.
     ///
-    /// Which side a joint is on is decided once, for both pieces that meet there; so a line crosses a contour an even number of
-    /// times whatever the rounding.
+    /// The side of a joint is decided once, for both pieces that meet there; so a line crosses a contour an even number of
+    /// times despite rounding.
     pub(super) fn crossings(&self, cut: &Cut, mut visit: impl FnMut(&OutlineCrossing)) {
         let side = |p: DVec2| {
             let aside = p - cut.anchor;
@@ -230,7 +230,7 @@ impl Outline {
 /// The roots of a polynomial in Bernstein form where it changes its sign.
 fn roots<const N: usize>(values: [f64; N], error: f64, found: &mut impl FnMut(f64, bool)) {
     let all = |sign: bool| values.iter().all(|v| (*v >= 0.0) == sign);
-    // Nearly all pieces lie on one side: no need to go on.
+    // Nearly all pieces lie on one side.
     if all(true) || all(false) {
         return;
     }
@@ -243,15 +243,15 @@ fn roots<const N: usize>(values: [f64; N], error: f64, found: &mut impl FnMut(f6
     });
 }
 
-/// Two pieces are one smooth run if the sine of the angle between them is less: 2⁻²⁰, some hundred times what coordinates given
-/// with eight digits make of a smooth joint.
+/// Two pieces belong to one smooth run if the sine of the angle between them is less: 2⁻²⁰, some hundred times the error of a
+/// smooth joint whose coordinates are given with eight digits.
 const SMOOTH: f64 = 1.0 / 1_048_576.0;
 
-/// An end of a piece: where it is, and a vector along the curve there.
+/// An end of a piece: its position, and a vector along the curve.
 pub(super) type End = (DVec2, DVec2);
 
-/// For each piece, given by its two ends, the first piece of its smooth run. `starts` tells where each contour begins; its last run
-/// may go on with its first one.
+/// For each piece, given by its two ends, the first piece of its smooth run. `starts` has the first piece of each contour; its
+/// last run may continue in its first one.
 pub(super) fn smooth_runs(pieces: &[[End; 2]], starts: &[usize]) -> Box<[u32]> {
     let mut run: Vec<u32> = (0..pieces.len() as u32).collect();
     let ends = starts.iter().skip(1).copied().chain([pieces.len()]);
@@ -281,7 +281,7 @@ fn joins_smoothly((end, into): End, (start, out): End) -> bool {
     end == start && into.dot(out) > 0.0 && sine.abs() <= SMOOTH * into.length() * out.length()
 }
 
-/// A vector along the curve at `s`: the derivative, or where that vanishes the direction of what lies beside it.
+/// A vector along the curve at `s`: the derivative, or if that vanishes the direction to points beside it.
 pub(super) fn direction(piece: &Piece<DVec2>, s: f64) -> DVec2 {
     let (start, end) = (piece.start(), piece.end());
     let size = piece

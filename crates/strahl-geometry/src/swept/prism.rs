@@ -7,22 +7,22 @@ use crate::{
 };
 use strahl_math::{Aabb, DVec2, DVec3, Interval, Ray};
 
-/// What becomes of the outline of a [`Prism`] with the height.
+/// How the outline of a [`Prism`] changes with the height.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PrismSweep {
-    /// Nothing: the walls are upright.
+    /// Not at all: the walls are vertical.
     Linear,
-    /// It is scaled by the height: the size given at height 1, a point at height 0, mirrored below.
+    /// It is scaled by the height: original size at height 1, a point at height 0, mirrored below.
     Conic,
 }
 
 /// A plane figure in the x-z plane swept along the y axis, like POV-Ray's `prism`.
 ///
-/// The figure is made of one or more closed curves; what an even number of them surrounds is outside. Facets: 0 the cap
-/// at the smaller height, 1 the cap at the greater one, then the walls of the figure's pieces in their order. There are no texture
-/// coordinates.
+/// The figure consists of one or more closed curves; areas surrounded by an even number of them are outside. Facets: 0 the cap
+/// at the smaller height, 1 the cap at the greater one, then the walls of the figure's pieces in their order. There are no
+/// texture coordinates.
 ///
-/// An *open* prism lacks the caps to be seen, but is a solid nonetheless: it ends where the caps would be.
+/// The caps of an *open* prism are invisible, but it is still a solid that ends there.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Prism {
     outline: Outline,

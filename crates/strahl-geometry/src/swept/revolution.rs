@@ -8,7 +8,7 @@ use strahl_math::error::gamma;
 use strahl_math::roots::find_root;
 use strahl_math::{Aabb, DVec2, DVec3, Interval, Ray};
 
-/// A meridian turned about the y axis.
+/// A meridian rotated about the y axis.
 ///
 /// In the half-plane of radius and height a line is one branch of a hyperbola. With the distance `m` of the line from the axis
 /// and `h` along its horizontal part, counted from the place nearest to the axis, a point of the meridian is on it where
@@ -17,29 +17,29 @@ use strahl_math::{Aabb, DVec2, DVec3, Interval, Ray};
 /// As radius and height are monotone on every arc, both functions are bounded by their values at the ends of an
 /// interval, and their slopes by a few products: bisection finds all roots, with certainty and mostly at once.
 ///
-/// Which side of the line a joint of two arcs is on is decided by the same numbers for both, so entering and leaving
-/// alternate whatever the rounding.
+/// The side of the line on which a joint of two arcs lies is decided by the same numbers for both, so entering and leaving
+/// alternate despite rounding.
 ///
 /// Hits have `uv = [s, side]`: the parameter on the arc, and 1 if the outer side is the right of the curve, else -1.
 pub(super) struct Revolution<'a>(pub(super) &'a Meridian);
 
-/// A line as the meridian sees it.
+/// A line in the half-plane of the meridian.
 struct Line {
     ray: Ray,
     /// Horizontal speed.
     speed: f64,
-    /// Where the origin is along the horizontal part.
+    /// The position of the origin along the horizontal part.
     start: f64,
     /// The squared distance from the axis.
     m2: f64,
 }
 
-/// A value of the function whose roots are looked for.
+/// A value of the function whose roots are searched.
 #[derive(Clone, Copy)]
 struct Sample {
     s: f64,
     y: f64,
-    /// The distance along the horizontal part from where the line is nearest to the axis.
+    /// The distance along the horizontal part from the point nearest to the axis.
     q: f64,
     value: f64,
 }
@@ -55,7 +55,7 @@ impl Line {
         let flat = |v: DVec3| DVec2::new(v.x, v.z);
         let (o, d) = (flat(ray.origin), flat(ray.direction));
         let speed = d.length();
-        // An upright line may be taken to lie in any plane: best in that through the axis.
+        // A vertical line may be taken to lie in any plane; the one through the axis is best.
         let ahead = if speed > 0.0 {
             d / speed
         } else {
@@ -117,7 +117,7 @@ impl Line {
             (false, false) => return,
             (true, true) => {}
             (outer, _) => {
-                // What is nearer to the axis than the line is of no interest.
+                // Points closer to the axis than the line don't matter.
                 let s = find_root(0.0, 1.0, !outer, f64::NAN, |s| {
                     let point = arc.at(s);
                     (point.square - self.m2, point.d_square)
@@ -137,7 +137,7 @@ impl Line {
         for half in [1.0, -1.0] {
             let a = self.sample(half, low.0, low.1);
             let b = self.sample(half, high.0, high.1);
-            // What the terms of the value may lose to rounding.
+            // The rounding error of the terms of the value.
             let tallest = a.y.abs() + b.y.abs() + self.ray.origin.y.abs();
             let widest = a.q + b.q + self.start.abs();
             let noise = gamma(16) * (self.speed * tallest + dy.abs() * widest);
@@ -173,7 +173,7 @@ impl Line {
         }
         let s = 0.5 * (a.s + b.s);
         let steepest = if -low > high { -low } else { high };
-        // Less than rounding happens in between: only the ends count. (Not a number is less too.)
+        // If the change in between is less than the rounding error, only the ends count. (NaN compares as less, too.)
         let worth = steepest * (b.s - a.s) > noise;
         if !(worth && a.s < s && s < b.s) {
             if change {
@@ -214,7 +214,7 @@ impl Line {
         find_root(a.s, b.s, b.sign(), guess, |s| {
             let point = arc.at(s);
             let sample = self.sample(half, s, point);
-            // Where q is 0 the slope is no number, and the interval is halved.
+            // If q is 0 the slope is NaN, and the interval is halved.
             let slope = point.dy * self.speed - climb * (point.d_square / (2.0 * sample.q));
             (sample.value, slope)
         })

@@ -14,7 +14,7 @@ pub(super) struct Segment {
     reach: f64,
 }
 
-/// A line measured in units of length from the place where it is nearest to the body.
+/// A line measured in units of length from its point nearest to the body.
 pub(super) struct Line {
     origin: DVec3,
     /// Unit vector.
@@ -45,7 +45,7 @@ impl Line {
     }
 }
 
-/// Parameters of a curve where something may change: its ends, and roots.
+/// Parameters of a curve at which the state may change: its ends, and roots.
 struct Marks {
     list: [f64; 20],
     count: usize,
@@ -68,10 +68,10 @@ impl Marks {
     }
 }
 
-/// What a line sees of a moving sphere at one parameter.
+/// The intersection of a line with a moving sphere at one parameter.
 #[derive(Clone, Copy)]
 struct View {
-    /// Where the centre is along the line.
+    /// The position of the centre along the line.
     along: f64,
     /// Half the squared length of the line within the sphere, times two: negative where it misses.
     square: f64,
@@ -156,7 +156,7 @@ impl Segment {
         };
         let mut last: Option<f64> = None;
         for &s in marks.sorted() {
-            // Between two marks the line meets all spheres or none.
+            // Between two marks the line hits all spheres or none.
             if let Some(last) = last
                 && view(0.5 * (last + s)).square < 0.0
             {
@@ -164,7 +164,7 @@ impl Segment {
             }
             last = Some(s);
             let View { along, square } = view(s);
-            // Where the line begins to meet the spheres rounding may say that it doesn't.
+            // Where the line begins to hit the spheres, rounding may hide that.
             if !(square >= 0.0) && span.is_none() {
                 continue;
             }
@@ -246,8 +246,8 @@ fn derivative<const N: usize, const K: usize>(c: &[f64; N]) -> [f64; K] {
     })
 }
 
-/// Marks where the line begins or ceases to meet the spheres, and where the points at which it meets them turn back. `false` if it
-/// meets none.
+/// Marks where the line begins or ceases to hit the spheres, and where the hits reverse their direction. `false` if it hits
+/// none.
 fn mark_cubic(points: &[DVec4; 4], line: &Line, marks: &mut Marks) -> bool {
     let aside = points.map(|p| p.truncate() - line.origin);
     let along = aside.map(|p| p.dot(line.ahead));

@@ -8,7 +8,7 @@ pub(super) struct Rect {
 }
 
 impl Rect {
-    /// The rectangle that contains nothing.
+    /// The empty rectangle.
     pub(super) const EMPTY: Self = Self {
         min: DVec2::INFINITY,
         max: DVec2::NEG_INFINITY,
@@ -43,12 +43,12 @@ struct Node {
     bounds: Rect,
     /// The first node that is not below this one.
     next: u32,
-    /// The pieces of a leaf; none above.
+    /// The pieces of a leaf; empty for inner nodes.
     first: u32,
     count: u32,
 }
 
-/// The pieces of a leaf at most: looking at their control points costs little more than looking at a box.
+/// Most pieces in a leaf: testing their control points costs little more than testing a box.
 const LEAF: usize = 3;
 
 impl Runs {
@@ -62,7 +62,7 @@ impl Runs {
         }
     }
 
-    /// The box around everything.
+    /// The box around all pieces.
     pub(super) fn bounds(&self) -> Rect {
         self.nodes.first().map_or(Rect::EMPTY, |root| root.bounds)
     }

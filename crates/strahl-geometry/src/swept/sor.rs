@@ -6,11 +6,11 @@ use strahl_math::DVec2;
 /// A surface of revolution about the y axis whose radius is a function of the height, like POV-Ray's `sor`.
 ///
 /// Between two points the *square* of the radius is a cubic in the height, with the slope at each point that of the line between its
-/// neighbours; the first and the last point only serve for that. Where the square gets negative there is nothing.
+/// neighbours; the first and the last point only serve for that. Where the square is negative there is no surface.
 ///
-/// An *open* one lacks the discs at both ends to be seen, but is a solid nonetheless. Texture coordinates: `u` is the angle about the
-/// axis, `v` grows along the curve, each of its pieces taking an equal share; on the discs `v` is the distance from the axis. Facets: one
-/// for every stretch on which the radius grows or shrinks, from the disc at the lower end to that at the upper.
+/// The discs at both ends of an *open* one are invisible, but it is still a solid. Texture coordinates: `u` is the angle about
+/// the axis, `v` grows along the curve, each of its pieces taking an equal share; on the discs `v` is the distance from the
+/// axis. Facets: one for every part on which the radius is monotone, from the disc at the lower end to that at the upper end.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sor {
     pub(super) meridian: Meridian,

@@ -1,11 +1,11 @@
-//! What the swept shapes do alike with the crossings of a whole line.
+//! Crossings of a whole line, for the swept shapes.
 
 use crate::primitives::start_of;
 use crate::{Crossing, Crossings, PrimHit, Scratch, Side, SurfaceId};
 use strahl_math::error::gamma;
 use strahl_math::{DVec3, Interval, Ray};
 
-/// A shape that looks for the crossings of a whole line, whatever was asked for.
+/// A shape that computes the crossings of a whole line, whatever the range.
 pub(super) trait WholeLine {
     /// Fills the list with the crossings of the whole line, in the order along the ray.
     fn walk(&self, ray: &Ray, from: Option<SurfaceId>, list: &mut Crossings);
@@ -13,10 +13,10 @@ pub(super) trait WholeLine {
     /// The unit normal at a hit, on the outer side.
     fn normal(&self, ray: &Ray, hit: &PrimHit) -> DVec3;
 
-    /// No point of the shape has a larger coordinate.
+    /// A bound of the coordinates of all points of the shape.
     fn reach(&self) -> f64;
 
-    /// The first hit in the range that can be seen.
+    /// The first visible hit in the range.
     fn first_hit(
         &self,
         ray: &Ray,
@@ -60,14 +60,15 @@ pub(super) trait WholeLine {
     }
 }
 
-/// How far off a surface a ray's start may lie and still be taken to lie on it, as a part of the shape's size: 2⁻¹².
+/// A bound of the distance of a ray's start from the surface it lies on, relative to the shape's size: 2⁻¹².
 ///
-/// This decides nothing about where a surface is. A ray says itself that it starts on a piece of surface; among the crossings
-/// with that piece the nearest one is then the start. The limit only keeps a crossing elsewhere from being taken for it
-/// where rounding has lost the right one, as may happen beside an edge.
+/// This does not decide where a surface is. A ray says itself that it starts on a piece of surface; the start is then the
+/// nearest crossing with that piece. The limit only keeps a crossing elsewhere from being taken for it if rounding has lost the
+/// right one, as may happen beside an edge.
 const NEAR: f64 = 1.0 / 4096.0;
 
-/// Root identity: of the crossings for which `normal` answers, the nearest to 0 is where the ray starts, and gets `t = 0`.
+/// Root identity: of the crossings for which `normal` returns a vector, the nearest to 0 is the start of the ray, and gets `t =
+/// 0`.
 ///
 /// The start has been moved off the surface to the side that the ray leaves towards, so of the two crossings of a short chord
 /// that of the start is the nearer one, and where rays graze both may be missing.
@@ -94,8 +95,8 @@ pub(super) fn snap(
     }
 }
 
-/// How far the parameter may be off at which a ray crosses a surface with this normal, if points near it are known to
-/// within rounding of their coordinates; a surface that is met at a flat angle has a curvature of about `size`.
+/// The error of the parameter at which a ray crosses a surface with this normal, if points near it are exact up to rounding of
+/// their coordinates; a surface crossed at a grazing angle has a curvature of about `size`.
 fn t_error(ray: &Ray, t: f64, normal: DVec3, size: f64) -> f64 {
     let point = gamma(48) * (ray.origin.length() + (ray.direction * t).length() + size);
     let speed = ray.direction.length();

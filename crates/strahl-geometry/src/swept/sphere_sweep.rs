@@ -11,9 +11,9 @@ use strahl_math::{Aabb, DVec3, DVec4, Interval, Ray};
 /// How the spheres of a [`SphereSweep`] are interpolated, centres and radii alike.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SweepSpline {
-    /// In proportion: cones with round ends.
+    /// Linear interpolation: cones with round ends.
     Linear,
-    /// By a uniform cubic B-spline, which comes near the spheres.
+    /// A uniform cubic B-spline, which approximates the spheres.
     BSpline,
     /// By cubics through all spheres but the first and the last, with the slope at each that of the line between its neighbours
     /// (Catmull and Rom 1974).
@@ -30,7 +30,7 @@ impl SweepSpline {
     }
 }
 
-/// All the space that a sphere covers while it moves along a curve and changes its radius, like POV-Ray's `sphere_sweep`.
+/// The volume that a sphere sweeps while it moves along a curve and changes its radius, like POV-Ray's `sphere_sweep`.
 ///
 /// For a line, the spheres of a stretch of the curve that it meets cover one span of it, as long as it meets all of them: from
 /// the least first to the greatest second point. So it takes the stretches on which the line meets the sphere, roots of a
@@ -45,7 +45,7 @@ pub struct SphereSweep {
 }
 
 impl SphereSweep {
-    /// A sweep through spheres given by centre and radius. Of a negative radius only the size counts.
+    /// A sweep through spheres given by centre and radius. Of a negative radius only the magnitude counts.
     ///
     /// # Errors
     /// A number is not finite, there are fewer spheres than the spline needs, or all radii are 0.

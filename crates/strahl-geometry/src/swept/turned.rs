@@ -1,4 +1,4 @@
-//! The surfaces of revolution as primitives: all they know is a meridian.
+//! The surfaces of revolution as primitives, each given by a meridian.
 
 use super::revolution::Revolution;
 use super::spans::WholeLine;

@@ -15,7 +15,7 @@ pub struct BlobComponent {
     center: DVec3,
     /// From differences from the centre to the unit ball; the axis of a capsule becomes the z axis.
     linear: DMat3,
-    /// If `linear` is a multiple of the identity, the factor.
+    /// The factor, if `linear` is a multiple of the identity.
     scale: Option<f64>,
     /// The length of the axis in units of the radius, 0 for balls.
     length: f64,
@@ -70,11 +70,11 @@ impl BlobComponent {
         }
     }
 
-    /// The component moved, turned and stretched by a map.
+    /// The component transformed by a map.
     #[must_use]
     pub fn transformed(&self, map: &Transform) -> Self {
         let center = map.point_to_world(self.center);
-        // Turning a ball changes nothing.
+        // A rotation leaves a ball unchanged.
         if let (Some(scale), Some((factor, _))) = (self.scale, similarity(map)) {
             let scale = scale / factor;
             return Self {
@@ -108,7 +108,7 @@ impl BlobComponent {
         })
     }
 
-    /// Where its field is not zero.
+    /// The bounds of the region where its field is not zero.
     pub(super) fn bounds(&self) -> Aabb {
         let back = self.linear.inverse();
         // The image of the unit ball reaches as far along each axis as the rows of the map are long.
@@ -141,7 +141,7 @@ impl BlobComponent {
         }
     }
 
-    /// The stretches of a ray on which it is in the field, by parts.
+    /// The intervals of a ray within the field, part by part.
     #[inline]
     pub(super) fn stretches(&self, inner: &Inner, mut visit: impl FnMut(Part, f64, f64)) {
         if self.length == 0.0 {
@@ -183,7 +183,7 @@ impl BlobComponent {
         }
     }
 
-    /// What the distance of a part is measured by: the length of `start + s along`.
+    /// The vector whose length is the distance on a part: `start + s along`.
     #[inline]
     fn metric(&self, part: Part, inner: &Inner) -> (DVec3, DVec3) {
         let Inner { start, along } = *inner;
@@ -238,7 +238,7 @@ impl BlobComponent {
     }
 }
 
-/// Where a line is in the unit ball about the origin; for a point (no direction) everywhere or nowhere.
+/// The interval of a line within the unit ball about the origin; for a point (no direction) everything or nothing.
 #[inline]
 fn in_unit_ball(start: DVec3, along: DVec3) -> Option<(f64, f64)> {
     let square = along.length_squared();
@@ -247,7 +247,7 @@ fn in_unit_ball(start: DVec3, along: DVec3) -> Option<(f64, f64)> {
     }
     let middle = -start.dot(along) / square;
     let half = (1.0 - (start + along * middle).length_squared()) / square;
-    // Refuses NaN too.
+    // False for NaN, too.
     if !(half > 0.0) {
         return None;
     }

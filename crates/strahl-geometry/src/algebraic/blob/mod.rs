@@ -15,7 +15,7 @@ use strahl_accel::{Accelerator, Bvh2, TraversalStats, Visitor};
 use strahl_math::error::gamma;
 use strahl_math::{Aabb, DVec3, Interval, Ray, Transform};
 
-/// The body in which the sum of the fields of its components is above a threshold.
+/// A solid: all points where the sum of the fields of its components is above a threshold.
 ///
 /// Balls and capsules flow together where they come close; components of negative strength make dents. No texture coordinates.
 /// Facets: one, 0. A ray that touches it does not hit it.
@@ -27,13 +27,13 @@ use strahl_math::{Aabb, DVec3, Interval, Ray, Transform};
 pub struct Blob {
     threshold: f64,
     components: Vec<BlobComponent>,
-    /// Over the components, if they are many.
+    /// Over the components, if there are many.
     hierarchy: Option<Bvh2>,
-    /// Around all attracting components.
+    /// The box around all attracting components.
     bounds: Aabb,
 }
 
-/// Up to so many components are looked at one by one.
+/// Up to this many components are tested one by one.
 const FEW: usize = 6;
 
 impl Blob {
@@ -61,7 +61,7 @@ impl Blob {
         blob.validate().map(|()| blob)
     }
 
-    /// The value that the field has on the surface.
+    /// The value of the field on the surface.
     pub fn threshold(&self) -> f64 {
         self.threshold
     }
@@ -89,7 +89,7 @@ impl Blob {
             list: Vec::new(),
         };
         let ray = Ray::new(point, DVec3::X);
-        // A ray hardly longer than a point.
+        // A ray that is hardly longer than a point.
         let range = Interval::new(-f64::MIN_POSITIVE, f64::MIN_POSITIVE);
         hierarchy.traverse(&ray, range, &mut found, &mut TraversalStats::default());
         found.list.sort_by_key(|(i, ..)| *i);
@@ -108,7 +108,7 @@ impl Blob {
         (field, gradient)
     }
 
-    /// The sum of the magnitudes of what is added up at a point.
+    /// The sum of the magnitudes of the fields at a point.
     fn magnitude(&self, point: DVec3) -> f64 {
         let mut sum = self.threshold;
         self.fields_at(point, |i, _, _| {
@@ -199,7 +199,7 @@ impl Primitive for Blob {
         Some(self)
     }
 
-    /// Any map makes a blob of a blob.
+    /// Any map turns a blob into a blob.
     fn baked(&self, map: &Transform) -> Option<Shape> {
         let components = self.components.iter().map(|c| c.transformed(map));
         Some(Shape::from(Self::new(self.threshold, components.collect())))

@@ -10,15 +10,15 @@ use strahl_math::{DVec3, Interval, Ray};
 /// Working memory of a walk along a ray.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Pieces {
-    /// The stretches on which the ray is in the field of a part of a component, by their beginnings.
+    /// The intervals of the ray within the fields of the parts of components, sorted by their beginnings.
     list: Vec<Piece>,
-    /// Where they begin and end, ascending.
+    /// Their ends, ascending.
     places: Vec<f64>,
-    /// The pieces around the current place.
+    /// The intervals around the current position.
     active: Vec<u32>,
 }
 
-/// A stretch of the ray in the field of a part of a component.
+/// An interval of the ray within the field of a part of a component.
 #[derive(Clone, Copy, Debug)]
 struct Piece {
     low: f64,
@@ -75,7 +75,7 @@ impl Visitor for Collector<'_> {
 }
 
 impl Blob {
-    /// Tells the visitor what happens along the ray, until it breaks off.
+    /// Reports the crossings along the ray to the visitor, until it stops.
     pub(super) fn walk(
         &self,
         ray: &Ray,
@@ -96,7 +96,7 @@ impl Blob {
         let Some(clip) = self.bounds.clip(ray, reach) else {
             return;
         };
-        // Measured from where the ray gets near: its distance plays no role.
+        // Measured from where the ray enters the bounds, so that the distance of its origin does not matter.
         let offset = if on_surface { 0.0 } else { clip.min };
         let start = ray.origin + along * offset;
         if !start.is_finite() {
@@ -112,7 +112,7 @@ impl Blob {
             started: false,
             visit,
         };
-        // The visitor has nothing left to stop.
+        // The result only matters while visiting.
         let _ = walk.run(pieces);
     }
 
@@ -135,7 +135,7 @@ impl Blob {
                 let ray = Ray::new(start, along);
                 let behind = if question.on_surface { 0.0 } else { clip.min };
                 let length = clip.max - behind;
-                // A little longer than the way through the box: rounding must not lose a piece.
+                // Slightly longer than the way through the box: rounding must not lose an interval.
                 let range = Interval::new(-0.01 * length, 1.01 * length);
                 hierarchy.traverse(&ray, range, &mut collector, &mut TraversalStats::default());
             }
@@ -166,13 +166,13 @@ struct Walk<'a> {
     /// The parameter of the start.
     offset: f64,
     question: &'a Question,
-    /// Whether the visitor knows how the range begins.
+    /// Whether the visitor has been told the state at the start of the range.
     started: bool,
     visit: &'a mut dyn FnMut(Event) -> ControlFlow<()>,
 }
 
 impl Walk<'_> {
-    /// From place to place, with the next stretch at hand: where two meet, the sign of the later one counts for both.
+    /// Goes from interval to interval, always knowing the next one: where two meet, the sign of the later one counts for both.
     fn run(&mut self, pieces: &mut Pieces) -> ControlFlow<()> {
         let Pieces {
             list,
@@ -262,7 +262,7 @@ impl Walk<'_> {
         let range = self.question.range;
         let positive = stretch.positive_at_start();
         let end = self.offset + (low + width);
-        // What ends before the range tells nothing that the next stretch doesn't know.
+        // The next interval knows everything that an interval which ends before the range could tell.
         if end <= range.min {
             return ControlFlow::Continue(());
         }
@@ -300,7 +300,7 @@ impl Walk<'_> {
         })
     }
 
-    /// What the rounding of the points on the ray does to a parameter.
+    /// The error of a parameter caused by rounding the points on the ray.
     fn start_error(&self, t: f64) -> f64 {
         let reach = self.start.abs() + self.along.abs() * t.abs();
         gamma(8) * reach.length() / self.along.length()

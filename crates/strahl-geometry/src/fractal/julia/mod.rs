@@ -35,10 +35,10 @@ pub enum JuliaAlgebra {
     Hypercomplex(HypercomplexFunction),
 }
 
-/// How a Julia set is cut and looked for; the defaults are POV-Ray's.
+/// Options of the slice and of the search; the defaults are POV-Ray's.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JuliaOptions {
-    /// How many points of an orbit, the starting point included, have to stay near the origin.
+    /// How many points of an orbit, including the starting point, have to stay near the origin.
     pub max_iteration: u32,
     /// Features smaller than a fiftieth of the reciprocal of this may be missed.
     pub precision: f64,
@@ -80,7 +80,7 @@ pub struct Julia {
     shortest: f64,
 }
 
-/// Half the distance that the first derivative promises.
+/// The part of the distance estimate that a step takes.
 const CAUTION: f64 = 0.5;
 
 /// The surface of the set.
@@ -89,13 +89,13 @@ const SURFACE: SurfaceId = SurfaceId {
     facet: 0,
 };
 
-/// The ball around the set, which cuts it off if orbits are followed for too few points; it is not seen.
+/// The ball around the set, which clips it if orbits are too short; it is invisible.
 const BALL: SurfaceId = SurfaceId {
     element: 0,
     facet: 1,
 };
 
-/// What happens along a ray.
+/// The events along a ray.
 enum Event {
     /// The ray starts in the ball around the set, inside of the set from there on or not.
     Start { inside: bool },
@@ -180,19 +180,19 @@ impl Julia {
         self.rule.end(self.number(p))
     }
 
-    /// The gradient of the end's value in space.
+    /// The gradient of [`End::value`] in space.
     fn gradient(&self, p: DVec3) -> DVec3 {
         let [x, y, z, w] = self.rule.gradient(self.number(p), 0);
         DVec3::new(x, y, z) + self.fourth.1 * w
     }
 
-    /// What rounding does to the end's value: the error of the first points, carried on, and those of all further ones.
+    /// The rounding error of [`End::value`]: the error of the first points, propagated, and those of all further ones.
     fn noise(&self, p: DVec3) -> f64 {
         let end = self.end(p);
         gamma(16 * self.rule.points.min(1 << 16) + 16) * (end.slope * self.radius + 1.0)
     }
 
-    /// Tells the visitor what happens along a ray until it breaks off.
+    /// Reports the events along a ray to the visitor until it stops.
     fn walk(
         &self,
         ray: &Ray,
@@ -225,7 +225,7 @@ impl Julia {
         let mut s = 0.0;
         let mut here = at(s);
         if from.is_some() && here.value.abs() <= self.noise(origin) {
-            // Where rounding hides the side, the way the ray goes tells.
+            // Where rounding hides the side, the direction of the ray decides.
             let leaves = self.gradient(origin).dot(ray.direction) >= 0.0;
             here.value = if leaves {
                 f64::MIN_POSITIVE
@@ -245,7 +245,7 @@ impl Julia {
         }
         while s < length {
             let promised = CAUTION * here.value.abs() / (here.slope * speed);
-            // At poles the first derivative promises nothing.
+            // At poles the first derivative gives no estimate.
             let step = if promised > shortest && promised.is_finite() {
                 promised
             } else {
@@ -287,7 +287,7 @@ impl Julia {
     }
 }
 
-/// Whether a passage was begun within the ball.
+/// Whether the ray enters the ball before this.
 fn started_within(passage: &Passage, start: f64) -> bool {
     passage.enter.is_none_or(|enter| enter.hit.t < start)
 }
@@ -297,7 +297,7 @@ impl Primitive for Julia {
         "julia_fractal"
     }
 
-    /// Nothing is left to check: [`Julia::try_new`] has done so.
+    /// [`Julia::try_new`] has validated everything.
     fn validate(&self) -> Result<(), GeometryError> {
         Ok(())
     }
@@ -314,7 +314,7 @@ impl Primitive for Julia {
         scratch: &mut Scratch,
     ) -> Option<PrimHit> {
         let mut closest = None;
-        // Whether the visitor has seen enough makes no difference to anyone else.
+        // The result only matters while visiting.
         let _ = self.walk(ray, from, scratch, |event| match event {
             Event::Crossing { t, surface, .. } if surface == SURFACE && range.accepts(t) => {
                 closest = Some(PrimHit::simple(t, SURFACE.facet));

@@ -1,4 +1,4 @@
-//! The orbit of a point: how far it gets, and how that changes with the point.
+//! The orbit of a point: its end, and the derivatives of the end by the point.
 
 use super::complex::{Complex, HypercomplexFunction};
 use super::{JuliaAlgebra, QuaternionFunction};
@@ -11,28 +11,28 @@ pub(super) fn norm2(h: Four) -> f64 {
     (h[0] * h[0] + h[1] * h[1]) + (h[2] * h[2] + h[3] * h[3])
 }
 
-/// Where an orbit ended: with the first point beyond the bail-out radius, or the last one asked for.
+/// The end of an orbit: the first point beyond the bail-out radius, or the last one computed.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct End {
     /// The logarithm of the distance from the origin, over that of the bail-out radius: negative inside of the set.
     pub(super) value: f64,
-    /// A bound (to first order) of how fast that changes with the starting point.
+    /// A bound (to first order) of its derivative by the starting point.
     pub(super) slope: f64,
 }
 
-/// How orbits go.
+/// The rule of an orbit.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Rule {
     pub(super) algebra: JuliaAlgebra,
     pub(super) parameter: Four,
-    /// How many points of the orbit are looked at, the starting point included.
+    /// The number of points of the orbit, including the starting point.
     pub(super) points: u32,
     /// The bail-out radius.
     pub(super) exit: f64,
 }
 
 impl Rule {
-    /// Follows the orbit of a point.
+    /// Computes the orbit of a point.
     pub(super) fn end(&self, start: Four) -> End {
         match self.algebra {
             JuliaAlgebra::Quaternion(f) => {
@@ -51,7 +51,7 @@ impl Rule {
             }
             JuliaAlgebra::Hypercomplex(f) => {
                 let [p, q] = split(self.parameter);
-                // Each of the two complex numbers has a slope of its own; the larger one bounds that of the whole.
+                // Each of the two complex numbers has its own slope; the larger one bounds that of the whole.
                 let mut slopes = [1.0, 1.0];
                 self.follow(split(start), joint_norm2, |[a, b], _| {
                     let (fa, fb) = (f.value(a), f.value(b));
@@ -78,7 +78,7 @@ impl Rule {
         let (mut h, mut slope) = (start, 1.0);
         let mut r2 = norm2(h);
         for _ in 1..self.points {
-            // What is not a number has escaped.
+            // NaN counts as escaped.
             if !(r2 <= limit) {
                 break;
             }
@@ -92,7 +92,7 @@ impl Rule {
         }
     }
 
-    /// The gradient of the end's value by the four components of the starting point, at the end or so many points behind it.
+    /// The gradient of the end's value by the four components of the starting point, at the end or this many points behind it.
     pub(super) fn gradient(&self, start: Four, behind: u32) -> Four {
         match self.algebra {
             JuliaAlgebra::Quaternion(f) => self.quaternion_gradient(f, start, behind),

@@ -1,4 +1,4 @@
-//! The solid under a landscape.
+//! The solid below a height field.
 
 use super::Surface;
 use crate::primitives::plane_t_error;
@@ -11,14 +11,14 @@ use std::ops::ControlFlow;
 use strahl_math::error::gamma;
 use strahl_math::{Aabb, DVec3, Interval, Ray};
 
-/// A height field as a solid: everything on the unit square up to the surface or the water.
+/// A height field as a solid: everything on the unit square below the surface or the water level.
 ///
-/// What a ray may cross, it crosses where `contains` changes: between neighbouring candidates one point decides. So entering
-/// and leaving alternate even where a ray runs along an edge, which it may seem to meet twice or not at all.
+/// A crossing is a candidate at which `contains` changes: between neighbouring candidates one point decides. So entering and
+/// leaving alternate even where a ray runs along an edge, which it may seem to hit twice or not at all.
 #[derive(Debug)]
 pub(super) struct Body(pub(super) Surface);
 
-/// The planes that end the solid, by their facets on the last element: the outward normal and a point.
+/// The planes that bound the solid, by their facets on the last element: the outward normal and a point.
 fn walls(water: f64) -> [(DVec3, DVec3); 5] {
     [
         (-DVec3::X, DVec3::ZERO),
@@ -43,7 +43,7 @@ impl Body {
         walls(self.0.water).get(surface.facet as usize).copied()
     }
 
-    /// Everything that a line may cross, ascending; all marked as inner.
+    /// All candidates for crossings of a line, ascending; all marked as inner.
     fn candidates(&self, ray: &Ray, from: Option<SurfaceId>, out: &mut Crossings) {
         let skip = from.map(|surface| surface.element);
         self.0.visit_hits(ray, Interval::LINE, skip, |_, hit| {
@@ -78,7 +78,7 @@ impl Body {
         })
     }
 
-    /// How far the parameter of a hit may be off; along a triangle, no further than the field is long.
+    /// The error of the parameter of a hit; for rays along a triangle at most the length of the field.
     fn t_error(&self, ray: &Ray, hit: &PrimHit) -> f64 {
         let (normal, point) = self.normal(hit);
         let error = plane_t_error(ray, hit.t, point, normal);
@@ -86,8 +86,8 @@ impl Body {
         if error < longest { error } else { longest }
     }
 
-    /// Of candidates that are one place, that which shows the change: visible if there is one, and facing the ray as the
-    /// change demands.
+    /// Of coincident candidates the one that represents the change: visible if there is one, and facing the ray as the change
+    /// demands.
     fn choose(&self, ray: &Ray, cluster: &[Crossing], enters: bool) -> Option<Crossing> {
         let rank = |c: &Crossing| {
             let against = ray.direction.dot(self.normal(&c.hit).0) < 0.0;
@@ -138,7 +138,7 @@ impl Solid for Body {
             let behind = list.iter().take_while(|c| c.hit.t <= start).count();
             list = &list[behind..];
         }
-        // Before the first candidate and behind the last one nothing happens, so any point tells.
+        // Before the first candidate and behind the last one nothing changes, so any point will do.
         let step = 1.0 / speed;
         let before = match list.first() {
             Some(first) if from.is_some() => 0.5 * (start + first.hit.t),
@@ -186,7 +186,7 @@ impl Solid for Body {
     }
 }
 
-/// As a primitive of its own, what is seen of the solid: the same surface, but for places that a ray only touches.
+/// As a primitive it shows the same surface, except where a ray only touches it.
 impl Primitive for Body {
     fn kind(&self) -> &'static str {
         "height_field"

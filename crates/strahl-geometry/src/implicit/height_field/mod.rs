@@ -1,4 +1,4 @@
-//! Landscapes over a rectangular grid of heights.
+//! Height fields: surfaces over a rectangular grid of heights.
 
 mod body;
 mod grid;
@@ -15,20 +15,20 @@ use std::ops::ControlFlow;
 use strahl_math::{Aabb, DVec2, DVec3, Interval, Ray};
 use traverse::Descent;
 
-/// A landscape: heights over a grid of points on the unit square of the xz plane, joined by triangles.
+/// A height field: heights over a grid of points on the unit square of the xz plane, joined by triangles.
 ///
 /// Heights are 16-bit numbers, `65536` standing for 1, so the surface is within the unit cube. Every cell of the grid is cut along
 /// the diagonal from its corner of large x and small z to that of small x and large z. What lies below the *water level* is
 /// no surface.
 ///
-/// As a solid a height field has everything below the surface or the water inside, all the way down, within the square; the walls along the
-/// square's edges, the water's surface and what would be below the water are no surfaces to be seen. This is how POV-Ray 3.7
-/// behaves (measured), except that it lifts the vertices below water to its level before it looks for points inside, so that
-/// the cells on the shore differ.
+/// As a solid a height field contains everything below the surface or the water level within the square, without a lower bound;
+/// the walls along the square's edges, the surface of the water and everything below it are invisible. This is how POV-Ray 3.7
+/// behaves (measured), except that it raises the vertices below the water to its level before it classifies points, so that the
+/// cells on the shore differ.
 ///
 /// Elements are the triangles, two for each cell, rows of cells with ascending z; the last element is the walls. Rays don't
-/// slip through between triangles. Texture coordinates are x and z. Smooth height fields interpolate normals, as POV-Ray
-/// computes them, for shading.
+/// slip through between triangles. Texture coordinates are x and z. For shading, smooth height fields interpolate normals as
+/// POV-Ray does.
 #[derive(Debug)]
 pub struct HeightField {
     body: Body,
@@ -41,7 +41,7 @@ const MOST_HEIGHTS: u64 = 1 << 30;
 #[derive(Debug)]
 struct Surface {
     grid: Grid,
-    /// The height of the water.
+    /// The water level.
     water: f64,
     normals: Option<Box<[[i16; 3]]>>,
 }
@@ -128,7 +128,7 @@ impl Surface {
         2 * columns * rows
     }
 
-    /// Shows the visitor the hits of a ray with all triangles it may meet, and lets it shorten the range.
+    /// Passes the hits of a ray on all triangles that it may meet to the visitor, which may shorten the range.
     fn visit_hits(
         &self,
         ray: &Ray,
@@ -141,7 +141,7 @@ impl Surface {
         };
         let shear = RayShear::new(ray);
         let columns = self.grid.cells().0;
-        // Whether the visitor has seen enough makes no difference to anyone else.
+        // The result only matters while visiting.
         let _ = descent.run(|range, cell: &Cell| {
             let corners = self.grid.corners(cell);
             let images = corners.map(|p| shear.apply(&p));
@@ -238,7 +238,7 @@ impl Primitive for HeightField {
         "height_field"
     }
 
-    /// Nothing is left to check: [`HeightField::try_new`] has done so.
+    /// [`HeightField::try_new`] has validated everything.
     fn validate(&self) -> Result<(), GeometryError> {
         Ok(())
     }

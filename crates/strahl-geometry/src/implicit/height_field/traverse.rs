@@ -1,12 +1,12 @@
-//! Rays down the pyramid of extremes: the blocks a ray may meet, front to back.
+//! Traverses the pyramid of extremes with a ray: the blocks that the ray may meet, front to back.
 
 use super::grid::{Cell, Grid, SCALE};
 use std::ops::ControlFlow;
 use strahl_math::{DVec3, Interval, Ray};
 
-/// How far the boxes of blocks are widened, in units of the largest coordinate in play times the unit of f64. It covers what
-/// the intersection test of a triangle may be off (six roundings of numbers of that size) and the rounding of the boxes'
-/// own test (four), with a margin; a box too large only costs time.
+/// How far the boxes of blocks are widened, in units of the largest coordinate involved times the unit of f64. It covers the
+/// error of the triangle test (six roundings of numbers of that size) and that of the box test (four), with a margin; a box
+/// that is too large only costs time.
 const PAD: f64 = 32.0 * f64::EPSILON;
 
 /// Components of directions below this part of the largest one are taken as this large: the ray moves by less than `PAD` while it
@@ -16,7 +16,7 @@ const SLANT: f64 = 1.0 / (1u64 << 60) as f64;
 /// A ray on its way through the field.
 pub(super) struct Descent<'a> {
     grid: &'a Grid,
-    /// Heights below this one are not wanted.
+    /// Lower heights are ignored.
     floor: f64,
     /// Reciprocal direction.
     inverse: DVec3,
@@ -27,7 +27,7 @@ pub(super) struct Descent<'a> {
     step: (f64, f64),
     /// Which neighbour in x and in z comes first: 0 the lower, 1 the higher.
     first: (u32, u32),
-    /// The wanted parameters; the upper end may come down on the way.
+    /// The range; its upper end may become smaller during the traversal.
     pub(super) range: Interval,
 }
 
@@ -62,8 +62,7 @@ impl<'a> Descent<'a> {
         })
     }
 
-    /// Shows the visitor all cells that the ray may meet, in their order along the ray (as far as there is one), until it
-    /// breaks off.
+    /// Passes all cells that the ray may meet to the visitor, front to back as far as possible, until it stops.
     pub(super) fn run(
         &mut self,
         mut visit: impl FnMut(&mut Interval, &Cell) -> ControlFlow<()>,

@@ -19,17 +19,17 @@ use strahl_function::{Bounds, Function, ScalarField, Workspace};
 use strahl_math::error::{ROUNDOFF, gamma};
 use strahl_math::{Aabb, DVec3, Interval, Ray};
 
-/// How an isosurface is looked for; the defaults are POV-Ray's.
+/// Options of an isosurface; the defaults are POV-Ray's.
 #[derive(Clone, Debug, PartialEq)]
 pub struct IsosurfaceOptions {
     /// The value of the function on the surface; inside it is smaller.
     pub threshold: f64,
     /// Features thinner than this along a ray may be missed. Crossings themselves are found to the last digit.
     pub accuracy: f64,
-    /// The most the function changes per unit of length. Used only where the function calls patterns or pigments, of which
-    /// nothing else is known.
+    /// The largest change of the function per unit of length. Used only if the function calls patterns or pigments, for which
+    /// there are no bounds.
     pub max_gradient: f64,
-    /// Whether the container, where it cuts through the inside, is no surface to be seen.
+    /// Whether the container is invisible where it cuts through the inside.
     pub open: bool,
 }
 
@@ -46,11 +46,11 @@ impl Default for IsosurfaceOptions {
 
 /// The surface where a function has a given value, within a container; inside, the function is smaller.
 ///
-/// Hits are certified by interval arithmetic: a part of a ray is passed over only where the function's bounds prove that the
-/// sign does not change, so there are no holes and no gradient has to be guessed, however steep the function is. Only
-/// functions that call patterns or pigments have no bounds; for these [`IsosurfaceOptions::max_gradient`] is trusted, as
-/// in POV-Ray. An octree, built when the first ray comes, holds where the surface may be at all; it depends on the function
-/// alone, so it changes no picture.
+/// Hits are certified by interval arithmetic: a part of a ray is skipped only where the function's bounds prove that its sign
+/// does not change, so there are no holes and no gradient has to be guessed, however steep the function is. Only functions that
+/// call patterns or pigments have no bounds; for these [`IsosurfaceOptions::max_gradient`] is trusted, as in POV-Ray. An
+/// octree, built at the first ray, stores where the surface may be at all; it depends on the function alone, so it does not
+/// change the picture.
 ///
 /// Facets: 0 is the function's surface, 1 and up are the facets of the container. NaN counts as outside. There are no texture
 /// coordinates.
@@ -121,7 +121,7 @@ impl Isosurface {
         &self.function
     }
 
-    /// Whether bounds of the function prove things; else the gradient is trusted.
+    /// Whether the function has bounds; otherwise the gradient is trusted.
     fn is_bounded(&self) -> bool {
         self.is_bounded
     }
@@ -178,7 +178,7 @@ impl Isosurface {
         self.container.bounds().size().max_element()
     }
 
-    /// What rounding does to the function near a point.
+    /// The rounding error of the function near a point.
     fn noise(&self, workspace: &mut Workspace, p: DVec3, gradient: DVec3) -> f64 {
         let place = gradient.abs().dot(p.abs()) * gamma(4);
         let values = self.bounds_within(workspace, &Aabb::new(p, p));
@@ -191,8 +191,8 @@ impl Isosurface {
         }
     }
 
-    /// Tells the visitor what happens along a ray, in its order, until it breaks off. Crossings of the function's surface come
-    /// without an error bound.
+    /// Reports the events along a ray to the visitor, in order, until it stops. Crossings of the function's surface have no
+    /// error bound.
     fn walk(
         &self,
         ray: &Ray,
@@ -238,7 +238,7 @@ impl Isosurface {
                 search.place(enter)
             };
             if first.is_inside() != inside {
-                // Nothing happens between the parts, so this is a zero within rounding.
+                // There is no crossing between the parts, so this is zero within rounding.
                 first.value = least_value(inside);
             }
             last = search.place(exit);
@@ -271,7 +271,7 @@ impl Isosurface {
         }
     }
 
-    /// The value at the start of a ray that leaves the surface: where rounding hides its sign, the way the ray goes tells.
+    /// The value at the start of a ray that leaves the surface: if rounding hides its sign, the direction of the ray decides.
     fn value_leaving(&self, ray: &Ray, value: f64, workspace: &mut Workspace) -> f64 {
         let (_, gradient) = self.gradient(workspace, ray.origin);
         if value.abs() <= self.noise(workspace, ray.origin, gradient) {
@@ -298,14 +298,14 @@ impl Isosurface {
         }
     }
 
-    /// How far the parameter of a crossing of the function's surface may be off.
+    /// The error of the parameter of a crossing of the function's surface.
     fn t_error(&self, ray: &Ray, t: f64, workspace: &mut Workspace) -> f64 {
         let p = ray.at(t);
         let (_, gradient) = self.gradient(workspace, p);
         let reach = (ray.origin.abs() + (ray.direction * t).abs()) * gamma(4);
         let noise = self.noise(workspace, p, gradient) + gradient.abs().dot(reach);
         let error = noise / gradient.dot(ray.direction).abs();
-        // Along the surface nothing is known but the length of what is not looked into.
+        // For rays along the surface the error is bounded only by the length of the shortest part.
         let longest = SHORTEST.1 * self.size() / ray.direction.abs().max_element();
         gamma(4) * t.abs() + if error < longest { error } else { longest }
     }
@@ -340,7 +340,7 @@ impl Isosurface {
     }
 }
 
-/// What happens along a ray.
+/// The events along a ray.
 enum Event {
     /// The ray starts within the container, inside of the surface from there on or not.
     Start {
@@ -363,7 +363,7 @@ impl Primitive for Isosurface {
         "isosurface"
     }
 
-    /// Nothing is left to check: [`Isosurface::try_new`] has done so.
+    /// [`Isosurface::try_new`] has validated everything.
     fn validate(&self) -> Result<(), GeometryError> {
         Ok(())
     }
@@ -381,7 +381,7 @@ impl Primitive for Isosurface {
     ) -> Option<PrimHit> {
         let mut closest = None;
         with_workspace(|workspace| {
-            // Whether the visitor has seen enough makes no difference to anyone else.
+            // The result only matters while visiting.
             let _ = self.walk(ray, from, scratch, workspace, &mut |event| {
                 let Event::Crossing(crossing) = event else {
                     return ControlFlow::Continue(());

@@ -1,21 +1,21 @@
-//! Where a surface may be: cells of a box, halved along every axis as long as that excludes some of them.
+//! An octree of the cells that may contain a surface.
 
 use std::ops::ControlFlow;
 use strahl_math::{Aabb, DVec3};
 
-/// Cells are halved at most so often.
+/// Cells are halved at most this often.
 const DEPTH: u32 = 7;
-/// So many cells are examined at most on one level; the next level is left out if it might have more.
+/// Most cells examined on one level; the next level is left out if it might have more.
 const CELLS: usize = 1 << 18;
-/// So many operations of the function are spent on a level: some ten seconds. Fewer cells fit in for functions of more than
-/// eight thousand operations.
+/// Most operations of the function spent on a level: some ten seconds. Functions of more than eight thousand operations get
+/// fewer cells.
 const OPERATIONS: u64 = 1 << 31;
 
-/// A child that certainly has no surface in it.
+/// A child that certainly contains no surface.
 const EMPTY: u32 = 0;
-/// A child that may have, and is not divided.
+/// A child that may contain one and is not divided.
 const LEAF: u32 = 1;
-/// What is added to the number of a divided child.
+/// Added to the number of a divided child.
 const INNER: u32 = 2;
 
 /// Directions are taken as having components of at least this part of the largest one, so that nothing is divided by zero.
@@ -40,7 +40,8 @@ fn child(cell: &Aabb, octant: usize) -> Aabb {
 }
 
 impl Octree {
-    /// Builds the tree of a box by asking of each cell whether there may be a surface in it, which takes so many operations.
+    /// Builds the tree of a box by testing for each cell whether it may contain a surface; `cost` is the number of operations
+    /// of a test.
     pub(super) fn build(
         bounds: Aabb,
         cost: u64,
@@ -88,8 +89,8 @@ impl Octree {
         tree
     }
 
-    /// Shows the visitor the parts of a line that lie in cells with a surface, in ascending order: neighbours meet in one
-    /// parameter, to the bit.
+    /// Passes the parts of a line that lie in cells with a surface to the visitor, in ascending order: neighbours share the
+    /// same parameter, to the bit.
     pub(super) fn walk(
         &self,
         origin: DVec3,

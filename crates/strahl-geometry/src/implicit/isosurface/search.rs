@@ -14,11 +14,12 @@ pub(super) struct Search<'a> {
     pub(super) direction: DVec3,
     /// Parts of this length are not divided any more.
     pub(super) shortest: f64,
-    /// At least half of the most the function changes per unit of `s`, where it has no bounds and the scene has to be trusted.
+    /// At least half of the largest change of the function per unit of `s`, if it has no bounds and the scene's gradient is
+    /// trusted.
     pub(super) slope: f64,
 }
 
-/// A place on the ray and the function there, less the threshold.
+/// A parameter of the ray with the value of the function there, less the threshold.
 #[derive(Clone, Copy)]
 pub(super) struct Place {
     pub(super) s: f64,
@@ -32,7 +33,7 @@ impl Place {
 }
 
 impl Search<'_> {
-    /// The function at a place; what is not a number is outside.
+    /// The function at a parameter; NaN counts as outside.
     pub(super) fn place(&mut self, s: f64) -> Place {
         let p = self.origin + self.direction * s;
         Place {
@@ -41,7 +42,7 @@ impl Search<'_> {
         }
     }
 
-    /// Tells the visitor where the sign changes between two places, ascending.
+    /// Reports the changes of sign between two parameters to the visitor, ascending.
     ///
     /// Every change of sign between the ends is found, and every further pair of changes that is further apart than the
     /// shortest part, unless the function has no bounds and is steeper than the scene says.

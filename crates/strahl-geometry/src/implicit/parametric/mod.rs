@@ -13,13 +13,13 @@ use strahl_function::{Bounds, Function, ScalarField, Workspace};
 use strahl_math::error::gamma;
 use strahl_math::{Aabb, DVec2, DVec3, Interval, Ray};
 
-/// How a parametric surface is looked for; the defaults are POV-Ray's.
+/// Options of a parametric surface; the defaults are POV-Ray's.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ParametricOptions {
     /// Details smaller than this may be missed.
     pub accuracy: f64,
-    /// The most that a coordinate changes per unit of a parameter. Used only where a function calls patterns or pigments, of
-    /// which nothing else is known.
+    /// The largest change of a coordinate per unit of a parameter. Used only if a function calls patterns or pigments, for
+    /// which there are no bounds.
     pub max_gradient: f64,
 }
 
@@ -57,8 +57,8 @@ const SURFACE: SurfaceId = SurfaceId {
     element: 0,
     facet: 0,
 };
-/// A ray is taken to meet a flat piece once at most if the cosine between it and the normal in the middle is above the spread of the
-/// normals by this factor: then it passes all of them in one direction.
+/// A ray hits a flat piece at most once if the cosine between it and the normal in the middle is above the spread of the
+/// normals by this factor: then it crosses the piece in one direction only.
 const STEEP: f64 = 2.0;
 /// How far beyond its piece, in parts of it, a point may be found: neighbours overlap, so that no ray slips through between
 /// them.
@@ -76,7 +76,7 @@ struct Jet {
     by_v: DVec3,
 }
 
-/// What is looked for: the nearest hit so far.
+/// A search for the nearest hit.
 struct Quest<'a> {
     ray: &'a Ray,
     range: Interval,
@@ -90,7 +90,7 @@ impl Quest<'_> {
         let range = self
             .nearest
             .map_or(self.range, |hit| self.range.with_max(hit.t));
-        // Covers what rounding does to points on a ray from afar.
+        // Covers the rounding error of points on a ray from far away.
         let pad = (self.ray.origin.abs() + bounds.min.abs().max(bounds.max.abs())) * gamma(32);
         bounds.padded(pad).clip(self.ray, range).is_some()
     }
@@ -221,7 +221,7 @@ impl Parametric {
         })
     }
 
-    /// Looks for a hit on a piece; pieces that are not flat are quartered first, those on which Newton's method was no proof
+    /// Searches a hit on a piece. A piece that is not flat is quartered first; a piece on which Newton's method proved nothing,
     /// afterwards.
     fn search(
         &self,
@@ -246,8 +246,8 @@ impl Parametric {
         }
     }
 
-    /// Newton's method for the parameters at which the surface meets the ray, within (nearly) a rectangle. Whether there
-    /// certainly is no other such place on a flat piece.
+    /// Newton's method for the parameters at which the ray hits the surface, within (nearly) a rectangle. Returns whether a
+    /// flat piece certainly has no other hit.
     fn approach(
         &self,
         workspace: &mut Workspace,
@@ -277,7 +277,7 @@ impl Parametric {
             }
             uv -= step;
             let away = ((uv - r.center()) / size).abs().max_element();
-            // Gone for good.
+            // It has left the piece.
             if away > 2.0 {
                 return steep;
             }
@@ -291,7 +291,7 @@ impl Parametric {
         false
     }
 
-    /// Takes a place where the ray meets the surface, if it is the nearest so far.
+    /// Accepts a hit if it is the nearest so far.
     fn accept(&self, workspace: &mut Workspace, quest: &mut Quest<'_>, uv: DVec2) {
         let ray = quest.ray;
         let uv = uv.clamp(self.domain.min, self.domain.max);
@@ -309,7 +309,7 @@ impl Parametric {
         }
     }
 
-    /// What rounding does to the coordinates near a point.
+    /// The rounding error of the coordinates near a point.
     fn noise(&self, workspace: &mut Workspace, uv: DVec2, jet: &Jet) -> DVec3 {
         let place = (jet.by_u * uv.x).abs() + (jet.by_v * uv.y).abs() + jet.point.abs();
         let point = Rectangle { min: uv, max: uv };
@@ -324,7 +324,7 @@ impl Primitive for Parametric {
         "parametric"
     }
 
-    /// Nothing is left to check: [`Parametric::try_new`] has done so.
+    /// [`Parametric::try_new`] has validated everything.
     fn validate(&self) -> Result<(), GeometryError> {
         Ok(())
     }

@@ -34,12 +34,12 @@ impl Rectangle {
     }
 }
 
-/// What is known of the surface over a rectangle.
+/// A piece of the surface over a rectangle.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Piece {
-    /// Where it is.
+    /// Its bounds.
     pub(super) bounds: Aabb,
-    /// How far the unit normals at its corners are from that in its middle; infinite where there are none.
+    /// The largest difference of the unit normals at its corners from that in its middle; infinite if there is none.
     pub(super) spread: f64,
 }
 
@@ -67,16 +67,16 @@ pub(super) struct Patches {
     nodes: Vec<Node>,
 }
 
-/// Rectangles are quartered at least and at most so often.
+/// The least and the greatest number of times that rectangles are quartered.
 const LEVELS: (u32, u32) = (3, 9);
-/// So many pieces are examined on one level at most; the next level is left out if it might have more.
+/// Most pieces examined on one level; the next level is left out if it might have more.
 const PIECES: usize = 1 << 16;
-/// So many operations of the functions are spent on a level: some ten seconds, which leaves fewer pieces to dear ones.
+/// Most operations of the functions spent on a level: some ten seconds. Expensive functions get fewer pieces.
 const OPERATIONS: u64 = 1 << 31;
 
 impl Patches {
-    /// Builds the tree of a domain. `examine` gives the piece over a rectangle, or `None` if nothing of it is wanted; it takes
-    /// so many operations.
+    /// Builds the tree of a domain. `examine` returns the piece over a rectangle, or `None` if it is not needed; `cost` is the
+    /// number of its operations.
     pub(super) fn build(
         domain: Rectangle,
         cost: u64,
@@ -125,7 +125,7 @@ impl Patches {
         self.nodes.first().map_or(Aabb::EMPTY, |n| n.piece.bounds)
     }
 
-    /// Shows the visitor the leaves whose boxes pass the test.
+    /// Passes the leaves whose boxes pass the test to the visitor.
     pub(super) fn visit(
         &self,
         domain: Rectangle,
