@@ -1,4 +1,4 @@
-//! Files of other programs: bytes to scenes and textures, pictures to bytes.
+//! File formats: reading scenes and textures, writing pictures.
 
 pub mod font;
 pub mod image;

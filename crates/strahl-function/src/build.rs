@@ -1,4 +1,4 @@
-//! Named operations: what the graph's builder looks like to its users.
+//! Named operations of the graph's builder.
 
 use crate::graph::{Expr, Graph};
 use crate::op::{BinaryOp, UnaryOp};

@@ -1,19 +1,19 @@
-//! What it takes to evaluate things, so that what would take hours is an error before it begins.
+//! The cost of evaluating functions, patterns and pigments, so that evaluations which would take hours are rejected beforehand.
 
-/// What one evaluation takes.
+/// The cost of one evaluation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Cost {
     /// Operations on numbers, each some nanoseconds.
     pub operations: u64,
-    /// How deep things that evaluate others are nested; 0 for what evaluates nothing else.
+    /// How deep functions that evaluate others are nested; 0 if nothing else is evaluated.
     pub depth: u32,
 }
 
 impl Cost {
-    /// Of a formula of some dozen operations.
+    /// The cost of a formula of some dozen operations.
     pub const FORMULA: Self = Self::operations(32);
 
-    /// Of so many operations that evaluate nothing else.
+    /// The cost of operations that evaluate nothing else.
     pub const fn operations(operations: u64) -> Self {
         Self {
             operations,
@@ -21,7 +21,7 @@ impl Cost {
         }
     }
 
-    /// Of both, one after the other.
+    /// The cost of both, one after the other.
     #[must_use]
     pub fn and(self, other: Self) -> Self {
         Self {
@@ -34,7 +34,7 @@ impl Cost {
         }
     }
 
-    /// Of something that evaluates this.
+    /// The cost of a function that evaluates this one.
     #[must_use]
     pub fn around(self) -> Self {
         Self {

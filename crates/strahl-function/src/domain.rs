@@ -1,52 +1,52 @@
-//! What a tape can be run over: numbers, lanes of numbers, intervals, numbers with derivatives.
+//! The domains over which a tape can be run: numbers, lanes of numbers, intervals, numbers with derivatives.
 
 use crate::bounds::Bounds;
 use crate::field::ScalarField;
 use crate::limits;
 use crate::op::{BinaryOp, UnaryOp, power};
 
-/// Whether a loop goes on.
+/// Whether a loop continues.
 pub(crate) enum Round<M> {
     /// It does, for the values of the mask.
     Go(M),
-    /// It would for the values of the mask, but they have no fuel for it; their fuel is taken away.
+    /// It would for the values of the mask, but they have too little fuel, which is taken away.
     Starved(M),
     /// It is done.
     Done,
-    /// That can't be said.
+    /// Unknown.
     Unknown,
 }
 
 /// Values that operations work on.
 ///
-/// For every domain an operation gives the bits of the operation on numbers, or bounds that contain them.
+/// For every domain an operation gives the same bits as the operation on numbers, or bounds that contain them.
 pub(crate) trait Domain: Copy {
-    /// Which of the values takes part in a round of a loop.
+    /// The values that take part in a round of a loop.
     type Mask: Copy;
-    /// How many operations the loops of an evaluation may still take.
+    /// The number of operations that the loops of an evaluation may still take.
     type Fuel: Copy;
 
     fn fuel(operations: u64) -> Self::Fuel;
     fn constant(value: f64) -> Self;
-    /// What is left when nothing can be said.
+    /// The value if nothing is known.
     fn unknown() -> Self;
     fn unary(op: UnaryOp, a: Self) -> Self;
     fn binary(op: BinaryOp, a: Self, b: Self) -> Self;
     fn select(selector: Self, negative: Self, zero: Self, positive: Self) -> Self;
     fn field(field: &dyn ScalarField, arguments: &[Self]) -> Self;
-    /// Whether a loop whose counter stands at `counter` runs once more, which takes `price` operations.
+    /// Whether a loop whose counter is `counter` runs once more, which takes `price` operations.
     ///
-    /// As all that follows, this must cost a value as much fuel by itself as within a batch: or else its bits would differ.
+    /// As everything below, this must cost a value as much fuel alone as within a batch; otherwise its bits would differ.
     fn round(counter: Self, to: Self, fuel: &mut Self::Fuel, price: u64) -> Round<Self::Mask>;
-    /// Leaves only the values of the mask their fuel, for a round in which the others are computed in vain.
+    /// Sets the fuel of all values outside of the mask to zero, for a round in which they are computed in vain.
     fn ration(_fuel: &mut Self::Fuel, _mask: Self::Mask) {}
-    /// Gives the others back what they had before.
+    /// Restores the fuel of these values.
     fn restore(_fuel: &mut Self::Fuel, _mask: Self::Mask, _before: Self::Fuel) {}
     /// `new` where the mask says so, else `old`.
     fn blend(mask: Self::Mask, new: Self, old: Self) -> Self;
 }
 
-/// Takes the price away, or all there is if that is less.
+/// Subtracts the price, or everything if there is less.
 fn pay(fuel: &mut u64, price: u64) -> bool {
     let rest = fuel.checked_sub(price);
     *fuel = rest.unwrap_or(0);
@@ -286,7 +286,7 @@ impl Domain for Bounds {
         if counter.max <= to.min && !counter.nan && !to.nan && pay(fuel, price) {
             return Round::Go(());
         }
-        // How much the loop takes is not known either: one behind it may find no fuel.
+        // The cost of the loop is unknown, too: a following one may find no fuel.
         *fuel = 0;
         Round::Unknown
     }

@@ -19,7 +19,7 @@ pub enum FunctionError {
         if *cost == u64::MAX { "endlessly many".to_owned() } else { cost.to_string() }
     )]
     TooCostly {
-        /// How many it takes, as far as that can be said before.
+        /// The cost, as far as it is known beforehand.
         cost: u64,
         /// The most there may be.
         limit: u64,

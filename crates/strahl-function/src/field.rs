@@ -2,9 +2,9 @@ use crate::bounds::Bounds;
 use crate::cost::Cost;
 use std::fmt::Debug;
 
-/// A real function that expressions call but don't know the formula of: a pattern, one channel of a pigment, a spline, noise.
+/// A real function that expressions can call without knowing its formula: a pattern, one channel of a pigment, a spline, noise.
 ///
-/// This is how functions, patterns and geometry refer to each other without their crates doing so.
+/// So functions, patterns and geometry can refer to each other although their crates don't depend on each other.
 pub trait ScalarField: Debug + Send + Sync {
     /// How many arguments the field takes; 3 for a field in space. At most [`limits::PARAMETERS`](crate::limits::PARAMETERS).
     fn arity(&self) -> usize {
@@ -14,13 +14,13 @@ pub trait ScalarField: Debug + Send + Sync {
     /// The value at the arguments, [`arity`](Self::arity) many. The same arguments always give the same bits.
     fn value(&self, arguments: &[f64]) -> f64;
 
-    /// What [`value`](Self::value) takes. A field that evaluates others says so, or there may be no end to it.
+    /// The cost of [`value`](Self::value). A field that evaluates others must include their cost, or it may never end.
     fn cost(&self) -> Cost {
         Cost::FORMULA
     }
 
-    /// Whether [`bounds`](Self::bounds) says something, and ever more the smaller the box: else a caller who needs to know where
-    /// the field can't be zero has to trust in how steep it is.
+    /// Whether [`bounds`](Self::bounds) converge to the values as the box becomes small. If not, callers have to rely on a
+    /// given maximal gradient to prove that the field is not zero.
     fn is_bounded(&self) -> bool {
         false
     }

@@ -26,7 +26,7 @@ struct Inner {
     depth: u32,
 }
 
-/// Memory that evaluations share: one for each thread, used for any number of functions.
+/// Working memory of evaluations: one for each thread, used for any number of functions.
 #[derive(Clone, Debug, Default)]
 pub struct Workspace {
     points: Vec<f64>,
@@ -42,7 +42,8 @@ impl Workspace {
         Self::default()
     }
 
-    /// How many operations the loops of all calls of [`Function::value`] have taken, the only ones of which nobody knows before.
+    /// The number of operations that the loops of all calls of [`Function::value`] have taken. Only their cost is unknown
+    /// beforehand.
     pub fn spent(&self) -> u64 {
         self.spent
     }
@@ -97,7 +98,7 @@ impl Function {
         result
     }
 
-    /// What a call of [`value`](Self::value) takes, but for rounds of loops that nobody knows before.
+    /// The cost of a call of [`value`](Self::value), without rounds of loops whose number is unknown beforehand.
     pub fn cost(&self) -> u64 {
         self.tape().cost
     }
@@ -107,7 +108,7 @@ impl Function {
         self.inner.graph.work()
     }
 
-    /// What the loops of an evaluation may take.
+    /// The limit for the loops of an evaluation.
     fn fuel(&self) -> u64 {
         self.inner.graph.allowed()
     }
@@ -157,7 +158,7 @@ impl Function {
         run(tape, stack, &mut self.fuel())
     }
 
-    /// Whether [`bounds`](Self::bounds) close in on the values as boxes become small: no field within lacks them.
+    /// Whether [`bounds`](Self::bounds) converge to the values as boxes become small: all fields within have bounds.
     pub fn is_bounded(&self) -> bool {
         self.tape().is_bounded()
     }
@@ -179,7 +180,7 @@ impl Function {
         (result.value, result.partials)
     }
 
-    /// Where it is: the same for all clones of one compiled function.
+    /// The address of the compiled function, the same for all clones.
     pub(crate) fn place(&self) -> usize {
         Arc::as_ptr(&self.inner) as usize
     }
@@ -220,8 +221,8 @@ impl ScalarField for Function {
         self.parameters().len()
     }
 
-    /// A loop of unknown length counts a part of what it may take: functions that call this one a few times are good, those
-    /// that do so a thousand times are not.
+    /// A loop of unknown length counts as a part of its limit: functions that call this one a few times are accepted, those
+    /// that call it a thousand times are not.
     fn cost(&self) -> Cost {
         const PART: u64 = 16;
         let open = if self.tape().is_open {
@@ -243,7 +244,7 @@ impl ScalarField for Function {
         if arguments.is_empty() {
             return self.constant().unwrap_or(f64::NAN);
         }
-        // Taken away and put back, so that a field within the function may do the same.
+        // Taken and put back, so that a field within the function can do the same.
         WORKSPACE.with(|cell| {
             let mut workspace = cell.take();
             let value = Function::value(self, &mut workspace, arguments);

@@ -46,8 +46,8 @@ pub(crate) struct Loop {
 
 /// Builds a function as a graph of operations.
 ///
-/// Equal subexpressions are stored once, operations on constants are done at once; neither changes a bit of any value.
-/// The methods never fail: what is wrong is remembered and reported by [`finish`](Self::finish).
+/// Equal subexpressions are stored once and operations on constants are folded; neither changes a bit of any value. The methods
+/// never fail: the first error is stored and returned by [`finish`](Self::finish).
 ///
 /// ```
 /// use strahl_function::{Graph, Workspace};
@@ -78,9 +78,9 @@ pub struct Graph {
     /// How deep loops and calls are nested in each node.
     depth: Vec<u32>,
     variables: u32,
-    /// How often a node was asked for.
+    /// The number of nodes requested.
     work: u64,
-    /// The most operations of an evaluation; `None` is the usual number.
+    /// The limit of operations of an evaluation; `None` is the default.
     allowed: Option<u64>,
     failure: Option<FunctionError>,
 }
@@ -111,13 +111,13 @@ impl Graph {
         &self.parameters
     }
 
-    /// Makes [`finish`](Self::finish) report `error`, unless something failed before.
+    /// Makes [`finish`](Self::finish) return `error`, unless there is an earlier one.
     pub fn fail(&mut self, error: FunctionError) -> Expr {
         self.failure.get_or_insert(error);
         self.push(Node::Constant(f64::NAN.to_bits()))
     }
 
-    /// The first thing that went wrong so far.
+    /// The first error so far.
     pub fn failure(&self) -> Option<&FunctionError> {
         self.failure.as_ref()
     }
@@ -131,12 +131,12 @@ impl Graph {
         self.allowed.unwrap_or(limits::COST)
     }
 
-    /// How many operations building took so far; those count again that were there already.
+    /// The number of operations that building took so far, including those for nodes that already existed.
     pub fn work(&self) -> u64 {
         self.work
     }
 
-    /// Gives up the memory that is only needed to build it further.
+    /// Frees the memory that is only needed for further building.
     pub(crate) fn seal(&mut self) {
         self.index = HashMap::new();
         self.list_index = HashMap::new();
@@ -197,7 +197,7 @@ impl Graph {
         ]
     }
 
-    /// The number an expression is known to be.
+    /// The value of an expression, if it is constant.
     pub fn known(&self, e: Expr) -> Option<f64> {
         match self.nodes.get(e.0 as usize)? {
             Node::Constant(bits) => Some(f64::from_bits(*bits)),
@@ -322,7 +322,7 @@ impl Graph {
     /// A call of another function: small ones become part of this graph, large ones are called.
     pub fn call(&mut self, function: &Function, arguments: &[Expr]) -> Expr {
         if self.failure.is_some() {
-            // It has an end already; copying on and on would not have one.
+            // It has failed already; continuing to copy might never end.
             return Expr(0);
         }
         let expected = function.parameters().len();
@@ -490,7 +490,7 @@ impl Graph {
 
     /// All nodes an expression needs, operands first. Nodes are only ever made after their operands, so that is by number.
     pub(crate) fn reachable(&self, root: Expr) -> Vec<Expr> {
-        // Not an array of marks for all nodes: what is asked about may be small in a large graph, and often.
+        // Not an array of marks for all nodes, because the query may be small in a large graph, and frequent.
         let mut seen = HashSet::new();
         let mut stack = vec![root];
         let mut found = Vec::new();

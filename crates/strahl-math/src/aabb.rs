@@ -39,7 +39,7 @@ impl Aabb {
         Self::new(self.min.min(other.min), self.max.max(other.max))
     }
 
-    /// What both boxes have in common; empty if they are apart.
+    /// The intersection of both boxes; empty if they are apart.
     #[must_use]
     pub fn intersection(&self, other: &Self) -> Self {
         let b = Self::new(self.min.max(other.min), self.max.min(other.max));
@@ -109,10 +109,10 @@ impl Aabb {
         })
     }
 
-    /// The range of parameters for which the ray is inside the box, conservatively widened by the rounding of this very
+    /// The range of parameters for which the ray is inside the box, conservatively widened by the rounding errors of this
     /// computation; `None` if the ray misses.
     ///
-    /// This is the f64 clip that re-bases rays, not the culling test of the accelerators.
+    /// This clips in f64, to move the origin of rays near a structure. It is not the culling test of the accelerators.
     pub fn clip(&self, ray: &Ray, range: Interval) -> Option<Interval> {
         let mut inside = range;
         for axis in 0..3 {

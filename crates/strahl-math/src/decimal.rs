@@ -1,4 +1,4 @@
-//! Decimal numbers of texts, eight digits at a time.
+//! Fast parsing of decimal numbers, eight digits at a time.
 
 /// The value of the digits at the front of `rest`, perhaps with a point within or behind them or in front, and how many bytes they
 /// are: the nearest float. `None` if there is no digit, or if the number is longer than the processor computes exactly.

@@ -1,4 +1,4 @@
-//! The only home of tolerances: bounds on rounding errors, all of them multiples of the unit roundoff times a
+//! All tolerances: bounds of rounding errors, all of them multiples of the unit roundoff times a
 //! magnitude. Nothing here is an absolute distance, so scenes may be 1e-6 or 1e9 units large.
 
 use crate::DVec3;
@@ -28,8 +28,8 @@ pub fn round_up_f32(x: f64) -> f32 {
     moved(y, i32::from(f64::from(y) < x))
 }
 
-/// The f32 so many steps above another, without a branch, which would be guessed wrong half of the time. The two zeros are a step apart; that
-/// they have the sign of what was rounded to them makes up for it.
+/// The f32 that is `steps` numbers above another, without a branch, which would be mispredicted half of the time. The two zeros
+/// are one step apart, which is compensated by the sign they have after rounding.
 #[inline(always)]
 fn moved(x: f32, steps: i32) -> f32 {
     // In this order of integers numbers follow each other as they do by size, and back.

@@ -16,7 +16,7 @@ impl Interval {
     pub const FORWARD: Self = Self::new(0.0, f64::INFINITY);
     /// The whole line: `(-inf, +inf]`.
     pub const LINE: Self = Self::new(f64::NEG_INFINITY, f64::INFINITY);
-    /// What lies between a point and a light at `t = 1`: `0 < t < 1`.
+    /// The range between a point and a light at `t = 1`: `0 < t < 1`.
     pub const UNTIL_LIGHT: Self = Self::new(0.0, 1.0 - f64::EPSILON / 2.0);
 
     /// The range from `min` to `max`.

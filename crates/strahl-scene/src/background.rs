@@ -3,7 +3,7 @@ use std::sync::Arc;
 use strahl_math::DVec3;
 use strahl_shade::Color;
 
-/// What a ray sees that hits nothing.
+/// The radiance along rays that hit nothing.
 #[derive(Clone, Debug)]
 pub enum Background {
     /// One colour everywhere.
@@ -47,7 +47,7 @@ impl Background {
 }
 
 impl PartialEq for Background {
-    /// Skies are equal if they are the same one.
+    /// Skies are equal if they are the same object.
     fn eq(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Solid(a), Self::Solid(b)) => a == b,

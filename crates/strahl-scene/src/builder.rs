@@ -6,7 +6,7 @@ use std::sync::Arc;
 use strahl_math::{DVec3, SingularTransform, Transform};
 use strahl_shade::{Color, Light, Material};
 
-/// What can be said of every object while building it, on shapes directly too.
+/// Methods to set the attributes of any object, also directly on shapes.
 ///
 /// ```
 /// use strahl_geometry::Sphere;
@@ -45,7 +45,7 @@ pub trait ObjectExt: Into<Object> {
         }
     }
 
-    /// Sets to which rays the object shows.
+    /// Sets the kinds of rays that can see the object.
     fn visible_to(self, visibility: Visibility) -> Object {
         Object {
             visibility,

@@ -3,7 +3,7 @@ use std::sync::Arc;
 use strahl_math::{DVec3, det};
 use strahl_shade::normal::PovNormal;
 
-/// The eye and its viewing coordinate system (method: section 2).
+/// The eye and its viewing coordinate system.
 ///
 /// The picture spans `right` and `up` from its centre to its edges, so image coordinates `x, y` in `-1..=1` (x to the right, y
 /// upwards) name the point `eye + direction + x·right + y·up` of the image plane. `right` is stretched by the
@@ -20,13 +20,13 @@ pub struct Camera {
     pub up: DVec3,
     /// How rays leave it.
     pub projection: Projection,
-    /// What blurs the picture; `None` is a pinhole.
+    /// The lens for focal blur; `None` is a pinhole.
     pub lens: Option<Lens>,
-    /// What bends the rays; looked up at the place in the picture, from -0.5 to 0.5 in x and y.
+    /// Perturbs the rays; evaluated at the position in the picture, from -0.5 to 0.5 in x and y.
     pub normal: Option<Arc<PovNormal>>,
-    /// Fixed width-to-height ratio of what is seen; `None` takes the picture's.
+    /// Fixed width-to-height ratio of the view; `None` takes the picture's.
     pub aspect: Option<f64>,
-    /// Where the scene says so.
+    /// The place of the camera in the scene file.
     pub span: Span,
 }
 
@@ -81,7 +81,7 @@ impl Camera {
         }
     }
 
-    /// What is wrong with the camera, if anything: non-finite numbers, or vectors that span no picture.
+    /// The error in the camera, if there is one: non-finite numbers, or vectors that span no picture.
     pub fn problem(&self) -> Option<&'static str> {
         let all = [self.eye, self.direction, self.right, self.up];
         if all.iter().any(|v| !v.is_finite()) {
@@ -98,7 +98,7 @@ impl Camera {
             return Some("the camera's angle must be positive");
         }
         if matches!(self.projection, Projection::Mesh(_)) {
-            // The faces know where to look.
+            // The direction comes from the faces.
             return None;
         }
         let volume = self.right.cross(self.up).dot(self.direction);

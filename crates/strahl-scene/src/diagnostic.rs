@@ -1,12 +1,12 @@
 use crate::Span;
 use std::fmt;
 
-/// How bad it is.
+/// The severity of a diagnostic.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Severity {
-    /// The picture is what was asked for, but something deserves attention.
+    /// The picture is as requested, but something deserves attention.
     Warning,
-    /// There can be no (correct) picture.
+    /// There can be no correct picture.
     Error,
 }
 
@@ -15,7 +15,7 @@ pub enum Severity {
 pub struct SourceLine {
     /// Name of the file, as shown to the user.
     pub file: String,
-    /// The text of the line, without its end; long lines are shortened to what surrounds the place.
+    /// The text of the line, without its end; long lines are shortened to the part around the place.
     pub text: String,
     /// Column (1-based, in characters of `text`) where the caret goes.
     pub column: u32,
@@ -23,7 +23,7 @@ pub struct SourceLine {
     pub length: u32,
 }
 
-/// Something to say about a scene: what was found, what was expected, where, and what to do.
+/// A message about a scene: what was found, what was expected, where, and what to do.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Diagnostic {
     /// Error or warning.
@@ -32,11 +32,11 @@ pub struct Diagnostic {
     pub message: String,
     /// Where; [`Span::NONE`] if it concerns no place in particular.
     pub span: Span,
-    /// The line it points into, if the text is at hand.
+    /// The line it points into, if the text is available.
     pub source: Option<SourceLine>,
     /// What to do about it.
     pub hints: Vec<String>,
-    /// How the scene got there, innermost first: the macros and include files around the place.
+    /// The macros and include files around the place, innermost first.
     pub trace: Vec<String>,
 }
 
@@ -61,7 +61,7 @@ impl Diagnostic {
         }
     }
 
-    /// Says where.
+    /// Sets the place.
     #[must_use]
     pub fn at(self, span: Span) -> Self {
         Self { span, ..self }
@@ -98,7 +98,7 @@ impl Diagnostic {
         self
     }
 
-    /// Adds a step of the way there, outside of those already given.
+    /// Adds a macro or include file outside of those already given.
     #[must_use]
     pub fn traced(mut self, step: impl Into<String>) -> Self {
         self.trace.push(step.into());

@@ -3,7 +3,7 @@ use strahl_math::noise::{NoiseGenerator, Turbulence};
 use strahl_math::{DVec3, det};
 use strahl_shade::{Color, ColorFt};
 
-/// Where fog is how dense.
+/// The density of a fog.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum FogKind {
     /// The same density everywhere.
@@ -19,15 +19,15 @@ pub enum FogKind {
     },
 }
 
-/// Thin places in fog, by noise (POV-Ray's model, which was measured).
+/// Noise that makes fog thinner in places (POV-Ray's model, which was measured).
 ///
-/// A ray of length `l` with the point `m` in its middle has the optical depth `τ (1 - exp(-l / distance) · min(1, strength · n))`
-/// with the scalar turbulence `n` at `scale · m`: long rays are fogged as without it.
+/// A ray of length `l` with the point `m` in its middle has the optical depth `τ (1 - exp(-l / distance) · min(1, strength ·
+/// n))` with the scalar turbulence `n` at `scale · m`: the effect vanishes for long rays.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FogTurbulence {
-    /// What points are multiplied by, coordinate by coordinate.
+    /// Scales the points, coordinate by coordinate.
     pub scale: DVec3,
-    /// How much the noise counts.
+    /// The weight of the noise.
     pub strength: f64,
     /// The octaves of the noise.
     pub octaves: Turbulence,
@@ -36,10 +36,10 @@ pub struct FogTurbulence {
 }
 
 impl FogTurbulence {
-    /// The factor of the optical depth of a ray whose length is so many times the fog's distance.
+    /// The factor of the optical depth of a ray whose length is `length` times the fog's distance.
     fn thinning(&self, middle: DVec3, length: f64) -> f64 {
         let thin = det::exp(-length);
-        // Endless rays have no middle.
+        // Infinite rays have no middle.
         if thin == 0.0 {
             return 1.0;
         }
@@ -48,8 +48,8 @@ impl FogTurbulence {
     }
 }
 
-/// Fog between everything that is seen: it fades what lies behind and adds its own colour (POV-Ray's model, whose formulas
-/// were measured).
+/// Fog that fills the space between objects: it attenuates the light from behind and adds its own colour (POV-Ray's model,
+/// whose formulas were measured).
 ///
 /// With the optical depth `τ` of a ray (its length, weighted by density, over `distance`), the share of light that passes is
 /// `T = max(exp(-τ), transmit)`, tinted by `1 - filter + filter·colour`; the fog adds `(1 - T)·colour`.
@@ -59,9 +59,9 @@ pub struct Fog {
     pub kind: FogKind,
     /// Length on which fog of density 1 lets `1/e` pass; positive.
     pub distance: f64,
-    /// Its colour, how it tints (`filter`) and what at least passes (`transmit`).
+    /// Its colour, its tint (`filter`) and the least transmittance (`transmit`).
     pub color: ColorFt,
-    /// What makes it uneven.
+    /// Makes it uneven.
     pub turbulence: Option<FogTurbulence>,
     /// The place in the scene that made it.
     pub span: Span,
@@ -88,7 +88,7 @@ impl Fog {
         }
     }
 
-    /// What of the light from behind passes fog of this optical depth, per channel, and what the fog adds.
+    /// The attenuation of the light from behind by fog of this optical depth, per channel, and the light the fog adds.
     pub fn at_depth(&self, depth: f64) -> (Color, Color) {
         let thin = det::exp(-depth);
         let passes = if thin > self.color.transmit {

@@ -1,27 +1,27 @@
 use std::sync::Arc;
 use strahl_math::DVec3;
 
-/// A lens, which blurs what does not lie in the plane of focus (POV-Ray manual, "Focal Blur").
+/// A lens, which blurs objects that do not lie in the plane of focus (POV-Ray manual, "Focal Blur").
 #[derive(Clone, Debug, PartialEq)]
 pub struct Lens {
     /// Four times the radius of the lens, as in POV-Ray.
     pub aperture: f64,
-    /// A point of the plane of focus, which stands at right angles to the viewing direction.
+    /// A point of the plane of focus, which is perpendicular to the viewing direction.
     pub focal_point: DVec3,
-    /// Fewest rays of a place of the picture.
+    /// Fewest rays of a position in the picture.
     pub min_samples: u32,
-    /// Most rays of a place of the picture.
+    /// Most rays of a position in the picture.
     pub max_samples: u32,
-    /// How sure, from 0 to less than 1, the mean of the rays must be to be known well enough for fewer than the most.
+    /// The confidence, from 0 to less than 1, at which the mean of the rays is good enough to end the sampling.
     pub confidence: f64,
-    /// How well the mean must be known.
+    /// The variance allowed for the mean.
     pub variance: f64,
-    /// The shape of the lens; a disc without.
+    /// The shape of the aperture; a disc without.
     pub bokeh: Option<Arc<Bokeh>>,
 }
 
 impl Lens {
-    /// Most rays through a place of the picture.
+    /// The upper limit of `max_samples`.
     pub const MAX_SAMPLES: u32 = 1 << 16;
 
     /// A round lens with POV-Ray's defaults.
@@ -38,7 +38,7 @@ impl Lens {
     }
 }
 
-/// Where a lens lets how much light through: weights on a square grid.
+/// The transmittance of a lens: weights on a square grid.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bokeh {
     size: usize,
@@ -68,7 +68,7 @@ impl Bokeh {
         (total > 0.0).then_some(Self { size, sums })
     }
 
-    /// A point of the square from -1 to 1, for two numbers in `0..1`: as dense as there is light.
+    /// A point of the square from -1 to 1 for two numbers in `0..1`, with a density proportional to the weights.
     pub fn point(&self, a: f64, b: f64) -> (f64, f64) {
         let total = self.sums.last().copied().unwrap_or(1.0);
         let wanted = a * total;
@@ -77,7 +77,7 @@ impl Bokeh {
         let before = cell.checked_sub(1).and_then(|c| self.sums.get(c));
         let before = before.copied().unwrap_or(0.0);
         let here = self.sums.get(cell).copied().unwrap_or(total) - before;
-        // What is left of the first number tells the place within the cell.
+        // The rest of the first number chooses the position within the cell.
         let rest = if here > 0.0 {
             (wanted - before) / here
         } else {

@@ -8,24 +8,24 @@ use strahl_shade::Material;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct GroupId(pub u32);
 
-/// How children are combined to one object: POV-Ray's meanings.
+/// How children are combined into one object, as in POV-Ray.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum CsgOp {
-    /// All children together; surfaces inside of other children stay (and show if the outer ones are transparent). Children
-    /// may be open surfaces.
+    /// All children together; surfaces inside of other children are kept (and visible if the outer ones are transparent).
+    /// Children may be open surfaces.
     Union,
     /// All children together as one solid without inner surfaces.
     Merge,
-    /// What is inside of every child.
+    /// The points inside of every child.
     Intersection,
     /// The first child without the others.
     Difference,
-    /// Everything that is outside of the one child.
+    /// The points outside of the one child.
     Inverse,
-    /// The surface of the first child as far as it is inside of the others; the cut is not closed by a cap.
+    /// The part of the first child's surface that is inside of the others; the cut is not closed by a cap.
     Clip,
-    /// A union whose own lights (those that are children themselves, not parts of children) shine on nothing but the other
-    /// children. A group within the group has its own lights only. Shadows are cast across the bounds of groups.
+    /// A union whose own lights (those that are children themselves, not parts of children) shine only on the other children. A
+    /// group within the group has its own lights only. Objects of all groups cast shadows.
     LightGroup {
         /// Whether the lights that are in no group shine on the children too. Of groups within each other the outermost
         /// decides for all.
@@ -34,12 +34,12 @@ pub enum CsgOp {
 }
 
 impl CsgOp {
-    /// Whether the children are put together without anything being taken from them.
+    /// Whether the operation keeps all children as they are.
     pub const fn is_union(self) -> bool {
         matches!(self, Self::Union | Self::LightGroup { .. })
     }
 
-    /// The word for it.
+    /// The name of the operation.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Union => "union",
@@ -68,7 +68,7 @@ impl Drop for Children {
     }
 }
 
-/// What an object is.
+/// The kind of an object.
 #[derive(Clone, Debug)]
 pub enum ObjectKind {
     /// A surface or solid.
@@ -80,18 +80,18 @@ pub enum ObjectKind {
         /// What; material, name and span of the parent hold for children that have none.
         children: Children,
     },
-    /// A group of objects once more, without copying it.
+    /// An instance of a group, which is not copied.
     Instance(GroupId),
-    /// A light, moved along with what it is combined with; it has no surface.
+    /// A light, transformed with the object it belongs to; it has no surface.
     Light(Box<SceneLight>),
 }
 
-/// To which kinds of rays an object shows.
+/// The kinds of rays that can see an object.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Visibility {
-    /// Rays from the eye, through transparent things too.
+    /// Camera rays, also behind transparent objects.
     pub camera: bool,
-    /// Reflection rays, and what they send through transparent things.
+    /// Reflection rays, also behind transparent objects.
     pub secondary: bool,
     /// Shadow rays.
     pub shadow: bool,
@@ -114,15 +114,15 @@ pub struct Object {
     pub name: Option<Arc<str>>,
     /// The place in the scene that made it.
     pub span: Span,
-    /// What it is made of; `None` takes the parent's, or the default material.
+    /// The material; `None` takes the parent's, or the default material.
     pub material: Option<Arc<Material>>,
-    /// Where it is in its parent's space; `None` is the identity.
+    /// The transform to its parent's space; `None` is the identity.
     pub transform: Option<Box<Transform>>,
-    /// To which rays it shows.
+    /// The rays that can see it.
     pub visibility: Visibility,
-    /// Whether light from behind its surface shows on it as light from the front does (POV-Ray's `double_illuminate`).
+    /// Whether light on its back shows on its front, too (POV-Ray's `double_illuminate`).
     pub double_illuminated: bool,
-    /// What it is.
+    /// Its kind.
     pub kind: ObjectKind,
 }
 
@@ -162,7 +162,7 @@ impl Object {
         Self::new(ObjectKind::Light(Box::new(light)))
     }
 
-    /// A group once more.
+    /// An instance of a group.
     pub fn instance(group: GroupId) -> Self {
         Self::new(ObjectKind::Instance(group))
     }

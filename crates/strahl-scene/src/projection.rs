@@ -1,13 +1,13 @@
 use std::sync::Arc;
 use strahl_math::{DVec2, DVec3};
 
-/// How rays leave the camera. Angles are full angles in radians, from edge to edge of the picture.
+/// The projection of a camera. Angles are full angles in radians, from edge to edge of the picture.
 ///
 /// The cameras besides perspective and orthographic ones are those of POV-Ray (manual, "Types of Projection"; the formulas were
 /// found by measuring the directions of its rays).
 #[derive(Clone, Debug, PartialEq)]
 pub enum Projection {
-    /// All through the eye.
+    /// All rays start at the eye.
     Perspective,
     /// Parallel to the viewing direction, from the plane through the eye.
     Orthographic,
@@ -22,7 +22,7 @@ pub enum Projection {
         /// From the left to the right edge; from bottom to top it is this times the ratio of `up` to `right`.
         angle: f64,
     },
-    /// A fisheye of 180 degrees with the lens of Omnimax projectors: nothing is seen more than 45 degrees below the horizon.
+    /// A fisheye of 180 degrees with the lens of Omnimax projectors: the view ends 45 degrees below the horizon.
     Omnimax,
     /// Onto an ellipsoid whose axes are `right`, `up` and `direction`: 180 degrees in both directions.
     Panoramic,
@@ -81,13 +81,13 @@ impl Projection {
 /// Rays from the faces of meshes, along their normals (POV-Ray manual, "Mesh projection").
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeshCamera {
-    /// Which face a pixel gets.
+    /// Which face belongs to a pixel.
     pub layout: MeshLayout,
     /// The faces, mesh by mesh.
     pub meshes: Vec<Vec<CameraFace>>,
-    /// How far along its direction a ray begins in front of its face.
+    /// Distance of a ray's origin in front of its face.
     pub offset: f64,
-    /// Whether rays leave by the back of the faces.
+    /// Whether rays start at the back of the faces.
     pub reversed: bool,
     /// Whether directions are interpolated between the normals of the corners, in the layout by uv coordinates.
     pub smooth: bool,

@@ -3,7 +3,7 @@ use strahl_math::{DVec3, det};
 use strahl_shade::pigment::{Blend, BlendMap};
 use strahl_shade::{Color, ColorFt};
 
-/// A rainbow: a ring of colours around a direction, laid over what is seen (POV-Ray's model, whose formulas were measured).
+/// A rainbow: a ring of colours around a direction, in front of the background (POV-Ray's model, whose formulas were measured).
 ///
 /// Where the angle `α` between ray and direction is within half the `width` of `angle`, the map has the colour at
 /// `(α - angle) / width + 1/2`. With the weight `w` of the arc at the ray's place around the ring, the share
@@ -13,28 +13,28 @@ use strahl_shade::{Color, ColorFt};
 pub struct Rainbow {
     /// Unit direction of the light that makes it: that of the rays to its centre.
     pub direction: DVec3,
-    /// Where the middle of the arc is, seen from the centre.
+    /// The direction from the centre to the middle of the arc.
     pub up: DVec3,
     /// Degrees from the centre to the middle of the ring.
     pub angle: f64,
     /// Degrees from its inner to its outer edge; positive.
     pub width: f64,
-    /// Degrees along the ring that are seen at all; 360 is the whole ring, and more never fades out.
+    /// Degrees of the visible arc; 360 is the whole ring, and more never fades out.
     pub arc_angle: f64,
     /// Degrees along the ring that have their full strength; from there to the ends of the arc it fades.
     pub falloff_angle: f64,
-    /// How far things must be away for the rainbow to be seen before them; infinite for one that lies behind all things.
+    /// The least distance of objects that the rainbow covers; infinite for a rainbow behind all objects.
     pub distance: f64,
     /// The colours from the inner to the outer edge.
     pub colors: BlendMap<ColorFt>,
-    /// How much the place in the map differs at random from direction to direction.
+    /// The amplitude of the random offset in the map, which differs from direction to direction.
     pub jitter: f64,
     /// The place in the scene that made it.
     pub span: Span,
 }
 
 impl Rainbow {
-    /// What of the light from the end of a ray passes the rainbow, and what it adds; `None` where it is not seen.
+    /// The attenuation of light from the end of a ray by the rainbow, and the light it adds; `None` outside of the arc.
     pub fn along(&self, direction: DVec3, length: f64) -> Option<(Color, Color)> {
         let toward = direction.normalize_or_zero();
         let angle = det::acos(toward.dot(self.direction).clamp(-1.0, 1.0)).to_degrees();
@@ -62,7 +62,7 @@ impl Rainbow {
         Some((tint * passes, color.rgb * (1.0 - passes)))
     }
 
-    /// How strong the arc is at the place of a direction around the ring.
+    /// The weight of the arc in a direction around the ring.
     fn weight(&self, toward: DVec3) -> f64 {
         let (full, end) = (0.5 * self.falloff_angle, 0.5 * self.arc_angle);
         if full >= 180.0 && end >= 180.0 {

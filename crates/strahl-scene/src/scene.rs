@@ -5,13 +5,13 @@ use std::sync::Arc;
 use strahl_math::Transform;
 use strahl_shade::{Color, Light};
 
-/// What light has to cross to shine on anything (POV-Ray's `projected_through`): a point is lit if its shadow ray meets the
-/// surface of the mask, and nothing beyond the nearest such place is in the way.
+/// A group that the light has to pass through (POV-Ray's `projected_through`): a point is lit if its shadow ray hits the
+/// surface of the mask. Objects beyond the nearest such hit cast no shadow.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LightMask {
-    /// The mask, which cannot be seen: a group of the scene's.
+    /// The invisible mask, a group of the scene.
     pub group: GroupId,
-    /// Where it is.
+    /// Its position.
     pub transform: Transform,
 }
 
@@ -20,7 +20,7 @@ pub struct LightMask {
 pub struct SceneLight {
     /// The light.
     pub light: Light,
-    /// What the light has to cross.
+    /// The group that the light has to pass through.
     pub mask: Option<Box<LightMask>>,
     /// Name for ray trees.
     pub name: Option<Arc<str>>,
@@ -46,7 +46,7 @@ impl SceneLight {
     }
 }
 
-/// A whole scene: what there is to see, from where, in which light.
+/// A whole scene: objects, camera, lights and settings.
 #[derive(Clone, Debug, Default)]
 pub struct Scene {
     /// The camera; without one the renderer frames the objects.
@@ -56,13 +56,13 @@ pub struct Scene {
     pub lights: Vec<SceneLight>,
     /// Ia, the ambient light; `None` is unit white in scenes with lights of their own scaled by 0.1.
     pub ambient: Option<Color>,
-    /// What rays see that hit nothing; `None` is black, or a soft gradient behind objects framed by the renderer.
+    /// The radiance along rays that hit nothing; `None` is black, or a soft gradient behind objects framed by the renderer.
     pub background: Option<Background>,
-    /// Fogs; each fills all space outside of solid things.
+    /// Fogs; each fills all space outside of solid objects.
     pub fogs: Vec<Fog>,
-    /// Rainbows, before the background or everything.
+    /// Rainbows, in front of the background or of all distant objects.
     pub rainbows: Vec<Rainbow>,
-    /// Hints for the renderer.
+    /// Defaults for the renderer.
     pub settings: Settings,
     /// The objects.
     pub objects: Children,

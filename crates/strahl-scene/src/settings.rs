@@ -1,21 +1,21 @@
 use crate::WorkingSpace;
 use strahl_shade::ShadingModel;
 
-/// What a scene asks of the renderer; the caller may override each.
+/// Settings that a scene may choose; the caller may override each.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
     /// Picture size in pixels, if the scene names one.
     pub size: Option<(u32, u32)>,
     /// Deepest level of the ray tree, the primary ray being level 1; at least 1.
     pub max_depth: u32,
-    /// Rays whose weight (the largest channel of the product of all coefficients on the way) is below this are not
-    /// followed; 0 follows all.
+    /// Rays whose weight (the largest channel of the product of all coefficients on the way) is below this are not traced; 0
+    /// traces all.
     pub adc_bailout: f64,
-    /// Shading model of materials that name none.
+    /// Shading model of materials that don't set one.
     pub shading: ShadingModel,
-    /// In which numbers the scene's colours are given.
+    /// The colour space of the scene's colours.
     pub working_space: WorkingSpace,
-    /// Whether a transparency ray that goes straight on counts as a level of the ray tree. POV-Ray counts reflections and
+    /// Whether a transparency ray that is not refracted counts as a level of the ray tree. POV-Ray counts reflections and
     /// refractions only.
     pub straight_counts: bool,
 }

@@ -3,16 +3,16 @@ use strahl_shade::patterns::TexturePoint;
 use strahl_shade::pigment::Pigment;
 use strahl_shade::{Color, ColorFt};
 
-/// A sky painted by pigments: what rays see that hit nothing, infinitely far away.
+/// A sky made of pigments: the radiance along rays that hit nothing, infinitely far away.
 #[derive(Clone, Debug)]
 pub struct SkySphere {
-    /// The layers, the lowest first; where one lets light pass, those below it show.
+    /// The layers, the lowest first; a layer shows through where those above it are transparent.
     pub layers: Vec<Pigment>,
     /// From the space of the pigments to the world.
     pub transform: Transform,
     /// Factor of the pigments' colours.
     pub emission: Color,
-    /// What shows through the lowest layer.
+    /// The colour behind the lowest layer.
     pub behind: Color,
 }
 

@@ -4,12 +4,12 @@ use std::fmt;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct FileId(pub u32);
 
-/// The place in a scene file that something comes from.
+/// A place in a scene file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Span {
     /// The file.
     pub file: FileId,
-    /// Line, counted from 1; 0 if the thing has no place (made by a program, or in a binary file).
+    /// Line, counted from 1; 0 if there is none (made by a program, or in a binary file).
     pub line: u32,
     /// Column in characters, counted from 1; 0 if unknown.
     pub column: u32,

@@ -1,10 +1,10 @@
 use strahl_math::det;
 use strahl_shade::{Color, srgb};
 
-/// In which numbers the colours of a scene are given and its light is computed.
+/// The colour space in which the colours of a scene are given and its light is computed.
 ///
-/// Light adds up in linear numbers only; the others exist for scenes written for programs that knew no better (POV-Ray's
-/// `assumed_gamma`). Pictures always come out linear: what a ray brings is decoded in the end.
+/// Sums of light are correct in linear space only; the others exist for old scenes (POV-Ray's `assumed_gamma`). Pictures are
+/// always linear: the radiance of primary rays is decoded at the end.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum WorkingSpace {
     /// Linear light.

@@ -1,4 +1,4 @@
-//! THE table of reserved words: every word a scene may not use as a name, with what it is.
+//! The table of reserved words: every word that a scene may not use as a name, with its kind.
 //!
 //! The lexer interns the words first and in this order, so the number of a [`Word`] is the number of its
 //! [`Symbol`](crate::symbol::Symbol).

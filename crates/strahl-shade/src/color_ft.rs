@@ -15,7 +15,7 @@ pub struct ColorFt {
 }
 
 impl ColorFt {
-    /// White, wholly transparent: nothing there.
+    /// White and completely transparent.
     pub const CLEAR: Self = Self {
         rgb: Color::WHITE,
         filter: 0.0,
@@ -31,14 +31,13 @@ impl ColorFt {
         }
     }
 
-    /// `1 - filter - transmit`: the share of what the surface itself sends. Negative for colours that ask for more than
-    /// all light to pass.
+    /// `1 - filter - transmit`: the share of the surface's own light. Negative if filter and transmit exceed 1 together.
     #[inline]
     pub fn opacity(self) -> f64 {
         1.0 - self.filter - self.transmit
     }
 
-    /// What becomes of light that passes: `rgb · filter + transmit` in each channel.
+    /// The transmittance in each channel: `rgb · filter + transmit`.
     #[inline]
     pub fn attenuation(self) -> Color {
         self.rgb * self.filter + Color::gray(self.transmit)

@@ -1,4 +1,4 @@
-//! What patterns and pigments take to evaluate: they call functions, and functions call them.
+//! The cost of evaluating patterns and pigments, which call functions and are called by them.
 
 use strahl_function::Cost;
 
@@ -9,7 +9,7 @@ use crate::pigment::Pigment;
 const PATTERN: Cost = Cost::operations(256);
 
 impl Pattern {
-    /// What a value takes.
+    /// The cost of a value.
     fn cost(&self) -> Cost {
         match self {
             Self::Function(function) => function.cost(),
@@ -25,14 +25,14 @@ impl Pattern {
 }
 
 impl PatternField {
-    /// What a value takes, as [`ScalarField::cost`](strahl_function::ScalarField::cost) says it.
+    /// The cost of a value, as [`ScalarField::cost`](strahl_function::ScalarField::cost) returns it.
     pub(crate) fn whole_cost(&self) -> Cost {
         PATTERN.and(self.pattern.cost())
     }
 }
 
 impl Pigment {
-    /// What a colour takes.
+    /// The cost of a colour.
     pub fn cost(&self) -> Cost {
         match self {
             Self::Solid(_) => Cost::operations(1),
@@ -60,7 +60,7 @@ impl Pigment {
     }
 }
 
-/// Of one of several things, nobody knows which.
+/// The highest cost, if only one of several is evaluated.
 fn dearest(costs: impl Iterator<Item = Cost>) -> Cost {
     costs.fold(Cost::operations(0), |most, cost| Cost {
         operations: most.operations.max(cost.operations),
@@ -80,7 +80,7 @@ mod tests {
         let one = plain.cost().operations;
         let average = |n: usize| Pigment::Average(vec![(1.0, plain.clone()); n], Box::default());
         assert!(average(8).cost().operations >= 8 * one);
-        // Of a list of blocks only one is.
+        // Only one block of a list is evaluated.
         let blocks = |n: usize| Pigment::Blocks(Pattern::Checker.into(), vec![plain.clone(); n]);
         assert_eq!(blocks(8).cost(), blocks(2).cost());
         let map = |n: usize| {

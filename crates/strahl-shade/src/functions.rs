@@ -8,7 +8,7 @@ use strahl_math::DVec3;
 use crate::patterns::{PatternField, TexturePoint};
 use crate::pigment::Pigment;
 
-/// The point an expression asks about; arguments left out are 0.
+/// The point given by the arguments of an expression; missing arguments are 0.
 fn place(arguments: &[f64]) -> TexturePoint {
     let at = |i: usize| arguments.get(i).copied().unwrap_or(0.0);
     TexturePoint::in_space(DVec3::new(at(0), at(1), at(2)))

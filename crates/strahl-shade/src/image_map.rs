@@ -1,4 +1,4 @@
-//! Pictures wrapped around things: `image_map`, `image_pattern`, `bump_map` and `material_map`.
+//! Images mapped onto objects: `image_map`, `image_pattern`, `bump_map` and `material_map`.
 
 use std::sync::Arc;
 
@@ -7,7 +7,7 @@ use strahl_math::{DVec2, DVec3, det};
 use crate::image_texture::TextureImage;
 use crate::{Color, ColorFt};
 
-/// How the unit square of a picture is laid around space (`map_type`).
+/// How the unit square of an image is mapped to space (`map_type`).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum MapType {
     /// On the x-y plane, between the corners (0, 0) and (1, 1).
@@ -33,7 +33,7 @@ impl MapType {
         }
     }
 
-    /// The place in the picture, u to the right and v upwards, for a point.
+    /// The image coordinates of a point, u to the right and v upwards.
     fn place(self, p: DVec3) -> DVec2 {
         use std::f64::consts::{PI, TAU};
         let turn = det::atan2(p.z, p.x) / TAU;
@@ -60,12 +60,12 @@ pub enum Interpolation {
     NormalizedDistance,
 }
 
-/// A picture and how it lies in space.
+/// An image and its mapping.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ImageMap {
     /// The picture.
     pub image: Arc<TextureImage>,
-    /// How it is laid.
+    /// The mapping.
     pub map_type: MapType,
     /// How texels are combined.
     pub interpolation: Interpolation,
@@ -93,7 +93,7 @@ impl ImageMap {
         }
     }
 
-    /// The colour at a point; `None` beside the one copy of a picture that is laid `once`.
+    /// The colour at a point; `None` outside of an image with `once`.
     pub fn color(&self, p: DVec3) -> Option<ColorFt> {
         let [r, g, b, a] = self.sample(p)?;
         Some(ColorFt {
@@ -103,7 +103,7 @@ impl ImageMap {
         })
     }
 
-    /// The grey value (or alpha) at a point, 0 beside the one copy of a picture that is laid `once`.
+    /// The grey value (or alpha) at a point, 0 outside of an image with `once`.
     pub fn gray(&self, p: DVec3) -> f64 {
         match self.sample(p) {
             None => 0.0,
@@ -113,7 +113,8 @@ impl ImageMap {
         }
     }
 
-    /// How the picture, taken as a relief, tilts a normal per unit of `bump_size`; zero beside a picture laid `once`.
+    /// The perturbation of a normal per unit of `bump_size` if the image is taken as a relief; zero outside of an image with
+    /// `once`.
     ///
     /// The relief is the plane through the grey values at the place and one texel below it to the left and to the right, at
     /// a distance of one per texel (measured for planar maps). On the others the tilt follows the map's longitude and

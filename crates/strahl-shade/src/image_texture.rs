@@ -1,4 +1,4 @@
-//! Pictures as textures: texels in memory and how a point of the unit square looks them up.
+//! Images as textures: texels in memory, and their lookup by texture coordinates.
 
 use std::fmt;
 
@@ -82,7 +82,7 @@ impl TexelData {
     }
 }
 
-/// What the integer codes of a picture mean. Alpha is linear always, and so are f32 samples.
+/// The meaning of the integer codes of an image. Alpha is always linear, and so are f32 samples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum ColorSpace {
     /// Codes of the sRGB transfer function: photographs, painted colours.
@@ -122,7 +122,7 @@ impl fmt::Display for TexelCountMismatch {
 
 impl std::error::Error for TexelCountMismatch {}
 
-/// A picture that surfaces can be covered with.
+/// An image that can be mapped onto surfaces.
 ///
 /// Coordinates follow glTF 2.0 (section 3.8.3): `uv = (0, 0)` is the top left corner of the top left texel, `(1, 1)` the
 /// bottom right corner of the bottom right one. Alpha is straight, not premultiplied, and is interpolated independently of the colour.
@@ -180,7 +180,7 @@ impl TextureImage {
         self.channels
     }
 
-    /// What the codes mean.
+    /// The meaning of the codes.
     pub fn color_space(&self) -> ColorSpace {
         self.color_space
     }
@@ -267,7 +267,7 @@ impl fmt::Debug for TextureImage {
     }
 }
 
-/// Beyond 2^52 there are no halves between the f64 numbers and texels can't be told apart anyway.
+/// Beyond 2^52 the f64 numbers have no fractions, so texels can't be distinguished anyway.
 const FARTHEST: f64 = 4_503_599_627_370_496.0;
 
 /// A texture coordinate in texels from the left or upper edge, finite.

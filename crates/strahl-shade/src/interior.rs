@@ -1,4 +1,4 @@
-//! What is inside of a transparent solid.
+//! The interior of a transparent solid.
 
 use strahl_math::det;
 
@@ -9,23 +9,22 @@ use crate::{Color, SpectralPart};
 pub struct Interior {
     /// Index of refraction.
     pub ior: f64,
-    /// The distance at which the light is weakened to a half (or to 1/e, see [`Interior::attenuation`]); 0 is no weakening.
+    /// The distance at which the light is attenuated to a half (or to 1/e, see [`Interior::attenuation`]); 0 is no attenuation.
     pub fade_distance: f64,
-    /// How quickly it is weakened; 0 is no weakening.
+    /// The exponent of the attenuation; 0 is no attenuation.
     pub fade_power: f64,
-    /// The colour that light has in the end; black by default.
+    /// The colour of light after an infinite distance; black by default.
     pub fade_color: Color,
     /// Ratio of the indices of refraction for violet and red; 1 is no dispersion.
     pub dispersion: f64,
     /// How many rays show the spectrum where `dispersion` is not 1, at least 2; 7 by default.
     pub dispersion_samples: u16,
-    /// How sharply light that passes straight on is gathered, in place of real caustics; 0 is not at all. See
-    /// [`Interior::gathered`].
+    /// How sharply transmitted light is concentrated, in place of real caustics; 0 is not at all. See [`Interior::gathered`].
     pub caustics: f64,
 }
 
 impl Default for Interior {
-    /// Air: nothing happens.
+    /// Air: no refraction, no attenuation.
     fn default() -> Self {
         Self {
             ior: 1.0,
@@ -40,7 +39,7 @@ impl Default for Interior {
 }
 
 impl Interior {
-    /// Whether the colours of light are bent by different angles.
+    /// Whether colours are refracted by different angles.
     #[inline]
     pub fn disperses(&self) -> bool {
         self.dispersion != 1.0
@@ -54,8 +53,8 @@ impl Interior {
         self.ior * det::pow(self.dispersion, part.place() - 0.5)
     }
 
-    /// What light is multiplied by where it passes a surface towards the lit point: `1 + |cos|^(45 caustics)`, with the cosine
-    /// between the tilted normal and the light's direction (as measured).
+    /// The factor of light that passes a surface on its way to the lit point: `1 + |cos|^(45 caustics)`, with the cosine
+    /// between the perturbed normal and the light's direction (as measured).
     pub fn gathered(caustics: f64, cos: f64) -> f64 {
         if caustics > 0.0 {
             1.0 + det::pow(cos.abs(), 45.0 * caustics)
@@ -64,7 +63,7 @@ impl Interior {
         }
     }
 
-    /// What is left of light after a path of this length inside.
+    /// The attenuation of light on a path of this length inside.
     ///
     /// With `s = length / fade_distance`: `c + (1 - c) / (1 + s^fade_power)` below a power of 1000, and
     /// `exp(-(1 - c) s)`, the law of Beer and Lambert, from there on.

@@ -1,4 +1,4 @@
-//! What light does at a point: colours, materials, lights and the selectable shading models.
+//! Reflection and transmission of light at a point: colours, materials, lights and the selectable shading models.
 //!
 //! Materials don't know shapes: everything here works on directions, normals and numbers.
 //!

@@ -7,7 +7,7 @@ pub use falloff::Falloff;
 use crate::Color;
 use strahl_math::{DVec3, Interval, Transform, det};
 
-/// Where a light is and where it shines.
+/// The kind of a light: its position and distribution.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum LightKind {
@@ -60,19 +60,19 @@ pub enum LightKind {
 /// A light source.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Light {
-    /// Where it is.
+    /// Its position and distribution.
     pub kind: LightKind,
     /// Its colour times its strength.
     pub color: Color,
-    /// How it weakens with distance (directional lights don't).
+    /// The attenuation with distance (directional lights have none).
     pub falloff: Falloff,
     /// Whether objects cast shadows in this light.
     pub casts_shadows: bool,
     /// Whether the light makes highlights.
     pub highlights: bool,
-    /// Whether fog weakens the light on its way to what it lights.
+    /// Whether fog attenuates the light on its way to the lit point.
     pub fogged: bool,
-    /// The extent of the light; `None` if it shines from a point. Of the kind this is the centre.
+    /// The extent of an area light, whose centre is the position of `kind`; `None` if it shines from a point.
     pub area: Option<AreaLight>,
 }
 
@@ -83,9 +83,9 @@ pub struct LightSample {
     pub l: DVec3,
     /// Direction of the shadow ray: from the point to the light (which is at `t = 1`), or `l` for directional lights.
     pub shadow_direction: DVec3,
-    /// The range in which an object casts a shadow; empty where nothing does.
+    /// The range in which an object casts a shadow; empty if none does.
     pub range: Interval,
-    /// The light that arrives if nothing is in between.
+    /// The light that arrives without occlusion.
     pub color: Color,
 }
 
@@ -100,7 +100,7 @@ impl LightSample {
 }
 
 impl Light {
-    /// A light that casts shadows and does not weaken.
+    /// A light that casts shadows and is not attenuated.
     pub const fn new(kind: LightKind, color: Color) -> Self {
         Self {
             kind,
@@ -145,13 +145,13 @@ impl Light {
         )
     }
 
-    /// The same light, weakening with distance.
+    /// The same light with attenuation by distance.
     #[must_use]
     pub const fn with_falloff(self, falloff: Falloff) -> Self {
         Self { falloff, ..self }
     }
 
-    /// What of the light arrives at `point` if nothing is in between; `None` if none does, or the point is at the light.
+    /// The light that arrives at `point` without occlusion; `None` if none does, or the point is at the light.
     #[inline]
     pub fn illuminate(&self, point: DVec3) -> Option<LightSample> {
         let (position, cone) = match self.kind {
@@ -225,7 +225,7 @@ impl Light {
         let mut strength = self.falloff.at(distance.abs());
         if let Some((inner, outer, tightness)) = beam {
             let radius = (from_light - direction * distance).length();
-            // Seen from the axis a smaller distance is more, as a larger cosine is in a cone.
+            // Near the axis the distance is small, while the cosine in a cone is large; hence the reversed sign.
             strength *=
                 smooth_step(-outer, -inner, -radius) * power(1.0 - radius / outer, tightness);
             if distance <= 0.0 || !(strength > 0.0) {

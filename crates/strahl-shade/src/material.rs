@@ -9,7 +9,7 @@ use strahl_math::{DVec2, det};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct MaterialId(pub u32);
 
-/// From which sides a surface exists.
+/// The sides from which a surface exists.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Sides {
     /// Seen from both sides; the normal is turned towards the viewer.
@@ -19,10 +19,10 @@ pub enum Sides {
     Front,
 }
 
-/// The coefficients of the classical model at one point (method: sections 2 and 3).
+/// The coefficients of the classical model at one point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Finish {
-    /// ka: what is reflected of the ambient light.
+    /// ka: reflectance of the ambient light.
     pub ambient: Color,
     /// kd: diffuse reflectance.
     pub diffuse: Color,
@@ -30,9 +30,9 @@ pub struct Finish {
     pub specular: Color,
     /// p: exponent of the highlight, `>= 0`.
     pub shininess: f64,
-    /// kr: share of the light from the reflected direction.
+    /// kr: factor of the radiance from the reflected direction.
     pub reflection: Color,
-    /// kt: share of the light from the transparency direction; also what a shadow ray keeps when it passes.
+    /// kt: factor of the radiance from the transparency direction; also the transmittance for shadow rays.
     pub transmission: Color,
     /// Light the surface emits itself.
     pub emission: Color,
@@ -51,7 +51,7 @@ impl Finish {
     };
 }
 
-/// What an object is made of.
+/// The material of an object.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Material {
     /// Name for messages and ray trees; may be empty.
@@ -64,8 +64,8 @@ pub struct Material {
     pub eta: f64,
     /// Absorption inside per unit length (Beer-Lambert): a path of length s keeps `exp(-absorption s)`.
     pub absorption: Color,
-    /// Whether Fresnel's equations divide the light between reflection and transparency: `kr` and `kt` are then scaled by
-    /// F and 1-F.
+    /// Whether Fresnel's equations divide the light between reflection and transparency: `kr` and `kt` are then multiplied by F
+    /// and 1-F.
     pub fresnel: bool,
     /// Whether the surface is a sheet without an inside: transparency rays pass straight, and `eta` only sets what Fresnel's
     /// equations reflect.
@@ -77,9 +77,9 @@ pub struct Material {
     /// A texture in POV-Ray's sense, which takes the place of `model`, `finish`, `fresnel` and `pbr`. Its space is that of the
     /// object that has the material, before that object's own transformation: it moves with the object.
     pub texture: Option<SharedTexture>,
-    /// The texture that the surface shows to rays from inside, if that is another (`interior_texture`).
+    /// The texture seen by rays from inside, if it is another one (`interior_texture`).
     pub inner_texture: Option<SharedTexture>,
-    /// How light fades inside, as POV-Ray's `interior` has it, which takes the place of `absorption`; `eta` holds still.
+    /// The attenuation inside as given by POV-Ray's `interior`, which takes the place of `absorption`; `eta` still counts.
     pub interior: Option<Arc<Interior>>,
 }
 
@@ -93,12 +93,12 @@ pub struct MaterialPoint<'m> {
     pub fresnel_reflection: Color,
     /// Whether Fresnel's equations apply: kt is scaled by 1-F.
     pub fresnel: bool,
-    /// What stays of the alpha channel: below 1/2 in alpha-mask mode there is no surface at all.
+    /// The opacity by the alpha channel: below 1/2 in alpha-mask mode there is no surface at all.
     pub opacity: f64,
 }
 
 impl<'m> MaterialPoint<'m> {
-    /// The coefficients as they are; with `fresnel`, all of kr depends on the angle.
+    /// The same coefficients everywhere; with `fresnel`, all of kr depends on the angle.
     #[inline]
     pub fn classical(finish: &'m Finish, fresnel: bool) -> Self {
         if !fresnel {
@@ -131,7 +131,7 @@ impl Default for Material {
 }
 
 impl Material {
-    /// The texture that rays from outside or from inside see, if the material has one.
+    /// The texture seen by rays from outside or from inside, if the material has one.
     pub fn texture_seen(&self, from_outside: bool) -> Option<&SharedTexture> {
         match &self.inner_texture {
             Some(inner) if !from_outside => Some(inner),
@@ -227,13 +227,13 @@ impl Material {
         self.pbr.as_deref().is_some_and(cutoff)
     }
 
-    /// Whether the material looks at texture coordinates.
+    /// Whether the material uses texture coordinates.
     #[inline]
     pub fn is_textured(&self) -> bool {
         self.pbr.is_some() || self.texture.is_some()
     }
 
-    /// What is left of light after a path of this length inside.
+    /// The attenuation of light on a path of this length inside.
     #[inline]
     pub fn attenuation(&self, length: f64) -> Color {
         match &self.interior {
@@ -280,13 +280,13 @@ impl Material {
         }
     }
 }
-/// Beer-Lambert: what stays of the light on a path of this length.
+/// Beer-Lambert: the attenuation of light on a path of this length.
 #[inline]
 fn transmittance(absorption: Color, length: f64) -> Color {
     if absorption.is_black() {
         return Color::WHITE;
     }
-    // An endless path through a colour that is not absorbed keeps it: 0 * inf must not become NaN.
+    // On an infinite path a colour that is not absorbed is kept: 0 * inf must not become NaN.
     absorption.map(|a| if a == 0.0 { 1.0 } else { det::exp(-a * length) })
 }
 
@@ -303,7 +303,7 @@ mod tests {
         let t = glass.attenuation(1.5);
         assert_eq!(t.r, 1.0);
         assert!((t.g - (-1.5f64).exp()).abs() < 1e-15 && (t.b - (-3.0f64).exp()).abs() < 1e-15);
-        // An endless path keeps what is not absorbed.
+        // On an infinite path only colours that are not absorbed are kept.
         assert_eq!(glass.attenuation(f64::INFINITY), Color::new(1.0, 0.0, 0.0));
     }
 }

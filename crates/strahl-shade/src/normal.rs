@@ -1,4 +1,4 @@
-//! Normals: patterns that tilt the shading normal, so that a smooth surface looks rough.
+//! Normals: patterns that perturb the shading normal, so that a smooth surface looks rough.
 //!
 //! All formulas were compared with rendered planes of POV-Ray 3.7; the normals agree within 2e-5, which is the
 //! precision of the 16-bit pictures they were reconstructed from.
@@ -30,7 +30,7 @@ impl SlopeMap {
     }
 }
 
-/// How a normal is tilted.
+/// How a normal is perturbed.
 #[derive(Clone, Debug)]
 pub enum NormalKind {
     /// By vector noise (`bumps`).
@@ -57,12 +57,12 @@ pub enum NormalKind {
     Average(Vec<(f64, PovNormal)>),
 }
 
-/// A normal statement: what tilts the normal, how much, and where the pattern lies.
+/// A normal statement: kind, amount and position of the perturbation.
 #[derive(Clone, Debug)]
 pub struct PovNormal {
-    /// How the normal is tilted.
+    /// How the normal is perturbed.
     pub kind: NormalKind,
-    /// How much: the number after the pattern's name, or `bump_size`.
+    /// The amount: the number after the pattern's name, or `bump_size`.
     pub amount: f64,
     /// Edge of the tetrahedron on whose corners a height is probed (`accuracy`), 0.02 by default.
     pub accuracy: f64,
@@ -107,7 +107,7 @@ impl PovNormal {
         tilted.normalize_or(n)
     }
 
-    /// The tilted normal in the pattern's space, not of unit length.
+    /// The perturbed normal in the pattern's space, not of unit length.
     fn tilt_inside(&self, point: &TexturePoint, n: DVec3) -> DVec3 {
         let transformed = self.modifiers.warped(point.position);
         let p = self.modifiers.displaced(transformed);
@@ -138,7 +138,7 @@ impl PovNormal {
             }
             NormalKind::Height(pattern, slopes) => {
                 let field = self.field(pattern);
-                // The tetrahedron is laid around the moved point; its corners are not moved once more.
+                // The tetrahedron surrounds the displaced point; its corners are not displaced again.
                 let height = |position: DVec3| {
                     let value = field.value_moved(position, &inner);
                     slopes.as_ref().map_or(value, |map| map.height(value))
@@ -188,7 +188,7 @@ impl PovNormal {
 }
 
 impl From<PatternField> for PovNormal {
-    /// The pattern's value as a height.
+    /// Uses the pattern's value as a height.
     fn from(field: PatternField) -> Self {
         Self {
             modifiers: field.modifiers,

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use std::sync::Arc;
 use strahl_math::{DVec2, DVec3};
 
-/// A texture with the way it is to be read.
+/// A texture with its sampling parameters.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TextureRef {
     /// The image.
@@ -83,7 +83,7 @@ pub struct Pbr {
     pub f0: f64,
     /// Scale of the tangent-space normals' x and y.
     pub normal_scale: f64,
-    /// The base colour as it is, without any light.
+    /// Shows the base colour itself, without any light.
     pub unlit: bool,
     /// The textures.
     pub textures: Textures,

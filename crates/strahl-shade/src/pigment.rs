@@ -1,4 +1,4 @@
-//! Pigments: the colour, and how much light passes, at every point of space.
+//! Pigments: the colour and the transparency at every point of space.
 
 use std::sync::Arc;
 
@@ -18,7 +18,7 @@ pub struct BlendMap<T> {
     pub entries: Vec<(f64, T)>,
 }
 
-/// What a value looks up in a [`BlendMap`].
+/// The result of a lookup in a [`BlendMap`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Blend<'a, T> {
     /// One entry alone.
@@ -33,7 +33,7 @@ impl<T> BlendMap<T> {
         Self { entries }
     }
 
-    /// What belongs to `value`; `None` only if the map is empty.
+    /// The entries for `value`; `None` only if the map is empty.
     pub fn lookup(&self, value: f64) -> Option<Blend<'_, T>> {
         let (first_at, first) = self.entries.first()?;
         if !(value > *first_at) {
@@ -89,7 +89,7 @@ impl From<ColorFt> for Pigment {
 }
 
 impl Pigment {
-    /// Whether light passes somewhere: `false` is certain, `true` is not.
+    /// Whether it may be transparent somewhere: `false` is certain, `true` is not.
     pub fn may_transmit(&self) -> bool {
         let passes = |c: &ColorFt| c.filter != 0.0 || c.transmit != 0.0;
         match self {

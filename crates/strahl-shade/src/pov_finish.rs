@@ -1,4 +1,4 @@
-//! POV-Ray's finish: how a surface treats light, as pure functions.
+//! POV-Ray's finish: how a surface reflects light, as pure functions.
 //!
 //! Every formula here was found or confirmed by rendering small scenes with POV-Ray 3.7 into 16-bit pictures of gamma 1;
 //! the largest difference was 1e-5, the pictures' own step.
@@ -16,9 +16,9 @@ pub struct PovReflection {
     pub max: Color,
     /// Whether Fresnel's equations lead from `min` to `max` instead of the power `falloff`.
     pub fresnel: bool,
-    /// Power of `1 - cos θ` that leads from `min` to `max`.
+    /// Exponent of `1 - cos θ` in the transition from `min` to `max`.
     pub falloff: f64,
-    /// What comes back is raised to the power of the reciprocal: see [`PovReflection::reflected`].
+    /// The reflected light is raised to the power of the reciprocal: see [`PovReflection::reflected`].
     pub exponent: f64,
     /// How much the reflection takes on the pigment's colour, `0..=1`.
     pub metallic: f64,
@@ -53,7 +53,7 @@ impl PovReflection {
         self.min.is_black() && self.max.is_black()
     }
 
-    /// The share of the light from the mirror direction that is reflected.
+    /// The factor of the radiance from the mirror direction.
     ///
     /// `cos_view` is the cosine between the tilted normal and the direction to the viewer, `pigment` the pigment's colour,
     /// `eta` the index of refraction behind the surface divided by the one before it.
@@ -78,7 +78,7 @@ impl PovReflection {
         reflectance * metallic_tint(self.metallic, cos, pigment)
     }
 
-    /// The light that comes back: `reflectance · light^(1 / exponent)`.
+    /// The reflected light: `reflectance · light^(1 / exponent)`.
     pub fn reflected(&self, reflectance: Color, light: Color) -> Color {
         if self.exponent == 0.0 {
             Color::BLACK
@@ -91,12 +91,12 @@ impl PovReflection {
     }
 }
 
-/// How a surface treats light.
+/// How a surface reflects light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PovFinish {
     /// Share of the scene's ambient light; default 0.1.
     pub ambient: Color,
-    /// Light of its own; default 0.
+    /// Emitted light; default 0.
     pub emission: Color,
     /// Diffuse reflectance; default 0.6.
     pub diffuse: f64,
@@ -116,7 +116,7 @@ pub struct PovFinish {
     pub metallic: f64,
     /// Mirror reflection.
     pub reflection: PovReflection,
-    /// Whether what is reflected is missing in what passes.
+    /// Whether reflected light is subtracted from the transmitted light.
     pub conserve_energy: bool,
     /// Strength of the random darkening of diffuse light (`crand`); default 0.
     pub crand: f64,
@@ -175,7 +175,7 @@ impl PovFinish {
         (p + 2.0) / (4.0 * (2.0 - det::exp(-0.5 * p * std::f64::consts::LN_2)))
     }
 
-    /// What the diffuse term makes of light of colour white: the factor of `light · pigment · opacity`.
+    /// The factor of `light · pigment · opacity` in the diffuse term.
     ///
     /// `cos_light` is the cosine between the tilted normal and the direction to the light. The opacity
     /// `1 - filter - transmit` is [`crate::ColorFt::opacity`].
@@ -194,7 +194,7 @@ impl PovFinish {
         }
     }
 
-    /// What both highlights add per unit of light: the factor of the light's colour. The opacity plays no part.
+    /// The sum of both highlights per unit of light: the factor of the light's colour, independent of the opacity.
     ///
     /// `n` is the tilted unit normal, `to_light` and `to_viewer` are unit vectors away from the surface. Light from behind
     /// (`n·to_light` of 0 or less) is the caller's to leave out: it makes highlights where an object is lit from both sides.
@@ -220,9 +220,9 @@ impl PovFinish {
         metallic_tint(self.metallic, cos_light, pigment) * strength
     }
 
-    /// What `crand` takes away from each channel of the surface's diffuse light at a place.
+    /// The amount that `crand` subtracts from each channel of the surface's diffuse light at a position.
     ///
-    /// POV-Ray draws a random number per pixel; here it depends on the place alone, so that the same scene gives the same
+    /// POV-Ray draws a random number per pixel; here it depends on the position alone, so that the same scene gives the same
     /// picture.
     pub fn grain(&self, place: DVec3) -> f64 {
         if self.crand == 0.0 {

@@ -1,7 +1,8 @@
 use std::{fmt, str::FromStr};
 use strahl_math::{DVec3, det};
 
-/// How the light that arrives at a point is turned into the light that leaves it: selectable per scene and per material.
+/// Shading models, which relate the light that arrives at a point to the light that leaves it: selectable per scene and per
+/// material.
 ///
 /// With unit vectors **n** (normal), **l** (towards the light), **v** (towards the viewer) and **h** = (l+v)/|l+v|, and per
 /// light of colour L that is visible:
@@ -84,7 +85,7 @@ impl fmt::Display for ShadingModel {
     }
 }
 
-/// There is no shading model of that name.
+/// There is no shading model with this name.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
     "unknown shading model `{0}`; there are: lambert, phong, blinn-phong, normals, depth, object-id, uv"

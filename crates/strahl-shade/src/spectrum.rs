@@ -1,4 +1,4 @@
-//! Light divided by its place in the spectrum, for glass that bends colours differently.
+//! Parts of the spectrum, for glass that refracts colours differently.
 
 use crate::Color;
 
@@ -53,13 +53,13 @@ impl SpectralPart {
         (0..count).map(move |number| Self { number, count })
     }
 
-    /// Whether it is all light.
+    /// Whether it stands for the whole spectrum.
     #[inline]
     pub const fn is_white(self) -> bool {
         self.count == 0
     }
 
-    /// The place of its middle in the spectrum: 0 is the red end, 1 the violet one; white light counts as the middle.
+    /// The position of its middle in the spectrum: 0 is the red end, 1 the violet one; white light counts as the middle.
     pub fn place(self) -> f64 {
         if self.is_white() {
             return 0.5;
@@ -67,7 +67,7 @@ impl SpectralPart {
         (f64::from(self.number) + 0.5) / f64::from(self.count)
     }
 
-    /// The share of the light that it is. The shares of all parts sum to white, within one part in 150.
+    /// Its share of the light. The shares of all parts sum to white, within one part in 150.
     pub fn share(self) -> Color {
         if self.is_white() {
             return Color::WHITE;

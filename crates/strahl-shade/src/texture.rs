@@ -12,18 +12,18 @@ use crate::pigment::{Blend, BlendMap, Pigment};
 use crate::pov_finish::PovFinish;
 use crate::{Color, ColorFt};
 
-/// One texture statement: colour, roughness and treatment of light.
+/// One texture statement: pigment, normal and finish.
 #[derive(Clone, Debug, Default)]
 pub struct PlainTexture {
     /// The colour.
     pub pigment: Pigment,
-    /// What tilts the normal; nothing by default.
+    /// The perturbation of the normal; none by default.
     pub normal: Option<Box<PovNormal>>,
-    /// The treatment of light; textures of many colours mostly have one in common.
+    /// The finish, which several textures may share.
     pub finish: Arc<PovFinish>,
 }
 
-/// What a surface looks like. Small, because a scene may have one for each of a million objects.
+/// The look of a surface. Small, because a scene may have one for each of a million objects.
 #[derive(Clone, Debug)]
 pub enum Texture {
     /// One pigment, normal and finish.
@@ -39,7 +39,7 @@ pub enum Texture {
     /// The texture whose number a picture's texel holds (`material_map`): red · 255, or the code of a grey picture, modulo the
     /// number of textures.
     MaterialMap(Arc<ImageMap>, Box<Modifiers>, Vec<Texture>),
-    /// Textures mixed by shares that depend on the place in a way of their own, as those of a blob's components are.
+    /// Textures mixed by shares that vary from point to point, as those of a blob's components.
     Shared(Arc<dyn Shares>, Vec<Texture>),
     /// A texture in a space of its own.
     Transformed(Box<Transform>, Box<Texture>),
@@ -47,7 +47,7 @@ pub enum Texture {
     UvMapped(Box<Texture>),
 }
 
-/// Says how much each of several textures counts at a point.
+/// The shares of several textures at a point.
 pub trait Shares: std::fmt::Debug + Send + Sync {
     /// Calls `visit` with the number of each texture that counts at a point and its share; the shares sum to 1.
     fn shares_at(&self, point: DVec3, visit: &mut dyn FnMut(usize, f64));
@@ -81,7 +81,7 @@ impl From<Texture> for SharedTexture {
     }
 }
 
-/// One layer of a texture at a point, with all that the surface itself decides.
+/// One layer of a texture at a point, with all properties that only depend on the surface.
 ///
 /// What a viewer sees, with `E` the ambient light, a light of colour `L` (shadows included) in direction `l`, and `R` the light
 /// from the mirror direction, is the sum over all layers of
@@ -104,9 +104,9 @@ pub struct LayerPoint<'a> {
     pub finish: &'a PovFinish,
     /// The share of this layer's stack where textures are blended; the shares of all stacks sum to 1.
     pub share: f64,
-    /// What the layers above let pass.
+    /// The transmittance of the layers above.
     pub above: Color,
-    /// The share of the light from the mirror direction that is reflected.
+    /// The factor of the radiance from the mirror direction.
     pub reflectance: Color,
 }
 
@@ -115,8 +115,8 @@ pub struct LayerPoint<'a> {
 pub struct TexturePaint<'a> {
     /// The layers: stack by stack, from the top to the bottom.
     pub layers: Vec<LayerPoint<'a>>,
-    /// What passes all layers of light from behind: the sum over the stacks of share times the product of
-    /// `rgb · filter + transmit`, with `conserve_energy` also times `1 - reflectance`.
+    /// The transmittance of all layers for light from behind: the sum over the stacks of share times the product of `rgb ·
+    /// filter + transmit`, with `conserve_energy` also times `1 - reflectance`.
     pub transmission: Color,
 }
 
@@ -163,11 +163,11 @@ impl Texture {
         out.transmission += stack.above * stack.share;
     }
 
-    /// Whether light passes somewhere: `false` is certain, `true` is not.
+    /// Whether it may be transparent somewhere: `false` is certain, `true` is not.
     pub fn may_transmit(&self) -> bool {
         match self {
             Self::Plain(texture) => texture.pigment.may_transmit(),
-            // What one layer stops does not pass.
+            // Light blocked by one layer does not pass.
             Self::Layered(layers) => layers.iter().all(Self::may_transmit),
             Self::Map(_, map) => map.entries.iter().any(|(_, t)| t.may_transmit()),
             Self::Blocks(_, textures)
@@ -178,8 +178,7 @@ impl Texture {
         }
     }
 
-    /// What light keeps that passes the surface towards a light source: as [`TexturePaint::transmission`], but without
-    /// regard to `conserve_energy`.
+    /// The transmittance for light from a light source: as [`TexturePaint::transmission`], but ignoring `conserve_energy`.
     pub fn shadow_attenuation(&self, point: &TexturePoint) -> Color {
         match self {
             Self::Plain(texture) => texture.pigment.color_at(point).attenuation(),
@@ -200,8 +199,8 @@ impl Texture {
         }
     }
 
-    /// The same for a solid whose interior gathers light ([`Interior::gathered`]), which every layer does with its own normal;
-    /// the space is that of [`Texture::layers_in`].
+    /// The same for a solid whose interior concentrates light ([`Interior::gathered`]), which every layer does with its own
+    /// normal; the space is that of [`Texture::layers_in`].
     pub fn gathered_attenuation(
         &self,
         space: Option<&Transform>,
@@ -328,7 +327,8 @@ impl Texture {
                 }
             }
             _ => {
-                // Each member starts from what the layers above leave; what passes all of them is mixed again.
+                // Each member starts with the transmittance of the layers above; the transmittances of all members are mixed
+                // again.
                 let (share, above) = (stack.share, stack.above);
                 let mut passed = Color::BLACK;
                 self.for_members(point, |texture, inner, member_space, weight| {
@@ -391,7 +391,7 @@ impl PlainTexture {
     }
 }
 
-/// The way of a normal into a texture's own space and back.
+/// The transform of a normal into a texture's own space and back.
 trait NormalSpace {
     /// The normal in the inner space, of unit length.
     fn enter(&self, n: DVec3) -> DVec3;

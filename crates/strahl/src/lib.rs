@@ -1,6 +1,6 @@
 //! **strahl** is a classical recursive ray tracer: exact, explainable, reproducible.
 //!
-//! This crate is the door for programs: everything needed to build, load, render and explain scenes.
+//! This crate has everything that programs need to build, load, render and explain scenes.
 //!
 //! # A picture in twenty lines
 //!

@@ -19,7 +19,7 @@ impl Format {
     pub const POV: (&'static str, &'static [&'static str], &'static str) =
         ("pov", &["pov"], "POV-Ray's scene description language");
 
-    /// The format that a file's name tells, if it does; before it an ending `.gz` is ignored.
+    /// The format given by a file's name, if it has a known extension; a final `.gz` is ignored.
     pub fn of_path(path: &Path) -> Option<Self> {
         let ending = ending(path)?;
         if ending == "pov" {
@@ -72,13 +72,13 @@ impl FromStr for Format {
     }
 }
 
-/// Takes what a scene says.
+/// Receives the messages of a scene.
 pub type Listener = Box<dyn FnMut(Stream, &str) + Send>;
 
-/// How a scene is loaded. All but `format` matters to POV-Ray's language only.
+/// How a scene is loaded. All fields but `format` matter only to POV-Ray's language.
 #[derive(Default)]
 pub struct LoadOptions {
-    /// The format; `None` lets the file's name and content tell.
+    /// The format; `None` detects it from the file's name and content.
     pub format: Option<Format>,
     /// Clock, picture size, declared names, limits.
     pub sdl: strahl_sdl::Options,
@@ -90,7 +90,7 @@ pub struct LoadOptions {
     pub installed: Vec<PathBuf>,
     /// The folder within which the scene may write files; `None` forbids it.
     pub writable: Option<PathBuf>,
-    /// Takes what the scene says by `#debug` and the like.
+    /// Receives the output of `#debug` and the like.
     pub on_message: Option<Listener>,
 }
 

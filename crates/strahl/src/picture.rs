@@ -6,7 +6,7 @@ use strahl_formats::image::{
 use strahl_render::{Film, PixelInfo};
 use strahl_scene::Diagnostic;
 
-/// Everything that is wrong with a scene, as one error.
+/// All errors of a scene as one error.
 #[derive(Clone, Debug)]
 pub struct Problems(pub Vec<Diagnostic>);
 
@@ -32,7 +32,7 @@ pub fn save(path: &Path, film: &Film, options: &WriteOptions) -> Result<(), Imag
     write_picture(path, &picture(film, &layers, metadata(film)), options)
 }
 
-/// A film as the writers take it.
+/// A film in the form that writers take.
 pub fn picture<'a>(
     film: &'a Film,
     layers: &'a [Layer],
@@ -54,7 +54,7 @@ pub fn picture<'a>(
     }
 }
 
-/// What is known about a film itself: the program and the checksum of its bits.
+/// Metadata of a film: the program and the checksum of its bits.
 pub fn metadata(film: &Film) -> Vec<(String, String)> {
     vec![
         (
@@ -65,8 +65,8 @@ pub fn metadata(film: &Film) -> Vec<(String, String)> {
     ]
 }
 
-/// The film's further knowledge as layers: `depth.Z`, `normal.XYZ`, `position.XYZ`, `object.id`, `material.id`,
-/// `tree.depth`, `tests.count`. Empty if the film has none.
+/// The film's further data as layers: `depth.Z`, `normal.XYZ`, `position.XYZ`, `object.id`, `material.id`, `tree.depth`,
+/// `tests.count`. Empty if the film has none.
 pub fn layers(film: &Film) -> Vec<Layer> {
     let Some(info) = &film.info else {
         return vec![];

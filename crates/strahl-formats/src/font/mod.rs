@@ -19,8 +19,8 @@ use strahl_math::DVec2;
 
 /// A font: the outlines of its letters, each made once and shared by all its uses.
 ///
-/// Lengths are in units of the font's em square, so that lines of text are about 1 apart. Of a collection the first font is taken.
-/// Letters are as drawn by their designer: nothing is fitted to pixels.
+/// Lengths are in units of the font's em square, so that lines of text are about 1 apart. Of a collection the first font is
+/// used. Outlines are unhinted.
 #[derive(Debug)]
 pub struct Font {
     bytes: Vec<u8>,
@@ -30,7 +30,7 @@ pub struct Font {
 /// A letter of a line of text.
 #[derive(Clone, Debug)]
 pub struct Letter {
-    /// Its outline about its own origin, which lies on the base line; `None` for what has none, such as spaces.
+    /// Its outline about its own origin, which lies on the base line; `None` for letters without one, such as spaces.
     pub outline: Option<Arc<Outline>>,
     /// Where its origin is on the base line.
     pub x: f64,
@@ -54,8 +54,8 @@ impl Font {
         })
     }
 
-    /// Lays out a line of text from x = 0 to the right: every letter after the width of the one before, corrected by the font's
-    /// table of pairs (`kern`). A character that the font lacks is its first glyph, usually a box.
+    /// Lays out a line of text from x = 0 to the right: every letter is advanced by the width of the one before, corrected by
+    /// the font's kerning table (`kern`). A character that the font lacks is shown as its first glyph, usually a box.
     ///
     /// There is no shaping: no ligatures, no right-to-left text.
     ///
@@ -118,7 +118,7 @@ fn advance(metrics: &GlyphMetrics<'_>, id: GlyphId) -> f64 {
     f64::from(metrics.advance_width(id).unwrap_or(0.0))
 }
 
-/// By how many units two letters in a row move apart.
+/// The kerning of two letters, in units.
 fn kerning(font: &FontRef<'_>, left: GlyphId, right: GlyphId) -> i32 {
     let Ok(kern) = font.kern() else {
         return 0;
@@ -136,7 +136,7 @@ fn kerning(font: &FontRef<'_>, left: GlyphId, right: GlyphId) -> i32 {
     pairs.sum()
 }
 
-/// The outline of a glyph; `None` if there is nothing to see.
+/// The outline of a glyph; `None` if it is empty.
 fn outline(
     outlines: &OutlineGlyphCollection<'_>,
     id: GlyphId,
@@ -157,7 +157,7 @@ fn outline(
             message: error.to_string(),
         });
     }
-    // A glyph of nothing but points is as good as a space.
+    // A glyph that consists of points only counts as a space.
     Ok(if pen.drawn {
         pen.builder.finish().ok()
     } else {

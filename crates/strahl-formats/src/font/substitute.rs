@@ -1,6 +1,6 @@
-/// The families that take the place of a font, best first, as the names of their files without folder.
+/// Replacement families for a font, best first, as file names without folder.
 ///
-/// Those named first have letters of the same widths as the font they replace, so that texts keep their length.
+/// The first ones have the same letter widths as the font they replace, so that texts keep their length.
 const FAMILIES: &[(&[&str], Styles)] = &[
     (
         &[
@@ -106,8 +106,8 @@ const MONO: Styles = [
     ],
 ];
 
-/// Files of other fonts that may stand in for one that is not there, best first: of the same kind (sans serif, serif, all
-/// letters equally wide) and style as its name says; serif if it says nothing.
+/// Files of other fonts that can replace a missing one, best first: of the same kind (sans serif, serif, monospaced) and style
+/// as its name says; serif if it says nothing.
 pub fn substitutes(file: &str) -> impl Iterator<Item = &'static str> {
     let name = file.rsplit(['/', '\\']).next().unwrap_or(file);
     let name = name.to_ascii_lowercase();

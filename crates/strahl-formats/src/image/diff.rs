@@ -1,8 +1,8 @@
-//! How far two pictures are apart.
+//! The difference of two pictures.
 
 use strahl_shade::srgb;
 
-/// The difference of two pictures, per channel, in units of 8-bit sRGB codes that aren't rounded: 1 is a step one might just see.
+/// The difference of two pictures, per channel, in units of unrounded 8-bit sRGB codes: 1 is just about visible.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Difference {
     /// Root of the mean squared difference.
@@ -11,7 +11,7 @@ pub struct Difference {
     pub max: [f64; 3],
 }
 
-/// Compares the linear colours of two pictures as they would be shown: clamped to `0..=1` and sRGB encoded, NaN as 0.
+/// Compares the linear colours of two pictures as they are displayed: clamped to `0..=1` and sRGB encoded, NaN as 0.
 ///
 /// `None` if the pictures have different numbers of pixels; no pixels differ by nothing.
 pub fn compare(a: &[[f32; 3]], b: &[[f32; 3]]) -> Option<Difference> {

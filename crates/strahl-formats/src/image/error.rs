@@ -1,4 +1,4 @@
-//! What can go wrong with picture files, and what to do about it.
+//! Errors of picture files, with advice.
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -7,17 +7,17 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ImageError {
-    /// The file name doesn't tell a known format.
+    /// The extension of the file name is not that of a known format.
     #[error("`{}` does not name a picture format: {found}; end it in one of {known}", path.display())]
     UnknownFormat {
         /// The file.
         path: PathBuf,
         /// What its name ends in, in words.
         found: String,
-        /// The extensions there are.
+        /// The known extensions.
         known: String,
     },
-    /// There is nothing to write.
+    /// The picture is empty.
     #[error(
         "a picture of {width} x {height} pixels cannot be written: it needs at least one pixel in each direction"
     )]
@@ -27,7 +27,7 @@ pub enum ImageError {
         /// Rows of the window.
         height: u32,
     },
-    /// The picture contradicts itself.
+    /// The parts of the picture don't fit together.
     #[error("the picture cannot be written: {0}")]
     Invalid(String),
     /// The picture is larger than the format's numbers reach.
@@ -45,7 +45,7 @@ pub enum ImageError {
         /// The most pixels per direction.
         limit: u32,
     },
-    /// The format stores nothing but colours.
+    /// The format stores colours only.
     #[error(
         "{format} pictures have no layers (`{layer}` was asked for): write {able}, or no layers"
     )]

@@ -24,7 +24,7 @@ pub(super) fn encode(
     let layer = Layer::new(
         size(window.width, window.height),
         layer_attributes(picture),
-        // Rows of 16 in a fixed order: the bytes don't depend on how many threads compress them.
+        // Rows of 16 in a fixed order: the bytes don't depend on the number of compressing threads.
         Encoding::SMALL_LOSSLESS,
         AnyChannels::sort(channels(picture, options).into_iter().collect()),
     );

@@ -20,7 +20,7 @@ pub enum ImageFormat {
     Ppm,
 }
 
-/// What a format is called and what it can do.
+/// Names and capabilities of a format.
 #[derive(Debug)]
 pub struct FormatInfo {
     /// The format.

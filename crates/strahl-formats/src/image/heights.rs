@@ -1,4 +1,4 @@
-//! Picture files as landscapes: the number that each pixel stands for, as POV-Ray's height fields take it.
+//! Picture files as height fields: the height of each pixel, as POV-Ray computes it.
 
 use std::io::{BufRead, Cursor, Seek};
 
@@ -23,9 +23,9 @@ pub struct Heights {
 
 /// Reads the heights of a picture: PNG, JPEG, HDR, TIFF, TGA, BMP, GIF (the first picture) or PNM.
 ///
-/// What a pixel is worth depends on its kind, as POV-Ray 3.7 has it (measured): of pictures with a palette the index, times
-/// 256; of greys the value, 8 bits times 257; of colours of 8 bits red as the high and green as the low byte; of deeper
-/// colours the brightness. Alpha doesn't count.
+/// The height of a pixel depends on the kind of picture, as in POV-Ray 3.7 (measured): for pictures with a palette it is the
+/// index, times 256; for greys the value, 8 bits times 257; for colours of 8 bits red is the high and green the low byte; for
+/// deeper colours it is the brightness. Alpha is ignored.
 pub fn decode_heights(bytes: &[u8], name: &str) -> Result<Heights, ImageError> {
     let reader = open_picture(bytes, name)?;
     let indexed = match reader.format() {
@@ -77,7 +77,7 @@ fn two_bytes(high: u8, low: u8) -> u16 {
 
 /// The height of a colour of components from 0 to 1.
 fn brightness([r, g, b]: [f64; 3]) -> u16 {
-    // The cast cuts off, and takes NaN for 0. A whole code must not fall below itself by rounding.
+    // The cast truncates and turns NaN into 0. A whole code must not become smaller by rounding.
     ((0.297 * r + 0.589 * g + 0.114 * b) * 65535.0 + 1e-3) as u16
 }
 

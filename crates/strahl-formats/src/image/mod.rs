@@ -1,4 +1,4 @@
-//! Pictures out, textures in.
+//! Writing pictures and reading textures.
 //!
 //! [`write_picture`] writes a rendered [`Picture`] in the format its file name asks for; [`formats`] is the table of formats,
 //! one line each. [`read_texture`] reads picture files as textures. [`compare`] tells how far two pictures are apart.

@@ -1,4 +1,4 @@
-//! What is written: a picture, its additional layers and what is known about it.
+//! A picture with its additional layers and metadata.
 
 use std::collections::HashSet;
 
@@ -78,7 +78,7 @@ impl<'a> Picture<'a> {
             .collect()
     }
 
-    /// Checks everything no format can write.
+    /// Checks for errors that concern every format.
     pub(super) fn check(&self) -> Result<(), ImageError> {
         let Window {
             x,

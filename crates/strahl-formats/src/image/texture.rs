@@ -18,7 +18,7 @@ pub const MAX_TEXELS: u64 = 1 << 30;
 /// The most bytes a decoder may ask for: [`MAX_TEXELS`] of four bytes.
 const MAX_BYTES: u64 = 4 * MAX_TEXELS;
 
-/// What a texture is for, which decides what its integer codes mean. Floating-point files are linear always.
+/// The use of a texture, which determines the meaning of its integer codes. Floating-point files are always linear.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum TextureUse {
     /// A colour: codes are sRGB.
@@ -175,7 +175,7 @@ fn build(
     mut data: TexelData,
 ) -> Result<TextureImage, ImageError> {
     if let TexelData::F32(samples) = &mut data {
-        // One such texel would spread over everything that is filtered or reflected with it.
+        // A single NaN or infinite texel would spread to everything that is filtered or reflected with it.
         for sample in samples {
             if sample.is_nan() {
                 *sample = 0.0;

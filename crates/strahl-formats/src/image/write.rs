@@ -1,4 +1,4 @@
-//! From a picture to a file that is there entirely or not at all.
+//! Writes files atomically: a file is complete or does not exist.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufWriter, Write};
@@ -8,9 +8,9 @@ use super::{ImageError, ImageFormat, Picture, WriteOptions};
 
 /// Writes the picture in the format the file's extension asks for.
 ///
-/// The picture is written to a temporary file of the same folder, which then takes the file's name: under this name there
-/// is either the complete picture or what was there before, whatever happens. When writing fails, the temporary file is removed.
-/// A symbolic link is followed. Devices and pipes, which can't be replaced, are written directly.
+/// The picture is written to a temporary file in the same folder, which is then renamed: under the file's name there is either
+/// the complete picture or the previous file, whatever happens. If writing fails, the temporary file is removed. A symbolic
+/// link is followed. Devices and pipes, which can't be replaced, are written directly.
 pub fn write_picture(
     path: impl AsRef<Path>,
     picture: &Picture<'_>,
@@ -41,7 +41,7 @@ pub fn encode_picture(
         })
 }
 
-/// Writes any other file in the same manner: it is there entirely or not at all.
+/// Writes any other file in the same way.
 pub fn write_bytes(path: impl AsRef<Path>, bytes: &[u8]) -> Result<(), ImageError> {
     write_atomically(path.as_ref(), |writer| writer.write_all(bytes))
 }
@@ -89,7 +89,7 @@ fn write_atomically(
         if let Some(permissions) = permissions {
             temporary.as_file().set_permissions(permissions)?;
         }
-        // Network file systems report a full disk only now.
+        // Network file systems report a full disk only at this point.
         temporary.as_file().sync_all()
     };
     finish().map_err(failed)?;
@@ -103,7 +103,7 @@ fn write_atomically(
 fn temporary_file(folder: &Path) -> io::Result<tempfile::NamedTempFile> {
     let mut builder = tempfile::Builder::new();
     builder.prefix(".strahl-").suffix(".tmp");
-    // The picture is no secret: as readable as files are here, where temporary files would be the owner's alone.
+    // Pictures get the usual permissions, while temporary files would be readable by the owner only.
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
     builder.tempfile_in(folder)

@@ -25,8 +25,8 @@ impl Vertex {
 
 /// Gathers vertices and triangles.
 ///
-/// The mesh has normals if any vertex has one, and texture coordinates likewise. Corners that have none then get the
-/// zero vector and the origin; a reader that mixes both sees to it that this does not show.
+/// The mesh has normals if any vertex has one, and likewise texture coordinates. Vertices without them get the zero vector and
+/// the origin; a reader that mixes both ensures that this does not show.
 #[derive(Debug, Default)]
 pub(crate) struct MeshParts {
     pub(super) positions: Vec<DVec3>,
@@ -92,13 +92,13 @@ impl MeshParts {
     }
 }
 
-/// What vertices are told apart by, and all there is to them.
+/// The key of a vertex: all its data.
 pub(crate) trait VertexKey: Copy + Eq + Hash + Send + Sync {
     /// The vertex.
     fn vertex(self) -> Vertex;
 }
 
-/// Gathers triangles whose corners are found again: equal corners become one vertex.
+/// Collects triangles and merges equal corners into one vertex.
 #[derive(Debug)]
 pub(crate) struct MeshBuilder<K> {
     /// The numbers of the vertices.

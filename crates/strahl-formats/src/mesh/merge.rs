@@ -6,10 +6,10 @@ use std::hash::{BuildHasher, Hash};
 use std::sync::Arc;
 use strahl_geometry::{GeometryError, TriangleMesh};
 
-/// Keys are found again in this many tables, so that each of them stays in the cache.
+/// Keys are looked up in this many tables, so that each of them stays in the cache.
 const SHARDS: usize = 128;
 
-/// A mesh in pieces, which several threads have read. Vertices of different pieces with the same key are one.
+/// A mesh in pieces, read by several threads. Vertices of different pieces with the same key are merged.
 #[derive(Debug)]
 pub(crate) struct MeshPieces<K>(Vec<MeshBuilder<K>>);
 
@@ -86,8 +86,7 @@ fn merged<K: VertexKey>(pieces: Vec<MeshBuilder<K>>) -> (Vec<K>, Vec<[u32; 3]>, 
     (vertices, triangles, lines)
 }
 
-/// Which vertices of the pieces are which of the mesh. Those of a piece that no piece before it has are numbered on, in
-/// their order.
+/// The mesh's number of each vertex of the pieces. Vertices that occur in a piece first are numbered in their order.
 struct Numbers {
     /// By piece and vertex.
     of_pieces: Vec<Vec<u32>>,

@@ -1,4 +1,4 @@
-//! Formats that describe surfaces (OBJ, PLY, STL), and what turns their faces into meshes.
+//! Formats of surfaces (OBJ, PLY, STL), and how their faces become meshes.
 
 mod builder;
 mod merge;

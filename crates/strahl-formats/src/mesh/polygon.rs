@@ -46,7 +46,7 @@ impl Triangulator {
     /// corner; of any other, projected along the largest coordinate of its normal, the ears are cut off.
     ///
     /// # Errors
-    /// Why there are none, in words.
+    /// The reason why there are none, in words.
     pub(crate) fn triangulate(
         &mut self,
         corners: &[DVec3],

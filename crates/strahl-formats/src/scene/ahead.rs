@@ -1,10 +1,10 @@
-//! Reading ahead: the parts of a text on all threads, before the reader that puts them together comes to them.
+//! Reading ahead: all threads parse parts of a text before the sequential reader, which joins them, arrives there.
 //!
-//! A text is cut at line ends, and every part is read from its first statement on, by a function that knows nothing of what
-//! is before. Meanwhile the reader goes through the statements one after the other, and takes what has been read ahead wherever a
-//! statement begins at the very byte where a [`Piece`] does. So it makes no difference how the text is cut: a part that
-//! begins within something is never asked for, and where a piece ends early (at an error, say) the reader goes on by
-//! itself. What a piece says about places is exact, since the lines are counted first.
+//! A text is cut at line ends, and every part is parsed from its first statement on, by a function that does not know the text
+//! before it. Meanwhile the reader goes through the statements one after the other, and takes a [`Piece`] wherever a statement
+//! begins at exactly the byte where the piece does. So it makes no difference how the text is cut: a part that begins within a
+//! statement is never used, and where a piece ends early (at an error, say) the reader parses the text itself. Line numbers in
+//! pieces are exact, because lines are counted first.
 
 use super::report::Fallible;
 use super::text::Words;
@@ -19,32 +19,32 @@ use {super::Input, super::Report, strahl_scene::Scene};
 /// Bytes of a part: what is made of it stays in the cache of a core. Fuzzers' texts are short, and shall be cut too.
 const PART: usize = if cfg!(fuzzing) { 64 } else { 1 << 20 };
 
-/// Parts that are read at the same time; what is made of them waits in memory.
+/// Parts that are parsed at the same time; their results wait in memory.
 const AT_ONCE: usize = 32;
 
-/// Statements that have been read.
+/// Statements that have been parsed.
 #[derive(Debug)]
 pub(crate) struct Piece<'a, T> {
     /// The byte where the first of them begins.
     pub(crate) start: usize,
-    /// What was made of them.
+    /// The result of parsing them.
     pub(crate) content: T,
-    /// What is behind the last of them.
+    /// The text behind the last of them.
     pub(crate) rest: Words<'a>,
 }
 
-/// What reads statements one by one.
+/// A parser of single statements.
 pub(crate) trait Statements<'a> {
-    /// Where it is in the text.
+    /// Its position in the text.
     fn words(&mut self) -> &mut Words<'a>;
 
-    /// Reads the statement that is next. One that is wrong leaves no trace.
+    /// Parses the next statement. An erroneous one leaves no trace.
     fn statement(&mut self) -> Fallible<()>;
 }
 
-/// Reads the statements that begin before `end`, up to the first that is wrong. The first of them is next.
+/// Parses the statements that begin before `end`, up to the first erroneous one. The first of them is next.
 ///
-/// The result is where it begins and what is behind the last, if there was any.
+/// Returns where it begins and the text behind the last one, if there was any.
 pub(crate) fn read_statements<'a>(
     parser: &mut impl Statements<'a>,
     end: usize,
@@ -65,11 +65,11 @@ pub(crate) fn read_statements<'a>(
 #[derive(Debug)]
 pub(crate) struct Ahead<'a, T> {
     part: usize,
-    /// What becomes of the parts that are being read, in the order of the text.
+    /// The results of the parts that are being parsed, in the order of the text.
     parts: VecDeque<Receiver<Option<Piece<'a, T>>>>,
-    /// The next piece, if it has been read.
+    /// The next piece, if it has been parsed.
     next: Option<Piece<'a, T>>,
-    /// Where the parts end so far, and the line there.
+    /// The end of the parts so far, and the line there.
     until: usize,
     line: u32,
 }
@@ -123,7 +123,7 @@ impl<'a, T> Ahead<'a, T> {
             // Nobody listens any more if the reader has given up.
             let task = move || sender.send(read(part, end)).unwrap_or(());
             if end == text.len() && self.parts.is_empty() {
-                // The whole text, most likely: no threads for it.
+                // Probably the whole text, which needs no threads.
                 task();
             } else {
                 scope.spawn(move |_| task());
@@ -150,7 +150,7 @@ impl<'a, T> Ahead<'a, T> {
     }
 }
 
-/// Waits for a piece. A thread that reads parts for others helps meanwhile, or else all of them might be waiting.
+/// Waits for a piece. A thread of the pool helps meanwhile, because otherwise all of them might be waiting.
 fn wait<T>(part: &Receiver<Option<T>>) -> Option<T> {
     loop {
         match part.try_recv() {

@@ -10,21 +10,21 @@ use std::ops::Deref;
 use std::path::{Component, Path};
 use strahl_scene::Diagnostic;
 
-/// Most bytes read from something that is no regular file (a pipe) and so has no size of its own.
+/// Most bytes read from a pipe or device, which has no size.
 const PIPE_LIMIT: u64 = 1 << 32;
 
 /// Files from this size on are mapped: smaller ones are read as fast.
 const MAPPED: u64 = 16 << 20;
 
-/// How far a compressed file may expand: this much, and [`MOST_EXPANSION`] times its size. Scenes shrink to a tenth, rarely
-/// to a hundredth; gzip's extreme is a thousandth.
+/// How far a compressed file may expand: this much, and [`MOST_EXPANSION`] times its size. Scenes are compressed to a tenth,
+/// rarely to a hundredth; gzip's extreme is a thousandth.
 const FREE_EXPANSION: u64 = 64 << 20;
 const MOST_EXPANSION: u64 = 200;
 
 /// All bytes of a file, decompressed if it begins like gzip: for readers of formats outside of this crate.
 ///
 /// # Errors
-/// What is in the way: no such file, no permission, damaged gzip data, or data that expands without measure.
+/// The reason why it can't be read: no such file, no permission, damaged gzip data, or data that expands too much.
 pub fn read_decompressed(path: &Path) -> Result<Vec<u8>, Box<Diagnostic>> {
     let name = path.display().to_string();
     match read_file(path)? {
@@ -50,7 +50,7 @@ impl Deref for FileBytes {
     }
 }
 
-/// All bytes of a file, or what is in the way.
+/// All bytes of a file, or the reason why it can't be read.
 pub(super) fn read_file(path: &Path) -> Fallible<FileBytes> {
     let name = path.display();
     let about = |e: &io::Error| match e.kind() {
@@ -103,7 +103,7 @@ fn map(path: &Path) -> Option<Mmap> {
     unsafe { Mmap::map(&file) }.ok()
 }
 
-/// Decompresses what begins like gzip; anything else comes back as it is.
+/// Decompresses data that begins like gzip; anything else is returned unchanged.
 pub(super) fn decompressed<'a>(bytes: Cow<'a, [u8]>, name: &str) -> Fallible<Cow<'a, [u8]>> {
     const MAGIC: [u8; 2] = [0x1f, 0x8b];
     if !bytes.starts_with(&MAGIC) {

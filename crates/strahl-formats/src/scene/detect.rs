@@ -28,13 +28,13 @@ pub struct FormatInfo {
     pub name: &'static str,
     /// The endings of its files, without the dot, lower case.
     pub extensions: &'static [&'static str],
-    /// What it is, for people.
+    /// Its description.
     pub description: &'static str,
-    /// Whether a file that begins like this is surely of this format.
+    /// Whether a file that begins like this certainly has this format.
     looks_like: fn(&[u8]) -> bool,
 }
 
-// THE table of scene formats: a new one is one line here, one in the enum and one in `read`.
+// The table of scene formats: a new one is one line here, one in the enum and one in `read`.
 const FORMATS: [FormatInfo; 5] = [
     FormatInfo {
         format: SceneFormat::Nff,
@@ -101,7 +101,7 @@ impl SceneFormat {
         FORMATS.iter().find(known).map(|info| info.format)
     }
 
-    /// The format that the (uncompressed) bytes show, if they do. Binary STL has no mark of its own and is not recognised.
+    /// The format detected from the (uncompressed) bytes, if possible. Binary STL has no mark of its own and is not recognised.
     pub fn sniff(bytes: &[u8]) -> Option<Self> {
         FORMATS
             .iter()

@@ -1,4 +1,4 @@
-//! Expressions once more, with something in them replaced.
+//! Copies of expressions with replacements.
 
 use super::{Expr, Graph, List, Node};
 use crate::error::FunctionError;

@@ -1,9 +1,9 @@
 use strahl_math::DVec3;
 
-/// The extent of a light: a rectangle or an ellipse with a grid of points that shine.
+/// The extent of an area light: a rectangle or an ellipse with a grid of points that shine.
 ///
-/// The points lie in rows from edge to edge. What arrives is their mean in the way of POV-Ray: the grid is halved again
-/// and again, and each cell counts as the mean of its corners, so that points inside count more than points on the edge.
+/// The points lie in rows from edge to edge. Their mean is taken as in POV-Ray: the grid is halved again and again, and each
+/// cell counts as the mean of its corners, so that points inside count more than points on the edge.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AreaLight {
     /// One edge of the rectangle.
@@ -23,8 +23,8 @@ pub struct AreaLight {
     pub circular: bool,
     /// Whether the light turns towards each lit point.
     pub orient: bool,
-    /// Whether each point of the grid shades by its own direction; otherwise the grid makes shadows only, and shading
-    /// takes the centre.
+    /// Whether each point of the grid is shaded by its own direction; otherwise the grid is used for shadows only, and the
+    /// centre for shading.
     pub illumination: bool,
     /// For parallel light the distance at which the points of the grid are as far apart as the axes say: each point shines
     /// along its own line to the place pointed at. Not used otherwise.
@@ -51,8 +51,8 @@ impl AreaLight {
         }
     }
 
-    /// From the centre of the light to point `(i, j)` of its grid, as it stands for what lies at `lit` and sees the centre
-    /// in the unit direction `l`.
+    /// The vector from the centre of the light to point `(i, j)` of its grid, for the point `lit`, which sees the centre in the
+    /// unit direction `l`.
     pub fn offset(&self, i: u32, j: u32, lit: DVec3, l: DVec3) -> DVec3 {
         let (jitter_1, jitter_2) = if self.jitter {
             random_pair(lit, i, j)

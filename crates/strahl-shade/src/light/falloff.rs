@@ -1,6 +1,6 @@
 use strahl_math::det;
 
-/// How a light weakens with the distance `d` to it.
+/// The attenuation of a light with the distance `d`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Falloff {
     /// Not at all: the classical model.

@@ -14,7 +14,7 @@ pub enum FractalKind {
     Magnet2,
 }
 
-/// What a point outside of the set, whose orbit escapes after `k` steps at `z`, is worth.
+/// The value of a point outside of the set, whose orbit escapes after `k` steps at `z`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Exterior {
     /// 0: the factor.
@@ -33,7 +33,7 @@ pub enum Exterior {
     Absolute(f64),
 }
 
-/// What a point of the set, whose orbit ends at `z`, is worth.
+/// The value of a point of the set, whose orbit ends at `z`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Interior {
     /// 0: the factor.

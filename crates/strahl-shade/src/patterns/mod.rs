@@ -1,4 +1,4 @@
-//! Patterns: functions from a point to a number, by which colours, normals and whole textures are chosen.
+//! Patterns: functions from a point to a number, which select colours, normals and whole textures.
 //!
 //! They are POV-Ray's, and give its values: every pattern here was compared with `function { pattern { ... } }` of
 //! POV-Ray 3.7 (the tables of `tests.rs`).
@@ -32,15 +32,15 @@ pub use warp::{BlackHole, Mapping, Warp};
 use crate::image_map::ImageMap;
 use crate::pigment::Pigment;
 
-/// Where a texture is asked for its value.
+/// The point at which a texture is evaluated.
 ///
 /// All vectors are in the space of `position`; when a texture, pigment or pattern has a transformation of its own,
 /// only the position is carried into its space, as in POV-Ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TexturePoint {
-    /// The place on the surface, in the space of the texture.
+    /// The position on the surface, in the space of the texture.
     pub position: DVec3,
-    /// The same place in the world: textures, pigments and patterns don't move it.
+    /// The same position in world space, unaffected by the transformations of textures, pigments and patterns.
     pub surface: DVec3,
     /// Unit normal of the surface, turned towards the viewer.
     pub n_geom: DVec3,
@@ -72,18 +72,18 @@ impl TexturePoint {
     }
 }
 
-/// Something with an inside, for the object pattern. Implemented by whoever knows shapes.
+/// An object with an inside, for the object pattern. Implemented by a crate that knows shapes.
 pub trait Inside: std::fmt::Debug + Send + Sync {
     /// Whether the point lies inside.
     fn contains(&self, p: DVec3) -> bool;
 
-    /// What that takes.
+    /// The cost of that.
     fn cost(&self) -> Cost {
         Cost::FORMULA
     }
 }
 
-/// The patterns: name, parameters and formula. THE table.
+/// The table of patterns: name, parameters and formula.
 #[derive(Clone, Debug)]
 pub enum Pattern {
     /// Bands of marble-like stone with a turbulence of its own, along z.
@@ -196,7 +196,7 @@ impl Pattern {
         }
     }
 
-    /// The wave form the pattern has unless one is written.
+    /// The wave form of the pattern by default.
     pub fn default_wave(&self) -> Wave {
         match self {
             Self::Marble | Self::Spiral1(_) | Self::Spiral2(_) | Self::Wood => Wave::Triangle,
@@ -204,7 +204,7 @@ impl Pattern {
         }
     }
 
-    /// Whether turbulence moves the point before the formula; marble and wood have their own use for it.
+    /// Whether turbulence displaces the point before the formula; marble and wood use it differently.
     fn is_displaced(&self) -> bool {
         !matches!(self, Self::Marble | Self::Wood)
     }

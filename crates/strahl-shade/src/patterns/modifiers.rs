@@ -41,18 +41,18 @@ pub(super) fn triangle(x: f64) -> f64 {
     if x < 0.5 { 2.0 * x } else { 2.0 - 2.0 * x }
 }
 
-/// What changes a pattern without changing its kind.
+/// Modifiers that apply to any pattern.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Modifiers {
     /// Warps and transformations in the order they are written; the last is applied to the point first.
     pub warps: Vec<Warp>,
-    /// How far turbulence moves the point along each axis; zero is no turbulence.
+    /// The amplitude of turbulence along each axis; zero is no turbulence.
     pub turbulence: DVec3,
     /// The octaves of `turbulence`, and of the patterns that have a turbulence built in.
     pub octaves: Turbulence,
     /// How often the map is run through over one period of the pattern.
     pub frequency: f64,
-    /// What the value is shifted by after multiplication with `frequency`.
+    /// Added to the value after multiplication with `frequency`.
     pub phase: f64,
     /// The wave form; `None` takes the pattern's.
     pub wave: Option<Wave>,

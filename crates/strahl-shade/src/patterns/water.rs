@@ -43,14 +43,14 @@ pub(super) fn waves(p: DVec3, sources: u32, modifiers: &Modifiers) -> f64 {
     0.5 + 0.2 * sum / f64::from(sources.max(1))
 }
 
-/// Where ripples tilt a normal: from the sources, by the wave's slope.
+/// The perturbation of a normal by ripples: away from the sources, by the wave's slope.
 pub(crate) fn ripples_tilt(p: DVec3, sources: u32, modifiers: &Modifiers) -> DVec3 {
     tilt(p, sources, |_, length| {
         cycloidal(length * modifiers.frequency + modifiers.phase)
     })
 }
 
-/// Where waves tilt a normal.
+/// The perturbation of a normal by waves.
 pub(crate) fn waves_tilt(p: DVec3, sources: u32, modifiers: &Modifiers) -> DVec3 {
     tilt(p, sources, |i, length| {
         let f = wave_frequency(i);

@@ -6,10 +6,10 @@ use std::sync::Arc;
 use strahl_math::{DVec2, DVec3};
 use strahl_scene::Diagnostic;
 
-/// What statements say, one after the other.
+/// The content of statements, one after the other.
 #[derive(Debug, Default)]
 pub(super) struct Block {
-    /// Where the first of them begins.
+    /// The byte at which the first of them begins.
     pub(super) start: usize,
     pub(super) positions: Vec<DVec3>,
     pub(super) uvs: Vec<DVec2>,
@@ -17,14 +17,14 @@ pub(super) struct Block {
     /// Of all faces.
     pub(super) corners: Vec<RawCorner>,
     pub(super) steps: Vec<Step>,
-    /// How long the lists were at the last face.
+    /// The lengths of the lists at the last face.
     counts: Counts,
 }
 
-/// All that is no entry of a list. Nearly all are faces, so that they are small.
+/// A statement that is not an entry of a list. Nearly all are faces, so faces are small.
 #[derive(Debug)]
 pub(super) enum Step {
-    /// The lists of the block have grown to this where the faces to come are.
+    /// The lengths of the lists for the following faces.
     Counts(Box<Counts>),
     Face(Face),
     Object(Arc<str>),
@@ -72,7 +72,7 @@ impl Block {
         }
     }
 
-    /// Notes how long the lists are, if they have grown since the last face.
+    /// Records the lengths of the lists, if they have grown since the last face.
     fn count(&mut self) {
         let counts = Counts {
             positions: self.positions.len(),
@@ -86,15 +86,15 @@ impl Block {
     }
 }
 
-/// Reads statements, one after the other, without regard to what was before them.
+/// Parses statements without knowing those before them.
 pub(super) struct Parser<'a> {
     pub(super) text: Text<'a>,
     pub(super) words: Words<'a>,
-    /// What has been read.
+    /// The result so far.
     pub(super) block: Block,
 }
 
-/// Reads the statements that begin before `end`, up to the first that is wrong.
+/// Parses the statements that begin before `end`, up to the first erroneous one.
 pub(super) fn read_ahead<'a>(
     text: Text<'a>,
     words: Words<'a>,

@@ -36,7 +36,7 @@ impl Add for Counts {
     }
 }
 
-/// The numbers of a corner as they are written: from 1 on, or back from the end. 0 is none.
+/// The numbers of a corner as written: from 1 on, or backwards from the end. 0 means none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct RawCorner {
     position: i32,
@@ -44,7 +44,7 @@ pub(super) struct RawCorner {
     normal: i32,
 }
 
-/// Stands for numbers that are those of no entry, whatever they are.
+/// Stands for a number that is out of range for any list.
 const NO_ENTRY: i32 = i32::MIN;
 
 impl RawCorner {
@@ -74,7 +74,7 @@ impl RawCorner {
         })
     }
 
-    /// Finds the entries when the lists are so long.
+    /// Finds the entries, given the current lengths of the lists.
     #[inline]
     pub(super) fn resolve(&self, counts: &Counts) -> Option<Corner> {
         let optional = |number, count| match number {
@@ -119,7 +119,7 @@ fn numbers(word: &[u8]) -> Result<[Option<i64>; 3], String> {
     ])
 }
 
-/// Tells what is wrong with a corner when the lists are so long.
+/// Explains the error in a corner, given the current lengths of the lists.
 pub(super) fn check_corner(word: &[u8], counts: &Counts) -> Result<(), String> {
     let counts = [counts.positions, counts.uvs, counts.normals];
     for ((number, count), what) in numbers(word)?
@@ -164,7 +164,7 @@ fn whole_number(part: &[u8], what: &str) -> Result<i64, String> {
     })
 }
 
-/// What tells one mesh from another.
+/// The key of a mesh.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub(super) struct PartKey {
     pub(super) object: Arc<str>,
@@ -197,7 +197,7 @@ pub(super) struct Faces {
     pub(super) positions: Vec<DVec3>,
     pub(super) uvs: Vec<DVec2>,
     pub(super) normals: Vec<DVec3>,
-    /// The face being read.
+    /// The corners of the current face.
     pub(super) corners: Vec<Corner>,
     vertices: Vertices,
     parts: Vec<(PartKey, Part)>,
@@ -220,7 +220,7 @@ impl Faces {
         }
     }
 
-    /// Adds the face in `corners`, or tells why it is left out.
+    /// Adds the face in `corners`, or returns why it is left out.
     pub(super) fn add(
         &mut self,
         key: &PartKey,

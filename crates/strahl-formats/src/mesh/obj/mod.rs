@@ -37,12 +37,12 @@ use strahl_shade::Material;
 /// Most material libraries of one file.
 const MOST_LIBRARIES: usize = 256;
 
-/// Reads a scene; what is wrong goes to the report.
+/// Reads a scene; errors and warnings go to the report.
 pub(crate) fn read(input: &Input<'_>, report: &mut Report) -> Scene {
     read_with(input, report, Ahead::default())
 }
 
-/// [`read`] with parts of another size, which makes no difference.
+/// [`read`] with parts of another size, which does not change the result.
 fn read_with<'a>(input: &'a Input<'a>, report: &mut Report, ahead: Ahead<'a, Block>) -> Scene {
     let mut scene = Scene::default();
     let text = Text {
@@ -69,7 +69,7 @@ fn read_with<'a>(input: &'a Input<'a>, report: &mut Report, ahead: Ahead<'a, Blo
     reader.finish()
 }
 
-/// Puts together what statements say.
+/// Joins the statements into a scene.
 struct Reader<'a, 'r> {
     input: &'a Input<'a>,
     text: Text<'a>,
@@ -80,7 +80,7 @@ struct Reader<'a, 'r> {
     materials: HashMap<Arc<str>, Arc<Material>>,
     textures: TextureFiles<'a>,
     faces: Faces,
-    /// Names and material of the faces to come.
+    /// Names and material of the following faces.
     current: PartKey,
     /// The smoothing group, 0 for none.
     smoothing: u32,
@@ -186,7 +186,7 @@ impl<'a> Reader<'a, '_> {
         Ok(())
     }
 
-    /// What is wrong with a face whose corners can't be resolved.
+    /// The error of a face whose corners can't be resolved.
     #[cold]
     fn wrong_corner(&self, start: usize, line: u32, counts: &Counts) -> Box<Diagnostic> {
         let mut words = self.text.words(start, line).with_continuation();
@@ -252,7 +252,7 @@ impl<'a> Reader<'a, '_> {
             file: self.scene.sources.add(&shown),
         };
         for material in mtl::read(text, &mut self.textures, self.report) {
-            // The first of a name counts, as in other programs.
+            // The first of several materials with the same name counts, as in other programs.
             self.materials
                 .entry(Arc::from(material.name.as_str()))
                 .or_insert_with(|| Arc::new(material));

@@ -4,18 +4,18 @@ use std::collections::HashMap;
 /// No part, no vertex, no texture coordinate.
 const NONE: u32 = u32::MAX;
 
-/// More vertices of a part at one position are not searched: one made twice does no harm.
+/// Further vertices of a part at one position are not searched: a duplicate does no harm.
 const MOST_AT_ONE: u32 = 16;
 
 /// Finds the vertices of meshes by their positions in the file.
 ///
-/// Files of millions of faces ask so often that a hash of the keys would take most of the time of reading, missing the cache with
-/// every question; an array by position is asked where the last face has been.
+/// A hash table of the keys would take most of the time for files of millions of faces, missing the cache at every lookup; an
+/// array by position is looked up where the last face has been.
 #[derive(Debug, Default)]
 pub(super) struct Vertices {
     /// By position: the part that has used it last, and the vertex that part made there last.
     latest: Vec<Place>,
-    /// The same of the parts that have used a position before others did.
+    /// The same for the parts that used a position earlier.
     former: HashMap<(u32, u32), u32>,
 }
 

@@ -6,7 +6,7 @@ use strahl_geometry::MeshData;
 use strahl_math::DVec3;
 use strahl_scene::Diagnostic;
 
-/// What to do with a property of a vertex: the place of its value, or nothing.
+/// The use of a vertex property: the place of its value, or none.
 type Use = Option<usize>;
 
 /// Places of values in a vertex row.
@@ -33,7 +33,7 @@ const USED: [(&str, usize); 14] = [
     ("texture_t", UV + 1),
 ];
 
-/// The vertices as they are stored until the faces are known.
+/// The vertices in the form in which they are stored until the faces are known.
 pub(super) enum Positions {
     /// Declared as `float`: exactly what the file says.
     Single(Vec<[f32; 3]>),
@@ -71,7 +71,7 @@ pub(super) struct Body<'h, 'r> {
 }
 
 impl<'h, 'r> Body<'h, 'r> {
-    /// Checks what can be checked before the rows.
+    /// Checks everything that can be checked before the rows.
     pub(super) fn new(header: &'h Header, name: &'h str, report: &'r mut Report) -> Fallible<Self> {
         let fail =
             |problem: String| Err(Box::new(Diagnostic::error(format!("`{name}`: {problem}"))));
@@ -161,7 +161,7 @@ impl<'h, 'r> Body<'h, 'r> {
         Ok(())
     }
 
-    /// Believes a count only if the file is long enough for it.
+    /// Accepts a count only if the file is long enough for it.
     fn check_size(&self, element: &Element, source: &impl Source) -> Fallible<()> {
         let needed =
             u128::from(element.count) * u128::from(element.smallest_row(self.header.encoding));

@@ -1,7 +1,7 @@
 //! Stanford PLY: ASCII, binary little-endian and binary big-endian.
 //!
-//! The reader is our own: the crates there are build a map or a record per element, which costs several times the
-//! time of reading the file, and they lose the places that messages should name.
+//! The reader is our own: existing crates build a map or a record per element, which takes several times as long as reading the
+//! file, and they lose the places that messages should name.
 //!
 //! Read are `vertex` (`x y z`, `nx ny nz`, texture coordinates as `s t`, `u v`, `texture_u texture_v` or `texture_s
 //! texture_t`), `face` (`vertex_indices` or `vertex_index`; polygons are cut into triangles) and `tristrips` (`vertex_indices`
@@ -27,7 +27,7 @@ use std::sync::Arc;
 use strahl_geometry::TriangleMesh;
 use strahl_scene::{Diagnostic, Object, Scene};
 
-/// Reads a mesh; what is wrong goes to the report.
+/// Reads a mesh; errors and warnings go to the report.
 pub(crate) fn read(input: &Input<'_>, report: &mut Report) -> Scene {
     let mut scene = Scene::default();
     let text = Text {

@@ -20,7 +20,7 @@ use strahl_scene::{Diagnostic, Object, Scene, Span};
 const HEADER: usize = 84;
 const TRIANGLE: usize = 50;
 
-/// Reads the triangles; what is wrong goes to the report.
+/// Reads the triangles; errors and warnings go to the report.
 pub(crate) fn read(input: &Input<'_>, report: &mut Report) -> Scene {
     let mut scene = Scene::default();
     let text = Text {

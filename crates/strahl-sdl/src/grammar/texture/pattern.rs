@@ -1,4 +1,4 @@
-//! Patterns: THE table from words to patterns, and the parameters that belong to single patterns.
+//! Patterns: the table from words to patterns, and the parameters of single patterns.
 
 use super::inside::ObjectInside;
 use crate::grammar::{Declared, Thing, by_word, words_of};
