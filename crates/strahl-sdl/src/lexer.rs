@@ -4,9 +4,9 @@
 //! branch or jumping back to the head of a loop costs nothing.
 //!
 //! A chunk of a long file ends where no block, parenthesis or bracket is open, and only before a word that opens an object or
-//! between two vectors of a list: there nobody looks at the next token without [`Parser::peek`](crate::Parser::peek), which goes on
-//! with the next chunk. So nothing ever jumps from one chunk into another, and the tokens of an exported scene of any size
-//! stay in the processor's cache.
+//! between two vectors of a list. At these positions the next token is only read through [`Parser::peek`](crate::Parser::peek),
+//! which continues with the next chunk. So there are no jumps from one chunk into another, and the tokens of an exported scene
+//! of any size stay in the processor's cache.
 
 mod number;
 #[cfg(test)]
@@ -40,7 +40,7 @@ pub(crate) struct Lexed {
     pub(crate) problems: Vec<LexProblem>,
     /// Byte offset at which the next chunk begins; `None` at the end of the file.
     pub(crate) rest: Option<usize>,
-    /// Whether the part of the text has ended before the chunk, so that this is good for nothing.
+    /// Whether the given part of the text ends within the chunk, which is then useless.
     pub(crate) is_cut: bool,
 }
 

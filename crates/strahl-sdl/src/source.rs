@@ -1,4 +1,4 @@
-//! Files: who reads and writes them, and what is kept of those read.
+//! Files: how they are read and written, and what is stored of those read.
 
 use std::io::{self, Write};
 use std::path::Path;
@@ -65,7 +65,7 @@ impl Source {
     }
 }
 
-/// Where a message of the scene goes: the directives of these names.
+/// The destination of a message: the directive of the same name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stream {
     /// `#debug`
@@ -78,7 +78,7 @@ pub enum Stream {
     Warning,
 }
 
-/// Why a file could not be read or written.
+/// The reason why a file could not be read or written.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum HostError {
@@ -103,10 +103,10 @@ pub enum HostError {
     Forbidden {
         /// The file.
         name: String,
-        /// Which rule says so.
+        /// The rule that forbids it.
         why: String,
     },
-    /// The system says no.
+    /// The system reports an error.
     #[error("`{name}`: {message}")]
     Io {
         /// The file.
@@ -126,7 +126,7 @@ impl HostError {
     }
 }
 
-/// What the parser asks of the world outside: it does no input or output by itself.
+/// Access of the parser to files, time and output, since it does no input or output by itself.
 pub trait Host: Send {
     /// Reads a file that a scene names.
     ///

@@ -1,4 +1,4 @@
-//! Which known name a misspelt one may mean.
+//! Finds the known name that a misspelt one probably means.
 
 /// A name that may be meant.
 #[derive(Clone, Copy, Debug)]
@@ -21,7 +21,7 @@ fn letters(name: &str) -> u64 {
 }
 
 /// The name with the smallest edit distance, the first of several, if it is close enough: at most a third of the letters
-/// differ. It comes with what is known about it.
+/// differ. Its associated data is returned with it.
 pub(crate) fn closest<'a, T>(
     name: &str,
     known: impl Iterator<Item = (Candidate<'a>, T)>,

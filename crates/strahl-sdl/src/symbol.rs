@@ -14,8 +14,8 @@ impl Symbol {
 
 /// All names met so far, each stored once: an open-addressing table of numbers over one string.
 ///
-/// Own code instead of a `HashMap<Box<str>, _>` because every identifier of the text passes here: one multiplication per
-/// eight bytes, no allocation for known names, no look at the text of names of up to 16 bytes.
+/// Own code instead of a `HashMap<Box<str>, _>` because every identifier of the text passes here: one multiplication per eight
+/// bytes, no allocation for known names, and no access to the text of names of up to 16 bytes.
 #[derive(Debug)]
 pub(crate) struct Symbols {
     text: String,

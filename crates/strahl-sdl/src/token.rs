@@ -1,9 +1,9 @@
-//! What the lexer makes of the text.
+//! Tokens, the output of the lexer.
 
 use crate::keywords::Word;
 use crate::symbol::Symbol;
 
-/// What a token is. The order matters: everything below [`Kind::Name`] is handed to the grammar as it stands.
+/// The kind of a token. The order matters: everything below [`Kind::Name`] is passed to the grammar unchanged.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[repr(u8)]
 pub enum Kind {

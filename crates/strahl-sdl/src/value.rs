@@ -1,4 +1,4 @@
-//! What a name can stand for.
+//! Values of names and expressions.
 
 use crate::expr::{Array, Dictionary, Spline};
 use crate::grammar::Thing;
@@ -27,7 +27,7 @@ pub enum Value {
     Spline(Arc<Spline>),
     /// A function of numbers.
     Function(Function),
-    /// Something that is read past but cannot be used yet: what it is, in words.
+    /// A value that is parsed but not supported: its description.
     Unsupported(&'static str),
     /// A macro; only names hold one.
     Macro(Arc<Macro>),

@@ -5,11 +5,11 @@
 //! ever tested against the other operands point by point.
 //!
 //! * [`CsgNode`] describes a tree, [`Csg`] is the compiled tree: inversions pushed down to the leaves, nested equal operations
-//! flattened, everything in flat lists that are traversed without recursion.
+//!   flattened, everything in flat lists that are traversed without recursion.
 //! * `compile` makes the one from the other, `evaluate` traverses the tree for a ray, `sweep` combines lists, `half_spaces`
-//! intersects all planes of an intersection in one pass.
+//!   intersects all planes of an intersection in one pass.
 //! * `first` finds the first surface without lists, if no two crossings are close together: `course` finds the crossings that
-//! matter, `timeline` goes through them.
+//!   matter, `timeline` goes through them.
 
 mod boxes;
 mod compile;

@@ -60,7 +60,7 @@ impl Array {
     }
 }
 
-/// How deep containers lie within a value: bounded, because dropping them recurses.
+/// The nesting depth of containers in a value, which is limited because dropping them recurses.
 pub(super) fn depth_of(value: &Value) -> u16 {
     match value {
         Value::Array(array) => array.depth(),

@@ -35,8 +35,8 @@ use strahl_math::DVec3;
 /// Numbers closer than this count as equal in comparisons; measured with POV-Ray 3.7.
 const EPSILON: f64 = 1e-10;
 
-/// How strongly an operator binds; 0 for what is none. `&` and `|` bind the same, measured with POV-Ray 3.7 (in functions they
-/// don't).
+/// The precedence of an operator; 0 for other tokens. `&` and `|` have the same precedence, measured with POV-Ray 3.7 (but not
+/// in functions).
 const fn precedence(kind: Kind) -> u8 {
     match kind {
         Kind::Bar | Kind::Ampersand => 1,
@@ -52,7 +52,7 @@ const fn precedence(kind: Kind) -> u8 {
     }
 }
 
-/// Whether an operand surely ends before a token of this kind: no component, index or argument can follow.
+/// Whether an operand certainly ends before a token of this kind: no component, index or argument can follow.
 const fn ends_operand(after: Kind) -> bool {
     matches!(
         after,
@@ -184,7 +184,7 @@ impl Parser<'_> {
         self.binary_from(left, weakest)
     }
 
-    /// Goes on with an expression whose first operand is known.
+    /// Continues an expression whose first operand is known.
     fn binary_from(&mut self, mut left: Vector, weakest: u8) -> PResult<Vector> {
         loop {
             let token = self.peek()?;
@@ -253,7 +253,7 @@ impl Parser<'_> {
 
     #[inline]
     fn factor(&mut self) -> PResult<Vector> {
-        // Most operands are plain floats with nothing to unfold around them.
+        // Most operands are plain floats with no macro or directive around them.
         if let Some(x) = self.plain_float(self.raw())
             && ends_operand(self.raw_ahead(1).kind)
         {
@@ -382,7 +382,7 @@ impl Parser<'_> {
         }
     }
 
-    /// A name that is no number: a function to be called, or a mistake.
+    /// A name that is not a number: a function to be called, or an error.
     fn not_numeric(&mut self, token: Token) -> PResult<Vector> {
         let found = token.symbol().and_then(|s| self.scopes.find(s));
         if matches!(found, Some(Value::String(_))) && precedence(self.raw_ahead(1).kind) == 3 {
@@ -403,7 +403,7 @@ impl Parser<'_> {
         }
     }
 
-    /// Calls what has just been named.
+    /// Calls the value that was just named.
     fn call_value(&mut self, callee: &Value) -> PResult<Vector> {
         let value = match callee {
             Value::Function(function) => {

@@ -1,8 +1,8 @@
-//! The short way for expressions of floats and vectors alone.
+//! The fast path for expressions that consist of floats and vectors only.
 //!
-//! Most expressions are numbers, names, vectors of them and the four operations. They are evaluated here from the tokens as they
-//! stand, without unfolding, bookkeeping or errors; at the first token that needs any of that the attempt ends, nothing has
-//! changed, and the full evaluator begins anew. Both give the same bits: the operations are the same.
+//! Most expressions are numbers, names, vectors of them and the four operations. They are evaluated here directly from the
+//! tokens, without expanding macros and without errors; at the first token that needs more, the attempt ends, nothing has
+//! changed, and the full evaluator starts from the beginning. Both give the same bits, because the operations are the same.
 
 use super::{equal, precedence, truth};
 use crate::keywords::Word;
@@ -11,10 +11,10 @@ use crate::token::{Kind, Token};
 use crate::value::{Value, Vector};
 use strahl_math::det;
 
-/// Parentheses within each other; deeper ones take the long way.
+/// Nested parentheses; deeper ones are left to the full evaluator.
 const DEPTH: u32 = 8;
 
-/// Whether an expression surely ends before this token: nothing that could unfold to an operator, index or argument.
+/// Whether an expression certainly ends before this token: nothing that could expand to an operator, index or argument.
 const fn ends(kind: Kind) -> bool {
     matches!(
         kind,

@@ -16,7 +16,7 @@ use strahl_shade::pigment::Pigment;
 #[derive(Clone, Debug)]
 pub struct PigmentFunction {
     pigment: Arc<Pigment>,
-    /// Of the pigment, which may be large.
+    /// The cost of the pigment, which may be large.
     cost: Cost,
 }
 
@@ -41,7 +41,7 @@ struct PigmentComponent {
     component: Component,
 }
 
-/// What functions take of a colour.
+/// The component of a colour that a function uses.
 #[derive(Clone, Copy, Debug)]
 enum Component {
     Red,

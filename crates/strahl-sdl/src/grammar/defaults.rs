@@ -6,7 +6,7 @@ use crate::parser::{PResult, Parser};
 use std::sync::Arc;
 use strahl_shade::pov_finish::PovFinish;
 
-/// What the grammar remembers between statements.
+/// State that the grammar keeps between statements.
 #[derive(Debug, Default)]
 pub struct State {
     /// What `#default` has set; objects begin with it.
@@ -29,7 +29,7 @@ pub struct State {
     pub(super) fonts: Vec<KnownFont>,
 }
 
-/// What stands in the braces of `#default`.
+/// The items in the braces of `#default`.
 pub(crate) fn default_items(p: &mut Parser<'_>) -> PResult<()> {
     p.items("`#default`", |p, token| {
         let mut texture = p.state.default_texture.clone();

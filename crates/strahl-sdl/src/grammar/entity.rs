@@ -6,7 +6,7 @@ use std::sync::{Arc, OnceLock};
 use strahl_math::Transform;
 use strahl_scene::{CsgOp, Object, ObjectKind};
 
-/// An object as it is being read: the scene's object and what that does not hold.
+/// An object while it is read: the scene's object with additional data.
 #[derive(Clone, Debug)]
 pub struct Entity {
     /// The object. Its material is that of `texture`; without one it is left to the parent or the defaults.
@@ -25,7 +25,7 @@ impl From<Object> for Entity {
 }
 
 impl Entity {
-    /// What is left of an object that cannot be seen: a union of nothing.
+    /// An object of which no visible part is left: a union without children.
     pub(crate) fn nothing() -> Self {
         Object::csg(CsgOp::Union, vec![]).into()
     }
@@ -54,7 +54,7 @@ pub(crate) fn transform(object: &mut Object, map: &Transform) {
     }
 }
 
-/// Whether an object has no surface because nothing is left of it.
+/// Whether no surface of an object is left.
 pub(crate) fn is_nothing(object: &Object) -> bool {
     matches!(&object.kind, ObjectKind::Csg { children, .. } if children.0.is_empty())
 }
@@ -68,7 +68,7 @@ pub struct Declared {
     pub(crate) uses: AtomicU32,
     /// Its number among the objects whose uses share one group.
     pub(crate) shared: OnceLock<u32>,
-    /// What answers `inside`, `trace` and the extents; made when first asked.
+    /// Answers `inside`, `trace` and the extents; built when it is needed first.
     pub(crate) query: OnceLock<Option<Arc<Query>>>,
 }
 

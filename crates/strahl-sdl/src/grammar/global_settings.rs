@@ -152,14 +152,14 @@ impl Parser<'_> {
         Err(self.fail(place, format!("{name} must be 1 to {most}, not {value}")))
     }
 
-    /// What is known only at the end of the scene: settings that it has left to the language.
+    /// Settles at the end of the scene the settings that depend on the language version.
     pub(super) fn settle(&mut self) {
         let global = &self.state.global;
         self.scene.ambient = Some(global.ambient.unwrap_or(Color::WHITE));
         let settings = &mut self.scene.settings;
         settings.max_depth = global.trace_level.unwrap_or(TRACE_LEVEL);
         settings.straight_counts = false;
-        // Scenes from before 3.7 that say nothing mean the numbers of the screen. (Of several versions the last one decides.)
+        // Scenes from before 3.7 without a setting use display values. (Of several versions the last one counts.)
         let old = self.version < 3.7 || !global.versioned;
         settings.working_space = global.working_space.unwrap_or(if old {
             WorkingSpace::Srgb

@@ -1,7 +1,7 @@
 use super::{PResult, Parser, Target};
 use crate::token::Directive;
 
-/// A block that is being run.
+/// A block that is being executed.
 #[derive(Debug)]
 pub(crate) struct Block {
     pub(crate) kind: BlockKind,
@@ -9,7 +9,7 @@ pub(crate) struct Block {
     pub(crate) opener: usize,
 }
 
-/// What kind of block.
+/// The kind of a block.
 #[derive(Debug)]
 pub(crate) enum BlockKind {
     /// `#if`, `#ifdef`, `#ifndef`

@@ -3,7 +3,7 @@ use crate::Parsed;
 use crate::grammar::default_camera;
 
 impl Parser<'_> {
-    /// Declares the names that the caller gives.
+    /// Declares the names given by the caller.
     pub(crate) fn declare_given(&mut self) {
         for (name, value) in &self.options.declare {
             let symbol = self.symbols.intern(name.as_bytes());
@@ -20,10 +20,10 @@ impl Parser<'_> {
             .map_or(String::new(), |f| f.source.name.clone())
     }
 
-    /// What has become of the text.
+    /// The result of parsing.
     pub(crate) fn into_parsed(mut self) -> Parsed {
         if self.errors == 0 {
-            // No name is needed any more: what only names hold can be moved into the scene.
+            // Names are not needed any more, so objects that only names refer to can be moved into the scene.
             self.scopes = super::Scopes::default();
             // What is wrong is reported.
             let _ = self.link_instances();

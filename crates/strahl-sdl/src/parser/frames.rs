@@ -21,7 +21,7 @@ pub(crate) enum Entry {
     Macro(Symbol),
 }
 
-/// A file that is no text of the scene.
+/// A file that does not contain scene text.
 #[derive(Debug)]
 pub(crate) struct Data {
     pub(crate) name: String,
@@ -97,7 +97,7 @@ impl<'h> Parser<'h> {
         parser
     }
 
-    /// The end of what may be read, at the position.
+    /// The end of the readable tokens, at the position.
     #[cold]
     fn end_here(&self) -> Token {
         Token {
@@ -152,13 +152,13 @@ impl<'h> Parser<'h> {
         }
     }
 
-    /// Whether the position stands in the frame and block that the running directive must not leave.
+    /// Whether the position is at the end of the frame and block that the running directive must not leave.
     pub(crate) fn at_floor(&self) -> bool {
         self.frames.len() <= self.floor.frames && self.blocks.len() <= self.floor.blocks
     }
 
-    /// Runs `f` so that it sees the end of input where the current frame or block ends: what a directive or an argument
-    /// reads never leaves the place it stands in.
+    /// Runs `f` so that the input ends for it where the current frame or block ends: directives and arguments never read beyond
+    /// the frame or block they are in.
     pub(crate) fn enclosed<T>(&mut self, f: impl FnOnce(&mut Self) -> PResult<T>) -> PResult<T> {
         let before = self.floor;
         self.floor = Floor {

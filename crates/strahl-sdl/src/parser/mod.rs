@@ -40,7 +40,7 @@ pub struct Place {
     start: u32,
 }
 
-/// Where directives must not read on: the end of the frame and of the block they stand in.
+/// Where directives must stop reading: the end of the frame and of the block they are in.
 #[derive(Clone, Copy, Debug, Default)]
 struct Floor {
     frames: usize,
@@ -51,13 +51,13 @@ struct Floor {
 pub struct Parser<'h> {
     /// What the caller knows.
     pub(crate) options: &'h Options,
-    /// The world outside.
+    /// Access to files, time and output.
     pub(crate) host: &'h mut dyn Host,
     pub(crate) symbols: Symbols,
     pub(crate) scopes: Scopes,
     /// The scene made so far.
     pub scene: Scene,
-    /// What the grammar remembers between statements: defaults, global settings, ...
+    /// State that the grammar keeps between statements: defaults, global settings, ...
     pub state: State,
     /// The language version in force, such as 3.7.
     pub version: f64,
@@ -87,7 +87,7 @@ pub struct Parser<'h> {
     /// Whether no statement has begun yet, so that directives are given up by themselves.
     between: bool,
     steps: u64,
-    /// Where the budget of steps ends, unless something is made before.
+    /// The step at which the budget for idle loops ends.
     last_step: u64,
     /// Operations of all functions made so far.
     function_operations: u64,
@@ -96,7 +96,7 @@ pub struct Parser<'h> {
     message_bytes: u64,
     diagnostics: Vec<Diagnostic>,
     errors: usize,
-    /// Errors with those that were told before.
+    /// The number of errors, including repeated ones.
     failures: usize,
     fatal: bool,
 }
@@ -148,7 +148,7 @@ impl Parser<'_> {
     /// # Errors
     /// If the budget of steps is used up.
     pub(crate) fn spend(&mut self, operations: u64) -> PResult<()> {
-        /// So many take as long as a token does.
+        /// This many operations take as long as a token.
         const OPERATIONS: u64 = 4;
         self.steps = self.steps.saturating_add(operations / OPERATIONS);
         if self.steps > self.last_step {
@@ -157,7 +157,7 @@ impl Parser<'_> {
         Ok(())
     }
 
-    /// Counts what building a function took.
+    /// Counts the operations of a new function.
     ///
     /// # Errors
     /// If all functions together are too large.
@@ -175,7 +175,7 @@ impl Parser<'_> {
         ))
     }
 
-    /// Tells that something has been made, so that what comes is no idle loop.
+    /// Notes that something has been created, so that the budget for idle loops starts again.
     #[inline]
     pub(crate) fn made_progress(&mut self) {
         let limits = &self.options.limits;

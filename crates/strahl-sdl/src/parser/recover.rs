@@ -3,14 +3,14 @@ use crate::grammar;
 use crate::source::Chunk;
 use crate::token::{Directive, Kind};
 
-/// Where a statement begins, to find the way back after an error in it.
+/// The beginning of a statement, needed to continue after an error in it.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Mark {
     frames: usize,
     blocks: usize,
     position: usize,
     file: u32,
-    /// Braces opened by the statement in chunks of the file that have been passed.
+    /// The number of braces that the statement has opened in earlier chunks of the file.
     open: usize,
 }
 

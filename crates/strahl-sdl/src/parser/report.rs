@@ -65,7 +65,7 @@ impl Parser<'_> {
         self.report(place, Diagnostic::warning(message).hint(hint));
     }
 
-    /// `false` if the same was said of the same place before: loops would repeat it.
+    /// `false` if the same message was reported for the same place before: loops would repeat it.
     fn report(&mut self, place: Place, mut diagnostic: Diagnostic) -> bool {
         const WARNINGS: usize = 200;
         if self.is_known(place, &diagnostic) {
@@ -86,7 +86,7 @@ impl Parser<'_> {
         true
     }
 
-    /// Whether the same was said of the same place before.
+    /// Whether the same message was reported for the same place before.
     fn is_known(&self, place: Place, diagnostic: &Diagnostic) -> bool {
         let span = self.span_at(place);
         let same = |d: &Diagnostic| d.span == span && d.message == diagnostic.message;
@@ -95,7 +95,7 @@ impl Parser<'_> {
 
     /// The macros and includes around the position, innermost first.
     fn trace(&self) -> Vec<String> {
-        /// Of a deep recursion the ends tell enough.
+        /// The ends of a deep recursion are enough.
         const SHOWN: usize = 8;
         let mut steps = vec![];
         for frame in self.frames.iter().rev() {
@@ -139,7 +139,7 @@ impl Parser<'_> {
         self.fail(place, format!("expected {expected}, found {found}"))
     }
 
-    /// Reports a name that stands for nothing.
+    /// Reports an undeclared name.
     pub(crate) fn undeclared(&mut self, symbol: Symbol, place: Place, expected: &str) -> Failed {
         let name = shortened(self.symbols.text(symbol)).into_owned();
         let mut diagnostic = Diagnostic::error(format!(
@@ -154,7 +154,7 @@ impl Parser<'_> {
         self.fail_with(place, diagnostic)
     }
 
-    /// What a misspelt name may mean.
+    /// A suggestion for a misspelt name.
     fn advice_for(&self, name: &str) -> Option<String> {
         if let Some(file) = crate::include::declaring(name) {
             return Some(format!(

@@ -1,4 +1,4 @@
-//! Which names stand for what, and from where to where.
+//! Bindings of names and their scopes.
 //!
 //! Scopes are dynamic as in the language: a macro sees the local names of its caller. Every symbol has a stack of bindings,
 //! so looking up a name is one step however deep the macros are nested.
@@ -8,7 +8,7 @@ use crate::symbol::Symbol;
 use crate::value::Value;
 use std::sync::Arc;
 
-/// A place that a value can be stored in: a binding, or an element of the array or dictionary bound.
+/// A storage location: a binding, or an element of the array or dictionary bound.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Target {
     pub(crate) symbol: Symbol,
@@ -91,7 +91,7 @@ impl Scopes {
         }
     }
 
-    /// What is stored at a place.
+    /// The value stored at a location.
     #[inline]
     pub(crate) fn at(&self, target: &Target) -> Option<&Value> {
         let stack = self.bindings.get(target.symbol.index())?;

@@ -1,7 +1,7 @@
 //! The text of a file: a small one is held in memory, a large one is read as it is needed, a part at a time.
 //!
-//! Exported scenes of some hundred megabytes are read once from front to back, and only messages look back: holding the text took a
-//! third of the memory of reading such a scene, and a tenth of its time.
+//! Exported scenes of some hundred megabytes are read once from front to back, and only messages refer to earlier text: storing
+//! the whole text took a third of the memory of reading such a scene, and a tenth of its time.
 
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
@@ -12,10 +12,10 @@ use std::time::SystemTime;
 /// Files of so many bytes are read in parts.
 const LARGE: u64 = 16 << 20;
 
-/// How many bytes of a large file are held, unless somebody needs more at once.
+/// How many bytes of a large file are kept in memory, unless more are needed at once.
 const PART: usize = 1 << 20;
 
-/// How many of them lie before those asked for: who looks back looks back less, mostly.
+/// How many of them lie before those requested, since most backward references are short.
 const BEHIND: usize = PART / 8;
 
 /// The text of a file.

@@ -6,7 +6,7 @@ use strahl_geometry::{Blob, BlobComponent, Shape};
 use strahl_math::DVec3;
 use strahl_shade::texture::{Shares, Texture as Surface};
 
-/// What has been read of a blob.
+/// The parts of a blob read so far.
 struct Draft {
     threshold: f64,
     components: Vec<BlobComponent>,
@@ -156,7 +156,7 @@ impl Parser<'_> {
     }
 }
 
-/// Mixes the textures of a blob by the magnitudes of its components' fields.
+/// Mixes the textures of a blob by the strengths of its components' fields.
 #[derive(Debug)]
 struct ByField {
     blob: Arc<Blob>,
@@ -178,7 +178,7 @@ impl Shares for ByField {
             }
         });
         if parts.is_empty() {
-            // Rounding has moved the point out of all fields.
+            // Rounding has moved the point outside of all fields.
             return visit(0, 1.0);
         }
         for (number, part) in parts {

@@ -55,7 +55,7 @@ impl Parser<'_> {
                     let power = self.float()?;
                     Box::new(move |x| det::pow(x, power))
                 };
-                // Of colours and indices, POV-Ray makes something that nobody can have meant.
+                // POV-Ray's result for colours and indices is certainly not intended.
                 if heights.gray {
                     for value in &mut heights.values {
                         *value = in_16_bits(decode(f64::from(*value) / 65535.0));
@@ -105,7 +105,7 @@ fn joined(halves: &Heights) -> Heights {
     }
 }
 
-/// A height as 16 bits hold it; what does not fit loses its upper bits.
+/// A height in 16 bits; larger values lose their upper bits.
 fn in_16_bits(x: f64) -> u16 {
     // The first cast cuts off and takes NaN for 0.
     (x * 65535.0) as i64 as u16

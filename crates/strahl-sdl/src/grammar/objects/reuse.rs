@@ -1,10 +1,10 @@
-//! Declared objects, used again without copies.
+//! Reuse of declared objects without copies.
 //!
-//! While the scene is read, the use of a declared object that is large or popular is an [`ObjectKind::Instance`] whose number
-//! counts the declared objects ([`Shared`]), not yet the scene's groups. When all is read, [`link`] makes groups of them: one
-//! for each declared object and each material that its parts take from the use. What turns out to be used once is
-//! put in its place instead, so a scene built up step by step (`#declare All = union { object { All } ... }`) has no tower of
-//! instances. Operations other than unions want all their parts: within them the last use of a declared object takes its parts,
+//! While the scene is read, each use of a large or frequently used declared object is an [`ObjectKind::Instance`] whose number
+//! counts the declared objects ([`Shared`]), not yet the scene's groups. At the end, [`link`] turns them into groups: one for
+//! each declared object and each material that its parts inherit from the use. An object that is used only once replaces its
+//! instance instead, so a scene built up step by step (`#declare All = union { object { All } ... }`) has no tower of
+//! instances. Operations other than unions need all their parts: within them the last use of a declared object takes its parts,
 //! and the uses before it copy them.
 
 use crate::grammar::Entity;
@@ -18,28 +18,28 @@ use strahl_geometry::Primitive;
 use strahl_scene::{Children, CsgOp, Group, GroupId, Object, ObjectKind, Scene};
 use strahl_shade::Material;
 
-/// Up to so many parts an object is copied for each of its first uses; beyond, the level that an instance adds for rays
-/// costs less than the copies.
+/// Up to this many parts an object is copied for each of its first uses; beyond, the additional level of an instance costs rays
+/// less than the copies.
 const SMALL: u64 = 8;
 
 /// An object of several parts that is used more often is shared from then on.
 const OFTEN: u32 = 16;
 
-/// A mesh of up to so many triangles is a small thing.
+/// A mesh of up to this many triangles counts as small.
 const FEW_TRIANGLES: u64 = 64;
 
-/// What an object is made of, counted.
+/// Counts of the parts of an object.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Tally {
     /// Shapes and operations.
     parts: u64,
     /// Elements of the shapes: triangles of meshes.
     elements: u64,
-    /// Whether a part takes its material from the use.
+    /// Whether a part inherits its material from the use.
     inherits: bool,
     /// Whether a part is a light or a group of them.
     lights: bool,
-    /// Shapes and operations, those of the declared objects in it counted too.
+    /// Shapes and operations, including those of the declared objects in it.
     pub(in crate::grammar) expanded: u64,
 }
 
@@ -62,7 +62,7 @@ impl Tally {
                     tally.inherits |= !has_material;
                 }
                 ObjectKind::Instance(id) => {
-                    // Its parts may; asking them would not be worth it.
+                    // Its parts may inherit it; checking them would not be worth it.
                     tally.inherits |= !has_material;
                     let inside = shared.objects.get(id.0 as usize);
                     let parts = inside.map_or(0, |declared| declared.tally.expanded);
@@ -97,7 +97,7 @@ impl Parser<'_> {
         Arc::clone(names.entry(symbol).or_insert_with(|| text.into()))
     }
 
-    /// A declared object once more.
+    /// Uses a declared object again.
     pub(super) fn use_declared(&mut self, declared: &Arc<Declared>) -> Entity {
         let Tally {
             parts, elements, ..
@@ -177,8 +177,8 @@ fn has_instances(object: &Object) -> bool {
     false
 }
 
-/// A copy with all instances replaced by what they stand for. Trees may be deeper than the stack, so they are walked with a
-/// list.
+/// A copy with all instances replaced by the objects they stand for. Trees may be deeper than the stack, so they are traversed
+/// with a list.
 pub(crate) fn expanded(object: &Object, shared: &Shared) -> Object {
     copy(object, Some(shared))
 }
@@ -218,7 +218,7 @@ fn copy(object: &Object, expand: Option<&Shared>) -> Object {
         .unwrap_or_else(|| Object::csg(CsgOp::Union, vec![]))
 }
 
-/// A declared object with the material that its parts take from the use.
+/// A declared object with the material that its parts inherit from the use.
 type Key = (u32, Option<*const Material>);
 
 /// Turns numbers of declared objects into groups.
@@ -233,9 +233,9 @@ struct Linker {
     uses: Vec<u32>,
     groups: Vec<Option<GroupId>>,
     known: HashMap<Key, usize>,
-    /// How often each declared object is used within operations that want all its parts.
+    /// How often each declared object is used within operations that need all its parts.
     whole: Vec<u64>,
-    /// How often what each declared object is made of is still needed, for its variants and in such operations.
+    /// How often the parts of each declared object are still needed, for its variants and in such operations.
     open: Vec<u64>,
 }
 
@@ -255,7 +255,7 @@ impl Linker {
         }
     }
 
-    /// Counts what is used how often; gives the number of parts that operations other than unions want.
+    /// Counts all uses; returns the number of parts that operations other than unions need.
     fn count_all(&mut self, scene: &Scene) -> u64 {
         for object in &scene.objects.0 {
             self.count(object, None);
@@ -293,7 +293,7 @@ impl Linker {
         wanted
     }
 
-    /// Counts uses of a declared object within an operation that wants all its parts.
+    /// Counts uses of a declared object within an operation that needs all its parts.
     fn use_whole(&mut self, id: u32, times: u64) {
         if let Some(whole) = self.whole.get_mut(id as usize) {
             *whole = whole.saturating_add(times);
@@ -365,7 +365,7 @@ impl Linker {
         })
     }
 
-    /// What a declared object is; taken from it for its last use, copied for the others.
+    /// The kind of a declared object; moved out for its last use, copied for the others.
     fn kind(&mut self, id: u32) -> ObjectKind {
         let nothing = Object::csg(CsgOp::Union, vec![]).kind;
         let (Some(slot), Some(open)) = (
@@ -387,8 +387,8 @@ impl Linker {
         }
     }
 
-    /// Replaces the instances within an object by instances of the scene's groups, or by what is used here only. Groups
-    /// that are new on this way wait to be filled.
+    /// Replaces the instances within an object by instances of the scene's groups, or by objects that are used here only. New
+    /// groups are queued to be filled.
     fn replace(
         &mut self,
         object: &mut Object,

@@ -5,7 +5,7 @@ use strahl_geometry::{
 };
 use strahl_math::{Aabb, Interval, Ray};
 
-/// A mesh with a hierarchy of its own: scenes ask the same mesh thousands of times where it is. The answers are the mesh's.
+/// A mesh with its own hierarchy: scenes query the same mesh thousands of times. The results are the mesh's.
 #[derive(Debug)]
 pub(super) struct SearchableMesh {
     mesh: Arc<TriangleMesh>,

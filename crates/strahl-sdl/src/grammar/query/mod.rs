@@ -1,4 +1,4 @@
-//! What scenes ask of their own objects: `inside`, `trace`, `min_extent`, `max_extent`.
+//! Queries of scenes about their own objects: `inside`, `trace`, `min_extent`, `max_extent`.
 
 mod mesh;
 
@@ -17,14 +17,14 @@ use strahl_geometry::{Csg, CsgNode, Primitive, Scratch, Shape, Solid};
 use strahl_math::{Aabb, DVec3, Interval, Ray};
 use strahl_scene::{CsgOp, Object, ObjectKind};
 
-/// An object made ready to be asked where it is.
+/// An object prepared for queries.
 #[derive(Debug)]
 pub(crate) struct Query {
     csg: Csg,
     bounds: Aabb,
-    /// What it takes to ask whether a point is inside.
+    /// The cost of testing whether a point is inside.
     cost: Cost,
-    /// How much of that its functions take.
+    /// The part of that cost which its functions take.
     functions: u64,
 }
 
@@ -42,7 +42,7 @@ impl Query {
         })
     }
 
-    /// What it takes to ask whether a point is inside.
+    /// The cost of testing whether a point is inside.
     pub(super) fn cost(&self) -> Cost {
         self.cost
     }
@@ -51,7 +51,7 @@ impl Query {
         self.csg.contains(point)
     }
 
-    /// Where a ray meets it first, with the unit normal.
+    /// The first hit of a ray, with the unit normal.
     fn trace(&self, origin: DVec3, direction: DVec3) -> Option<(DVec3, DVec3)> {
         let ray = Ray::new(origin, direction);
         let scratch = &mut Scratch::default();
@@ -111,7 +111,7 @@ fn node(object: &Object) -> Option<CsgNode> {
     done.pop()
 }
 
-/// What the shapes of an object take, each asked about one point, and how much of that functions take.
+/// The cost of testing a point against all shapes of an object, and the part of it that functions take.
 fn cost(object: &Object) -> (Cost, u64) {
     let mut cost = Cost::FORMULA;
     let mut functions = 0_u64;
@@ -198,7 +198,7 @@ impl Parser<'_> {
             return Err(self.fail(place, "`trace` needs a direction that is not zero"));
         }
         let query = self.query(&object)?;
-        /// A ray is looked for at so many points of a surface without a formula for the crossings.
+        /// A ray is intersected with a surface without a formula by evaluating about this many points.
         const POINTS: u64 = 64;
         self.spend_on(query.as_deref(), POINTS)?;
         let hit = query.and_then(|q| q.trace(origin, direction));
@@ -209,7 +209,7 @@ impl Parser<'_> {
         Ok(hit.map_or(DVec3::ZERO, |(point, _)| point))
     }
 
-    /// Counts what functions take if they are asked about so many points.
+    /// Counts the cost of functions that are evaluated at this many points.
     fn spend_on(&mut self, query: Option<&Query>, points: u64) -> PResult<()> {
         let operations = query.map_or(0, |q| q.functions);
         self.spend(operations.saturating_mul(points))
@@ -237,7 +237,7 @@ impl Parser<'_> {
         Ok(object)
     }
 
-    /// The object made ready, once for all questions; `None` if there is nothing to meet.
+    /// The prepared object, built once for all queries; `None` if it has no surface.
     ///
     /// # Errors
     /// If it has too many parts.

@@ -7,7 +7,7 @@ use strahl_shade::interior::Interior;
 use strahl_shade::pigment::Pigment;
 use strahl_shade::texture::{SharedTexture, Texture as Surface};
 
-/// How many of the last materials with patterns are kept to be shared.
+/// How many of the last materials with patterns are remembered for sharing.
 const RECENT: usize = 16;
 
 /// Whether two surfaces are one, or two of the same colour and finish: exporters write those out at each object.
@@ -84,18 +84,19 @@ pub(in crate::grammar) fn fill_parts(object: &mut Object, interior: &Arc<Interio
     }
 }
 
-/// Materials made before, by their textures.
+/// Materials made so far, by their textures.
 #[derive(Debug, Default)]
 pub(in crate::grammar) struct KnownMaterials {
     /// The last ones with patterns.
     recent: Vec<(Texture, Arc<Material>)>,
-    /// Those of one colour and finish, each where its hash says, until another takes the place. Exported scenes have the
-    /// same few colours again and again; those with a colour of its own for each object must not pay for a table of all.
+    /// Those with one colour and finish, in a table by hash in which the last one replaces an earlier one. Exported scenes
+    /// repeat the same few colours; scenes with a different colour for each object must not pay for a table of all.
     plain: Vec<Option<(u64, Arc<Material>)>>,
 }
 
 impl KnownMaterials {
-    /// Places for materials of one colour. Few enough that what makes room is still in the cache when it is let go.
+    /// Size of the table of materials with one colour. Small enough that a replaced material is still in the cache when it is
+    /// freed.
     const PLAIN: usize = 1 << 10;
 
     /// The material of a texture.
@@ -139,7 +140,7 @@ impl KnownMaterials {
     }
 }
 
-/// A hash of what most tells materials of one colour and finish apart; `None` for other textures.
+/// A hash of the properties in which materials of one colour and finish usually differ; `None` for other textures.
 fn plain_hash(texture: &Texture) -> Option<u64> {
     /// 2^64 divided by the golden ratio: the upper bits of the product depend on all lower ones.
     const FACTOR: u64 = 0x9e37_79b9_7f4a_7c15;
@@ -170,7 +171,7 @@ fn plain_hash(texture: &Texture) -> Option<u64> {
 }
 
 impl Parser<'_> {
-    /// The material of a texture; equal textures share it, unless they have patterns and stand far apart.
+    /// The material of a texture; equal textures share it, unless they have patterns and are far apart.
     pub(in crate::grammar) fn material(&mut self, texture: &Texture) -> Arc<Material> {
         self.state.materials.of(texture)
     }

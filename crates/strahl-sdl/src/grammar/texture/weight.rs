@@ -1,23 +1,23 @@
-//! How large a texture is, so that textures made of copies of each other end in an error and not in an exhausted machine.
+//! The size of textures, so that textures made of copies of each other end in an error and not in an exhausted machine.
 
 use crate::parser::{PResult, Parser};
 use strahl_shade::normal::{NormalKind, PovNormal};
 use strahl_shade::pigment::Pigment;
 use strahl_shade::texture::Texture;
 
-/// The size of something made of things of its kind.
+/// The size of a texture, pigment or normal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Weight {
-    /// All things in it and itself.
+    /// The number of nodes in it, including itself.
     count: u64,
-    /// How many are within each other.
+    /// The depth of nesting.
     depth: u32,
 }
 
 impl Weight {
     const ONE: Self = Self { count: 1, depth: 1 };
 
-    /// Of what is made of things of these weights.
+    /// The weight of a node with these children.
     fn around(inner: impl Iterator<Item = Self>) -> Self {
         let sum = inner.fold(Self { count: 0, depth: 0 }, |sum, w| Self {
             count: sum.count.saturating_add(w.count),
@@ -75,12 +75,12 @@ pub(super) fn of_texture(texture: &Texture) -> Weight {
 }
 
 impl Parser<'_> {
-    /// Counts what has been made against the limits.
+    /// Counts a weight against the limits.
     ///
     /// # Errors
-    /// If it is too deep, or all that has been made is too much.
+    /// If it is nested too deep, or all textures together are too large.
     pub(super) fn weigh(&mut self, weight: Weight) -> PResult<()> {
-        /// A pigment, normal or texture takes the memory of so many colours or vectors.
+        /// A pigment, normal or texture takes as much memory as this many colours or vectors.
         const SIZE: u64 = 16;
         let limit = self.options.limits.texture_depth;
         if weight.depth > limit {
@@ -91,7 +91,7 @@ impl Parser<'_> {
                 "write the texture in fewer levels, or raise the limit: `--limit texture_depth=N`",
             ));
         }
-        // One that doubles again and again is found long before it fills what all together may have.
+        // A texture that doubles again and again is detected long before it reaches the limit for all together.
         let limit = self.options.limits.parts >> 11;
         if weight.count > limit {
             let place = self.place();
@@ -101,14 +101,14 @@ impl Parser<'_> {
                 "does it double again and again? Otherwise raise the limit of all parts: `--limit parts=N`",
             ));
         }
-        // What has one part is counted with the object that has it.
+        // A single part is counted with the object that has it.
         if weight.count > 1 {
             self.count_parts(weight.count.saturating_mul(SIZE))?;
         }
         Ok(())
     }
 
-    /// Whether a colour of a pigment can be found within the time that a function may take.
+    /// Checks that a colour of a pigment can be computed within the limit of a function.
     ///
     /// # Errors
     /// If its functions take more.

@@ -2,7 +2,7 @@ use std::collections::HashMap;
 use strahl_geometry::MeshData;
 use strahl_math::DVec3;
 
-/// What makes corners of triangles the same vertex: the numbers of position, normal and texture coordinates.
+/// The key of a vertex: the numbers of position, normal and texture coordinates.
 type Corner = [u32; 3];
 
 /// No normal, or no texture coordinates.

@@ -14,7 +14,7 @@ use strahl_geometry::{Brep, MeshData, Shape, TriangleMesh};
 use strahl_math::DVec3;
 use strahl_scene::{CsgOp, Object, ObjectKind};
 
-/// What has been read of a mesh: its parts, each of one texture, and whether it has an inside.
+/// The parts of a mesh read so far, each with one texture, and whether it has an inside.
 #[derive(Default)]
 struct Parts {
     meshes: Vec<(Option<Texture>, MeshData)>,
@@ -23,10 +23,10 @@ struct Parts {
     has_inside: bool,
 }
 
-/// Equal textures are looked for among the last ones only, so that a texture for each triangle costs no square.
+/// Equal textures are searched only among the last ones, so that one texture per triangle does not take quadratic time.
 const SEARCHED: usize = 64;
 
-/// The number of a texture in a list that it joins if it is new.
+/// The number of a texture in a list; it is appended if it is new.
 fn texture_number(list: &mut Vec<Texture>, texture: Texture) -> usize {
     let first = list.len().saturating_sub(SEARCHED);
     let recent = list.get(first..).unwrap_or(&[]);

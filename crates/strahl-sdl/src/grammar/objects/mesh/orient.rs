@@ -1,7 +1,7 @@
 use std::collections::HashMap;
 use strahl_geometry::MeshData;
 
-/// Turns triangles round so that neighbours run alike, as a solid needs it: the language's meshes may be wound anyhow.
+/// Orients triangles consistently with their neighbours, as a solid requires: the language's meshes may have any winding.
 ///
 /// Neighbours share an edge between the same places. Where more than two triangles meet in an edge, or one alone, nothing
 /// is decided.

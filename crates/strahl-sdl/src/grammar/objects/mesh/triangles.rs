@@ -31,7 +31,7 @@ where
     }
 }
 
-/// What triangles of one mesh have in common.
+/// The properties that all triangles of one mesh share.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 struct Kind {
     texture: Option<usize>,
