@@ -47,12 +47,12 @@ fn size() -> (u32, u32) {
 /// Compares all combinations for one scene.
 fn compare(path: &Path) {
     // Scenes with many parts are made of fewer.
-    let coarse = ["Across", "Deep"].map(|name| (name.to_owned(), Value::Float(60.0)));
+    let mut sdl = Options::default();
+    sdl.declare = ["Across", "Deep"]
+        .map(|name| (name.to_owned(), Value::Float(60.0)))
+        .to_vec();
     let options = LoadOptions {
-        sdl: Options {
-            declare: coarse.to_vec(),
-            ..Options::default()
-        },
+        sdl,
         fonts: vec!["/usr/share/fonts".into()],
         ..LoadOptions::default()
     };
