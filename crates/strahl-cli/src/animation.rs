@@ -89,7 +89,8 @@ impl Animation {
         let width = self.last.to_string().len();
         let stem = output.file_stem().unwrap_or_default().to_string_lossy();
         let ending = output.extension().unwrap_or_default().to_string_lossy();
-        output.with_file_name(format!("{stem}{frame:0width$}.{ending}"))
+        let dot = if ending.is_empty() { "" } else { "." };
+        output.with_file_name(format!("{stem}{frame:0width$}{dot}{ending}"))
     }
 }
 

@@ -1,23 +1,50 @@
+use crate::memory::MemoryLimit;
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap_complete::Shell;
 use std::path::PathBuf;
 use strahl::Format;
 use strahl::accel::{AcceleratorKind, Bvh8Parameters, Level, Parameters, UnknownLevel};
-use strahl::formats::image::BitDepth;
+use strahl::formats::image::{BitDepth, ImageFormat};
 use strahl::sdl::{Limits, Word};
 use strahl::shade::ShadingModel;
 use strahl::tracing::{Region, Sampling, TileOrder};
 
 /// Exact, explainable, reproducible recursive ray tracing.
 #[derive(Debug, Parser)]
-#[command(name = "strahl", version, arg_required_else_help = true)]
+#[command(
+    name = "strahl",
+    version,
+    arg_required_else_help = true,
+    after_help = "`strahl scene.pov` and POV-Ray's command lines, such as `strahl +Iscene.pov +W640 +H480`, work without `render`."
+)]
 pub(crate) struct Cli {
     #[command(subcommand)]
     pub(crate) command: Command,
+    #[command(flatten)]
+    pub(crate) guard: GuardArgs,
+}
+
+/// What keeps the machine and the user safe.
+#[derive(Debug, Args)]
+pub(crate) struct GuardArgs {
+    /// Most memory to use, such as 500M, 8G or 50% of the machine's; `none` for no bound
+    #[arg(
+        long,
+        global = true,
+        value_name = "BYTES",
+        default_value = "90%",
+        help_heading = "Safety"
+    )]
+    pub(crate) max_memory: MemoryLimit,
+    /// Take warnings and features that are left out for errors, and end with exit code 3
+    #[arg(long, global = true, help_heading = "Safety")]
+    pub(crate) strict: bool,
 }
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
     /// Render a scene to a picture
+    #[command(args_override_self = true)]
     Render(RenderArgs),
     /// Print the ray tree of a pixel: every ray with its numbers and the line of the scene that caused it
     Explain(ExplainArgs),
@@ -33,6 +60,16 @@ pub(crate) enum Command {
     Check(CheckArgs),
     /// List the scene and picture formats
     Formats,
+    /// Print what completes command lines in a shell: `strahl completions bash > ~/.local/share/bash-completion/completions/strahl`
+    Completions {
+        /// The shell
+        shell: Shell,
+    },
+    /// Print the manual page of strahl, or of a command: `strahl man render | man -l -`
+    Man {
+        /// The command
+        command: Option<String>,
+    },
 }
 
 /// The scene and how it is read.
@@ -54,13 +91,16 @@ pub(crate) struct PovArgs {
     /// Search included files here too, after the scene's folder and the current one; may be given several times
     #[arg(short = 'L', long, value_name = "DIR")]
     pub(crate) library_path: Vec<PathBuf>,
+    /// Include this file before the scene begins
+    #[arg(long, value_name = "FILE")]
+    pub(crate) include: Option<PathBuf>,
     /// Declare a number before the scene begins; may be given several times
     #[arg(long, value_name = "NAME=VALUE", value_parser = parse_declaration)]
     pub(crate) declare: Vec<(String, f64)>,
     /// The value of `clock` [default: 0]
     #[arg(long, value_name = "T", allow_negative_numbers = true)]
     pub(crate) clock: Option<f64>,
-    /// Let the scene write files into this folder instead of its own
+    /// Let the scene write files into this folder instead of SCENE.out; only `render` writes files of scenes
     #[arg(long, value_name = "DIR")]
     pub(crate) allow_write: Option<PathBuf>,
     /// Raise (or lower) a bound on what a scene may use, as an error message names it; may be given several times
@@ -117,9 +157,10 @@ pub(crate) struct PictureArgs {
     /// Size of the picture in pixels, such as 1280x720 [default: what the scene says, or 800x600]
     #[arg(long, value_name = "WxH", value_parser = parse_size)]
     pub(crate) size: Option<(u32, u32)>,
-    /// Where rays go through a pixel: center (or none), NxN, adaptive, adaptive:THRESHOLD,PASSES, or corners
-    #[arg(long, value_name = "HOW", default_value = "adaptive")]
-    pub(crate) sampling: Sampling,
+    /// Where rays go through a pixel: center (or none), NxN, adaptive, adaptive:THRESHOLD,PASSES, or corners [default: adaptive; of
+    /// heat maps center]
+    #[arg(long, value_name = "HOW")]
+    pub(crate) sampling: Option<Sampling>,
     /// Seed of the sampling
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub(crate) seed: u64,
@@ -180,9 +221,13 @@ pub(crate) struct RenderArgs {
     /// Format of the scene, if the file name doesn't tell (see `strahl formats`)
     #[arg(long, alias = "scene-format", value_name = "NAME")]
     pub(crate) format: Option<Format>,
-    /// Picture file (see `strahl formats`) [default: the scene's name with .png, in the current folder]
+    /// Picture file (see `strahl formats`), a folder for it, or `-` for the standard output [default: the scene's name with .png, in
+    /// the current folder]
     #[arg(short, long, value_name = "PICTURE")]
     pub(crate) output: Option<PathBuf>,
+    /// Format of the picture, if its file name doesn't tell [default: png]
+    #[arg(long, value_name = "NAME", value_parser = parse_picture_format)]
+    pub(crate) picture_format: Option<ImageFormat>,
     #[command(flatten)]
     pub(crate) picture: PictureArgs,
     #[command(flatten)]
@@ -193,7 +238,7 @@ pub(crate) struct RenderArgs {
     /// With --region: write a picture of the whole size, black around the part
     #[arg(long, requires = "region", conflicts_with = "layers")]
     pub(crate) full_size: bool,
-    /// Number of threads; 0 takes one per processor
+    /// Number of threads, at most one per processor; 0 takes as many
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub(crate) threads: usize,
     /// Order of the tiles; the picture is the same
@@ -202,10 +247,16 @@ pub(crate) struct RenderArgs {
     /// Bits per channel of PNG and PPM pictures
     #[arg(long, value_name = "8|16", default_value = "8", value_parser = parse_bits)]
     pub(crate) bit_depth: BitDepth,
+    /// Quality of JPEG pictures, from 1 (smallest) to 100
+    #[arg(long, value_name = "N", default_value_t = 85, value_parser = clap::value_parser!(u8).range(1..=100))]
+    pub(crate) jpeg_quality: u8,
+    /// Write an alpha channel, in which the background is see-through (PNG, EXR)
+    #[arg(long)]
+    pub(crate) alpha: bool,
     /// Write depth, normal, position, object, material, tree depth and tests per pixel too (EXR)
     #[arg(long)]
     pub(crate) layers: bool,
-    /// Write what was done, counted and timed, as JSON
+    /// Write what was done, counted and timed, as JSON; `-` is the standard output
     #[arg(long, value_name = "FILE")]
     pub(crate) stats: Option<PathBuf>,
     /// Render, but write no picture
@@ -245,8 +296,17 @@ impl From<Order> for TileOrder {
 
 #[derive(Debug, Args)]
 pub(crate) struct CheckArgs {
+    /// Scene files, or `-` for the standard input
+    #[arg(required = true, value_name = "SCENE")]
+    pub(crate) scenes: Vec<PathBuf>,
+    /// Format of the scenes, if the file names don't tell (see `strahl formats`)
+    #[arg(long, alias = "scene-format", value_name = "NAME")]
+    pub(crate) format: Option<Format>,
     #[command(flatten)]
-    pub(crate) scene: SceneArgs,
+    pub(crate) pov: PovArgs,
+    /// Print JSON: one object with all diagnostics for each scene
+    #[arg(long)]
+    pub(crate) json: bool,
     /// Look at the text only, not at whether it can be rendered
     #[arg(long)]
     pub(crate) syntax: bool,
@@ -446,6 +506,14 @@ fn parse_version(s: &str) -> Result<f64, String> {
         .ok()
         .filter(|v| (1.0..4.0).contains(v))
         .ok_or_else(|| "expected a version from 1.0 to 3.8, such as 3.7".to_owned())
+}
+
+fn parse_picture_format(s: &str) -> Result<ImageFormat, String> {
+    ImageFormat::from_name(s).ok_or_else(|| {
+        let names = strahl::formats::image::formats().iter();
+        let names: Vec<&str> = names.map(|info| info.extensions[0]).collect();
+        format!("expected one of {}", names.join(", "))
+    })
 }
 
 fn parse_bits(s: &str) -> Result<BitDepth, String> {

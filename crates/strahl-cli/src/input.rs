@@ -1,13 +1,16 @@
 use crate::args::{AcceleratorArgs, PictureArgs, PovArgs, SceneArgs};
 use crate::fonts::font_folders;
 use crate::report::{Failure, Reporter};
+use crate::work;
+use std::cell::Cell;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
-use strahl::formats::scene::Loaded;
+use strahl::formats::scene::{Loaded, SceneFormat};
+use strahl::math::DVec3;
 use strahl::scene::Scene;
-use strahl::sdl::{Frame, Stream, Value};
-use strahl::tracing::{Prepared, RenderOptions, RenderScene};
+use strahl::sdl::{Frame, Stream, Value, Writing};
+use strahl::tracing::{Prepared, RenderOptions, RenderScene, Sampling};
 use strahl::{Format, LoadOptions, load_bytes, load_path};
 
 /// The size of pictures of scenes that name none.
@@ -43,6 +46,10 @@ pub(crate) struct Input<'a> {
     format: Option<Format>,
     pov: &'a PovArgs,
     size: (u32, u32),
+    /// Whether the scene may write files; else it writes into memory.
+    writes: bool,
+    /// Whether the scene was a bare mesh, and got a studio.
+    staged: Cell<bool>,
 }
 
 /// The time a scene is read for.
@@ -90,7 +97,33 @@ impl<'a> Input<'a> {
             format,
             pov,
             size: size.unwrap_or(DEFAULT_SIZE),
+            writes: false,
+            staged: Cell::new(false),
         })
+    }
+
+    /// Lets the scene write files: into the folder that the user allows, else into one of its own beside it.
+    pub(crate) fn writing(self) -> Result<Self, Failure> {
+        if let Some(folder) = &self.pov.allow_write
+            && !folder.is_dir()
+        {
+            let shown = folder.display();
+            return Err(Failure::new(format!(
+                "--allow-write: there is no folder {shown}"
+            )));
+        }
+        Ok(Self {
+            writes: true,
+            ..self
+        })
+    }
+
+    /// The scene's file, if it is one.
+    pub(crate) fn path(&self) -> Option<&Path> {
+        match &self.place {
+            Place::File(path) => Some(path),
+            Place::Text { .. } => None,
+        }
     }
 
     /// The scene of `check` and `info`.
@@ -115,6 +148,23 @@ impl<'a> Input<'a> {
         format == Some(Format::Pov)
     }
 
+    /// Whether the scene that was read had neither camera nor lights, and got a studio with both.
+    pub(crate) fn is_staged(&self) -> bool {
+        self.staged.get()
+    }
+
+    /// What is up in bare meshes: machines that print STL files stand on the plane of x and y.
+    fn up(&self) -> DVec3 {
+        let format = match &self.place {
+            Place::File(path) => self.format.or_else(|| Format::of_path(path)),
+            Place::Text { format, .. } => Some(*format),
+        };
+        match format {
+            Some(Format::File(SceneFormat::Stl)) => DVec3::Z,
+            _ => DVec3::Y,
+        }
+    }
+
     /// The moment of a picture that belongs to no animation. Like POV-Ray's, its frame numbers are zero.
     pub(crate) fn still(&self) -> Moment {
         Moment {
@@ -134,6 +184,7 @@ impl<'a> Input<'a> {
     /// Reads the scene with its diagnostics.
     pub(crate) fn read(&self, moment: Moment, quiet: bool) -> Loaded {
         let options = self.options(moment, quiet);
+        work::doing(format!("reading {}", self.name()));
         match &self.place {
             Place::File(path) => load_path(path, options),
             Place::Text {
@@ -150,7 +201,7 @@ impl<'a> Input<'a> {
             library: vec![PathBuf::from(".")],
             fonts: font_folders(),
             installed: strahl::povray_folders(),
-            writable: self.writable(),
+            writing: self.place_of_writing(),
             on_message: (!quiet).then(|| Box::new(print_message) as _),
             ..LoadOptions::default()
         };
@@ -162,6 +213,8 @@ impl<'a> Input<'a> {
         if let Some(version) = self.pov.language_version {
             sdl.version = version;
         }
+        let header = self.pov.include.as_ref();
+        sdl.header = header.map(|file| file.to_string_lossy().into_owned());
         for (name, value) in &self.pov.limit {
             sdl.limits.set(name, *value);
         }
@@ -172,19 +225,18 @@ impl<'a> Input<'a> {
         options
     }
 
-    /// Where the scene may write: the folder allowed, or its own. A text has no folder.
-    fn writable(&self) -> Option<PathBuf> {
-        if let Some(folder) = &self.pov.allow_write {
-            return Some(folder.clone());
+    /// Where the scene writes: `scene.pov` into `scene.out`. A text has no folder.
+    fn place_of_writing(&self) -> Writing {
+        if !self.writes {
+            return Writing::Memory;
         }
-        let Place::File(path) = &self.place else {
-            return None;
-        };
-        let folder = path.parent()?;
-        Some(match folder.as_os_str().is_empty() {
-            true => PathBuf::from("."),
-            false => folder.to_owned(),
-        })
+        if let Some(folder) = &self.pov.allow_write {
+            return Writing::Folder(folder.clone());
+        }
+        match &self.place {
+            Place::File(path) => Writing::Own(path.with_extension("out")),
+            Place::Text { .. } => Writing::Nowhere,
+        }
     }
 
     /// Reads the scene and prints what there is to say about it.
@@ -192,7 +244,13 @@ impl<'a> Input<'a> {
         let loaded = self.read(moment, reporter.quiet);
         let failed = reporter.print(&loaded.diagnostics, None);
         match loaded.scene {
-            Some(scene) if !failed => Ok(scene),
+            Some(mut scene) if !failed => {
+                reporter.settle()?;
+                if !self.is_pov() {
+                    self.staged.set(strahl::studio(&mut scene, self.up()));
+                }
+                Ok(scene)
+            }
             _ => Err(Failure::Reported),
         }
     }
@@ -206,6 +264,7 @@ impl<'a> Input<'a> {
         let start = Instant::now();
         let scene = self.load(moment, reporter)?;
         let loaded = Instant::now();
+        work::doing(format!("preparing {}", self.name()));
         let prepared = match Prepared::new(&scene) {
             Ok(prepared) => prepared,
             Err(errors) => {
@@ -214,6 +273,7 @@ impl<'a> Input<'a> {
             }
         };
         reporter.print(prepared.warnings(), Some(&scene.sources));
+        reporter.settle()?;
         drop(scene);
         let times = LoadTimes {
             load: (loaded - start).as_secs_f64(),
@@ -232,6 +292,11 @@ impl<'a> Input<'a> {
     ) -> Result<(RenderScene, LoadTimes), Failure> {
         let (prepared, mut times) = self.prepared(moment, reporter)?;
         let start = Instant::now();
+        work::doing(format!(
+            "building the {} of {}",
+            accelerator.kind().name(),
+            self.name()
+        ));
         let compiled = prepared.build(accelerator.kind());
         times.build = start.elapsed().as_secs_f64();
         times.compile += times.build;
@@ -250,7 +315,7 @@ fn print_message(stream: Stream, text: &str) {
 pub(crate) fn render_options(scene: &RenderScene, args: &PictureArgs) -> RenderOptions {
     let (width, height) = args.size.or(scene.settings().size).unwrap_or(DEFAULT_SIZE);
     let mut options = RenderOptions::new(scene, width, height);
-    options.sampling = args.sampling;
+    options.sampling = args.sampling.unwrap_or(Sampling::ADAPTIVE);
     options.seed = args.seed;
     options.trace.max_tree_rays = args.max_tree_rays;
     options.trace.force_shading = args.shading;
@@ -262,4 +327,18 @@ pub(crate) fn render_options(scene: &RenderScene, args: &PictureArgs) -> RenderO
         options.trace.adc_bailout = weight;
     }
     options
+}
+
+/// The number of threads: no more than there are processors, which only get in each other's way.
+pub(crate) fn threads(asked: usize, reporter: &Reporter) -> usize {
+    let most = std::thread::available_parallelism().map_or(1, usize::from);
+    if asked > most {
+        let are = if most == 1 { "is" } else { "are" };
+        let s = if most == 1 { "" } else { "s" };
+        reporter.say(&format!(
+            "note: {asked} threads were asked for; there {are} {most} processor{s} and so {most} thread{s}"
+        ));
+        return most;
+    }
+    asked
 }

@@ -13,32 +13,46 @@ mod fonts;
 mod heat;
 mod input;
 mod interrupt;
+mod memory;
 mod output;
 mod pov;
 mod progress;
 mod report;
 mod stats;
+mod target;
+mod terminal;
+mod work;
 
 use args::{Cli, Command};
 use clap::Parser;
+use report::Reporter;
 use std::process::ExitCode;
+use strahl::memory::Bounded;
+
+/// All memory of the program is counted: see `--max-memory`.
+#[global_allocator]
+static MEMORY: Bounded = Bounded::new();
 
 fn main() -> ExitCode {
-    let words = match pov::translate(std::env::args_os().collect()) {
+    let translated = match pov::translate(std::env::args_os().collect()) {
         Ok(translated) => translated,
         Err(problem) => {
-            eprintln!("error: {problem}");
+            terminal::line(&format!("error: {problem}"));
             return ExitCode::from(2);
         }
     };
-    let cli = Cli::parse_from(words.words);
-    if !matches!(&cli.command, Command::Render(args) if args.quiet) {
-        for note in words.notes {
-            eprintln!("note: {note}");
-        }
+    let cli = Cli::parse_from(translated.words);
+    interrupt::listen();
+    memory::bound(&MEMORY, cli.guard.max_memory);
+    if cli.guard.strict {
+        report::be_strict();
     }
     let outcome = match &cli.command {
-        Command::Render(args) => commands::render(args),
+        Command::Render(args) => {
+            let reporter = Reporter::new(args.quiet);
+            reporter.notes(&translated.notes);
+            commands::render(args, reporter)
+        }
         Command::Explain(args) => commands::explain(args),
         Command::Compare(args) => commands::compare(args),
         Command::Heatmap(args) => commands::heatmap(args),
@@ -46,6 +60,8 @@ fn main() -> ExitCode {
         Command::Info(args) => commands::info(args),
         Command::Check(args) => commands::check(args),
         Command::Formats => commands::formats(),
+        Command::Completions { shell } => commands::completions(*shell),
+        Command::Man { command } => commands::man(command.as_deref()),
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,

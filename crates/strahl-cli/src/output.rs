@@ -1,23 +1,44 @@
 //! Standard output.
 
+use crate::report::Failure;
+use crate::terminal::{self, visible};
 use std::fmt::Arguments;
-use std::io::{ErrorKind, Write};
+use std::io::{self, ErrorKind, IsTerminal, Write};
 
 /// Prints a line on standard output. Who reads it may have enough (`strahl explain ... | head`): the program then ends, without a
 /// complaint.
 pub(crate) fn line(text: Arguments<'_>) {
-    let mut out = std::io::stdout().lock();
-    let Err(error) = writeln!(out, "{text}") else {
-        return;
+    let mut out = io::stdout().lock();
+    // Names from scenes must not command the terminal.
+    let written = match out.is_terminal() {
+        true => writeln!(out, "{}", visible(&text.to_string())),
+        false => writeln!(out, "{text}"),
     };
-    if error.kind() != ErrorKind::BrokenPipe {
-        eprintln!("error: the output cannot be written: {error}");
+    if let Err(error) = written {
+        end(&error);
+    }
+}
+
+/// Prints bytes on standard output.
+pub(crate) fn bytes(bytes: &[u8]) -> Result<(), Failure> {
+    let mut out = io::stdout().lock();
+    match out.write_all(bytes).and_then(|()| out.flush()) {
+        Ok(()) => Ok(()),
+        Err(error) => end(&error),
+    }
+}
+
+/// Nobody reads any more, or the output can't be written.
+fn end(error: &io::Error) -> ! {
+    let enough = error.kind() == ErrorKind::BrokenPipe;
+    if !enough {
+        terminal::line(&format!("error: the output cannot be written: {error}"));
     }
     #[expect(
         clippy::exit,
         reason = "nobody is left to print for, and no file is open"
     )]
-    std::process::exit(i32::from(error.kind() != ErrorKind::BrokenPipe));
+    std::process::exit(i32::from(!enough))
 }
 
 /// `println!` that survives a reader who has enough.

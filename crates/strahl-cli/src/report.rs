@@ -1,4 +1,5 @@
-use std::cell::RefCell;
+use crate::{interrupt, terminal};
+use std::cell::{Cell, RefCell};
 use std::collections::BTreeSet;
 use std::fmt::Display;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -11,8 +12,10 @@ pub(crate) enum Failure {
     Message(String),
     /// The scene is wrong; the diagnostics are printed already.
     Reported,
-    /// The user pressed Ctrl-C; the text says what is lost and what is kept.
-    Interrupted(String),
+    /// There were warnings, and `--strict` asks for none.
+    Strict(String),
+    /// The user pressed Ctrl-C.
+    Interrupted,
 }
 
 impl Failure {
@@ -22,23 +25,37 @@ impl Failure {
 
     pub(crate) fn print(&self) {
         match self {
-            Self::Message(message) => eprintln!("error: {message}"),
+            Self::Message(message) => terminal::line(&format!("error: {message}")),
             Self::Reported => {}
-            Self::Interrupted(what) => eprintln!("interrupted; {what}"),
+            Self::Strict(what) => terminal::line(&format!("error: {what} (--strict)")),
+            Self::Interrupted => {
+                if !interrupt::ends() {
+                    // The thread that hears Ctrl-C is ending the program.
+                    interrupt::wait();
+                }
+                interrupt::say(&interrupt::lost());
+            }
         }
     }
 
-    /// Exit code: 1 for what went wrong, 130 as shells report Ctrl-C. (2 is clap's, for wrong command lines.)
+    /// Exit code: 1 for what went wrong, 3 for warnings where none are wanted, 130 as shells report Ctrl-C. (2 is clap's, for
+    /// wrong command lines.)
     pub(crate) fn code(&self) -> u8 {
         match self {
             Self::Message(_) | Self::Reported => 1,
-            Self::Interrupted(_) => 130,
+            Self::Strict(_) => 3,
+            Self::Interrupted => 130,
         }
     }
 }
 
-/// Whether the last message of a scene did not end its line.
-static OPEN_LINE: AtomicBool = AtomicBool::new(false);
+/// Whether warnings end the program: `--strict`, set once by `main`.
+static STRICT: AtomicBool = AtomicBool::new(false);
+
+/// Lets warnings end the program.
+pub(crate) fn be_strict() {
+    STRICT.store(true, Ordering::Relaxed);
+}
 
 /// Prints diagnostics, each text once: the frames of an animation repeat them.
 #[derive(Debug)]
@@ -46,6 +63,7 @@ pub(crate) struct Reporter {
     /// Print errors only.
     pub(crate) quiet: bool,
     said: RefCell<BTreeSet<String>>,
+    warnings: Cell<usize>,
 }
 
 impl Reporter {
@@ -53,38 +71,80 @@ impl Reporter {
         Self {
             quiet,
             said: RefCell::default(),
+            warnings: Cell::new(0),
         }
     }
 
     /// Prints what a scene says, as it comes.
     pub(crate) fn message(text: &str) {
-        eprint!("{text}");
-        if let Some(last) = text.chars().next_back() {
-            OPEN_LINE.store(last != '\n', Ordering::Relaxed);
-        }
+        terminal::message(text);
     }
 
     /// Prints diagnostics and tells whether one of them is an error. Diagnostics of the compiler know their place, but not
     /// the text of the line: `sources` gives at least the name of the file.
     pub(crate) fn print(&self, diagnostics: &[Diagnostic], sources: Option<&SourceMap>) -> bool {
+        terminal::end_line();
         for diagnostic in diagnostics {
-            if self.quiet && diagnostic.severity == Severity::Warning {
+            let warning = diagnostic.severity == Severity::Warning;
+            let text = text(diagnostic, sources);
+            if !self.said.borrow_mut().insert(text.clone()) {
                 continue;
             }
-            let mut text = diagnostic.to_string();
-            if diagnostic.source.is_none()
-                && let Some(location) = sources.and_then(|s| s.locate(diagnostic.span))
-            {
-                text.push_str(&format!("\n  --> {location}"));
-            }
-            if self.said.borrow_mut().insert(text.clone()) {
-                // Scenes often leave their last line open.
-                if OPEN_LINE.swap(false, Ordering::Relaxed) {
-                    eprintln!();
-                }
-                eprintln!("{text}");
+            self.warnings
+                .set(self.warnings.get() + usize::from(warning));
+            if !(warning && self.quiet) {
+                terminal::line(&text);
             }
         }
         diagnostics.iter().any(Diagnostic::is_error)
     }
+
+    /// Takes note of diagnostics that are told in another way.
+    pub(crate) fn note(&self, diagnostics: &[Diagnostic]) {
+        let warnings = diagnostics.iter().filter(|d| !d.is_error());
+        self.warnings.set(self.warnings.get() + warnings.count());
+    }
+
+    /// Prints a line that is neither error nor warning.
+    pub(crate) fn say(&self, text: &str) {
+        if !self.quiet {
+            terminal::line(text);
+        }
+    }
+
+    /// Prints a warning of the program's own.
+    pub(crate) fn warn(&self, text: &str) {
+        self.print(&[Diagnostic::warning(text)], None);
+    }
+
+    /// Tells what was asked for and will not be done.
+    pub(crate) fn notes(&self, notes: &[String]) {
+        for note in notes {
+            self.say(&format!("note: {note}"));
+        }
+        self.warnings.set(self.warnings.get() + notes.len());
+    }
+
+    /// Under `--strict` warnings are a failure.
+    pub(crate) fn settle(&self) -> Result<(), Failure> {
+        match self.warnings.get() {
+            n if n > 0 && STRICT.load(Ordering::Relaxed) => Err(Failure::Strict(format!(
+                "there {} {n} warning{}",
+                if n == 1 { "is" } else { "are" },
+                if n == 1 { "" } else { "s" }
+            ))),
+            _ => Ok(()),
+        }
+    }
+}
+
+/// A diagnostic as it is printed.
+fn text(diagnostic: &Diagnostic, sources: Option<&SourceMap>) -> String {
+    let mut text = diagnostic.to_string();
+    if diagnostic.source.is_none()
+        && let Some(location) = sources.and_then(|s| s.locate(diagnostic.span))
+    {
+        text.push_str(&format!("\n  --> {location}"));
+    }
+    text
 }

@@ -138,8 +138,16 @@ fn povray_switches_render() {
     fails(f, &["render", "scene.pov", "+Y3"], 2, &["+Y3", "--help"]);
     let noted = succeeds(f, &["render", "scene.pov", "+W8", "+H6", "+Q3", "+UA"]);
     assert!(
-        noted.contains("quality 3") && noted.contains("alpha"),
+        noted.contains("quality 3") && !noted.contains("alpha"),
         "{noted}"
+    );
+    let bytes = std::fs::read(f.join("scene.png")).expect("written");
+    assert_eq!(bytes[25], 6, "colours with alpha");
+    fails(
+        f,
+        &["scene.pov", "--alpha", "-o", "a.jpg"],
+        1,
+        &[".png, .exr"],
     );
 }
 
@@ -301,24 +309,241 @@ fn includes_are_searched_in_library_paths() {
     succeeds(f, &["render", "+Ie.pov", "+Llib", "+W8", "+H6"]);
 }
 
+/// A scene that writes a file, reads it again, and has a sphere of the radius that it says.
+fn writing(name: &str) -> String {
+    format!(
+        "#fopen F \"{name}\" write\n#write(F, \"#declare R = 1;\\n\")\n#fclose F\n#include \"{name}\"\nsphere {{ 0, R }}"
+    )
+}
+
 #[test]
-fn scenes_write_within_their_folder_only() {
+fn only_render_writes_files_of_scenes() {
+    let folder = folder();
+    let f = folder.path();
+    write(f, "w.pov", &writing("a.inc"));
+    for args in [
+        &["check", "w.pov"][..],
+        &["info", "w.pov"],
+        &["explain", "w.pov", "--pixel", "1,1", "--size", "4x3"],
+        &["trace-ray", "w.pov", "--pixel", "1,1", "--size", "4x3"],
+        &["compare", "w.pov", "--size", "4x3", "--with", "bvh"],
+        &["heatmap", "w.pov", "--size", "4x3", "-o", "heat.png"],
+        &["check", "w.pov", "--allow-write", "."],
+    ] {
+        succeeds(f, args);
+        assert!(
+            !f.join("w.out").exists() && !f.join("a.inc").exists(),
+            "{args:?}"
+        );
+    }
+    // Again and again: what a scene has written it may write again.
+    for _ in 0..2 {
+        succeeds(f, &["render", "w.pov", "--size", "4x3"]);
+        assert!(f.join("w.out/a.inc").exists() && !f.join("a.inc").exists());
+    }
+    succeeds(f, &["render", "w.pov", "--size", "4x3", "+KFF2"]);
+}
+
+#[test]
+fn scenes_overwrite_nothing() {
     let folder = folder();
     let f = folder.path();
     for name in ["in", "allowed"] {
         std::fs::create_dir(f.join(name)).expect("a folder");
     }
-    let scene = |name: &str| {
-        format!("#fopen F \"{name}\" write\n#write(F, 1)\n#fclose F\nsphere {{ 0, 1 }}")
-    };
-    write(f, "in/inside.pov", &scene("a.txt"));
-    write(f, "in/outside.pov", &scene("../b.txt"));
-    succeeds(f, &["check", "in/inside.pov"]);
-    assert!(f.join("in/a.txt").exists());
-    fails(f, &["check", "in/outside.pov"], 1, &["../b.txt"]);
-    assert!(!f.join("b.txt").exists());
-    succeeds(f, &["check", "in/inside.pov", "--allow-write", "allowed"]);
-    assert!(f.join("allowed/a.txt").exists());
+    write(f, "in/inside.pov", &writing("a.txt"));
+    let allowed = [
+        "render",
+        "in/inside.pov",
+        "--size",
+        "4x3",
+        "--allow-write",
+        "allowed",
+    ];
+    succeeds(f, &allowed);
+    assert!(f.join("allowed/a.txt").exists() && !f.join("in/inside.out").exists());
+    write(f, "allowed/a.txt", "mine");
+    fails(f, &allowed, 1, &["a.txt", "no scene has written"]);
+    assert_eq!(
+        std::fs::read(f.join("allowed/a.txt")).expect("kept"),
+        b"mine"
+    );
+    // The scene itself, files that are not shown, other folders.
+    for name in [
+        "self.pov",
+        "../b.txt",
+        ".bashrc",
+        "x/.git",
+        "/tmp/strahl-was-here",
+    ] {
+        write(f, "self.pov", &writing(name));
+        let args = ["render", "self.pov", "--size", "4x3", "--allow-write", "."];
+        fails(f, &args, 1, &["may not write"]);
+    }
+    assert!(!f.join("b.txt").exists() && !f.join(".bashrc").exists());
+    let args = ["render", "self.pov", "--allow-write", "nowhere"];
+    fails(f, &args, 1, &["no folder nowhere"]);
+    // Nor does a slip of the keyboard.
+    let args = ["render", "scene.pov", "--stats", "scene.pov"];
+    fails(f, &args, 1, &["the scene itself"]);
+    assert_eq!(
+        std::fs::read(f.join("scene.pov")).expect("kept"),
+        SCENE.as_bytes()
+    );
+}
+
+#[cfg(unix)]
+#[test]
+fn a_link_does_not_lead_a_scene_out_of_its_folder() {
+    let folder = folder();
+    let f = folder.path();
+    std::fs::create_dir(f.join("home")).expect("a folder");
+    std::os::unix::fs::symlink(f.join("home"), f.join("w.out")).expect("a link");
+    write(f, "w.pov", &writing("a.inc"));
+    fails(
+        f,
+        &["render", "w.pov", "--size", "4x3"],
+        1,
+        &["may not write", "w.out"],
+    );
+    assert_eq!(
+        std::fs::read_dir(f.join("home")).expect("a folder").count(),
+        0
+    );
+}
+
+#[test]
+fn render_may_be_left_out() {
+    let folder = folder();
+    let f = folder.path();
+    for (line, name) in [
+        ("+Iscene.pov +W8 +H6", "scene.png"),
+        ("scene.pov --size 8x6 -o a.png", "a.png"),
+        ("scene +W8 +H6 +Ob", "b.png"),
+        ("--strict +Iscene +W8 +H6 +Oc.png", "c.png"),
+    ] {
+        succeeds(f, &line.split(' ').collect::<Vec<_>>());
+        assert_eq!(size(f, name), (8, 6), "{line}");
+    }
+    write(
+        f,
+        "run.ini",
+        "Input_File_Name=scene\nWidth=90\nHeight=60\nOutput_File_Name=x.png\nAntialias=on\n",
+    );
+    // What is said to strahl wins.
+    succeeds(
+        f,
+        &[
+            "run.ini",
+            "--size",
+            "8x6",
+            "-o",
+            "d.png",
+            "--sampling",
+            "center",
+        ],
+    );
+    assert_eq!(size(f, "d.png"), (8, 6));
+    succeeds(f, &["run", "+W10"]);
+    assert_eq!(size(f, "x.png"), (10, 60));
+    let version = strahl(f, &["render", "-V"]);
+    assert!(String::from_utf8_lossy(&version.stdout).starts_with("strahl "));
+    fails(f, &["rendr", "scene.pov"], 2, &["unrecognized", "render"]);
+}
+
+#[test]
+fn pictures_of_povs_types_are_written() {
+    let folder = folder();
+    let f = folder.path();
+    for (switch, name, magic) in [
+        ("+FB", "scene.bmp", &b"BM"[..]),
+        ("+FJ", "scene.jpg", &[0xff, 0xd8, 0xff]),
+        ("+FP", "scene.ppm", b"P6"),
+        ("+FT", "scene.tga", &[0, 0, 10]),
+        ("+FE", "scene.exr", &[0x76, 0x2f, 0x31, 1]),
+    ] {
+        succeeds(f, &["+Iscene.pov", "+W8", "+H6", switch]);
+        let bytes = std::fs::read(f.join(name)).expect(name);
+        assert!(bytes.starts_with(magic), "{name}");
+    }
+    let output = strahl(f, &["+Iscene.pov", "+W8", "+H6", "+O-", "+FP", "-GA"]);
+    assert!(output.stdout.starts_with(b"P6"), "{}", stderr(&output));
+    let output = strahl(
+        f,
+        &["scene.pov", "--size", "8x6", "-o", "-", "--stats", "s.json"],
+    );
+    assert!(output.stdout.starts_with(b"\x89PNG"), "{}", stderr(&output));
+    assert!(f.join("s.json").exists() && !f.join("-").exists());
+    let output = strahl(f, &["scene.pov", "--size", "8x6", "--stats", "-", "-q"]);
+    assert!(output.stdout.starts_with(b"{"), "{}", stderr(&output));
+    std::fs::create_dir(f.join("out")).expect("a folder");
+    succeeds(
+        f,
+        &[
+            "scene.pov",
+            "--size",
+            "8x6",
+            "-o",
+            "out/",
+            "--picture-format",
+            "jpg",
+        ],
+    );
+    assert!(f.join("out/scene.jpg").exists());
+    let help = ["scene.pov", "-o", "a", "--picture-format", "gif"];
+    fails(f, &help, 2, &["png", "jpg", "tga"]);
+}
+
+#[test]
+fn a_header_is_included_before_the_scene() {
+    let folder = folder();
+    let f = folder.path();
+    write(f, "head.inc", "#declare R = 2; #debug \"header\\n\"");
+    write(
+        f,
+        "h.pov",
+        "#debug concat(\"R \", str(R, 0, 0), \"\\n\") sphere { 0, R }",
+    );
+    for args in [
+        &["+Ih.pov", "+HIhead.inc", "+W4", "+H3"][..],
+        &["check", "h.pov", "--include", "head.inc"],
+    ] {
+        let said = succeeds(f, args);
+        assert!(said.contains("header\nR 2\n"), "{said}");
+    }
+    fails(
+        f,
+        &["check", "h.pov", "--include", "none.inc"],
+        1,
+        &["none.inc"],
+    );
+}
+
+#[test]
+fn what_is_left_out_is_noted() {
+    let folder = folder();
+    let f = folder.path();
+    let said = succeeds(
+        f,
+        &[
+            "+Iscene.pov",
+            "+W4",
+            "+H3",
+            "+GDlog.txt",
+            "Dither=on",
+            "Field_Render=on",
+        ],
+    );
+    for part in ["not written to files", "not dithered", "fields"] {
+        assert!(said.contains(part), "{said}");
+    }
+    assert!(!f.join("log.txt").exists());
+    fails(
+        f,
+        &["+Iscene.pov", "+W4", "+H3", "Dither=on", "--strict"],
+        3,
+        &["--strict"],
+    );
 }
 
 #[cfg(unix)]
@@ -356,4 +581,74 @@ fn ctrl_c_leaves_whole_frames() {
     // The scene and its pictures, nothing half done.
     let files = std::fs::read_dir(f).expect("a folder").count();
     assert_eq!(files, names.len() + 1);
+}
+
+/// What the program says until it ends after Ctrl-C, and how long that takes.
+#[cfg(unix)]
+fn interrupted(folder: &Path, args: &[&str]) -> (String, f64) {
+    let child = Command::new(env!("CARGO_BIN_EXE_strahl"))
+        .current_dir(folder)
+        .args(args)
+        .stdin(Stdio::null())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the program starts");
+    std::thread::sleep(std::time::Duration::from_millis(1500));
+    let pid = child.id().to_string();
+    let start = std::time::Instant::now();
+    let killed = Command::new("kill").args(["-INT", &pid]).status();
+    assert!(killed.expect("kill runs").success(), "it ended too early");
+    let output = child.wait_with_output().expect("it ends");
+    let said = stderr(&output);
+    assert_eq!(output.status.code(), Some(130), "{args:?}: {said}");
+    (said, start.elapsed().as_secs_f64())
+}
+
+#[cfg(unix)]
+#[test]
+fn ctrl_c_ends_the_middle_of_something_long() {
+    let folder = folder();
+    let f = folder.path();
+    write(
+        f,
+        "loop.pov",
+        "#declare I = 0; #while (I < 1e12) #declare I = I + 1; #end sphere { 0, 1 }",
+    );
+    // Two mirrors that face each other: trees of ten thousand levels, with a thousand shadow rays on each.
+    let mirrors = "camera { location 0 look_at z } global_settings { max_trace_level 10000 adc_bailout 0 }\n\
+                   light_source { y/2 rgb 1 area_light x, z, 32, 32 }\n\
+                   plane { z, 1 pigment { rgb 1 } finish { reflection 1 } } plane { z, -1 pigment { rgb 1 } finish { reflection 1 } }";
+    write(f, "mirrors.pov", mirrors);
+    for args in [
+        &[
+            "check",
+            "loop.pov",
+            "--limit",
+            "steps=1e17",
+            "--limit",
+            "idle_steps=1e17",
+        ][..],
+        &[
+            "render",
+            "loop.pov",
+            "--limit",
+            "steps=1e17",
+            "--limit",
+            "idle_steps=1e17",
+        ],
+        &[
+            "render",
+            "mirrors.pov",
+            "--size",
+            "2x2",
+            "--max-tree-rays",
+            "4000000000",
+        ],
+    ] {
+        let (said, seconds) = interrupted(f, args);
+        assert!(said.contains("interrupted"), "{args:?}: {said}");
+        // A second, and what a busy machine takes.
+        assert!(seconds < 3.0, "{args:?}: {seconds} s");
+    }
+    assert!(pictures(f).is_empty());
 }

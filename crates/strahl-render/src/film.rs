@@ -111,6 +111,8 @@ pub struct Film {
     pub region: Region,
     /// Linear Rec. 709 RGB of the region, row by row from the top.
     pub pixels: Vec<[f32; 3]>,
+    /// How much each pixel covers what lies behind the picture, if requested: 1 is opaque. The colours are then multiplied by it.
+    pub alpha: Option<Vec<f32>>,
     /// More data of each pixel, if requested.
     pub info: Option<Vec<PixelInfo>>,
 }
@@ -205,6 +207,7 @@ impl Film {
             0,
         );
         let pixels = try_filled(region, [0.0; 3])?;
+        let alpha = None;
         let info = if info {
             Some(try_filled(region, none)?)
         } else {
@@ -215,6 +218,7 @@ impl Film {
             height,
             region,
             pixels,
+            alpha,
             info,
         })
     }
@@ -252,6 +256,10 @@ pub(crate) fn try_filled<T: Clone>(region: Region, value: T) -> Result<Vec<T>, F
         gib: region.pixels() as f64 * size_of::<T>() as f64 / (1u64 << 30) as f64,
     };
     let count = usize::try_from(region.pixels()).map_err(|_| out_of_memory())?;
+    let bytes = region.pixels().saturating_mul(size_of::<T>() as u64);
+    if !strahl_simd::memory::fits(bytes) {
+        return Err(out_of_memory());
+    }
     list.try_reserve_exact(count).map_err(|_| out_of_memory())?;
     list.resize(count, value);
     Ok(list)

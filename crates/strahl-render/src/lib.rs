@@ -16,6 +16,7 @@ mod blocks;
 mod camera;
 mod compile;
 mod cost;
+mod coverage;
 mod film;
 mod fog;
 mod hit;

@@ -36,6 +36,8 @@ pub struct RenderOptions {
     pub info: bool,
     /// Whether to fill [`Rendered::costs`].
     pub costs: bool,
+    /// Whether to fill [`Film::alpha`], and to leave the background out of the colours as far as it is see-through.
+    pub alpha: bool,
 }
 
 impl RenderOptions {
@@ -52,12 +54,13 @@ impl RenderOptions {
             trace: TraceSettings::of(scene),
             info: false,
             costs: false,
+            alpha: false,
         }
     }
 
     /// Whether neighbouring rays are traced in packets. Not where costs are shown, since these are the costs of single rays.
     fn follows_together(&self, rays: &PrimaryRays) -> bool {
-        self.trace.packets && !self.costs && !self.info && rays.is_sharp()
+        self.trace.packets && !self.costs && !self.info && !self.alpha && rays.is_sharp()
     }
 
     /// The part of the picture that the film holds.
@@ -129,6 +132,9 @@ pub fn render(
     progress: &dyn Progress,
 ) -> Result<Rendered, RenderError> {
     let mut film = Film::try_new(options.width, options.height, options.region, options.info)?;
+    if options.alpha {
+        film.alpha = Some(try_filled(film.region, 1.0)?);
+    }
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(options.threads)
         .build()
@@ -220,16 +226,39 @@ struct TileResult<T> {
 struct Samples {
     sum: Color,
     count: u32,
+    /// The sum of what the samples show of the background, for the alpha channel.
+    clear: f64,
     /// The refining passes it was part of, as bits.
     passes: u32,
+}
+
+/// A pixel as the film holds it.
+#[derive(Clone, Copy, Debug)]
+struct Shown {
+    color: [f32; 3],
+    alpha: f32,
 }
 
 impl Samples {
     const NONE: Self = Self {
         sum: Color::BLACK,
         count: 0,
+        clear: 0.0,
         passes: 0,
     };
+
+    /// What the film holds of the pixel.
+    fn shown(&self) -> Shown {
+        Shown {
+            color: self.mean().to_f32(),
+            alpha: (1.0 - self.clear()) as f32,
+        }
+    }
+
+    /// How much of what lies behind the picture shows.
+    fn clear(&self) -> f64 {
+        self.clear / f64::from(self.count.max(1))
+    }
 
     fn mean(&self) -> Color {
         if self.count == 1 {
@@ -295,8 +324,8 @@ impl Job<'_> {
         self.tiles(
             region,
             0,
-            |tracer, pixels| Some(tracer.blank(pixels)?.mean().to_f32()),
-            |tracer, x, y| tracer.pixel(0, x, y).mean().to_f32(),
+            |tracer, pixels| Some(tracer.blank(pixels)?.shown()),
+            |tracer, x, y| tracer.pixel(0, x, y).shown(),
             |result| {
                 film.set_infos(result.tile, &result.infos);
                 film.set_tile(result.tile, &result.values);
@@ -312,11 +341,11 @@ impl Job<'_> {
             height: region.height + 1,
             ..region
         };
-        let mut corners = try_filled(lattice, Color::BLACK)?;
+        let mut corners = try_filled(lattice, (Color::BLACK, 0.0))?;
         self.tiles(
             lattice,
             0,
-            |tracer, corners| tracer.tree.same_nothing(corners as usize),
+            |tracer, corners| Some((tracer.tree.same_nothing(corners as usize)?, 0.0)),
             |tracer, x, y| tracer.corner(x, y),
             |result| {
                 film.set_infos(result.tile, &result.infos);
@@ -327,7 +356,9 @@ impl Job<'_> {
         )?;
         for (x, y) in region.positions() {
             let at = |dx, dy| corners[lattice.index(x + dx, y + dy)];
-            film.set((x, y), (at(0, 0) + at(1, 0) + at(0, 1) + at(1, 1)) / 4.0);
+            let four = [at(0, 0), at(1, 0), at(0, 1), at(1, 1)];
+            let color = (four[0].0 + four[1].0 + four[2].0 + four[3].0) / 4.0;
+            film.set((x, y), color, four.iter().map(|c| c.1).sum::<f64>() / 4.0);
         }
         Ok(())
     }
@@ -345,7 +376,8 @@ impl Job<'_> {
             film.set_infos(tile, infos);
         })?;
         for (x, y) in region.positions() {
-            film.set((x, y), all[wide.index(x, y)].mean());
+            let samples = &all[wide.index(x, y)];
+            film.set((x, y), samples.mean(), samples.clear());
         }
         Ok(())
     }
@@ -399,6 +431,7 @@ impl Job<'_> {
                         let samples = &mut all[wide.index(x, y)];
                         samples.sum += more.sum;
                         samples.count += more.count;
+                        samples.clear += more.clear;
                         samples.passes |= 1 << pass;
                     }
                 }
@@ -417,17 +450,27 @@ impl Region {
 }
 
 impl Film {
-    fn set(&mut self, (x, y): (u32, u32), color: Color) {
+    fn set(&mut self, (x, y): (u32, u32), color: Color, clear: f64) {
         let index = self.region.index(x, y);
         self.pixels[index] = color.to_f32();
+        if let Some(alpha) = &mut self.alpha {
+            alpha[index] = (1.0 - clear) as f32;
+        }
     }
 
     /// Writes the pixels of a tile, which lies in the film.
-    fn set_tile(&mut self, tile: Region, values: &[[f32; 3]]) {
+    fn set_tile(&mut self, tile: Region, values: &[Shown]) {
         let width = tile.width as usize;
         for (y, row) in (tile.y..).zip(values.chunks_exact(width)) {
             let start = self.region.index(tile.x, y);
-            self.pixels[start..start + width].copy_from_slice(row);
+            for (place, value) in self.pixels[start..start + width].iter_mut().zip(row) {
+                *place = value.color;
+            }
+            if let Some(alpha) = &mut self.alpha {
+                for (place, value) in alpha[start..start + width].iter_mut().zip(row) {
+                    *place = value.alpha;
+                }
+            }
         }
     }
 

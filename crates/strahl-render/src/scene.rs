@@ -107,6 +107,8 @@ pub struct RenderScene {
     pub(crate) masks: Vec<Option<InstanceUse>>,
     pub(crate) ambient: Color,
     pub(crate) background: Background,
+    /// How much of the background the alpha channel leaves out of the picture.
+    pub(crate) background_transmit: f64,
     pub(crate) fogs: Vec<Fog>,
     /// Whether some material has dispersion.
     pub(crate) disperses: bool,

@@ -58,6 +58,8 @@ pub struct Scene {
     pub ambient: Option<Color>,
     /// The radiance along rays that hit nothing; `None` is black, or a soft gradient behind objects framed by the renderer.
     pub background: Option<Background>,
+    /// How much of the background an alpha channel leaves out of the picture, from 0 to 1; all of it if there is no `background`.
+    pub background_transmit: f64,
     /// Fogs; each fills all space outside of solid objects.
     pub fogs: Vec<Fog>,
     /// Rainbows, in front of the background or of all distant objects.

@@ -56,7 +56,7 @@ pub use grammar::{
 pub use keywords::{Word, WordKind};
 pub use options::{Frame, Limits, Options};
 pub use parser::{Failed, Macro, PResult, Parser, Place};
-pub use source::{FolderHost, Host, HostError, MemoryHost, Source, Stream};
+pub use source::{FolderHost, Host, HostError, MemoryHost, Source, Stream, Writing};
 pub use symbol::Symbol;
 pub use token::{Kind, Token};
 pub use value::{Value, Vector};
@@ -85,6 +85,7 @@ pub fn parse(source: Source, options: &Options, host: &mut dyn Host) -> Parsed {
     }
     let mut parser = Parser::new(source, options, host);
     parser.declare_given();
+    parser.include_header();
     parser.run();
     parser.into_parsed()
 }

@@ -14,6 +14,8 @@ pub struct Options {
     pub image_height: u32,
     /// Names declared before the scene begins (`Declare=NAME=VALUE`).
     pub declare: Vec<(String, Value)>,
+    /// A file that is included before the scene begins (`Include_Header`).
+    pub header: Option<String>,
     /// The language version of a scene that has no `#version`.
     pub version: f64,
     /// Bounds on what a scene may use.
@@ -28,6 +30,7 @@ impl Default for Options {
             image_width: 800,
             image_height: 600,
             declare: vec![],
+            header: None,
             version: 3.8,
             limits: Limits::default(),
         }

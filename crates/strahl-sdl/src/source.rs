@@ -10,12 +10,14 @@ mod folder;
 mod fonts;
 mod memory;
 mod text;
+mod writing;
 
 pub(crate) use chunk::Chunk;
 pub(crate) use file::SourceFile;
 pub use folder::FolderHost;
 pub use memory::MemoryHost;
 pub(crate) use text::Part;
+pub use writing::Writing;
 
 /// A scene file to be parsed: UTF-8 or Latin-1.
 #[derive(Debug)]

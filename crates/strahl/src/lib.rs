@@ -71,6 +71,7 @@
 
 mod load;
 mod picture;
+mod studio;
 
 pub use load::{
     Format, Listener, LoadOptions, UnknownFormat, load_bytes, load_path, povray_folders,
@@ -84,6 +85,8 @@ pub use strahl_render::{self as tracing, compile, explain, render};
 pub use strahl_scene as scene;
 pub use strahl_sdl as sdl;
 pub use strahl_shade as shade;
+pub use strahl_simd::memory;
+pub use studio::studio;
 
 /// Everything a program that builds and renders scenes is likely to name.
 pub mod prelude {

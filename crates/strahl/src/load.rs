@@ -3,7 +3,7 @@ use std::path::{Path, PathBuf};
 use std::str::FromStr;
 use strahl_formats::scene::{self, Loaded, SceneFormat, read_decompressed};
 use strahl_scene::Diagnostic;
-use strahl_sdl::{FolderHost, Source, Stream, parse};
+use strahl_sdl::{FolderHost, Source, Stream, Writing, parse};
 
 /// A format that scenes are loaded from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -88,8 +88,8 @@ pub struct LoadOptions {
     pub fonts: Vec<PathBuf>,
     /// Folders that are searched last; [`povray_folders`] names those of an installed POV-Ray.
     pub installed: Vec<PathBuf>,
-    /// The folder within which the scene may write files; `None` forbids it.
-    pub writable: Option<PathBuf>,
+    /// Where the scene may write files; nowhere at first.
+    pub writing: Writing,
     /// Receives the output of `#debug` and the like.
     pub on_message: Option<Listener>,
 }
@@ -102,7 +102,7 @@ impl fmt::Debug for LoadOptions {
             .field("library", &self.library)
             .field("fonts", &self.fonts)
             .field("installed", &self.installed)
-            .field("writable", &self.writable)
+            .field("writing", &self.writing)
             .finish_non_exhaustive()
     }
 }
@@ -111,10 +111,8 @@ impl LoadOptions {
     fn parse(self, source: Source) -> Loaded {
         let mut host = FolderHost::new(self.library)
             .with_fonts(self.fonts)
-            .with_installed(self.installed);
-        if let Some(folder) = self.writable {
-            host = host.allow_writing(folder);
-        }
+            .with_installed(self.installed)
+            .allow_writing(self.writing);
         if let Some(f) = self.on_message {
             host = host.on_message(f);
         }
@@ -179,7 +177,16 @@ pub fn load_path(path: &Path, options: LoadOptions) -> Loaded {
             Err(problem) => failed(*problem),
         },
         Some(Format::File(format)) => scene::load_path(path, Some(format)),
-        None => scene::load_path(path, None),
+        None => {
+            let mut loaded = scene::load_path(path, None);
+            // Who lists the formats of files does not know that of POV-Ray.
+            let of_files: Vec<&str> = scene::formats().iter().map(|info| info.name).collect();
+            let hints = loaded.diagnostics.iter_mut().flat_map(|d| &mut d.hints);
+            for hint in hints {
+                *hint = hint.replace(&of_files.join(", "), &names());
+            }
+            loaded
+        }
     }
 }
 

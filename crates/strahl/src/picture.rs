@@ -49,6 +49,7 @@ pub fn picture<'a>(
             height: r.height,
         },
         rgb: &film.pixels,
+        alpha: film.alpha.as_deref(),
         layers,
         metadata,
     }

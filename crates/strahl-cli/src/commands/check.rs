@@ -2,37 +2,125 @@ use crate::args::CheckArgs;
 use crate::input::Input;
 use crate::output::say;
 use crate::report::{Failure, Reporter};
+use serde::Serialize;
+use std::path::Path;
+use strahl::scene::{Diagnostic, Severity, SourceMap};
 use strahl::tracing::Prepared;
 
-/// `strahl check`: everything there is to say about a scene, and whether it could be rendered.
+/// `strahl check`: everything there is to say about scenes, and whether they could be rendered.
 pub(crate) fn check(args: &CheckArgs) -> Result<(), Failure> {
-    let (input, reporter) = (Input::of(&args.scene)?, Reporter::new(false));
+    let reporter = Reporter::new(false);
+    let mut checked = vec![];
+    let mut failed = false;
+    for scene in &args.scenes {
+        let one = check_one(args, scene, &reporter)?;
+        failed |= !one.ok;
+        checked.push(one);
+    }
+    if args.json {
+        let json = serde_json::to_string_pretty(&checked).map_err(Failure::new)?;
+        say!("{json}");
+    }
+    match failed {
+        true => Err(Failure::Reported),
+        false => reporter.settle(),
+    }
+}
+
+/// What there is to say about a scene; with its field names the contract of `--json`.
+#[derive(Debug, Serialize)]
+struct Checked {
+    file: String,
+    /// Whether there is no error.
+    ok: bool,
+    errors: usize,
+    warnings: usize,
+    diagnostics: Vec<Said>,
+}
+
+/// A diagnostic for programs.
+#[derive(Debug, Serialize)]
+struct Said {
+    severity: &'static str,
+    message: String,
+    file: Option<String>,
+    line: Option<u32>,
+    column: Option<u32>,
+    length: Option<u32>,
+    help: Vec<String>,
+    trace: Vec<String>,
+}
+
+fn check_one(args: &CheckArgs, scene: &Path, reporter: &Reporter) -> Result<Checked, Failure> {
+    let input = Input::new(Some(scene), args.format, &args.pov, None)?;
     let loaded = input.read(input.still(), false);
-    let mut failed = reporter.print(&loaded.diagnostics, None);
-    let mut said = loaded.diagnostics.len();
+    let mut said: Vec<Said> = vec![];
+    let mut tell = |diagnostics: &[Diagnostic], sources: Option<&SourceMap>| {
+        said.extend(diagnostics.iter().map(|d| Said::of(d, sources)));
+        match args.json {
+            true => reporter.note(diagnostics),
+            false => drop(reporter.print(diagnostics, sources)),
+        }
+    };
+    tell(
+        &loaded.diagnostics,
+        loaded.scene.as_ref().map(|s| &s.sources),
+    );
     if let (Some(scene), false) = (&loaded.scene, args.syntax) {
         let more = match Prepared::new(scene) {
             Ok(prepared) => prepared.warnings().to_vec(),
             Err(errors) => errors,
         };
-        failed |= reporter.print(&more, Some(&scene.sources));
-        said += more.len();
+        tell(&more, Some(&scene.sources));
     }
-    if failed || loaded.scene.is_none() {
-        return Err(Failure::Reported);
+    let errors = said.iter().filter(|s| s.severity == "error").count();
+    let checked = Checked {
+        file: input.name(),
+        ok: errors == 0 && loaded.scene.is_some(),
+        errors,
+        warnings: said.len() - errors,
+        diagnostics: said,
+    };
+    if checked.ok && !args.json {
+        match checked.warnings {
+            0 => say!("{}: no problems", checked.file),
+            n => say!(
+                "{}: {}, with {n} warning{}",
+                checked.file,
+                if args.syntax {
+                    "can be read"
+                } else {
+                    "renders"
+                },
+                if n == 1 { "" } else { "s" }
+            ),
+        }
     }
-    match said {
-        0 => say!("{}: no problems", input.name()),
-        n => say!(
-            "{}: {}, with {n} warning{}",
-            input.name(),
-            if args.syntax {
-                "can be read"
-            } else {
-                "renders"
+    Ok(checked)
+}
+
+impl Said {
+    fn of(diagnostic: &Diagnostic, sources: Option<&SourceMap>) -> Self {
+        let span = diagnostic.span;
+        let known = |n: u32| (n > 0).then_some(n);
+        let file = match &diagnostic.source {
+            Some(source) => Some(source.file.clone()),
+            None => sources
+                .and_then(|s| s.locate(span))
+                .map(|place| place.file.to_owned()),
+        };
+        Self {
+            severity: match diagnostic.severity {
+                Severity::Warning => "warning",
+                Severity::Error => "error",
             },
-            if n == 1 { "" } else { "s" }
-        ),
+            message: diagnostic.message.clone(),
+            file,
+            line: known(span.line),
+            column: known(span.column),
+            length: known(span.length),
+            help: diagnostic.hints.clone(),
+            trace: diagnostic.trace.clone(),
+        }
     }
-    Ok(())
 }

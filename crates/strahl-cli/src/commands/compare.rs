@@ -1,5 +1,5 @@
 use crate::args::CompareArgs;
-use crate::input::{Input, render_options};
+use crate::input::{Input, render_options, threads};
 use crate::output::say;
 use crate::report::{Failure, Reporter};
 use serde::Serialize;
@@ -39,7 +39,8 @@ pub(crate) fn compare(args: &CompareArgs) -> Result<(), Failure> {
     let (input, reporter) = (Input::of(&args.scene)?, Reporter::new(false));
     let (prepared, _) = input.prepared(input.still(), &reporter)?;
     let kinds = kinds(args)?;
-    let rows = Comparison::new(args, prepared).run(&kinds)?;
+    let threads = threads(args.threads, &reporter);
+    let rows = Comparison::new(args, threads, prepared).run(&kinds)?;
     if args.json {
         let text = serde_json::to_string_pretty(&rows).map_err(Failure::new)?;
         say!("{text}");
@@ -84,6 +85,7 @@ const SQUARE: u32 = 8;
 
 struct Comparison<'a> {
     args: &'a CompareArgs,
+    threads: usize,
     prepared: Prepared,
 }
 
@@ -97,8 +99,12 @@ struct Contender {
 }
 
 impl<'a> Comparison<'a> {
-    fn new(args: &'a CompareArgs, prepared: Prepared) -> Self {
-        Self { args, prepared }
+    fn new(args: &'a CompareArgs, threads: usize, prepared: Prepared) -> Self {
+        Self {
+            args,
+            threads,
+            prepared,
+        }
     }
 
     fn run(&self, kinds: &[AcceleratorKind]) -> Result<Vec<Row>, Failure> {
@@ -142,7 +148,7 @@ impl<'a> Comparison<'a> {
 
     fn options(&self, scene: &RenderScene) -> RenderOptions {
         let mut options = render_options(scene, &self.args.picture);
-        options.threads = self.args.threads;
+        options.threads = self.threads;
         options.trace.shadow_cache = !self.args.no_shadow_cache;
         // What structures cost is compared ray by ray.
         options.trace.beams = false;

@@ -1,10 +1,12 @@
 use crate::args::{HeatmapArgs, Metric};
 use crate::heat::{LEGEND_ROWS, color, legend};
-use crate::input::{Input, render_options};
+use crate::input::{Input, render_options, threads};
+use crate::interrupt;
 use crate::report::{Failure, Reporter};
+use crate::target::Target;
 use std::time::Instant;
-use strahl::formats::image::{ImageFormat, Layer, LayerData, Picture, WriteOptions, write_picture};
-use strahl::tracing::{PixelCost, Progress, RenderScene};
+use strahl::formats::image::{ImageFormat, Layer, LayerData, Picture, WriteOptions};
+use strahl::tracing::{PixelCost, Progress, RenderError, RenderScene, Sampling};
 
 /// `strahl heatmap`: a picture of what each pixel costs.
 pub(crate) fn heatmap(args: &HeatmapArgs) -> Result<(), Failure> {
@@ -12,10 +14,15 @@ pub(crate) fn heatmap(args: &HeatmapArgs) -> Result<(), Failure> {
     let (input, reporter) = (Input::of(&args.scene)?, Reporter::new(false));
     let (scene, _) = input.compiled(input.still(), &args.accelerator, &reporter)?;
     let mut options = render_options(&scene, &args.picture);
-    options.threads = args.threads;
+    // One ray tells what a pixel costs; those of antialiasing would blur it.
+    options.sampling = args.picture.sampling.unwrap_or(Sampling::Center);
+    options.threads = threads(args.threads, &reporter);
     options.costs = true;
     let clock = Clock(Instant::now());
-    let rendered = strahl::render(&scene, &options, &clock).map_err(Failure::new)?;
+    let rendered = strahl::render(&scene, &options, &clock).map_err(|error| match error {
+        RenderError::Cancelled => Failure::Interrupted,
+        other => Failure::new(other),
+    })?;
     let costs = rendered.costs.unwrap_or_default();
     let values: Vec<f32> = costs.iter().map(|c| args.metric.of(c)).collect();
     let max = args.scale.unwrap_or_else(|| usual_most(&values));
@@ -44,14 +51,15 @@ pub(crate) fn heatmap(args: &HeatmapArgs) -> Result<(), Failure> {
         metadata: metadata(args, &scene, &title, max),
         ..Picture::new(options.width, rows, &rgb)
     };
-    write_picture(&args.output, &picture, &WriteOptions::default()).map_err(Failure::new)?;
+    interrupt::would_lose("no picture was written");
+    Target::File(args.output.clone(), format).write(&picture, &WriteOptions::default())?;
     let sum: f64 = values.iter().map(|v| f64::from(*v)).sum();
     let most = values.iter().fold(0.0f32, |a, b| a.max(*b));
-    eprintln!(
+    reporter.say(&format!(
         "{}: {title}, mean {:.2}, most {most}, colours from 0 to {max}",
         args.output.display(),
         sum / values.len().max(1) as f64,
-    );
+    ));
     Ok(())
 }
 
@@ -110,5 +118,9 @@ struct Clock(Instant);
 impl Progress for Clock {
     fn now(&self) -> u64 {
         self.0.elapsed().as_nanos() as u64
+    }
+
+    fn cancelled(&self) -> bool {
+        interrupt::pressed()
     }
 }

@@ -1,5 +1,6 @@
 use crate::args::SceneArgs;
 use crate::input::Input;
+use crate::memory;
 use crate::output::say;
 use crate::report::{Failure, Reporter};
 use std::collections::BTreeMap;
@@ -19,18 +20,25 @@ pub(crate) fn info(args: &SceneArgs) -> Result<(), Failure> {
             return Err(Failure::Reported);
         }
     };
-    let (own_camera, own_lights) = (description.camera.is_some(), !description.lights.is_empty());
+    let staged = input.is_staged();
+    let (own_camera, own_lights) = (
+        description.camera.is_some() && !staged,
+        !description.lights.is_empty() && !staged,
+    );
     let scene = prepared.build(AcceleratorKind::default());
     say!("scene       {}", args.scene.display());
     objects(&scene);
+    if staged {
+        say!("studio      a ground, a camera and three lights were added: the file has none");
+    }
     view(&scene, own_camera, own_lights);
     let s = scene.stats();
     say!("materials   {}", s.materials);
     say!(
         "memory      geometry {}, {} {} ({} nodes, {} references)",
-        bytes(s.geometry_bytes),
+        memory::size(s.geometry_bytes),
         scene.accelerator_name(),
-        bytes(s.accelerator_bytes),
+        memory::size(s.accelerator_bytes),
         s.nodes,
         s.references,
     );
@@ -116,18 +124,4 @@ fn view(scene: &RenderScene, own_camera: bool, own_lights: bool) {
 
 fn point(p: DVec3) -> String {
     format!("({:.6}, {:.6}, {:.6})", p.x, p.y, p.z)
-}
-
-fn bytes(n: usize) -> String {
-    const UNITS: [&str; 4] = ["B", "KiB", "MiB", "GiB"];
-    let (mut value, mut unit) = (n as f64, 0);
-    while value >= 1024.0 && unit + 1 < UNITS.len() {
-        value /= 1024.0;
-        unit += 1;
-    }
-    if unit == 0 {
-        format!("{n} B")
-    } else {
-        format!("{value:.1} {}", UNITS[unit])
-    }
 }

@@ -20,6 +20,16 @@ pub(super) fn named(word: &str) -> Option<(PathBuf, Option<String>)> {
     is_ini(word).then(|| (PathBuf::from(word), None))
 }
 
+/// The .ini file that a word without ending names, if it names nothing else: `povray rerun`.
+pub(super) fn without_ending(word: &str) -> Option<(PathBuf, Option<String>)> {
+    let path = Path::new(word);
+    if word.is_empty() || word.starts_with(['+', '-']) || path.extension().is_some() {
+        return None;
+    }
+    let file = path.with_extension("ini");
+    (!path.exists() && file.is_file()).then_some((file, None))
+}
+
 /// Applies a file's settings: those before the first section, and those of the section.
 pub(super) fn apply(
     file: &Path,
@@ -104,6 +114,7 @@ fn unquoted(value: &str) -> &str {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::pov::settings::Own;
 
     const TEXT: &str = "; a comment\nWidth = 40 ; another\n+H30 -D +L\"my inc\"\n[Low]\nwidth=4\n[Really High]\n\
                         Height=90\nOutput_File_Name=\"a;b.png\"\nInput_File_Name=\"scene.pov\"\r\n";
@@ -114,7 +125,10 @@ mod tests {
         std::fs::write(&file, TEXT).unwrap();
         let mut settings = Settings::default();
         apply(&file, section, &mut settings)?;
-        settings.words(false)
+        let mut words = settings.words(&Own::default())?;
+        words.push(settings.input.clone());
+        words.retain(|w| !w.is_empty());
+        Ok(words)
     }
 
     #[test]

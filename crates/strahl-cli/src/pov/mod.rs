@@ -1,14 +1,16 @@
 //! POV-Ray's habits: its switches (`+W640`), its `.ini` files and its `Key=Value` words become strahl's own options, before
 //! clap sees the command line. (Meanings: reference manual of POV-Ray 3.7, section 3.2, and experiments with the program.)
 
+mod begin;
 mod ini;
+mod keys;
 mod settings;
 mod switches;
 
 use crate::args::Cli;
 use clap::CommandFactory;
-use settings::{Settings, is_key};
-use std::collections::BTreeSet;
+use keys::is_key;
+use settings::{Own, Settings};
 use std::ffi::OsString;
 use std::path::Path;
 
@@ -20,22 +22,30 @@ pub(crate) struct Translated {
     pub(crate) notes: Vec<String>,
 }
 
-/// Translates a whole command line, the program's name included. Only `render` has a past in POV-Ray.
+/// Translates a whole command line, the program's name included. Only `render` has a past in POV-Ray; it may be left out before a
+/// scene, an .ini file, a switch or an option of its own.
 pub(crate) fn translate(words: Vec<OsString>) -> Result<Translated, String> {
-    let unchanged = |words| Translated {
-        words,
-        notes: vec![],
+    let command = Cli::command();
+    let Some(words) = begin::with_command(words, &command) else {
+        return Ok(Translated {
+            words: begin::QUESTION.map(OsString::from).to_vec(),
+            notes: vec![],
+        });
     };
-    if words.get(1).is_none_or(|w| w != "render") {
-        return Ok(unchanged(words));
-    }
-    let with_value = options_with_value();
+    let render = words.iter().position(|w| w == "render");
+    let Some(render) = render.filter(|at| begin::is_command_at(&words, *at, &command)) else {
+        return Ok(Translated {
+            words,
+            notes: vec![],
+        });
+    };
+    let with_value = begin::options_with_value(&command);
     let mut settings = Settings::default();
-    // Strahl's own words keep their order; what is translated follows them.
-    let mut own: Vec<OsString> = words[..2].to_vec();
+    // Strahl's own words come last: of an option that is given twice the last one counts.
+    let mut own: Vec<OsString> = vec![];
     let mut scene: Option<OsString> = None;
     let mut foreign = false;
-    let mut rest = words[2..].iter();
+    let mut rest = words[render + 1..].iter();
     while let Some(word) = rest.next() {
         let text = word.to_str().unwrap_or_default();
         if with_value.contains(text) {
@@ -44,7 +54,8 @@ pub(crate) fn translate(words: Vec<OsString>) -> Result<Translated, String> {
         } else if is_switch(text) {
             foreign = true;
             switches::apply(text, &mut settings)?;
-        } else if let Some((file, section)) = ini::named(text) {
+        } else if let Some((file, section)) = ini::named(text).or_else(|| ini::without_ending(text))
+        {
             foreign = true;
             ini::apply(&file, section.as_deref(), &mut settings)?;
         } else if let Some((key, value)) = assignment(text) {
@@ -55,38 +66,35 @@ pub(crate) fn translate(words: Vec<OsString>) -> Result<Translated, String> {
         } else {
             // The last scene wins over one that an .ini file names; two on the command line are clap's to refuse.
             own.extend(scene.replace(word.clone()));
-            settings.input = text.to_owned();
+            settings.input = settings.complete(text);
         }
     }
+    let complete = OsString::from(&settings.input);
     if !foreign {
-        return Ok(unchanged(words));
+        let replaced = |w: OsString| match Some(&w) == scene.as_ref() && !settings.input.is_empty()
+        {
+            true => complete.clone(),
+            false => w,
+        };
+        return Ok(Translated {
+            words: words.into_iter().map(replaced).collect(),
+            notes: vec![],
+        });
     }
-    let formatted = own.iter().any(|w| w == "--format");
-    own.extend(settings.words(formatted)?.into_iter().map(OsString::from));
+    let mut all = words[..=render].to_vec();
+    let translated = settings.words(&Own::of(&own))?;
+    all.extend(translated.into_iter().map(OsString::from));
+    all.extend(own);
     if settings.input.is_empty() {
         // A name that is no UTF-8.
-        own.extend(scene);
+        all.extend(scene);
+    } else {
+        all.push(complete);
     }
     Ok(Translated {
-        words: own,
+        words: all,
         notes: settings.notes,
     })
-}
-
-/// Strahl's options that are followed by a value as a word of its own.
-fn options_with_value() -> BTreeSet<String> {
-    let command = Cli::command();
-    let render = command.find_subcommand("render");
-    let options = render.into_iter().flat_map(clap::Command::get_arguments);
-    let valued = options.filter(|a| a.get_action().takes_values());
-    valued
-        .flat_map(|a| {
-            let long = a.get_long_and_visible_aliases().unwrap_or_default();
-            let long = long.into_iter().map(|l| format!("--{l}"));
-            let short = a.get_short().map(|s| format!("-{s}"));
-            long.chain(short).collect::<Vec<_>>()
-        })
-        .collect()
 }
 
 /// Whether a word is a switch of POV-Ray and no option of strahl: `-L` means the same to both.
@@ -110,14 +118,74 @@ fn assignment(word: &str) -> Option<(&str, &str)> {
 mod tests {
     use super::*;
 
-    fn translated(line: &str) -> Result<String, String> {
-        let words = format!("strahl render {line}");
-        let translated = translate(words.split_whitespace().map(OsString::from).collect())?;
-        let words: Vec<_> = translated.words[2..]
+    fn whole(line: &str) -> Result<String, String> {
+        let translated = translate(line.split_whitespace().map(OsString::from).collect())?;
+        let words: Vec<_> = translated
+            .words
             .iter()
             .map(|w| w.to_string_lossy())
             .collect();
         Ok(words.join(" "))
+    }
+
+    fn translated(line: &str) -> Result<String, String> {
+        let words = whole(&format!("strahl render {line}"))?;
+        let begin = "strahl render ".len().min(words.len());
+        Ok(words[begin..].to_owned())
+    }
+
+    #[test]
+    fn render_may_be_left_out() {
+        for line in [
+            "scene.pov",
+            "scene.pov -o a.png",
+            "-o a.png scene.pov",
+            "--size 8x8 scene.pov",
+            "- --format pov",
+        ] {
+            assert_eq!(
+                whole(&format!("strahl {line}")),
+                Ok(format!("strahl render {line}"))
+            );
+        }
+        let is = |line: &str, expected: &str| assert_eq!(whole(line), Ok(expected.to_owned()));
+        is(
+            "strahl +Ia.pov +W64 +H48",
+            "strahl render --size 64x48 a.pov",
+        );
+        is("strahl -W8 a.pov", "strahl render --size 8x600 a.pov");
+        is(
+            "strahl Width=8 Input_File_Name=a.pov",
+            "strahl render --size 8x600 a.pov",
+        );
+        is(
+            "strahl --max-memory 1G --strict +Ia.pov",
+            "strahl --max-memory 1G --strict render a.pov",
+        );
+        for line in ["strahl -?", "strahl +H", "strahl -help"] {
+            is(line, "strahl --help");
+        }
+        for line in ["strahl -version", "strahl --V", "strahl render -V"] {
+            is(line, "strahl --version");
+        }
+    }
+
+    #[test]
+    fn strahls_own_options_win_over_povs() {
+        is(
+            "a.pov --size 32x24 +W640 +H480 -o x.png +Oy.png --sampling center +A0.3",
+            "--size 32x24 --sampling adaptive:0.1,2 --output y.png --size 32x24 -o x.png --sampling center a.pov",
+        );
+        // Parts of the picture are those of the size that counts.
+        is(
+            "a.pov --size=80x60 +SR0.5",
+            "--size 80x60 --region 0,30,80x30 --full-size --size=80x60 a.pov",
+        );
+        is(
+            "a.pov +W80 +H60 +SR0.5 --region 1,2,3x4",
+            "--size 80x60 --region 1,2,3x4 a.pov",
+        );
+        is("- --format nff +W8", "--size 8x600 --format nff -");
     }
 
     #[track_caller]
@@ -130,14 +198,24 @@ mod tests {
         for line in [
             "scene.pov -o out.png --size 64x48 -L inc -q",
             "--clock -0.5 scene.pov",
+            "--strict scene.pov --max-memory 1G",
             "-o +strange.png scene.pov",
             "- --format pov",
             "",
         ] {
             is(line, line);
         }
-        let other = translate(["strahl", "info", "+W3"].map(OsString::from).to_vec());
-        assert_eq!(other.map(|t| t.words.len()), Ok(3));
+        for line in [
+            "strahl info +W3",
+            "strahl",
+            "strahl --help",
+            "strahl -V",
+            "strahl rendr scene.pov",
+            "strahl --strict check render",
+            "strahl help render",
+        ] {
+            assert_eq!(whole(line), Ok(line.to_owned()));
+        }
     }
 
     #[test]
@@ -155,7 +233,7 @@ mod tests {
         is("a.pov +A0.1 -A", "--sampling center a.pov");
         is(
             "a.pov +Linc -Lmore --seed 3",
-            "-Lmore --seed 3 --library-path inc a.pov",
+            "--library-path inc -Lmore --seed 3 a.pov",
         );
         is("+I- +Ox.png", "--output x.png --format pov -");
         is(
@@ -167,6 +245,8 @@ mod tests {
             "--bit-depth 16 --output a.png --resume a.pov",
         );
         is("a.pov +FP", "--output a.ppm a.pov");
+        is("a.pov +UA", "--alpha a.pov");
+        is("a.pov +UA +FJ", "--output a.jpg a.pov");
         is("a.pov -F", "--no-output a.pov");
         is(
             "a.pov +MV3.5 +K0.25",
@@ -185,7 +265,16 @@ mod tests {
         is("a.pov +Ob.exr +FN", "--output b.exr.png a.pov");
         is("a.pov +Ob.c +FH", "--output b.c.hdr a.pov");
         is("dir/a.pov +Oout/", "--output out/a.png dir/a.pov");
-        is("a.pov +Ob.tga +FT", "--output b.png a.pov");
+        is("a.pov +Ob.tga +FT", "--output b.tga a.pov");
+        is("a.pov +FB", "--output a.bmp a.pov");
+        is(
+            "a.pov +FJ Compression=90",
+            "--jpeg-quality 90 --output a.jpg a.pov",
+        );
+        is("a.pov +Ob.jpeg +FJ Compression=1", "--output b.jpeg a.pov");
+        is("a.pov +O-", "--output - a.pov");
+        is("a.pov +O- +FP", "--output - --picture-format ppm a.pov");
+        is("a.pov +HIx.inc", "--include x.inc a.pov");
     }
 
     #[test]
@@ -224,8 +313,6 @@ mod tests {
             ("a.pov Antialas=on", "Antialias"),
             ("a.pov +AM7", "`7`"),
             ("a.pov +FZ", "`Z`"),
-            ("a.pov +O-", "standard output"),
-            ("a.pov +HIx.inc", "x.inc"),
             ("a.pov Declare=X", "`X`"),
             ("missing.ini", "missing.ini"),
         ] {

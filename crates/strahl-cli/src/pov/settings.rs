@@ -1,132 +1,10 @@
 //! What POV-Ray's switches and keys ask for, and the same in strahl's options.
 
+use super::keys::{COMMANDS, IGNORED, KEYS, LEFT_OUT, spelled};
 use crate::input::DEFAULT_SIZE;
+use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use strahl::formats::image::ImageFormat;
-
-/// Keys whose values make a difference here, as the manual spells them.
-const KEYS: &[&str] = &[
-    "Antialias",
-    "Antialias_Depth",
-    "Antialias_Threshold",
-    "Bits_Per_Color",
-    "Clock",
-    "Continue_Trace",
-    "Create_Ini",
-    "Cyclic_Animation",
-    "Declare",
-    "End_Column",
-    "End_Row",
-    "Field_Render",
-    "Final_Clock",
-    "Final_Frame",
-    "Frame_Step",
-    "Height",
-    "Include_Header",
-    "Initial_Clock",
-    "Initial_Frame",
-    "Input_File_Name",
-    "Library_Path",
-    "Output_Alpha",
-    "Output_File_Name",
-    "Output_File_Type",
-    "Output_to_File",
-    "Quality",
-    "Sampling_Method",
-    "Start_Column",
-    "Start_Row",
-    "Subset_End_Frame",
-    "Subset_Start_Frame",
-    "Version",
-    "Width",
-    "Work_Threads",
-];
-
-/// Keys that concern displays, messages, memory and speed, or noise that strahl has no use for: accepted, without effect.
-const IGNORED: &[&str] = &[
-    "All_Console",
-    "All_File",
-    "Antialias_Gamma",
-    "Append_File",
-    "Bounding",
-    "Bounding_Method",
-    "Bounding_Threshold",
-    "BSP_BaseAccessCost",
-    "BSP_ChildAccessCost",
-    "BSP_IsectCost",
-    "BSP_MaxDepth",
-    "BSP_MissChance",
-    "Buffer_Output",
-    "Buffer_Size",
-    "Compression",
-    "Debug_Console",
-    "Debug_File",
-    "Display",
-    "Display_Gamma",
-    "Dither",
-    "Dither_Method",
-    "Draw_Vistas",
-    "Fatal_Console",
-    "Fatal_File",
-    "File_Gamma",
-    "High_Reproducibility",
-    "Jitter",
-    "Jitter_Amount",
-    "Light_Buffer",
-    "Max_Image_Buffer_Memory",
-    "Odd_Field",
-    "Palette",
-    "Pause_When_Done",
-    "Preview_End_Size",
-    "Preview_Start_Size",
-    "Radiosity_File_Name",
-    "Radiosity_From_File",
-    "Radiosity_To_File",
-    "Radiosity_Vain_Pretrace",
-    "Remove_Bounds",
-    "Render_Block_Size",
-    "Render_Block_Step",
-    "Render_Console",
-    "Render_File",
-    "Render_Pattern",
-    "Split_Unions",
-    "Statistic_Console",
-    "Statistic_File",
-    "Test_Abort",
-    "Test_Abort_Count",
-    "Verbose",
-    "Video_Mode",
-    "Vista_Buffer",
-    "Warning_Console",
-    "Warning_File",
-    "Warning_Level",
-];
-
-/// Keys that run programs.
-const COMMANDS: &[&str] = &[
-    "Fatal_Error_Command",
-    "Fatal_Error_Return",
-    "Post_Frame_Command",
-    "Post_Frame_Return",
-    "Post_Scene_Command",
-    "Post_Scene_Return",
-    "Pre_Frame_Command",
-    "Pre_Frame_Return",
-    "Pre_Scene_Command",
-    "Pre_Scene_Return",
-    "User_Abort_Command",
-    "User_Abort_Return",
-];
-
-fn spelled(key: &str) -> Option<&'static str> {
-    let mut all = KEYS.iter().chain(IGNORED).chain(COMMANDS);
-    all.find(|k| k.eq_ignore_ascii_case(key)).copied()
-}
-
-/// Whether POV-Ray has a setting of this name.
-pub(super) fn is_key(key: &str) -> bool {
-    spelled(key).is_some()
-}
 
 /// What was set so far; later settings win.
 #[derive(Debug, Default)]
@@ -153,6 +31,10 @@ pub(super) struct Settings {
     library: Vec<String>,
     declare: Vec<String>,
     version: Option<f64>,
+    header: Option<String>,
+    /// Of JPEG.
+    quality: Option<u8>,
+    alpha: bool,
     resume: bool,
     cyclic: bool,
     initial_frame: Option<u32>,
@@ -205,6 +87,12 @@ impl Settings {
         if IGNORED.contains(&key) {
             return Ok(());
         }
+        if let Some((_, what)) = LEFT_OUT.iter().find(|(k, _)| *k == key) {
+            if !is_off(value) {
+                self.note(what);
+            }
+            return Ok(());
+        }
         if COMMANDS.contains(&key) {
             self.notes
                 .push(format!("{key} is not done: strahl runs no programs"));
@@ -249,22 +137,27 @@ impl Settings {
                 let note = format!("quality {value} is not reduced: pictures are rendered in full");
                 self.notes.push(note);
             }
-            "Output_Alpha" if is_on(value) => {
-                self.notes
-                    .push("pictures are written without an alpha channel".into());
-            }
+            "Output_Alpha" => self.alpha = is_on(value),
             "Create_Ini" if !is_off(value) => self.notes.push("no .ini file is written".into()),
-            "Field_Render" if is_on(value) => {
-                return Err("fields are not rendered; leave it out to render whole frames".into());
+            "Include_Header" => self.header = Some(file_name(value)?),
+            "Compression" => {
+                // As in POV-Ray: 0 and 1 are the usual quality.
+                let quality = number(value)?.clamp(0.0, 100.0) as u8;
+                self.quality = (quality > 1).then_some(quality);
             }
-            "Include_Header" => {
-                return Err(format!(
-                    "`{value}` cannot be included from here; write `#include \"{value}\"` into the scene"
-                ));
+            "File_Gamma" if !value.eq_ignore_ascii_case("srgb") && number(value)? != 2.2 => {
+                self.note("pictures have sRGB's transfer function, whatever File_Gamma says");
             }
             _ => {}
         }
         Ok(())
+    }
+
+    /// Says once what will not be done.
+    fn note(&mut self, what: &str) {
+        if !self.notes.iter().any(|n| n == what) {
+            self.notes.push(what.to_owned());
+        }
     }
 
     /// Remembers an option with a number, once.
@@ -275,30 +168,42 @@ impl Settings {
         Ok(())
     }
 
-    /// The scene file: `.pov` may be left out, and beside an .ini file is as good as in the current folder.
+    /// The scene file of a setting: `.pov` may be left out.
     fn scene(&self, value: &str) -> Result<String, String> {
-        let name = file_name(value)?;
-        if name == "-" {
-            return Ok(name);
-        }
-        let folders = [Some(PathBuf::new()), self.beside.clone()];
-        let names = [name.clone(), format!("{name}.pov"), format!("{name}.POV")];
-        for folder in folders.into_iter().flatten() {
-            let found = names.iter().map(|n| folder.join(n)).find(|p| p.is_file());
-            if let Some(found) = found {
-                return Ok(found.to_string_lossy().into_owned());
-            }
-        }
-        let complete = Path::new(&name).extension().is_some();
-        Ok(if complete {
-            name
-        } else {
-            format!("{name}.pov")
+        let name = self.complete(&file_name(value)?);
+        let complete = name == "-" || Path::new(&name).extension().is_some();
+        Ok(match complete {
+            true => name,
+            false => format!("{name}.pov"),
         })
     }
 
-    /// All of it in strahl's words, the scene last; `formatted` if the scene's format is given elsewhere.
-    pub(super) fn words(&mut self, formatted: bool) -> Result<Vec<String>, String> {
+    /// The scene file of this name, with `.pov` if there is such a file; one beside an .ini file is as good as one in the current
+    /// folder.
+    pub(super) fn complete(&self, name: &str) -> String {
+        if name == "-" {
+            return name.to_owned();
+        }
+        let folders = [Some(PathBuf::new()), self.beside.clone()];
+        let names = [
+            name.to_owned(),
+            format!("{name}.pov"),
+            format!("{name}.POV"),
+        ];
+        for folder in folders.into_iter().flatten() {
+            let found = names.iter().map(|n| folder.join(n)).find(|p| p.is_file());
+            if let Some(found) = found {
+                return found.to_string_lossy().into_owned();
+            }
+        }
+        name.to_owned()
+    }
+
+    /// All of it in strahl's words but the scene, to be followed by strahl's own.
+    pub(super) fn words(&mut self, own: &Own) -> Result<Vec<String>, String> {
+        if let Some((width, height)) = own.size {
+            (self.width, self.height) = (Some(width), Some(height));
+        }
         let mut words: Vec<String> = vec![];
         let mut add = |option: &str, value: String| words.extend([option.to_owned(), value]);
         let size = (
@@ -309,7 +214,7 @@ impl Settings {
             self.columns.pixels(size.0, "columns")?,
             self.rows.pixels(size.1, "rows")?,
         );
-        let is_part = (columns.1, rows.1) != size;
+        let is_part = (columns.1, rows.1) != size && !own.region;
         if self.width.or(self.height).is_some() || is_part {
             add("--size", format!("{}x{}", size.0, size.1));
         }
@@ -349,21 +254,33 @@ impl Settings {
         for (option, value) in &self.times {
             add(option, value.clone());
         }
+        if let Some(header) = &self.header {
+            add("--include", header.clone());
+        }
+        if let Some(quality) = self.quality {
+            add("--jpeg-quality", quality.to_string());
+        }
         if let Some(output) = self.output()? {
+            let stream = output == "-";
             add("--output", output);
+            if stream && let Some(ending) = self.file_type.map(ending) {
+                add("--picture-format", ending.to_owned());
+            }
+        }
+        let has_alpha = matches!(self.file_type, None | Some('N' | 'E' | 'S'));
+        if self.alpha && !has_alpha {
+            self.note("pictures of this type are written without an alpha channel");
         }
         let flags = [
+            (self.alpha && has_alpha, "--alpha"),
             (is_part, "--full-size"),
             (self.no_output, "--no-output"),
             (self.cyclic, "--cyclic"),
             (self.resume, "--resume"),
         ];
         words.extend(flags.iter().filter(|f| f.0).map(|f| f.1.to_owned()));
-        if self.input == "-" && !formatted {
+        if self.input == "-" && !own.format {
             words.extend(["--format".to_owned(), "pov".to_owned()]);
-        }
-        if !self.input.is_empty() {
-            words.push(self.input.clone());
         }
         Ok(words)
     }
@@ -389,24 +306,11 @@ impl Settings {
     }
 
     /// The picture's name with the ending that its type asks for; `None` leaves it to strahl.
-    fn output(&mut self) -> Result<Option<String>, String> {
+    fn output(&self) -> Result<Option<String>, String> {
         if self.output.as_deref() == Some("-") {
-            return Err(
-                "pictures are not written to the standard output; name a file: +Oscene.png".into(),
-            );
+            return Ok(self.output.clone());
         }
-        let ending = match self.file_type {
-            None | Some('N') => "png",
-            Some('P') => "ppm",
-            Some('H') => "hdr",
-            Some('E') => "exr",
-            Some(other) => {
-                self.notes.push(format!(
-                    "picture files of type {other} are not written: the picture will be a PNG"
-                ));
-                "png"
-            }
-        };
+        let ending = self.file_type.map_or("png", ending);
         let scene = Path::new(&self.input).file_stem().unwrap_or_default();
         let scene = scene.to_string_lossy().into_owned();
         let Some(output) = &self.output else {
@@ -422,12 +326,10 @@ impl Settings {
             .extension()
             .map(|e| e.to_string_lossy().to_ascii_lowercase());
         let name = match (has.as_deref(), self.file_type) {
-            (Some(e), _) if e == ending => output.clone(),
-            (Some(_), None) if ImageFormat::from_path(path).is_ok() => output.clone(),
-            // The ending belongs to a type that is not written.
-            (Some("tga" | "bmp" | "jpg" | "jpeg"), Some('T' | 'C' | 'B' | 'J' | 'S')) => {
-                path.with_extension(ending).to_string_lossy().into_owned()
+            (Some(e), _) if ImageFormat::from_name(e) == ImageFormat::from_name(ending) => {
+                output.clone()
             }
+            (Some(_), None) if ImageFormat::from_path(path).is_ok() => output.clone(),
             _ => format!("{output}.{ending}"),
         };
         Ok(Some(name))
@@ -500,6 +402,53 @@ fn picture_type(value: &str) -> Result<char, String> {
         return Ok(letter);
     }
     Err(format!(
-        "unknown type of picture `{value}`: N is PNG, P PPM, H Radiance, E OpenEXR"
+        "unknown type of picture `{value}`: N is PNG, P PPM, J JPEG, B BMP, T and C TGA, H Radiance, E OpenEXR"
     ))
+}
+
+/// The ending of pictures of a type.
+fn ending(letter: char) -> &'static str {
+    match letter {
+        'B' => "bmp",
+        'C' | 'T' => "tga",
+        'E' => "exr",
+        'H' => "hdr",
+        'J' => "jpg",
+        'P' => "ppm",
+        // Also that of the system.
+        _ => "png",
+    }
+}
+
+/// What strahl's own words say about the same things.
+#[derive(Debug, Default)]
+pub(super) struct Own {
+    size: Option<(u32, u32)>,
+    region: bool,
+    format: bool,
+}
+
+impl Own {
+    pub(super) fn of(words: &[OsString]) -> Self {
+        let mut own = Self::default();
+        let mut texts = words.iter().map(|w| w.to_str().unwrap_or_default());
+        while let Some(text) = texts.next() {
+            let (name, value) = match text.split_once('=') {
+                Some((name, value)) => (name, Some(value)),
+                None => (text, None),
+            };
+            match name {
+                "--size" => {
+                    let value = value.or_else(|| texts.next()).unwrap_or_default();
+                    // What is no size is clap's to refuse.
+                    let pair = value.split_once('x');
+                    own.size = pair.and_then(|(w, h)| Some((w.parse().ok()?, h.parse().ok()?)));
+                }
+                "--region" => own.region = true,
+                "--format" | "--scene-format" => own.format = true,
+                _ => {}
+            }
+        }
+        own
+    }
 }

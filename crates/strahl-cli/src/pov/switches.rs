@@ -11,13 +11,15 @@ enum Meaning {
     Flag(&'static str),
     /// Both: the first key is switched, the second gets the rest, if there is one.
     FlagAndValue(&'static str, &'static str),
+    /// With a name behind it, the messages of this key go to a file; by itself it is about the console.
+    Stream(&'static str),
     /// Type and bits of the picture file.
     FileType,
     /// Says nothing about the picture.
     Nothing,
 }
 
-use Meaning::{FileType, Flag, FlagAndValue, Nothing, Value};
+use Meaning::{FileType, Flag, FlagAndValue, Nothing, Stream, Value};
 
 /// All switches; the longest that a word begins with counts.
 const SWITCHES: &[(&str, Meaning)] = &[
@@ -33,14 +35,14 @@ const SWITCHES: &[(&str, Meaning)] = &[
     ("EP", Nothing),
     ("ER", Value("End_Row")),
     ("F", FileType),
-    ("GA", Nothing),
-    ("GD", Nothing),
-    ("GF", Nothing),
+    ("GA", Stream("All_File")),
+    ("GD", Stream("Debug_File")),
+    ("GF", Stream("Fatal_File")),
     ("GI", Value("Create_Ini")),
     ("GP", Nothing),
-    ("GR", Nothing),
-    ("GS", Nothing),
-    ("GW", Nothing),
+    ("GR", Stream("Render_File")),
+    ("GS", Stream("Statistic_File")),
+    ("GW", Stream("Warning_File")),
     ("H", Value("Height")),
     ("HI", Value("Include_Header")),
     ("HR", Nothing),
@@ -61,6 +63,8 @@ const SWITCHES: &[(&str, Meaning)] = &[
     ("Q", Value("Quality")),
     ("R", Value("Antialias_Depth")),
     ("RF", Nothing),
+    ("RFI", Flag("Radiosity_From_File")),
+    ("RFO", Flag("Radiosity_To_File")),
     ("RP", Nothing),
     ("RS", Nothing),
     ("RVP", Nothing),
@@ -70,7 +74,7 @@ const SWITCHES: &[(&str, Meaning)] = &[
     ("SR", Value("Start_Row")),
     ("STP", Value("Frame_Step")),
     ("SU", Nothing),
-    ("TH", Nothing),
+    ("TH", FlagAndValue("Dither", "Dither_Method")),
     ("UA", Flag("Output_Alpha")),
     ("UD", Nothing),
     ("UF", Flag("Field_Render")),
@@ -108,6 +112,10 @@ pub(super) fn apply(word: &str, settings: &mut Settings) -> Result<(), String> {
             "" => Ok(()),
             rest => settings.set(value, rest),
         }),
+        Stream(key) => match (on, rest) {
+            (_, "") | (false, _) => Ok(()),
+            (true, file) => settings.set(key, file),
+        },
         FileType => settings
             .set("Output_to_File", state)
             .and_then(|()| file_type(rest, settings)),

@@ -10,9 +10,9 @@ fn bad_input_gives_one_clear_error() {
     fails(f, &["render", "none.nff", "-o", "x.png"], 1, &["none.nff"]);
     fails(
         f,
-        &["render", "scene.nff", "-o", "x.jpg"],
+        &["render", "scene.nff", "-o", "x.webp"],
         1,
-        &[".jpg", ".png"],
+        &[".webp", ".png", ".jpg"],
     );
     fails(f, &["render", "scene.nff", "-o", "no/x.png"], 1, &["no"]);
     fails(

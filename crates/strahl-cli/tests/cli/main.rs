@@ -3,6 +3,7 @@
 mod errors;
 mod pictures;
 mod questions;
+mod safety;
 
 use serde_json::Value;
 use std::path::{Path, PathBuf};

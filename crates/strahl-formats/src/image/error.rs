@@ -57,6 +57,14 @@ pub enum ImageError {
         /// Names of the formats that have layers.
         able: String,
     },
+    /// The format has no alpha channel.
+    #[error("{format} pictures have no alpha channel: write {able}, or no alpha channel")]
+    AlphaUnsupported {
+        /// The format's name.
+        format: &'static str,
+        /// Names of the formats that have one.
+        able: String,
+    },
     /// The folder of the file does not exist.
     #[error("cannot write `{}`: the folder `{}` does not exist; create it first", path.display(), folder.display())]
     FolderMissing {
@@ -112,6 +120,21 @@ pub enum ImageError {
         name: String,
         /// The decoder's reason.
         reason: String,
+    },
+    /// There is no memory for a texture.
+    #[error(
+        "the texture `{name}` has {width} x {height} texels, for which {mib} MiB of memory are needed that there are not; \
+         scale it down, or let more memory be used"
+    )]
+    TextureMemory {
+        /// The texture's name.
+        name: String,
+        /// Columns.
+        width: u64,
+        /// Rows.
+        height: u64,
+        /// Memory needed.
+        mib: u64,
     },
     /// A texture has too many texels.
     #[error(

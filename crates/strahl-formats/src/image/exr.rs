@@ -107,6 +107,14 @@ fn channels(picture: &Picture<'_>, options: &WriteOptions) -> Vec<AnyChannel<Fla
         };
         channels.push(channel(name, samples));
     }
+    if let Some(alpha) = picture.alpha {
+        let samples = alpha.iter().copied();
+        let samples = match options.half {
+            true => FlatSamples::F16(samples.map(half).collect()),
+            false => FlatSamples::F32(samples.collect()),
+        };
+        channels.push(channel("A", samples));
+    }
     for layer in picture.layers {
         let stride = layer.channels.len();
         for (component, name) in layer.channels.iter().enumerate() {

@@ -4,7 +4,7 @@ use std::ffi::OsStr;
 use std::io::{self, Write};
 use std::path::Path;
 
-use super::{ImageError, Picture, WriteOptions, exr, hdr, png, ppm};
+use super::{ImageError, Picture, WriteOptions, bmp, exr, hdr, jpeg, png, ppm, tga};
 
 /// A format pictures are written in; the order is that of [`formats`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -18,6 +18,12 @@ pub enum ImageFormat {
     Hdr,
     /// Portable pixmap.
     Ppm,
+    /// JPEG, with losses.
+    Jpeg,
+    /// Windows bitmap.
+    Bmp,
+    /// Truevision TGA.
+    Tga,
 }
 
 /// Names and capabilities of a format.
@@ -33,6 +39,8 @@ pub struct FormatInfo {
     pub description: &'static str,
     /// Whether it stores [`Picture::layers`].
     pub layers: bool,
+    /// Whether it stores [`Picture::alpha`].
+    pub alpha: bool,
     /// Whether a field of its own keeps a region's place; in the other formats only the metadata does.
     pub regions: bool,
     /// The most pixels in each direction of the full picture.
@@ -42,15 +50,19 @@ pub struct FormatInfo {
 }
 
 const I32_MAX: u32 = i32::MAX as u32;
+const U16_MAX: u32 = u16::MAX as u32;
 
 #[rustfmt::skip]
-const FORMATS: [FormatInfo; 4] = {
-    use ImageFormat::{Exr, Hdr, Png, Ppm};
+const FORMATS: [FormatInfo; 7] = {
+    use ImageFormat::{Bmp, Exr, Hdr, Jpeg, Png, Ppm, Tga};
     [
-        FormatInfo { format: Png, extensions: &["png"], name: "PNG", description: "8 or 16 bit sRGB, lossless", layers: false, regions: true, max_side: I32_MAX, encode: png::encode },
-        FormatInfo { format: Exr, extensions: &["exr"], name: "OpenEXR", description: "16 or 32 bit linear floats, layers, lossless", layers: true, regions: true, max_side: I32_MAX, encode: exr::encode },
-        FormatInfo { format: Hdr, extensions: &["hdr", "pic"], name: "Radiance HDR", description: "linear, 8 bit with a common exponent", layers: false, regions: false, max_side: I32_MAX, encode: hdr::encode },
-        FormatInfo { format: Ppm, extensions: &["ppm", "pnm"], name: "PPM", description: "8 or 16 bit sRGB, uncompressed", layers: false, regions: false, max_side: I32_MAX, encode: ppm::encode },
+        FormatInfo { format: Png, extensions: &["png"], name: "PNG", description: "8 or 16 bit sRGB, lossless", layers: false, alpha: true, regions: true, max_side: I32_MAX, encode: png::encode },
+        FormatInfo { format: Exr, extensions: &["exr"], name: "OpenEXR", description: "16 or 32 bit linear floats, layers, lossless", layers: true, alpha: true, regions: true, max_side: I32_MAX, encode: exr::encode },
+        FormatInfo { format: Hdr, extensions: &["hdr", "pic"], name: "Radiance HDR", description: "linear, 8 bit with a common exponent", layers: false, alpha: false, regions: false, max_side: I32_MAX, encode: hdr::encode },
+        FormatInfo { format: Ppm, extensions: &["ppm", "pnm"], name: "PPM", description: "8 or 16 bit sRGB, uncompressed", layers: false, alpha: false, regions: false, max_side: I32_MAX, encode: ppm::encode },
+        FormatInfo { format: Jpeg, extensions: &["jpg", "jpeg"], name: "JPEG", description: "8 bit sRGB, small, with losses", layers: false, alpha: false, regions: false, max_side: U16_MAX, encode: jpeg::encode },
+        FormatInfo { format: Bmp, extensions: &["bmp"], name: "BMP", description: "8 bit sRGB, uncompressed", layers: false, alpha: false, regions: false, max_side: U16_MAX, encode: bmp::encode },
+        FormatInfo { format: Tga, extensions: &["tga"], name: "TGA", description: "8 bit sRGB, lossless", layers: false, alpha: false, regions: false, max_side: U16_MAX, encode: tga::encode },
     ]
 };
 
@@ -87,6 +99,15 @@ impl ImageFormat {
         })
     }
 
+    /// The format of this name, as [`formats`] has it, or with this extension, in upper or lower case.
+    pub fn from_name(name: &str) -> Option<Self> {
+        let lower = name.to_ascii_lowercase();
+        let known = |info: &&FormatInfo| {
+            info.name.eq_ignore_ascii_case(name) || info.extensions.contains(&lower.as_str())
+        };
+        FORMATS.iter().find(known).map(|info| info.format)
+    }
+
     /// The format's line of the table.
     pub fn info(self) -> &'static FormatInfo {
         // The table has the order of the enum, which a test holds it to.
@@ -103,6 +124,14 @@ impl ImageFormat {
                 width: picture.width,
                 height: picture.height,
                 limit: info.max_side,
+            });
+        }
+        if picture.alpha.is_some() && !info.alpha {
+            let able = FORMATS.iter().filter(|info| info.alpha);
+            let able: Vec<&str> = able.map(|info| info.name).collect();
+            return Err(ImageError::AlphaUnsupported {
+                format: info.name,
+                able: able.join(" or "),
             });
         }
         match picture.layers.first() {
@@ -143,7 +172,9 @@ mod tests {
     fn unknown_extensions_are_answered_with_the_known_ones() {
         let message = |path| ImageFormat::from_path(path).unwrap_err().to_string();
         for path in ["picture.webp", "picture", ".png", "png", ""] {
-            assert!(message(path).ends_with("end it in one of .png, .exr, .hdr, .pic, .ppm, .pnm"));
+            assert!(message(path).ends_with(
+                "end it in one of .png, .exr, .hdr, .pic, .ppm, .pnm, .jpg, .jpeg, .bmp, .tga"
+            ));
         }
         assert!(message("picture.webp").contains("`.webp` is not known"));
         assert!(message("png").contains("it has no extension"));

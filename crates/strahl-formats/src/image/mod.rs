@@ -19,18 +19,21 @@
 //! # Ok::<(), strahl_formats::image::ImageError>(())
 //! ```
 
+mod bmp;
 mod diff;
 mod error;
 mod exr;
 mod format;
 mod hdr;
 mod heights;
+mod jpeg;
 mod picture;
 mod png;
 mod ppm;
 #[cfg(test)]
 mod tests;
 mod texture;
+mod tga;
 mod write;
 
 pub use diff::{Difference, compare};
@@ -39,4 +42,4 @@ pub use format::{FormatInfo, ImageFormat, formats};
 pub use heights::{Heights, decode_heights};
 pub use picture::{BitDepth, Layer, LayerData, Picture, Window, WriteOptions};
 pub use texture::{MAX_TEXELS, TextureUse, decode_texture, read_texture};
-pub use write::{encode_picture, write_bytes, write_picture};
+pub use write::{encode_picture, write_bytes, write_file, write_picture};

@@ -15,6 +15,11 @@ pub struct Picture<'a> {
     pub window: Window,
     /// Linear radiance with Rec. 709 primaries of the window's pixels, row by row from the top left.
     pub rgb: &'a [[f32; 3]],
+    /// How much each pixel covers what lies behind the picture, from 0 to 1; the colours are multiplied by it. Only formats whose
+    /// [`FormatInfo::alpha`] is set take it; the others refuse the picture.
+    ///
+    /// [`FormatInfo::alpha`]: super::FormatInfo::alpha
+    pub alpha: Option<&'a [f32]>,
     /// Further values per pixel: depth, normals, object numbers. Only formats whose [`FormatInfo::layers`] is set
     /// take them; the others refuse the picture rather than drop them.
     ///
@@ -40,6 +45,7 @@ impl<'a> Picture<'a> {
                 height,
             },
             rgb,
+            alpha: None,
             layers: &[],
             metadata: Vec::new(),
         }
@@ -105,12 +111,20 @@ impl<'a> Picture<'a> {
                 self.rgb.len()
             )));
         }
+        if let Some(alpha) = self.alpha
+            && alpha.len() as u128 != pixels
+        {
+            return Err(ImageError::invalid(format!(
+                "{width} x {height} pixels were announced and {} alpha values given",
+                alpha.len()
+            )));
+        }
         self.check_layers(pixels)?;
         self.check_metadata()
     }
 
     fn check_layers(&self, pixels: u128) -> Result<(), ImageError> {
-        let mut names = HashSet::from(["R", "G", "B"].map(String::from));
+        let mut names = HashSet::from(["R", "G", "B", "A"].map(String::from));
         for layer in self.layers {
             let (count, samples) = (layer.channels.len(), layer.data.len());
             if count == 0 || samples as u128 != pixels * count as u128 {
@@ -239,11 +253,23 @@ pub enum BitDepth {
 }
 
 /// Choices of a format; a format ignores those it hasn't.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WriteOptions {
     /// Bits per sample of PNG and PPM.
     pub bit_depth: BitDepth,
     /// Stores the colours of EXR as 16-bit floats, which keep 11 bits and reach 65504; larger values become 65504.
     /// Layers keep 32 bits.
     pub half: bool,
+    /// Quality of JPEG, from 1 (smallest) to 100; 85 at first, as in POV-Ray.
+    pub jpeg_quality: u8,
+}
+
+impl Default for WriteOptions {
+    fn default() -> Self {
+        Self {
+            bit_depth: BitDepth::Eight,
+            half: false,
+            jpeg_quality: 85,
+        }
+    }
 }

@@ -29,7 +29,10 @@ fn encode_png(
 ) -> Result<(), EncodingError> {
     let window = picture.window;
     let mut encoder = Encoder::new(writer, window.width, window.height);
-    encoder.set_color(ColorType::Rgb);
+    encoder.set_color(match picture.alpha {
+        Some(_) => ColorType::Rgba,
+        None => ColorType::Rgb,
+    });
     encoder.set_depth(match options.bit_depth {
         BitDepth::Eight => ::png::BitDepth::Eight,
         BitDepth::Sixteen => ::png::BitDepth::Sixteen,
@@ -55,9 +58,13 @@ fn encode_png(
     // Row by row: the codes of a large picture need no memory of their own.
     let mut rows = writer.stream_writer()?;
     let mut codes = Vec::new();
-    for row in picture.rgb.chunks_exact(window.width as usize) {
+    let width = window.width as usize;
+    for (y, row) in picture.rgb.chunks_exact(width).enumerate() {
         codes.clear();
-        push_codes(row, options.bit_depth, &mut codes);
+        match picture.alpha {
+            Some(alpha) => push_straight(row, &alpha[y * width..], options.bit_depth, &mut codes),
+            None => push_codes(row, options.bit_depth, &mut codes),
+        }
         rows.write_all(&codes)?;
     }
     rows.finish()?;
@@ -74,6 +81,19 @@ pub(super) fn push_codes(pixels: &[[f32; 3]], depth: BitDepth, codes: &mut Vec<u
         BitDepth::Eight => codes.extend(samples.map(srgb::encode_u8)),
         BitDepth::Sixteen => {
             codes.extend(samples.flat_map(|sample| srgb::encode_u16(sample).to_be_bytes()));
+        }
+    }
+}
+
+/// Appends the codes of pixels with alpha. PNG's colours are those of the covering itself: not multiplied by alpha.
+fn push_straight(pixels: &[[f32; 3]], alpha: &[f32], depth: BitDepth, codes: &mut Vec<u8>) {
+    for (pixel, alpha) in pixels.iter().zip(alpha) {
+        let straight = pixel.map(|x| if *alpha > 0.0 { x / alpha } else { 0.0 });
+        push_codes(&[straight], depth, codes);
+        let alpha = f64::from(alpha.clamp(0.0, 1.0));
+        match depth {
+            BitDepth::Eight => codes.push((alpha * 255.0 + 0.5) as u8),
+            BitDepth::Sixteen => codes.extend(((alpha * 65535.0 + 0.5) as u16).to_be_bytes()),
         }
     }
 }

@@ -44,7 +44,8 @@ pub fn read_texture(
 ///
 /// The format is recognised by the first bytes; TGA, which has no mark, by the extension of `name`. Errors mention `name`.
 /// Embedded colour profiles, gamma values and orientations are not applied. NaN becomes 0, infinity the largest number.
-/// More than [`MAX_TEXELS`] texels, or 4 GiB of them, are refused before any memory is taken.
+/// More than [`MAX_TEXELS`] texels, or 4 GiB of them, are refused before any memory is taken, as are those that there is no
+/// memory for.
 pub fn decode_texture(
     bytes: &[u8],
     name: &str,
@@ -161,6 +162,15 @@ pub(super) fn check_size(
             width,
             height,
             limit,
+        });
+    }
+    let bytes = width * height * texel_bytes;
+    if !strahl_simd::memory::fits(bytes) {
+        return Err(ImageError::TextureMemory {
+            name: name.to_owned(),
+            width,
+            height,
+            mib: bytes.div_ceil(1 << 20),
         });
     }
     Ok(())

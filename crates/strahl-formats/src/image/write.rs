@@ -46,6 +46,14 @@ pub fn write_bytes(path: impl AsRef<Path>, bytes: &[u8]) -> Result<(), ImageErro
     write_atomically(path.as_ref(), |writer| writer.write_all(bytes))
 }
 
+/// Writes any other file in the same manner, by a function that gets the stream; when it fails, nothing is left behind.
+pub fn write_file(
+    path: impl AsRef<Path>,
+    fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> Result<(), ImageError> {
+    write_atomically(path.as_ref(), fill)
+}
+
 /// Lets `fill` write a file, which takes its place only when it is complete.
 fn write_atomically(
     path: &Path,

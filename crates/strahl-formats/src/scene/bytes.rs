@@ -103,6 +103,25 @@ fn map(path: &Path) -> Option<Mmap> {
     unsafe { Mmap::map(&file) }.ok()
 }
 
+/// Reads to the end, or until the memory is full.
+fn read_within_memory(from: &mut impl Read, bytes: &mut Vec<u8>) -> io::Result<()> {
+    const MOST: usize = 64 << 20;
+    loop {
+        if bytes.len() == bytes.capacity() {
+            let more = bytes.len().clamp(1 << 16, MOST);
+            // Growing may need both the old place and the new one.
+            if !strahl_simd::memory::fits((bytes.len() + more) as u64) {
+                return Err(ErrorKind::OutOfMemory.into());
+            }
+            bytes.reserve_exact(more);
+        }
+        let room = bytes.capacity() - bytes.len();
+        if from.take(room as u64).read_to_end(bytes)? == 0 {
+            return Ok(());
+        }
+    }
+}
+
 /// Decompresses data that begins like gzip; anything else is returned unchanged.
 pub(super) fn decompressed<'a>(bytes: Cow<'a, [u8]>, name: &str) -> Fallible<Cow<'a, [u8]>> {
     const MAGIC: [u8; 2] = [0x1f, 0x8b];
@@ -111,10 +130,16 @@ pub(super) fn decompressed<'a>(bytes: Cow<'a, [u8]>, name: &str) -> Fallible<Cow
     }
     let limit = FREE_EXPANSION + MOST_EXPANSION * bytes.len() as u64;
     let mut plain = vec![];
-    let decoded = MultiGzDecoder::new(&*bytes)
-        .take(limit + 1)
-        .read_to_end(&mut plain);
+    let mut decoder = MultiGzDecoder::new(&*bytes).take(limit + 1);
+    let decoded = read_within_memory(&mut decoder, &mut plain);
     let problem = match decoded {
+        Err(e) if e.kind() == ErrorKind::OutOfMemory => {
+            let (compressed, end) = (bytes.len(), plain.len() >> 20);
+            let problem = format!(
+                "`{name}`: there is no memory for what its {compressed} compressed bytes expand to, which is more than {end} MiB"
+            );
+            Diagnostic::error(problem).hint("let more memory be used, if it is to be had")
+        }
         Ok(_) if plain.len() as u64 <= limit => return Ok(Cow::Owned(plain)),
         Ok(_) => {
             let compressed = bytes.len();

@@ -50,6 +50,7 @@ pub struct Prepared {
     masks: Vec<Option<InstanceUse>>,
     ambient: Color,
     background: Background,
+    background_transmit: f64,
     fogs: Vec<Fog>,
     rainbows: Vec<Rainbow>,
     camera: Camera,
@@ -103,6 +104,10 @@ impl Prepared {
             light_sets,
             masks,
             ambient,
+            background_transmit: match scene.background {
+                Some(_) => scene.background_transmit,
+                None => 1.0,
+            },
             background: scene
                 .background
                 .clone()
@@ -172,6 +177,7 @@ impl Prepared {
             masks,
             ambient: self.ambient,
             background: self.background,
+            background_transmit: self.background_transmit,
             fogs: self.fogs,
             rainbows: self.rainbows,
             camera: self.camera,

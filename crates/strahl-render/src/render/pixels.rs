@@ -3,6 +3,7 @@
 use super::{RenderOptions, Samples, TileResult};
 use crate::camera::PrimaryRays;
 use crate::cost::PixelCost;
+use crate::coverage::Coverage;
 use crate::film::{PixelInfo, Region};
 use crate::render::Progress;
 use crate::scene::RenderScene;
@@ -70,6 +71,9 @@ pub(super) struct PixelTracer<'s> {
     together: bool,
     /// Colours traced in packets.
     ahead: Ahead,
+    /// For the alpha channel: what the last sample showed of the background.
+    coverage: Option<Coverage>,
+    clear: f64,
 }
 
 impl<'s> PixelTracer<'s> {
@@ -89,6 +93,10 @@ impl<'s> PixelTracer<'s> {
             depth: 0,
             blind: false,
             ahead: Ahead::default(),
+            coverage: options
+                .alpha
+                .then(|| Coverage::new(scene.background_transmit)),
+            clear: 0.0,
             together: options.follows_together(rays),
         }
     }
@@ -163,7 +171,7 @@ impl PixelTracer<'_> {
     /// rays.
     fn sight(&self, tile: Region) -> Sight {
         let options = self.options;
-        if options.trace.beams && !options.costs && !options.info {
+        if options.trace.beams && !options.costs && !options.info && !options.alpha {
             Sight::of(tile, self.tree.tracer.scene, self.rays)
         } else {
             Sight::all(tile)
@@ -212,6 +220,7 @@ impl PixelTracer<'_> {
         for (dx, dy) in places {
             let keep = pass == 0 && samples.count == 0;
             samples.sum += self.sample(f64::from(x) + dx, f64::from(y) + dy, keep);
+            samples.clear += self.clear;
             samples.count += 1;
         }
         samples
@@ -275,21 +284,31 @@ impl PixelTracer<'_> {
         }
     }
 
-    pub(super) fn corner(&mut self, x: u32, y: u32) -> Color {
+    /// The colour at the corner of pixels, and what shows of the background.
+    pub(super) fn corner(&mut self, x: u32, y: u32) -> (Color, f64) {
         if let Some(color) = self.ahead.take(x, y) {
-            return color;
+            return (color, 0.0);
         }
-        self.sample(f64::from(x), f64::from(y), true)
+        let color = self.sample(f64::from(x), f64::from(y), true);
+        (color, self.clear)
     }
 
     /// The radiance at a position in the picture; `keep` says whether to store the hit's other data for the pixel.
     fn sample(&mut self, x: f64, y: f64, keep: bool) -> Color {
+        let mut clear = (0.0, 0u32);
+        let mut coverage = self.coverage.take();
         let before = self.tree.tracer.stats.primitive_tests;
         let mut first = SampleResult::NOTHING;
         let (tree, depth, blind) = (&mut self.tree, &mut self.depth, self.blind);
         let color = self.rays.color(x, y, |ray| {
             let sample = if blind {
                 tree.nothing(ray)
+            } else if let Some(coverage) = &mut coverage {
+                coverage.restart();
+                let mut sample = tree.trace(ray, coverage);
+                sample.color = tree.decoded(coverage.color);
+                clear = (clear.0 + coverage.clear, clear.1 + 1);
+                sample
             } else {
                 tree.trace(ray, &mut ())
             };
@@ -299,6 +318,8 @@ impl PixelTracer<'_> {
             }
             sample.color
         });
+        self.coverage = coverage;
+        self.clear = clear.0 / f64::from(clear.1.max(1));
         if keep && self.options.info {
             let tests = self.tree.tracer.stats.primitive_tests - before;
             self.infos.push(PixelInfo::new(&first, tests));

@@ -39,6 +39,11 @@ impl TreeTracer<'_> {
         }
     }
 
+    /// A sum of light as colours are stored.
+    pub(crate) fn decoded(&self, color: Color) -> Color {
+        self.settings.decoded(color)
+    }
+
     /// The radiance along primary rays that hit nothing, if it is the same for all; then `rays` rays are counted as traced.
     #[inline]
     pub(crate) fn same_nothing(&mut self, rays: usize) -> Option<Color> {

@@ -13,7 +13,10 @@ impl Parser<'_> {
         } else {
             let (target, place) = self.assigned(local)?;
             self.expect(Kind::Equal)?;
-            let value = self.value()?;
+            let value = self.value().inspect_err(|_| {
+                // Whoever uses the name is not at fault.
+                self.doubtful.insert(target.symbol);
+            })?;
             self.assign(&target, value, place)?;
         }
         if let Some(text) = deprecated {

@@ -63,7 +63,7 @@ impl Parser<'_> {
             Err(error) => Err(self.fail_hint(
                 place,
                 error.to_string(),
-                "scenes may write only where the caller allows it",
+                "`strahl render` lets a scene write into the folder SCENE.out, or within that of `--allow-write`",
             )),
         }
     }
@@ -84,6 +84,19 @@ impl Parser<'_> {
         let target = self.global_target(handle);
         self.scopes.remove(&target);
         Ok(())
+    }
+
+    /// Closes what the scene has left open.
+    pub(crate) fn close_files(&mut self) {
+        for file in std::mem::take(&mut self.io.open).into_values() {
+            if let OpenFile::Write(mut file) = file
+                && let Err(error) = file.flush()
+            {
+                let place = self.place();
+                // It is reported by that.
+                let _ = self.fail(place, format!("a file cannot be written: {error}"));
+            }
+        }
     }
 
     /// `#write (Handle, values ...)` behind the word.

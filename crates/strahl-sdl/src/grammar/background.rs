@@ -5,8 +5,13 @@ use strahl_shade::Color;
 
 /// `background { colour }`; a sky sphere covers it.
 pub(super) fn background(p: &mut Parser<'_>) -> PResult<()> {
-    let [r, g, b, ..] = p.braces(Parser::color)?;
+    let [r, g, b, _, transmit] = p.braces(Parser::color)?;
     let color = Color::new(r, g, b);
+    // Only for the alpha channel; before version 3.7 all backgrounds were see-through there.
+    p.scene.background_transmit = match p.version < 3.7 {
+        true => 1.0,
+        false => transmit.clamp(0.0, 1.0),
+    };
     p.scene.background = Some(match p.scene.background.take() {
         Some(Background::Sky(sky)) => Background::Sky(Arc::new(SkySphere {
             behind: color,

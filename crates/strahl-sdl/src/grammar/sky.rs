@@ -12,6 +12,7 @@ pub(super) fn sky_statement(p: &mut Parser<'_>) -> PResult<()> {
         sky.behind = color;
     }
     p.scene.background = Some(Background::Sky(Arc::new(sky)));
+    p.scene.background_transmit = if p.version < 3.7 { 1.0 } else { 0.0 };
     Ok(())
 }
 

@@ -13,6 +13,15 @@ impl Parser<'_> {
         }
     }
 
+    /// Begins with the file that the caller wants included before all others.
+    pub(crate) fn include_header(&mut self) {
+        if let Some(name) = &self.options.header {
+            let place = self.place();
+            // What is wrong is reported.
+            let _ = self.include(name, place);
+        }
+    }
+
     /// The name of the scene file.
     pub(crate) fn scene_name(&self) -> String {
         self.sources
@@ -22,6 +31,7 @@ impl Parser<'_> {
 
     /// The result of parsing.
     pub(crate) fn into_parsed(mut self) -> Parsed {
+        self.close_files();
         if self.errors == 0 {
             // Names are not needed any more, so objects that only names refer to can be moved into the scene.
             self.scopes = super::Scopes::default();

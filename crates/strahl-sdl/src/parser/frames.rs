@@ -82,6 +82,7 @@ impl<'h> Parser<'h> {
             message_bytes: 0,
             diagnostics: vec![],
             errors: 0,
+            doubtful: std::collections::BTreeSet::new(),
             failures: 0,
             fatal: false,
             file: Arc::clone(&file),

@@ -26,9 +26,10 @@ use crate::directives::Files;
 use crate::grammar::State;
 use crate::options::Options;
 use crate::source::{Chunk, Host};
-use crate::symbol::Symbols;
+use crate::symbol::{Symbol, Symbols};
 use crate::token::{Kind, Token};
 use frames::Frame;
+use std::collections::BTreeSet;
 use std::sync::Arc;
 use strahl_function::Workspace;
 use strahl_scene::{Diagnostic, Scene, Span};
@@ -96,6 +97,8 @@ pub struct Parser<'h> {
     message_bytes: u64,
     diagnostics: Vec<Diagnostic>,
     errors: usize,
+    /// Names about which an error was reported: that they are not declared, or that their value is wrong.
+    pub(crate) doubtful: BTreeSet<Symbol>,
     /// The number of errors, including repeated ones.
     failures: usize,
     fatal: bool,

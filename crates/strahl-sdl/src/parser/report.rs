@@ -55,6 +55,13 @@ impl Parser<'_> {
         Failed(())
     }
 
+    /// A failure that comes of an error that was reported.
+    fn fail_again(&mut self) -> Failed {
+        self.failures += 1;
+        self.fatal |= self.failures >= self.options.limits.errors.saturating_mul(10);
+        Failed(())
+    }
+
     /// Reports a warning; each text once per place.
     pub fn warn(&mut self, place: Place, message: impl Into<String>) {
         self.report(place, Diagnostic::warning(message));
@@ -139,8 +146,11 @@ impl Parser<'_> {
         self.fail(place, format!("expected {expected}, found {found}"))
     }
 
-    /// Reports an undeclared name.
+    /// Reports an undeclared name, once: what else it spoils is the same fault.
     pub(crate) fn undeclared(&mut self, symbol: Symbol, place: Place, expected: &str) -> Failed {
+        if !self.doubtful.insert(symbol) {
+            return self.fail_again();
+        }
         let name = shortened(self.symbols.text(symbol)).into_owned();
         let mut diagnostic = Diagnostic::error(format!(
             "expected {expected}, found the undeclared name `{name}`"

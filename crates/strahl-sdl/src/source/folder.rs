@@ -1,8 +1,9 @@
 use super::fonts::FontFolders;
+use super::writing::{Found, Writing, Written};
 use super::{Host, HostError, Source, Stream};
 use std::fs;
-use std::io::{BufWriter, ErrorKind, Read, Write};
-use std::path::{Component, Path, PathBuf};
+use std::io::{ErrorKind, Read, Write};
+use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
 /// Who takes the messages of scenes.
@@ -10,13 +11,13 @@ type Listener = dyn FnMut(Stream, &str) + Send;
 
 /// Files in folders of the disk.
 ///
-/// A file is searched beside the file that names it, then in the library folders in order. Scenes write only into the
-/// folder allowed, none at first. Messages of the scene go to the function given, or nowhere.
+/// A file is searched beside the file that names it, then in the library folders in order, then where scenes write; what the
+/// scene itself has written comes before all of them. Scenes write only where that is allowed, nowhere at first. Messages of the scene go to the function given, or nowhere.
 pub struct FolderHost {
     library: Vec<PathBuf>,
     fonts: FontFolders,
     installed: Vec<PathBuf>,
-    writable: Option<PathBuf>,
+    written: Written,
     max_file: u64,
     on_message: Option<Box<Listener>>,
     now: Option<f64>,
@@ -27,7 +28,7 @@ impl std::fmt::Debug for FolderHost {
         f.debug_struct("FolderHost")
             .field("library", &self.library)
             .field("installed", &self.installed)
-            .field("writable", &self.writable)
+            .field("written", &self.written)
             .field("max_file", &self.max_file)
             .finish_non_exhaustive()
     }
@@ -40,7 +41,7 @@ impl FolderHost {
             library: library.into_iter().collect(),
             fonts: FontFolders::default(),
             installed: vec![],
-            writable: None,
+            written: Written::default(),
             max_file: u64::from(u32::MAX) - 1,
             on_message: None,
             now: None,
@@ -61,10 +62,11 @@ impl FolderHost {
         self
     }
 
-    /// Lets scenes write files within this folder; the names they give are taken relative to it.
+    /// Lets scenes write files; the names they give are taken relative to the folder. They can't touch hidden files, nor files
+    /// that no scene has written.
     #[must_use]
-    pub fn allow_writing(mut self, folder: impl Into<PathBuf>) -> Self {
-        self.writable = Some(folder.into());
+    pub fn allow_writing(mut self, place: Writing) -> Self {
+        self.written = Written::to(place);
         self
     }
 
@@ -157,8 +159,22 @@ impl FolderHost {
 
 impl Host for FolderHost {
     fn load(&mut self, name: &str, from: &str) -> Result<Source, HostError> {
+        match self.written.find(name) {
+            Some(Found::Text(bytes)) => return Ok(Source::new(name, bytes)),
+            Some(Found::At(path)) => {
+                if let Some(source) = self.read(&path)? {
+                    return Ok(source);
+                }
+            }
+            None => {}
+        }
         let beside = Path::new(from).parent().map(Path::to_path_buf);
-        let folders: Vec<PathBuf> = beside.into_iter().chain(self.library.clone()).collect();
+        let written = self.written.folder().filter(|f| f.is_dir());
+        let folders: Vec<PathBuf> = beside
+            .into_iter()
+            .chain(self.library.clone())
+            .chain(written.map(Path::to_path_buf))
+            .collect();
         self.search(name, &folders)
     }
 
@@ -174,43 +190,7 @@ impl Host for FolderHost {
     }
 
     fn create(&mut self, name: &str, append: bool) -> Result<Box<dyn Write + Send>, HostError> {
-        let forbidden = |why: &str| HostError::Forbidden {
-            name: name.to_owned(),
-            why: why.to_owned(),
-        };
-        let path = Path::new(name);
-        let plain = |c: Component<'_>| matches!(c, Component::Normal(_) | Component::CurDir);
-        if !path.components().all(plain) || name.contains('\\') {
-            return Err(forbidden(
-                "the name must be relative and must not contain `..`",
-            ));
-        }
-        let Some(folder) = &self.writable else {
-            return Err(forbidden("no folder is open for writing"));
-        };
-        let io = |error: std::io::Error| HostError::Io {
-            name: name.to_owned(),
-            message: error.to_string(),
-        };
-        let target = folder.join(path);
-        // A link inside of the folder must not lead out of it.
-        let parent = target.parent().unwrap_or(folder);
-        let real = parent.canonicalize().map_err(io)?;
-        if !real.starts_with(folder.canonicalize().map_err(io)?) {
-            return Err(forbidden("a link leads out of the folder"));
-        }
-        if fs::symlink_metadata(&target).is_ok_and(|m| !m.is_file()) {
-            return Err(forbidden("there is something that is no plain file"));
-        }
-        let mut options = fs::OpenOptions::new();
-        options.create(true).write(true);
-        if append {
-            options.append(true);
-        } else {
-            options.truncate(true);
-        }
-        let file = options.open(&target).map_err(io)?;
-        Ok(Box::new(BufWriter::new(file)))
+        self.written.create(name, append)
     }
 
     fn message(&mut self, stream: Stream, text: &str) {
@@ -270,37 +250,28 @@ mod tests {
     }
 
     #[test]
-    fn nothing_is_written_outside_of_the_folder() {
+    fn what_a_scene_writes_it_reads_again() {
         let root = tempfile::tempdir().unwrap();
-        let inside = root.path().join("inside");
-        fs::create_dir(&inside).unwrap();
-        let mut host = FolderHost::new([]);
-        assert!(matches!(
-            host.create("a.txt", false),
-            Err(HostError::Forbidden { .. })
-        ));
-        let mut host = host.allow_writing(&inside);
-        let absolute = root.path().join("b.txt").display().to_string();
-        for name in ["../b.txt", "c/../../b.txt", absolute.as_str(), "..\\b.txt"] {
-            assert!(
-                matches!(host.create(name, false), Err(HostError::Forbidden { .. })),
-                "{name}"
-            );
+        let path = |name: &str| root.path().join(name);
+        fs::write(path("x.inc"), "the user's").unwrap();
+        let from = path("scene.pov").display().to_string();
+        for place in [Writing::Memory, Writing::Own(path("scene.out"))] {
+            let mut host = FolderHost::new([]).allow_writing(place);
+            let text = |host: &mut FolderHost| {
+                let source = host.load("x.inc", &from).unwrap();
+                source.into_bytes().unwrap()
+            };
+            assert_eq!(text(&mut host), b"the user's");
+            let mut file = host.create("x.inc", false).unwrap();
+            file.write_all(b"the scene's").unwrap();
+            file.flush().unwrap();
+            assert_eq!(text(&mut host), b"the scene's");
         }
-        #[cfg(unix)]
-        {
-            std::os::unix::fs::symlink(root.path(), inside.join("out")).unwrap();
-            std::os::unix::fs::symlink(root.path().join("b.txt"), inside.join("link")).unwrap();
-            for name in ["out/b.txt", "link"] {
-                assert!(host.create(name, false).is_err(), "{name}");
-            }
-        }
-        assert!(!root.path().join("b.txt").exists());
-        host.create("a.txt", false)
-            .unwrap()
-            .write_all(b"1")
-            .unwrap();
-        host.create("a.txt", true).unwrap().write_all(b"2").unwrap();
-        assert_eq!(fs::read(inside.join("a.txt")).unwrap(), b"12");
+        assert_eq!(fs::read(path("x.inc")).unwrap(), b"the user's");
+        // A later run finds it where nothing else of that name is.
+        fs::remove_file(path("x.inc")).unwrap();
+        let mut host = FolderHost::new([]).allow_writing(Writing::Own(path("scene.out")));
+        assert!(host.load("x.inc", &from).is_ok());
+        assert!(FolderHost::new([]).load("x.inc", &from).is_err());
     }
 }

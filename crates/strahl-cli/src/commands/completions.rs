@@ -1,0 +1,12 @@
+use crate::args::Cli;
+use crate::output::bytes;
+use crate::report::Failure;
+use clap::CommandFactory;
+use clap_complete::Shell;
+
+/// `strahl completions`: what completes command lines in a shell.
+pub(crate) fn completions(shell: Shell) -> Result<(), Failure> {
+    let mut script = vec![];
+    clap_complete::generate(shell, &mut Cli::command(), "strahl", &mut script);
+    bytes(&script)
+}

@@ -1,0 +1,33 @@
+use crate::args::Cli;
+use crate::output::bytes;
+use crate::report::Failure;
+use clap::CommandFactory;
+
+/// `strahl man`: the manual page of the program, or of one of its commands.
+pub(crate) fn man(command: Option<&str>) -> Result<(), Failure> {
+    let mut all = Cli::command();
+    all.build();
+    let page = match command {
+        None => all,
+        Some(name) => {
+            let names: Vec<String> = all
+                .get_subcommands()
+                .map(|c| c.get_name().to_owned())
+                .collect();
+            let found = all.find_subcommand(name).cloned();
+            let found = found.ok_or_else(|| {
+                Failure::new(format!(
+                    "there is no command `{name}`; there are: {}",
+                    names.join(", ")
+                ))
+            })?;
+            // The page's name; `build` has put the program's before it in the usage.
+            let title: &'static str = Box::leak(format!("strahl-{name}").into_boxed_str());
+            found.name(title).version(env!("CARGO_PKG_VERSION"))
+        }
+    };
+    let mut text = vec![];
+    let man = clap_mangen::Man::new(page);
+    man.render(&mut text).map_err(Failure::new)?;
+    bytes(&text)
+}

@@ -1,0 +1,194 @@
+//! Where a picture goes: a file, or the standard output.
+
+use crate::animation::Animation;
+use crate::args::RenderArgs;
+use crate::input::Input;
+use crate::interrupt::{Interruptible, pressed};
+use crate::output;
+use crate::report::Failure;
+use std::io::{self, IsTerminal};
+use std::path::{Path, PathBuf};
+use strahl::formats::image::{
+    ImageError, ImageFormat, Picture, WriteOptions, encode_picture, formats, write_file,
+};
+
+/// Where a picture goes, and in which format.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Target {
+    File(PathBuf, ImageFormat),
+    /// The standard output; the pictures of an animation follow each other.
+    Stream(ImageFormat),
+}
+
+impl Target {
+    /// Where the picture of `render` goes.
+    pub(crate) fn of(args: &RenderArgs) -> Result<Self, Failure> {
+        let format = args.picture_format;
+        let own = || {
+            let format = format.unwrap_or(formats()[0].format);
+            let name = format!("{}.{}", scene_name(args)?, format.info().extensions[0]);
+            Ok((PathBuf::from(name), format))
+        };
+        let Some(output) = &args.output else {
+            let (name, format) = own()?;
+            return Ok(Self::File(name, format));
+        };
+        if output.as_os_str() == "-" {
+            return Ok(Self::Stream(format.unwrap_or(formats()[0].format)));
+        }
+        let text = output.to_string_lossy();
+        if output.is_dir() || text.ends_with(['/', std::path::MAIN_SEPARATOR]) {
+            let (name, format) = own()?;
+            return Ok(Self::File(output.join(name), format));
+        }
+        let format = match format {
+            Some(format) => format,
+            None => ImageFormat::from_path(output).map_err(Failure::new)?,
+        };
+        Ok(Self::File(output.clone(), format))
+    }
+
+    pub(crate) fn format(&self) -> ImageFormat {
+        match self {
+            Self::File(_, format) | Self::Stream(format) => *format,
+        }
+    }
+
+    /// The file, if it is one.
+    pub(crate) fn file(&self) -> Option<&Path> {
+        match self {
+            Self::File(file, _) => Some(file),
+            Self::Stream(_) => None,
+        }
+    }
+
+    /// Its name for people.
+    pub(crate) fn shown(&self) -> String {
+        match self {
+            Self::File(file, _) => file.display().to_string(),
+            Self::Stream(_) => "standard output".to_owned(),
+        }
+    }
+
+    /// Where a frame of an animation goes.
+    pub(crate) fn of_frame(&self, animation: &Animation, frame: u32) -> Self {
+        match self {
+            Self::File(file, format) => Self::File(animation.file(file, frame), *format),
+            Self::Stream(format) => Self::Stream(*format),
+        }
+    }
+
+    /// Before the work, not after it: can the picture be written there?
+    pub(crate) fn check(&self, args: &RenderArgs, animated: bool) -> Result<(), Failure> {
+        let shown = self.shown();
+        if args.layers && !self.format().info().layers {
+            return Err(Failure::new(format!(
+                "--layers needs a format with layers (.exr), but the picture is {shown}"
+            )));
+        }
+        if args.alpha && !self.format().info().alpha {
+            return Err(Failure::new(format!(
+                "--alpha needs a format with an alpha channel (.png, .exr), but the picture is {shown}"
+            )));
+        }
+        if animated && args.stats.is_some() {
+            return Err(Failure::new(
+                "--stats is about one picture: render the frames one by one with --subset-start-frame and \
+                 --subset-end-frame, or leave it out",
+            ));
+        }
+        let stats = args.stats.as_deref();
+        let stats_to_stream = stats.is_some_and(|s| s.as_os_str() == "-");
+        match self {
+            Self::Stream(_) if !args.no_output && io::stdout().is_terminal() => {
+                return Err(Failure::new(
+                    "a picture is nothing for a terminal: send it on, as in `strahl render scene.pov -o - | display`",
+                ));
+            }
+            Self::Stream(_) if stats_to_stream => {
+                return Err(Failure::new(
+                    "picture and statistics can't both go to the standard output: name a file for one of them",
+                ));
+            }
+            Self::Stream(_) | Self::File(..) => {}
+        }
+        let stats = stats.filter(|_| !stats_to_stream);
+        for file in [self.file(), stats].into_iter().flatten() {
+            check_folder(file)?;
+        }
+        Ok(())
+    }
+
+    /// A slip of the keyboard must not cost the scene.
+    pub(crate) fn spares(&self, input: &Input<'_>, args: &RenderArgs) -> Result<(), Failure> {
+        let real = |path: &Path| path.canonicalize().ok();
+        let scene = input.path().and_then(real);
+        for file in [self.file(), args.stats.as_deref()].into_iter().flatten() {
+            if scene.is_some() && real(file) == scene {
+                return Err(Failure::new(format!(
+                    "{} is the scene itself, which must not be overwritten",
+                    file.display()
+                )));
+            }
+        }
+        Ok(())
+    }
+
+    /// Writes a picture; Ctrl-C ends that too, and nothing is left behind.
+    pub(crate) fn write(
+        &self,
+        picture: &Picture<'_>,
+        options: &WriteOptions,
+    ) -> Result<(), Failure> {
+        let format = self.format();
+        let failed = |error| match pressed() {
+            true => Failure::Interrupted,
+            false => Failure::new(error),
+        };
+        match self {
+            Self::File(file, _) => write_file(file, |writer| {
+                encode_picture(&mut Interruptible(writer), format, picture, options).map_err(
+                    |error| match error {
+                        ImageError::Write { source, .. } => source,
+                        other => io::Error::other(other),
+                    },
+                )
+            })
+            .map_err(failed),
+            Self::Stream(_) => {
+                let mut bytes = vec![];
+                encode_picture(&mut Interruptible(&mut bytes), format, picture, options)
+                    .map_err(failed)?;
+                output::bytes(&bytes)
+            }
+        }
+    }
+}
+
+/// The scene's name without folder and endings.
+fn scene_name(args: &RenderArgs) -> Result<String, Failure> {
+    let Some(scene) = &args.scene else {
+        return Ok("demo".to_owned());
+    };
+    let name = scene.file_name().filter(|name| *name != "-");
+    let Some(name) = name.and_then(|n| n.to_str()) else {
+        return Err(Failure::new("where shall the picture go? add -o PICTURE"));
+    };
+    let stem = name.strip_suffix(".gz").unwrap_or(name);
+    let stem = stem.rsplit_once('.').map_or(stem, |(stem, _)| stem);
+    Ok(stem.to_owned())
+}
+
+/// Whether a file's folder exists: cheaper to know before the render than after.
+fn check_folder(file: &Path) -> Result<(), Failure> {
+    match file.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() && !folder.is_dir() => {
+            Err(Failure::new(format!(
+                "cannot write {}: there is no folder {}",
+                file.display(),
+                folder.display()
+            )))
+        }
+        _ => Ok(()),
+    }
+}

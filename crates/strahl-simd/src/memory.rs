@@ -1,0 +1,244 @@
+//! A bound on the memory of the whole program: an allocator that counts, and knows when it is enough.
+//!
+//! A scene may ask for any amount of memory: by a picture of a few bytes that unpacks to gigabytes, by a loop. The system
+//! answers by ending some program. [`Bounded`] answers before that, and lets the program say what it was doing.
+#![expect(
+    unsafe_code,
+    reason = "an allocator can't be written without, see the crate's documentation"
+)]
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::cell::Cell;
+use std::sync::OnceLock;
+use std::sync::atomic::{AtomicIsize, AtomicUsize, Ordering};
+
+/// A thread counts by itself up to so many bytes before it tells the common counter: that costs a nanosecond instead of
+/// a fight for a cache line.
+const OWN: isize = 64 << 10;
+
+thread_local! {
+    /// Bytes that this thread has taken (or given back) and not told yet.
+    static UNTOLD: Cell<isize> = const { Cell::new(0) };
+    /// Whether this thread can go on without the memory it asks for.
+    static CAN_DO_WITHOUT: Cell<bool> = const { Cell::new(false) };
+    /// Whether this thread is ending the program, and needs memory for it.
+    static ENDING: Cell<bool> = const { Cell::new(false) };
+}
+
+/// Memory that is not to be had.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Refusal {
+    /// Bytes asked for.
+    pub asked: usize,
+    /// Bytes in use.
+    pub used: usize,
+    /// Bytes allowed.
+    pub limit: usize,
+}
+
+/// The system's allocator with a limit. As the global allocator of a program it bounds everything but mapped files and the
+/// stacks of threads.
+#[derive(Debug)]
+pub struct Bounded {
+    used: AtomicIsize,
+    limit: AtomicUsize,
+    end: OnceLock<fn(Refusal) -> !>,
+}
+
+impl Default for Bounded {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Bounded {
+    /// Without a limit.
+    pub const fn new() -> Self {
+        Self {
+            used: AtomicIsize::new(0),
+            limit: AtomicUsize::new(usize::MAX),
+            end: OnceLock::new(),
+        }
+    }
+
+    /// Sets the limit in bytes, and who ends the program when somebody asks for more who can't do without. The function may
+    /// take memory itself. Only the first function counts.
+    pub fn limit(&self, bytes: usize, end: fn(Refusal) -> !) {
+        // The second of two is ignored, as documented.
+        let _ = self.end.set(end);
+        self.limit.store(bytes, Ordering::Relaxed);
+    }
+
+    /// Bytes in use, to within some ten thousand per thread.
+    pub fn used(&self) -> usize {
+        usize::try_from(self.used.load(Ordering::Relaxed)).unwrap_or(0)
+    }
+
+    /// Counts bytes taken; `false`, and nothing is counted, if that is too much.
+    fn take(&self, bytes: usize) -> bool {
+        let Ok(bytes) = isize::try_from(bytes) else {
+            return false;
+        };
+        let untold = UNTOLD.get() + bytes;
+        if untold <= OWN {
+            UNTOLD.set(untold);
+            return true;
+        }
+        let used = self.used.fetch_add(untold, Ordering::Relaxed) + untold;
+        let limit = self.limit.load(Ordering::Relaxed);
+        if usize::try_from(used).is_ok_and(|used| used > limit) && !ENDING.get() {
+            self.used.fetch_sub(untold, Ordering::Relaxed);
+            return false;
+        }
+        UNTOLD.set(0);
+        true
+    }
+
+    /// Counts bytes given back.
+    fn give(&self, bytes: usize) {
+        let untold = UNTOLD.get() - bytes as isize;
+        if untold >= -OWN {
+            UNTOLD.set(untold);
+        } else {
+            self.used.fetch_add(untold, Ordering::Relaxed);
+            UNTOLD.set(0);
+        }
+    }
+
+    /// There is no memory: the answer to who can do without, the end of the program for others.
+    #[cold]
+    fn refused(&self, asked: usize) -> *mut u8 {
+        if !CAN_DO_WITHOUT.get()
+            && !ENDING.replace(true)
+            && let Some(end) = self.end.get()
+        {
+            end(Refusal {
+                asked,
+                used: self.used(),
+                limit: self.limit.load(Ordering::Relaxed),
+            })
+        }
+        std::ptr::null_mut()
+    }
+}
+
+// SAFETY: every request is handed on to the system's allocator, whose contract it is, or answered by null, which the contract
+// allows. Nothing in between takes memory: the thread's counters have no destructors and are there from the beginning.
+unsafe impl GlobalAlloc for Bounded {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        if !self.take(layout.size()) {
+            return self.refused(layout.size());
+        }
+        // SAFETY: the caller's layout.
+        let start = unsafe { System.alloc(layout) };
+        if start.is_null() {
+            self.give(layout.size());
+            return self.refused(layout.size());
+        }
+        start
+    }
+
+    unsafe fn alloc_zeroed(&self, layout: Layout) -> *mut u8 {
+        if !self.take(layout.size()) {
+            return self.refused(layout.size());
+        }
+        // SAFETY: the caller's layout.
+        let start = unsafe { System.alloc_zeroed(layout) };
+        if start.is_null() {
+            self.give(layout.size());
+            return self.refused(layout.size());
+        }
+        start
+    }
+
+    unsafe fn dealloc(&self, start: *mut u8, layout: Layout) {
+        self.give(layout.size());
+        // SAFETY: what the caller got from one of the functions here, which got it from the system with this layout.
+        unsafe { System.dealloc(start, layout) };
+    }
+
+    unsafe fn realloc(&self, start: *mut u8, layout: Layout, new_size: usize) -> *mut u8 {
+        let more = new_size.saturating_sub(layout.size());
+        if !self.take(more) {
+            return self.refused(more);
+        }
+        // SAFETY: what the caller got from one of the functions here, which got it from the system with this layout.
+        let moved = unsafe { System.realloc(start, layout, new_size) };
+        if moved.is_null() {
+            self.give(more);
+            return self.refused(more);
+        }
+        self.give(layout.size().saturating_sub(new_size));
+        moved
+    }
+}
+
+/// Whether so many bytes can be had now: to be asked before a large request whose refusal has a reason worth telling.
+pub fn fits(bytes: u64) -> bool {
+    let Ok(bytes) = usize::try_from(bytes) else {
+        return false;
+    };
+    let before = CAN_DO_WITHOUT.replace(true);
+    let fits = Vec::<u8>::new().try_reserve_exact(bytes).is_ok();
+    CAN_DO_WITHOUT.set(before);
+    fits
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn layout(bytes: usize) -> Layout {
+        Layout::from_size_align(bytes, 8).unwrap()
+    }
+
+    #[test]
+    fn the_limit_counts_what_is_in_use() {
+        let memory = Bounded::new();
+        // Nobody ends this program: a refusal is null.
+        memory.limit.store(1 << 20, Ordering::Relaxed);
+        // SAFETY: layouts of some bytes; each block is given back once, with its layout.
+        unsafe {
+            let half = memory.alloc(layout(1 << 19));
+            assert!(!half.is_null());
+            assert!(memory.alloc_zeroed(layout(1 << 20)).is_null());
+            let more = memory.realloc(half, layout(1 << 19), 3 << 18);
+            assert!(!more.is_null());
+            assert!(memory.realloc(more, layout(3 << 18), 2 << 20).is_null());
+            assert!(memory.used().abs_diff(3 << 18) <= OWN as usize);
+            memory.dealloc(more, layout(3 << 18));
+            assert!(memory.used() <= 2 * OWN as usize);
+            let all = memory.alloc(layout((1 << 20) - OWN as usize));
+            assert!(!all.is_null());
+            memory.dealloc(all, layout((1 << 20) - OWN as usize));
+        }
+    }
+
+    #[test]
+    fn small_requests_are_counted_too() {
+        let memory = Bounded::new();
+        memory.limit.store(1 << 20, Ordering::Relaxed);
+        let mut blocks = vec![];
+        // SAFETY: layouts of 64 bytes; each block is given back once.
+        unsafe {
+            loop {
+                let block = memory.alloc(layout(64));
+                if block.is_null() {
+                    break;
+                }
+                blocks.push(block);
+                assert!(blocks.len() < 1 << 20, "there is no end");
+            }
+            for block in &blocks {
+                memory.dealloc(*block, layout(64));
+            }
+        }
+        let bytes = blocks.len() * 64;
+        assert!(bytes.abs_diff(1 << 20) <= 2 * OWN as usize, "{bytes}");
+    }
+
+    #[test]
+    fn more_than_there_is_does_not_fit() {
+        assert!(fits(1 << 20) && !fits(u64::MAX) && !fits(1 << 62));
+    }
+}
