@@ -37,9 +37,9 @@ pub(super) fn by_three_faces(walk: &Walk, cell: &Aabb) -> Leaving {
     }
 }
 
-/// The axis whose face is tried first: the one along which the ray crosses a cell of this shape fastest.
-pub(super) fn trial_axis(walk: &Walk, cell: &Aabb) -> usize {
-    let speed = (walk.moved.direction / cell.size()).abs();
+/// The axis whose face is tried first, the same for all cells: that of the largest component of the direction, of several the first.
+pub(super) fn trial_axis(walk: &Walk) -> usize {
+    let speed = walk.moved.direction.abs();
     let axis = usize::from(speed.y > speed.x);
     if speed.z > speed[axis] { 2 } else { axis }
 }
@@ -215,13 +215,33 @@ mod tests {
             let mut through = DVec3::splat(0.5);
             through[axis] = 1.0;
             let w = walk(DVec3::splat(0.5), through);
-            assert_eq!(trial_axis(&w, &CELL), axis);
+            assert_eq!(trial_axis(&w), axis);
             assert_eq!(by_three_faces(&w, &CELL).axis, axis);
             let tried = by_trial_plane(&w, &CELL, axis);
             assert_eq!((tried.axis, tried.region), (axis, Some(0)));
             // The plane of another face is met at infinity only, beyond the edge of the true exit.
             let other = by_trial_plane(&w, &CELL, (axis + 1) % 3);
             assert_eq!((other.axis, other.t), (axis, tried.t));
+        }
+    }
+
+    /// The trial is the plane perpendicular to the largest component of the direction, whatever the cells' shape.
+    #[test]
+    fn the_trial_plane_is_that_of_the_largest_component() {
+        for (through, axis) in [
+            (DVec3::new(3.0, 2.0, 1.0), 0),
+            (DVec3::new(-2.0, -3.0, 1.0), 1),
+            (DVec3::new(1.0, 2.0, -3.0), 2),
+            // Of equal ones the first.
+            (DVec3::new(1.0, -1.0, 1.0), 0),
+            (DVec3::new(0.5, 1.0, 1.0), 1),
+        ] {
+            let w = walk(DVec3::ZERO, through);
+            assert_eq!(trial_axis(&w), axis);
+            // In a flat cell too, where the ray leaves by another face: beyond an edge or a corner of the trial's.
+            let flat = Aabb::new(DVec3::splat(-4.0), DVec3::new(4.0, 0.1, 4.0));
+            let (tried, full) = (by_trial_plane(&w, &flat, axis), by_three_faces(&w, &flat));
+            assert_eq!((tried.axis, tried.t), (full.axis, full.t), "{through}");
         }
     }
 }

@@ -24,7 +24,7 @@ impl<V: Visitor> Walker<'_, V> {
     /// coordinates never go backwards, so every step makes progress.
     pub(super) fn steps(&mut self, kind: Traversal) {
         let (walk, root) = (self.search.walk, self.search.room.root);
-        let trial = trial_axis(walk, &root);
+        let trial = trial_axis(walk);
         let mut point = walk.at_within(walk.near, &root);
         let start = Ancestor {
             cell: self.octree.root,
