@@ -6,7 +6,8 @@
 //
 //     strahl explain scenes/lecture/01_principle.pov --size 320x180 --sampling center --pixel 205,100
 //
-// prints the tree of rays of a pixel on the glass ball; with `--format dot` it is a graph.
+// prints the tree of rays of a pixel on the glass ball: first in outline, with what each ray adds, then ray by ray with every number.
+// `--format dot` makes it a graph.
 #version 3.7;
 global_settings { assumed_gamma 1 max_trace_level 8 }
 camera { location <0, 2, -6> right x * image_width / image_height angle 58 look_at <0, 0.75, 0> }

@@ -3,9 +3,11 @@
 // The ray of a pixel runs from the eye through the pixel, d = (p0 - e) / |p0 - e|. Columns of one height become shorter with the
 // distance, and parallel lines meet.
 //
-//     strahl render scenes/lecture/02_perspective.pov --shading depth -o depth.png
+//     strahl explain scenes/lecture/02_perspective.pov --size 320x180 --sampling center --pixel 40,120
+//     strahl explain scenes/lecture/02_perspective.pov --size 320x180 --sampling center --pixel 280,120
+//     strahl render scenes/lecture/02_perspective.pov --size 320x180 --shading depth -o depth.png
 //
-// shows how far each primary ray goes.
+// show two primary rays, from the same eye in different directions, and how far each primary ray goes: what is brighter is farther away.
 #version 3.7;
 global_settings { assumed_gamma 1 max_trace_level 8 }
 camera { perspective location <0, 2.2, -5.5> right x * image_width / image_height angle 52 look_at <0, 0.6, 2> }

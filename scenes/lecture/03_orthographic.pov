@@ -2,9 +2,10 @@
 //
 // All rays are normal to the plane of the picture. The same columns as before are all of one height, and parallel lines stay parallel.
 //
-//     strahl info scenes/lecture/03_orthographic.pov
+//     strahl explain scenes/lecture/03_orthographic.pov --size 320x180 --sampling center --pixel 40,120
+//     strahl explain scenes/lecture/03_orthographic.pov --size 320x180 --sampling center --pixel 280,120
 //
-// tells the camera, the objects and their bounds.
+// show two primary rays, from different places in the same direction.
 #version 3.7;
 global_settings { assumed_gamma 1 max_trace_level 8 }
 camera { orthographic location <-6, 7, -8> right 11 * x * image_width / image_height up 11 * y look_at <0, 0.3, 4> }

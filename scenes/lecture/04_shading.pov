@@ -2,9 +2,12 @@
 //
 // From the left: the ambient term alone, the diffuse term alone, the highlight alone, and their sum.
 //
-//     strahl explain scenes/lecture/04_shading.pov --size 320x180 --sampling center --pixel 245,70
+//     strahl explain scenes/lecture/04_shading.pov --size 320x180 --sampling center --pixel 262,80
+//     strahl explain scenes/lecture/04_shading.pov --size 320x180 --sampling center --pixel 262,80 --shading phong
+//     strahl render scenes/lecture/04_shading.pov --size 320x180 --shading lambert -o lambert.png
 //
-// prints every term with its numbers. `--shading blinn-phong` or `--shading normals` choose other models.
+// print every term of a point on the last ball with its numbers, where all three count; the same with Phong's highlight, (r.v)^p in place
+// of (h.n)^p; and the picture without highlights.
 #version 3.7;
 global_settings { assumed_gamma 1 max_trace_level 8 }
 camera { location <0, 1.6, -7> right x * image_width / image_height angle 54 look_at <0, 0.75, 0> }

@@ -3,9 +3,10 @@
 // The ball hides the lamp from a part of the floor. The pane of red glass is hit as well, but lets a part of the light through: its
 // shadow is red. The lamp itself is an object that looks like what it is, and does not hide its own light.
 //
-//     strahl explain scenes/lecture/05_shadows.pov --size 320x180 --sampling center --pixel 235,110
+//     strahl explain scenes/lecture/05_shadows.pov --size 320x180 --sampling center --pixel 225,123
+//     strahl explain scenes/lecture/05_shadows.pov --size 320x180 --sampling center --pixel 80,130
 //
-// shows a shadow ray that meets the glass, and the part of the light it lets through.
+// show a shadow ray that meets the pane, with the part of the light it lets through, and one that the ball blocks.
 #version 3.7;
 global_settings { assumed_gamma 1 max_trace_level 8 }
 camera { location <0, 2.6, -6.5> right x * image_width / image_height angle 56 look_at <0, 0.8, 0> }

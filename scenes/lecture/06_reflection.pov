@@ -3,9 +3,10 @@
 // Two mirrors face each other, so the tree of rays is deep: images of images, each darker by kr. Curved mirrors need no code of their
 // own, as reflection looks at the normal of one point only.
 //
-//     strahl render scenes/lecture/06_reflection.pov --max-depth 2 -o two.png
+//     strahl render scenes/lecture/06_reflection.pov --size 320x180 --max-depth 2 -o two.png
+//     strahl explain scenes/lecture/06_reflection.pov --size 320x180 --sampling center --pixel 80,60
 //
-// ends the tree after one mirror image.
+// end the tree after one mirror image, and print the whole tree of a pixel that looks from mirror to mirror.
 #version 3.7;
 global_settings { assumed_gamma 1 max_trace_level 8 }
 camera { location <0.7, 2.3, -4.6> right x * image_width / image_height angle 70 look_at <0, 0.9, 0.4> }

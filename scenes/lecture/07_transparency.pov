@@ -5,7 +5,7 @@
 //
 //     strahl explain scenes/lecture/07_transparency.pov --size 320x180 --sampling center --pixel 182,95
 //
-// names the indices of both sides and the angles at every surface.
+// names the indices of both sides, the angles and Fresnel's F at every surface of the ball of glass.
 #version 3.7;
 global_settings { assumed_gamma 1 max_trace_level 8 }
 camera { location <0, 1.8, -7.4> right x * image_width / image_height angle 58 look_at <0.1, 0.75, 0> }

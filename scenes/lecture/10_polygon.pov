@@ -3,9 +3,9 @@
 //
 // An icosahedron of triangles, a wall with a window as one polygon with a hole, and a star whose outline is not convex.
 //
-//     strahl render scenes/lecture/10_polygon.pov --shading normals -o normals.png
+//     strahl render scenes/lecture/10_polygon.pov --size 320x180 --shading normals -o normals.png
 //
-// shows which faces look at the eye.
+// shows the normals as colours, n/2 + 1/2 with x, y and z as red, green and blue: each face has one normal, and so one colour.
 #version 3.7;
 global_settings { assumed_gamma 1 max_trace_level 8 }
 camera { location <0, 2.2, -7> right x * image_width / image_height angle 56 look_at <0, 1.0, 0> }

@@ -3,10 +3,13 @@
 // The scene walks a grid itself, in the manner of a 3-D Bresenham: from cell to cell through the face that is left first, the smallest
 // t_k = (-D_k - n_k.p) / (n_k.d). The cells that the ray visits are drawn as glass; of all balls only those in them are tried (red).
 //
-//     strahl render scenes/lecture/12_space_subdivision.pov --accelerator grid --stats grid.json
-//     strahl render scenes/lecture/12_space_subdivision.pov --accelerator octree --stats octree.json
+//     strahl trace-ray scenes/lecture/12_space_subdivision.pov --size 320x180 --pixel 200,90 --accelerator grid
+//     strahl trace-ray scenes/lecture/12_space_subdivision.pov --size 320x180 --pixel 200,90 --accelerator octree:traversal=trial-plane
+//     strahl compare scenes/lecture/12_space_subdivision.pov --size 160x90 --sampling center --with list --with grid --with octree
 //
-// write the cells visited (`node_visits`) and the tests; `--layers` with a picture `.exr` has the tests of every pixel.
+// print the cells along the way of a primary ray with the face it leaves each by and the objects tried in it, and what the structures
+// cost for all rays. The trial exit plane is the one perpendicular to the largest component of d; `region` says where the ray meets it:
+// 0 inside the cell's face, 1 to 4 beyond an edge, 5 to 8 beyond a corner.
 #version 3.7;
 global_settings { assumed_gamma 1 max_trace_level 8 }
 camera { orthographic location <-5, 6.5, -9> right 7.6 * x * image_width / image_height up 7.6 * y look_at <3, 1.3, 1.8> }

@@ -2,10 +2,9 @@
 //
 // Change `Side` to have more: 30 are 27,000 balls. `--accelerator list` tries all of them for every ray.
 //
-//     strahl render scenes/lecture/14_many.pov --declare Side=30 --accelerator list --stats list.json
-//     strahl render scenes/lecture/14_many.pov --declare Side=30 --stats bvh.json
+//     strahl compare scenes/lecture/14_many.pov --declare Side=20 --size 64x36 --sampling center --with list --with bvh
 //
-// show the difference: `primitive_tests` and `time_s.trace`.
+// shows the difference for 8,000 balls on a small picture: tests per ray, and seconds.
 #version 3.7;
 global_settings { assumed_gamma 1 max_trace_level 8 }
 #ifndef (Side) #declare Side = 10; #end

@@ -1,3 +1,4 @@
+use crate::explain::{Chosen, Digits, MostRays};
 use crate::memory::MemoryLimit;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
@@ -325,6 +326,17 @@ pub(crate) struct ExplainArgs {
     /// How to print it
     #[arg(long, value_enum, value_name = "FORM", default_value_t = ExplainForm::Text)]
     pub(crate) format: ExplainForm,
+    /// Significant digits of the numbers in text and graph, or `full` for as many as it takes to read the same bits back; JSON is
+    /// always exact
+    #[arg(long, value_name = "N|full", default_value = "6")]
+    pub(crate) digits: Digits,
+    /// Show the tree of this sample, counted from 1, or of `all`, where a pixel has several [default: a table of them; JSON has all,
+    /// the graph the first]
+    #[arg(long, value_name = "N|all")]
+    pub(crate) sample: Option<Chosen>,
+    /// Show at most about this many rays of a tree in text, those that add most to the pixel with the rays they come from, or `all`
+    #[arg(long, value_name = "N|all", default_value = "40")]
+    pub(crate) rays: MostRays,
     #[command(flatten)]
     pub(crate) picture: PictureArgs,
     #[command(flatten)]

@@ -195,22 +195,20 @@ impl TreeTracer<'_> {
         let (surface, center) = (query.surface, query.center);
         let direction = center.shadow_direction + query.offset(i, j);
         let (origin_point, from) = surface.start(query.hit, direction);
-        let ray = Ray::new(origin_point, direction);
-        let shadow = self.tracer.shadow(
-            &ShadowRay {
-                ray,
-                range: center.range,
-                from,
-                light: query.number,
-                media: query.branch.media,
-            },
-            &mut self.media,
-            &mut self.shadow_hits,
-        );
+        let shadow_ray = ShadowRay {
+            ray: Ray::new(origin_point, direction),
+            range: center.range,
+            from,
+            light: query.number,
+            media: query.branch.media,
+        };
+        let (media, hits) = (&mut self.media, &mut self.shadow_hits);
+        let shadow = self.tracer.shadow(&shadow_ray, media, hits);
         self.counts.shadow += 1;
         self.counts.shadow_hit += u64::from(shadow.hit);
         if O::ACTIVE {
-            observer.area_shadow(query.node, query.number as u32, ray, shadow.visible);
+            let report = self.tracer.shadow_report(&shadow_ray, media, hits);
+            observer.area_shadow(query.node, query.number as u32, report);
         }
         if let Some(slot) = known.get_mut(index) {
             *slot = Some(shadow.visible);

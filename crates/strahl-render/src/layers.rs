@@ -1,14 +1,15 @@
 //! Surfaces with POV-Ray's textures: several layers, each with a colour, a normal and a finish of its own.
 
 use crate::hit::Hit;
-use crate::observer::Share;
+use crate::observer::{LayerReport, Share, SurfaceTerm};
 use crate::scene::RenderScene;
 use crate::surface::{Split, Surface};
 use std::borrow::Cow;
 use strahl_math::DVec3;
 use strahl_shade::patterns::TexturePoint;
+use strahl_shade::pov_finish::PovFinish;
 use strahl_shade::texture::{LayerPoint, TexturePaint};
-use strahl_shade::{Color, Finish};
+use strahl_shade::{Color, Finish, ShadingModel};
 
 /// Evaluates the texture at a surface, if its material has one: the layers into `paint`, their sums into the surface's
 /// coefficients (`specular` stays black, because each layer has its own highlight). Otherwise `paint` has no layers.
@@ -133,30 +134,84 @@ fn mirrors_of_layers(paint: &TexturePaint<'_>, surface: &Surface<'_>, out: &mut 
 }
 
 /// The light that the layers reflect if light of this colour arrives from the direction `l`: the diffuse part and the
-/// highlights.
+/// highlights. `model` replaces the finishes' own highlights and `brilliance`.
+#[inline]
 pub(crate) fn lit(
     paint: &TexturePaint<'_>,
     surface: &Surface<'_>,
     l: DVec3,
     light: Color,
+    model: Option<ShadingModel>,
 ) -> (Color, Color) {
     let (mut diffuse, mut highlights) = (Color::BLACK, Color::BLACK);
     for layer in &paint.layers {
-        let cos = layer.normal.dot(l);
-        let both_sides = surface.lit.both_sides;
-        let factor = layer
-            .finish
-            .diffuse_factor(if both_sides { cos.abs() } else { cos });
-        diffuse += body(layer) * light * factor;
-        if !(cos > 0.0 || both_sides) {
-            continue;
-        }
-        let highlight = layer
-            .finish
-            .highlight(layer.normal, l, surface.v, layer.color.rgb);
-        highlights += layer.above * highlight * light * layer.share;
+        let term = match model {
+            None => layer_term(layer, surface, l, light),
+            Some(model) => layer_term_by(model, layer, surface, l, light),
+        };
+        diffuse += term.diffuse;
+        highlights += term.highlight;
     }
     (diffuse, highlights)
+}
+
+/// The light that a layer reflects from the direction `l`, with all its factors.
+#[inline(always)]
+pub(crate) fn layer_term(
+    layer: &LayerPoint<'_>,
+    surface: &Surface<'_>,
+    l: DVec3,
+    light: Color,
+) -> SurfaceTerm {
+    term(layer, layer.finish, None, surface, l, light)
+}
+
+/// The same, with a shading model in place of the finish's own highlights and of its `brilliance`.
+#[cold]
+pub(crate) fn layer_term_by(
+    model: ShadingModel,
+    layer: &LayerPoint<'_>,
+    surface: &Surface<'_>,
+    l: DVec3,
+    light: Color,
+) -> SurfaceTerm {
+    let finish = PovFinish {
+        brilliance: 1.0,
+        ..*layer.finish
+    };
+    term(layer, &finish, Some(model), surface, l, light)
+}
+
+#[inline(always)]
+fn term(
+    layer: &LayerPoint<'_>,
+    finish: &PovFinish,
+    model: Option<ShadingModel>,
+    surface: &Surface<'_>,
+    l: DVec3,
+    light: Color,
+) -> SurfaceTerm {
+    let cos = layer.normal.dot(l);
+    let both_sides = surface.lit.both_sides;
+    let diffuse_factor = finish.diffuse_factor(if both_sides { cos.abs() } else { cos });
+    let mut term = SurfaceTerm {
+        n_dot_l: cos,
+        diffuse_factor,
+        diffuse: body(layer) * light * diffuse_factor,
+        tint: Color::WHITE,
+        ..SurfaceTerm::default()
+    };
+    if !(cos > 0.0 || both_sides) || (finish.phong == 0.0 && finish.specular == 0.0) {
+        return term;
+    }
+    let parts = finish.highlights(layer.normal, l, surface.v, model);
+    term.tint = finish.tint(cos, layer.color.rgb);
+    (term.phong, term.specular) = (parts.phong, parts.specular);
+    let cosine = |strength: f64, cos| (strength != 0.0).then_some(cos);
+    term.r_dot_v = cosine(finish.phong, parts.phong_cos);
+    term.h_dot_n = cosine(finish.specular, parts.specular_cos);
+    term.highlight = layer.above * (term.tint * parts.strength()) * light * layer.share;
+    term
 }
 
 /// Whether light from the direction `l` reaches the front of any layer.
@@ -169,15 +224,35 @@ pub(crate) fn faces(paint: &TexturePaint<'_>, l: DVec3) -> bool {
 
 /// Subtracts the grain of `crand` from the surface's own light.
 pub(crate) fn grained(paint: &TexturePaint<'_>, place: DVec3, light: Color) -> Color {
-    let loss: f64 = paint
-        .layers
-        .iter()
-        .map(|layer| layer.finish.grain(place) * layer.share)
-        .sum();
+    let loss = grain(paint, place);
     if loss == 0.0 {
         return light;
     }
     light.map(|x| if x > loss { x - loss } else { 0.0 })
+}
+
+/// What `crand` subtracts from each channel.
+pub(crate) fn grain(paint: &TexturePaint<'_>, place: DVec3) -> f64 {
+    let grain = |layer: &LayerPoint<'_>| layer.finish.grain(place) * layer.share;
+    paint.layers.iter().map(grain).sum()
+}
+
+/// The layers at a hit, for ray trees; `eta` is that of [`paint`].
+pub(crate) fn report(paint: &TexturePaint<'_>, v: DVec3, eta: f64) -> Vec<LayerReport> {
+    let report = |layer: &LayerPoint<'_>| {
+        let reflection = &layer.finish.reflection;
+        LayerReport {
+            color: layer.color,
+            normal: layer.normal,
+            finish: *layer.finish,
+            share: layer.share,
+            above: layer.above,
+            body: body(layer),
+            rise: (!reflection.is_none()).then(|| reflection.rise(layer.normal.dot(v), eta)),
+            reflectance: layer.reflectance,
+        }
+    };
+    paint.layers.iter().map(report).collect()
 }
 
 /// The layer's colour, weighted by its opacity and by the transparency of the layers above.

@@ -47,7 +47,10 @@ pub use cost::PixelCost;
 pub use film::{Film, FilmError, PixelInfo, Region};
 pub use hit::{Hit, Origin, RayClass};
 pub use objects::{ObjectInfo, Objects};
-pub use observer::{BranchEnd, HitReport, LightTerm, RayKind, RayReport, Share, TraceObserver};
+pub use observer::{
+    BranchEnd, HitReport, LayerReport, LightDetail, LightTerm, RayKind, RayReport, Shading,
+    ShadowHit, ShadowReport, Share, SurfaceTerm, TraceObserver,
+};
 pub use query::Tracer;
 pub use render::{Progress, RenderError, RenderOptions, Rendered, render};
 pub use sampling::{Sampling, UnknownSampling};
@@ -55,5 +58,5 @@ pub use scene::{RenderScene, SceneStats};
 pub use strahl_accel::PACKET;
 pub use tiles::TileOrder;
 pub use trace::{RayCounts, SampleResult, TraceSettings};
-pub use tree::{PixelTree, RayNode, RayTree, explain};
+pub use tree::{LightReport, PixelSample, PixelTree, RayNode, RayTree, explain};
 pub use walk::{RayWalk, WalkEvent, walk};

@@ -1,3 +1,7 @@
+mod terms;
+
+pub use terms::{LayerReport, LightDetail, Shading, ShadowHit, ShadowReport, SurfaceTerm};
+
 use crate::hit::Hit;
 use std::fmt;
 use strahl_math::{DVec3, Ray, det};
@@ -105,6 +109,8 @@ pub struct RayReport {
     pub background: Option<Color>,
     /// The part of the spectrum it stands for.
     pub part: SpectralPart,
+    /// The material of the solid it ran through; `None` is air.
+    pub medium: Option<MaterialId>,
     /// The attenuation by the medium it ran through; where light was divided into its spectrum, times the part's share.
     pub attenuation: Color,
     /// The light that fog and rainbows in front of the hit add.
@@ -112,7 +118,7 @@ pub struct RayReport {
 }
 
 /// The surface a ray of the tree hit.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct HitReport {
     /// The hit.
     pub hit: Hit,
@@ -122,8 +128,8 @@ pub struct HitReport {
     pub material: MaterialId,
     /// The line of the scene file that made this triangle, where a mesh stores it.
     pub line: Option<u32>,
-    /// Whether the shading model shows a property of the hit instead of light.
-    pub diagnostic: bool,
+    /// The shading model or the finishes.
+    pub shading: Shading,
     /// World position.
     pub position: DVec3,
     /// Unit normal of the surface, on the side of the ray.
@@ -138,18 +144,26 @@ pub struct HitReport {
     pub cos_1: f64,
     /// Cosine of the angle of refraction, if the surface transmits and does not reflect totally.
     pub cos_2: Option<f64>,
-    /// Fresnel's F, where it is used.
+    /// Whether Snell's law has no solution for light that the surface would let through: all of it is reflected.
+    pub total_reflection: bool,
+    /// Fresnel's F, where it is used. Layers of a texture have their own.
     pub fresnel: Option<f64>,
+    /// ka, all layers together.
+    pub ka: Color,
+    /// Ia: the scene's ambient light.
+    pub ambient_light: Color,
     /// ka·Ia.
     pub ambient: Color,
     /// Emitted light.
     pub emission: Color,
-    /// kd.
+    /// kd, all layers together.
     pub diffuse: Color,
-    /// ks.
+    /// ks; black for textures, whose layers have highlights of their own.
     pub specular: Color,
-    /// p.
+    /// p, for `specular`.
     pub shininess: f64,
+    /// What `crand` takes from each channel of the surface's own light.
+    pub grain: f64,
     /// kr as it was applied (including Fresnel and total reflection), all layers together.
     pub reflection: Color,
     /// kt as it was applied.
@@ -172,9 +186,9 @@ pub struct LightTerm {
     pub visible: Color,
     /// The light's colour at the point.
     pub color: Color,
-    /// kd (n·l), times colour and visibility.
+    /// The diffuse part, times colour and visibility.
     pub diffuse: Color,
-    /// ks (h·n)^p, times colour and visibility.
+    /// The highlights, times colour and visibility.
     pub specular: Color,
 }
 
@@ -187,11 +201,10 @@ pub trait TraceObserver {
     fn ray(&mut self, _report: RayReport) {}
 
     /// The contribution of a light to the hit of a ray was computed.
-    fn light(&mut self, _node: u32, _term: LightTerm) {}
+    fn light(&mut self, _node: u32, _term: LightTerm, _detail: LightDetail) {}
 
-    /// A shadow ray to a point of an area light was traced, and this share of the light is visible. [`TraceObserver::light`] is
-    /// called with the mean afterwards.
-    fn area_shadow(&mut self, _node: u32, _light: u32, _ray: Ray, _visible: Color) {}
+    /// A shadow ray to a point of an area light was traced. [`TraceObserver::light`] is called with the mean afterwards.
+    fn area_shadow(&mut self, _node: u32, _light: u32, _shadow: ShadowReport) {}
 
     /// A branch was not traced.
     fn ended(&mut self, _node: u32, _kind: RayKind, _weight: f64, _end: BranchEnd) {}

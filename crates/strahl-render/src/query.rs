@@ -8,7 +8,7 @@ use crate::hit::{Hit, Origin, RayClass};
 use crate::prim::{Prim, PrimKind};
 use crate::scene::{InstanceUse, RenderGroup, RenderScene};
 use crate::walk::WalkEvent;
-use kinds::{AnyOpaque, Closest, Query, Transmitting, Watched};
+use kinds::{AnyOpaque, Closest, ClosestOpaque, Query, Transmitting, Watched};
 use plain::Plain;
 use strahl_accel::{Accelerator, AnyAccelerator, Leaf, Step, TraversalStats, Visitor};
 use strahl_geometry::blocks::{SphereBlock, TriangleBlock};
@@ -71,6 +71,19 @@ impl<'s> Tracer<'s> {
         let mut query = Watched { closest, events };
         self.search(ray, range, None, class, NONE, &mut query);
         query.closest.best
+    }
+
+    /// The nearest hit in `range` on an opaque surface.
+    #[cold]
+    pub(crate) fn closest_opaque(
+        &mut self,
+        ray: &Ray,
+        range: Interval,
+        from: Option<&Origin>,
+    ) -> Option<Hit> {
+        let mut query = ClosestOpaque(Closest { best: None });
+        self.search(ray, range, from, RayClass::Shadow, NONE, &mut query);
+        query.0.best
     }
 
     /// Whether an opaque surface is in `range`.

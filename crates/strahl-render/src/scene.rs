@@ -308,6 +308,12 @@ impl RenderScene {
         }
     }
 
+    /// The object an element belongs to; the number must come from a hit in this scene.
+    pub(crate) fn object_of(&self, id: u64) -> u32 {
+        let at = self.locate(id);
+        at.group.look(at.prim, at.element).object
+    }
+
     /// The line of the scene file that made the triangle with this number, if its mesh stores it.
     pub(crate) fn face_line(&self, id: u64) -> Option<u32> {
         let at = self.locate(id);

@@ -1,7 +1,9 @@
+mod report;
+
 use crate::hit::{Hit, Origin};
 use crate::media::{MediaArena, MediaStack};
 use crate::query::Tracer;
-use crate::scene::Uv;
+use crate::scene::{InstanceUse, Uv};
 use strahl_math::{DVec3, Interval, Ray};
 use strahl_shade::Color;
 
@@ -32,6 +34,16 @@ impl Shadow {
     };
 }
 
+/// What a shadow ray keeps of the light up to a surface that lets some through, or behind the last one.
+struct Kept<'h> {
+    /// The hit and the number of its object.
+    surface: Option<(&'h Hit, u32)>,
+    /// What the surface lets through.
+    filter: Color,
+    /// What the medium in front of it keeps.
+    absorbed: Color,
+}
+
 /// A ray towards a light.
 pub(crate) struct ShadowRay {
     pub(crate) ray: Ray,
@@ -59,14 +71,13 @@ impl Tracer<'_> {
         let light = shadow_ray.light;
         let mut range = shadow_ray.range;
         if let Some(mask) = self.scene.mask(light) {
-            let Some(crossing) = self.crossing(mask, &shadow_ray.ray, range) else {
+            let Some(masked) = self.before_mask(mask, &shadow_ray.ray, range) else {
                 return Shadow {
                     visible: Color::BLACK,
                     hit: false,
                 };
             };
-            // Objects within the mask or beyond it cast no shadows.
-            range.max = crossing * (1.0 - MASK_SKIN);
+            range = masked;
             if !self.scene.lights[light].light.casts_shadows {
                 return Shadow::NONE;
             }
@@ -81,12 +92,32 @@ impl Tracer<'_> {
         self.filtered(&shadow_ray, arena, hits)
     }
 
+    /// The part of the way in front of what the light has to cross; `None` where it does not. Objects within the mask or
+    /// beyond it cast no shadows.
+    #[inline]
+    fn before_mask(&mut self, mask: &InstanceUse, ray: &Ray, range: Interval) -> Option<Interval> {
+        let crossing = self.crossing(mask, ray, range)?;
+        Some(range.with_max(crossing * (1.0 - MASK_SKIN)))
+    }
+
     /// The share of the light that arrives if nothing opaque is in between.
     pub(crate) fn filtered(
         &mut self,
         shadow_ray: &ShadowRay,
         arena: &mut MediaArena,
         hits: &mut Vec<Hit>,
+    ) -> Shadow {
+        self.filtered_by(shadow_ray, arena, hits, |_| {})
+    }
+
+    /// The same, telling what each hit lets through.
+    #[inline]
+    fn filtered_by(
+        &mut self,
+        shadow_ray: &ShadowRay,
+        arena: &mut MediaArena,
+        hits: &mut Vec<Hit>,
+        mut tell: impl FnMut(Kept<'_>),
     ) -> Shadow {
         if !self.scene.transmits {
             return Shadow::NONE;
@@ -111,7 +142,7 @@ impl Tracer<'_> {
             let id = resolved.look.material;
             let material = &self.scene.materials[id.0 as usize];
             let entering = resolved.point.n_geom.dot(ray.direction) < 0.0;
-            visible *= match material.texture_seen(entering) {
+            let filter = match material.texture_seen(entering) {
                 None => material.at(resolved.point.uv).finish.transmission,
                 Some(texture) => {
                     let caustics = material.interior.as_ref().map_or(0.0, |i| i.caustics);
@@ -119,7 +150,14 @@ impl Tracer<'_> {
                         .attenuated(&texture.0, &resolved, ray.direction, hit, caustics)
                 }
             };
-            visible *= self.absorbed(arena, inside, ray.direction, hit.t - entered_at);
+            visible *= filter;
+            let absorbed = self.absorbed(arena, inside, ray.direction, hit.t - entered_at);
+            visible *= absorbed;
+            tell(Kept {
+                surface: Some((hit, resolved.look.object)),
+                filter,
+                absorbed,
+            });
             entered_at = hit.t;
             inside = if entering {
                 arena.entered(inside, id)
@@ -128,7 +166,13 @@ impl Tracer<'_> {
             };
         }
         if range.max.is_finite() {
-            visible *= self.absorbed(arena, inside, ray.direction, range.max - entered_at);
+            let absorbed = self.absorbed(arena, inside, ray.direction, range.max - entered_at);
+            visible *= absorbed;
+            tell(Kept {
+                surface: None,
+                filter: Color::WHITE,
+                absorbed,
+            });
         }
         Shadow {
             visible,

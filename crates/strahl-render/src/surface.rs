@@ -3,7 +3,7 @@
 use crate::hit::{Hit, Origin};
 use crate::light_sets::Lit;
 use crate::media::{MediaArena, MediaStack};
-use crate::observer::HitReport;
+use crate::observer::{HitReport, Shading};
 use crate::scene::{RenderScene, Resolved, Uv};
 use crate::trace::{Branch, FirstHit};
 use strahl_math::{DVec3, Ray, error};
@@ -263,14 +263,33 @@ impl<'s> Surface<'s> {
         self.bent(refract(self.n_shade, self.v, eta)?.direction, eta)
     }
 
-    pub(crate) fn report(&self, scene: &RenderScene, hit: &Hit, split: Split) -> HitReport {
+    /// Whether light that the surface would let through finds no way behind it.
+    #[cold]
+    pub(crate) fn reflects_totally(&self, scene: &RenderScene) -> bool {
+        let eta = self.eta_1 / self.eta_2;
+        !self.thin
+            && eta > 1.0
+            && scene.transmits(self.resolved.look)
+            && refract(self.n_shade, self.v, eta).is_none()
+    }
+
+    /// All that ray trees tell of the hit.
+    #[cold]
+    pub(crate) fn report(
+        &self,
+        scene: &RenderScene,
+        hit: &Hit,
+        split: Split,
+        shading: Shading,
+        grain: f64,
+    ) -> HitReport {
         let finish = &self.material.finish;
         HitReport {
             hit: *hit,
             object: self.resolved.look.object,
             material: self.resolved.look.material,
             line: scene.face_line(hit.id),
-            diagnostic: false,
+            shading,
             position: self.resolved.point.position,
             n_geom: self.n_geom,
             n_shade: self.n_shade,
@@ -278,12 +297,16 @@ impl<'s> Surface<'s> {
             eta_2: self.eta_2,
             cos_1: self.n_shade.dot(self.v),
             cos_2: split.cos_2,
+            total_reflection: self.reflects_totally(scene),
             fresnel: split.fresnel,
+            ka: finish.ambient,
+            ambient_light: scene.ambient,
             ambient: finish.ambient * scene.ambient,
             emission: finish.emission,
             diffuse: finish.diffuse,
             specular: finish.specular,
             shininess: finish.shininess,
+            grain,
             reflection: split.kr,
             transmission: split.kt,
         }

@@ -13,6 +13,7 @@
 //! bottom-up in the order reflection, transparency, so the sum does not depend on the order of tracing. Layers of a texture
 //! with different reflections send a reflection ray each.
 
+mod detail;
 mod lights;
 mod nothing;
 mod outcome;
@@ -27,7 +28,7 @@ pub use settings::TraceSettings;
 use crate::hit::{Hit, Origin, RayClass};
 use crate::layers::{self, Mirror};
 use crate::media::{MediaArena, MediaStack};
-use crate::observer::{BranchEnd, RayKind, RayReport, Share, TraceObserver};
+use crate::observer::{BranchEnd, RayKind, RayReport, Shading, Share, TraceObserver};
 use crate::query::Tracer;
 use crate::scene::{RenderScene, Uv};
 use crate::surface::{Split, Surface};
@@ -309,6 +310,7 @@ impl<'s> TreeTracer<'s> {
             ray: branch.ray,
             hit,
             background,
+            medium,
             attenuation,
             fog,
             part: branch.part,
@@ -343,8 +345,8 @@ impl<'s> TreeTracer<'s> {
         if model.is_diagnostic() {
             node.local = surface.diagnose(scene, model, &first);
             if O::ACTIVE {
-                let mut seen = surface.report(scene, hit, Split::NONE);
-                seen.diagnostic = true;
+                let shading = Shading::Model(model);
+                let seen = surface.report(scene, hit, Split::NONE, shading, 0.0);
                 observer.ray(report(Some(seen), None));
             }
             self.nodes.push(node);
@@ -357,7 +359,12 @@ impl<'s> TreeTracer<'s> {
             split.kr = Color::WHITE;
         }
         if O::ACTIVE {
-            observer.ray(report(Some(surface.report(scene, hit, split)), None));
+            let seen = self.hit_report(surface, hit, split, model);
+            let total = seen.total_reflection;
+            observer.ray(report(Some(seen), None));
+            if total {
+                observer.ended(index, RayKind::Refraction, 0.0, BranchEnd::TotalReflection);
+            }
         }
         let finish = &surface.material.finish;
         node.local = finish.ambient * scene.ambient + finish.emission;
@@ -368,7 +375,8 @@ impl<'s> TreeTracer<'s> {
             let term = self.light(surface, hit, model, light, known, branch, index, observer);
             node.local += term.diffuse + term.specular;
             if O::ACTIVE {
-                observer.light(index, term);
+                let detail = self.light_detail(surface, hit, model, branch, &term);
+                observer.light(index, term, detail);
             }
         }
         node.local = layers::grained(&self.paint, first.position, node.local);
@@ -395,9 +403,6 @@ impl<'s> TreeTracer<'s> {
         split: &Split,
         observer: &mut O,
     ) {
-        if split.total_reflection && O::ACTIVE {
-            observer.ended(index, RayKind::Refraction, 0.0, BranchEnd::TotalReflection);
-        }
         if let Some(direction) = split.refracted {
             let (factor, power) = (split.kt, 1.0);
             let through = Share { factor, power };

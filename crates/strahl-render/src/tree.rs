@@ -1,19 +1,30 @@
 use crate::camera::PrimaryRays;
-use crate::observer::{BranchEnd, LightTerm, RayKind, RayReport, TraceObserver};
+use crate::observer::{
+    BranchEnd, LightDetail, LightTerm, RayKind, RayReport, ShadowReport, TraceObserver,
+};
 use crate::render::{RenderError, RenderOptions, passes_of_pixel};
 use crate::sampling::Sampling;
 use crate::scene::RenderScene;
 use crate::trace::TreeTracer;
 use strahl_shade::Color;
 
+/// One light at the hit of a ray.
+#[derive(Clone, Debug)]
+pub struct LightReport {
+    /// What it adds.
+    pub term: LightTerm,
+    /// What that is made of.
+    pub detail: LightDetail,
+}
+
 /// A ray of a recorded tree.
 #[derive(Clone, Debug)]
 pub struct RayNode {
     /// The ray and what it hit.
     pub report: RayReport,
-    /// The contributions of the lights that shine on the object, in the order of the scene.
-    pub lights: Vec<LightTerm>,
-    /// Branches that were not traced: kind, weight and reason.
+    /// The lights looked at from the hit, in the order of the scene: those that shine on the object at all.
+    pub lights: Vec<LightReport>,
+    /// Branches that were not followed: which, with what weight, why.
     pub ended: Vec<(RayKind, f64, BranchEnd)>,
     /// Numbers of the rays it sent.
     pub children: Vec<u32>,
@@ -29,14 +40,33 @@ pub struct RayNode {
 pub struct RayTree {
     /// The rays in the order of tracing; the first is the primary ray.
     pub nodes: Vec<RayNode>,
+    /// Shadow rays of the light with an extent that is being looked at.
+    shadows: Vec<ShadowReport>,
+}
+
+/// One primary ray of a pixel and all that came of it.
+#[derive(Clone, Debug)]
+pub struct PixelSample {
+    /// The place in the picture, in pixels.
+    pub place: (f64, f64),
+    /// The pass of the sampling that asked for it.
+    pub pass: u32,
+    /// The number of the ray, where a place has several: rays through a lens, or of a camera made of meshes.
+    pub ray: Option<u32>,
+    /// The linear colour it brings. (The tree's total is in the numbers the scene's colours are given in.)
+    pub color: Color,
+    /// Its tree.
+    pub tree: RayTree,
 }
 
 /// Everything that was traced for a pixel.
 #[derive(Clone, Debug)]
 pub struct PixelTree {
-    /// The trees of its samples with the samples' positions in the picture, in pixels.
-    pub samples: Vec<((f64, f64), RayTree)>,
-    /// The pixel's linear colour before rounding: the mean of the samples.
+    /// Its samples.
+    pub samples: Vec<PixelSample>,
+    /// How many places of the picture they belong to; the camera may see nothing through some.
+    pub places: u32,
+    /// The pixel's linear colour before rounding: the mean over the places, summed pass by pass.
     pub color: Color,
     /// The colour as it is in the film.
     pub film: [f32; 3],
@@ -61,8 +91,14 @@ impl TraceObserver for RayTree {
         });
     }
 
-    fn light(&mut self, node: u32, term: LightTerm) {
-        self.nodes[node as usize].lights.push(term);
+    fn light(&mut self, node: u32, term: LightTerm, mut detail: LightDetail) {
+        detail.shadows.append(&mut self.shadows);
+        let report = LightReport { term, detail };
+        self.nodes[node as usize].lights.push(report);
+    }
+
+    fn area_shadow(&mut self, _node: u32, _light: u32, shadow: ShadowReport) {
+        self.shadows.push(shadow);
     }
 
     fn ended(&mut self, node: u32, kind: RayKind, weight: f64, end: BranchEnd) {
@@ -109,14 +145,22 @@ pub fn explain(
     let mut samples = Vec::new();
     let mut count = 0u32;
     let mut sum: Option<Color> = None;
-    for places in passes {
+    for (pass, places) in passes.into_iter().enumerate() {
         let mut pass_sum: Option<Color> = None;
         for (dx, dy) in places {
             let place = (f64::from(x) + dx, f64::from(y) + dy);
+            let mut number = 0;
             let color = rays.color(place.0, place.1, |ray| {
                 let mut tree = RayTree::default();
                 let color = tracer.trace(ray, &mut tree).color;
-                samples.push((place, tree));
+                samples.push(PixelSample {
+                    place,
+                    pass: pass as u32,
+                    ray: (!rays.is_sharp()).then_some(number),
+                    color,
+                    tree,
+                });
+                number += 1;
                 color
             });
             count += 1;
@@ -135,6 +179,7 @@ pub fn explain(
     };
     Ok(PixelTree {
         samples,
+        places: count,
         color,
         film: color.to_f32(),
     })

@@ -3,7 +3,8 @@
 mod common;
 
 use common::{compiled, glass_and_mirrors, rendered};
-use strahl_render::{BranchEnd, RayKind, RenderOptions, Sampling, explain};
+use strahl_math::Interval;
+use strahl_render::{BranchEnd, RayKind, RenderOptions, Sampling, Tracer, explain};
 use strahl_shade::Color;
 
 #[test]
@@ -36,7 +37,8 @@ fn the_sum_of_the_tree_is_the_pixel_to_the_last_bit() {
         ] {
             let pixel = explain(&scene, &options, x, y).expect("exists");
             assert_eq!(Some(pixel.film), picture.pixel(x, y), "{sampling} {x},{y}");
-            for (_, tree) in &pixel.samples {
+            for sample in &pixel.samples {
+                let tree = &sample.tree;
                 rays += tree.nodes.len();
                 for node in &tree.nodes {
                     let (mut reflected, mut transmitted) = (Color::BLACK, Color::BLACK);
@@ -50,8 +52,14 @@ fn the_sum_of_the_tree_is_the_pixel_to_the_last_bit() {
                     let mut total = node.local;
                     if let Some(hit) = &node.report.hit {
                         let mut local = hit.ambient + hit.emission;
-                        for term in &node.lights {
-                            local += term.diffuse + term.specular;
+                        for light in &node.lights {
+                            local += light.term.diffuse + light.term.specular;
+                            let mut terms = (Color::BLACK, Color::BLACK);
+                            for term in &light.detail.terms {
+                                terms.0 += term.diffuse;
+                                terms.1 += term.highlight;
+                            }
+                            assert_eq!(terms, (light.term.diffuse, light.term.specular));
                         }
                         assert_eq!(local, node.local);
                         total = local + hit.reflection * reflected + hit.transmission * transmitted;
@@ -70,7 +78,7 @@ fn branches_that_end_say_why() {
     let mut options = RenderOptions::new(&scene, 96, 64);
     let ends = |options: &RenderOptions| {
         let pixel = explain(&scene, options, 46, 33).expect("exists");
-        let nodes = pixel.samples.into_iter().flat_map(|(_, tree)| tree.nodes);
+        let nodes = pixel.samples.into_iter().flat_map(|s| s.tree.nodes);
         nodes
             .flat_map(|n| n.ended)
             .map(|(_, _, end)| end)
@@ -85,6 +93,44 @@ fn branches_that_end_say_why() {
     options.trace.adc_bailout = 0.0;
     options.trace.max_tree_rays = 50;
     assert!(ends(&options).contains(&BranchEnd::TreeLimit));
+}
+
+/// What a shadow ray reports is what it brings, and what blocks it is the nearest thing that lets nothing through.
+#[test]
+fn shadow_rays_tell_what_is_in_their_way() {
+    let scene = compiled(&glass_and_mirrors());
+    let options = RenderOptions::new(&scene, 96, 64);
+    let (mut blocked, mut weakened) = (0, 0);
+    for (x, y) in (0..96).step_by(5).flat_map(|x| [(x, 40), (x, 50)]) {
+        let pixel = explain(&scene, &options, x, y).expect("exists");
+        let nodes = pixel.samples.iter().flat_map(|s| &s.tree.nodes);
+        for light in nodes.flat_map(|node| &node.lights) {
+            let [shadow] = light.detail.shadows.as_slice() else {
+                assert_eq!(light.term.shadow_ray, None);
+                continue;
+            };
+            assert_eq!(shadow.visible, light.term.visible);
+            let mut visible = Color::WHITE;
+            for met in &shadow.met {
+                visible *= met.filter;
+                visible *= met.absorbed;
+                blocked += u32::from(met.blocks);
+                weakened += u32::from(!met.blocks);
+            }
+            assert_eq!(visible * shadow.rest, shadow.visible);
+            if let Some(last) = shadow.met.last()
+                && last.blocks
+            {
+                assert_eq!(shadow.met.len(), 1);
+                let mut tracer = Tracer::new(&scene);
+                let before = Interval::new(0.0, last.t * (1.0 - 1e-9));
+                assert!(!tracer.any_opaque(&shadow.ray, before, None));
+                let beyond = Interval::new(last.t * (1.0 - 1e-9), last.t * (1.0 + 1e-9));
+                assert!(tracer.any_opaque(&shadow.ray, beyond, None));
+            }
+        }
+    }
+    assert!(blocked > 3 && weakened > 3, "{blocked} {weakened}");
 }
 
 #[test]

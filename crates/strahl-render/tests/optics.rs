@@ -261,7 +261,7 @@ fn fresnel_divides_all_the_light() {
         .background(Background::Solid(Color::WHITE))
         .camera(Camera::perspective(DVec3::NEG_X, DVec3::X, DVec3::Y, 1.0));
     let (_, tree) = follow(&scene, Ray::new(DVec3::NEG_X, DVec3::X), |_| {});
-    let hit = tree.nodes[0].report.hit.expect("the glass");
+    let hit = tree.nodes[0].report.hit.as_ref().expect("the glass");
     assert!((hit.reflection.r - 0.04).abs() < 1e-15 && (hit.transmission.r - 0.96).abs() < 1e-15);
 }
 
@@ -302,7 +302,7 @@ fn tiny_spheres_far_away_are_spheres() {
     for y in 0..64 {
         for x in 0..64 {
             let pixel = explain(&compiled, &options, x, y).expect("exists");
-            for node in &pixel.samples[0].1.nodes {
+            for node in &pixel.samples[0].tree.nodes {
                 let Some(hit) = &node.report.hit else {
                     continue;
                 };
@@ -310,7 +310,7 @@ fn tiny_spheres_far_away_are_spheres() {
                 assert!((hit.n_geom.length() - 1.0).abs() < 1e-14);
                 // A reflected ray never meets the sphere it left.
                 if node.report.kind == RayKind::Reflection {
-                    let parent = &pixel.samples[0].1.nodes[node.report.parent as usize];
+                    let parent = &pixel.samples[0].tree.nodes[node.report.parent as usize];
                     let before = parent.report.hit.as_ref().map(|h| h.object);
                     assert_ne!(before, Some(hit.object), "acne at {x},{y}");
                 }

@@ -5,7 +5,7 @@
 
 use strahl_math::{DVec3, det};
 
-use crate::{Color, fresnel_dielectric};
+use crate::{Color, ShadingModel, fresnel_dielectric};
 
 /// The specular reflection of a finish (`reflection { min, max ... }`).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -62,7 +62,15 @@ impl PovReflection {
             return Color::BLACK;
         }
         let cos = cos_view.abs().clamp(0.0, 1.0);
-        let share = if self.fresnel {
+        let reflectance = self.min + (self.max - self.min) * self.rise(cos_view, eta);
+        reflectance * metallic_tint(self.metallic, cos, pigment)
+    }
+
+    /// How far the reflectance has come on its way from `min` to `max`: Fresnel's F, or `(1 - cos θ)^falloff`.
+    #[inline]
+    pub fn rise(&self, cos_view: f64, eta: f64) -> f64 {
+        let cos = cos_view.abs().clamp(0.0, 1.0);
+        if self.fresnel {
             let sin2 = (1.0 - cos * cos) / (eta * eta);
             if sin2 < 1.0 {
                 fresnel_dielectric(1.0, cos, eta, (1.0 - sin2).sqrt())
@@ -73,9 +81,12 @@ impl PovReflection {
             0.0
         } else {
             det::pow(1.0 - cos, self.falloff)
-        };
-        let reflectance = self.min + (self.max - self.min) * share;
-        reflectance * metallic_tint(self.metallic, cos, pigment)
+        }
+    }
+
+    /// The colour that `metallic` gives the reflection of a surface of this pigment.
+    pub fn tint(&self, cos_view: f64, pigment: Color) -> Color {
+        metallic_tint(self.metallic, cos_view.abs().clamp(0.0, 1.0), pigment)
     }
 
     /// The reflected light: `reflectance · light^(1 / exponent)`.
@@ -143,6 +154,27 @@ impl Default for PovFinish {
     }
 }
 
+/// The highlights of a finish at one point in one light.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PovHighlights {
+    /// r·v, the cosine that `phong` takes the power of; 0 without `phong`.
+    pub phong_cos: f64,
+    /// `phong (r·v)^phong_size`
+    pub phong: f64,
+    /// h·n, the cosine that `specular` takes the power of; 0 without `specular`.
+    pub specular_cos: f64,
+    /// `specular (h·n)^(1 / roughness)`
+    pub specular: f64,
+}
+
+impl PovHighlights {
+    /// Both together.
+    #[inline]
+    pub fn strength(&self) -> f64 {
+        0.0 + self.phong + self.specular
+    }
+}
+
 /// The colour that metallic highlights and reflections get.
 ///
 /// It is the pigment's colour head on and white at grazing angles, by an empirical function of the angle θ between the
@@ -199,25 +231,50 @@ impl PovFinish {
     /// `n` is the tilted unit normal, `to_light` and `to_viewer` are unit vectors away from the surface. Light from behind
     /// (`n·to_light` of 0 or less) is the caller's to leave out: it makes highlights where an object is lit from both sides.
     pub fn highlight(&self, n: DVec3, to_light: DVec3, to_viewer: DVec3, pigment: Color) -> Color {
-        let cos_light = n.dot(to_light);
         if self.phong == 0.0 && self.specular == 0.0 {
             return Color::BLACK;
         }
-        let mut strength = 0.0;
+        let parts = self.highlights(n, to_light, to_viewer, None);
+        self.tint(n.dot(to_light), pigment) * parts.strength()
+    }
+
+    /// The two highlights one by one, without the colour that [`PovFinish::tint`] gives them. `model` takes the place of both shapes:
+    /// around the mirror direction for [`ShadingModel::Phong`], by half vectors for [`ShadingModel::BlinnPhong`], else none.
+    #[inline]
+    pub fn highlights(
+        &self,
+        n: DVec3,
+        to_light: DVec3,
+        to_viewer: DVec3,
+        model: Option<ShadingModel>,
+    ) -> PovHighlights {
+        let cosine = |shape| match shape {
+            ShadingModel::Phong => crate::reflect(n, to_viewer).dot(to_light),
+            ShadingModel::BlinnPhong => n.dot((to_light + to_viewer).normalize_or_zero()),
+            _ => 0.0,
+        };
+        let mut parts = PovHighlights::default();
         if self.phong != 0.0 {
-            let cos = crate::reflect(n, to_viewer).dot(to_light);
+            let cos = cosine(model.unwrap_or(ShadingModel::Phong));
+            parts.phong_cos = cos;
             if cos > 0.0 {
-                strength += self.phong * det::pow(cos, self.phong_size);
+                parts.phong = self.phong * det::pow(cos, self.phong_size);
             }
         }
         if self.specular != 0.0 && self.roughness > 0.0 {
-            let half = (to_light + to_viewer).normalize_or_zero();
-            let cos = n.dot(half);
+            let cos = cosine(model.unwrap_or(ShadingModel::BlinnPhong));
+            parts.specular_cos = cos;
             if cos > 0.0 {
-                strength += self.specular * det::pow(cos, 1.0 / self.roughness);
+                parts.specular = self.specular * det::pow(cos, 1.0 / self.roughness);
             }
         }
-        metallic_tint(self.metallic, cos_light, pigment) * strength
+        parts
+    }
+
+    /// The colour that `metallic` gives highlights on a surface of this pigment.
+    #[inline]
+    pub fn tint(&self, cos_light: f64, pigment: Color) -> Color {
+        metallic_tint(self.metallic, cos_light, pigment)
     }
 
     /// The amount that `crand` subtracts from each channel of the surface's diffuse light at a position.

@@ -1,5 +1,5 @@
 use crate::args::{ExplainArgs, ExplainForm};
-use crate::explain::{dot, json, text};
+use crate::explain::{Chosen, Pixel, Shown, dot, json, text};
 use crate::input::{Input, render_options};
 use crate::output::say;
 use crate::report::{Failure, Reporter};
@@ -20,10 +20,30 @@ pub(crate) fn explain(args: &ExplainArgs) -> Result<(), Failure> {
         )));
     }
     let tree = strahl::explain(&scene, &options, x, y).map_err(Failure::new)?;
+    if let Some(Chosen::One(number)) = args.sample
+        && number > tree.samples.len()
+    {
+        let count = tree.samples.len();
+        return Err(Failure::new(format!(
+            "there is no sample {number}; pixel {x},{y} has {count} of them with --sampling {}",
+            options.sampling
+        )));
+    }
+    let pixel = Pixel {
+        at: args.pixel,
+        size: (options.width, options.height),
+        sampling: options.sampling,
+        tree: &tree,
+    };
+    let shown = Shown {
+        sample: args.sample,
+        rays: args.rays.0,
+        digits: args.digits,
+    };
     let printed = match args.format {
-        ExplainForm::Text => text(&scene, &tree, args.pixel),
-        ExplainForm::Json => json(&scene, &tree, args.pixel),
-        ExplainForm::Dot => dot(&scene, &tree, args.pixel),
+        ExplainForm::Text => text(&scene, &pixel, &shown),
+        ExplainForm::Json => json(&scene, &pixel, &shown),
+        ExplainForm::Dot => dot(&scene, &pixel, &shown),
     };
     say!("{printed}");
     Ok(())

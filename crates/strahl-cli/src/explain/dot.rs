@@ -1,27 +1,41 @@
-use super::{light_name, object_name, object_place};
+use super::names::{light_name, object_name, object_place};
+use super::{Chosen, Digits, Pixel, Shown};
 use std::fmt::Write;
 use strahl::shade::Color;
-use strahl::tracing::{PixelTree, RayKind, RayNode, RenderScene};
+use strahl::tracing::{RayKind, RayNode, RenderScene};
 
-/// The trees of a pixel as a graph for Graphviz: rays that see something as boxes in the colour they bring, shadow rays as small
-/// ellipses.
-pub(crate) fn dot(scene: &RenderScene, pixel: &PixelTree, (x, y): (u32, u32)) -> String {
+/// The tree of a pixel as a graph for Graphviz: rays that see something as boxes in the colour they bring, shadow rays as small
+/// ellipses. Of several samples it is the first, unless others are asked for.
+pub(crate) fn dot(scene: &RenderScene, pixel: &Pixel<'_>, shown: &Shown) -> String {
     let mut out = String::new();
+    let (x, y) = pixel.at;
+    let chosen = |sample: usize| match shown.sample {
+        Some(Chosen::All) => true,
+        Some(Chosen::One(number)) => sample + 1 == number,
+        None => sample == 0,
+    };
     // Writing to a string cannot fail.
     let _ = writeln!(
         out,
         "digraph \"pixel {x},{y}\" {{\n  node [shape=box, style=filled, fontname=\"sans-serif\"];"
     );
-    for (sample, (_, tree)) in pixel.samples.iter().enumerate() {
-        for node in &tree.nodes {
-            write_node(&mut out, scene, sample, node);
+    let samples = pixel.tree.samples.iter().enumerate();
+    for (number, sample) in samples.filter(|(number, _)| chosen(*number)) {
+        for node in &sample.tree.nodes {
+            write_node(&mut out, scene, number, node, shown.digits);
         }
     }
     out.push('}');
     out
 }
 
-fn write_node(out: &mut String, scene: &RenderScene, sample: usize, node: &RayNode) {
+fn write_node(
+    out: &mut String,
+    scene: &RenderScene,
+    sample: usize,
+    node: &RayNode,
+    digits: Digits,
+) {
     let report = &node.report;
     let id = format!("s{sample}r{}", report.node);
     let what = match &report.hit {
@@ -32,7 +46,7 @@ fn write_node(out: &mut String, scene: &RenderScene, sample: usize, node: &RayNo
             format!(
                 "{}{place}\nt = {}",
                 object_name(scene, hit.object),
-                hit.hit.t
+                digits.number(hit.hit.t)
             )
         }
     };
@@ -60,21 +74,28 @@ fn write_node(out: &mut String, scene: &RenderScene, sample: usize, node: &RayNo
             escaped(&label)
         );
     }
-    for term in &node.lights {
+    for light in &node.lights {
+        let term = &light.term;
         if term.shadow_ray.is_none() {
             continue;
         }
-        let light = format!("{id}l{}", term.light);
-        let seen = if term.visible.is_black() {
-            "in shadow"
-        } else {
-            "lit"
+        let light_id = format!("{id}l{}", term.light);
+        let blocker = light
+            .detail
+            .shadows
+            .iter()
+            .flat_map(|s| &s.met)
+            .find(|m| m.blocks);
+        let seen = match blocker {
+            _ if !term.visible.is_black() => "lit".to_owned(),
+            Some(met) => format!("blocked by {}", object_name(scene, met.object)),
+            None => "in shadow".to_owned(),
         };
         let (fill, ink) = shown(term.diffuse + term.specular);
         let label = format!("{}\n{seen}", light_name(scene, term.light));
         let _ = writeln!(
             out,
-            "  {light} [label=\"{}\", shape=ellipse, fillcolor=\"{fill}\", fontcolor={ink}];\n  {id} -> {light} \
+            "  {light_id} [label=\"{}\", shape=ellipse, fillcolor=\"{fill}\", fontcolor={ink}];\n  {id} -> {light_id} \
              [label=\"shadow\", style=dotted];",
             escaped(&label)
         );

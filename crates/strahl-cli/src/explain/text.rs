@@ -1,268 +1,315 @@
-use super::{light_name, material_name, object_name, object_place};
-use std::fmt::Write;
-use strahl::math::DVec3;
+use super::names::{material_name, object_at};
+use super::page::Page;
+use super::summary::{write_outline, write_pixel, write_samples};
+use super::tally::Tally;
+use super::terms::{write_light, write_shading};
+use super::{Chosen, Digits, Pixel, Shown};
+use strahl::math::det;
 use strahl::shade::Color;
-use strahl::tracing::{HitReport, LightTerm, PixelTree, RayNode, RayTree, RenderScene};
+use strahl::tracing::{
+    BranchEnd, HitReport, PixelSample, RayKind, RayNode, RayTree, RenderScene, Shading,
+};
 
-/// The trees of a pixel, indented, with all terms. Numbers are printed in full, so that the sums can be checked.
-pub(crate) fn text(scene: &RenderScene, pixel: &PixelTree, (x, y): (u32, u32)) -> String {
-    let mut out = String::new();
-    let count = pixel.samples.len();
-    line(
-        &mut out,
-        0,
-        format_args!(
-            "pixel {x},{y}: {count} sample{}",
-            if count == 1 { "" } else { "s" }
-        ),
-    );
-    for (number, ((sx, sy), tree)) in pixel.samples.iter().enumerate() {
-        line(&mut out, 0, format_args!(""));
-        line(
-            &mut out,
-            0,
-            format_args!("sample {} at ({sx}, {sy})", number + 1),
-        );
-        write_tree(&mut out, scene, tree);
-    }
-    line(&mut out, 0, format_args!(""));
-    let mean = if count == 1 {
-        ""
-    } else {
-        ", the mean of the samples"
+/// The trees of a pixel in words: the pixel, the outline of the tree, and all terms of every ray.
+pub(crate) fn text(scene: &RenderScene, pixel: &Pixel<'_>, shown: &Shown) -> String {
+    let mut page = Page::default();
+    let digits = shown.digits;
+    write_pixel(&mut page, pixel, digits);
+    let samples = &pixel.tree.samples;
+    let chosen: Vec<usize> = match shown.sample {
+        Some(Chosen::All) => (0..samples.len()).collect(),
+        Some(Chosen::One(number)) => vec![number - 1],
+        None if samples.len() == 1 => vec![0],
+        None => vec![],
     };
-    line(
-        &mut out,
-        0,
-        format_args!("linear colour {}{mean}", color(pixel.color)),
-    );
-    let [r, g, b] = pixel.film;
-    let _ = write!(out, "in the film   ({r:?}, {g:?}, {b:?})");
-    out
+    if samples.len() != 1 && chosen.len() != 1 {
+        write_samples(&mut page, scene, samples, digits);
+    }
+    for number in chosen {
+        let Some(sample) = samples.get(number) else {
+            continue;
+        };
+        page.gap();
+        if samples.len() != 1 {
+            page.line(0, &heading(number, sample, digits));
+            page.gap();
+        }
+        write_sample(&mut page, scene, sample, shown);
+    }
+    page.finish()
 }
 
-fn line(out: &mut String, level: usize, text: std::fmt::Arguments<'_>) {
-    // Writing to a string cannot fail.
-    let _ = writeln!(out, "{:width$}{text}", "", width = 2 * level);
+fn heading(number: usize, sample: &PixelSample, digits: Digits) -> String {
+    let (x, y) = sample.place;
+    let ray = sample
+        .ray
+        .map_or_else(String::new, |k| format!(", ray {} through the lens", k + 1));
+    format!(
+        "sample {} at ({}, {}){ray}",
+        number + 1,
+        digits.number(x),
+        digits.number(y)
+    )
 }
 
-fn write_tree(out: &mut String, scene: &RenderScene, tree: &RayTree) {
+fn write_sample(page: &mut Page, scene: &RenderScene, sample: &PixelSample, shown: &Shown) {
+    let tree = &sample.tree;
+    let tally = Tally::of(tree);
+    let visible = tally.shown(tree, shown.rays.unwrap_or(usize::MAX));
+    write_outline(page, scene, tree, &tally, &visible);
     // Depth first with a stack: trees may be thousands of levels deep.
-    let mut waiting: Vec<u32> = if tree.nodes.is_empty() {
-        vec![]
-    } else {
-        vec![0]
+    let mut waiting: Vec<u32> = match tree.nodes.is_empty() {
+        true => vec![],
+        false => vec![0],
+    };
+    let writer = Writer {
+        scene,
+        digits: shown.digits,
     };
     while let Some(index) = waiting.pop() {
         let Some(node) = tree.nodes.get(index as usize) else {
             continue;
         };
         waiting.extend(node.children.iter().rev());
-        write_node(out, scene, tree, node);
+        if visible.get(index as usize) == Some(&true) {
+            page.gap();
+            writer.node(page, tree, node);
+        }
     }
-}
-
-fn write_node(out: &mut String, scene: &RenderScene, tree: &RayTree, node: &RayNode) {
-    let report = &node.report;
-    // Very deep trees would run off any page.
-    let level = (report.depth as usize - 1).min(40);
-    line(
-        out,
-        level,
-        format_args!(
-            "#{} {} ray, depth {}, weight {}",
-            report.node, report.kind, report.depth, report.weight
-        ),
-    );
-    let level = level + 1;
-    if !report.part.is_white() {
-        let place = report.part.place();
-        line(
-            out,
-            level,
-            format_args!(
-                "light at {place} of the spectrum from red (0) to violet (1), a share of {}",
-                color(report.part.share())
+    let digits = shown.digits;
+    if let Some(root) = tree.nodes.first()
+        && root.total != sample.color
+    {
+        page.gap();
+        page.line(
+            0,
+            &format!(
+                "The scene's colours are not linear (assumed_gamma): {} is the linear colour {}",
+                digits.color(root.total),
+                digits.color(sample.color)
             ),
         );
     }
-    let ray = &report.ray;
-    line(
-        out,
-        level,
-        format_args!(
-            "from {} direction {}",
-            point(ray.origin),
-            point(ray.direction)
-        ),
-    );
-    match &report.hit {
-        None => line(
-            out,
-            level,
-            format_args!("hits nothing: background {}", color(node.local)),
-        ),
-        Some(hit) => write_hit(out, scene, level, hit),
-    }
-    for light in &node.lights {
-        write_light(out, scene, level, light);
-    }
-    if report.hit.is_some() {
-        line(out, level, format_args!("local {}", color(node.local)));
-    }
-    for (kind, weight, end) in &node.ended {
-        line(
-            out,
-            level,
-            format_args!("no {kind} ray: {end} (weight {weight})"),
+}
+
+/// Writes the paragraphs of rays.
+pub(super) struct Writer<'s> {
+    pub(super) scene: &'s RenderScene,
+    pub(super) digits: Digits,
+}
+
+/// Indentation of what belongs to a ray.
+pub(super) const RAY: usize = 2;
+
+impl Writer<'_> {
+    fn node(&self, page: &mut Page, tree: &RayTree, node: &RayNode) {
+        let (d, report) = (self.digits, &node.report);
+        let parent = match report.node == report.parent {
+            true => String::new(),
+            false => format!(" of #{}", report.parent),
+        };
+        page.line(
+            0,
+            &format!(
+                "#{} {} ray{parent}, level {}, weight {}",
+                report.node,
+                report.kind,
+                report.depth,
+                d.number(report.weight)
+            ),
         );
+        if !report.part.is_white() {
+            let place = d.number(report.part.place());
+            page.line(
+                RAY,
+                &format!("light at {place} of the spectrum, from 0 (red) to 1 (violet)"),
+            );
+        }
+        page.line(
+            RAY,
+            &format!(
+                "from {}, direction {}",
+                d.point(report.ray.origin),
+                d.point(report.ray.direction)
+            ),
+        );
+        match &report.hit {
+            None => page.line(
+                RAY,
+                &format!("hits nothing; local = background = {}", d.color(node.local)),
+            ),
+            Some(hit) => self.hit(page, node, hit),
+        }
+        for (kind, weight, end) in &node.ended {
+            if *end != BranchEnd::TotalReflection {
+                let weight = d.number(*weight);
+                page.line(RAY, &format!("no {kind} ray: {end} (weight {weight})"));
+            }
+        }
+        self.total(page, tree, node);
     }
-    for child in &node.children {
-        if let Some(child) = tree.nodes.get(*child as usize) {
-            let name = match child.report.kind {
-                strahl::tracing::RayKind::Reflection => "kr·Xr",
-                _ => "kt·Xt",
+
+    fn hit(&self, page: &mut Page, node: &RayNode, hit: &HitReport) {
+        let d = self.digits;
+        page.line(
+            RAY,
+            &format!(
+                "hits {}, {}, at t = {}",
+                object_at(self.scene, hit.object, hit.line, hit.hit.id),
+                material_name(self.scene, hit.material.0),
+                d.number(hit.hit.t)
+            ),
+        );
+        let shading = if hit.n_geom == hit.n_shade {
+            String::new()
+        } else {
+            format!(", for shading {}", d.point(hit.n_shade))
+        };
+        page.line(
+            RAY,
+            &format!(
+                "point {}, normal n = {}{shading}",
+                d.point(hit.position),
+                d.point(hit.n_geom)
+            ),
+        );
+        self.angles(page, hit);
+        write_shading(self, page, hit);
+        if let Shading::Model(model) = hit.shading
+            && model.is_diagnostic()
+        {
+            page.line(RAY, &format!("local = {}", d.color(node.local)));
+            return;
+        }
+        for light in &node.lights {
+            write_light(self, page, hit, light);
+        }
+        let mut local = "local = ambient".to_owned();
+        if !hit.emission.is_black() {
+            local.push_str(" + emission");
+        }
+        if !node.lights.is_empty() {
+            local.push_str(" + lights");
+        }
+        if hit.grain != 0.0 {
+            local.push_str(&format!(" - crand {}", d.number(hit.grain)));
+        }
+        page.line(RAY, &format!("{local} = {}", d.color(node.local)));
+    }
+
+    /// The indices of refraction and the angles.
+    fn angles(&self, page: &mut Page, hit: &HitReport) {
+        let d = self.digits;
+        let degrees = |cosine: f64| d.number(det::acos(cosine.clamp(-1.0, 1.0)).to_degrees());
+        let (n1, n2) = (d.number(hit.eta_1), d.number(hit.eta_2));
+        let theta_1 = degrees(hit.cos_1);
+        if hit.total_reflection {
+            let sin_1 = (1.0 - hit.cos_1 * hit.cos_1).max(0.0).sqrt();
+            let sin_2 = d.number(hit.eta_1 / hit.eta_2 * sin_1);
+            page.line(RAY, &format!("θ1 = {theta_1}°, n1 = {n1}, n2 = {n2}"));
+            page.line(
+                RAY,
+                &format!(
+                    "total internal reflection: sin θ2 = n1/n2 · sin θ1 = {sin_2} > 1, so there is no transparency ray"
+                ),
+            );
+        } else if let Some(cos_2) = hit.cos_2 {
+            page.line(
+                RAY,
+                &format!(
+                    "θ1 = {theta_1}°, θ2 = {}°, n1 = {n1}, n2 = {n2}",
+                    degrees(cos_2)
+                ),
+            );
+        } else {
+            page.line(RAY, &format!("θ1 = {theta_1}°, n1 = {n1}"));
+        }
+    }
+
+    /// What the rays that were sent bring, and the sum.
+    fn total(&self, page: &mut Page, tree: &RayTree, node: &RayNode) {
+        let (d, report) = (self.digits, &node.report);
+        let mut sum = "local".to_owned();
+        for child in &node.children {
+            let Some(child) = tree.nodes.get(*child as usize) else {
+                continue;
+            };
+            let (k, x, from) = match child.report.kind {
+                RayKind::Reflection => ("kr", "Xr", ""),
+                _ if report.hit.as_ref().is_some_and(|hit| {
+                    child.report.ray.direction.dot(hit.n_geom) > 0.0
+                        && !child.report.part.is_white()
+                }) =>
+                {
+                    ("kt", "Xt", ", totally reflected")
+                }
+                _ => ("kt", "Xt", ""),
             };
             let share = child.report.share;
-            let product = share.of(child.total);
-            let power = if share.power == 1.0 {
-                String::new()
-            } else {
-                format!("^{}", share.power)
+            let power = match share.power == 1.0 {
+                true => String::new(),
+                false => format!("^{}", d.number(share.power)),
             };
-            line(
-                out,
-                level,
-                format_args!(
-                    "{name}{power} = {} · {}{power} = {} (ray #{})",
-                    color(share.factor),
-                    color(child.total),
-                    color(product),
+            page.line(
+                RAY,
+                &format!(
+                    "{k} · {x}{power} = {} · {}{power} = {} from #{}{from}",
+                    d.color(share.factor),
+                    d.color(child.total),
+                    d.color(share.of(child.total)),
                     child.report.node
                 ),
             );
+            let added = format!(" + {k} · {x}{power}");
+            if !sum.ends_with(&added) {
+                sum.push_str(&added);
+            }
+        }
+        if report.attenuation != Color::WHITE {
+            let medium = self.kept_by(tree, node);
+            page.line(
+                RAY,
+                &format!("kept on the way = {}{medium}", d.color(report.attenuation)),
+            );
+            sum = match sum.contains('+') {
+                true => format!("({sum}) · kept"),
+                false => format!("{sum} · kept"),
+            };
+        }
+        if report.fog != Color::BLACK {
+            page.line(RAY, &format!("fog = {}", d.color(report.fog)));
+            sum.push_str(" + fog");
+        }
+        page.line(RAY, &format!("total = {sum} = {}", d.color(node.total)));
+    }
+
+    /// What weakened the light on a ray's way.
+    fn kept_by(&self, tree: &RayTree, node: &RayNode) -> String {
+        let (d, report) = (self.digits, &node.report);
+        let mut words = Vec::new();
+        match report.medium {
+            None if report.fog == Color::BLACK => {}
+            None => words.push("in the air".to_owned()),
+            Some(id) => {
+                let hit = report.hit.as_ref();
+                let length = hit.map_or(f64::INFINITY, |hit| hit.hit.t);
+                words.push(format!(
+                    "in {} over a length of {}",
+                    material_name(self.scene, id.0),
+                    d.number(length * report.ray.direction.length())
+                ));
+            }
+        }
+        let parent = tree.nodes.get(report.parent as usize);
+        if !report.part.is_white() && parent.is_some_and(|p| p.report.part.is_white()) {
+            words.push(format!(
+                "this part of the spectrum is {} of the light",
+                d.color(report.part.share())
+            ));
+        }
+        match words.is_empty() {
+            true => String::new(),
+            false => format!(", {}", words.join(", ")),
         }
     }
-    if report.attenuation != Color::WHITE {
-        line(
-            out,
-            level,
-            format_args!("absorbed on the way: times {}", color(report.attenuation)),
-        );
-    }
-    if report.fog != Color::BLACK {
-        line(out, level, format_args!("fog adds {}", color(report.fog)));
-    }
-    line(out, level, format_args!("total {}", color(node.total)));
-}
-
-fn write_hit(out: &mut String, scene: &RenderScene, level: usize, hit: &HitReport) {
-    let name = object_name(scene, hit.object);
-    let place =
-        object_place(scene, hit.object, hit.line).map_or_else(String::new, |p| format!(" ({p})"));
-    let material = material_name(scene, hit.material.0);
-    line(out, level, format_args!("hits {name}{place}, {material}"));
-    line(
-        out,
-        level,
-        format_args!("t {}, position {}", hit.hit.t, point(hit.position)),
-    );
-    let shading = if hit.n_geom == hit.n_shade {
-        String::new()
-    } else {
-        format!(", shading normal {}", point(hit.n_shade))
-    };
-    line(
-        out,
-        level,
-        format_args!("normal {}{shading}", point(hit.n_geom)),
-    );
-    let degrees = |cosine: f64| cosine.clamp(-1.0, 1.0).acos().to_degrees();
-    let behind = match hit.cos_2 {
-        Some(cos_2) => format!(", θ2 {:.4}°", degrees(cos_2)),
-        None => String::new(),
-    };
-    let fresnel = hit
-        .fresnel
-        .map_or_else(String::new, |f| format!(", Fresnel F {f}"));
-    line(
-        out,
-        level,
-        format_args!(
-            "n1 {}, n2 {}, θ1 {:.4}°{behind}{fresnel}",
-            hit.eta_1,
-            hit.eta_2,
-            degrees(hit.cos_1)
-        ),
-    );
-    if !hit.diagnostic {
-        line(out, level, format_args!("ka·Ia {}", color(hit.ambient)));
-        if !hit.emission.is_black() {
-            line(out, level, format_args!("emission {}", color(hit.emission)));
-        }
-    }
-}
-
-fn write_light(out: &mut String, scene: &RenderScene, level: usize, term: &LightTerm) {
-    let name = light_name(scene, term.light);
-    if !(term.n_dot_l > 0.0) {
-        let why = if term.color.is_black() {
-            "does not shine here"
-        } else {
-            "is behind the surface"
-        };
-        line(
-            out,
-            level,
-            format_args!("{name} {why} (n·l {})", term.n_dot_l),
-        );
-        return;
-    }
-    let visible = match term.shadow_ray {
-        None => "casts no shadows".to_owned(),
-        Some(_) if term.visible.is_black() => "in shadow".to_owned(),
-        Some(_) if term.visible == Color::WHITE => "visible".to_owned(),
-        Some(_) if term.shadow_rays > 1 => format!("seen to {}", color(term.visible)),
-        Some(_) => format!("filtered to {}", color(term.visible)),
-    };
-    let rays = match term.shadow_rays {
-        0 | 1 => String::new(),
-        n => format!("s: {n}, the one to the centre"),
-    };
-    line(
-        out,
-        level,
-        format_args!("{name}: n·l {}, {visible}", term.n_dot_l),
-    );
-    if let Some(ray) = &term.shadow_ray {
-        line(
-            out,
-            level + 1,
-            format_args!(
-                "shadow ray{rays} from {} direction {}",
-                point(ray.origin),
-                point(ray.direction)
-            ),
-        );
-    }
-    if !term.visible.is_black() {
-        line(
-            out,
-            level + 1,
-            format_args!("kd(n·l) {}", color(term.diffuse)),
-        );
-        line(
-            out,
-            level + 1,
-            format_args!("ks(h·n)^p {}", color(term.specular)),
-        );
-    }
-}
-
-fn point(p: DVec3) -> String {
-    format!("({:?}, {:?}, {:?})", p.x, p.y, p.z)
-}
-
-fn color(c: Color) -> String {
-    format!("({:?}, {:?}, {:?})", c.r, c.g, c.b)
 }

@@ -1,6 +1,9 @@
 //! The program as its users run it.
 
 mod errors;
+mod explain;
+mod factors;
+mod lecture;
 mod pictures;
 mod questions;
 mod safety;

@@ -1,84 +1,8 @@
 //! Commands that tell something.
 
-use crate::{fails, folder_with_scene, stderr, strahl, tool};
+use crate::{fails, folder_with_scene, stderr, strahl};
 use serde_json::Value;
-use std::io::Write;
 use std::process::{Command, Stdio};
-
-#[test]
-fn explain_prints_a_tree_that_sums_up_to_the_pixel() {
-    let folder = folder_with_scene();
-    let args = [
-        "explain",
-        "scene.nff",
-        "--pixel",
-        "24,20",
-        "--sampling",
-        "center",
-    ];
-    let text = strahl(folder.path(), &args);
-    let text = String::from_utf8(text.stdout).expect("text");
-    for part in [
-        "primary ray",
-        "sphere",
-        "scene.nff:11",
-        "ka·Ia",
-        "kd(n·l)",
-        "ks(h·n)^p",
-        "kr·Xr",
-        "linear colour",
-    ] {
-        assert!(text.contains(part), "{part}: {text}");
-    }
-    let json = strahl(folder.path(), &[&args[..], &["--format", "json"]].concat());
-    let json: Value = serde_json::from_slice(&json.stdout).expect("JSON");
-    let rays = json["samples"][0]["rays"].as_array().expect("rays");
-    let channel = |v: &Value, i: usize| v[i].as_f64().expect("a number");
-    // Add the tree up again, from the printed numbers alone.
-    let mut totals = vec![[0.0; 3]; rays.len()];
-    for ray in rays.iter().rev() {
-        let id = ray["id"].as_u64().expect("id") as usize;
-        totals[id] = std::array::from_fn(|i| {
-            let mut sum = channel(&ray["local"], i);
-            let (mut reflected, mut transmitted) = (0.0, 0.0);
-            for child in ray["children"].as_array().expect("children") {
-                let child = child.as_u64().expect("id") as usize;
-                match rays[child]["kind"].as_str() {
-                    Some("reflection") => reflected = totals[child][i],
-                    _ => transmitted = totals[child][i],
-                }
-            }
-            if !ray["hit"].is_null() {
-                sum = sum
-                    + channel(&ray["hit"]["kr"], i) * reflected
-                    + channel(&ray["hit"]["kt"], i) * transmitted;
-            }
-            sum * channel(&ray["attenuation"], i)
-        });
-    }
-    for (i, total) in totals[0].iter().enumerate() {
-        assert_eq!(*total, channel(&json["color"], i));
-        assert_eq!(*total as f32, channel(&json["film"], i) as f32);
-    }
-    let dot = strahl(folder.path(), &[&args[..], &["--format", "dot"]].concat());
-    let dot = String::from_utf8(dot.stdout).expect("text");
-    assert!(dot.starts_with("digraph") && dot.trim_end().ends_with('}'));
-    if let Some(program) = tool("dot") {
-        let mut child = Command::new(program)
-            .args(["-Tsvg", "-o", "tree.svg"])
-            .current_dir(folder.path())
-            .stdin(Stdio::piped())
-            .spawn()
-            .expect("starts");
-        child
-            .stdin
-            .take()
-            .expect("piped")
-            .write_all(dot.as_bytes())
-            .expect("read");
-        assert!(child.wait().expect("ends").success());
-    }
-}
 
 #[test]
 fn info_check_and_formats_tell_what_there_is() {

@@ -130,6 +130,25 @@ impl Query for AnyOpaque {
     }
 }
 
+/// The closest hit on an opaque surface: what blocks a shadow ray.
+pub(super) struct ClosestOpaque(pub(super) Closest);
+
+impl Query for ClosestOpaque {
+    const ALL: bool = false;
+
+    fn wants(flags: u8) -> bool {
+        AnyOpaque::wants(flags)
+    }
+
+    fn take(&mut self, hit: Hit, t_max: f64) -> f64 {
+        self.0.take(hit, t_max)
+    }
+
+    fn wants_hit(transmits: bool) -> bool {
+        AnyOpaque::wants_hit(transmits)
+    }
+}
+
 /// Collects all hits on surfaces that may transmit light.
 pub(super) struct Transmitting<'h> {
     pub(super) hits: &'h mut Vec<Hit>,

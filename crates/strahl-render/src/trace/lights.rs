@@ -8,7 +8,7 @@ use crate::observer::{LightTerm, TraceObserver};
 use crate::shadow::{Shadow, ShadowRay};
 use crate::surface::Surface;
 use strahl_math::{DVec3, Ray};
-use strahl_shade::{Color, Light, ShadingModel};
+use strahl_shade::{Color, Light, LightSample, ShadingModel};
 
 impl TreeTracer<'_> {
     /// The contribution of one light; no shadow ray if the surface faces away.
@@ -99,17 +99,8 @@ impl TreeTracer<'_> {
                 self.count_shadow(&mut term, shadow);
             }
         }
-        if scene_light.fogged
-            && !self.tracer.scene.fogs.is_empty()
-            && self.media.top(branch.media).is_none()
-        {
-            let ray = Ray::new(surface.resolved.point.position, sample.l);
-            let length = if sample.range.max.is_infinite() {
-                f64::INFINITY
-            } else {
-                sample.shadow_direction.length()
-            };
-            term.visible *= self.tracer.scene.fog_along(&ray, length).0;
+        if let Some(fog) = self.fog_before(scene_light, &sample, surface, branch) {
+            term.visible *= fog;
         }
         if !term.visible.is_black() {
             let arriving = sample.color * term.visible;
@@ -125,7 +116,29 @@ impl TreeTracer<'_> {
         term
     }
 
-    /// Adds the light that a shadow ray has let through.
+    /// What fog leaves of a light that it weakens on its way to a hit.
+    #[inline]
+    pub(super) fn fog_before(
+        &self,
+        light: &Light,
+        sample: &LightSample,
+        surface: &Surface<'_>,
+        branch: &Branch,
+    ) -> Option<Color> {
+        let scene = self.tracer.scene;
+        if !light.fogged || scene.fogs.is_empty() || self.media.top(branch.media).is_some() {
+            return None;
+        }
+        let ray = Ray::new(surface.resolved.point.position, sample.l);
+        let length = if sample.range.max.is_infinite() {
+            f64::INFINITY
+        } else {
+            sample.shadow_direction.length()
+        };
+        Some(scene.fog_along(&ray, length).0)
+    }
+
+    /// Takes what a shadow ray brought.
     #[inline]
     fn count_shadow(&mut self, term: &mut LightTerm, shadow: Shadow) {
         self.counts.shadow += 1;
@@ -161,7 +174,13 @@ impl TreeTracer<'_> {
         let (diffuse, highlight) = if self.paint.layers.is_empty() {
             surface.reflected(model, arriving, l, n_dot_l)
         } else {
-            layers::lit(&self.paint, surface, l, arriving)
+            layers::lit(
+                &self.paint,
+                surface,
+                l,
+                arriving,
+                self.settings.force_shading,
+            )
         };
         let highlight = if light.highlights {
             highlight

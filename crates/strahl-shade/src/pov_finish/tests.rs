@@ -254,3 +254,31 @@ fn albedo_is_scaled_as_measured() {
     assert_eq!(PovFinish::phong_from_albedo(5.0), 3.0);
     assert_eq!(PovFinish::diffuse_from_albedo(3.0), 2.0);
 }
+
+/// The two highlights by a shading model: both by half vectors, both around the mirror direction, or none.
+#[test]
+fn a_shading_model_takes_the_place_of_both_shapes() {
+    let finish = PovFinish {
+        phong: 0.5,
+        phong_size: 20.0,
+        specular: 0.25,
+        roughness: 0.1,
+        ..dull()
+    };
+    let n = DVec3::Z;
+    let (l, v) = (DVec3::new(0.6, 0.0, 0.8), DVec3::new(-0.28, 0.0, 0.96));
+    let (r_dot_v, h_dot_n) = (crate::reflect(n, v).dot(l), (l + v).normalize().dot(n));
+    let own = finish.highlights(n, l, v, None);
+    assert_eq!((own.phong_cos, own.specular_cos), (r_dot_v, h_dot_n));
+    assert_eq!(
+        finish.highlight(n, l, v, PIGMENT),
+        Color::WHITE * own.strength()
+    );
+    let phong = finish.highlights(n, l, v, Some(ShadingModel::Phong));
+    assert_eq!((phong.phong, phong.specular_cos), (own.phong, r_dot_v));
+    assert_eq!(phong.specular, 0.25 * det::pow(r_dot_v, 10.0));
+    let blinn = finish.highlights(n, l, v, Some(ShadingModel::BlinnPhong));
+    assert_eq!((blinn.specular, blinn.phong_cos), (own.specular, h_dot_n));
+    let lambert = finish.highlights(n, l, v, Some(ShadingModel::Lambert));
+    assert_eq!(lambert.strength(), 0.0);
+}

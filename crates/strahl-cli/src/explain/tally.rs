@@ -1,0 +1,134 @@
+//! What each ray of a tree adds to its pixel.
+
+use strahl::shade::Color;
+use strahl::tracing::{RayKind, RayTree};
+
+/// What the rays of a tree add, by their numbers.
+#[derive(Debug)]
+pub(crate) struct Tally {
+    /// What a ray's hit (or the background) itself adds; `None` below a reflection with an `exponent`, whose light is not added in
+    /// proportion. The ray that is reflected so then stands for all below it.
+    pub(crate) adds: Vec<Option<Color>>,
+}
+
+/// How many rays of each kind a tree has.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Counts {
+    pub(crate) primary: u32,
+    pub(crate) reflection: u32,
+    pub(crate) refraction: u32,
+    pub(crate) shadow: u32,
+    pub(crate) levels: u32,
+}
+
+impl Tally {
+    pub(crate) fn of(tree: &RayTree) -> Self {
+        let mut passes: Vec<Option<Color>> = vec![None; tree.nodes.len()];
+        let mut adds = vec![None; tree.nodes.len()];
+        // Parents come before their children.
+        for (index, node) in tree.nodes.iter().enumerate() {
+            let report = &node.report;
+            let parent = if report.node == report.parent {
+                Some(Color::WHITE)
+            } else {
+                let parent = tree.nodes.get(report.parent as usize);
+                let above = passes.get(report.parent as usize).copied().flatten();
+                match (above, parent) {
+                    (Some(above), Some(parent)) => Some(above * parent.report.attenuation),
+                    _ => None,
+                }
+            };
+            let Some(above) = parent else { continue };
+            if report.share.power == 1.0 {
+                let taken = above * report.share.factor;
+                passes[index] = Some(taken);
+                adds[index] = Some(taken * (node.local * report.attenuation + report.fog));
+            } else {
+                adds[index] = Some(above * report.share.of(node.total));
+            }
+        }
+        Self { adds }
+    }
+
+    /// The rays that add most with those they come from, at most about `most` of them; all if there are no more.
+    pub(crate) fn shown(&self, tree: &RayTree, most: usize) -> Vec<bool> {
+        let count = tree.nodes.len();
+        if count <= most {
+            return vec![true; count];
+        }
+        let weight = |index: &usize| {
+            let adds = self.adds[*index].unwrap_or_default();
+            adds.map(f64::abs).max_component()
+        };
+        let mut order: Vec<usize> = (0..count).collect();
+        order.sort_by(|a, b| weight(b).total_cmp(&weight(a)).then(a.cmp(b)));
+        let (mut shown, mut taken) = (vec![false; count], 0);
+        for index in order {
+            if taken >= most {
+                break;
+            }
+            let mut at = index;
+            while !shown[at] {
+                shown[at] = true;
+                taken += 1;
+                at = tree.nodes[at].report.parent as usize;
+            }
+        }
+        shown
+    }
+}
+
+impl Counts {
+    pub(crate) fn of(tree: &RayTree) -> Self {
+        let mut counts = Self::default();
+        for node in &tree.nodes {
+            match node.report.kind {
+                RayKind::Primary => counts.primary += 1,
+                RayKind::Reflection => counts.reflection += 1,
+                RayKind::Refraction => counts.refraction += 1,
+            }
+            counts.shadow += node
+                .lights
+                .iter()
+                .map(|light| light.term.shadow_rays)
+                .sum::<u32>();
+            counts.levels = counts.levels.max(node.report.depth);
+        }
+        counts
+    }
+
+    pub(crate) fn plus(self, o: Self) -> Self {
+        Self {
+            primary: self.primary + o.primary,
+            reflection: self.reflection + o.reflection,
+            refraction: self.refraction + o.refraction,
+            shadow: self.shadow + o.shadow,
+            levels: self.levels.max(o.levels),
+        }
+    }
+
+    /// Rays that see something.
+    pub(crate) fn rays(self) -> u32 {
+        self.primary + self.reflection + self.refraction
+    }
+
+    /// In words.
+    pub(crate) fn words(self) -> String {
+        let rays = self.rays();
+        format!(
+            "{rays} {} ({} primary, {} reflection, {} transparency), {} shadow {}, {} {}",
+            plural(rays, "ray", "rays"),
+            self.primary,
+            self.reflection,
+            self.refraction,
+            self.shadow,
+            plural(self.shadow, "ray", "rays"),
+            self.levels,
+            plural(self.levels, "level", "levels"),
+        )
+    }
+}
+
+pub(crate) fn plural(count: u32, one: &'static str, many: &'static str) -> &'static str {
+    if count == 1 { one } else { many }
+}

@@ -1,0 +1,364 @@
+//! `strahl explain`: every factor it prints is the one that was multiplied, and stands under its own name.
+
+use super::factors::check;
+use super::{folder_with_scene, stderr, strahl, tool};
+use serde_json::Value;
+use std::io::Write;
+use std::path::Path;
+use std::process::{Command, Stdio};
+
+fn text(folder: &Path, args: &[&str]) -> String {
+    let output = strahl(folder, &[&["explain"], args].concat());
+    assert!(output.status.success(), "{args:?}: {}", stderr(&output));
+    String::from_utf8(output.stdout).expect("text")
+}
+
+/// Text without its line breaks.
+fn flat(text: &str) -> String {
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+fn json(folder: &Path, args: &[&str]) -> Value {
+    let json = text(folder, &[args, &["--format", "json"]].concat());
+    serde_json::from_str(&json).expect("JSON")
+}
+
+/// A scene in POV-Ray's language in a folder of its own.
+fn pov(objects: &str) -> tempfile::TempDir {
+    let folder = tempfile::tempdir().expect("a folder");
+    let scene = format!(
+        "#version 3.7;\nglobal_settings {{ assumed_gamma 1 }}\ncamera {{ location -5*z look_at 0 }}\n{objects}\n"
+    );
+    std::fs::write(folder.path().join("scene.pov"), scene).expect("writable");
+    folder
+}
+
+/// A pixel in the middle of a picture with one ray each.
+const MIDDLE: [&str; 7] = [
+    "scene.pov",
+    "--size",
+    "40x30",
+    "--sampling",
+    "center",
+    "--pixel",
+    "22,13",
+];
+
+#[test]
+fn explain_prints_a_tree_that_sums_up_to_the_pixel() {
+    let folder = folder_with_scene();
+    let args = ["scene.nff", "--pixel", "24,20", "--sampling", "center"];
+    let printed = text(folder.path(), &args);
+    for part in [
+        "pixel 24,20 of 48x40: (",
+        "in 8 bits, linear colour (",
+        "adds to the sample",
+        "#0 primary ray, level 1, weight 1",
+        "scene.nff:11, element 0)",
+        "shading model phong: ka Ia + Σ L (kd (n·l) + ks (r·v)^p)",
+        "ks = (0.3, 0.3, 0.3), p = 20",
+        "light 1, point light at (5, 6, 7) (scene.nff:9)",
+        "kd · L · (n·l) = (",
+        "ks · L · (r·v)^p = (",
+        "kr · Xr = (",
+    ] {
+        assert!(printed.contains(part), "{part}: {printed}");
+    }
+    let widest = printed.lines().map(|l| l.chars().count()).max();
+    assert!(widest <= Some(100), "{printed}");
+    let json = json(folder.path(), &args);
+    check(&json);
+    assert_eq!(json["samples"][0]["rays"][0]["total"], json["color"]);
+    for i in 0..3 {
+        let (color, film) = (json["color"][i].as_f64(), json["film"][i].as_f64());
+        assert_eq!(
+            color.expect("a number") as f32,
+            film.expect("a number") as f32
+        );
+    }
+    let all = [&["explain"], &args[..], &["--format", "dot"]].concat();
+    let dot = strahl(folder.path(), &all);
+    let dot = String::from_utf8(dot.stdout).expect("text");
+    assert!(dot.starts_with("digraph") && dot.trim_end().ends_with('}'));
+    if let Some(program) = tool("dot") {
+        let mut child = Command::new(program)
+            .args(["-Tsvg", "-o", "tree.svg"])
+            .current_dir(folder.path())
+            .stdin(Stdio::piped())
+            .spawn()
+            .expect("starts");
+        child
+            .stdin
+            .take()
+            .expect("piped")
+            .write_all(dot.as_bytes())
+            .expect("read");
+        assert!(child.wait().expect("ends").success());
+    }
+}
+
+/// JSON said ks 0 and p 1 beside a highlight that was not zero, and both said ks(h·n)^p of Phong's model.
+#[test]
+fn terms_bear_the_names_of_the_model_in_force() {
+    let folder = folder_with_scene();
+    let args = ["scene.nff", "--pixel", "24,20", "--sampling", "center"];
+    for (model, named, other) in [
+        ("phong", "ks · L · (r·v)^p", "(h·n)"),
+        ("blinn-phong", "ks · L · (h·n)^p", "(r·v)"),
+        ("lambert", "kd · L · (n·l)", "ks"),
+    ] {
+        let args = [&args[..], &["--shading", model]].concat();
+        let printed = text(folder.path(), &args);
+        assert!(
+            printed.contains(&format!("shading model {model}")),
+            "{printed}"
+        );
+        assert!(
+            printed.contains(named) && !printed.contains(other),
+            "{printed}"
+        );
+        assert!(check(&json(folder.path(), &args)).contains(&model.to_owned()));
+    }
+    let folder = pov("light_source { <3, 5, -6>, rgb 1 }
+        sphere { 0, 1 pigment { rgb <1, .5, .2> }
+          finish { ambient .1 diffuse .6 brilliance 2 phong .4 phong_size 20 specular .3 roughness .05 metallic } }");
+    let printed = flat(&text(folder.path(), &MIDDLE));
+    for part in [
+        "POV-Ray's finish, 1 layer",
+        "finish ambient 0.1, diffuse 0.6, brilliance 2, phong 0.4, phong_size 20",
+        "diffuse · (n·l)^brilliance · C · L = 0.6 ·",
+        "phong · (r·v)^phong_size = 0.4 ·",
+        "specular · (h·n)^(1/roughness) = 0.3 ·",
+        "highlight = (phong + specular) · metallic · L =",
+    ] {
+        assert!(printed.contains(part), "{part}: {printed}");
+    }
+    assert!(!printed.contains("ks"), "{printed}");
+    let hit = &json(folder.path(), &MIDDLE)["samples"][0]["rays"][0]["hit"];
+    assert_eq!(hit["model"], "pov-ray finish");
+    assert!(hit.get("ks").is_none() && hit.get("p").is_none(), "{hit}");
+}
+
+/// `--shading` was without effect on POV-Ray's textures.
+#[test]
+fn a_shading_model_takes_the_place_of_a_finish() {
+    let folder = pov("light_source { <3, 5, -6>, rgb 1 }
+        sphere { 0, 1 pigment { rgb 1 } finish { ambient 0 diffuse .5 brilliance 3 phong .4 specular .3 } }");
+    let mut totals = Vec::new();
+    for (model, part) in [
+        ("lambert", "diffuse · (n·l) · C · L"),
+        ("phong", "specular · (r·v)^(1/roughness)"),
+        ("blinn-phong", "phong · (h·n)^phong_size"),
+    ] {
+        let args = [&MIDDLE[..], &["--shading", model]].concat();
+        let printed = text(folder.path(), &args);
+        assert!(printed.contains(part), "{part}: {printed}");
+        assert_eq!(
+            printed.contains("highlight"),
+            model != "lambert",
+            "{printed}"
+        );
+        let json = json(folder.path(), &args);
+        check(&json);
+        totals.push(json["color"].to_string());
+    }
+    totals.push(json(folder.path(), &MIDDLE)["color"].to_string());
+    totals.sort();
+    totals.dedup();
+    assert_eq!(totals.len(), 4, "{totals:?}");
+}
+
+/// Layers, blends, glass, media, fog, dispersion, area lights: whatever was multiplied multiplies again.
+#[test]
+fn factors_multiply_to_their_products_whatever_the_texture() {
+    let lamp = "light_source { <3, 5, -6>, rgb <1, .9, .8> }";
+    for (what, scene) in [
+        ("fresnel", "sphere { 0, 1.5 pigment { rgbf <.9, .95, 1, .9> } finish { phong .5 reflection { 0, 1 fresnel on } conserve_energy }
+            interior { ior 1.5 fade_distance 1 fade_power 1001 fade_color <.5, .9, .7> } } plane { y, -2 pigment { checker rgb 1 rgb 0 } }"),
+        ("weakened", "box { <-9, -9, 0>, 9 texture { pigment { rgb <.2, .4, .9> } finish { crand .1 } }
+            texture { pigment { rgbft <1, .5, .3, .3, .4> } finish { specular .5 roughness .1 } } }
+            box { <-2, 1.5, -2>, <2, 1.6, 0> pigment { rgbf <1, .5, .5, .8> } }"),
+        ("specular", "sphere { 0, 1.5 texture { gradient x texture_map { [0 pigment { rgb x } finish { reflection .3 }]
+            [1 pigment { rgbt <0, 1, 0, .4> } normal { bumps 1 } finish { specular .6 metallic }] } scale 4 translate -2 } }"),
+        ("fog", "sphere { 0, 1 pigment { rgb 1 } finish { reflection { .1, .8 falloff 3 metallic } } } fog { distance 8 color rgb <.3, .4, .5> }"),
+        ("area", "sphere { 0, 1 pigment { rgb 1 } } light_source { <0, 6, 0>, rgb .5 area_light 3*x, 3*z, 5, 5 adaptive 1 }
+            box { <-1, 3, -1>, <.1, 3.2, 1> pigment { rgb 1 } }"),
+        ("area_illumination", "plane { z, 0 pigment { rgb 1 } finish { phong .5 } }
+            light_source { <0, 2, -6>, rgb .5 area_light 3*x, 3*z, 3, 3 area_illumination on }"),
+        ("transparency", "sphere { 0, 1.5 pigment { rgbf 1 } finish { reflection .1 } interior { ior 1.5 dispersion 1.1 dispersion_samples 5 } }
+            plane { -z, -5 pigment { gradient x } finish { ambient .5 emission .2 } }"),
+        ("exponent", "sphere { 0, 1 pigment { rgb .2 } finish { reflection { .8 exponent .7 } } } plane { y, -2 pigment { rgb .9 } }"),
+        ("blocked", "plane { z, 0 pigment { rgb 1 } finish { diffuse .4, .3 } } plane { -z, 5.5 pigment { rgb 1 } }"),
+    ] {
+        let folder = pov(&format!("{lamp}\n{scene}"));
+        let seen = check(&json(folder.path(), &MIDDLE));
+        assert!(seen.contains(&what.to_owned()), "{what}: {seen:?}");
+        for line in text(folder.path(), &MIDDLE).lines() {
+            assert!(line.chars().count() <= 100, "{what}: {line}");
+        }
+    }
+}
+
+/// With Fresnel's equations nothing was said where all light is reflected.
+#[test]
+fn total_reflection_is_said_with_and_without_fresnel() {
+    for finish in [
+        "reflection { 0, 1 fresnel on } conserve_energy",
+        "reflection { 0, 1 fresnel on }",
+        "reflection .1",
+    ] {
+        // The ray meets the inside of the glass at an angle of 57 degrees.
+        let folder = pov(&format!(
+            "plane {{ y, 0 rotate 30*x pigment {{ rgbf 1 }} finish {{ {finish} }} interior {{ ior 1.5 }} }}"
+        ));
+        let printed = text(folder.path(), &MIDDLE);
+        assert!(
+            printed.contains("total internal reflection: sin θ2 = n1/n2 · sin θ1 = 1."),
+            "{finish}: {printed}"
+        );
+        let seen = check(&json(folder.path(), &MIDDLE));
+        assert!(
+            seen.contains(&"total reflection".to_owned()),
+            "{finish}: {seen:?}"
+        );
+    }
+}
+
+#[test]
+fn shadows_say_what_casts_them() {
+    let folder = pov("light_source { <0, 0, -20>, rgb 1 }
+plane { z, 0 pigment { rgb 1 } }
+#declare Lid = disc { <0, 0, -6>, z, 2 }
+object { Lid pigment { rgb 1 } }");
+    let printed = text(folder.path(), &MIDDLE);
+    let blocker = "is blocked by disc \"Lid\" (scene.pov:7:1, element 1) at t = 0.3";
+    assert!(printed.contains(blocker), "{printed}");
+    assert!(
+        printed.contains("light 1, point light at (0, 0, -20) (scene.pov:4:1)"),
+        "{printed}"
+    );
+    let met = &json(folder.path(), &MIDDLE)["samples"][0]["rays"][0]["lights"][0]["shadow_rays"][0]
+        ["met"][0];
+    assert_eq!(
+        (&met["blocks"], &met["element"]),
+        (&Value::Bool(true), &Value::from(1))
+    );
+}
+
+/// All trees of all samples were printed, thousands of lines for a pixel on an edge.
+#[test]
+fn a_pixel_of_many_samples_is_summed_up() {
+    let folder = folder_with_scene();
+    let args = ["scene.nff", "--pixel", "24,20", "--sampling", "4x4"];
+    let printed = text(folder.path(), &args);
+    assert!(printed.starts_with("pixel 24,20 of 48x40: ("), "{printed}");
+    assert!(printed.contains("16 samples (4x4): "), "{printed}");
+    assert!(
+        printed.contains("`--sample N`") && !printed.contains("#0"),
+        "{printed}"
+    );
+    assert!(printed.lines().count() < 30, "{printed}");
+    let one = text(folder.path(), &[&args[..], &["--sample", "7"]].concat());
+    assert!(
+        one.contains("sample 7 at (") && !one.contains("sample 8 at ("),
+        "{one}"
+    );
+    assert_eq!(one.matches("#0 primary ray").count(), 1);
+    let all = text(folder.path(), &[&args[..], &["--sample", "all"]].concat());
+    assert_eq!(all.matches("#0 primary ray").count(), 16);
+    let every = json(folder.path(), &args);
+    check(&every);
+    assert_eq!(every["samples"].as_array().map(Vec::len), Some(16));
+    let seventh = json(folder.path(), &[&args[..], &["--sample", "7"]].concat());
+    assert_eq!(seventh["samples"][0], every["samples"][6]);
+    let wrong = [&["explain"], &args[..], &["--sample", "17"]].concat();
+    let wrong = strahl(folder.path(), &wrong);
+    assert_eq!(wrong.status.code(), Some(1));
+    assert!(stderr(&wrong).contains("no sample 17") && stderr(&wrong).contains("has 16"));
+}
+
+#[test]
+fn numbers_have_the_digits_asked_for() {
+    let folder = folder_with_scene();
+    let args = ["scene.nff", "--pixel", "24,20", "--sampling", "center"];
+    let longest = |digits: &str| {
+        let printed = text(folder.path(), &[&args[..], &["--digits", digits]].concat());
+        let numbers = printed.split(|c: char| !(c.is_ascii_digit() || c == '.'));
+        let decimals = numbers
+            .filter_map(|n| n.split_once('.'))
+            .map(|(_, d)| d.len());
+        decimals.max().expect("a number")
+    };
+    assert!((3..=7).contains(&longest("3")));
+    assert!(longest("full") >= 16);
+    let default = text(folder.path(), &args);
+    assert_eq!(
+        default,
+        text(folder.path(), &[&args[..], &["--digits", "6"]].concat())
+    );
+    // The numbers printed in full are those of JSON.
+    let full = text(folder.path(), &[&args[..], &["--digits", "full"]].concat());
+    let color = json(folder.path(), &args)["color"][0].to_string();
+    assert!(
+        full.contains(&format!("linear colour ({color}, ")),
+        "{color}: {full}"
+    );
+}
+
+/// A deep tree in glass has hundreds of rays: those that matter are shown.
+#[test]
+fn large_trees_show_the_rays_that_add_most() {
+    let folder = pov("light_source { <3, 5, -6>, rgb 1 } background { rgb <.4, .6, .8> }
+        #for (I, 0, 4) sphere { I*z, 1.5 - .2*I pigment { rgbf .95 } finish { reflection .2 } interior { ior 1.3 + .1*I } } #end");
+    let args = [&MIDDLE[..], &["--max-depth", "12", "--adc-bailout", "0"]].concat();
+    let printed = text(folder.path(), &args);
+    let paragraphs = |text: &str| text.matches(", level ").count();
+    assert!((20..=60).contains(&paragraphs(&printed)), "{printed}");
+    assert!(printed.contains("more rays that add (") && printed.contains("`--rays all`"));
+    let all = text(folder.path(), &[&args[..], &["--rays", "all"]].concat());
+    assert!(paragraphs(&all) > 100 && !all.contains("more rays"));
+    check(&json(folder.path(), &args));
+}
+
+/// The README and the book show a pixel with a reflection and a refraction, and what is shown is what is printed.
+#[test]
+fn the_pixels_of_the_documents_have_a_reflection_and_a_refraction() {
+    let repository = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let book = include_str!("../../../../docs/src/explain.md");
+    for (page, text_of_page) in [
+        ("README.md", include_str!("../../../../README.md")),
+        ("explain.md", book),
+    ] {
+        let mut commands = 0;
+        for rest in text_of_page.split("strahl explain ").skip(1) {
+            let command = rest.split(['\n', '`', '|']).next().expect("a command");
+            if !command.contains("--pixel") {
+                continue;
+            }
+            commands += 1;
+            let mut words: Vec<&str> = command.split_whitespace().collect();
+            if let Some(dot) = words.iter().position(|w| *w == "--format") {
+                words.truncate(dot);
+            }
+            let seen = check(&json(&repository, &words));
+            for kind in ["reflection", "transparency"] {
+                assert!(
+                    seen.contains(&kind.to_owned()),
+                    "{page}: {command}: {seen:?}"
+                );
+            }
+        }
+        assert!(commands > 0, "{page} has no command");
+    }
+    let command = "scenes/spheres.nff --pixel 330,210 --sampling center";
+    let words: Vec<&str> = command.split(' ').collect();
+    let printed = text(&repository, &words);
+    let shown: Vec<&str> = book.split("```text\n").skip(1).collect();
+    for block in &shown[..2] {
+        let block = block.split("\n```").next().expect("a block");
+        assert!(
+            printed.contains(block),
+            "not printed:\n{block}\n---\n{printed}"
+        );
+    }
+}
