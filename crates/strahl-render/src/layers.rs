@@ -47,7 +47,7 @@ pub(crate) fn paint<'s>(
         surface.n_shade = top.normal;
     }
     for layer in &paint.layers {
-        let body = body(layer);
+        let body = paint.body(layer);
         sum.ambient += body * layer.finish.ambient;
         sum.emission += body * layer.finish.emission;
         sum.diffuse += body * layer.finish.diffuse;
@@ -146,8 +146,8 @@ pub(crate) fn lit(
     let (mut diffuse, mut highlights) = (Color::BLACK, Color::BLACK);
     for layer in &paint.layers {
         let term = match model {
-            None => layer_term(layer, surface, l, light),
-            Some(model) => layer_term_by(model, layer, surface, l, light),
+            None => layer_term(paint, layer, surface, l, light),
+            Some(model) => layer_term_by(paint, model, layer, surface, l, light),
         };
         diffuse += term.diffuse;
         highlights += term.highlight;
@@ -158,17 +158,20 @@ pub(crate) fn lit(
 /// The light that a layer reflects from the direction `l`, with all its factors.
 #[inline(always)]
 pub(crate) fn layer_term(
+    paint: &TexturePaint<'_>,
     layer: &LayerPoint<'_>,
     surface: &Surface<'_>,
     l: DVec3,
     light: Color,
 ) -> SurfaceTerm {
-    term(layer, layer.finish, None, surface, l, light)
+    let body = paint.body(layer);
+    term(layer, body, layer.finish, None, surface, l, light)
 }
 
 /// The same, with a shading model in place of the finish's own highlights and of its `brilliance`.
 #[cold]
 pub(crate) fn layer_term_by(
+    paint: &TexturePaint<'_>,
     model: ShadingModel,
     layer: &LayerPoint<'_>,
     surface: &Surface<'_>,
@@ -179,12 +182,14 @@ pub(crate) fn layer_term_by(
         brilliance: 1.0,
         ..*layer.finish
     };
-    term(layer, &finish, Some(model), surface, l, light)
+    let body = paint.body(layer);
+    term(layer, body, &finish, Some(model), surface, l, light)
 }
 
 #[inline(always)]
 fn term(
     layer: &LayerPoint<'_>,
+    body: Color,
     finish: &PovFinish,
     model: Option<ShadingModel>,
     surface: &Surface<'_>,
@@ -197,7 +202,7 @@ fn term(
     let mut term = SurfaceTerm {
         n_dot_l: cos,
         diffuse_factor,
-        diffuse: body(layer) * light * diffuse_factor,
+        diffuse: body * light * diffuse_factor,
         tint: Color::WHITE,
         ..SurfaceTerm::default()
     };
@@ -247,15 +252,10 @@ pub(crate) fn report(paint: &TexturePaint<'_>, v: DVec3, eta: f64) -> Vec<LayerR
             finish: *layer.finish,
             share: layer.share,
             above: layer.above,
-            body: body(layer),
+            body: paint.body(layer),
             rise: (!reflection.is_none()).then(|| reflection.rise(layer.normal.dot(v), eta)),
             reflectance: layer.reflectance,
         }
     };
     paint.layers.iter().map(report).collect()
-}
-
-/// The layer's colour, weighted by its opacity and by the transparency of the layers above.
-fn body(layer: &LayerPoint<'_>) -> Color {
-    layer.color.rgb * layer.above * (layer.share * layer.color.opacity())
 }

@@ -1,14 +1,39 @@
 //! Object and material of an element.
 
+use crate::media::{Body, Crossing, Medium};
 use crate::runs::Run;
-use strahl_shade::MaterialId;
+use strahl_shade::{Material, MaterialId};
 
 /// Object and material of an element.
 #[derive(Clone, Debug)]
 pub(crate) enum Looks {
     One(Look),
-    /// Indexed by the tags of a CSG tree's leaves.
-    Leaves(Box<[Look]>),
+    /// Of a CSG tree.
+    Leaves {
+        /// Indexed by the tags of the leaves.
+        looks: Box<[Look]>,
+        /// The leaf that is filled with what the whole is filled with, if there is one.
+        whole: Option<u32>,
+    },
+}
+
+impl Looks {
+    /// Of a tree that is a part of this body.
+    pub(crate) fn of_leaves(looks: Vec<Look>, body: u32) -> Self {
+        let whole = looks.iter().position(|look| look.body == body);
+        Self::Leaves {
+            looks: looks.into(),
+            whole: whole.map(|leaf| leaf as u32),
+        }
+    }
+
+    /// The look that says what is inside of the whole.
+    pub(crate) fn of_inside(&self) -> Option<&Look> {
+        match self {
+            Self::One(look) => Some(look),
+            Self::Leaves { looks, whole } => looks.get((*whole)? as usize),
+        }
+    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,30 +42,60 @@ pub(crate) struct Look {
     pub(crate) material: MaterialId,
     /// Index in the list of texture spaces, or [`Look::NO_SPACE`].
     pub(crate) texture_space: u32,
+    /// The number of the body that it is a part of: what is filled with one medium.
+    pub(crate) body: u32,
+    /// Whether fog is inside too.
+    pub(crate) hollow: bool,
 }
 
 impl Look {
     /// The texture's space is the group's.
     pub(crate) const NO_SPACE: u32 = u32::MAX;
+
+    /// What is inside of it, in the space of the instances whose elements begin at `space`.
+    #[inline]
+    pub(crate) fn medium(&self, material: &Material, space: u64) -> Medium {
+        Medium {
+            body: match Crossing::of(material) {
+                Crossing::BySide => Body::material(self.material),
+                Crossing::ByTurns => Body::object(space, self.body),
+            },
+            material: self.material,
+            hollow: self.hollow,
+        }
+    }
 }
 
-/// Runs are objects of one material.
-impl Run for Look {
-    type Item = Self;
+/// Objects of one material: parts of one body, or bodies of one part each.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct LookRun {
+    first: Look,
+    /// From the body of one to that of the next.
+    bodies: u32,
+}
 
-    fn of(item: Self) -> Self {
-        item
+impl Run for LookRun {
+    type Item = Look;
+
+    fn of(item: Look) -> Self {
+        let (first, bodies) = (item, 0);
+        Self { first, bodies }
     }
 
-    fn goes_on(&mut self, len: u32, item: &Self) -> bool {
+    fn goes_on(&mut self, len: u32, item: &Look) -> bool {
+        if len == 1 {
+            self.bodies = item.body.wrapping_sub(self.first.body);
+        }
         self.item(len) == *item
     }
 
     #[inline(always)]
-    fn item(&self, place: u32) -> Self {
-        Self {
-            object: self.object.wrapping_add(place),
-            ..*self
+    fn item(&self, place: u32) -> Look {
+        let body = self.bodies.wrapping_mul(place);
+        Look {
+            object: self.first.object.wrapping_add(place),
+            body: self.first.body.wrapping_add(body),
+            ..self.first
         }
     }
 }

@@ -54,6 +54,8 @@ impl Prim {
     pub(crate) const ONE_SIDED: u8 = 8;
     /// Has an alpha mask.
     pub(crate) const MASKED: u8 = 16;
+    /// It may matter to rays that they start inside of it.
+    pub(crate) const FILLED: u8 = 32;
 
     pub(crate) const fn new(kind: PrimKind, visible: u8, flags: u8) -> Self {
         let (tag, index, triangle) = match kind {

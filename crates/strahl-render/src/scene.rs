@@ -21,6 +21,17 @@ pub(crate) struct ShapeUse {
     pub(crate) transform: Option<Box<Transform>>,
     /// Object and material; CSG trees have one per leaf.
     pub(crate) look: Looks,
+    /// Where its inside is, if that is not what the surface says.
+    pub(crate) inside: Option<Box<Inside>>,
+}
+
+/// Where the inside of a solid is that is cut or inverted.
+#[derive(Clone, Debug)]
+pub(crate) struct Inside {
+    /// The solid as it was before `clipped_by`, which cuts no more than the surface.
+    pub(crate) solid: Shape,
+    /// Where it counts: as in POV-Ray (measured) the inverse of something bounded fills no more than its box.
+    pub(crate) limit: Aabb,
 }
 
 #[derive(Clone, Debug)]
@@ -118,6 +129,21 @@ pub struct RenderScene {
     pub(crate) sources: SourceMap,
     /// Whether any material lets shadow rays pass.
     pub(crate) transmits: bool,
+    /// Whether it matters to rays what the eye is inside of.
+    pub(crate) fills: bool,
+}
+
+impl Inside {
+    /// The same in another space.
+    pub(crate) fn moved(&self, map: &Transform) -> Option<Self> {
+        let limit = if self.limit.is_bounded() {
+            map.bounds_to_world(&self.limit)
+        } else {
+            Aabb::EVERYTHING
+        };
+        let solid = self.solid.baked(map)?;
+        Some(Self { solid, limit })
+    }
 }
 
 /// Sizes of a compiled scene.
@@ -154,6 +180,8 @@ pub(crate) struct Located<'s> {
     pub(crate) element: u32,
     /// From the group's space to the world; `None` for the world itself.
     pub(crate) to_world: Option<Transform>,
+    /// Where the elements of the innermost instance begin; 0 in the world.
+    pub(crate) space: u64,
 }
 
 /// Everything about a hit, in world space.
@@ -163,6 +191,8 @@ pub(crate) struct Resolved {
     /// The same point in the innermost space, if that is not the world's.
     pub(crate) local: Option<LocalPoint>,
     pub(crate) look: Look,
+    /// Where the elements of the innermost instance begin; 0 in the world.
+    pub(crate) space: u64,
 }
 
 /// The properties of a surface point that determine the start of a ray.
@@ -297,6 +327,7 @@ impl RenderScene {
                     prim,
                     element: rest as u32,
                     to_world,
+                    space: id - group.first_id(prim) - rest,
                 };
             };
             let instance = &group.instances[index as usize];
@@ -352,6 +383,7 @@ impl RenderScene {
             point: world.surface_at(prim, ray, hit, element, uv),
             local: None,
             look,
+            space: 0,
         }
     }
 
@@ -393,6 +425,7 @@ impl RenderScene {
                 point: inner,
                 local: None,
                 look,
+                space: at.space,
             },
             Some(m) => Resolved {
                 point: surface_to_world(m, &inner),
@@ -402,6 +435,7 @@ impl RenderScene {
                     normal: inner.n_geom,
                 }),
                 look,
+                space: at.space,
             },
         }
     }
@@ -483,10 +517,10 @@ impl RenderGroup {
                 let used = &self.shapes[index as usize];
                 match (&used.look, &used.shape) {
                     (Looks::One(look), _) => *look,
-                    (Looks::Leaves(looks), Shape::Csg(csg)) => {
+                    (Looks::Leaves { looks, .. }, Shape::Csg(csg)) => {
                         looks[csg.leaf_tag(csg.leaf_of(element).0) as usize]
                     }
-                    (Looks::Leaves(looks), _) => looks[0],
+                    (Looks::Leaves { looks, .. }, _) => looks[0],
                 }
             }
             PrimKind::Instance(_) => unreachable!("locate ends at a primitive that is no instance"),

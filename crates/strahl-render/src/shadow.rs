@@ -1,10 +1,10 @@
 mod report;
 
 use crate::hit::{Hit, Origin};
-use crate::media::{MediaArena, MediaStack};
+use crate::media::{Crossing, MediaArena, MediaStack};
 use crate::query::Tracer;
 use crate::scene::{InstanceUse, Uv};
-use strahl_math::{DVec3, Interval, Ray};
+use strahl_math::{Interval, Ray};
 use strahl_shade::Color;
 
 /// The last part of the way to a mask, which is ignored: a stencil that is also visible lies in its mask except for rounding
@@ -151,7 +151,17 @@ impl Tracer<'_> {
                 }
             };
             visible *= filter;
-            let absorbed = self.absorbed(arena, inside, ray.direction, hit.t - entered_at);
+            let own = resolved.look.medium(material, resolved.space);
+            let stretch = (hit.t - entered_at) * ray.direction.length();
+            let leaves = match Crossing::of(material) {
+                Crossing::BySide => !entering,
+                Crossing::ByTurns => arena.is_inside(inside, own.body),
+            };
+            let absorbed = if leaves && own.body.is_object() {
+                self.scene.faded(id, stretch)
+            } else {
+                self.scene.absorbed(arena.top(inside), stretch)
+            };
             visible *= absorbed;
             tell(Kept {
                 surface: Some((hit, resolved.look.object)),
@@ -159,14 +169,15 @@ impl Tracer<'_> {
                 absorbed,
             });
             entered_at = hit.t;
-            inside = if entering {
-                arena.entered(inside, id)
+            inside = if leaves {
+                arena.left(inside, own.body)
             } else {
-                arena.left(inside, id)
+                arena.entered(inside, own)
             };
         }
         if range.max.is_finite() {
-            let absorbed = self.absorbed(arena, inside, ray.direction, range.max - entered_at);
+            let stretch = (range.max - entered_at) * ray.direction.length();
+            let absorbed = self.scene.absorbed(arena.top(inside), stretch);
             visible *= absorbed;
             tell(Kept {
                 surface: None,
@@ -178,18 +189,5 @@ impl Tracer<'_> {
             visible,
             hit: !hits.is_empty(),
         }
-    }
-
-    /// The attenuation by the medium over a part of the ray, in units of `t`.
-    fn absorbed(
-        &self,
-        arena: &MediaArena,
-        inside: MediaStack,
-        direction: DVec3,
-        stretch: f64,
-    ) -> Color {
-        arena.top(inside).map_or(Color::WHITE, |id| {
-            self.scene.materials[id.0 as usize].attenuation(stretch * direction.length())
-        })
     }
 }

@@ -1,5 +1,5 @@
 use crate::blocks::Blocks;
-use crate::look::Look;
+use crate::look::{Look, LookRun};
 use crate::prim::{Prim, PrimKind};
 use crate::runs::RunList;
 use strahl_accel::{BLOCK, NO_PRIMITIVE};
@@ -33,7 +33,7 @@ impl PlainSphere {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Spheres {
     kept: Kept,
-    looks: RunList<Look>,
+    looks: RunList<LookRun>,
 }
 
 #[derive(Clone, Debug)]

@@ -2,7 +2,7 @@
 
 use crate::hit::{Hit, Origin};
 use crate::light_sets::Lit;
-use crate::media::{MediaArena, MediaStack};
+use crate::media::{Crossing, MediaArena, MediaStack, Medium};
 use crate::observer::{HitReport, Shading};
 use crate::scene::{RenderScene, Resolved, Uv};
 use crate::trace::{Branch, FirstHit};
@@ -67,7 +67,11 @@ pub(crate) struct Surface<'s> {
     pub(crate) lit: Lit,
     pub(crate) eta_1: f64,
     pub(crate) eta_2: f64,
-    /// The medium the ray comes from and the medium behind the surface; `None` is air.
+    /// Whether the ray is in what is on the other side of the surface, and gets out of it there.
+    inside: bool,
+    /// What is inside of the object.
+    own: Medium,
+    /// What the ray comes from and what is behind the surface; `None` is air.
     medium_1: Option<MaterialId>,
     medium_2: Option<MaterialId>,
     /// Where rays towards the side of the viewer start, which most do.
@@ -93,16 +97,22 @@ impl<'s> Surface<'s> {
             None => point.n_shade,
             Some(pbr) => pbr.shading_normal(point.uv, point.n_shade, point.dpdu, point.dpdv),
         };
-        let own = Some(resolved.look.material);
-        // A thin sheet has the same medium on both sides and is always entered from outside.
-        let (medium_1, medium_2) = if entering || material.thin {
-            (media.top(branch.media), own)
-        } else {
-            // Without a known medium the ray must be inside of the material whose back it hits.
+        let own = resolved.look.medium(material, resolved.space);
+        // A thin sheet has the same medium on both sides and is met from outside.
+        let inside = !material.thin
+            && match Crossing::of(material) {
+                Crossing::BySide => !entering,
+                Crossing::ByTurns => media.is_inside(branch.media, own.body),
+            };
+        let around = media.top(branch.media);
+        let (medium_1, medium_2) = if inside {
+            // Without a known medium the ray must be inside of the material whose back it sees.
             (
-                media.top(branch.media).or(own),
-                media.top_without(branch.media, resolved.look.material),
+                around.or(Some(own.material)),
+                media.top_without(branch.media, own.body),
             )
+        } else {
+            (around, Some(own.material))
         };
         let index = |id| index_of(scene, id, branch.part);
         let (eta_1, eta_2) = (index(medium_1), index(medium_2));
@@ -116,6 +126,8 @@ impl<'s> Surface<'s> {
             lit: scene.lit(hit.id, resolved.look.object),
             eta_1,
             eta_2,
+            inside,
+            own,
             medium_1,
             medium_2,
             front: start(&resolved, hit, entering),
@@ -125,15 +137,19 @@ impl<'s> Surface<'s> {
 
     /// The media a ray is in after passing the surface.
     pub(crate) fn media_behind(&self, before: MediaStack, arena: &mut MediaArena) -> MediaStack {
-        let material = self.resolved.look.material;
         if self.thin {
-            return before;
-        }
-        if self.entering {
-            arena.entered(before, material)
+            before
+        } else if self.inside {
+            arena.left(before, self.own.body)
         } else {
-            arena.left(before, material)
+            arena.entered(before, self.own)
         }
+    }
+
+    /// The material whose `interior` weakens the light on the way to the surface. As in POV-Ray (measured) it does so where a ray
+    /// gets out of an object; what lies in the object is seen as without it.
+    pub(crate) fn fading(&self) -> Option<MaterialId> {
+        (self.inside && self.own.body.is_object()).then_some(self.own.material)
     }
 
     /// Where a ray in this direction starts: certainly on the right side of the surface.

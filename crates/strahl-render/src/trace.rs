@@ -14,12 +14,14 @@
 //! with different reflections send a reflection ray each.
 
 mod detail;
+mod eye;
 mod lights;
 mod nothing;
 mod outcome;
 mod settings;
 mod together;
 
+use eye::Eye;
 use together::{Ahead, KnownLights, Samples};
 
 pub use outcome::{FirstHit, RayCounts, SampleResult};
@@ -34,7 +36,7 @@ use crate::scene::{RenderScene, Uv};
 use crate::surface::{Split, Surface};
 use strahl_math::{DVec3, Interval, Ray};
 use strahl_shade::texture::TexturePaint;
-use strahl_shade::{Color, ShadingModel, SpectralPart};
+use strahl_shade::{Color, MaterialId, ShadingModel, SpectralPart};
 
 /// Grows ray trees; owns the working memory of one thread.
 #[derive(Debug)]
@@ -48,6 +50,8 @@ pub struct TreeTracer<'s> {
     beyond: Option<Color>,
     uv: Uv,
     pub(crate) media: MediaArena,
+    /// What the eye is in.
+    eye: Eye,
     waiting: Vec<Branch>,
     nodes: Vec<Node>,
     pub(crate) shadow_hits: Vec<Hit>,
@@ -81,8 +85,8 @@ pub(crate) struct Branch {
 }
 
 impl Branch {
-    /// The root of a tree.
-    fn primary(ray: &Ray) -> Self {
+    /// The root of a tree, in the media the eye is in.
+    fn primary(ray: &Ray, media: MediaStack) -> Self {
         Self {
             ray: *ray,
             origin: None,
@@ -94,7 +98,7 @@ impl Branch {
             divided: false,
             weight: 1.0,
             share: Share::ALL,
-            media: MediaStack::VACUUM,
+            media,
         }
     }
 }
@@ -164,10 +168,14 @@ impl<'s> TreeTracer<'s> {
             counts: RayCounts::default(),
             settings,
             media: MediaArena::default(),
+            eye: Eye::default(),
             waiting: Vec::new(),
             nodes: Vec::new(),
             shadow_hits: Vec::new(),
-            paint: TexturePaint::default(),
+            paint: TexturePaint {
+                filter_by_color: scene.settings.filter_by_color,
+                ..TexturePaint::default()
+            },
             area_points: Vec::new(),
             mirrors: Vec::new(),
             samples: Samples::default(),
@@ -190,14 +198,14 @@ impl<'s> TreeTracer<'s> {
         mut ahead: Option<&mut Ahead<'s>>,
         observer: &mut O,
     ) -> SampleResult {
+        let eye = self.eye_media(primary.origin);
         if hit.is_none() && !O::ACTIVE {
             return self.nothing(primary);
         }
         let shadow_before = self.counts.shadow;
-        self.media.clear();
         self.nodes.clear();
         self.waiting.clear();
-        let mut branch = Branch::primary(primary);
+        let mut branch = Branch::primary(primary, eye);
         // Most trees have one ray, which needs no stack.
         let (mut first, mut deepest) = (None, 1);
         loop {
@@ -276,20 +284,18 @@ impl<'s> TreeTracer<'s> {
 
         let index = self.nodes.len() as u32;
         let length = hit.map_or(f64::INFINITY, |h| h.t * branch.ray.direction.length());
-        let medium = self.media.top(branch.media);
-        let mut attenuation = medium.map_or(Color::WHITE, |id| {
-            scene.materials[id.0 as usize].attenuation(length)
-        });
-        let mut fog = Color::BLACK;
-        // Fog and rainbows exist only outside of solid objects.
-        if scene.has_air() && medium.is_none() {
-            (attenuation, fog) = scene.air_along(&branch.ray, length);
-        }
-        if branch.divided {
-            let share = branch.part.share();
-            attenuation *= share;
-            fog *= share;
-        }
+        let mut found;
+        let known = ahead.as_ref().map_or(KnownLights::default(), |a| a.lights);
+        let mut surface = match (hit, ahead) {
+            (None, _) => None,
+            (Some(_), Some(ahead)) => Some(&mut ahead.surface),
+            (Some(hit), None) => {
+                found = Surface::at(scene, branch, hit, &self.media, self.uv);
+                Some(&mut found)
+            }
+        };
+        let fading = surface.as_ref().and_then(|s| s.fading());
+        let (attenuation, fog) = self.in_front(branch, length, fading);
         let mut node = Node {
             parent: branch.parent,
             kind: branch.kind,
@@ -310,12 +316,12 @@ impl<'s> TreeTracer<'s> {
             ray: branch.ray,
             hit,
             background,
-            medium,
+            medium: fading.or_else(|| self.media.top(branch.media)),
             attenuation,
             fog,
             part: branch.part,
         };
-        let Some(hit) = hit else {
+        let (Some(hit), Some(surface)) = (hit, surface.take()) else {
             node.local = scene.background.along(branch.ray.direction);
             if O::ACTIVE {
                 observer.ray(report(None, Some(node.local)));
@@ -324,14 +330,6 @@ impl<'s> TreeTracer<'s> {
             return None;
         };
 
-        let mut found;
-        let (surface, known) = match ahead {
-            Some(ahead) => (&mut ahead.surface, ahead.lights),
-            None => {
-                found = Surface::at(scene, branch, hit, &self.media, self.uv);
-                (&mut found, KnownLights::default())
-            }
-        };
         layers::paint(scene, surface, hit, &mut self.paint);
         let surface = &*surface;
         let first = FirstHit {
@@ -383,6 +381,27 @@ impl<'s> TreeTracer<'s> {
         self.nodes.push(node);
         self.queue_branches(branch, index, surface, hit, &split, observer);
         Some(first)
+    }
+
+    /// What lies in front of a hit keeps of its light, and adds to it; `fading` is what the ray gets out of there.
+    #[inline(always)]
+    fn in_front(&self, branch: &Branch, length: f64, fading: Option<MaterialId>) -> (Color, Color) {
+        let scene = self.tracer.scene;
+        let mut attenuation = match fading {
+            Some(id) => scene.faded(id, length),
+            None => scene.absorbed(self.media.top(branch.media), length),
+        };
+        let mut fog = Color::BLACK;
+        if scene.has_air() && self.media.in_air(branch.media) {
+            let (keeps, adds) = scene.air_along(&branch.ray, length);
+            (attenuation, fog) = (attenuation * keeps, adds);
+        }
+        if branch.divided {
+            let share = branch.part.share();
+            attenuation *= share;
+            fog *= share;
+        }
+        (attenuation, fog)
     }
 
     fn model_of(&self, surface: &Surface<'_>) -> ShadingModel {

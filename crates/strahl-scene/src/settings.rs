@@ -18,6 +18,9 @@ pub struct Settings {
     /// Whether a transparency ray that is not refracted counts as a level of the ray tree. POV-Ray counts reflections and
     /// refractions only.
     pub straight_counts: bool,
+    /// Whether what passes a filter is missing in the surface's own colour as scenes from before POV-Ray 3.7 have it:
+    /// `filter · max(r, g, b)` instead of `filter`.
+    pub filter_by_color: bool,
 }
 
 impl Default for Settings {
@@ -29,6 +32,7 @@ impl Default for Settings {
             shading: ShadingModel::BlinnPhong,
             working_space: WorkingSpace::Linear,
             straight_counts: true,
+            filter_by_color: false,
         }
     }
 }

@@ -37,6 +37,12 @@ impl ColorFt {
         1.0 - self.filter - self.transmit
     }
 
+    /// The opacity in scenes from before POV-Ray 3.7 (measured): `1 - filter · max(r, g, b) - transmit`, which may be negative too.
+    #[inline]
+    pub fn opacity_by_color(self) -> f64 {
+        1.0 - (self.filter * self.rgb.max_component() + self.transmit)
+    }
+
     /// The transmittance in each channel: `rgb · filter + transmit`.
     #[inline]
     pub fn attenuation(self) -> Color {

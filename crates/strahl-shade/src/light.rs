@@ -72,6 +72,8 @@ pub struct Light {
     pub highlights: bool,
     /// Whether fog attenuates the light on its way to the lit point.
     pub fogged: bool,
+    /// What is nearer to the light than this casts no shadow in it; 0 by default. (Directional lights are not near anything.)
+    pub clearance: f64,
     /// The extent of an area light, whose centre is the position of `kind`; `None` if it shines from a point.
     pub area: Option<AreaLight>,
 }
@@ -109,6 +111,7 @@ impl Light {
             casts_shadows: true,
             highlights: true,
             fogged: false,
+            clearance: 0.0,
             area: None,
         }
     }
@@ -194,9 +197,19 @@ impl Light {
         Some(LightSample {
             l,
             shadow_direction: to_light,
-            range: Interval::UNTIL_LIGHT,
+            range: self.until_here(distance),
             color,
         })
+    }
+
+    /// Where something casts a shadow on a point at this distance, as a share of the way to the light.
+    #[inline]
+    fn until_here(&self, distance: f64) -> Interval {
+        if self.clearance > 0.0 {
+            Interval::new(0.0, (distance - self.clearance) / distance)
+        } else {
+            Interval::UNTIL_LIGHT
+        }
     }
 
     /// Whether the light's rays are parallel.
@@ -233,7 +246,7 @@ impl Light {
             }
         }
         let (shadow_direction, range) = if distance > 0.0 {
-            (direction * -distance, Interval::UNTIL_LIGHT)
+            (direction * -distance, self.until_here(distance))
         } else {
             (-direction, Interval::new(0.0, 0.0))
         };
@@ -319,6 +332,18 @@ mod tests {
         assert_eq!(p + s.shadow_direction, DVec3::new(1.0, 2.0, 3.0));
         assert!(!s.range.accepts(1.0));
         assert!(light.illuminate(DVec3::new(1.0, 2.0, 3.0)).is_none());
+    }
+
+    #[test]
+    fn what_touches_the_light_casts_no_shadow() {
+        let light = Light {
+            clearance: 1e-3,
+            ..Light::point(DVec3::X * 10.0, Color::WHITE)
+        };
+        let range = light.illuminate(DVec3::ZERO).expect("lit").range;
+        assert!(range.accepts(0.999_89) && !range.accepts(0.999_91));
+        let near = light.illuminate(DVec3::X * 9.9995).expect("lit").range;
+        assert!(near.is_empty());
     }
 
     #[test]

@@ -131,6 +131,12 @@ pub struct PovFinish {
     pub conserve_energy: bool,
     /// Strength of the random darkening of diffuse light (`crand`); default 0.
     pub crand: f64,
+    /// What light from behind is multiplied by, in scenes from before POV-Ray 3.1; default 1.
+    pub refraction: f64,
+    /// The index of refraction of the object, in such scenes; it takes the place of that of the interior.
+    pub ior: Option<f64>,
+    /// The caustics of the object, in such scenes.
+    pub caustics: Option<f64>,
 }
 
 impl Default for PovFinish {
@@ -150,6 +156,9 @@ impl Default for PovFinish {
             reflection: PovReflection::default(),
             conserve_energy: false,
             crand: 0.0,
+            refraction: 1.0,
+            ior: None,
+            caustics: None,
         }
     }
 }

@@ -116,8 +116,24 @@ pub struct TexturePaint<'a> {
     /// The layers: stack by stack, from the top to the bottom.
     pub layers: Vec<LayerPoint<'a>>,
     /// The transmittance of all layers for light from behind: the sum over the stacks of share times the product of `rgb ·
-    /// filter + transmit`, with `conserve_energy` also times `1 - reflectance`.
+    /// filter + transmit`, with `conserve_energy` also times `1 - reflectance`; and all that times the `refraction` of the
+    /// uppermost layer.
     pub transmission: Color,
+    /// Which opacity layers have: [`ColorFt::opacity_by_color`] instead of [`ColorFt::opacity`]. Set by the owner.
+    pub filter_by_color: bool,
+}
+
+impl TexturePaint<'_> {
+    /// The colour of a layer as far as it is opaque and not hidden.
+    #[inline]
+    pub fn body(&self, layer: &LayerPoint<'_>) -> Color {
+        let opacity = if self.filter_by_color {
+            layer.color.opacity_by_color()
+        } else {
+            layer.color.opacity()
+        };
+        layer.color.rgb * layer.above * (layer.share * opacity)
+    }
 }
 
 /// A stack of layers under construction.
@@ -138,6 +154,10 @@ impl Texture {
         };
         self.paint(point, point.n_shade, &Identity, eta, &mut stack, out);
         out.transmission += stack.above * stack.share;
+        let passing = self.refraction();
+        if passing != 1.0 {
+            out.transmission = out.transmission * passing;
+        }
     }
 
     /// The same for a texture in a space of its own, as [`Texture::Transformed`] has it; `None` is the point's space.
@@ -161,6 +181,27 @@ impl Texture {
         let n = NormalSpace::enter(space, point.n_shade);
         self.paint(&inner, n, space, eta, &mut stack, out);
         out.transmission += stack.above * stack.share;
+        let passing = self.refraction();
+        if passing != 1.0 {
+            out.transmission = out.transmission * passing;
+        }
+    }
+
+    /// What light from behind is multiplied by at last (`refraction` in a finish): as measured, of layers the uppermost one's counts,
+    /// and of blended textures none.
+    fn refraction(&self) -> f64 {
+        let mut texture = self;
+        loop {
+            texture = match texture {
+                Self::Plain(plain) => return plain.finish.refraction,
+                Self::Layered(layers) => match layers.last() {
+                    Some(top) => top,
+                    None => return 1.0,
+                },
+                Self::Transformed(_, inner) | Self::UvMapped(inner) => inner,
+                _ => return 1.0,
+            };
+        }
     }
 
     /// Whether it may be transparent somewhere: `false` is certain, `true` is not.

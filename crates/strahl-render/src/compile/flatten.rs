@@ -1,4 +1,7 @@
-use super::materials::{MaterialTable, material_of, material_problem, material_transmits};
+use super::inside;
+use super::materials::{
+    MaterialTable, material_fills, material_of, material_problem, material_transmits,
+};
 use crate::hit::RayClass;
 use crate::light_sets::{LightSetsDraft, Lit};
 use crate::look::{Look, Looks};
@@ -40,6 +43,7 @@ impl FlatGroup {
                     shape,
                     transform: None,
                     look,
+                    inside: None,
                 });
                 PrimKind::Shape(self.shapes.len() as u32 - 1)
             }
@@ -72,6 +76,8 @@ pub(super) fn flatten(scene: &Scene) -> Result<Flat, Vec<Diagnostic>> {
         errors: vec![],
         checked: HashSet::new(),
         in_world: false,
+        air: !scene.fogs.is_empty() || !scene.rainbows.is_empty(),
+        bodies: 0,
     };
     let world = std::iter::once(&scene.objects);
     for objects in scene.groups.iter().map(|g| &g.objects).chain(world) {
@@ -110,6 +116,10 @@ struct Pass {
     checked: HashSet<MaterialId>,
     /// Whether the world is being flattened, not a group.
     in_world: bool,
+    /// Whether there are fogs or rainbows.
+    air: bool,
+    /// Bodies so far.
+    bodies: u32,
 }
 
 /// An object with the attributes it inherits.
@@ -123,7 +133,10 @@ struct Todo<'a> {
     name: Option<&'a Arc<str>>,
     span: Span,
     visibility: Visibility,
+    hollow: bool,
     lit: Lit,
+    /// The body that it is or is a part of; `None` if it is the first of one that has no number yet.
+    body: Option<u32>,
 }
 
 impl<'a> Todo<'a> {
@@ -138,10 +151,12 @@ impl<'a> Todo<'a> {
                 name: object.name.as_ref(),
                 span: object.span,
                 visibility: object.visibility,
+                hollow: object.hollow == Some(true),
                 lit: Lit {
                     both_sides: object.double_illuminated,
                     ..Lit::PLAIN
                 },
+                body: None,
             };
         };
         let (a, b) = (object.visibility, p.visibility);
@@ -166,6 +181,12 @@ impl<'a> Todo<'a> {
                 secondary: a.secondary && b.secondary,
                 shadow: a.shadow && b.shadow,
             },
+            hollow: object.hollow.unwrap_or(p.hollow),
+            body: if fills_itself(object, p.material) {
+                None
+            } else {
+                p.body
+            },
             lit: Lit {
                 set: p.lit.set,
                 both_sides: object.double_illuminated || p.lit.both_sides,
@@ -180,6 +201,7 @@ impl Pass {
         let mut waiting: Vec<Todo<'_>> = Vec::new();
         let mut rest = objects.iter().map(|o| Todo::new(o, None));
         while let Some(mut todo) = waiting.pop().or_else(|| rest.next()) {
+            self.number_body(&mut todo);
             let object = todo.object;
             match &object.kind {
                 ObjectKind::Csg { op, children } if op.is_union() => {
@@ -200,7 +222,7 @@ impl Pass {
                     group.prims.push(Prim::new(
                         PrimKind::Instance(index),
                         visible(todo.visibility),
-                        Prim::STOPS | Prim::TRANSMITS,
+                        Prim::STOPS | Prim::TRANSMITS | Prim::FILLED,
                     ));
                 }
                 ObjectKind::Instance(id) => {
@@ -213,6 +235,14 @@ impl Pass {
                 }
             }
         }
+    }
+
+    /// Numbers the body that an object is the first of.
+    fn number_body(&mut self, todo: &mut Todo<'_>) {
+        todo.body.get_or_insert_with(|| {
+            self.bodies = self.bodies.wrapping_add(1);
+            self.bodies
+        });
     }
 
     /// The children of a union. Those of a light group get a light set, which the lights of the group join here.
@@ -275,6 +305,8 @@ impl Pass {
             object,
             material,
             texture_space,
+            body: todo.body.unwrap_or(0),
+            hollow: todo.hollow,
         }
     }
 
@@ -295,7 +327,12 @@ impl Pass {
             0
         };
         let filtered = if sides | mask == 0 { 0 } else { Prim::FILTERED };
-        light | sides | mask | filtered
+        let filled = if material_fills(material, self.air) {
+            Prim::FILLED
+        } else {
+            0
+        };
+        light | sides | mask | filtered | filled
     }
 
     fn invalid(&mut self, todo: &Todo<'_>, kind: &str, error: &GeometryError) {
@@ -340,6 +377,7 @@ impl Pass {
             shape: shape.clone(),
             transform: Some(Box::new(todo.transform)),
             look: Looks::One(look),
+            inside: None,
         });
         let kind = PrimKind::Placed(group.shapes.len() as u32 - 1);
         group.prims.push(Prim::new(kind, visible, flags));
@@ -361,9 +399,14 @@ impl Pass {
                 let flags = looks
                     .iter()
                     .fold(0, |f, look| f | self.flags(look.material));
-                let looks = Looks::Leaves(looks.into());
+                let looks = Looks::of_leaves(looks, todo.body.unwrap_or(0));
                 let visible = visible(todo.visibility);
                 group.add_shape(Arc::new(csg).into(), looks, visible, flags);
+                if flags & Prim::FILLED != 0
+                    && let Some(used) = group.shapes.last_mut()
+                {
+                    used.inside = inside::of(todo.object, &todo.transform).map(Box::new);
+                }
             }
         }
     }
@@ -382,49 +425,59 @@ impl Pass {
                     let children = done.split_off(done.len() - count);
                     done.push(combine(op, children));
                 }
-                Step::Visit(mut todo) => match &todo.object.kind {
-                    ObjectKind::Csg { op, children } => {
-                        // Lights among the operands shine, but are not operands.
-                        let is_light = |c: &Object| matches!(c.kind, ObjectKind::Light(_));
-                        let count = children.0.iter().filter(|c| !is_light(c)).count();
-                        let children = self.union_parts(*op, children, &mut todo);
-                        if let Some(problem) = wrong_count(*op, count) {
-                            self.errors.push(Diagnostic::error(problem).at(todo.span));
+                Step::Visit(mut todo) => {
+                    self.number_body(&mut todo);
+                    match &todo.object.kind {
+                        ObjectKind::Csg { op, children } => {
+                            // Lights among the operands shine, but are not operands.
+                            let is_light = |c: &Object| matches!(c.kind, ObjectKind::Light(_));
+                            let count = children.0.iter().filter(|c| !is_light(c)).count();
+                            let children = self.union_parts(*op, children, &mut todo);
+                            if let Some(problem) = wrong_count(*op, count) {
+                                self.errors.push(Diagnostic::error(problem).at(todo.span));
+                                return None;
+                            }
+                            steps.push(Step::Combine(*op, count));
+                            steps.extend(
+                                children
+                                    .rev()
+                                    .map(|c| Step::Visit(Box::new(Todo::new(c, Some(&todo))))),
+                            );
+                        }
+                        ObjectKind::Light(light) => self.light(light, &todo),
+                        ObjectKind::Shape(shape) => {
+                            if let Err(error) = shape.validate() {
+                                self.invalid(&todo, shape.kind(), &error);
+                            }
+                            looks.push(self.look(&todo, shape.kind()));
+                            let tag = looks.len() as u32 - 1;
+                            let transform =
+                                (!todo.transform.is_identity()).then(|| Box::new(todo.transform));
+                            done.push(CsgNode::Leaf {
+                                shape: shape.clone(),
+                                transform,
+                                tag,
+                            });
+                        }
+                        ObjectKind::Instance(_) => {
+                            let message = "a group cannot be instanced inside of a CSG object other than a union; \
+                                       repeat its objects instead";
+                            self.errors.push(Diagnostic::error(message).at(todo.span));
                             return None;
                         }
-                        steps.push(Step::Combine(*op, count));
-                        steps.extend(
-                            children
-                                .rev()
-                                .map(|c| Step::Visit(Box::new(Todo::new(c, Some(&todo))))),
-                        );
                     }
-                    ObjectKind::Light(light) => self.light(light, &todo),
-                    ObjectKind::Shape(shape) => {
-                        if let Err(error) = shape.validate() {
-                            self.invalid(&todo, shape.kind(), &error);
-                        }
-                        looks.push(self.look(&todo, shape.kind()));
-                        let tag = looks.len() as u32 - 1;
-                        let transform =
-                            (!todo.transform.is_identity()).then(|| Box::new(todo.transform));
-                        done.push(CsgNode::Leaf {
-                            shape: shape.clone(),
-                            transform,
-                            tag,
-                        });
-                    }
-                    ObjectKind::Instance(_) => {
-                        let message = "a group cannot be instanced inside of a CSG object other than a union; \
-                                       repeat its objects instead";
-                        self.errors.push(Diagnostic::error(message).at(todo.span));
-                        return None;
-                    }
-                },
+                }
             }
         }
         done.pop()
     }
+}
+
+/// Whether an object has a medium of its own and not that of the whole: parts that got theirs from the whole share it.
+fn fills_itself(object: &Object, whole: Option<&Arc<Material>>) -> bool {
+    let interior = |m: Option<&Arc<Material>>| m.and_then(|m| m.interior.as_ref().map(Arc::as_ptr));
+    let own = interior(object.material.as_ref());
+    own.is_some() && own != interior(whole)
 }
 
 fn visible(v: Visibility) -> u8 {
@@ -447,7 +500,7 @@ fn wrong_count(op: CsgOp, count: usize) -> Option<String> {
     (!right).then(|| format!("{} takes {expected}, found {count}", op.name()))
 }
 
-fn combine(op: CsgOp, children: Vec<CsgNode>) -> CsgNode {
+pub(super) fn combine(op: CsgOp, children: Vec<CsgNode>) -> CsgNode {
     let operands = children.into_iter().collect();
     match op {
         CsgOp::Union | CsgOp::LightGroup { .. } => CsgNode::Union(operands),

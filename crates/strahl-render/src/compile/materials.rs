@@ -49,6 +49,15 @@ pub(crate) fn material_transmits(material: &Material) -> bool {
     }
 }
 
+/// Whether it may matter to rays that they start inside of the material; `air` is whether there are fogs or rainbows.
+pub(super) fn material_fills(material: &Material, air: bool) -> bool {
+    if material.texture.is_some() {
+        return air || material.interior.is_some();
+    }
+    let seen = material.eta != 1.0 || !material.absorption.is_black();
+    (seen || air) && !material.thin && material_transmits(material)
+}
+
 /// The error in a material's numbers, if there is one.
 pub(super) fn material_problem(material: &Material) -> Option<String> {
     let f = &material.finish;

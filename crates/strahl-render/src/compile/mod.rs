@@ -10,6 +10,7 @@
 mod assemble;
 mod cut;
 mod flatten;
+mod inside;
 mod materials;
 mod shapes;
 mod spaces;
@@ -164,10 +165,13 @@ impl Prepared {
         for mask in masks.iter_mut().flatten() {
             mask.group = renumber(mask.group);
         }
+        let air = !self.fogs.is_empty() || !self.rainbows.is_empty();
+        let fills = |m: &Arc<Material>| materials::material_fills(m, air);
         let transmits = self.materials.iter().any(|m| material_transmits(m));
         let disperses = |m: &Arc<Material>| m.interior.as_ref().is_some_and(|i| i.disperses());
         RenderScene {
             disperses: self.materials.iter().any(disperses),
+            fills: self.materials.iter().any(fills),
             groups: groups.collect(),
             objects: self.objects,
             materials: self.materials,

@@ -154,6 +154,12 @@ fn extract(group: &mut FlatGroup, cluster: &[u32]) -> (FlatGroup, DVec3) {
             _ => continue,
         };
         inner.add_shape(shape, look, prim.visible, prim.flags);
+        if let PrimKind::Shape(index) = prim.kind()
+            && let Some(inside) = &group.shapes[index as usize].inside
+            && let Some(used) = inner.shapes.last_mut()
+        {
+            used.inside = inside.moved(&home).map(Box::new);
+        }
     }
     (inner, anchor.unwrap_or_default())
 }

@@ -93,8 +93,10 @@ impl TreeTracer<'_> {
         }
         for layer in &self.paint.layers {
             let term = match self.settings.force_shading {
-                None => layers::layer_term(layer, surface, l, arriving),
-                Some(model) => layers::layer_term_by(model, layer, surface, l, arriving),
+                None => layers::layer_term(&self.paint, layer, surface, l, arriving),
+                Some(model) => {
+                    layers::layer_term_by(&self.paint, model, layer, surface, l, arriving)
+                }
             };
             detail.terms.push(term);
         }

@@ -126,7 +126,7 @@ impl TreeTracer<'_> {
         branch: &Branch,
     ) -> Option<Color> {
         let scene = self.tracer.scene;
-        if !light.fogged || scene.fogs.is_empty() || self.media.top(branch.media).is_some() {
+        if !light.fogged || scene.fogs.is_empty() || !self.media.in_air(branch.media) {
             return None;
         }
         let ray = Ray::new(surface.resolved.point.position, sample.l);

@@ -1,6 +1,6 @@
 //! Primary rays that hit nothing: the background.
 
-use super::{SampleResult, TraceSettings, TreeTracer};
+use super::{Branch, SampleResult, TraceSettings, TreeTracer};
 use crate::observer::RayKind;
 use crate::scene::RenderScene;
 use strahl_math::Ray;
@@ -10,7 +10,7 @@ use strahl_shade::Color;
 /// The radiance along primary rays that hit nothing, if it is the same for all.
 pub(super) fn common(scene: &RenderScene, settings: &TraceSettings) -> Option<Color> {
     match &scene.background {
-        Background::Solid(color) if !scene.has_air() => {
+        Background::Solid(color) if !scene.has_air() && !scene.absorbs_around_the_eye() => {
             Some(settings.decoded(*color + Color::BLACK))
         }
         _ => None,
@@ -21,16 +21,21 @@ impl TreeTracer<'_> {
     /// The radiance along a primary ray that hits nothing.
     pub(crate) fn nothing(&mut self, primary: &Ray) -> SampleResult {
         self.counts.count(RayKind::Primary, false);
-        let color = self.beyond.unwrap_or_else(|| {
-            let scene = self.tracer.scene;
-            // The same sum as of a tree without branches, including the sign of zeros.
-            let mut color = scene.background.along(primary.direction) + Color::BLACK;
-            if scene.has_air() {
-                let (keeps, adds) = scene.air_along(primary, f64::INFINITY);
-                color = color * keeps + adds;
+        let color = match self.beyond {
+            Some(color) => color,
+            None => {
+                let scene = self.tracer.scene;
+                let branch = Branch::primary(primary, self.eye_media(primary.origin));
+                let (keeps, adds) = self.in_front(&branch, f64::INFINITY, None);
+                // The same sum as of a tree without branches, including the sign of zeros.
+                let mut color = scene.background.along(primary.direction) + Color::BLACK;
+                color *= keeps;
+                if scene.has_air() {
+                    color += adds;
+                }
+                self.settings.decoded(color)
             }
-            self.settings.decoded(color)
-        });
+        };
         SampleResult {
             color,
             first: None,

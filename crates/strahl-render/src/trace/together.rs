@@ -3,6 +3,7 @@
 
 use super::{Branch, TreeTracer};
 use crate::hit::RayClass;
+use crate::media::MediaStack;
 use crate::surface::Surface;
 use arrayvec::ArrayVec;
 use strahl_accel::PACKET;
@@ -58,15 +59,32 @@ impl<'s> TreeTracer<'s> {
     /// Traces the trees of primary rays, at most [`PACKET`], and returns their radiances. It pays if the rays are close to each
     /// other.
     pub(crate) fn trace_together(&mut self, rays: &[Ray]) -> ArrayVec<Color, PACKET> {
+        let (Some(first), scene) = (rays.first(), self.tracer.scene) else {
+            return ArrayVec::new();
+        };
+        let eye = self.eye_media(first.origin);
+        let as_first = |ray: &Ray| ray.origin == first.origin;
+        if scene.fills
+            && !rays.iter().all(as_first)
+            && !rays
+                .iter()
+                .all(|ray| self.eye_media(ray.origin) == MediaStack::VACUUM)
+        {
+            // Each may start in other media.
+            return rays
+                .iter()
+                .map(|ray| self.trace(ray, &mut ()).color)
+                .collect();
+        }
         let range = Interval::FORWARD;
         let mut hits = [None; PACKET];
         self.tracer
             .closest_hits(rays, range, &[None; PACKET], RayClass::Camera, &mut hits);
         let mut all = ArrayVec::<Ahead<'s>, PACKET>::new();
-        let scene = self.tracer.scene;
         for (ray, hit) in rays.iter().zip(&hits) {
             if let Some(hit) = hit {
-                let surface = Surface::at(scene, &Branch::primary(ray), hit, &self.media, self.uv);
+                let surface =
+                    Surface::at(scene, &Branch::primary(ray, eye), hit, &self.media, self.uv);
                 all.push(Ahead {
                     plain: self.is_plain(&surface),
                     surface,

@@ -161,6 +161,7 @@ impl Parser<'_> {
         settings.straight_counts = false;
         // Scenes from before 3.7 without a setting use display values. (Of several versions the last one counts.)
         let old = self.version < 3.7 || !global.versioned;
+        settings.filter_by_color = old;
         settings.working_space = global.working_space.unwrap_or(if old {
             WorkingSpace::Srgb
         } else {

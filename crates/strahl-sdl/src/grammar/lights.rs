@@ -7,6 +7,9 @@ use strahl_math::{DVec3, Transform, det};
 use strahl_scene::{CsgOp, LightMask, Object, ObjectExt, ObjectKind, SceneLight};
 use strahl_shade::{AreaLight, Color, Falloff, Light, LightKind};
 
+/// What is nearer to a light casts no shadow in it (measured with POV-Ray 3.7): so lights may lie in surfaces.
+const LIGHT_CLEARANCE: f64 = 1e-3;
+
 /// `light_source { ... }` as a statement.
 pub(super) fn light_statement(p: &mut Parser<'_>) -> PResult<()> {
     let entity = light_source(p)?;
@@ -356,6 +359,7 @@ impl Parser<'_> {
         light.casts_shadows = !draft.shadowless;
         light.highlights = !draft.shadowless;
         light.fogged = draft.fogged;
+        light.clearance = LIGHT_CLEARANCE;
         if draft.fade_distance > 0.0 && draft.fade_power > 0.0 {
             light.falloff = Falloff::Fade {
                 distance: draft.fade_distance,

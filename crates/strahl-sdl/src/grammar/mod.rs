@@ -34,6 +34,7 @@ use crate::keywords::{Word, WordKind};
 use crate::parser::{PResult, Parser};
 use crate::token::{Kind, Token};
 use entity::is_nothing;
+use texture::{fill_parts, is_bare};
 
 /// Reads a statement; its word is already taken.
 type StatementParser = fn(&mut Parser<'_>) -> PResult<()>;
@@ -137,9 +138,10 @@ impl Parser<'_> {
         if is_nothing(object) {
             return;
         }
-        if object.material.is_none() {
+        let uncovered = object.material.as_deref().is_none_or(is_bare);
+        if uncovered || self.state.materials.has_bare() {
             // The default texture does not move with the object.
-            let texture = match &object.transform {
+            let mut texture = match &object.transform {
                 Some(map) => self
                     .state
                     .default_texture
@@ -147,7 +149,12 @@ impl Parser<'_> {
                     .transformed(&map.inverted()),
                 None => self.state.default_texture.clone(),
             };
-            object.material = Some(self.material(&texture));
+            if uncovered {
+                texture.written = true;
+                texture.interior = object.material.as_ref().and_then(|m| m.interior.clone());
+                object.material = Some(self.material(&texture));
+            }
+            fill_parts(object, &texture);
         }
         self.scene.objects.0.push(entity.object);
     }

@@ -23,7 +23,7 @@ mod statement;
 mod weight;
 
 pub(super) use bitmap::KnownPicture;
-pub(super) use material::{KnownMaterials, fill_parts};
+pub(super) use material::{KnownMaterials, fill_parts, is_bare};
 
 pub use pattern::pattern_words;
 

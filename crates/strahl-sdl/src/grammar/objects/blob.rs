@@ -54,6 +54,7 @@ pub(super) fn blob(p: &mut Parser<'_>) -> PResult<Entity> {
         };
         let texture = Texture {
             surface: Arc::new(Surface::Shared(Arc::new(shares), members)),
+            written: true,
             ..whole
         };
         entity.object.material = Some(p.material(&texture));

@@ -76,11 +76,12 @@ impl Parser<'_> {
             && let Some(texture) = &entity.texture
         {
             entity.object.material = Some(self.material(texture));
-            if let Some(interior) = &texture.interior {
-                if combines(&entity.object) {
-                    self.expand_instances(&mut entity.object)?;
-                }
-                fill_parts(&mut entity.object, interior);
+            let fills = texture.whole_interior().is_some();
+            if fills {
+                self.expand_unfilled(&mut entity.object)?;
+            }
+            if fills || self.state.materials.has_bare() {
+                fill_parts(&mut entity.object, texture);
             }
         }
         Ok(())
@@ -163,8 +164,9 @@ impl Parser<'_> {
                 draft.bounds = self.enclosing("`bounded_by`", Word::ClippedBy, &draft.clips)?;
                 return Ok(true);
             }
-            // `hollow` matters for media and fog; the others choose POV-Ray's methods.
-            Some(Word::Hollow | Word::Hierarchy | Word::SplitUnion | Word::Sturm) => {}
+            Some(Word::Hollow) => entity.object.hollow = Some(true),
+            // These choose POV-Ray's methods.
+            Some(Word::Hierarchy | Word::SplitUnion | Word::Sturm) => {}
             _ => return Ok(false),
         }
         self.take(token)?;
@@ -175,6 +177,7 @@ impl Parser<'_> {
                 Some(Word::NoImage) => visibility.camera = true,
                 Some(Word::NoReflection) => visibility.secondary = true,
                 Some(Word::DoubleIlluminate) => entity.object.double_illuminated = false,
+                Some(Word::Hollow) => entity.object.hollow = Some(false),
                 _ => {}
             }
         }
@@ -230,11 +233,6 @@ impl Parser<'_> {
         }
         Ok(found)
     }
-}
-
-/// Whether an object is an operation that wants all its parts.
-fn combines(object: &Object) -> bool {
-    matches!(&object.kind, ObjectKind::Csg { op, .. } if !op.is_union())
 }
 
 /// Cuts an object, without a cap; the clipping objects stand in its parent's space.

@@ -9,6 +9,7 @@
 
 use crate::grammar::Entity;
 use crate::grammar::entity::{Declared, is_nothing};
+use crate::grammar::texture::is_bare;
 use crate::parser::{PResult, Parser};
 use crate::symbol::Symbol;
 use std::collections::HashMap;
@@ -37,6 +38,10 @@ pub(crate) struct Tally {
     elements: u64,
     /// Whether a part inherits its material from the use.
     inherits: bool,
+    /// Whether a part is covered but not filled, which a use may change.
+    unfilled: bool,
+    /// Whether a part is filled but not covered, which each use changes.
+    bare: bool,
     /// Whether a part is a light or a group of them.
     lights: bool,
     /// Shapes and operations, including those of the declared objects in it.
@@ -49,6 +54,10 @@ impl Tally {
         let mut waiting = vec![(object, false)];
         while let Some((object, above)) = waiting.pop() {
             let has_material = above || (tally.parts > 0 && object.material.is_some());
+            if let Some(material) = object.material.as_deref().filter(|_| tally.parts > 0) {
+                tally.bare |= is_bare(material);
+                tally.unfilled |= material.interior.is_none();
+            }
             tally.parts += 1;
             tally.expanded = tally.expanded.saturating_add(1);
             match &object.kind {
@@ -65,6 +74,7 @@ impl Tally {
                     // Its parts may inherit it; checking them would not be worth it.
                     tally.inherits |= !has_material;
                     let inside = shared.objects.get(id.0 as usize);
+                    tally.unfilled |= inside.is_some_and(|d| d.tally.unfilled);
                     let parts = inside.map_or(0, |declared| declared.tally.expanded);
                     tally.expanded = tally.expanded.saturating_add(parts);
                 }
@@ -103,8 +113,8 @@ impl Parser<'_> {
             parts, elements, ..
         } = declared.tally;
         let uses = declared.uses.fetch_add(1, Ordering::Relaxed);
-        // Lights shine where they stand, so each use needs its own.
-        if declared.tally.lights {
+        // Lights shine where they stand, so each use needs its own; and bare parts are covered by each in its way.
+        if declared.tally.lights || declared.tally.bare {
             return declared.entity.clone();
         }
         let large = parts > SMALL || elements > FEW_TRIANGLES + parts;
@@ -135,6 +145,18 @@ impl Parser<'_> {
         Ok(())
     }
 
+    /// The same for an object that fills its parts, if it wants all of them or some are covered but not filled.
+    ///
+    /// # Errors
+    /// If they are too many.
+    pub(in crate::grammar) fn expand_unfilled(&mut self, object: &mut Object) -> PResult<()> {
+        let combines = matches!(&object.kind, ObjectKind::Csg { op, .. } if !op.is_union());
+        if combines || Tally::of(object, &self.state.shared).unfilled {
+            self.expand_instances(object)?;
+        }
+        Ok(())
+    }
+
     /// Makes the scene's groups; called when the whole text is read and no name is needed any more.
     ///
     /// # Errors
@@ -160,6 +182,7 @@ fn attributes(object: &Object, kind: ObjectKind) -> Object {
         material: object.material.clone(),
         transform: object.transform.clone(),
         visibility: object.visibility,
+        hollow: object.hollow,
         double_illuminated: object.double_illuminated,
         kind,
     }

@@ -116,6 +116,13 @@ impl Parser<'_> {
                 finish.conserve_energy = self.flag()?;
             }
             Word::Crand => finish.crand = self.finish_float(token)?,
+            // What belongs into an `interior` since version 3.1, and counts before it.
+            Word::Ior => {
+                self.take(token)?;
+                finish.ior = Some(self.positive("the index of refraction")?);
+            }
+            Word::Refraction => finish.refraction = self.finish_float(token)?,
+            Word::Caustics => finish.caustics = Some(self.finish_float(token)?),
             _ => return self.skip_item(token, "`finish`"),
         }
         Ok(())

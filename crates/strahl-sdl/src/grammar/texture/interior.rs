@@ -60,7 +60,7 @@ impl Parser<'_> {
         })
     }
 
-    fn positive(&mut self, what: &str) -> PResult<f64> {
+    pub(super) fn positive(&mut self, what: &str) -> PResult<f64> {
         let token = self.peek()?;
         let place = self.place_of(token);
         let x = self.float()?;

@@ -1,6 +1,7 @@
 use super::Texture;
 use crate::parser::Parser;
 use std::sync::Arc;
+use strahl_math::Transform;
 use strahl_scene::{Object, ObjectKind};
 use strahl_shade::Material;
 use strahl_shade::interior::Interior;
@@ -41,45 +42,88 @@ impl PartialEq for Texture {
 
 impl Texture {
     fn to_material(&self) -> Material {
+        let interior = self.whole_interior();
         Material {
-            eta: self.interior.as_ref().map_or(1.0, |i| i.ior),
+            eta: interior.as_ref().map_or(1.0, |i| i.ior),
             inner_texture: self.inner_surface.clone().map(SharedTexture),
-            interior: self.interior.clone(),
+            interior,
             ..Material::textured(SharedTexture(Arc::clone(&self.surface)))
         }
     }
+
+    /// The interior with what old scenes write into the finish instead.
+    pub(in crate::grammar) fn whole_interior(&self) -> Option<Arc<Interior>> {
+        let finish = &self.top().finish;
+        if finish.ior.is_none() && finish.caustics.is_none() {
+            return self.interior.clone();
+        }
+        let mut interior = self.interior.as_deref().copied().unwrap_or_default();
+        interior.ior = finish.ior.unwrap_or(interior.ior);
+        interior.caustics = finish.caustics.unwrap_or(interior.caustics);
+        Some(Arc::new(interior))
+    }
+
+    /// Whether the object says what fills it but not what covers it: that it takes from the whole that it is a part of, or at last
+    /// from the default.
+    pub(in crate::grammar) fn is_bare(&self) -> bool {
+        !self.written && !self.uv_mapped && self.inner_surface.is_none() && self.interior.is_some()
+    }
 }
 
-/// Fills the parts of a combined object that have a texture but no interior of their own.
-pub(in crate::grammar) fn fill_parts(object: &mut Object, interior: &Arc<Interior>) {
+/// Whether a material says what fills an object but not what covers it.
+pub(in crate::grammar) fn is_bare(material: &Material) -> bool {
+    material.texture.is_none()
+}
+
+/// Gives the parts of a combined object what they don't say themselves: those that are not covered what covers the whole, those that
+/// are not filled what fills the whole.
+pub(in crate::grammar) fn fill_parts(object: &mut Object, whole: &Texture) {
     // Parts that shared a material go on sharing one.
     let mut filled: Vec<(Arc<Material>, Arc<Material>)> = vec![];
-    let mut waiting = vec![object];
-    while let Some(object) = waiting.pop() {
+    let interior = object.material.as_ref().and_then(|m| m.interior.clone());
+    // From the space of a part to that of the whole.
+    let mut waiting = vec![(object, Transform::IDENTITY)];
+    while let Some((object, map)) = waiting.pop() {
         let ObjectKind::Csg { children, .. } = &mut object.kind else {
             continue;
         };
         for child in &mut children.0 {
-            if let Some(before) = &child.material
-                && before.interior.is_none()
-            {
-                let known = filled.iter().rev().take(RECENT);
-                let known = known.into_iter().find(|(old, _)| Arc::ptr_eq(old, before));
-                let after = match known {
-                    Some((_, after)) => Arc::clone(after),
-                    None => {
-                        let after = Arc::new(Material {
-                            interior: Some(Arc::clone(interior)),
-                            eta: interior.ior,
-                            ..Material::clone(before)
-                        });
-                        filled.push((Arc::clone(before), Arc::clone(&after)));
-                        after
-                    }
+            let map = match child.transform.as_deref() {
+                Some(own) => own.then(&map),
+                None => map,
+            };
+            if let Some(before) = &child.material {
+                let after = if is_bare(before) {
+                    (!whole.is_bare()).then(|| {
+                        let covered = whole.transformed(&map.inverted());
+                        let texture = Texture {
+                            interior: before.interior.clone(),
+                            ..covered
+                        };
+                        Arc::new(texture.to_material())
+                    })
+                } else if let (None, Some(interior)) = (&before.interior, &interior) {
+                    let mut known = filled.iter().rev().take(RECENT);
+                    Some(match known.find(|(old, _)| Arc::ptr_eq(old, before)) {
+                        Some((_, after)) => Arc::clone(after),
+                        None => {
+                            let after = Arc::new(Material {
+                                interior: Some(Arc::clone(interior)),
+                                eta: interior.ior,
+                                ..Material::clone(before)
+                            });
+                            filled.push((Arc::clone(before), Arc::clone(&after)));
+                            after
+                        }
+                    })
+                } else {
+                    None
                 };
-                child.material = Some(after);
+                if after.is_some() {
+                    child.material = after;
+                }
             }
-            waiting.push(child);
+            waiting.push((child, map));
         }
     }
 }
@@ -92,6 +136,8 @@ pub(in crate::grammar) struct KnownMaterials {
     /// Those with one colour and finish, in a table by hash in which the last one replaces an earlier one. Exported scenes
     /// repeat the same few colours; scenes with a different colour for each object must not pay for a table of all.
     plain: Vec<Option<(u64, Arc<Material>)>>,
+    /// Whether there are bare ones.
+    bare: bool,
 }
 
 impl KnownMaterials {
@@ -99,8 +145,20 @@ impl KnownMaterials {
     /// freed.
     const PLAIN: usize = 1 << 10;
 
+    /// Whether a material has been made that says what fills an object but not what covers it.
+    pub(in crate::grammar) const fn has_bare(&self) -> bool {
+        self.bare
+    }
+
     /// The material of a texture.
     fn of(&mut self, texture: &Texture) -> Arc<Material> {
+        if texture.is_bare() {
+            self.bare = true;
+            return Arc::new(Material {
+                texture: None,
+                ..texture.to_material()
+            });
+        }
         match plain_hash(texture) {
             Some(hash) => self.of_plain(texture, hash),
             None => self.of_pattern(texture),

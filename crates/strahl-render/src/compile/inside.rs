@@ -1,0 +1,91 @@
+//! Where the insides of solids are that are cut or inverted.
+
+use super::flatten::combine;
+use crate::scene::Inside;
+use std::sync::Arc;
+use strahl_geometry::{Csg, CsgNode, Primitive, Shape};
+use strahl_math::{Aabb, Transform};
+use strahl_scene::{CsgOp, Object, ObjectKind};
+
+/// The inside of an object that is cut or inverted as a whole; `to_group` is from its own space to that of its group. As in POV-Ray
+/// (measured) `clipped_by` cuts the surface and not the inside, and neither reaches beyond the boxes of what takes part.
+pub(super) fn of(object: &Object, to_group: &Transform) -> Option<Inside> {
+    let (mut inner, mut inverted) = (object, false);
+    let mut map = *to_group;
+    let mut limit = Aabb::EVERYTHING;
+    while let ObjectKind::Csg {
+        op: op @ (CsgOp::Clip | CsgOp::Inverse),
+        children,
+    } = &inner.kind
+    {
+        let (first, others) = children.0.split_first()?;
+        inverted ^= *op == CsgOp::Inverse;
+        for other in others {
+            limit = limit.intersection(&bounds(&solid(other, &placed(other, &map))?));
+        }
+        map = placed(first, &map);
+        inner = first;
+    }
+    if std::ptr::eq(inner, object) {
+        return None;
+    }
+    let own = solid(inner, &map)?;
+    limit = limit.intersection(&bounds(&own));
+    let own = if inverted {
+        let node = CsgNode::leaf(Arc::new(own), 0).inverted();
+        Csg::try_new(node).ok()?
+    } else {
+        own
+    };
+    Some(Inside {
+        solid: Arc::new(own).into(),
+        limit,
+    })
+}
+
+/// The box of something bounded; that of half-spaces and the like bounds nothing.
+fn bounds(solid: &Csg) -> Aabb {
+    let bounds = solid.bounds();
+    if bounds.is_bounded() {
+        bounds
+    } else {
+        Aabb::EVERYTHING
+    }
+}
+
+/// From an object's own space to that of its group, given the same for what it is a part of.
+fn placed(object: &Object, outer: &Transform) -> Transform {
+    match object.transform.as_deref() {
+        None => *outer,
+        Some(own) => own.then(outer),
+    }
+}
+
+/// The tree of an object by itself; `to_group` is from its own space. Walked with a list, since trees may be deeper than the stack.
+fn solid(object: &Object, to_group: &Transform) -> Option<Csg> {
+    enum Step<'a> {
+        Visit(&'a Object, Transform),
+        Build(CsgOp, usize),
+    }
+    let mut steps = vec![Step::Visit(object, *to_group)];
+    let mut done: Vec<CsgNode> = vec![];
+    while let Some(step) = steps.pop() {
+        let node = match step {
+            Step::Build(op, count) => combine(op, done.split_off(done.len() - count)),
+            Step::Visit(object, map) => match &object.kind {
+                ObjectKind::Csg { op, children } => {
+                    let is_light = |c: &&Object| matches!(c.kind, ObjectKind::Light(_));
+                    let parts = || children.0.iter().filter(|c| !is_light(c));
+                    steps.push(Step::Build(*op, parts().count()));
+                    let parts = parts().rev();
+                    steps.extend(parts.map(|part| Step::Visit(part, placed(part, &map))));
+                    continue;
+                }
+                ObjectKind::Shape(shape) => CsgNode::leaf(Shape::clone(shape), 0).transformed(map),
+                ObjectKind::Instance(_) | ObjectKind::Light(_) => return None,
+            },
+        };
+        done.push(node);
+    }
+    Csg::try_new(done.pop()?).ok()
+}

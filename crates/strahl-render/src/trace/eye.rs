@@ -1,0 +1,224 @@
+//! What the eye is inside of.
+
+use super::TreeTracer;
+use crate::media::{MediaStack, Medium};
+use crate::prim::{Prim, PrimKind};
+use crate::scene::{RenderGroup, RenderScene};
+use strahl_geometry::{Primitive, Shape, Solid};
+use strahl_math::{Aabb, DVec3, Transform};
+
+/// What a ray is in that comes from the eye. It is found out once where all rays come from one point.
+#[derive(Debug)]
+pub(super) struct Eye {
+    /// The place it has been found out for.
+    at: Option<DVec3>,
+    /// A box around all places so far, and what may be around places in it.
+    region: Aabb,
+    near: Vec<Filled>,
+    /// What the eye is in at this place, the uppermost last.
+    media: Vec<Medium>,
+}
+
+/// A solid that fills a part of space.
+#[derive(Clone, Copy, Debug)]
+struct Filled {
+    group: u32,
+    prim: u32,
+    /// From the group's space to the world; `None` for the world itself.
+    to_world: Option<Transform>,
+    /// Where the elements of the innermost instance begin.
+    space: u64,
+    /// Whether it has an end.
+    bounded: bool,
+}
+
+impl Default for Eye {
+    fn default() -> Self {
+        Self {
+            at: None,
+            region: Aabb::EMPTY,
+            near: vec![],
+            media: vec![],
+        }
+    }
+}
+
+impl Eye {
+    /// What a ray from this place starts in, the uppermost medium last; `None` if it starts in what the last one started in.
+    ///
+    /// Solids without an end come first, then the others, both in the order of the scene.
+    #[inline]
+    pub(super) fn moved_to(&mut self, scene: &RenderScene, place: DVec3) -> Option<&[Medium]> {
+        if self.at == Some(place) {
+            return None;
+        }
+        self.look_around(scene, place)
+    }
+
+    #[cold]
+    fn look_around(&mut self, scene: &RenderScene, place: DVec3) -> Option<&[Medium]> {
+        self.at = Some(place);
+        if !self.region.contains(place) {
+            let all = self.region.union(&Aabb::new(place, place));
+            // Twice as large each time: rays from everywhere find this out a few times only.
+            let size = all.size();
+            self.region = all.padded(size * 0.5);
+            self.near = scene.filled(&self.region);
+        }
+        let before = std::mem::take(&mut self.media);
+        for bounded in [false, true] {
+            let near = self.near.iter().filter(|f| f.bounded == bounded);
+            let around = near.filter_map(|f| f.medium_at(scene, place));
+            self.media.extend(around);
+        }
+        (self.media != before).then_some(&self.media)
+    }
+}
+
+impl TreeTracer<'_> {
+    /// The media of a tree from this place: all other stacks are forgotten.
+    #[inline]
+    pub(super) fn eye_media(&mut self, place: DVec3) -> MediaStack {
+        let scene = self.tracer.scene;
+        if scene.fills
+            && let Some(media) = self.eye.moved_to(scene, place)
+        {
+            self.media.begin(media.iter().copied());
+        }
+        self.media.clear();
+        self.media.eye()
+    }
+}
+
+impl Filled {
+    fn medium_at(&self, scene: &RenderScene, place: DVec3) -> Option<Medium> {
+        let group = &scene.groups[self.group as usize];
+        let place = match &self.to_world {
+            None => place,
+            Some(map) => map.point_to_object(place),
+        };
+        let (look, contains) = match group.prims.at(self.prim).kind() {
+            PrimKind::Sphere(number) => {
+                let sphere = group.spheres.get(number, &group.blocks);
+                (group.spheres.look(number), sphere.contains(place))
+            }
+            PrimKind::Shape(index) | PrimKind::Placed(index) => {
+                let used = &group.shapes[index as usize];
+                let contains = match &used.inside {
+                    Some(inside) => inside.limit.contains(place) && holds(&inside.solid, place),
+                    None => {
+                        let own = used.transform.as_ref();
+                        holds(&used.shape, own.map_or(place, |m| m.point_to_object(place)))
+                    }
+                };
+                (*used.look.of_inside()?, contains)
+            }
+            PrimKind::Triangle(..) | PrimKind::Instance(_) => return None,
+        };
+        let material = &scene.materials[look.material.0 as usize];
+        contains.then(|| look.medium(material, self.space))
+    }
+}
+
+fn holds(shape: &Shape, place: DVec3) -> bool {
+    shape.as_solid().is_some_and(|solid| solid.contains(place))
+}
+
+impl RenderScene {
+    /// The solids whose boxes meet a region, in the order of the scene.
+    #[cold]
+    fn filled(&self, region: &Aabb) -> Vec<Filled> {
+        let reach = self.reach_of_filled();
+        let mut found = vec![];
+        let mut waiting = vec![(0, None::<Transform>, 0)];
+        while let Some((number, to_world, space)) = waiting.pop() {
+            let group = &self.groups[number as usize];
+            let region = match &to_world {
+                None => *region,
+                Some(map) => map.inverted().bounds_to_world(region),
+            };
+            let mut inner = vec![];
+            for (prim, places) in group.prims.runs() {
+                if !may_be_filled(prim) {
+                    continue;
+                }
+                for prim in places {
+                    let bounds = group.filled_bounds(prim, &reach);
+                    if bounds.intersection(&region).is_empty() {
+                        continue;
+                    }
+                    if let PrimKind::Instance(index) = group.prims.at(prim).kind() {
+                        let instance = &group.instances[index as usize];
+                        let map = match &to_world {
+                            None => instance.transform,
+                            Some(outer) => instance.transform.then(outer),
+                        };
+                        inner.push((instance.group, Some(map), space + group.first_id(prim)));
+                    } else {
+                        found.push(Filled {
+                            group: number,
+                            prim,
+                            to_world,
+                            space,
+                            bounded: bounds.is_bounded(),
+                        });
+                    }
+                }
+            }
+            waiting.extend(inner.into_iter().rev());
+        }
+        found
+    }
+
+    /// By group, a box around its solids that fill a part of space.
+    fn reach_of_filled(&self) -> Vec<Aabb> {
+        let mut reach = vec![Aabb::EMPTY; self.groups.len()];
+        // Groups refer to those behind them.
+        for (number, group) in self.groups.iter().enumerate().rev() {
+            let runs = group.prims.runs().filter(|(prim, _)| may_be_filled(*prim));
+            let bounds = runs
+                .flat_map(|(_, places)| places)
+                .map(|prim| group.filled_bounds(prim, &reach));
+            reach[number] = bounds.fold(Aabb::EMPTY, |all, b| all.union(&b));
+        }
+        reach
+    }
+}
+
+/// Whether it may be a solid that fills a part of space; triangles have no inside.
+fn may_be_filled(prim: Prim) -> bool {
+    prim.flags & Prim::FILLED != 0 && !matches!(prim.kind(), PrimKind::Triangle(..))
+}
+
+impl RenderGroup {
+    /// A box around the inside of a primitive, given those of the solids in groups.
+    fn filled_bounds(&self, prim: u32, reach: &[Aabb]) -> Aabb {
+        let moved = |bounds: Aabb, map: &Transform| {
+            if bounds.is_bounded() {
+                map.bounds_to_world(&bounds)
+            } else if bounds.is_empty() {
+                bounds
+            } else {
+                Aabb::EVERYTHING
+            }
+        };
+        match self.prims.at(prim).kind() {
+            PrimKind::Triangle(..) => Aabb::EMPTY,
+            PrimKind::Sphere(number) => self.spheres.get(number, &self.blocks).bounds(),
+            PrimKind::Shape(index) | PrimKind::Placed(index) => {
+                let used = &self.shapes[index as usize];
+                if let Some(inside) = &used.inside {
+                    return inside.limit;
+                }
+                let bounds = used.shape.as_solid().map(|s| s.inside_bounds());
+                let bounds = bounds.unwrap_or(Aabb::EMPTY);
+                let map = used.transform.as_ref();
+                map.map_or(bounds, |map| moved(bounds, map))
+            }
+            PrimKind::Instance(index) => {
+                let instance = &self.instances[index as usize];
+                moved(reach[instance.group as usize], &instance.transform)
+            }
+        }
+    }
+}
