@@ -92,7 +92,9 @@ pub(crate) fn token_length(rest: &[u8]) -> usize {
             1 + blank + word.count()
         }
         Some(b'"') => {
-            let line = rest[1..].iter().take_while(|b| **b != b'"' && **b != b'\n');
+            let line = rest[1..]
+                .iter()
+                .take_while(|b| !matches!(**b, b'"' | b'\n' | b'\r'));
             line.count() + 2
         }
         Some(b) if b.is_ascii_digit() || *b == b'.' => number::number_length(rest).max(1),
@@ -407,15 +409,23 @@ impl<'a> Lexer<'a> {
     fn directive(&mut self) {
         let start = self.position;
         self.position += 1;
+        let mut on_next_line = false;
         while is_blank(self.at(0)) && self.position < self.bytes.len() {
+            on_next_line |= matches!(self.at(0), b'\n' | b'\r');
             self.position += 1;
         }
-        let name = if is_name_start(self.at(0)) {
+        let begin = self.position;
+        let mut name = if is_name_start(self.at(0)) {
             self.name()
         } else {
             &[]
         };
         let directive = Directive::from_text(std::str::from_utf8(name).unwrap_or(""));
+        if directive == Directive::Unknown && (on_next_line || self.is_plain_word(name)) {
+            // A `#` that stands for nothing; what follows is read by itself.
+            name = &[];
+            self.position = begin;
+        }
         let index = self.out.tokens.len();
         let mut token = Token::new_directive((self.base + start) as u32, directive);
         if directive.opens() {
@@ -434,9 +444,15 @@ impl<'a> Lexer<'a> {
         self.out.tokens.push(token);
     }
 
+    /// Whether a name is a word of the language that has never been a directive.
+    fn is_plain_word(&mut self, name: &[u8]) -> bool {
+        let word = Word::from_number(u64::from(self.symbols.intern(name).0));
+        word.is_some_and(|word| !matches!(word, Word::MaxTraceLevel | Word::MaxIntersections))
+    }
+
     fn line_comment(&mut self) {
         let rest = &self.bytes[self.position..];
-        let end = rest.iter().position(|b| *b == b'\n');
+        let end = memchr::memchr2(b'\n', b'\r', rest);
         self.position += end.unwrap_or(rest.len());
     }
 

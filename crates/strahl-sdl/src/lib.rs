@@ -76,6 +76,16 @@ pub struct Parsed {
 ///
 /// Never panics and always ends, whatever the text: [`Options::limits`](Options) bound what it may use.
 pub fn parse(source: Source, options: &Options, host: &mut dyn Host) -> Parsed {
+    let name = source.name.clone();
+    let source = match source.narrowed() {
+        Ok(source) => source,
+        Err(error) => {
+            return Parsed {
+                scene: None,
+                diagnostics: vec![Diagnostic::error(format!("`{name}`: {error}"))],
+            };
+        }
+    };
     if source.length() >= u32::MAX as usize {
         let message = format!("`{}` is too large: a file may have 4 GiB", source.name);
         return Parsed {

@@ -19,7 +19,7 @@ pub use memory::MemoryHost;
 pub(crate) use text::Part;
 pub use writing::Writing;
 
-/// A scene file to be parsed: UTF-8 or Latin-1.
+/// A scene file to be parsed: UTF-8, UTF-16 or Latin-1.
 #[derive(Debug)]
 pub struct Source {
     /// Its name as shown to the user; includes are searched beside it first.
@@ -51,6 +51,29 @@ impl Source {
     /// Length in bytes.
     pub fn length(&self) -> usize {
         self.text.len()
+    }
+
+    /// The scene as UTF-8 or Latin-1, if it is UTF-16 in either byte order: with a byte order mark, or without one if its first two
+    /// characters are ASCII. What is no character becomes U+FFFD.
+    ///
+    /// # Errors
+    /// If the file can't be read.
+    pub(crate) fn narrowed(mut self) -> io::Result<Self> {
+        let read: fn([u8; 2]) -> u16 = match *self.text.part(0..4).get(0..4) {
+            [0xff, 0xfe, ..] => u16::from_le_bytes,
+            [0xfe, 0xff, ..] => u16::from_be_bytes,
+            [1..=0x7f, 0, 1..=0x7f, 0] => u16::from_le_bytes,
+            [0, 1..=0x7f, 0, 1..=0x7f] => u16::from_be_bytes,
+            _ => return Ok(self),
+        };
+        let bytes = self.text.into_bytes()?;
+        let units = bytes
+            .chunks(2)
+            .map(|pair| read([pair[0], pair.get(1).copied().unwrap_or(0)]));
+        let characters =
+            char::decode_utf16(units).map(|c| c.unwrap_or(char::REPLACEMENT_CHARACTER));
+        let text: String = characters.skip_while(|c| *c == '\u{feff}').collect();
+        Ok(Self::new(self.name, text))
     }
 
     /// Whether it begins with these bytes.

@@ -401,7 +401,6 @@ fn numbers_out_of_all_bounds() {
         "sphere { 1e308 * 1e308, 1 }",
         "sphere { 0, 1e400 }",
         "sphere { (1e400 - 1e400) * x, 1 }",
-        "box { -1e400, 1e400 }",
         "plane { y, 1e400 }",
         "cylinder { 0, 1e400 * x, 1 }",
         "cone { 0, 1e400, x, 1 }",

@@ -304,7 +304,7 @@ fn a_name_from_an_include_not_included_is_recognised() {
 fn the_closest_name_of_all_includes_is_proposed() {
     let text = "#include \"glass.inc\"\nsphere { 0, 1 texture { Ruby_Glas } }";
     let found = errors(text);
-    let expected = "did you mean `Ruby_Glass`, from textures.inc?";
+    let expected = "did you mean `Ruby_Glass`? It is declared in textures.inc: write `#include \"textures.inc\"` first";
     assert!(found[0].contains(expected), "{found:?}");
     let found = errors("#include \"textures.inc\"\nsphere { 0, 1 texture { Ruby_Glas } }");
     assert!(found[0].contains("did you mean `Ruby_Glass`?"), "{found:?}");

@@ -93,10 +93,6 @@ fn wrong_numbers_are_errors() {
             "light_source { 0, 1 area_light x, y, 0, 5 }",
             "1 to 1024 points",
         ),
-        (
-            "#declare S = sphere { 0, 1 } light_source { S }",
-            "not that of a light",
-        ),
     ] {
         let errors = errors(text);
         assert!(

@@ -13,7 +13,7 @@ impl Parser<'_> {
         } else {
             let (target, place) = self.assigned(local)?;
             self.expect(Kind::Equal)?;
-            let value = self.value().inspect_err(|_| {
+            let value = self.declared_value(Self::value).inspect_err(|_| {
                 // Whoever uses the name is not at fault.
                 self.doubtful.insert(target.symbol);
             })?;
@@ -23,15 +23,15 @@ impl Parser<'_> {
             let place = self.place();
             self.warn(place, format!("this name is deprecated: {text}"));
         }
-        self.end_of_assignment();
-        Ok(())
+        self.end_of_assignment()
     }
 
-    /// A semicolon is asked for, but what is meant is clear without.
-    fn end_of_assignment(&mut self) {
-        if self.raw().kind == Kind::Semicolon {
-            self.jump(self.position() + 1);
+    /// A semicolon is asked for, but what is meant is clear without. If the value came from a macro, the macro ends before it.
+    fn end_of_assignment(&mut self) -> PResult<()> {
+        if !self.at_floor() {
+            self.value_ends()?;
         }
+        self.raw_accept(Kind::Semicolon).map(|_| ())
     }
 
     /// `deprecated [once] "text"`: who declares says so to who uses; here it is taken note of only.
@@ -214,7 +214,6 @@ impl Parser<'_> {
                 );
             }
         }
-        self.end_of_assignment();
-        Ok(())
+        self.end_of_assignment()
     }
 }

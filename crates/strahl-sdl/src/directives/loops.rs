@@ -31,9 +31,13 @@ impl Parser<'_> {
             self.float()?
         };
         self.expect(Kind::RightParen)?;
-        if step == 0.0 || !step.is_finite() {
+        if step == 0.0 || step.is_nan() {
             let place = self.place();
-            return Err(self.fail(place, format!("the step of a loop must not be {step}")));
+            return Err(self.fail_hint(
+                place,
+                format!("the step of a loop must not be {step}"),
+                "the loop would not end; write a number that leads from the first value to the last",
+            ));
         }
         self.scopes.store(&variable, Value::Float(first));
         let state = Loop {

@@ -102,6 +102,10 @@ impl Parser<'_> {
             self.warn(place, "`#` without a directive behind it does nothing");
             return Ok(());
         }
+        // Settings that were directives up to version 2.2.
+        if matches!(name.as_str(), "max_trace_level" | "max_intersections") {
+            return self.old_setting(&name);
+        }
         let known = Directive::ALL.iter().filter(|(_, text)| !text.is_empty());
         let close = closest(&name, known.map(|(_, text)| (Candidate::new(text), ())));
         let message = format!("there is no directive `#{name}`");

@@ -27,6 +27,19 @@ impl Parser<'_> {
         Ok(())
     }
 
+    /// `#max_trace_level` and `#max_intersections` behind the word, which were directives up to version 2.2.
+    pub(super) fn old_setting(&mut self, name: &str) -> PResult<()> {
+        self.warn_hint(
+            self.place(),
+            format!("`#{name}` is a setting"),
+            format!("write `global_settings {{ {name} ... }}`"),
+        );
+        if name == "max_trace_level" {
+            return self.trace_level();
+        }
+        self.float().map(|_| ())
+    }
+
     /// `#default { ... }` behind the word.
     pub(super) fn default_directive(&mut self) -> PResult<()> {
         self.braces(crate::grammar::default_items)

@@ -2,7 +2,8 @@ use crate::keywords::Word;
 use crate::parser::{PResult, Parser};
 use crate::token::Kind;
 use crate::value::Vector;
-use strahl_shade::srgb;
+use strahl_scene::WorkingSpace;
+use strahl_shade::{Color, srgb};
 
 impl Parser<'_> {
     /// A colour: red, green, blue, filter, transmit.
@@ -40,7 +41,7 @@ impl Parser<'_> {
                 let next = self.peek()?;
                 match next.word() {
                     // `color color` says nothing more.
-                    Some(Word::Color | Word::Colour) => self.nested(Self::color_expression),
+                    Some(Word::Color | Word::Colour) => self.nested_end(Self::color_expression),
                     _ => self.color(),
                 }
             }
@@ -59,26 +60,44 @@ impl Parser<'_> {
         }
     }
 
-    /// `rgb`, `rgbf` and `rgbft` with as many numbers. The word applies to the whole sum behind it.
+    /// `rgb`, `rgbf` and `rgbft`: a float stands for as many numbers as the word has letters; what a vector has beyond them is filter and
+    /// transmit (as measured with POV-Ray, in all its versions). The word applies to the whole sum behind it.
     fn rgb(&mut self, count: usize, encoded: bool) -> PResult<[f64; 5]> {
         self.next()?;
-        let value = self.nested(Self::expression)?;
-        let value = value.promoted(count).components();
-        self.color_parts(decoded(value, encoded))
+        let value = self.nested_end(Self::expression)?;
+        let value = match value.len() {
+            1 => value.promoted(count).components(),
+            _ => value.components(),
+        };
+        let color = self.decoded(value, encoded);
+        self.color_parts(color)
     }
 
     /// `rgbt`: the fourth number is transmit.
     fn rgbt(&mut self, encoded: bool) -> PResult<[f64; 5]> {
         self.next()?;
-        let value = self.nested(Self::expression)?;
+        let value = self.nested_end(Self::expression)?;
         let [r, g, b, t, _] = value.promoted(4).components();
-        self.color_parts(decoded([r, g, b, 0.0, t], encoded))
+        let color = self.decoded([r, g, b, 0.0, t], encoded);
+        self.color_parts(color)
+    }
+
+    /// A colour in the numbers that the scene computes with; `encoded` ones are codes of sRGB.
+    fn decoded(&self, color: [f64; 5], encoded: bool) -> [f64; 5] {
+        let space = self.working_space();
+        if !encoded || space == WorkingSpace::Srgb {
+            return color;
+        }
+        let [r, g, b, filter, transmit] = color;
+        let linear = Color::new(srgb::decode(r), srgb::decode(g), srgb::decode(b));
+        let Color { r, g, b } = space.encode(linear);
+        [r, g, b, filter, transmit]
     }
 
     /// `red 1`, `filter 0.5`, ... in any order.
     pub(super) fn color_parts(&mut self, mut color: [f64; 5]) -> PResult<[f64; 5]> {
         loop {
-            let token = self.peek()?;
+            let token = self.peek_behind()?;
             if token.kind != Kind::Word {
                 return Ok(color);
             }
@@ -86,7 +105,8 @@ impl Parser<'_> {
                 Some(Word::Red) => 0,
                 Some(Word::Green) => 1,
                 Some(Word::Blue) => 2,
-                Some(Word::Filter) => 3,
+                // `alpha` is the word of version 1.0.
+                Some(Word::Filter | Word::Alpha) => 3,
                 Some(Word::Transmit) => 4,
                 _ => return Ok(color),
             };
@@ -104,13 +124,5 @@ pub(super) fn opaque(value: Vector) -> [f64; 5] {
     match value.len() {
         1 => value.promoted(5).components(),
         len => value.promoted(len).components(),
-    }
-}
-
-fn decoded([r, g, b, f, t]: [f64; 5], encoded: bool) -> [f64; 5] {
-    if encoded {
-        [srgb::decode(r), srgb::decode(g), srgb::decode(b), f, t]
-    } else {
-        [r, g, b, f, t]
     }
 }

@@ -7,7 +7,6 @@ use crate::parser::{PResult, Parser, Place};
 use crate::symbol::Symbol;
 use crate::token::{Kind, Token};
 use crate::value::Value;
-use std::sync::Arc;
 use strahl_function::{BinaryOp, Expr, Function, FunctionError, Graph, UnaryOp, internal};
 use strahl_math::noise::NoiseGenerator;
 
@@ -267,49 +266,63 @@ impl Parser<'_> {
         if let Some(symbol) = symbol {
             self.declare_internal(symbol);
         }
+        let place = self.place_of(token);
         let callee = match symbol.and_then(|s| self.scopes.find(s)) {
-            Some(Value::Function(function)) => Some(function.clone()),
-            _ => None,
-        };
-        if let Some(function) = callee {
-            self.take(token)?;
-            let place = self.place();
-            let arguments = self.nested(|p| p.formula_arguments(body))?;
-            self.check_arguments(function.parameters().len(), arguments.len(), place)?;
-            let value = body.graph.call(&function, &arguments);
-            return match body.graph.failure().cloned() {
-                Some(error) => Err(self.fail(place, error.to_string())),
-                None => Ok(value),
-            };
-        }
-        let callee = match symbol.and_then(|s| self.scopes.find(s)) {
-            Some(Value::Thing(Thing::PigmentFunction(pigment))) => Some(Arc::clone(pigment)),
-            _ => None,
-        };
-        if let Some(pigment) = callee {
-            self.take(token)?;
-            let place = self.place();
-            let arguments = self.nested(|p| p.formula_arguments(body))?;
-            self.check_arguments(3, arguments.len(), place)?;
-            let component = self.pigment_component(&pigment)?;
-            return Ok(body.graph.field(&component, &arguments));
-        }
-        let callee = match symbol.and_then(|s| self.scopes.find(s)) {
-            Some(value @ (Value::Spline(_) | Value::Thing(Thing::TransformFunction(_)))) => {
-                Some(value.clone())
+            Some(Value::Array(_) | Value::Dictionary(_)) => Some(self.variable(token)?),
+            Some(value) if value.is_callable() => {
+                let value = value.clone();
+                self.take(token)?;
+                Some(value)
             }
             _ => None,
         };
         if let Some(callee) = callee {
-            self.take(token)?;
-            let arguments = self.nested(|p| p.formula_arguments(body))?;
-            return self.vector_component(&mut body.graph, &callee, &arguments);
+            return self.formula_value(body, &callee, place);
         }
         // Anything else is a number that is fixed when the function is declared.
         let number = self.name_in_expression(token)?;
         let place = self.place();
         let number = self.as_float(number, place)?;
         Ok(body.graph.constant(number))
+    }
+
+    /// A value that has just been named: a function with its arguments, or a number that is fixed when the function is declared.
+    fn formula_value(&mut self, body: &mut Body, value: &Value, place: Place) -> PResult<Expr> {
+        match value {
+            Value::Function(function) => {
+                let arguments = self.nested(|p| p.formula_arguments(body))?;
+                self.check_arguments(function.parameters().len(), arguments.len(), place)?;
+                let value = body.graph.call(function, &arguments);
+                match body.graph.failure().cloned() {
+                    Some(error) => Err(self.fail(place, error.to_string())),
+                    None => Ok(value),
+                }
+            }
+            Value::Thing(Thing::PigmentFunction(pigment)) => {
+                let arguments = self.nested(|p| p.formula_arguments(body))?;
+                self.check_arguments(3, arguments.len(), place)?;
+                let component = self.pigment_component(pigment)?;
+                Ok(body.graph.field(&component, &arguments))
+            }
+            Value::Spline(_) | Value::Thing(Thing::TransformFunction(_)) => {
+                let arguments = self.nested(|p| p.formula_arguments(body))?;
+                self.vector_component(&mut body.graph, value, &arguments)
+            }
+            _ => match value.numeric() {
+                Some(number) => {
+                    let number = self.components_of(number)?;
+                    let number = self.as_float(number, place)?;
+                    Ok(body.graph.constant(number))
+                }
+                None => {
+                    let message = format!(
+                        "expected a number or a function, found {}",
+                        value.describe()
+                    );
+                    Err(self.fail(place, message))
+                }
+            },
+        }
     }
 
     fn formula_word(&mut self, body: &mut Body, token: Token, word: Word) -> PResult<Expr> {

@@ -187,7 +187,7 @@ impl Parser<'_> {
     /// Continues an expression whose first operand is known.
     fn binary_from(&mut self, mut left: Vector, weakest: u8) -> PResult<Vector> {
         loop {
-            let token = self.peek()?;
+            let token = self.peek_behind()?;
             let binds = precedence(token.kind);
             if binds < weakest || binds == 0 {
                 return Ok(left);
@@ -272,15 +272,15 @@ impl Parser<'_> {
             }
             Kind::Minus => {
                 self.take(token)?;
-                Ok(self.nested(Self::factor)?.map(|x| -x))
+                Ok(self.nested_end(Self::factor)?.map(|x| -x))
             }
             Kind::Plus => {
                 self.take(token)?;
-                self.nested(Self::factor)
+                self.nested_end(Self::factor)
             }
             Kind::Bang => {
                 self.take(token)?;
-                Ok(self.nested(Self::factor)?.map(|x| truth(x == 0.0)))
+                Ok(self.nested_end(Self::factor)?.map(|x| truth(x == 0.0)))
             }
             Kind::LeftParen => {
                 self.take(token)?;
@@ -368,7 +368,7 @@ impl Parser<'_> {
         }
         let value = self.variable(token)?;
         if let Value::String(text) = &value
-            && precedence(self.peek()?.kind) == 3
+            && precedence(self.peek_behind()?.kind) == 3
         {
             return self.compared(text);
         }
@@ -449,7 +449,7 @@ impl Parser<'_> {
                 let text = self.string()?;
                 return self.compared(&text);
             }
-            WordKind::Color => return self.nested(Self::color_expression).map(Vector::rgbft),
+            WordKind::Color => return self.nested_end(Self::color_expression).map(Vector::rgbft),
             WordKind::Scope => {
                 let value = self.variable(token)?;
                 match value.numeric() {
@@ -499,7 +499,7 @@ impl Parser<'_> {
     /// `.x`, `.red`, ... behind a value.
     #[inline]
     fn components_of(&mut self, value: Vector) -> PResult<Vector> {
-        let token = self.peek()?;
+        let token = self.peek_behind()?;
         if token.kind != Kind::Dot {
             return Ok(value);
         }

@@ -50,6 +50,8 @@ enum Component {
     Filter,
     Transmit,
     Gray,
+    /// Red and green as the two bytes of a height, as height fields read them.
+    Height,
 }
 
 impl ScalarField for PigmentComponent {
@@ -62,6 +64,7 @@ impl ScalarField for PigmentComponent {
             Component::Filter => color.filter,
             Component::Transmit => color.transmit,
             Component::Gray => color.gray(),
+            Component::Height => (256.0 * color.rgb.r + color.rgb.g) / 257.0,
         }
     }
 
@@ -139,7 +142,7 @@ impl Parser<'_> {
             return Err(self.fail_hint(
                 place,
                 "within a function a colour cannot stand as a whole",
-                "take one of its components: `.red`, `.green`, `.blue`, `.filter`, `.transmit`, `.gray`",
+                "take one of its components: `.red`, `.green`, `.blue`, `.filter`, `.transmit`, `.gray`, `.hf`",
             ));
         }
         let name = self.next()?;
@@ -150,6 +153,8 @@ impl Parser<'_> {
             Some(Word::Filter | Word::T) => Component::Filter,
             Some(Word::Transmit) => Component::Transmit,
             Some(Word::Gray | Word::Grey) => Component::Gray,
+            // No reserved word: it has this meaning here only.
+            _ if name.symbol().is_some_and(|s| self.symbols.text(s) == "hf") => Component::Height,
             _ => return Err(self.unexpected(name, "a component of a colour")),
         };
         Ok(Arc::new(PigmentComponent {

@@ -40,7 +40,7 @@ impl Parser<'_> {
                 self.binary_from(number, 4)?
             }
         };
-        let followed = self.peek()?;
+        let followed = self.peek_behind()?;
         match followed.word().map(Word::kind) {
             Some(WordKind::Color) => {
                 let color = self.color_parts(super::color::opaque(number))?;

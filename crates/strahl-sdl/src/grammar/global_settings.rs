@@ -64,8 +64,7 @@ impl Parser<'_> {
             }
             Word::MaxTraceLevel => {
                 self.take(token)?;
-                let level = self.whole_setting("max_trace_level", 256)?;
-                self.state.global.trace_level = Some(level);
+                self.trace_level()?;
             }
             Word::NoiseGenerator => {
                 self.take(token)?;
@@ -159,13 +158,26 @@ impl Parser<'_> {
         let settings = &mut self.scene.settings;
         settings.max_depth = global.trace_level.unwrap_or(TRACE_LEVEL);
         settings.straight_counts = false;
-        // Scenes from before 3.7 without a setting use display values. (Of several versions the last one counts.)
+        settings.filter_by_color = self.version < 3.7 || !self.state.global.versioned;
+        self.scene.settings.working_space = self.working_space();
+    }
+
+    /// The numbers that colours are given in, as far as is known here. Scenes from before 3.7 without a setting use display values.
+    /// (Of several versions the last one counts.)
+    pub(crate) fn working_space(&self) -> WorkingSpace {
+        let global = &self.state.global;
         let old = self.version < 3.7 || !global.versioned;
-        settings.filter_by_color = old;
-        settings.working_space = global.working_space.unwrap_or(if old {
+        global.working_space.unwrap_or(if old {
             WorkingSpace::Srgb
         } else {
             WorkingSpace::Linear
-        });
+        })
+    }
+
+    /// A number of `max_trace_level`.
+    pub(crate) fn trace_level(&mut self) -> PResult<()> {
+        let level = self.whole_setting("max_trace_level", 256)?;
+        self.state.global.trace_level = Some(level);
+        Ok(())
     }
 }

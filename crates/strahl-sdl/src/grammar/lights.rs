@@ -2,7 +2,7 @@ use crate::grammar::entity::{is_nothing, transform};
 use crate::grammar::{Entity, Thing};
 use crate::keywords::Word;
 use crate::parser::{PResult, Parser, Place};
-use crate::token::Token;
+use crate::token::{Kind, Token};
 use strahl_math::{DVec3, Transform, det};
 use strahl_scene::{CsgOp, LightMask, Object, ObjectExt, ObjectKind, SceneLight};
 use strahl_shade::{AreaLight, Color, Falloff, Light, LightKind};
@@ -26,12 +26,22 @@ pub(super) fn light_statement(p: &mut Parser<'_>) -> PResult<()> {
 pub(super) fn light_source(p: &mut Parser<'_>) -> PResult<Entity> {
     let place = p.place();
     p.braces(|p| {
+        let name = p.peek()?;
         let named = p.accept_thing(|thing| match thing {
             Thing::Object(object) => Some(object),
             _ => None,
         })?;
-        if let Some(named) = named {
-            return p.named_light(&named.entity.object, place).map(Entity::from);
+        match named {
+            Some(named) if is_light(&named.entity.object) => {
+                return p.named_light(&named.entity.object, place).map(Entity::from);
+            }
+            // Any object may stand in the braces of any other.
+            Some(named) => {
+                let mut entity = p.declared_object(&named, name, place);
+                p.modifiers(&mut entity)?;
+                return Ok(entity);
+            }
+            None => {}
         }
         let mut draft = Draft::at(p.vector3()?);
         p.comma()?;
@@ -51,9 +61,10 @@ pub(super) fn light_group(p: &mut Parser<'_>) -> PResult<Entity> {
                 global_lights = p.switched()?;
                 continue;
             }
-            let is_lamp = p.peek()?.word() == Some(Word::LightSource);
+            let token = p.peek()?;
+            let may_be_lamp = token.is(Word::LightSource) || token.kind == Kind::Name;
             match p.object()? {
-                Some(lamp) if is_lamp => add_lamp(lamp, &mut parts),
+                Some(lamp) if may_be_lamp && is_light(&lamp) => add_lamp(lamp, &mut parts),
                 Some(object) => parts.push(object),
                 None => break,
             }
@@ -194,9 +205,6 @@ impl Draft {
 impl Parser<'_> {
     /// What may follow a declared light: transformations move it as a whole, other items stand in its declaration.
     fn named_light(&mut self, named: &Object, place: Place) -> PResult<Object> {
-        if !is_light(named) {
-            return Err(self.fail(place, "the name in `light_source` is not that of a light"));
-        }
         let mut object = named.clone();
         object.span = self.span_at(place);
         self.items("`light_source`", |p, token| {

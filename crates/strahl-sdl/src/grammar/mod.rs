@@ -109,6 +109,16 @@ impl Parser<'_> {
                 self.take(token)?;
                 return Ok(true);
             }
+            Kind::Name => {
+                return match self.entity()? {
+                    Some(entity) => {
+                        self.add(entity);
+                        self.no_modifier(token)?;
+                        Ok(true)
+                    }
+                    None => Err(self.unexpected(token, "an object or a directive")),
+                };
+            }
             Kind::Word => {}
             _ => return Err(self.unexpected(token, "an object or a directive")),
         }
@@ -130,6 +140,29 @@ impl Parser<'_> {
             return Err(self.unexpected(token, "an object or a directive"));
         }
         Ok(true)
+    }
+
+    /// Behind the name of an object that stands by itself nothing can change it.
+    fn no_modifier(&mut self, name: Token) -> PResult<()> {
+        let token = self.raw();
+        let modifies = token.word().is_some_and(|word| {
+            matches!(word.kind(), WordKind::Transformation | WordKind::Thing)
+                && STATEMENTS.iter().all(|(statement, _)| *statement != word)
+        });
+        if !modifies && token.kind != Kind::LeftBrace {
+            return Ok(());
+        }
+        let place = self.place_of(token);
+        let found = self.describe(token);
+        let name = name
+            .symbol()
+            .map_or("Name", |symbol| self.symbols.text(symbol));
+        let hint = format!("write `object {{ {name} ... }}` to change a declared object");
+        Err(self.fail_hint(
+            place,
+            format!("expected an object or a directive, found {found}"),
+            hint,
+        ))
     }
 
     #[inline]

@@ -1,5 +1,78 @@
+//! Passing what is not supported yet.
+
+use crate::keywords::Word;
 use crate::parser::{PResult, Parser};
 use crate::token::{Kind, Token};
+
+/// The blocks that a word may stand in.
+type Blocks = &'static [&'static str];
+
+/// Blocks of patterns.
+const PATTERNED: Blocks = &["`pigment`", "`normal`", "`texture`", "`pattern`"];
+
+/// Blocks of patterns in which their parameters cannot be mistaken for anything else.
+const PARAMETERS: Blocks = &["`pigment`", "`normal`", "`pattern`"];
+
+/// Blocks of maps.
+const MAPS: Blocks = &[
+    "`color_map`",
+    "`pigment_map`",
+    "`normal_map`",
+    "`texture_map`",
+];
+
+/// THE table of features that are read past with a warning, with the blocks that they belong to. Whatever else cannot be taken is an
+/// error: a picture must not lack something in silence.
+const OPEN: &[(Word, Blocks)] = &[
+    // Interiors of versions before 3.1.
+    (Word::Caustics, &["`finish`"]),
+    (Word::FadeColor, &["`finish`"]),
+    (Word::FadeColour, &["`finish`"]),
+    (Word::FadeDistance, &["`finish`"]),
+    (Word::FadePower, &["`finish`"]),
+    (Word::Ior, &["`finish`"]),
+    (Word::Refraction, &["`finish`"]),
+    (Word::BlendGamma, MAPS),
+    (Word::BlendMode, MAPS),
+    (Word::Blob, PATTERNED),
+    (Word::Camera, &["`#default`"]),
+    (Word::Coords, PARAMETERS),
+    (Word::Cubic, &["`warp`"]),
+    (Word::CutawayTextures, &["the object"]),
+    (Word::Density, &["`#default`"]),
+    (Word::DensityFile, PATTERNED),
+    (Word::Exterior, PARAMETERS),
+    (Word::Facets, PATTERNED),
+    (Word::Form, PARAMETERS),
+    (Word::Fresnel, &["`finish`"]),
+    (Word::Interior, PARAMETERS),
+    (Word::Interpolate, PARAMETERS),
+    (Word::Irid, &["`finish`"]),
+    (Word::Isosurface, PATTERNED),
+    (Word::Media, &["`interior`"]),
+    (Word::NoRadiosity, &["the object"]),
+    (Word::NumberOfSides, PATTERNED),
+    (Word::NumberOfTiles, PATTERNED),
+    (Word::Pattern, PARAMETERS),
+    (Word::Pavement, PATTERNED),
+    (
+        Word::Photons,
+        &["the object", "`light_source`", "`global_settings`"],
+    ),
+    (Word::Polarity, &["the object"]),
+    (Word::Potential, PATTERNED),
+    (Word::Radiosity, &["the object", "`#default`"]),
+    (Word::Size, PARAMETERS),
+    (Word::Subsurface, &["`finish`"]),
+    (Word::Threshold, PATTERNED),
+    (Word::Tiling, PATTERNED),
+    (Word::Turbulence, &["`black_hole`"]),
+    (Word::UseAlpha, &["`finish`"]),
+    (Word::UseColor, &["the picture"]),
+    (Word::UseColour, &["the picture"]),
+    (Word::UseIndex, &["the picture"]),
+    (Word::UserDefined, &["`camera`", "`pigment`", "`texture`"]),
+];
 
 impl Parser<'_> {
     /// Skips `{ ... }`, directives inside carried out.
@@ -19,14 +92,21 @@ impl Parser<'_> {
         Ok(())
     }
 
-    /// Skips an item that is not supported: its word, then everything up to the next word, closing brace or a body in braces.
+    /// Skips an item that is not supported yet: its word, then everything up to the next word, closing brace or a body in braces.
     /// The warning says that the picture will lack it.
+    ///
+    /// # Errors
+    /// If the item is none of those that [`OPEN`] lists for the block.
     pub(crate) fn skip_item(&mut self, item: Token, of: &str) -> PResult<()> {
-        let place = self.place_of(item);
-        let found = self.describe(item);
-        if item.kind != Kind::Word {
+        let is_open = |word: Word| {
+            let row = OPEN.iter().find(|(open, _)| *open == word);
+            row.is_some_and(|(_, blocks)| blocks.contains(&of))
+        };
+        if !item.word().is_some_and(is_open) {
             return Err(self.unexpected(item, &format!("an item of {of}, or `}}`")));
         }
+        let place = self.place_of(item);
+        let found = self.describe(item);
         self.warn(
             place,
             format!("{found} in {of} is not supported yet and is left out"),
@@ -38,7 +118,7 @@ impl Parser<'_> {
                 Kind::LeftBrace => return self.skip_body(),
                 Kind::RightBrace | Kind::End => return Ok(()),
                 Kind::Word => {
-                    let kind = token.word().map(crate::keywords::Word::kind);
+                    let kind = token.word().map(Word::kind);
                     use crate::keywords::WordKind as W;
                     let value = matches!(
                         kind,
@@ -49,7 +129,7 @@ impl Parser<'_> {
                                 | W::Color
                                 | W::StringFunction
                         )
-                    );
+                    ) || token.is(Word::Df3);
                     if !value {
                         return Ok(());
                     }

@@ -81,20 +81,33 @@ static DECLARED: LazyLock<Vec<(&str, &str)>> = LazyLock::new(|| {
         .collect()
 });
 
-/// All words of the language, and all names that the built-in files declare with the first file that does.
-static KNOWN: LazyLock<Vec<(Candidate<'static>, Option<&'static str>)>> = LazyLock::new(|| {
-    let words = Word::ALL
-        .iter()
-        .map(|(_, text, _)| (Candidate::new(text), None));
-    let names = DECLARED
-        .iter()
-        .map(|(name, file)| (Candidate::new(name), Some(*file)));
-    words.chain(names).collect()
+/// Something that can be meant by a misspelt name, with the built-in file that declares it.
+type Known<'a> = (Candidate<'a>, Option<&'static str>);
+
+/// All words of the language.
+static WORDS: LazyLock<Vec<Known<'static>>> = LazyLock::new(|| {
+    let words = Word::ALL.iter();
+    words
+        .map(|(_, text, _)| (Candidate::new(text), None))
+        .collect()
 });
 
-/// What can be meant by a name that is misspelt: all words, and all names of the built-in files with their file.
-pub(crate) fn known<'a>() -> impl Iterator<Item = (Candidate<'a>, Option<&'static str>)> {
-    KNOWN.iter().map(|&(known, file)| (known, file))
+/// All names that the built-in files declare, each with the first file that does.
+static NAMES: LazyLock<Vec<Known<'static>>> = LazyLock::new(|| {
+    let names = DECLARED.iter();
+    names
+        .map(|(name, file)| (Candidate::new(name), Some(*file)))
+        .collect()
+});
+
+/// The words of the language, which can be meant by a name that is misspelt.
+pub(crate) fn known_words<'a>() -> impl Iterator<Item = Known<'a>> {
+    WORDS.iter().map(|&(known, file)| (known, file))
+}
+
+/// The names of the built-in files, which can be meant by one that is misspelt.
+pub(crate) fn known_names<'a>() -> impl Iterator<Item = Known<'a>> {
+    NAMES.iter().map(|&(known, file)| (known, file))
 }
 
 /// The first built-in file that declares a name.

@@ -61,12 +61,26 @@ impl Parser<'_> {
     /// If a brace is missing, braces are nested too deep, or `f` fails.
     #[inline]
     pub fn braces<T>(&mut self, f: impl FnOnce(&mut Self) -> PResult<T>) -> PResult<T> {
-        self.expect(Kind::LeftBrace)?;
+        if !std::mem::take(&mut self.brace_taken) {
+            self.expect(Kind::LeftBrace)?;
+        }
         self.nested(|p| {
             let result = f(p)?;
             p.expect(Kind::RightBrace)?;
             Ok(result)
         })
+    }
+
+    /// Takes a `{` and gives the token behind it, which is not taken. The next [`Parser::braces`] goes on behind the brace.
+    ///
+    /// # Errors
+    /// If there is no brace, or a directive on the way fails.
+    pub(crate) fn peek_into_braces(&mut self) -> PResult<Token> {
+        self.expect(Kind::LeftBrace)?;
+        // What directives on the way read has braces of its own.
+        let token = self.peek()?;
+        self.brace_taken = true;
+        Ok(token)
     }
 
     /// Reads items by `f` until the closing brace, which is left; `f` gets the word or token that opens the item, not yet

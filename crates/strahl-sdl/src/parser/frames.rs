@@ -71,6 +71,9 @@ impl<'h> Parser<'h> {
             blocks: vec![],
             floor: Floor::default(),
             arguments: vec![],
+            brace_taken: false,
+            value_nesting: None,
+            stopping: false,
             place: Place { file: 0, start: 0 },
             mark: super::recover::Mark::default(),
             between: true,
@@ -129,6 +132,7 @@ impl<'h> Parser<'h> {
                 Kind::Name => {
                     let symbol = Symbol(token.bits as u32);
                     match self.scopes.find_macro(symbol) {
+                        Some(_) if self.stops_here() => return Ok(self.end_here()),
                         Some(found) => {
                             let found = Arc::clone(found);
                             self.call(token, found)?;
@@ -136,6 +140,7 @@ impl<'h> Parser<'h> {
                         None => return Ok(token),
                     }
                 }
+                Kind::Directive if self.stops_here() => return Ok(self.end_here()),
                 Kind::Directive => match self.run_directive(token)? {
                     Flow::On => {}
                     Flow::Stop => return Ok(self.end_here()),
@@ -166,9 +171,65 @@ impl<'h> Parser<'h> {
             frames: self.frames.len(),
             blocks: self.blocks.len(),
         };
+        let stopping = std::mem::take(&mut self.stopping);
+        let value_nesting = self.value_nesting.take();
         let result = f(self);
         self.floor = before;
+        self.stopping = stopping;
+        self.value_nesting = value_nesting;
         result
+    }
+
+    fn stops_here(&self) -> bool {
+        self.stopping && self.at_floor()
+    }
+
+    /// Reads the value of a declaration by `f`. Directives and macros that come behind it are left for when the name has it:
+    /// declarations need no semicolon.
+    pub(crate) fn declared_value<T>(
+        &mut self,
+        f: impl FnOnce(&mut Self) -> PResult<T>,
+    ) -> PResult<T> {
+        // What stands before the value belongs to it.
+        self.peek()?;
+        let before = self.value_nesting.replace(self.nesting);
+        let result = f(self);
+        self.value_nesting = before;
+        result
+    }
+
+    /// [`Parser::nested`] for a part of a value with which the value ends.
+    pub(crate) fn nested_end<T>(&mut self, f: impl FnOnce(&mut Self) -> PResult<T>) -> PResult<T> {
+        let before = self.value_nesting;
+        let ends = before == Some(self.nesting);
+        let result = self.nested(|p| {
+            if ends {
+                p.value_nesting = Some(p.nesting);
+            }
+            f(p)
+        });
+        self.value_nesting = before;
+        result
+    }
+
+    /// Leaves the macros that a value came from, if it ends them.
+    pub(crate) fn value_ends(&mut self) -> PResult<()> {
+        self.stopping = true;
+        let ended = self.peek();
+        self.stopping = false;
+        ended.map(|_| ())
+    }
+
+    /// Like [`Parser::peek`] where a complete value stands before: the end, if what follows a declared value is a directive or the call of a macro.
+    #[inline]
+    pub(crate) fn peek_behind(&mut self) -> PResult<Token> {
+        if self.value_nesting != Some(self.nesting) {
+            return self.peek();
+        }
+        self.stopping = true;
+        let token = self.peek();
+        self.stopping = false;
+        token
     }
 
     /// Goes on reading in a part of a file: an include or the body of a macro.
@@ -292,7 +353,15 @@ impl<'h> Parser<'h> {
 
     /// A file of this name, with its first tokens, at least so many.
     pub(crate) fn load(&mut self, name: &str, from: Place, tokens: usize) -> PResult<Arc<Chunk>> {
-        let mut source = match self.find_file(name, from, true) {
+        let found = self.find_file(name, from, true);
+        let narrowed = found.and_then(|source| {
+            let name = source.name.clone();
+            source.narrowed().map_err(|error| HostError::Io {
+                name,
+                message: error.to_string(),
+            })
+        });
+        let mut source = match narrowed {
             Ok(source) => source,
             Err(error) => return Err(self.unreadable(error, from)),
         };

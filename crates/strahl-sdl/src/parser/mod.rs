@@ -82,6 +82,13 @@ pub struct Parser<'h> {
     floor: Floor,
     /// Memory for the arguments of the next call.
     arguments: Vec<Argument>,
+    /// Whether the `{` that comes next has been taken already, by who looked behind it.
+    brace_taken: bool,
+    /// How deep braces and parentheses were nested where the declaration being read has its value: there, directives and calls of
+    /// macros behind a complete value belong to what follows.
+    value_nesting: Option<usize>,
+    /// Whether the next directive or call of a macro on the floor ends what is being read.
+    stopping: bool,
     place: Place,
     /// Where to begin skipping if the current statement fails.
     mark: recover::Mark,

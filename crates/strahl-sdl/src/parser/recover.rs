@@ -79,12 +79,23 @@ impl Parser<'_> {
             self.leave_frame();
         }
         self.nesting = 0;
+        self.brace_taken = false;
+        self.stopping = false;
+        self.value_nesting = None;
         self.floor = Floor::default();
         let same = mark.file == self.file.file.0 && mark.frames == self.frames.len();
         let begin = if same { mark.position } else { self.position };
         if same && begin == self.position && self.raw().kind != Kind::End {
             // At least one token is passed, or the error would repeat for ever.
             self.position += 1;
+        }
+        // A block whose head failed is given up whole: its parts would be missed by nobody but its `#end`.
+        let head = self.current_file().token(begin).and_then(|t| t.directive());
+        if same && self.blocks.len() <= mark.blocks && head.is_some_and(Directive::opens) {
+            if let Ok(end) = self.end_of(begin) {
+                self.position = end + 1;
+            }
+            return;
         }
         let before = if same { mark.open } else { 0 };
         let mut open = self.open_after(before, begin, self.position);

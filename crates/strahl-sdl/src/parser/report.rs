@@ -172,11 +172,23 @@ impl Parser<'_> {
             ));
         }
         let bound = self.scopes.bound().map(|s| self.symbols.text(s));
-        // What is at hand goes before what would have to be included, but only if it is as close.
+        // What is at hand goes before what would have to be included, but only if it is as close. Words of the language are never
+        // meant by a capital letter.
         let here = bound.map(|known| (Candidate::new(known), None));
-        let (close, file) = suggest::closest(name, here.chain(crate::include::known()))?;
+        let is_name = name.starts_with(|c: char| c.is_ascii_uppercase());
+        let (close, file) = if is_name {
+            let known = crate::include::known_names().chain(crate::include::known_words());
+            suggest::closest(name, here.chain(known))?
+        } else {
+            let known = crate::include::known_words().chain(crate::include::known_names());
+            suggest::closest(name, here.chain(known))?
+        };
         Some(match file {
-            Some(file) => format!("did you mean `{close}`, from {file}?"),
+            Some(file) => {
+                format!(
+                    "did you mean `{close}`? It is declared in {file}: write `#include \"{file}\"` first"
+                )
+            }
             None => format!("did you mean `{close}`?"),
         })
     }

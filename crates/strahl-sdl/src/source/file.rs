@@ -149,10 +149,9 @@ impl SourceFile {
         if place - begin <= LONG {
             let bytes = reader.text.part(begin..begin + LONG + 1);
             let bytes = bytes.get(begin..begin + LONG + 1);
-            let end = memchr::memchr(b'\n', bytes);
+            let end = memchr::memchr2(b'\n', b'\r', bytes);
             if end.is_some() || bytes.len() <= LONG {
                 let line = bytes.get(..end.unwrap_or(bytes.len())).unwrap_or(bytes);
-                let line = line.strip_suffix(b"\r").unwrap_or(line);
                 let shown = Diagnostic::error("").at(span);
                 let shown = shown.with_source(&self.name, &lexer::decode(line));
                 return shown.source.unwrap_or_else(|| SourceLine {
@@ -167,7 +166,7 @@ impl SourceFile {
         let part = reader.text.part(from..to);
         let before = lexer::decode(part.get(from..place));
         let behind = part.get(place..to);
-        let end = memchr::memchr(b'\n', behind).unwrap_or(behind.len());
+        let end = memchr::memchr2(b'\n', b'\r', behind).unwrap_or(behind.len());
         let behind = lexer::decode(behind.get(..end).unwrap_or(behind));
         let length = (behind.chars().count() as u32).clamp(1, span.length.max(1));
         SourceLine {
@@ -198,10 +197,11 @@ impl Reader {
             const PART: usize = 1 << 20;
             let (mut starts, mut at) = (vec![0], 0);
             while at < self.text.len() {
-                let part = self.text.part(at..at + PART);
-                let bytes = part.get(at..at + PART);
-                starts.extend(memchr::memchr_iter(b'\n', bytes).map(|end| (at + end) as u32 + 1));
-                at += bytes.len();
+                let part = self.text.part(at..at + PART + 1);
+                let bytes = part.get(at..at + PART + 1);
+                let (here, next) = ends_among(bytes, PART);
+                starts.extend(here.map(|end| (at + end) as u32 + 1));
+                at += next;
             }
             starts
         })
@@ -218,10 +218,11 @@ impl Reader {
         let mut last = self.last;
         match start.checked_sub(last.at) {
             Some(passed) if passed <= far => {
-                let range = last.at as usize..start as usize;
-                let passed = self.text.part(range.clone()).get(range);
-                last.ends += memchr::memchr_iter(b'\n', passed).count() as u32;
-                if let Some(end) = memchr::memrchr(b'\n', passed) {
+                let range = last.at as usize..start as usize + 1;
+                let bytes = self.text.part(range.clone()).get(range);
+                let (ends, _) = ends_among(bytes, (start - last.at) as usize);
+                for end in ends {
+                    last.ends += 1;
                     last.begin = last.at + end as u32 + 1;
                 }
             }
@@ -237,6 +238,17 @@ impl Reader {
         self.last = last;
         last
     }
+}
+
+/// Where lines end among the first `count` bytes, of which a further one may be given, and how many these are: at each line feed, and at each
+/// carriage return with no line feed behind it, as old texts of the Macintosh have them.
+fn ends_among(bytes: &[u8], count: usize) -> (impl Iterator<Item = usize> + '_, usize) {
+    let count = count.min(bytes.len());
+    let here = bytes.get(..count).unwrap_or(bytes);
+    let ends = memchr::memchr2_iter(b'\n', b'\r', here);
+    let ends =
+        ends.filter(|at| bytes.get(*at) == Some(&b'\n') || bytes.get(*at + 1) != Some(&b'\n'));
+    (ends, count)
 }
 
 #[cfg(test)]
@@ -269,6 +281,29 @@ mod tests {
             let end = file.span(999);
             assert_eq!((end.line, end.column, end.length), (3, 1, 1));
             assert_eq!(file.excerpt(999, end).text, "");
+        }
+    }
+
+    #[test]
+    fn lines_end_by_line_feeds_carriage_returns_or_both() {
+        for end in ["\n", "\r", "\r\n"] {
+            let text = format!("// first{end}{end}sphere{end}{{ 0, \"{end}");
+            for table in [false, true] {
+                for file in both(&text) {
+                    if table {
+                        file.reader().lines();
+                        file.span(text.len() as u32);
+                    }
+                    let place = |word| {
+                        let start = text.find(word).unwrap() as u32;
+                        let span = file.span(start);
+                        (span.line, span.column, file.excerpt(start, span).text)
+                    };
+                    assert_eq!(place("sphere"), (3, 1, "sphere".to_owned()), "{end:?}");
+                    assert_eq!(place("0"), (4, 3, "{ 0, \"".to_owned()), "{end:?}");
+                    assert_eq!(file.span(text.len() as u32).line, 5, "{end:?}");
+                }
+            }
         }
     }
 

@@ -6,6 +6,7 @@ mod cameras;
 #[path = "../common/mod.rs"]
 mod common;
 mod lights;
+mod reading;
 mod world;
 
 /// Things to light and to see.

@@ -32,6 +32,10 @@ pub(super) fn blob(p: &mut Parser<'_>) -> PResult<Entity> {
             p.comma()?;
         }
         let components = std::mem::take(&mut draft.components);
+        if components.is_empty() {
+            let token = p.peek()?;
+            return Err(p.unexpected(token, "a component of the blob"));
+        }
         Ok(Blob::try_new(draft.threshold, components).map(|blob| {
             let blob = Arc::new(blob);
             shape = Some(Arc::clone(&blob));

@@ -1,6 +1,7 @@
 use crate::grammar::Entity;
 use crate::grammar::entity::is_nothing;
 use crate::parser::{PResult, Parser};
+use crate::token::Kind;
 use strahl_scene::{CsgOp, Object};
 
 /// `union { objects ... }`
@@ -27,25 +28,39 @@ impl Parser<'_> {
     fn csg(&mut self, op: CsgOp) -> PResult<Entity> {
         let place = self.place();
         self.braces(|p| {
-            let children = p.parts()?;
-            if children.is_empty() {
-                p.warn(place, format!("the {} has no objects", op.name()));
-            }
-            let kept = combine(op, children);
-            let mut entity = Entity::from(Object::csg(op, kept));
+            let first = p.named_object(None)?;
+            let rest = p.parts()?;
+            let mut entity = match first {
+                // As in POV-Ray, `union { Name ... }` is `object { Name ... }`.
+                Some(named) if rest.is_empty() => named,
+                first => {
+                    let named = first.map(|entity| entity.object);
+                    let children: Vec<Object> = named.into_iter().chain(rest).collect();
+                    if children.is_empty() {
+                        p.warn(place, format!("the {} has no objects", op.name()));
+                    }
+                    Entity::from(Object::csg(op, combine(op, children)))
+                }
+            };
             entity.object.span = p.span_at(place);
             p.modifiers(&mut entity)?;
             Ok(entity)
         })
     }
 
-    /// Objects up to the first word that opens none.
-    pub(super) fn parts(&mut self) -> PResult<Vec<Object>> {
+    /// Objects up to the first word that opens none. Stray separators between them do no harm.
+    pub(in crate::grammar) fn parts(&mut self) -> PResult<Vec<Object>> {
         let mut objects = vec![];
-        while let Some(object) = self.object()? {
-            objects.push(object);
+        loop {
+            let token = self.peek()?;
+            if matches!(token.kind, Kind::Comma | Kind::Semicolon) {
+                self.take(token)?;
+            } else if let Some(object) = self.object()? {
+                objects.push(object);
+            } else {
+                return Ok(objects);
+            }
         }
-        Ok(objects)
     }
 }
 

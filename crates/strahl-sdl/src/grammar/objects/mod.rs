@@ -34,11 +34,10 @@ pub(super) use named::object;
 pub(crate) use reuse::{Shared, Tally, expanded};
 pub(super) use text::KnownFont;
 
-use super::{Entity, Thing, by_word, words_of};
+use super::{Entity, by_word, words_of};
 use crate::keywords::{Word, WordKind};
 use crate::parser::{PResult, Parser};
 use crate::token::{Kind, Token};
-use crate::value::Value;
 use strahl_scene::Object;
 
 /// Reads an object from its `{` to its `}`; its word is already taken.
@@ -97,25 +96,19 @@ impl Parser<'_> {
         Ok(self.entity()?.map(|entity| entity.object))
     }
 
-    /// Whether a brace and the name of an object come next, and not a further object.
-    fn object_name_follows(&self) -> bool {
-        if self.raw().kind != Kind::LeftBrace {
-            return false;
-        }
-        let name = self.raw_ahead(1);
-        let found = match (name.kind, name.symbol()) {
-            (Kind::Name, Some(symbol)) => self.scopes.find(symbol),
-            _ => None,
-        };
-        matches!(found, Some(Value::Thing(Thing::Object(_))))
-    }
-
-    /// If an object stands here, reads it with its texture. One that is not supported yet leaves nothing.
+    /// If an object or the name of one stands here, reads it with its texture. One that is not supported yet leaves nothing.
     ///
     /// # Errors
     /// If the object is wrong.
     pub(crate) fn entity(&mut self) -> PResult<Option<Entity>> {
         let token = self.peek()?;
+        if token.kind == Kind::Name {
+            let named = self.named_object(None)?;
+            if named.is_some() {
+                self.count_objects(1)?;
+            }
+            return Ok(named);
+        }
         if let Some(parse) = self.object_parser(token)? {
             return self.nested(parse).map(Some);
         }
@@ -144,8 +137,17 @@ impl Parser<'_> {
         };
         self.take(token)?;
         self.count_objects(1)?;
-        // A declared object may stand in the braces of any: `sphere { Name ... }` is `object { Name ... }`.
-        let named = word != Word::LightSource && self.object_name_follows();
+        // A declared object may stand in the braces of any; operations and lights look for it themselves.
+        let looks_itself = matches!(
+            word,
+            Word::LightSource
+                | Word::LightGroup
+                | Word::Union
+                | Word::Merge
+                | Word::Intersection
+                | Word::Difference
+        );
+        let named = !looks_itself && self.object_name_follows()?;
         Ok(Some(if named { object } else { parse }))
     }
 

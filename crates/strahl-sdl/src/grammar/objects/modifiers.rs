@@ -167,6 +167,15 @@ impl Parser<'_> {
             Some(Word::Hollow) => entity.object.hollow = Some(true),
             // These choose POV-Ray's methods.
             Some(Word::Hierarchy | Word::SplitUnion | Word::Sturm) => {}
+            // Of old scenes, for previews.
+            Some(word) if word.kind() == WordKind::Color => {
+                self.warn_hint(
+                    self.place_of(token),
+                    "a colour of the object itself does nothing",
+                    "write `pigment { ... }` around it",
+                );
+                return self.color().map(|_| true);
+            }
             _ => return Ok(false),
         }
         self.take(token)?;
@@ -218,9 +227,14 @@ impl Parser<'_> {
                 return Ok(());
             }
             found = p.parts()?;
+            let mut token = p.peek()?;
             if found.is_empty() {
-                let token = p.peek()?;
                 return Err(p.unexpected(token, "an object"));
+            }
+            // What stands behind them moves all of them.
+            while let Some(map) = p.transformation(token)? {
+                found.iter_mut().for_each(|object| transform(object, &map));
+                token = p.peek()?;
             }
             Ok(())
         })?;

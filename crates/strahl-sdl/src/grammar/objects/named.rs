@@ -1,25 +1,18 @@
+//! Declared objects: `object { Name ... }`, `Name`, and names in the braces of other objects.
+
+use crate::grammar::entity::Declared;
 use crate::grammar::{Entity, Thing};
-use crate::parser::{PResult, Parser};
+use crate::parser::{PResult, Parser, Place};
+use crate::token::{Kind, Token};
+use crate::value::Value;
+use std::sync::Arc;
 
 /// `object { Name ... }` or `object { sphere { ... } ... }`
 pub(in crate::grammar) fn object(p: &mut Parser<'_>) -> PResult<Entity> {
     let place = p.place();
     p.braces(|p| {
-        let token = p.peek()?;
-        let named = p.accept_thing(|thing| match thing {
-            Thing::Object(object) => Some(object),
-            _ => None,
-        })?;
-        let mut entity = match named {
-            Some(declared) => {
-                let mut entity = p.use_declared(&declared);
-                // Rays then name the place that put the object into the scene.
-                entity.object.span = p.span_at(place);
-                if let Some(symbol) = token.symbol() {
-                    entity.object.name = Some(p.name_of(symbol));
-                }
-                entity
-            }
+        let mut entity = match p.named_object(Some(place))? {
+            Some(entity) => entity,
             None => match p.entity()? {
                 Some(entity) => entity,
                 None => {
@@ -31,4 +24,83 @@ pub(in crate::grammar) fn object(p: &mut Parser<'_>) -> PResult<Entity> {
         p.modifiers(&mut entity)?;
         Ok(entity)
     })
+}
+
+impl Parser<'_> {
+    /// If the name of an object stands here, takes it and gives the object once more. Rays then name `place`, which puts the object into
+    /// the scene, or the name itself.
+    ///
+    /// # Errors
+    /// If the name is that of an array or dictionary, and its element no object.
+    pub(in crate::grammar) fn named_object(
+        &mut self,
+        place: Option<Place>,
+    ) -> PResult<Option<Entity>> {
+        let token = self.peek()?;
+        if token.kind != Kind::Name {
+            return Ok(None);
+        }
+        let place = place.unwrap_or_else(|| self.place_of(token));
+        let named = self.accept_thing(|thing| match thing {
+            Thing::Object(object) => Some(object),
+            _ => None,
+        })?;
+        Ok(named.map(|declared| self.declared_object(&declared, token, place)))
+    }
+
+    /// A declared object as it is put into the scene by `name`.
+    pub(in crate::grammar) fn declared_object(
+        &mut self,
+        declared: &Arc<Declared>,
+        name: Token,
+        place: Place,
+    ) -> Entity {
+        let mut entity = self.use_declared(declared);
+        entity.object.span = self.span_at(place);
+        if let Some(symbol) = name.symbol() {
+            entity.object.name = Some(self.name_of(symbol));
+        }
+        entity
+    }
+
+    /// Whether a brace and the name of an object come next: `sphere { Name ... }` is `object { Name ... }`.
+    ///
+    /// # Errors
+    /// If a directive behind the brace fails.
+    pub(super) fn object_name_follows(&mut self) -> PResult<bool> {
+        if self.raw().kind != Kind::LeftBrace {
+            return Ok(false);
+        }
+        let next = self.raw_ahead(1);
+        let unfolds = match next.kind {
+            Kind::Directive => true,
+            Kind::Name => next
+                .symbol()
+                .is_some_and(|s| self.scopes.find_macro(s).is_some()),
+            _ => return Ok(false),
+        };
+        let token = if unfolds {
+            self.peek_into_braces()?
+        } else {
+            next
+        };
+        Ok(self.names_object(token))
+    }
+
+    /// Whether a token is the name of an object, or of an array of them.
+    fn names_object(&self, token: Token) -> bool {
+        let (Kind::Name, Some(symbol)) = (token.kind, token.symbol()) else {
+            return false;
+        };
+        let is_object = |value: &Value| matches!(value, Value::Thing(Thing::Object(_)));
+        match self.scopes.find(symbol) {
+            Some(Value::Array(array)) => array
+                .elements()
+                .iter()
+                .flatten()
+                .next()
+                .is_some_and(is_object),
+            found => found.is_some_and(is_object),
+        }
+    }
 }

@@ -194,10 +194,17 @@ impl Parser<'_> {
             None
         };
         let length = direction.length();
-        if !(length > 0.0 && length.is_finite() && origin.is_finite()) {
-            return Err(self.fail(place, "`trace` needs a direction that is not zero"));
+        if !(length.is_finite() && origin.is_finite()) {
+            return Err(self.fail(
+                place,
+                "`trace` needs a place and a direction of finite numbers",
+            ));
         }
-        let query = self.query(&object)?;
+        // As in POV-Ray, a ray without a direction meets nothing.
+        let query = match length {
+            0.0 => None,
+            _ => self.query(&object)?,
+        };
         /// A ray is intersected with a surface without a formula by evaluating about this many points.
         const POINTS: u64 = 64;
         self.spend_on(query.as_deref(), POINTS)?;

@@ -6,7 +6,7 @@ use crate::parser::{PResult, Parser};
 use crate::token::{Kind, Token};
 use strahl_shade::ColorFt;
 use strahl_shade::normal::{PovNormal, SlopeMap};
-use strahl_shade::patterns::Pattern;
+use strahl_shade::patterns::{Modifiers, Pattern};
 use strahl_shade::pigment::{BlendMap, Pigment};
 use strahl_shade::texture::Texture;
 
@@ -17,6 +17,22 @@ pub(super) fn color_ft([r, g, b, filter, transmit]: [f64; 5]) -> ColorFt {
         filter,
         transmit,
     }
+}
+
+/// Whether what repeats or bends a pattern's values is set. The values of a block pattern are then no numbers of blocks any more, and
+/// choose from its members as from a map (as measured).
+pub(super) fn blends_blocks(modifiers: &Modifiers) -> bool {
+    !matches!(modifiers.frequency, 0.0 | 1.0) || modifiers.wave.is_some()
+}
+
+/// The members of a block pattern as a map, each at its number.
+pub(super) fn numbered<T>(members: Vec<T>) -> BlendMap<T> {
+    let members = members.into_iter().enumerate();
+    BlendMap::new(
+        members
+            .map(|(number, member)| (number as f64, member))
+            .collect(),
+    )
 }
 
 impl Parser<'_> {

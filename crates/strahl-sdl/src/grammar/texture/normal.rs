@@ -1,5 +1,6 @@
 //! `normal { ... }`
 
+use super::maps::{blends_blocks, numbered};
 use super::{modifiers, weight};
 use crate::grammar::Thing;
 use crate::keywords::Word;
@@ -103,6 +104,11 @@ impl Draft {
             (Chooser::Average, Choice::Normals(map)) => NormalKind::Average(map.entries),
             (Chooser::Average, _) => NormalKind::Average(vec![]),
             (Chooser::Pattern(pattern), Choice::Normals(map)) => NormalKind::Map(pattern, map),
+            (Chooser::Pattern(pattern), Choice::Blocks(list))
+                if blends_blocks(&self.normal.modifiers) =>
+            {
+                NormalKind::Map(pattern, numbered(list))
+            }
             (Chooser::Pattern(pattern), Choice::Blocks(list)) => NormalKind::Blocks(pattern, list),
             (Chooser::Pattern(pattern), choice) => match pattern {
                 // These have no height that a slope map could change (as measured).

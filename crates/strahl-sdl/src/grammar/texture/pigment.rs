@@ -1,6 +1,6 @@
 //! `pigment { ... }`
 
-use super::maps::color_ft;
+use super::maps::{blends_blocks, color_ft, numbered};
 use super::{modifiers, weight};
 use crate::grammar::Thing;
 use crate::keywords::{Word, WordKind};
@@ -40,6 +40,14 @@ struct Draft {
     choice: Choice,
     modifiers: Modifiers,
     uv_mapped: bool,
+}
+
+/// A block pattern with the pigments of its blocks.
+fn of_blocks(field: Box<PatternField>, list: Vec<Pigment>) -> Pigment {
+    if blends_blocks(&field.modifiers) {
+        return Pigment::PigmentMap(field, numbered(list));
+    }
+    Pigment::Blocks(field, list)
 }
 
 impl From<Pigment> for Draft {
@@ -101,9 +109,9 @@ impl Draft {
                 match choice {
                     Choice::Colors(map) => Pigment::ColorMap(field, map),
                     Choice::Pigments(map) => Pigment::PigmentMap(field, map),
-                    Choice::Blocks(list) => Pigment::Blocks(field, list),
+                    Choice::Blocks(list) => of_blocks(field, list),
                     Choice::Default(word) => match default_blocks(&field.pattern) {
-                        Some(list) => Pigment::Blocks(field, list),
+                        Some(list) => of_blocks(field, list),
                         None => {
                             let map = default_map(&field.pattern, word);
                             Pigment::ColorMap(field, map)

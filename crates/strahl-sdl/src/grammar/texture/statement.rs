@@ -1,5 +1,6 @@
 //! `texture { ... }` and `material { ... }`
 
+use super::maps::{blends_blocks, numbered};
 use super::{Texture, layered, top_of, transform, weight};
 use crate::grammar::Thing;
 use crate::keywords::Word;
@@ -85,6 +86,9 @@ impl Draft {
                 });
                 match choice {
                     Choice::Map(map) => Surface::Map(field, map),
+                    Choice::Blocks(list) if blends_blocks(&field.modifiers) => {
+                        Surface::Map(field, numbered(list))
+                    }
                     Choice::Blocks(list) => Surface::Blocks(field, list),
                     Choice::Nothing => self.single,
                 }

@@ -83,7 +83,10 @@ impl Parser<'_> {
             objects.push(object);
         }
         if objects.is_empty() {
-            self.warn(place, "the mesh has no triangles and is left out");
+            if parts.degenerate > 0 {
+                return Ok(Entity::nothing());
+            }
+            return Err(self.fail(place, "the mesh has no triangles"));
         }
         // A texture of the whole does not replace those of triangles.
         let plain = objects.pop_if(|only| single && only.material.is_none());
