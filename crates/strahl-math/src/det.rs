@@ -1,7 +1,9 @@
 //! Elementary functions that give the same bits on every machine.
 //!
 //! The platform's libm differs between systems and picks FMA variants at run time; results that reach a pixel use these
-//! software implementations instead (the `libm` crate, a port of musl's).
+//! software implementations instead: the `libm` crate, a port of musl's, and tables of our own for powers.
+
+mod power;
 
 /// Sine of `x` radians.
 pub fn sin(x: f64) -> f64 {
@@ -30,7 +32,7 @@ pub fn atan2(y: f64, x: f64) -> f64 {
 
 /// `e` to the power of `x`.
 pub fn exp(x: f64) -> f64 {
-    libm::exp(x)
+    power::exp(x)
 }
 
 /// Natural logarithm.
@@ -88,7 +90,7 @@ pub fn log10(x: f64) -> f64 {
 ///
 /// Small whole exponents, the usual case of highlights, are computed by repeated squaring.
 pub fn pow(base: f64, exponent: f64) -> f64 {
-    small_power(base, exponent).unwrap_or_else(|| libm::pow(base, exponent))
+    small_power(base, exponent).unwrap_or_else(|| power::pow(base, exponent))
 }
 
 /// Whole exponents from 0 to 64 by repeated squaring.
@@ -106,12 +108,6 @@ fn small_power(base: f64, exponent: f64) -> Option<f64> {
         bits >>= 1;
     }
     Some(result)
-}
-
-/// `base` to the power of `exponent` for a positive base, in half the time: as `exp(exponent ln(base))`, whose relative error
-/// grows with the exponent of the result (about 1e-16 times `|exponent ln(base)|`).
-pub fn pow_fast(base: f64, exponent: f64) -> f64 {
-    small_power(base, exponent).unwrap_or_else(|| exp(exponent * ln(base)))
 }
 
 /// Cube root.

@@ -68,7 +68,7 @@ impl ShadingModel {
             _ => return 0.0,
         };
         if cosine > 0.0 {
-            det::pow_fast(cosine, shininess)
+            det::pow(cosine, shininess)
         } else {
             0.0
         }

@@ -271,7 +271,7 @@ fn raise(base: f64, exponent: f64) -> f64 {
     if exponent == 0.5 {
         base.sqrt()
     } else {
-        det::pow_fast(base, exponent)
+        det::pow(base, exponent)
     }
 }
 

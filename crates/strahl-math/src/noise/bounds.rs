@@ -1,7 +1,7 @@
 //! What noise can be within a box: for proofs that a function has no zero there.
 
 use super::tables::{R, hash};
-use super::{Cell, NoiseGenerator, SHIFT, perlin_gradient, smooth, unit};
+use super::{CELL_SHIFT, NoiseGenerator, SHIFT, perlin_gradient, smooth, unit};
 use crate::DVec3;
 
 /// More than the rounding errors of noise, whose terms are of the size of 1.
@@ -27,7 +27,7 @@ pub fn noise_bounds(min: DVec3, max: DVec3, generator: NoiseGenerator) -> Range 
         _ => over_cells(min, max, |cell, corner, d| {
             let at = |k: usize| {
                 (cell[k]
-                    .wrapping_add(Cell::SHIFT)
+                    .wrapping_add(CELL_SHIFT)
                     .wrapping_add(corner[k] as i64)
                     & 4095) as usize
             };
@@ -100,7 +100,7 @@ fn in_cell(
     corner: &impl Fn([i64; 3], [usize; 3], &Offset) -> Range,
 ) -> Range {
     let (middle, reach) = (0.5 * (from + to), 0.5 * (to - from));
-    let (s0, s1) = (smooth(from), smooth(to));
+    let [s0, s1] = [from, to].map(|v| DVec3::from_array(v.to_array().map(smooth)));
     let at = |x: usize, y: usize, z: usize| {
         let step = DVec3::new(x as f64, y as f64, z as f64);
         let middle = middle - step;

@@ -65,14 +65,11 @@ pub fn noise(p: DVec3, generator: NoiseGenerator) -> f64 {
 ///
 /// The same for every [`NoiseGenerator`]; what turbulence displaces points by.
 pub fn dnoise(p: DVec3) -> DVec3 {
-    let cell = Cell::new(p);
     let mut sum = DVec3::ZERO;
-    for corner in cell.corners() {
-        let r = &R[corner.hash..];
-        let d = corner.offset;
+    corners(p, |r, d, share| {
         let linear = |k: usize| 0.5 * r[k] + (r[k + 1] * d.x + r[k + 2] * d.y + r[k + 3] * d.z);
-        sum += DVec3::new(linear(0), linear(4), linear(8)) * corner.weight;
-    }
+        sum += DVec3::new(linear(0), linear(4), linear(8)) * share;
+    });
     sum
 }
 
@@ -159,74 +156,64 @@ fn unit(x: f64) -> f64 {
     x.clamp(0.0, 1.0)
 }
 
-/// One corner of a lattice cell as a place inside the cell sees it.
-struct Corner {
-    /// Its entry of the table of values and gradients, `0..256`.
-    hash: usize,
-    /// From the corner to the place.
-    offset: DVec3,
-    /// Its share of the result; the eight shares sum to 1.
-    weight: f64,
+/// The cell of the lattice that a coordinate lies in, and how far.
+#[inline]
+fn place(x: f64) -> (i64, f64) {
+    // Rounding down without a call: the cast cuts off towards zero. Beyond 2^52 all numbers are whole; NaN and infinities spoil only their own value.
+    let mut cell = x as i64;
+    let mut floor = cell as f64;
+    if floor > x {
+        cell = cell.wrapping_sub(1);
+        floor -= 1.0;
+    }
+    (cell, x - floor)
 }
 
-/// The cell of the value-gradient lattice around a place.
-struct Cell {
-    /// Lattice coordinates of the lower corner, modulo 4096.
-    index: [usize; 3],
-    fraction: DVec3,
-    smooth: DVec3,
-}
+/// What cell 0 of the table of the value-gradient noise is shifted by.
+const CELL_SHIFT: i64 = 10_000;
 
-impl Cell {
-    /// What the lattice is shifted by: cell 0 of the table lies at -10000.
-    const SHIFT: i64 = 10_000;
-
-    fn new(p: DVec3) -> Self {
-        let floor = p.floor();
-        let fraction = p - floor;
-        // The cast saturates, so hostile coordinates wrap to some cell and spoil only their own value.
-        let index = floor
-            .to_array()
-            .map(|f| ((f as i64).wrapping_add(Self::SHIFT) & 4095) as usize);
-        Self {
-            index,
-            fraction,
-            smooth: smooth(fraction),
+/// Hands to `visit` the eight corners of the cell of the value-gradient lattice around a place: the corner's entries in the table of values
+/// and gradients, the way from the corner to the place, and the corner's share of the result; the shares sum to 1.
+#[inline(always)]
+fn corners(p: DVec3, mut visit: impl FnMut(&[f64; 12], DVec3, f64)) {
+    let [x, y, z] = p.to_array().map(place);
+    let cells = [x, y, z].map(|(cell, _)| {
+        // Hostile coordinates wrap to some cell.
+        let cell = cell.wrapping_add(CELL_SHIFT);
+        [cell, cell.wrapping_add(1)].map(|c| (c & 4095) as usize)
+    });
+    let ways = [x, y, z].map(|(_, fraction)| [fraction, fraction - 1.0]);
+    let shares = [x, y, z].map(|(_, t)| {
+        let s = smooth(t);
+        [1.0 - s, s]
+    });
+    for i in 0..2 {
+        let row = usize::from(hash(cells[0][i]));
+        for j in 0..2 {
+            let column = usize::from(hash(row ^ cells[1][j]));
+            let share = shares[0][i] * shares[1][j];
+            for k in 0..2 {
+                let h = usize::from(hash(column ^ cells[2][k]) & 255);
+                let way = DVec3::new(ways[0][i], ways[1][j], ways[2][k]);
+                if let Some(entries) = R[h..].first_chunk() {
+                    visit(entries, way, share * shares[2][k]);
+                }
+            }
         }
     }
-
-    fn corners(&self) -> impl Iterator<Item = Corner> + '_ {
-        (0..8).map(|bits: usize| {
-            let step = [bits >> 2, (bits >> 1) & 1, bits & 1];
-            let [i, j, k] = std::array::from_fn(|a| (self.index[a] + step[a]) & 4095);
-            let step = DVec3::from_array(step.map(|s| s as f64));
-            Corner {
-                hash: usize::from(hash(usize::from(hash(usize::from(hash(i)) ^ j)) ^ k) & 255),
-                offset: self.fraction - step,
-                weight: weight(self.smooth, step),
-            }
-        })
-    }
 }
 
-/// `3t² - 2t³` along each axis.
-fn smooth(t: DVec3) -> DVec3 {
-    t * t * (DVec3::splat(3.0) - 2.0 * t)
-}
-
-/// The product over the axes of `s` where `step` is 1 and of `1 - s` where it is 0.
-fn weight(s: DVec3, step: DVec3) -> f64 {
-    let w = |s: f64, step: f64| if step == 0.0 { 1.0 - s } else { s };
-    w(s.x, step.x) * w(s.y, step.y) * w(s.z, step.z)
+/// `3t² - 2t³`.
+#[inline]
+fn smooth(t: f64) -> f64 {
+    t * t * (3.0 - 2.0 * t)
 }
 
 fn value_gradient(p: DVec3) -> f64 {
     let mut sum = 0.0;
-    for corner in Cell::new(p).corners() {
-        let r = &R[corner.hash..];
-        let d = corner.offset;
-        sum += corner.weight * (0.5 * r[0] + (r[1] * d.x + r[2] * d.y + r[3] * d.z));
-    }
+    corners(p, |r, d, share| {
+        sum += share * (0.5 * r[0] + (r[1] * d.x + r[2] * d.y + r[3] * d.z));
+    });
     sum
 }
 
@@ -237,22 +224,33 @@ const SHIFT: f64 = 10_000_000.0 + 12_432_434.0 / 536_870_912.0;
 /// The gradient at a corner of a cell, whose index is below 2048.
 fn perlin_gradient(index: [usize; 3], step: [usize; 3]) -> DVec3 {
     let [i, j, k] = std::array::from_fn(|a| (index[a] + step[a]) & 2047);
-    let row = usize::from(PERMUTATION[(usize::from(PERMUTATION[i]) + j) & 2047]);
-    GRADIENTS[(row + k) & 2047]
+    GRADIENTS[(perlin_row(i, j) + k) & 2047]
+}
+
+#[inline]
+fn perlin_row(i: usize, j: usize) -> usize {
+    usize::from(PERMUTATION[(usize::from(PERMUTATION[i]) + j) & 2047])
 }
 
 fn perlin(p: DVec3) -> f64 {
-    let p = p + DVec3::splat(SHIFT);
-    let floor = p.floor();
-    let fraction = p - floor;
-    let s = smooth(fraction);
-    let index = floor.to_array().map(|f| (f as i64 & 2047) as usize);
+    let [x, y, z] = (p + DVec3::splat(SHIFT)).to_array().map(place);
+    let cells = [x, y, z].map(|(c, _)| [c, c.wrapping_add(1)].map(|c| (c & 2047) as usize));
+    let ways = [x, y, z].map(|(_, fraction)| [fraction, fraction - 1.0]);
+    let shares = [x, y, z].map(|(_, t)| {
+        let s = smooth(t);
+        [1.0 - s, s]
+    });
     let mut sum = 0.0;
-    for bits in 0..8usize {
-        let step = [bits >> 2, (bits >> 1) & 1, bits & 1];
-        let gradient = perlin_gradient(index, step);
-        let step = DVec3::from_array(step.map(|s| s as f64));
-        sum += weight(s, step) * gradient.dot(fraction - step);
+    for i in 0..2 {
+        for j in 0..2 {
+            let row = perlin_row(cells[0][i], cells[1][j]);
+            let share = shares[0][i] * shares[1][j];
+            for k in 0..2 {
+                let gradient = GRADIENTS[(row + cells[2][k]) & 2047];
+                let way = DVec3::new(ways[0][i], ways[1][j], ways[2][k]);
+                sum += share * shares[2][k] * gradient.dot(way);
+            }
+        }
     }
     sum
 }

@@ -1,0 +1,174 @@
+//! Powers, exponentials and logarithms from tables.
+//!
+//! The method is that of Tang (ACM TOMS 1989 and 1990) as refined by Nagy for ARM's Optimized Routines (2018), for processors without fused
+//! multiply-adds: the argument is brought near 1 (or 0) by a table of 128 entries, a short polynomial does the rest, and the logarithm
+//! of a power is carried in two doubles. Results are within one unit in the last place. What is rare (zeros, negative numbers, infinities, results near
+//! overflow) is left to the `libm` crate.
+
+mod tables;
+
+use tables::{EXP, LOG};
+
+/// The logarithm's table begins at this number, a little below 0.71, so that 1 lies inside an interval.
+const START: u64 = 0x3fe6_9555_0000_0000;
+/// ln 2 in two parts; the first has zeros at its end, so that products with exponents are exact.
+const LN_2: [f64; 2] = [0.6931471805598903, 5.497923018708371e-14];
+/// ln 2 / 128 in two parts, and 128 / ln 2.
+const STEP: [f64; 2] = [0.005415212348111709, 1.2864023111638346e-14];
+const STEPS: f64 = 184.6649652337873;
+/// Adding and taking away 1.5 * 2^52 rounds to a whole number.
+const ROUND: f64 = 6_755_399_441_055_744.0;
+
+/// Whether a number is positive, finite and not subnormal.
+#[inline]
+fn is_usual(x: f64) -> bool {
+    let bits = x.to_bits();
+    bits.wrapping_sub(0x0010_0000_0000_0000) < 0x7ff0_0000_0000_0000 - 0x0010_0000_0000_0000
+}
+
+/// The natural logarithm of a usual number as the sum of two; the second is small against the first.
+#[inline]
+fn ln_parts(x: f64) -> (f64, f64) {
+    let bits = x.to_bits();
+    let above = bits.wrapping_sub(START);
+    let [inverse, log_high, log_low] = LOG[(above >> 45 & 127) as usize];
+    let exponent = (above as i64 >> 52) as f64;
+    let mantissa = bits.wrapping_sub(above & (0xfff << 52));
+    let z = f64::from_bits(mantissa);
+    // z / c - 1 in two parts, both exact: the inverse has nine bits, the upper part of z twenty-one.
+    let z_high = f64::from_bits(mantissa.wrapping_add(1 << 31) & !0xffff_ffff);
+    let r_high = z_high * inverse - 1.0;
+    let r_low = (z - z_high) * inverse;
+    let r = r_high + r_low;
+    let t1 = exponent * LN_2[0] + log_high;
+    let t2 = t1 + r;
+    let low1 = exponent * LN_2[1] + log_low;
+    let low2 = t1 - t2 + r;
+    // ln(1 + r) = r - r^2 / 2 + ...; the square of the upper part is exact.
+    let half = -0.5 * r;
+    let half_high = -0.5 * r_high;
+    let square_high = r_high * half_high;
+    let high = t2 + square_high;
+    let low3 = r_low * (half + half_high);
+    let low4 = t2 - high + square_high;
+    let r2 = r * r;
+    let polynomial =
+        (1.0 / 3.0 - r * 0.25) + r2 * ((0.2 - r * (1.0 / 6.0)) + r2 * (1.0 / 7.0 - r * 0.125));
+    let low = low1 + low2 + low3 + low4 + r2 * r * polynomial;
+    let sum = high + low;
+    (sum, high - sum + low)
+}
+
+/// `e^(x + low)` for |x| below 700 and a small `low`.
+#[inline]
+fn exp_parts(x: f64, low: f64) -> f64 {
+    let rounded = x * STEPS + ROUND;
+    let number = rounded.to_bits();
+    let steps = rounded - ROUND;
+    let r = x - steps * STEP[0] - steps * STEP[1] + low;
+    let (scale, tail) = EXP[(number & 127) as usize];
+    // The number of the step without its last seven bits is the power of two.
+    let scale = f64::from_bits(scale.wrapping_add((number & !127) << 45));
+    let r2 = r * r;
+    let change =
+        tail + r + r2 * (0.5 + r * (1.0 / 6.0)) + r2 * r2 * (1.0 / 24.0 + r * (1.0 / 120.0));
+    scale + scale * change
+}
+
+/// `e` to the power of `x`.
+#[inline]
+pub(super) fn exp(x: f64) -> f64 {
+    if x > -700.0 && x < 700.0 {
+        exp_parts(x, 0.0)
+    } else {
+        libm::exp(x)
+    }
+}
+
+/// `base` to the power of `exponent`.
+#[inline]
+pub(super) fn pow(base: f64, exponent: f64) -> f64 {
+    if !is_usual(base) || !exponent.is_finite() {
+        return libm::pow(base, exponent);
+    }
+    let (high, low) = ln_parts(base);
+    // The product with the exponent, in two parts (Dekker 1971).
+    let upper = |v: f64| f64::from_bits(v.to_bits() & !0x07ff_ffff);
+    let (e, l) = (upper(exponent), upper(high));
+    let product = e * l;
+    let rest = (exponent - e) * l + exponent * (high - l + low);
+    if !(product > -700.0 && product < 700.0) {
+        return libm::pow(base, exponent);
+    }
+    exp_parts(product, rest)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// How many numbers lie between two.
+    fn apart(a: f64, b: f64) -> u64 {
+        a.to_bits().abs_diff(b.to_bits())
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(20_000))]
+
+        #[test]
+        fn powers_are_right_to_the_last_place(base in 1e-6..1e3f64, exponent in -90.0..90.0f64) {
+            prop_assert!(apart(pow(base, exponent), libm::pow(base, exponent)) <= 1);
+        }
+
+        #[test]
+        fn powers_of_numbers_near_one_are_right(difference in -1e-3..1e-3f64, exponent in -1e5..1e5f64) {
+            let base = 1.0 + difference;
+            prop_assert!(apart(pow(base, exponent), libm::pow(base, exponent)) <= 1);
+        }
+
+        #[test]
+        fn exponentials_are_right_to_the_last_place(x in -705.0..705.0f64) {
+            prop_assert!(apart(exp(x), libm::exp(x)) <= 1);
+        }
+
+        #[test]
+        fn any_bits_give_what_the_library_gives(base in any::<u64>(), exponent in any::<u64>()) {
+            let (base, exponent) = (f64::from_bits(base), f64::from_bits(exponent));
+            let (a, b) = (pow(base, exponent), libm::pow(base, exponent));
+            prop_assert!((a.is_nan() && b.is_nan()) || apart(a, b) <= 1, "{base} {exponent}: {a} {b}");
+        }
+    }
+
+    #[test]
+    fn special_cases_are_those_of_the_library() {
+        let all = [
+            0.0,
+            -0.0,
+            1.0,
+            -1.0,
+            2.0,
+            -2.0,
+            0.5,
+            3.0,
+            1e-310,
+            1e300,
+            f64::INFINITY,
+            f64::NEG_INFINITY,
+            f64::NAN,
+            1024.0,
+            -1075.0,
+        ];
+        for base in all {
+            for exponent in all {
+                let (a, b) = (pow(base, exponent), libm::pow(base, exponent));
+                assert!(
+                    a.to_bits() == b.to_bits() || a.is_nan() && b.is_nan(),
+                    "{base} {exponent}"
+                );
+            }
+            let (a, b) = (exp(base), libm::exp(base));
+            assert!(apart(a, b) <= 1 || a.is_nan() && b.is_nan(), "{base}");
+        }
+    }
+}
