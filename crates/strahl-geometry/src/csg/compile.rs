@@ -2,6 +2,7 @@ use super::half_spaces::{HalfSpace, HalfSpaces};
 use super::leaf::{Leaf, Next, Placement};
 use super::solid::{Kind, NO_PARENT, Node};
 use super::sweep::Rule;
+use super::tighten::{Form, tightened};
 use super::tree::CsgNode;
 use super::{Csg, Operands};
 use crate::{GeometryError, Primitive, Shape};
@@ -303,6 +304,26 @@ impl Compiler {
         }
     }
 
+    /// What the nodes are within, if it takes several of them to tell their common bounds and one is curved.
+    fn forms(&self, nodes: &[u32]) -> Vec<Form> {
+        let leaf = |node: &u32| match self.nodes.get(*node as usize)?.kind {
+            Kind::Leaf(index) => self.leaves.get(index as usize),
+            Kind::Operation(_) => None,
+        };
+        let forms: Vec<Form> = nodes.iter().filter_map(|n| Form::of(leaf(n)?)).collect();
+        let positive = nodes
+            .iter()
+            .filter(|n| leaf(n).is_none_or(|leaf| !leaf.negative));
+        let curved = nodes
+            .iter()
+            .filter_map(leaf)
+            .any(|l| !matches!(l.shape, Shape::Plane(_)));
+        match curved && positive.count() > 1 {
+            true => forms,
+            false => vec![],
+        }
+    }
+
     /// The half-spaces among the nodes.
     fn half_spaces(&self, nodes: &[u32]) -> Option<HalfSpaces> {
         let all = nodes.iter().filter_map(|node| self.half_space(*node));
@@ -332,9 +353,14 @@ impl Compiler {
                             _ => None,
                         };
                         let gem = gem.and_then(|planes| planes.bounds());
-                        decisive.fold(gem.unwrap_or(Aabb::EVERYTHING), |b, (other, _)| {
-                            b.intersection(other)
-                        })
+                        let common = decisive
+                            .fold(gem.unwrap_or(Aabb::EVERYTHING), |b, (other, _)| {
+                                b.intersection(other)
+                            });
+                        match rule {
+                            Rule::Intersection => tightened(&common, &self.forms(&node.operands)),
+                            _ => common,
+                        }
                     } else {
                         operands().fold(Aabb::EMPTY, |b, (other, _)| b.union(other))
                     };

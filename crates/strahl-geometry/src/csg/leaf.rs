@@ -77,6 +77,11 @@ impl Leaf {
         self.shape.as_solid()
     }
 
+    /// From the shape's space to the tree's, if they differ.
+    pub(super) fn map(&self) -> Option<&Transform> {
+        self.placement.as_ref().map(|placement| &placement.map)
+    }
+
     fn ray_to_object(&self, ray: &Ray) -> Ray {
         self.placement
             .as_ref()

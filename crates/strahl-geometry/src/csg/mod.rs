@@ -20,6 +20,7 @@ mod half_spaces;
 mod leaf;
 mod solid;
 mod sweep;
+mod tighten;
 mod timeline;
 mod tree;
 

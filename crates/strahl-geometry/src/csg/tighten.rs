@@ -1,0 +1,535 @@
+//! Tighter boxes around intersections of curved and flat parts.
+//!
+//! An endless cylinder between two planes has no bounded part, yet their intersection is bounded. Every part that is a polynomial of
+//! degree at most 2 (planes, spheres, quadrics, the mantles of cylinders and cones) says of a box whether the box certainly lies
+//! outside of it. Boxes of which one part says so are cut off, from each of the six sides, by bisection: the first box along an
+//! axis that nothing is known of is where the bounds begin (branch and bound; Ratschek and Rokne 1988).
+
+use super::leaf::Leaf;
+use crate::Shape;
+use strahl_math::{Aabb, DVec3, Transform};
+
+/// A symmetric form of four variables: `pᵀ M p` with `p = (x, y, z, w)`. A point is inside of the part where the form is not positive, with `w = 1`;
+/// `w = 0` is infinitely far away.
+#[derive(Clone, Debug)]
+pub(super) struct Form([[f64; 4]; 4]);
+
+/// A box in the four variables: centre and half widths.
+#[derive(Clone, Copy)]
+struct Cell {
+    center: [f64; 4],
+    half: [f64; 4],
+}
+
+/// Rounding errors of a form's value, relative to the sum of the magnitudes of its terms, are far below this.
+const SLACK: f64 = 1e-12;
+/// Boxes looked at for each side of the bounds, in each round.
+const BUDGET: u32 = 64;
+/// Most rounds; the last one cuts off less than a fifth.
+const ROUNDS: u32 = 6;
+/// Boxes looked at for each of six directions to infinity.
+const FAR_BUDGET: u32 = 256;
+/// The bounds begin at a box this small, relative to the bounds found so far.
+const FINE: f64 = 1.0 / 64.0;
+
+impl Form {
+    /// What a leaf keeps its inside (or, if it is open, its surface) within; `None` for other shapes and for complements.
+    pub(super) fn of(leaf: &Leaf) -> Option<Self> {
+        if leaf.negative {
+            return None;
+        }
+        let form = match &leaf.shape {
+            Shape::Plane(plane) => Self::linear(plane.normal(), plane.normal().dot(plane.point())),
+            Shape::Sphere(sphere) if !sphere.is_turned() => {
+                let (c, r) = (sphere.center(), sphere.radius());
+                Self::quadratic(
+                    [1.0, 1.0, 1.0, 0.0, 0.0, 0.0],
+                    -c,
+                    c.length_squared() - r * r,
+                )
+            }
+            Shape::Quadric(quadric) => {
+                let [a, b, c, d, e, f, g, h, i, j] = quadric.coefficients();
+                Self::quadratic([a, b, c, d, e, f], DVec3::new(g, h, i) * 0.5, j)
+            }
+            Shape::Cylinder(cylinder) => {
+                let r = cylinder.radius();
+                Self::mantle(cylinder.base(), r, cylinder.apex(), r)
+            }
+            Shape::Cone(cone) => {
+                let (r0, r1) = (cone.base_radius(), cone.apex_radius());
+                Self::mantle(cone.base(), r0, cone.apex(), r1)
+            }
+            _ => return None,
+        };
+        let form = match leaf.map() {
+            None => form,
+            Some(map) => form.moved(map),
+        };
+        form.0
+            .as_flattened()
+            .iter()
+            .all(|v| v.is_finite())
+            .then_some(form)
+    }
+
+    /// `n·x - d`, times w.
+    fn linear(n: DVec3, d: f64) -> Self {
+        Self::quadratic([0.0; 6], n * 0.5, -d)
+    }
+
+    /// `A x² + B y² + C z² + D xy + E xz + F yz + 2 l·x w + k w²`.
+    fn quadratic([a, b, c, d, e, f]: [f64; 6], l: DVec3, k: f64) -> Self {
+        let (d, e, f) = (0.5 * d, 0.5 * e, 0.5 * f);
+        Self([
+            [a, d, e, l.x],
+            [d, b, f, l.y],
+            [e, f, c, l.z],
+            [l.x, l.y, l.z, k],
+        ])
+    }
+
+    /// The double cone or cylinder through two circles around an axis: `|x - p|² - ((x - p)·u)² - (r0 + s (x - p)·u)²` with the unit vector u
+    /// of the axis.
+    fn mantle(p: DVec3, r0: f64, q: DVec3, r1: f64) -> Self {
+        let length = (q - p).length();
+        let u = (q - p) / length;
+        let slope = (r1 - r0) / length;
+        let k = 1.0 + slope * slope;
+        // About p: xᵀ (1 - k u uᵀ) x - 2 r0 s u·x - r0².
+        let (d, e, f) = (
+            -2.0 * k * u.x * u.y,
+            -2.0 * k * u.x * u.z,
+            -2.0 * k * u.y * u.z,
+        );
+        let [a, b, c] = [
+            1.0 - k * u.x * u.x,
+            1.0 - k * u.y * u.y,
+            1.0 - k * u.z * u.z,
+        ];
+        let about_p = Self::quadratic([a, b, c, d, e, f], u * (-r0 * slope), -r0 * r0);
+        about_p.substituted(&[
+            [1.0, 0.0, 0.0, -p.x],
+            [0.0, 1.0, 0.0, -p.y],
+            [0.0, 0.0, 1.0, -p.z],
+            [0.0, 0.0, 0.0, 1.0],
+        ])
+    }
+
+    /// The form of a part that a map has moved.
+    fn moved(&self, map: &Transform) -> Self {
+        let origin = map.point_to_object(DVec3::ZERO);
+        let [x, y, z] = [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| map.vector_to_object(axis));
+        self.substituted(&[
+            [x.x, y.x, z.x, origin.x],
+            [x.y, y.y, z.y, origin.y],
+            [x.z, y.z, z.z, origin.z],
+            [0.0, 0.0, 0.0, 1.0],
+        ])
+    }
+
+    /// `Bᵀ M B`.
+    fn substituted(&self, b: &[[f64; 4]; 4]) -> Self {
+        let product = |i: usize, j: usize| -> f64 {
+            let terms = (0..16).map(|n| b[n / 4][i] * self.0[n / 4][n % 4] * b[n % 4][j]);
+            terms.sum()
+        };
+        Self(std::array::from_fn(|i| {
+            std::array::from_fn(|j| product(i, j))
+        }))
+    }
+
+    /// Whether the form is positive in all of a cell.
+    fn excludes(&self, cell: &Cell) -> bool {
+        self.excludes_by_terms(cell) || self.excludes_about_the_center(cell)
+    }
+
+    /// Term by term: exact for squares. Points infinitely far away don't count.
+    fn excludes_by_terms(&self, cell: &Cell) -> bool {
+        let range = |i: usize| (cell.center[i] - cell.half[i], cell.center[i] + cell.half[i]);
+        let product = |(a, b): (f64, f64), (c, d): (f64, f64)| {
+            let all = [a * c, a * d, b * c, b * d];
+            all.into_iter()
+                .fold(f64::INFINITY, |low, v| if v < low { v } else { low })
+        };
+        // The form is S + w L, with S of degree 2 and L of degree 1 in x, y, z.
+        let (mut squares, mut linear, mut magnitude) = (0.0, 0.0, 0.0);
+        for (i, row) in self.0.iter().take(3).enumerate() {
+            let (low, high) = range(i);
+            let scaled = |m: f64| {
+                if m < 0.0 {
+                    (m * high, m * low)
+                } else {
+                    (m * low, m * high)
+                }
+            };
+            let (nearest, farthest) = match (low > 0.0, high < 0.0) {
+                (true, _) => (low * low, high * high),
+                (_, true) => (high * high, low * low),
+                _ => (0.0, if -low > high { low * low } else { high * high }),
+            };
+            let square = row[i] * if row[i] < 0.0 { farthest } else { nearest };
+            squares += square;
+            magnitude += square.abs();
+            for (j, m) in row.iter().enumerate().take(3).skip(i + 1) {
+                if *m != 0.0 {
+                    let term = product(scaled(2.0 * m), range(j));
+                    squares += term;
+                    magnitude += term.abs();
+                }
+            }
+            linear += scaled(2.0 * row[3]).0;
+        }
+        let (near, far) = (range(3).0, range(3).1);
+        let constant = self.0[3][3];
+        linear += if constant < 0.0 {
+            constant * far
+        } else {
+            constant * near
+        };
+        if near == 0.0 && squares >= 0.0 && squares == magnitude && linear > 0.0 {
+            return true;
+        }
+        let rest = linear * if linear < 0.0 { far } else { near };
+        squares + rest > SLACK * (magnitude + rest.abs() + constant.abs() * far * far)
+    }
+
+    /// About the centre c: q(c) + 2 (M c)·d + dᵀ M d, with d within the half widths.
+    fn excludes_about_the_center(&self, cell: &Cell) -> bool {
+        let (mut value, mut reach, mut magnitude) = (0.0, 0.0, 0.0);
+        for (i, row) in self.0.iter().enumerate() {
+            let (ci, hi) = (cell.center[i], cell.half[i]);
+            let (mut product, mut size) = (0.0, 0.0);
+            for (j, m) in row.iter().enumerate() {
+                let (cj, hj) = (cell.center[j], cell.half[j]);
+                product += m * cj;
+                size += m.abs() * (cj.abs() + hj);
+                // A square is never negative.
+                if i != j || *m < 0.0 {
+                    reach += m.abs() * hi * hj;
+                }
+            }
+            value += product * ci;
+            reach += 2.0 * product.abs() * hi;
+            magnitude += size * (ci.abs() + hi);
+        }
+        value - reach > SLACK * magnitude
+    }
+}
+
+impl Cell {
+    fn of(bounds: &Aabb) -> Self {
+        let (c, h) = (
+            (bounds.min + bounds.max) * 0.5,
+            (bounds.max - bounds.min) * 0.5,
+        );
+        Self {
+            center: [c.x, c.y, c.z, 1.0],
+            half: [h.x, h.y, h.z, 0.0],
+        }
+    }
+
+    /// The two halves along an axis.
+    fn bisected(&self, axis: usize) -> [Self; 2] {
+        let half = self.half[axis] * 0.5;
+        [-half, half].map(|step| {
+            let mut part = *self;
+            part.half[axis] = half;
+            part.center[axis] += step;
+            part
+        })
+    }
+
+    fn low(&self, axis: usize) -> f64 {
+        self.center[axis] - self.half[axis]
+    }
+}
+
+/// The part of a box that the inside of all forms can lie in. The result is never larger; it is the box itself where nothing is gained.
+pub(super) fn tightened(bounds: &Aabb, forms: &[Form]) -> Aabb {
+    if forms.is_empty() || bounds.is_empty() {
+        return *bounds;
+    }
+    let mut result = *bounds;
+    if !result.is_bounded() {
+        let Some(reach) = reach(&result, forms) else {
+            return *bounds;
+        };
+        let all = DVec3::splat(reach);
+        result = result.intersection(&Aabb::new(-all, all));
+    }
+    for _ in 0..ROUNDS {
+        let before = result.half_area();
+        result = cut(result, forms);
+        if !(result.half_area() < 0.8 * before) {
+            break;
+        }
+    }
+    result
+}
+
+/// Cuts off what lies outside, from each side.
+fn cut(mut result: Aabb, forms: &[Form]) -> Aabb {
+    for axis in 0..3 {
+        let cell = Cell::of(&result);
+        let Some(low) = first_possible(cell, axis, 1.0, forms) else {
+            return Aabb::EMPTY;
+        };
+        let Some(high) = first_possible(cell, axis, -1.0, forms) else {
+            return Aabb::EMPTY;
+        };
+        let slack = 1e-9 * (low.abs() + high.abs() + (high - low).abs());
+        if low - slack > result.min[axis] {
+            result.min[axis] = low - slack;
+        }
+        if high + slack < result.max[axis] {
+            result.max[axis] = high + slack;
+        }
+    }
+    result
+}
+
+/// The coordinate along an axis, seen from below (`side` 1) or above (-1), where the first box begins of which nothing is known; `None` if there
+/// is none.
+fn first_possible(mut cell: Cell, axis: usize, side: f64, forms: &[Form]) -> Option<f64> {
+    // Seen from above everything is mirrored.
+    cell.center[axis] *= side;
+    let whole = cell.half;
+    let mut waiting = vec![cell];
+    let mut budget = BUDGET;
+    while let Some(next) = nearest(&waiting, axis) {
+        let cell = waiting.swap_remove(next);
+        let mut there = cell;
+        there.center[axis] *= side;
+        if forms.iter().any(|form| form.excludes(&there)) {
+            continue;
+        }
+        // Across the axis boxes need not be as fine: what counts is how far along it they can be cut off.
+        let widest = (0..3)
+            .map(|i| {
+                let share = if whole[i] > 0.0 {
+                    cell.half[i] / whole[i]
+                } else {
+                    0.0
+                };
+                (i, if i == axis { share } else { share * 0.999 })
+            })
+            .fold(
+                (axis, 0.0),
+                |best, next| if next.1 > best.1 { next } else { best },
+            );
+        if budget == 0 || widest.1 <= FINE {
+            return Some(side * cell.low(axis));
+        }
+        budget -= 1;
+        waiting.extend(cell.bisected(widest.0));
+    }
+    None
+}
+
+/// The box that begins first along an axis; of several the largest.
+fn nearest(cells: &[Cell], axis: usize) -> Option<usize> {
+    let key = |cell: &Cell| (cell.low(axis), -cell.half[axis]);
+    (0..cells.len()).reduce(|best, next| {
+        if key(&cells[next]) < key(&cells[best]) {
+            next
+        } else {
+            best
+        }
+    })
+}
+
+/// Half the side of a cube around the origin beyond which nothing is inside of all forms and of the box, if that can be proven.
+fn reach(bounds: &Aabb, forms: &[Form]) -> Option<f64> {
+    let finite = |v: f64| if v.is_finite() { v.abs() } else { 0.0 };
+    let corners = bounds
+        .min
+        .to_array()
+        .into_iter()
+        .chain(bounds.max.to_array());
+    let mut size = corners
+        .map(finite)
+        .fold(0.0, |a: f64, b| if b > a { b } else { a });
+    for Form(m) in forms {
+        let square = (0..9).map(|n| m[n / 3][n % 3].abs()).sum::<f64>();
+        let linear = (0..3).map(|i| m[i][3].abs()).sum::<f64>();
+        // Where the terms of different degrees balance.
+        let balance = if square > linear * 1e-6 {
+            linear / square + (m[3][3].abs() / square).sqrt()
+        } else {
+            m[3][3].abs() / linear
+        };
+        if balance.is_finite() && balance > size {
+            size = balance;
+        }
+    }
+    // The finite sides of the box are planes, too.
+    let mut all = forms.to_vec();
+    for axis in 0..3 {
+        let normal = DVec3::AXES[axis];
+        for (side, at) in [(-1.0, bounds.min[axis]), (1.0, bounds.max[axis])] {
+            if at.is_finite() {
+                all.push(Form::linear(normal * side, at * side));
+            }
+        }
+    }
+    [4.0, 64.0, 1024.0]
+        .into_iter()
+        .map(|factor| size * factor)
+        .find(|&reach| {
+            reach > 0.0
+                && (0..6).all(|face| {
+                    nothing_beyond(face / 2, 1.0 - 2.0 * f64::from(face as u8 % 2), reach, &all)
+                })
+        })
+}
+
+/// Whether no point is inside of all forms whose coordinate along an axis, seen from a side, is above `reach` and larger than the two others:
+/// such points are `(±1, v, u) / w` with v and u in `-1..=1` and w in `0..1/reach`.
+fn nothing_beyond(axis: usize, side: f64, reach: f64, forms: &[Form]) -> bool {
+    let mut cell = Cell {
+        center: [0.0; 4],
+        half: [1.0; 4],
+    };
+    (cell.center[axis], cell.half[axis]) = (side, 0.0);
+    (cell.center[3], cell.half[3]) = (0.5 / reach, 0.5 / reach);
+    let whole = cell.half;
+    let mut waiting = vec![cell];
+    let mut budget = FAR_BUDGET;
+    while let Some(cell) = waiting.pop() {
+        if forms.iter().any(|form| form.excludes(&cell)) {
+            continue;
+        }
+        if budget == 0 {
+            return false;
+        }
+        budget -= 1;
+        let share = |i: usize| {
+            if whole[i] > 0.0 {
+                cell.half[i] / whole[i]
+            } else {
+                0.0
+            }
+        };
+        // The distance matters less than the direction.
+        let share = |i: usize| if i == 3 { 0.25 * share(i) } else { share(i) };
+        let widest = (0..4).fold(3, |best, i| if share(i) > share(best) { i } else { best });
+        waiting.extend(cell.bisected(widest));
+    }
+    true
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::primitives::{Plane, Quadric, Sphere};
+    use crate::{Csg, CsgNode, Primitive};
+
+    fn intersection(shapes: Vec<Shape>) -> Csg {
+        let leaves = shapes
+            .into_iter()
+            .enumerate()
+            .map(|(i, shape)| CsgNode::Leaf {
+                shape,
+                transform: None,
+                tag: i as u32,
+            });
+        Csg::try_new(CsgNode::Intersection(leaves.collect())).expect("valid")
+    }
+
+    fn between(low: f64, high: f64) -> [Shape; 2] {
+        [
+            Plane::new(DVec3::Y * high, DVec3::Y).into(),
+            Plane::new(DVec3::Y * low, DVec3::NEG_Y).into(),
+        ]
+    }
+
+    fn assert_near(bounds: Aabb, low: DVec3, high: DVec3, slack: f64) {
+        let outside = bounds.min.cmple(low).all() && bounds.max.cmpge(high).all();
+        let close =
+            (low - bounds.min).max_element() < slack && (bounds.max - high).max_element() < slack;
+        assert!(outside && close, "{bounds:?} {low} {high}");
+    }
+
+    /// A chess piece's waist: a hyperboloid of one sheet between two planes.
+    #[test]
+    fn a_hyperboloid_between_planes_is_bounded() {
+        let hyperboloid = Quadric::new([1.0, -1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -1.0]);
+        let [top, bottom] = between(-1.0, 2.0);
+        let bounds = intersection(vec![hyperboloid.into(), top, bottom]).bounds();
+        let r = 5_f64.sqrt();
+        assert_near(
+            bounds,
+            DVec3::new(-r, -1.0, -r),
+            DVec3::new(r, 2.0, r),
+            0.15,
+        );
+    }
+
+    #[test]
+    fn endless_cylinders_cones_and_paraboloids_are_bounded_by_planes() {
+        let [top, bottom] = between(0.0, 4.0);
+        for (coefficients, r) in [
+            ([1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -9.0], 3.0),
+            ([1.0, -1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0], 4.0),
+            ([1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, -1.0, 0.0, 0.0], 2.0),
+        ] {
+            let shapes = vec![
+                Quadric::new(coefficients).into(),
+                top.clone(),
+                bottom.clone(),
+            ];
+            let bounds = intersection(shapes).bounds();
+            assert_near(bounds, DVec3::new(-r, 0.0, -r), DVec3::new(r, 4.0, r), 0.2);
+        }
+    }
+
+    #[test]
+    fn a_bowl_needs_no_plane_below() {
+        let [top, _] = between(0.0, 4.0);
+        let bowl = Quadric::new([1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, -1.0, 0.0, 0.0]);
+        let bounds = intersection(vec![bowl.into(), top]).bounds();
+        assert_near(
+            bounds,
+            DVec3::new(-2.0, 0.0, -2.0),
+            DVec3::new(2.0, 4.0, 2.0),
+            0.3,
+        );
+    }
+
+    /// Rotated and moved parts are bounded as well, if not as tightly.
+    #[test]
+    fn a_turned_hyperboloid_is_bounded() {
+        let map = Transform::rotate(DVec3::new(1.0, 2.0, 3.0).normalize(), 0.7)
+            .then(&Transform::translate(DVec3::new(10.0, -20.0, 5.0)));
+        let hyperboloid = Quadric::new([1.0, -1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -1.0]);
+        let [top, bottom] = between(-1.0, 1.0);
+        let leaves = [hyperboloid.into(), top, bottom].map(|shape| CsgNode::Leaf {
+            shape,
+            transform: Some(Box::new(map)),
+            tag: 0,
+        });
+        let csg = Csg::try_new(CsgNode::Intersection(leaves.into_iter().collect())).expect("valid");
+        let bounds = csg.bounds();
+        let center = DVec3::new(10.0, -20.0, 5.0);
+        assert!(bounds.is_bounded() && bounds.contains(center), "{bounds:?}");
+        // The ball around it has the radius √3.
+        assert!((bounds.size() * 0.5).max_element() < 2.2, "{bounds:?}");
+    }
+
+    #[test]
+    fn lenses_are_flat() {
+        let ball = |z: f64| Sphere::new(DVec3::Z * z, 5.0).into();
+        let bounds = intersection(vec![ball(4.5), ball(-4.5)]).bounds();
+        let r = (25.0 - 4.5 * 4.5_f64).sqrt();
+        assert_near(bounds, DVec3::new(-r, -r, -0.5), DVec3::new(r, r, 0.5), 0.4);
+    }
+
+    #[test]
+    fn what_is_endless_stays_so() {
+        let cylinder = Quadric::new([1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -1.0]);
+        let [top, _] = between(0.0, 1.0);
+        let bounds = intersection(vec![cylinder.into(), top]).bounds();
+        assert!(!bounds.is_bounded(), "{bounds:?}");
+    }
+}
