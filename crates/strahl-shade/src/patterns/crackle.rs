@@ -36,17 +36,40 @@ impl CrackleMetric {
         }
     }
 
-    fn distance(self, v: DVec3, offset: f64) -> f64 {
+    /// What coordinates and the offset add up to before [`CrackleMetric::distance_of`] makes a distance of it. It grows with the distance.
+    fn measure(self, v: DVec3, offset: f64) -> f64 {
         match self {
             Self::Manhattan => v.x.abs() + v.y.abs() + v.z.abs() + offset,
-            Self::Euclidean => (v.length_squared() + offset * offset).sqrt(),
+            Self::Euclidean => v.length_squared() + offset * offset,
             Self::Power(m) => {
                 let power = |x: f64| det::pow(x.abs(), m);
-                det::pow(
-                    power(v.x) + power(v.y) + power(v.z) + power(offset),
-                    1.0 / m,
-                )
+                power(v.x) + power(v.y) + power(v.z) + power(offset)
             }
+        }
+    }
+
+    fn distance_of(self, measure: f64) -> f64 {
+        match self {
+            Self::Manhattan => measure,
+            Self::Euclidean => measure.sqrt(),
+            Self::Power(m) => det::pow(measure, 1.0 / m),
+        }
+    }
+
+    /// What one coordinate adds to the measure.
+    fn part(self, x: f64) -> f64 {
+        match self {
+            Self::Manhattan => x.abs(),
+            Self::Euclidean => x * x,
+            Self::Power(m) => det::pow(x.abs(), m),
+        }
+    }
+
+    /// Whether larger coordinates never make a smaller distance.
+    fn is_monotone(self) -> bool {
+        match self {
+            Self::Manhattan | Self::Euclidean => true,
+            Self::Power(m) => m > 0.0,
         }
     }
 }
@@ -76,43 +99,134 @@ impl Default for Crackle {
     }
 }
 
+/// The 5³ cubes around one, without those that lie two cubes off in more than one direction, the nearest first.
+const NEIGHBOURS: [[i64; 3]; 81] = {
+    let mut all = [[0; 3]; 81];
+    let (mut count, mut square) = (0, 0);
+    while square <= 6 {
+        let mut n = 0;
+        while n < 125 {
+            let d = [n / 25 - 2, n / 5 % 5 - 2, n % 5 - 2];
+            let squares = [d[0] * d[0], d[1] * d[1], d[2] * d[2]];
+            let far = squares[0] / 4 + squares[1] / 4 + squares[2] / 4;
+            if far < 2 && squares[0] + squares[1] + squares[2] == square {
+                all[count] = d;
+                count += 1;
+            }
+            n += 1;
+        }
+        square += 1;
+    }
+    all
+};
+
 impl Crackle {
     /// The value at `p`, cut off at 0 and 1.
     ///
-    /// Points are looked for in the 5³ cubes around that of `p` without the corners and edges that lie two cubes off in
-    /// more than one direction. All of them matter only to the third distance and to odd metrics.
+    /// Points are looked for in the [`NEIGHBOURS`] of the cube of `p`. A cube that is farther away than the farthest point that counts
+    /// is passed over; as a rule those are all that lie two cubes off.
     pub(super) fn value(&self, p: DVec3, generator: NoiseGenerator) -> f64 {
         let home = cell(p);
+        let fraction = (p - p.floor()).to_array();
+        // What the gaps between p and the cubes along each axis add to the measure.
+        let gaps =
+            fraction.map(|f| [f + 1.0, f, 0.0, 1.0 - f, 2.0 - f].map(|g| self.metric.part(g)));
+        let rest = self.metric.measure(DVec3::ZERO, self.offset);
+        let counting = match self.form {
+            _ if self.solid => 1,
+            form if form.z != 0.0 => 3,
+            form if form.y != 0.0 => 2,
+            _ => 1,
+        };
+        // By less than rounding can tell a cube is not farther away.
+        let slack = if self.metric.is_monotone() {
+            1.0 - 1e-12
+        } else {
+            0.0
+        };
         let mut nearest = [f64::INFINITY; 3];
         let mut center = p;
-        for dx in -2i64..=2 {
-            for dy in -2i64..=2 {
-                for dz in -2i64..=2 {
-                    let far = [dx, dy, dz].iter().filter(|d| d.abs() == 2).count();
-                    if far > 1 {
-                        continue;
-                    }
-                    let [i, j, k] = home;
-                    let cell = [i.wrapping_add(dx), j.wrapping_add(dy), k.wrapping_add(dz)];
-                    let h = lattice_hash(cell);
-                    let corner = DVec3::from_array(cell.map(|c| c as f64));
-                    let place = corner + DVec3::new(uniform(h), uniform(h + 1), uniform(h + 2));
-                    let d = self.metric.distance(p - place, self.offset);
-                    if d < nearest[0] {
-                        nearest = [d, nearest[0], nearest[1]];
-                        center = place;
-                    } else if d < nearest[1] {
-                        nearest = [nearest[0], d, nearest[1]];
-                    } else if d < nearest[2] {
-                        nearest[2] = d;
-                    }
-                }
+        for d in NEIGHBOURS {
+            let gap = (0..3).map(|axis| gaps[axis][(d[axis] + 2) as usize]);
+            if (gap.sum::<f64>() + rest) * slack > nearest[counting - 1] {
+                continue;
+            }
+            let cell: [i64; 3] = std::array::from_fn(|axis| home[axis].wrapping_add(d[axis]));
+            let h = lattice_hash(cell);
+            let corner = DVec3::from_array(cell.map(|c| c as f64));
+            let place = corner + DVec3::new(uniform(h), uniform(h + 1), uniform(h + 2));
+            let measure = self.metric.measure(p - place, self.offset);
+            if measure < nearest[0] {
+                nearest = [measure, nearest[0], nearest[1]];
+                center = place;
+            } else if measure < nearest[1] {
+                nearest = [nearest[0], measure, nearest[1]];
+            } else if measure < nearest[2] {
+                nearest[2] = measure;
             }
         }
         if self.solid {
             return noise(center, generator);
         }
-        let value = DVec3::from_array(nearest).dot(self.form);
-        value.clamp(0.0, 1.0)
+        let mut distances = DVec3::ZERO;
+        for (i, measure) in nearest.into_iter().enumerate().take(counting) {
+            distances[i] = self.metric.distance_of(measure);
+        }
+        distances.dot(self.form).clamp(0.0, 1.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// All cubes, none passed over.
+    fn slowly(crackle: &Crackle, p: DVec3) -> f64 {
+        let mut all: Vec<f64> = NEIGHBOURS
+            .iter()
+            .map(|d| {
+                let home = cell(p);
+                let cell: [i64; 3] = std::array::from_fn(|axis| home[axis] + d[axis]);
+                let h = lattice_hash(cell);
+                let place = DVec3::from_array(cell.map(|c| c as f64))
+                    + DVec3::new(uniform(h), uniform(h + 1), uniform(h + 2));
+                let metric = crackle.metric;
+                metric.distance_of(metric.measure(p - place, crackle.offset))
+            })
+            .collect();
+        all.sort_by(f64::total_cmp);
+        let form = crackle.form;
+        (all[0] * form.x + all[1] * form.y + all[2] * form.z).clamp(0.0, 1.0)
+    }
+
+    #[test]
+    fn cubes_passed_over_don_t_matter() {
+        for metric in [1.0, 2.0, 0.5, 1.5, 3.0, 20.0, -1.0] {
+            for form in [
+                DVec3::new(-1.0, 1.0, 0.0),
+                DVec3::X,
+                DVec3::new(0.3, -0.2, 0.4),
+            ] {
+                let crackle = Crackle {
+                    form,
+                    metric: CrackleMetric::from_number(metric),
+                    offset: 0.25,
+                    solid: false,
+                };
+                for i in 0..200 {
+                    let t = f64::from(i);
+                    let p = DVec3::new(t * 0.731 - 40.0, t * 0.317 + 3.0, 9.0 - t * 0.613);
+                    let value = crackle.value(p, NoiseGenerator::RangeCorrected);
+                    assert_eq!(value, slowly(&crackle, p), "{metric} {form} {p}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn neighbours_are_81_different_cubes() {
+        let all: std::collections::BTreeSet<_> = NEIGHBOURS.into_iter().collect();
+        assert_eq!(all.len(), 81);
+        assert_eq!(NEIGHBOURS[0], [0, 0, 0]);
     }
 }
