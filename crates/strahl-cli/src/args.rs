@@ -158,7 +158,8 @@ pub(crate) struct PictureArgs {
     /// Size of the picture in pixels, such as 1280x720 [default: what the scene says, or 800x600]
     #[arg(long, value_name = "WxH", value_parser = parse_size)]
     pub(crate) size: Option<(u32, u32)>,
-    /// Where rays go through a pixel: center (or none), NxN, adaptive, adaptive:THRESHOLD,PASSES, or corners [default: adaptive; of
+    /// Where rays go through a pixel: center (or none), NxN, adaptive:THRESHOLD,DEPTH (+A0.3 +R3), recursive:THRESHOLD,DEPTH (+AM2), or
+    /// corners [default: adaptive; of
     /// heat maps center]
     #[arg(long, value_name = "HOW")]
     pub(crate) sampling: Option<Sampling>,

@@ -53,7 +53,7 @@ pub use observer::{
 };
 pub use query::Tracer;
 pub use render::{Progress, RenderError, RenderOptions, Rendered, render};
-pub use sampling::{Sampling, UnknownSampling};
+pub use sampling::{Refinement, Sampling, UnknownSampling};
 pub use scene::{RenderScene, SceneStats};
 pub use strahl_accel::PACKET;
 pub use tiles::TileOrder;

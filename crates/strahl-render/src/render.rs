@@ -1,13 +1,15 @@
 mod pixels;
+mod refine;
 
 use crate::camera::PrimaryRays;
 use crate::cost::PixelCost;
 use crate::film::{Film, FilmError, PixelInfo, Region, try_filled};
-use crate::sampling::{Sampling, contrast};
+use crate::sampling::{Sample, Sampling};
 use crate::scene::RenderScene;
 use crate::tiles::{TileOrder, tiles};
 use crate::trace::{RayCounts, TraceSettings};
 use pixels::PixelTracer;
+pub(crate) use refine::is_refined;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 use strahl_accel::TraversalStats;
@@ -153,7 +155,8 @@ pub fn render(
     };
     pool.install(|| match options.sampling {
         Sampling::Corners => job.corners(&mut film),
-        Sampling::Adaptive { threshold, passes } => job.adaptive(&mut film, threshold, passes),
+        Sampling::Adaptive(refinement) => job.adaptive(&mut film, &refinement),
+        Sampling::Recursive(refinement) => job.recursive(&mut film, &refinement),
         Sampling::Center | Sampling::Grid(_) => job.single_pass(&mut film),
     })?;
     let threads = pool.current_num_threads();
@@ -164,38 +167,6 @@ pub fn render(
         threads,
         costs: job.costs,
     })
-}
-
-/// The refining passes of pixel `(x, y)` of the picture.
-pub(crate) fn passes_of_pixel(
-    scene: &RenderScene,
-    options: &RenderOptions,
-    x: u32,
-    y: u32,
-) -> Result<Vec<u32>, RenderError> {
-    let Sampling::Adaptive { threshold, passes } = options.sampling else {
-        return Ok(vec![]);
-    };
-    let rays = PrimaryRays::new(scene.camera(), options.width, options.height);
-    let (counts, traversal) = (RayCounts::default(), TraversalStats::default());
-    let mut job = Job {
-        scene,
-        options,
-        progress: &(),
-        rays,
-        counts,
-        traversal,
-        costs: None,
-    };
-    let pixel = Region {
-        x,
-        y,
-        width: 1,
-        height: 1,
-    };
-    let (wide, all) = job.refined(pixel, threshold, passes, |_, _| {})?;
-    let bits = all[wide.index(x, y)].passes;
-    Ok((1..=passes).filter(|pass| bits >> pass & 1 == 1).collect())
 }
 
 struct Job<'a> {
@@ -228,8 +199,6 @@ struct Samples {
     count: u32,
     /// The sum of what the samples show of the background, for the alpha channel.
     clear: f64,
-    /// The refining passes it was part of, as bits.
-    passes: u32,
 }
 
 /// A pixel as the film holds it.
@@ -244,7 +213,6 @@ impl Samples {
         sum: Color::BLACK,
         count: 0,
         clear: 0.0,
-        passes: 0,
     };
 
     /// What the film holds of the pixel.
@@ -260,6 +228,14 @@ impl Samples {
         self.clear / f64::from(self.count.max(1))
     }
 
+    /// The mean of the samples.
+    fn sample(&self) -> Sample {
+        Sample {
+            color: self.mean(),
+            clear: self.clear(),
+        }
+    }
+
     fn mean(&self) -> Color {
         if self.count == 1 {
             self.sum
@@ -270,18 +246,17 @@ impl Samples {
 }
 
 impl Job<'_> {
-    /// Traces the tiles of a region on all threads (see [`PixelTracer::tile`]) and hands each finished tile to `store`.
+    /// Traces tiles on all threads (see [`PixelTracer::tile`]) and hands each finished tile to `store`.
     fn tiles<T: Clone + Send>(
         &mut self,
-        region: Region,
+        all: &[Region],
         pass: u32,
         blank: impl Fn(&mut PixelTracer<'_>, u32) -> Option<T> + Sync,
         trace: impl Fn(&mut PixelTracer<'_>, u32, u32) -> T + Sync,
         mut store: impl FnMut(TileResult<T>) + Send,
     ) -> Result<(), RenderError> {
-        let all = tiles(region, self.options.tile_order);
         self.progress
-            .pass(pass, 1 + self.options.sampling.passes(), all.len());
+            .pass(pass, self.options.sampling.passes(), all.len());
         let (scene, options, progress) = (self.scene, self.options, self.progress);
         let rays = &self.rays;
         let mut stored = 0;
@@ -320,9 +295,8 @@ impl Job<'_> {
 
     /// Renders with one pass.
     fn single_pass(&mut self, film: &mut Film) -> Result<(), RenderError> {
-        let region = film.region;
         self.tiles(
-            region,
+            &tiles(film.region, self.options.tile_order),
             0,
             |tracer, pixels| Some(tracer.blank(pixels)?.shown()),
             |tracer, x, y| tracer.pixel(0, x, y).shown(),
@@ -335,110 +309,54 @@ impl Job<'_> {
 
     /// Traces the lattice of pixel corners first, then makes every pixel the mean of its four.
     fn corners(&mut self, film: &mut Film) -> Result<(), RenderError> {
-        let region = film.region;
-        let lattice = Region {
-            width: region.width + 1,
-            height: region.height + 1,
-            ..region
+        let lattice = self.lattice(film)?;
+        for (x, y) in film.region.positions() {
+            film.set((x, y), mean_of_corners(lattice.around(x, y)));
+        }
+        Ok(())
+    }
+
+    /// The colours at the corners of all pixels of the film.
+    fn lattice(&mut self, film: &mut Film) -> Result<Lattice, RenderError> {
+        let region = Region {
+            width: film.region.width + 1,
+            height: film.region.height + 1,
+            ..film.region
         };
-        let mut corners = try_filled(lattice, (Color::BLACK, 0.0))?;
+        let mut corners = try_filled(region, Sample::NOTHING)?;
         self.tiles(
-            lattice,
+            &tiles(region, self.options.tile_order),
             0,
-            |tracer, corners| Some((tracer.tree.same_nothing(corners as usize)?, 0.0)),
+            |tracer, corners| Some(Sample::from(tracer.tree.same_nothing(corners as usize)?)),
             |tracer, x, y| tracer.corner(x, y),
             |result| {
                 film.set_infos(result.tile, &result.infos);
                 for ((x, y), value) in result.tile.positions().zip(result.values) {
-                    corners[lattice.index(x, y)] = value;
+                    corners[region.index(x, y)] = value;
                 }
             },
         )?;
-        for (x, y) in region.positions() {
-            let at = |dx, dy| corners[lattice.index(x + dx, y + dy)];
-            let four = [at(0, 0), at(1, 0), at(0, 1), at(1, 1)];
-            let color = (four[0].0 + four[1].0 + four[2].0 + four[3].0) / 4.0;
-            film.set((x, y), color, four.iter().map(|c| c.1).sum::<f64>() / 4.0);
-        }
-        Ok(())
+        Ok(Lattice { region, corners })
     }
+}
 
-    /// Refines the pixels that differ from a neighbour. Decisions are taken between complete passes over the region and a
-    /// margin wide enough for all later decisions, so they don't depend on tiles or regions.
-    fn adaptive(
-        &mut self,
-        film: &mut Film,
-        threshold: f64,
-        passes: u32,
-    ) -> Result<(), RenderError> {
-        let region = film.region;
-        let (wide, all) = self.refined(region, threshold, passes, |tile, infos| {
-            film.set_infos(tile, infos);
-        })?;
-        for (x, y) in region.positions() {
-            let samples = &all[wide.index(x, y)];
-            film.set((x, y), samples.mean(), samples.clear());
-        }
-        Ok(())
-    }
+/// Colours at the corners of pixels.
+struct Lattice {
+    region: Region,
+    corners: Vec<Sample>,
+}
 
-    /// The samples of a region and the margin around it; `keep` is called with the data of each pixel's first sample.
-    fn refined(
-        &mut self,
-        region: Region,
-        threshold: f64,
-        passes: u32,
-        mut keep: impl FnMut(Region, &[PixelInfo]) + Send,
-    ) -> Result<(Region, Vec<Samples>), RenderError> {
-        let (width, height) = (self.options.width, self.options.height);
-        let wide = region.grown(passes, width, height);
-        let mut all = try_filled(wide, Samples::NONE)?;
-        self.tiles(
-            wide,
-            0,
-            |tracer, pixels| tracer.blank(pixels),
-            |tracer, x, y| tracer.pixel(0, x, y),
-            |result| {
-                keep(result.tile, &result.infos);
-                for ((x, y), samples) in result.tile.positions().zip(result.values) {
-                    all[wide.index(x, y)] = samples;
-                }
-            },
-        )?;
-        for pass in 1..=passes {
-            let part = region.grown(passes - pass, width, height);
-            let before = all.clone();
-            let mean = |x: u32, y: u32| before[wide.index(x, y)].mean();
-            let rough = |x: u32, y: u32| {
-                let neighbours = Region {
-                    x,
-                    y,
-                    width: 1,
-                    height: 1,
-                }
-                .grown(1, width, height);
-                neighbours
-                    .positions()
-                    .any(|(nx, ny)| contrast(mean(x, y), mean(nx, ny)) > threshold)
-            };
-            let refine = |tracer: &mut PixelTracer<'_>, x: u32, y: u32| {
-                rough(x, y).then(|| tracer.pixel(pass, x, y))
-            };
-            let blank = |_: &mut PixelTracer<'_>, _| None;
-            self.tiles(part, pass, blank, refine, |result| {
-                for ((x, y), more) in result.tile.positions().zip(result.values) {
-                    if let Some(more) = more {
-                        let samples = &mut all[wide.index(x, y)];
-                        samples.sum += more.sum;
-                        samples.count += more.count;
-                        samples.clear += more.clear;
-                        samples.passes |= 1 << pass;
-                    }
-                }
-            })?;
-        }
-        Ok((wide, all))
+impl Lattice {
+    /// The corners of a pixel: top left, top right, bottom left, bottom right.
+    fn around(&self, x: u32, y: u32) -> [Sample; 4] {
+        let at = |dx, dy| self.corners[self.region.index(x + dx, y + dy)];
+        [at(0, 0), at(1, 0), at(0, 1), at(1, 1)]
     }
+}
+
+/// A pixel between its corners.
+pub(crate) fn mean_of_corners([a, b, c, d]: [Sample; 4]) -> Sample {
+    (a + b + c + d) / 4.0
 }
 
 impl Region {
@@ -450,11 +368,11 @@ impl Region {
 }
 
 impl Film {
-    fn set(&mut self, (x, y): (u32, u32), color: Color, clear: f64) {
+    fn set(&mut self, (x, y): (u32, u32), sample: Sample) {
         let index = self.region.index(x, y);
-        self.pixels[index] = color.to_f32();
+        self.pixels[index] = sample.color.to_f32();
         if let Some(alpha) = &mut self.alpha {
-            alpha[index] = (1.0 - clear) as f32;
+            alpha[index] = (1.0 - sample.clear) as f32;
         }
     }
 

@@ -2,8 +2,8 @@ use crate::camera::PrimaryRays;
 use crate::observer::{
     BranchEnd, LightDetail, LightTerm, RayKind, RayReport, ShadowReport, TraceObserver,
 };
-use crate::render::{RenderError, RenderOptions, passes_of_pixel};
-use crate::sampling::Sampling;
+use crate::render::{RenderError, RenderOptions, is_refined, mean_of_corners};
+use crate::sampling::{Sample, Sampling, subdivided};
 use crate::scene::RenderScene;
 use crate::trace::TreeTracer;
 use strahl_shade::Color;
@@ -66,7 +66,7 @@ pub struct PixelTree {
     pub samples: Vec<PixelSample>,
     /// How many places of the picture they belong to; the camera may see nothing through some.
     pub places: u32,
-    /// The pixel's linear colour before rounding: the mean over the places, summed pass by pass.
+    /// The pixel's linear colour before rounding: the mean over the places, or over the squares it was divided into.
     pub color: Color,
     /// The colour as it is in the film.
     pub film: [f32; 3],
@@ -129,53 +129,63 @@ pub fn explain(
         height: 1,
     });
     crate::Film::try_new(options.width, options.height, region, false)?;
-    // Samples are summed pass by pass, as for the film: floating-point sums depend on the grouping.
-    let mut passes = Vec::new();
-    if options.sampling == Sampling::Corners {
-        passes.push(vec![(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)]);
-    } else {
-        passes.push(options.sampling.places(0, x, y, options.seed).collect());
-        for pass in passes_of_pixel(scene, options, x, y)? {
-            let places = options.sampling.places(pass, x, y, options.seed);
-            passes.push(places.collect());
-        }
-    }
     let rays = PrimaryRays::new(scene.camera(), options.width, options.height);
     let mut tracer = TreeTracer::new(scene, options.trace);
-    let mut samples = Vec::new();
-    let mut count = 0u32;
-    let mut sum: Option<Color> = None;
-    for (pass, places) in passes.into_iter().enumerate() {
-        let mut pass_sum: Option<Color> = None;
-        for (dx, dy) in places {
-            let place = (f64::from(x) + dx, f64::from(y) + dy);
-            let mut number = 0;
-            let color = rays.color(place.0, place.1, |ray| {
-                let mut tree = RayTree::default();
-                let color = tracer.trace(ray, &mut tree).color;
-                samples.push(PixelSample {
-                    place,
-                    pass: pass as u32,
-                    ray: (!rays.is_sharp()).then_some(number),
-                    color,
-                    tree,
-                });
-                number += 1;
-                color
+    let (mut samples, mut count) = (Vec::new(), 0);
+    let mut sample = |pass: u32, dx: f64, dy: f64| {
+        let place = (f64::from(x) + dx, f64::from(y) + dy);
+        let mut number = 0;
+        count += 1;
+        rays.color(place.0, place.1, |ray| {
+            let mut tree = RayTree::default();
+            let color = tracer.trace(ray, &mut tree).color;
+            samples.push(PixelSample {
+                place,
+                pass,
+                ray: (!rays.is_sharp()).then_some(number),
+                color,
+                tree,
             });
-            count += 1;
-            pass_sum = Some(pass_sum.map_or(color, |s| s + color));
+            number += 1;
+            color
+        })
+    };
+    let corners = [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)];
+    let color = match options.sampling {
+        Sampling::Corners | Sampling::Recursive(_) => {
+            let corners = corners.map(|(dx, dy)| Sample::from(sample(0, dx, dy)));
+            let pixel = match &options.sampling {
+                Sampling::Recursive(refinement) => {
+                    let mut inner = |dx, dy| Sample::from(sample(1, dx, dy));
+                    subdivided(corners, refinement, &mut inner)
+                }
+                _ => mean_of_corners(corners),
+            };
+            pixel.color
         }
-        sum = match (sum, pass_sum) {
-            (Some(a), Some(b)) => Some(a + b),
-            (a, b) => a.or(b),
-        };
-    }
-    let sum = sum.unwrap_or_default();
-    let color = if count == 1 {
-        sum
-    } else {
-        sum / f64::from(count)
+        sampling => {
+            // Samples are summed pass by pass, as for the film: floating-point sums depend on the grouping.
+            let mut pass_sum = |pass| {
+                let places = sampling.places(pass, x, y, options.seed);
+                let (mut sum, mut count) = (Color::BLACK, 0u32);
+                for (dx, dy) in places {
+                    sum += sample(pass, dx, dy);
+                    count += 1;
+                }
+                (sum, count)
+            };
+            let (mut sum, mut count) = pass_sum(0);
+            if is_refined(scene, options, x, y)? {
+                let more = pass_sum(1);
+                sum = more.0 + sum;
+                count += more.1;
+            }
+            if count == 1 {
+                sum
+            } else {
+                sum / f64::from(count)
+            }
+        }
     };
     Ok(PixelTree {
         samples,

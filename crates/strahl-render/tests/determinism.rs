@@ -7,17 +7,21 @@ use std::collections::BTreeMap;
 use common::{compiled, every_shape, glass_and_mirrors, rendered};
 use strahl_accel::AcceleratorKind;
 use strahl_geometry::Primitive;
-use strahl_render::{CompileOptions, Region, Sampling, TileOrder, compile};
+use strahl_render::{CompileOptions, Refinement, Region, Sampling, TileOrder, compile};
 use strahl_scene::ObjectKind;
 
-const SAMPLINGS: [Sampling; 4] = [
+const SAMPLINGS: [Sampling; 5] = [
     Sampling::Center,
     Sampling::Corners,
     Sampling::Grid(2),
-    Sampling::Adaptive {
+    Sampling::Adaptive(Refinement {
         threshold: 0.05,
-        passes: 2,
-    },
+        ..Refinement::DEFAULT
+    }),
+    Sampling::Recursive(Refinement {
+        threshold: 0.05,
+        ..Refinement::DEFAULT
+    }),
 ];
 
 /// Every accelerator, the octree with each of its traversals.

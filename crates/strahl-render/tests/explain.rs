@@ -4,7 +4,7 @@ mod common;
 
 use common::{compiled, glass_and_mirrors, rendered};
 use strahl_math::Interval;
-use strahl_render::{BranchEnd, RayKind, RenderOptions, Sampling, Tracer, explain};
+use strahl_render::{BranchEnd, RayKind, Refinement, RenderOptions, Sampling, Tracer, explain};
 use strahl_shade::Color;
 
 #[test]
@@ -14,10 +14,14 @@ fn the_sum_of_the_tree_is_the_pixel_to_the_last_bit() {
         Sampling::Center,
         Sampling::Corners,
         Sampling::Grid(3),
-        Sampling::Adaptive {
+        Sampling::Adaptive(Refinement {
             threshold: 0.02,
-            passes: 2,
-        },
+            ..Refinement::DEFAULT
+        }),
+        Sampling::Recursive(Refinement {
+            threshold: 0.02,
+            ..Refinement::DEFAULT
+        }),
     ] {
         let picture = rendered(&scene, |o| o.sampling = sampling).film;
         let options = RenderOptions {

@@ -4,6 +4,7 @@
 pub(super) const KEYS: &[&str] = &[
     "Antialias",
     "Antialias_Depth",
+    "Antialias_Gamma",
     "Antialias_Threshold",
     "Bits_Per_Color",
     "Clock",
@@ -43,7 +44,6 @@ pub(super) const KEYS: &[&str] = &[
 /// without effect.
 pub(super) const IGNORED: &[&str] = &[
     "All_Console",
-    "Antialias_Gamma",
     "Append_File",
     "Bounding",
     "Bounding_Method",

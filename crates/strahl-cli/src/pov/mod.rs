@@ -226,9 +226,10 @@ mod tests {
         );
         is("+ia.pov +w64", "--size 64x600 a.pov");
         is("-Ia.pov -W64 -H48", "--size 64x48 a.pov");
-        is("a.pov +A", "--sampling adaptive:0.1,2 a.pov");
-        is("a.pov +A0.3 +AM2 +R3", "--sampling adaptive:0.1,3 a.pov");
-        is("a.pov +A0.0 +R5", "--sampling adaptive:0,3 a.pov");
+        is("a.pov +A", "--sampling adaptive:0.3,3 a.pov");
+        is("a.pov +A0.3 +AM2 +R3", "--sampling recursive:0.3,3 a.pov");
+        is("a.pov +A0.2 +AG1.8", "--sampling adaptive:0.2,3,1.8 a.pov");
+        is("a.pov +A0.0 +R5", "--sampling adaptive:0,5 a.pov");
         is("a.pov +A3.0", "--sampling center a.pov");
         is("a.pov +A0.1 -A", "--sampling center a.pov");
         is(

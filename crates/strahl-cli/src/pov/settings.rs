@@ -20,6 +20,7 @@ pub(super) struct Settings {
     antialias: Option<bool>,
     threshold: Option<f64>,
     recursive: bool,
+    antialias_gamma: Option<f64>,
     depth: Option<u32>,
     output: Option<String>,
     file_type: Option<char>,
@@ -107,6 +108,13 @@ impl Settings {
             "Height" => self.height = Some(whole(value, 1, 1 << 24)?),
             "Antialias" => self.antialias = Some(is_on(value)),
             "Antialias_Threshold" => self.threshold = Some(number(value)?),
+            "Antialias_Gamma" => {
+                let gamma = number(value)?;
+                if gamma <= 0.0 {
+                    return Err(format!("`{value}` is no gamma; it must be above 0"));
+                }
+                self.antialias_gamma = Some(gamma);
+            }
             "Antialias_Depth" => self.depth = Some(whole(value, 1, 9)?),
             // 3 is POV-Ray 3.8's further development of 2.
             "Sampling_Method" => self.recursive = whole(value, 1, 3)? > 1,
@@ -285,24 +293,22 @@ impl Settings {
         Ok(words)
     }
 
-    /// Adaptive sampling that refines about the same pixels, about as far.
-    ///
-    /// POV-Ray compares the sum of the differences of three channels with its threshold, strahl the largest: a third. Its
-    /// first method takes depth² samples more, its second up to (2ᵈᵉᵖᵗʰ + 1)²; strahl's passes add 4, 16, 64, 256.
+    /// The antialiasing asked for: method, threshold, depth and gamma.
     fn sampling(&self) -> String {
         let threshold = self.threshold.unwrap_or(0.3).max(0.0);
         if threshold >= 3.0 {
             return "center".into();
         }
-        let passes = match (self.recursive, self.depth.unwrap_or(3)) {
-            (true, depth) => depth.min(4),
-            (false, 0..=2) => 1,
-            (false, 3..=4) => 2,
-            (false, _) => 3,
+        let method = if self.recursive {
+            "recursive"
+        } else {
+            "adaptive"
         };
-        // Rounded, for people to read.
-        let third = (threshold / 3.0 * 1e6).round() / 1e6;
-        format!("adaptive:{third},{passes}")
+        let depth = self.depth.unwrap_or(3);
+        match self.antialias_gamma {
+            None => format!("{method}:{threshold},{depth}"),
+            Some(gamma) => format!("{method}:{threshold},{depth},{gamma}"),
+        }
     }
 
     /// The picture's name with the ending that its type asks for; `None` leaves it to strahl.

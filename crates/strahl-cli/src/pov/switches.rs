@@ -24,7 +24,7 @@ use Meaning::{FileType, Flag, FlagAndValue, Nothing, Stream, Value};
 /// All switches; the longest that a word begins with counts.
 const SWITCHES: &[(&str, Meaning)] = &[
     ("A", FlagAndValue("Antialias", "Antialias_Threshold")),
-    ("AG", Nothing),
+    ("AG", Value("Antialias_Gamma")),
     ("AM", Value("Sampling_Method")),
     ("BM", Nothing),
     ("BS", Nothing),

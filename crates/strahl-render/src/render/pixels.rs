@@ -6,6 +6,7 @@ use crate::cost::PixelCost;
 use crate::coverage::Coverage;
 use crate::film::{PixelInfo, Region};
 use crate::render::Progress;
+use crate::sampling::Sample;
 use crate::scene::RenderScene;
 use crate::sight::{SQUARE, Sight};
 use crate::tiles::TILE;
@@ -73,7 +74,6 @@ pub(super) struct PixelTracer<'s> {
     ahead: Ahead,
     /// For the alpha channel: what the last sample showed of the background.
     coverage: Option<Coverage>,
-    clear: f64,
 }
 
 impl<'s> PixelTracer<'s> {
@@ -96,7 +96,6 @@ impl<'s> PixelTracer<'s> {
             coverage: options
                 .alpha
                 .then(|| Coverage::new(scene.background_transmit)),
-            clear: 0.0,
             together: options.follows_together(rays),
         }
     }
@@ -219,8 +218,9 @@ impl PixelTracer<'_> {
         }
         for (dx, dy) in places {
             let keep = pass == 0 && samples.count == 0;
-            samples.sum += self.sample(f64::from(x) + dx, f64::from(y) + dy, keep);
-            samples.clear += self.clear;
+            let sample = self.sample(f64::from(x) + dx, f64::from(y) + dy, keep);
+            samples.sum += sample.color;
+            samples.clear += sample.clear;
             samples.count += 1;
         }
         samples
@@ -285,16 +285,15 @@ impl PixelTracer<'_> {
     }
 
     /// The colour at the corner of pixels, and what shows of the background.
-    pub(super) fn corner(&mut self, x: u32, y: u32) -> (Color, f64) {
+    pub(super) fn corner(&mut self, x: u32, y: u32) -> Sample {
         if let Some(color) = self.ahead.take(x, y) {
-            return (color, 0.0);
+            return color.into();
         }
-        let color = self.sample(f64::from(x), f64::from(y), true);
-        (color, self.clear)
+        self.sample(f64::from(x), f64::from(y), true)
     }
 
     /// The radiance at a position in the picture; `keep` says whether to store the hit's other data for the pixel.
-    fn sample(&mut self, x: f64, y: f64, keep: bool) -> Color {
+    pub(super) fn sample(&mut self, x: f64, y: f64, keep: bool) -> Sample {
         let mut clear = (0.0, 0u32);
         let mut coverage = self.coverage.take();
         let before = self.tree.tracer.stats.primitive_tests;
@@ -319,11 +318,13 @@ impl PixelTracer<'_> {
             sample.color
         });
         self.coverage = coverage;
-        self.clear = clear.0 / f64::from(clear.1.max(1));
         if keep && self.options.info {
             let tests = self.tree.tracer.stats.primitive_tests - before;
             self.infos.push(PixelInfo::new(&first, tests));
         }
-        color
+        Sample {
+            color,
+            clear: clear.0 / f64::from(clear.1.max(1)),
+        }
     }
 }

@@ -1,0 +1,213 @@
+//! Where pixels differ so much that they are refined, and how a pixel is divided.
+
+use super::Sample;
+use std::{collections::HashMap, fmt, str::FromStr};
+use strahl_math::det;
+use strahl_shade::Color;
+
+/// When and how far pixels are refined: POV-Ray's `+A`, `+R` and `+AG`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Refinement {
+    /// The sum of the differences of the three channels, as shown, beyond which two places differ; `0..=3`.
+    pub threshold: f64,
+    /// Samples along a side of a refined pixel, or levels of division plus one; `1..=9`. One is no refinement.
+    pub depth: u32,
+    /// Channels are compared as `v^(1/gamma)`, negative ones as 0; above 0.
+    pub gamma: f64,
+}
+
+impl Refinement {
+    /// POV-Ray's `+A0.3 +R3 +AG2.5`.
+    pub const DEFAULT: Self = Self {
+        threshold: 0.3,
+        depth: 3,
+        gamma: 2.5,
+    };
+}
+
+impl Default for Refinement {
+    fn default() -> Self {
+        Self::DEFAULT
+    }
+}
+
+/// The text has no three numbers in their ranges.
+#[derive(Debug)]
+pub struct UnknownRefinement;
+
+impl FromStr for Refinement {
+    type Err = UnknownRefinement;
+
+    /// `THRESHOLD[,DEPTH[,GAMMA]]`.
+    fn from_str(s: &str) -> Result<Self, Self::Err> {
+        let mut refinement = Self::DEFAULT;
+        let mut parts = s.split(',');
+        let mut number = || match parts.next() {
+            None => Ok(None),
+            Some(part) => part.parse::<f64>().map(Some).map_err(|_| UnknownRefinement),
+        };
+        refinement.threshold = number()?.unwrap_or(refinement.threshold);
+        if let Some(depth) = number()? {
+            if !(1.0..=9.0).contains(&depth) || depth.fract() != 0.0 {
+                return Err(UnknownRefinement);
+            }
+            refinement.depth = depth as u32;
+        }
+        refinement.gamma = number()?.unwrap_or(refinement.gamma);
+        let valid = (0.0..=3.0).contains(&refinement.threshold)
+            && refinement.gamma > 0.0
+            && refinement.gamma.is_finite();
+        match valid && number()?.is_none() {
+            true => Ok(refinement),
+            false => Err(UnknownRefinement),
+        }
+    }
+}
+
+impl fmt::Display for Refinement {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{},{}", self.threshold, self.depth)?;
+        if self.gamma != Self::DEFAULT.gamma {
+            write!(f, ",{}", self.gamma)?;
+        }
+        Ok(())
+    }
+}
+
+/// A colour as it is compared: channels raised to `1/gamma`, negative ones 0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Compared([f32; 3]);
+
+impl Compared {
+    pub(crate) fn new(color: Color, refinement: &Refinement) -> Self {
+        let exponent = 1.0 / refinement.gamma;
+        let shown = |v: f64| match v > 0.0 {
+            true => det::pow(v, exponent) as f32,
+            false => 0.0,
+        };
+        Self([shown(color.r), shown(color.g), shown(color.b)])
+    }
+
+    /// Whether two colours differ so much that a place between them is looked at.
+    pub(crate) fn differs(self, other: Self, refinement: &Refinement) -> bool {
+        let [r, g, b] = [0, 1, 2].map(|i| f64::from(self.0[i] - other.0[i]).abs());
+        r + g + b > refinement.threshold
+    }
+}
+
+/// The mean of a pixel with these samples at its corners (top left, top right, bottom left, bottom right): the mean of the corners if
+/// they are alike, or else that of the four quarters of the pixel (Whitted 1980). `sample` takes a place in the pixel, `0..=1` from its top left corner.
+pub(crate) fn subdivided(
+    corners: [Sample; 4],
+    refinement: &Refinement,
+    sample: &mut dyn FnMut(f64, f64) -> Sample,
+) -> Sample {
+    let size = 1 << refinement.depth.saturating_sub(1);
+    let mut division = Division {
+        cell: 1.0 / f64::from(size),
+        known: HashMap::new(),
+        refinement,
+        sample,
+    };
+    division.square((0, 0), size, corners)
+}
+
+/// A pixel that is divided.
+struct Division<'a> {
+    /// Side of the smallest square, in pixels.
+    cell: f64,
+    /// Samples on borders that squares share, by their place in smallest squares.
+    known: HashMap<(u32, u32), Sample>,
+    refinement: &'a Refinement,
+    sample: &'a mut dyn FnMut(f64, f64) -> Sample,
+}
+
+impl Division<'_> {
+    fn square(&mut self, (i, j): (u32, u32), size: u32, corners: [Sample; 4]) -> Sample {
+        let [a, b, c, d] = corners;
+        if size == 1 || !self.differ(corners) {
+            return (a + b + c + d) / 4.0;
+        }
+        let half = size / 2;
+        let top = self.at(i + half, j);
+        let left = self.at(i, j + half);
+        let middle = self.at(i + half, j + half);
+        let right = self.at(i + size, j + half);
+        let bottom = self.at(i + half, j + size);
+        let quarters = self.square((i, j), half, [a, top, left, middle])
+            + self.square((i + half, j), half, [top, b, middle, right])
+            + self.square((i, j + half), half, [left, middle, c, bottom])
+            + self.square((i + half, j + half), half, [middle, right, bottom, d]);
+        quarters / 4.0
+    }
+
+    fn differ(&self, corners: [Sample; 4]) -> bool {
+        let shown = corners.map(|sample| Compared::new(sample.color, self.refinement));
+        let pairs = [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)];
+        pairs
+            .iter()
+            .any(|&(a, b)| shown[a].differs(shown[b], self.refinement))
+    }
+
+    fn at(&mut self, i: u32, j: u32) -> Sample {
+        let place = (f64::from(i) * self.cell, f64::from(j) * self.cell);
+        let sample = &mut self.sample;
+        *self
+            .known
+            .entry((i, j))
+            .or_insert_with(|| sample(place.0, place.1))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn step_at(edge: f64) -> impl Fn(f64, f64) -> Sample {
+        move |x, _| Sample::from(if x < edge { Color::WHITE } else { Color::BLACK })
+    }
+
+    /// POV-Ray 3.7 refines 0.5 beside 0.7 and not 0.5 beside 0.65, with `+A0.3`; with `+AG1` 0.5 beside 0.61.
+    #[test]
+    fn greys_differ_where_they_do_in_pov_ray() {
+        let differ = |a, b, gamma| {
+            let r = Refinement {
+                gamma,
+                ..Refinement::DEFAULT
+            };
+            let shown = |v| Compared::new(Color::gray(v), &r);
+            shown(a).differs(shown(b), &r)
+        };
+        assert!(differ(0.5, 0.7, 2.5) && !differ(0.5, 0.65, 2.5));
+        assert!(differ(0.5, 0.61, 1.0) && !differ(0.5, 0.59, 1.0));
+        assert!(differ(1.0, 3.0, 2.5) && !differ(-3.0, 0.0, 2.5));
+    }
+
+    /// POV-Ray's second method takes five rays more in a pixel with an edge for `+R2`, fourteen for `+R3`.
+    #[test]
+    fn squares_are_divided_where_their_corners_differ() {
+        for (depth, rays, share) in [(1, 0, 0.5), (2, 5, 0.75), (3, 14, 0.625)] {
+            let refinement = Refinement {
+                depth,
+                ..Refinement::DEFAULT
+            };
+            let step = step_at(0.7);
+            let corners = [0.0, 1.0, 0.0, 1.0].map(|x| step(x, 0.0));
+            let mut count = 0;
+            let color = subdivided(corners, &refinement, &mut |x, y| {
+                count += 1;
+                assert!((0.0..=1.0).contains(&x) && (0.0..=1.0).contains(&y));
+                step(x, y)
+            });
+            assert_eq!((count, color), (rays, Sample::from(Color::gray(share))));
+        }
+    }
+
+    #[test]
+    fn alike_corners_need_no_rays() {
+        let mut none = |_: f64, _: f64| -> Sample { unreachable!("no place is looked at") };
+        let corners = [Sample::from(Color::gray(0.25)); 4];
+        let color = subdivided(corners, &Refinement::DEFAULT, &mut none);
+        assert_eq!(color, Sample::from(Color::gray(0.25)));
+    }
+}
