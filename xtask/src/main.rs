@@ -5,6 +5,7 @@ mod bench;
 mod bench_csg;
 mod bench_load;
 mod bench_parse;
+mod bench_scenes;
 mod compare_pov;
 mod convert;
 mod differ;
@@ -24,6 +25,9 @@ const USAGE: &str = "usage: cargo xtask COMMAND
                                   time of reading a million spheres made by loops, and an exported scene, against POV-Ray
   bench load [--runs N] [--side N]
                                   time of reading files of 10 million triangles beside the time of building
+  bench scenes [FOLDER] [--aa] [--errors] [--runs N] [--size 320x240] [--only PART] [--most SECONDS] [--out DIR]
+                                  processor time of POV-Ray and strahl on real scenes, the slower ones first;
+                                  --aa with +A0.3, --errors against converged pictures
   bench peers [--rounds N] [--side PIXELS] [--only PART,...] [--brief]
                                   rays a second on meshes and spheres against Embree, one thread
   compare-pov [FOLDER] [--size 160x120] [--limit N] [--only PART] [--jobs 2] [--out DIR]
@@ -49,6 +53,7 @@ fn main() -> Result<()> {
         ["bench", "csg", rest @ ..] => bench_csg::run(rest),
         ["bench", "load", rest @ ..] => bench_load::run(rest),
         ["bench", "parse", rest @ ..] => bench_parse::parse(rest),
+        ["bench", "scenes", rest @ ..] => bench_scenes::run(rest),
         ["bench", "peers", rest @ ..] => peers::run(rest),
         ["compare-pov", rest @ ..] => compare_pov::run(rest),
         ["differ", rest @ ..] => differ::run(rest),

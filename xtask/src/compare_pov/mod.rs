@@ -13,7 +13,7 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Where Debian's package povray-examples lies.
-const EXAMPLES: &str = "/usr/share/doc/povray/examples";
+pub(crate) const EXAMPLES: &str = "/usr/share/doc/povray/examples";
 
 /// Words that say that a picture needs what strahl does not do yet: a classical ray tracer's picture will differ.
 const MARKS: [&str; 4] = ["radiosity", "photons", "media", "subsurface"];
@@ -70,7 +70,8 @@ impl Options {
     }
 }
 
-fn size(text: &str) -> Result<(u32, u32)> {
+/// A size such as `160x120`.
+pub(crate) fn size(text: &str) -> Result<(u32, u32)> {
     let (w, h) = text
         .split_once('x')
         .context("--size needs WIDTHxHEIGHT, such as 160x120")?;
@@ -175,7 +176,8 @@ fn compare(options: &Options, scene: &Path, index: usize, programs: &Programs) -
     })
 }
 
-fn find_scenes(folder: &Path, found: &mut Vec<PathBuf>) -> Result<()> {
+/// All .pov files below a folder.
+pub(crate) fn find_scenes(folder: &Path, found: &mut Vec<PathBuf>) -> Result<()> {
     let entries =
         std::fs::read_dir(folder).with_context(|| format!("cannot read {}", folder.display()))?;
     for entry in entries {

@@ -1,0 +1,141 @@
+//! Runs a program on a scene and tells the processor time of the whole process.
+
+use anyhow::{Context, Result};
+use nix::sys::resource::{UsageWho, getrusage};
+use nix::sys::time::TimeValLike;
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+
+/// One of the two programs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Program {
+    /// POV-Ray 3.7.
+    PovRay,
+    /// Our release build.
+    Strahl,
+}
+
+/// What came of a run.
+pub(super) enum Timed {
+    /// Processor seconds, of user and system.
+    Seconds(f64),
+    /// There is no picture.
+    Failed(String),
+}
+
+impl Program {
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::PovRay => "POV-Ray",
+            Self::Strahl => "strahl",
+        }
+    }
+
+    pub(super) fn picture(self) -> &'static str {
+        match self {
+            Self::PovRay => "povray.png",
+            Self::Strahl => "strahl.png",
+        }
+    }
+
+    /// One ray per pixel.
+    pub(super) fn plain(self) -> &'static [&'static str] {
+        match self {
+            Self::PovRay => &["-A"],
+            Self::Strahl => &["--sampling", "center"],
+        }
+    }
+
+    /// What everybody writes.
+    pub(super) fn antialiased(self) -> &'static [&'static str] {
+        match self {
+            Self::PovRay => &["+A0.3"],
+            Self::Strahl => &["+A0.3"],
+        }
+    }
+
+    /// As many rays in every pixel as POV-Ray can send.
+    pub(super) fn converged(self) -> &'static [&'static str] {
+        match self {
+            Self::PovRay => &["+A0.0", "+R9"],
+            Self::Strahl => &["+A0.0", "+R9"],
+        }
+    }
+}
+
+/// Renders a scene with one thread; gives up after `most` seconds by the clock.
+pub(super) fn render(
+    program: Program,
+    scene: &Path,
+    picture: &Path,
+    (width, height): (u32, u32),
+    sampling: &[&str],
+    most: f64,
+) -> Result<Timed> {
+    let scratch = tempfile::tempdir()?;
+    let mut command = match program {
+        Program::PovRay => {
+            let mut command = Command::new("povray");
+            command
+                .arg(format!("+I{}", scene.display()))
+                .arg(format!("+O{}", picture.display()))
+                .args([format!("+W{width}"), format!("+H{height}")])
+                .args(["+FN", "-D", "-GA", "+WT1"]);
+            if let Some(folder) = scene.parent() {
+                command.arg(format!("+L{}", folder.display()));
+            }
+            command
+        }
+        Program::Strahl => {
+            let mut command = Command::new(crate::bench::strahl_binary()?);
+            command
+                .arg("render")
+                .arg(scene)
+                .args([
+                    "--size",
+                    &format!("{width}x{height}"),
+                    "--threads",
+                    "1",
+                    "--quiet",
+                ])
+                .arg("--allow-write")
+                .arg(scratch.path())
+                .arg("--output")
+                .arg(picture);
+            command
+        }
+    };
+    let before = spent()?;
+    let mut child = command
+        .args(sampling)
+        .current_dir(scratch.path())
+        .stdin(Stdio::null())
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .with_context(|| format!("cannot run {}", program.name()))?;
+    let start = Instant::now();
+    let status = loop {
+        if let Some(status) = child.try_wait()? {
+            break status;
+        }
+        if start.elapsed().as_secs_f64() > most {
+            child.kill()?;
+            child.wait()?;
+            return Ok(Timed::Failed(format!("no end after {most} s")));
+        }
+        std::thread::sleep(Duration::from_millis(2));
+    };
+    if !status.success() || !picture.is_file() {
+        return Ok(Timed::Failed("no picture".to_owned()));
+    }
+    Ok(Timed::Seconds(spent()? - before))
+}
+
+/// Processor seconds of all processes that this one has started and that have ended.
+fn spent() -> Result<f64> {
+    let usage = getrusage(UsageWho::RUSAGE_CHILDREN)?;
+    let total = usage.user_time() + usage.system_time();
+    Ok(total.num_microseconds() as f64 * 1e-6)
+}
