@@ -23,16 +23,19 @@ pub struct Crossing {
     pub side: Side,
     /// Whether the surface is visible. Clipping changes the inside without adding a surface.
     pub visible: bool,
+    /// Whether the points of the surface count as inside of the solid: what decides between faces that coincide.
+    pub closed: bool,
 }
 
 impl Crossing {
-    /// A visible crossing.
+    /// A visible crossing of a closed set.
     pub const fn new(hit: PrimHit, t_error: f64, side: Side) -> Self {
         Self {
             hit,
             t_error,
             side,
             visible: true,
+            closed: true,
         }
     }
 

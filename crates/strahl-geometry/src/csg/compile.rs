@@ -209,6 +209,8 @@ impl Compiler {
         let map = if baked.is_some() { None } else { context.map };
         let shape = baked.unwrap_or(shape);
         let solid = shape.as_solid();
+        // What has no inside has no complement: no point is inside of it.
+        let negative = context.negative && solid.is_some();
         let bounds = solid.map_or_else(|| shape.bounds(), |solid| solid.inside_bounds());
         let bounds = map.map_or(bounds, |map| map.bounds_to_world(&bounds));
         let first_element = self.elements;
@@ -224,11 +226,11 @@ impl Compiler {
             placement: map.map(|map| Box::new(Placement::new(map))),
             tag,
             first_element,
-            negative: context.negative,
+            negative,
             visible: context.visible,
             bounds,
-            if_inside: Next::Answer(!context.negative),
-            if_outside: Next::Answer(context.negative),
+            if_inside: Next::Answer(!negative),
+            if_outside: Next::Answer(negative),
         });
         Ok(())
     }

@@ -3,7 +3,7 @@ use super::first::Lists;
 use super::leaf::Query;
 use super::solid::{Kind, Node};
 use super::sweep::{Event, Fusing, Rule, Slot, sort, sweep};
-use crate::{Crossings, Scratch, Side, SurfaceId};
+use crate::{Crossing, Crossings, Scratch, Side, SurfaceId};
 use strahl_accel::{Accelerator, TraversalStats, Visitor};
 use strahl_math::{Aabb, Interval, Ray};
 
@@ -97,6 +97,12 @@ impl<'a> Evaluation<'a> {
         workspace.clear();
         evaluation.walk(wide, &mut workspace, scratch, out);
         scratch.give_csg(workspace);
+        if evaluation.from.is_some() {
+            // Lids and inner surfaces that coincide with the surface the ray leaves have been crossed.
+            let reach = |crossing: &Crossing| evaluation.fusing.reach(crossing);
+            out.list
+                .retain(|c| c.side != Side::Inner || c.hit.t > reach(c));
+        }
         cut(out, Interval::new(start, end));
     }
 

@@ -102,14 +102,29 @@ impl Leaf {
 
     /// Whether [`Leaf::span`] knows the shape.
     pub(super) fn is_convex(&self) -> bool {
-        matches!(
-            self.shape,
-            Shape::Sphere(_)
-                | Shape::Cuboid(_)
-                | Shape::Cylinder(_)
-                | Shape::Cone(_)
-                | Shape::Plane(_)
-        )
+        match &self.shape {
+            Shape::Sphere(_) | Shape::Cuboid(_) | Shape::Plane(_) => true,
+            // Of open ones not every end of a span can be seen.
+            Shape::Cylinder(cylinder) => cylinder.is_capped(),
+            Shape::Cone(cone) => cone.is_capped(),
+            _ => false,
+        }
+    }
+
+    /// Whether the shape's surface counts as inside of it, which matters where faces coincide only.
+    ///
+    /// These are POV-Ray's rules as far as it has any (measured: planes, blobs, superellipsoids and isosurfaces always have their
+    /// surface, cylinders, cones and meshes never; of the others rounding decides, and this is what it says for faces along the axes).
+    fn has_its_surface(&self) -> bool {
+        self.solid().is_some()
+            && !matches!(
+                self.shape,
+                Shape::Cylinder(_)
+                    | Shape::Cone(_)
+                    | Shape::Prism(_)
+                    | Shape::TriangleMesh(_)
+                    | Shape::Brep(_)
+            )
     }
 
     /// The span in which the line is inside of a convex solid, if there is one; its ends are those that [`Leaf::crossings`]
@@ -192,10 +207,12 @@ impl Leaf {
                 out.list.retain(|crossing| crossing.side != Side::Inner);
             }
         }
+        let closed = self.has_its_surface() != self.negative;
         for crossing in &mut out.list {
             let element = crossing.hit.surface.element;
             crossing.hit.surface.element = self.first_element.saturating_add(element);
             crossing.visible &= self.visible;
+            crossing.closed = closed;
             if self.negative {
                 crossing.side = match crossing.side {
                     Side::Enter => Side::Exit,

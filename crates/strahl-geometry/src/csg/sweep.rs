@@ -109,8 +109,8 @@ pub(super) fn sort(events: &mut [Event]) {
 /// Combines the operands' sorted crossings into those of the node. `always_inside` says that there is one more operand, which
 /// the ray never leaves.
 ///
-/// Coincident crossings of different operands are one event: all operands change their states, then the result is computed. So
-/// spans without thickness vanish, and of coincident faces the one with the smallest element number counts.
+/// Crossings of different operands that coincide are one event: all operands change their states, then the result is looked
+/// at. Which of the faces shows is decided by [`Group`].
 pub(super) fn sweep(
     rule: Rule,
     events: &[Event],
@@ -127,21 +127,21 @@ pub(super) fn sweep(
     let mut count = usize::from(always_inside) + slots.iter().filter(|slot| slot.inside).count();
     out.inside_at_start = holds(count);
 
-    let (mut rest, mut group) = (events, 0);
+    let (mut rest, mut number) = (events, 0);
     while let Some(first) = rest.first() {
-        // The group: the crossings that coincide with its first one, one per operand (an operand's own list is already in
-        // order, however close its crossings are).
-        group += 1;
+        // The group: what coincides with its first crossing, one crossing per operand (an operand's own list is in
+        // order already, however close its crossings are).
+        number += 1;
         let before = count;
         let mut length = 0;
         for event in rest {
             let Some(slot) = slots.get_mut(event.slot as usize) else {
                 break;
             };
-            if slot.group == group || !fusing.coincide(&first.crossing, &event.crossing) {
+            if slot.group == number || !fusing.coincide(&first.crossing, &event.crossing) {
                 break;
             }
-            slot.group = group;
+            slot.group = number;
             length += 1;
             match event.crossing.side {
                 Side::Enter if !slot.inside => {
@@ -159,66 +159,139 @@ pub(super) fn sweep(
         let (members, later) = rest.split_at(if length > 0 { length } else { 1 });
         rest = later;
 
-        let chosen = match (holds(before), holds(count)) {
-            (false, true) => choose(members, Side::Enter),
-            (true, false) => choose(members, Side::Exit),
-            (_, _) => choose_inner(rule, members, slots, before, count, total),
+        let group = Group {
+            rule,
+            members,
+            before,
+            after: count,
+            total,
+            inside_elsewhere: count - members.iter().filter(|e| is_inside(slots, e)).count(),
         };
-        out.list.extend(chosen);
+        out.list.extend(match (holds(before), holds(count)) {
+            (false, true) => group.change(Side::Enter),
+            (true, false) => group.change(Side::Exit),
+            (_, _) => group.inner(slots),
+        });
     }
 }
 
-/// The crossing that represents a change of the result: one that changes in the same direction, visible if there is one, of the
-/// smallest element.
-fn choose(members: &[Event], side: Side) -> Option<Crossing> {
-    members
-        .iter()
-        .map(|event| &event.crossing)
-        .min_by_key(|c| {
-            (
-                c.side != side,
-                !c.visible,
-                c.surface().element,
-                c.surface().facet,
-            )
-        })
-        .map(|c| Crossing { side, ..*c })
+/// Whether the ray is inside of an event's operand.
+fn is_inside(slots: &[Slot], event: &Event) -> bool {
+    slots.get(event.slot as usize).is_some_and(|s| s.inside)
 }
 
-/// The inner surface that is kept where the result does not change, if there is one.
-fn choose_inner(
+/// Crossings of different operands that coincide, one per operand; mostly it is one alone.
+struct Group<'a> {
     rule: Rule,
-    members: &[Event],
-    slots: &[Slot],
+    members: &'a [Event],
+    /// How many operands the ray is inside of before the group and after it ...
     before: usize,
     after: usize,
+    /// ... of so many.
     total: usize,
-) -> Option<Crossing> {
-    let stays = |event: &&Event| {
-        let inner = event.crossing.side == Side::Inner;
-        let own = slots
-            .get(event.slot as usize)
-            .is_some_and(|slot| slot.inside);
-        // The number of *other* operands that contain the ray, on either side.
-        let others_before = before.saturating_sub(usize::from(inner && own));
-        let others_after = after.saturating_sub(usize::from(inner && own));
-        event.crossing.visible
-            && match rule {
+    /// Of how many of the operands that take no part the ray is inside.
+    inside_elsewhere: usize,
+}
+
+impl Group<'_> {
+    /// How many of the members count as inside of their own operand.
+    fn closed(&self) -> usize {
+        self.members.iter().filter(|e| e.crossing.closed).count()
+    }
+
+    /// Whether all operands that take no part let the group's surfaces stay.
+    fn is_kept_elsewhere(&self) -> bool {
+        match self.rule {
+            Rule::Union => true,
+            Rule::Merge => self.inside_elsewhere == 0,
+            Rule::Intersection => self.inside_elsewhere + self.members.len() == self.total,
+        }
+    }
+
+    /// Whether the other members let the surface of one stay.
+    fn stays(&self, crossing: &Crossing, closed: usize) -> bool {
+        let others = closed - usize::from(crossing.closed);
+        match self.rule {
+            Rule::Union => true,
+            Rule::Merge => others == 0,
+            Rule::Intersection => others + 1 == self.members.len(),
+        }
+    }
+
+    /// The visible surface that stays: the last one, of a union the first one.
+    fn shown(&self) -> Option<&Crossing> {
+        if !self.is_kept_elsewhere() {
+            return None;
+        }
+        let closed = self.closed();
+        let crossings = self.members.iter().map(|event| &event.crossing);
+        let kept = crossings.filter(|c| c.visible && self.stays(c, closed));
+        let number = |c: &&Crossing| (c.surface().element, c.surface().facet);
+        match self.rule {
+            Rule::Union => kept.min_by_key(number),
+            Rule::Merge | Rule::Intersection => kept.max_by_key(number),
+        }
+    }
+
+    /// A crossing of this group as one of the result.
+    fn result(&self, crossing: &Crossing, side: Side) -> Crossing {
+        let closed = self.closed();
+        Crossing {
+            side,
+            closed: match self.rule {
+                Rule::Union | Rule::Merge => closed + self.inside_elsewhere > 0,
+                Rule::Intersection => closed == self.members.len() && self.is_kept_elsewhere(),
+            },
+            ..*crossing
+        }
+    }
+
+    /// The crossing where the result changes. There is one always, even if all surfaces are inside of others that coincide.
+    fn change(&self, side: Side) -> Option<Crossing> {
+        let chosen = match self.members {
+            [alone] => Some(&alone.crossing),
+            _ => self.shown().or_else(|| first_of(self.members, side)),
+        };
+        chosen.map(|crossing| self.result(crossing, side))
+    }
+
+    /// The inner surface that stays where the result does not change, if any.
+    fn inner(&self, slots: &[Slot]) -> Option<Crossing> {
+        let chosen = match self.members {
+            [Event { crossing, slot }] => {
+                let inside = slots.get(*slot as usize).is_some_and(|s| s.inside);
+                self.stays_alone(crossing, inside).then_some(crossing)
+            }
+            _ => self.shown(),
+        };
+        chosen.map(|crossing| self.result(crossing, Side::Inner))
+    }
+
+    /// Whether the surface of a single member stays though the result does not change.
+    fn stays_alone(&self, crossing: &Crossing, inside: bool) -> bool {
+        let inner = crossing.side == Side::Inner;
+        // How many of the *other* operands the ray is inside of, on either side.
+        let own = usize::from(inner && inside);
+        let (before, after) = (
+            self.before.saturating_sub(own),
+            self.after.saturating_sub(own),
+        );
+        crossing.visible
+            && match self.rule {
                 Rule::Union => true,
-                Rule::Merge => inner && others_before == 0 && others_after == 0,
-                // Inside or on the boundary of all others.
+                Rule::Merge => inner && before == 0 && after == 0,
                 Rule::Intersection => {
-                    inner && (others_before + 1 == total || others_after + 1 == total)
+                    inner && (before + 1 == self.total || after + 1 == self.total)
                 }
             }
-    };
-    members
-        .iter()
-        .filter(stays)
-        .map(|event| &event.crossing)
-        .min_by_key(|c| (c.surface().element, c.surface().facet))
-        .map(|c| Crossing {
-            side: Side::Inner,
-            ..*c
-        })
+    }
+}
+
+/// The crossing of the smallest element that changes the same way, visible if there is one.
+fn first_of(members: &[Event], side: Side) -> Option<&Crossing> {
+    let crossings = members.iter().map(|event| &event.crossing);
+    crossings.min_by_key(|c| {
+        let surface = c.surface();
+        (c.side != side, !c.visible, surface.element, surface.facet)
+    })
 }

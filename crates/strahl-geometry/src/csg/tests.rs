@@ -129,27 +129,52 @@ fn a_box_with_a_ball_taken_out() {
     assert!(csg.contains(DVec3::splat(1.5)) && !csg.contains(DVec3::ZERO));
 }
 
+/// As POV-Ray 3.7 renders them. A box has its surface, a cylinder has not.
 #[test]
-fn flush_faces_leave_no_skin() {
-    // The pocket begins exactly in the face of the block.
+fn flush_faces_show_as_in_povray() {
+    let rod = |x0: f64, x1: f64, radius: f64, tag: u32| {
+        CsgNode::leaf(Cylinder::new(DVec3::X * x0, DVec3::X * x1, radius), tag)
+    };
+    // The pocket begins exactly in the face of the block: the face of what is taken out is inside of the box, as a lid.
     let flush = CsgNode::difference([slab(-1.0, 1.0, 2.0, 1), slab(-1.0, 0.0, 1.0, 2)]);
-    assert_eq!(along_x(flush), [(0.0, '>', 2), (1.0, '<', 1)]);
+    let pocket = [(0.0, '>', 2), (1.0, '<', 1)];
+    assert_eq!(along_x(flush), [(-1.0, '|', 2), pocket[0], pocket[1]]);
     let through = CsgNode::difference([slab(-1.0, 1.0, 2.0, 1), slab(-1.0, 1.0, 1.0, 2)]);
-    assert_eq!(along_x(through), []);
-    // Blocks side by side touch, but have nothing in common.
+    assert_eq!(along_x(through), [(-1.0, '|', 2), (1.0, '|', 2)]);
+    // `difference { cylinder { -y, y, 1 } cylinder { -0.9 * y, y, 0.8 } }` keeps its lid: it is not inside of the second one.
+    let cup = CsgNode::difference([rod(-1.0, 1.0, 2.0, 1), rod(-1.0, 0.0, 1.0, 2)]);
+    assert_eq!(along_x(cup), [(-1.0, '|', 1), pocket[0], pocket[1]]);
+    let both = CsgNode::difference([slab(-1.0, 1.0, 2.0, 1), rod(-1.0, 0.0, 1.0, 2)]);
+    assert_eq!(along_x(both), [(-1.0, '|', 2), pocket[0], pocket[1]]);
+    let neither = CsgNode::difference([rod(-1.0, 1.0, 2.0, 1), slab(-1.0, 0.0, 1.0, 2)]);
+    assert_eq!(along_x(neither), pocket);
+    // Side by side.
     let touching = CsgNode::intersection([slab(-1.0, 0.0, 1.0, 1), slab(0.0, 1.0, 1.0, 2)]);
+    assert_eq!(along_x(touching), [(0.0, '|', 2)]);
+    let touching = CsgNode::intersection([rod(-1.0, 0.0, 1.0, 1), rod(0.0, 1.0, 1.0, 2)]);
     assert_eq!(along_x(touching), []);
+    let (left, right) = ((-1.0, '>', 1), (1.0, '<', 2));
     let joined = CsgNode::merge([slab(-1.0, 0.0, 1.0, 1), slab(0.0, 1.0, 1.0, 2)]);
-    assert_eq!(along_x(joined), [(-1.0, '>', 1), (1.0, '<', 2)]);
+    assert_eq!(along_x(joined), [left, right]);
+    let joined = CsgNode::merge([rod(-1.0, 0.0, 1.0, 1), rod(0.0, 1.0, 1.0, 2)]);
+    assert_eq!(along_x(joined), [left, (0.0, '|', 2), right]);
     let kept = CsgNode::union([slab(-1.0, 0.0, 1.0, 1), slab(0.0, 1.0, 1.0, 2)]);
-    assert_eq!(
-        along_x(kept),
-        [(-1.0, '>', 1), (0.0, '|', 1), (1.0, '<', 2)]
-    );
+    assert_eq!(along_x(kept), [left, (0.0, '|', 1), right]);
+    // The same face.
+    for order in [true, false] {
+        let solids = || {
+            let (a, b) = (slab(-1.0, 1.0, 2.0, 1), rod(-1.0, 1.0, 1.0, 2));
+            if order { [a, b] } else { [b, a] }
+        };
+        let inside = CsgNode::intersection(solids());
+        assert_eq!(along_x(inside), [(-1.0, '>', 2), (1.0, '<', 2)]);
+        let outside = CsgNode::merge(solids());
+        assert_eq!(along_x(outside), [(-1.0, '>', 1), (1.0, '<', 1)]);
+    }
 }
 
 #[test]
-fn faces_that_coincide_up_to_rounding_leave_no_skin() {
+fn faces_that_coincide_up_to_rounding_are_one() {
     // 0.1 + 0.2 differs from 0.3 in the last bit; seen in spaces turned about the axis the faces are perpendicular to.
     let mut random = Random::new(3);
     for _ in 0..2000 {
@@ -171,7 +196,8 @@ fn faces_that_coincide_up_to_rounding_leave_no_skin() {
         );
         let mut scratch = Scratch::default();
         let hit = csg.closest_hit(&ray, Interval::FORWARD, None, &mut scratch);
-        assert!(hit.is_none_or(|hit| hit.t > 1.01), "a skin: {hit:?}");
+        let is_lid = |hit: &PrimHit| (hit.t - 1.0).abs() < 1e-9 && hit.surface.element == 1;
+        assert!(hit.is_some_and(|hit| is_lid(&hit)), "{hit:?}");
     }
 }
 
@@ -198,15 +224,15 @@ fn rounding_of_maps_counts_for_coincidence() {
         );
         let range = Interval::new(0.999, 1.0001);
         let hit = csg.closest_hit(&ray, range, None, &mut Scratch::default());
-        assert!(hit.is_none(), "a skin: {hit:?}");
+        assert!(hit.is_some_and(|hit| hit.surface.element == 1), "{hit:?}");
     }
 }
 
 #[test]
-fn of_coincident_faces_the_smaller_element_shows() {
+fn of_coincident_faces_an_intersection_shows_the_last_and_a_union_the_first() {
     for (a, b) in [(1, 2), (2, 1)] {
         let same = CsgNode::intersection([cube(-1.0, 1.0, a), cube(-1.0, 1.0, b)]);
-        assert_eq!(along_x(same), [(-1.0, '>', a), (1.0, '<', a)]);
+        assert_eq!(along_x(same), [(-1.0, '>', b), (1.0, '<', b)]);
         let same = CsgNode::union([cube(-1.0, 1.0, a), cube(-1.0, 1.0, b)]);
         assert_eq!(along_x(same), [(-1.0, '>', a), (1.0, '<', a)]);
     }
@@ -302,16 +328,14 @@ fn open_surfaces_are_cut() {
     };
     assert_eq!((hit(1.9), hit(2.1)), (Some(10.0), None));
     assert!((csg.bounds().max.y - 2.0).abs() < 1e-12);
-    // An intersection keeps the part inside, a difference with it the part outside, and what it takes away is nothing.
+    // An intersection keeps the part inside, a difference with it the part outside. It has no inside, nor an outside to keep anything
+    // else in.
     let inside = CsgNode::intersection([screen(0.0, 1), ball(0.0, 2.0, 2)]);
     assert_eq!(along_x(inside), [(0.0, '|', 1)]);
     let outside = CsgNode::difference([screen(0.0, 1), ball(0.0, 2.0, 2)]);
     assert_eq!(along_x(outside), []);
     let scratched = CsgNode::difference([ball(0.0, 2.0, 2), screen(0.0, 1)]);
-    assert_eq!(
-        along_x(scratched),
-        [(-2.0, '>', 2), (0.0, '|', 1), (2.0, '<', 2)]
-    );
+    assert_eq!(along_x(scratched), [(0.0, '|', 1)]);
     let both = CsgNode::union([screen(5.0, 1), ball(0.0, 2.0, 2)]);
     assert_eq!(
         along_x(both),
@@ -547,4 +571,26 @@ mod conformance {
         ]
         .map(|n| CsgNode::leaf(Plane::new(n, n), 0))
     )));
+}
+
+/// As POV-Ray 3.7 renders them: `open` takes away the caps from what is seen, not from what is inside.
+#[test]
+fn open_cylinders_cones_and_discs_carve() {
+    let tube = || CsgNode::leaf(Cylinder::open(DVec3::X * -5.0, DVec3::X, 1.0), 2);
+    let carved = CsgNode::difference([slab(-2.0, 3.0, 2.0, 1), tube()]);
+    assert_eq!(along_x(carved), [(1.0, 'i', 2), (3.0, '<', 1)]);
+    let cone = CsgNode::leaf(crate::Cone::open(DVec3::X * -5.0, 2.0, DVec3::X, 1.0), 2);
+    let carved = CsgNode::difference([slab(-2.0, 3.0, 2.0, 1), cone]);
+    assert_eq!(along_x(carved), [(1.0, 'i', 2), (3.0, '<', 1)]);
+    let kept = CsgNode::intersection([slab(-2.0, 3.0, 2.0, 1), tube()]);
+    assert_eq!(along_x(kept), [(-2.0, '>', 1), (1.0, 'o', 2)]);
+    // A disc has the half-space behind it for its inside.
+    let disc =
+        |normal: DVec3, hole: f64| CsgNode::leaf(crate::Disc::new(DVec3::X, normal, 3.0, hole), 2);
+    let cut = CsgNode::intersection([slab(-2.0, 3.0, 2.0, 1), disc(DVec3::X, 0.0)]);
+    assert_eq!(along_x(cut), [(-2.0, '>', 1), (1.0, '<', 2)]);
+    let cut = CsgNode::difference([slab(-2.0, 3.0, 2.0, 1), disc(DVec3::X, 1.0)]);
+    assert_eq!(along_x(cut), [(1.0, 'i', 2), (3.0, '<', 1)]);
+    let cut = CsgNode::difference([slab(-2.0, 3.0, 2.0, 1), disc(-DVec3::X, 0.0)]);
+    assert_eq!(along_x(cut), [(-2.0, '>', 1), (1.0, '<', 2)]);
 }

@@ -7,9 +7,10 @@ use strahl_math::Transform;
 ///
 /// The operations mean what they mean in POV-Ray. Trees may be nested arbitrarily deep.
 ///
-/// Open surfaces (discs, patches, hollow spheres) may be leaves: they have no inside, so their points count as outside for the
-/// other operands. The part of their own surface is kept that lies inside of all other operands of an intersection, or outside
-/// of all others of a merge. A tree with an open leaf is no [`Solid`](crate::Solid).
+/// Open surfaces (triangles, patches, meshes without an inside) may take part as leaves: no point is inside of them, nor of their
+/// complement, and of their own surface what lies inside of all operands of an intersection (outside of all others of a merge) is
+/// kept. So a difference with an open surface subtracted is that surface, where it is inside of the others. A tree with an open
+/// leaf is no [`Solid`](crate::Solid).
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum CsgNode {

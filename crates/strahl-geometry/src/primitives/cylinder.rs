@@ -6,7 +6,9 @@ use crate::{
 };
 use strahl_math::{Aabb, DVec3, Interval, Ray, Transform};
 
-/// A right circular cylinder: closed with caps (a solid), or an open tube without thickness.
+/// A right circular cylinder: closed with caps, or an open tube without thickness.
+///
+/// An *open* cylinder lacks the caps to be seen, but is a solid nonetheless: it ends where the caps would be.
 ///
 /// Texture coordinates of the side: `u` is the angle, 0 to 1, `v` the height, 0 at the base and 1 at the apex; of a cap: `u` the
 /// angle, `v` the distance from the axis, 1 at the rim. Facets: 0 the side, 1 the cap at the base, 2 the cap at
@@ -20,7 +22,7 @@ impl Cylinder {
         Self(Frustum::new(base, radius, apex, radius, true))
     }
 
-    /// The same without caps.
+    /// The same without caps to be seen.
     pub fn open(base: DVec3, apex: DVec3, radius: f64) -> Self {
         Self(Frustum::new(base, radius, apex, radius, false))
     }
@@ -49,7 +51,7 @@ impl Cylinder {
         self.0.base_radius
     }
 
-    /// Whether it has caps and hence an inside.
+    /// Whether it has caps that can be seen.
     pub fn is_capped(&self) -> bool {
         self.0.capped
     }
@@ -90,7 +92,7 @@ impl Primitive for Cylinder {
     }
 
     fn as_solid(&self) -> Option<&dyn Solid> {
-        if self.0.capped { Some(self) } else { None }
+        Some(self)
     }
 
     /// Any similarity makes a cylinder of a cylinder.
@@ -220,7 +222,7 @@ mod tests {
     #[test]
     fn a_tube_is_open() {
         let tube = Cylinder::open(DVec3::ZERO, DVec3::Y * 2.0, 1.0);
-        assert!(tube.as_solid().is_none());
+        assert!(tube.contains(DVec3::Y) && !tube.contains(DVec3::Y * 3.0));
         let hit = |ray: &Ray| {
             tube.closest_hit(ray, Interval::FORWARD, None, &mut Scratch::default())
                 .map(|hit| hit.t)

@@ -2,11 +2,16 @@ use super::frame::{UvFrame, similarity, turn};
 use super::{
     check_direction, check_finite, check_length, check_positive, point_error, unit_vector,
 };
-use crate::{GeometryError, PrimHit, Primitive, Scratch, Shape, SurfaceId, SurfacePoint};
+use crate::{
+    Crossings, GeometryError, Plane, PrimHit, Primitive, Scratch, Shape, Solid, SurfaceId,
+    SurfacePoint,
+};
 use std::f64::consts::PI;
 use strahl_math::{Aabb, DVec2, DVec3, Interval, Ray, Transform};
 
-/// A flat round disc, optionally with a round hole in its middle: an open surface.
+/// A flat round disc, optionally with a round hole in its middle.
+///
+/// It is seen from both sides. As a solid it is the half-space behind its normal, of whose plane only the disc can be seen.
 ///
 /// Texture coordinates: `u` is the angle, 0 to 1; `v` is 0 at the hole (or the centre) and 1 at the rim. Facets: one, 0. The
 /// rims belong to the disc. A ray within its plane does not hit it.
@@ -64,6 +69,17 @@ impl Disc {
     pub fn hole(&self) -> f64 {
         self.hole
     }
+
+    /// The plane it lies in.
+    fn plane(&self) -> Plane {
+        Plane::new(self.center, self.normal)
+    }
+
+    /// Whether a point of the plane, from the centre, is on the disc.
+    fn covers(&self, local: DVec3) -> bool {
+        let distance = (local - self.normal * local.dot(self.normal)).length();
+        self.hole <= distance && distance <= self.radius
+    }
 }
 
 /// The box around a circle, not padded.
@@ -120,9 +136,8 @@ impl Primitive for Disc {
         if !(range.accepts(t) && t.is_finite()) {
             return None;
         }
-        let local = f + ray.direction * t;
-        let distance = (local - self.normal * local.dot(self.normal)).length();
-        (self.hole <= distance && distance <= self.radius).then(|| PrimHit::simple(t, 0))
+        self.covers(f + ray.direction * t)
+            .then(|| PrimHit::simple(t, 0))
     }
 
     fn surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
@@ -149,6 +164,10 @@ impl Primitive for Disc {
         }
     }
 
+    fn as_solid(&self) -> Option<&dyn Solid> {
+        Some(self)
+    }
+
     /// Any similarity makes a disc of a disc.
     fn baked(&self, map: &Transform) -> Option<Shape> {
         let (scale, orthogonal) = similarity(map)?;
@@ -159,6 +178,31 @@ impl Primitive for Disc {
             hole: self.hole * scale,
             frame: self.frame.turned(self.normal, orthogonal),
         }))
+    }
+}
+
+impl Solid for Disc {
+    fn inside_bounds(&self) -> Aabb {
+        self.plane().bounds()
+    }
+
+    fn crossings(
+        &self,
+        ray: &Ray,
+        range: Interval,
+        from: Option<SurfaceId>,
+        scratch: &mut Scratch,
+        out: &mut Crossings,
+    ) {
+        self.plane().crossings(ray, range, from, scratch, out);
+        for crossing in &mut out.list {
+            let f = ray.origin - self.center;
+            crossing.visible = self.covers(f + ray.direction * crossing.hit.t);
+        }
+    }
+
+    fn contains(&self, point: DVec3) -> bool {
+        self.plane().contains(point)
     }
 }
 

@@ -200,7 +200,7 @@ impl Frustum {
     fn slab(&self, r: &AxisRay, from: Option<u32>) -> Option<(End, End)> {
         if r.climb == 0.0 {
             let between = 0.0 < r.height && r.height < self.height;
-            let on_cap = self.capped && matches!(from, Some(BASE | APEX));
+            let on_cap = matches!(from, Some(BASE | APEX));
             let end = |t| End { t, facet: BASE };
             return (between && !on_cap).then_some((end(f64::NEG_INFINITY), end(f64::INFINITY)));
         }
@@ -242,25 +242,21 @@ impl Frustum {
         range: Interval,
         from: Option<SurfaceId>,
     ) -> Option<PrimHit> {
+        let span = self.span(ray, from)?;
         if self.capped {
-            return self.span(ray, from)?.closest(range, from);
+            return span.closest(range, from);
         }
-        // The open surface: those ends of the side's span that lie between the planes.
-        let on_side = from.is_some();
-        let r = self.axis_ray(ray);
-        let (first, second) = self.side_span(&r, on_side)?;
-        let (enter, exit) = self.slab(&r, None)?;
-        let counts = |t: f64| {
-            range.accepts(t)
-                && t.is_finite()
-                && enter.t <= t
-                && t <= exit.t
-                && !(on_side && t == 0.0)
+        // The open surface: those ends that are on the side.
+        let counts = |end: &End| {
+            end.facet == SIDE
+                && range.accepts(end.t)
+                && end.t.is_finite()
+                && !(from.is_some() && end.t == 0.0)
         };
-        [first, second]
+        [span.enter, span.exit]
             .into_iter()
-            .find(|t| counts(*t))
-            .map(|t| PrimHit::simple(t, SIDE))
+            .find(counts)
+            .map(|end| PrimHit::simple(end.t, SIDE))
     }
 
     pub(super) fn crossings(
@@ -271,7 +267,11 @@ impl Frustum {
         out: &mut Crossings,
     ) {
         if let Some(span) = self.span(ray, from) {
+            let before = out.list.len();
             span.list(range, from, |end| self.t_error(ray, end), out);
+            for crossing in out.list.iter_mut().skip(before) {
+                crossing.visible = self.capped || crossing.hit.surface.facet == SIDE;
+            }
         }
     }
 
