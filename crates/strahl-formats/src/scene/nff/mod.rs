@@ -12,7 +12,8 @@
 //! | `pp n` n corners with normals | a smooth polygon |
 //!
 //! The format leaves shading open; the choices here:
-//! * Every light has the strength √n/(2n), n the number of lights, times its colour if it has one. So has the ambient light.
+//! * A light without a colour is white, of the strength √n/(2n), n the number of lights: the format leaves it to the program. A colour
+//!   that is given is taken as it is. The ambient light has the strength √n/(2n) always.
 //! * `f`: kd = ka = Kd·rgb; highlight and reflection are white, ks = kr = Ks, the highlight's exponent is Shine; kt = T,
 //!   η = ior (1 if it is 0, or missing). The highlight is Phong's.
 //! * Opaque polygons exist from the front only (corners counter-clockwise), transmitting ones (T > 0) from both sides;
@@ -228,7 +229,10 @@ impl<'a> Reader<'a> {
             self.scene.ambient = Some(Color::gray(strength));
             for (i, light) in self.lights.drain(..).enumerate() {
                 self.scene.lights.push(strahl_scene::SceneLight {
-                    light: strahl_shade::Light::point(light.position, light.color * strength),
+                    light: strahl_shade::Light::point(
+                        light.position,
+                        light.color.unwrap_or(Color::gray(strength)),
+                    ),
                     mask: None,
                     name: Some(Arc::from(format!("light {}", i + 1))),
                     span: light.span,

@@ -46,11 +46,11 @@ pub(super) enum Kind {
     },
 }
 
-/// An `l` statement; the strength depends on how many there are.
+/// An `l` statement; without a colour the strength depends on how many there are.
 #[derive(Debug)]
 pub(super) struct LightLine {
     pub(super) position: DVec3,
-    pub(super) color: Color,
+    pub(super) color: Option<Color>,
     pub(super) span: Span,
 }
 

@@ -164,9 +164,9 @@ impl<'a> Parser<'a> {
     fn light(&mut self, line: u32) -> Fallible<()> {
         let position = self.point("the light's position")?;
         let color = if self.words.peek_in_line().is_some() {
-            self.color("the light")?
+            Some(self.color("the light")?)
         } else {
-            Color::WHITE
+            None
         };
         let span = Span::line(self.text.file, line);
         self.part().lights.push(LightLine {

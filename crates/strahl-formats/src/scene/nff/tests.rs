@@ -54,7 +54,7 @@ fn the_view_is_camera_and_size() {
 }
 
 #[test]
-fn lights_share_the_strength_of_the_document() {
+fn lights_without_a_colour_share_the_strength_and_colours_are_taken_as_given() {
     let scene =
         scene("l 1 2 3\nl 4 5 6 1 0.5 0 # orange\nl 0 0 0\nl 9 9 9\nf 1 1 1 1 0 0 0 0\ns 0 0 0 1");
     // √4 / 8
@@ -66,7 +66,9 @@ fn lights_share_the_strength_of_the_document() {
             position: DVec3::new(1.0, 2.0, 3.0)
         }
     );
-    assert_eq!(scene.lights[1].light.color, Color::new(0.25, 0.125, 0.0));
+    assert_eq!(scene.lights[0].light.color, Color::gray(0.25));
+    // The format says that a light's strength is free if its colour is not specified; so a specified one is not.
+    assert_eq!(scene.lights[1].light.color, Color::new(1.0, 0.5, 0.0));
     assert_eq!(
         (scene.lights[1].span.line, scene.lights[1].name.as_deref()),
         (9, Some("light 2"))
