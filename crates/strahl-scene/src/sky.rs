@@ -14,19 +14,31 @@ pub struct SkySphere {
     pub emission: Color,
     /// The colour behind the lowest layer.
     pub behind: Color,
+    /// Whether filtering layers tint those below them, as in scenes of POV-Ray 3.7. In older ones only what is behind all is tinted.
+    pub tints_layers: bool,
 }
 
 impl SkySphere {
     /// The colour seen along a direction of any length: that of the pigments at the end of the unit vector.
     ///
-    /// As measured, layers let `filter + transmit` of those below pass without tinting it, while what is behind all is tinted:
-    /// it keeps the product of all `rgb · filter` plus that of all `transmit`.
+    /// As measured: under version 3.7 a layer lets `rgb · filter + transmit` of all below it pass. Before, layers let
+    /// `filter + transmit` of those below pass without tinting it, while what is behind all keeps the product of all `rgb · filter`
+    /// plus that of all `transmit`.
     pub fn along(&self, direction: DVec3) -> Color {
         let at = self
             .transform
             .point_to_object(direction.normalize_or(DVec3::Y));
         let point = TexturePoint::in_space(at);
         let mut seen = Color::BLACK;
+        if self.tints_layers {
+            let mut passes = Color::WHITE;
+            for layer in self.layers.iter().rev() {
+                let color = layer.color_at(&point);
+                seen += color.rgb * self.emission * passes * color.opacity();
+                passes *= color.rgb * color.filter + Color::gray(color.transmit);
+            }
+            return seen + self.behind * passes;
+        }
         let (mut passes, mut tint, mut clear) = (1.0, Color::WHITE, 1.0);
         for layer in self.layers.iter().rev() {
             let color: ColorFt = layer.color_at(&point);
@@ -58,6 +70,7 @@ mod tests {
             transform: Transform::IDENTITY,
             emission: Color::WHITE,
             behind: Color::WHITE,
+            tints_layers: true,
         };
         assert_eq!(sky.along(DVec3::Z * 7.0), Color::new(0.25, 0.75, 0.0));
     }
@@ -80,11 +93,53 @@ mod tests {
             transform: Transform::IDENTITY,
             emission: Color::WHITE,
             behind: Color::new(0.2, 0.6, 0.8),
+            tints_layers: false,
         };
         // As POV-Ray renders it.
         let seen = sky.along(DVec3::X).to_array();
         for (seen, expected) in seen.into_iter().zip([0.46, 0.3456, 0.2368]) {
             assert!((seen - expected).abs() < 1e-9, "{seen}");
+        }
+    }
+    /// As POV-Ray 3.7 renders it, in steps of 1/255.
+    #[test]
+    fn filtering_layers_tint_those_below_under_version_3_7() {
+        let layer = |rgb: [f64; 3], filter, transmit| {
+            ColorFt {
+                rgb: Color::from(rgb),
+                filter,
+                transmit,
+            }
+            .into()
+        };
+        let sky = |layers| SkySphere {
+            layers,
+            transform: Transform::IDENTITY,
+            emission: Color::WHITE,
+            behind: Color::new(0.9, 0.7, 0.4),
+            tints_layers: true,
+        };
+        let cases = [
+            (
+                vec![
+                    layer([0.9, 0.7, 0.4], 0.0, 0.0),
+                    layer([0.2, 0.5, 0.8], 0.6, 0.0),
+                ],
+                [0.188, 0.412, 0.514],
+            ),
+            (
+                vec![
+                    layer([0.9, 0.7, 0.4], 0.5, 0.2),
+                    layer([0.2, 0.5, 0.8], 0.3, 0.4),
+                ],
+                [0.455, 0.478, 0.42],
+            ),
+        ];
+        for (layers, expected) in cases {
+            let seen = sky(layers).along(DVec3::X).to_array();
+            for (seen, expected) in seen.into_iter().zip(expected) {
+                assert!((seen - expected).abs() < 0.005, "{seen} is not {expected}");
+            }
         }
     }
 }

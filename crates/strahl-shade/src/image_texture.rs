@@ -190,6 +190,61 @@ impl TextureImage {
         &self.data
     }
 
+    /// The picture with each sample of a colour channel, a code's share of the largest code, replaced by what `curve` makes of it.
+    ///
+    /// The result is linear. Alpha stays as it is.
+    #[must_use]
+    pub fn recoded(&self, curve: impl Fn(f64) -> f64) -> Self {
+        let recode = |share: f64| curve(share) as f32;
+        // Of integer codes there are fewer than texels.
+        let table = match &self.data {
+            TexelData::U8(_) => (0..=u8::MAX)
+                .map(|c| recode(f64::from(c) / 255.0))
+                .collect(),
+            TexelData::U16(_) => (0..=u16::MAX)
+                .map(|c| recode(f64::from(c) / 65_535.0))
+                .collect(),
+            TexelData::F32(_) => Vec::new(),
+        };
+        let count = self.channels.count();
+        let has_alpha = matches!(
+            self.channels,
+            TexelChannels::GrayAlpha | TexelChannels::Rgba
+        );
+        let sample = |index: usize| {
+            if has_alpha && index % count == count - 1 {
+                return self.linear_sample(index);
+            }
+            match &self.data {
+                TexelData::U8(samples) => table[usize::from(samples[index])],
+                TexelData::U16(samples) => table[usize::from(samples[index])],
+                TexelData::F32(samples) => recode(f64::from(samples[index])),
+            }
+        };
+        Self {
+            color_space: ColorSpace::Linear,
+            data: TexelData::F32((0..self.data.len()).map(sample).collect()),
+            ..*self
+        }
+    }
+
+    /// The picture whose colours are stored multiplied by their alpha, with straight colours. Where alpha is 0 they stay as they are.
+    #[must_use]
+    pub fn straightened(&self) -> Self {
+        let texels = (0..self.height).flat_map(|y| (0..self.width).map(move |x| (x, y)));
+        let samples = texels.flat_map(|(x, y)| {
+            let [r, g, b, a] = self.fetch(x, y);
+            let by = if a > 0.0 { a } else { 1.0 };
+            [r / by, g / by, b / by, a]
+        });
+        Self {
+            channels: TexelChannels::Rgba,
+            color_space: ColorSpace::Linear,
+            data: TexelData::F32(samples.collect()),
+            ..*self
+        }
+    }
+
     /// Red, green, blue and alpha of the texel in column `x` and row `y`, linear.
     ///
     /// Columns and rows beyond the picture give its last ones.

@@ -23,9 +23,9 @@ pub struct Heights {
 
 /// Reads the heights of a picture: PNG, JPEG, HDR, TIFF, TGA, BMP, GIF (the first picture) or PNM.
 ///
-/// The height of a pixel depends on the kind of picture, as in POV-Ray 3.7 (measured): for pictures with a palette it is the
-/// index, times 256; for greys the value, 8 bits times 257; for colours of 8 bits red is the high and green the low byte; for
-/// deeper colours it is the brightness. Alpha is ignored.
+/// What a pixel is worth depends on its kind, as POV-Ray 3.7 has it (measured): of pictures with a palette the index, times
+/// 256; of greys the value, 8 bits times 257; of colours of 8 bits, and of floating-point numbers, red as the high and green as
+/// the low byte; of colours of 16 bits the brightness. Alpha doesn't count.
 pub fn decode_heights(bytes: &[u8], name: &str) -> Result<Heights, ImageError> {
     let reader = open_picture(bytes, name)?;
     let indexed = match reader.format() {
@@ -57,6 +57,7 @@ pub fn decode_heights(bytes: &[u8], name: &str) -> Result<Heights, ImageError> {
             p.pixels().map(|p| two_bytes(p.0[0], p.0[1])).collect(),
             false,
         ),
+        DynamicImage::ImageRgb32F(p) => (p.pixels().map(|p| float_bytes(p.0)).collect(), false),
         other => {
             let picture = other.into_rgb32f();
             let gray = |p: [f32; 3]| brightness(p.map(f64::from));
@@ -73,6 +74,12 @@ pub fn decode_heights(bytes: &[u8], name: &str) -> Result<Heights, ImageError> {
 
 fn two_bytes(high: u8, low: u8) -> u16 {
     u16::from_be_bytes([high, low])
+}
+
+/// The height of a colour of floating-point numbers: red is the high byte and green the low one, but neither is whole.
+fn float_bytes([r, g, _]: [f32; 3]) -> u16 {
+    // The cast saturates and takes NaN for 0.
+    (f64::from(r) * (255.0 * 256.0) + f64::from(g) * 255.0) as u16
 }
 
 /// The height of a colour of components from 0 to 1.

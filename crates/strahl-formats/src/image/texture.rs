@@ -111,7 +111,7 @@ fn texels(picture: DynamicImage) -> (TexelChannels, TexelData) {
 }
 
 /// The first bytes of an OpenEXR file.
-const EXR_MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
+pub(super) const EXR_MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
 
 /// Red, green, blue and, where there is one, alpha of the first part of an OpenEXR file; the texture is its data window.
 fn decode_exr(bytes: &[u8], name: &str) -> Result<TextureImage, ImageError> {

@@ -2,7 +2,6 @@ use crate::keywords::Word;
 use crate::parser::{PResult, Parser};
 use crate::token::Kind;
 use crate::value::Vector;
-use strahl_scene::WorkingSpace;
 use strahl_shade::{Color, srgb};
 
 impl Parser<'_> {
@@ -69,7 +68,7 @@ impl Parser<'_> {
             1 => value.promoted(count).components(),
             _ => value.components(),
         };
-        let color = self.decoded(value, encoded);
+        let color = self.in_working_space(value, encoded);
         self.color_parts(color)
     }
 
@@ -78,20 +77,18 @@ impl Parser<'_> {
         self.next()?;
         let value = self.nested_end(Self::expression)?;
         let [r, g, b, t, _] = value.promoted(4).components();
-        let color = self.decoded([r, g, b, 0.0, t], encoded);
+        let color = self.in_working_space([r, g, b, 0.0, t], encoded);
         self.color_parts(color)
     }
 
-    /// A colour in the numbers that the scene computes with; `encoded` ones are codes of sRGB.
-    fn decoded(&self, color: [f64; 5], encoded: bool) -> [f64; 5] {
-        let space = self.working_space();
-        if !encoded || space == WorkingSpace::Srgb {
-            return color;
+    /// A colour given by codes of sRGB if `encoded`, as the scene's numbers.
+    fn in_working_space(&self, [r, g, b, f, t]: [f64; 5], encoded: bool) -> [f64; 5] {
+        if !encoded {
+            return [r, g, b, f, t];
         }
-        let [r, g, b, filter, transmit] = color;
-        let linear = Color::new(srgb::decode(r), srgb::decode(g), srgb::decode(b));
-        let Color { r, g, b } = space.encode(linear);
-        [r, g, b, filter, transmit]
+        let linear = Color::new(r, g, b).map(srgb::decode);
+        let [r, g, b] = self.working_space().encode(linear).to_array();
+        [r, g, b, f, t]
     }
 
     /// `red 1`, `filter 0.5`, ... in any order.

@@ -1,7 +1,8 @@
 use crate::keywords::Word;
 use crate::parser::{PResult, Parser};
 use crate::token::Token;
-use strahl_scene::WorkingSpace;
+use std::sync::Arc;
+use strahl_scene::{Background, WorkingSpace};
 use strahl_shade::Color;
 
 /// `max_trace_level` of scenes that set none.
@@ -116,20 +117,7 @@ impl Parser<'_> {
     /// A number or `srgb` behind `assumed_gamma`.
     fn assumed_gamma(&mut self) -> PResult<()> {
         let place = self.place();
-        let space = if self.accept_word(Word::Srgb)? {
-            WorkingSpace::Srgb
-        } else {
-            match self.float()? {
-                1.0 => WorkingSpace::Linear,
-                gamma if gamma > 0.0 && gamma.is_finite() => WorkingSpace::Gamma(gamma),
-                gamma => {
-                    return Err(self.fail(
-                        place,
-                        format!("assumed_gamma must be positive, not {gamma}"),
-                    ));
-                }
-            }
-        };
+        let space = self.transfer_function("assumed_gamma")?;
         if space != WorkingSpace::Linear {
             self.warn_hint(
                 place,
@@ -139,6 +127,19 @@ impl Parser<'_> {
         }
         self.state.global.working_space = Some(space);
         Ok(())
+    }
+
+    /// A power or `srgb`, the value of `item`.
+    pub(super) fn transfer_function(&mut self, item: &str) -> PResult<WorkingSpace> {
+        let place = self.place();
+        if self.accept_word(Word::Srgb)? {
+            return Ok(WorkingSpace::Srgb);
+        }
+        match self.float()? {
+            1.0 => Ok(WorkingSpace::Linear),
+            gamma if gamma > 0.0 && gamma.is_finite() => Ok(WorkingSpace::Gamma(gamma)),
+            gamma => Err(self.fail(place, format!("{item} must be positive, not {gamma}"))),
+        }
     }
 
     /// A whole number from 1 to `most`.
@@ -153,25 +154,34 @@ impl Parser<'_> {
 
     /// Settles at the end of the scene the settings that depend on the language version.
     pub(super) fn settle(&mut self) {
+        let (working_space, old) = (self.working_space(), self.before_3_7());
+        if let Some(Background::Sky(sky)) = &mut self.scene.background {
+            Arc::make_mut(sky).tints_layers = !old;
+        }
         let global = &self.state.global;
         self.scene.ambient = Some(global.ambient.unwrap_or(Color::WHITE));
         let settings = &mut self.scene.settings;
         settings.max_depth = global.trace_level.unwrap_or(TRACE_LEVEL);
         settings.straight_counts = false;
-        settings.filter_by_color = self.version < 3.7 || !self.state.global.versioned;
-        self.scene.settings.working_space = self.working_space();
+        settings.filter_by_color = old;
+        settings.working_space = working_space;
     }
 
-    /// The numbers that colours are given in, as far as is known here. Scenes from before 3.7 without a setting use display values.
-    /// (Of several versions the last one counts.)
+    /// Whether the version so far is older than 3.7, which a scene without a version is.
+    pub(crate) fn before_3_7(&self) -> bool {
+        self.version < 3.7 || !self.state.global.versioned
+    }
+
+    /// The numbers that colours are given in, by what is said so far.
+    ///
+    /// Scenes from before 3.7 that say nothing mean the numbers of the screen. (Of several versions the last one decides.)
     pub(crate) fn working_space(&self) -> WorkingSpace {
-        let global = &self.state.global;
-        let old = self.version < 3.7 || !global.versioned;
-        global.working_space.unwrap_or(if old {
+        let otherwise = if self.before_3_7() {
             WorkingSpace::Srgb
         } else {
             WorkingSpace::Linear
-        })
+        };
+        self.state.global.working_space.unwrap_or(otherwise)
     }
 
     /// A number of `max_trace_level`.

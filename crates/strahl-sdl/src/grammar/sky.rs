@@ -24,6 +24,8 @@ impl Parser<'_> {
             transform: Transform::IDENTITY,
             emission: Color::WHITE,
             behind: Color::BLACK,
+            // The scene's last version decides.
+            tints_layers: true,
         };
         self.braces(|p| {
             let named = p.accept_thing(|thing| match thing {

@@ -1,34 +1,71 @@
 //! Pictures in textures: `image_map`, `image_pattern`, `bump_map` and `material_map`.
 
 use crate::keywords::Word;
-use crate::parser::{PResult, Parser, Place};
+use crate::parser::{PResult, Parser};
 use crate::token::{Kind, Token};
 use std::sync::Arc;
-use strahl_formats::image::{TextureUse, decode_heights, decode_texture};
+use strahl_formats::image::{
+    PictureCodes, TextureUse, decode_heights, decode_texture, picture_codes,
+};
 use strahl_function::Cost;
-use strahl_math::{DVec3, det};
+use strahl_math::DVec3;
+use strahl_scene::WorkingSpace;
+use strahl_shade::Color;
 use strahl_shade::image_map::{ImageMap, Interpolation, MapType};
 use strahl_shade::image_texture::{ColorSpace, TexelChannels, TexelData, TextureImage};
 
 /// The red, green, blue and alpha at a point.
 type PictureFunction = Box<dyn Fn(DVec3) -> [f64; 4]>;
 
-/// How the codes of a file become numbers.
+/// What pictures are read for, which decides what their codes mean where no `gamma` is given.
 #[derive(Clone, Copy, PartialEq)]
-enum Gamma {
-    /// As files of colours have them: by sRGB's function.
-    Srgb,
-    /// In proportion.
-    Linear,
-    /// By a power.
-    Power(f64),
+enum Purpose {
+    /// Colours: what the file says, else what is usual for its format and the scene's version.
+    Color,
+    /// Values in proportion to the codes.
+    Data,
+}
+
+/// How the codes of a file become numbers of the scene.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Recoding {
+    /// What the codes are.
+    from: WorkingSpace,
+    /// What the scene's numbers are.
+    to: WorkingSpace,
+    /// Whether the colours of the file are multiplied by their alpha.
+    premultiplied: bool,
+}
+
+impl Recoding {
+    /// The codes as they are.
+    const NONE: Self = Self {
+        from: WorkingSpace::Linear,
+        to: WorkingSpace::Linear,
+        premultiplied: false,
+    };
+
+    /// The numbers for codes read in proportion.
+    fn apply(self, picture: TextureImage) -> TextureImage {
+        let picture = if self.from == self.to {
+            picture
+        } else {
+            picture.recoded(|code| self.to.encode(self.from.decode(Color::gray(code))).r)
+        };
+        if self.premultiplied {
+            picture.straightened()
+        } else {
+            picture
+        }
+    }
 }
 
 /// A picture that has been decoded, and how it was asked for: loops and macros ask again and again.
 #[derive(Debug)]
 pub(in crate::grammar) struct KnownPicture {
     name: String,
-    linear: bool,
+    codes: PictureCodes,
+    recoding: Recoding,
     image: Arc<TextureImage>,
 }
 
@@ -38,12 +75,12 @@ const MAX_FUNCTION_TEXELS: u64 = 1 << 24;
 impl Parser<'_> {
     /// The braces of `image_map`; `None` for a picture that is not supported.
     pub(super) fn color_bitmap(&mut self) -> PResult<Option<Arc<ImageMap>>> {
-        self.bitmap(|p| p.picture_file(Gamma::Srgb), |_, _, _| Ok(false))
+        self.bitmap(|p| p.picture_file(Purpose::Color), |_, _, _| Ok(false))
     }
 
     /// The braces of `image_pattern`.
     pub(super) fn pattern_bitmap(&mut self) -> PResult<Arc<ImageMap>> {
-        let image = self.bitmap(|p| p.picture_file(Gamma::Linear), |_, _, _| Ok(false))?;
+        let image = self.bitmap(|p| p.picture_file(Purpose::Data), |_, _, _| Ok(false))?;
         Ok(image.unwrap_or_else(|| Arc::new(ImageMap::new(blank()))))
     }
 
@@ -51,7 +88,7 @@ impl Parser<'_> {
     pub(super) fn bump_bitmap(&mut self) -> PResult<(Option<Arc<ImageMap>>, Option<f64>)> {
         let mut size = None;
         let image = self.bitmap(
-            |p| p.picture_file(Gamma::Linear),
+            |p| p.picture_file(Purpose::Data),
             |p, _, token| {
                 if !token.is(Word::BumpSize) {
                     return Ok(false);
@@ -150,33 +187,21 @@ impl Parser<'_> {
     }
 
     /// `[type] "file" [gamma g] [premultiplied on]`
-    fn picture_file(&mut self, mut gamma: Gamma) -> PResult<Option<Arc<TextureImage>>> {
+    fn picture_file(&mut self, purpose: Purpose) -> PResult<Option<Arc<TextureImage>>> {
         let kind = self.picture_type()?;
         let name = self.file_name()?;
         let place = self.place();
+        let (mut gamma, mut premultiplied) = (None, false);
         loop {
             let token = self.peek()?;
             match token.word() {
                 Some(Word::Gamma) => {
                     self.take(token)?;
-                    gamma = if self.accept_word(Word::Srgb)? {
-                        Gamma::Srgb
-                    } else {
-                        match self.float()? {
-                            1.0 => Gamma::Linear,
-                            power => Gamma::Power(power),
-                        }
-                    };
+                    gamma = Some(self.transfer_function("gamma")?);
                 }
                 Some(Word::Premultiplied) => {
                     self.take(token)?;
-                    if self.flag()? {
-                        self.warn_hint(
-                            place,
-                            "`premultiplied` is not supported yet and is left out",
-                            "half transparent texels will be too dark",
-                        );
-                    }
+                    premultiplied = self.flag()?;
                 }
                 _ => break,
             }
@@ -189,37 +214,82 @@ impl Parser<'_> {
             );
             return Ok(None);
         }
-        self.picture(&name, gamma, place).map(Some)
-    }
-
-    fn picture(&mut self, name: &str, gamma: Gamma, place: Place) -> PResult<Arc<TextureImage>> {
-        let linear = gamma != Gamma::Srgb;
-        let known = self.state.pictures.iter();
-        let mut known = known.filter(|k| k.name == name && k.linear == linear);
-        let image = match known.next() {
-            Some(known) => Arc::clone(&known.image),
+        let mut known = self.state.pictures.iter();
+        let known = known.find(|k| k.name == name).map(|k| k.codes);
+        let mut file = None;
+        let codes = match known {
+            Some(codes) => codes,
             None => {
-                let file = self.read_file(name, place)?;
-                let texture_use = if linear {
-                    TextureUse::Data
-                } else {
-                    TextureUse::Color
-                };
-                let image = match decode_texture(&file.bytes, name, texture_use) {
-                    Ok(image) => Arc::new(image),
-                    Err(error) => return Err(self.fail(place, error.to_string())),
-                };
-                self.state.pictures.push(KnownPicture {
-                    name: name.to_owned(),
-                    linear,
-                    image: Arc::clone(&image),
-                });
-                image
+                let file = file.insert(self.read_file(&name, place)?);
+                picture_codes(&file.bytes, &name)
             }
         };
-        match gamma {
-            Gamma::Power(power) => Ok(Arc::new(raised(&image, power))),
-            _ => Ok(image),
+        let recoding = Recoding {
+            premultiplied,
+            ..self.recoding(purpose, gamma, codes)
+        };
+        let mut known = self.state.pictures.iter();
+        if let Some(known) = known.find(|k| k.name == name && k.recoding == recoding) {
+            return Ok(Some(Arc::clone(&known.image)));
+        }
+        let from_srgb = Recoding {
+            from: WorkingSpace::Srgb,
+            ..Recoding::NONE
+        };
+        // The decoder itself knows sRGB, but for codes only.
+        let usual = recoding == from_srgb && codes != PictureCodes::Linear;
+        // Photographs stay as small as they are in the file.
+        let texture_use = if usual {
+            TextureUse::Color
+        } else {
+            TextureUse::Data
+        };
+        let file = match file {
+            Some(file) => file,
+            None => self.read_file(&name, place)?,
+        };
+        let image = match decode_texture(&file.bytes, &name, texture_use) {
+            Ok(image) if usual => Arc::new(image),
+            Ok(image) => Arc::new(recoding.apply(image)),
+            Err(error) => return Err(self.fail(place, error.to_string())),
+        };
+        self.state.pictures.push(KnownPicture {
+            name,
+            codes,
+            recoding,
+            image: Arc::clone(&image),
+        });
+        Ok(Some(image))
+    }
+
+    /// How the codes of a picture become numbers, by what is said so far: the picture's `gamma`, its file, the scene's version and
+    /// `assumed_gamma` (measured with all formats under versions 3.0 to 3.7).
+    fn recoding(
+        &self,
+        purpose: Purpose,
+        gamma: Option<WorkingSpace>,
+        codes: PictureCodes,
+    ) -> Recoding {
+        let (old, assumed) = (self.before_3_7(), self.state.global.working_space);
+        // Data and scenes older than `assumed_gamma` take the codes as numbers, and a `gamma` as a power only.
+        if purpose == Purpose::Data || old && assumed.is_none() {
+            return Recoding {
+                from: gamma.unwrap_or(WorkingSpace::Linear),
+                ..Recoding::NONE
+            };
+        }
+        let to = assumed.unwrap_or(WorkingSpace::Linear);
+        let said = match codes {
+            PictureCodes::Linear => Some(WorkingSpace::Linear),
+            PictureCodes::Srgb => Some(WorkingSpace::Srgb),
+            PictureCodes::Gamma(gamma) => Some(WorkingSpace::Gamma(gamma)),
+            PictureCodes::UsuallySrgb => (!old).then_some(WorkingSpace::Srgb),
+            PictureCodes::Unsaid => None,
+        };
+        Recoding {
+            from: gamma.or(said).unwrap_or(to),
+            to,
+            premultiplied: false,
         }
     }
 
@@ -406,22 +476,4 @@ fn blank() -> Arc<TextureImage> {
         .as_ref()
         .map(Arc::clone)
         .expect("one sample is a picture of one texel")
-}
-
-/// A picture with its colours raised to a power.
-fn raised(image: &TextureImage, power: f64) -> TextureImage {
-    let rows = 0..image.height();
-    let texels = rows.flat_map(|y| (0..image.width()).map(move |x| image.fetch(x, y)));
-    let samples = texels.flat_map(|[r, g, b, a]| {
-        let raise = |x: f32| det::pow(f64::from(x), power) as f32;
-        [raise(r), raise(g), raise(b), a]
-    });
-    TextureImage::try_new(
-        image.width(),
-        image.height(),
-        TexelChannels::Rgba,
-        ColorSpace::Linear,
-        TexelData::F32(samples.collect()),
-    )
-    .expect("four samples for each texel")
 }
