@@ -592,6 +592,21 @@ fn material_maps_choose_by_the_index_in_a_palette() {
     assert_eq!(seen(0.75), Color::new(0.0, 1.0, 0.0));
 }
 
+/// POV-Ray 3.7 shows the second of `tiles` where a checker has its first colour.
+#[test]
+fn tiles_are_the_other_way_round_than_a_checker() {
+    let text = "sphere { 0, 1 texture { tiles texture { pigment { rgb x } } tile2 texture { pigment { rgb y } } } }";
+    let found = textures(text);
+    let Texture::Blocks(_, tiles) = &*found[0] else {
+        panic!("{found:?}");
+    };
+    let colors: Vec<_> = tiles
+        .iter()
+        .map(|t| color_at(t, DVec3::ZERO).rgb.to_array())
+        .collect();
+    assert_eq!(colors, [[0.0, 1.0, 0.0], [1.0, 0.0, 0.0]]);
+}
+
 /// A picture of one grey texel of code 128 in three formats: BMP, whose codes are sRGB usually, PPM, which doesn't say, and HDR,
 /// which is linear.
 fn one_texel() -> MemoryHost {
@@ -688,5 +703,54 @@ fn srgb_colours_are_numbers_of_the_scene() {
     ] {
         let got = red_of("srgb 0.5", header);
         assert!((got - expected).abs() < 1e-9, "{header}: {got}");
+    }
+}
+
+/// As POV-Ray 3.7 has it: a pigment of one colour remembers where it has been put, and what takes its place is there, too.
+#[test]
+fn a_pigment_written_over_a_moved_colour_is_where_the_colour_was() {
+    let at = |text: &str, x: f64| {
+        let found = textures(text);
+        color_at(&found[0], DVec3::new(x, 0.5, 0.5)).rgb.r
+    };
+    let pattern = "pigment { gradient x color_map { [0.5 rgb 0] [0.5 rgb 1] } }";
+    // The texture is in the object's own space; its map is taken into the world with it.
+    let over = format!(
+        "#declare W = box {{ -9, 9 pigment {{ rgb y }} scale 2 }} object {{ W {pattern} }}"
+    );
+    let between = format!(
+        "#declare W = box {{ -9, 9 scale 4 pigment {{ rgb y }} scale 2 }} object {{ W {pattern} }}"
+    );
+    let fresh = format!("#declare W = box {{ -9, 9 scale 2 }} object {{ W {pattern} }}");
+    assert_eq!([0.4, 0.6].map(|x| at(&over, x)), [0.0, 1.0]);
+    assert_eq!([0.1, 0.15, 0.28].map(|x| at(&between, x)), [0.0, 1.0, 0.0]);
+    assert_eq!([0.2, 0.3].map(|x| at(&fresh, x)), [0.0, 1.0]);
+}
+
+/// As POV-Ray 3.7 has it: a pattern alone keeps the map that is there, and the colours of blocks are a map, too.
+#[test]
+fn a_pattern_over_a_pigment_keeps_its_map() {
+    let declared = "#declare P = pigment { gradient x color_map { [0 rgb x] [1 rgb z] } }
+                    #declare C = pigment { checker rgb x rgb z }
+                    #declare D = pigment { gradient x }
+                    #declare A = pigment { agate }\n";
+    for (changed, same) in [
+        ("P bozo", "bozo color_map { [0 rgb x] [1 rgb z] }"),
+        ("P wood", "wood color_map { [0 rgb x] [1 rgb z] }"),
+        ("C bozo", "bozo color_map { [0 rgb x] [1 rgb z] }"),
+        ("D bozo", "bozo"),
+        ("A scale 2", "agate scale 2"),
+        ("P checker", "checker"),
+    ] {
+        let found = textures(&format!(
+            "{declared} sphere {{ 0, 1 pigment {{ {changed} }} }} sphere {{ 0, 1 pigment {{ {same} }} }}"
+        ));
+        for p in [DVec3::new(0.3, 0.7, 1.1), DVec3::new(-2.4, 0.2, 0.9)] {
+            let [a, b] = [0, 1].map(|i| color_at(&found[i], p).rgb.to_array());
+            assert!(
+                a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-12),
+                "{changed}: {a:?} {b:?}"
+            );
+        }
     }
 }

@@ -48,6 +48,9 @@ pub struct Texture {
     pub(super) written: bool,
     /// Whether `uv_mapping` has been said for all that is written after it.
     pub(super) uv_mapped: bool,
+    /// Where a surface that is the same everywhere has been put since it was written, which it can't tell itself: a pattern that is
+    /// written in place of its colour is put there, too.
+    pub(super) placed: Option<Box<Transform>>,
 }
 
 /// Moves a texture. With `uv`, also what lies in surface coordinates; objects that are moved leave that alone.
@@ -130,6 +133,12 @@ impl Texture {
             interior: self.interior.clone(),
             written: self.written,
             uv_mapped: self.uv_mapped,
+            placed: if by.is_identity() || !self.written || !is_uniform(&self.surface) {
+                self.placed.clone()
+            } else {
+                let before = self.placed.as_deref();
+                Some(Box::new(before.map_or(*by, |before| before.then(by))))
+            },
         }
     }
 
@@ -176,7 +185,8 @@ impl Parser<'_> {
     pub(super) fn texture_item(&mut self, texture: &mut Texture, token: Token) -> PResult<bool> {
         match token.word() {
             Some(Word::Pigment | Word::Normal | Word::Finish) => {
-                self.plain_item(Arc::make_mut(&mut texture.surface), token)?;
+                let placed = texture.placed.as_deref();
+                self.plain_item(Arc::make_mut(&mut texture.surface), placed, token)?;
                 texture.written = true;
             }
             Some(Word::Texture) => {
@@ -219,7 +229,14 @@ impl Parser<'_> {
     }
 
     /// `pigment`, `normal` or `finish` with its block, changing the uppermost layer.
-    fn plain_item(&mut self, surface: &mut Surface, token: Token) -> PResult<()> {
+    ///
+    /// `placed` is where a pigment of one colour has been put since it was written.
+    fn plain_item(
+        &mut self,
+        surface: &mut Surface,
+        placed: Option<&Transform>,
+        token: Token,
+    ) -> PResult<()> {
         self.take(token)?;
         let place = self.place();
         let mut unused;
@@ -238,7 +255,7 @@ impl Parser<'_> {
         match token.word() {
             Some(Word::Pigment) => {
                 let base = std::mem::take(&mut top.pigment);
-                top.pigment = self.pigment_block_on(base)?;
+                top.pigment = self.pigment_block_placed(base, placed)?;
             }
             Some(Word::Normal) => {
                 let base = top.normal.take();

@@ -29,9 +29,28 @@ enum Chooser {
 enum Choice {
     /// The default map of the pattern with this word, or default colours.
     Default(Option<Word>),
+    /// The default map of the pattern of a pigment that is changed.
+    Usual(BlendMap<ColorFt>),
     Colors(BlendMap<ColorFt>),
     Pigments(BlendMap<Pigment>),
     Blocks(Vec<Pigment>),
+}
+
+impl Choice {
+    /// What a pattern with this word chooses from if only the pattern is written: the map that is there already, as which colours of
+    /// blocks count too, at 0, 1, 2 and so on.
+    fn of_pattern(self, word: Option<Word>) -> Self {
+        match self {
+            Self::Default(_) | Self::Usual(_) => Self::Default(word),
+            Self::Blocks(list) => {
+                let numbered = list.into_iter().enumerate();
+                Self::Pigments(BlendMap::new(
+                    numbered.map(|(i, pigment)| (i as f64, pigment)).collect(),
+                ))
+            }
+            map => map,
+        }
+    }
 }
 
 /// A pigment while it is being read: its parts may come in any order.
@@ -67,6 +86,9 @@ impl From<Pigment> for Draft {
                 Choice::Default(None),
                 Modifiers::default(),
             ),
+            Pigment::ColorMap(f, map) if is_default_map(&f.pattern, &map) => {
+                field(f, Choice::Usual(map))
+            }
             Pigment::ColorMap(f, map) => field(f, Choice::Colors(map)),
             Pigment::PigmentMap(f, map) => field(f, Choice::Pigments(map)),
             Pigment::Blocks(f, list) => field(f, Choice::Blocks(list)),
@@ -107,7 +129,7 @@ impl Draft {
             Chooser::Pattern(pattern) => {
                 let field = Box::new(PatternField { pattern, modifiers });
                 match choice {
-                    Choice::Colors(map) => Pigment::ColorMap(field, map),
+                    Choice::Colors(map) | Choice::Usual(map) => Pigment::ColorMap(field, map),
                     Choice::Pigments(map) => Pigment::PigmentMap(field, map),
                     Choice::Blocks(list) => of_blocks(field, list),
                     Choice::Default(word) => match default_blocks(&field.pattern) {
@@ -215,6 +237,20 @@ fn default_map(pattern: &Pattern, word: Option<Word>) -> BlendMap<ColorFt> {
     )
 }
 
+/// Whether a map is one that its pattern has unless another is written.
+fn is_default_map(pattern: &Pattern, map: &BlendMap<ColorFt>) -> bool {
+    let words = [
+        Word::Agate,
+        Word::Bozo,
+        Word::Mandel,
+        Word::Marble,
+        Word::Radial,
+        Word::Wood,
+    ];
+    let mut words = words.into_iter().map(Some).chain([None]);
+    words.any(|word| *map == default_map(pattern, word))
+}
+
 /// Moves a pigment. With `uv`, also what lies in surface coordinates; objects that are moved leave that alone.
 pub(super) fn transform(pigment: &mut Pigment, by: &Transform, uv: bool) {
     match pigment {
@@ -242,11 +278,30 @@ impl Parser<'_> {
         self.braces(|p| p.pigment_items(Kind::RightBrace, base))
     }
 
+    /// The same on a base of one colour that has been moved since it was written: a pattern that takes its place is there, too.
+    pub(super) fn pigment_block_placed(
+        &mut self,
+        base: Pigment,
+        placed: Option<&Transform>,
+    ) -> PResult<Pigment> {
+        self.braces(|p| p.placed_pigment_items(Kind::RightBrace, base, placed))
+    }
+
     /// What stands in a pigment's braces, or in the brackets of an entry of `pigment_map`.
     pub(super) fn pigment_items(&mut self, closing: Kind, base: Pigment) -> PResult<Pigment> {
-        let base = match self.named_pigment()? {
-            Some(named) => named,
-            None => base,
+        self.placed_pigment_items(closing, base, None)
+    }
+
+    /// The same on a base that has been moved since it was written, if it is one colour; others know it themselves.
+    fn placed_pigment_items(
+        &mut self,
+        closing: Kind,
+        base: Pigment,
+        placed: Option<&Transform>,
+    ) -> PResult<Pigment> {
+        let (base, placed) = match self.named_pigment()? {
+            Some(named) => (named, None),
+            None => (base, placed),
         };
         // Most pigments are one name or one colour.
         let token = self.peek()?;
@@ -263,7 +318,11 @@ impl Parser<'_> {
             }
             other => other,
         };
+        let is_solid = matches!(base, Pigment::Solid(_));
         let mut draft = Draft::from(base);
+        if let Some(placed) = placed.filter(|_| is_solid) {
+            modifiers::transform(&mut draft.modifiers.warps, placed);
+        }
         self.items_until(closing, "`pigment`", |p, token| {
             p.pigment_item(&mut draft, token)
         })?;
@@ -365,7 +424,9 @@ impl Parser<'_> {
         if let Some(pattern) = self.pattern(token)? {
             draft.choice = match self.block_pigments(&pattern)? {
                 Some(list) => Choice::Blocks(list),
-                None => Choice::Default(token.word()),
+                None if pattern.block_count().is_some() => Choice::Default(token.word()),
+                None => std::mem::replace(&mut draft.choice, Choice::Default(None))
+                    .of_pattern(token.word()),
             };
             if let Chooser::Solid(_) = draft.chooser {
                 draft.modifiers.noise = self.default_noise();

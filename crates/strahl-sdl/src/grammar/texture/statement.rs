@@ -157,7 +157,7 @@ impl Parser<'_> {
             let token = self.peek()?;
             match token.word() {
                 Some(Word::Pigment | Word::Normal | Word::Finish) => {
-                    self.plain_item(&mut single, token)?;
+                    self.plain_item(&mut single, None, token)?;
                 }
                 _ if token.kind == closing => {
                     self.weigh(weight::of_texture(&single))?;
@@ -183,7 +183,7 @@ impl Parser<'_> {
         }
         match token.word() {
             Some(Word::Pigment | Word::Normal | Word::Finish) => {
-                return self.plain_item(&mut draft.single, token);
+                return self.plain_item(&mut draft.single, None, token);
             }
             Some(Word::TextureMap) => {
                 self.take(token)?;
@@ -294,7 +294,8 @@ impl Parser<'_> {
         Ok(())
     }
 
-    /// `texture {...} tile2 texture {...}` behind `tiles`: an old word for a checker; braces around it may stand.
+    /// `texture {...} tile2 texture {...}` behind `tiles`: an old word for a checker, whose second colour is the first tile (measured);
+    /// braces around it may stand.
     fn tiles(&mut self, draft: &mut Draft) -> PResult<()> {
         if self.peek()?.kind == Kind::LeftBrace {
             return self.braces(|p| p.two_tiles(draft));
@@ -318,6 +319,7 @@ impl Parser<'_> {
             let texture = self.nested(Self::surface_block)?;
             list.push(Surface::clone(&texture));
         }
+        list.reverse();
         draft.chooser = Chooser::Pattern(Pattern::Checker);
         draft.choice = Choice::Blocks(list);
         Ok(())
