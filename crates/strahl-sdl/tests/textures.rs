@@ -93,6 +93,10 @@ const PIGMENTS: &[&str] = &[
     "gradient y color_map { [0.2 rgb 0] [0.2 rgb x] [0.2 rgb y] [0.7 rgb 1] }",
     "gradient z frequency 3 phase 0.2 sine_wave",
     "gradient z triangle_wave",
+    "gradient z frequency 0 phase 0.3",
+    "marble frequency 0 sine_wave",
+    "quilted phase 0.3",
+    "quilted frequency 2 phase 0.3",
     "gradient z scallop_wave",
     "gradient z cubic_wave",
     "gradient z poly_wave 2.5",
@@ -134,6 +138,14 @@ const PIGMENTS: &[&str] = &[
     "Declared",
     "Declared color_map { [0 rgb y] [1 rgb z] }",
     "Declared scale 0.3",
+    "Declared gradient x",
+    "Mapped gradient x",
+    "Mapped agate",
+    "Mapped checker",
+    "Mixed onion",
+    "Plain radial",
+    "image_map { function 5, 4 { 3 * x - 1.2 } }",
+    "image_map { function 5, 4 { pigment { gradient x color_map { [0 rgb 0.5] [1 rgb <1.5, -0.3, 3>] } } } }",
     "Colors[1]",
     "Pigments[0] translate x",
     "checker rgb x rgb y warp { repeat x offset <0, 0.3, 0> flip y } scale 0.4",
@@ -156,6 +168,9 @@ const PIGMENTS: &[&str] = &[
 const DECLARED: &str = "
 #declare Map = color_map { [0.1 rgb x] [0.4 color rgb <0, 0.5, 0>] [0.9 rgbt <0, 0, 1, 0.5>] }
 #declare Declared = pigment { marble turbulence 0.3 scale 0.5 }
+#declare Mapped = pigment { bozo color_map { [0 rgb x] [1 rgb y] } scale 0.3 }
+#declare Mixed = pigment { bozo pigment_map { [0 rgb x] [1 agate] } }
+#declare Plain = pigment { wood }
 #declare Colors = array[2] { rgb x, rgb <0.1, 0.2, 0.3> }
 #declare Pigments = array[1] { Declared }
 ";

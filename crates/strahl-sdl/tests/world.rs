@@ -103,6 +103,21 @@ fn wrong_numbers_are_errors() {
 }
 
 #[test]
+fn the_last_of_spotlight_cylinder_and_shadowless_counts() {
+    let light = |items: &str| {
+        let (scene, messages) = scene(&format!("light_source {{ y, rgb 1 {items} }}"));
+        assert_eq!(messages, "");
+        scene.lights[0].light.clone()
+    };
+    let late = light("spotlight point_at 0 radius 5 shadowless");
+    assert!(matches!(late.kind, LightKind::Point { .. }) && !late.casts_shadows);
+    let early = light("shadowless cylinder point_at 0");
+    assert!(matches!(early.kind, LightKind::Beam { .. }) && early.casts_shadows);
+    let parallel = light("parallel point_at 0 shadowless");
+    assert!(matches!(parallel.kind, LightKind::Parallel { .. }) && !parallel.casts_shadows);
+}
+
+#[test]
 fn a_light_that_points_at_itself_shines_everywhere() {
     let (scene, messages) = scene("light_source { y, rgb 1 spotlight point_at y }");
     assert!(matches!(

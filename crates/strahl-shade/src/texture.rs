@@ -415,7 +415,12 @@ impl PlainTexture {
         let color = self.pigment.color_at(point);
         let normal = self.tilted(point, n, space);
         let cos_view = -normal.dot(point.direction);
-        let reflectance = self.finish.reflection.reflectance(cos_view, color.rgb, eta);
+        // What is below an opaque layer does not reflect; otherwise layers above do not weaken reflections (measured).
+        let reflectance = if stack.above.is_black() {
+            Color::BLACK
+        } else {
+            self.finish.reflection.reflectance(cos_view, color.rgb, eta)
+        };
         out.layers.push(LayerPoint {
             color,
             normal,

@@ -1,7 +1,20 @@
 /// Differences that are meant or belong to POV-Ray: words that the smallest scene has all of, and why.
 ///
 /// docs/src/differ.md has the same list with more words.
-pub(super) const KNOWN: [(&[&str], &str); 0] = [];
+pub(super) const KNOWN: [(&[&str], &str); 3] = [
+    (
+        &["sky_sphere", "onion"],
+        "an onion's shells jump exactly on the sky's unit sphere",
+    ),
+    (
+        &["sky_sphere", "boxed"],
+        "the values of boxed end exactly on the sky's unit sphere",
+    ),
+    (
+        &["sky_sphere", "spherical"],
+        "the values of spherical end exactly on the sky's unit sphere",
+    ),
+];
 
 /// Why a smallest scene differs, if that is known.
 pub(super) fn reason(text: &str) -> Option<&'static str> {

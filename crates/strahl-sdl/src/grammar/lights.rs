@@ -241,12 +241,16 @@ impl Parser<'_> {
         match word {
             Word::Spotlight | Word::Cylinder | Word::Parallel | Word::Shadowless => {
                 self.take(token)?;
-                match word {
-                    Word::Spotlight => draft.form = Form::Spot,
-                    Word::Cylinder => draft.form = Form::Cylinder,
-                    Word::Parallel => draft.parallel = true,
-                    _ => draft.shadowless = true,
-                }
+                // Of spotlight, cylinder and shadowless the last word counts (measured).
+                (draft.form, draft.shadowless) = match word {
+                    Word::Spotlight => (Form::Spot, false),
+                    Word::Cylinder => (Form::Cylinder, false),
+                    Word::Shadowless => (Form::Point, true),
+                    _ => {
+                        draft.parallel = true;
+                        (draft.form, draft.shadowless)
+                    }
+                };
             }
             Word::PointAt => {
                 self.take(token)?;

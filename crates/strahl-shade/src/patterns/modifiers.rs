@@ -80,8 +80,18 @@ impl Modifiers {
     ///
     /// The period is 1.00001, so that a value of exactly 1 doesn't become 0, but a negative remainder is raised by 1:
     /// POV-Ray does so, and values of far-off places therefore differ by 1e-5 from those of a period of 1.
+    ///
+    /// A frequency of 0 leaves the value as it is, with a period of exactly 1 and without the phase (measured).
     pub fn shape(&self, value: f64, wave: Wave) -> f64 {
         const PERIOD: f64 = 1.00001;
+        if self.frequency == 0.0 {
+            let is_whole = (0.0..=1.0).contains(&value);
+            return wave.apply(if is_whole {
+                value
+            } else {
+                value - value.floor()
+            });
+        }
         let x = (value * self.frequency + self.phase) % PERIOD;
         let x = if x < 0.0 { x + 1.0 } else { x };
         wave.apply(x)

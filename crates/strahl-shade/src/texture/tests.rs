@@ -174,6 +174,30 @@ fn shades_as_measured() {
 }
 
 #[test]
+fn what_is_below_an_opaque_layer_does_not_reflect() {
+    let mirror = PovFinish {
+        reflection: PovReflection {
+            min: Color::WHITE,
+            max: Color::WHITE,
+            ..PovReflection::default()
+        },
+        ..dull()
+    };
+    let below: Texture = plain(Color::WHITE.into(), mirror).into();
+    let above = |transmit| -> Texture {
+        let color = ColorFt {
+            rgb: Color::BLACK,
+            filter: 0.0,
+            transmit,
+        };
+        plain(color, dull()).into()
+    };
+    let seen = |transmit| shade(&Texture::Layered(vec![below.clone(), above(transmit)]));
+    assert_eq!(seen(0.0), Color::BLACK);
+    assert!(seen(0.5).r > 0.0);
+}
+
+#[test]
 fn shares_sum_to_one() {
     let point = TexturePoint::in_space(DVec3::new(0.3, 0.2, 0.0));
     let mut paint = TexturePaint::default();

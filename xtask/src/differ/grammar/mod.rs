@@ -50,7 +50,7 @@ impl Writer {
         if self.dice.chance(8) {
             let what = match self.dice.chance(50) {
                 true => self.finish(),
-                false => self.texture(2),
+                false => self.pigment(1),
             };
             parts.push(optional(list!["#default {", what, "}"]));
         }

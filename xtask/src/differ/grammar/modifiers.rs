@@ -96,7 +96,10 @@ impl Writer {
         };
         parts.extend(self.look(depth));
         parts.extend(self.transforms());
-        if self.dice.chance(4) {
+        let textured = parts
+            .iter()
+            .any(|p| matches!(&p.node, Node::Group { head: Some(h), .. } if h == "texture"));
+        if textured && self.dice.chance(4) {
             let texture = self.texture(1);
             parts.push(optional(list!["interior_texture", inner(texture)]));
         }

@@ -90,11 +90,11 @@ impl Writer {
             parts.push(optional(list!["exponent", exponent]));
         }
         if self.dice.chance(30) {
-            let (kind, factor) = (self.dice.below(7) as f64, self.number(0.2, 2.0));
+            let (kind, factor) = (self.dice.below(6) as f64, self.number(0.2, 2.0));
             parts.push(optional(list!["interior", kind, ",", factor]));
         }
         if self.dice.chance(30) {
-            let (kind, factor) = (self.dice.below(9) as f64, self.number(0.2, 2.0));
+            let (kind, factor) = (self.dice.below(7) as f64, self.number(0.2, 2.0));
             parts.push(optional(list!["exterior", kind, ",", factor]));
         }
         run(Sort::Other, parts)

@@ -86,7 +86,7 @@ impl Writer {
             let list = vec![needed(list!["2,", a, ",", b])];
             parts.push(needed(block(Sort::Other, "texture_list", list)));
             parts.push(needed(words(
-                "face_indices { 3, <0,1,2>, 0, 1, 0, <1,2,3>, 1, <2,3,4>, 0 }",
+                "face_indices { 3, <0,1,2>, 0, <1,2,3>, 1, <2,3,4>, 0 }",
             )));
         } else {
             parts.push(needed(words(

@@ -458,9 +458,12 @@ fn share(index: u32, count: u32) -> f64 {
     }
 }
 
-/// A value as a picture of 16 bits holds it, which pictures made by functions are (measured).
+/// A value as a picture of 16 bits holds it, which pictures made by functions are: values beyond 0 to 1 lose their higher bits
+/// (measured).
 fn in_16_bits(x: f64) -> f32 {
-    ((x.clamp(0.0, 1.0) * 65_535.0).floor() / 65_535.0) as f32
+    // The cast drops the fraction and saturates.
+    let code = ((x * 65_535.0) as i64).rem_euclid(65_536);
+    (code as f64 / 65_535.0) as f32
 }
 
 /// What stands for a picture that is not supported: one grey texel.

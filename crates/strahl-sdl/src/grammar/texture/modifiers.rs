@@ -5,7 +5,7 @@ use crate::parser::{PResult, Parser};
 use crate::token::{Kind, Token};
 use strahl_math::noise::{NoiseGenerator, Turbulence};
 use strahl_math::{DVec3, Transform};
-use strahl_shade::patterns::{BlackHole, Mapping, Modifiers, Warp, Wave};
+use strahl_shade::patterns::{BlackHole, Mapping, Modifiers, Pattern, Warp, Wave};
 
 /// The transformation as the last step of a pattern's warps.
 pub(super) fn transform(warps: &mut Vec<Warp>, transform: &Transform) {
@@ -14,6 +14,18 @@ pub(super) fn transform(warps: &mut Vec<Warp>, transform: &Transform) {
         *last = last.then(transform);
     } else {
         warps.push(Warp::Transform(*transform));
+    }
+}
+
+/// What a pattern's word itself says: the values of `quilted` are not repeated, unless a frequency follows; the triangle
+/// waves of marble, wood and spirals stay when another pattern takes their place (measured).
+pub(super) fn begin(modifiers: &mut Modifiers, pattern: &Pattern) {
+    if let Pattern::Quilted { .. } = pattern {
+        modifiers.frequency = 0.0;
+    }
+    let wave = pattern.default_wave();
+    if wave != Wave::Ramp {
+        modifiers.wave = Some(wave);
     }
 }
 

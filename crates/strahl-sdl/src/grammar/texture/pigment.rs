@@ -431,6 +431,7 @@ impl Parser<'_> {
             if let Chooser::Solid(_) = draft.chooser {
                 draft.modifiers.noise = self.default_noise();
             }
+            modifiers::begin(&mut draft.modifiers, &pattern);
             draft.chooser = Chooser::Pattern(pattern);
             return Ok(());
         }

@@ -1,7 +1,7 @@
 //! `texture { ... }` and `material { ... }`
 
 use super::maps::{blends_blocks, numbered};
-use super::{Texture, layered, top_of, transform, weight};
+use super::{Texture, layered, modifiers, top_of, transform, weight};
 use crate::grammar::Thing;
 use crate::keywords::Word;
 use crate::parser::{PResult, Parser};
@@ -235,6 +235,7 @@ impl Parser<'_> {
             if let Chooser::Single = draft.chooser {
                 draft.modifiers.noise = self.default_noise();
             }
+            modifiers::begin(&mut draft.modifiers, &pattern);
             draft.chooser = Chooser::Pattern(pattern);
             return Ok(());
         }
