@@ -100,7 +100,7 @@ impl Writer {
             parts.push(optional(list!["noise_generator", kind]));
         }
         if self.dice.chance(5) {
-            let count = self.dice.between(1, 12) as f64;
+            let count = self.dice.between(1, 10) as f64;
             parts.push(optional(list!["number_of_waves", count]));
         }
         block(Sort::Other, "global_settings", parts)

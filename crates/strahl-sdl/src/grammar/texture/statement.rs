@@ -178,7 +178,7 @@ impl Parser<'_> {
     fn texture_part(&mut self, draft: &mut Draft, token: Token) -> PResult<()> {
         if let Some(by) = self.transformation(token)? {
             transform(&mut draft.single, &by, true);
-            super::modifiers::transform(&mut draft.modifiers.warps, &by);
+            modifiers::transform(&mut draft.modifiers.warps, &by);
             return Ok(());
         }
         match token.word() {
