@@ -11,7 +11,10 @@ mod convert;
 mod differ;
 mod gallery;
 mod lab;
+mod looks;
 mod peers;
+#[path = "../../crates/strahl-sdl/tests/common/plates.rs"]
+mod plates;
 
 use anyhow::{Result, bail};
 use std::path::Path;
@@ -42,6 +45,8 @@ const USAGE: &str = "usage: cargo xtask COMMAND
   generate stadium OUTPUT.nff     scenes of any size, one that grids like, and one that they don't
   growth OUTPUT.csv [--size WxH]  the cost of a ray for every accelerator, over scenes that grow
   plot-growth TABLE.csv FOLDER    the same as double logarithmic plots
+  looks [--only PART] [--out DIR] [--cell 48x36] [--program STRAHL] [--library DIR] [--table FILE] [--means FILE]
+                                  what the include library declares, by both programs; --library tries other includes
   nff2pov SCENE OUTPUT.pov        the scene as POV-Ray takes it, doing the same work
   nff2dat SCENE OUTPUT.dat        the scene as Tachyon takes it; it does not refract";
 
@@ -64,6 +69,7 @@ fn main() -> Result<()> {
         ["generate", what, output] => Ok(std::fs::write(output, lab::generate(what, None)?)?),
         ["growth", output] => lab::measure(Path::new(output), "256x256"),
         ["growth", output, "--size", size] => lab::measure(Path::new(output), size),
+        ["looks", rest @ ..] => looks::run(rest),
         ["plot-growth", table, folder] => lab::plot_growth(Path::new(table), Path::new(folder)),
         ["nff2pov", scene, output] => convert::to_pov(Path::new(scene), Path::new(output)),
         ["nff2dat", scene, output] => convert::to_dat(Path::new(scene), Path::new(output)),

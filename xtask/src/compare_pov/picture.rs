@@ -12,7 +12,7 @@ pub(crate) struct Shown {
 }
 
 impl Shown {
-    #[cfg(test)]
+    /// A picture of these bytes, row by row.
     pub(crate) fn new(width: u32, height: u32, rgb: Vec<u8>) -> Self {
         Self { width, height, rgb }
     }
@@ -58,6 +58,13 @@ pub(crate) fn read(file: &Path) -> Result<Shown> {
         height: info.height,
         rgb,
     })
+}
+
+impl Shown {
+    /// The pixels row by row.
+    pub(crate) fn pixels(&self) -> &[[u8; 3]] {
+        self.rgb.as_chunks().0
+    }
 }
 
 /// Mean absolute difference of the channels and its root mean square; `None` for different sizes.

@@ -22,12 +22,15 @@ pub(crate) struct Outcome {
 }
 
 /// Both programs, with the size of the pictures.
+#[derive(Clone)]
 pub(crate) struct Programs {
     strahl: PathBuf,
     cache: PathBuf,
     size: (u32, u32),
     /// How long a program may take for one scene.
     pub(crate) timeout: Duration,
+    /// Include files of this folder come before those built into strahl.
+    pub(crate) library: Option<PathBuf>,
 }
 
 impl Programs {
@@ -51,7 +54,16 @@ impl Programs {
             cache,
             size,
             timeout: TIMEOUT,
+            library: None,
         })
+    }
+
+    /// The same with pictures of another size.
+    pub(crate) fn sized(&self, size: (u32, u32)) -> Self {
+        Self {
+            size,
+            ..self.clone()
+        }
     }
 
     /// POV-Ray's picture, from an earlier run if the scene is the same.
@@ -112,6 +124,9 @@ impl Programs {
             .args(["--size", &format!("{w}x{h}")])
             .args(["--sampling", "center", "--threads", "1", "--output"])
             .arg(output);
+        if let Some(library) = &self.library {
+            command.arg("-L").arg(library);
+        }
         run(command, folder, output, self.timeout)
     }
 

@@ -1,0 +1,134 @@
+//! The include library: every documented name is there with its kind, and looks as it did when it was compared with POV-Ray
+//! (`cargo xtask looks`).
+
+mod common;
+#[path = "common/plates.rs"]
+mod plates;
+
+use common::parse_with;
+use plates::{Name, Sheet};
+use std::collections::{BTreeMap, BTreeSet};
+use strahl_render::{CompileOptions, RenderOptions, compile, render};
+use strahl_sdl::MemoryHost;
+
+/// Mean colours of POV-Ray's plates, in 8-bit codes; the header ends with the size of a plate.
+const MEANS: &str = include_str!("data/looks.tsv");
+
+/// How far a mean colour may be from POV-Ray's.
+const CLOSE: f64 = 6.0;
+
+/// A statement that takes the name as what the list says it is.
+fn use_of(name: &Name) -> Option<String> {
+    let Name { name, kind, .. } = name;
+    Some(match *kind {
+        "texture" | "pigment" | "finish" | "material" | "interior" | "sky_sphere" | "object"
+        | "transform" => format!("#declare Used = {kind} {{ {name} }}\n"),
+        "color_map" => {
+            format!("#declare Used = pigment {{ bozo color_map {{ {name} }} }}\n")
+        }
+        "color" => format!("#declare Used = pigment {{ color {name} }}\n"),
+        "vector" => format!("#declare Used = vlength(<0, 0, 0> + {name});\n"),
+        "float" => format!("#declare Used = {name} + 1;\n"),
+        "seed" => format!("#declare Used = rand({name});\n"),
+        "macro" | "function" => {
+            format!("#ifndef ({name}) #error \"{name} is not declared\" #end\n")
+        }
+        _ => return None,
+    })
+}
+
+#[test]
+fn names_have_their_kinds() {
+    let mut files: BTreeMap<&str, Vec<Name>> = BTreeMap::new();
+    for name in plates::all() {
+        files.entry(name.file).or_default().push(name);
+    }
+    assert!(files.len() > 20);
+    for (file, names) in files {
+        let mut text = format!("global_settings {{ assumed_gamma 1 }}\n#include \"{file}\"\n");
+        for name in &names {
+            text += &use_of(name).unwrap_or_else(|| panic!("{file}: {name:?}"));
+        }
+        let parsed = parse_with(&mut MemoryHost::new(), &text);
+        let errors = parsed.diagnostics.iter().filter(|d| d.is_error());
+        let errors: Vec<String> = errors.map(ToString::to_string).collect();
+        assert!(errors.is_empty(), "{file}: {}", errors.join("\n"));
+    }
+}
+
+/// What scenes say: a colour by its name as a whole pigment, and the pigments of metals as colours.
+#[test]
+fn colours_of_metals_are_colours() {
+    let text = "global_settings { assumed_gamma 1 }
+        #include \"metals.inc\"
+        #declare A = pigment { P_Copper1 }
+        #declare B = pigment { color P_Gold3 * 0.5 }
+        #declare C = vlength(CVect2);";
+    let parsed = parse_with(&mut MemoryHost::new(), text);
+    let errors: Vec<String> = parsed.diagnostics.iter().map(ToString::to_string).collect();
+    assert!(parsed.scene.is_some(), "{}", errors.join("\n"));
+}
+
+/// Mean colours of the plates of a sheet.
+fn means(sheet: &Sheet, (w, h): (usize, usize)) -> Vec<[f64; 3]> {
+    let parsed = parse_with(&mut MemoryHost::new(), &sheet.text);
+    let messages: Vec<String> = parsed.diagnostics.iter().map(ToString::to_string).collect();
+    let scene = parsed
+        .scene
+        .unwrap_or_else(|| panic!("{}", messages.join("\n")));
+    let scene = compile(&scene, &CompileOptions::default()).unwrap();
+    let across = w * sheet.columns;
+    let options = RenderOptions::new(&scene, across as u32, (h * sheet.rows) as u32);
+    let film = render(&scene, &options, &()).unwrap().film;
+    let plate = |i: usize| {
+        let corner = (i / sheet.columns) * h * across + (i % sheet.columns) * w;
+        let mut sum = [0.0; 3];
+        for y in 0..h {
+            for pixel in &film.pixels[corner + y * across..][..w] {
+                for (sum, value) in sum.iter_mut().zip(pixel) {
+                    let value = f64::from(*value).clamp(0.0, 1.0);
+                    *sum += 255.0 * strahl_shade::srgb::encode(value);
+                }
+            }
+        }
+        sum.map(|s| s / (w * h) as f64)
+    };
+    (0..sheet.names.len()).map(plate).collect()
+}
+
+#[test]
+fn names_look_as_they_were_measured() {
+    let mut lines = MEANS.lines();
+    let size = lines.next().unwrap().rsplit('\t').next().unwrap();
+    let (w, h) = size.split_once('x').unwrap();
+    let size = (w.parse().unwrap(), h.parse().unwrap());
+    let measured: BTreeMap<&str, Vec<f64>> = lines
+        .map(|line| {
+            let (name, numbers) = line.split_once('\t').unwrap();
+            (
+                name,
+                numbers.split('\t').map(|n| n.parse().unwrap()).collect(),
+            )
+        })
+        .collect();
+    let mut missing: BTreeSet<&str> = measured.keys().copied().collect();
+    let mut far = vec![];
+    for sheet in plates::sheets(&plates::names()) {
+        for (name, mean) in sheet.names.iter().zip(means(&sheet, size)) {
+            let title = format!("{}/{}", name.file, name.name);
+            missing.remove(title.as_str());
+            let theirs = measured
+                .get(title.as_str())
+                .unwrap_or_else(|| panic!("{title} is not in looks.tsv"));
+            let apart = mean.iter().zip(theirs).map(|(a, b)| (a - b).abs());
+            let apart = apart.fold(0.0, f64::max);
+            if apart > CLOSE {
+                far.push(format!(
+                    "{title}: {mean:.0?} is {apart:.1} from {theirs:.0?}"
+                ));
+            }
+        }
+    }
+    assert!(far.is_empty(), "{}", far.join("\n"));
+    assert!(missing.is_empty(), "no longer in the library: {missing:?}");
+}
