@@ -615,7 +615,7 @@ fn ctrl_c_ends_the_middle_of_something_long() {
         "#declare I = 0; #while (I < 1e12) #declare I = I + 1; #end sphere { 0, 1 }",
     );
     // Two mirrors that face each other: trees of ten thousand levels, with a thousand shadow rays on each.
-    let mirrors = "camera { location 0 look_at z } global_settings { max_trace_level 10000 adc_bailout 0 }\n\
+    let mirrors = "camera { location 0 look_at z } global_settings { adc_bailout 0 }\n\
                    light_source { y/2 rgb 1 area_light x, z, 32, 32 }\n\
                    plane { z, 1 pigment { rgb 1 } finish { reflection 1 } } plane { z, -1 pigment { rgb 1 } finish { reflection 1 } }";
     write(f, "mirrors.pov", mirrors);
@@ -641,6 +641,8 @@ fn ctrl_c_ends_the_middle_of_something_long() {
             "mirrors.pov",
             "--size",
             "2x2",
+            "--max-depth",
+            "10000",
             "--max-tree-rays",
             "4000000000",
         ],
