@@ -29,7 +29,7 @@ pub fn studio(scene: &mut Scene, up: DVec3) -> bool {
     }
     let bounds = bounds(&scene.objects, scene, &Transform::default(), 0);
     let radius = 0.5 * bounds.size().length();
-    if !bounds.is_bounded() || !(radius > 0.0 && radius.is_finite()) {
+    if !(bounds.is_bounded() && radius > 0.0 && radius.is_finite()) {
         return false;
     }
     let up = up.normalize_or(DVec3::Y);
