@@ -76,10 +76,12 @@ fn means(sheet: &Sheet, (w, h): (usize, usize)) -> Vec<[f64; 3]> {
     let scene = parsed
         .scene
         .unwrap_or_else(|| panic!("{}", messages.join("\n")));
-    let scene = compile(&scene, &CompileOptions::default()).unwrap();
+    let scene = compile(&scene, &CompileOptions::default()).expect("the plates compile");
     let across = w * sheet.columns;
     let options = RenderOptions::new(&scene, across as u32, (h * sheet.rows) as u32);
-    let film = render(&scene, &options, &()).unwrap().film;
+    let film = render(&scene, &options, &())
+        .expect("the plates render")
+        .film;
     let plate = |i: usize| {
         let corner = (i / sheet.columns) * h * across + (i % sheet.columns) * w;
         let mut sum = [0.0; 3];

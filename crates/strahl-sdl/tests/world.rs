@@ -107,7 +107,7 @@ fn the_last_of_spotlight_cylinder_and_shadowless_counts() {
     let light = |items: &str| {
         let (scene, messages) = scene(&format!("light_source {{ y, rgb 1 {items} }}"));
         assert_eq!(messages, "");
-        scene.lights[0].light.clone()
+        scene.lights[0].light
     };
     let late = light("spotlight point_at 0 radius 5 shadowless");
     assert!(matches!(late.kind, LightKind::Point { .. }) && !late.casts_shadows);

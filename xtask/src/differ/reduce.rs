@@ -23,11 +23,15 @@ pub(super) fn reduce(
         fails,
     };
     // Halves of lists, then single parts, then simpler things in place of others, then simpler numbers.
-    while [halves, without, simpler_things, simpler_numbers]
-        .into_iter()
-        .fold(false, |better, cuts| search.pass(cuts) || better)
-    {}
-    search.smallest
+    loop {
+        let mut better = false;
+        for cuts in [halves, without, simpler_things, simpler_numbers] {
+            better |= search.pass(cuts);
+        }
+        if !better {
+            return search.smallest;
+        }
+    }
 }
 
 /// All scenes that are one cut of a kind smaller at a place.
