@@ -109,8 +109,8 @@ impl Bounded {
     #[cold]
     fn refused(&self, asked: usize) -> *mut u8 {
         if !CAN_DO_WITHOUT.get()
-            && !ENDING.replace(true)
             && let Some(end) = self.end.get()
+            && !ENDING.replace(true)
         {
             end(Refusal {
                 asked,

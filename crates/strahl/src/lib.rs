@@ -40,7 +40,7 @@
 //!     .camera(Camera::orthographic(DVec3::new(0.0, 0.0, 5.0), DVec3::ZERO, DVec3::Y, 3.0));
 //! let scene = strahl::compile(&scene, &CompileOptions::default()).map_err(strahl::Problems)?;
 //! let pixel = strahl::explain(&scene, &RenderOptions::new(&scene, 9, 9), 4, 4)?;
-//! let primary = &pixel.samples[0].1.nodes[0];
+//! let primary = &pixel.samples[0].tree.nodes[0];
 //! let hit = primary.report.hit.as_ref().expect("the ball is in the middle");
 //! assert_eq!(hit.hit.t, 4.0);
 //! assert_eq!(scene.objects().get(hit.object).expect("its number is right").name.as_deref(), Some("ball"));

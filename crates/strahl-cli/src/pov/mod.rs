@@ -174,7 +174,7 @@ mod tests {
     fn strahls_own_options_win_over_povs() {
         is(
             "a.pov --size 32x24 +W640 +H480 -o x.png +Oy.png --sampling center +A0.3",
-            "--size 32x24 --sampling adaptive:0.1,2 --output y.png --size 32x24 -o x.png --sampling center a.pov",
+            "--size 32x24 --sampling adaptive:0.3,3 --output y.png --size 32x24 -o x.png --sampling center a.pov",
         );
         // Parts of the picture are those of the size that counts.
         is(

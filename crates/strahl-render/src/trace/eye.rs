@@ -120,8 +120,10 @@ impl Filled {
     }
 }
 
+/// Whether a place is inside of a shape. A disc, which is a half-space for CSG, is a sheet by itself.
 fn holds(shape: &Shape, place: DVec3) -> bool {
-    shape.as_solid().is_some_and(|solid| solid.contains(place))
+    let is_sheet = matches!(shape, Shape::Disc(_));
+    !is_sheet && shape.as_solid().is_some_and(|solid| solid.contains(place))
 }
 
 impl RenderScene {

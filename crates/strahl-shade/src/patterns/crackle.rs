@@ -36,14 +36,16 @@ impl CrackleMetric {
         }
     }
 
-    /// What coordinates and the offset add up to before [`CrackleMetric::distance_of`] makes a distance of it. It grows with the distance.
+    /// What coordinates and the offset add up to before [`CrackleMetric::distance_of`] makes a distance of it. It grows with the distance; for
+    /// powers that are not positive it is the distance.
     fn measure(self, v: DVec3, offset: f64) -> f64 {
         match self {
             Self::Manhattan => v.x.abs() + v.y.abs() + v.z.abs() + offset,
             Self::Euclidean => v.length_squared() + offset * offset,
             Self::Power(m) => {
                 let power = |x: f64| det::pow(x.abs(), m);
-                power(v.x) + power(v.y) + power(v.z) + power(offset)
+                let sum = power(v.x) + power(v.y) + power(v.z) + power(offset);
+                if m > 0.0 { sum } else { det::pow(sum, 1.0 / m) }
             }
         }
     }
@@ -52,7 +54,8 @@ impl CrackleMetric {
         match self {
             Self::Manhattan => measure,
             Self::Euclidean => measure.sqrt(),
-            Self::Power(m) => det::pow(measure, 1.0 / m),
+            Self::Power(m) if m > 0.0 => det::pow(measure, 1.0 / m),
+            Self::Power(_) => measure,
         }
     }
 

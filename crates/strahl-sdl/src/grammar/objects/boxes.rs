@@ -1,7 +1,10 @@
 use crate::grammar::Entity;
 use crate::parser::{PResult, Parser};
-use strahl_geometry::{Cuboid, GeometryError, Polygon, Shape};
+use strahl_geometry::{Cuboid, GeometryError, Shape};
 use strahl_math::DVec3;
+
+/// The thickness of a box that is flat along one axis, relative to its size and place.
+const THIN: f64 = 8.0 * f64::EPSILON;
 
 /// What stands for an infinite coordinate of a corner: farther than anything can be seen, and its square is still a number.
 const FAR: f64 = 1e100;
@@ -31,23 +34,17 @@ pub(super) fn cuboid(p: &mut Parser<'_>) -> PResult<Entity> {
         }
         let (a, b) = (finite(a), finite(b));
         let flat = [a.x == b.x, a.y == b.y, a.z == b.z];
-        let corner = |x: bool, y: bool, z: bool| {
-            let pick = |second, a, b| if second { b } else { a };
-            DVec3::new(pick(x, a.x, b.x), pick(y, a.y, b.y), pick(z, a.z, b.z))
-        };
-        let ring = [(false, false), (true, false), (true, true), (false, true)];
-        let rectangle = match flat {
-            [true, false, false] => Some(ring.map(|(s, t)| corner(false, s, t))),
-            [false, true, false] => Some(ring.map(|(s, t)| corner(t, false, s))),
-            [false, false, true] => Some(ring.map(|(s, t)| corner(s, t, false))),
-            _ => None,
-        };
-        Ok(match rectangle {
-            Some(corners) => Polygon::try_new(&corners).map(Shape::from),
-            None => {
-                let cuboid = Cuboid::from_corners(a, b);
-                Cuboid::try_new(cuboid.min(), cuboid.max()).map(Shape::from)
-            }
-        })
+        let mut cuboid = Cuboid::from_corners(a, b);
+        if let Some(axis) = (0..3)
+            .find(|&i| flat[i])
+            .filter(|_| flat.iter().filter(|f| **f).count() == 1)
+        {
+            // A box without thickness is visible, but nothing is inside of it.
+            let (mut min, max) = (cuboid.min(), cuboid.max());
+            let size = min.abs().max_element() + (max - min).max_element();
+            min[axis] -= THIN * size;
+            cuboid = Cuboid::from_corners(min, max);
+        }
+        Ok(Cuboid::try_new(cuboid.min(), cuboid.max()).map(Shape::from))
     })
 }
