@@ -30,6 +30,8 @@ fn index_of(scene: &RenderScene, medium: Option<MaterialId>, part: SpectralPart)
 pub(crate) struct Split {
     pub(crate) kr: Color,
     pub(crate) kt: Color,
+    /// The attenuation, besides kt, of the light that passes the surface.
+    pub(crate) fade: Color,
     /// Unit direction of the reflection ray, if the surface reflects. If it transmits there is one too, with kr = 0 unless
     /// Fresnel or total reflection increase it; the cutoff decides.
     pub(crate) reflected: Option<DVec3>,
@@ -43,6 +45,7 @@ impl Split {
     pub(crate) const NONE: Self = Self {
         kr: Color::BLACK,
         kt: Color::BLACK,
+        fade: Color::WHITE,
         reflected: None,
         refracted: None,
         cos_2: None,
@@ -146,8 +149,8 @@ impl<'s> Surface<'s> {
         }
     }
 
-    /// The material whose `interior` weakens the light on the way to the surface. As in POV-Ray (measured) it does so where a ray
-    /// gets out of an object; what lies in the object is seen as without it.
+    /// The material whose `interior` attenuates the light that passes the surface. As in POV-Ray (measured) it does so where a ray
+    /// leaves an object: neither what lies in the object fades nor what the surface itself reflects and sends.
     pub(crate) fn fading(&self) -> Option<MaterialId> {
         (self.inside && self.own.body.is_object()).then_some(self.own.material)
     }
@@ -324,7 +327,7 @@ impl<'s> Surface<'s> {
             shininess: finish.shininess,
             grain,
             reflection: split.kr,
-            transmission: split.kt,
+            transmission: split.kt * split.fade,
         }
     }
 

@@ -36,7 +36,7 @@ use crate::scene::{RenderScene, Uv};
 use crate::surface::{Split, Surface};
 use strahl_math::{DVec3, Interval, Ray};
 use strahl_shade::texture::TexturePaint;
-use strahl_shade::{Color, MaterialId, ShadingModel, SpectralPart};
+use strahl_shade::{Color, ShadingModel, SpectralPart};
 
 /// Grows ray trees; owns the working memory of one thread.
 #[derive(Debug)]
@@ -295,7 +295,7 @@ impl<'s> TreeTracer<'s> {
             }
         };
         let fading = surface.as_ref().and_then(|s| s.fading());
-        let (attenuation, fog) = self.in_front(branch, length, fading);
+        let (attenuation, fog) = self.in_front(branch, length);
         let mut node = Node {
             parent: branch.parent,
             kind: branch.kind,
@@ -316,7 +316,7 @@ impl<'s> TreeTracer<'s> {
             ray: branch.ray,
             hit,
             background,
-            medium: fading.or_else(|| self.media.top(branch.media)),
+            medium: self.media.top(branch.media),
             attenuation,
             fog,
             part: branch.part,
@@ -356,6 +356,9 @@ impl<'s> TreeTracer<'s> {
             // As in POV-Ray (measured): total reflection ignores colour and finish.
             split.kr = Color::WHITE;
         }
+        if let Some(inside) = fading {
+            split.fade = scene.faded(inside, length);
+        }
         if O::ACTIVE {
             let seen = self.hit_report(surface, hit, split, model);
             let total = seen.total_reflection;
@@ -383,14 +386,11 @@ impl<'s> TreeTracer<'s> {
         Some(first)
     }
 
-    /// What lies in front of a hit keeps of its light, and adds to it; `fading` is what the ray gets out of there.
+    /// The attenuation by what lies in front of a hit, and the light that it adds.
     #[inline(always)]
-    fn in_front(&self, branch: &Branch, length: f64, fading: Option<MaterialId>) -> (Color, Color) {
+    fn in_front(&self, branch: &Branch, length: f64) -> (Color, Color) {
         let scene = self.tracer.scene;
-        let mut attenuation = match fading {
-            Some(id) => scene.faded(id, length),
-            None => scene.absorbed(self.media.top(branch.media), length),
-        };
+        let mut attenuation = scene.absorbed(self.media.top(branch.media), length);
         let mut fog = Color::BLACK;
         if scene.has_air() && self.media.in_air(branch.media) {
             let (keeps, adds) = scene.air_along(&branch.ray, length);
@@ -423,11 +423,15 @@ impl<'s> TreeTracer<'s> {
         observer: &mut O,
     ) {
         if let Some(direction) = split.refracted {
-            let (factor, power) = (split.kt, 1.0);
+            let (factor, power) = (split.kt * split.fade, 1.0);
             let through = Share { factor, power };
             let parts = self.parts_behind(branch, surface);
             if parts == 0 {
-                let whole = Offshoot::new(RayKind::Refraction, through, direction, branch.part);
+                // As in POV-Ray (measured) fading does not count for the weight.
+                let whole = Offshoot {
+                    coefficient: split.kt,
+                    ..Offshoot::new(RayKind::Refraction, through, direction, branch.part)
+                };
                 self.queue(branch, index, surface, hit, &whole, observer);
             }
             for part in SpectralPart::all(parts) {

@@ -26,7 +26,7 @@ impl TreeTracer<'_> {
             None => {
                 let scene = self.tracer.scene;
                 let branch = Branch::primary(primary, self.eye_media(primary.origin));
-                let (keeps, adds) = self.in_front(&branch, f64::INFINITY, None);
+                let (keeps, adds) = self.in_front(&branch, f64::INFINITY);
                 // The same sum as of a tree without branches, including the sign of zeros.
                 let mut color = scene.background.along(primary.direction) + Color::BLACK;
                 color *= keeps;
