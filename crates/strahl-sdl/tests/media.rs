@@ -99,3 +99,8 @@ fn old_filters_leave_colour() {
 fn lights_shine_from_surfaces() {
     agree("lights_shine_from_surfaces");
 }
+
+#[test]
+fn flat_boxes_are_sheets() {
+    agree("flat_boxes_are_sheets");
+}

@@ -12,7 +12,7 @@ use crate::scene::{InstanceUse, MeshUse, ShapeUse};
 use crate::spheres::{PlainSphere, Spheres};
 use std::collections::HashSet;
 use std::sync::Arc;
-use strahl_geometry::{Csg, CsgNode, GeometryError, Primitive, Shape};
+use strahl_geometry::{Csg, CsgNode, GeometryError, Polygon, Primitive, Shape};
 use strahl_math::Transform;
 use strahl_scene::{
     Children, CsgOp, Diagnostic, Object, ObjectKind, Scene, SceneLight, Span, Visibility,
@@ -342,6 +342,8 @@ impl Pass {
     }
 
     fn shape(&mut self, shape: &Shape, todo: &Todo<'_>, group: &mut FlatGroup) {
+        let rectangle = rectangle(shape);
+        let shape = rectangle.as_ref().unwrap_or(shape);
         if let Err(error) = shape.validate() {
             self.invalid(todo, shape.kind(), &error);
             return;
@@ -478,6 +480,28 @@ fn fills_itself(object: &Object, whole: Option<&Arc<Material>>) -> bool {
     let interior = |m: Option<&Arc<Material>>| m.and_then(|m| m.interior.as_ref().map(Arc::as_ptr));
     let own = interior(object.material.as_ref());
     own.is_some() && own != interior(whole)
+}
+
+/// A box whose opposite faces coincide within rounding, as the one sheet that it is by itself. (In CSG it stays a solid without content.)
+fn rectangle(shape: &Shape) -> Option<Shape> {
+    let Shape::Cuboid(cuboid) = shape else {
+        return None;
+    };
+    let (min, max) = (cuboid.min(), cuboid.max());
+    let extent = max - min;
+    let thin = 16.0 * f64::EPSILON * (min.abs().max_element() + extent.max_element());
+    let mut flat = (0..3).filter(|&axis| extent[axis] <= thin);
+    let (Some(axis), None) = (flat.next(), flat.next()) else {
+        return None;
+    };
+    let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
+    let corners = [(false, false), (true, false), (true, true), (false, true)].map(|(s, t)| {
+        let mut corner = max;
+        corner[u] = if s { max[u] } else { min[u] };
+        corner[v] = if t { max[v] } else { min[v] };
+        corner
+    });
+    Polygon::try_new(&corners).map(Shape::from).ok()
 }
 
 fn visible(v: Visibility) -> u8 {
