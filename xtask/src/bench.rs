@@ -6,7 +6,7 @@ use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// What the SPD scenes are rendered with.
+/// The options for rendering SPD scenes.
 const SPD: [&str; 4] = ["--max-depth", "5", "--adc-bailout", "0"];
 
 /// Trace times of the SPD scenes at 512x512, no antialiasing, equal depth, against POV-Ray and Tachyon.
@@ -51,7 +51,7 @@ pub(crate) fn spd(args: &[&str]) -> Result<()> {
     Ok(())
 }
 
-/// The geometric mean as a table shows it.
+/// The geometric mean, formatted for a table.
 pub(crate) fn geometric_mean(ratios: &[f64]) -> String {
     let logarithms: f64 = ratios.iter().map(|r| r.ln()).sum();
     match ratios.len() {
@@ -60,10 +60,10 @@ pub(crate) fn geometric_mean(ratios: &[f64]) -> String {
     }
 }
 
-/// How many times as fast strahl is on a scene.
+/// How many times as fast strahl is as the other programs on a scene.
 struct Faster {
     povray: Option<f64>,
-    /// Nothing for scenes it can't have.
+    /// `None` for scenes that Tachyon can't render.
     tachyon: Option<f64>,
 }
 
@@ -111,7 +111,7 @@ fn one_scene(scene: &Path, runs: usize, threads: u32) -> Result<Faster> {
     Ok(faster)
 }
 
-/// The middle one of several values.
+/// The median.
 pub(crate) fn median(values: &mut [f64]) -> f64 {
     values.sort_by(f64::total_cmp);
     values[values.len() / 2]
@@ -128,16 +128,16 @@ pub(crate) fn build_strahl() -> Result<()> {
     Ok(())
 }
 
-/// The release binary beside this program.
+/// The path of the release binary, which lies beside this program.
 pub(crate) fn strahl_binary() -> Result<PathBuf> {
     let own = std::env::current_exe()?;
     Ok(own
         .parent()
-        .context("this program lies in a folder")?
+        .context("the path of this program has no folder")?
         .join("strahl"))
 }
 
-/// Renders a scene at 512x512 with one ray per pixel: trace time in seconds and number of rays.
+/// Renders a scene at 512x512 with one ray per pixel; returns the trace time in seconds and the number of rays.
 pub(crate) fn run_strahl(
     scene: &Path,
     picture: &Path,
@@ -170,7 +170,7 @@ pub(crate) fn run_strahl(
     ))
 }
 
-/// The same with POV-Ray: trace time in seconds.
+/// Renders a scene with POV-Ray; returns the trace time in seconds.
 pub(crate) fn run_povray(scene: &Path, picture: &Path, threads: u32) -> Result<f64> {
     let output = Command::new("povray")
         .arg(format!("+I{}", scene.display()))
@@ -187,7 +187,7 @@ fn run_tachyon(scene: &Path, folder: &Path, threads: u32) -> Result<f64> {
         .arg(scene)
         .arg("-o")
         .arg(folder.join("tachyon.tga"))
-        // Mirroring has turned the normals of patches to the other side of their triangles.
+        // Mirroring in x reverses the winding of the triangles, so their normals must be flipped.
         .args(["-shade_phong", "-normalfixup", "flip", "+V"])
         .args(["-numthreads", &threads.to_string()])
         .output()
@@ -196,7 +196,7 @@ fn run_tachyon(scene: &Path, folder: &Path, threads: u32) -> Result<f64> {
     seconds_in(&output.stdout, "Ray Tracing Time", ':').context("tachyon printed no trace time")
 }
 
-/// The number of seconds behind a character of the line that begins with some words.
+/// The number of seconds after the character `before`, in the line that begins with `words`.
 fn seconds_in(log: &[u8], words: &str, before: char) -> Result<f64> {
     let log = String::from_utf8_lossy(log);
     let line = log
@@ -205,5 +205,5 @@ fn seconds_in(log: &[u8], words: &str, before: char) -> Result<f64> {
     let seconds = line
         .and_then(|line| line.rsplit_once(before))
         .and_then(|(_, s)| s.split_whitespace().next()?.parse().ok());
-    seconds.with_context(|| format!("there is no line `{words}` in:\n{log}"))
+    seconds.with_context(|| format!("no line begins with `{words}` in:\n{log}"))
 }

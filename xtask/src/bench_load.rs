@@ -1,4 +1,4 @@
-//! How long large files take to be read, beside what building the accelerator takes then.
+//! Compares the time to read large files with the time to build the accelerator.
 
 use crate::bench::{build_strahl, median, strahl_binary};
 use crate::lab;
@@ -9,7 +9,7 @@ use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// Reads a landscape of `2 side²` triangles in every format that has meshes or lists of triangles, and two scenes of NFF.
+/// Reads a landscape of `2 side²` triangles in every format that has meshes or lists of triangles, and two NFF scenes.
 pub(crate) fn run(args: &[&str]) -> Result<()> {
     let (mut runs, mut side) = (5, 2236);
     let mut rest = args.iter();
@@ -28,7 +28,7 @@ pub(crate) fn run(args: &[&str]) -> Result<()> {
     let folder = binary
         .ancestors()
         .nth(2)
-        .context("the program lies in a folder of target/")?
+        .context("strahl is not in a folder of target/")?
         .join("bench-load");
     fs::create_dir_all(&folder)?;
     let mut table = String::from(
@@ -59,7 +59,7 @@ pub(crate) fn run(args: &[&str]) -> Result<()> {
     Ok(())
 }
 
-/// Seconds of reading and of building, as the program tells them.
+/// The seconds for reading and for building, as strahl reports them.
 fn times(binary: &Path, scene: &Path) -> Result<(f64, f64)> {
     let out = tempfile::tempdir()?;
     let stats = out.path().join("stats.json");
@@ -77,7 +77,7 @@ fn times(binary: &Path, scene: &Path) -> Result<(f64, f64)> {
     let stats: serde_json::Value = serde_json::from_slice(&fs::read(stats)?)?;
     let number = |path: &str| {
         let number = stats.pointer(path).and_then(serde_json::Value::as_f64);
-        number.with_context(|| format!("there is no {path} in the statistics"))
+        number.with_context(|| format!("the statistics have no {path}"))
     };
     Ok((number("/time_s/load")?, number("/accelerator/build_s")?))
 }
@@ -123,7 +123,7 @@ impl Landscape {
 
     fn position(at: [u32; 2]) -> [f32; 3] {
         let [x, y] = at.map(f64::from);
-        // Bits that look like chance, the same in every run.
+        // Pseudorandom bits that are the same in every run.
         let mixed = (at[0] ^ at[1].rotate_left(16)).wrapping_mul(0x9e37_79b1);
         let rough =
             f64::from((mixed ^ mixed >> 15).wrapping_mul(0x85eb_ca6b) >> 12) / f64::from(1 << 20);

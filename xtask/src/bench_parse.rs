@@ -1,4 +1,4 @@
-//! Speed of reading scenes against POV-Ray: both programs take turns on the same generated files.
+//! Speed of parsing against POV-Ray: both programs take turns on the same generated files.
 
 use crate::bench::median;
 use anyhow::{Context, Result, bail};
@@ -7,12 +7,12 @@ use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// What reading a scene once has cost.
+/// The cost of parsing a scene once.
 #[derive(Clone, Copy)]
 struct Cost {
     /// Seconds of processor time.
     seconds: f64,
-    /// Largest memory of the process, in bytes.
+    /// Peak memory of the process, in bytes.
     memory: f64,
 }
 
@@ -21,11 +21,11 @@ struct Case {
     name: &'static str,
     path: PathBuf,
     bytes: f64,
-    /// How many objects it makes.
+    /// The number of objects in the scene.
     objects: f64,
 }
 
-/// Processor time of reading a scene of a million spheres made by loops and macros, and an exported scene of `--megabytes`.
+/// Processor time for parsing a scene of a million spheres made by loops and macros, and an exported scene of `--megabytes`.
 pub(crate) fn parse(args: &[&str]) -> Result<()> {
     let (mut runs, mut megabytes) = (5, 300);
     let mut rest = args.iter();
@@ -45,7 +45,7 @@ pub(crate) fn parse(args: &[&str]) -> Result<()> {
     let folder = program
         .ancestors()
         .nth(3)
-        .context("the program lies in target/release/examples")?
+        .context("time_parse is not in target/release/examples")?
         .join("bench-parse");
     std::fs::create_dir_all(&folder)?;
     let cases = [loops(&folder)?, exported(&folder, megabytes << 20)?];
@@ -97,7 +97,7 @@ fn row(
     Ok(())
 }
 
-/// The program that reads scenes and tells what that has cost.
+/// Builds the program that parses a scene and prints what that cost.
 fn build() -> Result<PathBuf> {
     let status = Command::new("cargo")
         .args(["build", "--release", "--quiet", "-p", "strahl-sdl"])
@@ -110,7 +110,7 @@ fn build() -> Result<PathBuf> {
     let folder = binary
         .parent()
         .and_then(Path::parent)
-        .context("this program lies in a folder of target/")?;
+        .context("this program is not in a folder of target/")?;
     Ok(folder.join("release/examples/time_parse"))
 }
 
@@ -133,7 +133,7 @@ fn strahl(program: &Path, case: &Case) -> Result<Cost> {
     })
 }
 
-/// POV-Ray tells the processor time of its parser itself. A picture of one pixel without bounding boxes adds little.
+/// POV-Ray prints the processor time of its parser. A picture of one pixel without bounding boxes adds little memory.
 fn povray(case: &Case) -> Result<Cost> {
     let picture = tempfile::tempdir()?;
     let output = Command::new("time")
@@ -144,7 +144,7 @@ fn povray(case: &Case) -> Result<Cost> {
         .output()
         .context("cannot run povray under time (Debian packages povray, time)")?;
     let log = String::from_utf8_lossy(&output.stderr);
-    // "Parse Time: ... (0.605 seconds)", and in the line behind it "using 1 thread(s) with 0.593 CPU-seconds total"
+    // "Parse Time: ... (0.605 seconds)", and in the next line "using 1 thread(s) with 0.593 CPU-seconds total"
     let mut lines = log
         .lines()
         .skip_while(|l| !l.trim_start().starts_with("Parse Time"));
@@ -180,7 +180,7 @@ camera { location <50, 50, -200> look_at <50, 50, 50> }
 light_source { <100, 200, -300> rgb 1 }
 ";
 
-/// A million spheres, each of a colour of its own, from nested loops of both kinds and macros that call macros.
+/// A million spheres, each with its own colour, from nested loops of both kinds and macros that call macros.
 fn loops(folder: &Path) -> Result<Case> {
     let path = folder.join("loops.pov");
     let text = format!(
@@ -208,12 +208,12 @@ fn loops(folder: &Path) -> Result<Case> {
     case("a million spheres by loops and macros", path, 1_000_000)
 }
 
-/// Numbers without pattern, the same in every run.
+/// Pseudorandom numbers, the same in every run.
 struct Numbers(u64);
 
 impl Numbers {
     fn below(&mut self, bound: f64) -> f64 {
-        // The multiplier of Knuth's MMIX.
+        // The multiplier of Knuth's MMIX generator.
         self.0 = self
             .0
             .wrapping_mul(6_364_136_223_846_793_005)
@@ -231,8 +231,8 @@ impl Numbers {
     }
 }
 
-/// What programs for molecules and meshes write: every object with numbers and a texture of its own, the colours mostly
-/// those of a dozen elements.
+/// A file as exporters of molecules and meshes write it: every object has its own numbers and texture, and most colours are those
+/// of a dozen elements.
 fn exported(folder: &Path, size: u64) -> Result<Case> {
     let path = folder.join("exported.pov");
     let mut file = BufWriter::new(std::fs::File::create(&path)?);

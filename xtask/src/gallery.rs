@@ -1,7 +1,7 @@
-//! The gallery: renders the scenes of `scenes/` and writes the manual's pages about them.
+//! Renders the scenes of `scenes/` and writes the gallery pages of the manual.
 //!
-//! A page shows each scene of a folder: its name, its picture, the comment that it begins with, and its text. So the manual
-//! shows only what the program can do.
+//! A page shows each scene of a folder: its name, its picture, the comment at its beginning, and its text. So the manual shows
+//! only features that exist.
 
 use anyhow::{Context, Result, bail};
 use std::collections::BTreeSet;
@@ -10,18 +10,18 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use strahl::sdl::{Word, object_words, pattern_words};
 
-/// Most bytes of all pictures: the book stays light.
+/// The largest size of all pictures together, in bytes.
 const MOST_BYTES: u64 = 3 << 20;
 
 /// A page of the manual about the scenes of a folder.
 struct Page {
-    /// Below `scenes/`; the page and its pictures lie at the same place below `docs/src/`.
+    /// The folder below `scenes/`; the page and its pictures lie at the same place below `docs/src/`.
     folder: &'static str,
     title: &'static str,
     /// The text above the scenes.
     intro: &'static str,
     size: &'static str,
-    /// If the page shows the text of the scenes: the line behind which it begins.
+    /// If the page lists the text of the scenes: the line after which the listing begins.
     listing: Option<&'static str>,
 }
 
@@ -39,12 +39,12 @@ const PAGES: [Page; 10] = [
     gallery(
         "gallery/objects",
         "Objects",
-        "Shapes and combinations of shapes. Most of them are solids, which can be cut and joined.",
+        "Shapes and combinations of shapes. Most of them are solids, which CSG can combine.",
     ),
     gallery(
         "gallery/patterns",
         "Patterns",
-        "A pattern gives a number to every point of space; a map makes colours, textures or normals of it.",
+        "A pattern assigns a number to every point of space; a map turns this number into a colour, a texture or a normal.",
     ),
     gallery(
         "gallery/normals",
@@ -79,26 +79,26 @@ const PAGES: [Page; 10] = [
     Page {
         folder: "lecture",
         title: "Ray tracing in fourteen pictures",
-        intro: "The method, a scene for each of its ideas. The commands are meant to be run in the folder of the repository.",
+        intro: "The method of ray tracing, with a scene for each of its ideas. Run the commands in the folder of the repository.",
         size: "288x162",
         listing: None,
     },
     Page {
         folder: "showcase",
         title: "Showcase",
-        intro: "Scenes of our own that take a minute or less. The pictures here are small; the scenes know no size.",
+        intro: "Scenes of our own that take a minute or less. The pictures here are small; the scenes can be rendered at any size.",
         size: "400x225",
         listing: None,
     },
 ];
 
-/// One scene with what its page says.
+/// One scene and its description.
 struct Scene {
     file: PathBuf,
     name: String,
-    /// The comment that the scene begins with.
+    /// The comment at the beginning of the scene.
     about: String,
-    /// The scene behind its line `#include`.
+    /// The text of the scene after its `#include` line.
     text: String,
 }
 
@@ -141,18 +141,18 @@ pub(crate) fn run(args: &[&str]) -> Result<()> {
         if !check {
             std::fs::write(&file, text)?;
         } else if std::fs::read_to_string(&file).unwrap_or_default() != text {
-            problems.push(format!("{file} is not what the scenes say"));
+            problems.push(format!("{file} is not up to date"));
         }
         problems.extend(page.missing(&scenes));
     }
     if bytes > MOST_BYTES {
         problems.push(format!(
-            "the pictures have {bytes} bytes, more than {MOST_BYTES}"
+            "the pictures take {bytes} bytes, more than {MOST_BYTES}"
         ));
     }
     if !problems.is_empty() {
         bail!(
-            "{}\nwrite the scenes, then run `cargo xtask gallery`",
+            "{}\nwrite the missing scenes, then run `cargo xtask gallery`",
             problems.join("\n")
         );
     }
@@ -217,7 +217,7 @@ impl Page {
                 name, about, text, ..
             } = scene;
             let heading = name.replace('_', " ");
-            // Writing to a string does not fail.
+            // Writing to a string never fails.
             let _ = write!(
                 out,
                 "\n## {heading}\n\n![{heading}]({pictures}/{name}.png)\n\n{about}\n"

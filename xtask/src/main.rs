@@ -1,5 +1,9 @@
 //! Chores of the repository, run as `cargo xtask COMMAND`.
-#![allow(clippy::print_stdout, clippy::print_stderr, reason = "a program talks")]
+#![allow(
+    clippy::print_stdout,
+    clippy::print_stderr,
+    reason = "programs may print"
+)]
 
 mod bench;
 mod bench_csg;
@@ -25,30 +29,30 @@ const USAGE: &str = "usage: cargo xtask COMMAND
   bench csg [--runs N] [--threads N] [--only PART]
                                   trace times of generated CSG scenes against POV-Ray
   bench parse [--runs N] [--megabytes N]
-                                  time of reading a million spheres made by loops, and an exported scene, against POV-Ray
+                                  time to parse a million spheres made by loops, and an exported scene, against POV-Ray
   bench load [--runs N] [--side N]
-                                  time of reading files of 10 million triangles beside the time of building
+                                  time to read files of 10 million triangles, and to build the accelerator
   bench scenes [FOLDER] [--aa] [--errors] [--runs N] [--size 320x240] [--only PART] [--most SECONDS] [--out DIR]
-                                  processor time of POV-Ray and strahl on real scenes, the slower ones first;
+                                  processor time of POV-Ray and strahl on real scenes;
                                   --aa with +A0.3, --errors against converged pictures
   bench peers [--rounds N] [--side PIXELS] [--only PART,...] [--brief]
-                                  rays a second on meshes and spheres against Embree, one thread
+                                  rays per second on meshes and spheres against Embree, one thread
   compare-pov [FOLDER] [--size 160x120] [--limit N] [--only PART] [--jobs 2] [--out DIR]
-                                  pictures of POV-Ray's example scenes by both programs, with their differences
+                                  renders POV-Ray's example scenes with both programs and compares the pictures
   differ [--seed N] [--count M] [--first N] [--jobs 8] [--out DIR] [--strahl BINARY] [--print]
-                                  random scenes by both programs; what differs is reduced to its smallest scene
+                                  renders random scenes with both programs; those that differ are reduced
   gallery [--only PART] [--check]
-                                  the manual's pictures and pages of scenes/{gallery,lecture,showcase};
-                                  --check says what is missing
+                                  writes the manual's pages and pictures of scenes/{gallery,lecture,showcase};
+                                  --check only lists missing or outdated pages
   generate sphereflake|tetra LEVELS OUTPUT.nff
   generate crystal SIDE OUTPUT.nff
-  generate stadium OUTPUT.nff     scenes of any size, one that grids like, and one that they don't
-  growth OUTPUT.csv [--size WxH]  the cost of a ray for every accelerator, over scenes that grow
-  plot-growth TABLE.csv FOLDER    the same as double logarithmic plots
+  generate stadium OUTPUT.nff     writes a scene: crystal suits grids, stadium does not
+  growth OUTPUT.csv [--size WxH]  measures the cost of a ray for every accelerator, with growing scenes
+  plot-growth TABLE.csv FOLDER    draws that table as double-logarithmic plots
   looks [--only PART] [--out DIR] [--cell 48x36] [--program STRAHL] [--library DIR] [--table FILE] [--means FILE]
-                                  what the include library declares, by both programs; --library tries other includes
-  nff2pov SCENE OUTPUT.pov        the scene as POV-Ray takes it, doing the same work
-  nff2dat SCENE OUTPUT.dat        the scene as Tachyon takes it; it does not refract";
+                                  compares the looks of the include library; --library tries other includes
+  nff2pov SCENE OUTPUT.pov        converts a scene for POV-Ray, such that both programs do the same work
+  nff2dat SCENE OUTPUT.dat        converts a scene for Tachyon, which does not refract";
 
 fn main() -> Result<()> {
     let args: Vec<String> = std::env::args().skip(1).collect();

@@ -9,7 +9,7 @@ use scenes::Scene;
 use std::fmt::Write as _;
 use std::path::Path;
 
-/// The pictures of both programs differ by less than this in the mean (of 255): single pixels at edges.
+/// Largest mean difference of the two pictures in 8-bit codes: single pixels at edges may differ.
 const BOUND: f64 = 0.5;
 
 /// Prints and saves a table of trace times, one row per scene.
@@ -33,7 +33,7 @@ pub(crate) fn run(args: &[&str]) -> Result<()> {
     let folder = strahl_binary()?
         .ancestors()
         .nth(2)
-        .context("the program lies in target/release")?
+        .context("strahl is not in target/release")?
         .join("bench-csg");
     std::fs::create_dir_all(&folder)?;
     let mut table = format!(
@@ -56,7 +56,7 @@ pub(crate) fn run(args: &[&str]) -> Result<()> {
     Ok(())
 }
 
-/// The row of a scene. Its text and both pictures stay in the folder.
+/// Measures a scene and returns its row. The scene's text and both pictures stay in the folder.
 fn one_scene(
     scene: &Scene,
     folder: &Path,

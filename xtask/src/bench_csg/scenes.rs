@@ -1,4 +1,4 @@
-//! The scenes: written in the language both programs read, each with one thing that CSG may be slow at.
+//! Benchmark scenes in the language both programs read. Each stresses one part of CSG.
 
 /// A scene of the benchmark.
 pub(super) struct Scene {
@@ -6,7 +6,7 @@ pub(super) struct Scene {
     pub(super) text: String,
 }
 
-/// All scenes, from the plainest to the most entangled.
+/// All scenes, the simplest first.
 pub(super) fn all() -> Vec<Scene> {
     let scene = |name, eye: [f64; 3], objects: String| Scene {
         name,
@@ -54,7 +54,7 @@ fn plate(columns: u32, rows: u32) -> String {
     )
 }
 
-/// A block eaten by spheres: rays pass many of them before they meet something.
+/// A block minus many spheres: rays pass through many of them before they hit something.
 fn bubbles() -> String {
     "#declare R = seed(5);\n\
      difference {\n  box { -4, 4 }\n#declare I = 0;\n#while (I < 500)\n\
@@ -63,7 +63,7 @@ fn bubbles() -> String {
         .to_owned()
 }
 
-/// Glass drops melted together.
+/// Glass drops that are merged.
 fn merged() -> String {
     "#declare R = seed(8);\n\
      merge {\n#declare I = 0;\n#while (I < 150)\n\
@@ -73,7 +73,7 @@ fn merged() -> String {
         .to_owned()
 }
 
-/// Every level cuts or joins what the level below has made.
+/// Deep nesting: every level subtracts from or adds to the level below.
 fn nested() -> String {
     "#declare Body = sphere { 0, 1 }\n\
      #declare I = 1;\n#while (I <= 8)\n  #declare A = I * 137;\n\
@@ -101,7 +101,7 @@ fn lenses() -> String {
         .to_owned()
 }
 
-/// Boxes rounded by a sphere, with a hole: trees as small as most are.
+/// Boxes rounded by a sphere, with a hole: small trees, as most scenes have.
 fn dice() -> String {
     "#declare I = 0;\n#while (I < 20)\n  #declare K = 0;\n  #while (K < 20)\n\
      difference { intersection { box { -0.24, 0.24 } sphere { 0, 0.33 } } cylinder { -y, y, 0.1 }\n\
@@ -111,7 +111,7 @@ fn dice() -> String {
         .to_owned()
 }
 
-/// Costly shapes among the cheap: most rays see that there is nothing to cut before they would have to ask a torus.
+/// Expensive shapes among cheap ones: for most rays the cheap ones decide, and no torus needs to be tested.
 fn grooves() -> String {
     "difference {\n  box { <-5, -1, -5>, <5, 0, 5> }\n\
      #declare I = 0;\n#while (I < 9)\n\
@@ -120,7 +120,7 @@ fn grooves() -> String {
         .to_owned()
 }
 
-/// The same with blobs, which are cut and cut off.
+/// The same with blobs, as minuend and as subtrahend.
 fn hollows() -> String {
     "#declare Drop = blob { threshold 0.5\n\
      #declare I = 0;\n#while (I < 8)\n\

@@ -1,4 +1,4 @@
-//! How far antialiased pictures are from converged ones.
+//! The error of antialiased pictures against converged ones.
 
 use super::Options;
 use super::measure::{self, Program, Timed};
@@ -6,8 +6,8 @@ use crate::compare_pov::picture;
 use anyhow::Result;
 use std::path::{Path, PathBuf};
 
-/// The errors of both programs' pictures, each against the program's own converged picture: root mean squares in 8-bit codes. `None`
-/// where a converged picture takes too long.
+/// Root mean square errors of both programs' pictures in 8-bit codes, each against the program's own converged picture. `None` if
+/// a converged picture takes too long.
 pub(super) fn errors(
     scene: &Path,
     pictures: &[PathBuf; 2],

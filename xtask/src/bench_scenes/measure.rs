@@ -1,4 +1,4 @@
-//! Runs a program on a scene and tells the processor time of the whole process.
+//! Runs a program on a scene and measures the processor time of the whole process.
 
 use anyhow::{Context, Result};
 use nix::sys::resource::{UsageWho, getrusage};
@@ -12,15 +12,15 @@ use std::time::{Duration, Instant};
 pub(super) enum Program {
     /// POV-Ray 3.7.
     PovRay,
-    /// Our release build.
+    /// The release build of strahl.
     Strahl,
 }
 
-/// What came of a run.
+/// The outcome of a run.
 pub(super) enum Timed {
-    /// Processor seconds, of user and system.
+    /// Processor seconds, user and system.
     Seconds(f64),
-    /// There is no picture.
+    /// No picture was written, for this reason.
     Failed(String),
 }
 
@@ -39,7 +39,7 @@ impl Program {
         }
     }
 
-    /// One ray per pixel.
+    /// Options for one ray per pixel.
     pub(super) fn plain(self) -> &'static [&'static str] {
         match self {
             Self::PovRay => &["-A"],
@@ -47,7 +47,7 @@ impl Program {
         }
     }
 
-    /// What everybody writes.
+    /// Options for the usual antialiasing.
     pub(super) fn antialiased(self) -> &'static [&'static str] {
         match self {
             Self::PovRay => &["+A0.3"],
@@ -55,7 +55,7 @@ impl Program {
         }
     }
 
-    /// As many rays in every pixel as POV-Ray can send.
+    /// Options for the largest number of rays per pixel that POV-Ray allows.
     pub(super) fn converged(self) -> &'static [&'static str] {
         match self {
             Self::PovRay => &["+A0.0", "+R9"],
@@ -64,7 +64,7 @@ impl Program {
     }
 }
 
-/// Renders a scene with one thread; gives up after `most` seconds by the clock.
+/// Renders a scene with one thread; stops the program after `most` seconds of wall time.
 pub(super) fn render(
     program: Program,
     scene: &Path,
@@ -123,7 +123,7 @@ pub(super) fn render(
         if start.elapsed().as_secs_f64() > most {
             child.kill()?;
             child.wait()?;
-            return Ok(Timed::Failed(format!("no end after {most} s")));
+            return Ok(Timed::Failed(format!("stopped after {most} s")));
         }
         std::thread::sleep(Duration::from_millis(2));
     };
@@ -133,7 +133,7 @@ pub(super) fn render(
     Ok(Timed::Seconds(spent()? - before))
 }
 
-/// Processor seconds of all processes that this one has started and that have ended.
+/// Processor seconds of all child processes that have ended.
 fn spent() -> Result<f64> {
     let usage = getrusage(UsageWho::RUSAGE_CHILDREN)?;
     let total = usage.user_time() + usage.system_time();

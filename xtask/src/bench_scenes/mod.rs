@@ -1,4 +1,4 @@
-//! Processor time of whole programs on real scenes, POV-Ray and strahl in turns, where both make the same picture.
+//! Processor time of both programs on real scenes, in turns. Only scenes count of which both make the same picture.
 
 mod antialiasing;
 mod measure;
@@ -9,10 +9,10 @@ use anyhow::{Context, Result, bail};
 use measure::{Program, Timed};
 use std::path::{Path, PathBuf};
 
-/// Pictures further apart than this (mean difference of the channels, in 8-bit codes) are not the same work.
+/// Pictures with a larger mean difference (of the channels, in 8-bit codes) count as different.
 const SAME: f64 = 4.0;
 
-/// What a scene took.
+/// The measurements of a scene.
 pub(crate) struct Row {
     /// Path below the folder.
     pub(crate) scene: String,
@@ -23,7 +23,7 @@ pub(crate) struct Row {
     pub(crate) errors: Option<(f64, f64)>,
 }
 
-/// What is asked for.
+/// The options of the command.
 pub(crate) struct Options {
     folder: PathBuf,
     out: PathBuf,
@@ -32,9 +32,9 @@ pub(crate) struct Options {
     limit: usize,
     only: Option<String>,
     antialiased: bool,
-    /// Whether to render converged pictures too.
+    /// Whether to render converged pictures as well.
     errors: bool,
-    /// Scenes that take POV-Ray longer, in seconds, are left out.
+    /// Scenes that take POV-Ray more seconds than this are left out.
     most: f64,
 }
 
@@ -127,7 +127,7 @@ pub(crate) fn run(args: &[&str]) -> Result<()> {
     Ok(())
 }
 
-/// The times of a scene, or why there are none.
+/// Measures a scene, or returns why it is left out.
 fn one_scene(scene: &Path, name: String, options: &Options) -> Result<Result<Row, String>> {
     let folder = tempfile::tempdir()?;
     let pictures =

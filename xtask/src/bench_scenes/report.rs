@@ -4,7 +4,7 @@ use super::Row;
 use crate::bench::geometric_mean;
 use std::fmt::Write as _;
 
-/// Scenes that take both programs less are not counted as slower: most of it is starting.
+/// Scenes in which both programs need less than this many seconds never count as slower: start-up dominates.
 const SHORT: f64 = 0.1;
 
 impl Row {
@@ -12,7 +12,7 @@ impl Row {
         self.povray / self.strahl
     }
 
-    /// Whether strahl takes longer, and long enough to matter.
+    /// Whether strahl takes longer, and the scene is not too short.
     fn is_slower(&self) -> bool {
         self.ratio() < 1.0 && self.strahl > SHORT
     }
@@ -32,7 +32,7 @@ pub(super) fn line(row: &Row) -> String {
     line
 }
 
-/// The slower scenes first, then all, then the totals.
+/// The table: slower scenes first, then the others, then the totals.
 pub(super) fn table(rows: &mut [Row], left_out: usize) -> String {
     rows.sort_by(|a, b| a.ratio().total_cmp(&b.ratio()));
     let mut text =
@@ -96,7 +96,7 @@ pub(super) fn tsv(rows: &[Row]) -> String {
     text
 }
 
-/// How many scenes are how many times as fast: bars of half an octave.
+/// A histogram of the speed ratios, in bars of half an octave.
 pub(super) fn histogram(rows: &[Row]) -> String {
     const BARS: usize = 17;
     let bar_of =

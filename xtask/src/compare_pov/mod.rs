@@ -1,4 +1,4 @@
-//! Renders a folder of .pov scenes with POV-Ray and with strahl, and reports how far the pictures are apart.
+//! Renders a folder of .pov scenes with POV-Ray and with strahl, and reports how different the pictures are.
 //!
 //! Nothing is written beside the scenes: both programs work in scratch folders, pictures and results go to `--out`.
 
@@ -12,13 +12,13 @@ use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Where Debian's package povray-examples lies.
+/// The folder of Debian's package povray-examples.
 pub(crate) const EXAMPLES: &str = "/usr/share/doc/povray/examples";
 
-/// Words that say that a picture needs what strahl does not do yet: a classical ray tracer's picture will differ.
+/// Words for features that a classical ray tracer doesn't have: its picture differs.
 const MARKS: [&str; 4] = ["radiosity", "photons", "media", "subsurface"];
 
-/// What became of a scene.
+/// The results of a scene.
 struct Row {
     /// Path below the folder.
     scene: String,
@@ -150,7 +150,7 @@ fn compare(options: &Options, scene: &Path, index: usize, programs: &Programs) -
     let file = |who: &str| images.join(format!("{index:04}-{who}.png"));
     let (theirs, ours, apart) = (file("povray"), file("strahl"), file("difference"));
     for file in [&theirs, &ours, &apart] {
-        // What an earlier run left must not stand for this one.
+        // A picture of an earlier run must not be taken for one of this run.
         let _ = std::fs::remove_file(file);
     }
     let bytes = std::fs::read(scene)?;
@@ -195,7 +195,7 @@ pub(crate) fn find_scenes(folder: &Path, found: &mut Vec<PathBuf>) -> Result<()>
     Ok(())
 }
 
-/// Which of [`MARKS`] stand before a brace, comments aside.
+/// Those of [`MARKS`] that are followed by a brace, outside of comments.
 fn marks(text: &str) -> Vec<&'static str> {
     let code: String = text
         .lines()

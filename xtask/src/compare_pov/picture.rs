@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::{BufReader, BufWriter};
 use std::path::Path;
 
-/// A picture as a viewer shows it: 8-bit codes.
+/// A picture as it is displayed: 8-bit codes.
 pub(crate) struct Shown {
     width: u32,
     height: u32,
@@ -28,10 +28,10 @@ impl Shown {
     }
 }
 
-/// Differences are shown four times as large.
+/// Factor by which difference pictures are amplified.
 const AMPLIFIED: u32 = 4;
 
-/// Reads a PNG of any kind; alpha is left out.
+/// Reads a PNG of any kind; alpha is ignored.
 pub(crate) fn read(file: &Path) -> Result<Shown> {
     let open = File::open(file).with_context(|| format!("cannot open {}", file.display()))?;
     let mut decoder = Decoder::new(BufReader::new(open));

@@ -5,19 +5,19 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-/// How long a program may take for one scene, if nothing else is said.
+/// The default time limit for a scene.
 const TIMEOUT: Duration = Duration::from_secs(120);
 
-/// What a program made of a scene.
+/// The outcome of a program on a scene.
 #[derive(Clone, Debug)]
 pub(crate) struct Outcome {
     /// Whether there is a picture.
     pub(crate) rendered: bool,
-    /// Seconds by the clock on the wall, reading included.
+    /// Seconds of wall time, reading included.
     pub(crate) seconds: f64,
     /// The first error, or else the first warning.
     pub(crate) reason: String,
-    /// What strahl says that it leaves out.
+    /// The features that strahl reports as left out.
     pub(crate) lacks: BTreeSet<String>,
 }
 
@@ -27,14 +27,14 @@ pub(crate) struct Programs {
     strahl: PathBuf,
     cache: PathBuf,
     size: (u32, u32),
-    /// How long a program may take for one scene.
+    /// The time limit for a scene.
     pub(crate) timeout: Duration,
     /// Include files of this folder come before those built into strahl.
     pub(crate) library: Option<PathBuf>,
 }
 
 impl Programs {
-    /// Looks for POV-Ray; without a binary of strahl, its release build is made and taken.
+    /// Looks for POV-Ray. If no binary of strahl is given, builds the release binary and uses that.
     pub(crate) fn new(size: (u32, u32), strahl: Option<&Path>) -> Result<Self> {
         let known = Command::new("povray").arg("--version").output();
         if known.is_err() {
@@ -58,7 +58,7 @@ impl Programs {
         })
     }
 
-    /// The same with pictures of another size.
+    /// The same programs with another picture size.
     pub(crate) fn sized(&self, size: (u32, u32)) -> Self {
         Self {
             size,
@@ -66,7 +66,7 @@ impl Programs {
         }
     }
 
-    /// POV-Ray's picture, from an earlier run if the scene is the same.
+    /// POV-Ray's picture, from the cache if the scene has not changed.
     pub(crate) fn povray(&self, scene: &Path, bytes: &[u8], picture: &Path) -> Result<Outcome> {
         let (w, h) = self.size;
         let mut hash = Sha256::new();
@@ -103,7 +103,7 @@ impl Programs {
         Ok(outcome)
     }
 
-    /// POV-Ray in a folder: no antialiasing, one thread; `reason` is all it said.
+    /// Runs POV-Ray in a folder, without antialiasing and with one thread; `reason` is its whole output.
     pub(crate) fn run_povray(&self, scene: &Path, folder: &Path, output: &Path) -> Result<Outcome> {
         let (w, h) = self.size;
         let mut command = Command::new("povray");
@@ -116,7 +116,7 @@ impl Programs {
         run(command, folder, output, self.timeout)
     }
 
-    /// Strahl in a folder: no antialiasing, one thread; `reason` is all it said.
+    /// Runs strahl in a folder, without antialiasing and with one thread; `reason` is its whole output.
     pub(crate) fn run_strahl(&self, scene: &Path, folder: &Path, output: &Path) -> Result<Outcome> {
         let (w, h) = self.size;
         let mut command = self.command("render", scene, folder);
@@ -140,7 +140,7 @@ impl Programs {
         if outcome.rendered {
             std::fs::copy(&output, picture)?;
         } else if outcome.reason.is_empty() {
-            outcome.reason = "died without a word".to_owned();
+            outcome.reason = "ended without a message".to_owned();
         }
         Ok(outcome)
     }
@@ -166,7 +166,7 @@ fn parent(scene: &Path) -> PathBuf {
     scene.parent().map_or_else(PathBuf::new, Path::to_path_buf)
 }
 
-/// Runs a program in a folder; `reason` of the outcome is all it said. Without an `output`, success counts as rendered.
+/// Runs a program in a folder; `reason` of the outcome is its whole output. Without an `output`, success counts as rendered.
 fn run(mut command: Command, folder: &Path, output: &Path, timeout: Duration) -> Result<Outcome> {
     let log = folder.join("log");
     let start = Instant::now();
@@ -192,7 +192,7 @@ fn run(mut command: Command, folder: &Path, output: &Path, timeout: Duration) ->
     let said = std::fs::read(&log)?;
     let mut reason = String::from_utf8_lossy(&said).into_owned();
     if status.is_none() {
-        reason = format!("error: no end after {} s\n", timeout.as_secs());
+        reason = format!("error: stopped after {} s\n", timeout.as_secs());
     }
     let success = status.is_some_and(|s| s.success());
     Ok(Outcome {
@@ -222,14 +222,14 @@ pub(crate) fn povray_reason(log: &str) -> String {
     words.join(" ")
 }
 
-/// The warnings about features that are not there yet.
+/// The features that strahl's warnings report as left out.
 fn lacks(log: &str) -> BTreeSet<String> {
     let warnings = log.lines().filter_map(|l| l.strip_prefix("warning: "));
     let lacks = warnings.filter(|l| l.contains("not supported"));
     lacks.map(str::to_owned).collect()
 }
 
-/// Strahl's first error, or else its first warning, with the place.
+/// Strahl's first error, or else its first warning, with its place.
 pub(crate) fn strahl_reason(log: &str) -> String {
     let find = |kind: &str| {
         let mut lines = log.lines().skip_while(|l| !l.starts_with(kind));

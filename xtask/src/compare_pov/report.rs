@@ -4,10 +4,10 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::Path;
 
-/// Pictures closer than this, in 8-bit codes of the mean channel, count as the same.
+/// Pictures with a smaller mean difference, in 8-bit codes, count as the same.
 const CLOSE: f64 = 4.0;
 
-/// Most of the reasons listed.
+/// The largest number of reasons listed.
 const REASONS: usize = 25;
 
 /// A scene in one line, for the terminal.
@@ -21,7 +21,7 @@ pub(super) fn line(row: &Row) -> String {
     format!("{}: {state}", row.scene)
 }
 
-/// The numbers that count.
+/// The summary of all scenes.
 pub(super) fn totals(rows: &[Row]) -> String {
     let mut out = String::new();
     let theirs: Vec<&Row> = rows.iter().filter(|r| r.povray.rendered).collect();
@@ -94,7 +94,7 @@ fn is_close(row: &Row) -> bool {
     row.difference.is_some_and(|(mean, _)| mean < CLOSE)
 }
 
-/// First reasons without their places, the most frequent first.
+/// The first reasons without their places, the most frequent first.
 fn reasons(rows: &[Row]) -> Vec<(String, usize)> {
     let missing = rows.iter().filter(|r| !r.strahl.rendered);
     counted(missing.map(|row| {
@@ -103,7 +103,7 @@ fn reasons(rows: &[Row]) -> Vec<(String, usize)> {
     }))
 }
 
-/// What is left out, in how many scenes.
+/// Features left out, with the number of scenes.
 fn lacks(rows: &[Row]) -> Vec<(String, usize)> {
     counted(
         rows.iter()
@@ -122,7 +122,7 @@ fn counted<'a>(texts: impl Iterator<Item = &'a str>) -> Vec<(String, usize)> {
     counts
 }
 
-/// A line per scene, for programs.
+/// Writes a table with a line per scene, for programs.
 pub(super) fn write_tsv(rows: &[Row], file: &Path) -> Result<()> {
     let mut out = String::from(
         "scene\tparses\trenders\tmean\trms\tpovray_s\tstrahl_s\tleft_out\tmarks\treason\tpovray_reason\n",
@@ -162,7 +162,7 @@ td.n { text-align: right; }
 <h1>strahl and POV-Ray</h1>
 ";
 
-/// All pictures side by side, the largest differences first, scenes without two pictures at the end.
+/// Writes all pictures side by side, the largest differences first, scenes without two pictures at the end.
 pub(super) fn write_html(rows: &[Row], size: (u32, u32), file: &Path) -> Result<()> {
     let mut out = String::from(HEAD);
     writeln!(out, "<pre>{}</pre>", escaped(&totals(rows)))?;

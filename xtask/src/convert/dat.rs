@@ -1,6 +1,6 @@
 //! Writes scenes in Tachyon's own format.
 //!
-//! Its space is left-handed: everything is mirrored in x, so that the picture is not. What it does not do is refract.
+//! Tachyon's space is left-handed: everything is mirrored in x, which leaves the picture as it is. Tachyon doesn't refract.
 
 use anyhow::{Context, Result, bail};
 use std::collections::HashMap;
@@ -33,7 +33,7 @@ pub(super) fn to_dat(scene: &Scene) -> Result<String> {
             bail!("only plain shapes can be converted")
         };
         let material = object.material.as_deref();
-        let material = material.context("every object of an NFF scene has a material")?;
+        let material = material.context("an object has no material")?;
         let look = look(material, ambient);
         let count = looks.len();
         let name = match looks.get(&look) {
@@ -95,12 +95,12 @@ fn write_shape(out: &mut String, shape: &Shape, look: &str) -> Result<()> {
             let (base, apex, radius) = (v(c.base()), v(c.apex()), c.radius());
             writeln!(out, "FCylinder Base {base} Apex {apex} Rad {radius} {look}")?;
         }
-        other => bail!("Tachyon has nothing like {other:?}"),
+        other => bail!("Tachyon has no shape like {other:?}"),
     }
     Ok(())
 }
 
-/// A material, without its name.
+/// The properties of a material, without its name.
 fn look(material: &Material, ambient: Color) -> String {
     let f = &material.finish;
     let opacity = 1.0 - f.transmission.max_component();

@@ -1,4 +1,4 @@
-//! Scenes of other formats as the programs compared with take them.
+//! Converts scenes of other formats for the programs that strahl is compared with.
 
 mod dat;
 mod pov;
@@ -8,12 +8,12 @@ use std::path::Path;
 use strahl::formats::scene::load_path;
 use strahl::scene::Scene;
 
-/// Writes a scene file as POV-Ray takes it.
+/// Converts a scene file for POV-Ray.
 pub(crate) fn to_pov(scene: &Path, output: &Path) -> Result<()> {
     write(output, pov::to_pov(&read(scene)?)?)
 }
 
-/// Writes a scene file as Tachyon takes it.
+/// Converts a scene file for Tachyon.
 pub(crate) fn to_dat(scene: &Path, output: &Path) -> Result<()> {
     write(output, dat::to_dat(&read(scene)?)?)
 }

@@ -1,4 +1,4 @@
-//! Writes scenes as POV-Ray takes them, so that both programs do the same work.
+//! Writes scenes for POV-Ray such that both programs do the same work.
 
 use anyhow::{Context, Result, bail};
 use std::fmt::Write;
@@ -39,7 +39,7 @@ pub(super) fn to_pov(scene: &Scene) -> Result<String> {
 }
 
 fn write_camera(out: &mut String, c: &Camera) -> Result<()> {
-    // In POV-Ray right and up are whole extents, in strahl half ones.
+    // In POV-Ray right and up are full extents, in strahl half extents.
     let (right, up) = (c.right * 2.0, c.up * 2.0);
     writeln!(
         out,
@@ -59,7 +59,7 @@ fn write_object(out: &mut String, object: &Object, ambient: Color) -> Result<()>
     let material = object
         .material
         .as_deref()
-        .context("every object of an NFF scene has a material")?;
+        .context("an object has no material")?;
     let look = texture(material, ambient);
     match shape {
         Shape::Sphere(s) => writeln!(
@@ -68,7 +68,7 @@ fn write_object(out: &mut String, object: &Object, ambient: Color) -> Result<()>
             v(s.center()),
             s.radius().abs()
         )?,
-        // POV-Ray tests every edge of a polygon; its triangles, in its own hierarchy, are faster when there are many.
+        // POV-Ray tests every edge of a polygon; many edges are faster as triangles in POV-Ray's own hierarchy.
         Shape::Polygon(p) if p.corners().len() > 8 => {
             writeln!(out, "mesh {{")?;
             let corner = |i: u32| v(p.corners()[i as usize]);
@@ -142,7 +142,7 @@ fn write_mesh(out: &mut String, mesh: &TriangleMesh, look: &str) -> Result<()> {
     Ok(())
 }
 
-/// kd is taken relative to the pigment, of which POV-Ray shows 1 - transmit.
+/// kd is divided by 1 - transmit, because POV-Ray shows that part of the pigment.
 fn texture(material: &Material, ambient: Color) -> String {
     let f = &material.finish;
     let transmit = f.transmission.max_component();
@@ -158,7 +158,7 @@ fn texture(material: &Material, ambient: Color) -> String {
         _ => String::new(),
     };
     let reflects = f.reflection.max_component();
-    // POV-Ray sends no reflection ray for a coefficient of 0; the databases' rules want one on transmitters.
+    // POV-Ray sends no reflection ray for a coefficient of 0; the SPD rules require one for transmitting objects.
     let reflection = if reflects > 0.0 || transmit > 0.0 {
         format!(
             " reflection {{ {} }}",

@@ -1,18 +1,18 @@
 use crate::compare_pov::picture::Shown;
 
-/// A channel may be this far off before a pixel counts: rounding, and numerical normals.
+/// A channel may differ by this much before its pixel counts: rounding, and numerical normals.
 const SLACK: u8 = 8;
 
-/// So many pixels may differ: single points on edges, where a rounding decides.
+/// This many pixels may differ: single points on edges, where rounding decides.
 const FEW: usize = 6;
 
-/// A mean difference above this counts even where every pixel could be an edge's shift.
+/// A larger mean difference always counts, even if shifted edges could explain every pixel.
 const MEAN: f64 = 6.0;
 
-/// How far two pictures are apart.
+/// The difference of two pictures.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Distance {
-    /// Pixels that differ by more than shifted edges explain, of all.
+    /// The share of pixels that differ by more than shifted edges explain.
     pub(super) share: f64,
     /// The mean absolute difference of the channels, in 8-bit codes.
     pub(super) mean: f64,
@@ -20,12 +20,12 @@ pub(super) struct Distance {
 }
 
 impl Distance {
-    /// Whether this is more than edges and roundings.
+    /// Whether the difference is more than shifted edges and rounding.
     pub(super) fn counts(&self) -> bool {
         self.pixels > FEW || self.mean > MEAN
     }
 
-    /// Whether the pictures are about as far apart as before: so a reducer stays with its finding.
+    /// Whether two differences are of about the same size, so that reducing keeps the finding.
     pub(super) fn is_like(&self, before: &Self) -> bool {
         let near = |now: f64, before: f64| now >= 0.4 * before && now <= 3.0 * before;
         self.counts()
@@ -97,7 +97,7 @@ mod tests {
         let edge = |at| shown(move |x, _| if x < at { 100 } else { 140 });
         assert_eq!(distance(&edge(7), &edge(8)).unwrap().share, 0.0);
         assert!(!distance(&edge(7), &edge(8)).unwrap().counts());
-        // Two pixels off is one column too many.
+        // An edge shifted by two columns.
         assert_eq!(distance(&edge(7), &edge(9)).unwrap().pixels, 16);
     }
 

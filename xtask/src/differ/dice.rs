@@ -18,17 +18,17 @@ impl Dice {
         z ^ (z >> 31)
     }
 
-    /// One of 0 to `count` - 1.
+    /// A number from 0 to `count` - 1.
     pub(super) fn below(&mut self, count: usize) -> usize {
         (self.next() % count.max(1) as u64) as usize
     }
 
-    /// One of `low` to `high`.
+    /// A number from `low` to `high`, both included.
     pub(super) fn between(&mut self, low: usize, high: usize) -> usize {
         low + self.below(high - low + 1)
     }
 
-    /// True in `percent` of 100 cases.
+    /// True with a probability of `percent` in 100.
     pub(super) fn chance(&mut self, percent: usize) -> bool {
         self.below(100) < percent
     }
@@ -37,7 +37,7 @@ impl Dice {
         things[self.below(things.len())]
     }
 
-    /// One of the things, as often as its weight says.
+    /// One of the things, with a probability proportional to its weight.
     pub(super) fn weighted<T: Copy>(&mut self, things: &[(usize, T)]) -> T {
         let mut at = self.below(things.iter().map(|(weight, _)| weight).sum());
         for (weight, thing) in things {

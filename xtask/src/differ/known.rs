@@ -1,6 +1,6 @@
-/// Differences that are meant or belong to POV-Ray: words that the smallest scene has all of, and why.
+/// Differences that are intended or that are POV-Ray's: the words that the smallest scene contains, and the reason.
 ///
-/// docs/src/differ.md has the same list with more words.
+/// docs/src/differ.md explains them.
 pub(super) const KNOWN: [(&[&str], &str); 3] = [
     (
         &["sky_sphere", "onion"],
@@ -16,7 +16,7 @@ pub(super) const KNOWN: [(&[&str], &str); 3] = [
     ),
 ];
 
-/// Why a smallest scene differs, if that is known.
+/// The known reason for the difference of a smallest scene, if there is one.
 pub(super) fn reason(text: &str) -> Option<&'static str> {
     find(&KNOWN, text)
 }

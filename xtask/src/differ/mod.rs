@@ -1,4 +1,4 @@
-//! Random scenes by POV-Ray and strahl: what differs is reduced to its smallest scene.
+//! Renders random scenes with POV-Ray and strahl, and reduces those that differ to the smallest scene that still does.
 
 mod compare;
 mod dice;
@@ -19,16 +19,16 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
-/// How large the pictures are: many scenes count more than many pixels.
+/// The size of the pictures. They are small: many scenes find more than many pixels.
 const SIZE: (u32, u32) = (32, 24);
 
-/// Seconds that a program may take for a scene.
+/// The time limit of a program for a scene, in seconds.
 const TIMEOUT: Duration = Duration::from_secs(12);
 
-/// Scenes that a reducer tries at most.
+/// The largest number of scenes that a reduction tries.
 const TRIES: usize = 1500;
 
-/// A scene that the programs do not agree on.
+/// A scene on which the programs disagree.
 struct Finding {
     number: u64,
     verdict: Verdict,
@@ -125,7 +125,7 @@ pub(crate) fn run(args: &[&str]) -> Result<()> {
     }
     let unknown = findings.iter().filter(|f| f.known.is_none()).count();
     println!(
-        "\n{} scenes differ, {unknown} of them without a known reason, by the words of their smallest scenes:",
+        "\n{} scenes differ, {unknown} of them without a known reason, grouped by the words of their smallest scenes:",
         findings.len()
     );
     print!("{}", report::groups(&findings));
@@ -176,7 +176,7 @@ fn totals(numbers: &[u64], verdicts: &[Verdict], seconds: f64) {
     let mut theirs: BTreeMap<String, Vec<u64>> = BTreeMap::new();
     for (number, verdict) in numbers.iter().zip(verdicts) {
         let kind = match verdict {
-            Verdict::Same => "show the same",
+            Verdict::Same => "look the same",
             Verdict::Differs(_) => "differ",
             Verdict::OursFails(_) => "fail in strahl only",
             Verdict::TheirsFails(message) => {
@@ -205,7 +205,7 @@ fn totals(numbers: &[u64], verdicts: &[Verdict], seconds: f64) {
     }
 }
 
-/// Works through things with several threads; the results come back in their order.
+/// Processes a list with several threads; the results are in the order of the list.
 fn in_parallel<T: Sync, R: Send>(
     things: &[T],
     jobs: usize,

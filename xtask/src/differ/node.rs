@@ -1,9 +1,9 @@
 use std::fmt::Write;
 
-/// Lines of a scene's text are at most this long where they can be broken.
+/// Lines of a scene's text are broken before this length where possible.
 const WIDTH: usize = 100;
 
-/// What a part of a scene is: parts of the same sort may take each other's place.
+/// The sort of a part: parts of the same sort can replace each other.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Sort {
     /// The whole scene: a list of statements.
@@ -12,9 +12,9 @@ pub(super) enum Sort {
     Object,
     /// `texture { }`
     Texture,
-    /// What stands in `pigment { }` or in an entry of a pigment map.
+    /// The inside of `pigment { }`, or an entry of a pigment map.
     Pigment,
-    /// What stands in `normal { }` or in an entry of a normal map.
+    /// The inside of `normal { }`, or an entry of a normal map.
     Normal,
     /// A colour.
     Color,
@@ -25,12 +25,12 @@ pub(super) enum Sort {
 /// A part of a scene.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Node {
-    /// Words as they stand.
+    /// Literal words.
     Words(String),
     Number(f64),
     /// Numbers in angle brackets.
     Vector(Vec<f64>),
-    /// Parts, in braces after a word if there is a `head`.
+    /// A list of parts; with a `head`, that word comes first and the parts are in braces.
     Group {
         sort: Sort,
         head: Option<String>,
@@ -42,7 +42,7 @@ pub(super) enum Node {
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Part {
     pub(super) node: Node,
-    /// Whether the group means nothing without it.
+    /// Whether the group is invalid without this part.
     pub(super) needed: bool,
 }
 
@@ -73,7 +73,7 @@ pub(super) fn optional(node: Node) -> Part {
     }
 }
 
-/// A run of words, numbers and vectors that belong together: `list![words("scale"), number]`.
+/// A list of words, numbers and vectors that belong together: `list![words("scale"), number]`.
 macro_rules! list {
     ($($node:expr),* $(,)?) => {
         $crate::differ::node::run(
@@ -131,7 +131,7 @@ impl Node {
         }
     }
 
-    /// Everything in one line.
+    /// The text in one line.
     fn flat(&self) -> String {
         match self {
             Self::Words(text) => text.clone(),
@@ -157,7 +157,7 @@ impl Node {
         }
     }
 
-    /// One line if it fits, or else a line for every part.
+    /// The text in one line if it fits, or else with a line for every part.
     fn lines(&self, indent: usize) -> String {
         let flat = self.flat();
         let lead = "  ".repeat(indent);
@@ -175,7 +175,7 @@ impl Node {
             }
             None => indent,
         };
-        // What has no braces stays on one line with what comes before.
+        // A part without braces stays on the line of the part before it.
         let mut short = String::new();
         let lead_inner = "  ".repeat(inner);
         let flush = |short: &mut String, out: &mut String| {

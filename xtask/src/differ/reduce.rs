@@ -1,5 +1,5 @@
-//! Delta debugging on the generator's tree (Zeller and Hildebrandt 2002; Misherghi and Su 2006): whatever makes a scene
-//! smaller is tried, the largest cuts first, as long as the finding stays.
+//! Delta debugging on the generator's tree (Zeller and Hildebrandt 2002; Misherghi and Su 2006): tries everything that makes a
+//! scene smaller, the largest cuts first, and keeps a cut if the finding remains.
 
 use super::node::{Node, Part, Sort, run, words};
 use std::collections::HashSet;
@@ -7,8 +7,8 @@ use std::collections::HashSet;
 /// Steps from a group to one of its parts, from the root.
 type Path = Vec<usize>;
 
-/// A smaller scene for which `fails` still holds. `fails` is given several scenes at once, at most `batch`, and says for each
-/// whether the finding stays; at most `most` are tried.
+/// Finds a smaller scene for which `fails` still holds. `fails` gets up to `batch` scenes at once and returns for each whether
+/// the finding remains; at most `most` scenes are tried.
 pub(super) fn reduce(
     scene: &Node,
     batch: usize,
@@ -22,7 +22,7 @@ pub(super) fn reduce(
         batch: batch.max(1),
         fails,
     };
-    // Halves of lists, then single parts, then simpler things in place of others, then simpler numbers.
+    // Cut halves of lists, then single parts, then replace things by simpler ones, then numbers by simpler ones.
     loop {
         let mut better = false;
         for cuts in [halves, without, simpler_things, simpler_numbers] {
@@ -34,7 +34,7 @@ pub(super) fn reduce(
     }
 }
 
-/// All scenes that are one cut of a kind smaller at a place.
+/// Makes all scenes that are smaller by one cut of a kind at a place.
 type Cuts = fn(&Node, &[usize], &mut Vec<Node>);
 
 struct Search<F> {
@@ -46,14 +46,14 @@ struct Search<F> {
 }
 
 impl<F: FnMut(&[String]) -> Vec<bool>> Search<F> {
-    /// Tries the cuts of one kind at all places, outer ones first; goes on behind a cut that was made.
+    /// Tries the cuts of one kind at all places, outer ones first; after a successful cut it continues with the next place.
     fn pass(&mut self, cuts: Cuts) -> bool {
         let (mut at, mut better) = (0, false);
         loop {
             let mut paths = vec![];
             collect(&self.smallest, &mut paths);
             let weight = weigh(&self.smallest);
-            // Some scenes, each with the place that it was cut at.
+            // A batch of scenes, each with the place of its cut.
             let mut some: Vec<(usize, Node, String)> = vec![];
             let mut place = at;
             while place < paths.len() && some.len() < self.batch {
@@ -86,7 +86,7 @@ impl<F: FnMut(&[String]) -> Vec<bool>> Search<F> {
     }
 }
 
-/// How complicated a scene is; every step of the reducer makes this smaller, so it ends.
+/// How complicated a scene is. Every step of the reduction makes it smaller, so the reduction ends.
 fn weigh(node: &Node) -> usize {
     match node {
         Node::Words(text) => 4 * text.split_whitespace().count(),
@@ -131,7 +131,7 @@ fn find<'a>(scene: &'a Node, path: &[usize]) -> Option<&'a Node> {
     })
 }
 
-/// The scene with another node at this place.
+/// The scene with the node at this place replaced.
 fn replaced(scene: &Node, path: &[usize], node: Node) -> Node {
     let Some((first, rest)) = path.split_first() else {
         return node;
@@ -162,7 +162,7 @@ fn with_parts(node: &Node, keep: impl Fn(usize, &Part) -> bool) -> Option<Node> 
     })
 }
 
-/// All that is optional left out, and either half of it.
+/// The node without all of its optional parts, and without either half of them.
 fn halves(scene: &Node, path: &[usize], found: &mut Vec<Node>) {
     let Some(node) = find(scene, path) else {
         return;
@@ -182,7 +182,7 @@ fn halves(scene: &Node, path: &[usize], found: &mut Vec<Node>) {
     }
 }
 
-/// Each optional part left out.
+/// The node without each of its optional parts.
 fn without(scene: &Node, path: &[usize], found: &mut Vec<Node>) {
     let Some((index, parent)) = path.split_last() else {
         return;
@@ -194,7 +194,7 @@ fn without(scene: &Node, path: &[usize], found: &mut Vec<Node>) {
     found.extend(smaller.map(|n| replaced(scene, parent, n)));
 }
 
-/// Something of the same sort from within, or the simplest of the sort.
+/// The node replaced by something of the same sort inside it, or by the simplest thing of its sort.
 fn simpler_things(scene: &Node, path: &[usize], found: &mut Vec<Node>) {
     let Some(node) = find(scene, path) else {
         return;
@@ -246,7 +246,7 @@ fn simpler_numbers(scene: &Node, path: &[usize], found: &mut Vec<Node>) {
             found.push(replaced(scene, path, Node::Vector(short)));
             for (index, number) in numbers.iter().enumerate() {
                 let mut simple = simpler(*number);
-                // A vector of nothing is something else.
+                // A zero vector would mean something else.
                 if numbers.iter().filter(|n| **n != 0.0).count() > 1 {
                     simple.insert(0, 0.0);
                 }
@@ -262,11 +262,11 @@ fn simpler_numbers(scene: &Node, path: &[usize], found: &mut Vec<Node>) {
 }
 
 fn one_digit(number: f64) -> f64 {
-    // Plus 0: no -0.
+    // Adding 0 turns -0 into 0.
     (number * 10.0).round() / 10.0 + 0.0
 }
 
-/// Simpler numbers in place of this one; none becomes 0, for most things of no size are something else.
+/// Simpler numbers than this one. A number other than 0 never becomes 0, because most things of size 0 mean something else.
 fn simpler(number: f64) -> Vec<f64> {
     let mut found = vec![1.0, number.round(), 0.5, one_digit(number)];
     found.retain(|n| *n != number && *n != 0.0);
@@ -324,7 +324,7 @@ mod tests {
             Sort::Scene,
             vec![optional(words("#version 3.7;")), optional(union)],
         );
-        // The simplest sphere is not enough here: the finding is the 2 of 2.61.
+        // The simplest sphere does not suffice here: the finding is the 2 of 2.61.
         let text = reduced(&scene, |text| text.contains(", 2") || text.contains(", 3,"));
         assert_eq!(text, "sphere { <0, 3, 0>, 1 }\n");
     }

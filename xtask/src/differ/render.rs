@@ -4,18 +4,18 @@ use crate::compare_pov::programs::{Programs, povray_reason, strahl_reason};
 use anyhow::Result;
 use std::path::Path;
 
-/// What the two programs made of a scene.
+/// The result of comparing the two programs on a scene.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Verdict {
-    /// The same, but for edges and roundings.
+    /// The same picture, except for shifted edges and rounding.
     Same,
-    /// Two pictures.
+    /// Different pictures.
     Differs(Distance),
-    /// POV-Ray shows it; strahl says this.
+    /// Only strahl fails, with this message.
     OursFails(String),
-    /// Strahl shows it; POV-Ray says this.
+    /// Only POV-Ray fails, with this message.
     TheirsFails(String),
-    /// Neither shows it; POV-Ray says this.
+    /// Both fail; this is POV-Ray's message.
     BothFail(String),
 }
 
@@ -24,7 +24,7 @@ impl Verdict {
         matches!(self, Self::Differs(_) | Self::OursFails(_))
     }
 
-    /// Whether this is the same finding as that.
+    /// Whether both are the same finding.
     pub(super) fn is_like(&self, before: &Self) -> bool {
         match (self, before) {
             (Self::Differs(now), Self::Differs(before)) => now.is_like(before),
@@ -46,7 +46,7 @@ pub(super) fn judge(programs: &Programs, text: &str) -> Result<Verdict> {
     Ok(judge_in(programs, text, folder.path())?.0)
 }
 
-/// The same in a folder, where the pictures stay: `scene.pov`, `povray.png`, `strahl.png`.
+/// Renders a scene in a folder, where the pictures stay: `scene.pov`, `povray.png`, `strahl.png`.
 pub(super) fn judge_in(
     programs: &Programs,
     text: &str,

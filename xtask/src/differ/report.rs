@@ -6,7 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
 use std::path::Path;
 
-/// Words that every scene has: they say nothing about a finding.
+/// Words that every scene contains.
 const FRAME: [&str; 8] = [
     "camera",
     "location",
@@ -18,7 +18,7 @@ const FRAME: [&str; 8] = [
     "y",
 ];
 
-/// What makes a finding: the words of its smallest scene, or what strahl says.
+/// The signature of a finding: the words of its smallest scene, or strahl's message.
 pub(super) fn signature(verdict: &Verdict, smallest: &str) -> String {
     if let Verdict::OursFails(message) = verdict {
         return plain(message);
@@ -31,7 +31,7 @@ pub(super) fn signature(verdict: &Verdict, smallest: &str) -> String {
     words.into_iter().collect::<Vec<_>>().join(" ")
 }
 
-/// A finding in words: how far the pictures are apart, or who fails.
+/// Describes a finding: how different the pictures are, or which program fails.
 pub(super) fn describe(verdict: &Verdict) -> String {
     match verdict {
         Verdict::Same => "same".to_owned(),
@@ -46,7 +46,7 @@ pub(super) fn describe(verdict: &Verdict) -> String {
     }
 }
 
-/// All findings by what makes them, the most frequent first.
+/// All findings by signature, the most frequent first.
 pub(super) fn groups(findings: &[Finding]) -> String {
     let mut groups: BTreeMap<String, Vec<&Finding>> = BTreeMap::new();
     for finding in findings {

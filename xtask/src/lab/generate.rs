@@ -8,10 +8,10 @@ use strahl::math::DVec3;
 /// Writes a scene: `sphereflake LEVELS`, `tetra LEVELS`, `crystal SIDE` or `stadium`.
 pub(crate) fn generate(what: &str, size: Option<&str>) -> Result<String> {
     let size_up_to = |most: u32| -> Result<u32> {
-        let size = size.with_context(|| format!("{what} of which size?"))?;
+        let size = size.with_context(|| format!("generate {what} needs a size"))?;
         let size = size.parse()?;
         if size > most {
-            bail!("{what} of size {size} is more than memory holds; up to {most} there are");
+            bail!("{what} of size {size} is too large for memory; the largest size is {most}");
         }
         Ok(size)
     };
@@ -51,7 +51,9 @@ pub(crate) fn generate(what: &str, size: Option<&str>) -> Result<String> {
             scene.fill("0.9 0.6 0.3 0.7 0.3 20 0 0");
             scene.knot();
         }
-        other => bail!("unknown scene `{other}`; there are: sphereflake, tetra, crystal, stadium"),
+        other => {
+            bail!("unknown scene `{other}`; known ones are sphereflake, tetra, crystal, stadium")
+        }
     }
     Ok(scene.0)
 }
@@ -86,7 +88,7 @@ impl Scene {
         self.polygon(&corners.map(|(x, y)| DVec3::new(x * half, y * half, z)));
     }
 
-    /// A sphere with nine of a third of its size on it, six around its equator and three above, and so on.
+    /// A sphere that carries nine spheres of a third of its size, six around its equator and three above, and so on.
     fn flake(&mut self, center: DVec3, radius: f64, up: DVec3, levels: u32) {
         self.point_and("s ", center, radius);
         if levels == 0 {
@@ -106,7 +108,7 @@ impl Scene {
         }
     }
 
-    /// A tetrahedron of four half its size, and so on; the smallest have faces.
+    /// A tetrahedron of four tetrahedra of half its size, and so on; the smallest have faces.
     fn tetra(&mut self, corners: [DVec3; 4], levels: u32) {
         if levels == 0 {
             for face in [[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]] {
@@ -119,7 +121,7 @@ impl Scene {
         }
     }
 
-    /// Equal spheres at equal distances: as evenly filled as a scene can be.
+    /// Equal spheres at equal distances: a scene filled as evenly as possible.
     fn crystal(&mut self, side: u32) {
         let middle = (f64::from(side) - 1.0) / 2.0;
         let along = |i: u32| f64::from(i) - middle;
@@ -132,7 +134,7 @@ impl Scene {
         }
     }
 
-    /// Rows of seats all around, as large as the thing in the middle is small.
+    /// Rows of seats all around the small object in the middle.
     fn tiers(&mut self) {
         const SECTORS: u32 = 72;
         for row in 0..24 {
@@ -160,7 +162,7 @@ impl Scene {
         }
     }
 
-    /// A small knotted tube of 16,384 triangles in the middle: the teapot.
+    /// A small knotted tube of 16,384 triangles in the middle: the teapot in the stadium.
     fn knot(&mut self) {
         const AROUND: u32 = 512;
         const ACROSS: u32 = 16;

@@ -1,4 +1,4 @@
-//! How the cost of a ray grows with the scene, accelerator by accelerator.
+//! Measures how the cost of a ray grows with the size of the scene, for each accelerator.
 
 use super::generate::generate;
 use super::plot::{Plot, Series};
@@ -51,7 +51,7 @@ pub(crate) fn measure(output: &Path, size: &str) -> Result<()> {
                     1e6 / number("rays_per_s"),
                 );
             }
-            // What is measured is kept, whatever happens to the larger scenes.
+            // The table is written after every scene, so that a failure on a larger scene loses nothing.
             std::fs::write(output, &table)?;
         }
     }
@@ -66,7 +66,7 @@ fn primitives(scene: &Path) -> Result<usize> {
         .count())
 }
 
-/// Draws the table: for each scene one plot of the work per ray, and one of its time.
+/// Draws the table: for each scene a plot of the work per ray and one of the time per ray.
 pub(crate) fn plot_growth(table: &Path, folder: &Path) -> Result<()> {
     let text = std::fs::read_to_string(table)
         .with_context(|| format!("cannot read {}", table.display()))?;
@@ -79,7 +79,7 @@ pub(crate) fn plot_growth(table: &Path, folder: &Path) -> Result<()> {
         for (file, title, value) in [
             (
                 "work",
-                "nodes or cells looked at + primitives tested, per ray",
+                "nodes or cells visited + primitives tested, per ray",
                 work as Column,
             ),
             ("time", "microseconds per ray", time as Column),
@@ -112,7 +112,7 @@ pub(crate) fn plot_growth(table: &Path, folder: &Path) -> Result<()> {
     Ok(())
 }
 
-/// A number of a row of the table.
+/// Reads a number from a row of the table.
 type Column = fn(&[&str]) -> Result<f64>;
 
 fn work(row: &[&str]) -> Result<f64> {

@@ -1,4 +1,4 @@
-//! The accelerator laboratory: scenes that grow, what they cost, and plots of it.
+//! The accelerator laboratory: scenes of growing size, measurements of their cost, and plots of it.
 
 mod generate;
 mod growth;

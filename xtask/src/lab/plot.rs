@@ -1,8 +1,8 @@
-//! Double logarithmic plots as SVG.
+//! Double-logarithmic plots as SVG.
 
 use std::fmt::Write;
 
-/// Measured points of one name.
+/// The measured points of one curve.
 pub(super) struct Series<'a> {
     pub(super) name: &'a str,
     /// `(x, y)`, both above 0, in the order of x.
@@ -59,7 +59,7 @@ impl Axis {
 }
 
 impl Plot<'_> {
-    /// The picture.
+    /// The plot as SVG.
     pub(super) fn svg(&self) -> String {
         let [left, right, top, bottom] = FRAME;
         let points = || self.series.iter().flat_map(|s| s.points.iter());
@@ -114,7 +114,7 @@ impl Plot<'_> {
             }
             labels.push((places.last().map_or(top, |p| p.1), index));
         }
-        // Names beside the last points, moved apart.
+        // The names of the curves stand beside their last points, moved apart if they overlap.
         labels.sort_by(|a, b| a.0.total_cmp(&b.0));
         let mut free = top;
         for (at, index) in labels {
@@ -132,7 +132,7 @@ impl Plot<'_> {
         svg + "</svg>\n"
     }
 
-    /// A dashed line of slope one: what grows like the scene.
+    /// A dashed line of slope one, for comparison with linear growth.
     fn guides(&self, svg: &mut String, x: &Axis, y: &Axis) {
         let Some(first) = self.series.first().and_then(|s| s.points.first()) else {
             return;
@@ -166,7 +166,7 @@ fn line(svg: &mut String, a: (f64, f64), b: (f64, f64), color: &str) {
     );
 }
 
-/// A power of ten as one reads it.
+/// A power of ten as a label.
 fn power(decade: i32) -> String {
     match decade {
         -2..=3 => format!("{}", 10f64.powi(decade)),

@@ -1,9 +1,9 @@
-//! How far two pictures of a plate are apart, in 8-bit codes.
+//! The difference of two pictures of a plate, in 8-bit codes.
 
-/// Sides of the blocks in pixels.
+/// The side of a block in pixels.
 const BLOCK: usize = 6;
 
-/// A plate as a viewer shows it.
+/// A plate as it is displayed, in 8-bit codes.
 pub(crate) struct Plate {
     pub(crate) width: usize,
     pub(crate) height: usize,
@@ -11,16 +11,16 @@ pub(crate) struct Plate {
     pub(crate) rgb: Vec<[u8; 3]>,
 }
 
-/// The distances.
+/// The difference of two plates, by four measures.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Distance {
-    /// Of the mean colours, in the channel where it is largest.
+    /// Of the mean colours, in the channel with the largest difference.
     pub(crate) mean: f64,
-    /// Of the histograms: how far the values must be moved on average to make one of the other.
+    /// Of the histograms: how far the values must be moved on average to turn one into the other (the earth mover's distance).
     pub(crate) histogram: f64,
-    /// Of the means of blocks, on average.
+    /// Of the means of blocks, averaged over the blocks.
     pub(crate) blocks: f64,
-    /// Of the pixels, on average.
+    /// Of the pixels, averaged.
     pub(crate) pixels: f64,
 }
 
@@ -30,7 +30,7 @@ impl Plate {
         mean(self.rgb.iter())
     }
 
-    /// Means of blocks.
+    /// The means of all blocks.
     fn blocks(&self) -> Vec<[f64; 3]> {
         let mut blocks = vec![];
         for y in (0..self.height).step_by(BLOCK) {
@@ -45,7 +45,7 @@ impl Plate {
         blocks
     }
 
-    /// The values of a channel in order.
+    /// The values of a channel in ascending order.
     fn ordered(&self, channel: usize) -> Vec<u8> {
         let mut values: Vec<u8> = self.rgb.iter().map(|p| p[channel]).collect();
         values.sort_unstable();
@@ -64,7 +64,7 @@ fn mean<'a>(pixels: impl Iterator<Item = &'a [u8; 3]>) -> [f64; 3] {
     sum.map(|s| s / f64::max(count, 1.0))
 }
 
-/// Distances of two plates of the same size.
+/// The differences of two plates of the same size.
 pub(crate) fn distance(a: &Plate, b: &Plate) -> Distance {
     let apart = |(a, b): (&u8, &u8)| f64::from(a.abs_diff(*b));
     let average = |sum: f64, count: usize| sum / (3 * count).max(1) as f64;

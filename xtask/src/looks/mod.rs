@@ -1,5 +1,5 @@
-//! Looks of the include library: every name that has one is rendered by POV-Ray with its includes and by strahl with its own, and
-//! the pictures are compared.
+//! Compares the looks of the include library: renders every name that has a look with POV-Ray and its includes and with strahl
+//! and its own, and compares the pictures.
 
 mod measure;
 mod report;
@@ -69,7 +69,7 @@ pub(crate) fn run(args: &[&str]) -> Result<()> {
         names.retain(|n| format!("{}/{}", n.file, n.name).contains(only.as_str()));
     }
     if names.is_empty() {
-        bail!("no name of the library with a look contains that");
+        bail!("no name with a look contains the part given by --only");
     }
     for folder in ["images", "scenes"] {
         let folder = options.out.join(folder);
@@ -106,7 +106,7 @@ pub(crate) fn run(args: &[&str]) -> Result<()> {
     Ok(())
 }
 
-/// Renders a sheet by both programs and cuts it into plates.
+/// Renders a sheet with both programs and cuts it into plates.
 fn compare(options: &Options, sheet: &Sheet, programs: &Programs) -> Result<Vec<Look>> {
     let Some(first) = sheet.names.first() else {
         return Ok(vec![]);

@@ -1,4 +1,4 @@
-//! What the comparison found: a page with all plates, tables, and the numbers that the test keeps.
+//! Reports the comparison: a page with all plates, tables, and the numbers that the test checks.
 
 use super::Look;
 use crate::plates::{FILES, Name};
@@ -6,7 +6,7 @@ use anyhow::Result;
 use std::fmt::Write;
 use std::path::Path;
 
-/// Mean colours no farther apart than this, in 8-bit codes, are the same look.
+/// Mean colours with a smaller difference, in 8-bit codes, count as the same look.
 const CLOSE: f64 = 6.0;
 
 /// Where a plate lies below the folder of the report.
@@ -65,7 +65,7 @@ pub(super) fn summary(looks: &[Look]) -> String {
     out
 }
 
-/// Writes a page of the manual: its text up to the mark stays, the tables behind it are new.
+/// Writes the tables into a page of the manual: the text before the mark stays, the rest is replaced.
 pub(super) fn write_table(looks: &[Look], file: &Path) -> Result<()> {
     const MARK: &str = "<!-- looks: written by cargo xtask looks --table -->\n";
     let old = std::fs::read_to_string(file).unwrap_or_default();

@@ -1,4 +1,4 @@
-//! Who is ready to trace sooner: both programs build the same scene, in turns.
+//! Compares the time to build: both programs build the same scene, in turns.
 
 use super::embree::{EmbreeScene, Options, Quality};
 use super::{Plan, Table};
@@ -10,13 +10,13 @@ use strahl::Problems;
 use strahl::prelude::*;
 use strahl::tracing::Prepared;
 
-/// A scene that both programs have built.
+/// A scene built by both programs.
 pub(super) struct Built<'e> {
     pub(super) ours: RenderScene,
     pub(super) theirs: EmbreeScene<'e>,
 }
 
-/// Builds a scene of so many primitives with both programs, as often as the plan says.
+/// Builds a scene with this many primitives with both programs, as often as the plan says.
 pub(super) fn race<'e>(
     name: &str,
     scene: &Scene,
@@ -36,7 +36,7 @@ pub(super) fn race<'e>(
     let (mut our_times, mut their_times) = (vec![], vec![]);
     let mut built = None;
     for _ in 0..plan.builds {
-        // One pair at a time is in memory.
+        // Only one pair is in memory at a time.
         drop(built.take());
         let prepared = prepared.clone();
         let (ours, time) = timed(|| pool.install(|| prepared.build(plan.accelerator)));
@@ -46,7 +46,7 @@ pub(super) fn race<'e>(
         let theirs = theirs?;
         built = Some(Built { ours, theirs });
     }
-    let built = built.context("--builds is at least 1")?;
+    let built = built.context("--builds must be at least 1")?;
     let (our_time, their_time) = (median(&mut our_times), median(&mut their_times));
     let stats = built.ours.stats();
     table.line(format!(
@@ -58,7 +58,7 @@ pub(super) fn race<'e>(
     Ok(built)
 }
 
-/// What a job returns, and the seconds of processor time it took in all threads; where the system does not tell, those of the clock.
+/// Returns the result of a job and the processor seconds of all its threads; the wall time on systems that don't report them.
 fn timed<T>(job: impl FnOnce() -> T) -> (T, f64) {
     let (start, before) = (Instant::now(), processor_time());
     let result = job();
@@ -67,9 +67,9 @@ fn timed<T>(job: impl FnOnce() -> T) -> (T, f64) {
     (result, time.unwrap_or(took))
 }
 
-/// Seconds of processor time that the threads of this process have taken, as Linux tells it.
+/// Processor seconds that the threads of this process have used; only Linux reports them.
 fn processor_time() -> Option<f64> {
-    // The time of a running thread is brought up to date when it gives way.
+    // Linux updates the time of a running thread when it yields.
     std::thread::yield_now();
     let mut nanoseconds = 0.0;
     for task in fs::read_dir("/proc/self/task").ok()? {

@@ -1,7 +1,7 @@
-//! Embree 3 through its C API, loaded at run time: nothing is linked, and without the library the benchmark says so.
+//! Embree 3 through its C API, loaded at run time: nothing is linked, and if the library is missing the benchmark reports it.
 #![expect(
     unsafe_code,
-    reason = "calls of a C library; every block names what makes it sound"
+    reason = "calls of a C library; every block says why it is sound"
 )]
 
 mod tree;
@@ -32,7 +32,7 @@ pub(super) struct RayHit {
     instance: u32,
 }
 
-/// `struct RTCRayHit16`: sixteen of them side by side.
+/// `struct RTCRayHit16`: sixteen rays and their hits, side by side.
 #[repr(C, align(64))]
 #[derive(Clone, Copy)]
 pub(super) struct RayHit16 {
@@ -69,7 +69,7 @@ const FLOAT3: c_uint = 0x9003;
 const FLOAT4: c_uint = 0x9004;
 const ROBUST: c_uint = 1 << 2;
 
-/// How carefully Embree builds.
+/// The quality of Embree's builds.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Quality {
     Medium = 1,
@@ -99,7 +99,7 @@ pub(super) struct Embree {
     new_bvh: unsafe extern "C" fn(Handle) -> Handle,
     build_bvh: unsafe extern "C" fn(*const Arguments<'_>) -> Handle,
     release_bvh: unsafe extern "C" fn(Handle),
-    /// Keeps the functions valid. Never unloaded: threads of its own may still run at the end.
+    /// Keeps the functions valid. It is never unloaded, because its threads may still run at the end.
     _library: &'static Library,
 }
 
@@ -152,7 +152,7 @@ impl Embree {
         // SAFETY: the text ends in zero.
         let handle = unsafe { (self.new_device)(config.as_ptr().cast()) };
         if handle.is_null() {
-            bail!("Embree gives no device");
+            bail!("Embree returned no device");
         }
         Ok(Device {
             embree: self,
@@ -161,7 +161,7 @@ impl Embree {
     }
 }
 
-/// What Embree's scenes belong to.
+/// A device of Embree, which owns scenes.
 pub(super) struct Device<'e> {
     embree: &'e Embree,
     handle: Handle,
@@ -169,7 +169,7 @@ pub(super) struct Device<'e> {
 
 impl Drop for Device<'_> {
     fn drop(&mut self) {
-        // SAFETY: it was got from the library and is released here only; its scenes borrow it.
+        // SAFETY: the handle came from the library and is released only here; the scenes of the device borrow it.
         unsafe { (self.embree.release_device)(self.handle) };
     }
 }
@@ -238,7 +238,7 @@ impl Device<'_> {
         unsafe {
             let to = new_buffer(geometry, buffer, 0, format, size_of::<T>(), items.len());
             if to.is_null() {
-                bail!("Embree gives no memory");
+                bail!("Embree returned no memory");
             }
             ptr::copy_nonoverlapping(items.as_ptr(), to.cast(), items.len());
         }
@@ -261,7 +261,7 @@ pub(super) struct EmbreeScene<'e> {
 
 impl Drop for EmbreeScene<'_> {
     fn drop(&mut self) {
-        // SAFETY: it was got from the library and is released here only.
+        // SAFETY: the handle came from the library and is released only here.
         unsafe { (self.embree.release_scene)(self.scene) };
     }
 }
@@ -290,7 +290,7 @@ impl RayHit {
 }
 
 impl RayHit16 {
-    /// Sixteen rays side by side; those that are missing are zeros.
+    /// Packs up to sixteen rays; the remaining lanes are zero.
     pub(super) fn of(rays: &[Segment]) -> Self {
         let mut packet = Self {
             origin: [[0.0; 16]; 3],
@@ -330,7 +330,7 @@ impl Context1 {
 }
 
 impl EmbreeScene<'_> {
-    /// Distances of the nearest hits (infinite for none), one ray after the other.
+    /// Appends the distances of the closest hits of all rays in order; infinite if there is none.
     pub(super) fn closest(&self, rays: &[Segment], out: &mut Vec<f32>) {
         let mut context = Context1::new(false);
         out.clear();
@@ -346,7 +346,7 @@ impl EmbreeScene<'_> {
         }
     }
 
-    /// How many rays meet anything.
+    /// The number of rays that hit anything.
     pub(super) fn occluded(&self, rays: &[Segment]) -> usize {
         let mut context = Context1::new(false);
         let mut hits = 0;
@@ -359,7 +359,7 @@ impl EmbreeScene<'_> {
         hits
     }
 
-    /// The same for packets of sixteen rays; returns the number of hits.
+    /// Traces packets of sixteen rays, for any hit or for the closest one; returns the number of hits.
     pub(super) fn packets(&self, packets: &[RayHit16], any: bool) -> usize {
         let mut context = Context1::new(true);
         let valid = Valid([-1; 16]);
@@ -387,6 +387,6 @@ impl EmbreeScene<'_> {
     }
 }
 
-/// Which lanes of a packet are in use.
+/// The mask of the lanes of a packet that are in use.
 #[repr(align(64))]
 struct Valid([i32; 16]);

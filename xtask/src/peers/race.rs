@@ -1,4 +1,4 @@
-//! Who is faster: the programs take turns on the rays of a batch.
+//! Compares the tracing time: the programs take turns on the rays of a batch.
 
 use super::embree::{EmbreeScene, RayHit16};
 use super::rays::{Batch, Kind};
@@ -10,36 +10,36 @@ use strahl::accel::TraversalStats;
 use strahl::prelude::RenderScene;
 use strahl::tracing::{Hit, PACKET, RayClass, Tracer};
 
-/// Who traces rays.
+/// A program and how it traces.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Program {
     Ours,
-    /// Sixteen rays at once.
+    /// strahl with packets of sixteen rays.
     OurPackets,
-    /// In one of its settings.
+    /// Embree with one of its settings.
     Embree(usize),
-    /// Sixteen rays at once, in its first setting.
+    /// Embree with packets of sixteen rays and its first setting.
     EmbreePackets,
 }
 
-/// How many times faster strahl was than Embree.
+/// How many times as fast strahl was as Embree.
 pub(super) struct Ratios {
     pub(super) kind: Kind,
     pub(super) single: f64,
     pub(super) packets: Option<f64>,
 }
 
-/// What a program found.
+/// The results of a program.
 #[derive(Clone, Default)]
 struct Answers {
-    /// Of closest hits.
+    /// The distances of closest hits.
     distances: Vec<f32>,
-    /// How many rays met anything, where any hit would do.
+    /// The number of rays with any hit.
     hits: usize,
     cost: TraversalStats,
 }
 
-/// Lets the programs take turns on a batch; returns how many times faster strahl was than Embree.
+/// Lets the programs take turns on a batch; returns how many times as fast strahl was as Embree.
 pub(super) fn compare(
     name: &str,
     ours: &RenderScene,
@@ -53,7 +53,7 @@ pub(super) fn compare(
     if !plan.brief || batch.kind.in_tiles() {
         programs.extend([Program::OurPackets, Program::EmbreePackets]);
     }
-    // Side by side, as a program that uses Embree would make them.
+    // Packets are packed before timing, because a program that uses Embree would generate them in this form.
     let sixteens: Vec<RayHit16> = batch
         .segments
         .chunks_exact(PACKET)
@@ -63,7 +63,7 @@ pub(super) fn compare(
     let mut answers = vec![Answers::default(); programs.len()];
     for round in 0..plan.rounds {
         for turn in 0..programs.len() {
-            // Everyone comes after everyone else.
+            // The order rotates, so that every program runs after every other one.
             let number = (round + turn) % programs.len();
             let start = Instant::now();
             let parts = in_parts(batch.segments.len(), plan.threads, |part| {
@@ -123,7 +123,7 @@ pub(super) fn compare(
     }
 }
 
-/// Runs a job for parts of a list, each in a thread of its own; parts begin at multiples of the size of packets.
+/// Runs a job for parts of a list, each in its own thread; parts begin at multiples of the packet size.
 fn in_parts<T: Send>(
     count: usize,
     threads: usize,
@@ -139,7 +139,7 @@ fn in_parts<T: Send>(
             let part = start..count.min(start + size);
             scope.spawn(move || job(part))
         });
-        // All are started before the first is waited for.
+        // All threads must be started before the first is joined.
         let parts: Vec<_> = parts.collect();
         parts
             .into_iter()
@@ -148,7 +148,7 @@ fn in_parts<T: Send>(
     })
 }
 
-/// The answers of all parts as one.
+/// Joins the results of all parts.
 fn joined(parts: Vec<Answers>) -> Answers {
     let mut all = Answers::default();
     for part in parts {
@@ -159,7 +159,7 @@ fn joined(parts: Vec<Answers>) -> Answers {
     all
 }
 
-/// Lets a program trace a part of the rays.
+/// Traces a part of the rays with a program.
 fn trace(
     program: Program,
     ours: &RenderScene,
@@ -212,7 +212,7 @@ fn trace(
     answers
 }
 
-/// How far away a hit is, in the numbers of Embree.
+/// The distance of a hit as Embree reports it: f32, infinite for none.
 fn distance(hit: Option<Hit>) -> f32 {
     hit.map_or(f32::INFINITY, |h| h.t as f32)
 }

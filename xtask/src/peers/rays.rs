@@ -1,4 +1,4 @@
-//! The rays of the benchmark: made once from the hits of strahl, the same for everyone.
+//! The rays of the benchmark: computed once from hits found by strahl, and the same for both programs.
 
 use super::meshes::{Rng, View};
 use std::ops::Range;
@@ -6,7 +6,7 @@ use strahl::math::{DVec3, Interval, Ray};
 use strahl::scene::Camera;
 use strahl::tracing::{Origin, PrimaryRays, RayClass, RenderScene, Tracer};
 
-/// A ray with its range, in the numbers Embree takes; strahl gets the same numbers.
+/// A ray with its range in f32, as Embree takes it; strahl gets the same numbers.
 #[derive(Clone, Copy)]
 pub(super) struct Segment {
     pub(super) origin: [f32; 3],
@@ -18,13 +18,13 @@ pub(super) struct Segment {
 /// Rays of one kind.
 pub(super) struct Batch {
     pub(super) kind: Kind,
-    /// What Embree traces.
+    /// The rays as Embree takes them.
     pub(super) segments: Vec<Segment>,
-    /// The same for strahl.
+    /// The same rays as strahl takes them.
     pub(super) rays: Vec<Ray>,
-    /// Their common range.
+    /// The range of all rays.
     pub(super) range: Interval,
-    /// On which surfaces they start, which strahl is told; nothing for rays from the eye.
+    /// The surfaces on which the rays start, for strahl; empty for rays from the eye.
     pub(super) starts: Vec<Origin>,
 }
 
@@ -66,19 +66,19 @@ impl Kind {
         }
     }
 
-    /// Whether any hit will do.
+    /// Whether the rays look for any hit.
     pub(super) fn any(self) -> bool {
         matches!(self, Self::Shadow | Self::ShadowTiles)
     }
 
-    /// Whether rays that follow each other lie together, sixteen of them in a square.
+    /// Whether the rays are ordered in squares of 4 by 4 pixels.
     pub(super) fn in_tiles(self) -> bool {
         matches!(self, Self::PrimaryTiles | Self::ShadowTiles)
     }
 }
 
 impl Batch {
-    /// Embree skips the first part of rays that start on a surface, strahl knows where they start.
+    /// For rays that start on a surface, Embree gets a minimum distance; strahl gets the surface itself.
     fn new(kind: Kind) -> Self {
         let near = match kind {
             Kind::Primary | Kind::PrimaryTiles => 0.0,
@@ -94,7 +94,7 @@ impl Batch {
         }
     }
 
-    /// Adds a ray, rounded to f32 for everyone.
+    /// Adds a ray, rounded to f32 for both programs.
     fn push(&mut self, ray: &Ray, from: Option<Origin>) {
         let (origin, direction) = (ray.origin.as_vec3(), ray.direction.as_vec3());
         self.segments.push(Segment {
@@ -108,7 +108,7 @@ impl Batch {
         self.starts.extend(from);
     }
 
-    /// Some of the rays as strahl takes them.
+    /// A part of the rays as strahl takes them.
     pub(super) fn rays(&self, part: Range<usize>) -> impl Iterator<Item = (&Ray, Option<&Origin>)> {
         let rays = part.clone().zip(&self.rays[part]);
         rays.map(|(i, ray)| (ray, self.starts.get(i)))
@@ -130,7 +130,7 @@ pub(super) fn make(scene: &RenderScene, view: View, side: u32) -> Vec<Batch> {
             block / blocks * 4 + inside / 4,
         )
     };
-    // The point, the normal on the side of the eye, and what rays from there are told.
+    // The point, the normal on the side of the eye, and the surface on which rays from there start.
     let mut first_hit = |ray: &Ray| {
         let hit = tracer.closest_hit(ray, Interval::FORWARD, None, RayClass::Camera)?;
         let point = scene.surface_at(ray, &hit);

@@ -1,5 +1,5 @@
-//! What rays cost in the trees of both programs, counted and not timed: Embree's own builder makes a tree as it does for its triangles, and the same
-//! simple walk goes through it and through ours.
+//! Compares the trees of both programs by counting instead of timing: Embree's own builder makes a tree as it does for its
+//! triangles, and the same simple traversal visits that tree and ours.
 
 use super::embree::{Device, Quality};
 use super::meshes::Mesh;
@@ -12,7 +12,7 @@ use strahl::math::DVec3;
 use strahl::prelude::*;
 use strahl::tracing::Prepared;
 
-/// What a node and a block of four triangles cost: instructions of our kernels (see "Against Embree" in the book).
+/// The cost of a node and of a block of four triangles, in instructions of our kernels (see "Against Embree" in the book).
 pub(super) const COST: [f64; 2] = [41.0, 76.0];
 
 /// Children of a node.
@@ -27,11 +27,11 @@ pub(super) struct Tree {
     ids: Vec<u32>,
 }
 
-/// What is in a box.
+/// The content of a box.
 #[derive(Clone, Copy)]
 pub(super) enum Child {
     Node(usize),
-    /// From where on in the list, and how many.
+    /// A leaf: its first index in the list, and its length.
     Leaf(usize, usize),
 }
 
@@ -41,7 +41,7 @@ impl Default for Child {
     }
 }
 
-/// The children of a node with their boxes: per axis the lower, then the upper planes.
+/// The children of a node with their boxes: for each axis the lower planes, then the upper planes.
 #[derive(Clone)]
 pub(super) struct Node {
     planes: [[f32; WIDTH]; 6],
@@ -60,7 +60,7 @@ impl Default for Node {
 }
 
 impl Node {
-    /// Sets the lowest and the highest corner of a child's box. Children have the places from 0 on.
+    /// Sets the lowest and the highest corner of a child's box. Children are numbered from 0.
     pub(super) fn set_box(&mut self, place: usize, [lo, hi]: [[f32; 3]; 2]) {
         for axis in 0..3 {
             self.planes[2 * axis][place] = lo[axis];
@@ -76,10 +76,10 @@ impl Node {
 }
 
 impl Tree {
-    /// The tree that a scene of one mesh was built with.
+    /// The tree that strahl built for a scene of one mesh.
     fn ours(scene: &RenderScene) -> Result<Self> {
         let AnyAccelerator::Bvh8(bvh) = scene.accelerator() else {
-            bail!("only trees of the accelerator bvh are compared");
+            bail!("only trees of the accelerator bvh can be compared");
         };
         let mut tree = Self::default();
         let (_, root) = bvh.root().context("the scene is empty")?;
@@ -111,7 +111,7 @@ impl Tree {
     }
 }
 
-/// What the walks of rays met, of all of them.
+/// The number of nodes and blocks visited by all rays.
 #[derive(Clone, Copy, Default)]
 struct Cost {
     nodes: u64,
@@ -119,17 +119,17 @@ struct Cost {
     hits: u64,
 }
 
-/// A ray that walks.
+/// The state of a traversal.
 struct Walk<'t> {
     tree: &'t Tree,
     corners: &'t [[DVec3; 3]],
     cost: Cost,
-    /// What is still to be looked at, and where the ray gets there.
+    /// The stack: children still to be visited, and where the ray enters them.
     waiting: Vec<(f32, Child)>,
 }
 
 impl Walk<'_> {
-    /// Looks for the nearest hit, or for any: in the order in which the ray gets to the boxes.
+    /// Looks for the closest hit, or for any, in the order in which the ray enters the boxes.
     fn walk(&mut self, ray: &Segment, any: bool) {
         let inverse = ray.direction.map(|d| 1.0 / d);
         let mut far = ray.far;
@@ -165,10 +165,10 @@ impl Walk<'_> {
         self.cost.hits += u64::from(met);
     }
 
-    /// Puts the children whose boxes the ray meets on the list, the nearest last.
+    /// Pushes the children whose boxes the ray hits, the nearest last.
     #[expect(
         clippy::needless_range_loop,
-        reason = "the axis is an index of three things"
+        reason = "the axis indexes several arrays"
     )]
     fn look_at(&mut self, node: &Node, ray: &Segment, inverse: [f32; 3], far: f32) {
         let first = self.waiting.len();
@@ -179,11 +179,11 @@ impl Walk<'_> {
                     let plane = node.planes[2 * axis + side][place];
                     (plane - ray.origin[axis]) * inverse[axis]
                 });
-                // NaN, where a ray lies in a plane, leaves the range as it is.
+                // A NaN, which comes from a ray that lies in a plane, leaves the range as it is.
                 enter = t[0].min(t[1]).max(enter);
                 leave = t[0].max(t[1]).min(leave);
             }
-            // Rounding must not lose the boxes of flat things.
+            // Rounding must not lose the boxes of flat objects.
             if enter <= leave * 1.000_001 {
                 self.waiting.push((enter, node.children[place]));
             }
@@ -192,7 +192,7 @@ impl Walk<'_> {
     }
 }
 
-/// Where a ray meets a triangle before `far`.
+/// The distance at which a ray hits a triangle, if that is before `far`.
 ///
 /// T. Möller, B. Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection" (1997).
 fn distance(ray: &Segment, [a, b, c]: &[DVec3; 3], far: f32) -> Option<f32> {
@@ -210,7 +210,7 @@ fn distance(ray: &Segment, [a, b, c]: &[DVec3; 3], far: f32) -> Option<f32> {
 }
 
 impl Cost {
-    /// Of all rays of a batch.
+    /// The cost of all rays of a batch.
     fn of(tree: &Tree, corners: &[[DVec3; 3]], batch: &Batch) -> Self {
         let mut walk = Walk {
             tree,
@@ -231,20 +231,20 @@ impl Cost {
         format!("{nodes:.2} | {blocks:.2}")
     }
 
-    /// As instructions.
+    /// The total cost in instructions.
     fn total(&self) -> f64 {
         COST[0] * self.nodes as f64 + COST[1] * self.blocks as f64
     }
 }
 
-/// Trees of both programs with what they are compared by.
+/// Pairs of trees to compare: name, settings of strahl, and quality of Embree's build.
 const TREES: [(&str, &str, Quality); 3] = [
     ("default", "bvh", Quality::Medium),
     ("high", "bvh:build=high", Quality::High),
     ("fast", "bvh:build=fast", Quality::Medium),
 ];
 
-/// Counts what rays meet in the trees of both programs, a line for each builder and kind of rays.
+/// Counts the nodes and blocks that rays visit in the trees of both programs; a row for each builder and kind of ray.
 pub(super) fn compare(
     device: &Device<'_>,
     mesh: &Mesh,

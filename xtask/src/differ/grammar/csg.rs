@@ -2,7 +2,7 @@ use super::super::node::{Node, Part, Sort, block, list, needed, optional, words}
 use super::Writer;
 
 impl Writer {
-    /// An object with its look; `depth` is how many levels of combined objects it may have.
+    /// An object with its texture and modifiers; `depth` limits the nesting of CSG.
     pub(super) fn object(&mut self, depth: usize) -> Node {
         if self.dice.chance(25)
             && let Some(name) = self.known(Sort::Object)
@@ -54,7 +54,7 @@ impl Writer {
         block(Sort::Object, head, parts)
     }
 
-    /// A solid as part of a combined object, with or without a look of its own.
+    /// A solid as a part of a CSG object, with or without a texture of its own.
     fn part(&mut self, depth: usize) -> Node {
         if depth > 0 && self.dice.chance(20) {
             return self.combined(depth);
@@ -71,7 +71,7 @@ impl Writer {
         block(Sort::Object, head, parts)
     }
 
-    /// A closed surface: its word and its parameters.
+    /// A closed surface: its keyword and its parameters.
     fn solid(&mut self) -> (&'static str, Vec<Part>) {
         match self.dice.below(24) {
             0..=3 => {

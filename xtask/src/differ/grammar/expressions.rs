@@ -75,7 +75,7 @@ impl Writer {
         ]
     }
 
-    /// A number as the language's functions give it.
+    /// An expression of floats.
     pub(super) fn expression(&mut self, depth: usize) -> Node {
         if depth == 0 || self.dice.chance(20) {
             return list!["(", self.dice.number(-3.0, 3.0), ")"];
@@ -146,7 +146,7 @@ impl Writer {
         }
     }
 
-    /// A vector as the language's functions give it.
+    /// An expression of vectors.
     fn vector(&mut self, depth: usize) -> Node {
         if depth == 0 || self.dice.chance(30) {
             return self.point(2.0);

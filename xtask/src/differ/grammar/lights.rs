@@ -88,7 +88,7 @@ impl Writer {
         }
     }
 
-    /// A group of lights with what they shine on.
+    /// A light group with its objects.
     pub(super) fn light_group(&mut self, depth: usize) -> Node {
         let mut parts = vec![optional(self.light())];
         for _ in 0..self.dice.between(1, 2) {

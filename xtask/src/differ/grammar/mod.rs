@@ -1,4 +1,4 @@
-//! Random scenes. What both programs do differently on purpose is left out; docs/src/pov-ray.md lists it.
+//! Random scenes. Intended differences, which docs/src/pov-ray.md lists, are not generated.
 
 mod cameras;
 mod csg;
@@ -19,7 +19,7 @@ use super::node::{Node, Part, Sort, block, list, needed, optional, run, words};
 /// Writes one scene.
 pub(super) struct Writer {
     dice: Dice,
-    /// What `#version` says; 0 if nothing is said.
+    /// The number behind `#version`; 0 if there is no such line.
     version: f64,
     /// Whether `assumed_gamma` is set.
     gamma: bool,
@@ -106,7 +106,7 @@ impl Writer {
         block(Sort::Other, "global_settings", parts)
     }
 
-    /// `#declare` of something that later parts may use.
+    /// A `#declare` of an identifier that later parts may use.
     fn declaration(&mut self) -> Vec<Part> {
         let name = format!("D{}", self.declared.len());
         let sort = self.dice.pick(&[
@@ -132,7 +132,7 @@ impl Writer {
         vec![part]
     }
 
-    /// The name of something declared.
+    /// A declared identifier.
     fn known(&mut self, sort: Sort) -> Option<String> {
         let names: Vec<&String> = self
             .declared

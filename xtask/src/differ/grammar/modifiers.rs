@@ -39,13 +39,13 @@ impl Writer {
         }
     }
 
-    /// Transforms of an object: few, mostly none.
+    /// Transforms of an object: none in most cases.
     pub(super) fn transforms(&mut self) -> Vec<Part> {
         let count = self.dice.weighted(&[(50, 0), (30, 1), (20, 2)]);
         (0..count).map(|_| optional(self.transform())).collect()
     }
 
-    /// How an object looks: texture statements, interior, transforms and flags in any order.
+    /// The look of an object: texture statements, interior, transforms and flags in any order.
     pub(super) fn look(&mut self, depth: usize) -> Vec<Part> {
         let mut parts = vec![];
         match self
@@ -127,7 +127,7 @@ impl Writer {
         parts
     }
 
-    /// A solid that cuts something of what is around the origin.
+    /// A solid that cuts away some of the space around the origin.
     pub(super) fn cutter(&mut self) -> Node {
         match self.dice.below(3) {
             0 => {
@@ -173,7 +173,7 @@ impl Writer {
         parts
     }
 
-    /// What stands behind a pattern: turbulence, waves, warps and transforms.
+    /// The modifiers of a pattern: turbulence, waves, warps and transforms.
     pub(super) fn pattern_modifiers(&mut self) -> Vec<Part> {
         let mut parts = vec![];
         if self.dice.chance(18) {
@@ -285,7 +285,7 @@ impl Writer {
     }
 }
 
-/// The braces and parts of a block without its word.
+/// The braces and parts of a block without its keyword.
 fn inner(node: Node) -> Node {
     match node {
         Node::Group { parts, .. } => block(Sort::Other, "", parts),

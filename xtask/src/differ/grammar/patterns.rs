@@ -145,7 +145,7 @@ impl Writer {
         }
     }
 
-    /// A picture made by a function, with what stands behind it.
+    /// A function image with its modifiers.
     pub(super) fn function_image(&mut self, colors: bool) -> Vec<Part> {
         let (w, h) = (self.dice.between(2, 9), self.dice.between(2, 9));
         let f = match colors {

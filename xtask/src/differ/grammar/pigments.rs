@@ -7,7 +7,7 @@ impl Writer {
         block(Sort::Other, "pigment", vec![needed(body)])
     }
 
-    /// What stands in the braces.
+    /// The inside of the braces of a pigment.
     pub(super) fn pigment_body(&mut self, depth: usize) -> Node {
         if self.dice.chance(12)
             && let Some(name) = self.known(Sort::Pigment)
@@ -70,7 +70,7 @@ impl Writer {
         run(Sort::Pigment, parts)
     }
 
-    /// A pattern of areas: checker, hexagon and so on, with colours or with things.
+    /// A pattern of areas (checker, hexagon and so on) with a list of colours or of other things.
     pub(super) fn choice(
         &mut self,
         word: &str,
@@ -112,7 +112,7 @@ impl Writer {
     pub(super) fn color_map(&mut self) -> Node {
         let head = self.dice.weighted(&[(70, "color_map"), (10, "colour_map")]);
         if self.dice.chance(8) {
-            // The old spelling: two places and two colours.
+            // The old spelling: two positions and two colours.
             let middle = self.dice.number(0.1, 0.9);
             let mut color = || {
                 let color = self.opaque_color();

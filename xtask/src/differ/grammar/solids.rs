@@ -57,7 +57,7 @@ impl Writer {
         ])]
     }
 
-    /// Cubics and quartics as polynomials of few terms.
+    /// Cubics and quartics, as polynomials with few terms.
     pub(super) fn polynomial(&mut self) -> (&'static str, Vec<Part>) {
         let (head, degree) =
             self.dice

@@ -7,7 +7,7 @@ impl Writer {
         list![a, ",", b, ",", c]
     }
 
-    /// Corners with normals that point more or less to the eye.
+    /// Corners with normals that point roughly to the eye.
     pub(super) fn smooth_corners(&mut self) -> Node {
         let mut normal = || {
             Node::from([

@@ -76,7 +76,7 @@ impl Writer {
         }
     }
 
-    /// A line beside the y axis.
+    /// A curve on one side of the y axis.
     fn profile(&mut self, count: usize) -> Vec<[f64; 2]> {
         let step = 2.0 / count as f64;
         (0..count)

@@ -80,7 +80,7 @@ impl Writer {
         }
     }
 
-    /// Several textures on each other.
+    /// Layered textures.
     pub(super) fn layers(&mut self, depth: usize) -> Node {
         let count = self.dice.between(2, 3);
         let layers = (0..count)
@@ -97,7 +97,7 @@ impl Writer {
         block(Sort::Other, "normal", vec![needed(body)])
     }
 
-    /// A number right behind a pattern that is a single word: behind its items it cannot stand.
+    /// A number behind a pattern of a single word. After a list of items it would not be valid.
     fn amount(&mut self, parts: &mut Vec<Part>) {
         let size = self.number(0.05, 1.5);
         if let Some(Part {

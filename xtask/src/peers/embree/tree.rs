@@ -1,4 +1,4 @@
-//! Embree's builder by itself: it calls back for every node and every leaf, and so makes a tree that can be looked at.
+//! Uses Embree's builder by itself: it calls back for every node and leaf, so that the finished tree can be examined.
 
 use super::{Device, Handle, Quality};
 use crate::peers::trees::{Child, Node, Tree};
@@ -67,14 +67,14 @@ pub(super) struct Arguments<'g> {
     growing: *const Growing<'g>,
 }
 
-/// What the callbacks see.
+/// The data of the callbacks.
 struct Growing<'m> {
     positions: &'m [[f32; 3]],
     indices: &'m [[u32; 3]],
     tree: Mutex<Grown>,
 }
 
-/// The tree so far.
+/// The tree built so far.
 #[derive(Default)]
 struct Grown {
     tree: Tree,
@@ -87,7 +87,7 @@ impl Growing<'_> {
     }
 }
 
-/// Nodes and leaves are no places in memory but numbers from 1 on: of nodes even ones, of leaves odd ones.
+/// Handles of nodes and leaves are not addresses but numbers from 1 on: even for nodes, odd for leaves.
 fn handle(number: usize, leaf: bool) -> Handle {
     ptr::without_provenance_mut((number + 1) << 1 | usize::from(leaf))
 }
@@ -107,7 +107,7 @@ impl Grown {
 }
 
 extern "C" fn create_node(_: Handle, _: c_uint, growing: *const Growing<'_>) -> Handle {
-    // SAFETY: what the arguments of the build point to, which lives until it is done.
+    // SAFETY: the pointer comes from the arguments of the build and is valid until the build ends.
     let mut grown = unsafe { &*growing }.tree();
     grown.tree.nodes.push(Node::default());
     handle(grown.tree.nodes.len() - 1, false)
@@ -119,7 +119,7 @@ unsafe extern "C" fn set_children(
     count: c_uint,
     growing: *const Growing<'_>,
 ) {
-    // SAFETY: as above; there are so many children.
+    // SAFETY: as above; Embree passes as many children as it says.
     let (growing, children) = unsafe {
         (
             &*growing,
@@ -139,7 +139,7 @@ unsafe extern "C" fn set_bounds(
     count: c_uint,
     growing: *const Growing<'_>,
 ) {
-    // SAFETY: as above; there are so many boxes.
+    // SAFETY: as above; Embree passes as many boxes as it says.
     let (growing, bounds) = unsafe {
         (
             &*growing,
@@ -161,7 +161,7 @@ unsafe extern "C" fn create_leaf(
     count: usize,
     growing: *const Growing<'_>,
 ) -> Handle {
-    // SAFETY: as above; there are so many primitives.
+    // SAFETY: as above; Embree passes as many primitives as it says.
     let (growing, primitives) =
         unsafe { (&*growing, std::slice::from_raw_parts(primitives, count)) };
     let mut grown = growing.tree();
@@ -170,7 +170,8 @@ unsafe extern "C" fn create_leaf(
     handle(grown.leaves.len() - 1, true)
 }
 
-/// Cuts a triangle as Embree's own splitter does: boxes around what is on both sides of a plane, within the box of the part that is cut.
+/// Splits a triangle like Embree's own splitter: returns the boxes of both sides of a plane, within the box of the part that is
+/// split.
 unsafe extern "C" fn split(
     primitive: *const Primitive,
     axis: c_uint,
@@ -215,14 +216,14 @@ unsafe extern "C" fn split(
             upper: std::array::from_fn(|axis| hi[axis].min(primitive.upper[axis])),
             _too: 0.0,
         };
-        // SAFETY: places for a box each.
+        // SAFETY: Embree passes a place for a box on either side.
         unsafe { *to = within };
     }
 }
 
 impl Device<'_> {
-    /// The tree that Embree makes over triangles for itself (`BVH8Triangle4`): blocks of four, up to seven of them in a leaf, a block as dear as a
-    /// node; with spatial splits up to a fifth more parts than triangles if the quality is high.
+    /// Builds the tree that Embree builds for triangles (`BVH8Triangle4`): blocks of four, up to seven blocks in a leaf, and a
+    /// block costs as much as a node. At high quality, spatial splits make up to a fifth more parts than triangles.
     pub(in crate::peers) fn tree(
         &self,
         positions: &[[f32; 3]],
@@ -283,7 +284,7 @@ impl Device<'_> {
             root
         };
         if root.is_null() {
-            bail!("Embree builds no tree");
+            bail!("Embree built no tree");
         }
         let grown = growing.tree.into_inner();
         let mut grown = grown.unwrap_or_else(PoisonError::into_inner);
