@@ -1,4 +1,4 @@
-//! Frames and clocks of an animation, numbered and timed as POV-Ray does it (reference manual, 3.2.1, and experiments).
+//! Frames and clocks of an animation, numbered and timed as in POV-Ray (reference manual, 3.2.1, and experiments).
 
 use crate::args::AnimationArgs;
 use crate::input::Moment;
@@ -6,22 +6,22 @@ use crate::report::Failure;
 use std::path::{Path, PathBuf};
 use strahl::sdl::Frame;
 
-/// The pictures of an animation.
+/// The frames of an animation.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Animation {
     /// The frames to render, in order; never empty.
     pub(crate) frames: Vec<u32>,
-    /// What scenes see of the animation.
+    /// First and last frame and their clocks, which scenes can read.
     first: u32,
     last: u32,
     clocks: (f64, f64),
 }
 
-/// More frames than anyone renders: a slip of the keyboard.
+/// The largest frame number. A larger one is certainly a typing error.
 const MOST_FRAMES: u32 = 1_000_000;
 
 impl Animation {
-    /// The animation that is asked for, if one is.
+    /// The animation that the options ask for; `None` for a single picture.
     pub(crate) fn new(args: &AnimationArgs) -> Result<Option<Self>, Failure> {
         let first = match (args.initial_frame, args.final_frame) {
             // As in POV-Ray, a final frame of 0 switches the animation off.
@@ -42,7 +42,7 @@ impl Animation {
         let count = f64::from(last - first + 1);
         let begin = subset(args.subset_start_frame, first, count, first, "start")?;
         let end = match args.subset_end_frame {
-            // All frames.
+            // 1.0 means all frames.
             Some(1.0) if first != 1 => last,
             end => subset(end, first, count, last, "end")?,
         };
@@ -54,13 +54,13 @@ impl Animation {
         Ok(Some(Self {
             frames: (begin..=end).step_by(args.frame_step as usize).collect(),
             first,
-            // The frame after the last one closes the circle.
+            // The frame after the last one would be the first one again.
             last: last + u32::from(args.cyclic),
             clocks: (args.initial_clock, args.final_clock),
         }))
     }
 
-    /// Clock and frame variables of a frame.
+    /// The clock and the frame variables of a frame.
     pub(crate) fn moment(&self, frame: u32) -> Moment {
         let (begin, end) = self.clocks;
         let steps = self.last - self.first;
@@ -84,7 +84,7 @@ impl Animation {
         }
     }
 
-    /// The picture of a frame: its number, as wide as that of the final frame, before the ending.
+    /// The file of a frame: the frame's number, as wide as that of the final frame, stands before the extension.
     pub(crate) fn file(&self, output: &Path, frame: u32) -> PathBuf {
         let width = self.last.to_string().len();
         let stem = output.file_stem().unwrap_or_default().to_string_lossy();
@@ -94,10 +94,10 @@ impl Animation {
     }
 }
 
-/// A frame given by its number or as a part of all frames.
+/// A frame given by its number or as a fraction of all frames.
 ///
-/// POV-Ray takes floor(part x count) for the number, not counted from the initial frame; this is the same if the initial
-/// frame is 1 and what was meant otherwise.
+/// POV-Ray uses floor(fraction x count) as the number, without adding the initial frame; the result here is the same if the
+/// initial frame is 1, and is what the user meant otherwise.
 fn subset(
     given: Option<f64>,
     first: u32,
@@ -204,7 +204,7 @@ mod tests {
         };
         assert_eq!(name("--final-frame 3", 2), Path::new("out/a.b2.png"));
         assert_eq!(name("--final-frame 102", 7), Path::new("out/a.b007.png"));
-        // The frame that closes a cyclic animation counts.
+        // The frame that closes a cyclic animation counts as a frame.
         assert_eq!(
             name("--final-frame 9 --cyclic", 9),
             Path::new("out/a.b09.png")

@@ -25,10 +25,10 @@ pub(crate) struct Cli {
     pub(crate) guard: GuardArgs,
 }
 
-/// What keeps the machine and the user safe.
+/// Options that protect the machine and the user.
 #[derive(Debug, Args)]
 pub(crate) struct GuardArgs {
-    /// Most memory to use, such as 500M, 8G or 50% of the machine's; `none` for no bound
+    /// Largest memory to use, such as 500M, 8G or 50% of the machine's; `none` for no limit
     #[arg(
         long,
         global = true,
@@ -37,7 +37,7 @@ pub(crate) struct GuardArgs {
         help_heading = "Safety"
     )]
     pub(crate) max_memory: MemoryLimit,
-    /// Take warnings and features that are left out for errors, and end with exit code 3
+    /// Treat warnings and unsupported features as errors, and end with exit code 3
     #[arg(long, global = true, help_heading = "Safety")]
     pub(crate) strict: bool,
 }
@@ -49,19 +49,19 @@ pub(crate) enum Command {
     Render(RenderArgs),
     /// Print the ray tree of a pixel: every ray with its numbers and the line of the scene that caused it
     Explain(ExplainArgs),
-    /// Render with every accelerator: one table of their costs, one and the same picture
+    /// Render with every accelerator: prints a table of their costs, and checks that the pictures are the same
     Compare(CompareArgs),
-    /// Draw what each pixel costs
+    /// Draw the cost of each pixel
     Heatmap(HeatmapArgs),
     /// Follow the ray of a pixel through an accelerator: every cell, sphere or node with its tests
     TraceRay(TraceRayArgs),
-    /// Tell what is in a scene
+    /// Print the contents of a scene: format, objects, lights, camera, memory
     Info(SceneArgs),
     /// Look for errors in a scene without rendering it
     Check(CheckArgs),
     /// List the scene and picture formats
     Formats,
-    /// Print what completes command lines in a shell: `strahl completions bash > ~/.local/share/bash-completion/completions/strahl`
+    /// Print a completion script for a shell: `strahl completions bash > ~/.local/share/bash-completion/completions/strahl`
     Completions {
         /// The shell
         shell: Shell,
@@ -73,23 +73,23 @@ pub(crate) enum Command {
     },
 }
 
-/// The scene and how it is read.
+/// The scene and how to read it.
 #[derive(Debug, Args)]
 pub(crate) struct SceneArgs {
     /// Scene file, or `-` for the standard input
     pub(crate) scene: PathBuf,
-    /// Format of the scene, if the file name doesn't tell (see `strahl formats`)
+    /// Format of the scene, if the file name doesn't show it (see `strahl formats`)
     #[arg(long, alias = "scene-format", value_name = "NAME")]
     pub(crate) format: Option<Format>,
     #[command(flatten)]
     pub(crate) pov: PovArgs,
 }
 
-/// What scenes in POV-Ray's language want to know.
+/// Options of scenes in POV-Ray's language.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "POV-Ray scenes")]
 pub(crate) struct PovArgs {
-    /// Search included files here too, after the scene's folder and the current one; may be given several times
+    /// Also search include files in this folder, after the scene's folder and the current one; may be given several times
     #[arg(short = 'L', long, value_name = "DIR")]
     pub(crate) library_path: Vec<PathBuf>,
     /// Include this file before the scene begins
@@ -104,22 +104,23 @@ pub(crate) struct PovArgs {
     /// Let the scene write files into this folder instead of SCENE.out; only `render` writes files of scenes
     #[arg(long, value_name = "DIR")]
     pub(crate) allow_write: Option<PathBuf>,
-    /// Raise (or lower) a bound on what a scene may use, as an error message names it; may be given several times
+    /// Change a limit on the resources of a scene, such as `steps=1e11`; error messages name the limits; may be given several
+    /// times
     #[arg(long, value_name = "NAME=N", value_parser = parse_limit)]
     pub(crate) limit: Vec<(String, u64)>,
-    /// Language version of scenes that name none, such as 3.7
+    /// Language version of scenes without `#version`, such as 3.7
     #[arg(long, value_name = "VERSION", value_parser = parse_version)]
     pub(crate) language_version: Option<f64>,
 }
 
-/// Several pictures of one scene at different clocks.
+/// An animation: a scene rendered at several clocks.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Animation of POV-Ray scenes")]
 pub(crate) struct AnimationArgs {
     /// Number of the first frame [default: 1]
     #[arg(long, value_name = "N")]
     pub(crate) initial_frame: Option<u32>,
-    /// Number of the last frame: makes an animation of pictures with numbered names
+    /// Number of the last frame; makes an animation with numbered pictures
     #[arg(long, value_name = "N")]
     pub(crate) final_frame: Option<u32>,
     /// The clock of the first frame
@@ -138,13 +139,13 @@ pub(crate) struct AnimationArgs {
         allow_negative_numbers = true
     )]
     pub(crate) final_clock: f64,
-    /// The final clock belongs to a frame after the last one, which looks like the first
+    /// Make a loop: the final clock belongs to the frame after the last one, which would look like the first
     #[arg(long)]
     pub(crate) cyclic: bool,
-    /// Render from this frame on; from 0.0 to below 1.0 a part of all frames
+    /// First frame to render; a number from 0.0 to below 1.0 is a fraction of all frames
     #[arg(long, value_name = "N")]
     pub(crate) subset_start_frame: Option<f64>,
-    /// Render up to this frame; from 0.0 to below 1.0 a part of all frames
+    /// Last frame to render; a number from 0.0 to below 1.0 is a fraction of all frames
     #[arg(long, value_name = "N")]
     pub(crate) subset_end_frame: Option<f64>,
     /// Render every Nth frame only
@@ -152,51 +153,50 @@ pub(crate) struct AnimationArgs {
     pub(crate) frame_step: u32,
 }
 
-/// What decides the value of a pixel.
+/// Options that affect the value of a pixel.
 #[derive(Debug, Args)]
 pub(crate) struct PictureArgs {
-    /// Size of the picture in pixels, such as 1280x720 [default: what the scene says, or 800x600]
+    /// Size of the picture in pixels, such as 1280x720 [default: the scene's size, or 800x600]
     #[arg(long, value_name = "WxH", value_parser = parse_size)]
     pub(crate) size: Option<(u32, u32)>,
-    /// Where rays go through a pixel: center (or none), NxN, adaptive:THRESHOLD,DEPTH (+A0.3 +R3), recursive:THRESHOLD,DEPTH (+AM2), or
-    /// corners [default: adaptive; of
-    /// heat maps center]
+    /// Positions of the rays in a pixel: center (or none), NxN, adaptive:THRESHOLD,DEPTH (+A0.3 +R3), recursive:THRESHOLD,DEPTH
+    /// (+AM2), or corners [default: adaptive; for heat maps center]
     #[arg(long, value_name = "HOW")]
     pub(crate) sampling: Option<Sampling>,
-    /// Seed of the sampling
+    /// Seed of the random sampling
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub(crate) seed: u64,
-    /// Deepest level of the ray tree, the primary ray being level 1 [default: what the scene says, or 10]
+    /// Largest depth of the ray tree, where primary rays have depth 1 [default: the scene's depth, or 10]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub(crate) max_depth: Option<u32>,
-    /// Do not follow rays of a smaller weight; 0 follows all [default: what the scene says, or 1/255]
+    /// Do not follow rays with a weight below this; 0 follows all [default: the scene's value, or 1/255]
     #[arg(long, value_name = "WEIGHT", value_parser = parse_weight)]
     pub(crate) adc_bailout: Option<f64>,
-    /// Most rays of one tree, shadow rays not counted
+    /// Largest number of rays in a ray tree, without shadow rays
     #[arg(long, value_name = "N", default_value_t = strahl::tracing::TraceSettings::MAX_TREE_RAYS)]
     pub(crate) max_tree_rays: u32,
-    /// Follow every ray by itself, not those of neighbouring pixels together; the picture is the same
+    /// Trace every ray by itself, instead of in packets with those of neighbouring pixels; the picture is the same
     #[arg(long)]
     pub(crate) no_packets: bool,
-    /// Shading model of everything: lambert, phong, blinn-phong, or to look at the geometry: normals, depth, object-id, uv
+    /// Shading model of all objects: lambert, phong or blinn-phong; or, to inspect the geometry, normals, depth, object-id or uv
     #[arg(long, value_name = "MODEL")]
     pub(crate) shading: Option<ShadingModel>,
 }
 
-/// The structure that finds what rays hit.
+/// The acceleration structure.
 #[derive(Debug, Args)]
 pub(crate) struct AcceleratorArgs {
     /// Acceleration structure with its parameters, such as bvh, grid:density=4 or octree:traversal=trial-plane (see
     /// `strahl formats`); the picture is the same
     #[arg(long, value_name = "NAME[:PARAMETER=VALUE,...]", default_value_t)]
     accelerator: AcceleratorKind,
-    /// Use these vector instructions instead of the best the processor has: scalar, sse4, avx2 or avx512; the picture is the same
+    /// Vector instructions to use instead of the processor's best: scalar, sse4, avx2 or avx512; the picture is the same
     #[arg(long, value_name = "LEVEL", value_parser = parse_simd)]
     simd: Option<Level>,
 }
 
 impl AcceleratorArgs {
-    /// The structure, with the instructions asked for.
+    /// The accelerator with the chosen instructions.
     pub(crate) fn kind(&self) -> AcceleratorKind {
         match self.simd {
             Some(level) => self.accelerator.with_simd(level),
@@ -205,7 +205,7 @@ impl AcceleratorArgs {
     }
 }
 
-/// A level that this processor has.
+/// Parses an instruction set that this processor has.
 fn parse_simd(text: &str) -> Result<Level, String> {
     let level: Level = text.parse().map_err(|e: UnknownLevel| e.to_string())?;
     Bvh8Parameters {
@@ -218,29 +218,29 @@ fn parse_simd(text: &str) -> Result<Level, String> {
 
 #[derive(Debug, Args)]
 pub(crate) struct RenderArgs {
-    /// Scene file, or `-` for the standard input [default: a built-in demonstration]
+    /// Scene file, or `-` for the standard input [default: a built-in demo scene]
     pub(crate) scene: Option<PathBuf>,
-    /// Format of the scene, if the file name doesn't tell (see `strahl formats`)
+    /// Format of the scene, if the file name doesn't show it (see `strahl formats`)
     #[arg(long, alias = "scene-format", value_name = "NAME")]
     pub(crate) format: Option<Format>,
     /// Picture file (see `strahl formats`), a folder for it, or `-` for the standard output [default: the scene's name with .png, in
     /// the current folder]
     #[arg(short, long, value_name = "PICTURE")]
     pub(crate) output: Option<PathBuf>,
-    /// Format of the picture, if its file name doesn't tell [default: png]
+    /// Format of the picture, if its file name doesn't show it [default: png]
     #[arg(long, value_name = "NAME", value_parser = parse_picture_format)]
     pub(crate) picture_format: Option<ImageFormat>,
     #[command(flatten)]
     pub(crate) picture: PictureArgs,
     #[command(flatten)]
     pub(crate) accelerator: AcceleratorArgs,
-    /// Render this part of the picture only: left, top, width, height in pixels
+    /// Render only this part of the picture: left, top, width, height in pixels
     #[arg(long, value_name = "X,Y,WxH", value_parser = parse_region)]
     pub(crate) region: Option<Region>,
-    /// With --region: write a picture of the whole size, black around the part
+    /// With --region: write a picture of the full size, black outside of the region
     #[arg(long, requires = "region", conflicts_with = "layers")]
     pub(crate) full_size: bool,
-    /// Number of threads, at most one per processor; 0 takes as many
+    /// Number of threads, at most one per processor; 0 means one per processor
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub(crate) threads: usize,
     /// Order of the tiles; the picture is the same
@@ -252,22 +252,22 @@ pub(crate) struct RenderArgs {
     /// Quality of JPEG pictures, from 1 (smallest) to 100
     #[arg(long, value_name = "N", default_value_t = 85, value_parser = clap::value_parser!(u8).range(1..=100))]
     pub(crate) jpeg_quality: u8,
-    /// Write an alpha channel, in which the background is see-through (PNG, EXR)
+    /// Write an alpha channel, with a transparent background (PNG, EXR)
     #[arg(long)]
     pub(crate) alpha: bool,
-    /// Write depth, normal, position, object, material, tree depth and tests per pixel too (EXR)
+    /// Also write depth, normal, position, object, material, tree depth and tests of each pixel (EXR)
     #[arg(long)]
     pub(crate) layers: bool,
-    /// Write what was done, counted and timed, as JSON; `-` is the standard output
+    /// Write statistics (counts and times) as JSON; `-` is the standard output
     #[arg(long, value_name = "FILE")]
     pub(crate) stats: Option<PathBuf>,
     /// Render, but write no picture
     #[arg(long)]
     pub(crate) no_output: bool,
-    /// Keep pictures that are complete already: goes on with an interrupted animation
+    /// Keep pictures that are complete, such as those of an interrupted animation
     #[arg(long)]
     pub(crate) resume: bool,
-    /// Say nothing unless something is wrong
+    /// Print only errors
     #[arg(short, long)]
     pub(crate) quiet: bool,
     #[command(flatten)]
@@ -282,7 +282,7 @@ pub(crate) enum Order {
     Rows,
     /// From the bottom right
     Reverse,
-    /// From the centre outwards
+    /// From the centre outward
     Center,
 }
 
@@ -301,7 +301,7 @@ pub(crate) struct CheckArgs {
     /// Scene files, or `-` for the standard input
     #[arg(required = true, value_name = "SCENE")]
     pub(crate) scenes: Vec<PathBuf>,
-    /// Format of the scenes, if the file names don't tell (see `strahl formats`)
+    /// Format of the scenes, if the file names don't show it (see `strahl formats`)
     #[arg(long, alias = "scene-format", value_name = "NAME")]
     pub(crate) format: Option<Format>,
     #[command(flatten)]
@@ -309,7 +309,7 @@ pub(crate) struct CheckArgs {
     /// Print JSON: one object with all diagnostics for each scene
     #[arg(long)]
     pub(crate) json: bool,
-    /// Look at the text only, not at whether it can be rendered
+    /// Check only the text, not whether the scene can be rendered
     #[arg(long)]
     pub(crate) syntax: bool,
 }
@@ -318,24 +318,24 @@ pub(crate) struct CheckArgs {
 pub(crate) struct ExplainArgs {
     /// Scene file, or `-` for the standard input
     pub(crate) scene: PathBuf,
-    /// Format of the scene, if the file name doesn't tell (see `strahl formats`)
+    /// Format of the scene, if the file name doesn't show it (see `strahl formats`)
     #[arg(long, value_name = "NAME")]
     pub(crate) scene_format: Option<Format>,
     /// The pixel, counted from 0,0 at the top left
     #[arg(long, value_name = "X,Y", value_parser = parse_pixel)]
     pub(crate) pixel: (u32, u32),
-    /// How to print it
+    /// Form of the output
     #[arg(long, value_enum, value_name = "FORM", default_value_t = ExplainForm::Text)]
     pub(crate) format: ExplainForm,
-    /// Significant digits of the numbers in text and graph, or `full` for as many as it takes to read the same bits back; JSON is
-    /// always exact
+    /// Significant digits of numbers in text and graph, or `full` for enough digits to read back the same bits; JSON is always
+    /// exact
     #[arg(long, value_name = "N|full", default_value = "6")]
     pub(crate) digits: Digits,
-    /// Show the tree of this sample, counted from 1, or of `all`, where a pixel has several [default: a table of them; JSON has all,
-    /// the graph the first]
+    /// Show the tree of this sample, counted from 1, or of `all`, if a pixel has several [default: a table of the samples in
+    /// text, all in JSON, the first in the graph]
     #[arg(long, value_name = "N|all")]
     pub(crate) sample: Option<Chosen>,
-    /// Show at most about this many rays of a tree in text, those that add most to the pixel with the rays they come from, or `all`
+    /// Largest number of rays shown in text, those that add most to the pixel with the rays that lead to them, or `all`
     #[arg(long, value_name = "N|all", default_value = "40")]
     pub(crate) rays: MostRays,
     #[command(flatten)]
@@ -348,11 +348,11 @@ pub(crate) struct ExplainArgs {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum ExplainForm {
-    /// For people
+    /// Text for people
     Text,
-    /// For programs; all numbers in full
+    /// JSON for programs; all numbers are exact
     Json,
-    /// For Graphviz
+    /// A graph for Graphviz
     Dot,
 }
 
@@ -362,17 +362,17 @@ pub(crate) struct CompareArgs {
     pub(crate) scene: SceneArgs,
     #[command(flatten)]
     pub(crate) picture: PictureArgs,
-    /// Compare this one; may be given several times [default: all, the octree with each of its traversals]
+    /// Accelerator to compare; may be given several times [default: all, the octree with each of its traversals]
     #[arg(long = "with", value_name = "NAME[:PARAMETER=VALUE,...]")]
     pub(crate) with: Vec<AcceleratorKind>,
-    /// Number of threads; 0 takes one per processor
+    /// Number of threads; 0 means one per processor
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub(crate) threads: usize,
-    /// Render this many times with each, taking turns; the median of the times counts
+    /// Number of runs of each accelerator, in turns; the median time counts
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=99))]
     pub(crate) runs: u32,
-    /// Search for every shadow ray in full, as the published figures do, instead of first looking at what was in the way of
-    /// its light before
+    /// Search the whole scene for every shadow ray, as published figures do, instead of first testing the last object that
+    /// blocked this light
     #[arg(long)]
     pub(crate) no_shadow_cache: bool,
     /// Print JSON
@@ -391,27 +391,27 @@ pub(crate) struct HeatmapArgs {
     pub(crate) picture: PictureArgs,
     #[command(flatten)]
     pub(crate) accelerator: AcceleratorArgs,
-    /// What to draw
+    /// Cost to draw
     #[arg(long, value_enum, value_name = "METRIC", default_value_t = Metric::Tests)]
     pub(crate) metric: Metric,
-    /// The value of the brightest colour, to compare pictures; larger values look the same [default: the largest of all
-    /// pixels but one in a thousand]
+    /// Value of the brightest colour, for comparing pictures; larger values get the same colour [default: the largest value of
+    /// all but one in a thousand pixels]
     #[arg(long, value_name = "MAX", value_parser = parse_positive)]
     pub(crate) scale: Option<f64>,
-    /// Picture file; an EXR file has the values themselves, too, as the layer `cost`
+    /// Picture file; an EXR file also has the values as the layer `cost`
     #[arg(short, long, value_name = "PICTURE")]
     pub(crate) output: PathBuf,
-    /// Number of threads; 0 takes one per processor
+    /// Number of threads; 0 means one per processor
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub(crate) threads: usize,
 }
 
-/// What a pixel can cost.
+/// A cost of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Metric {
     /// Primitives tested
     Tests,
-    /// Nodes and cells looked at
+    /// Nodes and cells visited
     Steps,
     /// Microseconds
     Time,
@@ -428,7 +428,7 @@ pub(crate) struct TraceRayArgs {
     /// The pixel, counted from 0,0 at the top left; the ray goes through its centre
     #[arg(long, value_name = "X,Y", value_parser = parse_pixel)]
     pub(crate) pixel: (u32, u32),
-    /// Size of the picture in pixels, such as 1280x720 [default: what the scene says, or 800x600]
+    /// Size of the picture in pixels, such as 1280x720 [default: the scene's size, or 800x600]
     #[arg(long, value_name = "WxH", value_parser = parse_size)]
     pub(crate) size: Option<(u32, u32)>,
     #[command(flatten)]

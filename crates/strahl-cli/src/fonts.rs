@@ -1,9 +1,9 @@
-//! Where the system keeps its fonts.
+//! The font folders of the system.
 
 use std::env;
 use std::path::PathBuf;
 
-/// The folders of the system's fonts, the user's own first.
+/// The font folders, the user's own first.
 pub(crate) fn font_folders() -> Vec<PathBuf> {
     let mut folders = vec![];
     if let Some(home) = env::var_os("HOME").map(PathBuf::from) {

@@ -13,22 +13,22 @@ use strahl::sdl::{Frame, Stream, Value, Writing};
 use strahl::tracing::{Prepared, RenderOptions, RenderScene, Sampling};
 use strahl::{Format, LoadOptions, load_bytes, load_path};
 
-/// The size of pictures of scenes that name none.
+/// The picture size of scenes that don't set one.
 pub(crate) const DEFAULT_SIZE: (u32, u32) = (800, 600);
 
-/// The scene that is rendered if none is given.
+/// The scene that is rendered if the user names none.
 const DEMO: &str = include_str!("../../../scenes/demo.pov");
 
-/// Seconds spent, phase by phase.
+/// Seconds for each phase.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct LoadTimes {
     pub(crate) load: f64,
     pub(crate) compile: f64,
-    /// The part of `compile` spent building acceleration structures.
+    /// The part of `compile` for building acceleration structures.
     pub(crate) build: f64,
 }
 
-/// Where the text of a scene comes from.
+/// The source of a scene's text.
 #[derive(Debug)]
 enum Place {
     File(PathBuf),
@@ -39,20 +39,20 @@ enum Place {
     },
 }
 
-/// The scene of a command line and how it is read: every command reads its scenes through this.
+/// The scene of a command line, and how to read it. Every command reads its scenes through this.
 #[derive(Debug)]
 pub(crate) struct Input<'a> {
     place: Place,
     format: Option<Format>,
     pov: &'a PovArgs,
     size: (u32, u32),
-    /// Whether the scene may write files; else it writes into memory.
+    /// Whether the scene may write files; otherwise it writes into memory.
     writes: bool,
-    /// Whether the scene was a bare mesh, and got a studio.
+    /// Whether the scene was a bare mesh, which gets a ground, a camera and lights.
     staged: Cell<bool>,
 }
 
-/// The time a scene is read for.
+/// The moment of an animation at which a scene is read.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Moment {
     pub(crate) clock: f64,
@@ -60,7 +60,7 @@ pub(crate) struct Moment {
 }
 
 impl<'a> Input<'a> {
-    /// Finds out where the scene is; reads the standard input if it is there.
+    /// Locates the scene; reads it if it comes from the standard input.
     pub(crate) fn new(
         scene: Option<&Path>,
         format: Option<Format>,
@@ -102,7 +102,7 @@ impl<'a> Input<'a> {
         })
     }
 
-    /// Lets the scene write files: into the folder that the user allows, else into one of its own beside it.
+    /// Lets the scene write files: into the folder of `--allow-write`, or else into SCENE.out beside the scene.
     pub(crate) fn writing(self) -> Result<Self, Failure> {
         if let Some(folder) = &self.pov.allow_write
             && !folder.is_dir()
@@ -118,7 +118,7 @@ impl<'a> Input<'a> {
         })
     }
 
-    /// The scene's file, if it is one.
+    /// The scene's file; `None` for other sources.
     pub(crate) fn path(&self) -> Option<&Path> {
         match &self.place {
             Place::File(path) => Some(path),
@@ -139,7 +139,7 @@ impl<'a> Input<'a> {
         }
     }
 
-    /// Whether the scene is in POV-Ray's language, as far as can be told without reading it.
+    /// Whether the scene is in POV-Ray's language, judging by its name.
     pub(crate) fn is_pov(&self) -> bool {
         let format = match &self.place {
             Place::File(path) => self.format.or_else(|| Format::of_path(path)),
@@ -148,12 +148,12 @@ impl<'a> Input<'a> {
         format == Some(Format::Pov)
     }
 
-    /// Whether the scene that was read had neither camera nor lights, and got a studio with both.
+    /// Whether the scene had neither camera nor lights, and got a ground, a camera and lights.
     pub(crate) fn is_staged(&self) -> bool {
         self.staged.get()
     }
 
-    /// What is up in bare meshes: machines that print STL files stand on the plane of x and y.
+    /// The up direction of bare meshes: STL files are made for printers, whose beds are the plane of x and y.
     fn up(&self) -> DVec3 {
         let format = match &self.place {
             Place::File(path) => self.format.or_else(|| Format::of_path(path)),
@@ -165,7 +165,7 @@ impl<'a> Input<'a> {
         }
     }
 
-    /// The moment of a picture that belongs to no animation. Like POV-Ray's, its frame numbers are zero.
+    /// The moment of a single picture. As in POV-Ray, its frame numbers are zero.
     pub(crate) fn still(&self) -> Moment {
         Moment {
             clock: self.pov.clock.unwrap_or(0.0),
@@ -181,7 +181,7 @@ impl<'a> Input<'a> {
         }
     }
 
-    /// Reads the scene with its diagnostics.
+    /// Reads the scene; returns it with its diagnostics.
     pub(crate) fn read(&self, moment: Moment, quiet: bool) -> Loaded {
         let options = self.options(moment, quiet);
         work::doing(format!("reading {}", self.name()));
@@ -225,7 +225,7 @@ impl<'a> Input<'a> {
         options
     }
 
-    /// Where the scene writes: `scene.pov` into `scene.out`. A text has no folder.
+    /// The folder for files that the scene writes: `scene.out` for `scene.pov`. A scene without a file writes into memory.
     fn place_of_writing(&self) -> Writing {
         if !self.writes {
             return Writing::Memory;
@@ -239,7 +239,7 @@ impl<'a> Input<'a> {
         }
     }
 
-    /// Reads the scene and prints what there is to say about it.
+    /// Reads the scene and prints its diagnostics.
     pub(crate) fn load(&self, moment: Moment, reporter: &Reporter) -> Result<Scene, Failure> {
         let loaded = self.read(moment, reporter.quiet);
         let failed = reporter.print(&loaded.diagnostics, None);
@@ -255,7 +255,7 @@ impl<'a> Input<'a> {
         }
     }
 
-    /// Reads and compiles the scene, all but its accelerator.
+    /// Reads and compiles the scene, but doesn't build its accelerator.
     pub(crate) fn prepared(
         &self,
         moment: Moment,
@@ -304,14 +304,14 @@ impl<'a> Input<'a> {
     }
 }
 
-/// What a scene says goes to the standard error, as it comes; warnings are among the diagnostics already.
+/// Prints a message of a scene on the standard error at once; warnings are already among the diagnostics.
 fn print_message(stream: Stream, text: &str) {
     if stream != Stream::Warning {
         Reporter::message(text);
     }
 }
 
-/// The options that decide the values of pixels.
+/// The options that affect the values of pixels.
 pub(crate) fn render_options(scene: &RenderScene, args: &PictureArgs) -> RenderOptions {
     let (width, height) = args.size.or(scene.settings().size).unwrap_or(DEFAULT_SIZE);
     let mut options = RenderOptions::new(scene, width, height);
@@ -329,7 +329,7 @@ pub(crate) fn render_options(scene: &RenderScene, args: &PictureArgs) -> RenderO
     options
 }
 
-/// The number of threads: no more than there are processors, which only get in each other's way.
+/// The number of threads, at most one per processor: more would slow each other down.
 pub(crate) fn threads(asked: usize, reporter: &Reporter) -> usize {
     let most = std::thread::available_parallelism().map_or(1, usize::from);
     if asked > most {

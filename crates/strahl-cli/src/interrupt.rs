@@ -1,8 +1,8 @@
-//! Ctrl-C: the render ends between two tiles, and the program within a second whatever it is doing.
+//! Ctrl-C ends a render between two tiles, and the program within a second whatever it is doing.
 //!
-//! The thread that hears Ctrl-C gives the others a moment to end by themselves. What is in the middle of something long (a
-//! loop of the scene, the building of a tree, one slow pixel) is not asked: nobody needs to look at a flag there, and the program
-//! ends all the same. Pictures are renamed into place when they are complete, so there is never half of one.
+//! The thread that handles Ctrl-C gives the other threads a moment to end by themselves, then it ends the program. So long
+//! computations (a loop in a scene, the building of a tree, a slow pixel) need not check a flag. Pictures are renamed into place
+//! when they are complete, so an interrupted one leaves no partial file.
 
 use crate::terminal;
 use std::io::{self, Write};
@@ -10,24 +10,24 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError, mpsc};
 use std::time::Duration;
 
-/// How long the others have.
+/// The time that the other threads have to end.
 const MOMENT: Duration = Duration::from_millis(600);
 
 static PRESSED: AtomicBool = AtomicBool::new(false);
 static ENDING: AtomicBool = AtomicBool::new(false);
 static LOST: Mutex<String> = Mutex::new(String::new());
 
-/// Makes Ctrl-C end the program with a word; a second Ctrl-C ends it at once.
+/// Installs the handler: Ctrl-C ends the program with a message; a second Ctrl-C ends it at once.
 pub(crate) fn listen() {
-    // Without a handler Ctrl-C just ends the program.
+    // If the handler can't be installed, Ctrl-C ends the program without a message.
     let _ = ctrlc::set_handler(|| {
         if PRESSED.swap(true, Ordering::Relaxed) {
             end(130);
         }
-        // This thread hears no second Ctrl-C while it sleeps, but ends the program soon enough.
+        // A second Ctrl-C is not noticed while this thread sleeps, but the sleep is short.
         std::thread::sleep(MOMENT);
         if ends() {
-            // Whoever reads the standard error may be in no hurry.
+            // Writing to the standard error may block, so another thread does it.
             let (said, heard) = mpsc::channel();
             std::thread::spawn(move || {
                 say(&lost());
@@ -44,18 +44,18 @@ pub(crate) fn pressed() -> bool {
     PRESSED.load(Ordering::Relaxed)
 }
 
-/// Says what is lost and what is kept if Ctrl-C is pressed from now on.
+/// Sets the message about lost and kept results that Ctrl-C prints from now on.
 pub(crate) fn would_lose(what: impl Into<String>) {
     *LOST.lock().unwrap_or_else(PoisonError::into_inner) = what.into();
 }
 
-/// What is lost and what is kept.
+/// The message about lost and kept results.
 pub(crate) fn lost() -> String {
     LOST.lock().unwrap_or_else(PoisonError::into_inner).clone()
 }
 
-/// Whether the caller is the one to end the program with a last word: only one thread is. A thread that comes later has nothing to
-/// say any more.
+/// Whether the caller must end the program with its last message: true for one thread only. Threads that come later must not
+/// print any more.
 pub(crate) fn ends() -> bool {
     !ENDING.swap(true, Ordering::Relaxed)
 }
@@ -76,7 +76,7 @@ pub(crate) fn end(code: i32) -> ! {
     std::process::exit(code)
 }
 
-/// Says that Ctrl-C ended the program.
+/// Prints that Ctrl-C ended the program.
 pub(crate) fn say(what: &str) {
     terminal::line(&match what {
         "" => "interrupted".to_owned(),
@@ -84,7 +84,7 @@ pub(crate) fn say(what: &str) {
     });
 }
 
-/// A stream that fails once Ctrl-C was pressed, so that large files are given up soon.
+/// A stream that fails after Ctrl-C, so that writing a large file ends soon.
 pub(crate) struct Interruptible<'a>(pub(crate) &'a mut dyn Write);
 
 impl Write for Interruptible<'_> {

@@ -29,7 +29,7 @@ use report::Reporter;
 use std::process::ExitCode;
 use strahl::memory::Bounded;
 
-/// All memory of the program is counted: see `--max-memory`.
+/// Counts all memory of the program, for `--max-memory`.
 #[global_allocator]
 static MEMORY: Bounded = Bounded::new();
 

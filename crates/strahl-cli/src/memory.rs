@@ -1,20 +1,20 @@
-//! `--max-memory`: how much the program may take, and what it says when that is not enough.
+//! `--max-memory`: the limit on memory, and the error when it is reached.
 
 use crate::{interrupt, terminal, work};
 use std::str::FromStr;
 use strahl::memory::{Bounded, Refusal};
 use sysinfo::System;
 
-/// A bound on memory as the user gives it.
+/// A limit on memory as given by the user.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum MemoryLimit {
     None,
     Bytes(u64),
-    /// Part of the machine's memory, or of what a container may use.
+    /// A fraction of the machine's memory, or of a container's limit.
     Part(f64),
 }
 
-/// Less is not enough to say so.
+/// The smallest limit: with less, not even the error message could be printed.
 const LEAST: u64 = 16 << 20;
 
 impl FromStr for MemoryLimit {
@@ -46,7 +46,7 @@ impl FromStr for MemoryLimit {
     }
 }
 
-/// Bounds the memory of the program.
+/// Limits the memory of the program.
 pub(crate) fn bound(memory: &Bounded, limit: MemoryLimit) {
     let bytes = match limit {
         MemoryLimit::None => u64::MAX,
@@ -65,7 +65,7 @@ fn machine() -> Option<u64> {
     (all > 0).then_some(all.max(LEAST))
 }
 
-/// Ends the program because it may take no more memory. The thread that gets here can't go on.
+/// Ends the program because it may use no more memory. The thread that calls this can't continue.
 fn end(refusal: Refusal) -> ! {
     if interrupt::ends() {
         terminal::last_line(&message(&refusal));
@@ -90,7 +90,7 @@ fn message(refusal: &Refusal) -> String {
     )
 }
 
-/// A number of bytes in words.
+/// A number of bytes for people, such as `1.5 GiB`.
 pub(crate) fn size(bytes: usize) -> String {
     const UNITS: [&str; 5] = ["B", "KiB", "MiB", "GiB", "TiB"];
     let (mut value, mut unit) = (bytes as f64, 0);

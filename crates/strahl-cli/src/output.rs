@@ -5,11 +5,11 @@ use crate::terminal::{self, visible};
 use std::fmt::Arguments;
 use std::io::{self, ErrorKind, IsTerminal, Write};
 
-/// Prints a line on standard output. Who reads it may have enough (`strahl explain ... | head`): the program then ends, without a
-/// complaint.
+/// Prints a line on standard output. If the reader has closed it (`strahl explain ... | head`), the program ends without an
+/// error.
 pub(crate) fn line(text: Arguments<'_>) {
     let mut out = io::stdout().lock();
-    // Names from scenes must not command the terminal.
+    // Names in scenes must not be able to control the terminal.
     let written = match out.is_terminal() {
         true => writeln!(out, "{}", visible(&text.to_string())),
         false => writeln!(out, "{text}"),
@@ -28,7 +28,7 @@ pub(crate) fn bytes(bytes: &[u8]) -> Result<(), Failure> {
     }
 }
 
-/// Nobody reads any more, or the output can't be written.
+/// Ends the program, because the output is closed or can't be written.
 fn end(error: &io::Error) -> ! {
     let enough = error.kind() == ErrorKind::BrokenPipe;
     if !enough {
@@ -41,7 +41,7 @@ fn end(error: &io::Error) -> ! {
     std::process::exit(i32::from(!enough))
 }
 
-/// `println!` that survives a reader who has enough.
+/// Like `println!`, but a closed output is not an error.
 macro_rules! say {
     ($($text:tt)*) => { $crate::output::line(format_args!($($text)*)) };
 }

@@ -5,14 +5,14 @@ use std::fmt::Display;
 use std::sync::atomic::{AtomicBool, Ordering};
 use strahl::scene::{Diagnostic, Severity, SourceMap};
 
-/// Why a command failed.
+/// The reason why a command failed.
 #[derive(Debug)]
 pub(crate) enum Failure {
-    /// One thing went wrong.
+    /// An error with this message.
     Message(String),
-    /// The scene is wrong; the diagnostics are printed already.
+    /// Errors in the scene, whose diagnostics are already printed.
     Reported,
-    /// There were warnings, and `--strict` asks for none.
+    /// Warnings, which `--strict` makes a failure.
     Strict(String),
     /// The user pressed Ctrl-C.
     Interrupted,
@@ -30,7 +30,7 @@ impl Failure {
             Self::Strict(what) => terminal::line(&format!("error: {what} (--strict)")),
             Self::Interrupted => {
                 if !interrupt::ends() {
-                    // The thread that hears Ctrl-C is ending the program.
+                    // The thread that handles Ctrl-C is ending the program.
                     interrupt::wait();
                 }
                 interrupt::say(&interrupt::lost());
@@ -38,8 +38,8 @@ impl Failure {
         }
     }
 
-    /// Exit code: 1 for what went wrong, 3 for warnings where none are wanted, 130 as shells report Ctrl-C. (2 is clap's, for
-    /// wrong command lines.)
+    /// The exit code: 1 for errors, 3 for warnings with `--strict`, 130 for Ctrl-C, as shells report it. (2 is clap's, for wrong
+    /// command lines.)
     pub(crate) fn code(&self) -> u8 {
         match self {
             Self::Message(_) | Self::Reported => 1,
@@ -49,15 +49,15 @@ impl Failure {
     }
 }
 
-/// Whether warnings end the program: `--strict`, set once by `main`.
+/// Whether warnings are a failure: `--strict`, set once by `main`.
 static STRICT: AtomicBool = AtomicBool::new(false);
 
-/// Lets warnings end the program.
+/// Makes warnings a failure.
 pub(crate) fn be_strict() {
     STRICT.store(true, Ordering::Relaxed);
 }
 
-/// Prints diagnostics, each text once: the frames of an animation repeat them.
+/// Prints diagnostics. Each text is printed once, because the frames of an animation repeat them.
 #[derive(Debug)]
 pub(crate) struct Reporter {
     /// Print errors only.
@@ -75,13 +75,13 @@ impl Reporter {
         }
     }
 
-    /// Prints what a scene says, as it comes.
+    /// Prints a message of the scene at once.
     pub(crate) fn message(text: &str) {
         terminal::message(text);
     }
 
-    /// Prints diagnostics and tells whether one of them is an error. Diagnostics of the compiler know their place, but not
-    /// the text of the line: `sources` gives at least the name of the file.
+    /// Prints diagnostics; returns whether one of them is an error. Diagnostics of the compiler know their place, but not the
+    /// text of the line: `sources` provides at least the name of the file.
     pub(crate) fn print(&self, diagnostics: &[Diagnostic], sources: Option<&SourceMap>) -> bool {
         terminal::end_line();
         for diagnostic in diagnostics {
@@ -99,7 +99,7 @@ impl Reporter {
         diagnostics.iter().any(Diagnostic::is_error)
     }
 
-    /// Takes note of diagnostics that are told in another way.
+    /// Counts diagnostics that are printed elsewhere.
     pub(crate) fn note(&self, diagnostics: &[Diagnostic]) {
         let warnings = diagnostics.iter().filter(|d| !d.is_error());
         self.warnings.set(self.warnings.get() + warnings.count());
@@ -112,12 +112,12 @@ impl Reporter {
         }
     }
 
-    /// Prints a warning of the program's own.
+    /// Prints a warning of the program itself.
     pub(crate) fn warn(&self, text: &str) {
         self.print(&[Diagnostic::warning(text)], None);
     }
 
-    /// Tells what was asked for and will not be done.
+    /// Prints notes on settings that will have no effect.
     pub(crate) fn notes(&self, notes: &[String]) {
         for note in notes {
             self.say(&format!("note: {note}"));
@@ -125,7 +125,7 @@ impl Reporter {
         self.warnings.set(self.warnings.get() + notes.len());
     }
 
-    /// Under `--strict` warnings are a failure.
+    /// Returns a failure if there were warnings and `--strict` is set.
     pub(crate) fn settle(&self) -> Result<(), Failure> {
         match self.warnings.get() {
             n if n > 0 && STRICT.load(Ordering::Relaxed) => Err(Failure::Strict(format!(
@@ -138,7 +138,7 @@ impl Reporter {
     }
 }
 
-/// A diagnostic as it is printed.
+/// The text of a diagnostic.
 fn text(diagnostic: &Diagnostic, sources: Option<&SourceMap>) -> String {
     let mut text = diagnostic.to_string();
     if diagnostic.source.is_none()

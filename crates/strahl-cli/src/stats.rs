@@ -53,7 +53,7 @@ struct Image<'a> {
     sha256: &'a str,
 }
 
-/// Seconds of the phases after loading.
+/// Seconds for the phases after loading.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RenderTimes {
     pub(crate) trace: f64,

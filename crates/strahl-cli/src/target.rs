@@ -1,4 +1,4 @@
-//! Where a picture goes: a file, or the standard output.
+//! The destination of a picture: a file or the standard output.
 
 use crate::animation::Animation;
 use crate::args::RenderArgs;
@@ -12,7 +12,7 @@ use strahl::formats::image::{
     ImageError, ImageFormat, Picture, WriteOptions, encode_picture, formats, write_file,
 };
 
-/// Where a picture goes, and in which format.
+/// The destination of a picture and its format.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Target {
     File(PathBuf, ImageFormat),
@@ -21,7 +21,7 @@ pub(crate) enum Target {
 }
 
 impl Target {
-    /// Where the picture of `render` goes.
+    /// The destination of `render`'s picture.
     pub(crate) fn of(args: &RenderArgs) -> Result<Self, Failure> {
         let format = args.picture_format;
         let own = || {
@@ -54,7 +54,7 @@ impl Target {
         }
     }
 
-    /// The file, if it is one.
+    /// The file; `None` for the standard output.
     pub(crate) fn file(&self) -> Option<&Path> {
         match self {
             Self::File(file, _) => Some(file),
@@ -62,7 +62,7 @@ impl Target {
         }
     }
 
-    /// Its name for people.
+    /// The name shown to the user.
     pub(crate) fn shown(&self) -> String {
         match self {
             Self::File(file, _) => file.display().to_string(),
@@ -70,7 +70,7 @@ impl Target {
         }
     }
 
-    /// Where a frame of an animation goes.
+    /// The destination of a frame of an animation.
     pub(crate) fn of_frame(&self, animation: &Animation, frame: u32) -> Self {
         match self {
             Self::File(file, format) => Self::File(animation.file(file, frame), *format),
@@ -78,7 +78,7 @@ impl Target {
         }
     }
 
-    /// Before the work, not after it: can the picture be written there?
+    /// Checks before rendering whether the picture can be written.
     pub(crate) fn check(&self, args: &RenderArgs, animated: bool) -> Result<(), Failure> {
         let shown = self.shown();
         if args.layers && !self.format().info().layers {
@@ -119,7 +119,7 @@ impl Target {
         Ok(())
     }
 
-    /// A slip of the keyboard must not cost the scene.
+    /// Checks that the picture does not overwrite the scene itself, which would be a typing error.
     pub(crate) fn spares(&self, input: &Input<'_>, args: &RenderArgs) -> Result<(), Failure> {
         let real = |path: &Path| path.canonicalize().ok();
         let scene = input.path().and_then(real);
@@ -134,7 +134,7 @@ impl Target {
         Ok(())
     }
 
-    /// Writes a picture; Ctrl-C ends that too, and nothing is left behind.
+    /// Writes a picture. Ctrl-C ends this too, and leaves no partial file.
     pub(crate) fn write(
         &self,
         picture: &Picture<'_>,
@@ -165,7 +165,7 @@ impl Target {
     }
 }
 
-/// The scene's name without folder and endings.
+/// The scene's name without folder and extensions.
 fn scene_name(args: &RenderArgs) -> Result<String, Failure> {
     let Some(scene) = &args.scene else {
         return Ok("demo".to_owned());
@@ -179,7 +179,7 @@ fn scene_name(args: &RenderArgs) -> Result<String, Failure> {
     Ok(stem.to_owned())
 }
 
-/// Whether a file's folder exists: cheaper to know before the render than after.
+/// Checks that a file's folder exists, which is cheaper before the render than after it.
 fn check_folder(file: &Path) -> Result<(), Failure> {
     match file.parent() {
         Some(folder) if !folder.as_os_str().is_empty() && !folder.is_dir() => {

@@ -1,7 +1,7 @@
-//! The standard error: one way for everything the program says there.
+//! The standard error: everything that the program prints there goes through this module.
 //!
-//! Texts of scenes may hold anything, sequences that command the terminal included: control characters are written in
-//! letters. Errors have colours where the reader has a terminal and no objection (`NO_COLOR`).
+//! Texts of scenes may contain sequences that control a terminal, so control characters are printed as escapes. Errors are
+//! coloured on a terminal, unless `NO_COLOR` is set.
 
 use anstyle::{AnsiColor, Style};
 use indicatif::ProgressBar;
@@ -10,11 +10,11 @@ use std::fmt::Write as _;
 use std::io::{IsTerminal, Write};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// What is on the screen besides lines that are complete.
+/// The incomplete parts of the screen.
 struct Screen {
-    /// The progress bar, which steps aside for lines.
+    /// The progress bar, which is hidden while lines are printed.
     bar: Option<ProgressBar>,
-    /// A line of the scene's that has no end yet.
+    /// A line of the scene's messages that has not ended yet.
     open: String,
 }
 
@@ -27,7 +27,7 @@ fn screen() -> MutexGuard<'static, Screen> {
     SCREEN.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Lets a progress bar step aside whenever a line is written.
+/// Registers a progress bar, which is hidden while lines are printed.
 pub(crate) fn show_bar(bar: Option<ProgressBar>) {
     screen().bar = bar;
 }
@@ -37,21 +37,21 @@ pub(crate) fn is_terminal() -> bool {
     std::io::stderr().is_terminal()
 }
 
-/// Writes a line of the program's own.
+/// Prints a line of the program itself.
 pub(crate) fn line(text: &str) {
     put(&mut screen(), &styled(&visible(text)));
 }
 
-/// Writes the last line before the program ends, even if the thread that does so was writing already.
+/// Prints the last line before the program ends, even if another thread holds the lock.
 pub(crate) fn last_line(text: &str) {
     match SCREEN.try_lock() {
         Ok(mut screen) => put(&mut screen, &styled(&visible(text))),
-        // Nobody is left to tell if this fails.
+        // If this fails, there is no way left to report it.
         Err(_) => drop(writeln!(std::io::stderr(), "{}", visible(text))),
     }
 }
 
-/// Writes what a scene says, which often leaves its last line open.
+/// Prints a message of a scene, which often has no line end.
 pub(crate) fn message(text: &str) {
     let mut screen = screen();
     for part in text.split_inclusive('\n') {
@@ -63,7 +63,7 @@ pub(crate) fn message(text: &str) {
     }
 }
 
-/// Ends a line that a scene has left open.
+/// Ends an open line of a scene.
 pub(crate) fn end_line() {
     let mut screen = screen();
     if !screen.open.is_empty() {
@@ -72,13 +72,13 @@ pub(crate) fn end_line() {
     }
 }
 
-/// Writes a line, after one that is open.
+/// Prints a line, after ending an open one.
 fn put(screen: &mut Screen, text: &str) {
     let open = std::mem::take(&mut screen.open);
     let write = || {
         let mut out = anstream::stderr().lock();
         if !open.is_empty() {
-            // Who has closed the standard error does not want to know.
+            // An error here means that the standard error is closed, and can't be reported.
             let _ = writeln!(out, "{}", visible(&open));
         }
         let _ = writeln!(out, "{text}");
@@ -89,8 +89,8 @@ fn put(screen: &mut Screen, text: &str) {
     }
 }
 
-/// The text with everything that could command a terminal, or turn the order of letters around, in letters: `\x1b`, `\u{202e}`.
-/// Ends of lines and tabs stay.
+/// The text with all characters escaped that could control a terminal or change the direction of text: `\x1b`, `\u{202e}`. Line
+/// ends and tabs stay.
 pub(crate) fn visible(text: &str) -> Cow<'_, str> {
     if !text.contains(is_hidden) {
         return Cow::Borrowed(text);
@@ -98,7 +98,7 @@ pub(crate) fn visible(text: &str) -> Cow<'_, str> {
     let mut out = String::with_capacity(text.len() + 16);
     for c in text.chars() {
         match u32::from(c) {
-            // Writing to a string does not fail.
+            // Writing to a string never fails.
             n if is_hidden(c) && n < 0x100 => drop(write!(out, "\\x{n:02x}")),
             n if is_hidden(c) => drop(write!(out, "\\u{{{n:x}}}")),
             _ => out.push(c),
@@ -115,8 +115,8 @@ fn is_hidden(c: char) -> bool {
     turns || (c.is_control() && !matches!(c, '\n' | '\t'))
 }
 
-/// A diagnostic in colours: its kind and the caret in red or yellow, margins and arrows in blue, help in green. The colours are
-/// taken out again where nobody wants them.
+/// A diagnostic in colours: its kind and the caret in red or yellow, margins and arrows in blue, help in green. The stream
+/// removes the colours if they are not wanted.
 fn styled(text: &str) -> String {
     let mut lines = text.split('\n');
     let first = lines.next().unwrap_or_default();
@@ -146,7 +146,7 @@ fn styled(text: &str) -> String {
         out.push_str(space);
         let number = body.find(|c: char| !c.is_ascii_digit()).unwrap_or(0);
         let (digits, behind) = body.split_at(number);
-        // Writing to a string does not fail.
+        // Writing to a string never fails.
         let _ = if let Some(place) = body.strip_prefix("--> ") {
             write!(out, "{margin}-->{margin:#} {place}")
         } else if let Some(advice) = body.strip_prefix("= help:") {

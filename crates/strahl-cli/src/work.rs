@@ -1,4 +1,4 @@
-//! What the program is doing: progress shows it, and the error of a memory that is full names it.
+//! The current activity of the program, for progress and for the error of `--max-memory`.
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
@@ -9,12 +9,12 @@ fn work() -> MutexGuard<'static, Option<(String, Instant)>> {
     WORK.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Tells what is done from now on: `reading scene.pov`.
+/// Sets the current activity: `reading scene.pov`.
 pub(crate) fn doing(what: impl Into<String>) {
     *work() = Some((what.into(), Instant::now()));
 }
 
-/// What is done now, and for how many seconds.
+/// The current activity and its duration in seconds.
 pub(crate) fn now() -> (String, f64) {
     match &*work() {
         Some((what, since)) => (what.clone(), since.elapsed().as_secs_f64()),
@@ -22,7 +22,7 @@ pub(crate) fn now() -> (String, f64) {
     }
 }
 
-/// What is done now, for a thread that must not wait.
+/// The current activity, for a thread that must not wait for a lock.
 pub(crate) fn at_once() -> Option<String> {
     let work = WORK.try_lock().ok()?;
     work.as_ref().map(|(what, _)| what.clone())

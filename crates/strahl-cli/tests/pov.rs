@@ -1,4 +1,4 @@
-//! Scenes in POV-Ray's language, and POV-Ray's habits on the command line.
+//! Scenes in POV-Ray's language, and POV-Ray's command lines.
 
 use std::io::Write;
 use std::path::Path;
@@ -132,7 +132,7 @@ fn povray_switches_render() {
         16,
         "bits"
     );
-    // A part in a picture of the whole size.
+    // A region within a picture of the full size.
     succeeds(f, &["render", "scene.pov", "+W20", "+H10", "+SC0.5", "+Oc"]);
     assert_eq!(size(f, "c.png"), (20, 10));
     fails(f, &["render", "scene.pov", "+Y3"], 2, &["+Y3", "--help"]);
@@ -162,7 +162,7 @@ fn ini_files_have_sections() {
     assert_eq!(size(f, "scene.png"), (12, 9));
     succeeds(f, &["render", "run.ini[small]"]);
     assert_eq!(size(f, "small.png"), (4, 3));
-    // Later words win.
+    // Later words override earlier ones.
     succeeds(f, &["render", "run[Small]", "+W5", "+Olater.png"]);
     assert_eq!(size(f, "later.png"), (5, 3));
     let parts = ["run.ini:10", "Widht", "`Width`"];
@@ -216,7 +216,7 @@ fn frames_are_numbered_and_timed() {
         "{said}"
     );
     assert_eq!(pictures(f)[..2], ["c3.png", "c4.png"]);
-    // No animation: the numbers are zero.
+    // Without an animation, the frame numbers are zero.
     let said = succeeds(f, &[&small[..], &["+K0.5"]].concat());
     assert!(said.contains("frame 0 of 0 clock 0.500"), "{said}");
     write(f, "a.nff", "s 0 0 0 1\n");
@@ -230,7 +230,7 @@ fn resuming_keeps_complete_frames_only() {
     let args = ["render", "scene.pov", "--size", "8x6", "--final-frame", "4"];
     succeeds(f, &args);
     let whole = std::fs::read(f.join("scene2.png")).expect("written");
-    // A marked picture shows whether it was kept: it is complete, but not what would be rendered.
+    // A picture with other pixels shows whether it was kept: it is complete, but not what would be rendered.
     let other = std::fs::read(f.join("scene4.png")).expect("written");
     std::fs::write(f.join("scene1.png"), &other).expect("writable");
     std::fs::write(f.join("scene2.png"), &whole[..whole.len() - 20]).expect("writable");
@@ -244,7 +244,7 @@ fn resuming_keeps_complete_frames_only() {
     assert_eq!(std::fs::read(f.join("scene1.png")).expect("kept"), other);
     assert_eq!(std::fs::read(f.join("scene2.png")).expect("again"), whole);
     assert_eq!(pictures(f).len(), 4);
-    // Pictures of another size are not those of this animation.
+    // Pictures of another size don't belong to this animation.
     succeeds(
         f,
         &[
@@ -284,7 +284,7 @@ fn an_error_shows_line_caret_and_trace() {
     );
     assert!(!f.join("bad.png").exists(), "{text}");
     fails(f, &["check", "bad.pov"], 1, &["in macro `Ball`"]);
-    // What the scene said last does not swallow the error.
+    // The scene's last message must not hide the error.
     write(f, "said.pov", "#debug \"half a line\"\nbox { 1 }");
     fails(f, &["check", "said.pov"], 1, &["half a line\nerror: "]);
     fails(
@@ -309,7 +309,7 @@ fn includes_are_searched_in_library_paths() {
     succeeds(f, &["render", "+Ie.pov", "+Llib", "+W8", "+H6"]);
 }
 
-/// A scene that writes a file, reads it again, and has a sphere of the radius that it says.
+/// A scene that writes a file, reads it back, and contains a sphere with the radius it read.
 fn writing(name: &str) -> String {
     format!(
         "#fopen F \"{name}\" write\n#write(F, \"#declare R = 1;\\n\")\n#fclose F\n#include \"{name}\"\nsphere {{ 0, R }}"
@@ -336,7 +336,7 @@ fn only_render_writes_files_of_scenes() {
             "{args:?}"
         );
     }
-    // Again and again: what a scene has written it may write again.
+    // A scene may overwrite its own output of an earlier run.
     for _ in 0..2 {
         succeeds(f, &["render", "w.pov", "--size", "4x3"]);
         assert!(f.join("w.out/a.inc").exists() && !f.join("a.inc").exists());
@@ -368,7 +368,7 @@ fn scenes_overwrite_nothing() {
         std::fs::read(f.join("allowed/a.txt")).expect("kept"),
         b"mine"
     );
-    // The scene itself, files that are not shown, other folders.
+    // The scene itself, hidden files and other folders are protected.
     for name in [
         "self.pov",
         "../b.txt",
@@ -383,7 +383,7 @@ fn scenes_overwrite_nothing() {
     assert!(!f.join("b.txt").exists() && !f.join(".bashrc").exists());
     let args = ["render", "self.pov", "--allow-write", "nowhere"];
     fails(f, &args, 1, &["no folder nowhere"]);
-    // Nor does a slip of the keyboard.
+    // A typing error on the command line must not overwrite the scene either.
     let args = ["render", "scene.pov", "--stats", "scene.pov"];
     fails(f, &args, 1, &["the scene itself"]);
     assert_eq!(
@@ -430,7 +430,7 @@ fn render_may_be_left_out() {
         "run.ini",
         "Input_File_Name=scene\nWidth=90\nHeight=60\nOutput_File_Name=x.png\nAntialias=on\n",
     );
-    // What is said to strahl wins.
+    // Options of strahl override those of POV-Ray.
     succeeds(
         f,
         &[
@@ -578,12 +578,12 @@ fn ctrl_c_leaves_whole_frames() {
         let bytes = std::fs::read(f.join(name)).expect("a picture");
         assert!(bytes[bytes.len() - 8..].starts_with(b"IEND"), "{name}");
     }
-    // The scene and its pictures, nothing half done.
+    // Only the scene and its pictures, no partial files.
     let files = std::fs::read_dir(f).expect("a folder").count();
     assert_eq!(files, names.len() + 1);
 }
 
-/// What the program says until it ends after Ctrl-C, and how long that takes.
+/// The output of the program until it ends after Ctrl-C, and the seconds that takes.
 #[cfg(unix)]
 fn interrupted(folder: &Path, args: &[&str]) -> (String, f64) {
     let child = Command::new(env!("CARGO_BIN_EXE_strahl"))
@@ -614,7 +614,7 @@ fn ctrl_c_ends_the_middle_of_something_long() {
         "loop.pov",
         "#declare I = 0; #while (I < 1e12) #declare I = I + 1; #end sphere { 0, 1 }",
     );
-    // Two mirrors that face each other: trees of ten thousand levels, with a thousand shadow rays on each.
+    // Two mirrors that face each other: ray trees of ten thousand levels, with a thousand shadow rays at each hit.
     let mirrors = "camera { location 0 look_at z } global_settings { adc_bailout 0 }\n\
                    light_source { y/2 rgb 1 area_light x, z, 32, 32 }\n\
                    plane { z, 1 pigment { rgb 1 } finish { reflection 1 } } plane { z, -1 pigment { rgb 1 } finish { reflection 1 } }";
@@ -649,7 +649,7 @@ fn ctrl_c_ends_the_middle_of_something_long() {
     ] {
         let (said, seconds) = interrupted(f, args);
         assert!(said.contains("interrupted"), "{args:?}: {said}");
-        // A second, and what a busy machine takes.
+        // One second, plus the delays of a busy machine.
         assert!(seconds < 3.0, "{args:?}: {seconds} s");
     }
     assert!(pictures(f).is_empty());

@@ -7,7 +7,7 @@ use std::path::Path;
 use strahl::scene::{Diagnostic, Severity, SourceMap};
 use strahl::tracing::Prepared;
 
-/// `strahl check`: everything there is to say about scenes, and whether they could be rendered.
+/// `strahl check`: prints all diagnostics of scenes, and whether the scenes could be rendered.
 pub(crate) fn check(args: &CheckArgs) -> Result<(), Failure> {
     let reporter = Reporter::new(false);
     let mut checked = vec![];
@@ -27,18 +27,18 @@ pub(crate) fn check(args: &CheckArgs) -> Result<(), Failure> {
     }
 }
 
-/// What there is to say about a scene; with its field names the contract of `--json`.
+/// The result for a scene; its field names are part of the contract of `--json`.
 #[derive(Debug, Serialize)]
 struct Checked {
     file: String,
-    /// Whether there is no error.
+    /// True without errors.
     ok: bool,
     errors: usize,
     warnings: usize,
     diagnostics: Vec<Said>,
 }
 
-/// A diagnostic for programs.
+/// A diagnostic in JSON.
 #[derive(Debug, Serialize)]
 struct Said {
     severity: &'static str,

@@ -7,34 +7,34 @@ use std::time::Instant;
 use strahl::accel::AcceleratorKind;
 use strahl::tracing::{Film, Prepared, Region, RenderOptions, RenderScene, Rendered, SceneStats};
 
-/// One accelerator in the table.
+/// A row of the table: one accelerator.
 #[derive(Debug, Serialize)]
 struct Row {
     accelerator: String,
     build_s: f64,
     bytes: usize,
-    /// Nodes, or cells.
+    /// Nodes or cells.
     nodes: usize,
     references: usize,
     rays: u64,
-    /// Those of them that met something.
+    /// The number of rays that hit something.
     hits: u64,
-    /// Nodes or cells looked at, and primitives tested, per ray.
+    /// Nodes or cells visited, and primitives tested, per ray.
     steps_per_ray: f64,
     tests_per_ray: f64,
     trace_s: f64,
     rays_per_s: f64,
-    /// How many times as many rays per second as the list.
+    /// How many times as many rays per second as with the list.
     faster_than_list: Option<f64>,
-    /// The part of the picture that was rendered, if not all of it.
+    /// The fraction of the picture that was rendered, if not all of it.
     sampled: Option<f64>,
-    /// Of the film; of a sample that of the same pixels.
+    /// The hash of the film; if only a sample was rendered, of those pixels.
     sha256: String,
-    /// Whether it is the picture of the first row.
+    /// Whether the picture is that of the first row.
     equal: bool,
 }
 
-/// `strahl compare`: the cost of every accelerator, and that the picture is the same.
+/// `strahl compare`: measures the cost of every accelerator and checks that the pictures are the same.
 pub(crate) fn compare(args: &CompareArgs) -> Result<(), Failure> {
     let (input, reporter) = (Input::of(&args.scene)?, Reporter::new(false));
     let (prepared, _) = input.prepared(input.still(), &reporter)?;
@@ -58,7 +58,7 @@ pub(crate) fn compare(args: &CompareArgs) -> Result<(), Failure> {
     }
 }
 
-/// The accelerators asked for, the list last: it may be sampled, the others give the picture to compare with.
+/// The chosen accelerators, the list last: it may render a sample only, which is compared with the pictures of the others.
 fn kinds(args: &CompareArgs) -> Result<Vec<AcceleratorKind>, Failure> {
     if !args.with.is_empty() {
         return Ok(args.with.clone());
@@ -77,10 +77,10 @@ fn kinds(args: &CompareArgs) -> Result<Vec<AcceleratorKind>, Failure> {
     Ok(kinds)
 }
 
-/// Tests by the list above this are too many: it is sampled.
+/// If the list needs more tests than this, it renders a sample only.
 const MOST_TESTS: f64 = 3e9;
 
-/// Edge of the squares of pixels that a sample is made of.
+/// Edge of the squares of pixels in a sample.
 const SQUARE: u32 = 8;
 
 struct Comparison<'a> {
@@ -89,7 +89,7 @@ struct Comparison<'a> {
     prepared: Prepared,
 }
 
-/// An accelerator with what it has done so far.
+/// An accelerator and its results so far.
 struct Contender {
     kind: AcceleratorKind,
     scene: RenderScene,
@@ -150,13 +150,13 @@ impl<'a> Comparison<'a> {
         let mut options = render_options(scene, &self.args.picture);
         options.threads = self.threads;
         options.trace.shadow_cache = !self.args.no_shadow_cache;
-        // What structures cost is compared ray by ray.
+        // Beam culling is off, because structures are compared by the cost of single rays.
         options.trace.beams = false;
         options.trace.packets = false;
         options
     }
 
-    /// The list, all of the picture or as much as takes not too long.
+    /// Measures the list, on the whole picture or on a sample if that takes too long.
     fn list(&self, reference: Option<&Rendered>) -> Result<Row, Failure> {
         let kind: AcceleratorKind = "list".parse().map_err(Failure::new)?;
         let mut list = self.build(kind);
@@ -252,7 +252,7 @@ fn hash(film: &Film) -> String {
     film.sha256()
 }
 
-/// What takes all rows.
+/// Fills in the columns that depend on all rows.
 fn finish(rows: &mut [Row]) {
     let list = rows.iter().find(|r| r.accelerator == "list");
     let list = list.map(|r| r.rays_per_s);
@@ -263,7 +263,7 @@ fn finish(rows: &mut [Row]) {
     }
 }
 
-/// Squares of pixels, evenly over the picture, that make about this part of it; at least one.
+/// Squares of pixels, spread evenly over the picture, that cover about this fraction of it; at least one.
 fn squares(options: &RenderOptions, part: f64) -> Vec<Region> {
     let (width, height) = (options.width, options.height);
     let pixels = f64::from(width) * f64::from(height) * part;

@@ -4,7 +4,7 @@ use crate::report::Failure;
 use clap::CommandFactory;
 use clap_complete::Shell;
 
-/// `strahl completions`: what completes command lines in a shell.
+/// `strahl completions`: prints the completion script of a shell.
 pub(crate) fn completions(shell: Shell) -> Result<(), Failure> {
     let mut script = vec![];
     clap_complete::generate(shell, &mut Cli::command(), "strahl", &mut script);

@@ -4,7 +4,7 @@ use crate::input::{Input, render_options};
 use crate::output::say;
 use crate::report::{Failure, Reporter};
 
-/// `strahl explain`: the ray tree of a pixel.
+/// `strahl explain`: prints the ray tree of a pixel.
 pub(crate) fn explain(args: &ExplainArgs) -> Result<(), Failure> {
     let (scene_file, format) = (Some(args.scene.as_path()), args.scene_format);
     let input = Input::new(scene_file, format, &args.pov, args.picture.size)?;

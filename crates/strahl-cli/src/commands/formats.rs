@@ -3,7 +3,7 @@ use crate::report::Failure;
 use strahl::Format;
 use strahl::accel::AcceleratorKind;
 
-/// `strahl formats`: the tables of formats.
+/// `strahl formats`: lists formats and accelerators.
 pub(crate) fn formats() -> Result<(), Failure> {
     say!("Scenes (each may be compressed with gzip):");
     let files = strahl::formats::scene::formats().iter();

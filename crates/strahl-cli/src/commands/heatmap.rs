@@ -8,13 +8,13 @@ use std::time::Instant;
 use strahl::formats::image::{ImageFormat, Layer, LayerData, Picture, WriteOptions};
 use strahl::tracing::{PixelCost, Progress, RenderError, RenderScene, Sampling};
 
-/// `strahl heatmap`: a picture of what each pixel costs.
+/// `strahl heatmap`: draws the cost of each pixel.
 pub(crate) fn heatmap(args: &HeatmapArgs) -> Result<(), Failure> {
     let format = ImageFormat::from_path(&args.output).map_err(Failure::new)?;
     let (input, reporter) = (Input::of(&args.scene)?, Reporter::new(false));
     let (scene, _) = input.compiled(input.still(), &args.accelerator, &reporter)?;
     let mut options = render_options(&scene, &args.picture);
-    // One ray tells what a pixel costs; those of antialiasing would blur it.
+    // One ray per pixel shows its cost; antialiasing would blur it.
     options.sampling = args.picture.sampling.unwrap_or(Sampling::Center);
     options.threads = threads(args.threads, &reporter);
     options.costs = true;
@@ -35,7 +35,7 @@ pub(crate) fn heatmap(args: &HeatmapArgs) -> Result<(), Failure> {
     );
     let mut rows = options.height;
     let layers = if format.info().layers {
-        // Who can read layers needs no legend.
+        // Viewers that read layers show the values and need no legend.
         vec![Layer {
             name: "cost".into(),
             channels: vec!["value".into()],
@@ -103,7 +103,7 @@ impl Metric {
     }
 }
 
-/// The largest value of all but a thousandth of the pixels, so that a few extremes don't make all others dark; above 0.
+/// The largest value of all but a thousandth of the pixels, so that a few extreme pixels don't darken all others; above 0.
 fn usual_most(values: &[f32]) -> f64 {
     let mut sorted = values.to_vec();
     sorted.sort_by(f32::total_cmp);
@@ -112,7 +112,7 @@ fn usual_most(values: &[f32]) -> f64 {
     if most > 0.0 { most } else { 1.0 }
 }
 
-/// Tells the renderer the time.
+/// The clock for the renderer.
 struct Clock(Instant);
 
 impl Progress for Clock {

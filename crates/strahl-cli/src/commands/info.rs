@@ -9,7 +9,7 @@ use strahl::math::DVec3;
 use strahl::shade::LightKind;
 use strahl::tracing::{Prepared, RenderScene};
 
-/// `strahl info`: what is in a scene.
+/// `strahl info`: prints the contents of a scene.
 pub(crate) fn info(args: &SceneArgs) -> Result<(), Failure> {
     let (input, reporter) = (Input::of(args)?, Reporter::new(false));
     let description = input.load(input.still(), &reporter)?;

@@ -3,7 +3,7 @@ use crate::output::bytes;
 use crate::report::Failure;
 use clap::CommandFactory;
 
-/// `strahl man`: the manual page of the program, or of one of its commands.
+/// `strahl man`: prints the manual page of the program or of a command.
 pub(crate) fn man(command: Option<&str>) -> Result<(), Failure> {
     let mut all = Cli::command();
     all.build();
@@ -21,7 +21,7 @@ pub(crate) fn man(command: Option<&str>) -> Result<(), Failure> {
                     names.join(", ")
                 ))
             })?;
-            // The page's name; `build` has put the program's before it in the usage.
+            // `build` has put the program's name into the usage line; this is the title of the page.
             let title: &'static str = Box::leak(format!("strahl-{name}").into_boxed_str());
             found.name(title).version(env!("CARGO_PKG_VERSION"))
         }

@@ -11,7 +11,7 @@ use std::time::Instant;
 use strahl::formats::image::{Picture, Window, WriteOptions, write_bytes};
 use strahl::tracing::{Film, RenderError, RenderOptions, RenderScene, Rendered, TileOrder};
 
-/// `strahl render`: from a scene to a picture, or to the pictures of an animation.
+/// `strahl render`: renders a scene to a picture, or to the pictures of an animation.
 pub(crate) fn render(args: &RenderArgs, reporter: Reporter) -> Result<(), Failure> {
     let animation = Animation::new(&args.animation)?;
     let target = Target::of(args)?;
@@ -38,11 +38,11 @@ pub(crate) fn render(args: &RenderArgs, reporter: Reporter) -> Result<(), Failur
         Some(animation) => job.animation(&animation)?,
         None => job.still()?,
     }
-    // Warnings that came with the picture, which is there.
+    // The picture is written; warnings may still end the program with an exit code.
     job.reporter.settle()
 }
 
-/// What all pictures of a run share.
+/// Data common to all pictures of a run.
 struct Job<'a> {
     args: &'a RenderArgs,
     input: &'a Input<'a>,
@@ -52,7 +52,7 @@ struct Job<'a> {
     start: Instant,
 }
 
-/// A picture before it is written.
+/// A picture that is not yet written.
 struct Traced {
     scene: RenderScene,
     options: RenderOptions,
@@ -142,7 +142,7 @@ impl Job<'_> {
         Ok(())
     }
 
-    /// Whether the picture needs not be rendered again.
+    /// Whether the picture exists and need not be rendered again.
     fn is_complete(&self, target: &Target) -> bool {
         let file = target.file();
         self.args.resume && file.is_some_and(|f| complete(f, self.args.picture.size))
@@ -253,7 +253,7 @@ impl Job<'_> {
     }
 }
 
-/// The film's part, with these values, in a picture of the whole size.
+/// Puts the values of the film's region into a picture of the full size.
 fn enlarged<T: Copy>(film: &Film, values: &[T], outside: T) -> Vec<T> {
     let region = film.region;
     let mut whole = vec![outside; film.width as usize * film.height as usize];
@@ -268,7 +268,7 @@ fn enlarged<T: Copy>(film: &Film, values: &[T], outside: T) -> Vec<T> {
     whole
 }
 
-/// Whether a file holds a whole picture: strahl renames pictures into place when they are complete, other programs may not.
+/// Whether a file holds a complete picture: strahl renames complete pictures into place, other programs may not.
 fn complete(file: &Path, size: Option<(u32, u32)>) -> bool {
     const PNG: &[u8] = b"\x89PNG\r\n\x1a\n";
     let Ok(bytes) = std::fs::read(file) else {

@@ -7,7 +7,7 @@ use strahl::accel::{Exit, Place, Step};
 use strahl::math::{Aabb, DVec3};
 use strahl::tracing::{PrimaryRays, RayWalk, RenderScene, WalkEvent, walk};
 
-/// `strahl trace-ray`: the way of one ray through an accelerator.
+/// `strahl trace-ray`: prints the path of a ray through an accelerator.
 pub(crate) fn trace_ray(args: &TraceRayArgs) -> Result<(), Failure> {
     let (input, reporter) = (Input::of(&args.scene)?, Reporter::new(false));
     let (scene, _) = input.compiled(input.still(), &args.accelerator, &reporter)?;
@@ -58,7 +58,7 @@ pub(crate) fn trace_ray(args: &TraceRayArgs) -> Result<(), Failure> {
 }
 
 fn print_events(scene: &RenderScene, way: &RayWalk) {
-    // Tests stand below the leaf they are made in.
+    // Tests are listed below the leaf in which they are made.
     let (mut depth, mut level, mut inside) = (0, 0, Vec::new());
     for event in &way.events {
         let indent = "  ".repeat(depth);
@@ -103,7 +103,7 @@ fn print_events(scene: &RenderScene, way: &RayWalk) {
     }
 }
 
-/// A station in words: what, where on the ray, and how the ray goes on.
+/// A step in words: the cell or node, its interval on the ray, and where the ray leaves it.
 fn describe(step: &Step) -> String {
     let place = match step.place {
         Place::Node(b) => format!("node {}", extent(&b)),
@@ -196,7 +196,7 @@ fn point(p: DVec3) -> [f64; 3] {
     p.to_array()
 }
 
-/// JSON has no infinity.
+/// JSON has no infinity: it becomes null.
 fn number(x: f64) -> Option<f64> {
     x.is_finite().then_some(x)
 }

@@ -1,26 +1,26 @@
-//! How numbers are printed.
+//! Formatting of numbers.
 
 use std::str::FromStr;
 use strahl::math::DVec3;
 use strahl::shade::Color;
 
-/// How many digits of a number are printed.
+/// The number of digits to print.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Digits {
-    /// So many significant ones.
+    /// This many significant digits.
     Significant(usize),
-    /// As many as it takes to read the same bits back.
+    /// As many digits as are needed to read back the same bits.
     Full,
 }
 
 impl Digits {
-    /// A number: plain, or with an exponent where that is shorter to read.
+    /// A number, with an exponent if that is shorter.
     pub(crate) fn number(self, x: f64) -> String {
         let Self::Significant(digits) = self else {
             return format!("{x:?}");
         };
         if x == 0.0 || !x.is_finite() {
-            // Without the sign of a zero.
+            // Adding 0 removes the sign of a zero.
             return format!("{}", x + 0.0);
         }
         let scientific = format!("{x:.*e}", digits.saturating_sub(1));
@@ -51,7 +51,7 @@ impl Digits {
         self.triple(p.to_array())
     }
 
-    /// A colour that a scene may have given as one number.
+    /// A colour, as one number if its components are equal.
     pub(crate) fn gray_or_color(self, c: Color) -> String {
         if c == Color::gray(c.r) {
             self.number(c.r)
@@ -61,7 +61,7 @@ impl Digits {
     }
 }
 
-/// Without zeros behind the point that say nothing.
+/// Removes trailing zeros behind the point.
 fn trimmed(number: &str) -> &str {
     if number.contains('.') {
         number.trim_end_matches('0').trim_end_matches('.')

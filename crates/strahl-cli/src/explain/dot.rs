@@ -4,8 +4,8 @@ use std::fmt::Write;
 use strahl::shade::Color;
 use strahl::tracing::{RayKind, RayNode, RenderScene};
 
-/// The tree of a pixel as a graph for Graphviz: rays that see something as boxes in the colour they bring, shadow rays as small
-/// ellipses. Of several samples it is the first, unless others are asked for.
+/// The tree of a pixel as a graph for Graphviz: rays that hit something are boxes filled with the colour they return, shadow rays
+/// are small ellipses. Of several samples it shows the first, unless the user chooses others.
 pub(crate) fn dot(scene: &RenderScene, pixel: &Pixel<'_>, shown: &Shown) -> String {
     let mut out = String::new();
     let (x, y) = pixel.at;
@@ -110,7 +110,7 @@ fn write_node(
     }
 }
 
-/// A linear colour as a fill on a screen (gamma 2 is near enough for a box), and the ink that is readable on it.
+/// A linear colour as a fill colour (gamma 2 is close enough for a box), and black or white for readable text on it.
 fn shown(c: Color) -> (String, &'static str) {
     let code = |v: f64| (v.clamp(0.0, 1.0).sqrt() * 255.0) as u8;
     let ink = if 0.2 * c.r + 0.7 * c.g + 0.1 * c.b > 0.2 {

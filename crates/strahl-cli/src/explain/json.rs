@@ -10,8 +10,8 @@ use strahl::tracing::{
     SurfaceTerm,
 };
 
-/// The trees of a pixel as JSON. Numbers are written so that reading them back gives the same bits; infinities and NaN, which
-/// JSON does not have, are null.
+/// The trees of a pixel as JSON. Reading back a number gives the same bits; infinities and NaN, which JSON does not have, are
+/// null.
 pub(crate) fn json(scene: &RenderScene, pixel: &Pixel<'_>, shown: &Shown) -> String {
     let tree = pixel.tree;
     let chosen = |number: usize| match shown.sample {
@@ -126,7 +126,7 @@ fn hit_value(scene: &RenderScene, hit: &HitReport) -> Value {
     value
 }
 
-/// Adds the members of an object to another.
+/// Adds the members of one object to another.
 fn add(value: &mut Value, more: Value) {
     let into: Option<&mut Map<_, _>> = value.as_object_mut();
     if let (Some(into), Value::Object(more)) = (into, more) {
@@ -198,7 +198,7 @@ fn light_value(scene: &RenderScene, hit: Option<&HitReport>, light: &LightReport
     })
 }
 
-/// One layer's part in a light's terms, under the names of the model.
+/// The share of a layer in a light's terms, under the names of the shading model.
 fn surface_term(shading: Option<&Shading>, term: &SurfaceTerm) -> Value {
     let mut value = json!({
         "n_dot_l": term.n_dot_l,

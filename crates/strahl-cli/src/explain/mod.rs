@@ -1,4 +1,4 @@
-//! The ray tree of a pixel in words, as JSON and as a graph.
+//! The ray tree of a pixel as text, as JSON and as a graph.
 
 mod digits;
 mod dot;
@@ -18,7 +18,7 @@ pub(crate) use text::text;
 use std::str::FromStr;
 use strahl::tracing::{PixelTree, Sampling};
 
-/// A pixel with all that happened in it.
+/// A pixel and the ray trees of its samples.
 pub(crate) struct Pixel<'p> {
     pub(crate) at: (u32, u32),
     pub(crate) size: (u32, u32),
@@ -26,12 +26,12 @@ pub(crate) struct Pixel<'p> {
     pub(crate) tree: &'p PixelTree,
 }
 
-/// What is to be shown of a pixel.
+/// The parts of a pixel to show.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Shown {
-    /// The samples whose trees are wanted.
+    /// The samples whose trees are shown.
     pub(crate) sample: Option<Chosen>,
-    /// Most rays of a tree; all if it is `None`.
+    /// The largest number of rays of a tree; `None` shows all.
     pub(crate) rays: Option<usize>,
     pub(crate) digits: Digits,
 }
@@ -40,11 +40,11 @@ pub(crate) struct Shown {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Chosen {
     All,
-    /// One, counted from 1.
+    /// This sample, counted from 1.
     One(usize),
 }
 
-/// How many rays of a tree are shown at most.
+/// The largest number of rays shown of a tree; `None` shows all.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct MostRays(pub(crate) Option<usize>);
 

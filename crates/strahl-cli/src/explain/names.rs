@@ -1,4 +1,4 @@
-//! What things of a scene are called.
+//! Names of objects, materials and lights.
 
 use super::Digits;
 use strahl::shade::{Light, LightKind};
@@ -15,7 +15,7 @@ pub(crate) fn object_name(scene: &RenderScene, object: u32) -> String {
     )
 }
 
-/// The place in the scene that an object comes from, as `file:line:column`.
+/// The place of an object in the scene file, as `file:line:column`.
 pub(crate) fn object_place(scene: &RenderScene, object: u32, line: Option<u32>) -> Option<String> {
     let mut span = scene.objects().get(object)?.span;
     if let Some(line) = line {
@@ -54,13 +54,13 @@ pub(crate) fn light_name(scene: &RenderScene, light: u32) -> String {
     }
 }
 
-/// The place in the scene that a light comes from.
+/// The place of a light in the scene file.
 pub(crate) fn light_place(scene: &RenderScene, light: u32) -> Option<String> {
     let span = scene.lights().get(light as usize)?.span;
     scene.sources().locate(span).map(|place| place.to_string())
 }
 
-/// What kind of light it is.
+/// The kind of a light.
 pub(crate) fn light_kind(light: &Light) -> &'static str {
     match light.kind {
         LightKind::Point { .. } if light.area.is_some() => "area light",
@@ -72,7 +72,7 @@ pub(crate) fn light_kind(light: &Light) -> &'static str {
     }
 }
 
-/// Where a light is, or where it shines if it is nowhere.
+/// The position of a light, or the direction of its light if it has no position.
 pub(crate) fn light_position(light: &Light) -> (&'static str, strahl::math::DVec3) {
     match light.kind {
         LightKind::Directional { direction } => ("along", direction),

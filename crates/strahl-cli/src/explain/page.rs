@@ -1,8 +1,8 @@
-//! Lines of text that fit a terminal.
+//! Text with lines that fit into a terminal.
 
 use std::fmt::Write;
 
-/// Columns of a line, as far as its parts allow.
+/// The width of lines in columns, if they can be broken.
 const WIDTH: usize = 100;
 
 /// Text under construction.
@@ -10,8 +10,8 @@ const WIDTH: usize = 100;
 pub(crate) struct Page(String);
 
 impl Page {
-    /// A line at an indentation in columns. It is broken before ` · `, ` = ` and after `, ` where it would be too long; what follows is
-    /// indented by four columns more.
+    /// Adds a line with an indentation in columns. If it is too long, it is broken before ` · ` and ` = ` or after `, `; the
+    /// continuation is indented by four more columns.
     pub(crate) fn line(&mut self, indent: usize, text: &str) {
         let mut rest = text;
         let mut column = indent;
@@ -36,18 +36,18 @@ impl Page {
         }
     }
 
-    /// A row of a table, which is not broken.
+    /// Adds a row of a table, which is not broken.
     pub(crate) fn row(&mut self, text: &str) {
         // Writing to a string cannot fail.
         let _ = writeln!(self.0, "{}", text.trim_end());
     }
 
-    /// An empty line.
+    /// Adds an empty line.
     pub(crate) fn gap(&mut self) {
         self.0.push('\n');
     }
 
-    /// All of it, without the end of the last line.
+    /// The text, without the end of the last line.
     pub(crate) fn finish(mut self) -> String {
         while self.0.ends_with('\n') {
             self.0.pop();
@@ -56,14 +56,14 @@ impl Page {
     }
 }
 
-/// The last place up to a byte where a line may be broken: in front of an operator of a formula, or between things that are listed, but
-/// not within parentheses.
+/// The last place before byte `end` where a line may be broken: before an operator of a formula or between the items of a list,
+/// but not within parentheses.
 fn last_break(text: &str, end: usize) -> Option<usize> {
     let (mut depth, mut best) = (0usize, None);
-    // In front of parentheses, where there is no better place.
+    // Before a parenthesis, if there is no better place.
     let mut parenthesis = None;
     let (mut before, mut operator) = (' ', false);
-    // Whether there is a formula, and not only the name of a value, in front of an equals sign.
+    // Whether there is a formula, and not only the name of a value, before the equals sign.
     let mut formula = false;
     for (at, c) in text.char_indices() {
         if at > end {

@@ -1,4 +1,4 @@
-//! What a pixel is, in short: its value, its samples, and the trees in outline.
+//! The summary of a pixel: its value, its samples, and an outline of the trees.
 
 use super::names::{object_name, object_place, without_folders};
 use super::page::Page;
@@ -7,12 +7,12 @@ use super::{Digits, Pixel};
 use strahl::shade::{Color, srgb};
 use strahl::tracing::{PixelSample, RayNode, RayTree, RenderScene};
 
-/// Samples listed at most.
+/// The largest number of samples listed.
 const MOST_SAMPLES: usize = 64;
-/// Levels drawn by indentation.
+/// The largest number of levels that the outline draws.
 const MOST_LEVELS: usize = 12;
 
-/// The pixel's value and what it took.
+/// Writes the value of the pixel and the number of rays.
 pub(super) fn write_pixel(page: &mut Page, pixel: &Pixel<'_>, digits: Digits) {
     let (x, y) = pixel.at;
     let (width, height) = pixel.size;
@@ -43,13 +43,13 @@ pub(super) fn write_pixel(page: &mut Page, pixel: &Pixel<'_>, digits: Digits) {
 }
 
 impl Pixel<'_> {
-    /// The value in a picture of 8 bits per channel.
+    /// The 8-bit codes of the value.
     pub(crate) fn codes(&self) -> [u8; 3] {
         self.tree.film.map(|c| srgb::encode_u8(f64::from(c)))
     }
 }
 
-/// The samples, a line each.
+/// Writes a line for each sample.
 pub(super) fn write_samples(
     page: &mut Page,
     scene: &RenderScene,
@@ -84,7 +84,7 @@ pub(super) fn write_samples(
     );
 }
 
-/// The tree in outline, a line for each ray that is shown.
+/// Writes the outline of the tree, with a line for each ray that is shown.
 pub(super) fn write_outline(
     page: &mut Page,
     scene: &RenderScene,
@@ -149,7 +149,7 @@ pub(super) fn write_outline(
     }
 }
 
-/// What a ray meets, in few words.
+/// The object a ray hits, in short.
 fn seen(scene: &RenderScene, node: &RayNode) -> String {
     match &node.report.hit {
         None => "background".to_owned(),
@@ -163,7 +163,7 @@ fn seen(scene: &RenderScene, node: &RayNode) -> String {
     }
 }
 
-/// A colour in columns.
+/// A colour with fixed columns.
 fn fixed(c: Color) -> String {
     format!("({:.5}, {:.5}, {:.5})", c.r, c.g, c.b)
 }

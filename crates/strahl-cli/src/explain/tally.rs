@@ -1,17 +1,17 @@
-//! What each ray of a tree adds to its pixel.
+//! The contribution of each ray of a tree to its pixel.
 
 use strahl::shade::Color;
 use strahl::tracing::{RayKind, RayTree};
 
-/// What the rays of a tree add, by their numbers.
+/// The contributions of the rays of a tree.
 #[derive(Debug)]
 pub(crate) struct Tally {
-    /// What a ray's hit (or the background) itself adds; `None` below a reflection with an `exponent`, whose light is not added in
-    /// proportion. The ray that is reflected so then stands for all below it.
+    /// The contribution of the local colour at a ray's hit (or of the background), by the ray's number; `None` below a reflection
+    /// with an `exponent`, which does not scale light linearly: that reflection ray stands for the whole subtree.
     pub(crate) adds: Vec<Option<Color>>,
 }
 
-/// How many rays of each kind a tree has.
+/// The number of rays of each kind in a tree.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Counts {
     pub(crate) primary: u32,
@@ -50,7 +50,7 @@ impl Tally {
         Self { adds }
     }
 
-    /// The rays that add most with those they come from, at most about `most` of them; all if there are no more.
+    /// The rays that contribute most, with their ancestors, about `most` in number; all if there are no more.
     pub(crate) fn shown(&self, tree: &RayTree, most: usize) -> Vec<bool> {
         let count = tree.nodes.len();
         if count <= most {
@@ -107,7 +107,7 @@ impl Counts {
         }
     }
 
-    /// Rays that see something.
+    /// The number of rays other than shadow rays.
     pub(crate) fn rays(self) -> u32 {
         self.primary + self.reflection + self.refraction
     }

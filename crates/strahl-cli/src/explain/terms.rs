@@ -9,10 +9,10 @@ use strahl::shade::pov_finish::PovFinish;
 use strahl::shade::{Color, ShadingModel};
 use strahl::tracing::{HitReport, LayerReport, LightReport, Shading, ShadowReport, SurfaceTerm};
 
-/// Indentation of what belongs to a light or a layer.
+/// Indentation of the lines of a light or a layer.
 const INNER: usize = RAY + 2;
 
-/// The model and its coefficients, ambient light and emission.
+/// Writes the model and its coefficients, ambient light and emission.
 pub(super) fn write_shading(w: &Writer<'_>, page: &mut Page, hit: &HitReport) {
     let d = w.digits;
     match &hit.shading {
@@ -95,7 +95,7 @@ fn diagnostic(model: ShadingModel) -> &'static str {
     }
 }
 
-/// The colour of a layer, its finish, and the coefficients that follow.
+/// Writes the colour of a layer, its finish, and the coefficients derived from them.
 fn write_layer(
     w: &Writer<'_>,
     page: &mut Page,
@@ -152,7 +152,7 @@ fn write_layer(
     }
 }
 
-/// The items of a finish that matter, by their names.
+/// The items of a finish that have an effect, by their names in the language.
 fn finish(w: &Writer<'_>, f: &PovFinish, model: Option<ShadingModel>) -> String {
     let d = w.digits;
     let mut items = vec![format!("ambient {}", d.gray_or_color(f.ambient))];
@@ -203,7 +203,7 @@ fn finish(w: &Writer<'_>, f: &PovFinish, model: Option<ShadingModel>) -> String 
     items.join(", ")
 }
 
-/// How the surface as a whole divides light, if it sends some on.
+/// How the surface as a whole splits light into reflection and transmission, if it does.
 fn divided(w: &Writer<'_>, hit: &HitReport, layers: &[LayerReport]) -> Option<String> {
     let d = w.digits;
     let (kr, kt) = (d.color(hit.reflection), d.color(hit.transmission));
@@ -231,7 +231,7 @@ fn divided(w: &Writer<'_>, hit: &HitReport, layers: &[LayerReport]) -> Option<St
     }
 }
 
-/// How kr of a layer comes about.
+/// The formula of a layer's kr.
 fn reflection(w: &Writer<'_>, layer: &LayerReport, rise: f64) -> String {
     let d = w.digits;
     let r = &layer.finish.reflection;
@@ -260,7 +260,7 @@ fn reflection(w: &Writer<'_>, layer: &LayerReport, rise: f64) -> String {
     format!("{value}, kr = (min + (max - min) · {name}){tint}{share} = {kr}")
 }
 
-/// A light at a hit: where it is, what is in the way, and its terms.
+/// Writes a light at a hit: its position, the shadow rays, and its terms.
 pub(super) fn write_light(w: &Writer<'_>, page: &mut Page, hit: &HitReport, light: &LightReport) {
     let (d, term, detail) = (w.digits, &light.term, &light.detail);
     page.line(RAY, &light_at(w.scene, term.light, d));
@@ -363,7 +363,7 @@ pub(super) fn write_light(w: &Writer<'_>, page: &mut Page, hit: &HitReport, ligh
     }
 }
 
-/// kd and ks.
+/// Writes the terms with kd and ks.
 fn write_terms(
     w: &Writer<'_>,
     page: &mut Page,
@@ -404,7 +404,7 @@ fn write_terms(
     );
 }
 
-/// A power with its value; a negative cosine counts as none.
+/// A power with its value; a negative cosine counts as 0.
 fn power(w: &Writer<'_>, cos: f64, exponent: f64, value: f64) -> String {
     let d = w.digits;
     if cos > 0.0 {
@@ -419,7 +419,7 @@ fn power(w: &Writer<'_>, cos: f64, exponent: f64, value: f64) -> String {
     }
 }
 
-/// The terms of a finish, by its names.
+/// Writes the terms of a POV-Ray finish under its names.
 fn write_finish_terms(
     w: &Writer<'_>,
     page: &mut Page,
@@ -528,7 +528,7 @@ fn write_finish_terms(
     }
 }
 
-/// One shadow ray and what it met.
+/// Writes a shadow ray and the objects it hits.
 fn write_shadow(w: &Writer<'_>, page: &mut Page, shadow: &ShadowReport) {
     let d = w.digits;
     let (from, towards) = (d.point(shadow.ray.origin), d.point(shadow.ray.direction));
@@ -572,7 +572,7 @@ fn write_shadow(w: &Writer<'_>, page: &mut Page, shadow: &ShadowReport) {
     }
 }
 
-/// What the medium before a surface keeps, if it takes anything.
+/// The transmittance of the medium before a surface, if it absorbs light.
 fn kept(w: &Writer<'_>, absorbed: Color) -> String {
     if absorbed == Color::WHITE {
         return String::new();
@@ -580,11 +580,11 @@ fn kept(w: &Writer<'_>, absorbed: Color) -> String {
     format!(", the medium before it {}", w.digits.color(absorbed))
 }
 
-/// The shadow rays of a light with an extent: how many are free, and what is in the way of the others.
+/// Writes the shadow rays of an area light: how many reach the light, and what blocks the others.
 fn write_shadows(w: &Writer<'_>, page: &mut Page, shadows: &[ShadowReport], visible: Color) {
     let d = w.digits;
     let mut free = 0;
-    // Objects with the numbers of rays they block and weaken, in the order they turn up.
+    // Objects with the numbers of rays they block and weaken, in order of appearance.
     let mut in_the_way: Vec<(String, u32, u32)> = Vec::new();
     for shadow in shadows {
         if shadow.met.is_empty() {

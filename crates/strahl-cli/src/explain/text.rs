@@ -10,7 +10,7 @@ use strahl::tracing::{
     BranchEnd, HitReport, PixelSample, RayKind, RayNode, RayTree, RenderScene, Shading,
 };
 
-/// The trees of a pixel in words: the pixel, the outline of the tree, and all terms of every ray.
+/// The trees of a pixel as text: the pixel, the outline of the tree, and all terms of every ray.
 pub(crate) fn text(scene: &RenderScene, pixel: &Pixel<'_>, shown: &Shown) -> String {
     let mut page = Page::default();
     let digits = shown.digits;
@@ -92,13 +92,13 @@ fn write_sample(page: &mut Page, scene: &RenderScene, sample: &PixelSample, show
     }
 }
 
-/// Writes the paragraphs of rays.
+/// Writes the paragraph of each ray.
 pub(super) struct Writer<'s> {
     pub(super) scene: &'s RenderScene,
     pub(super) digits: Digits,
 }
 
-/// Indentation of what belongs to a ray.
+/// Indentation of the lines of a ray.
 pub(super) const RAY: usize = 2;
 
 impl Writer<'_> {
@@ -197,7 +197,7 @@ impl Writer<'_> {
         page.line(RAY, &format!("{local} = {}", d.color(node.local)));
     }
 
-    /// The indices of refraction and the angles.
+    /// Writes the indices of refraction and the angles.
     fn angles(&self, page: &mut Page, hit: &HitReport) {
         let d = self.digits;
         let degrees = |cosine: f64| d.number(det::acos(cosine.clamp(-1.0, 1.0)).to_degrees());
@@ -226,7 +226,7 @@ impl Writer<'_> {
         }
     }
 
-    /// What the rays that were sent bring, and the sum.
+    /// Writes the contributions of the child rays, and the sum.
     fn total(&self, page: &mut Page, tree: &RayTree, node: &RayNode) {
         let (d, report) = (self.digits, &node.report);
         let mut sum = "local".to_owned();
@@ -283,7 +283,7 @@ impl Writer<'_> {
         page.line(RAY, &format!("total = {sum} = {}", d.color(node.total)));
     }
 
-    /// What weakened the light on a ray's way.
+    /// The attenuation of the light on its way along a ray.
     fn kept_by(&self, tree: &RayTree, node: &RayNode) -> String {
         let (d, report) = (self.digits, &node.report);
         let mut words = Vec::new();

@@ -1,5 +1,5 @@
-/// The colours from nothing to the most, in CIE L*a*b* (D65): equal steps of the value are equal steps of lightness, so
-/// the map reads the same in grey and by those who see colours differently.
+/// The colours from 0 to the maximum, in CIE L*a*b* (D65): equal steps of the value are equal steps of lightness, so that the map
+/// is also readable in grey and for colour-blind people.
 const ANCHORS: [[f64; 3]; 5] = [
     [4.0, 1.0, -5.0],
     [27.0, 38.0, -36.0],
@@ -55,7 +55,7 @@ mod tests {
             } else {
                 y * 24389.0 / 27.0
             };
-            // Colours a little outside of what screens show are clipped.
+            // Colours slightly outside of the screen's gamut are clipped.
             assert!((l - (4.0 + 92.0 * value)).abs() < 2.5, "{value}: {l}");
         }
     }

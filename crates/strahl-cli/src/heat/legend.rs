@@ -1,11 +1,11 @@
-//! The strip below a heat map: its colours with their values, and what it shows.
+//! The legend below a heat map: its colours with their values, and a title.
 
 use super::color;
 
-/// Rows the legend takes.
+/// The number of rows of the legend.
 pub(crate) const LEGEND_ROWS: u32 = 40;
 
-/// Edge of a letter's dot in pixels.
+/// Edge of a dot of a letter in pixels.
 const DOT: u32 = 2;
 
 /// Letters of 3 x 5 dots, row by row from the top, three bits (an octal digit) each.
@@ -52,7 +52,7 @@ const LETTERS: [(char, u16); 40] = [
     (':', 0o02020),
 ];
 
-/// The rows of a legend: the colours from 0 to `max`, the values at both ends and in the middle, and a title.
+/// The rows of a legend: the colours from 0 to `max`, the values at both ends and in the middle, and the title.
 pub(crate) fn legend(width: u32, max: f64, title: &str) -> Vec<[f32; 3]> {
     let mut pixels = vec![[0.0; 3]; (width * LEGEND_ROWS) as usize];
     let margin = 8.min(width / 4);
@@ -75,7 +75,7 @@ pub(crate) fn legend(width: u32, max: f64, title: &str) -> Vec<[f32; 3]> {
     canvas.pixels
 }
 
-/// Few digits, as there is little room.
+/// A number with few digits, because space is short.
 fn number(value: f64) -> String {
     let (value, unit) = match value {
         v if v >= 1e6 => (v / 1e6, "M"),
@@ -101,7 +101,7 @@ struct Canvas {
 }
 
 impl Canvas {
-    /// Writes a text as far as it fits.
+    /// Draws a text as far as it fits.
     fn text(&mut self, x: u32, y: u32, text: &str) {
         for (place, letter) in text.to_uppercase().chars().enumerate() {
             let found = LETTERS.iter().find(|(l, _)| *l == letter);

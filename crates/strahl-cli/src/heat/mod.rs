@@ -1,4 +1,4 @@
-//! Pictures of what pixels cost.
+//! Pictures of the cost of pixels.
 
 mod colors;
 mod legend;

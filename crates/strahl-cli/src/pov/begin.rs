@@ -1,4 +1,4 @@
-//! The beginning of a command line: which command is meant.
+//! Finds the command at the beginning of a command line.
 
 use super::{assignment, ini, is_switch};
 use clap::Command;
@@ -6,10 +6,10 @@ use std::collections::BTreeSet;
 use std::ffi::OsString;
 use std::path::Path;
 
-/// What a line becomes that asks for nothing but help.
+/// The replacement for a command line that only asks for help.
 pub(super) const QUESTION: [&str; 2] = ["strahl", "--help"];
 
-/// The words with `render` where it is left out; `None` if they are POV-Ray's question for help.
+/// The words with `render` inserted if the command is missing; `None` if they ask for help in POV-Ray's way.
 pub(super) fn with_command(mut words: Vec<OsString>, command: &Command) -> Option<Vec<OsString>> {
     let texts: Vec<&str> = words
         .iter()
@@ -32,12 +32,12 @@ pub(super) fn with_command(mut words: Vec<OsString>, command: &Command) -> Optio
     Some(words)
 }
 
-/// Whether the word at this place is where the command stands.
+/// Whether the word at this index is the command.
 pub(super) fn is_command_at(words: &[OsString], at: usize, command: &Command) -> bool {
     behind_global_options(words, command) == at
 }
 
-/// Where the command stands: behind the options that all commands know.
+/// The index of the command: after the options common to all commands.
 fn behind_global_options(words: &[OsString], command: &Command) -> usize {
     let valued = valued(command.get_arguments());
     let plain = names(
@@ -64,7 +64,7 @@ fn is_command(word: &OsString, command: &Command) -> bool {
     word == "help" || names.any(|name| word == name)
 }
 
-/// Whether a word can only be the beginning of what `render` takes.
+/// Whether a word can only be the beginning of the arguments of `render`.
 fn begins_render(word: &OsString, command: &Command) -> bool {
     let Some(text) = word.to_str() else {
         return true;
@@ -87,7 +87,7 @@ fn begins_render(word: &OsString, command: &Command) -> bool {
         || assignment(text).is_some()
 }
 
-/// The options of `render`, and those of all commands, that are followed by a value as a word of its own.
+/// The options of `render` and those common to all commands that are followed by a value as a separate word.
 pub(super) fn options_with_value(command: &Command) -> BTreeSet<String> {
     let render = command.find_subcommand("render");
     let options = render.into_iter().flat_map(Command::get_arguments);
@@ -98,7 +98,7 @@ fn valued<'a>(options: impl Iterator<Item = &'a clap::Arg>) -> BTreeSet<String> 
     names(options.filter(|a| a.get_action().takes_values()))
 }
 
-/// `--name` and `-n` of options.
+/// `--name` and `-n` of the options.
 fn names<'a>(options: impl Iterator<Item = &'a clap::Arg>) -> BTreeSet<String> {
     options
         .flat_map(|a| {

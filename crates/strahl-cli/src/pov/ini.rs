@@ -1,10 +1,10 @@
-//! Files of settings: `Key=Value` lines, lines of switches, `[sections]`, comments behind `;`.
+//! POV-Ray's .ini files: `Key=Value` lines, lines of switches, `[sections]`, and comments after `;`.
 
 use super::settings::Settings;
 use super::switches;
 use std::path::{Path, PathBuf};
 
-/// The file and the section that a word names: `a.ini`, `a.ini[low]`, `a[low]`.
+/// The file and the section in a word: `a.ini`, `a.ini[low]`, `a[low]`.
 pub(super) fn named(word: &str) -> Option<(PathBuf, Option<String>)> {
     let is_ini = |file: &str| {
         let ending = Path::new(file).extension();
@@ -20,7 +20,7 @@ pub(super) fn named(word: &str) -> Option<(PathBuf, Option<String>)> {
     is_ini(word).then(|| (PathBuf::from(word), None))
 }
 
-/// The .ini file that a word without ending names, if it names nothing else: `povray rerun`.
+/// The .ini file that a word without an extension means, if there is no other file of this name: `povray rerun`.
 pub(super) fn without_ending(word: &str) -> Option<(PathBuf, Option<String>)> {
     let path = Path::new(word);
     if word.is_empty() || word.starts_with(['+', '-']) || path.extension().is_some() {
@@ -30,7 +30,7 @@ pub(super) fn without_ending(word: &str) -> Option<(PathBuf, Option<String>)> {
     (!path.exists() && file.is_file()).then_some((file, None))
 }
 
-/// Applies a file's settings: those before the first section, and those of the section.
+/// Applies a file's settings: those before the first section, then those of the section.
 pub(super) fn apply(
     file: &Path,
     section: Option<&str>,
@@ -78,7 +78,7 @@ fn apply_line(line: &str, settings: &mut Settings) -> Result<(), String> {
     settings.set(key.trim(), unquoted(value.trim()))
 }
 
-/// The line up to a semicolon that stands outside of quotation marks.
+/// The line before a semicolon outside of quotation marks.
 fn without_comment(line: &str) -> &str {
     let mut quoted = false;
     for (at, c) in line.char_indices() {
@@ -91,7 +91,7 @@ fn without_comment(line: &str) -> &str {
     line
 }
 
-/// Words between spaces; quotation marks hold spaces together and are dropped.
+/// The words of a line. Quotation marks keep spaces within a word and are removed.
 fn words(line: &str) -> Vec<String> {
     let (mut out, mut word, mut quoted) = (vec![], String::new(), false);
     for c in line.chars() {

@@ -1,6 +1,6 @@
-//! The settings of POV-Ray, by the names that the manual gives them.
+//! POV-Ray's settings, under their names in the manual.
 
-/// Keys whose values make a difference here, as the manual spells them.
+/// Keys that strahl implements.
 pub(super) const KEYS: &[&str] = &[
     "Antialias",
     "Antialias_Depth",
@@ -40,7 +40,7 @@ pub(super) const KEYS: &[&str] = &[
     "Work_Threads",
 ];
 
-/// Keys that concern displays, the amount of messages, memory and speed, or that mean something with others only: accepted,
+/// Keys that concern displays, the amount of messages, memory or speed, or that only matter together with others: accepted
 /// without effect.
 pub(super) const IGNORED: &[&str] = &[
     "All_Console",
@@ -89,7 +89,7 @@ pub(super) const IGNORED: &[&str] = &[
     "Warning_Level",
 ];
 
-/// Keys of what strahl does not do: who switches them on is told so.
+/// Keys that strahl does not implement, with the note that the user gets.
 pub(super) const LEFT_OUT: &[(&str, &str)] = &[
     ("All_File", "messages are not written to files"),
     ("Debug_File", "messages are not written to files"),

@@ -1,5 +1,6 @@
-//! POV-Ray's habits: its switches (`+W640`), its `.ini` files and its `Key=Value` words become strahl's own options, before
-//! clap sees the command line. (Meanings: reference manual of POV-Ray 3.7, section 3.2, and experiments with the program.)
+//! POV-Ray's command line: its switches (`+W640`), its `.ini` files and its `Key=Value` words are translated to strahl's own
+//! options before clap parses the command line. (Meanings: reference manual of POV-Ray 3.7, section 3.2, and experiments with the
+//! program.)
 
 mod begin;
 mod ini;
@@ -14,16 +15,16 @@ use settings::{Own, Settings};
 use std::ffi::OsString;
 use std::path::Path;
 
-/// A command line in strahl's own words.
+/// A command line in strahl's own options.
 #[derive(Debug)]
 pub(crate) struct Translated {
     pub(crate) words: Vec<OsString>,
-    /// What was asked for and will not be done.
+    /// Notes on settings that will have no effect.
     pub(crate) notes: Vec<String>,
 }
 
-/// Translates a whole command line, the program's name included. Only `render` has a past in POV-Ray; it may be left out before a
-/// scene, an .ini file, a switch or an option of its own.
+/// Translates a whole command line, with the program's name. Only `render` accepts POV-Ray's words; the word `render` may be left
+/// out before a scene, an .ini file, a switch or an option of `render`.
 pub(crate) fn translate(words: Vec<OsString>) -> Result<Translated, String> {
     let command = Cli::command();
     let Some(words) = begin::with_command(words, &command) else {
@@ -41,7 +42,7 @@ pub(crate) fn translate(words: Vec<OsString>) -> Result<Translated, String> {
     };
     let with_value = begin::options_with_value(&command);
     let mut settings = Settings::default();
-    // Strahl's own words come last: of an option that is given twice the last one counts.
+    // Strahl's own options come last, because the last occurrence of an option counts.
     let mut own: Vec<OsString> = vec![];
     let mut scene: Option<OsString> = None;
     let mut foreign = false;
@@ -64,7 +65,7 @@ pub(crate) fn translate(words: Vec<OsString>) -> Result<Translated, String> {
         } else if text.starts_with('-') && text != "-" {
             own.push(word.clone());
         } else {
-            // The last scene wins over one that an .ini file names; two on the command line are clap's to refuse.
+            // The last scene overrides one that an .ini file names; clap refuses two on the command line.
             own.extend(scene.replace(word.clone()));
             settings.input = settings.complete(text);
         }
@@ -86,7 +87,7 @@ pub(crate) fn translate(words: Vec<OsString>) -> Result<Translated, String> {
     all.extend(translated.into_iter().map(OsString::from));
     all.extend(own);
     if settings.input.is_empty() {
-        // A name that is no UTF-8.
+        // The name is not UTF-8.
         all.extend(scene);
     } else {
         all.push(complete);
@@ -97,7 +98,7 @@ pub(crate) fn translate(words: Vec<OsString>) -> Result<Translated, String> {
     })
 }
 
-/// Whether a word is a switch of POV-Ray and no option of strahl: `-L` means the same to both.
+/// Whether a word is a switch of POV-Ray and not an option of strahl: `-L` means the same in both.
 fn is_switch(word: &str) -> bool {
     let mut letters = word.chars();
     match (letters.next(), letters.next()) {
@@ -107,7 +108,7 @@ fn is_switch(word: &str) -> bool {
     }
 }
 
-/// `Key=Value` with a key of POV-Ray's, or with something that was meant to be one.
+/// Splits `Key=Value` if the key is one of POV-Ray's, or looks like a misspelled one.
 fn assignment(word: &str) -> Option<(&str, &str)> {
     let (key, value) = word.split_once('=')?;
     let plain = !key.is_empty() && key.chars().all(|c| c.is_ascii_alphabetic() || c == '_');
@@ -176,7 +177,7 @@ mod tests {
             "a.pov --size 32x24 +W640 +H480 -o x.png +Oy.png --sampling center +A0.3",
             "--size 32x24 --sampling adaptive:0.3,3 --output y.png --size 32x24 -o x.png --sampling center a.pov",
         );
-        // Parts of the picture are those of the size that counts.
+        // The region is a part of the final size.
         is(
             "a.pov --size=80x60 +SR0.5",
             "--size 80x60 --region 0,30,80x30 --full-size --size=80x60 a.pov",

@@ -1,4 +1,4 @@
-//! What POV-Ray's switches and keys ask for, and the same in strahl's options.
+//! The settings of POV-Ray's switches and keys, and the options of strahl that do the same.
 
 use super::keys::{COMMANDS, IGNORED, KEYS, LEFT_OUT, spelled};
 use crate::input::DEFAULT_SIZE;
@@ -6,14 +6,14 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use strahl::formats::image::ImageFormat;
 
-/// What was set so far; later settings win.
+/// The settings so far; later ones override earlier ones.
 #[derive(Debug, Default)]
 pub(super) struct Settings {
-    /// The scene; empty if none is named.
+    /// The scene; empty if there is none.
     pub(super) input: String,
-    /// Where the .ini file lies that is being read.
+    /// The folder of the .ini file that is being read.
     pub(super) beside: Option<PathBuf>,
-    /// What was asked for and will not be done.
+    /// Notes on settings that will have no effect.
     pub(super) notes: Vec<String>,
     width: Option<u32>,
     height: Option<u32>,
@@ -33,18 +33,18 @@ pub(super) struct Settings {
     declare: Vec<String>,
     version: Option<f64>,
     header: Option<String>,
-    /// Of JPEG.
+    /// The quality of JPEG.
     quality: Option<u8>,
     alpha: bool,
     resume: bool,
     cyclic: bool,
     initial_frame: Option<u32>,
     final_frame: Option<u32>,
-    /// Clocks, subset and step: options with the values as they were written.
+    /// Options of clocks, subset and step with their values as written.
     times: Vec<(&'static str, String)>,
 }
 
-/// First and last column or row, as numbers from 1 or as parts.
+/// First and last column or row, as numbers from 1 or as fractions.
 #[derive(Clone, Copy, Debug, Default)]
 struct Range {
     start: Option<f64>,
@@ -52,7 +52,7 @@ struct Range {
 }
 
 impl Range {
-    /// Position and length in pixels. Parts are rounded down; a start of 1 is the first pixel, an end of 1 is 100 %.
+    /// Position and length in pixels. Fractions are rounded down; a start of 1 is the first pixel, an end of 1 is 100 %.
     fn pixels(self, size: u32, what: &str) -> Result<(u32, u32), String> {
         let all = f64::from(size);
         let place = |value: f64, first: f64| match value {
@@ -80,7 +80,7 @@ impl Range {
 }
 
 impl Settings {
-    /// Sets what a key of POV-Ray's says.
+    /// Applies a key and its value.
     pub(super) fn set(&mut self, key: &str, value: &str) -> Result<(), String> {
         let Some(key) = spelled(key) else {
             return Err(unknown(key));
@@ -116,7 +116,7 @@ impl Settings {
                 self.antialias_gamma = Some(gamma);
             }
             "Antialias_Depth" => self.depth = Some(whole(value, 1, 9)?),
-            // 3 is POV-Ray 3.8's further development of 2.
+            // 3 is a newer variant of 2 in POV-Ray 3.8.
             "Sampling_Method" => self.recursive = whole(value, 1, 3)? > 1,
             "Input_File_Name" => self.input = self.scene(value)?,
             "Output_File_Name" => self.output = Some(file_name(value)?),
@@ -149,7 +149,7 @@ impl Settings {
             "Create_Ini" if !is_off(value) => self.notes.push("no .ini file is written".into()),
             "Include_Header" => self.header = Some(file_name(value)?),
             "Compression" => {
-                // As in POV-Ray: 0 and 1 are the usual quality.
+                // As in POV-Ray, 0 and 1 select the usual quality.
                 let quality = number(value)?.clamp(0.0, 100.0) as u8;
                 self.quality = (quality > 1).then_some(quality);
             }
@@ -161,14 +161,14 @@ impl Settings {
         Ok(())
     }
 
-    /// Says once what will not be done.
+    /// Adds a note, unless there is the same note already.
     fn note(&mut self, what: &str) {
         if !self.notes.iter().any(|n| n == what) {
             self.notes.push(what.to_owned());
         }
     }
 
-    /// Remembers an option with a number, once.
+    /// Stores an option with a number; a later value replaces an earlier one.
     fn time(&mut self, option: &'static str, value: &str) -> Result<(), String> {
         number(value)?;
         self.times.retain(|(o, _)| *o != option);
@@ -176,7 +176,7 @@ impl Settings {
         Ok(())
     }
 
-    /// The scene file of a setting: `.pov` may be left out.
+    /// The scene file of a setting; `.pov` may be omitted.
     fn scene(&self, value: &str) -> Result<String, String> {
         let name = self.complete(&file_name(value)?);
         let complete = name == "-" || Path::new(&name).extension().is_some();
@@ -186,8 +186,7 @@ impl Settings {
         })
     }
 
-    /// The scene file of this name, with `.pov` if there is such a file; one beside an .ini file is as good as one in the current
-    /// folder.
+    /// The scene file of this name, with `.pov` if that file exists, in the current folder or in that of the .ini file.
     pub(super) fn complete(&self, name: &str) -> String {
         if name == "-" {
             return name.to_owned();
@@ -207,7 +206,7 @@ impl Settings {
         name.to_owned()
     }
 
-    /// All of it in strahl's words but the scene, to be followed by strahl's own.
+    /// All settings but the scene as options of strahl. `own` are the options of strahl that follow them.
     pub(super) fn words(&mut self, own: &Own) -> Result<Vec<String>, String> {
         if let Some((width, height)) = own.size {
             (self.width, self.height) = (Some(width), Some(height));
@@ -293,7 +292,7 @@ impl Settings {
         Ok(words)
     }
 
-    /// The antialiasing asked for: method, threshold, depth and gamma.
+    /// The value of `--sampling`: method, threshold, depth and gamma.
     fn sampling(&self) -> String {
         let threshold = self.threshold.unwrap_or(0.3).max(0.0);
         if threshold >= 3.0 {
@@ -311,7 +310,7 @@ impl Settings {
         }
     }
 
-    /// The picture's name with the ending that its type asks for; `None` leaves it to strahl.
+    /// The name of the picture with the extension of its type; `None` for strahl's default.
     fn output(&self) -> Result<Option<String>, String> {
         if self.output.as_deref() == Some("-") {
             return Ok(self.output.clone());
@@ -357,7 +356,7 @@ fn unknown(key: &str) -> String {
     format!("POV-Ray has no setting `{key}`{hint}")
 }
 
-/// POV-Ray's idea of yes; anything else is no.
+/// Whether POV-Ray reads the value as on; any other value is off.
 fn is_on(value: &str) -> bool {
     ["true", "yes", "on", "1"]
         .iter()
@@ -380,7 +379,7 @@ fn whole(value: &str, least: u32, most: u32) -> Result<u32, String> {
     parsed.ok_or_else(|| format!("expected a whole number from {least} to {most}, found `{value}`"))
 }
 
-/// A frame's number; -1 stands for none.
+/// The number of a frame; -1 means none.
 fn frame(value: &str) -> Result<Option<u32>, String> {
     match value {
         "-1" => Ok(None),
@@ -412,7 +411,7 @@ fn picture_type(value: &str) -> Result<char, String> {
     ))
 }
 
-/// The ending of pictures of a type.
+/// The file extension of a picture type.
 fn ending(letter: char) -> &'static str {
     match letter {
         'B' => "bmp",
@@ -421,12 +420,12 @@ fn ending(letter: char) -> &'static str {
         'H' => "hdr",
         'J' => "jpg",
         'P' => "ppm",
-        // Also that of the system.
+        // Also for the system's own format.
         _ => "png",
     }
 }
 
-/// What strahl's own words say about the same things.
+/// The options of strahl that override or complete POV-Ray's settings.
 #[derive(Debug, Default)]
 pub(super) struct Own {
     size: Option<(u32, u32)>,
@@ -446,7 +445,7 @@ impl Own {
             match name {
                 "--size" => {
                     let value = value.or_else(|| texts.next()).unwrap_or_default();
-                    // What is no size is clap's to refuse.
+                    // clap refuses a malformed size.
                     let pair = value.split_once('x');
                     own.size = pair.and_then(|(w, h)| Some((w.parse().ok()?, h.parse().ok()?)));
                 }

@@ -1,27 +1,27 @@
-//! `+W640`, `-D`, `+A0.3`: each switch is an abbreviation of settings.
+//! POV-Ray's switches, such as `+W640`, `-D`, `+A0.3`: each is an abbreviation of settings.
 
 use super::settings::Settings;
 
-/// What a switch stands for.
+/// The meaning of a switch.
 #[derive(Clone, Copy)]
 enum Meaning {
-    /// The rest is the value of this key.
+    /// The rest of the word is the value of this key.
     Value(&'static str),
     /// `+` switches this key on, `-` off.
     Flag(&'static str),
-    /// Both: the first key is switched, the second gets the rest, if there is one.
+    /// Both: `+` or `-` switches the first key, the rest, if any, is the value of the second.
     FlagAndValue(&'static str, &'static str),
-    /// With a name behind it, the messages of this key go to a file; by itself it is about the console.
+    /// With a name, the messages of this key go to a file; without one, it concerns the console.
     Stream(&'static str),
-    /// Type and bits of the picture file.
+    /// Type and bit depth of the picture file.
     FileType,
-    /// Says nothing about the picture.
+    /// Has no influence on the picture.
     Nothing,
 }
 
 use Meaning::{FileType, Flag, FlagAndValue, Nothing, Stream, Value};
 
-/// All switches; the longest that a word begins with counts.
+/// All switches; the longest one that a word begins with counts.
 const SWITCHES: &[(&str, Meaning)] = &[
     ("A", FlagAndValue("Antialias", "Antialias_Threshold")),
     ("AG", Value("Antialias_Gamma")),
@@ -124,7 +124,7 @@ pub(super) fn apply(word: &str, settings: &mut Settings) -> Result<(), String> {
     result.map_err(|problem| format!("{word}: {problem}"))
 }
 
-/// The letter and the number of bits in `N16`.
+/// Applies the letter and the number of bits, as in `N16`.
 fn file_type(rest: &str, settings: &mut Settings) -> Result<(), String> {
     let mut letters = rest.chars();
     let Some(letter) = letters.next() else {

@@ -1,22 +1,22 @@
-//! How long it will take: the rest of the pass from its tiles, later passes and frames from those before.
+//! Estimates the remaining time: of this pass from its tiles, of later passes and frames from the earlier ones.
 
 use std::time::Duration;
 
-/// What is known of the passes of one picture.
+/// The times of the passes of one picture.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Estimate {
-    /// Seconds that the passes took which are done.
+    /// Seconds of each finished pass.
     done: Vec<f64>,
-    /// All passes of the picture, at least 1.
+    /// The number of passes of the picture, at least 1.
     passes: u32,
 }
 
-/// A pass that refines a picture takes about so much of the time of the pass before it: four times the rays for a fifth of the
-/// pixels, as scenes with edges and textures have it.
+/// The time of a refinement pass, relative to the pass before it: four times the rays for a fifth of the pixels is typical of
+/// scenes with edges and textures.
 const USUAL: f64 = 0.8;
 
 impl Estimate {
-    /// A pass begins; the one before took so many seconds.
+    /// Starts a pass; the one before took `before` seconds.
     pub(super) fn pass(&mut self, pass: u32, passes: u32, before: f64) {
         self.passes = passes.max(1);
         if pass == 0 {
@@ -26,10 +26,10 @@ impl Estimate {
         }
     }
 
-    /// Seconds spent on the picture and seconds left, with a part of the pass done after so many seconds.
+    /// Seconds spent on the picture and seconds left, when a fraction `part` of the pass is done after `elapsed` seconds.
     pub(super) fn seconds(&self, part: f64, elapsed: f64) -> (f64, f64) {
         let spent: f64 = self.done.iter().sum::<f64>() + elapsed;
-        // Nothing is known before something is done.
+        // There is no estimate before the first tile is done.
         if part <= 0.0 {
             return (spent, f64::INFINITY);
         }
@@ -45,7 +45,7 @@ impl Estimate {
     }
 }
 
-/// A time as people say it: `7 s`, `3 min 20 s`, `2 h 5 min`.
+/// A time for people: `7 s`, `3 min 20 s`, `2 h 5 min`.
 pub(super) fn words(seconds: f64) -> String {
     if !seconds.is_finite() {
         return "?".to_owned();

@@ -1,4 +1,4 @@
-//! How far the work is: a bar on a terminal, a line now and then elsewhere, nothing if quiet.
+//! Progress: a bar on a terminal, an occasional line elsewhere, nothing with `--quiet`.
 
 mod estimate;
 
@@ -10,39 +10,39 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 use strahl::tracing::Progress;
 
-/// What is done while tiles are traced.
+/// The activity while tiles are traced.
 const RENDERING: &str = "rendering";
 
-/// Steps of the bar.
+/// The resolution of the bar.
 const STEPS: u64 = 1000;
 
-/// Work shorter than this shows nothing.
+/// No progress is shown for shorter work.
 const PATIENCE: Duration = Duration::from_secs(1);
 
-/// Time between two looks at the clock, on a terminal and elsewhere.
+/// Time between two updates, on a terminal and elsewhere.
 const TICK: Duration = Duration::from_millis(200);
 const PERIOD: Duration = Duration::from_secs(5);
 
-/// Shows how far a render is, from reading the scene to the last pass.
+/// Shows the progress of a render, from reading the scene to the last pass.
 #[derive(Debug)]
 pub(crate) struct Watch {
     state: Arc<Mutex<State>>,
-    /// The thread that looks at the clock, and the word that ends it.
+    /// The thread that updates the display, and the channel that ends it.
     ticker: Option<(mpsc::Sender<()>, JoinHandle<()>)>,
 }
 
 #[derive(Debug)]
 struct State {
     bar: ProgressBar,
-    /// Pictures of the animation; 1 if there is none.
+    /// The number of frames; 1 without an animation.
     frames: usize,
-    /// Where the animation stands: index and number.
+    /// The current frame: index and number.
     frame: (usize, u32),
-    /// Seconds that finished frames took.
+    /// Seconds of all finished frames.
     finished: f64,
-    /// When the frame began.
+    /// The start of the current frame.
     frame_start: Instant,
-    /// The passes of this picture, and when the present one began.
+    /// The passes of this picture, and the start of the current one.
     estimate: Estimate,
     pass_start: Instant,
     pass: u32,
@@ -54,7 +54,7 @@ struct State {
 }
 
 impl Watch {
-    /// For so many pictures: their progress is shown by one bar.
+    /// Progress for this many pictures, which share a bar.
     pub(crate) fn new(quiet: bool, frames: usize) -> Self {
         let terminal = terminal::is_terminal();
         let target = match quiet || !terminal {
@@ -95,7 +95,7 @@ impl Watch {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// The next picture of an animation begins.
+    /// Starts the next frame of an animation.
     pub(crate) fn frame(&self, index: usize, number: u32) {
         let mut state = self.state();
         if index > 0 {
@@ -108,7 +108,7 @@ impl Watch {
     pub(crate) fn finish(&mut self) {
         if let Some((end, thread)) = self.ticker.take() {
             drop(end);
-            // It has nothing to say.
+            // The thread returns nothing.
             let _ = thread.join();
         }
         terminal::show_bar(None);
@@ -122,7 +122,7 @@ impl Drop for Watch {
     }
 }
 
-/// The thread that looks at the clock.
+/// Starts the thread that updates the display.
 fn tick(state: Arc<Mutex<State>>, terminal: bool) -> (mpsc::Sender<()>, JoinHandle<()>) {
     let (end, ended) = mpsc::channel::<()>();
     let start = Instant::now();
@@ -155,7 +155,7 @@ fn tick(state: Arc<Mutex<State>>, terminal: bool) -> (mpsc::Sender<()>, JoinHand
 }
 
 impl State {
-    /// What is done, in words.
+    /// The current activity in words.
     fn prefix(&self) -> String {
         let (what, _) = work::now();
         match self.frames {
@@ -164,7 +164,7 @@ impl State {
         }
     }
 
-    /// The part of everything that is done, and what to say about it.
+    /// The fraction of all work that is done, and the text beside it.
     fn shown(&self) -> (f64, String) {
         let now = self.frame_start.elapsed().as_secs_f64();
         let (what, since) = work::now();
@@ -196,7 +196,8 @@ impl State {
         )
     }
 
-    /// The part done and the seconds left of all frames, of which the present one has taken `spent` and has `left` to go.
+    /// The fraction done and the seconds left of all frames; the current one has taken `spent` seconds and has `left` seconds to
+    /// go.
     fn of_all(&self, spent: f64, left: f64) -> (f64, f64) {
         let (index, after) = (
             self.frame.0,
@@ -205,7 +206,7 @@ impl State {
         let this = match (left.is_finite(), index) {
             (true, _) => spent + left,
             (false, 0) => return (0.0, f64::INFINITY),
-            // As long as those before, on average.
+            // Assume the average time of the frames so far.
             (false, _) => (self.finished / index as f64).max(spent),
         };
         let mean = (self.finished + this) / (index + 1) as f64;

@@ -1,4 +1,4 @@
-//! What goes wrong.
+//! Errors of the command line and of scenes.
 
 use crate::{fails, folder_with_scene};
 

@@ -1,4 +1,4 @@
-//! `strahl explain`: every factor it prints is the one that was multiplied, and stands under its own name.
+//! `strahl explain`: every factor it prints is the one used, under its own name.
 
 use super::factors::check;
 use super::{folder_with_scene, stderr, strahl, tool};
@@ -33,7 +33,7 @@ fn pov(objects: &str) -> tempfile::TempDir {
     folder
 }
 
-/// A pixel in the middle of a picture with one ray each.
+/// The middle pixel of a small picture with one ray per pixel.
 const MIDDLE: [&str; 7] = [
     "scene.pov",
     "--size",
@@ -97,7 +97,7 @@ fn explain_prints_a_tree_that_sums_up_to_the_pixel() {
     }
 }
 
-/// JSON said ks 0 and p 1 beside a highlight that was not zero, and both said ks(h·n)^p of Phong's model.
+/// JSON showed ks = 0 and p = 1 beside a non-zero highlight, and both forms named ks(h·n)^p for Phong's model.
 #[test]
 fn terms_bear_the_names_of_the_model_in_force() {
     let folder = folder_with_scene();
@@ -139,7 +139,7 @@ fn terms_bear_the_names_of_the_model_in_force() {
     assert!(hit.get("ks").is_none() && hit.get("p").is_none(), "{hit}");
 }
 
-/// `--shading` was without effect on POV-Ray's textures.
+/// `--shading` had no effect on POV-Ray's textures.
 #[test]
 fn a_shading_model_takes_the_place_of_a_finish() {
     let folder = pov("light_source { <3, 5, -6>, rgb 1 }
@@ -168,7 +168,7 @@ fn a_shading_model_takes_the_place_of_a_finish() {
     assert_eq!(totals.len(), 4, "{totals:?}");
 }
 
-/// Layers, blends, glass, media, fog, dispersion, area lights: whatever was multiplied multiplies again.
+/// Layers, blends, glass, media, fog, dispersion, area lights: the printed factors multiply to the printed products.
 #[test]
 fn factors_multiply_to_their_products_whatever_the_texture() {
     let lamp = "light_source { <3, 5, -6>, rgb <1, .9, .8> }";
@@ -199,7 +199,7 @@ fn factors_multiply_to_their_products_whatever_the_texture() {
     }
 }
 
-/// With Fresnel's equations nothing was said where all light is reflected.
+/// Total reflection was not mentioned with Fresnel's equations.
 #[test]
 fn total_reflection_is_said_with_and_without_fresnel() {
     for finish in [
@@ -207,7 +207,7 @@ fn total_reflection_is_said_with_and_without_fresnel() {
         "reflection { 0, 1 fresnel on }",
         "reflection .1",
     ] {
-        // The ray meets the inside of the glass at an angle of 57 degrees.
+        // The ray hits the inside of the glass at an angle of 57 degrees.
         let folder = pov(&format!(
             "plane {{ y, 0 rotate 30*x pigment {{ rgbf 1 }} finish {{ {finish} }} interior {{ ior 1.5 }} }}"
         ));
@@ -245,7 +245,7 @@ object { Lid pigment { rgb 1 } }");
     );
 }
 
-/// All trees of all samples were printed, thousands of lines for a pixel on an edge.
+/// The trees of all samples were printed, thousands of lines for a pixel on an edge.
 #[test]
 fn a_pixel_of_many_samples_is_summed_up() {
     let folder = folder_with_scene();
@@ -296,7 +296,7 @@ fn numbers_have_the_digits_asked_for() {
         default,
         text(folder.path(), &[&args[..], &["--digits", "6"]].concat())
     );
-    // The numbers printed in full are those of JSON.
+    // The numbers printed in full are the same as in JSON.
     let full = text(folder.path(), &[&args[..], &["--digits", "full"]].concat());
     let color = json(folder.path(), &args)["color"][0].to_string();
     assert!(
@@ -305,7 +305,7 @@ fn numbers_have_the_digits_asked_for() {
     );
 }
 
-/// A deep tree in glass has hundreds of rays: those that matter are shown.
+/// A deep tree in glass has hundreds of rays; only those with the largest contributions are shown.
 #[test]
 fn large_trees_show_the_rays_that_add_most() {
     let folder = pov("light_source { <3, 5, -6>, rgb 1 } background { rgb <.4, .6, .8> }
@@ -320,7 +320,7 @@ fn large_trees_show_the_rays_that_add_most() {
     check(&json(folder.path(), &args));
 }
 
-/// The README and the book show a pixel with a reflection and a refraction, and what is shown is what is printed.
+/// The example pixels of README and book have a reflection and a refraction, and the page shows the actual output.
 #[test]
 fn the_pixels_of_the_documents_have_a_reflection_and_a_refraction() {
     let repository = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");

@@ -1,4 +1,4 @@
-//! The numbers that `explain --format json` prints, multiplied and added up again.
+//! Multiplies and adds up the numbers that `explain --format json` prints.
 
 use serde_json::Value;
 
@@ -31,12 +31,12 @@ fn plus(a: Triple, b: Triple) -> Triple {
 const NONE: Triple = [0.0; 3];
 const ALL: Triple = [1.0; 3];
 
-/// Numbers that the platform's functions give to a few last bits only.
+/// For numbers from platform functions, whose last bits may differ.
 fn close(a: f64, b: f64) -> bool {
     (a - b).abs() <= 1e-12 * (1.0 + a.abs())
 }
 
-/// Checks every factor of every ray against its product, to the last bit; returns the kinds of things that were seen.
+/// Checks every factor of every ray against its product, to the last bit; returns the kinds of things it found.
 pub(crate) fn check(json: &Value) -> Vec<String> {
     let mut seen = Vec::new();
     let mut means: Vec<(Value, Triple, f64)> = Vec::new();
@@ -46,7 +46,7 @@ pub(crate) fn check(json: &Value) -> Vec<String> {
             seen.push(ray["kind"].as_str().expect("a word").to_owned());
             check_ray(ray, rays, &mut seen);
         }
-        // Colours of linear scenes are the totals themselves.
+        // The colours of linear scenes are the totals themselves.
         if let Some(first) = rays.first() {
             assert_eq!(first["total"], sample["color"], "a linear scene");
         }
@@ -78,7 +78,7 @@ fn check_ray(ray: &Value, rays: &[Value], seen: &mut Vec<String>) {
     };
     assert_eq!(sum, triple(&ray["local"]), "local of {ray:#}");
     let (mut reflected, mut transmitted) = (NONE, NONE);
-    // The last branch is added first.
+    // Branches are added in reverse order.
     for child in list(&ray["children"]).iter().rev() {
         let child = &rays[child.as_u64().expect("a number") as usize];
         let (share, power) = (triple(&child["share"]), number(&child["power"]));

@@ -1,4 +1,4 @@
-//! Every command of the lecture shows what its page says.
+//! Checks that every command of the lecture shows what its page says.
 
 use super::factors::check;
 use super::{stderr, strahl};
@@ -14,7 +14,7 @@ fn repository() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
-/// Runs a command of the page in a folder of its own, with further arguments.
+/// Runs a command of the page in its own folder, with additional arguments.
 fn output(folder: &Path, command: &str, more: &[&str]) -> Output {
     assert!(
         PAGE.contains(&format!("    {command}\n")),
@@ -35,7 +35,7 @@ fn run(command: &str) -> String {
     let folder = tempfile::tempdir().expect("a folder");
     let output = output(folder.path(), command, &[]);
     let text = String::from_utf8(output.stdout).expect("text");
-    // Where lines are broken depends on the lengths of paths.
+    // The places of line breaks depend on the lengths of paths.
     text.replace("\n    ", " ")
         .split(' ')
         .filter(|w| !w.is_empty())
@@ -49,14 +49,14 @@ fn json(command: &str, more: &[&str]) -> Value {
     serde_json::from_slice(&output.stdout).expect("JSON")
 }
 
-/// The tree that an `explain` command tells of, its factors checked.
+/// The tree of an `explain` command, with its factors checked.
 fn tree(command: &str) -> Value {
     let json = json(command, &["--format", "json"]);
     check(&json);
     json["samples"][0]["rays"].clone()
 }
 
-/// The picture that a `render` command writes.
+/// The picture of a `render` command.
 struct Picture(TextureImage);
 
 impl Picture {
@@ -146,7 +146,7 @@ fn lecture_02_sends_rays_from_one_eye() {
     let depth = Picture::of(
         "strahl render scenes/lecture/02_perspective.pov --size 320x180 --shading depth -o depth.png",
     );
-    // The floor at the lower edge is nearer than at the middle of the picture.
+    // At the lower edge the floor is nearer than in the middle of the picture.
     let (near, far) = (depth.at(160, 175)[0], depth.at(160, 100)[0]);
     assert!(near < far, "{near} {far}");
 }
@@ -174,7 +174,7 @@ fn lecture_04_prints_every_term_and_other_models() {
     ] {
         assert!(printed.contains(part), "{part}: {printed}");
     }
-    // All three count: each is more than a step of an 8-bit channel.
+    // All three rays count: each is more than a step of an 8-bit channel.
     let rays = tree(command);
     let light = &rays[0]["lights"][0];
     for term in [
@@ -224,7 +224,7 @@ fn lecture_06_ends_after_one_image_or_goes_on() {
     let command = "strahl explain scenes/lecture/06_reflection.pov --size 320x180 --sampling center --pixel 80,60";
     let rays = tree(command);
     assert!(rays.as_array().map(Vec::len) >= Some(4), "{rays:#}");
-    // The picture cut at depth 2 is darker where images of images are.
+    // The picture with --max-depth 2 is darker where reflections of reflections are.
     let whole = json(command, &["--format", "json"])["rgb8"][1].as_u64();
     assert!(u64::from(two.at(80, 60)[1]) < whole.expect("a number"));
     let cut = json(command, &["--format", "json", "--max-depth", "2"]);

@@ -1,4 +1,4 @@
-//! The program as its users run it.
+//! Runs the program as users do.
 
 mod errors;
 mod explain;
@@ -101,7 +101,7 @@ fn listing(folder: &Path) -> Vec<PathBuf> {
     names
 }
 
-/// Says that a test, or a part of it, did not run.
+/// Prints that a test, or a part of it, did not run.
 #[expect(
     clippy::print_stdout,
     reason = "a skipped test must leave a visible line"
@@ -110,7 +110,7 @@ fn skipped(why: &str) {
     println!("skipped: {why}");
 }
 
-/// A program to compare with; without it the caller skips, unless the environment requires all tools.
+/// A program to compare with; without it the caller skips its test, unless the environment requires all tools.
 fn tool(name: &str) -> Option<PathBuf> {
     let path = std::env::var_os("PATH")?;
     let found = std::env::split_paths(&path)

@@ -1,4 +1,4 @@
-//! Rendering, and what is written.
+//! Rendering and picture files.
 
 use crate::{SCENE, folder_with_scene, skipped, stats, stderr, strahl};
 use serde_json::Value;
@@ -153,12 +153,12 @@ fn a_bare_mesh_is_framed_and_lit() {
         max > 180 && min < 130,
         "the tetrahedron is lit and the background is dark: {min} {max}"
     );
-    // Seen in the middle, not at the border.
+    // Pixels in the middle, not at the border.
     let at = |x: usize, y: usize| &pixels[(y * 64 + x) * 3..][..3];
     assert_ne!(at(32, 34), at(1, 34));
 }
 
-/// Ray counts of the Standard Procedural Databases; docs/src/spd.md explains the limits.
+/// Ray counts of the Standard Procedural Databases; docs/src/spd.md explains the tolerances.
 #[test]
 fn ray_counts_agree_with_the_published_ones() {
     let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data/spd");
@@ -167,7 +167,7 @@ fn ray_counts_agree_with_the_published_ones() {
         return;
     }
     let folder = folder_with_scene();
-    // Primary hits, shadow rays, reflection and refraction rays: SPD 3.14's document.
+    // Primary hits, shadow rays, reflection and refraction rays, from the document of SPD 3.14.
     for (name, published) in [
         ("balls", [263_169.0, 954_368.0, 175_095.0]),
         ("gears", [245_086.0, 2_246_955.0, 512_207.0]),

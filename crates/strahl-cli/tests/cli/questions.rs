@@ -1,4 +1,4 @@
-//! Commands that tell something.
+//! Commands that print information.
 
 use crate::{fails, folder_with_scene, stderr, strahl};
 use serde_json::Value;
@@ -109,7 +109,7 @@ fn heat_maps_have_a_legend_or_a_layer() {
         );
         assert!(output.status.success(), "{}", stderr(&output));
         let png = std::fs::read(folder.path().join("heat.png")).expect("written");
-        // Width and height of the header: 40 rows of legend are below the picture.
+        // Width and height in the header: the picture has 40 more rows for the legend.
         assert_eq!(&png[16..24], &[0, 0, 0, 40, 0, 0, 0, 70]);
     }
     let args = [
@@ -197,7 +197,7 @@ fn trace_ray_tells_the_way() {
     );
 }
 
-/// `strahl info ... | head -0`: whoever reads may have enough.
+/// `strahl info ... | head -0`: a reader may close the output early.
 #[test]
 fn a_reader_who_has_enough_is_no_error() {
     let mut child = Command::new(env!("CARGO_BIN_EXE_strahl"))

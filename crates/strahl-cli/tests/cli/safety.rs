@@ -13,7 +13,7 @@ fn write(folder: &Path, name: &str, text: &str) {
 fn memory_that_is_not_allowed_is_an_error_with_a_reason() {
     let folder = folder_with_scene();
     let f = folder.path();
-    // A loop that makes ever more.
+    // A loop that allocates without end.
     write(
         f,
         "loop.pov",
@@ -26,7 +26,7 @@ fn memory_that_is_not_allowed_is_an_error_with_a_reason() {
         1,
         &["out of memory", "reading loop.pov", "--max-memory"],
     );
-    // A picture of few bytes that unpacks to many: 12000 x 12000 pixels of one colour.
+    // A small PNG file that decompresses to much: 12000 x 12000 pixels of one colour.
     let mut png = vec![];
     let rows = vec![0u8; 1 + 3 * 12_000];
     let mut packed = flate2::write::ZlibEncoder::new(vec![], flate2::Compression::fast());
@@ -72,7 +72,7 @@ fn memory_that_is_not_allowed_is_an_error_with_a_reason() {
         1,
         &["bomb.nff.gz", "memory"],
     );
-    // The picture itself.
+    // The rendered picture itself.
     let large = [
         "render",
         "scene.nff",
@@ -174,7 +174,7 @@ fn strict_takes_warnings_for_errors() {
             .status
             .success()
     );
-    // Quiet keeps errors, and the reason of a failure.
+    // `--quiet` keeps errors and the reason of a failure.
     let quiet = strahl(f, &[&small[..], &["-q"]].concat());
     assert!(quiet.status.success() && quiet.stderr.is_empty());
     std::fs::remove_file(f.join("w.png")).expect("written");
