@@ -36,7 +36,7 @@ impl Animation {
         }
         if last >= MOST_FRAMES {
             return Err(Failure::new(format!(
-                "the final frame is {last}, more than the {MOST_FRAMES} that can be numbered"
+                "the final frame is {last}; the largest possible number is {MOST_FRAMES}"
             )));
         }
         let count = f64::from(last - first + 1);
@@ -116,7 +116,7 @@ fn subset(
     };
     if !(0.0..=f64::from(MOST_FRAMES)).contains(&given) || number.fract() != 0.0 {
         return Err(Failure::new(format!(
-            "the subset's {which} frame must be a frame's number or a part from 0.0 to 1.0, not {given}"
+            "the subset's {which} frame must be a frame's number or a fraction from 0.0 to 1.0, not {given}"
         )));
     }
     Ok((number as u32).max(first))

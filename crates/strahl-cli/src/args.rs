@@ -55,7 +55,7 @@ pub(crate) enum Command {
     Heatmap(HeatmapArgs),
     /// Follow the ray of a pixel through an accelerator: every cell, sphere or node with its tests
     TraceRay(TraceRayArgs),
-    /// Print the contents of a scene: format, objects, lights, camera, memory
+    /// Print the contents of a scene: objects, bounds, lights, camera, memory
     Info(SceneArgs),
     /// Look for errors in a scene without rendering it
     Check(CheckArgs),
@@ -487,17 +487,17 @@ fn parse_declaration(s: &str) -> Result<(String, f64), String> {
         .is_some_and(|c| c.is_ascii_alphabetic() || c == '_');
     if !starts || !letters.all(|c| c.is_ascii_alphanumeric() || c == '_') {
         return Err(format!(
-            "`{name}` is no name: letters, digits and `_`, no digit first"
+            "`{name}` is not an identifier: use letters, digits and `_`, and no digit first"
         ));
     }
     if Word::ALL.iter().any(|(_, word, _)| *word == name) {
         return Err(format!(
-            "`{name}` is a word of the language; names of your own begin with a capital"
+            "`{name}` is a keyword of the language; use a name that begins with a capital letter"
         ));
     }
     let number = value.parse().ok().filter(|v: &f64| v.is_finite());
     number.map(|v| (name.to_owned(), v)).ok_or_else(|| {
-        format!("`{value}` is no number: only numbers can be declared here, such as {name}=2.5")
+        format!("`{value}` is not a number: only numbers can be declared here, such as {name}=2.5")
     })
 }
 
@@ -506,10 +506,12 @@ fn parse_limit(s: &str) -> Result<(String, u64), String> {
         .split_once('=')
         .ok_or_else(|| "expected NAME=N, such as steps=1e11".to_owned())?;
     let number = value.parse::<f64>().ok().filter(|v| *v >= 0.0 && *v < 1e18);
-    let number = number.ok_or_else(|| format!("`{value}` is no number from 0 to 1e18"))?;
+    let number = number.ok_or_else(|| format!("`{value}` is not a number from 0 to 1e18"))?;
     if !Limits::default().set(name, number as u64) {
         let known = Limits::NAMES.join(", ");
-        return Err(format!("there is no limit `{name}`; there are {known}"));
+        return Err(format!(
+            "there is no limit `{name}`; the limits are {known}"
+        ));
     }
     Ok((name.to_owned(), number as u64))
 }

@@ -336,7 +336,7 @@ pub(crate) fn threads(asked: usize, reporter: &Reporter) -> usize {
         let are = if most == 1 { "is" } else { "are" };
         let s = if most == 1 { "" } else { "s" };
         reporter.say(&format!(
-            "note: {asked} threads were asked for; there {are} {most} processor{s} and so {most} thread{s}"
+            "note: {asked} threads were requested; strahl uses {most}, because there {are} {most} processor{s}"
         ));
         return most;
     }

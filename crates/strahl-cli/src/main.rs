@@ -2,7 +2,7 @@
 #![allow(
     clippy::print_stdout,
     clippy::print_stderr,
-    reason = "talking to the user is what a program is for"
+    reason = "programs may print"
 )]
 
 mod animation;

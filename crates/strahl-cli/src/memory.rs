@@ -85,7 +85,7 @@ fn message(refusal: &Refusal) -> String {
     }
     format!(
         "error: out of memory{doing}: {used} are in use, {asked} more are needed, and {} are allowed\n  \
-         = help: `--max-memory` raises the bound (its default is 90% of the machine's memory)",
+         = help: `--max-memory` raises the limit (its default is 90% of the machine's memory)",
         size(refusal.limit)
     )
 }

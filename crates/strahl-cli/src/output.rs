@@ -36,7 +36,7 @@ fn end(error: &io::Error) -> ! {
     }
     #[expect(
         clippy::exit,
-        reason = "nobody is left to print for, and no file is open"
+        reason = "the output can't be written, and no file is open"
     )]
     std::process::exit(i32::from(!enough))
 }

@@ -93,7 +93,7 @@ impl Target {
         }
         if animated && args.stats.is_some() {
             return Err(Failure::new(
-                "--stats is about one picture: render the frames one by one with --subset-start-frame and \
+                "--stats works for a single picture: render the frames one by one with --subset-start-frame and \
                  --subset-end-frame, or leave it out",
             ));
         }
@@ -102,7 +102,7 @@ impl Target {
         match self {
             Self::Stream(_) if !args.no_output && io::stdout().is_terminal() => {
                 return Err(Failure::new(
-                    "a picture is nothing for a terminal: send it on, as in `strahl render scene.pov -o - | display`",
+                    "a picture can't be printed on a terminal: pipe it to a program, as in `strahl render scene.pov -o - | display`",
                 ));
             }
             Self::Stream(_) if stats_to_stream => {
@@ -172,7 +172,7 @@ fn scene_name(args: &RenderArgs) -> Result<String, Failure> {
     };
     let name = scene.file_name().filter(|name| *name != "-");
     let Some(name) = name.and_then(|n| n.to_str()) else {
-        return Err(Failure::new("where shall the picture go? add -o PICTURE"));
+        return Err(Failure::new("the picture has no name: add -o PICTURE"));
     };
     let stem = name.strip_suffix(".gz").unwrap_or(name);
     let stem = stem.rsplit_once('.').map_or(stem, |(stem, _)| stem);

@@ -52,7 +52,7 @@ pub(crate) fn compare(args: &CompareArgs) -> Result<(), Failure> {
     match rows.iter().find(|row| !row.equal) {
         None => Ok(()),
         Some(row) => Err(Failure::new(format!(
-            "the picture of {} is not that of the others: a fault of strahl; please report it with the scene",
+            "the picture of {} differs from the others: this is a bug in strahl; please report it with the scene",
             row.accelerator
         ))),
     }
@@ -331,14 +331,14 @@ fn table(rows: &[Row]) {
     for r in rows {
         if let Some(part) = r.sampled {
             say!(
-                "{}: measured on {:.3} % of the pixels, which are those of the other pictures",
+                "{}: measured on {:.3} % of the pixels, which are equal to those of the other pictures",
                 r.accelerator,
                 part * 100.0
             );
         }
     }
     say!(
-        "steps (nodes or cells looked at) and tests of primitives are per ray, shadow rays included"
+        "steps (nodes or cells visited) and tests of primitives are per ray, shadow rays included"
     );
 }
 

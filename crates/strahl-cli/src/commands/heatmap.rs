@@ -56,7 +56,7 @@ pub(crate) fn heatmap(args: &HeatmapArgs) -> Result<(), Failure> {
     let sum: f64 = values.iter().map(|v| f64::from(*v)).sum();
     let most = values.iter().fold(0.0f32, |a, b| a.max(*b));
     reporter.say(&format!(
-        "{}: {title}, mean {:.2}, most {most}, colours from 0 to {max}",
+        "{}: {title}, mean {:.2}, largest {most}, colours from 0 to {max}",
         args.output.display(),
         sum / values.len().max(1) as f64,
     ));

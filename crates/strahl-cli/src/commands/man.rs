@@ -17,7 +17,7 @@ pub(crate) fn man(command: Option<&str>) -> Result<(), Failure> {
             let found = all.find_subcommand(name).cloned();
             let found = found.ok_or_else(|| {
                 Failure::new(format!(
-                    "there is no command `{name}`; there are: {}",
+                    "there is no command `{name}`; the commands are {}",
                     names.join(", ")
                 ))
             })?;

@@ -105,7 +105,7 @@ impl Job<'_> {
         let (mut written, mut kept) = (0, 0);
         for (index, frame) in animation.frames.iter().enumerate() {
             interrupt::would_lose(format!(
-                "{} of {all} frames are complete; --resume goes on with the rest",
+                "{} of {all} frames are complete; --resume renders the rest",
                 written + kept
             ));
             watch.frame(index, *frame);

@@ -21,7 +21,7 @@ pub(crate) fn trace_ray(args: &TraceRayArgs) -> Result<(), Failure> {
     let rays = PrimaryRays::new(scene.camera(), width, height);
     let ray = rays.ray(f64::from(x) + 0.5, f64::from(y) + 0.5);
     let ray =
-        ray.ok_or_else(|| Failure::new(format!("the camera sees nothing through pixel {x},{y}")))?;
+        ray.ok_or_else(|| Failure::new(format!("the camera has no ray through pixel {x},{y}")))?;
     let way = walk(&scene, &ray);
     let kind = args.accelerator.kind();
     if args.json {

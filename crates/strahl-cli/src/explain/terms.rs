@@ -123,7 +123,7 @@ fn write_layer(
         page.line(
             INNER,
             &format!(
-                "a share of {} of the surface; the layers above let pass {}",
+                "a share of {} of the surface; the layers above transmit {}",
                 d.number(layer.share),
                 d.color(layer.above)
             ),
@@ -325,7 +325,7 @@ pub(super) fn write_light(w: &Writer<'_>, page: &mut Page, hit: &HitReport, ligh
         page.line(
             INNER,
             &format!(
-                "each of its {count} points shades by itself; the means: diffuse {}, highlight {}",
+                "each of its {count} points is shaded by itself; the means are diffuse {}, highlight {}",
                 d.color(term.diffuse),
                 d.color(term.specular)
             ),
@@ -359,7 +359,7 @@ pub(super) fn write_light(w: &Writer<'_>, page: &mut Page, hit: &HitReport, ligh
         }
     }
     if !detail.highlights {
-        page.line(INNER, "this light makes no highlights");
+        page.line(INNER, "this light causes no highlights");
     }
 }
 
@@ -607,7 +607,7 @@ fn write_shadows(w: &Writer<'_>, page: &mut Page, shadows: &[ShadowReport], visi
     page.line(
         INNER,
         &format!(
-            "{} shadow rays to points of the light, on the mean towards {towards}; {free} meet nothing",
+            "{} shadow rays to points of the light, on average towards {towards}; {free} meet nothing",
             shadows.len()
         ),
     );

@@ -70,7 +70,7 @@ impl Range {
             _ => {
                 let show = |v: Option<f64>, or: &str| v.map_or(or.to_owned(), |v| v.to_string());
                 Err(format!(
-                    "no {what} are left of {size} from {} to {}: expected numbers from 1 to {size}, or parts from 0.0 to 1.0",
+                    "the {what} from {} to {} of {size} are not a part of the picture: expected numbers from 1 to {size}, or fractions from 0.0 to 1.0",
                     show(self.start, "the first"),
                     show(self.end, "the last"),
                 ))
@@ -96,7 +96,7 @@ impl Settings {
         }
         if COMMANDS.contains(&key) {
             self.notes
-                .push(format!("{key} is not done: strahl runs no programs"));
+                .push(format!("{key} is ignored: strahl runs no programs"));
             return Ok(());
         }
         self.apply(key, value).map_err(|e| format!("{key}: {e}"))
@@ -111,7 +111,7 @@ impl Settings {
             "Antialias_Gamma" => {
                 let gamma = number(value)?;
                 if gamma <= 0.0 {
-                    return Err(format!("`{value}` is no gamma; it must be above 0"));
+                    return Err(format!("expected a gamma above 0, found `{value}`"));
                 }
                 self.antialias_gamma = Some(gamma);
             }
@@ -142,7 +142,8 @@ impl Settings {
             "Frame_Step" => self.time("--frame-step", value)?,
             "Clock" => self.time("--clock", value)?,
             "Quality" if whole(value, 0, 11)? < 9 => {
-                let note = format!("quality {value} is not reduced: pictures are rendered in full");
+                let note =
+                    format!("quality {value} is ignored: pictures are rendered in full quality");
                 self.notes.push(note);
             }
             "Output_Alpha" => self.alpha = is_on(value),
@@ -154,7 +155,9 @@ impl Settings {
                 self.quality = (quality > 1).then_some(quality);
             }
             "File_Gamma" if !value.eq_ignore_ascii_case("srgb") && number(value)? != 2.2 => {
-                self.note("pictures have sRGB's transfer function, whatever File_Gamma says");
+                self.note(
+                    "File_Gamma is ignored: pictures are written with sRGB's transfer function",
+                );
             }
             _ => {}
         }
@@ -389,7 +392,7 @@ fn frame(value: &str) -> Result<Option<u32>, String> {
 
 fn file_name(value: &str) -> Result<String, String> {
     match value {
-        "" => Err("expected a file or folder name right behind it, without a space".into()),
+        "" => Err("expected a file or folder name directly after it, without a space".into()),
         name => Ok(name.to_owned()),
     }
 }
