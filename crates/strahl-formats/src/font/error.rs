@@ -5,7 +5,7 @@ use skrifa::raw::ReadError;
 #[non_exhaustive]
 pub enum FontError {
     /// The file, or a table in it, is not what it should be.
-    #[error("{what} is not that of a TrueType or OpenType font: {error}")]
+    #[error("{what} is not valid: a TrueType or OpenType font is needed ({error})")]
     Broken {
         /// What is broken.
         what: &'static str,
@@ -13,7 +13,9 @@ pub enum FontError {
         error: ReadError,
     },
     /// There are no outlines, or they have no size.
-    #[error("the font has no outlines (is it made of pictures?); take a TrueType or OpenType font")]
+    #[error(
+        "the font has no outlines (perhaps its letters are pictures); use a TrueType or OpenType font"
+    )]
     NoOutlines,
     /// The outline of a letter is broken.
     #[error("glyph {id} of the font is broken: {message}")]

@@ -123,8 +123,8 @@ pub enum ImageError {
     },
     /// There is no memory for a texture.
     #[error(
-        "the texture `{name}` has {width} x {height} texels, for which {mib} MiB of memory are needed that there are not; \
-         scale it down, or let more memory be used"
+        "the texture `{name}` has {width} x {height} texels; the {mib} MiB of memory for them are not available; \
+         scale it down, or raise the memory limit"
     )]
     TextureMemory {
         /// The texture's name.

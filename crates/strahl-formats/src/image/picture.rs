@@ -107,7 +107,7 @@ impl<'a> Picture<'a> {
         let pixels = u128::from(width) * u128::from(height);
         if self.rgb.len() as u128 != pixels {
             return Err(ImageError::invalid(format!(
-                "{width} x {height} pixels were announced and {} given",
+                "a picture of {width} x {height} pixels was given {} colours",
                 self.rgb.len()
             )));
         }
@@ -115,7 +115,7 @@ impl<'a> Picture<'a> {
             && alpha.len() as u128 != pixels
         {
             return Err(ImageError::invalid(format!(
-                "{width} x {height} pixels were announced and {} alpha values given",
+                "a picture of {width} x {height} pixels was given {} alpha values",
                 alpha.len()
             )));
         }
@@ -139,7 +139,7 @@ impl<'a> Picture<'a> {
                 let printable = name.bytes().all(|byte| byte.is_ascii_graphic());
                 if channel.is_empty() || name.len() > 31 || !printable {
                     return Err(ImageError::invalid(format!(
-                        "`{name}` is no channel name: it needs 1 to 31 printable ASCII characters without spaces"
+                        "`{name}` is not a valid channel name: it needs 1 to 31 printable ASCII characters without spaces"
                     )));
                 }
                 if names.contains(&name) {
@@ -161,7 +161,7 @@ impl<'a> Picture<'a> {
             let spaced = key.trim() != key || key.contains("  ");
             if key.is_empty() || key.len() > 79 || !legal || spaced {
                 return Err(ImageError::invalid(format!(
-                    "`{}` is no metadata key: it needs 1 to 79 printable ASCII characters, single spaces inside",
+                    "`{}` is not a valid metadata key: it needs 1 to 79 printable ASCII characters, single spaces inside",
                     key.escape_debug()
                 )));
             }

@@ -448,7 +448,8 @@ fn contradictory_pictures_are_refused() {
     };
     assert!(refused(&Picture::new(0, 3, &[])).contains("0 x 3 pixels"));
     assert!(
-        refused(&Picture::new(5, 3, &rgb)).contains("5 x 3 pixels were announced and 12 given")
+        refused(&Picture::new(5, 3, &rgb))
+            .contains("a picture of 5 x 3 pixels was given 12 colours")
     );
     let shifted = Picture {
         window: Window {
@@ -486,9 +487,9 @@ fn contradictory_pictures_are_refused() {
     assert!(with_layer("N", &["X", "Y"], 12).contains("2 channels and 12 samples"));
     assert!(with_layer("N", &[], 0).contains("0 channels"));
     assert!(with_layer("", &["R"], 12).contains("two channels are called `R`"));
-    assert!(with_layer("N", &[""], 12).contains("no channel name"));
-    assert!(with_layer("a b", &["X"], 12).contains("no channel name"));
-    assert!(with_layer(&"n".repeat(30), &["X"], 12).contains("no channel name"));
+    assert!(with_layer("N", &[""], 12).contains("not a valid channel name"));
+    assert!(with_layer("a b", &["X"], 12).contains("not a valid channel name"));
+    assert!(with_layer(&"n".repeat(30), &["X"], 12).contains("not a valid channel name"));
 
     let with_metadata = |pairs: &[(&str, &str)]| {
         let owned = |&(key, value): &(&str, &str)| (key.to_owned(), value.to_owned());
@@ -499,7 +500,7 @@ fn contradictory_pictures_are_refused() {
     };
     for key in ["", " a", "a ", "a  b", "ä", "a\n", &"k".repeat(80)] {
         assert!(
-            with_metadata(&[(key, "")]).contains("is no metadata key"),
+            with_metadata(&[(key, "")]).contains("is not a valid metadata key"),
             "{key}"
         );
     }

@@ -82,7 +82,7 @@ pub(super) fn open_picture<'a>(
         let format = FileFormat::from_path(name).map_err(|_| {
             decode_error(
                 name,
-                "neither its first bytes nor its name tell a picture format",
+                "neither its first bytes nor its name show a picture format",
             )
         })?;
         reader.set_format(format);

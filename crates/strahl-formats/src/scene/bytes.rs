@@ -92,7 +92,7 @@ pub(super) fn read_file(path: &Path) -> Fallible<FileBytes> {
 /// `None` if the system can't.
 #[allow(
     unsafe_code,
-    reason = "half a gigabyte is copied in 0.3 s, and mapped in none"
+    reason = "copying half a gigabyte takes 0.3 s, mapping it takes no time"
 )]
 fn map(path: &Path) -> Option<Mmap> {
     let file = File::open(path).ok()?;
@@ -136,9 +136,9 @@ pub(super) fn decompressed<'a>(bytes: Cow<'a, [u8]>, name: &str) -> Fallible<Cow
         Err(e) if e.kind() == ErrorKind::OutOfMemory => {
             let (compressed, end) = (bytes.len(), plain.len() >> 20);
             let problem = format!(
-                "`{name}`: there is no memory for what its {compressed} compressed bytes expand to, which is more than {end} MiB"
+                "`{name}`: its {compressed} compressed bytes expand to more than {end} MiB, for which there is not enough memory"
             );
-            Diagnostic::error(problem).hint("let more memory be used, if it is to be had")
+            Diagnostic::error(problem).hint("raise the memory limit, or free some memory")
         }
         Ok(_) if plain.len() as u64 <= limit => return Ok(Cow::Owned(plain)),
         Ok(_) => {

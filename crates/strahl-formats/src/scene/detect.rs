@@ -118,7 +118,7 @@ impl fmt::Display for SceneFormat {
 
 /// There is no scene format of that name.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("unknown scene format `{found}`; there are: {}", names())]
+#[error("unknown scene format `{found}`; the formats are {}", names())]
 pub struct UnknownSceneFormat {
     /// The name that was given.
     found: String,
@@ -159,7 +159,7 @@ pub(super) fn of_file(path: &Path, bytes: &[u8]) -> Fallible<SceneFormat> {
             Some(ending) => format!("`{shown}`: unknown ending `.{ending}`, and the content does not show its format"),
             None => format!("`{shown}`: the name has no ending, and the content does not show its format"),
         };
-        let hint = format!("name the format with `--format`; there are: {}", names());
+        let hint = format!("name the format with `--format`; the formats are {}", names());
         Box::new(Diagnostic::error(message).hint(hint))
     })
 }

@@ -254,7 +254,7 @@ impl<'h, 'r> Body<'h, 'r> {
             Scalar::F32 | Scalar::F64
         ) {
             let problem = format!(
-                "`{}`: the indices of element `{}` are not of a whole type",
+                "`{}`: the indices of element `{}` are not of an integer type",
                 self.name, element.name
             );
             return Err(Box::new(Diagnostic::error(problem)));

@@ -172,7 +172,7 @@ impl<'a> Reader<'a> {
             b"binary_big_endian" => Encoding::Binary { big_endian: true },
             _ => {
                 let problem = format!("unknown encoding `{}`", word.shown());
-                let hint = "there are ascii, binary_little_endian and binary_big_endian";
+                let hint = "the encodings are ascii, binary_little_endian and binary_big_endian";
                 return Err(Box::new(
                     self.text.at(&word, Diagnostic::error(problem)).hint(hint),
                 ));
@@ -218,9 +218,10 @@ impl<'a> Reader<'a> {
             let word = self.word("the type of the list's length")?;
             let scalar = self.scalar(&word)?;
             if !scalar.is_integer() {
-                return Err(
-                    self.fault(&word, "the length of a list must be of a whole type".into())
-                );
+                return Err(self.fault(
+                    &word,
+                    "the length of a list must be of an integer type".into(),
+                ));
             }
             length = Some(scalar);
             kind = self.word("the type of the list's entries")?;
@@ -243,7 +244,7 @@ impl<'a> Reader<'a> {
 
     fn scalar(&self, word: &Word<'_>) -> Fallible<Scalar> {
         Scalar::named(word.bytes).ok_or_else(|| {
-            let hint = "there are char, uchar, short, ushort, int, uint, float, double and int8, uint8, ... float64";
+            let hint = "the types are char, uchar, short, ushort, int, uint, float, double and int8, uint8, ... float64";
             let problem = Diagnostic::error(format!("unknown type `{}`", word.shown()));
             Box::new(self.text.at(word, problem).hint(hint))
         })

@@ -61,7 +61,7 @@ fn read_mesh(text: &Text<'_>, scene: &mut Scene, report: &mut Report) -> Fallibl
                 "`{name}` has {} vertices but no faces",
                 data.positions.len()
             ))
-            .hint("point clouds have no surface that a ray could hit: make a mesh of it first"),
+            .hint("point clouds have no surface that a ray could hit: convert it to a mesh first"),
         ));
     }
     let mesh = TriangleMesh::try_new(data)

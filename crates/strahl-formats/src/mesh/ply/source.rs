@@ -8,7 +8,7 @@ pub(super) trait Source {
     /// The next number, exactly. Finite in ASCII, anything in binary.
     fn number(&mut self, scalar: Scalar) -> Fallible<f64>;
 
-    /// The next number, which is of a whole type.
+    /// The next number, which is of an integer type.
     fn integer(&mut self, scalar: Scalar) -> Fallible<i64>;
 
     /// Passes over numbers.

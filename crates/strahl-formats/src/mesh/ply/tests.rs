@@ -207,11 +207,11 @@ fn wrong_headers_are_named() {
     );
     assert!(
         message("list uchar int", "list float int")
-            .contains("the length of a list must be of a whole type")
+            .contains("the length of a list must be of an integer type")
     );
     assert!(
         message("uchar int vertex_indices", "uchar float vertex_indices")
-            .contains("indices of element `face` are not of a whole type")
+            .contains("indices of element `face` are not of an integer type")
     );
     assert!(
         message("vertex_indices", "corners")

@@ -51,13 +51,13 @@ pub(crate) fn read(input: &Input<'_>, report: &mut Report) -> Scene {
             let promised = (expected - HEADER as u64) / TRIANGLE as u64;
             let there = (size - HEADER as u64) / TRIANGLE as u64;
             Diagnostic::error(format!(
-                "`{}` is no STL file, or it is cut off: the header promises {promised} triangles, there is room for {there}",
+                "`{}` is not an STL file, or it is cut off: its header says {promised} triangles, but it has room for {there}",
                 input.name
             ))
         }),
         None => report.error(|| {
             Diagnostic::error(format!(
-                "`{}` is no STL file: it does not begin with `solid`, and for a binary file it is too short ({size} bytes)",
+                "`{}` is not an STL file: it does not begin with `solid`, and is too short for a binary file ({size} bytes)",
                 input.name
             ))
         }),

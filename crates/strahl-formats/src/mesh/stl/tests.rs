@@ -120,7 +120,7 @@ fn damaged_binary_files_are_named() {
     assert_eq!(
         messages(&load(cut)),
         [
-            "error: `part.stl` is no STL file, or it is cut off: the header promises 4 triangles, there is room for 2"
+            "error: `part.stl` is not an STL file, or it is cut off: its header says 4 triangles, but it has room for 2"
         ]
     );
     let mut long = binary("", &TETRAHEDRON);
@@ -134,7 +134,7 @@ fn damaged_binary_files_are_named() {
         messages(&nan),
         ["error: `part.stl`: triangle 2 has a coordinate that is not a finite number"]
     );
-    assert!(messages(&load(vec![1, 2, 3]))[0].contains("too short (3 bytes)"));
+    assert!(messages(&load(vec![1, 2, 3]))[0].contains("too short for a binary file (3 bytes)"));
     let flat = load(binary("", &[[O, X, X], [O, O, O], TETRAHEDRON[0]]));
     assert_eq!(meshes(&flat)[0].1.triangle_count(), 1);
     assert_eq!(

@@ -3,19 +3,19 @@ use gltf::json::accessor::{Accessor, ComponentType, Type};
 use gltf::json::validation::Checked;
 use gltf::json::{Index, Root};
 
-/// The elements of an accessor, every read within its buffer.
+/// The elements of an accessor. Every access stays within its buffer.
 pub(super) struct Elements<'a> {
     component: ComponentType,
     normalized: bool,
     pub(super) count: usize,
     /// `None` stands for zeros.
     base: Option<Strided<'a>>,
-    /// Numbers of the elements that are replaced, ascending.
+    /// The indices of the elements that are replaced, ascending.
     replaced: Vec<u32>,
     replacements: Option<Strided<'a>>,
 }
 
-/// Elements at equal distances.
+/// Elements at a constant distance (stride).
 #[derive(Clone, Copy)]
 struct Strided<'a> {
     bytes: &'a [u8],
@@ -23,7 +23,7 @@ struct Strided<'a> {
 }
 
 impl<'a> Strided<'a> {
-    /// Checks that there are `count` elements of `size` bytes from `offset` on.
+    /// Checks that `count` elements of `size` bytes from `offset` on are within the bytes.
     fn new(bytes: &'a [u8], offset: u64, stride: usize, size: usize, count: usize) -> Option<Self> {
         let bytes = bytes.get(usize::try_from(offset).ok()?..)?;
         let last = count
@@ -45,7 +45,7 @@ fn size(component: ComponentType) -> usize {
     }
 }
 
-/// One component, with the scale of normalised whole numbers.
+/// A component as a number; normalised integers are scaled to `0..=1` or `-1..=1`.
 fn component(bytes: &[u8], kind: ComponentType, normalized: bool) -> f64 {
     fn first<const N: usize>(bytes: &[u8]) -> [u8; N] {
         bytes.first_chunk().copied().unwrap_or([0; N])
@@ -61,7 +61,7 @@ fn component(bytes: &[u8], kind: ComponentType, normalized: bool) -> f64 {
     if !normalized {
         return value;
     }
-    // The smallest signed value counts as -1 like its neighbour.
+    // The smallest signed value counts as -1, like the next one.
     let scaled = value / most;
     if scaled < -1.0 { -1.0 } else { scaled }
 }
@@ -160,12 +160,12 @@ impl<'a> Elements<'a> {
         })
     }
 
-    /// A whole number, from an accessor of whole numbers.
+    /// An index, from an accessor of unsigned integers.
     pub(super) fn integer(&self, index: usize) -> u32 {
         component(self.bytes(index), self.component, false) as u32
     }
 
-    /// Whether the components are whole numbers without sign, as indices must be.
+    /// Whether the components are unsigned integers, as indices must be.
     pub(super) fn can_be_indices(&self) -> bool {
         matches!(
             self.component,

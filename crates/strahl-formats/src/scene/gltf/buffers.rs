@@ -18,7 +18,7 @@ enum Bytes<'a> {
 }
 
 impl<'a> Buffers<'a> {
-    /// Reads what the buffers refer to: the binary chunk, data in the JSON, files beside the scene (each once).
+    /// Reads all buffers: the binary chunk, data in the JSON, and files beside the scene (each once).
     pub(super) fn read(
         root: &'a Root,
         blob: Option<&'a [u8]>,
@@ -59,7 +59,7 @@ impl<'a> Buffers<'a> {
         Ok(Self { root, buffers })
     }
 
-    /// How many bytes there are, buffers that share a file counted one by one.
+    /// The number of bytes; a file shared by several buffers counts several times.
     pub(super) fn total(&self) -> u64 {
         self.buffers.iter().map(|b| b.all().len() as u64).sum()
     }
@@ -96,15 +96,15 @@ impl Bytes<'_> {
     }
 }
 
-/// The bytes of a `data:` address.
+/// The bytes of a `data:` URI.
 pub(super) fn data_uri(uri: &str) -> Result<Vec<u8>, String> {
-    // Without a folder the crate reads no files, and these addresses name none.
+    // Without a folder the crate reads no files, and `data:` URIs name none.
     gltf::buffer::Data::from_source(gltf::buffer::Source::Uri(uri), None)
         .map(|data| data.0)
         .map_err(|e| format!("its data is damaged: {e}"))
 }
 
-/// An address with its `%20` and the like replaced.
+/// A URI with its percent-encoding decoded.
 pub(super) fn decoded(uri: &str) -> Cow<'_, str> {
     if !uri.contains('%') {
         return Cow::Borrowed(uri);
@@ -131,7 +131,7 @@ pub(super) fn decoded(uri: &str) -> Cow<'_, str> {
     Cow::Owned(String::from_utf8_lossy(&bytes).into_owned())
 }
 
-/// An address for messages.
+/// A URI for messages.
 pub(super) fn shown(uri: &str) -> String {
     const MOST: usize = 40;
     let mut text: String = uri

@@ -14,11 +14,10 @@ use strahl_scene::Diagnostic;
 use strahl_shade::image_texture::{Filter, TextureImage, Wrap};
 use strahl_shade::{Color, Material, Pbr, Sides, TextureRef, Textures};
 
-/// The smallest part of the light that a volume may leave after its attenuation distance: black would be infinite
-/// absorption.
+/// The smallest transmittance of a volume over its attenuation distance: 0 would need infinite absorption.
 const DARKEST: f64 = 1e-6;
 
-/// Makes materials and reads their textures, each once.
+/// Creates materials and reads textures, each once.
 pub(super) struct Materials<'a> {
     root: &'a Root,
     buffers: &'a Buffers<'a>,
@@ -47,7 +46,7 @@ impl<'a> Materials<'a> {
         }
     }
 
-    /// The material of this number.
+    /// The material with this index.
     pub(super) fn get(
         &mut self,
         index: usize,
@@ -75,7 +74,7 @@ impl<'a> Materials<'a> {
         let base_color = color("the base colour", [r, g, b])?;
         let eta = match extensions.ior.as_ref().map(|e| f64::from(e.ior.0)) {
             None => 1.5,
-            // Zero stands for "reflects everything"; a very large index does.
+            // 0 means that everything is reflected, which a very large index does.
             Some(0.0) => 1000.0,
             Some(eta) if eta >= 1.0 && eta.is_finite() => eta,
             Some(eta) => {
@@ -222,7 +221,7 @@ impl<'a> Materials<'a> {
         });
     }
 
-    /// The texture, unless it cannot be had.
+    /// The texture; `None` with a warning if it can't be read.
     fn texture(
         &mut self,
         found: Option<Use>,
@@ -301,7 +300,7 @@ impl<'a> Materials<'a> {
                 .files
                 .get(&decoded(uri), texture_use)
                 .map_err(|why| format!("`{}`: {why}", shown(uri))),
-            (None, None) => Err("it has neither an address nor a buffer view".into()),
+            (None, None) => Err("it has neither a URI nor a buffer view".into()),
         }
     }
 }
@@ -323,7 +322,7 @@ fn use_of(info: &Info) -> Use {
     }
 }
 
-/// The same for normal and occlusion textures, whose extensions the crate leaves as plain JSON.
+/// The same for normal and occlusion textures, whose extensions the crate leaves as JSON.
 fn plain_use(texture: usize, set: u32, transform: Option<&gltf::json::Value>) -> Use {
     let number = |value: Option<&gltf::json::Value>| {
         value.and_then(gltf::json::Value::as_f64).map(|x| x as f32)
@@ -346,8 +345,8 @@ fn plain_use(texture: usize, set: u32, transform: Option<&gltf::json::Value>) ->
     }
 }
 
-/// The map of `KHR_texture_transform`: scale, then rotate counter-clockwise as seen in the picture (whose v runs
-/// downwards), then move.
+/// The map of `KHR_texture_transform`: scale, then rotate counter-clockwise as seen in the picture (whose v points down), then
+/// translate.
 fn uv_map([ou, ov]: [f32; 2], rotation: f32, [su, sv]: [f32; 2]) -> [f64; 6] {
     let (sin, cos) = (det::sin(f64::from(rotation)), det::cos(f64::from(rotation)));
     let (su, sv) = (f64::from(su), f64::from(sv));
@@ -366,14 +365,14 @@ fn uv_map([ou, ov]: [f32; 2], rotation: f32, [su, sv]: [f32; 2]) -> [f64; 6] {
     }
 }
 
-/// The absorption per length that leaves the part `c` of the light after `distance`.
+/// The absorption per length that leaves the fraction `c` of the light after `distance`.
 fn absorbed(c: f64, distance: f64) -> f64 {
     let c = if c > DARKEST { c } else { DARKEST };
     let a = -det::ln(c) / distance;
     if a > 0.0 { a } else { 0.0 }
 }
 
-/// A colour from the file, if it is one.
+/// Checks a colour of the file.
 fn color(what: &str, rgb: [f32; 3]) -> Result<Color, String> {
     let color = Color::from(rgb.map(f64::from));
     if color.is_finite() && color.to_array().iter().all(|x| *x >= 0.0) {
@@ -383,7 +382,7 @@ fn color(what: &str, rgb: [f32; 3]) -> Result<Color, String> {
     }
 }
 
-/// Into `0..=1`; NaN becomes 0.
+/// Clamps to `0..=1`; NaN becomes 0.
 fn unit(x: f64) -> f64 {
     if x > 1.0 {
         1.0

@@ -13,8 +13,9 @@ use strahl_geometry::{MeshData, TriangleMesh};
 use strahl_math::DVec3;
 use strahl_scene::{Diagnostic, Object};
 
-/// How many corners all primitives may have together: this many, and so many for each byte of the buffers. Honest files take
-/// a byte or more for each; an accessor that thousands of primitives share is no way to fill the memory.
+/// Limits of the corners of all primitives together: this many, plus [`CORNERS_PER_BYTE`] for each byte of the buffers. Real
+/// files use at least a byte per corner; the limit stops files in which thousands of primitives share an accessor from filling
+/// the memory.
 const FREE_CORNERS: u64 = 1 << 24;
 const CORNERS_PER_BYTE: u64 = 4;
 
@@ -138,7 +139,7 @@ impl<'a> Meshes<'a> {
             .as_ref()
             .is_some_and(|elements| !elements.can_be_indices())
         {
-            return Err("its indices are not of a whole type without sign".into());
+            return Err("its indices are not of an unsigned integer type".into());
         }
 
         let corners = indices
@@ -182,7 +183,7 @@ impl<'a> Meshes<'a> {
                 ));
             }
             if polygon_normal(&points.map(DVec3::from_array)).is_none() {
-                // Strips turn corners with triangles that have no area.
+                // Strips contain triangles without area on purpose, to turn corners.
                 if mode == Mode::Triangles {
                     self.warn(report, "a triangle without area is left out");
                 }
@@ -193,7 +194,7 @@ impl<'a> Meshes<'a> {
         if mode == Mode::Triangles && corners % 3 != 0 {
             self.warn(
                 report,
-                "the number of corners is no multiple of three: the rest is ignored",
+                "the number of corners is not a multiple of three: the rest is ignored",
             );
         }
         let single = |x: f64| x as f32;
@@ -217,7 +218,7 @@ impl<'a> Meshes<'a> {
     }
 }
 
-/// How many triangles so many corners make.
+/// The number of triangles for this number of corners.
 fn triangle_count(mode: Mode, corners: usize) -> usize {
     match mode {
         Mode::Triangles => corners / 3,
@@ -235,7 +236,7 @@ fn triangle(mode: Mode, k: usize) -> [usize; 3] {
     }
 }
 
-/// Numbers the vertices that are used, in the order of their first use: primitives often share one large list.
+/// Numbers only the used vertices, in the order of first use, because primitives often share a large list.
 #[derive(Default)]
 struct Compact {
     numbers: HashMap<u32, u32>,

@@ -43,7 +43,7 @@ const EXTENSIONS: [&str; 9] = [
     "KHR_texture_transform",
 ];
 
-/// Reads a scene; what is wrong goes to the report.
+/// Reads a scene; errors and warnings go to the report.
 pub(super) fn read(input: &Input<'_>, report: &mut Report) -> Scene {
     let mut scene = Scene::default();
     let file = scene.sources.add(input.name);
@@ -101,14 +101,14 @@ fn chunks(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), String> {
     let version = number(header, 0);
     if version != 2 {
         return Err(format!(
-            "version {version} of binary glTF is not read, only 2"
+            "version {version} of binary glTF is not supported, only 2"
         ));
     }
     let (mut json, mut binary) = (None, None);
     while let Some((header, body)) = rest.split_first_chunk::<8>() {
         let Some((chunk, after)) = body.split_at_checked(number(header, 0) as usize) else {
             return Err(format!(
-                "a chunk of {} bytes is announced, but only {} are left",
+                "a chunk should have {} bytes, but only {} are left",
                 number(header, 0),
                 body.len()
             ));
@@ -116,7 +116,7 @@ fn chunks(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), String> {
         match &header[4..] {
             b"JSON" => json = json.or(Some(chunk)),
             b"BIN\0" => binary = binary.or(Some(chunk)),
-            // Other chunks are to be ignored.
+            // Other chunks must be ignored.
             _ => {}
         }
         rest = after;
@@ -127,7 +127,7 @@ fn chunks(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), String> {
     ))
 }
 
-/// The little-endian number at a place of a header.
+/// The little-endian number at an offset in a header.
 fn number(header: &[u8; 8], at: usize) -> u32 {
     header[at..]
         .first_chunk()
@@ -136,7 +136,7 @@ fn number(header: &[u8; 8], at: usize) -> u32 {
 
 /// Reads and checks the JSON.
 fn root(text: Text<'_>, report: &mut Report) -> Option<Root> {
-    // Some writers begin with a byte order mark, which JSON has no place for.
+    // Some programs write a byte order mark, which JSON does not allow.
     let bytes = text
         .bytes
         .strip_prefix(b"\xef\xbb\xbf")
@@ -158,27 +158,27 @@ fn root(text: Text<'_>, report: &mut Report) -> Option<Root> {
         let names: Vec<_> = unknown.iter().take(10).map(|e| format!("`{e}`")).collect();
         report.error(|| {
             Diagnostic::error(format!(
-                "`{}` needs extensions that are not known: {}",
+                "`{}` needs extensions that are not supported: {}",
                 text.name,
                 names.join(", ")
             ))
-            .hint("export it without them; compressed meshes and textures are not read")
+            .hint("export it without them; compressed meshes and textures are not supported")
         });
         return None;
     }
-    // The crate's own list of extensions is shorter than what is read here.
+    // The crate's own list of supported extensions is shorter than ours.
     root.extensions_required.clear();
     if !root.asset.version.starts_with("2.") {
         let version: String = root.asset.version.chars().take(20).collect();
         report.error(|| {
             Diagnostic::error(format!(
-                "`{}`: version `{version}` of glTF is not read, only 2",
+                "`{}`: version `{version}` of glTF is not supported, only 2",
                 text.name
             ))
         });
         return None;
     }
-    // Validation looks at the accessor of the positions before it has checked the index.
+    // The crate's validation reads the accessor of the positions before it checks the index.
     let accessors = root.accessors.len();
     let mut attributes = root
         .meshes
@@ -199,7 +199,7 @@ fn root(text: Text<'_>, report: &mut Report) -> Option<Root> {
         JsonPath::new,
         &mut |path: &dyn Fn() -> JsonPath, error: Error| {
             let path = path();
-            // Bounds that are missing do no harm here.
+            // Missing bounds are harmless here.
             let harmless = error == Error::Missing
                 && (path.as_str().ends_with(".min") || path.as_str().ends_with(".max"));
             if !harmless {

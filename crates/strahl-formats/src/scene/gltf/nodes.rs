@@ -13,7 +13,7 @@ use strahl_scene::{
 };
 use strahl_shade::{Color, Falloff, Light, LightKind};
 
-/// Walks the nodes of the scene.
+/// Traverses the nodes of the scene.
 pub(super) struct Nodes<'a, 'r> {
     pub(super) root: &'a Root,
     pub(super) name: &'a str,
@@ -21,12 +21,12 @@ pub(super) struct Nodes<'a, 'r> {
     pub(super) report: &'r mut Report,
 }
 
-/// What has become of a mesh.
+/// Where a mesh has been placed so far.
 #[derive(Clone, Debug)]
 enum Placed {
-    /// No node has been there yet.
+    /// Nowhere.
     Not,
-    /// Several nodes show it.
+    /// In a group, of which each node places an instance.
     Group(GroupId),
 }
 
@@ -102,7 +102,7 @@ impl Nodes<'_, '_> {
         let roots: Vec<usize> = match scene {
             Some(scene) => scene.nodes.iter().map(|n| n.value()).collect(),
             None => {
-                // Without scenes everything is shown that is not a part of something.
+                // A file without scenes shows all nodes that are not children.
                 let mut is_child = vec![false; root.nodes.len()];
                 for child in root.nodes.iter().flat_map(|n| n.children.iter().flatten()) {
                     is_child[child.value()] = true;
@@ -119,7 +119,9 @@ impl Nodes<'_, '_> {
             .collect();
         while let Some((index, parent)) = waiting.pop() {
             if std::mem::replace(&mut seen[index], true) {
-                return Err(format!("node {index} is a part of two nodes, or of itself"));
+                return Err(format!(
+                    "node {index} is a child of two nodes, or of itself"
+                ));
             }
             let node = &root.nodes[index];
             let world = parent * local(node);
@@ -224,7 +226,7 @@ impl Nodes<'_, '_> {
     }
 }
 
-/// The map from a node to its parent.
+/// The transformation from a node's space to its parent's.
 fn local(node: &Node) -> DAffine3 {
     if let Some(matrix) = node.matrix {
         let m = matrix.map(f64::from);
@@ -245,7 +247,7 @@ fn local(node: &Node) -> DAffine3 {
         .map_or([0.0, 0.0, 0.0, 1.0], |q| q.0.map(f64::from));
     let rotation = DQuat::from_array(rotation);
     let length = rotation.length();
-    // Four zeros turn nothing.
+    // A zero quaternion counts as no rotation.
     let rotation = if length > 0.0 && length.is_finite() {
         rotation / length
     } else {

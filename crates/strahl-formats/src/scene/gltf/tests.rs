@@ -28,7 +28,7 @@ fn mesh(object: &Object) -> &TriangleMesh {
     }
 }
 
-/// Base 64, the slow way.
+/// A simple base64 encoder.
 fn base64(bytes: &[u8]) -> String {
     const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     let mut out = String::new();
@@ -57,7 +57,7 @@ fn square() -> Vec<u8> {
     floats(&[0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 1.0, 0.0])
 }
 
-/// A file of one buffer; `rest` is what else the JSON says. Every view begins where it is told and reaches to the end.
+/// A file with one buffer; `rest` is the rest of the JSON. Every view begins at its offset and extends to the end.
 fn file(buffer: &[u8], views: &[usize], accessors: &str, rest: &str) -> String {
     let views: Vec<_> = views
         .iter()
@@ -117,7 +117,7 @@ fn all_index_types_and_modes_are_read() {
         );
         assert_eq!(mesh(object).indices(), expected);
     }
-    // A strip: 1 2 0 3; its second triangle is turned. Vertices are numbered by first use.
+    // A strip: 1 2 0 3, whose second triangle has the opposite winding. Vertices are numbered by first use.
     let strip = scene(&indexed(5121, &[1, 2, 0, 3], 4, 5));
     let corners = |scene: &Scene, k: u32| mesh(&scene.objects.0[0]).corners(k).map(|p| (p.x, p.y));
     assert_eq!(corners(&strip, 0), [(1.0, 0.0), (1.0, 1.0), (0.0, 0.0)]);
@@ -136,7 +136,7 @@ fn all_index_types_and_modes_are_read() {
 
 #[test]
 fn sparse_and_normalized_accessors_are_read() {
-    // Zeros, of which elements 1 and 2 are replaced, and uv in 16 bits.
+    // An accessor of zeros of which elements 1 and 2 are replaced, and 16-bit uv.
     let mut buffer = floats(&[1.0, 0.0, 0.0, 0.0, 1.0, 0.0]);
     buffer.extend([1, 2, 0, 0]);
     buffer.extend(
@@ -225,7 +225,7 @@ fn cycles_and_shared_children_are_refused() {
     let own = load(&with_nodes(r#"{"children":[1]},{"children":[0]}"#, ""));
     assert_eq!(
         messages(&own),
-        ["error: `a.gltf`: node 0 is a part of two nodes, or of itself"]
+        ["error: `a.gltf`: node 0 is a child of two nodes, or of itself"]
     );
     let twice = load(&with_nodes(
         r#"{"children":[1,2]},{"children":[2]},{"mesh":0}"#,
@@ -233,7 +233,7 @@ fn cycles_and_shared_children_are_refused() {
     ));
     assert_eq!(
         messages(&twice),
-        ["error: `a.gltf`: node 2 is a part of two nodes, or of itself"]
+        ["error: `a.gltf`: node 2 is a child of two nodes, or of itself"]
     );
 }
 
@@ -532,7 +532,7 @@ fn files_beside_the_scene_are_read() {
     );
 }
 
-/// A binary file of these chunks.
+/// A binary file with these chunks.
 fn binary(json: &str, bin: &[u8]) -> Vec<u8> {
     let mut bytes = b"glTF\x02\0\0\0\0\0\0\0".to_vec();
     for (kind, chunk) in [(b"JSON", json.as_bytes()), (b"BIN\0", bin)] {
@@ -555,7 +555,7 @@ fn binary_files_bring_their_buffer() {
     let message = |bytes: Vec<u8>| messages(&load(bytes))[0].clone();
     assert!(
         message(whole[..whole.len() - 4].to_vec())
-            .contains("a chunk of 48 bytes is announced, but only 44 are left")
+            .contains("a chunk should have 48 bytes, but only 44 are left")
     );
     assert!(
         message(binary(&json, &square()[..40])).contains("buffer 0 has 40 bytes instead of 48")
@@ -563,7 +563,7 @@ fn binary_files_bring_their_buffer() {
     assert!(message(whole[..9].to_vec()).contains("ends within its header"));
     let mut old = whole.clone();
     old[4] = 1;
-    assert!(message(old).contains("version 1 of binary glTF is not read, only 2"));
+    assert!(message(old).contains("version 1 of binary glTF is not supported, only 2"));
     assert!(message(whole[..12].to_vec()).contains("has no JSON chunk"));
     assert!(message(json.into_bytes()).contains("buffer 0 has no data"));
 }
@@ -599,7 +599,7 @@ fn accessors_are_checked_before_they_are_read() {
     assert!(
         messages(&load(&far))[0].contains("vertex 9 is out of range: there are 4, numbered from 0")
     );
-    // Zeros without any data, in numbers beyond belief.
+    // An accessor of zeros without data, with a huge count.
     let zeros = r#"{"componentType":5126,"count":9000000000,"type":"VEC3","min":[0,0,0],"max":[0,0,0],
         "sparse":{"count":1,"indices":{"bufferView":0,"componentType":5121},"values":{"bufferView":0}}}"#;
     let zeros = json.replace(THREE, zeros);
@@ -622,7 +622,7 @@ fn what_is_no_gltf_is_one_error() {
     assert!(messages(&load("hello"))[0].contains("the JSON of the glTF file is wrong"));
     assert!(
         messages(&load(r#"{"asset":{"version":"1.0"}}"#))[0]
-            .contains("version `1.0` of glTF is not read")
+            .contains("version `1.0` of glTF is not supported")
     );
     let draco = load(
         r#"{"asset":{"version":"2.0"},"extensionsRequired":["KHR_draco_mesh_compression","KHR_materials_ior"]}"#,
@@ -630,8 +630,8 @@ fn what_is_no_gltf_is_one_error() {
     assert_eq!(
         messages(&draco),
         [
-            "error: `a.gltf` needs extensions that are not known: `KHR_draco_mesh_compression`\n  \
-          = help: export it without them; compressed meshes and textures are not read"
+            "error: `a.gltf` needs extensions that are not supported: `KHR_draco_mesh_compression`\n  \
+          = help: export it without them; compressed meshes and textures are not supported"
         ]
     );
     let fine = load(r#"{"asset":{"version":"2.0"},"extensionsRequired":["KHR_materials_volume"]}"#);

@@ -5,7 +5,7 @@ use strahl_math::DVec3;
 use strahl_scene::{Diagnostic, FileId, Object, Span};
 use strahl_shade::{Color, Finish, Material, Sides};
 
-/// A corner of flat triangles: its coordinates, bit by bit, with one zero.
+/// A corner of flat triangles, compared by the bits of its coordinates; -0 counts as 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) struct FlatCorner {
     x: u64,
@@ -58,10 +58,10 @@ impl VertexKey for SmoothCorner {
     }
 }
 
-/// A fill: its material, seen from one side or both, and the triangles that wait to become one mesh.
+/// A fill: its material, for one and for both sides, and the triangles that will become meshes.
 #[derive(Debug, Default)]
 pub(super) struct Fill {
-    /// 1 for the first `f` statement; 0 before it.
+    /// The number of the `f` statement, from 1 on; 0 before the first one.
     number: usize,
     line: u32,
     base: Material,
@@ -108,12 +108,12 @@ impl Fill {
         }
     }
 
-    /// Whether an `f` statement has made it.
+    /// Whether it comes from an `f` statement.
     pub(super) fn is_explicit(&self) -> bool {
         self.number > 0
     }
 
-    /// The material of spheres and cones that have their usual side outside.
+    /// The material of spheres and cones with a positive radius.
     pub(super) fn two_sided(&mut self) -> Arc<Material> {
         Arc::clone(
             self.two_sided
@@ -121,7 +121,7 @@ impl Fill {
         )
     }
 
-    /// The material of what is seen from the front only, transmitting or not.
+    /// The material of objects that exist from the front only, transmitting or not.
     pub(super) fn one_sided(&mut self) -> Arc<Material> {
         let make = || {
             Arc::new(Material {
@@ -147,7 +147,7 @@ impl Fill {
         self.smooth.push(smooth);
     }
 
-    /// The triangles gathered, as objects.
+    /// Takes the collected triangles as meshes.
     pub(super) fn take_meshes(&mut self, file: FileId, report: &mut Report) -> Vec<Object> {
         let mut objects = vec![];
         let flat = std::mem::take(&mut self.flat).finish();

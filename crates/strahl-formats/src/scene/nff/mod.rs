@@ -12,8 +12,8 @@
 //! | `pp n` n corners with normals | a smooth polygon |
 //!
 //! The format leaves shading open; the choices here:
-//! * A light without a colour is white, of the strength √n/(2n), n the number of lights: the format leaves it to the program. A colour
-//!   that is given is taken as it is. The ambient light has the strength √n/(2n) always.
+//! * A light without a colour is white, with the strength √n/(2n) for n lights: the format leaves it to the program. The colour
+//!   of a light is used as it is. The ambient light always has the strength √n/(2n).
 //! * `f`: kd = ka = Kd·rgb; highlight and reflection are white, ks = kr = Ks, the highlight's exponent is Shine; kt = T,
 //!   η = ior (1 if it is 0, or missing). The highlight is Phong's.
 //! * Opaque polygons exist from the front only (corners counter-clockwise), transmitting ones (T > 0) from both sides;
@@ -40,12 +40,12 @@ use std::sync::Arc;
 use strahl_scene::{Background, Diagnostic, Object, Scene, Span};
 use strahl_shade::{Color, ShadingModel};
 
-/// Reads a scene; what is wrong goes to the report.
+/// Reads a scene; errors and warnings go to the report.
 pub(super) fn read(input: &Input<'_>, report: &mut Report) -> Scene {
     read_with(input, report, Ahead::default())
 }
 
-/// [`read`] with parts of another size, which makes no difference.
+/// [`read`] with parts of another size; the result does not depend on it.
 fn read_with<'a>(input: &'a Input<'a>, report: &mut Report, ahead: Ahead<'a, Parts>) -> Scene {
     let mut scene = Scene::default();
     scene.settings.shading = ShadingModel::Phong;
@@ -77,19 +77,19 @@ fn read_with<'a>(input: &'a Input<'a>, report: &mut Report, ahead: Ahead<'a, Par
     reader.scene
 }
 
-/// Puts together what statements say.
+/// Builds the scene from parsed statements.
 struct Reader<'a> {
     text: Text<'a>,
-    /// Reads what is not read ahead, and has all that there is to say.
+    /// Parses the statements that are not read ahead, and collects all diagnostics.
     parser: Parser<'a>,
     ahead: Ahead<'a, Parts>,
     scene: Scene,
-    /// The current fill with the triangles it has gathered.
+    /// The current fill with the triangles collected so far.
     fill: Fill,
     fills: usize,
     has_view: bool,
     lights: Vec<LightLine>,
-    // Numbers for names.
+    // Counters for the names of objects.
     spheres: usize,
     cones: usize,
     polygons: usize,
@@ -104,7 +104,7 @@ impl<'a> Reader<'a> {
     {
         let text = self.text;
         while self.parser.words.advance() {
-            // What is before the first fill is little, and without a fill there is something to say about each object.
+            // The text before the first fill is short, and each object there gets a warning.
             let piece = if self.parser.has_fill {
                 let read = move |words, end| read_ahead(text, words, end);
                 self.ahead.piece(scope, &self.parser.words, read)
@@ -146,13 +146,13 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    /// Adds the parts that the parser has read, but for the last `keep`.
+    /// Adds the parts that the parser has read, except for the last `keep`.
     fn add_read(&mut self, keep: usize) {
         while self.parser.parts.len() > keep {
             let part = self.parser.parts.remove(0);
             self.add(part);
         }
-        // What is wrong with a mesh is said as soon as it ends.
+        // Problems of a mesh are reported as soon as the mesh ends.
         if self.parser.parts.iter().any(|part| part.fill.is_some()) {
             self.flush_fill();
         }
@@ -199,7 +199,7 @@ impl<'a> Reader<'a> {
             }
         };
         self.name.clear();
-        // Writing to a string cannot fail.
+        // Writing to a string never fails.
         let _ = write!(self.name, "{what} {number}");
         self.scene.objects.0.push(Object {
             name: Some(Arc::from(self.name.as_str())),
@@ -209,7 +209,7 @@ impl<'a> Reader<'a> {
         });
     }
 
-    /// What can only be said at the end.
+    /// Reports what is known only at the end.
     fn finish(&mut self) {
         self.flush_fill();
         let (name, report) = (self.text.name, &mut self.parser.report);

@@ -9,14 +9,14 @@ use strahl_math::DVec3;
 use strahl_scene::Span;
 use strahl_shade::Color;
 
-/// What one `f` statement and those behind it say; what is there before the first one, or how a piece begins, has none.
+/// The content of an `f` statement and the statements after it. The first part of a piece has no `f` statement.
 #[derive(Debug, Default)]
 pub(super) struct Part {
     /// The numbers of the fill and its line.
     pub(super) fill: Option<(FillNumbers, u32)>,
-    /// All but what becomes meshes.
+    /// All objects except those that become meshes.
     pub(super) objects: Vec<Placed>,
-    /// How many polygons there are, of all kinds.
+    /// The number of polygons of all kinds.
     pub(super) polygons: usize,
     pub(super) flat: MeshBuilder<FlatCorner>,
     pub(super) smooth: MeshBuilder<SmoothCorner>,
@@ -32,7 +32,7 @@ pub(super) struct Placed {
     pub(super) line: u32,
 }
 
-/// What gives a shape its name and material.
+/// The kind of a shape, which determines its name and material.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Kind {
     Sphere {
@@ -41,12 +41,12 @@ pub(super) enum Kind {
     Cone,
     Cylinder,
     Polygon {
-        /// 1 for the first polygon of the part.
+        /// The number of the polygon in the part, from 1 on.
         number: usize,
     },
 }
 
-/// An `l` statement; without a colour the strength depends on how many there are.
+/// An `l` statement. Without a colour, the strength of the light depends on the number of lights.
 #[derive(Debug)]
 pub(super) struct LightLine {
     pub(super) position: DVec3,
@@ -75,12 +75,12 @@ impl Part {
     }
 }
 
-/// Parts of the text between two places, and what there is to say about them.
+/// The parts between two places of the text, and the report about them.
 pub(super) type Parts = (Vec<Part>, Report);
 
-/// Reads the statements that begin before `end`, up to the first that is wrong or a view.
+/// Parses the statements that begin before `end`, up to the first erroneous one or a view.
 ///
-/// A fill must have begun before, which is not known here.
+/// It assumes that a fill has begun before.
 pub(super) fn read_ahead<'a>(
     text: Text<'a>,
     words: Words<'a>,

@@ -10,17 +10,17 @@ use strahl_math::DVec3;
 use strahl_scene::{Camera, Diagnostic, Span};
 use strahl_shade::Color;
 
-/// Most pixels along an edge of the picture.
+/// Largest number of pixels along an edge of the picture.
 const MOST_PIXELS: i64 = 1 << 20;
 
-/// Reads statements, one after the other, without regard to what was before them.
+/// Parses statements without knowing those before them.
 pub(super) struct Parser<'a> {
     text: Text<'a>,
     pub(super) words: Words<'a>,
     pub(super) report: Report,
     /// Whether there has been a fill.
     pub(super) has_fill: bool,
-    /// What has been read.
+    /// The result so far.
     pub(super) parts: Vec<Part>,
     triangulator: Triangulator,
 }
@@ -30,7 +30,7 @@ impl<'a> Statements<'a> for Parser<'a> {
         &mut self.words
     }
 
-    /// A view is not for here: it is a matter of the whole text.
+    /// Views are not handled here, because they concern the whole text.
     fn statement(&mut self) -> Fallible<()> {
         let Some(word) = self.words.next() else {
             return Ok(());
@@ -67,8 +67,8 @@ impl<'a> Parser<'a> {
         }
     }
 
-    /// Goes to the next word before byte `end` that begins a statement, as the first of its line unless it is the very
-    /// next; says whether there is one.
+    /// Moves to the next word before byte `end` that begins a statement: the next word, or the first of a later line. Returns
+    /// whether there is one.
     pub(super) fn seek_statement(&mut self, end: usize) -> bool {
         while self.words.advance() && self.words.position() < end {
             if self.words.peek().is_some_and(|w| begins_statement(&w)) {
@@ -79,7 +79,7 @@ impl<'a> Parser<'a> {
         false
     }
 
-    /// Goes to the next line that begins with a letter, if that is not the rest of a view: there a statement begins.
+    /// Moves to the next line that begins with a letter and not with a word of a view: a statement begins there.
     pub(super) fn recover(&mut self) {
         loop {
             self.words.skip_line();
@@ -92,7 +92,7 @@ impl<'a> Parser<'a> {
         }
     }
 
-    /// The view, in any order; `hither` may be missing.
+    /// Reads the view, in any order; `hither` may be missing.
     pub(super) fn view(&mut self, start: &Word<'_>) -> Fallible<(Camera, Option<(u32, u32)>)> {
         let (mut from, mut at, mut up, mut angle, mut size) = (None, None, None, None, None);
         while let Some(word) = self.words.peek().filter(is_view_word) {
@@ -309,7 +309,7 @@ impl<'a> Parser<'a> {
                 };
                 self.add(polygon.into(), kind, start.line);
             }
-            // Most likely the corners are not in one plane; triangles always are.
+            // Probably the corners are not in one plane; those of triangles always are.
             Err(problem) => {
                 let mut triangles = vec![];
                 match self.triangulator.triangulate(corners, &mut triangles) {
@@ -372,7 +372,7 @@ impl<'a> Parser<'a> {
         }
     }
 
-    /// Where what comes next belongs.
+    /// The part for the following objects.
     fn part(&mut self) -> &mut Part {
         if self.parts.is_empty() {
             self.parts.push(Part::default());
@@ -395,7 +395,7 @@ impl<'a> Parser<'a> {
         }
         let before = self.words.clone();
         let Some(word) = self.words.next().filter(|word| !begins_statement(word)) else {
-            // The statement is not taken, so that reading goes on there.
+            // The next statement has begun, so the word is put back.
             self.words = before;
             return Err(Box::new(self.words.expected(&format!("a number ({what})"))));
         };
@@ -455,7 +455,7 @@ impl<'a> Parser<'a> {
     }
 }
 
-/// Whether a word surely begins a statement, so that something is missing before it.
+/// Whether a word certainly begins a statement, so that something is missing before it.
 fn begins_statement(word: &Word<'_>) -> bool {
     matches!(
         word.bytes,
@@ -463,7 +463,7 @@ fn begins_statement(word: &Word<'_>) -> bool {
     )
 }
 
-/// Whether a word belongs into a view.
+/// Whether a word belongs to a view.
 fn is_view_word(word: &Word<'_>) -> bool {
     matches!(
         word.bytes,

@@ -67,7 +67,7 @@ fn lights_without_a_colour_share_the_strength_and_colours_are_taken_as_given() {
         }
     );
     assert_eq!(scene.lights[0].light.color, Color::gray(0.25));
-    // The format says that a light's strength is free if its colour is not specified; so a specified one is not.
+    // The format lets the program choose the strength of a light without a colour, so a given colour is used as it is.
     assert_eq!(scene.lights[1].light.color, Color::new(1.0, 0.5, 0.0));
     assert_eq!(
         (scene.lights[1].span.line, scene.lights[1].name.as_deref()),
@@ -316,7 +316,7 @@ fn the_standard_scenes_have_the_published_numbers_of_primitives_and_lights() {
     }
 }
 
-/// Statements right and wrong, with corners that meet.
+/// Valid and invalid statements, with shared corners.
 const STATEMENTS: [&str; 27] = [
     "f 1 .5 0 .5 .5 3 0 0\n",
     "f 0 1 1 1 0 0 .5 1.5\n",
@@ -363,7 +363,7 @@ proptest! {
 
 #[test]
 fn threads_that_wait_for_parts_read_parts() {
-    // As many texts at the same time as there are threads: none of these may only wait.
+    // As many texts at once as there are threads: if a thread only waited, none would finish.
     let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build();
     let text = format!("{VIEW}{}", STATEMENTS[..18].concat().repeat(50));
     pool.expect("threads").install(|| {
@@ -377,7 +377,7 @@ fn threads_that_wait_for_parts_read_parts() {
 #[test]
 fn large_files_are_mapped_and_read_in_parts() {
     use std::fmt::Write;
-    // A landscape, each of whose corners belongs to several triangles of several parts.
+    // A landscape in which each corner belongs to several triangles of several parts.
     let mut text = format!("{VIEW}f 1 1 1 1 0 0 0 0\n");
     let side = 360;
     for (x, y) in (0..side * side).map(|i| (i % side, i / side)) {
