@@ -3,14 +3,14 @@
 //! The lexer interns the words first and in this order, so the number of a [`Word`] is the number of its
 //! [`Symbol`](crate::symbol::Symbol).
 
-/// What a reserved word is.
+/// The kind of a reserved word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WordKind {
     /// Follows a `#`.
     Directive,
-    /// Says where a name lives, or qualifies a declaration: `local`, `global`, `optional`, ...
+    /// The scope of a name, or a qualifier of a declaration: `local`, `global`, `optional`, ...
     Scope,
-    /// Opens a statement that is no object: `camera`, `global_settings`, ...
+    /// Opens a statement other than an object: `camera`, `global_settings`, ...
     Statement,
     /// Opens an object.
     Object,
@@ -28,7 +28,7 @@ pub enum WordKind {
     Color,
     /// A number or vector with a fixed name: `pi`, `x`, `clock`, ...
     Constant,
-    /// A word with a meaning inside of braces only: items, patterns, switches, file types, ...
+    /// Has a meaning only inside of braces: items, patterns, switches, file types, ...
     Item,
 }
 
@@ -56,12 +56,12 @@ impl Word {
         entry.map(|(word, _, _)| *word)
     }
 
-    /// How it is spelled.
+    /// The spelling.
     pub fn text(self) -> &'static str {
         Self::ALL[self as usize].1
     }
 
-    /// Whether the word came with version 3.8, so that older scenes use it as a name; measured with POV-Ray 3.7.
+    /// Whether the word is new in version 3.8, so that older scenes use it as a name; measured with POV-Ray 3.7.
     pub(crate) fn is_new(self) -> bool {
         matches!(
             self,
@@ -83,7 +83,7 @@ impl Word {
         )
     }
 
-    /// What it is.
+    /// The kind.
     pub fn kind(self) -> WordKind {
         Self::ALL[self as usize].2
     }

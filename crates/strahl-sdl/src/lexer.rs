@@ -1,7 +1,7 @@
 //! Bytes to tokens, a chunk of the file at a time.
 //!
-//! Besides cutting the text the lexer links the directives of each block (`#if` to `#else` to `#end`), so that skipping a
-//! branch or jumping back to the head of a loop costs nothing.
+//! The lexer also links the directives of each block (`#if` to `#else` to `#end`), so that skipping a branch or jumping back to
+//! the head of a loop takes no search.
 //!
 //! A chunk of a long file ends where no block, parenthesis or bracket is open, and only before a word that opens an object or
 //! between two vectors of a list. At these positions the next token is only read through [`Parser::peek`](crate::Parser::peek),
@@ -21,14 +21,14 @@ use crate::symbol::{Symbol, Symbols};
 use crate::token::{Directive, Kind, Token};
 use std::sync::Arc;
 
-/// Something wrong with the text itself.
+/// An error in the text itself.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct LexProblem {
     /// Byte offset.
     pub(crate) start: u32,
-    /// What is wrong.
+    /// The error.
     pub(crate) message: String,
-    /// What to do.
+    /// The advice.
     pub(crate) hint: &'static str,
 }
 
@@ -40,14 +40,14 @@ pub(crate) struct Lexed {
     pub(crate) problems: Vec<LexProblem>,
     /// Byte offset at which the next chunk begins; `None` at the end of the file.
     pub(crate) rest: Option<usize>,
-    /// Whether the given part of the text ends within the chunk, which is then useless.
+    /// Whether the given part of the text ends within the chunk, in which case the chunk is unusable.
     pub(crate) is_cut: bool,
 }
 
-/// Cuts a part of a text into tokens, from a byte offset (of the file) up to the first good place behind `wanted` tokens. The text
-/// must be shorter than 4 GiB (the source loader sees to it).
+/// Splits a part of a text into tokens, from a byte offset (of the file) up to the first position after `wanted` tokens where a
+/// chunk may end. The text must be shorter than 4 GiB, which the source loader ensures.
 ///
-/// The vectors of `used` are used again.
+/// The vectors of `used` are reused.
 pub(crate) fn lex(
     part: &Part<'_>,
     begin: usize,
@@ -72,7 +72,7 @@ pub(crate) fn lex(
         open: vec![],
         out,
     };
-    // A byte order mark is no character of the scene.
+    // A byte order mark is not part of the scene.
     if begin == 0 && part.bytes.starts_with(b"\xef\xbb\xbf") {
         lexer.position = 3;
     }
@@ -80,7 +80,7 @@ pub(crate) fn lex(
     lexer.out
 }
 
-/// The length in bytes of the token that `rest` begins with, for underlining it.
+/// The length in bytes of the first token of `rest`, for underlining it.
 pub(crate) fn token_length(rest: &[u8]) -> usize {
     let count = |f: fn(&u8) -> bool| rest.iter().take_while(|b| f(b)).count();
     match rest.first() {
@@ -103,7 +103,7 @@ pub(crate) fn token_length(rest: &[u8]) -> usize {
     }
 }
 
-/// What to do about a block without end.
+/// The advice for a block without an end.
 pub(crate) const UNCLOSED: &str = "every `#if`, `#ifdef`, `#ifndef`, `#while`, `#for`, `#switch` and `#macro` needs an `#end` in the same file";
 
 struct Lexer<'a> {
@@ -114,9 +114,9 @@ struct Lexer<'a> {
     is_last: bool,
     /// Index of the next of the bytes.
     position: usize,
-    /// How many tokens the chunk should have.
+    /// The wanted number of tokens in the chunk.
     wanted: usize,
-    /// How many parentheses and brackets are open.
+    /// The number of open parentheses and brackets.
     brackets: u32,
     symbols: &'a mut Symbols,
     /// Indices of the last divider of each open block.
@@ -132,7 +132,7 @@ const fn is_name_start(b: u8) -> bool {
     b.is_ascii_alphabetic() || b == b'_'
 }
 
-/// What a token can be that begins with a byte.
+/// The kinds of tokens that can begin with a byte.
 #[derive(Clone, Copy)]
 enum First {
     Blank,
@@ -146,7 +146,7 @@ enum First {
     Other,
 }
 
-/// By the first byte; looked up once per token.
+/// The table of first bytes, read once per token.
 const FIRST: [First; 256] = {
     let mut table = [First::Other; 256];
     let mut index = 0;
@@ -168,7 +168,7 @@ const FIRST: [First; 256] = {
     table
 };
 
-/// Which bytes go on with a name.
+/// The bytes that can continue a name.
 const NAME: [bool; 256] = {
     let mut table = [false; 256];
     let mut b = 0;
@@ -257,7 +257,7 @@ impl<'a> Lexer<'a> {
         }
     }
 
-    /// Whether the chunk may end before a word: behind a complete thing, if the word opens an object.
+    /// Whether the chunk may end before a word: after a complete item, if the word opens an object.
     fn ends_before_object(&self, word: Option<Word>) -> bool {
         let closed = self.out.tokens.last().map(|t| t.kind) == Some(Kind::RightBrace);
         closed && self.is_between() && word.is_some_and(|w| w.kind() == WordKind::Object)
@@ -367,9 +367,9 @@ impl<'a> Lexer<'a> {
         self.push(Kind::String, start, index as u64);
     }
 
-    /// Whether a reserved word is a name here, because the scene declares one: words that came with 3.8 were names before.
+    /// Whether a keyword is a name here because the scene declares it: words that are new in 3.8 were names before.
     fn is_freed(&mut self, symbol: Symbol) -> bool {
-        /// How far to look back for the head of a macro.
+        /// The largest number of tokens to look back for the head of a macro.
         const PARAMETERS: usize = 200;
         if self.symbols.is_freed(symbol) {
             return true;
@@ -385,7 +385,7 @@ impl<'a> Lexer<'a> {
         let declared = match (directive(1), directive(2)) {
             (Some(Directive::Declare | Directive::Local), _) => matches!(next, b'=' | b'['),
             (_, Some(Directive::For)) => next == b',',
-            // A parameter of a macro: the names since the parenthesis have commas between them.
+            // A parameter of a macro: only names and commas are between the opening parenthesis and the word.
             _ => {
                 let list = tokens.iter().rev().take(PARAMETERS).take_while(|t| {
                     matches!(
@@ -422,7 +422,7 @@ impl<'a> Lexer<'a> {
         };
         let directive = Directive::from_text(std::str::from_utf8(name).unwrap_or(""));
         if directive == Directive::Unknown && (on_next_line || self.is_plain_word(name)) {
-            // A `#` that stands for nothing; what follows is read by itself.
+            // A lone `#` has no meaning; the text after it is read separately.
             name = &[];
             self.position = begin;
         }
@@ -438,13 +438,13 @@ impl<'a> Lexer<'a> {
                 self.open.push(index);
             }
         } else if directive == Directive::Unknown {
-            // Keeps the word for the message.
+            // Keeps the word for the error message.
             token.set_link(self.symbols.intern(name).index());
         }
         self.out.tokens.push(token);
     }
 
-    /// Whether a name is a word of the language that has never been a directive.
+    /// Whether a name is a keyword that was never a directive.
     fn is_plain_word(&mut self, name: &[u8]) -> bool {
         let word = Word::from_number(u64::from(self.symbols.intern(name).0));
         word.is_some_and(|word| !matches!(word, Word::MaxTraceLevel | Word::MaxIntersections))

@@ -1,4 +1,4 @@
-//! POV-Ray's scene description language, read into strahl's scene description.
+//! Parser for POV-Ray's scene description language, which produces strahl's scene description.
 //!
 //! ```
 //! use strahl_sdl::{MemoryHost, Options, Source, parse};
@@ -15,25 +15,25 @@
 //!
 //! # Design
 //!
-//! **Tokens once, replayed as slices.** `lexer` cuts each file into tokens of 16 bytes and links the directives of every block,
+//! **Tokens once, replayed as slices.** `lexer` splits each file into tokens of 16 bytes and links the directives of every block,
 //! so that a branch not taken is skipped in one step. A macro is a slice of those tokens. A loop is a position to jump back to.
-//! `parser` keeps a stack of frames (scene, includes, macro calls), each a position in a file; nothing of this recurses on the
-//! machine's stack, and no token is copied.
+//! `parser` keeps a stack of frames (scene, includes, macro calls), each a position in a file; none of this uses recursion, and
+//! no token is copied.
 //!
-//! **One stream.** The grammar pulls tokens by [`Parser::peek`], [`Parser::next`], [`Parser::expect`] and never knows where they
-//! come from: directives (`directives/`) and macro calls happen in between. What a directive or an argument reads ends where
-//! its block or frame ends, so `#declare A = 1 #end` means what it looks like.
+//! **One stream.** The grammar pulls tokens with [`Parser::peek`], [`Parser::next`], [`Parser::expect`] and doesn't know where
+//! they come from: directives (`directives/`) and macro calls are run in between. What a directive or an argument reads ends
+//! where its block or frame ends, so `#declare A = 1 #end` means what it looks like.
 //!
 //! **Names** are numbers; each has a stack of bindings (`parser/scope.rs`), because the language's scopes are dynamic: a
 //! macro sees the local names of its caller. A macro's argument that is a lone variable stands for the variable itself.
 //!
-//! **Expressions** (`expr/`) are evaluated straight from the tokens, with numbers and vectors on the stack.
+//! **Expressions** (`expr/`) are evaluated directly from the tokens, with numbers and vectors on the stack.
 //!
 //! **The grammar** (`grammar/`) is tables from words to functions, one file per object; [`Thing`] lists what can be declared.
 //!
-//! **Errors** are reported where they happen, with the source line and the macros and includes around it; the statement is given
-//! up ([`Failed`]) and parsing goes on behind it. [`Limits`] bound every resource a scene may use. Files are read and written
-//! through a [`Host`] only.
+//! **Errors** are reported where they happen, with the source line and the macros and includes around it; the statement is
+//! abandoned ([`Failed`]) and parsing continues after it. [`Limits`] bound every resource a scene may use. Files are read and
+//! written only through a [`Host`].
 
 mod directives;
 mod expr;
@@ -63,18 +63,18 @@ pub use value::{Value, Vector};
 
 use strahl_scene::{Diagnostic, Scene};
 
-/// What became of a text.
+/// The result of parsing a text.
 #[derive(Debug)]
 pub struct Parsed {
     /// The scene; `None` if there was an error.
     pub scene: Option<Scene>,
-    /// What there is to say about it, in the order found.
+    /// All diagnostics, in the order found.
     pub diagnostics: Vec<Diagnostic>,
 }
 
-/// Reads a scene.
+/// Parses a scene.
 ///
-/// Never panics and always ends, whatever the text: [`Options::limits`](Options) bound what it may use.
+/// Never panics and always ends, whatever the text: [`Options::limits`](Options) bound the resources it may use.
 pub fn parse(source: Source, options: &Options, host: &mut dyn Host) -> Parsed {
     let name = source.name.clone();
     let source = match source.narrowed() {

@@ -1,6 +1,6 @@
 use crate::Value;
 
-/// What the caller knows besides the text.
+/// The inputs of the parser besides the text.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Options {
@@ -18,7 +18,7 @@ pub struct Options {
     pub header: Option<String>,
     /// The language version of a scene that has no `#version`.
     pub version: f64,
-    /// Bounds on what a scene may use.
+    /// Limits on the resources that a scene may use.
     pub limits: Limits,
 }
 
@@ -37,7 +37,7 @@ impl Default for Options {
     }
 }
 
-/// Where in an animation the picture stands.
+/// The position of the picture in an animation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frame {
     /// Whether there is an animation: the value of `clock_on`.
@@ -70,35 +70,35 @@ impl Default for Frame {
     }
 }
 
-/// Bounds on what a scene may use, so that a mistake in it ends in an error and not in an exhausted machine.
+/// Limits on the resources that a scene may use, so that a mistake in a scene ends in an error instead of exhausting the machine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Limits {
-    /// Tokens read in all, loops and macros counted as often as they run.
+    /// Tokens read in total; tokens in loops and macros count each time.
     pub steps: u64,
-    /// The same since the last object, or part of a mesh or texture: a loop that makes
-    /// nothing for so long does not end. 600 million take some four seconds; a loop of a million rounds with 20 directives in
-    /// each takes a third of that.
+    /// The same since the last object, or part of a mesh or texture: a loop that creates nothing for this long is considered
+    /// infinite. 600 million take about four seconds; a loop of a million rounds with 20 directives in each takes a third of
+    /// that.
     pub idle_steps: u64,
     /// Operations that one evaluation of a function may take.
     pub function_cost: u64,
-    /// Operations of all functions made, with those copied from the functions they call.
+    /// Operations of all functions, with those copied from the functions they call.
     pub function_operations: u64,
-    /// Macro calls and includes within each other.
+    /// Nesting depth of macro calls and includes.
     pub depth: usize,
-    /// Braces and parentheses within each other.
+    /// Nesting depth of braces and parentheses.
     pub nesting: usize,
-    /// Elements of all arrays made.
+    /// Elements of all arrays.
     pub array_elements: u64,
     /// Bytes of one string.
     pub string_bytes: usize,
-    /// Bytes of all strings made.
+    /// Bytes of all strings.
     pub all_strings: u64,
-    /// Objects made, with the parts of combined ones and all copies.
+    /// Objects, with the parts of CSG objects and all copies.
     pub objects: usize,
     /// Entries of all textures and meshes: colours of maps, copied members, vertices, faces.
     pub parts: u64,
-    /// Textures within each other.
+    /// Nesting depth of textures.
     pub texture_depth: u32,
     /// Bytes of all files read.
     pub read_bytes: u64,

@@ -1,4 +1,4 @@
-//! Files: how they are read and written, and what is stored of those read.
+//! Reading and writing files, and storing what was read.
 
 use std::io::{self, Write};
 use std::path::Path;
@@ -22,7 +22,7 @@ pub use writing::Writing;
 /// A scene file to be parsed: UTF-8, UTF-16 or Latin-1.
 #[derive(Debug)]
 pub struct Source {
-    /// Its name as shown to the user; includes are searched beside it first.
+    /// Its name as shown to the user; includes are searched first in its folder.
     pub name: String,
     text: Text,
 }
@@ -36,7 +36,7 @@ impl Source {
         }
     }
 
-    /// A plain file of more than some megabytes, which is read while it is parsed; `None` if it is not so large or not plain.
+    /// A regular file of several megabytes or more, which is read while it is parsed; `None` for smaller or other files.
     ///
     /// # Errors
     /// If the file can't be opened.
@@ -53,8 +53,8 @@ impl Source {
         self.text.len()
     }
 
-    /// The scene as UTF-8 or Latin-1, if it is UTF-16 in either byte order: with a byte order mark, or without one if its first two
-    /// characters are ASCII. What is no character becomes U+FFFD.
+    /// Converts UTF-16 in either byte order to UTF-8; other texts stay as they are. UTF-16 is recognised by a byte order mark, or
+    /// by two ASCII characters at the beginning. Invalid characters become U+FFFD.
     ///
     /// # Errors
     /// If the file can't be read.
@@ -110,9 +110,9 @@ pub enum HostError {
     /// There is no such file.
     #[error("there is no file `{name}`")]
     NotFound {
-        /// The name asked for.
+        /// The name in the scene.
         name: String,
-        /// Where it was searched, in order.
+        /// The folders searched, in order.
         searched: Vec<String>,
     },
     /// The file is larger than the limit.
@@ -136,7 +136,7 @@ pub enum HostError {
     Io {
         /// The file.
         name: String,
-        /// The system's words.
+        /// The system's message.
         message: String,
     },
 }
@@ -151,29 +151,29 @@ impl HostError {
     }
 }
 
-/// Access of the parser to files, time and output, since it does no input or output by itself.
+/// The parser's access to files, time and output; it does no input or output itself.
 pub trait Host: Send {
-    /// Reads a file that a scene names.
+    /// Reads a file named in a scene.
     ///
-    /// `from` is the name (as returned by this function, or of the scene) of the file that asks.
+    /// `from` is the name (as returned by this function, or of the scene) of the file that contains the name.
     ///
     /// # Errors
-    /// [`HostError::NotFound`] lets the parser look among the built-in include files.
+    /// [`HostError::NotFound`] makes the parser search the built-in include files.
     fn load(&mut self, name: &str, from: &str) -> Result<Source, HostError>;
 
-    /// Reads a font of the system by the name of its file, without folder; `None` if there is none. Scenes that name a font get
-    /// here when [`Host::load`] does not find it.
+    /// Reads a font of the system by the name of its file, without a folder; `None` if there is none. It is called for fonts that
+    /// [`Host::load`] does not find.
     ///
     /// # Errors
-    /// If the file is there and can't be read.
+    /// If the file exists but can't be read.
     fn load_font(&mut self, _file: &str) -> Result<Option<Source>, HostError> {
         Ok(None)
     }
 
-    /// Reads a file that is neither where [`Host::load`] looks nor built in, such as a picture of an installed POV-Ray.
+    /// Reads a file that is neither found by [`Host::load`] nor built in, such as a picture of an installed POV-Ray.
     ///
     /// # Errors
-    /// [`HostError::NotFound`] where nothing of the kind is known.
+    /// [`HostError::NotFound`] if there is no such file.
     fn load_installed(&mut self, name: &str) -> Result<Source, HostError> {
         Err(HostError::NotFound {
             name: name.to_owned(),
@@ -187,9 +187,9 @@ pub trait Host: Send {
     /// If the place is not allowed or the system refuses.
     fn create(&mut self, name: &str, append: bool) -> Result<Box<dyn Write + Send>, HostError>;
 
-    /// Takes a message of the scene.
+    /// Receives a message of the scene.
     fn message(&mut self, stream: Stream, text: &str);
 
-    /// Days since the beginning of 2000 in UTC, the value of `now`; a fixed time makes scenes reproducible.
+    /// The value of `now`: days since the beginning of 2000 in UTC. A fixed value makes scenes reproducible.
     fn now(&mut self) -> f64;
 }

@@ -1,6 +1,6 @@
-//! Finds the known name that a misspelt one probably means.
+//! Finds the known name that a misspelt one probably stands for.
 
-/// A name that may be meant.
+/// A possible replacement.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Candidate<'a> {
     name: &'a str,
@@ -14,14 +14,13 @@ impl<'a> Candidate<'a> {
     }
 }
 
-/// The set of letters in a name, a bit for each; small and capital ones are the same.
+/// The set of letters in a name, one bit for each; case is ignored.
 fn letters(name: &str) -> u64 {
     name.bytes()
         .fold(0, |set, b| set | 1 << (b.to_ascii_lowercase() & 63))
 }
 
-/// The name with the smallest edit distance, the first of several, if it is close enough: at most a third of the letters
-/// differ. Its associated data is returned with it.
+/// The name with the smallest edit distance (the first of several) and its data, if at most a third of the letters differ.
 pub(crate) fn closest<'a, T>(
     name: &str,
     known: impl Iterator<Item = (Candidate<'a>, T)>,
@@ -30,7 +29,7 @@ pub(crate) fn closest<'a, T>(
     let mut allowed = (name.chars().count() / 3).clamp(1, 4);
     let mut best = None;
     for (candidate, about) in known {
-        // A letter in place of another changes the set by two at most, so that nearly all are passed over.
+        // A replaced letter changes at most two bits of the set, so most candidates are skipped quickly.
         let differing = (candidate.letters ^ wanted).count_ones() as usize;
         if differing > 2 * allowed
             || candidate.name.len().abs_diff(name.len()) > allowed
@@ -41,7 +40,7 @@ pub(crate) fn closest<'a, T>(
         let distance = distance(name, candidate.name);
         if distance <= allowed {
             best = Some((candidate.name, about));
-            // Later ones have to be better.
+            // Later candidates must be better.
             match distance.checked_sub(1) {
                 Some(less) => allowed = less,
                 None => break,
@@ -51,7 +50,7 @@ pub(crate) fn closest<'a, T>(
     best
 }
 
-/// Levenshtein's distance of the bytes; capital and small letters are the same.
+/// The Levenshtein distance of the bytes, ignoring case.
 fn distance(a: &str, b: &str) -> usize {
     let (a, b) = (a.as_bytes(), b.as_bytes());
     let mut row: Vec<usize> = (0..=b.len()).collect();

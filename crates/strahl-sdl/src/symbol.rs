@@ -12,35 +12,35 @@ impl Symbol {
     }
 }
 
-/// All names met so far, each stored once: an open-addressing table of numbers over one string.
+/// All names so far, each stored once: an open-addressing hash table over one string.
 ///
-/// Own code instead of a `HashMap<Box<str>, _>` because every identifier of the text passes here: one multiplication per eight
-/// bytes, no allocation for known names, and no access to the text of names of up to 16 bytes.
+/// It is used instead of a `HashMap<Box<str>, _>` because every identifier of the text is looked up here: one multiplication per
+/// eight bytes, no allocation for known names, and no access to the text of names of up to 16 bytes.
 #[derive(Debug)]
 pub(crate) struct Symbols {
     text: String,
     ends: Vec<u32>,
     /// The length is a power of two.
     table: Vec<Slot>,
-    /// Reserved words that the scene has declared as names.
+    /// Keywords that the scene has declared as names.
     freed: Vec<Symbol>,
 }
 
-/// A place in the table.
+/// A slot of the table.
 #[derive(Clone, Copy, Debug, Default)]
 struct Slot {
-    /// The first bytes of the name, with zeros behind a shorter one.
+    /// The first bytes of the name; a shorter name is padded with zeros.
     head: u128,
-    /// How many bytes the name has.
+    /// The length of the name in bytes.
     length: u32,
     /// Symbol number plus one; 0 is free.
     number: u32,
 }
 
-/// How many bytes of a name its slot holds.
+/// The number of bytes of a name that its slot holds.
 const HEAD: usize = 16;
 
-/// The head of the name of this length that a text begins with.
+/// The head of the name of this length at the beginning of a text.
 #[inline]
 fn head(text: &[u8], length: usize) -> u128 {
     let mask = match length {
@@ -59,7 +59,7 @@ fn head(text: &[u8], length: usize) -> u128 {
 }
 
 impl Symbols {
-    /// A table that holds the reserved words.
+    /// A table with the reserved words.
     pub(crate) fn new() -> Self {
         let mut symbols = Self {
             text: String::new(),
@@ -73,7 +73,7 @@ impl Symbols {
         symbols
     }
 
-    /// The spelling of a symbol; empty for a number of another table.
+    /// The spelling of a symbol; empty if it belongs to another table.
     pub(crate) fn text(&self, symbol: Symbol) -> &str {
         let index = symbol.index();
         let start = match index {
@@ -84,7 +84,7 @@ impl Symbols {
         self.text.get(start..end).unwrap_or("")
     }
 
-    /// Makes a name of a reserved word, for all that is read from now on.
+    /// Turns a keyword into a name, from here on.
     pub(crate) fn free(&mut self, word: Symbol) {
         self.freed.push(word);
     }
@@ -94,7 +94,7 @@ impl Symbols {
         self.freed.contains(&word)
     }
 
-    /// All spellings, in the order in which they were met.
+    /// All spellings, in the order in which they were added.
     pub(crate) fn iter(&self) -> impl Iterator<Item = (Symbol, &str)> {
         (0..self.ends.len() as u32).map(|n| (Symbol(n), self.text(Symbol(n))))
     }
@@ -104,7 +104,7 @@ impl Symbols {
         self.intern_front(name, name.len())
     }
 
-    /// The symbol of the name of this many bytes that a text begins with.
+    /// The symbol of the name of this many bytes at the beginning of a text.
     pub(crate) fn intern_front(&mut self, text: &[u8], length: usize) -> Symbol {
         let head = head(text, length);
         let name = text.get(..length).unwrap_or(text);

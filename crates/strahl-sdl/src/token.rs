@@ -7,7 +7,7 @@ use crate::symbol::Symbol;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[repr(u8)]
 pub enum Kind {
-    /// A number without sign.
+    /// An unsigned number.
     Number,
     /// A string in quotation marks.
     String,
@@ -63,13 +63,13 @@ pub enum Kind {
     Ampersand,
     /// `|`
     Bar,
-    /// A character that means nothing in the language.
+    /// A character without a meaning in the language.
     Unknown,
     /// A name: a variable, or a macro to be called.
     Name,
     /// `#` with the word after it.
     Directive,
-    /// The end of the file (or of what a directive may read).
+    /// The end of the file (or of the part that a directive may read).
     End,
 }
 
@@ -113,10 +113,10 @@ impl Kind {
     }
 }
 
-/// One token: 16 bytes. Its length is found again in the text when a message needs it.
+/// One token in 16 bytes. Its length is determined again from the text if a message needs it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Token {
-    /// What it is.
+    /// Its kind.
     pub kind: Kind,
     /// Byte offset in the file.
     pub(crate) start: u32,
@@ -174,7 +174,7 @@ impl Token {
             .map(|(directive, _)| directive)
     }
 
-    /// For directives that open or divide a block: the index of the token that goes on with it (`#else`, `#case`, ...) or
+    /// For directives that open or divide a block: the index of the directive that continues the block (`#else`, `#case`, ...) or
     /// ends it; `None` if the file ends before.
     pub(crate) fn link(self) -> Option<usize> {
         let link = (self.bits >> 32) as u32;
@@ -194,7 +194,7 @@ macro_rules! directives {
         pub(crate) enum Directive { $($name),* }
 
         impl Directive {
-            /// All of them with the word after the `#`.
+            /// All directives with the word after the `#`.
             pub(crate) const ALL: &'static [(Self, &'static str)] = &[$((Self::$name, $text)),*];
         }
     };
@@ -236,7 +236,7 @@ impl Directive {
     /// The directive named by the word after a `#`.
     pub(crate) fn from_text(text: &str) -> Self {
         let known = Self::ALL.binary_search_by(|(_, t)| {
-            // The nameless last row stands behind all others.
+            // The nameless last row matches all other words.
             if t.is_empty() {
                 std::cmp::Ordering::Greater
             } else {

@@ -10,7 +10,7 @@ mod vector;
 
 pub use vector::Vector;
 
-/// The value of a name or an expression. Numbers and vectors live in it, everything larger is shared.
+/// The value of a name or an expression. Numbers and vectors are stored inline, everything larger is shared.
 #[derive(Clone, Debug)]
 pub enum Value {
     /// A number. Also what `seed` returns: the number of a random stream.
@@ -27,16 +27,16 @@ pub enum Value {
     Spline(Arc<Spline>),
     /// A function of numbers.
     Function(Function),
-    /// A value that is parsed but not supported: its description.
+    /// A value that is parsed but not supported, with its description.
     Unsupported(&'static str),
-    /// A macro; only names hold one.
+    /// A macro; only names have such values.
     Macro(Arc<Macro>),
-    /// Something the grammar defines: an object, a texture, a transformation, ...
+    /// A value defined by the grammar: an object, a texture, a transformation, ...
     Thing(Thing),
 }
 
 impl Value {
-    /// What it is, in words, for messages.
+    /// Its kind in words, for messages.
     pub fn describe(&self) -> &'static str {
         match self {
             Self::Float(_) => "a float",
@@ -53,7 +53,7 @@ impl Value {
         }
     }
 
-    /// Whether `(` behind the name calls it.
+    /// Whether a `(` after the name calls it.
     pub(crate) fn is_callable(&self) -> bool {
         matches!(
             self,

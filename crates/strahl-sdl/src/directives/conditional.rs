@@ -23,7 +23,7 @@ impl Parser<'_> {
         }
     }
 
-    /// `#if`, `#ifdef`, `#ifndef` behind the word; `opener` is the index of the directive.
+    /// Runs `#if`, `#ifdef` or `#ifndef`, whose keyword is taken; `opener` is the index of the directive.
     pub(super) fn if_(&mut self, directive: Directive, opener: usize) -> PResult<()> {
         if self.holds(directive)? {
             self.open_block(BlockKind::If, opener);
@@ -48,7 +48,7 @@ impl Parser<'_> {
         Ok(())
     }
 
-    /// A divider met while running: the branch before it was taken, so the block ends; cases fall through.
+    /// A divider reached while running: the branch before it was taken, so the block ends; cases fall through.
     pub(super) fn divider(&mut self, directive: Directive, here: usize) -> PResult<()> {
         let Some(block) = self.block() else {
             return Err(self.stray(directive));
@@ -91,7 +91,7 @@ impl Parser<'_> {
         Ok((low, high))
     }
 
-    /// `#switch` behind the word.
+    /// Runs `#switch`, whose keyword is taken.
     pub(super) fn switch(&mut self, opener: usize) -> PResult<()> {
         let value = self.parenthesised_float()?;
         let mut part = opener;
@@ -115,7 +115,7 @@ impl Parser<'_> {
         }
     }
 
-    /// `#break`: leaves the innermost loop or switch.
+    /// Runs `#break`: leaves the innermost loop or switch.
     pub(super) fn break_(&mut self) -> PResult<()> {
         while let Some(block) = self.close_block() {
             if !matches!(block.kind, BlockKind::If) {

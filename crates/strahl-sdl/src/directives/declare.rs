@@ -5,7 +5,7 @@ use crate::token::Kind;
 use crate::value::Value;
 
 impl Parser<'_> {
-    /// `#declare` or `#local` behind the word.
+    /// Runs `#declare` or `#local`, whose keyword is taken.
     pub(super) fn declare(&mut self, local: bool) -> PResult<()> {
         let deprecated = self.deprecated()?;
         if self.accept(Kind::LeftParen)? {
@@ -14,7 +14,7 @@ impl Parser<'_> {
             let (target, place) = self.assigned(local)?;
             self.expect(Kind::Equal)?;
             let value = self.declared_value(Self::value).inspect_err(|_| {
-                // Whoever uses the name is not at fault.
+                // Later uses of the name must not report errors of their own.
                 self.doubtful.insert(target.symbol);
             })?;
             self.assign(&target, value, place)?;
@@ -26,7 +26,7 @@ impl Parser<'_> {
         self.end_of_assignment()
     }
 
-    /// A semicolon is asked for, but what is meant is clear without. If the value came from a macro, the macro ends before it.
+    /// The semicolon is required, but the meaning is clear without it. If the value came from a macro, the macro ends before it.
     fn end_of_assignment(&mut self) -> PResult<()> {
         if !self.at_floor() {
             self.value_ends()?;
@@ -34,7 +34,7 @@ impl Parser<'_> {
         self.raw_accept(Kind::Semicolon).map(|_| ())
     }
 
-    /// `deprecated [once] "text"`: who declares says so to who uses; here it is taken note of only.
+    /// `deprecated [once] "text"`: a notice for users of the name, which is read but not shown.
     fn deprecated(&mut self) -> PResult<Option<String>> {
         if !self.raw().is(Word::Deprecated) {
             return Ok(None);
@@ -49,7 +49,7 @@ impl Parser<'_> {
         Ok(Some(String::new()))
     }
 
-    /// `(A, B, ...) = values` (3.8): several names at once; the right side is read before the first is set.
+    /// `(A, B, ...) = values` (3.8): assigns to several names; all values are read before the first one is assigned.
     fn declare_tuple(&mut self, local: bool) -> PResult<()> {
         let mut targets = vec![];
         loop {
@@ -108,7 +108,7 @@ impl Parser<'_> {
         Ok(values)
     }
 
-    /// Name and indices on the left of `=`.
+    /// The name and the indices on the left of `=`.
     fn assigned(&mut self, mut local: bool) -> PResult<(Target, Place)> {
         let mut global = false;
         let scope = self.raw();
@@ -128,7 +128,7 @@ impl Parser<'_> {
                 path: vec![],
             },
             (false, true) => self.local_target(symbol),
-            // A local name that the scope sees is changed, as the language has it.
+            // A visible local name is assigned to, as in POV-Ray.
             (false, false) => self.scopes.target(symbol, false).unwrap_or(Target {
                 symbol,
                 depth: 0,
@@ -139,7 +139,7 @@ impl Parser<'_> {
         Ok((target, place))
     }
 
-    /// Where `#local` puts a name.
+    /// The place where `#local` stores a name.
     pub(super) fn local_target(&self, symbol: Symbol) -> Target {
         self.scopes.target(symbol, true).unwrap_or(Target {
             symbol,
@@ -148,7 +148,7 @@ impl Parser<'_> {
         })
     }
 
-    /// `[i]`, `.Key` behind a name that is assigned to.
+    /// `[i]` and `.Key` after a name on the left of `=`.
     pub(crate) fn steps_into(&mut self, target: &mut Target) -> PResult<()> {
         loop {
             let token = self.raw();
@@ -191,7 +191,7 @@ impl Parser<'_> {
         ))
     }
 
-    /// `#undef` behind the word.
+    /// Runs `#undef`, whose keyword is taken.
     pub(super) fn undef(&mut self) -> PResult<()> {
         let scope = self.raw();
         if (scope.is(Word::Local) || scope.is(Word::Global)) && self.raw_ahead(1).kind == Kind::Dot

@@ -5,7 +5,7 @@ use crate::value::Value;
 use std::sync::Arc;
 
 impl Parser<'_> {
-    /// `#macro Name (parameters)` behind the word: remembers where the body stands and skips it.
+    /// Runs `#macro Name (parameters)`, whose keyword is taken: stores the position of the body and skips it.
     pub(super) fn define(&mut self, opener: usize) -> PResult<()> {
         let name = self.raw_name("the name of a macro")?;
         let mut parameters = vec![];

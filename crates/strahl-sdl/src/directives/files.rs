@@ -16,15 +16,15 @@ pub(crate) struct Files {
     written: u64,
 }
 
-/// What may be done with a file.
+/// The mode of an open file.
 enum OpenFile {
-    /// The tokens of the text and where reading goes on.
+    /// The tokens of the file and the index of the next one to read.
     Read(Arc<Chunk>, usize),
     Write(Box<dyn Write + Send>),
 }
 
 impl Parser<'_> {
-    /// `#fopen Handle "name" read|write|append` behind the word.
+    /// Runs `#fopen Handle "name" read|write|append`, whose keyword is taken.
     pub(super) fn fopen(&mut self) -> PResult<()> {
         let handle = self.raw_name("the name of a file handle")?;
         let name = self.file_name()?;
@@ -38,7 +38,7 @@ impl Parser<'_> {
         };
         let reads = matches!(file, OpenFile::Read(..));
         self.io.open.insert(handle, file);
-        // `#ifdef (Handle)` asks whether there is more to read.
+        // `#ifdef (Handle)` tests whether there is more to read.
         let target = self.global_target(handle);
         let value = Value::Float(1.0);
         if !reads || self.more_to_read(handle) {
@@ -68,7 +68,7 @@ impl Parser<'_> {
         }
     }
 
-    /// `#fclose Handle` behind the word.
+    /// Runs `#fclose Handle`, whose keyword is taken.
     pub(super) fn fclose(&mut self) -> PResult<()> {
         let handle = self.raw_name("the name of a file handle")?;
         let place = self.place();
@@ -86,20 +86,20 @@ impl Parser<'_> {
         Ok(())
     }
 
-    /// Closes what the scene has left open.
+    /// Closes files that the scene has not closed.
     pub(crate) fn close_files(&mut self) {
         for file in std::mem::take(&mut self.io.open).into_values() {
             if let OpenFile::Write(mut file) = file
                 && let Err(error) = file.flush()
             {
                 let place = self.place();
-                // It is reported by that.
+                // `fail` reports the error.
                 let _ = self.fail(place, format!("a file cannot be written: {error}"));
             }
         }
     }
 
-    /// `#write (Handle, values ...)` behind the word.
+    /// Runs `#write (Handle, values ...)`, whose keyword is taken.
     pub(super) fn write(&mut self) -> PResult<()> {
         self.expect(Kind::LeftParen)?;
         let handle = self.raw_name("the name of a file handle")?;
@@ -163,7 +163,7 @@ impl Parser<'_> {
         }
     }
 
-    /// `#read (Handle, names ...)` behind the word: numbers, vectors and strings with commas between them.
+    /// Runs `#read (Handle, names ...)`, whose keyword is taken: reads numbers, vectors and strings separated by commas.
     pub(super) fn read(&mut self) -> PResult<()> {
         self.expect(Kind::LeftParen)?;
         let handle = self.raw_name("the name of a file handle")?;

@@ -3,7 +3,7 @@ use crate::token::{Directive, Kind};
 use crate::value::Value;
 
 impl Parser<'_> {
-    /// `#while` behind the word.
+    /// Runs `#while`, whose keyword is taken.
     pub(super) fn while_(&mut self, opener: usize) -> PResult<()> {
         if self.condition()? {
             self.open_block(BlockKind::While, opener);
@@ -14,7 +14,7 @@ impl Parser<'_> {
         Ok(())
     }
 
-    /// `#for (Name, first, last [, step])` behind the word. The variable stays declared after the loop.
+    /// Runs `#for (Name, first, last [, step])`, whose keyword is taken. The variable stays declared after the loop.
     pub(super) fn for_(&mut self, opener: usize) -> PResult<()> {
         self.expect(Kind::LeftParen)?;
         let symbol = self.raw_name("the variable of the loop")?;
@@ -89,8 +89,8 @@ impl Parser<'_> {
 }
 
 impl Loop {
-    /// Whether the body runs for this value. The bound counts as reached within 1e-10, so that steps like 0.1 end where they
-    /// should.
+    /// Whether the body runs for this value. The last value counts as reached within 1e-10, so that rounding of steps like 0.1
+    /// does not matter.
     fn goes_on(&self, value: f64) -> bool {
         const TOLERANCE: f64 = 1e-10;
         if self.step > 0.0 {

@@ -3,7 +3,7 @@ use crate::source::Stream;
 use crate::token::Directive;
 
 impl Parser<'_> {
-    /// `#debug`, `#render`, `#statistics`, `#warning`, `#error` behind the word.
+    /// Runs `#debug`, `#render`, `#statistics`, `#warning` or `#error`, whose keyword is taken.
     pub(super) fn message(&mut self, directive: Directive) -> PResult<()> {
         let place = self.place();
         let text = self.string()?;

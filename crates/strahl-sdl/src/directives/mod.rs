@@ -1,4 +1,4 @@
-//! What follows a `#`.
+//! Directives: the statements that begin with `#`.
 
 mod conditional;
 mod declare;
@@ -16,17 +16,17 @@ use crate::parser::{PResult, Parser};
 use crate::suggest::{Candidate, closest};
 use crate::token::{Directive, Token};
 
-/// How to go on after a directive.
+/// How to continue after a directive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Flow {
     /// With the tokens at the position.
     On,
-    /// Not at all: what is being read must not leave its block.
+    /// Not at all: the construct that is being read must not leave its block.
     Stop,
 }
 
 impl Parser<'_> {
-    /// Carries out the directive at the position.
+    /// Runs the directive at the position.
     pub(crate) fn run_directive(&mut self, token: Token) -> PResult<Flow> {
         let directive = token.directive().unwrap_or(Directive::Unknown);
         let boundary =
@@ -72,7 +72,7 @@ impl Parser<'_> {
         Ok(Flow::On)
     }
 
-    /// `declare`, `include`, `default` and `version` as statements, which the language lets go without their `#`.
+    /// `declare`, `include`, `default` and `version` as statements, for which the language allows the `#` to be omitted.
     pub(crate) fn bare_directive(&mut self, token: Token) -> PResult<bool> {
         let word = match token.word() {
             Some(word @ (Word::Declare | Word::Include | Word::Default | Word::Version)) => word,

@@ -3,7 +3,7 @@ use crate::parser::{PResult, Parser};
 use crate::token::Kind;
 
 impl Parser<'_> {
-    /// `#version 3.7;` behind the word; `#version unofficial ...` is read past.
+    /// Runs `#version 3.7;`, whose keyword is taken; `#version unofficial ...` is skipped.
     pub(super) fn version(&mut self) -> PResult<()> {
         if self.accept_word(Word::Unofficial)? {
             let token = self.peek()?;
@@ -27,7 +27,7 @@ impl Parser<'_> {
         Ok(())
     }
 
-    /// `#max_trace_level` and `#max_intersections` behind the word, which were directives up to version 2.2.
+    /// Runs `#max_trace_level` and `#max_intersections`, which were directives up to version 2.2.
     pub(super) fn old_setting(&mut self, name: &str) -> PResult<()> {
         self.warn_hint(
             self.place(),
@@ -40,7 +40,7 @@ impl Parser<'_> {
         self.float().map(|_| ())
     }
 
-    /// `#default { ... }` behind the word.
+    /// Runs `#default { ... }`, whose keyword is taken.
     pub(super) fn default_directive(&mut self) -> PResult<()> {
         self.braces(crate::grammar::default_items)
     }

@@ -5,7 +5,7 @@ use crate::token::{Kind, Token};
 use crate::value::Value;
 
 impl Parser<'_> {
-    /// The value of the name at the position, with `[i]` and `.Key` behind it.
+    /// The value of the name at the position, with the `[i]` and `.Key` after it.
     pub(super) fn variable(&mut self, token: Token) -> PResult<Value> {
         let symbol = self.variable_name(token)?;
         let place = self.place();

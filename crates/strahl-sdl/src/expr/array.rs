@@ -4,10 +4,10 @@ use crate::token::Kind;
 use crate::value::Value;
 use std::sync::Arc;
 
-/// How deep arrays and dictionaries may lie within each other.
+/// Largest nesting depth of arrays and dictionaries.
 pub(super) const MAX_DEPTH: u16 = 100;
 
-/// Values by number, in one or more dimensions; the last index runs fastest.
+/// Values by index, in one or more dimensions; the last index varies fastest.
 #[derive(Clone, Debug)]
 pub struct Array {
     dimensions: Vec<usize>,
@@ -17,7 +17,7 @@ pub struct Array {
 }
 
 impl Array {
-    /// How many elements there are along each dimension.
+    /// The number of elements along each dimension.
     pub fn dimensions(&self) -> &[usize] {
         &self.dimensions
     }
@@ -36,8 +36,8 @@ impl Array {
         self.elements.get_mut(index)?.as_mut()
     }
 
-    /// Sets an element; an array without a fixed size grows. `false` if there is no such element, or arrays would lie too
-    /// deep within each other.
+    /// Sets an element; an array without a fixed size grows. Returns `false` if there is no such element, or if arrays would be
+    /// nested too deep.
     pub(crate) fn set(&mut self, index: usize, value: Option<Value>) -> bool {
         let depth = value.as_ref().map_or(0, depth_of);
         if depth >= MAX_DEPTH {
@@ -70,12 +70,12 @@ pub(super) fn depth_of(value: &Value) -> u16 {
 }
 
 impl Parser<'_> {
-    /// `array [mixed] [n][m]... { values }` behind the word.
+    /// `array [mixed] [n][m]... { values }`, whose keyword is taken.
     pub(super) fn array(&mut self) -> PResult<Value> {
         self.accept_word(Word::Mixed)?;
         let place = self.place();
         let mut dimensions = vec![];
-        // Not by `peek`, which would carry out a directive that follows, perhaps one that assigns to this array.
+        // `peek` would run a directive that follows, which might assign to this array.
         while self.raw().kind == Kind::LeftBracket {
             self.next()?;
             let size = self.float()?;
@@ -111,7 +111,7 @@ impl Parser<'_> {
         Ok(Value::Array(Arc::new(array)))
     }
 
-    /// `{ ... }` for the dimensions from here on, beginning at flat index `at`.
+    /// `{ ... }` for the dimensions from here on, starting at flat index `at`.
     fn initialiser(&mut self, array: &mut Array, dimensions: &[usize], at: usize) -> PResult<()> {
         let rest = dimensions.get(1..).unwrap_or(&[]);
         let stride: usize = rest.iter().product();
@@ -141,7 +141,7 @@ impl Parser<'_> {
         })
     }
 
-    /// Counts elements against the limit.
+    /// Counts new elements toward the limit.
     pub(crate) fn spend_elements(&mut self, count: u64) -> PResult<()> {
         let limit = self.options.limits.array_elements;
         self.array_elements = self.array_elements.saturating_add(count);
@@ -157,7 +157,7 @@ impl Parser<'_> {
         ))
     }
 
-    /// The flat index of the element named by `[i][j]...` behind the array stored at `target`.
+    /// The flat index that the `[i][j]...` after the array stored at `target` mean.
     pub(crate) fn array_index(&mut self, target: &Target) -> PResult<usize> {
         match self.scopes.at(target) {
             Some(Value::Array(array)) => {
@@ -173,7 +173,7 @@ impl Parser<'_> {
 
     /// Reads one index per dimension.
     pub(super) fn index_in(&mut self, array: &Array, assigned: bool) -> PResult<usize> {
-        /// Indices a rounding error below a whole number mean that number.
+        /// An index this close below an integer means that integer.
         const ROUNDING: f64 = 1e-8;
         let mut flat = 0usize;
         for &size in &array.dimensions {
@@ -194,7 +194,7 @@ impl Parser<'_> {
         Ok(flat)
     }
 
-    /// The array that is the next argument of a function.
+    /// An array as the next argument of a function.
     pub(super) fn array_argument(&mut self) -> PResult<Arc<Array>> {
         let token = self.peek()?;
         let place = self.place_of(token);

@@ -39,7 +39,7 @@ impl Parser<'_> {
                 self.take(token)?;
                 let next = self.peek()?;
                 match next.word() {
-                    // `color color` says nothing more.
+                    // A repeated `color` changes nothing.
                     Some(Word::Color | Word::Colour) => self.nested_end(Self::color_expression),
                     _ => self.color(),
                 }
@@ -59,8 +59,9 @@ impl Parser<'_> {
         }
     }
 
-    /// `rgb`, `rgbf` and `rgbft`: a float stands for as many numbers as the word has letters; what a vector has beyond them is filter and
-    /// transmit (as measured with POV-Ray, in all its versions). The word applies to the whole sum behind it.
+    /// `rgb`, `rgbf` and `rgbft`: a float stands for as many components as the keyword has letters; further components of a
+    /// vector are filter and transmit (as measured with POV-Ray, in all its versions). The keyword applies to the whole sum after
+    /// it.
     fn rgb(&mut self, count: usize, encoded: bool) -> PResult<[f64; 5]> {
         self.next()?;
         let value = self.nested_end(Self::expression)?;
@@ -81,7 +82,7 @@ impl Parser<'_> {
         self.color_parts(color)
     }
 
-    /// A colour given by codes of sRGB if `encoded`, as the scene's numbers.
+    /// A colour in the scene's working space; if `encoded`, the components are sRGB codes.
     fn in_working_space(&self, [r, g, b, f, t]: [f64; 5], encoded: bool) -> [f64; 5] {
         if !encoded {
             return [r, g, b, f, t];
@@ -102,7 +103,7 @@ impl Parser<'_> {
                 Some(Word::Red) => 0,
                 Some(Word::Green) => 1,
                 Some(Word::Blue) => 2,
-                // `alpha` is the word of version 1.0.
+                // Version 1.0 called it `alpha`.
                 Some(Word::Filter | Word::Alpha) => 3,
                 Some(Word::Transmit) => 4,
                 _ => return Ok(color),

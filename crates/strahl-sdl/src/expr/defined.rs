@@ -4,7 +4,7 @@ use crate::token::Kind;
 use crate::value::Value;
 
 impl Parser<'_> {
-    /// `(Name)`, `(Name[i])`, `(Name.Key)`, `(local.Name)`: whether that has a value.
+    /// `(Name)`, `(Name[i])`, `(Name.Key)`, `(local.Name)`: whether it has a value.
     pub(crate) fn is_defined(&mut self) -> PResult<bool> {
         self.expect(Kind::LeftParen)?;
         let scope = self.raw();
@@ -16,7 +16,7 @@ impl Parser<'_> {
         }
         let token = self.raw();
         let defined = if token.kind == Kind::Word {
-            // Words of the language always have their meaning.
+            // Keywords always have a value.
             self.take(token)?;
             true
         } else {
@@ -49,7 +49,7 @@ impl Parser<'_> {
         Ok(defined)
     }
 
-    /// Skips what stands before the `)` that closes here.
+    /// Skips all tokens before the matching `)`.
     fn skip_to_closing(&mut self) -> PResult<()> {
         let mut open = 0usize;
         loop {

@@ -23,7 +23,7 @@ impl Dictionary {
         self.entries.get_mut(&key)
     }
 
-    /// Sets a value; `false` if containers would lie too deep within each other.
+    /// Sets a value; `false` if containers would be nested too deep.
     pub(crate) fn set(&mut self, key: Symbol, value: Value) -> bool {
         let depth = depth_of(&value);
         if depth >= MAX_DEPTH {
@@ -44,10 +44,10 @@ impl Dictionary {
 }
 
 impl Parser<'_> {
-    /// `dictionary { .Key: value, ["Key"]: value }` behind the word.
+    /// `dictionary { .Key: value, ["Key"]: value }`, whose keyword is taken.
     pub(super) fn dictionary(&mut self) -> PResult<Value> {
         let mut entries = Dictionary::default();
-        // Not by `peek`, which would carry out a directive that follows.
+        // `peek` would run a directive that follows.
         if self.raw().kind == Kind::LeftBrace {
             self.braces(|p| {
                 while p.peek()?.kind != Kind::RightBrace {
@@ -71,7 +71,7 @@ impl Parser<'_> {
         Ok(Value::Dictionary(Arc::new(entries)))
     }
 
-    /// The key behind a `.`: any name or word.
+    /// The key after a `.`: any name or keyword.
     pub(crate) fn key(&mut self) -> PResult<Symbol> {
         let token = self.raw();
         match token.symbol() {

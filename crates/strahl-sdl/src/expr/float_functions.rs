@@ -4,7 +4,7 @@ use crate::token::Kind;
 use strahl_math::det;
 
 impl Parser<'_> {
-    /// A float function behind its word.
+    /// A float function whose keyword is taken.
     pub(super) fn float_function(&mut self, word: Word, place: Place) -> PResult<f64> {
         if word == Word::Defined {
             return self.is_defined().map(super::truth);
@@ -117,7 +117,7 @@ impl Parser<'_> {
         Ok(value)
     }
 
-    /// A float in the parentheses of a function, where comparisons are clear.
+    /// A float in the parentheses of a function, where comparisons are unambiguous.
     pub(crate) fn full_float(&mut self) -> PResult<f64> {
         let token = self.peek()?;
         let place = self.place_of(token);
@@ -139,7 +139,7 @@ impl Parser<'_> {
         Ok((a, b))
     }
 
-    /// A function that is defined on part of the numbers only.
+    /// A function whose domain is not all numbers.
     fn inverse(
         &mut self,
         place: Place,
@@ -190,7 +190,7 @@ impl Parser<'_> {
     }
 }
 
-/// How much the first byte in which two strings differ is larger in the first; strings end with a zero.
+/// The difference of the first bytes in which two strings differ (a minus b), as in C's `strcmp`; strings end with a zero byte.
 fn difference(a: &str, b: &str) -> f64 {
     let (a, b) = (a.as_bytes(), b.as_bytes());
     let at = a.iter().zip(b).take_while(|(x, y)| x == y).count();

@@ -1,4 +1,4 @@
-//! `function { ... }`: from tokens straight to the graph of a [`strahl_function::Function`].
+//! `function { ... }`: parses tokens directly into the graph of a [`strahl_function::Function`].
 
 use super::precedence;
 use crate::grammar::Thing;
@@ -10,15 +10,15 @@ use crate::value::Value;
 use strahl_function::{BinaryOp, Expr, Function, FunctionError, Graph, UnaryOp, internal};
 use strahl_math::noise::NoiseGenerator;
 
-/// A function while its body is read.
+/// A function while its body is parsed.
 struct Body {
     graph: Graph,
     parameters: Vec<(Symbol, String)>,
-    /// Variables of the `sum` and `prod` around the place, innermost last.
+    /// The variables of the enclosing `sum` and `prod`, innermost last.
     loops: Vec<(Symbol, Expr)>,
 }
 
-/// A function of one argument as an operation.
+/// The operation of a function with one argument.
 const fn unary(word: Word) -> Option<UnaryOp> {
     Some(match word {
         Word::Abs => UnaryOp::Abs,
@@ -47,7 +47,7 @@ const fn unary(word: Word) -> Option<UnaryOp> {
 }
 
 impl Parser<'_> {
-    /// What stands behind `function` in a declaration.
+    /// The value after the keyword `function` in a declaration.
     pub(crate) fn function_value(&mut self) -> PResult<Value> {
         let open = self.peek()?;
         let body = self.raw_ahead(1);
@@ -64,7 +64,7 @@ impl Parser<'_> {
         self.function().map(Value::Function)
     }
 
-    /// `{ internal(number) }`: how POV-Ray's own `functions.inc` names the internal functions.
+    /// `{ internal(number) }`: the form in which POV-Ray's `functions.inc` names the internal functions.
     fn internal_by_number(&mut self) -> PResult<Value> {
         self.braces(|p| {
             p.next()?;
@@ -80,7 +80,7 @@ impl Parser<'_> {
         })
     }
 
-    /// An internal function as a function of its coordinates and parameters.
+    /// An internal function with its coordinates and parameters.
     fn internal(&mut self, known: &internal::Internal) -> Value {
         let coordinates = ["x", "y", "z"].map(str::to_owned);
         let parameters = (0..known.parameters).map(|i| format!("p{i}"));
@@ -94,7 +94,7 @@ impl Parser<'_> {
         }
     }
 
-    /// Whether a name stands for something; the names of the internal functions do without being declared.
+    /// Whether a name has a value. The names of the internal functions need no declaration.
     pub(super) fn declare_internal(&mut self, symbol: Symbol) -> bool {
         if self.scopes.find(symbol).is_some() {
             return true;
@@ -107,7 +107,7 @@ impl Parser<'_> {
         self.scopes.store(&target, value)
     }
 
-    /// `(parameters) { expression }` behind `function`; the parameters are x, y, z if none are given.
+    /// `(parameters) { expression }` after `function`; the default parameters are x, y, z.
     ///
     /// # Errors
     /// If the expression is wrong or too large.
@@ -115,7 +115,7 @@ impl Parser<'_> {
         self.function_of(&[(Word::X, "x"), (Word::Y, "y"), (Word::Z, "z")])
     }
 
-    /// The same with other parameters if none are given.
+    /// The same with other default parameters.
     ///
     /// # Errors
     /// If the expression is wrong or too large.
@@ -146,7 +146,7 @@ impl Parser<'_> {
         self.finish_function(body.graph, root, place)
     }
 
-    /// Compiles what has been read.
+    /// Compiles the parsed function.
     ///
     /// # Errors
     /// If it is wrong or too large.
@@ -167,7 +167,7 @@ impl Parser<'_> {
         })
     }
 
-    /// A whole expression, `?:` included.
+    /// A whole expression, with `?:`.
     fn formula(&mut self, body: &mut Body) -> PResult<Expr> {
         let condition = self.formula_binary(body, 1)?;
         if !self.accept(Kind::Question)? {
@@ -184,7 +184,7 @@ impl Parser<'_> {
         loop {
             let token = self.peek()?;
             let binds = match token.kind {
-                // In functions, unlike elsewhere, `&` goes before `|`.
+                // In functions, unlike elsewhere, `&` has a higher precedence than `|`.
                 Kind::Ampersand => 2,
                 kind => precedence(kind),
             };
@@ -279,14 +279,14 @@ impl Parser<'_> {
         if let Some(callee) = callee {
             return self.formula_value(body, &callee, place);
         }
-        // Anything else is a number that is fixed when the function is declared.
+        // Any other name is a number, which is fixed when the function is declared.
         let number = self.name_in_expression(token)?;
         let place = self.place();
         let number = self.as_float(number, place)?;
         Ok(body.graph.constant(number))
     }
 
-    /// A value that has just been named: a function with its arguments, or a number that is fixed when the function is declared.
+    /// A named value: a function with its arguments, or a number, which is fixed when the function is declared.
     fn formula_value(&mut self, body: &mut Body, value: &Value, place: Place) -> PResult<Expr> {
         match value {
             Value::Function(function) => {
@@ -414,7 +414,7 @@ impl Parser<'_> {
         }
     }
 
-    /// `(variable, from, to, expression)` behind `sum` and `prod`.
+    /// `(variable, from, to, expression)` after `sum` and `prod`.
     fn formula_loop(&mut self, body: &mut Body, word: Word) -> PResult<Expr> {
         self.expect(Kind::LeftParen)?;
         let token = self.raw();
@@ -449,7 +449,7 @@ impl Parser<'_> {
         Ok(arguments)
     }
 
-    /// A call of a function in an expression; its name is already taken.
+    /// A function call in an expression; the function's name is taken.
     pub(super) fn call_function(&mut self, function: &Function) -> PResult<f64> {
         let place = self.place();
         self.expect(Kind::LeftParen)?;

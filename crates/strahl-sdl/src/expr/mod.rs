@@ -1,7 +1,7 @@
-//! Expressions, evaluated straight from the tokens.
+//! Expressions, evaluated directly from the tokens.
 //!
-//! Where the language wants a number it takes a *numeric* expression (`+ - * /`); comparisons, `&`, `|` and `?:` stand in
-//! parentheses only, so that `>` can end a vector.
+//! Where the language expects a number, it accepts a *numeric* expression (`+ - * /`); comparisons, `&`, `|` and `?:` are allowed
+//! only in parentheses, so that `>` can end a vector.
 
 mod access;
 mod array;
@@ -98,20 +98,20 @@ impl Parser<'_> {
         self.as_float(value, place)
     }
 
-    /// A vector of three; a float stands for three equal components.
+    /// A vector of three components; a float stands for three equal ones.
     ///
     /// # Errors
     /// If there is no numeric expression.
     #[inline]
     pub fn vector3(&mut self) -> PResult<DVec3> {
         Ok(match self.lone_vector() {
-            // What is missing is zero.
+            // Missing components are zero.
             Some(([x, y, z, ..], _)) => DVec3::new(x, y, z),
             None => self.expression()?.to_dvec3(),
         })
     }
 
-    /// A vector of two; a float stands for two equal components.
+    /// A vector of two components; a float stands for two equal ones.
     ///
     /// # Errors
     /// If there is no numeric expression.
@@ -120,7 +120,7 @@ impl Parser<'_> {
         Ok([u, v])
     }
 
-    /// A vector of four; a float stands for four equal components.
+    /// A vector of four components; a float stands for four equal ones.
     ///
     /// # Errors
     /// If there is no numeric expression.
@@ -144,7 +144,7 @@ impl Parser<'_> {
         self.binary(4)
     }
 
-    /// An expression with comparisons, logic and `?:`: what stands in parentheses.
+    /// An expression in parentheses, with comparisons, logic and `?:`.
     ///
     /// # Errors
     /// If there is no such expression.
@@ -298,7 +298,7 @@ impl Parser<'_> {
         }
     }
 
-    /// `= string` and other comparisons behind a string: a truth value.
+    /// `= string` and other comparisons after a string: a truth value.
     fn compared(&mut self, left: &str) -> PResult<Vector> {
         let token = self.peek()?;
         if precedence(token.kind) != 3 {
@@ -336,7 +336,7 @@ impl Parser<'_> {
                 match token.kind {
                     Kind::Comma => {
                         p.take(token)?;
-                        // A comma behind the last component does no harm.
+                        // A comma after the last component is allowed.
                         let token = p.peek()?;
                         if token.kind == Kind::Greater {
                             return p.take(token);
@@ -496,7 +496,7 @@ impl Parser<'_> {
         })
     }
 
-    /// `.x`, `.red`, ... behind a value.
+    /// `.x`, `.red`, ... after a value.
     #[inline]
     fn components_of(&mut self, value: Vector) -> PResult<Vector> {
         let token = self.peek_behind()?;
@@ -526,7 +526,7 @@ impl Parser<'_> {
                 ));
             }
         };
-        // A float has every component.
+        // A float has all components.
         let all = value.promoted(value.len().max(if value.len() == 1 { 5 } else { 1 }));
         match all.as_slice().get(index) {
             Some(x) => Ok(Vector::float(*x)),

@@ -29,7 +29,7 @@ const fn ends(kind: Kind) -> bool {
 }
 
 impl Parser<'_> {
-    /// The number at the position, and the position moved behind it, if it is one without sign and surely the whole expression.
+    /// The number at the position, if it is unsigned and certainly the whole expression; the position then moves past it.
     #[inline]
     pub(super) fn lone_number(&mut self) -> Option<f64> {
         let token = self.raw();
@@ -40,8 +40,8 @@ impl Parser<'_> {
         Some(f64::from_bits(token.bits))
     }
 
-    /// The vector at the position, and the position moved behind it, if its components are numbers and it is surely the
-    /// whole expression: what most of an exported scene consists of. The components, and how many.
+    /// The vector at the position, if its components are numbers and it is certainly the whole expression; the position then
+    /// moves past it. Exported scenes consist mostly of such vectors. Returns the components and their number.
     #[inline]
     pub(super) fn lone_vector(&mut self) -> Option<([f64; 5], usize)> {
         let begin = self.position();
@@ -75,8 +75,8 @@ impl Parser<'_> {
         None
     }
 
-    /// The value of the expression at the position with operators that bind at least so strongly, and the position moved
-    /// behind it; `None`, and nothing moved, if it takes more than floats.
+    /// The float expression at the position with operators of at least this precedence; the position then moves past it. Returns
+    /// `None`, and the position stays, if the expression needs more than floats.
     #[inline]
     pub(super) fn quick(&mut self, weakest: u8) -> Option<f64> {
         let first = self.raw().kind;
@@ -93,7 +93,7 @@ impl Parser<'_> {
         Some(value)
     }
 
-    /// The same for floats and vectors.
+    /// The same for expressions of floats and vectors.
     #[inline]
     pub(super) fn quick_number(&mut self, weakest: u8) -> Option<Vector> {
         let first = self.raw();
@@ -166,7 +166,7 @@ impl Parser<'_> {
         (ends(after) || precedence(after) > 0).then_some(value)
     }
 
-    /// What stands behind a `<`, up to and with the `>`.
+    /// The components after a `<`, up to and including the `>`.
     fn quick_components(&self, position: &mut usize) -> Option<Vector> {
         let mut components = [0.0; 5];
         for count in 0..5 {
@@ -248,7 +248,7 @@ impl Parser<'_> {
         (ends(after) || precedence(after) > 0).then_some(value)
     }
 
-    /// What stands behind a `(`, up to and with the `)`.
+    /// The expression after a `(`, up to and including the `)`.
     fn quick_parenthesised(&self, position: &mut usize, depth: u32) -> Option<f64> {
         let value = self.quick_binary(position, 1, depth.checked_sub(1)?)?;
         let closed = self.token_at(*position).kind == Kind::RightParen;

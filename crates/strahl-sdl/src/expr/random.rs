@@ -14,8 +14,8 @@ fn step(state: u32) -> (u32, f64) {
     (next, f64::from(next) / f64::from(u32::MAX))
 }
 
-/// The state that a seed gives: cut to a whole number; what is too large for 32 bits counts as the smallest integer, as the
-/// processors that POV-Ray runs on convert it.
+/// The state for a seed, which is truncated to an integer; a number too large for 32 bits becomes the smallest integer, as x86
+/// processors convert it.
 fn initial(seed: f64) -> u32 {
     let whole = seed.trunc();
     if (-2_147_483_648.0..2_147_483_648.0).contains(&whole) {

@@ -1,4 +1,4 @@
-//! `spline { ... }`: curves through points, as POV-Ray 3.7 draws them (formulas found by experiment, see the tests).
+//! `spline { ... }`: curves through points, as in POV-Ray 3.7 (the formulas were found by experiment, see the tests).
 
 use crate::keywords::Word;
 use crate::parser::{PResult, Parser};
@@ -6,16 +6,16 @@ use crate::token::Kind;
 use crate::value::{Value, Vector};
 use std::sync::Arc;
 
-/// How a spline runs between its points.
+/// The kind of curve between the points.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SplineKind {
     /// Straight.
     Linear,
-    /// A parabola through the ends of the piece and the point before it.
+    /// A parabola through the ends of the interval and the point before it.
     Quadratic,
-    /// Cubic pieces with the mean of the neighbouring slopes as tangents; first and last point only shape the curve.
+    /// Cubics with the mean of the neighbouring slopes as tangents; the first and the last point only affect the tangents.
     Cubic,
-    /// Cubic pieces with continuous curvature, zero at the ends.
+    /// Cubics with continuous curvature, which is zero at the ends.
     Natural,
 }
 
@@ -23,14 +23,14 @@ pub enum SplineKind {
 #[derive(Clone, Debug)]
 pub struct Spline {
     kind: SplineKind,
-    /// By ascending parameter.
+    /// Points by ascending parameter.
     knots: Vec<(f64, Vector)>,
-    /// Of each knot, the second derivatives of the natural spline.
+    /// The second derivatives of the natural spline at each knot.
     curvature: Vec<[f64; 5]>,
 }
 
 impl Spline {
-    /// A spline through points; of several at one parameter the last counts.
+    /// A spline through points; of several at one parameter the last one counts.
     pub fn new(kind: SplineKind, points: impl IntoIterator<Item = (f64, Vector)>) -> Self {
         let mut knots: Vec<(f64, Vector)> = vec![];
         for (t, point) in points {
@@ -55,11 +55,11 @@ impl Spline {
         }
     }
 
-    /// The point at a parameter; beyond the ends the curve stays where it ends.
+    /// The point at a parameter; beyond the ends it is the end point.
     pub fn at(&self, t: f64) -> Vector {
         let knots = &self.knots;
         let n = knots.len();
-        // The first and last point of a cubic spline are not on it.
+        // The first and last point of a cubic spline are not on the curve.
         let (first, last) = match self.kind {
             SplineKind::Cubic if n > 2 => (1, n - 2),
             _ => (0, n.saturating_sub(1)),
@@ -73,7 +73,7 @@ impl Spline {
         if t >= end.0 {
             return end.1;
         }
-        // `begin < t < end`, so the piece has both its ends.
+        // `begin < t < end`, so the interval has both ends.
         let right = knots.partition_point(|(k, _)| *k <= t);
         let left = right - 1;
         let ((t0, p0), (t1, p1)) = (knots[left], knots[right]);
@@ -111,7 +111,7 @@ impl Spline {
         }
     }
 
-    /// The same points, another kind of curve.
+    /// The same points with another kind of curve.
     fn with_kind(&self, kind: SplineKind) -> Self {
         Self::new(kind, self.knots.iter().copied())
     }
@@ -128,7 +128,7 @@ fn parabola(points: [(f64, Vector); 3], t: f64) -> Vector {
         .zip(r, |x, y| x + y * wc)
 }
 
-/// The cubic with these ends and tangents.
+/// The cubic Hermite curve with these ends and tangents.
 fn hermite(ends: [Vector; 2], tangents: [Vector; 2], width: f64, u: f64) -> Vector {
     let (u2, u3) = (u * u, u * u * u);
     let h00 = 2.0 * u3 - 3.0 * u2 + 1.0;
@@ -180,7 +180,7 @@ fn kind_of(word: Option<Word>) -> Option<SplineKind> {
 }
 
 impl Parser<'_> {
-    /// `{ [kind] [Name] t, point ... }` behind `spline`.
+    /// `{ [kind] [Name] t, point ... }` after `spline`.
     pub(super) fn spline(&mut self) -> PResult<Value> {
         let mut kind = SplineKind::Linear;
         let mut points = vec![];
@@ -218,7 +218,7 @@ impl Parser<'_> {
         Ok(Value::Spline(Arc::new(Spline::new(kind, points))))
     }
 
-    /// `(t)` or `(t, kind)` behind the name of a spline.
+    /// `(t)` or `(t, kind)` after the name of a spline.
     pub(super) fn call_spline(&mut self, spline: &Spline) -> PResult<Vector> {
         self.expect(Kind::LeftParen)?;
         let t = self.full_float()?;

@@ -124,10 +124,10 @@ impl Parser<'_> {
         Ok(())
     }
 
-    /// As C's `printf` does it: at least `length` characters, zeros in front if it is negative; six digits if `digits` is
+    /// Formats like C's `printf`: at least `length` characters, padded with zeros if it is negative; six digits if `digits` is
     /// negative.
     fn formatted(&mut self, value: f64, length: f64, digits: f64, place: Place) -> PResult<String> {
-        /// More digits than any float has.
+        /// No float has more digits.
         const MOST: f64 = 1100.0;
         if !(length.abs() <= MOST && digits <= MOST) {
             return Err(self.fail(
@@ -144,8 +144,8 @@ impl Parser<'_> {
         })
     }
 
-    /// `vstr(count, vector, separator, length, digits)`: 2 to 5 components, whatever the count; those that are missing are zero,
-    /// also of a single number (measured).
+    /// `vstr(count, vector, separator, length, digits)`: 2 to 5 components, whatever the count; missing components are zero, also
+    /// those of a single number (measured).
     fn vstr(&mut self, place: Place) -> PResult<String> {
         let count = self.full_float()?;
         self.comma()?;
@@ -168,7 +168,7 @@ impl Parser<'_> {
         Ok(text)
     }
 
-    /// `datetime(days, format)`: the letters of C's `strftime`, in English.
+    /// `datetime(days, format)`: the conversions of C's `strftime`, in English.
     fn datetime(&mut self, place: Place) -> PResult<String> {
         let days = self.full_float()?;
         let format = if self.accept(Kind::Comma)? {
@@ -182,7 +182,7 @@ impl Parser<'_> {
         Ok(date(days, &format))
     }
 
-    /// Whether a file of this name would be found.
+    /// Whether a file of this name can be found.
     pub(super) fn exists(&mut self, name: &str, place: Place) -> bool {
         matches!(
             self.find_file(name, place, true),

@@ -108,7 +108,7 @@ impl Parser<'_> {
         Ok(Value::Thing(Thing::PigmentFunction(Arc::new(function))))
     }
 
-    /// `(x, y, z)` behind a function made of a pigment, in an expression.
+    /// `(x, y, z)` after a function made of a pigment, in an expression.
     pub(super) fn call_pigment(&mut self, function: &PigmentFunction) -> PResult<Vector> {
         let p = self.point_arguments()?;
         self.spend(function.cost.operations)?;
@@ -132,7 +132,7 @@ impl Parser<'_> {
         Ok(DVec3::new(x, y, z))
     }
 
-    /// `.red` behind a call of a function made of a pigment, within a function.
+    /// `.red` after a call of a function made of a pigment, within a function.
     pub(super) fn pigment_component(
         &mut self,
         function: &PigmentFunction,
@@ -153,7 +153,7 @@ impl Parser<'_> {
             Some(Word::Filter | Word::T) => Component::Filter,
             Some(Word::Transmit) => Component::Transmit,
             Some(Word::Gray | Word::Grey) => Component::Gray,
-            // No reserved word: it has this meaning here only.
+            // Not a keyword: it has this meaning only here.
             _ if name.symbol().is_some_and(|s| self.symbols.text(s) == "hf") => Component::Height,
             _ => return Err(self.unexpected(name, "a component of a colour")),
         };

@@ -4,7 +4,7 @@ use crate::token::{Kind, Token};
 use crate::value::Value;
 
 impl Parser<'_> {
-    /// Any value: what may stand on the right of `#declare`, in an array or as an argument of a macro.
+    /// Any value: the right side of `#declare`, an element of an array, or an argument of a macro.
     ///
     /// # Errors
     /// If there is none.

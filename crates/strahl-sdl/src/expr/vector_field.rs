@@ -1,4 +1,4 @@
-//! Functions made of splines and transformations: their values are vectors, of which functions take components.
+//! Functions made of splines and transformations: their values are vectors, whose components other functions can use.
 
 use super::Spline;
 use crate::grammar::Thing;
@@ -46,7 +46,7 @@ impl ScalarField for TransformComponent {
     }
 }
 
-/// The number of a component by its word.
+/// The index of the component that a keyword names.
 fn component(word: Option<Word>) -> Option<usize> {
     Some(match word? {
         Word::X | Word::U | Word::Red => 0,
@@ -59,7 +59,7 @@ fn component(word: Option<Word>) -> Option<usize> {
 }
 
 impl Parser<'_> {
-    /// `{ spline { ... } }` behind `function`: the spline itself, which can be called as it is.
+    /// `{ spline { ... } }` after `function`: the spline itself, which can be called directly.
     pub(super) fn spline_function(&mut self) -> PResult<Value> {
         self.braces(|p| {
             p.next()?;
@@ -67,7 +67,7 @@ impl Parser<'_> {
         })
     }
 
-    /// `{ transform { ... } }` behind `function`: its value is the transformed point.
+    /// `{ transform { ... } }` after `function`: its value is the transformed point.
     pub(super) fn transform_function(&mut self) -> PResult<Value> {
         let map = self.braces(|p| {
             p.next()?;
@@ -76,13 +76,13 @@ impl Parser<'_> {
         Ok(Value::Thing(Thing::TransformFunction(Arc::new(map))))
     }
 
-    /// `(x, y, z)` behind a function made of a transformation, in an expression.
+    /// `(x, y, z)` after a function made of a transformation, in an expression.
     pub(super) fn call_transform(&mut self, map: &Transform) -> PResult<Vector> {
         let point = self.point_arguments()?;
         Ok(Vector::from(map.point_to_world(point)))
     }
 
-    /// `.x` behind a call of a function made of a spline or a transformation, within a function.
+    /// `.x` after a call of a function made of a spline or a transformation, within a function.
     ///
     /// # Errors
     /// If no component is taken.

@@ -17,7 +17,7 @@ pub(crate) fn rotation(degrees: DVec3) -> Transform {
 }
 
 impl Parser<'_> {
-    /// A vector function behind its word.
+    /// A vector function whose keyword is taken.
     pub(super) fn vector_function(&mut self, word: Word, place: Place) -> PResult<Vector> {
         self.expect(Kind::LeftParen)?;
         let value = match word {

@@ -1,12 +1,12 @@
-//! Numbers without sign.
+//! Unsigned numbers.
 
 use super::is_name_start;
 use strahl_math::decimal;
 
-/// The number at the front of `rest`, which begins with one, and how many bytes it has.
+/// The number at the front of `rest` and its length in bytes.
 pub(super) fn number(rest: &[u8]) -> (f64, usize) {
     let short = decimal::short(rest);
-    // A name behind it is an exponent, or a component of a number.
+    // A name right after it is an exponent, or a component of the number.
     let short = short.filter(|(_, length)| !rest.get(*length).is_some_and(|b| is_name_start(*b)));
     short.unwrap_or_else(|| {
         let length = number_length(rest).max(1);
@@ -16,7 +16,7 @@ pub(super) fn number(rest: &[u8]) -> (f64, usize) {
     })
 }
 
-/// How many bytes at the front of `rest` are a number: digits, a point with digits around it, an exponent.
+/// The length in bytes of the number at the front of `rest`: digits, a point with digits around it, an exponent.
 pub(super) fn number_length(rest: &[u8]) -> usize {
     let digits = |from: usize| {
         let rest = rest.get(from..).unwrap_or(&[]);

@@ -50,7 +50,7 @@ fn numbers_are_read_to_the_last_bit() {
         7.0,
     ];
     assert_eq!(numbers(text), expected);
-    // Every way through the reader agrees with the standard library.
+    // All code paths of the number parser agree with the standard library.
     let mut state = 1u64;
     for _ in 0..20_000 {
         state = state

@@ -1,6 +1,6 @@
-//! From bytes to characters.
+//! Decodes bytes and escape sequences.
 
-/// UTF-8 if it is, else Latin-1.
+/// Decodes UTF-8, or Latin-1 if the bytes are not UTF-8.
 pub(crate) fn decode(bytes: &[u8]) -> String {
     match std::str::from_utf8(bytes) {
         Ok(text) => text.to_owned(),
@@ -8,7 +8,7 @@ pub(crate) fn decode(bytes: &[u8]) -> String {
     }
 }
 
-/// Replaces the escape sequences of the language; an unknown one stands for its letter.
+/// Replaces the escape sequences of the language; an unknown one becomes its letter.
 pub(super) fn unescape(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     let mut chars = text.chars();

@@ -16,7 +16,7 @@ pub(crate) enum BlockKind {
     If,
     /// `#switch`
     Switch,
-    /// `#while`; its condition stands behind the opener.
+    /// `#while`; its condition follows the opener.
     While,
     /// `#for`
     For(Box<Loop>),

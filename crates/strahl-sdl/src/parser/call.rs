@@ -21,20 +21,20 @@ pub struct Macro {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Parameter {
     pub(crate) symbol: Symbol,
-    /// Whether a call may leave it out (3.8).
+    /// Whether a call may omit it (3.8).
     pub(crate) optional: bool,
 }
 
-/// What a parameter gets.
+/// The value of a parameter.
 pub(super) enum Argument {
     Value(Value),
-    /// The variable itself: what the macro assigns to the parameter changes it.
+    /// The variable itself: assignments to the parameter change the variable.
     Variable(Target),
     Missing,
 }
 
 impl Parser<'_> {
-    /// Calls a macro: reads its arguments and goes on reading in its body. `name` is the token at the position.
+    /// Calls a macro: reads its arguments and continues in its body. `name` is the token at the position.
     pub(super) fn call(&mut self, name: Token, called: Arc<Macro>) -> PResult<()> {
         self.take(name)?;
         let from = self.place();
@@ -113,7 +113,7 @@ impl Parser<'_> {
                     target.path.push(Step::Index(index));
                     return Ok(Argument::Variable(target));
                 }
-                // Part of a larger expression after all.
+                // The variable is part of a larger expression.
                 self.jump(begin);
             }
         }

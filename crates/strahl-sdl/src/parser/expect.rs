@@ -7,7 +7,7 @@ impl Parser<'_> {
     /// Takes the next token if it is of this kind.
     ///
     /// # Errors
-    /// If a directive on the way fails.
+    /// If a directive before it fails.
     #[inline]
     pub fn accept(&mut self, kind: Kind) -> PResult<bool> {
         let token = self.peek()?;
@@ -21,7 +21,7 @@ impl Parser<'_> {
     /// Takes the next token, which must be of this kind.
     ///
     /// # Errors
-    /// If it is another.
+    /// If it is of another kind.
     #[inline]
     pub fn expect(&mut self, kind: Kind) -> PResult<Token> {
         let token = self.peek()?;
@@ -35,7 +35,7 @@ impl Parser<'_> {
     /// Takes the next token if it is this word.
     ///
     /// # Errors
-    /// If a directive on the way fails.
+    /// If a directive before it fails.
     #[inline]
     pub fn accept_word(&mut self, word: Word) -> PResult<bool> {
         let token = self.peek()?;
@@ -46,16 +46,16 @@ impl Parser<'_> {
         Ok(found)
     }
 
-    /// Takes a comma if there is one: the language lets most of them be left out.
+    /// Takes a comma if there is one: the language allows most of them to be omitted.
     ///
     /// # Errors
-    /// If a directive on the way fails.
+    /// If a directive before it fails.
     #[inline]
     pub fn comma(&mut self) -> PResult<()> {
         self.accept(Kind::Comma).map(|_| ())
     }
 
-    /// `{`, what `f` reads, `}`.
+    /// Reads `{`, then by `f` the content, then `}`.
     ///
     /// # Errors
     /// If a brace is missing, braces are nested too deep, or `f` fails.
@@ -71,23 +71,23 @@ impl Parser<'_> {
         })
     }
 
-    /// Takes a `{` and gives the token behind it, which is not taken. The next [`Parser::braces`] goes on behind the brace.
+    /// Takes a `{` and returns the token after it without taking that. The next [`Parser::braces`] continues after the brace.
     ///
     /// # Errors
-    /// If there is no brace, or a directive on the way fails.
+    /// If there is no brace, or a directive before it fails.
     pub(crate) fn peek_into_braces(&mut self) -> PResult<Token> {
         self.expect(Kind::LeftBrace)?;
-        // What directives on the way read has braces of its own.
+        // Directives before it read braces of their own.
         let token = self.peek()?;
         self.brace_taken = true;
         Ok(token)
     }
 
-    /// Reads items by `f` until the closing brace, which is left; `f` gets the word or token that opens the item, not yet
+    /// Reads items with `f` until the closing brace, which is not taken; `f` gets the word or token that opens the item, not yet
     /// taken.
     ///
     /// # Errors
-    /// If the text ends before, or `f` fails.
+    /// If the text ends before the brace, or `f` fails.
     pub fn items(
         &mut self,
         what: &str,
@@ -96,10 +96,10 @@ impl Parser<'_> {
         self.items_until(Kind::RightBrace, what, f)
     }
 
-    /// [`Parser::items`] that end before another token than `}`.
+    /// [`Parser::items`] with another closing token than `}`.
     ///
     /// # Errors
-    /// If the text ends before, or `f` fails.
+    /// If the text ends before that token, or `f` fails.
     pub(crate) fn items_until(
         &mut self,
         closing: Kind,
@@ -116,12 +116,12 @@ impl Parser<'_> {
                     let closing = closing.describe();
                     return Err(self.unexpected(token, &format!("{closing} at the end of {what}")));
                 }
-                // Stray separators between items do no harm.
+                // Extra separators between items are harmless.
                 Kind::Comma | Kind::Semicolon => self.take(token)?,
                 _ => {
                     let before = (self.steps, self.position);
                     f(self, token)?;
-                    // Items that take nothing would be met for ever.
+                    // An item that takes no token would be read forever.
                     if before == (self.steps, self.position) {
                         return Err(self.unexpected(token, &format!("an item of {what}")));
                     }
@@ -130,7 +130,7 @@ impl Parser<'_> {
         }
     }
 
-    /// Takes a name without looking at what it stands for: what follows `#declare`, `#ifdef` and `#macro`.
+    /// Takes a name without evaluating it: the name after `#declare`, `#ifdef` or `#macro`.
     pub(crate) fn raw_name(&mut self, what: &str) -> PResult<Symbol> {
         let token = self.raw();
         match (token.kind, token.symbol()) {
@@ -156,7 +156,7 @@ impl Parser<'_> {
         }
     }
 
-    /// Takes a raw token of this kind, if it stands there.
+    /// Takes the next raw token if it is of this kind.
     pub(crate) fn raw_accept(&mut self, kind: Kind) -> PResult<bool> {
         let token = self.raw();
         let found = token.kind == kind;

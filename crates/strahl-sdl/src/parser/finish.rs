@@ -3,7 +3,7 @@ use crate::Parsed;
 use crate::grammar::default_camera;
 
 impl Parser<'_> {
-    /// Declares the names given by the caller.
+    /// Declares the names given in the options.
     pub(crate) fn declare_given(&mut self) {
         for (name, value) in &self.options.declare {
             let symbol = self.symbols.intern(name.as_bytes());
@@ -13,11 +13,11 @@ impl Parser<'_> {
         }
     }
 
-    /// Begins with the file that the caller wants included before all others.
+    /// Includes the header file given in the options.
     pub(crate) fn include_header(&mut self) {
         if let Some(name) = &self.options.header {
             let place = self.place();
-            // What is wrong is reported.
+            // The error is already reported.
             let _ = self.include(name, place);
         }
     }
@@ -33,9 +33,9 @@ impl Parser<'_> {
     pub(crate) fn into_parsed(mut self) -> Parsed {
         self.close_files();
         if self.errors == 0 {
-            // Names are not needed any more, so objects that only names refer to can be moved into the scene.
+            // Names are no longer needed, so objects that only names refer to can be moved into the scene.
             self.scopes = super::Scopes::default();
-            // What is wrong is reported.
+            // The error is already reported.
             let _ = self.link_instances();
         }
         self.scene.camera.get_or_insert_with(default_camera);

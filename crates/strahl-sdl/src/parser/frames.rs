@@ -28,17 +28,17 @@ pub(crate) struct Data {
     pub(crate) bytes: Vec<u8>,
 }
 
-/// Something that tokens are read from.
+/// A source of tokens.
 #[derive(Debug)]
 pub(super) struct Frame {
     pub(super) entry: Entry,
-    /// Where it was entered from.
+    /// The place from which it was entered.
     pub(super) from: Place,
-    /// File and position to go on with when this frame ends.
+    /// The file and position at which to continue when this frame ends.
     back: (Arc<Chunk>, usize),
     /// Index of the token that ends the frame.
     pub(super) end: usize,
-    /// How many blocks were open when it was entered.
+    /// The number of open blocks when it was entered.
     pub(super) blocks: usize,
 }
 
@@ -110,7 +110,7 @@ impl<'h> Parser<'h> {
         }
     }
 
-    /// See [`Parser::peek`]: most names are no macros.
+    /// See [`Parser::peek`]: most names are not macros.
     pub(super) fn expand(&mut self) -> PResult<Token> {
         let token = self.raw();
         if token.kind == Kind::Name && self.scopes.find_macro(Symbol(token.bits as u32)).is_none() {
@@ -119,7 +119,7 @@ impl<'h> Parser<'h> {
         self.run_on()
     }
 
-    /// Carries out directives and calls macros up to the next token that is neither.
+    /// Runs directives and calls macros up to the next token that is neither.
     #[inline(never)]
     fn run_on(&mut self) -> PResult<Token> {
         loop {
@@ -163,8 +163,8 @@ impl<'h> Parser<'h> {
         self.frames.len() <= self.floor.frames && self.blocks.len() <= self.floor.blocks
     }
 
-    /// Runs `f` so that the input ends for it where the current frame or block ends: directives and arguments never read beyond
-    /// the frame or block they are in.
+    /// Runs `f` such that the input ends for it at the end of the current frame or block: directives and arguments never read
+    /// beyond the frame or block they are in.
     pub(crate) fn enclosed<T>(&mut self, f: impl FnOnce(&mut Self) -> PResult<T>) -> PResult<T> {
         let before = self.floor;
         self.floor = Floor {
@@ -184,13 +184,13 @@ impl<'h> Parser<'h> {
         self.stopping && self.at_floor()
     }
 
-    /// Reads the value of a declaration by `f`. Directives and macros that come behind it are left for when the name has it:
-    /// declarations need no semicolon.
+    /// Reads the value of a declaration with `f`. Because declarations need no semicolon, directives and macro calls after the
+    /// value run only when the name has its value.
     pub(crate) fn declared_value<T>(
         &mut self,
         f: impl FnOnce(&mut Self) -> PResult<T>,
     ) -> PResult<T> {
-        // What stands before the value belongs to it.
+        // Directives before the value belong to it.
         self.peek()?;
         let before = self.value_nesting.replace(self.nesting);
         let result = f(self);
@@ -198,7 +198,7 @@ impl<'h> Parser<'h> {
         result
     }
 
-    /// [`Parser::nested`] for a part of a value with which the value ends.
+    /// [`Parser::nested`] for the last part of a value.
     pub(crate) fn nested_end<T>(&mut self, f: impl FnOnce(&mut Self) -> PResult<T>) -> PResult<T> {
         let before = self.value_nesting;
         let ends = before == Some(self.nesting);
@@ -212,7 +212,7 @@ impl<'h> Parser<'h> {
         result
     }
 
-    /// Leaves the macros that a value came from, if it ends them.
+    /// Leaves the macros that a value came from, if they end with it.
     pub(crate) fn value_ends(&mut self) -> PResult<()> {
         self.stopping = true;
         let ended = self.peek();
@@ -220,7 +220,7 @@ impl<'h> Parser<'h> {
         ended.map(|_| ())
     }
 
-    /// Like [`Parser::peek`] where a complete value stands before: the end, if what follows a declared value is a directive or the call of a macro.
+    /// Like [`Parser::peek`] after a complete value: returns the end if a directive or a macro call follows a declared value.
     #[inline]
     pub(crate) fn peek_behind(&mut self) -> PResult<Token> {
         if self.value_nesting != Some(self.nesting) {
@@ -232,7 +232,7 @@ impl<'h> Parser<'h> {
         token
     }
 
-    /// Goes on reading in a part of a file: an include or the body of a macro.
+    /// Continues in a part of a file: an include or the body of a macro.
     pub(crate) fn enter_frame(
         &mut self,
         entry: Entry,
@@ -263,7 +263,7 @@ impl<'h> Parser<'h> {
         Ok(())
     }
 
-    /// Leaves the innermost frame, which is not the scene itself.
+    /// Leaves the innermost frame, which is not that of the scene.
     pub(crate) fn leave_frame(&mut self) {
         if self.frames.len() > 1
             && let Some(frame) = self.frames.pop()
@@ -274,7 +274,7 @@ impl<'h> Parser<'h> {
         }
     }
 
-    /// Whether the position stands at the end of the macro being run.
+    /// Whether the position is at the end of the current macro.
     pub(crate) fn at_macro_end(&self) -> bool {
         self.frames
             .last()
@@ -292,7 +292,7 @@ impl<'h> Parser<'h> {
         self.position
     }
 
-    /// Passes tokens of the file that have been read by themselves.
+    /// Skips tokens of the file that were read separately.
     #[inline]
     pub(crate) fn pass(&mut self, count: usize) {
         self.position += count;
@@ -304,15 +304,15 @@ impl<'h> Parser<'h> {
         self.position = position;
     }
 
-    /// How deep frames are nested; 1 in the scene itself.
+    /// The nesting depth of frames; 1 in the scene itself.
     pub(crate) fn frame_depth(&self) -> usize {
         self.frames.len()
     }
 
-    /// Goes on reading in an included file.
+    /// Continues in an included file.
     pub(crate) fn include(&mut self, name: &str, from: Place) -> PResult<()> {
         let file = self.load(name, from, Chunk::TOKENS)?;
-        // A file may include itself under an `#ifndef`, but not without end.
+        // A file may include itself under an `#ifndef`, but not infinitely often.
         const SELF_INCLUDES: usize = 32;
         let includes = self.frames.iter().filter(|f| f.entry == Entry::Include);
         let same = includes.filter(|f| f.back.0.source.name == file.source.name);
@@ -329,7 +329,7 @@ impl<'h> Parser<'h> {
         self.enter_frame(Entry::Include, from, file, 0, end)
     }
 
-    /// A file of this name: the user's, else, if a text is asked for, a built-in one, else one of an installed POV-Ray.
+    /// A file of this name: the user's; or else, if it is a text, a built-in one; or else one of an installed POV-Ray.
     pub(crate) fn find_file(
         &mut self,
         name: &str,
@@ -351,7 +351,7 @@ impl<'h> Parser<'h> {
         }
     }
 
-    /// A file of this name, with its first tokens, at least so many.
+    /// A file of this name, with at least its first `tokens` tokens.
     pub(crate) fn load(&mut self, name: &str, from: Place, tokens: usize) -> PResult<Arc<Chunk>> {
         let found = self.find_file(name, from, true);
         let narrowed = found.and_then(|source| {
@@ -386,7 +386,7 @@ impl<'h> Parser<'h> {
                 "split the file, or raise the limit: `--limit read_bytes=N`",
             ));
         }
-        // A text that has changed since it was read the first time gets an entry of its own.
+        // A text that has changed since it was first read gets another entry.
         while self.sources.iter().any(|f| f.source.name == source.name) {
             source.name.push_str(" (changed)");
         }
@@ -398,7 +398,7 @@ impl<'h> Parser<'h> {
         Ok(file)
     }
 
-    /// The bytes of a file that is no text of the scene, such as a picture.
+    /// The bytes of a file that is not scene text, such as a picture.
     pub(crate) fn read_file(&mut self, name: &str, from: Place) -> PResult<Data> {
         match self.look_for_file(name, from)? {
             Ok(data) => Ok(data),
@@ -406,7 +406,7 @@ impl<'h> Parser<'h> {
         }
     }
 
-    /// The bytes of a file, or why the host does not give them, which is not reported yet.
+    /// The bytes of a file, or the host's error, which is not reported yet.
     pub(crate) fn look_for_file(
         &mut self,
         name: &str,
@@ -418,7 +418,7 @@ impl<'h> Parser<'h> {
         }
     }
 
-    /// The bytes of a font of the system, by the name of its file.
+    /// The bytes of a system font, by the name of its file.
     pub(crate) fn system_font(&mut self, file: &str, from: Place) -> PResult<Option<Data>> {
         match self.host.load_font(file) {
             Ok(Some(source)) => self.counted(source, from).map(Some),
@@ -427,7 +427,7 @@ impl<'h> Parser<'h> {
         }
     }
 
-    /// The bytes of a file, counted to those read.
+    /// The bytes of a file, counted toward the limit.
     fn counted(&mut self, source: Source, from: Place) -> PResult<Data> {
         let name = source.name.clone();
         self.read_bytes = self.read_bytes.saturating_add(source.length() as u64);

@@ -2,7 +2,7 @@ use super::{PResult, Parser, Place};
 use crate::source::Stream;
 
 impl Parser<'_> {
-    /// Hands a message of the scene to the caller.
+    /// Passes a message of the scene to the caller.
     pub(crate) fn send(&mut self, place: Place, stream: Stream, text: &str) -> PResult<()> {
         self.message_bytes = self.message_bytes.saturating_add(text.len() as u64);
         let limit = self.options.limits.written_bytes;

@@ -1,8 +1,8 @@
-//! Pulling tokens: files, includes, macros and loops behind one stream.
+//! The token stream: files, includes, macros and loops look like one sequence of tokens.
 //!
-//! [`Parser::peek`] and [`Parser::next`] hand the grammar the tokens as they come after all directives are carried out.
-//! A frame is a position in the tokens of a file; including a file or calling a macro pushes one, a loop moves the
-//! position back. Nothing of this recurses on the machine's stack.
+//! [`Parser::peek`] and [`Parser::next`] return the tokens that are left after running all directives. A frame is a position in
+//! the tokens of a file; including a file or calling a macro pushes one, a loop moves the position back. None of this uses
+//! recursion.
 
 mod blocks;
 mod call;
@@ -34,29 +34,29 @@ use std::sync::Arc;
 use strahl_function::Workspace;
 use strahl_scene::{Diagnostic, Scene, Span};
 
-/// A place in the text, cheap to keep; [`Parser::span_at`] makes a span of it.
+/// A place in the text that takes little memory; [`Parser::span_at`] makes a span of it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Place {
     file: u32,
     start: u32,
 }
 
-/// Where directives must stop reading: the end of the frame and of the block they are in.
+/// Where directives must stop reading: the end of the current frame and block.
 #[derive(Clone, Copy, Debug, Default)]
 struct Floor {
     frames: usize,
     blocks: usize,
 }
 
-/// The state of reading one scene.
+/// The state of parsing one scene.
 pub struct Parser<'h> {
-    /// What the caller knows.
+    /// The inputs besides the text.
     pub(crate) options: &'h Options,
     /// Access to files, time and output.
     pub(crate) host: &'h mut dyn Host,
     pub(crate) symbols: Symbols,
     pub(crate) scopes: Scopes,
-    /// The scene made so far.
+    /// The scene so far.
     pub scene: Scene,
     /// State that the grammar keeps between statements: defaults, global settings, ...
     pub state: State,
@@ -68,9 +68,9 @@ pub struct Parser<'h> {
     pub(crate) io: Files,
     /// Memory for evaluating functions.
     pub(crate) workspace: Workspace,
-    /// Bytes of all strings made so far.
+    /// Bytes of all strings so far.
     pub(crate) all_strings: u64,
-    /// Elements of all arrays made so far.
+    /// Elements of all arrays so far.
     pub(crate) array_elements: u64,
     /// The first chunk of each file.
     sources: Vec<Arc<Chunk>>,
@@ -82,29 +82,29 @@ pub struct Parser<'h> {
     floor: Floor,
     /// Memory for the arguments of the next call.
     arguments: Vec<Argument>,
-    /// Whether the `{` that comes next has been taken already, by who looked behind it.
+    /// Whether the next `{` is already taken, because a function looked at the token after it.
     brace_taken: bool,
-    /// How deep braces and parentheses were nested where the declaration being read has its value: there, directives and calls of
-    /// macros behind a complete value belong to what follows.
+    /// The nesting depth of braces and parentheses at the value of the current declaration: at that depth, directives and macro
+    /// calls after a complete value belong to what follows.
     value_nesting: Option<usize>,
-    /// Whether the next directive or call of a macro on the floor ends what is being read.
+    /// Whether the next directive or macro call at that depth ends the value.
     stopping: bool,
     place: Place,
     /// Where to begin skipping if the current statement fails.
     mark: recover::Mark,
-    /// Whether no statement has begun yet, so that directives are given up by themselves.
+    /// Whether the parser is between statements, where a failing directive is abandoned alone.
     between: bool,
     steps: u64,
-    /// The step at which the budget for idle loops ends.
+    /// The step at which an idle loop is stopped.
     last_step: u64,
-    /// Operations of all functions made so far.
+    /// Operations of all functions so far.
     function_operations: u64,
     nesting: usize,
     read_bytes: u64,
     message_bytes: u64,
     diagnostics: Vec<Diagnostic>,
     errors: usize,
-    /// Names about which an error was reported: that they are not declared, or that their value is wrong.
+    /// Names with a reported error: not declared, or with an invalid value.
     pub(crate) doubtful: BTreeSet<Symbol>,
     /// The number of errors, including repeated ones.
     failures: usize,
@@ -112,10 +112,10 @@ pub struct Parser<'h> {
 }
 
 impl Parser<'_> {
-    /// The next token after all directives and macro calls before it, without taking it.
+    /// The next token after running all directives and macro calls before it. The token is not taken.
     ///
     /// # Errors
-    /// If a directive on the way fails.
+    /// If a directive before it fails.
     #[inline]
     pub fn peek(&mut self) -> PResult<Token> {
         match self.file.token(self.position) {
@@ -127,7 +127,7 @@ impl Parser<'_> {
     /// Takes the next token.
     ///
     /// # Errors
-    /// If a directive on the way fails, or the budget of steps is used up.
+    /// If a directive before it fails, or the budget of steps is used up.
     #[inline]
     #[expect(
         clippy::should_implement_trait,
@@ -167,7 +167,7 @@ impl Parser<'_> {
         Ok(())
     }
 
-    /// Counts the operations of a new function.
+    /// Counts the operations of a new function toward the limit.
     ///
     /// # Errors
     /// If all functions together are too large.
@@ -185,7 +185,7 @@ impl Parser<'_> {
         ))
     }
 
-    /// Notes that something has been created, so that the budget for idle loops starts again.
+    /// Records that something was created, which restarts the budget for idle loops.
     #[inline]
     pub(crate) fn made_progress(&mut self) {
         let limits = &self.options.limits;
@@ -194,20 +194,20 @@ impl Parser<'_> {
             .min(self.steps.saturating_add(limits.idle_steps));
     }
 
-    /// The token at the position as it stands in the file: no directive is carried out, no macro called.
+    /// The token at the position as written in the file: no directive is run and no macro called.
     #[inline]
     pub(crate) fn raw(&self) -> Token {
         self.raw_ahead(0)
     }
 
-    /// The token `offset` further on in the file.
+    /// The token `offset` positions further in the file.
     #[inline]
     pub(crate) fn raw_ahead(&self, offset: usize) -> Token {
         let token = self.file.token(self.position + offset);
         token.unwrap_or(Token::END)
     }
 
-    /// Makes a token the last one taken, for messages.
+    /// Makes a token the last one taken, for error messages.
     #[inline]
     pub(crate) fn mark(&mut self, token: Token) {
         self.place = Place {
@@ -222,7 +222,7 @@ impl Parser<'_> {
         self.place
     }
 
-    /// The place of the token just peeked.
+    /// The place of the token that was just peeked.
     pub(crate) fn place_of(&self, token: Token) -> Place {
         Place {
             file: self.file.file.0,
@@ -247,18 +247,18 @@ impl Parser<'_> {
         self.file.source.raw_string(token)
     }
 
-    /// Runs `f` one level deeper.
+    /// Runs `f` one nesting level deeper.
     ///
     /// # Errors
-    /// If that is deeper than the limit, or `f` fails.
+    /// If that exceeds the limit, or `f` fails.
     #[inline]
     pub fn nested<T>(&mut self, f: impl FnOnce(&mut Self) -> PResult<T>) -> PResult<T> {
         if self.nesting >= self.options.limits.nesting {
             return Err(self.too_deep());
         }
-        /// More than one level takes, expression, object and texture together.
+        /// No level takes more stack than this; expression, object and texture together.
         const LEVEL: usize = 128 << 10;
-        /// The stack is looked at for so many levels at once.
+        /// The remaining stack is checked once for this many levels.
         const LEVELS: usize = 4;
         const MORE: usize = 4 << 20;
         self.nesting += 1;

@@ -15,13 +15,13 @@ pub(super) struct Mark {
 }
 
 impl Parser<'_> {
-    /// Remembers that a statement begins here, or that only directives are read until one begins.
+    /// Records that a statement begins here, or that only directives are read until one begins.
     pub(crate) fn between_statements(&mut self, between: bool) {
         self.between = between;
         self.mark_here();
     }
 
-    /// Remembers that something begins here that is given up as a whole if it fails.
+    /// Records the beginning of a statement, which is abandoned as a whole if it fails.
     pub(super) fn mark_here(&mut self) {
         self.mark = Mark {
             frames: self.frames.len(),
@@ -32,14 +32,14 @@ impl Parser<'_> {
         };
     }
 
-    /// Called before a directive is carried out: between statements it is given up by itself.
+    /// Called before running a directive: between statements it is abandoned alone.
     pub(crate) fn mark_directive(&mut self) {
         if self.between && self.floor.frames == 0 {
             self.mark_here();
         }
     }
 
-    /// Goes on with the next chunk of the file; `false` at its end.
+    /// Continues with the next chunk of the file; `false` at its end.
     pub(super) fn next_chunk(&mut self) -> bool {
         if self.file.lexed.rest.is_none() {
             return false;
@@ -59,7 +59,7 @@ impl Parser<'_> {
         true
     }
 
-    /// How many braces are open behind some tokens of the chunk, if `open` were before them.
+    /// The number of open braces after some tokens of the chunk, with `open` before them.
     fn open_after(&self, open: usize, from: usize, to: usize) -> usize {
         let passed = self.file.lexed.tokens.get(from..to).unwrap_or(&[]);
         passed.iter().fold(open, |open, t| match t.kind {
@@ -69,10 +69,10 @@ impl Parser<'_> {
         })
     }
 
-    /// Goes on behind the statement or directive that failed.
+    /// Continues after the statement or directive that failed.
     ///
-    /// Macros and includes entered since its beginning are left; then everything is skipped up to the brace that closes the
-    /// statement, or the next word or directive that opens one. Blocks within what is skipped are skipped whole.
+    /// Leaves the macros and includes entered since its beginning; then skips everything up to the brace that closes the
+    /// statement, or the next word or directive that opens one. Blocks in the skipped part are skipped as a whole.
     pub(crate) fn recover(&mut self) {
         let mark = self.mark;
         while self.frames.len() > mark.frames.max(1) {
@@ -86,10 +86,10 @@ impl Parser<'_> {
         let same = mark.file == self.file.file.0 && mark.frames == self.frames.len();
         let begin = if same { mark.position } else { self.position };
         if same && begin == self.position && self.raw().kind != Kind::End {
-            // At least one token is passed, or the error would repeat for ever.
+            // At least one token is skipped, or the error would repeat forever.
             self.position += 1;
         }
-        // A block whose head failed is given up whole: its parts would be missed by nobody but its `#end`.
+        // A block whose head failed is skipped as a whole, because its parts make no sense without the head.
         let head = self.current_file().token(begin).and_then(|t| t.directive());
         if same && self.blocks.len() <= mark.blocks && head.is_some_and(Directive::opens) {
             if let Ok(end) = self.end_of(begin) {
@@ -99,7 +99,7 @@ impl Parser<'_> {
         }
         let before = if same { mark.open } else { 0 };
         let mut open = self.open_after(before, begin, self.position);
-        // Blocks that the statement has opened end within what is skipped.
+        // Blocks that the statement has opened end within the skipped part.
         let mut blocks = self.blocks.len().saturating_sub(mark.blocks);
         self.blocks.truncate(mark.blocks);
         loop {

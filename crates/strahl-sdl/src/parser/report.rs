@@ -6,13 +6,13 @@ use crate::token::{Kind, Token};
 use std::borrow::Cow;
 use strahl_scene::{Diagnostic, Severity};
 
-/// Something went wrong and has been reported; the statement it happened in is given up.
+/// An error has been reported; the statement in which it happened is abandoned.
 ///
-/// Only the reporting functions of [`Parser`] make one, so an error cannot pass in silence.
+/// Only the reporting functions of [`Parser`] create one, so no error can go unreported.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Failed(());
 
-/// The result of parsing a piece.
+/// The result of parsing a part of the scene.
 pub type PResult<T> = Result<T, Failed>;
 
 impl Parser<'_> {
@@ -21,7 +21,7 @@ impl Parser<'_> {
         self.fail_with(place, Diagnostic::error(message))
     }
 
-    /// Reports an error with a piece of advice.
+    /// Reports an error with advice.
     pub fn fail_hint(
         &mut self,
         place: Place,
@@ -43,19 +43,19 @@ impl Parser<'_> {
         failed
     }
 
-    /// Reports an error; place, source line and trace are added.
+    /// Reports an error with its place, source line and trace.
     pub(crate) fn fail_with(&mut self, place: Place, diagnostic: Diagnostic) -> Failed {
         if !self.fatal {
             self.errors += usize::from(self.report(place, diagnostic));
             self.failures += 1;
             let limit = self.options.limits.errors;
-            // The same error again and again is told once, but a loop of errors must end too.
+            // Repeated errors are reported once, but a loop of errors must end too.
             self.fatal |= self.errors >= limit || self.failures >= limit.saturating_mul(10);
         }
         Failed(())
     }
 
-    /// A failure that comes of an error that was reported.
+    /// A failure that follows from an error already reported.
     fn fail_again(&mut self) -> Failed {
         self.failures += 1;
         self.fatal |= self.failures >= self.options.limits.errors.saturating_mul(10);
@@ -67,12 +67,12 @@ impl Parser<'_> {
         self.report(place, Diagnostic::warning(message));
     }
 
-    /// Reports a warning with a piece of advice.
+    /// Reports a warning with advice.
     pub fn warn_hint(&mut self, place: Place, message: impl Into<String>, hint: impl Into<String>) {
         self.report(place, Diagnostic::warning(message).hint(hint));
     }
 
-    /// `false` if the same message was reported for the same place before: loops would repeat it.
+    /// Adds a diagnostic; returns `false` if the same message was reported for the same place before, as in loops.
     fn report(&mut self, place: Place, mut diagnostic: Diagnostic) -> bool {
         const WARNINGS: usize = 200;
         if self.is_known(place, &diagnostic) {
@@ -102,7 +102,7 @@ impl Parser<'_> {
 
     /// The macros and includes around the position, innermost first.
     fn trace(&self) -> Vec<String> {
-        /// The ends of a deep recursion are enough.
+        /// Of a deep recursion, only this many calls at both ends are shown.
         const SHOWN: usize = 8;
         let mut steps = vec![];
         for frame in self.frames.iter().rev() {
@@ -128,7 +128,7 @@ impl Parser<'_> {
         steps
     }
 
-    /// Reports a token that should have been something else.
+    /// Reports a token other than the expected ones.
     pub fn unexpected(&mut self, token: Token, expected: &str) -> Failed {
         let place = self.place_of(token);
         if let (Kind::Name, Some(symbol)) = (token.kind, token.symbol()) {
@@ -146,7 +146,7 @@ impl Parser<'_> {
         self.fail(place, format!("expected {expected}, found {found}"))
     }
 
-    /// Reports an undeclared name, once: what else it spoils is the same fault.
+    /// Reports an undeclared name once: errors that follow from it are not reported.
     pub(crate) fn undeclared(&mut self, symbol: Symbol, place: Place, expected: &str) -> Failed {
         if !self.doubtful.insert(symbol) {
             return self.fail_again();
@@ -155,7 +155,7 @@ impl Parser<'_> {
         let mut diagnostic = Diagnostic::error(format!(
             "expected {expected}, found the undeclared name `{name}`"
         ));
-        // Loops come by again and again, and advice takes time.
+        // Loops repeat the error, and finding advice takes time.
         if !self.is_known(place, &diagnostic)
             && let Some(hint) = self.advice_for(&name)
         {
@@ -172,8 +172,8 @@ impl Parser<'_> {
             ));
         }
         let bound = self.scopes.bound().map(|s| self.symbols.text(s));
-        // What is at hand goes before what would have to be included, but only if it is as close. Words of the language are never
-        // meant by a capital letter.
+        // Of equally close candidates, a declared name wins. A misspelt name with a capital letter is compared with the names of include
+        // files before keywords, another one after them.
         let here = bound.map(|known| (Candidate::new(known), None));
         let is_name = name.starts_with(|c: char| c.is_ascii_uppercase());
         let (close, file) = if is_name {
@@ -193,7 +193,7 @@ impl Parser<'_> {
         })
     }
 
-    /// A token in words.
+    /// A token for messages.
     pub(crate) fn describe(&self, token: Token) -> String {
         match (token.kind, token.symbol()) {
             (Kind::Number, _) => format!("the number {}", token.number()),
@@ -223,13 +223,13 @@ impl Parser<'_> {
         self.fatal
     }
 
-    /// Everything reported, and whether an error is among it.
+    /// All diagnostics, and whether one of them is an error.
     pub(crate) fn take_diagnostics(&mut self) -> (Vec<Diagnostic>, bool) {
         (std::mem::take(&mut self.diagnostics), self.errors > 0)
     }
 }
 
-/// A name or text of the scene as messages show it: the beginning of a very long one.
+/// A name or text of the scene for messages; a very long one is truncated.
 pub(crate) fn shortened(text: &str) -> Cow<'_, str> {
     const SHOWN: usize = 200;
     match text.char_indices().nth(SHOWN) {

@@ -1,7 +1,7 @@
-//! Bindings of names and their scopes.
+//! Bindings of names, and their scopes.
 //!
-//! Scopes are dynamic as in the language: a macro sees the local names of its caller. Every symbol has a stack of bindings,
-//! so looking up a name is one step however deep the macros are nested.
+//! Scopes are dynamic, as in POV-Ray: a macro sees the local names of its caller. Every symbol has a stack of bindings, so
+//! looking up a name takes one step however deeply macros are nested.
 
 use crate::expr::{Array, Dictionary};
 use crate::symbol::Symbol;
@@ -12,12 +12,12 @@ use std::sync::Arc;
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Target {
     pub(crate) symbol: Symbol,
-    /// Depth of the scope that the name lives in.
+    /// Depth of the scope that contains the name.
     pub(crate) depth: u32,
     pub(crate) path: Vec<Step>,
 }
 
-/// A step from an array or dictionary to its element.
+/// A step from an array or dictionary to one of its elements.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Step {
     /// Index into the flat elements of an array.
@@ -29,7 +29,7 @@ pub(crate) enum Step {
 #[derive(Debug)]
 enum Bound {
     Value(Value),
-    /// A macro's parameter that stands for a variable of the caller.
+    /// A parameter of a macro that stands for a variable of the caller.
     Alias(Target),
 }
 
@@ -43,9 +43,9 @@ struct Binding {
 #[derive(Debug, Default)]
 pub(crate) struct Scopes {
     bindings: Vec<Vec<Binding>>,
-    /// Symbols bound in each scope but the global one, scope after scope.
+    /// Symbols bound in each scope but the global one, scope by scope.
     declared: Vec<Symbol>,
-    /// Where the scopes begin in `declared`.
+    /// The beginning of each scope in `declared`.
     begins: Vec<usize>,
 }
 
@@ -82,7 +82,7 @@ impl Scopes {
         }
     }
 
-    /// The macro a name stands for.
+    /// The macro with this name.
     #[inline]
     pub(crate) fn find_macro(&self, symbol: Symbol) -> Option<&Arc<super::Macro>> {
         match &self.bindings.get(symbol.index())?.last()?.bound {
@@ -119,7 +119,7 @@ impl Scopes {
         }
     }
 
-    /// The place that a name stands for, if it is bound; with `local`, in the innermost scope only.
+    /// The location of a name, if it is bound; with `local`, in the innermost scope only.
     pub(crate) fn target(&self, symbol: Symbol, local: bool) -> Option<Target> {
         let binding = self.bindings.get(symbol.index())?.last()?;
         if local && binding.depth != self.depth() {
@@ -135,8 +135,8 @@ impl Scopes {
         })
     }
 
-    /// Stores a value at a place; `false` if the place is gone or is no element of what is there. A value for a scope that
-    /// has been left is dropped.
+    /// Stores a value at a location; returns `false` if the location no longer exists or is not an element of the container. A
+    /// value for a scope that has been left is dropped.
     pub(crate) fn store(&mut self, target: &Target, value: Value) -> bool {
         if target.depth > self.depth() {
             return true;
@@ -180,7 +180,7 @@ impl Scopes {
         }
     }
 
-    /// Removes what is stored at a place.
+    /// Removes the value at a location.
     pub(crate) fn remove(&mut self, target: &Target) {
         if let Some((last, before)) = target.path.split_last() {
             let parent = Target {
@@ -231,8 +231,8 @@ impl Scopes {
         }
     }
 
-    /// Notes that a scope has a symbol, which leaving it removes. The scope need not be the innermost one: what a macro gives as a
-    /// value is stored while the macro's own scope is still open.
+    /// Records that a scope has a symbol, which is removed on leaving the scope. The scope need not be the innermost one: the
+    /// value of a macro is stored while the macro's own scope is still open.
     fn remember(&mut self, symbol: Symbol, depth: u32) {
         if depth == 0 {
             return;
@@ -246,7 +246,7 @@ impl Scopes {
             .insert(end.unwrap_or(self.declared.len()), symbol);
     }
 
-    /// Names that are bound, for advice on misspelt ones.
+    /// All bound names, for suggestions.
     pub(crate) fn bound(&self) -> impl Iterator<Item = Symbol> {
         let bound = self
             .bindings
