@@ -1,4 +1,4 @@
-//! Parses scene files and tells how long each took and how much memory: `cargo run --release -p strahl-sdl --example time_parse --
+//! Parses scene files and prints the time and the memory for each: `cargo run --release -p strahl-sdl --example time_parse --
 //! scene.pov`. `cargo xtask bench parse` compares these numbers with POV-Ray's.
 
 use std::io::Write;
@@ -6,14 +6,14 @@ use std::path::Path;
 use std::time::Instant;
 use strahl_sdl::{FolderHost, Options, Source, parse};
 
-/// Seconds that this thread has computed, from the numbers Linux keeps; `None` elsewhere.
+/// Processor seconds of this thread, as Linux reports them; `None` on other systems.
 fn cpu_seconds() -> Option<f64> {
     let text = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
     let nanoseconds: f64 = text.split(' ').next()?.parse().ok()?;
     Some(nanoseconds / 1e9)
 }
 
-/// Largest memory of this process so far, in bytes; `None` where there is no `/proc`.
+/// Peak memory of this process so far, in bytes; `None` where there is no `/proc`.
 fn peak_memory() -> Option<f64> {
     let text = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = text.lines().find(|line| line.starts_with("VmHWM:"))?;

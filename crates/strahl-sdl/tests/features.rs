@@ -1,7 +1,7 @@
-//! The table of features in the manual (docs/src/pov-ray.md) says what the parser does: each word in `data/features.tsv` has a few
-//! tokens that use it, and counts as done if they are read without a complaint.
+//! Checks the table of features in the manual (docs/src/pov-ray.md) against the parser: each word in `data/features.tsv` has a
+//! few tokens that use it, and counts as done if they are read without a message.
 //!
-//! `STRAHL_UPDATE=1 cargo test -p strahl-sdl --test features` writes the table anew.
+//! `STRAHL_UPDATE=1 cargo test -p strahl-sdl --test features` writes the table.
 
 mod common;
 
@@ -43,12 +43,12 @@ fn features() -> Vec<Feature> {
     rows.collect()
 }
 
-/// Whether a scene is read, and nothing of it left out.
+/// Whether a scene is read completely.
 fn is_done(scene: &str) -> bool {
     let parsed = parse_with(&mut MemoryHost::new(), scene);
     let lacks = ["not supported", "left out", "not shown", "not done"];
     let mut said = parsed.diagnostics.iter().map(ToString::to_string);
-    // There are no fonts in memory.
+    // The host has no fonts.
     let only_a_font = scene.starts_with("text {") && said.clone().all(|m| m.contains("the font `"));
     (parsed.scene.is_some() || only_a_font)
         && !said.any(|text| lacks.iter().any(|lack| text.contains(lack)))

@@ -1,4 +1,4 @@
-//! Texts that mean no good: each ends soon, with an error that says what is wrong.
+//! Malicious texts: each ends soon, with an error that says what is wrong.
 
 mod common;
 
@@ -113,7 +113,7 @@ fn functions_that_would_take_for_ever() {
     }
     let operations = |o: &mut Options| o.limits.function_operations = 1 << 20;
     assert!(limited(long_chain, operations).contains("all functions together have more than"));
-    // Loops of unknown length end by themselves, and calls count as steps.
+    // Loops in functions are bounded by their cost, and calls count as steps.
     let endless = "#declare F = function(x) { sum(i, 1, x, sum(j, 1, x, i * j)) }\n";
     let parsed = parse_with(
         &mut MemoryHost::new(),
@@ -127,7 +127,7 @@ fn functions_that_would_take_for_ever() {
     assert!(limited(text, steps).contains("seems not to end"));
 }
 
-/// Found by fuzzing: `gray` counted as the beginning of a colour, and taken it was not.
+/// Found by fuzzing: `gray` counted as the beginning of a colour, but was not read as one.
 #[test]
 fn words_that_begin_nothing_are_no_endless_items() {
     let found = errors("#declare P = pigment { bozo x 1, gray y 2 }");
@@ -211,7 +211,7 @@ fn any_bytes_are_read() {
     }
 }
 
-/// Words of the language in any order reach further into the parser than bytes do.
+/// Keywords in random order reach more of the parser than random bytes do.
 #[test]
 fn words_in_any_order_are_read() {
     const WORDS: &str = "sphere box plane object { } { } ( ) ( ) < > [ ] , ; . + - * / = != <= ? : & | ! 0 1 2.5 1e9 -3 \
@@ -249,7 +249,7 @@ fn words_in_any_order_are_read() {
     }
 }
 
-/// A scene built up in steps: what the last step uses is not copied by each.
+/// A scene built step by step: the object of the last step is not copied by each step.
 #[test]
 fn drilling_in_a_loop_takes_linear_time() {
     let drilled = |holes: usize| {
@@ -259,7 +259,7 @@ fn drilling_in_a_loop_takes_linear_time() {
              object {{ A pigment {{ rgb 1 }} }}"
         );
         let mut options = Options::default();
-        // Copies would be counted: half the square of the holes.
+        // Copies would be counted: half the square of the number of holes.
         options.limits.objects = 10 * holes;
         let parsed = parse(
             Source::new("test.pov", text),
@@ -285,7 +285,7 @@ fn drilling_in_a_loop_takes_linear_time() {
     drilled(20_000);
 }
 
-/// Parts that are used several times within one combined object are copied for each but the last use.
+/// Parts used several times within one CSG object are copied for each use but the last.
 #[test]
 fn combined_objects_have_all_their_parts() {
     let text = "#declare Ball = union { #for (I, 1, 20) sphere { I * x, 0.3 } #end } \
@@ -412,7 +412,7 @@ fn numbers_out_of_all_bounds() {
     ] {
         assert!(!errors(text).is_empty(), "{text}");
     }
-    // Nothing is wrong with these but what they mean.
+    // These are only semantically wrong.
     for text in [
         "sphere { 0, 1 pigment { rgb 1e400 } finish { phong_size 1e400 roughness 0 } }",
         "#debug str(pow(10, 400) - pow(10, 400), 0, 3)",
@@ -435,7 +435,7 @@ fn bytes_that_are_no_text() {
         let errors: Vec<String> = parsed.diagnostics.iter().map(ToString::to_string).collect();
         (parsed.scene.is_some(), errors)
     };
-    // Zeros are blanks; invalid UTF-8 in strings is Latin-1.
+    // Zero bytes are blanks; invalid UTF-8 in strings is read as Latin-1.
     assert_eq!(read(vec![0; 1_000_000]), (true, vec![]));
     assert_eq!(
         read(b"#debug \"\xff\xfe\xe9\" sphere { 0, 1 }".to_vec()),
@@ -473,7 +473,7 @@ fn a_scene_in_one_line_of_many_megabytes() {
         "{}",
         found[0]
     );
-    // The caret stands under the name.
+    // The caret is below the name.
     let lines: Vec<&str> = found[0].lines().collect();
     assert_eq!(lines[3].find('Q'), lines[4].find('^'), "{}", found[0]);
     let long = errors(&format!("sphere {{ 0, {} }}", "A".repeat(5_000_000)));
@@ -505,7 +505,7 @@ fn only_plain_files_are_read_and_only_allowed_ones_written() {
         texts.push(format!("#include \"{fifo}\""));
     }
     let large = std::fs::File::create(root.path().join("large")).unwrap();
-    // No block of the disk is taken.
+    // A sparse file, which takes no space on the disk.
     large.set_len(1 << 40).unwrap();
     for text in texts {
         let mut host = FolderHost::new([root.path().to_path_buf()]);

@@ -1,11 +1,11 @@
-//! Texts that would fill the memory: each ends in an error with the default limits before it holds more than a few gigabytes,
-//! and with the limits of a small machine before it holds much at all.
+//! Texts that would fill the memory: each ends in an error, with the default limits before it uses more than a few gigabytes, and
+//! with small limits before it uses more than a little.
 //!
-//! A program of its own with one test, because the memory of the whole process is what counts.
+//! It is a test program of its own with a single test, because it measures the memory of the whole process.
 
 use strahl_sdl::{MemoryHost, Options, Source, parse};
 
-/// The largest memory of this process so far, in bytes; `None` where the system does not tell.
+/// Peak memory of this process so far, in bytes; `None` where the system does not report it.
 fn peak_memory() -> Option<u64> {
     let text = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = text.lines().find(|line| line.starts_with("VmHWM:"))?;
@@ -13,7 +13,7 @@ fn peak_memory() -> Option<u64> {
     Some(kilobytes << 10)
 }
 
-/// Limits of which none allows more than about 100 MB.
+/// Limits none of which allows more than about 100 MB.
 fn small() -> Options {
     let mut options = Options::default();
     options.limits.steps = 10_000_000;
@@ -29,14 +29,14 @@ fn small() -> Options {
 fn nothing_fills_the_memory() {
     let repeated = |head: &str, body: &str| format!("{head} #while (1) {body} #end");
     let cases = [
-        // What has a size of its own choice.
+        // Things with a size given in the scene.
         ("#declare A = array[1000000000];".to_owned(), "elements"),
         ("#declare A = array[16777217];".to_owned(), "elements"),
         ("#declare A = array; #declare A[1e14] = 1;".to_owned(), "elements"),
         ("mesh2 { vertex_vectors { 1e300, <0,0,0> } }".to_owned(), "should have"),
         ("polygon { 1e9, <0,0,0> }".to_owned(), "expected"),
         ("#debug vstr(5, 1, \"a\", 1e9, 1)".to_owned(), "characters"),
-        // What doubles.
+        // Things that double repeatedly.
         (repeated("#declare S = \"0123456789\";", "#declare S = concat(S, S);"), "bytes"),
         (
             repeated(
@@ -91,7 +91,7 @@ fn nothing_fills_the_memory() {
                 .to_owned(),
             "objects",
         ),
-        // What grows without end.
+        // Things that grow without end.
         (repeated("", "sphere { 0, 1 }"), "objects"),
         (format!("union {{ {} }}", repeated("", "sphere { 0, 1 }")), "objects"),
         (format!("mesh {{ {} }}", repeated("", "triangle { 0, x, y }")), "parts"),

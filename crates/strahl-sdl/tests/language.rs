@@ -5,7 +5,7 @@ mod common;
 use common::{debug, errors, parse_with};
 use strahl_sdl::MemoryHost;
 
-/// `#debug` of several floats.
+/// The values of several floats, by `#debug`.
 fn values(setup: &str, expressions: &[&str]) -> Vec<f64> {
     let prints: String = expressions
         .iter()
@@ -80,7 +80,7 @@ fn nothing_leaks_out_of_a_declaration_without_semicolon() {
 
 #[test]
 fn macros_see_their_callers_names_and_change_variables_given() {
-    // All measured with POV-Ray 3.7.
+    // All values were measured with POV-Ray 3.7.
     let outer =
         "#macro Inner() #debug str(L, 0, 0) #end #macro Outer() #local L = 7; Inner() #end Outer()";
     assert_eq!(debug(outer), "7");
@@ -116,7 +116,7 @@ fn macros_see_their_callers_names_and_change_variables_given() {
 
 #[test]
 fn locals_that_hold_what_a_macro_made_end_with_their_macro() {
-    // The value is stored while the inner call's scope is still open, and must not outlive the outer one's.
+    // The value is stored while the scope of the inner call is still open, and must not outlive that of the outer call.
     let text = "
         #macro Nest(N)
           #if (N < 3) #local Inner = Nest(N + 1) concat(\"(\", Inner, str(N, 0, 0), \")\") #else \"x\" #end
@@ -228,7 +228,7 @@ fn files_are_written_and_read() {
 
 #[test]
 fn objects_answer_questions() {
-    // All but the box and the transformed sphere measured with POV-Ray 3.7.
+    // All values except those of the box and the transformed sphere were measured with POV-Ray 3.7.
     let setup = "#declare S = sphere { <1, 2, 3>, 2 }; #declare P = plane { y, 1 };
         #declare B = object { box { 0, 1 } scale 2 translate 5*x }; #declare N = <0, 0, 0>; #declare M = <1, 1, 1>;
         #declare H = trace(S, <1, 2, -10>, z, N); #declare K = trace(S, <10, 2, -10>, z, M);";
@@ -257,7 +257,7 @@ fn objects_answer_questions() {
     }
 }
 
-/// Every file of the folder is built in, and reading it has no errors but for what has no grammar and includes that are not
+/// Every file in the folder is built in and is read without errors, except for unsupported features and missing includes.
 /// there yet.
 #[test]
 fn built_in_files_are_read_without_errors() {
@@ -415,7 +415,7 @@ fn new_words_are_names_once_they_are_declared() {
         #for (suffix, 1, 2) #debug str(suffix, 0, 0) #end
         #debug concat(prefix, str(tau, 0, 0), str(obj[0], 0, 0), str(Twice(3, 4), 0, 0))";
     assert_eq!(debug(text), "12a5710");
-    // Until then they mean what they mean in 3.8.
+    // Before that they have their meaning of 3.8.
     assert_eq!(debug("#debug str(tau, 0, 2)"), "6.28");
     assert_eq!(
         debug("#declare A = dictionary; #declare A.b = 1; #debug str(A.b, 0, 0)"),

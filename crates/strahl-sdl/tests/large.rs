@@ -1,10 +1,10 @@
-//! Files too large to be held in memory are read in parts; nobody notices.
+//! Files too large for memory are read in parts, without a visible difference.
 
 use std::fs;
 use std::io::Write;
 use strahl_sdl::{FolderHost, Options, Source, parse};
 
-/// 18 MB, mostly comments, with things at both ends.
+/// 18 MB, mostly comments, with objects at both ends.
 fn write_scene(path: &std::path::Path) {
     let mut file = std::io::BufWriter::new(fs::File::create(path).expect("a file"));
     let mut line = |text: &str| writeln!(file, "{text}").expect("written");

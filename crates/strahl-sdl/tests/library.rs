@@ -1,5 +1,5 @@
-//! The include library: every documented name is there with its kind, and looks as it did when it was compared with POV-Ray
-//! (`cargo xtask looks`).
+//! The include library: every documented name exists with its kind, and looks as it did when it was compared with POV-Ray (`cargo
+//! xtask looks`).
 
 mod common;
 #[path = "common/plates.rs"]
@@ -14,10 +14,10 @@ use strahl_sdl::MemoryHost;
 /// Mean colours of POV-Ray's plates, in 8-bit codes; the header ends with the size of a plate.
 const MEANS: &str = include_str!("data/looks.tsv");
 
-/// How far a mean colour may be from POV-Ray's.
+/// The largest difference of a mean colour from POV-Ray's.
 const CLOSE: f64 = 6.0;
 
-/// A statement that takes the name as what the list says it is.
+/// A statement that uses the name according to its kind in the list.
 fn use_of(name: &Name) -> Option<String> {
     let Name { name, kind, .. } = name;
     Some(match *kind {
@@ -56,7 +56,7 @@ fn names_have_their_kinds() {
     }
 }
 
-/// What scenes say: a colour by its name as a whole pigment, and the pigments of metals as colours.
+/// Scenes use a named colour as a whole pigment, and the pigments of metals as colours.
 #[test]
 fn colours_of_metals_are_colours() {
     let text = "global_settings { assumed_gamma 1 }
@@ -69,7 +69,7 @@ fn colours_of_metals_are_colours() {
     assert!(parsed.scene.is_some(), "{}", errors.join("\n"));
 }
 
-/// Mean colours of the plates of a sheet.
+/// The mean colours of the plates of a sheet.
 fn means(sheet: &Sheet, (w, h): (usize, usize)) -> Vec<[f64; 3]> {
     let parsed = parse_with(&mut MemoryHost::new(), &sheet.text);
     let messages: Vec<String> = parsed.diagnostics.iter().map(ToString::to_string).collect();

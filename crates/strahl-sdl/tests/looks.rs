@@ -1,5 +1,5 @@
-//! How things look: textures by default, finishes, and what the include files declare, rendered by POV-Ray 3.7 with its own
-//! include files and here with ours.
+//! Looks: default textures, finishes, and the names of the include files, rendered by POV-Ray 3.7 with its own include files and
+//! by strahl with ours.
 
 mod common;
 
@@ -11,7 +11,7 @@ camera { orthographic location <4, 3, -10> look_at <4, 3, 0> right 8*x up 6*y }
 light_source { <8, 20, -30>, rgb 1 }
 ";
 
-/// A tile for each name, each showing another part of the texture, in rows of eight.
+/// A tile for each name, in rows of eight; each shows another part of the texture.
 fn tiles(includes: &str, names: &[String], item: impl Fn(&str) -> String) -> String {
     let tiles = names.iter().enumerate().map(|(i, name)| {
         let (x, y) = (i % 8, i / 8);
@@ -40,7 +40,7 @@ fn normals_begin_with_the_default_one() {
     };
     let plane = |normal: &str| format!("plane {{ <0.1, 0.2, -1>, 0 normal {{ {normal} }} }}");
     let scenes = [
-        // The default comes to the object when it is first changed, not when the object is made.
+        // The object gets the default texture when the texture is first changed, not when the object is created.
         (
             "moved before the normal",
             scene(

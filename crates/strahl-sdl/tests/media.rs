@@ -1,4 +1,5 @@
-//! What rays are inside of, and what light keeps there: one pixel of each scene of `data/media.tsv`, which says what POV-Ray 3.7 shows.
+//! The media that rays are in, and their absorption: one pixel of each scene of `data/media.tsv`, which has the values of POV-Ray
+//! 3.7.
 
 mod common;
 
@@ -6,10 +7,10 @@ use common::parse_with;
 use strahl_render::{CompileOptions, RenderOptions, compile, render};
 use strahl_sdl::MemoryHost;
 
-/// Group, case, what POV-Ray 3.7.0.10 shows (linear red, green and blue), and the scene.
+/// Group, case, the values of POV-Ray 3.7.0.10 (linear red, green and blue), and the scene.
 const CASES: &str = include_str!("data/media.tsv");
 
-/// Colours that tell directions change by this much where a direction changes by a thousandth.
+/// Colours that encode directions change by this much if a direction changes by a thousandth.
 const TOLERANCE: f64 = 1e-3;
 
 fn shown(scene: &str) -> [f64; 3] {

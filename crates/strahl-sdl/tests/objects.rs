@@ -1,4 +1,4 @@
-//! Objects: their syntax, what becomes of them, and what is said about mistakes.
+//! Objects: their syntax, their descriptions, and the messages about errors.
 
 mod common;
 
@@ -21,7 +21,7 @@ fn scene(text: &str) -> (Scene, Vec<String>) {
     (scene, messages)
 }
 
-/// The only object of a text without any message.
+/// The only object of a text without messages.
 fn object(text: &str) -> Object {
     let (mut scene, messages) = scene(text);
     assert!(messages.is_empty(), "{text}\n{}", messages.join("\n"));
@@ -43,7 +43,7 @@ fn operation(object: &Object) -> (CsgOp, &[Object]) {
     }
 }
 
-/// Texts that mean the same shape.
+/// Checks that all texts describe the same shape.
 fn same(texts: &[&str]) {
     let first = format!("{:?}", shape(texts[0]));
     for text in texts {
@@ -310,7 +310,7 @@ fn parsing_goes_on_behind_a_wrong_object() {
 
 #[test]
 fn items_act_in_the_order_they_stand() {
-    // The clipping plane turns with the sphere, or not.
+    // Whether the clipping plane rotates with the sphere depends on the order.
     let before = object("sphere { 0, 1 clipped_by { plane { y, 0 } } rotate z * 90 }");
     let after = object("sphere { 0, 1 rotate z * 90 clipped_by { plane { y, 0 } } }");
     let clip = |o: &Object| operation(o).1[1].transform.as_deref().copied();
@@ -327,7 +327,7 @@ fn parts_take_the_material_of_the_whole_if_they_have_none() {
     let whole = object(text);
     let parts = operation(&whole).1;
     assert!(whole.material.is_some() && parts[0].material.is_none() && parts[1].material.is_some());
-    // Without a texture of its own, the default texture where it enters the scene.
+    // Without a texture of its own, an object gets the default texture of the place where it enters the scene.
     let text = "#declare S = sphere { 0, 1 } #default { pigment { rgb x } } object { S }";
     let red = object(text).material.unwrap().texture.clone().unwrap();
     let Texture::Plain(red) = &*red.0 else {
@@ -376,7 +376,7 @@ fn bounds_are_only_hints() {
     );
 }
 
-/// Many parts, so that uses are shared.
+/// An object with enough parts for its uses to be shared.
 const LARGE: &str = "#declare Large = union { #for (I, 0, 19) sphere { I * x, 0.4 } #end }\n";
 
 #[test]
@@ -455,7 +455,7 @@ fn each_material_from_outside_has_its_group() {
         .map(|g| g.objects.0[0].material.clone())
         .collect();
     assert_ne!(materials[0], materials[1]);
-    // A material that no part would take makes no difference.
+    // A material that no part inherits has no effect.
     let textured = LARGE.replace("0.4 }", "0.4 pigment { rgb z } }");
     let (scene, _) = self::scene(&format!("{textured} {uses}"));
     assert_eq!(scene.groups.len(), 1);
@@ -492,7 +492,7 @@ fn operations_get_the_parts_of_what_they_use() {
     assert_eq!(operation(&parts[1]).1.len(), 20);
     assert_eq!(operation(&parts[2]).1.len(), 20);
     assert!(parts[2].transform.is_some());
-    // Also where something small holds it.
+    // The same if a small object contains it.
     let text = format!(
         "{LARGE} #declare U = union {{ object {{ Large }} sphere {{ 0, 1 }} }} difference {{ box {{ -1, 30 }} object {{ U }} }}"
     );
@@ -548,7 +548,7 @@ fn questions_see_instances_and_meshes() {
 
 #[test]
 fn descriptions_of_objects_are_small() {
-    // A million spheres are a million of these.
+    // A scene with a million spheres has a million of these.
     assert!(size_of::<Object>() <= 176, "{}", size_of::<Object>());
 }
 

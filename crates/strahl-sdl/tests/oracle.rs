@@ -1,4 +1,4 @@
-//! The same expressions, evaluated by POV-Ray 3.7 and here.
+//! Expressions evaluated by POV-Ray 3.7 and by strahl.
 
 mod common;
 
@@ -218,7 +218,7 @@ fn expressions_have_povrays_values() {
     FLOATS.iter().for_each(|e| add(format!("str({e}, 0, 11)")));
     STRINGS.iter().for_each(|e| add((*e).to_owned()));
     for expression in VECTORS {
-        // POV-Ray takes colour words only where a value begins.
+        // POV-Ray accepts colour keywords only at the beginning of a value.
         text.push_str(&format!("#declare V = {expression};\n"));
         text.push_str("#debug concat(\"<<\", vstr(3, V, \",\", 0, 11), \">>\\n\")\n");
     }
@@ -233,7 +233,7 @@ fn expressions_have_povrays_values() {
         .unwrap();
     let output = String::from_utf8_lossy(&run.stderr).into_owned();
     let values = |text: &str| -> Vec<String> {
-        // POV-Ray breaks long lines after 80 characters; no value here has a line break of its own.
+        // POV-Ray breaks long lines after 80 characters; no value here contains a line break.
         let text = text.replace("\n ", " ").replace('\n', "");
         let parts = text.split("<<").skip(1);
         parts

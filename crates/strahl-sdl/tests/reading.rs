@@ -1,5 +1,5 @@
-//! What is taken, and what is refused, with POV-Ray 3.7 as the judge: each case was run there. Where strahl is more lenient (stray
-//! separators, several names in a union) it says so here.
+//! Accepted and rejected texts: each case was tried in POV-Ray 3.7. Where strahl is more lenient (extra separators, several names
+//! in a union), a comment says so.
 
 mod common;
 
@@ -166,7 +166,7 @@ fn macros_whose_value_ends_with_a_semicolon() {
             "union { #local K = T() object { K } box { 0, 1 } }",
             "union(sphere, cuboid)",
         ),
-        // POV-Ray refuses stray separators; here they do no harm, but nothing may vanish.
+        // POV-Ray rejects extra separators; here they are harmless, but no object may vanish.
         (
             "union { ; sphere { 0, 1 }; box { 0, 1 } ; }",
             "union(sphere, cuboid)",
@@ -344,7 +344,7 @@ fn numbers_of_a_colour_beyond_its_word_are_filter_and_transmit() {
     for (color, expected) in cases {
         assert_eq!(parts(color, gamma), expected, "{color}");
     }
-    // What `srgb` gives are numbers that the scene computes with.
+    // `srgb` converts to the numbers with which the scene computes.
     let with = |gamma: &str| {
         parts(
             "srgb <.5, .2, .3>",
@@ -398,7 +398,7 @@ fn line_ends_and_wide_characters() {
             );
         }
     }
-    // Included files and data files too.
+    // Included files and data files are converted too.
     let mut host = MemoryHost::new()
         .with_file(
             "a.inc",
@@ -501,7 +501,7 @@ fn boxes_go_on_for_ever_where_one_corner_is_infinite() {
         objects("box { -1, <1e400, 1, 1> scale 0.5 rotate 20 * y }"),
         Some(1)
     );
-    // As in POV-Ray nothing is to be seen of these.
+    // As in POV-Ray, these are invisible.
     assert_eq!(objects("box { <-1 / 0, -1, -1>, <1 / 0, 1, 1> }"), Some(0));
 }
 

@@ -1,4 +1,4 @@
-//! Textures: their syntax, what becomes of them, what is said about mistakes, and pigments compared with POV-Ray's.
+//! Textures: their syntax, their descriptions, the messages about errors, and pigments compared with POV-Ray's.
 
 mod common;
 
@@ -32,7 +32,7 @@ fn scene(text: &str) -> (Scene, Vec<String>) {
     (scene, messages)
 }
 
-/// The textures of the objects of a text without any message.
+/// The textures of the objects of a text without messages.
 fn textures(text: &str) -> Vec<Arc<Texture>> {
     let (scene, messages) = scene(text);
     assert!(messages.is_empty(), "{text}\n{}", messages.join("\n"));
@@ -61,7 +61,7 @@ fn color_at(texture: &Texture, p: DVec3) -> ColorFt {
     }
 }
 
-/// Pigments whose values are POV-Ray's to the precision of its colours.
+/// Pigments whose values agree with POV-Ray's to the precision of its colours.
 const PIGMENTS: &[&str] = &[
     "rgb <0.1, 0.2, 0.3>",
     "color red 0.5 green 0.25 filter 0.125 transmit 0.5",
@@ -183,7 +183,7 @@ const POINTS: [DVec3; 5] = [
     DVec3::new(-12.37, 5.61, 8.53),
 ];
 
-/// A program to compare with; without it the caller skips, unless the environment requires all tools.
+/// A program to compare with; without it the caller skips its test, unless the environment requires all tools.
 fn tool(name: &str) -> Option<PathBuf> {
     let path = std::env::var_os("PATH")?;
     let found = std::env::split_paths(&path)
@@ -272,7 +272,7 @@ fn pigments_have_povrays_colors() {
 fn transformations_move_what_stands_before_them() {
     let position = |items: &str| {
         let texture = texture(items);
-        // Where the gradient's value is 1/4: the value at the origin tells how far it was moved.
+        // The value of the gradient is 1/4 here; the value at the origin shows how far it was moved.
         color_at(&texture, DVec3::new(0.25, 0.0, 0.0)).rgb.r
     };
     let near = |a: f64, b: f64| assert!((a - b).abs() < 1e-4, "{a} is not {b}");
@@ -286,9 +286,9 @@ fn transformations_move_what_stands_before_them() {
         position("texture { translate -0.5*x pigment { gradient x } }"),
         0.25,
     );
-    // The object's own space: what is written before a motion of the object moves along ...
+    // In the object's own space, a texture before a transformation of the object moves with it ...
     near(position("pigment { gradient x } translate -0.5*x"), 0.25);
-    // ... and what is written after it stands still, so it is moved back in the object's space.
+    // ... and one after it does not, so in the object's space it moves back.
     near(position("translate -0.5*x pigment { gradient x }"), 0.75);
     near(
         position("scale 2 translate -0.5*x pigment { gradient x }"),
@@ -321,7 +321,7 @@ fn what_follows_changes_what_was_named() {
         colors,
         [Color::new(1.0, 0.0, 0.0), Color::new(0.0, 1.0, 0.0)]
     );
-    // A name alone is shared.
+    // A single name is shared.
     let both = textures(&format!(
         "{declared} sphere {{ 0, 1 texture {{ T }} }} box {{ 0, 1 texture {{ T }} }}"
     ));
@@ -441,7 +441,7 @@ fn finishes() {
         (Color::BLACK, Color::gray(0.9), true)
     );
     assert_eq!(f("reflection 0.3").reflection.min, Color::gray(0.3));
-    // The albedo counts with the brilliance that follows.
+    // The albedo depends on the brilliance that follows.
     assert_eq!(f("diffuse albedo 0.5 brilliance 3").diffuse, 1.0);
 }
 
@@ -563,7 +563,7 @@ fn mistakes_have_a_line_and_advice() {
     assert!(!errors("sphere { 0, 1 pigment { color_map { [0 rgb 1] 3 } } }").is_empty());
 }
 
-/// A BMP of 2 x 1 texels with a palette whose entries are the same colour.
+/// A BMP of 2 x 1 texels with a palette whose entries have the same colour.
 fn picture_with_a_palette() -> Vec<u8> {
     let mut bytes = b"BM".to_vec();
     let (palette, row) = ([9u8, 9, 9, 0].repeat(2), [0u8, 1, 0, 0]);
@@ -607,7 +607,7 @@ fn material_maps_choose_by_the_index_in_a_palette() {
     assert_eq!(seen(0.75), Color::new(0.0, 1.0, 0.0));
 }
 
-/// POV-Ray 3.7 shows the second of `tiles` where a checker has its first colour.
+/// POV-Ray 3.7 shows the second texture of `tiles` where a checker has its first colour.
 #[test]
 fn tiles_are_the_other_way_round_than_a_checker() {
     let text = "sphere { 0, 1 texture { tiles texture { pigment { rgb x } } tile2 texture { pigment { rgb y } } } }";
@@ -622,8 +622,8 @@ fn tiles_are_the_other_way_round_than_a_checker() {
     assert_eq!(colors, [[0.0, 1.0, 0.0], [1.0, 0.0, 0.0]]);
 }
 
-/// A picture of one grey texel of code 128 in three formats: BMP, whose codes are sRGB usually, PPM, which doesn't say, and HDR,
-/// which is linear.
+/// A picture of one grey texel with code 128 in three formats: BMP, whose codes are usually sRGB; PPM, which doesn't specify
+/// them; and HDR, which is linear.
 fn one_texel() -> MemoryHost {
     let mut bmp =
         b"BM\x3a\0\0\0\0\0\0\0\x36\0\0\0\x28\0\0\0\x01\0\0\0\x01\0\0\0\x01\0\x18\0".to_vec();
@@ -650,7 +650,7 @@ fn red_of(pigment: &str, header: &str) -> f64 {
     color_at(texture, DVec3::splat(0.5)).rgb.r
 }
 
-/// What POV-Ray 3.7 does with the codes of pictures: by version, `assumed_gamma` and what the format says.
+/// How POV-Ray 3.7 converts the codes of pictures: by version, `assumed_gamma` and the format's own specification.
 #[test]
 fn image_maps_of_scenes_that_are_not_linear_have_povrays_colours() {
     let code = 128.0 / 255.0;
@@ -661,7 +661,7 @@ fn image_maps_of_scenes_that_are_not_linear_have_povrays_colours() {
     let set = |version: &str, gamma: &str| {
         format!("#version {version}; global_settings {{ assumed_gamma {gamma} }}")
     };
-    // The numbers of BMP, PPM, HDR, and of the BMP with `gamma 2.2`.
+    // The values of BMP, PPM, HDR, and of the BMP with `gamma 2.2`.
     let table = [
         (String::new(), [code, code, float, raised]),
         ("#version 3.6;".to_owned(), [code, code, float, raised]),
@@ -697,11 +697,11 @@ fn image_maps_of_scenes_that_are_not_linear_have_povrays_colours() {
                 "{header} {picture}: {got} is not {expected}"
             );
         }
-        // Data are their codes always.
+        // Data always use the codes.
         let pattern = "image_pattern { bmp \"p.bmp\" } color_map { [0 rgb 0] [1 rgb 1] }";
         assert!((red_of(pattern, &header) - code).abs() < 1e-6, "{header}");
     }
-    // What is said behind the picture doesn't change it.
+    // A setting after the picture has no effect on it.
     let late = "#version 3.7; #declare P = pigment { image_map { bmp \"p.bmp\" } } global_settings { assumed_gamma 2.2 }";
     assert!((red_of("P", late) - linear).abs() < 1e-6);
 }
@@ -721,7 +721,7 @@ fn srgb_colours_are_numbers_of_the_scene() {
     }
 }
 
-/// As POV-Ray 3.7 has it: a pigment of one colour remembers where it has been put, and what takes its place is there, too.
+/// As in POV-Ray 3.7, a uniform pigment remembers its transformation, which also applies to a pattern that replaces it.
 #[test]
 fn a_pigment_written_over_a_moved_colour_is_where_the_colour_was() {
     let at = |text: &str, x: f64| {
@@ -729,7 +729,7 @@ fn a_pigment_written_over_a_moved_colour_is_where_the_colour_was() {
         color_at(&found[0], DVec3::new(x, 0.5, 0.5)).rgb.r
     };
     let pattern = "pigment { gradient x color_map { [0.5 rgb 0] [0.5 rgb 1] } }";
-    // The texture is in the object's own space; its map is taken into the world with it.
+    // The texture is in the object's own space; its transformation to the world includes that of the object.
     let over = format!(
         "#declare W = box {{ -9, 9 pigment {{ rgb y }} scale 2 }} object {{ W {pattern} }}"
     );
@@ -742,7 +742,7 @@ fn a_pigment_written_over_a_moved_colour_is_where_the_colour_was() {
     assert_eq!([0.2, 0.3].map(|x| at(&fresh, x)), [0.0, 1.0]);
 }
 
-/// As POV-Ray 3.7 has it: a pattern alone keeps the map that is there, and the colours of blocks are a map, too.
+/// As in POV-Ray 3.7, a pattern without a map keeps the existing map, and the colours of blocks count as a map.
 #[test]
 fn a_pattern_over_a_pigment_keeps_its_map() {
     let declared = "#declare P = pigment { gradient x color_map { [0 rgb x] [1 rgb z] } }

@@ -1,11 +1,11 @@
-//! The scenes of the gallery, written in other ways that mean the same: they must give the same scene.
+//! The scenes of the gallery, rewritten without changing their meaning: they must give the same scene.
 
 mod common;
 
 use std::path::{Path, PathBuf};
 use strahl_sdl::{MemoryHost, Options, Source, parse};
 
-/// A scene as it is described, without places and names, or its first error.
+/// The description of a scene without places and names, or its first error.
 fn description(host: &mut MemoryHost, text: impl Into<Vec<u8>>) -> Result<String, String> {
     let parsed = parse(Source::new("test.pov", text), &Options::default(), host);
     let Some(mut scene) = parsed.scene else {
@@ -19,7 +19,7 @@ fn description(host: &mut MemoryHost, text: impl Into<Vec<u8>>) -> Result<String
     Ok(text.replace("name: None", ""))
 }
 
-/// A text without the parts that begin with one text and end with a character.
+/// A text without the parts that begin with `begin` and end with the character `end`.
 fn without(text: &str, begin: &str, end: char) -> String {
     let mut pieces = text.split(begin);
     let mut out = pieces.next().unwrap_or("").to_owned();
@@ -29,7 +29,7 @@ fn without(text: &str, begin: &str, end: char) -> String {
     out
 }
 
-/// The words, numbers, strings and signs of a scene, comments left out; a `#` with its word is one.
+/// The words, numbers, strings and signs of a scene, without comments; a `#` with its word is one token.
 fn tokens(text: &str) -> Vec<&str> {
     let bytes = text.as_bytes();
     let is_name = |b: u8| b.is_ascii_alphanumeric() || b == b'_';
@@ -101,7 +101,7 @@ fn spaced(tokens: &[&str]) -> String {
     out
 }
 
-/// The same on as few lines and with as few blanks as can be.
+/// The tokens with as few lines and blanks as possible.
 fn dense(tokens: &[&str]) -> String {
     let mut out = String::new();
     for token in tokens {
@@ -149,7 +149,7 @@ const OBJECTS: &[&str] = &[
     "triangle",
 ];
 
-/// Puts `before` and `after` around each object that stands by itself; `N` in them is its number.
+/// Puts `before` and `after` around each object that is a statement; `N` in them is replaced by its number.
 fn around(tokens: &[&str], before: &str, after: &str) -> String {
     let mut out = String::new();
     let (mut open, mut count, mut inside) = (0usize, 0, false);
@@ -214,7 +214,7 @@ fn scenes_written_in_other_ways_are_the_same() {
         let text = std::fs::read_to_string(path).expect("UTF-8");
         let mut host = host();
         let Ok(expected) = description(&mut host, text.clone()) else {
-            // A font that is not there, for example.
+            // Some scenes have errors here, for example a missing font.
             return (0, vec![]);
         };
         let tokens = tokens(&text);

@@ -1,4 +1,4 @@
-//! What lights, cameras, fog and settings become, and what is said of them.
+//! Lights, cameras, fog and settings: their descriptions, and the messages about them.
 
 mod common;
 

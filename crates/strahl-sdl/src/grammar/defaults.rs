@@ -9,19 +9,19 @@ use strahl_shade::pov_finish::PovFinish;
 /// State that the grammar keeps between statements.
 #[derive(Debug, Default)]
 pub struct State {
-    /// What `#default` has set; objects begin with it.
+    /// The texture that `#default` has set; objects begin with it.
     pub default_texture: Texture,
     /// Declared objects that are used as instances.
     pub(super) shared: super::objects::Shared,
-    /// What `global_settings` has set.
+    /// The settings of `global_settings`.
     pub global: super::GlobalSettings,
     /// The finish read last.
     pub(super) last_finish: Arc<PovFinish>,
-    /// The materials made, to be shared.
+    /// Materials to be shared.
     pub(super) materials: KnownMaterials,
-    /// How many objects have been made.
+    /// The number of objects created.
     pub(super) objects: u64,
-    /// How many parts of textures and meshes have been made.
+    /// The number of parts of textures and meshes created.
     pub(super) parts: u64,
     /// The pictures read so far.
     pub(super) pictures: Vec<KnownPicture>,
@@ -33,7 +33,7 @@ pub struct State {
 pub(crate) fn default_items(p: &mut Parser<'_>) -> PResult<()> {
     p.items("`#default`", |p, token| {
         let mut texture = p.state.default_texture.clone();
-        // What is set here is no layer yet.
+        // The default texture is not a layer.
         texture.written = false;
         if matches!(
             token.word(),

@@ -6,12 +6,12 @@ use std::sync::{Arc, OnceLock};
 use strahl_math::Transform;
 use strahl_scene::{CsgOp, Object, ObjectKind};
 
-/// An object while it is read: the scene's object with additional data.
+/// An object being read: the scene's object with additional data.
 #[derive(Clone, Debug)]
 pub struct Entity {
-    /// The object. Its material is that of `texture`; without one it is left to the parent or the defaults.
+    /// The object. Its material is that of `texture`; without one, the parent or the default decides.
     pub object: Object,
-    /// The texture, to be modified where the object is used again; it lives in the object's own space.
+    /// The texture, kept so that a later use of the object can modify it; it is in the object's own space.
     pub texture: Option<Texture>,
 }
 
@@ -25,17 +25,17 @@ impl From<Object> for Entity {
 }
 
 impl Entity {
-    /// An object of which no visible part is left: a union without children.
+    /// An object without a visible part: a union without children.
     pub(crate) fn nothing() -> Self {
         Object::csg(CsgOp::Union, vec![]).into()
     }
 
-    /// Moves the object, after the transformations it has.
+    /// Transforms the object, after its other transformations.
     pub(crate) fn transform(&mut self, map: &Transform) {
         transform(&mut self.object, map);
     }
 
-    /// From the object's own space to that of its parent.
+    /// The transformation from the object's own space to that of its parent.
     pub(crate) fn placement(&self) -> Transform {
         self.object
             .transform
@@ -45,7 +45,7 @@ impl Entity {
     }
 }
 
-/// Moves an object in place.
+/// Transforms an object in place.
 pub(crate) fn transform(object: &mut Object, map: &Transform) {
     match &mut object.transform {
         Some(before) => **before = before.then(map),
@@ -54,26 +54,26 @@ pub(crate) fn transform(object: &mut Object, map: &Transform) {
     }
 }
 
-/// Whether no surface of an object is left.
+/// Whether an object has no surface.
 pub(crate) fn is_nothing(object: &Object) -> bool {
     matches!(&object.kind, ObjectKind::Csg { children, .. } if children.0.is_empty())
 }
 
-/// An object with a name: read once, used any number of times.
+/// A declared object: read once, used any number of times.
 #[derive(Debug)]
 pub struct Declared {
     pub(crate) entity: Entity,
     pub(crate) tally: Tally,
-    /// How often it has been used.
+    /// The number of uses so far.
     pub(crate) uses: AtomicU32,
     /// Its number among the objects whose uses share one group.
     pub(crate) shared: OnceLock<u32>,
-    /// Answers `inside`, `trace` and the extents; built when it is needed first.
+    /// Answers `inside`, `trace` and the extents; built on first use.
     pub(crate) query: OnceLock<Option<Arc<Query>>>,
 }
 
 impl Declared {
-    /// Names an object; `shared` are the objects that its instances stand for.
+    /// Declares an object; `shared` are the objects that its instances refer to.
     pub(super) fn new(entity: Entity, shared: &Shared) -> Self {
         Self {
             tally: Tally::of(&entity.object, shared),

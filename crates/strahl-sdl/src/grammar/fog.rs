@@ -7,10 +7,10 @@ use strahl_math::noise::Turbulence;
 use strahl_scene::{Fog, FogKind, FogTurbulence};
 use strahl_shade::{Color, ColorFt};
 
-/// `fog { ... }` as a statement; several fill the scene together.
+/// `fog { ... }` as a statement; a scene may have several fogs, which all act.
 pub(super) fn fog_statement(p: &mut Parser<'_>) -> PResult<()> {
     let fog = p.fog()?;
-    // Fog of distance 0 is none.
+    // A fog with distance 0 has no effect.
     if fog.distance > 0.0 {
         p.scene.fogs.push(fog);
     }
@@ -70,7 +70,7 @@ impl Draft {
 }
 
 impl Parser<'_> {
-    /// `{ ... }` behind `fog`.
+    /// `{ ... }` after `fog`.
     pub(super) fn fog(&mut self) -> PResult<Fog> {
         let place = self.place();
         let mut draft = Draft::new();

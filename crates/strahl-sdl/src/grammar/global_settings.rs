@@ -5,13 +5,13 @@ use std::sync::Arc;
 use strahl_scene::{Background, WorkingSpace};
 use strahl_shade::Color;
 
-/// `max_trace_level` of scenes that set none.
+/// The default of `max_trace_level`.
 const TRACE_LEVEL: u32 = 5;
 
-/// What `global_settings` has set so far; the rest are the language's defaults, which depend on its version.
+/// The settings of `global_settings` so far; for the rest, the language's defaults apply, which depend on its version.
 #[derive(Debug, Default)]
 pub struct GlobalSettings {
-    /// Whether the scene names its version; scenes that do not are old.
+    /// Whether the scene has a `#version`; scenes without one are old.
     pub versioned: bool,
     /// `assumed_gamma`
     pub working_space: Option<WorkingSpace>,
@@ -77,7 +77,8 @@ impl Parser<'_> {
                 let waves = self.whole_setting("number_of_waves", 10_000)?;
                 self.state.global.number_of_waves = Some(waves);
             }
-            // No table of intersections can overflow here, and a unit has no size without subsurface light.
+            // Neither has an effect: there is no table of intersections that could overflow, and units matter only for subsurface
+            // light.
             Word::MaxIntersections | Word::MmPerUnit => {
                 self.take(token)?;
                 self.float()?;
@@ -90,7 +91,7 @@ impl Parser<'_> {
                     "hf_gray_16 has no effect: the format of the picture is chosen by its name",
                 );
             }
-            // Text is UTF-8 in any case, of which ASCII is a part.
+            // Text is always UTF-8, which includes ASCII.
             Word::Charset => {
                 self.take(token)?;
                 let set = self.next()?;
@@ -114,7 +115,7 @@ impl Parser<'_> {
         Ok(())
     }
 
-    /// A number or `srgb` behind `assumed_gamma`.
+    /// A number or `srgb` after `assumed_gamma`.
     fn assumed_gamma(&mut self) -> PResult<()> {
         let place = self.place();
         let space = self.transfer_function("assumed_gamma")?;
@@ -142,7 +143,7 @@ impl Parser<'_> {
         }
     }
 
-    /// A whole number from 1 to `most`.
+    /// An integer from 1 to `most`.
     fn whole_setting(&mut self, name: &str, most: u32) -> PResult<u32> {
         let value = self.float()?;
         if value >= 1.0 && value < f64::from(most) + 1.0 {
@@ -152,7 +153,7 @@ impl Parser<'_> {
         Err(self.fail(place, format!("{name} must be 1 to {most}, not {value}")))
     }
 
-    /// Settles at the end of the scene the settings that depend on the language version.
+    /// Sets at the end of the scene the settings that depend on the language version.
     pub(super) fn settle(&mut self) {
         let (working_space, old) = (self.working_space(), self.before_3_7());
         if let Some(Background::Sky(sky)) = &mut self.scene.background {
@@ -167,14 +168,14 @@ impl Parser<'_> {
         settings.working_space = working_space;
     }
 
-    /// Whether the version so far is older than 3.7, which a scene without a version is.
+    /// Whether the current version is older than 3.7, as in a scene without a version.
     pub(crate) fn before_3_7(&self) -> bool {
         self.version < 3.7 || !self.state.global.versioned
     }
 
-    /// The numbers that colours are given in, by what is said so far.
+    /// The working space of colours, according to the settings so far.
     ///
-    /// Scenes from before 3.7 that say nothing mean the numbers of the screen. (Of several versions the last one decides.)
+    /// Scenes from before 3.7 without `assumed_gamma` use the numbers of the display. (Of several versions the last one counts.)
     pub(crate) fn working_space(&self) -> WorkingSpace {
         let otherwise = if self.before_3_7() {
             WorkingSpace::Srgb
@@ -184,7 +185,7 @@ impl Parser<'_> {
         self.state.global.working_space.unwrap_or(otherwise)
     }
 
-    /// A number of `max_trace_level`.
+    /// The number after `max_trace_level`.
     pub(crate) fn trace_level(&mut self) -> PResult<()> {
         let level = self.whole_setting("max_trace_level", 256)?;
         self.state.global.trace_level = Some(level);

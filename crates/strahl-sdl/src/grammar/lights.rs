@@ -7,7 +7,7 @@ use strahl_math::{DVec3, Transform, det};
 use strahl_scene::{CsgOp, LightMask, Object, ObjectExt, ObjectKind, SceneLight};
 use strahl_shade::{AreaLight, Color, Falloff, Light, LightKind};
 
-/// What is nearer to a light casts no shadow in it (measured with POV-Ray 3.7): so lights may lie in surfaces.
+/// Objects closer to a light than this cast no shadow in its light (measured with POV-Ray 3.7), so lights may lie in surfaces.
 const LIGHT_CLEARANCE: f64 = 1e-3;
 
 /// `light_source { ... }` as a statement.
@@ -22,7 +22,7 @@ pub(super) fn light_statement(p: &mut Parser<'_>) -> PResult<()> {
     Ok(())
 }
 
-/// `light_source { position colour ... }`: a light, or the union of a light and what it looks like.
+/// `light_source { position colour ... }`: a light, or the union of a light and its `looks_like` object.
 pub(super) fn light_source(p: &mut Parser<'_>) -> PResult<Entity> {
     let place = p.place();
     p.braces(|p| {
@@ -35,7 +35,7 @@ pub(super) fn light_source(p: &mut Parser<'_>) -> PResult<Entity> {
             Some(named) if is_light(&named.entity.object) => {
                 return p.named_light(&named.entity.object, place).map(Entity::from);
             }
-            // Any object may stand in the braces of any other.
+            // A declared object may be in the braces of any object.
             Some(named) => {
                 let mut entity = p.declared_object(&named, name, place);
                 p.modifiers(&mut entity)?;
@@ -50,7 +50,7 @@ pub(super) fn light_source(p: &mut Parser<'_>) -> PResult<Entity> {
     })
 }
 
-/// `light_group { lights and objects }`: lights that shine on these objects only.
+/// `light_group { lights and objects }`: the lights illuminate only these objects.
 pub(super) fn light_group(p: &mut Parser<'_>) -> PResult<Entity> {
     let place = p.place();
     p.braces(|p| {
@@ -77,7 +77,7 @@ pub(super) fn light_group(p: &mut Parser<'_>) -> PResult<Entity> {
     })
 }
 
-/// Adds a light, and what it looks like as a part of its own: the light itself must be one of the group.
+/// Adds a light, and its `looks_like` object as a separate part, because the light itself must be a direct part of the group.
 fn add_lamp(mut lamp: Object, parts: &mut Vec<Object>) {
     match &mut lamp.kind {
         ObjectKind::Csg { children, .. } => {
@@ -89,7 +89,7 @@ fn add_lamp(mut lamp: Object, parts: &mut Vec<Object>) {
     }
 }
 
-/// Whether a light is what an object consists of: alone, or with its looks.
+/// Whether an object is a light, alone or with its `looks_like` object.
 fn is_light(object: &Object) -> bool {
     match &object.kind {
         ObjectKind::Light(_) => true,
@@ -104,7 +104,7 @@ fn is_light(object: &Object) -> bool {
     }
 }
 
-/// The form of the cone, beam or plane.
+/// The shape of the light: cone, beam or plane.
 #[derive(Clone, Copy, PartialEq)]
 enum Form {
     Point,
@@ -112,7 +112,7 @@ enum Form {
     Cylinder,
 }
 
-/// A light being read. Transformations move what is known when they come.
+/// A light being read. A transformation applies to the items before it.
 struct Draft {
     form: Form,
     parallel: bool,
@@ -128,7 +128,7 @@ struct Draft {
     fogged: bool,
     area: Option<AreaLight>,
     looks_like: Option<Object>,
-    /// What the light has to cross.
+    /// The object that the light must pass through.
     projected_through: Option<Object>,
 }
 
@@ -166,7 +166,7 @@ impl Draft {
         }
     }
 
-    /// The options of an area light may come before the light itself; they count only with it.
+    /// The options of an area light may precede `area_light`; they have an effect only with it.
     fn area(&mut self) -> &mut AreaLight {
         self.area
             .get_or_insert(AreaLight::new(DVec3::ZERO, DVec3::ZERO, 1, 1))
@@ -185,7 +185,7 @@ impl Draft {
                 outer: self.falloff.unwrap_or(1.0),
                 tightness: self.tightness,
             },
-            // Seen along parallel light, every point is in the middle of the cone.
+            // For a parallel light, every point is in the middle of the cone.
             _ if self.parallel => LightKind::Parallel {
                 position,
                 direction,
@@ -203,7 +203,7 @@ impl Draft {
 }
 
 impl Parser<'_> {
-    /// What may follow a declared light: transformations move it as a whole, other items stand in its declaration.
+    /// Items after a declared light: transformations move it as a whole, other items are allowed only in its declaration.
     fn named_light(&mut self, named: &Object, place: Place) -> PResult<Object> {
         let mut object = named.clone();
         object.span = self.span_at(place);
@@ -241,7 +241,7 @@ impl Parser<'_> {
         match word {
             Word::Spotlight | Word::Cylinder | Word::Parallel | Word::Shadowless => {
                 self.take(token)?;
-                // Of spotlight, cylinder and shadowless the last word counts (measured).
+                // Of spotlight, cylinder and shadowless the last keyword counts (measured).
                 (draft.form, draft.shadowless) = match word {
                     Word::Spotlight => (Form::Spot, false),
                     Word::Cylinder => (Form::Cylinder, false),
@@ -275,7 +275,7 @@ impl Parser<'_> {
                 self.take(token)?;
                 draft.looks_like = Some(self.looks_like()?.translated(draft.position));
             }
-            // There are no media for the light to meet.
+            // There are no scattering media that could interact with the light.
             Word::MediaInteraction => {
                 self.take(token)?;
                 self.switched()?;
@@ -313,7 +313,7 @@ impl Parser<'_> {
             Word::Adaptive => {
                 self.take(token)?;
                 let level = self.float()?;
-                // The cast saturates; deeper than 32 halvings no grid goes.
+                // The cast saturates; no grid can be divided more than 32 times.
                 draft.area().adaptive = Some((level as u32).min(32));
             }
             Word::Jitter => {
@@ -350,7 +350,7 @@ impl Parser<'_> {
         ))
     }
 
-    /// `{ object }` behind `looks_like`; it casts no shadow.
+    /// `{ object }` after `looks_like`; it casts no shadow.
     fn looks_like(&mut self) -> PResult<Object> {
         let mut object = super::objects::object(self)?.object;
         object.visibility.shadow = false;
@@ -378,7 +378,7 @@ impl Parser<'_> {
                 power: draft.fade_power,
             };
         }
-        // Without points to tell apart the options mean nothing.
+        // A grid of a single point has no area.
         light.area = draft.area.filter(|a| a.size_1 > 1 || a.size_2 > 1);
         if let Some(area) = &mut light.area {
             let reach = (draft.point_at - draft.position).length();

@@ -1,9 +1,9 @@
-//! What scenes are made of: statements, objects, and everything inside their braces.
+//! The grammar of scenes: statements, objects, and everything inside their braces.
 //!
-//! The grammar pulls tokens from the [`Parser`] and does not know whether they come from the file, a macro, a loop or an
-//! include. It is table driven: a new object is a file in `objects/` with a function `fn(&mut Parser) -> PResult<Object>`, and
-//! a line in the table there. The other tables: [`STATEMENTS`] here, things that can be declared in `thing.rs`, what may stand
-//! inside of every object in `objects/modifiers.rs`.
+//! The grammar pulls tokens from the [`Parser`] and does not know whether they come from the file, a macro, a loop or an include.
+//! It is table driven: a new object is a file in `objects/` with a function `fn(&mut Parser) -> PResult<Object>`, and a line in
+//! the table there. The other tables are [`STATEMENTS`] here, the declarable things in `thing.rs`, and the modifiers of all
+//! objects in `objects/modifiers.rs`.
 
 mod background;
 mod camera;
@@ -36,10 +36,10 @@ use crate::token::{Kind, Token};
 use entity::is_nothing;
 use texture::{fill_parts, is_bare};
 
-/// Reads a statement; its word is already taken.
+/// Reads a statement whose keyword is taken.
 type StatementParser = fn(&mut Parser<'_>) -> PResult<()>;
 
-/// Statements that are no objects.
+/// Statements other than objects.
 const STATEMENTS: &[(Word, StatementParser)] = &[
     (Word::Background, background::background),
     (Word::Camera, camera::camera_statement),
@@ -51,7 +51,7 @@ const STATEMENTS: &[(Word, StatementParser)] = &[
     (Word::SkySphere, sky::sky_statement),
 ];
 
-/// `media { ... }` as a statement: what fills all space outside of the objects.
+/// `media { ... }` as a statement: the medium outside of all objects.
 fn media(p: &mut Parser<'_>) -> PResult<()> {
     p.warn_hint(
         p.place(),
@@ -61,7 +61,7 @@ fn media(p: &mut Parser<'_>) -> PResult<()> {
     p.skip_body()
 }
 
-/// A table of functions by word, so that finding one is a single step.
+/// A table of functions indexed by keyword.
 const fn by_word<F: Copy, const N: usize>(table: [(Word, F); N]) -> [Option<F>; Word::ALL.len()] {
     let mut out = [None; Word::ALL.len()];
     let mut row = 0;
@@ -72,13 +72,13 @@ const fn by_word<F: Copy, const N: usize>(table: [(Word, F); N]) -> [Option<F>; 
     out
 }
 
-/// The words that stand in such a table.
+/// The keywords in such a table.
 fn words_of<F>(table: &'static [Option<F>]) -> impl Iterator<Item = Word> {
     let rows = Word::ALL.iter().zip(table);
     rows.filter_map(|((word, _, _), row)| row.as_ref().map(|_| *word))
 }
 
-/// Whether a statement can begin with this token: where to go on after an error.
+/// Whether a statement can begin with this token, so that parsing can continue here after an error.
 pub(crate) fn opens_statement(token: Token) -> bool {
     token
         .word()
@@ -86,7 +86,7 @@ pub(crate) fn opens_statement(token: Token) -> bool {
 }
 
 impl Parser<'_> {
-    /// Reads the whole scene; goes on after errors with the next statement.
+    /// Reads the whole scene; continues after errors with the next statement.
     pub(crate) fn run(&mut self) {
         while !self.is_fatal() {
             self.between_statements(true);
@@ -104,7 +104,7 @@ impl Parser<'_> {
         self.between_statements(false);
         match token.kind {
             Kind::End => return Ok(false),
-            // A semicolon too many does no harm.
+            // An extra semicolon is harmless.
             Kind::Semicolon => {
                 self.take(token)?;
                 return Ok(true);
@@ -142,7 +142,7 @@ impl Parser<'_> {
         Ok(true)
     }
 
-    /// Behind the name of an object that stands by itself nothing can change it.
+    /// Checks that no modifier follows the bare name of an object.
     fn no_modifier(&mut self, name: Token) -> PResult<()> {
         let token = self.raw();
         let modifies = token.word().is_some_and(|word| {

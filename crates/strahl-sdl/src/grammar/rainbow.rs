@@ -6,8 +6,8 @@ use strahl_math::DVec3;
 use strahl_scene::Rainbow;
 use strahl_shade::pigment::BlendMap;
 
-/// The arc and its strong part that a scene does not name: POV-Ray takes 360 radians (as measured), so the whole ring is seen and
-/// hardly fades even where only the strong part is named.
+/// The default of `arc_angle` and `falloff_angle`: POV-Ray uses 360 radians (as measured), so the whole ring is visible and
+/// hardly fades even if only `falloff_angle` is set.
 const WHOLE: f64 = 360.0 * 180.0 / std::f64::consts::PI;
 
 /// `rainbow { ... }` as a statement; a scene may have several.
@@ -20,7 +20,7 @@ pub(super) fn rainbow_statement(p: &mut Parser<'_>) -> PResult<()> {
 }
 
 impl Parser<'_> {
-    /// `{ ... }` or `{ Name ... }` behind `rainbow`.
+    /// `{ ... }` or `{ Name ... }` after `rainbow`.
     pub(super) fn rainbow(&mut self) -> PResult<Rainbow> {
         let place = self.place();
         let mut rainbow = Rainbow {
@@ -92,7 +92,7 @@ impl Parser<'_> {
                 match word {
                     Word::Angle => rainbow.angle = value,
                     Word::Width => rainbow.width = value,
-                    // Without a length nothing is before it.
+                    // A distance of 0 or less counts as none.
                     Word::Distance if value > 0.0 => rainbow.distance = value,
                     Word::Distance => {}
                     Word::Jitter => rainbow.jitter = value,

@@ -1,16 +1,16 @@
-//! Passing what is not supported yet.
+//! Skips features that are not supported.
 
 use crate::keywords::Word;
 use crate::parser::{PResult, Parser};
 use crate::token::{Kind, Token};
 
-/// The blocks that a word may stand in.
+/// The blocks in which a word is allowed.
 type Blocks = &'static [&'static str];
 
 /// Blocks of patterns.
 const PATTERNED: Blocks = &["`pigment`", "`normal`", "`texture`", "`pattern`"];
 
-/// Blocks of patterns in which their parameters cannot be mistaken for anything else.
+/// Blocks of patterns in which the words of pattern parameters are unambiguous.
 const PARAMETERS: Blocks = &["`pigment`", "`normal`", "`pattern`"];
 
 /// Blocks of maps.
@@ -21,8 +21,8 @@ const MAPS: Blocks = &[
     "`texture_map`",
 ];
 
-/// THE table of features that are read past with a warning, with the blocks that they belong to. Whatever else cannot be taken is an
-/// error: a picture must not lack something in silence.
+/// THE table of features that are skipped with a warning, with the blocks that they belong to. Everything else that cannot be
+/// read is an error, because a picture must not lack something silently.
 const OPEN: &[(Word, Blocks)] = &[
     // Interiors of versions before 3.1.
     (Word::Caustics, &["`finish`"]),
@@ -75,7 +75,7 @@ const OPEN: &[(Word, Blocks)] = &[
 ];
 
 impl Parser<'_> {
-    /// Skips `{ ... }`, directives inside carried out.
+    /// Skips `{ ... }`, but runs the directives inside.
     pub(crate) fn skip_body(&mut self) -> PResult<()> {
         let token = self.expect(Kind::LeftBrace)?;
         let mut open = 1usize;
@@ -92,11 +92,11 @@ impl Parser<'_> {
         Ok(())
     }
 
-    /// Skips an item that is not supported yet: its word, then everything up to the next word, closing brace or a body in braces.
-    /// The warning says that the picture will lack it.
+    /// Skips an unsupported item: its keyword, then everything up to the next keyword or closing brace, or a block in braces. The
+    /// warning says that the picture will lack it.
     ///
     /// # Errors
-    /// If the item is none of those that [`OPEN`] lists for the block.
+    /// If the item is not listed for the block in [`OPEN`].
     pub(crate) fn skip_item(&mut self, item: Token, of: &str) -> PResult<()> {
         let is_open = |word: Word| {
             let row = OPEN.iter().find(|(open, _)| *open == word);

@@ -17,14 +17,14 @@ pub(super) fn sky_statement(p: &mut Parser<'_>) -> PResult<()> {
 }
 
 impl Parser<'_> {
-    /// `{ ... }` or `{ Name ... }` behind `sky_sphere`.
+    /// `{ ... }` or `{ Name ... }` after `sky_sphere`.
     pub(super) fn sky_sphere(&mut self) -> PResult<SkySphere> {
         let mut sky = SkySphere {
             layers: vec![],
             transform: Transform::IDENTITY,
             emission: Color::WHITE,
             behind: Color::BLACK,
-            // The scene's last version decides.
+            // The last version in the scene counts.
             tints_layers: true,
         };
         self.braces(|p| {

@@ -1,13 +1,13 @@
-//! How objects look: pigments, normals, finishes, textures, interiors.
+//! The look of objects: pigments, normals, finishes, textures, interiors.
 //!
-//! `pattern` is the table of patterns, which pigments, normals and textures share, `modifiers` what changes any of them, `maps` the
-//! lists of `[position thing]`. Everything is read straight into the types of `strahl_shade`; only [`Texture`], what an object
-//! carries, is of this crate.
+//! `pattern` is the table of patterns, which pigments, normals and textures share; `modifiers` reads the items that modify any
+//! pattern, `maps` the lists of `[position thing]`. Everything is read directly into the types of `strahl_shade`; only
+//! [`Texture`], the look of an object, is defined in this crate.
 //!
-//! **Order and space.** A transformation moves what has been written before it, within its braces. A texture lives in the
-//! object's own space, inside of [`Object::transform`](strahl_scene::Object): whatever moves the object later moves the texture
-//! along, in copies, combinations and instances too. Only a texture that is written *after* a transformation of its object
-//! needs that transformation undone, by [`Texture::transformed`].
+//! **Order and space.** A transformation moves everything written before it within its braces. A texture is in the object's own
+//! space, inside of [`Object::transform`](strahl_scene::Object): a later transformation of the object moves its texture too, also
+//! in copies, CSG objects and instances. Only a texture that is written *after* a transformation of its object needs that
+//! transformation undone, by [`Texture::transformed`].
 
 mod bitmap;
 mod finish;
@@ -35,25 +35,25 @@ use strahl_math::Transform;
 use strahl_shade::interior::Interior;
 use strahl_shade::texture::{PlainTexture, Texture as Surface};
 
-/// What an object is covered with and filled with.
+/// The look of an object: its surface and its interior.
 #[derive(Clone, Debug, Default)]
 pub struct Texture {
-    /// What covers the surface.
+    /// The texture of the surface.
     pub surface: Arc<Surface>,
-    /// What covers it as seen from inside, if that is something else.
+    /// The texture of the surface as seen from inside, if it is another.
     pub inner_surface: Option<Arc<Surface>>,
-    /// What is inside.
+    /// The interior.
     pub interior: Option<Arc<Interior>>,
-    /// Whether `surface` has been written and is not the default: further textures are then laid over it.
+    /// Whether `surface` is written in the scene and is not the default: further textures are then layered over it.
     pub(super) written: bool,
-    /// Whether `uv_mapping` has been said for all that is written after it.
+    /// Whether `uv_mapping` was given, which applies to everything written after it.
     pub(super) uv_mapped: bool,
-    /// Where a surface that is the same everywhere has been put since it was written, which it can't tell itself: a pattern that is
-    /// written in place of its colour is put there, too.
+    /// The transformation of a uniform surface since it was written. The surface itself does not store it, but a pattern that
+    /// later replaces its colour is transformed by it.
     pub(super) placed: Option<Box<Transform>>,
 }
 
-/// Moves a texture. With `uv`, also what lies in surface coordinates; objects that are moved leave that alone.
+/// Transforms a texture. With `uv`, also its parts in surface coordinates, which do not follow the transformations of objects.
 fn transform(texture: &mut Surface, by: &Transform, uv: bool) {
     match texture {
         Surface::Plain(plain) => {
@@ -82,7 +82,7 @@ fn transform(texture: &mut Surface, by: &Transform, uv: bool) {
     }
 }
 
-/// Whether a texture is the same everywhere, so that moving it changes nothing.
+/// Whether a texture is uniform, so that transforming it changes nothing.
 fn is_uniform(texture: &Surface) -> bool {
     use strahl_shade::pigment::Pigment;
     match texture {
@@ -94,7 +94,7 @@ fn is_uniform(texture: &Surface) -> bool {
     }
 }
 
-/// The pigment, normal and finish that further items change: those of the uppermost layer.
+/// The pigment, normal and finish of the uppermost layer, which further items change.
 fn top_of(texture: &mut Surface) -> Option<&mut PlainTexture> {
     match texture {
         Surface::Plain(plain) => Some(plain),
@@ -104,7 +104,7 @@ fn top_of(texture: &mut Surface) -> Option<&mut PlainTexture> {
     }
 }
 
-/// The textures of `upper` over those of `lower`.
+/// The layers of `upper` over those of `lower`.
 fn layered(lower: Surface, upper: Surface) -> Surface {
     let layers = |texture| match texture {
         Surface::Layered(layers) => layers,
@@ -116,7 +116,7 @@ fn layered(lower: Surface, upper: Surface) -> Surface {
 }
 
 impl Texture {
-    /// The texture after a transformation of the space it lies in; what lies in surface coordinates stays.
+    /// The texture after a transformation of its space; parts in surface coordinates stay.
     #[must_use]
     pub fn transformed(&self, by: &Transform) -> Self {
         let moved = |surface: &Arc<Surface>| {
@@ -142,7 +142,7 @@ impl Texture {
         }
     }
 
-    /// Pigment, normal and finish of the uppermost layer; the defaults of the language for patterned textures.
+    /// Pigment, normal and finish of the uppermost layer; for patterned textures, the defaults of the language.
     pub(super) fn top(&self) -> &PlainTexture {
         static DEFAULT: LazyLock<PlainTexture> = LazyLock::new(PlainTexture::default);
         let mut texture = &*self.surface;
@@ -159,7 +159,7 @@ impl Texture {
         }
     }
 
-    /// Lays a texture over what has been written, or puts it in the place of the default.
+    /// Layers a texture over those written before, or replaces the default.
     fn cover(&mut self, p: &mut Parser<'_>, mut surface: Arc<Surface>) -> PResult<()> {
         if self.uv_mapped && !matches!(*surface, Surface::UvMapped(_)) {
             surface = Arc::new(Surface::UvMapped(Box::new(Surface::clone(&surface))));
@@ -177,11 +177,11 @@ impl Texture {
 }
 
 impl Parser<'_> {
-    /// If something stands here that says how an object looks or what it is filled with, reads it: `pigment`, `normal`,
-    /// `finish`, `texture`, `interior_texture`, `interior`, `material`, `uv_mapping`.
+    /// Reads an item of an object's look, if one follows: `pigment`, `normal`, `finish`, `texture`, `interior_texture`,
+    /// `interior`, `material`, `uv_mapping`.
     ///
     /// # Errors
-    /// If it is wrong.
+    /// If it is invalid.
     pub(super) fn texture_item(&mut self, texture: &mut Texture, token: Token) -> PResult<bool> {
         match token.word() {
             Some(Word::Pigment | Word::Normal | Word::Finish) => {
@@ -230,7 +230,7 @@ impl Parser<'_> {
 
     /// `pigment`, `normal` or `finish` with its block, changing the uppermost layer.
     ///
-    /// `placed` is where a pigment of one colour has been put since it was written.
+    /// `placed` is the transformation of a uniform pigment since it was written.
     fn plain_item(
         &mut self,
         surface: &mut Surface,

@@ -16,14 +16,14 @@ use strahl_shade::texture::Texture as Surface;
 
 macro_rules! things {
     ($($kind:ident($payload:ty) $text:literal)*) => {
-        /// What a name can stand for besides numbers, strings and arrays: each kind with its typed payload.
+        /// The value of a name other than numbers, strings and arrays: each kind with its typed payload.
         #[derive(Clone, Debug)]
         pub enum Thing {
             $(#[doc = $text] $kind(Arc<$payload>),)*
         }
 
         impl Thing {
-            /// What it is, in words, for messages.
+            /// Its kind in words, for messages.
             pub fn describe(&self) -> &'static str {
                 match self {
                     $(Self::$kind(_) => $text,)*
@@ -55,10 +55,10 @@ things! {
     TransformFunction(Transform) "a function made of a transformation"
 }
 
-/// Reads a thing; its word is already taken.
+/// Reads a thing; its keyword is taken.
 type ThingParser = fn(&mut Parser<'_>) -> PResult<Thing>;
 
-/// What can stand on the right of `#declare` besides objects.
+/// The things, other than objects, that can be on the right of `#declare`.
 static THINGS: [Option<ThingParser>; Word::ALL.len()] = by_word::<ThingParser, _>([
     (Word::Camera, |p| Ok(Thing::Camera(Arc::new(p.camera()?)))),
     (Word::ColorMap, color_map),
@@ -106,10 +106,10 @@ fn color_map(p: &mut Parser<'_>) -> PResult<Thing> {
 }
 
 impl Parser<'_> {
-    /// If a thing is written out here (`sphere { ... }`, `texture { ... }`), reads it.
+    /// Reads a thing that is written out (`sphere { ... }`, `texture { ... }`), if one follows.
     ///
     /// # Errors
-    /// If the thing is wrong.
+    /// If the thing is invalid.
     pub(crate) fn thing(&mut self, token: Token) -> PResult<Option<Thing>> {
         let word = token.word().map_or(usize::MAX, |w| w as usize);
         if let Some(parse) = THINGS.get(word).copied().flatten() {
@@ -121,10 +121,10 @@ impl Parser<'_> {
         Ok(declared.map(|d| Thing::Object(Arc::new(d))))
     }
 
-    /// If a name of a thing of one kind stands here, takes it and gives the thing.
+    /// Takes the name of a thing of one kind, if one follows, and returns the thing.
     ///
     /// # Errors
-    /// If a directive on the way fails.
+    /// If a directive before it fails.
     pub(crate) fn accept_thing<T>(
         &mut self,
         pick: impl FnOnce(&Thing) -> Option<&Arc<T>>,

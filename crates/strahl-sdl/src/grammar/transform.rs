@@ -5,10 +5,10 @@ use crate::token::{Kind, Token};
 use strahl_math::{DMat3, DVec3, Transform};
 
 impl Parser<'_> {
-    /// If a transformation stands here, reads it: `translate`, `rotate`, `scale`, `matrix`, `transform`.
+    /// Reads a transformation, if one follows: `translate`, `rotate`, `scale`, `matrix`, `transform`.
     ///
     /// # Errors
-    /// If what follows is no transformation, or it has no inverse.
+    /// If the transformation is invalid or has no inverse.
     pub(crate) fn transformation(&mut self, token: Token) -> PResult<Option<Transform>> {
         let word = match token.word() {
             Some(
@@ -27,7 +27,7 @@ impl Parser<'_> {
         Ok(Some(transform))
     }
 
-    /// What stands behind `translate` or `rotate`.
+    /// The vector after `translate` or `rotate`.
     fn finite_vector(&mut self, word: Word) -> PResult<DVec3> {
         let place = self.place();
         let vector = self.vector3()?;
@@ -38,7 +38,7 @@ impl Parser<'_> {
         Err(self.fail(place, message))
     }
 
-    /// Factors of zero count as 1, as the language has it, with a warning.
+    /// The vector after `scale`. Factors of zero count as 1, as in POV-Ray, with a warning.
     fn scale(&mut self) -> PResult<Transform> {
         let place = self.place();
         let mut factors = self.vector3()?;
@@ -80,7 +80,7 @@ impl Parser<'_> {
             .map_err(|e| self.fail(place, e.to_string()))
     }
 
-    /// `{ ... }` or a name behind `transform`; `inverse` turns everything before it around.
+    /// `{ ... }` or a name after `transform`; `inverse` inverts everything before it.
     pub(crate) fn transform_block(&mut self) -> PResult<Transform> {
         if let Some(named) = self.accept_transform()? {
             return Ok(named);

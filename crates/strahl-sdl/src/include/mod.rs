@@ -1,6 +1,6 @@
-//! The include files that are built in: our own library, compatible by name with POV-Ray's.
+//! The built-in include files: our own library, with the names of POV-Ray's.
 //!
-//! Files of the user with the same name win; see [`Host`](crate::Host).
+//! A user's file with the same name takes precedence; see [`Host`](crate::Host).
 
 use crate::keywords::Word;
 use crate::suggest::Candidate;
@@ -51,7 +51,7 @@ built_in! {
     "woods.inc"
 }
 
-/// The text of a built-in file; capital and small letters count the same, as scenes come from Windows too.
+/// The text of a built-in file; case is ignored, because scenes come from Windows too.
 pub(crate) fn find(name: &str) -> Option<(&'static str, &'static str)> {
     let known = FILES
         .iter()
@@ -59,7 +59,7 @@ pub(crate) fn find(name: &str) -> Option<(&'static str, &'static str)> {
     known.copied()
 }
 
-/// The name that our `functions.inc` gives to an internal function by its number.
+/// The name that our `functions.inc` gives to the internal function with this number.
 pub(crate) fn internal_function(number: u32) -> Option<&'static str> {
     let (_, text) = find("functions.inc")?;
     let body = format!("function {{ internal({number}) }}");
@@ -81,10 +81,10 @@ static DECLARED: LazyLock<Vec<(&str, &str)>> = LazyLock::new(|| {
         .collect()
 });
 
-/// Something that can be meant by a misspelt name, with the built-in file that declares it.
+/// A candidate for a misspelt name, with the built-in file that declares it.
 type Known<'a> = (Candidate<'a>, Option<&'static str>);
 
-/// All words of the language.
+/// All keywords.
 static WORDS: LazyLock<Vec<Known<'static>>> = LazyLock::new(|| {
     let words = Word::ALL.iter();
     words
@@ -100,12 +100,12 @@ static NAMES: LazyLock<Vec<Known<'static>>> = LazyLock::new(|| {
         .collect()
 });
 
-/// The words of the language, which can be meant by a name that is misspelt.
+/// The keywords, as candidates for a misspelt name.
 pub(crate) fn known_words<'a>() -> impl Iterator<Item = Known<'a>> {
     WORDS.iter().map(|&(known, file)| (known, file))
 }
 
-/// The names of the built-in files, which can be meant by one that is misspelt.
+/// The names in built-in files, as candidates for a misspelt name.
 pub(crate) fn known_names<'a>() -> impl Iterator<Item = Known<'a>> {
     NAMES.iter().map(|&(known, file)| (known, file))
 }

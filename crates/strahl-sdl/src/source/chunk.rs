@@ -5,21 +5,21 @@ use crate::token::Token;
 use std::sync::Arc;
 use strahl_scene::FileId;
 
-/// The tokens of a part of a file that nothing reaches into or out of; most files are one chunk.
+/// The tokens of a part of a file, with no references into or out of it; most files are one chunk.
 #[derive(Debug)]
 pub(crate) struct Chunk {
     pub(crate) source: Arc<SourceFile>,
-    /// That of the source.
+    /// The number of the file.
     pub(crate) file: FileId,
     pub(crate) lexed: Lexed,
 }
 
 impl Chunk {
-    /// How many tokens a chunk has at least, unless the file ends before: with 16 bytes each they fit into the second
-    /// level of caches.
+    /// The smallest number of tokens in a chunk, unless the file ends before. With 16 bytes each they fit into the second-level
+    /// cache.
     pub(crate) const TOKENS: usize = 8192;
 
-    /// The first chunk of a file, of so many tokens.
+    /// The first chunk of a file, with at least this many tokens.
     pub(crate) fn first(source: Arc<SourceFile>, tokens: usize, symbols: &mut Symbols) -> Self {
         // Measured on exported scenes: three to five bytes per token.
         let capacity = (source.length() / 3 + 16).min(tokens.saturating_add(tokens / 8));
@@ -34,7 +34,7 @@ impl Chunk {
         }
     }
 
-    /// The chunk behind `this`, which takes its memory if nobody else needs it; `false` at the end of the file.
+    /// Replaces `this` by the next chunk, reusing its memory if nothing else refers to it; `false` at the end of the file.
     pub(crate) fn advance(this: &mut Arc<Self>, symbols: &mut Symbols) -> bool {
         let Some(begin) = this.lexed.rest else {
             return false;

@@ -5,8 +5,8 @@ use crate::token::Token;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use strahl_scene::{Diagnostic, FileId, SourceLine, Span};
 
-/// Lines up to so many bytes are shown whole, and columns in them are counted in characters: exporters write whole scenes into
-/// one line.
+/// The longest line, in bytes, that messages show whole and whose columns count characters: exporters write whole scenes into one
+/// line.
 const LONG: usize = 4096;
 
 /// A file that is being parsed.
@@ -21,22 +21,22 @@ pub(crate) struct SourceFile {
 #[derive(Debug)]
 struct Reader {
     text: Text,
-    /// Where the lines begin; made when first needed.
+    /// The beginnings of the lines; computed when first needed.
     lines: Option<Vec<u32>>,
-    /// The place looked up last.
+    /// The last place looked up.
     last: Line,
-    /// The last span made, and for which place: a macro in a loop asks for the same one again and again.
+    /// The last place and its span: a macro in a loop asks for the same one repeatedly.
     last_span: Option<(u32, Span)>,
 }
 
-/// The line that a place stands in.
+/// The line of a place.
 #[derive(Clone, Copy, Debug, Default)]
 struct Line {
     /// The place.
     at: u32,
-    /// How many lines end before it.
+    /// The number of lines that end before it.
     ends: u32,
-    /// Where its line begins.
+    /// The beginning of its line.
     begin: u32,
 }
 
@@ -64,12 +64,12 @@ impl SourceFile {
         self.reader().text.len()
     }
 
-    /// Whether this is certainly the file that `source` gives.
+    /// Whether this certainly has the text of `source`.
     pub(crate) fn is(&self, source: &Source) -> bool {
         self.name == source.name && self.reader().text.is(&source.text)
     }
 
-    /// Cuts the text into tokens: see [`lexer::lex`].
+    /// Splits the text into tokens: see [`lexer::lex`].
     pub(crate) fn lex(
         &self,
         begin: usize,
@@ -77,7 +77,7 @@ impl SourceFile {
         symbols: &mut Symbols,
         mut used: Lexed,
     ) -> Lexed {
-        /// More than most chunks take.
+        /// More bytes than most chunks need.
         const AHEAD: usize = 64 << 10;
         let text = &mut self.reader().text;
         let mut reach = AHEAD;
@@ -87,7 +87,7 @@ impl SourceFile {
             if !used.is_cut {
                 break;
             }
-            // The chunk is longer than the part; longer parts make up for what is cut once more.
+            // The chunk is longer than the part; larger parts limit the repeated work.
             reach = reach.saturating_mul(4);
         }
         if used.rest.is_none()
@@ -116,7 +116,7 @@ impl SourceFile {
     }
 
     fn make_span(&self, reader: &mut Reader, start: u32) -> Span {
-        // The place may be one behind the last byte.
+        // The place may be just after the last byte.
         let start = start.min(reader.text.len() as u32);
         let line = reader.line_of(start);
         let (begin, start) = (line.begin as usize, start as usize);
@@ -127,7 +127,7 @@ impl SourceFile {
         let column = if is_long {
             start - begin
         } else {
-            // Continuation bytes of UTF-8 are no characters of their own.
+            // Continuation bytes of UTF-8 are not characters.
             let before = part.get(begin..start).iter();
             before.filter(|b| **b & 0xc0 != 0x80).count()
         };
@@ -139,8 +139,7 @@ impl SourceFile {
         }
     }
 
-    /// The line that a span of this file points into; of a very long one, as exporters write them, what stands around the
-    /// place.
+    /// The text of the line of a span in this file; of a very long line, as in exported files, the surroundings of the place.
     pub(crate) fn excerpt(&self, start: u32, span: Span) -> SourceLine {
         const AROUND: usize = 80;
         let reader = &mut *self.reader();
@@ -177,7 +176,7 @@ impl SourceFile {
         }
     }
 
-    /// The text between the quotation marks of a string, escapes left alone: file names of Windows need it.
+    /// The text between the quotation marks of a string with escapes left in place, for file names of Windows.
     pub(crate) fn raw_string(&self, token: Token) -> String {
         let begin = token.start as usize + 1;
         let reader = &mut *self.reader();
@@ -191,7 +190,7 @@ impl SourceFile {
 }
 
 impl Reader {
-    /// Where the lines begin.
+    /// The beginnings of the lines.
     fn lines(&mut self) -> &[u32] {
         self.lines.get_or_insert_with(|| {
             const PART: usize = 1 << 20;
@@ -207,10 +206,10 @@ impl Reader {
         })
     }
 
-    /// The line that a byte offset stands in.
+    /// The line that contains a byte offset.
     ///
-    /// Most places asked for stand behind the one before, and going on from there needs no table of all lines, which takes
-    /// a pass over the file and a search that misses the cache at every step.
+    /// Most places are looked up in ascending order, and continuing from the previous one needs no table of all lines, which
+    /// would take a pass over the file and a search with many cache misses.
     fn line_of(&mut self, start: u32) -> Line {
         const NEAR: u32 = 4096;
         const FAR: u32 = 1 << 20;
@@ -226,7 +225,7 @@ impl Reader {
                     last.begin = last.at + end as u32 + 1;
                 }
             }
-            // Back within the line.
+            // Earlier in the same line.
             None if start >= last.begin => {}
             _ => {
                 let lines = self.lines();
@@ -240,8 +239,8 @@ impl Reader {
     }
 }
 
-/// Where lines end among the first `count` bytes, of which a further one may be given, and how many these are: at each line feed, and at each
-/// carriage return with no line feed behind it, as old texts of the Macintosh have them.
+/// The ends of lines among the first `count` bytes (`bytes` may have one more), and the number of bytes searched: after each line
+/// feed, and after each carriage return without a line feed, as in old files of the Macintosh.
 fn ends_among(bytes: &[u8], count: usize) -> (impl Iterator<Item = usize> + '_, usize) {
     let count = count.min(bytes.len());
     let here = bytes.get(..count).unwrap_or(bytes);
@@ -255,7 +254,7 @@ fn ends_among(bytes: &[u8], count: usize) -> (impl Iterator<Item = usize> + '_, 
 mod tests {
     use super::*;
 
-    /// The text held in memory, and read in parts.
+    /// The text held in memory, and the same text read in parts.
     fn both(text: &str) -> [SourceFile; 2] {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.pov");
@@ -277,7 +276,7 @@ mod tests {
             let shown = file.excerpt(start, span);
             assert_eq!(shown.text, "  \u{e9}\u{e9} box{");
             assert_eq!((shown.column, shown.length), (6, 3));
-            // Behind the last byte there is an empty line.
+            // After the last byte there is an empty line.
             let end = file.span(999);
             assert_eq!((end.line, end.column, end.length), (3, 1, 1));
             assert_eq!(file.excerpt(999, end).text, "");

@@ -6,13 +6,14 @@ use std::io::{ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
-/// Who takes the messages of scenes.
+/// Receives the messages of scenes.
 type Listener = dyn FnMut(Stream, &str) + Send;
 
 /// Files in folders of the disk.
 ///
-/// A file is searched beside the file that names it, then in the library folders in order, then where scenes write; what the
-/// scene itself has written comes before all of them. Scenes write only where that is allowed, nowhere at first. Messages of the scene go to the function given, or nowhere.
+/// A file is searched first in the folder of the file that names it, then in the library folders in order, then where scenes
+/// write; files written by the scene itself come before all of these. Scenes may write only where that is allowed, which is
+/// nowhere by default. Messages of the scene go to the given function; without one they are dropped.
 pub struct FolderHost {
     library: Vec<PathBuf>,
     fonts: FontFolders,
@@ -35,7 +36,7 @@ impl std::fmt::Debug for FolderHost {
 }
 
 impl FolderHost {
-    /// Searches these folders after the one of the file that asks.
+    /// Searches these folders after that of the file with the name.
     pub fn new(library: impl IntoIterator<Item = PathBuf>) -> Self {
         Self {
             library: library.into_iter().collect(),
@@ -48,7 +49,7 @@ impl FolderHost {
         }
     }
 
-    /// Searches these folders, and the folders in them, for fonts that are not found elsewhere.
+    /// Searches these folders and their subfolders for fonts that are not found elsewhere.
     #[must_use]
     pub fn with_fonts(mut self, folders: impl IntoIterator<Item = PathBuf>) -> Self {
         self.fonts = FontFolders::new(folders);
@@ -62,8 +63,8 @@ impl FolderHost {
         self
     }
 
-    /// Lets scenes write files; the names they give are taken relative to the folder. They can't touch hidden files, nor files
-    /// that no scene has written.
+    /// Lets scenes write files; their names are relative to the folder. Scenes can't write hidden files, nor files that no scene
+    /// has written.
     #[must_use]
     pub fn allow_writing(mut self, place: Writing) -> Self {
         self.written = Written::to(place);
@@ -77,23 +78,23 @@ impl FolderHost {
         self
     }
 
-    /// Hands the messages of scenes to a function.
+    /// Passes the messages of scenes to a function.
     #[must_use]
     pub fn on_message(mut self, f: impl FnMut(Stream, &str) + Send + 'static) -> Self {
         self.on_message = Some(Box::new(f));
         self
     }
 
-    /// Fixes the time that `now` gives, in days since the beginning of 2000.
+    /// Fixes the value of `now`, in days since the beginning of 2000.
     #[must_use]
     pub fn at_time(mut self, days: f64) -> Self {
         self.now = Some(days);
         self
     }
 
-    /// Looks for a file in folders, in order.
+    /// Searches a file in folders, in order.
     fn search(&self, name: &str, folders: &[PathBuf]) -> Result<Source, HostError> {
-        // Scenes from Windows write backslashes.
+        // Scenes from Windows use backslashes.
         let names = if name.contains('\\') && !cfg!(windows) {
             vec![name.to_owned(), name.replace('\\', "/")]
         } else {
@@ -123,7 +124,7 @@ impl FolderHost {
             name: shown.clone(),
             message: error.to_string(),
         };
-        // Asked before opening, which waits for a writer where the name is a pipe.
+        // Checked before opening, because opening a pipe waits for a writer.
         let metadata = match fs::metadata(path) {
             Ok(metadata) => metadata,
             Err(e) if matches!(e.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => {
@@ -268,7 +269,7 @@ mod tests {
             assert_eq!(text(&mut host), b"the scene's");
         }
         assert_eq!(fs::read(path("x.inc")).unwrap(), b"the user's");
-        // A later run finds it where nothing else of that name is.
+        // A later run finds it where no other file has that name.
         fs::remove_file(path("x.inc")).unwrap();
         let mut host = FolderHost::new([]).allow_writing(Writing::Own(path("scene.out")));
         assert!(host.load("x.inc", &from).is_ok());

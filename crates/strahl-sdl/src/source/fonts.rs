@@ -2,18 +2,18 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Folders with fonts, listed when one is first asked for.
+/// Folders with fonts, listed on first use.
 #[derive(Debug, Default)]
 pub(super) struct FontFolders {
     roots: Vec<PathBuf>,
-    /// Fonts by the names of their files in lower case: of equal names the first one found.
+    /// Fonts by file name in lower case; of equal names the first one found.
     files: Option<BTreeMap<String, PathBuf>>,
 }
 
-/// Folders within each other; font folders have two or three levels.
+/// The nesting depth that is searched; font folders have two or three levels.
 const DEPTH: usize = 6;
 
-/// Entries looked at in all, lest a folder that is none of fonts is searched for ever.
+/// The largest number of directory entries that are read, so that searching a folder with other contents ends.
 const ENTRIES: usize = 100_000;
 
 impl FontFolders {
@@ -24,7 +24,7 @@ impl FontFolders {
         }
     }
 
-    /// The font with this file name, in any case.
+    /// The font with this file name, ignoring case.
     pub(super) fn find(&mut self, file: &str) -> Option<PathBuf> {
         let Self { roots, files } = self;
         let files = files.get_or_insert_with(|| {
@@ -39,12 +39,12 @@ impl FontFolders {
 }
 
 fn list(folder: &Path, depth: usize, left: &mut usize, found: &mut BTreeMap<String, PathBuf>) {
-    // Folders that are not there have no fonts.
+    // A folder that does not exist has no fonts.
     let Ok(entries) = fs::read_dir(folder) else {
         return;
     };
     let mut paths: Vec<_> = entries.flatten().map(|entry| entry.path()).collect();
-    // The system lists files in any order.
+    // The system lists files in an arbitrary order.
     paths.sort();
     for path in paths {
         let Some(rest) = left.checked_sub(1) else {

@@ -3,7 +3,7 @@ use std::collections::BTreeMap;
 use std::io::Write;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Files in memory, for tests and for programs that make scenes without a disk.
+/// Files in memory, for tests and for programs that generate scenes.
 #[derive(Debug, Default)]
 pub struct MemoryHost {
     files: BTreeMap<String, Vec<u8>>,
@@ -12,7 +12,7 @@ pub struct MemoryHost {
 }
 
 impl MemoryHost {
-    /// No files.
+    /// A host without files.
     pub fn new() -> Self {
         Self::default()
     }
@@ -24,7 +24,7 @@ impl MemoryHost {
         self
     }
 
-    /// What scenes have written to a file.
+    /// The bytes that scenes have written to a file.
     pub fn written(&self, name: &str) -> Option<Vec<u8>> {
         let files = self.written.lock().unwrap_or_else(PoisonError::into_inner);
         files.get(name).cloned()

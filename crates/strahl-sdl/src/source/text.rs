@@ -1,7 +1,7 @@
-//! The text of a file: a small one is held in memory, a large one is read as it is needed, a part at a time.
+//! The text of a file: a small one is held in memory, a large one is read in parts as needed.
 //!
-//! Exported scenes of some hundred megabytes are read once from front to back, and only messages refer to earlier text: storing
-//! the whole text took a third of the memory of reading such a scene, and a tenth of its time.
+//! Exported scenes of some hundred megabytes are read once from front to back, and only messages refer to earlier text: holding
+//! the whole text took a third of the memory for parsing such a scene, and a tenth of the time.
 
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
@@ -9,34 +9,34 @@ use std::ops::Range;
 use std::path::Path;
 use std::time::SystemTime;
 
-/// Files of so many bytes are read in parts.
+/// Files of at least this many bytes are read in parts.
 const LARGE: u64 = 16 << 20;
 
-/// How many bytes of a large file are kept in memory, unless more are needed at once.
+/// The number of bytes of a large file that are held in memory, unless more are needed at once.
 const PART: usize = 1 << 20;
 
-/// How many of them lie before those requested, since most backward references are short.
+/// How many of these bytes are before the requested ones, since most backward references are short.
 const BEHIND: usize = PART / 8;
 
 /// The text of a file.
 #[derive(Debug)]
 pub(super) struct Text {
     length: usize,
-    /// What is in memory of it, and where that begins.
+    /// The bytes in memory, and the offset of the first one.
     held: Vec<u8>,
     begin: usize,
-    /// Where the rest comes from; `None` if all of it is in memory.
+    /// The file for the rest; `None` if all of it is in memory.
     file: Option<Large>,
 }
 
-/// A file that is not all in memory.
+/// A file that is only partly in memory.
 #[derive(Debug)]
 struct Large {
     file: File,
     modified: Option<SystemTime>,
-    /// How many bytes to hold.
+    /// The number of bytes to hold.
     part: usize,
-    /// Why it can't be read further.
+    /// The reason why it can't be read further.
     failed: Option<String>,
 }
 
@@ -52,7 +52,7 @@ pub(crate) struct Part<'t> {
 }
 
 impl<'t> Part<'t> {
-    /// The bytes of it that lie in a range of the file.
+    /// The bytes of the part within a range of the file.
     pub(crate) fn get(&self, range: Range<usize>) -> &'t [u8] {
         let end = range.end.saturating_sub(self.begin).min(self.bytes.len());
         let begin = range.start.saturating_sub(self.begin).min(end);
@@ -70,9 +70,9 @@ impl Text {
         }
     }
 
-    /// The text of a plain file if it is a large one.
+    /// The text of a regular file, if it is large.
     pub(super) fn large(path: &Path) -> io::Result<Option<Self>> {
-        // Asked before opening, which waits for a writer where the name is a pipe.
+        // Checked before opening, because opening a pipe waits for a writer.
         let metadata = std::fs::metadata(path)?;
         if !metadata.is_file() || metadata.len() < LARGE {
             return Ok(None);
@@ -80,12 +80,12 @@ impl Text {
         Self::in_parts(path, PART).map(Some)
     }
 
-    /// The text of a file of which so many bytes are held.
+    /// The text of a file of which this many bytes are held.
     pub(super) fn in_parts(path: &Path, part: usize) -> io::Result<Self> {
         let file = File::open(path)?;
         let metadata = file.metadata()?;
         Ok(Self {
-            // Files that don't fit into the memory's addresses are longer than the parser's limit anyway.
+            // Files that exceed the address space exceed the parser's limit anyway.
             length: usize::try_from(metadata.len()).unwrap_or(usize::MAX),
             held: vec![],
             begin: 0,
@@ -102,16 +102,16 @@ impl Text {
         self.length
     }
 
-    /// Why the file could not be read to its end.
+    /// The reason why the file could not be read to its end.
     pub(super) fn failed(&self) -> Option<&str> {
         self.file.as_ref()?.failed.as_deref()
     }
 
-    /// Whether two texts surely are the same.
+    /// Whether two texts are certainly equal.
     pub(super) fn is(&self, other: &Self) -> bool {
         match (&self.file, &other.file) {
             (None, None) => self.held == other.held,
-            // Files of the same name: that they have not changed in between is what matters.
+            // Files of the same name are equal if the file has not changed.
             (Some(a), Some(b)) => self.length == other.length && a.modified == b.modified,
             _ => false,
         }
@@ -127,7 +127,7 @@ impl Text {
         Ok(self.held)
     }
 
-    /// A part of the text that contains this range as far as the text goes and can be read.
+    /// A part of the text that contains this range, as far as the text goes and is readable.
     pub(super) fn part(&mut self, range: Range<usize>) -> Part<'_> {
         let range = range.start.min(self.length)..range.end.min(self.length);
         if range.start < self.begin || range.end > self.begin + self.held.len() {
@@ -150,7 +150,7 @@ impl Text {
         let begin = range.start.saturating_sub(BEHIND.min(part / 8));
         let end = range.end.max(begin.saturating_add(part)).min(self.length);
         let held = self.begin..self.begin + self.held.len();
-        // What is there already is kept: reading goes on where it has ended.
+        // The bytes in memory are kept, and reading continues after them.
         if held.contains(&begin) && end >= held.end {
             self.held.drain(..begin - held.start);
         } else {
@@ -169,7 +169,7 @@ impl Text {
             Err(error) => error.to_string(),
         };
         large.failed = Some(failure);
-        // So that nobody asks for what is behind it again.
+        // The file ends here: later requests for more return at once.
         self.length = self.begin + self.held.len();
     }
 }
@@ -190,7 +190,7 @@ mod tests {
         let mut begin = 0;
         for round in 0..5000 {
             state = state.wrapping_mul(1_103_515_245).wrapping_add(12_345) % (1 << 31);
-            // Mostly forwards, as a parser goes.
+            // Mostly forward, as a parser reads.
             begin = if round % 50 == 0 {
                 state % 11_000
             } else {
@@ -218,7 +218,7 @@ mod tests {
         let part = text.part(1000..1010);
         assert_eq!((part.get(1000..1010), part.is_last), (&b""[..], true));
         assert!(text.failed().unwrap().contains("shorter"));
-        // What is left can still be shown.
+        // The rest can still be shown.
         fs::write(&path, vec![b'x'; 1000]).unwrap();
         let mut text = Text::in_parts(&path, 64).unwrap();
         text.part(0..10);

@@ -1,4 +1,4 @@
-//! Where scenes write, and what they must not touch.
+//! The files that scenes may and may not write.
 
 use super::HostError;
 use sha2::{Digest, Sha256};
@@ -9,17 +9,17 @@ use std::io::{self, ErrorKind, Write};
 use std::path::{Component, Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// Where a scene may write files.
+/// The place where a scene may write files.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum Writing {
-    /// Nowhere: to write is an error.
+    /// Nowhere: writing is an error.
     #[default]
     Nowhere,
-    /// In memory: the scene can read what it has written, and nothing is left of it.
+    /// In memory: the scene can read the files that it has written; nothing is left of them afterwards.
     Memory,
-    /// Within this folder, which is there.
+    /// Within this folder, which exists.
     Folder(PathBuf),
-    /// Within this folder, which is made when the first file is written. It must not be a link.
+    /// Within this folder, which is created when the first file is written. It must not be a link.
     Own(PathBuf),
 }
 
@@ -30,7 +30,7 @@ const LIST: &str = ".strahl-written";
 #[derive(Debug, Default)]
 pub(super) struct Written {
     place: Writing,
-    /// What was written in memory, or into the folder by this scene (then only the names count).
+    /// Files written in memory, or into the folder by this scene (then only the names matter).
     files: Arc<Mutex<BTreeMap<String, Vec<u8>>>>,
 }
 
@@ -54,7 +54,7 @@ impl Written {
         }
     }
 
-    /// What this scene has written under a name: its text, or its place.
+    /// A file that this scene has written: its text or its path.
     pub(super) fn find(&self, name: &str) -> Option<Found> {
         let name = plain(name)?;
         let files = self.files();
@@ -105,7 +105,7 @@ pub(super) enum Found {
     At(PathBuf),
 }
 
-/// The name with slashes, if it is one that a scene may use: relative, not out of the folder, not hidden.
+/// The name with slashes, if scenes may use it: relative, without leaving the folder, not hidden.
 fn plain(name: &str) -> Option<String> {
     if name.contains(['\\', ':', '\0']) || name.contains(char::is_control) {
         return None;
@@ -127,7 +127,7 @@ fn plain(name: &str) -> Option<String> {
     (!parts.is_empty() && !name.ends_with('/')).then(|| parts.join("/"))
 }
 
-/// Makes the scene's own folder if it is not there.
+/// Creates the scene's own folder if it does not exist.
 fn prepare(place: &Writing, folder: &Path) -> Result<(), String> {
     let shown = folder.display();
     let metadata = match place {
@@ -144,12 +144,12 @@ fn prepare(place: &Writing, folder: &Path) -> Result<(), String> {
     }
 }
 
-/// The content of a file that is to be written, if it is there; an error if it must not be written.
+/// The content of a file before it is written, if it exists; an error if it must not be written.
 fn existing(folder: &Path, name: &str) -> Result<Option<Vec<u8>>, String> {
     let target = folder.join(name);
     let parent = target.parent().unwrap_or(folder);
     let real = |path: &Path| path.canonicalize().map_err(|e| e.to_string());
-    // A link inside of the folder must not lead out of it.
+    // A link within the folder must not lead out of it.
     if !real(parent)?.starts_with(real(folder)?) {
         return Err("a link leads out of the folder".to_owned());
     }
@@ -172,7 +172,7 @@ fn existing(folder: &Path, name: &str) -> Result<Option<Vec<u8>>, String> {
     Ok(Some(bytes))
 }
 
-/// The checksum that the list has for a file.
+/// The checksum of a file in the list.
 fn listed(folder: &Path, name: &str) -> Option<String> {
     let list = folder.join(LIST);
     if !fs::symlink_metadata(&list).ok()?.is_file() {
@@ -201,7 +201,7 @@ fn checksum(bytes: &[u8]) -> String {
     Sha256::digest(bytes)
         .iter()
         .fold(String::new(), |mut out, byte| {
-            // Writing to a string does not fail.
+            // Writing to a string never fails.
             let _ = write!(out, "{byte:02x}");
             out
         })
@@ -210,7 +210,7 @@ fn checksum(bytes: &[u8]) -> String {
 /// A file that is being written.
 struct Open {
     bytes: Vec<u8>,
-    /// Whether there is something that is not written yet.
+    /// Whether there are bytes that are not written yet.
     changed: bool,
     name: String,
     /// The folder and the file in it; `None` in memory.
@@ -286,13 +286,13 @@ mod tests {
         }
         assert_eq!(fs::read(at("scene.pov")).unwrap(), b"mine");
         write(&written, "a.txt", false, "1").unwrap();
-        // Another run knows the file by its checksum.
+        // Another run recognises the file by its checksum.
         let again = Written::to(Writing::Folder(root.path().to_owned()));
         write(&again, "a.txt", true, "2").unwrap();
         assert_eq!(fs::read(at("a.txt")).unwrap(), b"12");
         write(&again, "a.txt", false, "3").unwrap();
         assert_eq!(fs::read(at("a.txt")).unwrap(), b"3");
-        // What the user has changed is the user's.
+        // A file that the user has changed must not be overwritten.
         fs::write(at("a.txt"), "mine").unwrap();
         assert!(write(&again, "a.txt", false, "4").is_err());
         assert_eq!(fs::read(at("a.txt")).unwrap(), b"mine");

@@ -1,9 +1,9 @@
 use strahl_math::DVec3;
 
-/// One to five numbers: the language's floats (one), vectors (two to five) and colours (five).
+/// One to five numbers: a float (one), a vector (two to five) or a colour (five).
 ///
-/// Arithmetic goes component by component. A float joins a vector as that many equal components; a shorter vector
-/// joins a longer one with zeros behind.
+/// Arithmetic is componentwise. A float combined with a vector counts as a vector of equal components; a shorter vector combined
+/// with a longer one is padded with zeros.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Vector {
     len: u8,
@@ -20,7 +20,7 @@ impl Vector {
         }
     }
 
-    /// A vector of three.
+    /// A vector of three components.
     #[inline]
     pub const fn xyz(x: f64, y: f64, z: f64) -> Self {
         Self {
@@ -35,7 +35,7 @@ impl Vector {
         Self { len: 5, components }
     }
 
-    /// The first five numbers given; an empty list is the float 0.
+    /// The first five of these numbers; an empty list is the float 0.
     pub fn new(numbers: &[f64]) -> Self {
         let mut components = [0.0; 5];
         let len = numbers.len().clamp(1, 5);
@@ -48,7 +48,7 @@ impl Vector {
         }
     }
 
-    /// The first `count` of five numbers; those behind must be zero.
+    /// The first `count` of five numbers; the others must be zero.
     #[inline]
     pub(crate) const fn of(components: [f64; 5], count: usize) -> Self {
         Self {
@@ -57,14 +57,14 @@ impl Vector {
         }
     }
 
-    /// How many components, 1 to 5.
+    /// The number of components, 1 to 5.
     #[inline]
     #[expect(clippy::len_without_is_empty, reason = "never empty")]
     pub const fn len(&self) -> usize {
         self.len as usize
     }
 
-    /// All five components; those behind the length are zero.
+    /// All five components; unused ones are zero.
     #[inline]
     pub const fn components(&self) -> [f64; 5] {
         self.components
@@ -86,14 +86,14 @@ impl Vector {
         }
     }
 
-    /// With `len` components: a float is repeated, a vector cut or filled with zeros.
+    /// The same with `len` components: a float is repeated, a vector truncated or padded with zeros.
     #[inline]
     #[must_use]
     pub fn promoted(&self, len: usize) -> Self {
         let len = len.clamp(1, 5);
         let spread = self.spread();
         let mut components = [0.0; 5];
-        // Written out in full by the compiler, as a loop over `len` components would not be.
+        // A loop of constant length, which the compiler unrolls.
         for i in 0..5 {
             components[i] = if i < len { spread[i] } else { 0.0 };
         }
@@ -103,7 +103,7 @@ impl Vector {
         }
     }
 
-    /// The components, those of a float all equal.
+    /// The components; those of a float are all equal.
     #[inline]
     const fn spread(&self) -> [f64; 5] {
         match self.len {
@@ -119,7 +119,7 @@ impl Vector {
         DVec3::new(x, y, z)
     }
 
-    /// A function of each component.
+    /// Applies a function to each component.
     #[inline]
     #[must_use]
     pub fn map(mut self, f: impl Fn(f64) -> f64) -> Self {
@@ -129,7 +129,7 @@ impl Vector {
         self
     }
 
-    /// A function of the components of both.
+    /// Applies a function to the components of both, pair by pair.
     #[inline]
     #[must_use]
     pub fn zip(self, other: Self, f: impl Fn(f64, f64) -> f64) -> Self {

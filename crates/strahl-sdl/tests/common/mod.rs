@@ -1,4 +1,4 @@
-//! What the tests share; each uses a part of it.
+//! Functions for several tests; each test uses some of them.
 #![allow(dead_code, reason = "each test binary uses a part of this")]
 
 pub(crate) mod pictures;
@@ -11,7 +11,7 @@ pub(crate) fn parse_with(host: &mut MemoryHost, text: &str) -> Parsed {
     parse(Source::new("test.pov", text), &Options::default(), host)
 }
 
-/// What a text writes by `#debug`; it must have no errors.
+/// The `#debug` output of a text without errors.
 pub(crate) fn debug(text: &str) -> String {
     let mut host = MemoryHost::new();
     let parsed = parse_with(&mut host, text);
@@ -20,7 +20,7 @@ pub(crate) fn debug(text: &str) -> String {
     host.text(Stream::Debug)
 }
 
-/// The messages of a text that must have an error.
+/// The messages of a text with at least one error.
 pub(crate) fn errors(text: &str) -> Vec<String> {
     let parsed = parse_with(&mut MemoryHost::new(), text);
     let shown: String = text.chars().take(200).collect();
@@ -29,7 +29,7 @@ pub(crate) fn errors(text: &str) -> Vec<String> {
     errors.map(ToString::to_string).collect()
 }
 
-/// A program to compare with; without it the caller skips, unless the environment requires all tools.
+/// A program to compare with; without it the caller skips its test, unless the environment requires all tools.
 pub(crate) fn tool(name: &str) -> Option<PathBuf> {
     let path = std::env::var_os("PATH")?;
     let found = std::env::split_paths(&path)
@@ -46,7 +46,8 @@ pub(crate) fn tool(name: &str) -> Option<PathBuf> {
     found
 }
 
-/// What `f` makes of each, in order, by several threads: much of the time other programs are waited for.
+/// The results of `f` for all items, in order, computed by several threads, because most of the time is spent waiting for other
+/// programs.
 pub(crate) fn each<T: Sync, R: Send>(items: &[T], f: impl Fn(&T) -> R + Sync) -> Vec<R> {
     const THREADS: usize = 6;
     let part = items.len().div_ceil(THREADS).max(1);

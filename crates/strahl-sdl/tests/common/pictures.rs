@@ -1,4 +1,4 @@
-//! Small pictures rendered by POV-Ray 3.7 and here, and how far they are apart.
+//! Small pictures rendered by POV-Ray 3.7 and by strahl, and their differences.
 
 use super::{each, parse_with, tool};
 use std::path::Path;
@@ -12,7 +12,7 @@ pub(crate) const SIZE: (u32, u32) = (64, 48);
 /// Linear values of a picture, row by row.
 pub(crate) type Pixels = Vec<[f64; 3]>;
 
-/// The pixels of a PPM file with 16 bits per channel: what its header leaves.
+/// The pixels of a PPM file with 16 bits per channel.
 fn read_ppm(bytes: &[u8]) -> Pixels {
     let size = SIZE.0 as usize * SIZE.1 as usize * 6;
     assert!(bytes.starts_with(b"P6") && bytes.len() > size);
@@ -70,14 +70,14 @@ fn ours(text: &str) -> Result<Pixels, String> {
     Ok(film.pixels.iter().map(clipped).collect())
 }
 
-/// What both programs make of a scene: linear values, POV-Ray's first.
+/// The pictures of a scene by POV-Ray and by strahl, in linear values.
 ///
 /// # Errors
-/// If one of them doesn't render it.
+/// If one of the programs doesn't render it.
 pub(crate) fn pair(povray: &Path, text: &str) -> Result<(Pixels, Pixels), String> {
     let folder = tempfile::tempdir().expect("a folder");
     let mut theirs = theirs(povray, folder.path(), text)?;
-    // Colours of a scene without gamma are the screen's; POV-Ray writes them as they are.
+    // Without a gamma, a scene's colours are those of the display; POV-Ray writes them unchanged.
     if !text.contains("3.7") && !text.contains("assumed_gamma") {
         for pixel in &mut theirs {
             *pixel = pixel.map(strahl_shade::srgb::decode);
@@ -86,7 +86,8 @@ pub(crate) fn pair(povray: &Path, text: &str) -> Result<(Pixels, Pixels), String
     Ok((theirs, ours(text)?))
 }
 
-/// Renders by both; the mean difference of channels, and the share of pixels with a visible difference.
+/// Renders a scene with both programs; returns the mean difference of the channels and the share of pixels with a visible
+/// difference.
 pub(crate) fn compare(povray: &Path, text: &str) -> (f64, f64) {
     let (a, b) = pair(povray, text).unwrap_or_else(|why| panic!("{why}"));
     assert_eq!(a.len(), b.len());
@@ -103,12 +104,13 @@ pub(crate) fn compare(povray: &Path, text: &str) -> (f64, f64) {
     (sum / count, off as f64 / count)
 }
 
-/// All of these must agree but for `most_off` of their pixels.
+/// Checks that the pictures of all scenes agree, except for a share `most_off` of their pixels.
 pub(crate) fn agree(most_off: f64, scenes: &[(&str, String)]) {
     agree_within(0.5 / 255.0, most_off, scenes);
 }
 
-/// All of these must agree but for so much on the mean and for `most_off` of their pixels.
+/// Checks that the pictures of all scenes have at most a mean difference `most_mean` and a share `most_off` of visibly different
+/// pixels.
 pub(crate) fn agree_within(most_mean: f64, most_off: f64, scenes: &[(&str, String)]) {
     let Some(povray) = tool("povray") else {
         return;

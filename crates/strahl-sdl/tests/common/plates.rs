@@ -1,7 +1,7 @@
-//! Sheets of plates: every name of the include library that has a look, many in a picture. `cargo xtask looks` compares them with
-//! POV-Ray's, a test compares them with the numbers that were measured then.
+//! Sheets of plates: pictures with many names of the include library, one look per plate. `cargo xtask looks` compares them with
+//! POV-Ray's, a test compares them with the numbers measured then.
 
-/// All names of the library: name, file and kind.
+/// All names of the library, with file and kind.
 const NAMES: &str = include_str!("../../include/names.tsv");
 
 /// The files that declare looks, in the order of the tables.
@@ -21,7 +21,7 @@ pub(crate) const FILES: [&str; 13] = [
     "finish.inc",
 ];
 
-/// Names of the manual that POV-Ray's own files don't declare: there is nothing to compare with.
+/// Names that the manual documents but POV-Ray's own files don't declare, so that there is nothing to compare with.
 const OURS_ONLY: [&str; 5] = [
     "NBglass_finish",
     "M_NBglass",
@@ -32,7 +32,7 @@ const OURS_ONLY: [&str; 5] = [
 
 /// Plates in a row of a sheet.
 const COLUMNS: usize = 8;
-/// Most plates of a sheet.
+/// The largest number of plates on a sheet.
 const MOST: usize = 40;
 
 /// A name that has a look.
@@ -43,7 +43,7 @@ pub(crate) struct Name {
     pub(crate) kind: &'static str,
 }
 
-/// A scene that shows some names of a kind, row by row from the upper left.
+/// A scene that shows several names of one kind, row by row from the upper left.
 #[derive(Debug)]
 pub(crate) struct Sheet {
     pub(crate) names: Vec<Name>,
@@ -64,7 +64,7 @@ pub(crate) fn all() -> impl Iterator<Item = Name> {
     })
 }
 
-/// Those that have a look.
+/// The names with a look.
 pub(crate) fn names() -> Vec<Name> {
     let mut found: Vec<Name> = all()
         .filter(|n| FILES.contains(&n.file) && plate(n).is_some())
@@ -74,7 +74,7 @@ pub(crate) fn names() -> Vec<Name> {
     found
 }
 
-/// Sheets that show the names: a sheet has names of one file and kind.
+/// Sheets for the names; the names of a sheet have the same file and kind.
 pub(crate) fn sheets(names: &[Name]) -> Vec<Sheet> {
     let mut sheets: Vec<Sheet> = vec![];
     for name in names {
@@ -142,14 +142,15 @@ plane {{ -z, -2 pigment {{ checker rgb 0.7 rgb 0.3 }} }}\n"
     text
 }
 
-/// A ball before a tilted board, both of the same block of the material.
+/// A ball in front of a tilted board, both with the same material.
 fn ball_and_board(material: &str) -> String {
     format!(
         "union {{ box {{ <-1.9, -1.4, 0.3>, <1.9, 1.4, 0.5> rotate <-14, 10, 0> }} sphere {{ <-0.4, 0.2, -1.2>, 0.95 }} hollow {material}"
     )
 }
 
-/// The object that shows a name in a field from (-2, -1.5) to (2, 1.5), without its end; none for names without a look.
+/// The object that shows a name in an area from (-2, -1.5) to (2, 1.5), without its closing brace; `None` for names without a
+/// look.
 fn plate(name: &Name) -> Option<String> {
     let Name { name, file, kind } = name;
     let board = "box { <-1.9, -1.4, 0>, <1.9, 1.4, 0.1> hollow";

@@ -40,7 +40,7 @@ fn wide_cameras_see_as_povrays() {
 
 #[test]
 fn meshes_see_as_povrays() {
-    // A face for each pixel, with uv coordinates of its place.
+    // A face for each pixel, with the uv coordinates of its position.
     let face = "#macro Face(I, J)
           triangle {
             <I / 10 - 3.2, 2.4 - J / 10, -4>, <I / 10 - 3.1, 2.4 - J / 10, -4>, <I / 10 - 3.2, 2.3 - J / 10, -4>
@@ -76,13 +76,13 @@ fn meshes_see_as_povrays() {
         let text = seen(camera).replace("\ncamera {", &format!("\n{face}camera {{"));
         (name, text)
     });
-    // POV-Ray takes the faces of the row above, but for the first row, so the pictures are a pixel apart.
+    // POV-Ray uses the faces of the row above, except in the first row, so the pictures are shifted by a pixel.
     agree_within(3.0 / 255.0, 0.15, &scenes);
 }
 
 #[test]
 fn lenses_blur_as_povrays() {
-    // Both draw places on the lens, POV-Ray in the pixel too. (Its orthographic cameras with a lens show a single point.)
+    // Both sample the lens, POV-Ray also the pixel. (Its orthographic cameras with a lens show a single point.)
     let lens = "location <1, 2, -6> look_at 0 aperture 0.8 blur_samples 400, 400 variance 0 confidence 0.99";
     let scenes = [
         ("before the plane", "focal_point <0, 0, 6>"),

@@ -1,4 +1,4 @@
-//! Lights and whom they shine on.
+//! Lights, light groups and shadows.
 
 use crate::common::pictures::agree;
 use crate::{CAMERA, LIGHT, SETTINGS, lit};

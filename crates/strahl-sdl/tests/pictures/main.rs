@@ -1,6 +1,6 @@
-//! Small pictures of planes and spheres, rendered by POV-Ray 3.7 and here: lights, cameras, fog and global settings.
+//! Small pictures of planes and spheres, rendered by POV-Ray 3.7 and by strahl: lights, cameras, fog and global settings.
 //!
-//! Both write linear values. What differs at all are single pixels on the edges of objects and shadows.
+//! Both write linear values. Only single pixels at the edges of objects and shadows differ.
 
 mod cameras;
 #[path = "../common/mod.rs"]
@@ -9,7 +9,7 @@ mod lights;
 mod reading;
 mod world;
 
-/// Things to light and to see.
+/// Objects for the lights and cameras.
 const THINGS: &str = "
 plane { y, -1 pigment { rgb <0.8, 0.7, 0.6> } finish { ambient 0.05 diffuse 0.8 } }
 sphere { <-0.9, 0, 0.5>, 1 pigment { rgb <0.9, 0.2, 0.1> } finish { ambient 0.1 diffuse 0.7 phong 0.6 phong_size 20 } }

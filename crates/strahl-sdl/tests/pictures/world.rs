@@ -1,4 +1,4 @@
-//! What is between and around the things, and what holds for all of them.
+//! Background, fog, rainbows and global settings.
 
 use crate::common::pictures::agree;
 use crate::{CAMERA, LIGHT, SETTINGS, THINGS, lit};

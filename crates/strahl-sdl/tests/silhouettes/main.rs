@@ -1,6 +1,6 @@
-//! The same objects, rendered by POV-Ray 3.7 and here: more than 99 % of the pixels must be equal.
+//! The same objects, rendered by POV-Ray 3.7 and by strahl: more than 99 % of the pixels must be equal.
 //!
-//! `STRAHL_SILHOUETTE="box" cargo test -p strahl-sdl --test silhouettes` looks at one of them and shows which pixels differ.
+//! `STRAHL_SILHOUETTE="box" cargo test -p strahl-sdl --test silhouettes` runs one of them and shows the pixels that differ.
 
 #[path = "../common/mod.rs"]
 mod common;
@@ -12,7 +12,7 @@ use scenes::{SCENES, SETUP};
 use std::path::Path;
 use strahl_shade::srgb;
 
-/// Which pixels of two pictures look different.
+/// The pixels that look different in two pictures.
 fn differences(a: &Pixels, b: &Pixels) -> Vec<bool> {
     let encoded = |p: &[f64; 3]| p.map(srgb::encode);
     let pairs = a.iter().map(encoded).zip(b.iter().map(encoded));
@@ -21,7 +21,7 @@ fn differences(a: &Pixels, b: &Pixels) -> Vec<bool> {
     pairs.map(differ).collect()
 }
 
-/// What is wrong with a scene, if anything is.
+/// The problem of a scene, if there is one.
 fn look(povray: &Path, name: &str, body: &str, show: bool) -> Option<String> {
     let (theirs, ours) = match pair(povray, &format!("{SETUP}\n{body}\n")) {
         Ok(pair) => pair,

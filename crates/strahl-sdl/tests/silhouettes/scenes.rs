@@ -1,6 +1,6 @@
-//! What is compared.
+//! The scenes to compare.
 
-/// What stands before every scene.
+/// The beginning of every scene.
 pub(crate) const SETUP: &str = "
 #version 3.7;
 global_settings { assumed_gamma 1 ambient_light 1 }

@@ -1,4 +1,4 @@
-//! Focal blur, bumps before the camera.
+//! Focal blur, and normals that perturb camera rays.
 
 use super::Draft;
 use crate::keywords::Word;
@@ -21,7 +21,7 @@ pub(super) struct LensDraft {
 }
 
 impl LensDraft {
-    /// That of a declared camera.
+    /// The lens of a declared camera.
     pub(super) fn of(camera: &Camera) -> Self {
         let Some(lens) = &camera.lens else {
             return Self::default();
@@ -36,7 +36,7 @@ impl LensDraft {
         }
     }
 
-    /// The lens, moved with the camera; `None` without blur.
+    /// The lens, transformed with the camera; `None` without blur.
     pub(super) fn finish(self, moved: &Transform) -> Option<Lens> {
         let (fewest, most) = self.samples?;
         if !(self.aperture > 0.0) || most == 0 {
@@ -55,7 +55,7 @@ impl LensDraft {
 }
 
 impl Parser<'_> {
-    /// Items that blur or bend the view.
+    /// Items that blur or perturb the view.
     pub(super) fn camera_effect(
         &mut self,
         draft: &mut Draft,
@@ -128,7 +128,7 @@ impl Parser<'_> {
         Err(self.fail(place, message))
     }
 
-    /// `{ pigment { ... } }` behind `bokeh`: how bright the pigment is in the unit square of x and y.
+    /// `{ pigment { ... } }` after `bokeh`: the brightness of the pigment in the unit square of x and y.
     fn bokeh(&mut self) -> PResult<Option<Arc<Bokeh>>> {
         let place = self.place();
         let pigment = self.braces(|p| {

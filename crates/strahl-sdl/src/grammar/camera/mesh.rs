@@ -7,7 +7,7 @@ use strahl_geometry::{Shape, TriangleMesh};
 use strahl_math::{DVec3, Transform};
 use strahl_scene::{CameraFace, MeshCamera, MeshLayout, Object, ObjectKind};
 
-/// A mesh camera being read; `location`, `direction` and `smooth` stand outside of its braces.
+/// A mesh camera being read; `location`, `direction` and `smooth` are outside of its braces.
 pub(super) struct MeshDraft {
     layout: MeshLayout,
     meshes: Vec<Vec<CameraFace>>,
@@ -26,9 +26,9 @@ impl MeshDraft {
 }
 
 impl Parser<'_> {
-    /// `{ rays, layout [, distance] meshes }` behind `mesh_camera`.
+    /// `{ rays, layout [, distance] meshes }` after `mesh_camera`.
     pub(super) fn mesh_camera(&mut self) -> PResult<MeshDraft> {
-        /// More rays than this through a pixel are a mistake.
+        /// More rays per pixel than this are certainly a mistake.
         const MOST: f64 = 65_536.0;
         self.braces(|p| {
             let place = p.place();
@@ -88,7 +88,7 @@ impl Parser<'_> {
                     format!("{needed} rays per pixel need as many meshes, but there are {count}");
                 return Err(p.fail(place, message));
             }
-            // What is left can only be words that say something about the meshes.
+            // The remaining items are words that concern the meshes.
             p.items("`mesh_camera`", |p, token| {
                 if token.is(Word::Smooth) {
                     return p.take(token);
@@ -100,7 +100,7 @@ impl Parser<'_> {
     }
 }
 
-/// The faces of all meshes in an object, in the space around `outer`. Unions are not nested deeper than the parser allows.
+/// Collects the faces of all meshes in an object, in the space around `outer`. The parser limits the nesting of unions.
 fn collect(object: &Object, outer: &Transform, faces: &mut Vec<CameraFace>) {
     let map = match object.transform.as_deref() {
         Some(inner) => inner.then(outer),
@@ -126,7 +126,8 @@ fn add_faces(mesh: &TriangleMesh, map: &Transform, faces: &mut Vec<CameraFace>) 
         let at = |u: f64, v: f64| mesh.surface_at_element(number, [u, v]).uv;
         faces.push(CameraFace {
             corners,
-            // To the side from which the corners go round as the clock does, in left-handed space (measured with POV-Ray 3.7).
+            // The normal points to the side from which the corners are in clockwise order, in left-handed space (measured with
+            // POV-Ray 3.7).
             normal: (c - a).cross(b - a).normalize_or(DVec3::Z),
             normals: mesh.corner_normals(number).map(|n| n.map(turned)),
             uv: Some([at(0.0, 0.0), at(1.0, 0.0), at(0.0, 1.0)]),

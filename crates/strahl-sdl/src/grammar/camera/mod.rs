@@ -1,4 +1,4 @@
-//! `camera { ... }`: the view; what bends and blurs it is read in [`effects`].
+//! `camera { ... }`: the view; effects such as focal blur are read in [`effects`].
 
 mod effects;
 mod mesh;
@@ -36,14 +36,14 @@ pub(crate) fn default_camera() -> Camera {
     }
 }
 
-/// A camera being read. The order of items does not matter: the view is made of them at the closing brace, first the angle,
-/// then `look_at`, then the transformations (measured with POV-Ray 3.7).
+/// A camera being read. The order of items does not matter: the view is computed at the closing brace, first the angle, then
+/// `look_at`, then the transformations (measured with POV-Ray 3.7).
 struct Draft {
     location: DVec3,
     direction: DVec3,
-    /// As long as the picture is wide.
+    /// Its length is the width of the picture.
     right: DVec3,
-    /// As long as the picture is high.
+    /// Its length is the height of the picture.
     up: DVec3,
     sky: DVec3,
     look_at: Option<DVec3>,
@@ -52,13 +52,13 @@ struct Draft {
     projection: Projection,
     /// The meshes of `mesh_camera`.
     mesh: Option<MeshDraft>,
-    /// Whether the interpolated normals of a mesh camera count.
+    /// Whether a mesh camera uses interpolated normals.
     smooth: bool,
     lens: LensDraft,
     normal: Option<Arc<PovNormal>>,
     /// Whether `right` or `up` was given.
     sized: bool,
-    /// Whether it began as a declared camera, whose view is already made.
+    /// Whether it is a declared camera, whose view is already computed.
     named: bool,
     transform: Transform,
 }
@@ -99,7 +99,7 @@ impl Draft {
         }
     }
 
-    /// Turns the camera to a point: lengths and handedness of its vectors stay. `false` if the point is at the camera.
+    /// Turns the camera to a point; lengths and handedness of its vectors stay. Returns `false` if the point is at the camera.
     fn turn_to(&mut self, point: DVec3) -> bool {
         let forward = (point - self.location).normalize_or_zero();
         if forward == DVec3::ZERO {
@@ -107,13 +107,13 @@ impl Draft {
         }
         let handedness = self.up.cross(self.direction).dot(self.right);
         let sideways = self.sky.cross(forward);
-        // Straight along the sky the camera does not turn sideways.
+        // If the direction is parallel to the sky, the camera keeps its right vector.
         let right = if sideways.length() > 1e-12 * self.sky.length() {
             sideways.normalize()
         } else {
             self.right.normalize_or(DVec3::X)
         };
-        // An `up` along the direction, as scenes with z upwards have it by default, counts as right-handed.
+        // An `up` parallel to the direction, which is the default in scenes with z up, counts as right-handed.
         let side = if handedness > 0.0 { 1.0 } else { -1.0 };
         let up = forward.cross(right).normalize_or(DVec3::Y);
         self.direction = forward * self.direction.length();
@@ -122,7 +122,7 @@ impl Draft {
         true
     }
 
-    /// Fits lengths to the angle.
+    /// Scales the vectors to fit the angle.
     fn apply_angle(&mut self) {
         let slope = self
             .angle
@@ -133,7 +133,7 @@ impl Draft {
                 self.direction = self.direction.normalize_or_zero() * distance;
             }
             (Projection::Orthographic, _) => {
-                // A perspective camera would see the same at the point looked at.
+                // An orthographic camera shows what a perspective camera would show at the distance of `look_at`.
                 let distance = (self.look_at.unwrap_or(DVec3::Z) - self.location).length();
                 let scale = match slope {
                     Some(slope) => 2.0 * slope * distance / self.right.length(),
@@ -147,7 +147,7 @@ impl Draft {
         }
     }
 
-    /// Puts the angle into projections that have one; without, what POV-Ray takes stays.
+    /// Puts the angle into projections that have one; without an angle, POV-Ray's default stays.
     fn fill_angle(&mut self) {
         let Some((across, upwards)) = self.angle else {
             return;
@@ -168,7 +168,7 @@ impl Draft {
     }
 }
 
-/// The projection that a word names, with its angle if none is given (measured with POV-Ray 3.7).
+/// The projection that a word names, with its default angle (measured with POV-Ray 3.7).
 fn projection_of(word: Word) -> Option<Projection> {
     let angle = std::f64::consts::FRAC_PI_2;
     Some(match word {
@@ -187,7 +187,7 @@ fn projection_of(word: Word) -> Option<Projection> {
 }
 
 impl Parser<'_> {
-    /// `{ ... }` or `{ Name ... }` behind `camera`.
+    /// `{ ... }` or `{ Name ... }` after `camera`.
     pub(super) fn camera(&mut self) -> PResult<Camera> {
         let place = self.place();
         let mut draft = Draft::new();
@@ -275,7 +275,7 @@ impl Parser<'_> {
         Ok(())
     }
 
-    /// The type behind `cylinder`, 1 to 4.
+    /// The type after `cylinder`, 1 to 4.
     fn cylinder_camera(&mut self) -> PResult<Projection> {
         let number = self.float()?;
         let (upright, moving) = match number {
@@ -310,7 +310,7 @@ impl Parser<'_> {
             draft.apply_angle();
         }
         if let Some(mesh) = draft.mesh.take() {
-            // Here `location` and `direction` say how far from its face a ray begins, and to which side it goes.
+            // Here `location` is the distance of a ray's start from its face, and `direction` selects the side to which it goes.
             let camera = mesh.finish(draft.location.z, draft.direction.z < 0.0, draft.smooth);
             draft.projection = Projection::Mesh(Arc::new(camera));
         }

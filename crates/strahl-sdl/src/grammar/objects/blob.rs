@@ -10,15 +10,15 @@ use strahl_shade::texture::{Shares, Texture as Surface};
 struct Draft {
     threshold: f64,
     components: Vec<BlobComponent>,
-    /// The number of each component's texture; 0 is that of the whole blob.
+    /// The index of each component's texture; 0 is that of the whole blob.
     textures: Vec<usize>,
-    /// The textures from number 1 on.
+    /// The textures from index 1 on.
     own: Vec<Arc<Surface>>,
 }
 
 /// `blob { threshold t sphere { ... } cylinder { ... } component ... }`
 ///
-/// Components may have textures and transformations of their own. Where fields overlap the textures are mixed by their strengths.
+/// Components may have their own textures and transformations. Where fields overlap, the textures are mixed by field strength.
 pub(super) fn blob(p: &mut Parser<'_>) -> PResult<Entity> {
     let mut draft = Draft {
         threshold: 1.0,
@@ -45,7 +45,7 @@ pub(super) fn blob(p: &mut Parser<'_>) -> PResult<Entity> {
     if let Some(blob) = shape
         && !draft.own.is_empty()
     {
-        // The whole blob's texture is known only now; a default does not move with the object.
+        // The texture of the whole blob is known only here; a default texture does not move with the object.
         let whole = entity.texture.take().unwrap_or_else(|| {
             let back = entity.placement().inverted();
             p.state.default_texture.transformed(&back)
@@ -68,7 +68,7 @@ pub(super) fn blob(p: &mut Parser<'_>) -> PResult<Entity> {
 }
 
 impl Parser<'_> {
-    /// One component or the threshold; `false` if none stands here.
+    /// Reads a component or the threshold; returns `false` if neither follows.
     fn blob_item(&mut self, draft: &mut Draft) -> PResult<bool> {
         let token = self.peek()?;
         match token.word() {
@@ -96,7 +96,7 @@ impl Parser<'_> {
                     p.component_items(draft, capsule)
                 })?;
             }
-            // The old notation of a ball.
+            // The old syntax of a spherical component.
             Some(Word::Component) => {
                 self.take(token)?;
                 let strength = self.float()?;
@@ -109,7 +109,7 @@ impl Parser<'_> {
                     .components
                     .push(BlobComponent::sphere(center, radius, strength));
             }
-            // These choose POV-Ray's methods.
+            // These select methods of POV-Ray, and have no effect here.
             Some(Word::Sturm | Word::Hierarchy) => {
                 self.take(token)?;
                 self.switched()?;
@@ -127,7 +127,7 @@ impl Parser<'_> {
         Ok((radius, self.float()?))
     }
 
-    /// Textures and transformations of a component, up to its closing brace; what moves it moves the textures before it.
+    /// Textures and transformations of a component, up to its closing brace; transformations move the textures before them.
     fn component_items(&mut self, draft: &mut Draft, component: BlobComponent) -> PResult<()> {
         let mut component = component;
         let mut texture: Option<Texture> = None;
@@ -161,18 +161,18 @@ impl Parser<'_> {
     }
 }
 
-/// Mixes the textures of a blob by the strengths of its components' fields.
+/// Mixes the textures of a blob by the field strengths of its components.
 #[derive(Debug)]
 struct ByField {
     blob: Arc<Blob>,
-    /// The number of each component's texture.
+    /// The index of each component's texture.
     textures: Vec<usize>,
 }
 
 impl Shares for ByField {
     fn shares_at(&self, point: DVec3, visit: &mut dyn FnMut(usize, f64)) {
         let mut sum = 0.0;
-        // The parts of textures met so far: few, as components that reach one point are.
+        // The weights of the textures so far. The list is short, because few components reach one point.
         let mut parts: Vec<(usize, f64)> = vec![];
         self.blob.fields_at(point, |component, field, _| {
             let number = self.textures.get(component).copied().unwrap_or_default();

@@ -6,10 +6,10 @@ use strahl_math::DVec3;
 /// The thickness of a box that is flat along one axis, relative to its size and place.
 const THIN: f64 = 8.0 * f64::EPSILON;
 
-/// What stands for an infinite coordinate of a corner: farther than anything can be seen, and its square is still a number.
+/// Replaces an infinite coordinate of a corner: farther away than any visible point, and its square is still finite.
 const FAR: f64 = 1e100;
 
-/// A corner with numbers in place of infinities.
+/// A corner with infinite coordinates replaced.
 fn finite(corner: DVec3) -> DVec3 {
     DVec3::from_array(corner.to_array().map(|x| match x {
         _ if x.is_nan() => x,
@@ -17,9 +17,9 @@ fn finite(corner: DVec3) -> DVec3 {
     }))
 }
 
-/// `box { corner, corner ... }`; without thickness along one axis it is a rectangle.
+/// `box { corner, corner ... }`; a box with no extent along one axis is a rectangle.
 ///
-/// As in POV-Ray, a box goes on for ever where a coordinate of one corner is infinite, and cannot be seen if those of both are.
+/// As in POV-Ray, a box extends infinitely where one corner has an infinite coordinate; it is invisible if both corners do.
 pub(super) fn cuboid(p: &mut Parser<'_>) -> PResult<Entity> {
     p.shape(|p| {
         let a = p.vector3()?;
@@ -39,7 +39,7 @@ pub(super) fn cuboid(p: &mut Parser<'_>) -> PResult<Entity> {
             .find(|&i| flat[i])
             .filter(|_| flat.iter().filter(|f| **f).count() == 1)
         {
-            // A box without thickness is visible, but nothing is inside of it.
+            // A box with no thickness is visible, but has no inside.
             let (mut min, max) = (cuboid.min(), cuboid.max());
             let size = min.abs().max_element() + (max - min).max_element();
             min[axis] -= THIN * size;

@@ -48,7 +48,7 @@ impl Parser<'_> {
         })
     }
 
-    /// Objects up to the first word that opens none. Stray separators between them do no harm.
+    /// Objects up to the first word that opens none. Extra separators between them are harmless.
     pub(in crate::grammar) fn parts(&mut self) -> PResult<Vec<Object>> {
         let mut objects = vec![];
         loop {
@@ -64,7 +64,7 @@ impl Parser<'_> {
     }
 }
 
-/// The children without those that nothing is left of; none if nothing is left of the whole.
+/// The children without those that have no surface; an empty list if the result has no surface.
 fn combine(op: CsgOp, mut children: Vec<Object>) -> Vec<Object> {
     let empty = match op {
         CsgOp::Intersection => children.iter().any(is_nothing),

@@ -26,7 +26,7 @@ pub(super) fn cylinder(p: &mut Parser<'_>) -> PResult<Entity> {
     })
 }
 
-/// An error if the ends are the same point, so that there is no direction.
+/// Reports an error if both ends are the same point, which leaves the direction undefined.
 pub(super) fn check_ends(
     p: &mut Parser<'_>,
     place: Place,

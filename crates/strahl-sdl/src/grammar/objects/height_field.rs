@@ -69,11 +69,11 @@ impl Parser<'_> {
         }
     }
 
-    /// `width, height { ... }` behind `function`
+    /// `width, height { ... }` after `function`.
     fn height_function(&mut self) -> PResult<Heights> {
         let mut values = vec![];
         let (width, height) = self.sampled_function(|[r, g, b, _]| {
-            // A value beyond the range wraps around (measured); colours count by brightness.
+            // Values outside of the range wrap around (measured); colours count by brightness.
             values.push(if r == g && g == b {
                 in_16_bits(r)
             } else {
@@ -90,7 +90,8 @@ impl Parser<'_> {
     }
 }
 
-/// Of a picture made by Fractint's continuous potential, whose right half has the lower bytes of the heights in the left half.
+/// The heights of a picture made with Fractint's continuous potential, whose right half has the lower bytes of the heights in the
+/// left half.
 fn joined(halves: &Heights) -> Heights {
     let width = halves.width / 2;
     let rows = halves.values.chunks(halves.width.max(1) as usize);
@@ -107,7 +108,7 @@ fn joined(halves: &Heights) -> Heights {
 
 /// A height in 16 bits; larger values lose their upper bits.
 fn in_16_bits(x: f64) -> u16 {
-    // The first cast cuts off and takes NaN for 0.
+    // The first cast truncates, and turns NaN into 0.
     (x * 65535.0) as i64 as u16
 }
 

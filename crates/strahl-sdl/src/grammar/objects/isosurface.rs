@@ -7,8 +7,8 @@ use strahl_geometry::{Container, Cuboid, Isosurface, IsosurfaceOptions, Sphere};
 
 /// `isosurface { function { ... } [contained_by { ... }] [threshold t] [accuracy a] [max_gradient g] [evaluate ...] [open] ... }`
 ///
-/// What only tells POV-Ray how to search is read and not needed: `max_trace`, `all_intersections`, and the gradient, unless
-/// the function calls patterns.
+/// Items that control only POV-Ray's search are read and ignored: `max_trace`, `all_intersections`, and the gradient, unless the
+/// function calls patterns.
 pub(super) fn isosurface(p: &mut Parser<'_>) -> PResult<Entity> {
     p.shape(|p| {
         let function = p.function_item()?;
@@ -36,7 +36,7 @@ pub(super) fn isosurface(p: &mut Parser<'_>) -> PResult<Entity> {
                 }
                 Word::Evaluate => {
                     p.take(token)?;
-                    // The gradient to start from, a factor by which to exceed it, and one by which to fall back.
+                    // `evaluate`: the initial gradient, and the factors by which it grows and shrinks.
                     let least = p.float()?;
                     p.comma()?;
                     let factor = p.float()?;
@@ -61,7 +61,7 @@ pub(super) fn isosurface(p: &mut Parser<'_>) -> PResult<Entity> {
 }
 
 impl Parser<'_> {
-    /// `function { ... }`, with a number for a value.
+    /// `function { ... }`, or a number as a constant function.
     pub(super) fn function_item(&mut self) -> PResult<Function> {
         let token = self.peek()?;
         if !token.is(Word::Function) {
@@ -81,7 +81,7 @@ impl Parser<'_> {
         }
     }
 
-    /// `{ sphere { centre, radius } }` or `{ box { corner, corner } }` behind `contained_by`
+    /// `{ sphere { centre, radius } }` or `{ box { corner, corner } }` after `contained_by`.
     pub(super) fn container(&mut self) -> PResult<Container> {
         self.braces(|p| {
             if p.accept_word(Word::Sphere)? {

@@ -36,7 +36,7 @@ pub(super) fn julia_fractal(p: &mut Parser<'_>) -> PResult<Entity> {
                 }
                 Word::MaxIteration => {
                     p.take(token)?;
-                    // The cast cuts off, and takes what is negative or no number for 0.
+                    // The cast truncates, and turns negative numbers and NaN into 0.
                     options.max_iteration = p.float()? as u32;
                 }
                 Word::Precision => {
@@ -68,7 +68,7 @@ pub(super) fn julia_fractal(p: &mut Parser<'_>) -> PResult<Entity> {
     })
 }
 
-/// The function of a word.
+/// The function that a word names.
 const fn named(word: Word) -> Option<H> {
     Some(match word {
         Word::Sqr => H::Square,

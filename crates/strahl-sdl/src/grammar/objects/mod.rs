@@ -1,6 +1,6 @@
-//! Objects: a file each, and a line in [`OBJECTS`].
+//! Objects: one file each, and a line in [`OBJECTS`].
 //!
-//! `modifiers` reads what all objects may have; `reuse` lets uses of a declared object share one group.
+//! `modifiers` reads the items common to all objects; `reuse` lets uses of a declared object share a group.
 
 mod blob;
 mod boxes;
@@ -40,10 +40,10 @@ use crate::parser::{PResult, Parser};
 use crate::token::{Kind, Token};
 use strahl_scene::Object;
 
-/// Reads an object from its `{` to its `}`; its word is already taken.
+/// Reads an object from its `{` to its `}`; its keyword is taken.
 pub(super) type ObjectParser = fn(&mut Parser<'_>) -> PResult<Entity>;
 
-/// All objects by their words.
+/// All objects by keyword.
 static OBJECTS: [Option<ObjectParser>; Word::ALL.len()] = by_word::<ObjectParser, _>([
     (Word::Blob, blob::blob),
     (Word::Box, boxes::cuboid),
@@ -82,24 +82,24 @@ static OBJECTS: [Option<ObjectParser>; Word::ALL.len()] = by_word::<ObjectParser
     (Word::Union, csg::union),
 ]);
 
-/// The words of all objects that are supported.
+/// The keywords of all supported objects.
 pub fn object_words() -> impl Iterator<Item = Word> {
     words_of(&OBJECTS)
 }
 
 impl Parser<'_> {
-    /// If an object stands here, reads it.
+    /// Reads an object, if one follows.
     ///
     /// # Errors
-    /// If the object is wrong.
+    /// If the object is invalid.
     pub(crate) fn object(&mut self) -> PResult<Option<Object>> {
         Ok(self.entity()?.map(|entity| entity.object))
     }
 
-    /// If an object or the name of one stands here, reads it with its texture. One that is not supported yet leaves nothing.
+    /// Reads an object or the name of one, if one follows, with its texture. An unsupported object gives an empty one.
     ///
     /// # Errors
-    /// If the object is wrong.
+    /// If the object is invalid.
     pub(crate) fn entity(&mut self) -> PResult<Option<Entity>> {
         let token = self.peek()?;
         if token.kind == Kind::Name {
@@ -120,7 +120,7 @@ impl Parser<'_> {
         Ok(Some(Entity::nothing()))
     }
 
-    /// What reads the object that begins with a token, which is then taken.
+    /// The parser for the object that begins with a token, which is then taken.
     ///
     /// # Errors
     /// If there are too many objects.
@@ -137,7 +137,7 @@ impl Parser<'_> {
         };
         self.take(token)?;
         self.count_objects(1)?;
-        // A declared object may stand in the braces of any; operations and lights look for it themselves.
+        // A declared object may be in the braces of any object; CSG operations and lights check for it themselves.
         let looks_itself = matches!(
             word,
             Word::LightSource
@@ -151,10 +151,10 @@ impl Parser<'_> {
         Ok(Some(if named { object } else { parse }))
     }
 
-    /// Passes something that is not supported yet, with a warning; `token` is its word.
+    /// Skips an unsupported object with a warning; `token` is its keyword.
     ///
     /// # Errors
-    /// If it does not end.
+    /// If it has no end.
     pub(in crate::grammar) fn leave_out(&mut self, token: Token) -> PResult<()> {
         self.take(token)?;
         let text = token.word().map_or("", Word::text);

@@ -8,22 +8,22 @@ use crate::value::Value;
 use strahl_geometry::{GeometryError, Primitive, Shape};
 use strahl_scene::{CsgOp, Object, ObjectKind};
 
-/// What is gathered besides the object itself until the brace closes.
+/// State between the items of an object, besides the object itself.
 #[derive(Default)]
 struct Draft {
-    /// Whether the texture is another than the material says.
+    /// Whether the texture has changed, so that the material is out of date.
     textured: bool,
-    /// What `bounded_by` has named, for `clipped_by { bounded_by }`.
+    /// The objects of `bounded_by`, for `clipped_by { bounded_by }`.
     bounds: Vec<Object>,
-    /// What `clipped_by` has named, for `bounded_by { clipped_by }`.
+    /// The objects of `clipped_by`, for `bounded_by { clipped_by }`.
     clips: Vec<Object>,
 }
 
 impl Parser<'_> {
-    /// A simple object: its numbers, read by `f` from the opening brace on, then what all objects may have.
+    /// Reads a simple object: with `f` its parameters after the opening brace, then the modifiers of all objects.
     ///
     /// # Errors
-    /// If the text is wrong or a number is not finite.
+    /// If the text is invalid or a number is not finite.
     pub(crate) fn shape<S: Into<Shape>>(
         &mut self,
         f: impl FnOnce(&mut Self) -> PResult<Result<S, GeometryError>>,
@@ -31,12 +31,12 @@ impl Parser<'_> {
         self.simple(|p| Ok(f(p)?.map(|shape| ObjectKind::Shape(shape.into()))))
     }
 
-    /// Like [`Parser::shape`] for what may be more than one shape.
+    /// Like [`Parser::shape`] for objects that may be several shapes.
     ///
-    /// What has no extent, and so cannot be seen, is left out with a warning; a shape of NaN or infinite numbers is an error.
+    /// An object without extent is invisible and is left out with a warning; NaN or infinite parameters are an error.
     ///
     /// # Errors
-    /// If the text is wrong or a number is not finite.
+    /// If the text is invalid or a number is not finite.
     pub(super) fn simple(
         &mut self,
         f: impl FnOnce(&mut Self) -> PResult<Result<ObjectKind, GeometryError>>,
@@ -59,11 +59,11 @@ impl Parser<'_> {
         })
     }
 
-    /// Transformations, textures and switches up to the closing brace, in the order they stand: what moves the object moves
-    /// the textures and clipping objects before it.
+    /// Transformations, textures and flags up to the closing brace, in their order: transformations move the textures and
+    /// clipping objects before them.
     ///
     /// # Errors
-    /// If an item is wrong.
+    /// If an item is invalid.
     pub(crate) fn modifiers(&mut self, entity: &mut Entity) -> PResult<()> {
         let mut draft = Draft::default();
         self.items("the object", |p, token| {
@@ -107,8 +107,8 @@ impl Parser<'_> {
                 | Word::Material
                 | Word::UvMapping,
             ) => {
-                // What is written now is meant in the space that the object has been moved to; so is the default, which
-                // comes to the object only now.
+                // The item is in the space to which the object has been moved, and so is the default texture, which the object
+                // gets only here.
                 let mut texture = match entity.texture.take() {
                     Some(texture) if entity.object.transform.is_some() => {
                         texture.transformed(&entity.placement())
@@ -165,9 +165,9 @@ impl Parser<'_> {
                 return Ok(true);
             }
             Some(Word::Hollow) => entity.object.hollow = Some(true),
-            // These choose POV-Ray's methods.
+            // These select methods of POV-Ray, and have no effect here.
             Some(Word::Hierarchy | Word::SplitUnion | Word::Sturm) => {}
-            // Of old scenes, for previews.
+            // A colour in an old scene, for quick previews.
             Some(word) if word.kind() == WordKind::Color => {
                 self.warn_hint(
                     self.place_of(token),
@@ -193,15 +193,15 @@ impl Parser<'_> {
         Ok(true)
     }
 
-    /// What stands behind a switch: nothing or `on`, or `off`.
+    /// The value of a flag: `on`, `off`, or nothing for `on`.
     ///
     /// # Errors
-    /// If the number there is wrong.
+    /// If the value is invalid.
     pub(in crate::grammar) fn switched(&mut self) -> PResult<bool> {
         Ok(!self.number_follows()? || self.float()? != 0.0)
     }
 
-    /// Whether a number stands here, and not the next item.
+    /// Whether a number follows, and not the next item.
     pub(in crate::grammar) fn number_follows(&mut self) -> PResult<bool> {
         let token = self.peek()?;
         Ok(match token.kind {
@@ -217,7 +217,7 @@ impl Parser<'_> {
         })
     }
 
-    /// The objects in the braces of `clipped_by` or `bounded_by`, or those that the other one has named.
+    /// The objects in the braces of `clipped_by` or `bounded_by`, or, if the braces name the other keyword, its objects.
     fn enclosing(&mut self, what: &str, other: Word, known: &[Object]) -> PResult<Vec<Object>> {
         let place = self.place();
         let mut found = vec![];
@@ -231,7 +231,7 @@ impl Parser<'_> {
             if found.is_empty() {
                 return Err(p.unexpected(token, "an object"));
             }
-            // What stands behind them moves all of them.
+            // Transformations after the objects move all of them.
             while let Some(map) = p.transformation(token)? {
                 found.iter_mut().for_each(|object| transform(object, &map));
                 token = p.peek()?;
@@ -249,7 +249,7 @@ impl Parser<'_> {
     }
 }
 
-/// Cuts an object, without a cap; the clipping objects stand in its parent's space.
+/// Clips an object without a cap; the clipping objects are in the space of its parent.
 fn clip(object: &mut Object, clips: Vec<Object>) {
     if clips.is_empty() || is_nothing(object) {
         return;
@@ -266,7 +266,7 @@ fn clip(object: &mut Object, clips: Vec<Object>) {
     }
 }
 
-/// Turns inside and outside round; surfaces without an inside stay as they are.
+/// Swaps inside and outside; surfaces without an inside stay as they are.
 fn invert(object: &mut Object) {
     let open = match &object.kind {
         ObjectKind::Shape(shape) => shape.as_solid().is_none(),
@@ -277,7 +277,7 @@ fn invert(object: &mut Object) {
     }
 }
 
-/// Puts an operation around what an object is; all else about it stays.
+/// Wraps an operation around the kind of an object; its other properties stay.
 fn wrap(object: &mut Object, op: CsgOp) {
     let nothing = Object::csg(CsgOp::Union, vec![]).kind;
     let mut inner = Object::new(std::mem::replace(&mut object.kind, nothing));

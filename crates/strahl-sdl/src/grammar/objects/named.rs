@@ -27,11 +27,11 @@ pub(in crate::grammar) fn object(p: &mut Parser<'_>) -> PResult<Entity> {
 }
 
 impl Parser<'_> {
-    /// If the name of an object stands here, takes it and gives the object once more. Rays then name `place`, which puts the object into
-    /// the scene, or the name itself.
+    /// Takes the name of an object, if one follows, and returns the object. Hits refer to `place`, where the object is put into
+    /// the scene, or to the name itself.
     ///
     /// # Errors
-    /// If the name is that of an array or dictionary, and its element no object.
+    /// If the name is that of an array or dictionary, and its element is not an object.
     pub(in crate::grammar) fn named_object(
         &mut self,
         place: Option<Place>,
@@ -48,7 +48,7 @@ impl Parser<'_> {
         Ok(named.map(|declared| self.declared_object(&declared, token, place)))
     }
 
-    /// A declared object as it is put into the scene by `name`.
+    /// The declared object, as used by `name`.
     pub(in crate::grammar) fn declared_object(
         &mut self,
         declared: &Arc<Declared>,
@@ -63,10 +63,10 @@ impl Parser<'_> {
         entity
     }
 
-    /// Whether a brace and the name of an object come next: `sphere { Name ... }` is `object { Name ... }`.
+    /// Whether a brace and the name of an object follow: `sphere { Name ... }` means `object { Name ... }`.
     ///
     /// # Errors
-    /// If a directive behind the brace fails.
+    /// If a directive after the brace fails.
     pub(super) fn object_name_follows(&mut self) -> PResult<bool> {
         if self.raw().kind != Kind::LeftBrace {
             return Ok(false);
@@ -87,7 +87,7 @@ impl Parser<'_> {
         Ok(self.names_object(token))
     }
 
-    /// Whether a token is the name of an object, or of an array of them.
+    /// Whether a token is the name of an object, or of an array of objects.
     fn names_object(&self, token: Token) -> bool {
         let (Kind::Name, Some(symbol)) = (token.kind, token.symbol()) else {
             return false;

@@ -7,7 +7,7 @@ use strahl_math::DVec2;
 
 /// `parametric { function { x(u, v) }, function { ... }, function { ... } <u1, v1>, <u2, v2> [contained_by { ... }] [accuracy a] ... }`
 ///
-/// `precompute` is read and not needed; `max_gradient` matters only for functions that call patterns.
+/// `precompute` is read and ignored; `max_gradient` matters only for functions that call patterns.
 pub(super) fn parametric(p: &mut Parser<'_>) -> PResult<Entity> {
     p.shape(|p| {
         let x = p.function_of_uv()?;
@@ -57,7 +57,7 @@ pub(super) fn parametric(p: &mut Parser<'_>) -> PResult<Entity> {
 }
 
 impl Parser<'_> {
-    /// `function { ... }` of `u` and `v`, and a comma behind it.
+    /// `function { ... }` of `u` and `v`, and an optional comma.
     fn function_of_uv(&mut self) -> PResult<Function> {
         let token = self.peek()?;
         if !token.is(Word::Function) {

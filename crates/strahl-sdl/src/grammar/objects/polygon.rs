@@ -5,7 +5,8 @@ use strahl_math::DVec3;
 
 /// `polygon { count, corner, ... }`
 ///
-/// A corner equal to the first of its ring closes it; the next one begins another ring, which cuts a hole (or fills one).
+/// A corner equal to the first one of its ring closes the ring; the next corner begins another ring, which cuts a hole (or fills
+/// one).
 pub(super) fn polygon(p: &mut Parser<'_>) -> PResult<Entity> {
     let place = p.place();
     p.shape(|p| {
@@ -38,7 +39,7 @@ pub(super) fn polygon(p: &mut Parser<'_>) -> PResult<Entity> {
                 "the last corner of the polygon differs from the first; it is closed by an edge",
             );
         }
-        // A lone corner behind the last ring encloses nothing.
+        // A single corner after the last ring encloses no area.
         rings.retain(|ring| ring.len() > 1);
         let mut rings = rings.into_iter();
         let outer = rings.next().unwrap_or_default();

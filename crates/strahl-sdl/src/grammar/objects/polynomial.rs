@@ -48,7 +48,7 @@ fn listed(p: &mut Parser<'_>, order: Option<u32>) -> PResult<Entity> {
 
 /// `polynomial { order, xyz(powers of x, y and z): coefficient, ... }`
 ///
-/// What is not named is zero; what is named twice has the last value.
+/// Terms that are not named are zero; of a term named twice the last value counts.
 pub(super) fn polynomial(p: &mut Parser<'_>) -> PResult<Entity> {
     p.shape(|p| {
         let order = p.order()?;
@@ -85,7 +85,7 @@ pub(super) fn polynomial(p: &mut Parser<'_>) -> PResult<Entity> {
 }
 
 impl Parser<'_> {
-    /// The order of a polynomial and the comma behind it.
+    /// The order of a polynomial and an optional comma.
     fn order(&mut self) -> PResult<u32> {
         let token = self.peek()?;
         let place = self.place_of(token);
@@ -96,7 +96,7 @@ impl Parser<'_> {
             return Err(self.fail(place, message));
         }
         self.comma()?;
-        // As in other languages a fraction is dropped.
+        // The fraction is dropped.
         Ok(order as u32)
     }
 }

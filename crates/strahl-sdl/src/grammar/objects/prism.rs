@@ -46,7 +46,7 @@ pub(super) fn prism(p: &mut Parser<'_>) -> PResult<Entity> {
 }
 
 impl Parser<'_> {
-    /// The word for a kind of spline, if there is one.
+    /// The keyword of a kind of spline, if one follows.
     pub(super) fn spline_word(&mut self) -> PResult<Option<Spline>> {
         for (word, spline) in [
             (Word::LinearSpline, Spline::Linear),
@@ -61,7 +61,7 @@ impl Parser<'_> {
         Ok(None)
     }
 
-    /// `count, point, ...` for a spline of at least so many points.
+    /// `count, point, ...` for a spline with at least this many points.
     pub(super) fn spline_points(
         &mut self,
         what: &str,

@@ -1,11 +1,11 @@
 //! Reuse of declared objects without copies.
 //!
-//! While the scene is read, each use of a large or frequently used declared object is an [`ObjectKind::Instance`] whose number
-//! counts the declared objects ([`Shared`]), not yet the scene's groups. At the end, [`link`] turns them into groups: one for
-//! each declared object and each material that its parts inherit from the use. An object that is used only once replaces its
-//! instance instead, so a scene built up step by step (`#declare All = union { object { All } ... }`) has no tower of
+//! While the scene is read, each use of a large or frequently used declared object is an [`ObjectKind::Instance`] whose number is
+//! an index into the declared objects ([`Shared`]), not yet into the scene's groups. At the end, [`link`] turns them into groups:
+//! one for each declared object and each material that its parts inherit from the use. An object that is used only once replaces
+//! its instance, so that a scene built step by step (`#declare All = union { object { All } ... }`) does not become a tower of
 //! instances. Operations other than unions need all their parts: within them the last use of a declared object takes its parts,
-//! and the uses before it copy them.
+//! and earlier uses copy them.
 
 use crate::grammar::Entity;
 use crate::grammar::entity::{Declared, is_nothing};
@@ -19,11 +19,11 @@ use strahl_geometry::Primitive;
 use strahl_scene::{Children, CsgOp, Group, GroupId, Object, ObjectKind, Scene};
 use strahl_shade::Material;
 
-/// Up to this many parts an object is copied for each of its first uses; beyond, the additional level of an instance costs rays
-/// less than the copies.
+/// For objects with at most this many parts, the first uses are copies; for larger ones, copies would cost rays more than the
+/// additional level of an instance.
 const SMALL: u64 = 8;
 
-/// An object of several parts that is used more often is shared from then on.
+/// After this many uses, an object of several parts is shared.
 const OFTEN: u32 = 16;
 
 /// A mesh of up to this many triangles counts as small.
@@ -32,19 +32,19 @@ const FEW_TRIANGLES: u64 = 64;
 /// Counts of the parts of an object.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Tally {
-    /// Shapes and operations.
+    /// The number of shapes and operations.
     parts: u64,
-    /// Elements of the shapes: triangles of meshes.
+    /// The number of elements of the shapes, such as the triangles of meshes.
     elements: u64,
     /// Whether a part inherits its material from the use.
     inherits: bool,
-    /// Whether a part is covered but not filled, which a use may change.
+    /// Whether a part has a texture but no interior, so that a use may give it one.
     unfilled: bool,
-    /// Whether a part is filled but not covered, which each use changes.
+    /// Whether a part has an interior but no texture, so that each use gives it one.
     bare: bool,
-    /// Whether a part is a light or a group of them.
+    /// Whether a part is a light or a light group.
     lights: bool,
-    /// Shapes and operations, including those of the declared objects in it.
+    /// The number of shapes and operations, including those of the declared objects in it.
     pub(in crate::grammar) expanded: u64,
 }
 
@@ -62,7 +62,7 @@ impl Tally {
             tally.expanded = tally.expanded.saturating_add(1);
             match &object.kind {
                 ObjectKind::Csg { op, children } => {
-                    // A group of lights decides what shines on its parts, even if it has no lights.
+                    // A light group determines which lights illuminate its parts, even if it has no lights.
                     tally.lights |= matches!(op, CsgOp::LightGroup { .. });
                     waiting.extend(children.0.iter().map(|child| (child, has_material)));
                 }
@@ -71,7 +71,7 @@ impl Tally {
                     tally.inherits |= !has_material;
                 }
                 ObjectKind::Instance(id) => {
-                    // Its parts may inherit it; checking them would not be worth it.
+                    // Its parts may inherit the material; checking them would not be worth the time.
                     tally.inherits |= !has_material;
                     let inside = shared.objects.get(id.0 as usize);
                     tally.unfilled |= inside.is_some_and(|d| d.tally.unfilled);
@@ -100,20 +100,20 @@ impl Shared {
 }
 
 impl Parser<'_> {
-    /// The text of a name, one copy for all objects.
+    /// The text of a name, shared by all objects.
     pub(super) fn name_of(&mut self, symbol: Symbol) -> Arc<str> {
         let text = self.symbols.text(symbol);
         let names = &mut self.state.shared.names;
         Arc::clone(names.entry(symbol).or_insert_with(|| text.into()))
     }
 
-    /// Uses a declared object again.
+    /// Uses a declared object.
     pub(super) fn use_declared(&mut self, declared: &Arc<Declared>) -> Entity {
         let Tally {
             parts, elements, ..
         } = declared.tally;
         let uses = declared.uses.fetch_add(1, Ordering::Relaxed);
-        // Lights shine where they stand, so each use needs its own; and bare parts are covered by each in its way.
+        // Lights illuminate from their own positions, so each use needs its own; and each use gives bare parts their texture.
         if declared.tally.lights || declared.tally.bare {
             return declared.entity.clone();
         }
@@ -133,10 +133,10 @@ impl Parser<'_> {
         }
     }
 
-    /// Puts the parts of declared objects in place of their instances.
+    /// Replaces the instances within an object by the parts of the declared objects.
     ///
     /// # Errors
-    /// If they are too many.
+    /// If there are too many parts.
     pub(in crate::grammar) fn expand_instances(&mut self, object: &mut Object) -> PResult<()> {
         if has_instances(object) {
             self.count_objects(Tally::of(object, &self.state.shared).expanded)?;
@@ -145,10 +145,10 @@ impl Parser<'_> {
         Ok(())
     }
 
-    /// The same for an object that fills its parts, if it wants all of them or some are covered but not filled.
+    /// The same for an object that gives its parts an interior, if it needs all of them or some have a texture but no interior.
     ///
     /// # Errors
-    /// If they are too many.
+    /// If there are too many parts.
     pub(in crate::grammar) fn expand_unfilled(&mut self, object: &mut Object) -> PResult<()> {
         let combines = matches!(&object.kind, ObjectKind::Csg { op, .. } if !op.is_union());
         if combines || Tally::of(object, &self.state.shared).unfilled {
@@ -157,10 +157,10 @@ impl Parser<'_> {
         Ok(())
     }
 
-    /// Makes the scene's groups; called when the whole text is read and no name is needed any more.
+    /// Creates the scene's groups; called when the whole text is read and names are no longer needed.
     ///
     /// # Errors
-    /// If operations other than unions have too many parts when all declared objects in them are written out.
+    /// If operations other than unions have too many parts after expanding all declared objects in them.
     pub(crate) fn link_instances(&mut self) -> PResult<()> {
         let shared = std::mem::take(&mut self.state.shared);
         if shared.objects.is_empty() {
@@ -174,7 +174,7 @@ impl Parser<'_> {
     }
 }
 
-/// All but the kind from one object, and a kind.
+/// A copy of an object's properties with another kind.
 fn attributes(object: &Object, kind: ObjectKind) -> Object {
     Object {
         name: object.name.clone(),
@@ -200,8 +200,7 @@ fn has_instances(object: &Object) -> bool {
     false
 }
 
-/// A copy with all instances replaced by the objects they stand for. Trees may be deeper than the stack, so they are traversed
-/// with a list.
+/// A copy with all instances replaced by their objects. Trees may be deeper than the stack, so the traversal uses a list.
 pub(crate) fn expanded(object: &Object, shared: &Shared) -> Object {
     copy(object, Some(shared))
 }
@@ -229,14 +228,14 @@ fn copy(object: &Object, expand: Option<&Shared>) -> Object {
             Step::Visit(like, kind) => done.push(attributes(like, kind.clone())),
             Step::Build(like, op, count) => {
                 let mut children = done.split_off(done.len() - count);
-                // A use of something that has no surface.
+                // A use of an object without a surface.
                 children.retain(|child| !is_nothing(child));
                 let children = Children(children);
                 done.push(attributes(like, ObjectKind::Csg { op, children }));
             }
         }
     }
-    // The walk ends with the copy of its root.
+    // The last result is the copy of the root.
     done.pop()
         .unwrap_or_else(|| Object::csg(CsgOp::Union, vec![]))
 }
@@ -244,25 +243,25 @@ fn copy(object: &Object, expand: Option<&Shared>) -> Object {
 /// A declared object with the material that its parts inherit from the use.
 type Key = (u32, Option<*const Material>);
 
-/// Turns numbers of declared objects into groups.
+/// Turns indices of declared objects into groups.
 struct Linker {
-    /// Until their last variant has taken them.
+    /// The declared objects; each is `None` after its last variant has taken it.
     objects: Vec<Option<Arc<Declared>>>,
-    /// Whether parts of each take their material from the use.
+    /// Whether parts of each object inherit their material from the use.
     inherits: Vec<bool>,
-    /// All keys met, with the material, in the order of the scene.
+    /// All keys in the order of the scene, with their materials.
     variants: Vec<(u32, Option<Arc<Material>>)>,
-    /// Of each variant: how often it is used, and its group once it has one.
+    /// The number of uses of each variant, and its group once it exists.
     uses: Vec<u32>,
     groups: Vec<Option<GroupId>>,
     known: HashMap<Key, usize>,
-    /// How often each declared object is used within operations that need all its parts.
+    /// The number of uses of each declared object within operations that need all its parts.
     whole: Vec<u64>,
-    /// How often the parts of each declared object are still needed, for its variants and in such operations.
+    /// How often the parts of each declared object are still needed, for variants and for such operations.
     open: Vec<u64>,
 }
 
-// The pointers are keys only, of materials that `variants` keeps alive; they are never followed.
+// The pointers are only keys. `variants` keeps the materials alive; the pointers are never dereferenced.
 impl Linker {
     fn new(objects: Vec<Arc<Declared>>) -> Self {
         let open = vec![0; objects.len()];
@@ -278,12 +277,12 @@ impl Linker {
         }
     }
 
-    /// Counts all uses; returns the number of parts that operations other than unions need.
+    /// Counts all uses; returns the number of parts needed by operations other than unions.
     fn count_all(&mut self, scene: &Scene) -> u64 {
         for object in &scene.objects.0 {
             self.count(object, None);
         }
-        // Those used by others come behind them.
+        // Variants used by other variants are appended.
         let mut next = 0;
         while next < self.variants.len() {
             let (id, material) = self.variants[next].clone();
@@ -292,7 +291,7 @@ impl Linker {
             }
             next += 1;
         }
-        // What a declared object is made of was declared before it, and so has a lower number.
+        // A declared object consists of objects declared before it, which have lower indices.
         let mut wanted = 0u64;
         for id in (0..self.whole.len()).rev() {
             let times = self.whole.get(id).copied().unwrap_or(0);
@@ -316,7 +315,7 @@ impl Linker {
         wanted
     }
 
-    /// Counts uses of a declared object within an operation that needs all its parts.
+    /// Counts uses of a declared object within operations that need all its parts.
     fn use_whole(&mut self, id: u32, times: u64) {
         if let Some(whole) = self.whole.get_mut(id as usize) {
             *whole = whole.saturating_add(times);
@@ -349,7 +348,7 @@ impl Linker {
         self.count_kind(object, material);
     }
 
-    /// Counts the instances within an object whose parts take this material.
+    /// Counts the instances within an object whose parts inherit this material.
     fn count_kind(&mut self, object: &Object, material: Option<Arc<Material>>) {
         let mut waiting = vec![(object, material, false)];
         while let Some((object, material, whole)) = waiting.pop() {
@@ -388,7 +387,7 @@ impl Linker {
         })
     }
 
-    /// The kind of a declared object; moved out for its last use, copied for the others.
+    /// The kind of a declared object; moved out at its last use, copied otherwise.
     fn kind(&mut self, id: u32) -> ObjectKind {
         let nothing = Object::csg(CsgOp::Union, vec![]).kind;
         let (Some(slot), Some(open)) = (
@@ -410,7 +409,7 @@ impl Linker {
         }
     }
 
-    /// Replaces the instances within an object by instances of the scene's groups, or by objects that are used here only. New
+    /// Replaces the instances within an object by instances of the scene's groups, or by objects that are used only here. New
     /// groups are queued to be filled.
     fn replace(
         &mut self,

@@ -8,7 +8,7 @@ pub(super) fn sphere(p: &mut Parser<'_>) -> PResult<Entity> {
         let center = p.vector3()?;
         p.comma()?;
         let radius = p.float()?;
-        // A negative radius has always meant the same sphere.
+        // A sphere with a negative radius is the same sphere, in all versions.
         Ok(Sphere::try_new(center, radius.abs()))
     })
 }

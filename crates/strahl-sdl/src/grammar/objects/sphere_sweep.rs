@@ -37,7 +37,7 @@ pub(super) fn sphere_sweep(p: &mut Parser<'_>) -> PResult<Entity> {
             read += 1.0;
         }
         p.comma()?;
-        // How exactly POV-Ray computes; there is nothing to choose here.
+        // The precision of POV-Ray's root finder, which is ignored.
         if p.accept_word(Word::Tolerance)? {
             p.float()?;
         }

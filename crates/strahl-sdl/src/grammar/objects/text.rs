@@ -7,17 +7,17 @@ use strahl_geometry::{GeometryError, Glyph};
 use strahl_math::DVec3;
 use strahl_scene::{CsgOp, Object, ObjectKind};
 
-/// A font that has been read: texts ask for the same again and again.
+/// A font that has been read; texts often use the same one.
 #[derive(Debug)]
 pub(in crate::grammar) struct KnownFont {
     name: String,
     font: Font,
 }
 
-/// The fonts of `internal`, by their numbers; other numbers mean the first.
+/// The fonts of `internal` by number; other numbers mean the first.
 const INTERNAL: [&str; 4] = ["povlogo.ttf", "timrom.ttf", "cyrvetic.ttf", "crystal.ttf"];
 
-/// `text { ttf "file" "text" thickness, offset }`, or `internal number` for the file
+/// `text { ttf "file" "text" thickness, offset }`, or `internal number` instead of the file.
 pub(super) fn text(p: &mut Parser<'_>) -> PResult<Entity> {
     p.simple(|p| {
         let token = p.peek()?;
@@ -28,7 +28,7 @@ pub(super) fn text(p: &mut Parser<'_>) -> PResult<Entity> {
             }
             Some(Word::Internal) => {
                 p.take(token)?;
-                // Beyond the list, NaN too, is the first.
+                // Numbers outside of the list, and NaN, mean the first font.
                 let number = p.float()? as usize;
                 INTERNAL.get(number).unwrap_or(&INTERNAL[0]).to_string()
             }
@@ -47,7 +47,7 @@ pub(super) fn text(p: &mut Parser<'_>) -> PResult<Entity> {
             Some(Err(error)) => return Err(p.fail(place, format!("`{name}`: {error}"))),
             None => vec![],
         };
-        // POV-Ray's texts start with the first letter's leftmost point, wherever the font puts that.
+        // In POV-Ray, a text starts with the leftmost point of its first letter, wherever the font puts that.
         let first = letters.first().and_then(|letter| letter.outline.as_ref());
         let left = first.map_or(0.0, |outline| outline.bounds()[0].x);
         let mut glyphs = vec![];
@@ -83,7 +83,7 @@ pub(super) fn text(p: &mut Parser<'_>) -> PResult<Entity> {
 }
 
 impl Parser<'_> {
-    /// The place among the known fonts of the one that a scene names, or of one that stands in for it.
+    /// The index of the known font that a scene names, or of a font that replaces it.
     fn font(&mut self, name: &str, place: Place) -> PResult<usize> {
         if let Some(known) = self.state.fonts.iter().position(|f| f.name == name) {
             return Ok(known);
@@ -100,10 +100,10 @@ impl Parser<'_> {
         Ok(self.state.fonts.len() - 1)
     }
 
-    /// Looks for a font: by its name where all files are searched, then among the fonts of the system, then for one like it.
+    /// Searches a font: under its name in all file folders, then among the system's fonts, then a similar one.
     fn font_file(&mut self, name: &str, place: Place) -> PResult<Data> {
         let file = name.rsplit(['/', '\\']).next().unwrap_or(name);
-        // The ending may be left out.
+        // The extension may be omitted.
         let mut endings = vec![""];
         if !file.contains('.') {
             endings.extend([".ttf", ".ttc", ".otf"]);

@@ -16,7 +16,7 @@ pub(super) fn smooth_triangle(p: &mut Parser<'_>) -> PResult<Entity> {
     p.shape(|p| {
         let (corners, normals) = corners_with_normals(p)?;
         let [a, b, c] = corners;
-        // Without all normals there is nothing to interpolate.
+        // Interpolation needs all three normals.
         if normals.contains(&DVec3::ZERO) {
             return Ok(Triangle::try_new(a, b, c).map(Shape::from));
         }

@@ -5,7 +5,7 @@ use strahl_geometry::{
 };
 use strahl_math::{Aabb, Interval, Ray};
 
-/// A mesh with its own hierarchy: scenes query the same mesh thousands of times. The results are the mesh's.
+/// A mesh with its own hierarchy, because scenes query the same mesh thousands of times. The results are the same as the mesh's.
 #[derive(Debug)]
 pub(super) struct SearchableMesh {
     mesh: Arc<TriangleMesh>,
@@ -21,7 +21,7 @@ impl SearchableMesh {
     }
 }
 
-/// Keeps the nearest hit; of equally near ones that of the first triangle.
+/// Keeps the nearest hit; of equally near ones, that of the first triangle.
 struct Nearest<'a> {
     mesh: &'a TriangleMesh,
     shear: RayShear,

@@ -1,4 +1,4 @@
-//! Queries of scenes about their own objects: `inside`, `trace`, `min_extent`, `max_extent`.
+//! Functions of scenes that query objects: `inside`, `trace`, `min_extent`, `max_extent`.
 
 mod mesh;
 
@@ -24,12 +24,12 @@ pub(crate) struct Query {
     bounds: Aabb,
     /// The cost of testing whether a point is inside.
     cost: Cost,
-    /// The part of that cost which its functions take.
+    /// The part of that cost spent in its functions.
     functions: u64,
 }
 
 impl Query {
-    /// `None` if nothing is there, or a shape is wrong.
+    /// `None` if the object is empty or a shape is invalid.
     fn new(object: &Object) -> Option<Self> {
         let csg = Csg::try_new(node(object)?).ok()?;
         let bounds = unclipped(object).unwrap_or_else(|| csg.bounds());
@@ -63,7 +63,7 @@ impl Query {
     }
 }
 
-/// The tree of a whole object; `None` if nothing is there. Walked with a list, since trees may be deeper than the stack.
+/// The CSG tree of a whole object; `None` if it is empty. The traversal uses a list, because trees may be deeper than the stack.
 fn node(object: &Object) -> Option<CsgNode> {
     enum Step<'a> {
         Visit(&'a Object),
@@ -111,7 +111,7 @@ fn node(object: &Object) -> Option<CsgNode> {
     done.pop()
 }
 
-/// The cost of testing a point against all shapes of an object, and the part of it that functions take.
+/// The cost of testing a point against all shapes of an object, and the part of it spent in functions.
 fn cost(object: &Object) -> (Cost, u64) {
     let mut cost = Cost::FORMULA;
     let mut functions = 0_u64;
@@ -130,8 +130,8 @@ fn cost(object: &Object) -> (Cost, u64) {
     (cost.around(), functions)
 }
 
-/// The box of an object that is clipped or inverted, which the language takes from the object as it was before, or of a
-/// shape, where the language takes the surface and not the inside.
+/// The bounding box of an object without its clipping and inversion, or of a shape's surface without its inside, because POV-Ray
+/// computes extents from these.
 fn unclipped(object: &Object) -> Option<Aabb> {
     let mut maps = vec![];
     let mut inner = object;
@@ -156,7 +156,7 @@ fn unclipped(object: &Object) -> Option<Aabb> {
 }
 
 impl Parser<'_> {
-    /// `inside(Object, point)` behind its parenthesis.
+    /// `inside(Object, point)`, from after its opening parenthesis.
     pub(crate) fn ask_inside(&mut self) -> PResult<bool> {
         let object = self.object_argument()?;
         let point = self.vector3()?;
@@ -165,7 +165,7 @@ impl Parser<'_> {
         Ok(query.is_some_and(|q| q.contains(point)))
     }
 
-    /// `min_extent(Object)` and `max_extent(Object)` behind the parenthesis; unbounded objects reach to 1e10, as in
+    /// `min_extent(Object)` and `max_extent(Object)`, from after the opening parenthesis; unbounded objects extend to 1e10, as in
     /// POV-Ray.
     pub(crate) fn ask_extent(&mut self, word: Word) -> PResult<DVec3> {
         const FAR: DVec3 = DVec3::splat(1e10);
@@ -177,12 +177,12 @@ impl Parser<'_> {
                 q.bounds.max
             }
         });
-        // Adding zero makes a zero of a negative zero.
+        // Adding 0 turns -0 into 0.
         Ok(corner.clamp(-FAR, FAR) + DVec3::ZERO)
     }
 
-    /// `trace(Object, origin, direction [, Normal])` behind the parenthesis: the first point of the object on the ray, or the
-    /// origin of space; `Normal`, a variable, gets the unit normal there, or zero.
+    /// `trace(Object, origin, direction [, Normal])`, from after the opening parenthesis: the first point of the object on the
+    /// ray, or the origin of space; the variable `Normal` gets the unit normal there, or zero.
     pub(crate) fn ask_trace(&mut self, place: Place) -> PResult<DVec3> {
         let object = self.object_argument()?;
         let origin = self.vector3()?;
@@ -200,12 +200,12 @@ impl Parser<'_> {
                 "`trace` needs a place and a direction of finite numbers",
             ));
         }
-        // As in POV-Ray, a ray without a direction meets nothing.
+        // As in POV-Ray, a ray with direction zero hits nothing.
         let query = match length {
             0.0 => None,
             _ => self.query(&object)?,
         };
-        /// A ray is intersected with a surface without a formula by evaluating about this many points.
+        /// Intersecting a ray with an implicit surface evaluates its function at about this many points.
         const POINTS: u64 = 64;
         self.spend_on(query.as_deref(), POINTS)?;
         let hit = query.and_then(|q| q.trace(origin, direction));
@@ -216,7 +216,7 @@ impl Parser<'_> {
         Ok(hit.map_or(DVec3::ZERO, |(point, _)| point))
     }
 
-    /// Counts the cost of functions that are evaluated at this many points.
+    /// Counts the cost of evaluating functions at this many points.
     fn spend_on(&mut self, query: Option<&Query>, points: u64) -> PResult<()> {
         let operations = query.map_or(0, |q| q.functions);
         self.spend(operations.saturating_mul(points))
@@ -229,7 +229,7 @@ impl Parser<'_> {
             .store(&target, Value::Vector(Vector::from(normal)));
     }
 
-    /// An object as the first argument of a function, with the comma behind it.
+    /// An object as the first argument of a function, and the comma after it.
     fn object_argument(&mut self) -> PResult<Arc<Declared>> {
         let token = self.peek()?;
         let place = self.place_of(token);

@@ -17,35 +17,35 @@ use strahl_shade::image_texture::{ColorSpace, TexelChannels, TexelData, TextureI
 /// The red, green, blue and alpha at a point.
 type PictureFunction = Box<dyn Fn(DVec3) -> [f64; 4]>;
 
-/// What pictures are read for, which decides what their codes mean where no `gamma` is given.
+/// The use of a picture, which determines the meaning of its codes if no `gamma` is given.
 #[derive(Clone, Copy, PartialEq)]
 enum Purpose {
-    /// Colours: what the file says, else what is usual for its format and the scene's version.
+    /// Colours: the file determines the meaning, or else the defaults of its format and the scene's version.
     Color,
-    /// Values in proportion to the codes.
+    /// Values proportional to the codes.
     Data,
 }
 
-/// How the codes of a file become numbers of the scene.
+/// The conversion from the codes of a file to the scene's numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Recoding {
-    /// What the codes are.
+    /// The space of the codes.
     from: WorkingSpace,
-    /// What the scene's numbers are.
+    /// The space of the scene's numbers.
     to: WorkingSpace,
     /// Whether the colours of the file are multiplied by their alpha.
     premultiplied: bool,
 }
 
 impl Recoding {
-    /// The codes as they are.
+    /// No conversion.
     const NONE: Self = Self {
         from: WorkingSpace::Linear,
         to: WorkingSpace::Linear,
         premultiplied: false,
     };
 
-    /// The numbers for codes read in proportion.
+    /// Converts a picture whose codes were read without conversion.
     fn apply(self, picture: TextureImage) -> TextureImage {
         let picture = if self.from == self.to {
             picture
@@ -60,7 +60,7 @@ impl Recoding {
     }
 }
 
-/// A picture that has been decoded, and how it was asked for: loops and macros ask again and again.
+/// A decoded picture and the arguments for which it was read, because loops and macros use the same ones repeatedly.
 #[derive(Debug)]
 pub(in crate::grammar) struct KnownPicture {
     name: String,
@@ -69,11 +69,11 @@ pub(in crate::grammar) struct KnownPicture {
     image: Arc<TextureImage>,
 }
 
-/// The largest picture made by a function.
+/// The largest number of texels in a function image.
 const MAX_FUNCTION_TEXELS: u64 = 1 << 24;
 
 impl Parser<'_> {
-    /// The braces of `image_map`; `None` for a picture that is not supported.
+    /// The braces of `image_map`; `None` for an unsupported picture.
     pub(super) fn color_bitmap(&mut self) -> PResult<Option<Arc<ImageMap>>> {
         self.bitmap(|p| p.picture_file(Purpose::Color), |_, _, _| Ok(false))
     }
@@ -101,7 +101,7 @@ impl Parser<'_> {
         Ok((image, size))
     }
 
-    /// The braces of `material_map`; `other` reads what is no matter of the picture.
+    /// The braces of `material_map`; `other` reads items that do not belong to the picture.
     pub(super) fn material_bitmap(
         &mut self,
         mut other: impl FnMut(&mut Self, Token) -> PResult<bool>,
@@ -109,7 +109,7 @@ impl Parser<'_> {
         self.bitmap(Self::codes_file, |p, _, token| other(p, token))
     }
 
-    /// `[type] "file"`: the code of each texel, as red. It is the index of pictures with a palette, red or the grey of others.
+    /// `[type] "file"`: the code of each texel, as red. For pictures with a palette it is the index, for others red or grey.
     fn codes_file(&mut self) -> PResult<Option<Arc<TextureImage>>> {
         self.picture_type()?;
         let name = self.file_name()?;
@@ -159,7 +159,7 @@ impl Parser<'_> {
         })
     }
 
-    /// The type of a picture file, if it is named.
+    /// The type of a picture file, if one follows.
     pub(in crate::grammar) fn picture_type(&mut self) -> PResult<Option<Word>> {
         let token = self.peek()?;
         let kind = token.word().filter(|word| {
@@ -236,9 +236,9 @@ impl Parser<'_> {
             from: WorkingSpace::Srgb,
             ..Recoding::NONE
         };
-        // The decoder itself knows sRGB, but for codes only.
+        // The decoder converts sRGB itself, but only for integer codes.
         let usual = recoding == from_srgb && codes != PictureCodes::Linear;
-        // Photographs stay as small as they are in the file.
+        // Photographs keep the size they have in the file.
         let texture_use = if usual {
             TextureUse::Color
         } else {
@@ -262,8 +262,8 @@ impl Parser<'_> {
         Ok(Some(image))
     }
 
-    /// How the codes of a picture become numbers, by what is said so far: the picture's `gamma`, its file, the scene's version and
-    /// `assumed_gamma` (measured with all formats under versions 3.0 to 3.7).
+    /// The conversion from the codes of a picture to numbers, according to the picture's `gamma`, its file, the scene's version
+    /// and `assumed_gamma` so far (measured with all formats under versions 3.0 to 3.7).
     fn recoding(
         &self,
         purpose: Purpose,
@@ -271,7 +271,7 @@ impl Parser<'_> {
         codes: PictureCodes,
     ) -> Recoding {
         let (old, assumed) = (self.before_3_7(), self.state.global.working_space);
-        // Data and scenes older than `assumed_gamma` take the codes as numbers, and a `gamma` as a power only.
+        // Data, and pictures in scenes older than `assumed_gamma`, use the codes as numbers; a `gamma` is only a power.
         if purpose == Purpose::Data || old && assumed.is_none() {
             return Recoding {
                 from: gamma.unwrap_or(WorkingSpace::Linear),
@@ -293,7 +293,7 @@ impl Parser<'_> {
         }
     }
 
-    /// `width, height { function }` behind `function`: a picture of 16 bits.
+    /// `width, height { function }` after `function`: a picture with 16 bits per channel.
     fn function_picture(&mut self) -> PResult<Arc<TextureImage>> {
         let place = self.place();
         let mut samples = vec![];
@@ -310,8 +310,8 @@ impl Parser<'_> {
             .map_err(|error| self.fail(place, error.to_string()))
     }
 
-    /// `width, height { function }` behind `function`: its values, as red, green, blue and alpha, row by row over the unit square,
-    /// whose corners are the corner texels; y grows downwards (measured).
+    /// `width, height { function }` after `function`: its values as red, green, blue and alpha, row by row over the unit square,
+    /// whose corners are the corner texels; y points down (measured).
     pub(in crate::grammar) fn sampled_function(
         &mut self,
         mut take: impl FnMut([f64; 4]),
@@ -336,7 +336,8 @@ impl Parser<'_> {
         Ok((width, height))
     }
 
-    /// The red, green, blue and alpha of a picture made by `{ pigment ... }`, `{ pattern ... }` or a formula, and what a texel takes.
+    /// The function of a picture made by `{ pigment ... }`, `{ pattern ... }` or a formula, as red, green, blue and alpha, and
+    /// the cost of a texel.
     fn picture_function(&mut self) -> PResult<(PictureFunction, Cost)> {
         use strahl_function::ScalarField;
         use strahl_shade::patterns::{PatternField, TexturePoint};
@@ -441,7 +442,7 @@ impl Parser<'_> {
             }
             _ => return Ok(false),
         }
-        // What separates the items of old scenes.
+        // A separator between items in old scenes.
         if self.peek()?.kind == Kind::Comma {
             self.comma()?;
         }
@@ -449,7 +450,7 @@ impl Parser<'_> {
     }
 }
 
-/// The place of a texel among `count`, from 0 to 1.
+/// The position of a texel among `count`, from 0 to 1.
 fn share(index: u32, count: u32) -> f64 {
     if count > 1 {
         f64::from(index) / f64::from(count - 1)
@@ -458,15 +459,15 @@ fn share(index: u32, count: u32) -> f64 {
     }
 }
 
-/// A value as a picture of 16 bits holds it, which pictures made by functions are: values beyond 0 to 1 lose their higher bits
-/// (measured).
+/// A value as stored in a picture with 16 bits per channel, as function images are: values outside of 0 to 1 lose their higher
+/// bits (measured).
 fn in_16_bits(x: f64) -> f32 {
-    // The cast drops the fraction and saturates.
+    // The cast truncates and saturates.
     let code = ((x * 65_535.0) as i64).rem_euclid(65_536);
     (code as f64 / 65_535.0) as f32
 }
 
-/// What stands for a picture that is not supported: one grey texel.
+/// The replacement for an unsupported picture: one grey texel.
 fn blank() -> Arc<TextureImage> {
     use std::sync::LazyLock;
     static BLANK: LazyLock<Option<Arc<TextureImage>>> = LazyLock::new(|| {

@@ -8,7 +8,7 @@ use std::sync::Arc;
 use strahl_shade::Color;
 use strahl_shade::pov_finish::{PovFinish, PovReflection};
 
-/// Which strengths are given as the share of all light that is reflected (`albedo`); they depend on items that may follow.
+/// Which strengths are given as `albedo`, the fraction of all light that is reflected; they depend on items that may follow.
 #[derive(Default)]
 struct Albedo {
     diffuse: bool,
@@ -17,13 +17,13 @@ struct Albedo {
 }
 
 impl Parser<'_> {
-    /// `{ ... }` behind `finish`, which changes the default finish.
+    /// `{ ... }` after `finish`, which changes the default finish.
     pub(crate) fn finish_block(&mut self) -> PResult<Arc<PovFinish>> {
         let base = Arc::clone(&self.state.default_texture.top().finish);
         self.finish_block_on(base)
     }
 
-    /// `{ ... }` behind `finish`, which changes `base` unless it begins with a name. Equal finishes one after the other are one.
+    /// `{ ... }` after `finish`, which changes `base` unless it begins with a name. Consecutive equal finishes are shared.
     pub(super) fn finish_block_on(&mut self, base: Arc<PovFinish>) -> PResult<Arc<PovFinish>> {
         self.braces(|p| {
             let named = p.accept_thing(|thing| match thing {
@@ -116,7 +116,7 @@ impl Parser<'_> {
                 finish.conserve_energy = self.flag()?;
             }
             Word::Crand => finish.crand = self.finish_float(token)?,
-            // What belongs into an `interior` since version 3.1, and counts before it.
+            // Since version 3.1 it belongs to `interior`; before, it has an effect here.
             Word::Ior => {
                 self.take(token)?;
                 finish.ior = Some(self.positive("the index of refraction")?);
@@ -138,7 +138,7 @@ impl Parser<'_> {
         self.plain_color()
     }
 
-    /// A number if one stands here.
+    /// A number, if one follows.
     fn optional_float(&mut self, otherwise: f64) -> PResult<f64> {
         if self.starts_number()? {
             self.float()
@@ -185,7 +185,7 @@ impl Parser<'_> {
                 }
                 Ok(())
             })?;
-            // With Fresnel's equations a lone colour is that of grazing angles.
+            // With Fresnel's equations, a single colour is the reflection at grazing angles.
             (reflection.min, reflection.max) = match second {
                 Some(max) => (first, max),
                 None if reflection.fresnel => (Color::BLACK, first),

@@ -4,7 +4,7 @@ use strahl_function::Cost;
 use strahl_math::DVec3;
 use strahl_shade::patterns::Inside;
 
-/// An object as the object pattern sees it; one that is not there has no inside.
+/// An object for the object pattern; an empty one has no inside.
 #[derive(Debug)]
 pub(super) struct ObjectInside(pub(super) Option<Arc<Query>>);
 

@@ -6,7 +6,7 @@ use crate::parser::{PResult, Parser};
 use strahl_shade::interior::Interior;
 
 impl Parser<'_> {
-    /// `{ ... }` behind `interior`.
+    /// `{ ... }` after `interior`.
     pub(crate) fn interior_block(&mut self) -> PResult<Interior> {
         self.braces(|p| {
             let named = p.accept_thing(|thing| match thing {
@@ -41,7 +41,7 @@ impl Parser<'_> {
                         interior.caustics = p.float()?;
                     }
                     Some(Word::DispersionSamples) => {
-                        /// More show nothing more in a picture.
+                        /// More samples make no visible difference.
                         const MOST: f64 = 512.0;
                         p.take(token)?;
                         let place = p.place_of(token);

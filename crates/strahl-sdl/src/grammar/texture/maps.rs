@@ -1,4 +1,4 @@
-//! Maps: lists of `[position thing]`, between whose entries the value of a pattern is looked up. Lists of blocks, from which it chooses.
+//! Maps: lists of `[position thing]`, which a pattern's value interpolates. Block lists, from which a pattern chooses.
 
 use crate::grammar::Thing;
 use crate::keywords::{Word, WordKind};
@@ -10,7 +10,7 @@ use strahl_shade::patterns::{Modifiers, Pattern};
 use strahl_shade::pigment::{BlendMap, Pigment};
 use strahl_shade::texture::Texture;
 
-/// A colour of the language in the engine's terms.
+/// A colour of the language as a colour of the renderer.
 pub(super) fn color_ft([r, g, b, filter, transmit]: [f64; 5]) -> ColorFt {
     ColorFt {
         rgb: strahl_shade::Color::new(r, g, b),
@@ -19,13 +19,13 @@ pub(super) fn color_ft([r, g, b, filter, transmit]: [f64; 5]) -> ColorFt {
     }
 }
 
-/// Whether what repeats or bends a pattern's values is set. The values of a block pattern are then no numbers of blocks any more, and
-/// choose from its members as from a map (as measured).
+/// Whether a modifier repeats or changes a pattern's values. The values of a block pattern are then no longer indices of blocks,
+/// but choose from its blocks as from a map (as measured).
 pub(super) fn blends_blocks(modifiers: &Modifiers) -> bool {
     !matches!(modifiers.frequency, 0.0 | 1.0) || modifiers.wave.is_some()
 }
 
-/// The members of a block pattern as a map, each at its number.
+/// The blocks of a block pattern as a map, each at its index.
 pub(super) fn numbered<T>(members: Vec<T>) -> BlendMap<T> {
     let members = members.into_iter().enumerate();
     BlendMap::new(
@@ -36,7 +36,7 @@ pub(super) fn numbered<T>(members: Vec<T>) -> BlendMap<T> {
 }
 
 impl Parser<'_> {
-    /// `{ ... }` behind `color_map`.
+    /// `{ ... }` after `color_map`.
     pub(crate) fn color_map(&mut self) -> PResult<BlendMap<ColorFt>> {
         self.blend_map(
             "`color_map`",
@@ -48,7 +48,7 @@ impl Parser<'_> {
         )
     }
 
-    /// `{ ... }` behind `pigment_map`.
+    /// `{ ... }` after `pigment_map`.
     pub(crate) fn pigment_map(&mut self) -> PResult<BlendMap<Pigment>> {
         self.blend_map(
             "`pigment_map`",
@@ -65,7 +65,7 @@ impl Parser<'_> {
         )
     }
 
-    /// `{ ... }` behind `normal_map`.
+    /// `{ ... }` after `normal_map`.
     pub(crate) fn normal_map(&mut self) -> PResult<BlendMap<PovNormal>> {
         self.blend_map(
             "`normal_map`",
@@ -83,7 +83,7 @@ impl Parser<'_> {
         )
     }
 
-    /// `{ ... }` behind `texture_map`.
+    /// `{ ... }` after `texture_map`.
     pub(crate) fn texture_map(&mut self) -> PResult<BlendMap<Texture>> {
         self.blend_map(
             "`texture_map`",
@@ -99,7 +99,7 @@ impl Parser<'_> {
         )
     }
 
-    /// `{ ... }` behind `slope_map`.
+    /// `{ ... }` after `slope_map`.
     pub(crate) fn slope_map(&mut self) -> PResult<SlopeMap> {
         let map = self.blend_map(
             "`slope_map`",
@@ -115,7 +115,7 @@ impl Parser<'_> {
         Ok(SlopeMap(map))
     }
 
-    /// The name of a map, or entries `[position ...]` of which `entry` reads what follows the position.
+    /// The name of a map, or entries `[position ...]`, whose part after the position is read by `entry`.
     fn blend_map<T: Clone>(
         &mut self,
         what: &str,
@@ -135,7 +135,7 @@ impl Parser<'_> {
                 }
                 p.take(token)?;
                 p.count_parts(1)?;
-                // The weights of `average` may be left out.
+                // The weights of `average` may be omitted.
                 let at = if p.starts_number()? { p.float()? } else { 1.0 };
                 p.comma()?;
                 entry(p, at, &mut entries)?;
@@ -149,7 +149,7 @@ impl Parser<'_> {
         })
     }
 
-    /// `color]`, or in the oldest notation `end color color]`.
+    /// `color]`, or in the oldest syntax `end color color]`.
     fn color_entry(&mut self, at: f64, entries: &mut Vec<(f64, ColorFt)>) -> PResult<()> {
         let begins_color = |token: Token| token.word().is_some_and(|w| w.kind() == WordKind::Color);
         if begins_color(self.peek()?) {
@@ -177,7 +177,7 @@ impl Parser<'_> {
         Ok(())
     }
 
-    /// A map whose positions do not decrease, as lookups need them; each too small one is raised, and said so.
+    /// A map with non-decreasing positions, as lookups require; a position that is too small is raised, with a warning.
     pub(super) fn in_order<T>(&mut self, mut map: BlendMap<T>) -> BlendMap<T> {
         let mut highest = f64::NEG_INFINITY;
         let mut raised = false;
@@ -199,8 +199,8 @@ impl Parser<'_> {
         map
     }
 
-    /// What stands for the blocks of a block pattern, each behind a word and perhaps what `between` takes; nothing if the pattern has no
-    /// blocks or none is there. What is missing at the end is filled up.
+    /// The blocks of a block pattern, each after a keyword and perhaps items read by `between`; `None` if the pattern has no
+    /// blocks or none follow. Missing blocks at the end are filled in.
     pub(super) fn blocks<T: Clone>(
         &mut self,
         pattern: &Pattern,
@@ -212,7 +212,7 @@ impl Parser<'_> {
         let Some(count) = pattern.block_count() else {
             return Ok(None);
         };
-        // The object pattern's brace stands behind the object or behind the blocks.
+        // The closing brace of an object pattern is after the object or after the blocks.
         let mut closed = !matches!(pattern, Pattern::Object(_));
         let mut list = vec![];
         while list.len() < count {

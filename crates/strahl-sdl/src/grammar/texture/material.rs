@@ -8,10 +8,10 @@ use strahl_shade::interior::Interior;
 use strahl_shade::pigment::Pigment;
 use strahl_shade::texture::{SharedTexture, Texture as Surface};
 
-/// How many of the last materials with patterns are remembered for sharing.
+/// The number of recent materials with patterns that can be shared.
 const RECENT: usize = 16;
 
-/// Whether two surfaces are one, or two of the same colour and finish: exporters write those out at each object.
+/// Whether two surfaces are the same, or have the same colour and finish, which exporters repeat for each object.
 fn same_surface(a: &Arc<Surface>, b: &Arc<Surface>) -> bool {
     if Arc::ptr_eq(a, b) {
         return true;
@@ -29,7 +29,7 @@ fn same_surface(a: &Arc<Surface>, b: &Arc<Surface>) -> bool {
 }
 
 impl PartialEq for Texture {
-    /// Patterned textures are equal only if they are one and the same.
+    /// Patterned textures are equal only if they are the same object.
     fn eq(&self, other: &Self) -> bool {
         let same_inner = match (&self.inner_surface, &other.inner_surface) {
             (None, None) => true,
@@ -51,7 +51,7 @@ impl Texture {
         }
     }
 
-    /// The interior with what old scenes write into the finish instead.
+    /// The interior, including properties that old scenes write into the finish.
     pub(in crate::grammar) fn whole_interior(&self) -> Option<Arc<Interior>> {
         let finish = &self.top().finish;
         if finish.ior.is_none() && finish.caustics.is_none() {
@@ -63,25 +63,25 @@ impl Texture {
         Some(Arc::new(interior))
     }
 
-    /// Whether the object says what fills it but not what covers it: that it takes from the whole that it is a part of, or at last
-    /// from the default.
+    /// Whether the object has an interior but no texture, so that it takes its texture from the object it is a part of, or else
+    /// the default.
     pub(in crate::grammar) fn is_bare(&self) -> bool {
         !self.written && !self.uv_mapped && self.inner_surface.is_none() && self.interior.is_some()
     }
 }
 
-/// Whether a material says what fills an object but not what covers it.
+/// Whether a material has an interior but no texture.
 pub(in crate::grammar) fn is_bare(material: &Material) -> bool {
     material.texture.is_none()
 }
 
-/// Gives the parts of a combined object what they don't say themselves: those that are not covered what covers the whole, those that
-/// are not filled what fills the whole.
+/// Completes the looks of the parts of a CSG object: parts without a texture get that of the whole, parts without an interior get
+/// that of the whole.
 pub(in crate::grammar) fn fill_parts(object: &mut Object, whole: &Texture) {
-    // Parts that shared a material go on sharing one.
+    // Parts that shared a material share the completed one too.
     let mut filled: Vec<(Arc<Material>, Arc<Material>)> = vec![];
     let interior = object.material.as_ref().and_then(|m| m.interior.clone());
-    // From the space of a part to that of the whole.
+    // The transformation from the space of a part to that of the whole.
     let mut waiting = vec![(object, Transform::IDENTITY)];
     while let Some((object, map)) = waiting.pop() {
         let ObjectKind::Csg { children, .. } = &mut object.kind else {
@@ -128,15 +128,15 @@ pub(in crate::grammar) fn fill_parts(object: &mut Object, whole: &Texture) {
     }
 }
 
-/// Materials made so far, by their textures.
+/// Materials created so far, by their textures.
 #[derive(Debug, Default)]
 pub(in crate::grammar) struct KnownMaterials {
-    /// The last ones with patterns.
+    /// The most recent ones with patterns.
     recent: Vec<(Texture, Arc<Material>)>,
-    /// Those with one colour and finish, in a table by hash in which the last one replaces an earlier one. Exported scenes
-    /// repeat the same few colours; scenes with a different colour for each object must not pay for a table of all.
+    /// Materials with one colour and finish, in a hash table in which a newer one replaces an older one. Exported scenes repeat
+    /// the same few colours; scenes with a different colour for each object need no table of all of them.
     plain: Vec<Option<(u64, Arc<Material>)>>,
-    /// Whether there are bare ones.
+    /// Whether there are bare materials.
     bare: bool,
 }
 
@@ -145,7 +145,7 @@ impl KnownMaterials {
     /// freed.
     const PLAIN: usize = 1 << 10;
 
-    /// Whether a material has been made that says what fills an object but not what covers it.
+    /// Whether a material with an interior but no texture has been created.
     pub(in crate::grammar) const fn has_bare(&self) -> bool {
         self.bare
     }

@@ -1,4 +1,4 @@
-//! What changes any pattern: turbulence, waves, warps and transformations.
+//! Modifiers of any pattern: turbulence, waves, warps and transformations.
 
 use crate::keywords::Word;
 use crate::parser::{PResult, Parser};
@@ -7,9 +7,9 @@ use strahl_math::noise::{NoiseGenerator, Turbulence};
 use strahl_math::{DVec3, Transform};
 use strahl_shade::patterns::{BlackHole, Mapping, Modifiers, Pattern, Warp, Wave};
 
-/// The transformation as the last step of a pattern's warps.
+/// Appends a transformation to a pattern's warps.
 pub(super) fn transform(warps: &mut Vec<Warp>, transform: &Transform) {
-    // Neighbouring transformations are one.
+    // Consecutive transformations are combined.
     if let Some(Warp::Transform(last)) = warps.last_mut() {
         *last = last.then(transform);
     } else {
@@ -17,8 +17,8 @@ pub(super) fn transform(warps: &mut Vec<Warp>, transform: &Transform) {
     }
 }
 
-/// What a pattern's word itself says: the values of `quilted` are not repeated, unless a frequency follows; the triangle
-/// waves of marble, wood and spirals stay when another pattern takes their place (measured).
+/// Settings that a pattern's keyword implies: the values of `quilted` are not repeated, unless a frequency follows; the triangle
+/// waves of marble, wood and spirals remain when another pattern replaces them (measured).
 pub(super) fn begin(modifiers: &mut Modifiers, pattern: &Pattern) {
     if let Pattern::Quilted { .. } = pattern {
         modifiers.frequency = 0.0;
@@ -30,10 +30,10 @@ pub(super) fn begin(modifiers: &mut Modifiers, pattern: &Pattern) {
 }
 
 impl Parser<'_> {
-    /// If a modifier of patterns stands here, reads it.
+    /// Reads a modifier of patterns, if one follows.
     ///
     /// # Errors
-    /// If its value is wrong.
+    /// If its value is invalid.
     pub(super) fn pattern_modifier(
         &mut self,
         modifiers: &mut Modifiers,
@@ -110,7 +110,7 @@ impl Parser<'_> {
         match token.word() {
             Some(Word::Octaves) => {
                 self.take(token)?;
-                // As in POV-Ray, more than ten are ten: they would not be seen.
+                // As in POV-Ray, the maximum is ten; more would not be visible.
                 octaves.octaves = self.float()?.clamp(1.0, 10.0) as u32;
             }
             Some(Word::Omega) => {
@@ -126,7 +126,7 @@ impl Parser<'_> {
         Ok(true)
     }
 
-    /// What stands in the braces of `warp`; `None` for one that is not supported.
+    /// The content of the braces of `warp`; `None` for an unsupported warp.
     fn warp(&mut self) -> PResult<Option<Warp>> {
         let token = self.peek()?;
         let mapping = match token.word() {
@@ -281,7 +281,7 @@ impl Parser<'_> {
         })
     }
 
-    /// A vector with a direction, at length 1.
+    /// A vector of length 1 in the given direction.
     fn unit_vector(&mut self) -> PResult<DVec3> {
         let token = self.peek()?;
         let place = self.place_of(token);

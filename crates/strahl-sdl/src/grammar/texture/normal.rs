@@ -11,36 +11,36 @@ use strahl_shade::normal::{NormalKind, PovNormal, SlopeMap};
 use strahl_shade::patterns::Pattern;
 use strahl_shade::pigment::BlendMap;
 
-/// What tilts the normal.
+/// The source of the perturbation.
 enum Chooser {
-    /// Nothing.
+    /// No perturbation.
     Flat,
     Pattern(Pattern),
     Average,
-    /// A kind that needs no pattern.
+    /// A kind of normal without a pattern.
     Fixed(NormalKind),
 }
 
-/// What the pattern's value means.
+/// The use of the pattern's value.
 enum Choice {
-    /// A height, or what the pattern has for normals only.
+    /// As a height, or by the pattern's own method for normals.
     Own,
     Slopes(SlopeMap),
     Normals(BlendMap<PovNormal>),
     Blocks(Vec<PovNormal>),
 }
 
-/// A normal while it is being read: its parts may come in any order.
+/// A normal being read: its parts may come in any order.
 struct Draft {
     chooser: Chooser,
     choice: Choice,
     /// Everything but the kind.
     normal: PovNormal,
-    /// Whether the pattern tilts the normal in its own way, not by its value as a height.
+    /// Whether the pattern perturbs the normal by its own method, and not by its value as a height.
     special: bool,
 }
 
-/// A normal that tilts nothing.
+/// A normal without perturbation.
 fn flat() -> PovNormal {
     PovNormal::new(NormalKind::Average(vec![]))
 }
@@ -133,24 +133,24 @@ impl Draft {
     }
 }
 
-/// Moves a normal.
+/// Transforms a normal.
 pub(super) fn transform(normal: &mut PovNormal, by: &Transform) {
     modifiers::transform(&mut normal.modifiers.warps, by);
 }
 
 impl Parser<'_> {
-    /// `{ ... }` behind `normal`, which changes the default normal.
+    /// `{ ... }` after `normal`, which changes the default normal.
     pub(crate) fn normal_block(&mut self) -> PResult<PovNormal> {
         let base = self.state.default_texture.top().normal.as_deref().cloned();
         self.normal_block_on(base)
     }
 
-    /// `{ ... }` behind `normal`, which changes `base` unless it begins with a name.
+    /// `{ ... }` after `normal`, which changes `base` unless it begins with a name.
     pub(super) fn normal_block_on(&mut self, base: Option<PovNormal>) -> PResult<PovNormal> {
         self.braces(|p| p.normal_items(Kind::RightBrace, base))
     }
 
-    /// What stands in a normal's braces, or in the brackets of an entry of `normal_map`.
+    /// The items in a normal's braces, or in the brackets of an entry of `normal_map`.
     pub(super) fn normal_items(
         &mut self,
         closing: Kind,
@@ -250,7 +250,7 @@ impl Parser<'_> {
         self.skip_item(token, "`normal`")
     }
 
-    /// The number that may stand behind a pattern: how much it tilts the normal.
+    /// The optional number after a pattern: the strength of the perturbation.
     fn normal_amount(&mut self, draft: &mut Draft) -> PResult<()> {
         self.comma()?;
         if self.starts_number()? {
@@ -259,7 +259,7 @@ impl Parser<'_> {
         Ok(())
     }
 
-    /// The normals of a block pattern's blocks, if they stand here.
+    /// The normals of the blocks of a block pattern, if they follow.
     fn block_normals(&mut self, draft: &mut Draft, pattern: &Pattern) -> PResult<()> {
         let blocks = self.blocks(
             pattern,
@@ -274,7 +274,7 @@ impl Parser<'_> {
         Ok(())
     }
 
-    /// `facets size 0.5` or `facets coords 2`: there is no such pattern yet.
+    /// `facets size 0.5` or `facets coords 2`: the pattern is not supported.
     fn skip_facets(&mut self, token: Token) -> PResult<()> {
         self.take(token)?;
         let place = self.place();

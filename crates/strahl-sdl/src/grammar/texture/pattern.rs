@@ -1,4 +1,4 @@
-//! Patterns: the table from words to patterns, and the parameters of single patterns.
+//! Patterns: the table of their keywords, and the parameters of single patterns.
 
 use super::inside::ObjectInside;
 use crate::grammar::{Declared, Thing, by_word, words_of};
@@ -13,10 +13,10 @@ use strahl_shade::patterns::{
     PatternField, SlopeReference,
 };
 
-/// Reads what must follow the word of a pattern, which is already taken.
+/// Reads the required parameters after the keyword of a pattern; the keyword is taken.
 type PatternParser = fn(&mut Parser<'_>) -> PResult<Pattern>;
 
-/// All patterns by their words; after an object pattern the closing brace is left, as colours may stand before it.
+/// All patterns by keyword; after an object pattern the closing brace is left, because colours may precede it.
 static PATTERNS: [Option<PatternParser>; Word::ALL.len()] = by_word::<PatternParser, _>([
     (Word::Agate, |_| Ok(Pattern::Agate { turbulence: 1.0 })),
     (Word::Aoi, |_| Ok(Pattern::Aoi)),
@@ -85,19 +85,19 @@ static PATTERNS: [Option<PatternParser>; Word::ALL.len()] = by_word::<PatternPar
     (Word::Wrinkles, |_| Ok(Pattern::Wrinkles)),
 ]);
 
-/// The words of all patterns that are supported; some stand for the same pattern.
+/// The keywords of all supported patterns; some name the same pattern.
 pub fn pattern_words() -> impl Iterator<Item = Word> {
     words_of(&PATTERNS)
 }
 
-/// The most steps of a fractal: a point of the set takes all of them.
+/// The largest number of iterations of a fractal: points of the set take all of them.
 const MAX_ITERATIONS: f64 = 1e6;
 
 impl Parser<'_> {
-    /// If a pattern stands here, reads it with what must follow its word.
+    /// Reads a pattern with its required parameters, if one follows.
     ///
     /// # Errors
-    /// If that is wrong.
+    /// If a parameter is invalid.
     pub(super) fn pattern(&mut self, token: Token) -> PResult<Option<Pattern>> {
         let parse = token
             .word()
@@ -111,7 +111,7 @@ impl Parser<'_> {
         }
     }
 
-    /// `{ pattern with modifiers }`: what functions and pictures are made of.
+    /// `{ pattern with modifiers }`, for functions and function images.
     ///
     /// # Errors
     /// If there is no pattern.
@@ -138,10 +138,10 @@ impl Parser<'_> {
         })
     }
 
-    /// If a parameter of a single pattern stands here (`brick_size`, `metric`, ...), reads it into `pattern`.
+    /// Reads a parameter of a single pattern (`brick_size`, `metric`, ...) into `pattern`, if one follows.
     ///
     /// # Errors
-    /// If its value is wrong.
+    /// If its value is invalid.
     pub(super) fn pattern_parameter(
         &mut self,
         pattern: Option<&mut Pattern>,
@@ -218,12 +218,12 @@ impl Parser<'_> {
         Ok(true)
     }
 
-    /// The number of wave sources unless `number_of_waves` is written.
+    /// The default number of wave sources: that of `number_of_waves`.
     fn wave_sources(&self) -> u32 {
         self.state.global.number_of_waves.unwrap_or(10)
     }
 
-    /// The noise of patterns for which none is written.
+    /// The default noise generator of patterns.
     pub(in crate::grammar) fn default_noise(&self) -> NoiseGenerator {
         let number = self.state.global.noise_generator.map(u32::from);
         number
@@ -231,7 +231,7 @@ impl Parser<'_> {
             .unwrap_or_default()
     }
 
-    /// A whole number between bounds.
+    /// An integer within bounds.
     pub(super) fn whole(&mut self, least: u32, most: u32) -> PResult<u32> {
         let token = self.peek()?;
         let place = self.place_of(token);
@@ -259,7 +259,7 @@ impl Parser<'_> {
             Kind::Number | Kind::Minus | Kind::Plus | Kind::LeftParen | Kind::Bang => true,
             Kind::Name => {
                 let value = token.symbol().and_then(|s| self.scopes.find(s));
-                // What is not declared at all may be a misspelt number, which the expression reports best.
+                // An undeclared name may be a misspelt number, which the expression reports best.
                 value.is_none_or(|v| v.numeric().is_some() || v.is_callable())
             }
             Kind::Word => {
@@ -270,7 +270,7 @@ impl Parser<'_> {
         })
     }
 
-    /// Iterations and, in normals, what other patterns have as their first number: left to the caller.
+    /// The number of iterations. In normals, the strength after it is left to the caller.
     fn iterations(&mut self) -> PResult<u32> {
         self.whole(1, MAX_ITERATIONS as u32)
     }
@@ -314,7 +314,7 @@ impl Parser<'_> {
         }
     }
 
-    /// `type, factor`; the factor is 1 if it is left out.
+    /// `type, factor`; the default factor is 1.
     fn coloring(&mut self) -> PResult<(u32, f64)> {
         let number = self.whole(0, 8)?;
         self.comma()?;
@@ -366,7 +366,7 @@ impl Parser<'_> {
         })
     }
 
-    /// `<direction>` or `point_at <point>`, the range of slopes, and an altitude; braces around it may be left out.
+    /// `<direction>` or `point_at <point>`, the range of slopes, and an altitude; braces around it are optional.
     fn slope_pattern(&mut self) -> PResult<Pattern> {
         if self.peek()?.kind == Kind::LeftBrace {
             return self.braces(Self::slope_items);
@@ -408,7 +408,7 @@ impl Parser<'_> {
         Ok([low, high])
     }
 
-    /// `{ object ... }`: the colours or pigments behind the object are left to the caller, who knows what they are.
+    /// `{ object ... }`: the colours or pigments after the object are left to the caller, who knows their kind.
     fn object_pattern(&mut self) -> PResult<Pattern> {
         self.expect(Kind::LeftBrace)?;
         let named = self.accept_thing(|thing| match thing {

@@ -14,22 +14,22 @@ use strahl_shade::patterns::{FractalKind, Modifiers, Pattern, PatternField};
 use strahl_shade::pigment::{BlendMap, Pigment};
 use strahl_shade::{Color, ColorFt};
 
-/// What chooses the colour.
+/// The part of a pigment that selects the colour.
 #[derive(Clone)]
 enum Chooser {
-    /// Nothing: one colour.
+    /// None: a uniform colour.
     Solid(ColorFt),
     Pattern(Pattern),
     Average,
     Image(Arc<ImageMap>),
 }
 
-/// What is chosen from.
+/// The colours or pigments to select from.
 #[derive(Clone)]
 enum Choice {
     /// The default map of the pattern with this word, or default colours.
     Default(Option<Word>),
-    /// The default map of the pattern of a pigment that is changed.
+    /// The default map of the pattern of the pigment that is changed.
     Usual(BlendMap<ColorFt>),
     Colors(BlendMap<ColorFt>),
     Pigments(BlendMap<Pigment>),
@@ -37,8 +37,8 @@ enum Choice {
 }
 
 impl Choice {
-    /// What a pattern with this word chooses from if only the pattern is written: the map that is there already, as which colours of
-    /// blocks count too, at 0, 1, 2 and so on.
+    /// The map for a pattern that is written without one, with this keyword: the existing map; existing colours of blocks count
+    /// as a map at 0, 1, 2 and so on.
     fn of_pattern(self, word: Option<Word>) -> Self {
         match self {
             Self::Default(_) | Self::Usual(_) => Self::Default(word),
@@ -53,7 +53,7 @@ impl Choice {
     }
 }
 
-/// A pigment while it is being read: its parts may come in any order.
+/// A pigment being read: its parts may come in any order.
 struct Draft {
     chooser: Chooser,
     choice: Choice,
@@ -163,7 +163,7 @@ const MAGENTA: ColorFt = rgb(1.0, 0.0, 1.0);
 const WHITE: ColorFt = rgb(1.0, 1.0, 1.0);
 const BLACK: ColorFt = rgb(0.0, 0.0, 0.0);
 
-/// The colours of a block pattern's blocks unless others are written; measured with POV-Ray 3.7.
+/// The default colours of the blocks of a block pattern; measured with POV-Ray 3.7.
 fn default_colors(pattern: &Pattern) -> Option<&'static [ColorFt]> {
     const BRICK: [ColorFt; 2] = [rgb(0.5, 0.5, 0.5), rgb(0.6, 0.15, 0.15)];
     Some(match pattern {
@@ -181,7 +181,7 @@ fn default_blocks(pattern: &Pattern) -> Option<Vec<Pigment>> {
     Some(colors.iter().map(|c| Pigment::Solid(*c)).collect())
 }
 
-/// The map of a pattern unless another is written: for most from black to white; measured with POV-Ray 3.7.
+/// The default map of a pattern, for most from black to white; measured with POV-Ray 3.7.
 fn default_map(pattern: &Pattern, word: Option<Word>) -> BlendMap<ColorFt> {
     const AGATE: &[(f64, ColorFt)] = &[
         (0.0, WHITE),
@@ -217,7 +217,7 @@ fn default_map(pattern: &Pattern, word: Option<Word>) -> BlendMap<ColorFt> {
         (0.6, rgb(0.666, 0.312, 0.2)),
         (0.6, rgb(0.4, 0.1333, 0.066)),
     ];
-    // Sets of other exponents have another map.
+    // Fractals with other exponents have another map.
     let is_quadratic = matches!(
         pattern,
         Pattern::Fractal(fractal) if fractal.kind == FractalKind::Power { exponent: 2 }
@@ -237,7 +237,7 @@ fn default_map(pattern: &Pattern, word: Option<Word>) -> BlendMap<ColorFt> {
     )
 }
 
-/// Whether a map is one that its pattern has unless another is written.
+/// Whether a map is the default map of a pattern.
 fn is_default_map(pattern: &Pattern, map: &BlendMap<ColorFt>) -> bool {
     let words = [
         Word::Agate,
@@ -251,7 +251,7 @@ fn is_default_map(pattern: &Pattern, map: &BlendMap<ColorFt>) -> bool {
     words.any(|word| *map == default_map(pattern, word))
 }
 
-/// Moves a pigment. With `uv`, also what lies in surface coordinates; objects that are moved leave that alone.
+/// Transforms a pigment. With `uv`, also its parts in surface coordinates, which do not follow the transformations of objects.
 pub(super) fn transform(pigment: &mut Pigment, by: &Transform, uv: bool) {
     match pigment {
         Pigment::Solid(_) => {}
@@ -267,18 +267,18 @@ pub(super) fn transform(pigment: &mut Pigment, by: &Transform, uv: bool) {
 }
 
 impl Parser<'_> {
-    /// `{ ... }` behind `pigment`, which changes the default pigment.
+    /// `{ ... }` after `pigment`, which changes the default pigment.
     pub(crate) fn pigment_block(&mut self) -> PResult<Pigment> {
         let base = self.default_pigment();
         self.pigment_block_on(base)
     }
 
-    /// `{ ... }` behind `pigment`, which changes `base` unless it begins with a name.
+    /// `{ ... }` after `pigment`, which changes `base` unless it begins with a name.
     pub(super) fn pigment_block_on(&mut self, base: Pigment) -> PResult<Pigment> {
         self.braces(|p| p.pigment_items(Kind::RightBrace, base))
     }
 
-    /// The same on a base of one colour that has been moved since it was written: a pattern that takes its place is there, too.
+    /// The same on a uniform base that has been transformed since it was written: a pattern that replaces it is transformed too.
     pub(super) fn pigment_block_placed(
         &mut self,
         base: Pigment,
@@ -287,12 +287,13 @@ impl Parser<'_> {
         self.braces(|p| p.placed_pigment_items(Kind::RightBrace, base, placed))
     }
 
-    /// What stands in a pigment's braces, or in the brackets of an entry of `pigment_map`.
+    /// The items in a pigment's braces, or in the brackets of an entry of `pigment_map`.
     pub(super) fn pigment_items(&mut self, closing: Kind, base: Pigment) -> PResult<Pigment> {
         self.placed_pigment_items(closing, base, None)
     }
 
-    /// The same on a base that has been moved since it was written, if it is one colour; others know it themselves.
+    /// The same on a base that has been transformed since it was written, if it is uniform; other bases store their
+    /// transformation.
     fn placed_pigment_items(
         &mut self,
         closing: Kind,
@@ -303,7 +304,7 @@ impl Parser<'_> {
             Some(named) => (named, None),
             None => (base, placed),
         };
-        // Most pigments are one name or one colour.
+        // Most pigments are a single name or colour.
         let token = self.peek()?;
         if token.kind == closing {
             return Ok(base);
@@ -332,7 +333,7 @@ impl Parser<'_> {
         Ok(pigment)
     }
 
-    /// The pigment or colour that a name or an element of an array stands for, if one stands here.
+    /// The pigment or colour of a name or an element of an array, if one follows.
     fn named_pigment(&mut self) -> PResult<Option<Pigment>> {
         let token = self.peek()?;
         let value = match token.kind {
@@ -376,7 +377,7 @@ impl Parser<'_> {
                 self.take(token)?;
                 let map = self.color_map()?;
                 draft.choice = match &draft.chooser {
-                    // A mean of colours is a mean of pigments.
+                    // The average of colours is an average of uniform pigments.
                     Chooser::Average => Choice::Pigments(BlendMap::new(
                         map.entries
                             .into_iter()
@@ -409,7 +410,7 @@ impl Parser<'_> {
                 draft.chooser = Chooser::Average;
                 return Ok(());
             }
-            // For quick previews, which don't exist here.
+            // A colour for quick previews, which don't exist here.
             Some(Word::QuickColor | Word::QuickColour) => {
                 self.take(token)?;
                 return self.color().map(|_| ());
@@ -451,7 +452,7 @@ impl Parser<'_> {
         self.skip_item(token, "`pigment`")
     }
 
-    /// What stands behind a block pattern: colours or pigments for its blocks; `None` if there are none.
+    /// The colours or pigments for the blocks of a block pattern; `None` if none follow.
     fn block_pigments(&mut self, pattern: &Pattern) -> PResult<Option<Vec<Pigment>>> {
         let Some(count) = pattern.block_count() else {
             return Ok(None);
@@ -480,7 +481,7 @@ impl Parser<'_> {
         if list.is_empty() {
             return Ok(None);
         }
-        // Missing colours are the pattern's own, missing pigments the default.
+        // Missing colours are the pattern's defaults, missing pigments the default pigment.
         if pigments {
             let default = self.default_pigment();
             list.resize(count, default);
@@ -490,7 +491,7 @@ impl Parser<'_> {
         Ok(Some(list))
     }
 
-    /// The brace behind the object pattern's object and colours; colours may also follow it.
+    /// The closing brace after the object and colours of an object pattern; colours may also follow it.
     fn object_list_end(&mut self, list: &mut Vec<Pigment>) -> PResult<()> {
         self.expect(Kind::RightBrace)?;
         while list.len() < 2 {
@@ -521,7 +522,7 @@ impl Parser<'_> {
             }),
             Kind::Name => {
                 let value = token.symbol().and_then(|s| self.scopes.find(s));
-                // What is not declared at all may be a misspelt colour, which the expression reports best.
+                // An undeclared name may be a misspelt colour, which the expression reports best.
                 value.is_none_or(|v| {
                     v.numeric().is_some()
                         || v.is_callable()

@@ -12,24 +12,24 @@ use strahl_shade::patterns::{Modifiers, Pattern, PatternField};
 use strahl_shade::pigment::{BlendMap, Pigment};
 use strahl_shade::texture::Texture as Surface;
 
-/// What chooses among textures.
+/// The part of a texture that selects between textures.
 enum Chooser {
-    /// Nothing: there is one texture.
+    /// None: there is one texture.
     Single,
     Pattern(Pattern),
     Average,
 }
 
-/// What is chosen from.
+/// The textures to select from.
 enum Choice {
     Nothing,
     Map(BlendMap<Surface>),
     Blocks(Vec<Surface>),
 }
 
-/// A texture while it is being read.
+/// A texture being read.
 struct Draft {
-    /// The texture, if there is one.
+    /// The texture, if there is only one.
     single: Surface,
     chooser: Chooser,
     choice: Choice,
@@ -103,7 +103,7 @@ impl Draft {
 }
 
 impl Parser<'_> {
-    /// `{ ... }` behind `texture`, as what an object carries.
+    /// `{ ... }` after `texture`, as the look of an object.
     pub(crate) fn texture_block(&mut self) -> PResult<Texture> {
         Ok(Texture {
             surface: self.surface_block()?,
@@ -112,7 +112,7 @@ impl Parser<'_> {
         })
     }
 
-    /// `{ ... }` behind `texture` in a declaration; further textures right behind it are laid over it.
+    /// `{ ... }` after `texture` in a declaration; further textures directly after it are layered over it.
     pub(crate) fn declared_texture(&mut self) -> PResult<Arc<Surface>> {
         let mut all = self.surface_block()?;
         while self.raw().is(Word::Texture) {
@@ -124,7 +124,7 @@ impl Parser<'_> {
         Ok(all)
     }
 
-    /// `{ ... }` behind `texture`; a name alone is shared, not copied.
+    /// `{ ... }` after `texture`; a single name is shared, not copied.
     pub(super) fn surface_block(&mut self) -> PResult<Arc<Surface>> {
         self.braces(|p| {
             let named = p.accept_thing(|thing| match thing {
@@ -140,7 +140,7 @@ impl Parser<'_> {
         })
     }
 
-    /// What stands in the brackets of an entry of `texture_map`.
+    /// The items in the brackets of an entry of `texture_map`.
     pub(super) fn texture_items(&mut self, closing: Kind) -> PResult<Surface> {
         let named = self.accept_thing(|thing| match thing {
             Thing::Texture(texture) => Some(texture),
@@ -152,7 +152,7 @@ impl Parser<'_> {
     fn rest_of_texture(&mut self, closing: Kind, named: Option<Arc<Surface>>) -> PResult<Surface> {
         let base = named.unwrap_or_else(|| Arc::clone(&self.state.default_texture.surface));
         let mut single = Surface::clone(&base);
-        // Most textures are a pigment and a finish.
+        // Most textures consist of a pigment and a finish.
         while matches!(single, Surface::Plain(_)) {
             let token = self.peek()?;
             match token.word() {
@@ -219,7 +219,7 @@ impl Parser<'_> {
                 self.take(token)?;
                 return self.material_map(draft);
             }
-            // Belongs to the normals in the texture.
+            // It belongs to the normals in the texture.
             Some(Word::NoBumpScale) => {
                 self.take(token)?;
                 let switch = self.flag()?;
@@ -251,7 +251,7 @@ impl Parser<'_> {
         self.skip_item(token, "`texture`")
     }
 
-    /// The name of a pigment, normal or finish directly in a texture, which takes its place.
+    /// The name of a pigment, normal or finish directly in a texture, where it replaces that part.
     fn named_part(&mut self, draft: &mut Draft) -> PResult<bool> {
         let found = self.accept_thing(|thing| match thing {
             Thing::Pigment(pigment) => Some(pigment),
@@ -280,7 +280,7 @@ impl Parser<'_> {
         Ok(false)
     }
 
-    /// The textures of a block pattern's blocks.
+    /// The textures of the blocks of a block pattern.
     fn block_textures(&mut self, draft: &mut Draft, pattern: &Pattern) -> PResult<()> {
         let blocks = self.blocks(
             pattern,
@@ -295,8 +295,8 @@ impl Parser<'_> {
         Ok(())
     }
 
-    /// `texture {...} tile2 texture {...}` behind `tiles`: an old word for a checker, whose second colour is the first tile (measured);
-    /// braces around it may stand.
+    /// `texture {...} tile2 texture {...}` after `tiles`: an old keyword for a checker, whose second colour is the first tile
+    /// (measured); braces around it are optional.
     fn tiles(&mut self, draft: &mut Draft) -> PResult<()> {
         if self.peek()?.kind == Kind::LeftBrace {
             return self.braces(|p| p.two_tiles(draft));
@@ -326,7 +326,7 @@ impl Parser<'_> {
         Ok(())
     }
 
-    /// `{ picture textures }` behind `material_map`.
+    /// `{ picture textures }` after `material_map`.
     fn material_map(&mut self, draft: &mut Draft) -> PResult<()> {
         let mut list = vec![];
         let place = self.place();
@@ -354,7 +354,7 @@ impl Parser<'_> {
         Ok(())
     }
 
-    /// `{ ... }` behind `material`.
+    /// `{ ... }` after `material`.
     pub(crate) fn material_block(&mut self) -> PResult<Texture> {
         self.braces(|p| {
             let named = p.accept_thing(|thing| match thing {

@@ -1,4 +1,4 @@
-//! The size of textures, so that textures made of copies of each other end in an error and not in an exhausted machine.
+//! The size of textures: textures made of copies of each other must end in an error, and not exhaust the machine.
 
 use crate::parser::{PResult, Parser};
 use strahl_shade::normal::{NormalKind, PovNormal};
@@ -17,7 +17,7 @@ pub(super) struct Weight {
 impl Weight {
     const ONE: Self = Self { count: 1, depth: 1 };
 
-    /// The weight of a node with these children.
+    /// The weight of a node with children of these weights.
     fn around(inner: impl Iterator<Item = Self>) -> Self {
         let sum = inner.fold(Self { count: 0, depth: 0 }, |sum, w| Self {
             count: sum.count.saturating_add(w.count),
@@ -91,7 +91,7 @@ impl Parser<'_> {
                 "write the texture in fewer levels, or raise the limit: `--limit texture_depth=N`",
             ));
         }
-        // A texture that doubles again and again is detected long before it reaches the limit for all together.
+        // A texture that doubles repeatedly is detected long before it reaches the limit for all textures.
         let limit = self.options.limits.parts >> 11;
         if weight.count > limit {
             let place = self.place();
@@ -101,7 +101,7 @@ impl Parser<'_> {
                 "does it double again and again? Otherwise raise the limit of all parts: `--limit parts=N`",
             ));
         }
-        // A single part is counted with the object that has it.
+        // A single part is counted with its object.
         if weight.count > 1 {
             self.count_parts(weight.count.saturating_mul(SIZE))?;
         }

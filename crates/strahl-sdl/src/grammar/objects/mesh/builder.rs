@@ -2,13 +2,13 @@ use std::collections::HashMap;
 use strahl_geometry::MeshData;
 use strahl_math::DVec3;
 
-/// The key of a vertex: the numbers of position, normal and texture coordinates.
+/// The key of a vertex: the indices of position, normal and texture coordinates.
 type Corner = [u32; 3];
 
 /// No normal, or no texture coordinates.
 pub(super) const NONE: u32 = u32::MAX;
 
-/// Gathers triangles whose corners share positions, normals and texture coordinates independently.
+/// Collects triangles whose corners refer to positions, normals and texture coordinates independently.
 #[derive(Debug, Default)]
 pub(super) struct Builder {
     corners: Vec<Corner>,
@@ -27,7 +27,7 @@ impl Builder {
         self.faces.push(face);
     }
 
-    /// The mesh, with the lists that the corners' numbers count. It has normals or texture coordinates if all corners do.
+    /// The mesh for the lists that the corners refer to. It has normals or texture coordinates if all corners do.
     pub(super) fn finish(
         self,
         positions: &[DVec3],

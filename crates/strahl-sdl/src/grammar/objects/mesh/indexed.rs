@@ -16,14 +16,14 @@ struct Lists {
     uvs: Vec<[f64; 2]>,
     textures: Vec<Texture>,
     faces: Vec<[u32; 3]>,
-    /// The texture of each face that has one.
+    /// The texture of each face with one.
     face_textures: HashMap<usize, usize>,
     normal_faces: Vec<[u32; 3]>,
     uv_faces: Vec<[u32; 3]>,
     has_inside: bool,
 }
 
-/// Which list of faces numbers the normals or texture coordinates.
+/// The list of faces that indexes normals or texture coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Numbering {
     None,
@@ -48,7 +48,7 @@ pub(in crate::grammar::objects) fn mesh2(p: &mut Parser<'_>) -> PResult<Entity> 
 }
 
 impl Parser<'_> {
-    /// One of the lists; `false` if none stands here.
+    /// Reads one of the lists; returns `false` if none follows.
     fn mesh2_list(&mut self, lists: &mut Lists) -> PResult<bool> {
         let token = self.peek()?;
         let word = match token.word() {
@@ -142,7 +142,7 @@ impl Parser<'_> {
         })
     }
 
-    /// A vector that f32 can hold, as the mesh keeps it.
+    /// A vector that fits into f32, in which the mesh stores it.
     fn f32_vector(&mut self) -> PResult<DVec3> {
         let vector = self.vector3()?;
         if vector.as_vec3().is_finite() {
@@ -152,7 +152,7 @@ impl Parser<'_> {
         Err(self.fail(place, "this vector is too large for a mesh"))
     }
 
-    /// `<a, b, c>`, numbers of entries of a list.
+    /// `<a, b, c>`, indices into a list.
     fn face(&mut self, count: usize, list: &str) -> PResult<[u32; 3]> {
         let token = self.peek()?;
         let place = self.place_of(token);
@@ -164,7 +164,7 @@ impl Parser<'_> {
         Ok(face)
     }
 
-    /// A number of a list as an index.
+    /// Checks an index into a list.
     fn entry(&mut self, number: f64, count: usize, list: &str, place: Place) -> PResult<usize> {
         if number >= 0.0 && number < count as f64 {
             return Ok(number as usize);
@@ -173,11 +173,11 @@ impl Parser<'_> {
         Err(self.fail_hint(place, message, "entries are counted from 0"))
     }
 
-    /// The number of a face's texture: one, or three of which the first is taken.
+    /// The index of a face's texture; of three, one for each corner, the first is used.
     fn face_texture(&mut self, count: usize) -> PResult<Option<usize>> {
         let mut first = None;
         for _ in 0..3 {
-            // A comma may also part this face from the next.
+            // The comma may also separate this face from the next.
             self.comma()?;
             if !self.number_follows()? {
                 break;
@@ -196,7 +196,7 @@ impl Parser<'_> {
         Ok(first)
     }
 
-    /// How normals or texture coordinates are numbered: by their own list of faces, as the vertices, or not at all.
+    /// The list of faces that indexes normals or texture coordinates: their own, that of the vertices, or none.
     fn numbering(
         &mut self,
         place: Place,
@@ -232,7 +232,7 @@ impl Lists {
         let sound = |face: &[u32; 3]| has_area(face.map(vertex));
         let degenerate = self.faces.iter().filter(|face| !sound(face)).count();
         let has_inside = self.has_inside;
-        // Most meshes: one texture, and the corners are the vertices.
+        // The most frequent case: one texture, and corners that are the vertices.
         if self.face_textures.is_empty() && normals == Numbering::None && uvs == Numbering::None {
             let faces: Vec<_> = self.faces.iter().copied().filter(|f| sound(f)).collect();
             let meshes = (!faces.is_empty())
@@ -254,14 +254,14 @@ impl Lists {
             let normal = self.normals.get(*i as usize);
             normal.is_some_and(|n| *n != DVec3::ZERO)
         };
-        // By texture and whether there are normals: those of a face may be zero.
+        // Faces by texture and by whether they have normals: the normals of a face may be zero.
         let mut builders: BTreeMap<(Option<usize>, bool), Builder> = BTreeMap::new();
         for (index, face) in self.faces.iter().enumerate() {
             if !sound(face) {
                 continue;
             }
             let n = numbers(normals, &self.normal_faces, index, *face);
-            // As in POV-Ray, a face of one normal is flat and takes that of its plane.
+            // As in POV-Ray, a face with three equal normals is flat and gets the normal of its plane.
             let [a, b, c] = n.map(|i| self.normals.get(i as usize));
             let smooth = n.iter().all(usable) && !(a == b && b == c);
             let n = if smooth { n } else { [NONE; 3] };

@@ -1,4 +1,4 @@
-//! Triangles in large numbers.
+//! Triangle meshes: `mesh` and `mesh2`.
 
 mod builder;
 mod indexed;
@@ -14,7 +14,7 @@ use strahl_geometry::{Brep, MeshData, Shape, TriangleMesh};
 use strahl_math::DVec3;
 use strahl_scene::{CsgOp, Object, ObjectKind};
 
-/// The parts of a mesh read so far, each with one texture, and whether it has an inside.
+/// The parts of a mesh read so far, each with one texture, and whether the mesh has an inside.
 #[derive(Default)]
 struct Parts {
     meshes: Vec<(Option<Texture>, MeshData)>,
@@ -23,10 +23,10 @@ struct Parts {
     has_inside: bool,
 }
 
-/// Equal textures are searched only among the last ones, so that one texture per triangle does not take quadratic time.
+/// Equal textures are searched only among the last ones, so that a texture per triangle does not take quadratic time.
 const SEARCHED: usize = 64;
 
-/// The number of a texture in a list; it is appended if it is new.
+/// The index of a texture in a list; a new one is appended.
 fn texture_number(list: &mut Vec<Texture>, texture: Texture) -> usize {
     let first = list.len().saturating_sub(SEARCHED);
     let recent = list.get(first..).unwrap_or(&[]);
@@ -39,14 +39,14 @@ fn texture_number(list: &mut Vec<Texture>, texture: Texture) -> usize {
     }
 }
 
-/// Whether three corners span an area at all.
+/// Whether three corners span an area.
 fn has_area([a, b, c]: [DVec3; 3]) -> bool {
     (b - a).cross(c - a) != DVec3::ZERO
 }
 
 impl Parser<'_> {
-    /// The object of a mesh: one mesh, a solid if it is closed and has an `inside_vector`, or a union of meshes of different
-    /// textures.
+    /// The object of a mesh: one mesh, which is a solid if it is closed and has an `inside_vector`, or a union of meshes with
+    /// different textures.
     fn mesh_object(&mut self, parts: Parts, place: Place) -> PResult<Entity> {
         if parts.degenerate > 0 {
             let n = parts.degenerate;
@@ -88,7 +88,7 @@ impl Parser<'_> {
             }
             return Err(self.fail(place, "the mesh has no triangles"));
         }
-        // A texture of the whole does not replace those of triangles.
+        // The texture of the whole mesh does not replace those of triangles.
         let plain = objects.pop_if(|only| single && only.material.is_none());
         let mut entity = Entity::from(plain.unwrap_or_else(|| Object::csg(CsgOp::Union, objects)));
         entity.object.span = self.span_at(place);

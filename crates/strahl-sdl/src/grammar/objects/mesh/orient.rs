@@ -1,10 +1,9 @@
 use std::collections::HashMap;
 use strahl_geometry::MeshData;
 
-/// Orients triangles consistently with their neighbours, as a solid requires: the language's meshes may have any winding.
+/// Orients triangles consistently with their neighbours, as a solid requires: meshes in scenes may have any winding.
 ///
-/// Neighbours share an edge between the same places. Where more than two triangles meet in an edge, or one alone, nothing
-/// is decided.
+/// Neighbours share an edge between equal positions. An edge of one triangle, or of more than two, imposes nothing.
 pub(super) fn orient(data: &mut MeshData) {
     let mut places: HashMap<[u32; 3], u32> = HashMap::new();
     let welded: Vec<u32> = data
@@ -12,7 +11,7 @@ pub(super) fn orient(data: &mut MeshData) {
         .iter()
         .enumerate()
         .map(|(index, p)| {
-            // Adding zero makes one of the two zeros.
+            // Adding 0 turns -0 into 0.
             let bits = p.map(|x| (x + 0.0).to_bits());
             *places.entry(bits).or_insert(index as u32)
         })
@@ -44,7 +43,7 @@ pub(super) fn orient(data: &mut MeshData) {
                 if std::mem::replace(&mut seen[other], true) {
                     continue;
                 }
-                // Consistent neighbours run along their edge in opposite directions.
+                // Consistently oriented neighbours have their common edge in opposite directions.
                 if edges(data.indices[other]).contains(&(a, b)) {
                     data.indices[other].swap(1, 2);
                 }

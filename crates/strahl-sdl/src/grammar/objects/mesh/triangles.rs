@@ -7,7 +7,7 @@ use crate::parser::{PResult, Parser};
 use std::collections::HashMap;
 use strahl_math::DVec3;
 
-/// A list in which equal entries have one number.
+/// A list without duplicates: equal entries have one index.
 #[derive(Default)]
 struct Numbered<const N: usize>
 where
@@ -22,7 +22,7 @@ where
     [u64; N]: Default,
 {
     fn number(&mut self, entry: [f64; N]) -> u32 {
-        // Adding zero makes one of the two zeros.
+        // Adding 0 turns -0 into 0.
         let bits = entry.map(|x| (x + 0.0).to_bits());
         *self.known.entry(bits).or_insert_with(|| {
             self.list.push(entry);
@@ -31,7 +31,7 @@ where
     }
 }
 
-/// The properties that all triangles of one mesh share.
+/// The properties common to all triangles of one mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 struct Kind {
     texture: Option<usize>,
@@ -46,7 +46,7 @@ struct Draft {
     normals: Numbered<3>,
     uvs: Numbered<2>,
     textures: Vec<Texture>,
-    /// Triangles of one kind, in the order met.
+    /// Triangles of one kind, in the order of the scene.
     groups: Vec<(Kind, Builder)>,
     known: HashMap<Kind, usize>,
     degenerate: usize,
@@ -82,7 +82,7 @@ pub(in crate::grammar::objects) fn mesh(p: &mut Parser<'_>) -> PResult<Entity> {
 }
 
 impl Parser<'_> {
-    /// What stands behind the corners of a triangle of a mesh.
+    /// The items after the corners of a triangle of a mesh.
     fn mesh_triangle(
         &mut self,
         draft: &mut Draft,
@@ -111,7 +111,7 @@ impl Parser<'_> {
             }
             Ok(())
         })?;
-        // The mesh keeps f32.
+        // Meshes store corners in f32.
         if !corners.iter().all(|c| c.as_vec3().is_finite()) {
             let place = self.place();
             return Err(self.fail(place, "a corner of the triangle is too far away for a mesh"));
@@ -134,7 +134,7 @@ impl Draft {
             return;
         }
         let usable = |n: &DVec3| *n != DVec3::ZERO && n.as_vec3().is_finite();
-        // As in POV-Ray, a triangle of one normal is flat within a mesh and takes that of its plane.
+        // As in POV-Ray, a triangle of a mesh with three equal normals is flat and gets the normal of its plane.
         let normals = normals.filter(|all| {
             let [a, b, c] = all;
             all.iter().all(usable) && !(a == b && b == c)
