@@ -87,7 +87,10 @@ pub fn parse(source: Source, options: &Options, host: &mut dyn Host) -> Parsed {
         }
     };
     if source.length() >= u32::MAX as usize {
-        let message = format!("`{}` is too large: a file may have 4 GiB", source.name);
+        let message = format!(
+            "`{}` is too large: a file may have at most 4 GiB",
+            source.name
+        );
         return Parsed {
             scene: None,
             diagnostics: vec![Diagnostic::error(message).hint("split the file by `#include`")],

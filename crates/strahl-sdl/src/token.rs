@@ -105,7 +105,7 @@ impl Kind {
             Self::Colon => "`:`",
             Self::Ampersand => "`&`",
             Self::Bar => "`|`",
-            Self::Unknown => "a character without meaning",
+            Self::Unknown => "an invalid character",
             Self::Name => "a name",
             Self::Directive => "a directive",
             Self::End => "the end",

@@ -29,7 +29,7 @@ fn unfinished_texts() {
     assert!(errors("#if (1) sphere { 0, 1 }")[0].contains("`#if` has no `#end`"));
     assert!(errors("#macro A() ")[0].contains("`#macro` has no `#end`"));
     assert!(errors("#while (0) sphere { 0, 1 }")[0].contains("`#while` has no `#end`"));
-    assert!(errors("#end")[0].contains("`#end` without a block"));
+    assert!(errors("#end")[0].contains("`#end` does not belong to a block"));
     assert!(errors("}")[0].contains("expected an object"));
     for text in [
         "#",
@@ -170,7 +170,7 @@ fn huge_things() {
     );
     assert!(
         errors("#declare A = array[1]{0}; #while (1) #declare A[0] = A; #end")[0]
-            .contains("at most 100 deep")
+            .contains("more than 100 deep")
     );
     assert!(errors("#debug str(1, 1e9, 0)")[0].contains("characters"));
     let objects = |o: &mut Options| o.limits.objects = 1000;

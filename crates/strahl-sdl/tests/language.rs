@@ -318,7 +318,7 @@ fn a_texture_within_a_texture_is_an_error() {
     ] {
         let found = errors(&format!("sphere {{ 0, 1 texture {{ {inner} }} }}"));
         assert!(
-            found[0].contains("cannot stand within a texture"),
+            found[0].contains("a texture cannot contain a texture"),
             "{found:?}"
         );
     }

@@ -88,7 +88,7 @@ fn wrong_numbers_are_errors() {
         ("camera { cylinder 5 }", "1, 2, 3 or 4"),
         ("camera { mesh_camera { 1 4 } }", "0, 1, 2 or 3"),
         ("camera { mesh_camera { 1 0 sphere { 0, 1 } } }", "no faces"),
-        ("fog { fog_type 3 }", "fog_type is 1"),
+        ("fog { fog_type 3 }", "fog_type must be 1"),
         (
             "light_source { 0, 1 area_light x, y, 0, 5 }",
             "1 to 1024 points",

@@ -76,10 +76,7 @@ impl Parser<'_> {
             Directive::End => "block",
             _ => "`#if` or `#switch`",
         };
-        self.fail(
-            place,
-            format!("`#{word}` without a {block} that it belongs to"),
-        )
+        self.fail(place, format!("`#{word}` does not belong to a {block}"))
     }
 
     fn range(&mut self) -> PResult<(f64, f64)> {

@@ -166,7 +166,7 @@ impl Parser<'_> {
                         let place = self.place();
                         return Err(self.fail_hint(
                             place,
-                            "this is no array, so it has no elements",
+                            "this is not an array, so it has no elements",
                             "declare it first: `#declare Name = array[10];`",
                         ));
                     }
@@ -187,7 +187,7 @@ impl Parser<'_> {
         }
         Err(self.fail(
             place,
-            "this element cannot be assigned to: arrays and dictionaries hold what exists, at most 100 deep",
+            "this element cannot be assigned to: it does not exist, or arrays and dictionaries would be nested more than 100 deep",
         ))
     }
 

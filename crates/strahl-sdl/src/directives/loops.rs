@@ -74,7 +74,7 @@ impl Parser<'_> {
             BlockKind::For(state) => {
                 let Some(Value::Float(value)) = self.scopes.at(&state.variable) else {
                     let place = self.place();
-                    return Err(self.fail(place, "the variable of the loop is no float any more"));
+                    return Err(self.fail(place, "the variable of the loop is no longer a float"));
                 };
                 let next = value + state.step;
                 self.scopes.store(&state.variable, Value::Float(next));

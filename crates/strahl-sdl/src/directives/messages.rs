@@ -11,7 +11,7 @@ impl Parser<'_> {
             Directive::Error => Err(self.fail_fatally(
                 place,
                 format!("the scene says: {}", text.trim_end()),
-                "the scene ends itself here by `#error`",
+                "the scene stops here with `#error`",
             )),
             Directive::Warning => {
                 self.warn(place, format!("the scene says: {}", text.trim_end()));

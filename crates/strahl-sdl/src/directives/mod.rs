@@ -99,7 +99,7 @@ impl Parser<'_> {
         let symbol = token.link().map_or(u32::MAX, |l| l as u32);
         let name = self.symbols.text(crate::symbol::Symbol(symbol)).to_owned();
         if name.is_empty() {
-            self.warn(place, "`#` without a directive behind it does nothing");
+            self.warn(place, "`#` without a directive after it has no effect");
             return Ok(());
         }
         // Settings that were directives up to version 2.2.

@@ -17,7 +17,7 @@ impl Parser<'_> {
             self.warn(
                 place,
                 format!(
-                    "the scene is written for version {version} of the language; 3.8 is known here"
+                    "the scene is written for version {version} of the language; strahl supports versions up to 3.8"
                 ),
             );
         }

@@ -129,7 +129,7 @@ impl Parser<'_> {
                         p.spend_elements(1)?;
                     }
                     if !array.set(flat, Some(value)) {
-                        return Err(p.fail(place, "arrays lie too deep within each other"));
+                        return Err(p.fail(place, "arrays are nested too deep"));
                     }
                 } else {
                     p.initialiser(array, rest, flat)?;

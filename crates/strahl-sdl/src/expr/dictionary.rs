@@ -61,7 +61,7 @@ impl Parser<'_> {
                     p.spend_elements(1)?;
                     let value = p.value()?;
                     if !entries.set(key, value) {
-                        return Err(p.fail(place, "dictionaries lie too deep within each other"));
+                        return Err(p.fail(place, "dictionaries are nested too deep"));
                     }
                     p.comma()?;
                 }

@@ -73,8 +73,9 @@ impl Parser<'_> {
                     Some(size) => *size as f64,
                     None => {
                         let count = array.dimensions().len();
-                        let message =
-                            format!("the array has {count} dimensions, there is no number {which}");
+                        let message = format!(
+                            "the array has {count} dimensions; there is no dimension {which}"
+                        );
                         return Err(self.fail(place, message));
                     }
                 }
@@ -151,7 +152,7 @@ impl Parser<'_> {
         if defined(x) {
             return Ok(f(x));
         }
-        Err(self.fail(place, format!("`{name}({x})` has no value")))
+        Err(self.fail(place, format!("`{name}({x})` is undefined")))
     }
 
     fn fold(&mut self, f: fn(f64, f64) -> f64) -> PResult<f64> {

@@ -218,8 +218,8 @@ impl Parser<'_> {
                 if divisor.as_slice().contains(&0.0) {
                     self.warn_hint(
                         place,
-                        "division by zero gives an infinite number, or none",
-                        "objects and colours made of it will be refused",
+                        "division by zero gives an infinite number or NaN",
+                        "objects and colours that use it will be rejected",
                     );
                 }
                 a.zip(b, |x, y| x / y)
@@ -553,7 +553,7 @@ impl Parser<'_> {
                 Err(self.fail_hint(
                     place,
                     message,
-                    "take one of its components, such as `.x`, or its `vlength`",
+                    "use one of its components, such as `.x`, or its `vlength`",
                 ))
             }
         }

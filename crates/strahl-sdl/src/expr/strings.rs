@@ -80,7 +80,7 @@ impl Parser<'_> {
                 let total = text.chars().count() as f64;
                 if !(first >= 1.0 && count >= 0.0 && first + count - 1.0 <= total) {
                     let message = format!(
-                        "`substr` asks for {count} characters from number {first} of a string that has {total}"
+                        "`substr` asks for {count} characters from position {first} of a string with {total}"
                     );
                     return Err(self.fail(place, message));
                 }
@@ -109,7 +109,7 @@ impl Parser<'_> {
             return Err(self.fail_fatally(
                 place,
                 format!("a string may have {limit} bytes; this one would be longer"),
-                "does a loop double it again and again? Otherwise raise the limit: `--limit string_bytes=N`",
+                "check for a loop that doubles it, or raise the limit: `--limit string_bytes=N`",
             ));
         }
         self.all_strings = self.all_strings.saturating_add(bytes as u64);
@@ -117,8 +117,8 @@ impl Parser<'_> {
         if self.all_strings > limit {
             return Err(self.fail_fatally(
                 place,
-                format!("the strings made by the scene have more than {limit} bytes together"),
-                "does a loop not end? Otherwise raise the limit: `--limit all_strings=N`",
+                format!("all strings of the scene together have more than {limit} bytes"),
+                "check for a loop that does not end, or raise the limit: `--limit all_strings=N`",
             ));
         }
         Ok(())
@@ -177,7 +177,7 @@ impl Parser<'_> {
             "%Y-%m-%d %H:%M:%SZ".into()
         };
         if !(days.abs() < 1e8) {
-            return Err(self.fail(place, format!("{days} days after 2000 is no date")));
+            return Err(self.fail(place, format!("{days} days after 2000 is not a valid date")));
         }
         Ok(date(days, &format))
     }

@@ -141,8 +141,8 @@ impl Parser<'_> {
         if !self.accept(Kind::Dot)? {
             return Err(self.fail_hint(
                 place,
-                "within a function a colour cannot stand as a whole",
-                "take one of its components: `.red`, `.green`, `.blue`, `.filter`, `.transmit`, `.gray`, `.hf`",
+                "a function cannot use a whole colour",
+                "use one of its components: `.red`, `.green`, `.blue`, `.filter`, `.transmit`, `.gray`, `.hf`",
             ));
         }
         let name = self.next()?;

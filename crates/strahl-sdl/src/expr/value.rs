@@ -90,7 +90,7 @@ impl Parser<'_> {
                     self.warn_hint(
                         place,
                         format!("`{text}` is not supported yet and is left out"),
-                        "what uses this declaration cannot be shown",
+                        "uses of this declaration are left out too",
                     );
                     self.skip_body()?;
                     Ok(Value::Unsupported("a thing that is not supported yet"))

@@ -96,8 +96,8 @@ impl Parser<'_> {
         if !self.accept(Kind::Dot)? {
             return Err(self.fail_hint(
                 place,
-                "within a function a vector cannot stand as a whole",
-                "take one of its components: `.x`, `.y`, `.z`, `.t`",
+                "a function cannot use a whole vector",
+                "use one of its components: `.x`, `.y`, `.z`, `.t`",
             ));
         }
         let name = self.next()?;

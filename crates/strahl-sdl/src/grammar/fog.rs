@@ -112,9 +112,8 @@ impl Parser<'_> {
                     1.0 => false,
                     2.0 => true,
                     other => {
-                        let message = format!(
-                            "fog_type is 1 (the same everywhere) or 2 (ground fog), not {other}"
-                        );
+                        let message =
+                            format!("fog_type must be 1 (uniform) or 2 (ground fog), not {other}");
                         return Err(self.fail(place, message));
                     }
                 };

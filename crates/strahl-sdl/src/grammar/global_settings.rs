@@ -122,7 +122,7 @@ impl Parser<'_> {
         if space != WorkingSpace::Linear {
             self.warn_hint(
                 place,
-                "light is not computed in linear numbers, so lights and shadows don't add up as in nature",
+                "the working space is not linear, so the light of several sources does not add up correctly",
                 "write `assumed_gamma 1.0`, and `srgb` instead of `rgb` before colours that should stay as they are",
             );
         }

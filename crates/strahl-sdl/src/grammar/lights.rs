@@ -363,7 +363,7 @@ impl Parser<'_> {
         if draft.form != Form::Point && matches!(kind, LightKind::Point { .. }) {
             self.warn(
                 place,
-                "the light points at its own location and shines into all directions",
+                "the light points at its own location, so it shines in all directions",
             );
         }
         let [r, g, b, ..] = draft.color;

@@ -56,7 +56,7 @@ fn media(p: &mut Parser<'_>) -> PResult<()> {
     p.warn_hint(
         p.place(),
         "`media` is not supported yet and is left out",
-        "the picture lacks what the air absorbs, scatters and emits",
+        "the picture lacks absorption, scattering and emission of the air",
     );
     p.skip_body()
 }
@@ -204,11 +204,11 @@ impl Parser<'_> {
             return Ok(());
         }
         let place = self.place();
-        let message = format!("the scene has more than {limit} objects, parts and copies counted");
+        let message = format!("the scene has more than {limit} objects, counting parts and copies");
         Err(self.fail_fatally(
             place,
             message,
-            "does a loop not end, or a part double again and again? Otherwise raise the limit: `--limit objects=N`",
+            "check for a loop that does not end or a part that doubles repeatedly, or raise the limit: `--limit objects=N`",
         ))
     }
 
@@ -228,7 +228,7 @@ impl Parser<'_> {
         Err(self.fail_fatally(
             place,
             message,
-            "does a loop not end, or a texture double again and again? Otherwise raise the limit: `--limit parts=N`",
+            "check for a loop that does not end or a texture that doubles repeatedly, or raise the limit: `--limit parts=N`",
         ))
     }
 }

@@ -144,7 +144,7 @@ impl Parser<'_> {
                         None => Err(self.fail(
                             place,
                             format!(
-                                "this element is {} and does not belong here",
+                                "this element is {} and cannot be used here",
                                 thing.describe()
                             ),
                         )),
@@ -152,7 +152,7 @@ impl Parser<'_> {
                     other => Err(self.fail(
                         place,
                         format!(
-                            "this element is {} and does not belong here",
+                            "this element is {} and cannot be used here",
                             other.describe()
                         ),
                     )),

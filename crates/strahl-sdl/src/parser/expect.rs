@@ -141,11 +141,11 @@ impl Parser<'_> {
             (Kind::Word, Some(_)) => {
                 let word = self.describe(token);
                 let place = self.place_of(token);
-                let message = format!("{word} is a word of the language and cannot be {what}");
+                let message = format!("{word} is a keyword and cannot be {what}");
                 Err(self.fail_hint(
                     place,
                     message,
-                    "write another name: capital first letters are never reserved",
+                    "use another name: names with a capital first letter are never keywords",
                 ))
             }
             _ => {

@@ -318,7 +318,7 @@ impl<'h> Parser<'h> {
         let same = includes.filter(|f| f.back.0.source.name == file.source.name);
         if same.count() > SELF_INCLUDES {
             let name = &file.source.name;
-            let message = format!("`{name}` includes itself again and again");
+            let message = format!("`{name}` includes itself repeatedly");
             return Err(self.fail_fatally(
                 from,
                 message,
@@ -377,7 +377,7 @@ impl<'h> Parser<'h> {
         let limit = self.options.limits.read_bytes;
         if source.length() >= u32::MAX as usize || self.read_bytes > limit {
             let message = format!(
-                "`{}` is too large: all files of a scene may have {limit} bytes, one file 4 GiB",
+                "`{}` is too large: all files of a scene may have at most {limit} bytes, one file 4 GiB",
                 source.name
             );
             return Err(self.fail_fatally(
@@ -433,7 +433,8 @@ impl<'h> Parser<'h> {
         self.read_bytes = self.read_bytes.saturating_add(source.length() as u64);
         let limit = self.options.limits.read_bytes;
         if self.read_bytes > limit {
-            let message = format!("`{name}` is too large: all files may have {limit} bytes");
+            let message =
+                format!("`{name}` is too large: all files may have at most {limit} bytes");
             return Err(self.fail_fatally(
                 from,
                 message,

@@ -180,8 +180,7 @@ impl Parser<'_> {
         Err(self.fail_fatally(
             place,
             format!("all functions together have more than {limit} operations"),
-            "each has those of the functions it calls, unless they are large; shorten chains of functions that call each other, \
-             or raise the limit: `--limit function_operations=N`",
+            "a function includes the operations of the functions it calls, unless those are large; shorten chains of function calls, or raise the limit: `--limit function_operations=N`",
         ))
     }
 
@@ -277,7 +276,7 @@ impl Parser<'_> {
         self.fail_fatally(
             self.place,
             message,
-            "build the thing in steps with `#declare`, or raise the limit: `--limit nesting=N`",
+            "build the object in steps with `#declare`, or raise the limit: `--limit nesting=N`",
         )
     }
 
@@ -289,7 +288,7 @@ impl Parser<'_> {
             ("steps", limits.steps, "")
         };
         let message = format!(
-            "the scene has taken {count} steps{since}, tokens read and functions called: a loop or recursion seems not to end"
+            "the scene has taken {count} steps{since} (tokens and function calls): a loop or recursion seems not to end"
         );
         self.fail_fatally(
             self.place,

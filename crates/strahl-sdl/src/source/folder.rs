@@ -138,7 +138,7 @@ impl FolderHost {
         if !metadata.is_file() {
             return Err(HostError::Io {
                 name: shown,
-                message: "this is a device or pipe, no plain file".to_owned(),
+                message: "this is a device or pipe, not a regular file".to_owned(),
             });
         }
         let limit = self.max_file;

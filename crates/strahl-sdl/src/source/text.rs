@@ -164,7 +164,7 @@ impl Text {
                 .read_to_end(&mut self.held)
         });
         let failure = match done {
-            Ok(count) if count < end - from => "it has become shorter since".to_owned(),
+            Ok(count) if count < end - from => "it has become shorter while it was read".to_owned(),
             Ok(_) => return,
             Err(error) => error.to_string(),
         };

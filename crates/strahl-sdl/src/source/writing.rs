@@ -136,10 +136,9 @@ fn prepare(place: &Writing, folder: &Path) -> Result<(), String> {
     };
     match (metadata, place) {
         (Ok(m), _) if m.is_dir() => Ok(()),
-        (Ok(_), _) => Err(format!("`{shown}` is there and is no folder")),
-        (Err(e), Writing::Own(_)) if e.kind() == ErrorKind::NotFound => {
-            fs::create_dir(folder).map_err(|e| format!("the folder `{shown}` cannot be made: {e}"))
-        }
+        (Ok(_), _) => Err(format!("`{shown}` exists and is not a folder")),
+        (Err(e), Writing::Own(_)) if e.kind() == ErrorKind::NotFound => fs::create_dir(folder)
+            .map_err(|e| format!("the folder `{shown}` cannot be created: {e}")),
         (Err(e), _) => Err(format!("`{shown}`: {e}")),
     }
 }
@@ -159,12 +158,12 @@ fn existing(folder: &Path, name: &str) -> Result<Option<Vec<u8>>, String> {
         Err(e) => return Err(e.to_string()),
     };
     if !metadata.is_file() {
-        return Err("there is something that is no plain file".to_owned());
+        return Err("something of this name exists that is not a regular file".to_owned());
     }
     let bytes = fs::read(&target).map_err(|e| e.to_string())?;
     if listed(folder, name).as_deref() != Some(checksum(&bytes).as_str()) {
         return Err(
-            "there is a file of this name that no scene has written, or that was changed since; \
+            "a file of this name exists that no scene has written, or that was changed since; \
              remove it, or choose another folder"
                 .to_owned(),
         );
@@ -190,7 +189,7 @@ fn listed(folder: &Path, name: &str) -> Option<String> {
 fn list(folder: &Path, name: &str, bytes: &[u8]) -> io::Result<()> {
     let path = folder.join(LIST);
     if fs::symlink_metadata(&path).is_ok_and(|m| !m.is_file()) {
-        let problem = format!("`{}` is no plain file", path.display());
+        let problem = format!("`{}` is not a regular file", path.display());
         return Err(io::Error::other(problem));
     }
     let mut file = OpenOptions::new().create(true).append(true).open(path)?;

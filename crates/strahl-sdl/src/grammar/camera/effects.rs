@@ -83,8 +83,9 @@ impl Parser<'_> {
                 self.take(token)?;
                 let value = self.float()?;
                 if !(0.0..1.0).contains(&value) {
-                    let message =
-                        format!("confidence is from 0 to less than 1, not {value}; 0.9 is taken");
+                    let message = format!(
+                        "confidence must be from 0 to less than 1, not {value}; 0.9 is used"
+                    );
                     self.warn(place, message);
                 } else {
                     lens.confidence = Some(value);
@@ -94,8 +95,9 @@ impl Parser<'_> {
                 self.take(token)?;
                 let value = self.float()?;
                 if !(0.0..1.0).contains(&value) {
-                    let message =
-                        format!("variance is from 0 to less than 1, not {value}; 1/128 is taken");
+                    let message = format!(
+                        "variance must be from 0 to less than 1, not {value}; 1/128 is used"
+                    );
                     self.warn(place, message);
                 } else {
                     lens.variance = Some(value);
@@ -124,7 +126,7 @@ impl Parser<'_> {
         if (0.0..=f64::from(most)).contains(&count) {
             return Ok(count as u32);
         }
-        let message = format!("blur_samples is 0 to {most}, not {count}");
+        let message = format!("blur_samples must be 0 to {most}, not {count}");
         Err(self.fail(place, message))
     }
 
@@ -145,10 +147,7 @@ impl Parser<'_> {
             (color.r + color.g + color.b) / 3.0
         });
         if bokeh.is_none() {
-            self.warn(
-                place,
-                "the bokeh lets no light through; a round one is taken",
-            );
+            self.warn(place, "the bokeh is black; a round one is used");
         }
         Ok(bokeh.map(Arc::new))
     }

@@ -46,8 +46,9 @@ impl Parser<'_> {
                 2.0 => MeshLayout::SideBySide,
                 3.0 => MeshLayout::ByUv,
                 other => {
-                    let message =
-                        format!("the distribution of a mesh camera is 0, 1, 2 or 3, not {other}");
+                    let message = format!(
+                        "the distribution of a mesh camera must be 0, 1, 2 or 3, not {other}"
+                    );
                     return Err(p.fail(place, message));
                 }
             };
@@ -58,7 +59,7 @@ impl Parser<'_> {
                     p.warn_hint(
                         place,
                         "the maximal distance of `mesh_camera` is not supported yet",
-                        "its rays see all objects, however far",
+                        "its rays see objects at any distance",
                     );
                 }
             }
@@ -74,7 +75,7 @@ impl Parser<'_> {
             if meshes.iter().all(Vec::is_empty) {
                 return Err(p.fail_hint(
                     place,
-                    "this mesh camera has no faces to look from",
+                    "this mesh camera has no faces",
                     "name a mesh: `mesh { Name }`",
                 ));
             }

@@ -285,7 +285,8 @@ impl Parser<'_> {
             4.0 => (false, true),
             other => {
                 let place = self.place();
-                let message = format!("the type of a cylinder camera is 1, 2, 3 or 4, not {other}");
+                let message =
+                    format!("the type of a cylinder camera must be 1, 2, 3 or 4, not {other}");
                 return Err(self.fail(place, message));
             }
         };

@@ -19,7 +19,7 @@ pub(super) fn cone(p: &mut Parser<'_>) -> PResult<Entity> {
         if base_radius < 0.0 || cap_radius < 0.0 {
             p.warn(
                 place,
-                "a radius of the cone is negative; its amount is taken",
+                "a radius of the cone is negative; its absolute value is used",
             );
         }
         let open = p.accept_word(Word::Open)?;

@@ -43,6 +43,6 @@ pub(super) fn check_ends(
             "both ends of the {what} are at <{}, {}, {}>",
             base.x, base.y, base.z
         ),
-        "if a macro or loop makes it, leave it out there by `#if`",
+        "if a macro or loop creates it, skip it there with `#if`",
     ))
 }

@@ -59,7 +59,7 @@ pub(super) fn julia_fractal(p: &mut Parser<'_>) -> PResult<Entity> {
             (false, _) => {
                 return Err(p.fail_hint(
                     place,
-                    "quaternions have only the functions `sqr` and `cube` here",
+                    "quaternions have only the functions `sqr` and `cube`",
                     "write `hypercomplex`",
                 ));
             }

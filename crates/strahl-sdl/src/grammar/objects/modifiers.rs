@@ -171,7 +171,7 @@ impl Parser<'_> {
             Some(word) if word.kind() == WordKind::Color => {
                 self.warn_hint(
                     self.place_of(token),
-                    "a colour of the object itself does nothing",
+                    "a colour of the object itself has no effect",
                     "write `pigment { ... }` around it",
                 );
                 return self.color().map(|_| true);
@@ -242,7 +242,7 @@ impl Parser<'_> {
             let other = other.text();
             self.warn(
                 place,
-                format!("there is no `{other}` before this {what}, so it does nothing"),
+                format!("there is no `{other}` before this {what}, so it has no effect"),
             );
         }
         Ok(found)

@@ -36,7 +36,7 @@ pub(super) fn polygon(p: &mut Parser<'_>) -> PResult<Entity> {
         if open && rings.last().is_some_and(|ring| ring.len() > 1) {
             p.warn(
                 place,
-                "the last corner of the polygon differs from the first; it is closed by an edge",
+                "the last corner of the polygon differs from the first; an edge closes the polygon",
             );
         }
         // A single corner after the last ring encloses no area.

@@ -38,7 +38,7 @@ pub(super) fn prism(p: &mut Parser<'_>) -> PResult<Entity> {
         {
             p.warn(
                 place,
-                "a curve of the prism does not come back to its first point; it is closed by a line",
+                "a curve of the prism does not return to its first point; a line closes it",
             );
         }
         Ok(prism)

@@ -125,7 +125,7 @@ impl Parser<'_> {
             if let Some(found) = self.system_font(other, place)? {
                 self.warn_hint(
                     place,
-                    format!("the font `{name}` was not found; {other} stands in for it"),
+                    format!("the font `{name}` was not found; {other} replaces it"),
                     "letters will look and be spaced differently; name its folder with `--library-path`",
                 );
                 return Ok(found);

@@ -195,10 +195,7 @@ impl Parser<'_> {
         };
         let length = direction.length();
         if !(length.is_finite() && origin.is_finite()) {
-            return Err(self.fail(
-                place,
-                "`trace` needs a place and a direction of finite numbers",
-            ));
+            return Err(self.fail(place, "`trace` needs a finite point and a finite direction"));
         }
         // As in POV-Ray, a ray with direction zero hits nothing.
         let query = match length {

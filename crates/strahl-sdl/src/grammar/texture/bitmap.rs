@@ -386,7 +386,7 @@ impl Parser<'_> {
                     None => self.warn_hint(
                         place,
                         format!("map_type {number} is not supported and counts as 0"),
-                        "known are 0 (planar), 1 (spherical), 2 (cylindrical) and 5 (toroidal)",
+                        "supported are 0 (planar), 1 (spherical), 2 (cylindrical) and 5 (toroidal)",
                     ),
                 }
             }
@@ -399,7 +399,7 @@ impl Parser<'_> {
                     _ => {
                         self.warn(
                             place,
-                            "bicubic interpolation is not supported yet; bilinear is taken",
+                            "bicubic interpolation is not supported yet; bilinear is used",
                         );
                         Interpolation::Bilinear
                     }

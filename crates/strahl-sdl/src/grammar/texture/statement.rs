@@ -211,8 +211,8 @@ impl Parser<'_> {
             Some(Word::Texture) => {
                 return Err(self.fail_hint(
                     self.place_of(token),
-                    "a texture cannot stand within a texture",
-                    "write textures that lie over each other one behind the other, and those to choose from in a `texture_map`",
+                    "a texture cannot contain a texture",
+                    "write layered textures one after the other, and textures to choose from in a `texture_map`",
                 ));
             }
             Some(Word::MaterialMap) => {
@@ -343,7 +343,7 @@ impl Parser<'_> {
             return Err(self.fail_hint(
                 place,
                 "`material_map` needs at least one texture",
-                "write `texture { ... }` behind the picture, one for each value of its texels",
+                "write `texture { ... }` after the picture, one for each value of its texels",
             ));
         }
         draft.single = match image {

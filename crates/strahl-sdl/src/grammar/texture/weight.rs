@@ -97,8 +97,8 @@ impl Parser<'_> {
             let place = self.place();
             return Err(self.fail_fatally(
                 place,
-                format!("this texture has more than {limit} parts, copies of named ones counted"),
-                "does it double again and again? Otherwise raise the limit of all parts: `--limit parts=N`",
+                format!("this texture has more than {limit} parts, counting copies"),
+                "check for a texture that doubles repeatedly, or raise the limit of all parts: `--limit parts=N`",
             ));
         }
         // A single part is counted with its object.
@@ -120,8 +120,10 @@ impl Parser<'_> {
         let place = self.place();
         Err(self.fail_hint(
             place,
-            format!("a colour of this pigment takes {cost} operations, at most {limit} are allowed"),
-            "let its functions and averages have fewer parts, or raise the limit: `--limit function_cost=N`",
+            format!(
+                "a colour of this pigment takes {cost} operations, at most {limit} are allowed"
+            ),
+            "simplify its functions and averages, or raise the limit: `--limit function_cost=N`",
         ))
     }
 }

@@ -189,7 +189,7 @@ impl Parser<'_> {
             if *first.get_or_insert(texture) != texture {
                 self.warn(
                     place,
-                    "textures at the corners of a face are not blended; the first is taken",
+                    "textures at the corners of a face are not blended; the first is used",
                 );
             }
         }

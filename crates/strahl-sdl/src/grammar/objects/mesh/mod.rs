@@ -60,7 +60,7 @@ impl Parser<'_> {
             self.warn_hint(
                 place,
                 "a mesh of several textures, or partly with normals, has no inside",
-                "in intersections and differences it will not be cut or cut as a solid",
+                "in intersections and differences it is not treated as a solid",
             );
         }
         let mut objects = vec![];
@@ -102,7 +102,7 @@ impl Parser<'_> {
                 self.warn_hint(
                     place,
                     error.to_string(),
-                    "the mesh has no inside: in intersections and differences it will not be cut or cut as a solid",
+                    "the mesh has no inside: in intersections and differences it is not treated as a solid",
                 );
                 mesh.into()
             }
