@@ -12,10 +12,9 @@ use crate::{
     SurfacePoint,
 };
 use octree::Octree;
-use search::{Search, excludes_change};
+use search::{Course, Search, excludes_change, least_value};
 use std::ops::ControlFlow;
-use std::sync::OnceLock;
-use strahl_function::{Bounds, Function, ScalarField, Workspace};
+use strahl_function::{Bounds, Function, Workspace};
 use strahl_math::error::{ROUNDOFF, gamma};
 use strahl_math::{Aabb, DVec3, Interval, Ray};
 
@@ -49,8 +48,8 @@ impl Default for IsosurfaceOptions {
 /// Hits are certified by interval arithmetic: a part of a ray is skipped only where the function's bounds prove that its sign
 /// does not change, so there are no holes and no gradient has to be guessed, however steep the function is. Only functions that
 /// call patterns or pigments have no bounds; for these [`IsosurfaceOptions::max_gradient`] is trusted, as in POV-Ray. An
-/// octree, built at the first ray, stores where the surface may be at all; it depends on the function alone, so it does not
-/// change the picture.
+/// octree, whose cells are examined when a ray first meets them, stores where the surface may be at all; it depends on the
+/// function alone, so it does not change the picture.
 ///
 /// Facets: 0 is the function's surface, 1 and up are the facets of the container. NaN counts as outside. There are no texture
 /// coordinates.
@@ -63,7 +62,9 @@ pub struct Isosurface {
     container: Container,
     options: IsosurfaceOptions,
     is_bounded: bool,
-    octree: OnceLock<Octree>,
+    octree: Octree,
+    /// How far cells are widened when they are examined.
+    cell_pad: DVec3,
 }
 
 /// The facet that is the function's surface.
@@ -107,12 +108,14 @@ impl Isosurface {
         crate::primitives::check_positive("accuracy of the isosurface", options.accuracy)?;
         crate::primitives::check_positive("max_gradient of the isosurface", options.max_gradient)?;
         let is_bounded = function.is_bounded();
+        let bounds = container.bounds();
         Ok(Self {
             function,
             container,
             options,
             is_bounded,
-            octree: OnceLock::new(),
+            octree: Octree::new(bounds),
+            cell_pad: DVec3::splat(CELL_PAD * bounds.max_abs()),
         })
     }
 
@@ -153,24 +156,17 @@ impl Isosurface {
         }
     }
 
-    /// The cells with a surface, found once.
-    fn octree(&self, workspace: &mut Workspace) -> &Octree {
-        self.octree.get_or_init(|| {
-            let bounds = self.container.bounds();
-            let pad = DVec3::splat(CELL_PAD * bounds.max_abs());
-            let cost = ScalarField::cost(&self.function).operations;
-            Octree::build(bounds, cost, |cell| {
-                let cell = cell.padded(pad);
-                if self.container.excludes(&cell) {
-                    return false;
-                }
-                if self.is_bounded {
-                    return !excludes_change(self.bounds_within(workspace, &cell));
-                }
-                let reach = self.options.max_gradient * 0.5 * cell.size().length();
-                !(self.value(workspace, cell.center()).abs() > reach)
-            })
-        })
+    /// Whether a cell of the octree may contain a part of the surface.
+    fn may_cross(&self, workspace: &mut Workspace, cell: &Aabb) -> bool {
+        let cell = cell.padded(self.cell_pad);
+        if self.container.excludes(&cell) {
+            return false;
+        }
+        if self.is_bounded {
+            return !excludes_change(self.bounds_within(workspace, &cell));
+        }
+        let reach = self.options.max_gradient * 0.5 * cell.size().length();
+        !(self.value(workspace, cell.center()).abs() > reach)
     }
 
     /// The largest extent of the container.
@@ -192,11 +188,11 @@ impl Isosurface {
     }
 
     /// Reports the events along a ray to the visitor, in order, until it stops. Crossings of the function's surface have no
-    /// error bound.
+    /// error bound. Those outside of the range may be left out.
     fn walk(
         &self,
         ray: &Ray,
-        from: Option<SurfaceId>,
+        (range, from): (Interval, Option<SurfaceId>),
         scratch: &mut Scratch,
         workspace: &mut Workspace,
         visit: &mut impl FnMut(Event) -> ControlFlow<()>,
@@ -213,43 +209,33 @@ impl Isosurface {
         if !(start < end && end.is_finite() && start.is_finite()) {
             return ControlFlow::Continue(());
         }
-        let octree = self.octree(workspace);
+        let needed = Interval::new(0.0, end - start)
+            .intersection(Interval::new(range.min - start, range.max - start));
         let mut search = self.search(ray, start, workspace);
-        let mut last = search.place(0.0);
+        let skips = needed.min > 0.0 && from != Some(SURFACE);
+        let mut last = search.place(if skips { needed.min } else { 0.0 });
         if from == Some(SURFACE) {
             last.value = self.value_leaving(ray, last.value, search.workspace);
         }
-        let mut inside = last.is_inside();
+        let inside = last.is_inside();
         match passage.enter.filter(|enter| enter.hit.t == start) {
-            Some(enter) if inside => visit(Event::Crossing(self.cap(enter, Side::Enter)))?,
-            Some(_) => {}
-            None => visit(Event::Start { inside })?,
+            Some(enter) if !skips => {
+                if inside {
+                    visit(Event::Crossing(self.cap(enter, Side::Enter)))?;
+                }
+            }
+            _ => visit(Event::Start { inside })?,
         }
-        let length = end - start;
-        octree.walk(search.origin, ray.direction, &mut |enter, exit| {
-            let enter = if enter > last.s { enter } else { last.s };
-            let exit = if exit < length { exit } else { length };
-            if !(enter < exit) {
-                return ControlFlow::Continue(());
-            }
-            let mut first = if enter == last.s {
-                last
-            } else {
-                search.place(enter)
-            };
-            if first.is_inside() != inside {
-                // There is no crossing between the parts, so this is zero within rounding.
-                first.value = least_value(inside);
-            }
-            last = search.place(exit);
-            search.run(first, last, &mut |s| {
-                inside = !inside;
-                let side = if inside { Side::Enter } else { Side::Exit };
-                let hit = PrimHit::simple(start + s, SURFACE.facet);
-                visit(Event::Crossing(Crossing::new(hit, 0.0, side)))
-            })
-        })?;
-        if inside {
+        let mut course = Course {
+            search,
+            start,
+            length: end - start,
+            last,
+            inside,
+            visit,
+        };
+        self.octree.walk(needed, &mut course)?;
+        if course.inside {
             visit(Event::Crossing(self.cap(passage.exit, Side::Exit)))?;
         }
         ControlFlow::Continue(())
@@ -342,20 +328,12 @@ impl Isosurface {
 
 /// The events along a ray.
 enum Event {
-    /// The ray starts within the container, inside of the surface from there on or not.
+    /// The ray starts within the container, or what is needed of it does: inside of the surface from there on or not. Of several
+    /// starts the last one counts.
     Start {
         inside: bool,
     },
     Crossing(Crossing),
-}
-
-/// The smallest value on one side of the surface.
-fn least_value(inside: bool) -> f64 {
-    if inside {
-        -f64::MIN_POSITIVE
-    } else {
-        f64::MIN_POSITIVE
-    }
 }
 
 impl Primitive for Isosurface {
@@ -382,7 +360,7 @@ impl Primitive for Isosurface {
         let mut closest = None;
         with_workspace(|workspace| {
             // The result only matters while visiting.
-            let _ = self.walk(ray, from, scratch, workspace, &mut |event| {
+            let _ = self.walk(ray, (range, from), scratch, workspace, &mut |event| {
                 let Event::Crossing(crossing) = event else {
                     return ControlFlow::Continue(());
                 };
@@ -434,7 +412,8 @@ impl Solid for Isosurface {
             range.min
         };
         with_workspace(|workspace| {
-            let _ = self.walk(ray, from, scratch, workspace, &mut |event| {
+            let needed = Interval::new(start, range.max);
+            let _ = self.walk(ray, (needed, from), scratch, workspace, &mut |event| {
                 match event {
                     Event::Start { inside } => out.inside_at_start = inside,
                     Event::Crossing(c) if c.hit.t <= start => {

@@ -1,102 +1,88 @@
-//! An octree of the cells that may contain a surface.
+//! An octree of the cells that may contain a surface, examined when a ray first meets them.
 
 use std::ops::ControlFlow;
-use strahl_math::{Aabb, DVec3};
+use std::sync::OnceLock;
+use std::sync::atomic::{AtomicU8, Ordering};
+use strahl_math::{Aabb, DVec3, Interval};
 
-/// Cells are halved at most this often.
+/// Cells are halved so often.
 const DEPTH: u32 = 7;
-/// Most cells examined on one level; the next level is left out if it might have more.
-const CELLS: usize = 1 << 18;
-/// Most operations of the function spent on a level: some ten seconds. Functions of more than eight thousand operations get
-/// fewer cells.
-const OPERATIONS: u64 = 1 << 31;
 
-/// A child that certainly contains no surface.
-const EMPTY: u32 = 0;
-/// A child that may contain one and is not divided.
-const LEAF: u32 = 1;
-/// Added to the number of a divided child.
-const INNER: u32 = 2;
+/// What is known about a cell: nothing yet, that it contains no surface, or that it may contain one.
+const UNKNOWN: u8 = 0;
+const EMPTY: u8 = 1;
+const FULL: u8 = 2;
 
 /// Directions are taken as having components of at least this part of the largest one, so that nothing is divided by zero.
 const SLANT: f64 = 1.0 / (1u64 << 60) as f64;
 
-/// A tree of cells.
+/// What goes through the tree along a line.
+pub(super) trait Visitor {
+    /// The origin and the direction of the line.
+    fn line(&self) -> (DVec3, DVec3);
+    /// Whether a cell of which nothing is known yet may contain a surface. The answer must depend on the cell alone.
+    fn may_have_surface(&mut self, cell: &Aabb) -> bool;
+    /// A part of the line within a cell that may contain a surface.
+    fn part(&mut self, enter: f64, exit: f64) -> ControlFlow<()>;
+}
+
+/// A tree of cells, all of which are halved equally often.
+///
+/// What a cell holds depends on the cell alone, so it does not matter which ray, of which thread, asks first.
 #[derive(Debug)]
 pub(super) struct Octree {
     bounds: Aabb,
-    root: u32,
-    nodes: Vec<[u32; 8]>,
+    root: Cell,
+}
+
+/// A cell that is met, and its eight children if they are met.
+#[derive(Debug, Default)]
+struct Cell {
+    mark: AtomicU8,
+    children: OnceLock<Box<[Cell; 8]>>,
+}
+
+impl Cell {
+    /// Whether there may be a surface: remembered, or asked of the visitor.
+    fn is_full(&self, bounds: &Aabb, visitor: &mut impl Visitor) -> bool {
+        // Nothing else is published with the mark, and threads that ask at the same time get the same answer.
+        match self.mark.load(Ordering::Relaxed) {
+            UNKNOWN => {
+                let full = visitor.may_have_surface(bounds);
+                self.mark
+                    .store(if full { FULL } else { EMPTY }, Ordering::Relaxed);
+                full
+            }
+            mark => mark == FULL,
+        }
+    }
 }
 
 /// The child of a cell in which bit `k` of `octant` chooses the upper half along axis `k`.
-fn child(cell: &Aabb, octant: usize) -> Aabb {
-    let middle = cell.center();
-    let upper = |k: usize| octant >> k & 1 == 1;
-    let pick = |a: DVec3, b: DVec3| {
-        DVec3::from_array(std::array::from_fn(|k| if upper(k) { a[k] } else { b[k] }))
-    };
+fn child(cell: &Aabb, middle: DVec3, octant: usize) -> Aabb {
+    let pick = |a: DVec3, b: DVec3| choose(octant, a, b);
     Aabb::new(pick(middle, cell.min), pick(cell.max, middle))
 }
 
+/// Component `k` of `a` if bit `k` is set, else of `b`.
+fn choose(bits: usize, a: DVec3, b: DVec3) -> DVec3 {
+    let pick = |k: usize| if bits >> k & 1 == 1 { a[k] } else { b[k] };
+    DVec3::new(pick(0), pick(1), pick(2))
+}
+
 impl Octree {
-    /// Builds the tree of a box by testing for each cell whether it may contain a surface; `cost` is the number of operations
-    /// of a test.
-    pub(super) fn build(
-        bounds: Aabb,
-        cost: u64,
-        mut may_have_surface: impl FnMut(&Aabb) -> bool,
-    ) -> Self {
-        let cells = (OPERATIONS / cost.max(1)).min(CELLS as u64) as usize;
-        let mut tree = Self {
+    /// The tree of a box, of which nothing is known yet.
+    pub(super) fn new(bounds: Aabb) -> Self {
+        Self {
             bounds,
-            root: if may_have_surface(&bounds) {
-                LEAF
-            } else {
-                EMPTY
-            },
-            nodes: Vec::new(),
-        };
-        // The leaves of the level at hand: node, octant, cell.
-        let mut leaves: Vec<(Option<(usize, usize)>, Aabb)> = Vec::new();
-        if tree.root == LEAF {
-            leaves.push((None, bounds));
+            root: Cell::default(),
         }
-        for _ in 0..DEPTH {
-            if leaves.len() * 8 > cells {
-                break;
-            }
-            let mut next = Vec::new();
-            for (place, cell) in leaves {
-                let node = tree.nodes.len();
-                let number = INNER + node as u32;
-                match place.and_then(|(n, o)| tree.nodes.get_mut(n)?.get_mut(o)) {
-                    Some(slot) => *slot = number,
-                    None => tree.root = number,
-                }
-                let mut children = [EMPTY; 8];
-                for (octant, slot) in children.iter_mut().enumerate() {
-                    let cell = child(&cell, octant);
-                    if may_have_surface(&cell) {
-                        *slot = LEAF;
-                        next.push((Some((node, octant)), cell));
-                    }
-                }
-                tree.nodes.push(children);
-            }
-            leaves = next;
-        }
-        tree
     }
 
-    /// Passes the parts of a line that lie in cells with a surface to the visitor, in ascending order: neighbours share the
-    /// same parameter, to the bit.
-    pub(super) fn walk(
-        &self,
-        origin: DVec3,
-        direction: DVec3,
-        visit: &mut impl FnMut(f64, f64) -> ControlFlow<()>,
-    ) -> ControlFlow<()> {
+    /// Passes the parts of the visitor's line that lie in cells which may have a surface to the visitor, in ascending order:
+    /// neighbours share the same parameter, to the bit. Only cells that reach into the range are met.
+    pub(super) fn walk(&self, range: Interval, visitor: &mut impl Visitor) -> ControlFlow<()> {
+        let (origin, direction) = visitor.line();
         let least = direction.abs().max_element() * SLANT;
         let inverse = direction.to_array().map(|d| {
             if d.abs() >= least {
@@ -111,37 +97,17 @@ impl Octree {
             origin,
             inverse: DVec3::from_array(inverse),
             first: (0..3).fold(0, |bits, k| bits | usize::from(direction[k] < 0.0) << k),
+            range,
         };
-        self.descend(&line, self.root, &self.bounds, visit)
-    }
-
-    fn descend(
-        &self,
-        line: &Line,
-        number: u32,
-        cell: &Aabb,
-        visit: &mut impl FnMut(f64, f64) -> ControlFlow<()>,
-    ) -> ControlFlow<()> {
-        if number == EMPTY {
+        let (low, high) = (line.at(self.bounds.min), line.at(self.bounds.max));
+        let passage = Planes {
+            near: choose(line.first, high, low),
+            far: choose(line.first, low, high),
+        };
+        if !line.meets(&passage) || !self.root.is_full(&self.bounds, visitor) {
             return ControlFlow::Continue(());
         }
-        let Some((enter, exit)) = line.span(cell) else {
-            return ControlFlow::Continue(());
-        };
-        let Some(children) = number
-            .checked_sub(INNER)
-            .and_then(|n| self.nodes.get(n as usize))
-        else {
-            return visit(enter, exit);
-        };
-        // A line passes from lower to upper halves only, along each axis, if halves are named in its own order; so children in
-        // the order of these names are met in the order of the line.
-        for octant in (0..8).map(|name| name ^ line.first) {
-            if children[octant] != EMPTY {
-                self.descend(line, children[octant], &child(cell, octant), visit)?;
-            }
-        }
-        ControlFlow::Continue(())
+        line.descend((&self.root, DEPTH), &self.bounds, &passage, visitor)
     }
 }
 
@@ -150,25 +116,70 @@ struct Line {
     inverse: DVec3,
     /// The octant met first.
     first: usize,
+    range: Interval,
+}
+
+/// The parameters at which a line meets the planes of a cell: those on the line's side, and those opposite.
+struct Planes {
+    near: DVec3,
+    far: DVec3,
+}
+
+impl Planes {
+    /// The part of the line within the cell; the end is before the start if there is none.
+    fn span(&self) -> (f64, f64) {
+        let (n, f) = (self.near, self.far);
+        let later = |a: f64, b: f64| if a > b { a } else { b };
+        let earlier = |a: f64, b: f64| if a < b { a } else { b };
+        (later(later(n.x, n.y), n.z), earlier(earlier(f.x, f.y), f.z))
+    }
 }
 
 impl Line {
-    /// The parameters within a cell.
-    #[inline]
-    fn span(&self, cell: &Aabb) -> Option<(f64, f64)> {
-        let low = (cell.min - self.origin) * self.inverse;
-        let high = (cell.max - self.origin) * self.inverse;
-        let (mut enter, mut exit) = (f64::NEG_INFINITY, f64::INFINITY);
-        for k in 0..3 {
-            let (a, b) = if low[k] < high[k] {
-                (low[k], high[k])
-            } else {
-                (high[k], low[k])
+    /// The parameters at which the planes through a corner are met.
+    fn at(&self, corner: DVec3) -> DVec3 {
+        (corner - self.origin) * self.inverse
+    }
+
+    /// Whether a part within the range lies in the cell.
+    fn meets(&self, passage: &Planes) -> bool {
+        let (enter, exit) = passage.span();
+        enter < exit && enter <= self.range.max && exit >= self.range.min
+    }
+
+    /// Visits a cell that may have a surface, below which there are so many levels.
+    fn descend(
+        &self,
+        (cell, levels): (&Cell, u32),
+        bounds: &Aabb,
+        passage: &Planes,
+        visitor: &mut impl Visitor,
+    ) -> ControlFlow<()> {
+        let Some(levels) = levels.checked_sub(1) else {
+            let (enter, exit) = passage.span();
+            return visitor.part(enter, exit);
+        };
+        let children = cell.children.get_or_init(Box::default);
+        let middle = bounds.center();
+        let halves = self.at(middle);
+        // A line passes from lower to upper halves only, along each axis, if halves are named in its own order; so children in
+        // the order of these names are met in the order of the line.
+        for name in 0..8 {
+            let passage = Planes {
+                near: choose(name, halves, passage.near),
+                far: choose(name, passage.far, halves),
             };
-            enter = if a > enter { a } else { enter };
-            exit = if b < exit { b } else { exit };
+            if !self.meets(&passage) {
+                continue;
+            }
+            let octant = name ^ self.first;
+            let bounds = child(bounds, middle, octant);
+            let cell = &children[octant];
+            if cell.is_full(&bounds, visitor) {
+                self.descend((cell, levels), &bounds, &passage, visitor)?;
+            }
         }
-        (enter < exit).then_some((enter, exit))
+        ControlFlow::Continue(())
     }
 }
 
@@ -176,27 +187,55 @@ impl Line {
 mod tests {
     use super::*;
 
-    fn shell() -> Octree {
-        Octree::build(Aabb::new(DVec3::NEG_ONE, DVec3::ONE), 1, |cell| {
-            let far = cell.min.abs().max(cell.max.abs()).length();
-            let near = DVec3::ZERO.clamp(cell.min, cell.max).length();
-            near <= 0.7 && far >= 0.7
-        })
+    const BOX: Aabb = Aabb::new(DVec3::NEG_ONE, DVec3::ONE);
+
+    fn has_shell(cell: &Aabb) -> bool {
+        let far = cell.min.abs().max(cell.max.abs()).length();
+        let near = DVec3::ZERO.clamp(cell.min, cell.max).length();
+        near <= 0.7 && far >= 0.7
+    }
+
+    struct Parts<F> {
+        line: (DVec3, DVec3),
+        full: F,
+        found: Vec<(f64, f64)>,
+    }
+
+    impl<F: FnMut(&Aabb) -> bool> Visitor for Parts<F> {
+        fn line(&self) -> (DVec3, DVec3) {
+            self.line
+        }
+        fn may_have_surface(&mut self, cell: &Aabb) -> bool {
+            (self.full)(cell)
+        }
+        fn part(&mut self, enter: f64, exit: f64) -> ControlFlow<()> {
+            self.found.push((enter, exit));
+            ControlFlow::Continue(())
+        }
+    }
+
+    fn parts(
+        tree: &Octree,
+        line: (DVec3, DVec3),
+        range: Interval,
+        full: impl FnMut(&Aabb) -> bool,
+    ) -> Vec<(f64, f64)> {
+        let found = vec![];
+        let mut visitor = Parts { line, full, found };
+        let _ = tree.walk(range, &mut visitor);
+        visitor.found
     }
 
     #[test]
     fn parts_ascend_and_hold_the_surface() {
-        let tree = shell();
+        let tree = Octree::new(BOX);
         for (origin, direction) in [
             (DVec3::new(-3.0, 0.1, 0.05), DVec3::new(1.0, 0.0, 0.0)),
             (DVec3::new(3.0, 2.0, -2.5), DVec3::new(-1.5, -1.0, 1.2)),
             (DVec3::new(0.3, -4.0, 0.0), DVec3::new(0.0, 3.0, 0.0)),
         ] {
-            let mut parts = vec![];
-            let _ = tree.walk(origin, direction, &mut |a, b| {
-                parts.push((a, b));
-                ControlFlow::Continue(())
-            });
+            let line = (origin, direction);
+            let parts = parts(&tree, line, Interval::LINE, has_shell);
             assert!(!parts.is_empty());
             assert!(
                 parts.windows(2).all(|pair| pair[0].1 <= pair[1].0),
@@ -214,31 +253,32 @@ mod tests {
     }
 
     #[test]
-    fn nothing_and_everything() {
-        let bounds = Aabb::new(DVec3::NEG_ONE, DVec3::ONE);
-        let mut count = 0;
-        let _ = Octree::build(bounds, 1, |_| false).walk(DVec3::ZERO, DVec3::X, &mut |_, _| {
-            count += 1;
-            ControlFlow::Continue(())
-        });
-        assert_eq!(count, 0);
-        let full = Octree::build(bounds, 1, |_| true);
-        assert!(full.nodes.len() * 8 <= 2 * CELLS);
+    fn the_first_ray_to_ask_does_not_matter() {
+        let line = (DVec3::new(3.0, 2.0, -2.5), DVec3::new(-1.5, -1.0, 1.2));
+        let other = (DVec3::new(-3.0, 0.1, 0.05), DVec3::X);
+        let alone = parts(&Octree::new(BOX), line, Interval::LINE, has_shell);
+        let tree = Octree::new(BOX);
+        parts(&tree, other, Interval::LINE, has_shell);
+        assert_eq!(parts(&tree, line, Interval::LINE, has_shell), alone);
+        // Now everything on the line is known.
+        let known = parts(&tree, line, Interval::LINE, |_| unreachable!());
+        assert_eq!(known, alone);
     }
 
     #[test]
-    fn dear_functions_are_asked_about_few_cells() {
-        let bounds = Aabb::new(DVec3::NEG_ONE, DVec3::ONE);
-        for cost in [1 << 20, 1 << 30, u64::MAX] {
-            let mut asked = 0_u64;
-            let _ = Octree::build(bounds, cost, |_| {
-                asked += 1;
-                true
-            });
-            assert!(
-                (1..=2 * OPERATIONS / cost.min(OPERATIONS)).contains(&asked),
-                "{asked}"
-            );
-        }
+    fn cells_are_asked_about_once_on_the_way_and_within_the_range() {
+        let tree = Octree::new(BOX);
+        let line = (DVec3::new(-2.0, 0.1, 0.05), DVec3::X);
+        let mut asked = 0;
+        let first = parts(&tree, line, Interval::new(0.0, 1.5), |_| {
+            asked += 1;
+            true
+        });
+        // A quarter of the 128 cells along the line, and their parents.
+        assert!(first.len() == 33 && asked < 80, "{} {asked}", first.len());
+        assert!(first.iter().all(|part| part.0 <= 1.5));
+        let behind = Interval::new(3.5, 9.0);
+        assert!(parts(&tree, line, behind, |_| false).is_empty());
+        assert_eq!(parts(&tree, line, Interval::new(0.0, 0.9), |_| true), []);
     }
 }

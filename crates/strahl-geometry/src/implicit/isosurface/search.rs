@@ -1,6 +1,8 @@
 //! The crossings of one ray with a surface, found in parts that shrink until they are proven empty or short.
 
-use super::Isosurface;
+use super::octree::Visitor;
+use super::{Event, Isosurface, SURFACE};
+use crate::{Crossing, PrimHit, Side};
 use std::ops::ControlFlow;
 use strahl_function::{Bounds, Workspace};
 use strahl_math::roots::find_crossing;
@@ -95,4 +97,79 @@ impl Search<'_> {
 /// Whether values within bounds are all inside or all outside, where NaN counts as outside.
 pub(super) fn excludes_change(values: Bounds) -> bool {
     values.min > 0.0 || values.is_empty() || values.max < 0.0 && !values.nan
+}
+
+/// The smallest value on one side of the surface.
+pub(super) fn least_value(inside: bool) -> f64 {
+    if inside {
+        -f64::MIN_POSITIVE
+    } else {
+        f64::MIN_POSITIVE
+    }
+}
+
+/// A ray on its way through the cells that may have a surface.
+pub(super) struct Course<'a, V> {
+    pub(super) search: Search<'a>,
+    /// The parameter of the ray at which `s` is zero.
+    pub(super) start: f64,
+    /// The container ends here.
+    pub(super) length: f64,
+    /// The end of the part searched last, or where the first one begins.
+    pub(super) last: Place,
+    /// Whether the ray is inside of the surface there.
+    pub(super) inside: bool,
+    pub(super) visit: &'a mut V,
+}
+
+impl<V: FnMut(Event) -> ControlFlow<()>> Visitor for Course<'_, V> {
+    fn line(&self) -> (DVec3, DVec3) {
+        (self.search.origin, self.search.direction)
+    }
+
+    fn may_have_surface(&mut self, cell: &Aabb) -> bool {
+        self.search.surface.may_cross(self.search.workspace, cell)
+    }
+
+    fn part(&mut self, enter: f64, exit: f64) -> ControlFlow<()> {
+        let enter = if enter > 0.0 { enter } else { 0.0 };
+        let exit = if exit < self.length {
+            exit
+        } else {
+            self.length
+        };
+        if !(enter < exit) {
+            return ControlFlow::Continue(());
+        }
+        let mut first = if enter == self.last.s {
+            self.last
+        } else {
+            self.search.place(enter)
+        };
+        if enter < self.last.s {
+            // What is needed begins within this part; all of it is searched, so that crossings have the same bits.
+            let inside = first.is_inside();
+            self.inside = inside;
+            (self.visit)(Event::Start { inside })?;
+        }
+        if first.is_inside() != self.inside {
+            // There is no crossing between the parts, so this is zero within rounding.
+            first.value = least_value(self.inside);
+        }
+        self.last = self.search.place(exit);
+        let Self {
+            search,
+            start,
+            last,
+            inside,
+            visit,
+            ..
+        } = self;
+        search.run(first, *last, &mut |s| {
+            *inside = !*inside;
+            let side = if *inside { Side::Enter } else { Side::Exit };
+            let hit = PrimHit::simple(*start + s, SURFACE.facet);
+            visit(Event::Crossing(Crossing::new(hit, 0.0, side)))
+        })
+    }
 }
