@@ -23,7 +23,7 @@ pub struct Crossing {
     pub side: Side,
     /// Whether the surface is visible. Clipping changes the inside without adding a surface.
     pub visible: bool,
-    /// Whether the points of the surface count as inside of the solid: what decides between faces that coincide.
+    /// Whether the points of the surface count as inside of the solid, which decides between faces that coincide.
     pub closed: bool,
 }
 

@@ -120,7 +120,7 @@ pub struct Object {
     pub transform: Option<Box<Transform>>,
     /// The rays that can see it.
     pub visibility: Visibility,
-    /// Whether fog and rainbows are inside of it too (POV-Ray's `hollow`); `None` takes the parent's, or no.
+    /// Whether fog and rainbows also fill its inside (POV-Ray's `hollow`); `None` takes the parent's, or no.
     pub hollow: Option<bool>,
     /// Whether light on its back shows on its front, too (POV-Ray's `double_illuminate`).
     pub double_illuminated: bool,

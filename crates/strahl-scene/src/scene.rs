@@ -58,7 +58,7 @@ pub struct Scene {
     pub ambient: Option<Color>,
     /// The radiance along rays that hit nothing; `None` is black, or a soft gradient behind objects framed by the renderer.
     pub background: Option<Background>,
-    /// How much of the background an alpha channel leaves out of the picture, from 0 to 1; all of it if there is no `background`.
+    /// The transparency of the background in an alpha channel, from 0 (opaque) to 1; 1 if there is no `background`.
     pub background_transmit: f64,
     /// Fogs; each fills all space outside of solid objects.
     pub fogs: Vec<Fog>,

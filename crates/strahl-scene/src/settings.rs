@@ -18,8 +18,8 @@ pub struct Settings {
     /// Whether a transparency ray that is not refracted counts as a level of the ray tree. POV-Ray counts reflections and
     /// refractions only.
     pub straight_counts: bool,
-    /// Whether what passes a filter is missing in the surface's own colour as scenes from before POV-Ray 3.7 have it:
-    /// `filter · max(r, g, b)` instead of `filter`.
+    /// Whether a filter reduces the surface's own colour as in scenes from before POV-Ray 3.7: by `filter · max(r, g, b)` instead
+    /// of `filter`.
     pub filter_by_color: bool,
 }
 

@@ -14,16 +14,16 @@ pub struct SkySphere {
     pub emission: Color,
     /// The colour behind the lowest layer.
     pub behind: Color,
-    /// Whether filtering layers tint those below them, as in scenes of POV-Ray 3.7. In older ones only what is behind all is tinted.
+    /// Whether filtering layers tint the layers below them, as in scenes of POV-Ray 3.7. In older ones only `behind` is tinted.
     pub tints_layers: bool,
 }
 
 impl SkySphere {
     /// The colour seen along a direction of any length: that of the pigments at the end of the unit vector.
     ///
-    /// As measured: under version 3.7 a layer lets `rgb · filter + transmit` of all below it pass. Before, layers let
-    /// `filter + transmit` of those below pass without tinting it, while what is behind all keeps the product of all `rgb · filter`
-    /// plus that of all `transmit`.
+    /// As measured: in version 3.7 a layer multiplies everything below it by `rgb · filter + transmit`. Before, a layer
+    /// multiplies the layers below it by `filter + transmit`, without tinting them, while `behind` is multiplied by the product
+    /// of all `rgb · filter` plus that of all `transmit`.
     pub fn along(&self, direction: DVec3) -> Color {
         let at = self
             .transform

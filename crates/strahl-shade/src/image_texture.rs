@@ -190,13 +190,13 @@ impl TextureImage {
         &self.data
     }
 
-    /// The picture with each sample of a colour channel, a code's share of the largest code, replaced by what `curve` makes of it.
+    /// Applies `curve` to each sample of the colour channels, given as a fraction of the largest code.
     ///
     /// The result is linear. Alpha stays as it is.
     #[must_use]
     pub fn recoded(&self, curve: impl Fn(f64) -> f64) -> Self {
         let recode = |share: f64| curve(share) as f32;
-        // Of integer codes there are fewer than texels.
+        // There are fewer integer codes than texels, so a table is faster.
         let table = match &self.data {
             TexelData::U8(_) => (0..=u8::MAX)
                 .map(|c| recode(f64::from(c) / 255.0))
@@ -228,7 +228,7 @@ impl TextureImage {
         }
     }
 
-    /// The picture whose colours are stored multiplied by their alpha, with straight colours. Where alpha is 0 they stay as they are.
+    /// Converts premultiplied colours to straight ones. Where alpha is 0 they stay as they are.
     #[must_use]
     pub fn straightened(&self) -> Self {
         let texels = (0..self.height).flat_map(|y| (0..self.width).map(move |x| (x, y)));

@@ -72,7 +72,8 @@ pub struct Light {
     pub highlights: bool,
     /// Whether fog attenuates the light on its way to the lit point.
     pub fogged: bool,
-    /// What is nearer to the light than this casts no shadow in it; 0 by default. (Directional lights are not near anything.)
+    /// Objects closer to the light than this cast no shadow in its light; 0 by default. (Directional lights have no position and
+    /// so no clearance.)
     pub clearance: f64,
     /// The extent of an area light, whose centre is the position of `kind`; `None` if it shines from a point.
     pub area: Option<AreaLight>,
@@ -202,7 +203,7 @@ impl Light {
         })
     }
 
-    /// Where something casts a shadow on a point at this distance, as a share of the way to the light.
+    /// The range of t in which objects cast a shadow on a point at this distance, where t = 1 is the light.
     #[inline]
     fn until_here(&self, distance: f64) -> Interval {
         if self.clearance > 0.0 {

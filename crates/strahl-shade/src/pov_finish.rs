@@ -66,7 +66,7 @@ impl PovReflection {
         reflectance * metallic_tint(self.metallic, cos, pigment)
     }
 
-    /// How far the reflectance has come on its way from `min` to `max`: Fresnel's F, or `(1 - cos θ)^falloff`.
+    /// The position of the reflectance between `min` (0) and `max` (1): Fresnel's F, or `(1 - cos θ)^falloff`.
     #[inline]
     pub fn rise(&self, cos_view: f64, eta: f64) -> f64 {
         let cos = cos_view.abs().clamp(0.0, 1.0);
@@ -84,7 +84,7 @@ impl PovReflection {
         }
     }
 
-    /// The colour that `metallic` gives the reflection of a surface of this pigment.
+    /// The tint of the reflection by `metallic`, for a surface of this pigment.
     pub fn tint(&self, cos_view: f64, pigment: Color) -> Color {
         metallic_tint(self.metallic, cos_view.abs().clamp(0.0, 1.0), pigment)
     }
@@ -131,9 +131,9 @@ pub struct PovFinish {
     pub conserve_energy: bool,
     /// Strength of the random darkening of diffuse light (`crand`); default 0.
     pub crand: f64,
-    /// What light from behind is multiplied by, in scenes from before POV-Ray 3.1; default 1.
+    /// Factor of the light from behind, in scenes from before POV-Ray 3.1; default 1.
     pub refraction: f64,
-    /// The index of refraction of the object, in such scenes; it takes the place of that of the interior.
+    /// The index of refraction of the object, in such scenes; it replaces that of the interior.
     pub ior: Option<f64>,
     /// The caustics of the object, in such scenes.
     pub caustics: Option<f64>,
@@ -166,18 +166,18 @@ impl Default for PovFinish {
 /// The highlights of a finish at one point in one light.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PovHighlights {
-    /// r·v, the cosine that `phong` takes the power of; 0 without `phong`.
+    /// r·v, the cosine in the term of `phong`; 0 without `phong`.
     pub phong_cos: f64,
     /// `phong (r·v)^phong_size`
     pub phong: f64,
-    /// h·n, the cosine that `specular` takes the power of; 0 without `specular`.
+    /// h·n, the cosine in the term of `specular`; 0 without `specular`.
     pub specular_cos: f64,
     /// `specular (h·n)^(1 / roughness)`
     pub specular: f64,
 }
 
 impl PovHighlights {
-    /// Both together.
+    /// The sum of both.
     #[inline]
     pub fn strength(&self) -> f64 {
         0.0 + self.phong + self.specular
@@ -247,8 +247,8 @@ impl PovFinish {
         self.tint(n.dot(to_light), pigment) * parts.strength()
     }
 
-    /// The two highlights one by one, without the colour that [`PovFinish::tint`] gives them. `model` takes the place of both shapes:
-    /// around the mirror direction for [`ShadingModel::Phong`], by half vectors for [`ShadingModel::BlinnPhong`], else none.
+    /// The two highlights separately, without the tint of [`PovFinish::tint`]. A `model` replaces both shapes: around the mirror
+    /// direction for [`ShadingModel::Phong`], by half vectors for [`ShadingModel::BlinnPhong`], none for others.
     #[inline]
     pub fn highlights(
         &self,
@@ -280,7 +280,7 @@ impl PovFinish {
         parts
     }
 
-    /// The colour that `metallic` gives highlights on a surface of this pigment.
+    /// The tint of highlights by `metallic`, for a surface of this pigment.
     #[inline]
     pub fn tint(&self, cos_light: f64, pigment: Color) -> Color {
         metallic_tint(self.metallic, cos_light, pigment)

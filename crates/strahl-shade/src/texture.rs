@@ -119,12 +119,12 @@ pub struct TexturePaint<'a> {
     /// filter + transmit`, with `conserve_energy` also times `1 - reflectance`; and all that times the `refraction` of the
     /// uppermost layer.
     pub transmission: Color,
-    /// Which opacity layers have: [`ColorFt::opacity_by_color`] instead of [`ColorFt::opacity`]. Set by the owner.
+    /// Selects the opacity of layers: [`ColorFt::opacity_by_color`] instead of [`ColorFt::opacity`]. Set by the owner.
     pub filter_by_color: bool,
 }
 
 impl TexturePaint<'_> {
-    /// The colour of a layer as far as it is opaque and not hidden.
+    /// The colour of a layer times its opacity, its share and the transmittance of the layers above.
     #[inline]
     pub fn body(&self, layer: &LayerPoint<'_>) -> Color {
         let opacity = if self.filter_by_color {
@@ -187,8 +187,8 @@ impl Texture {
         }
     }
 
-    /// What light from behind is multiplied by at last (`refraction` in a finish): as measured, of layers the uppermost one's counts,
-    /// and of blended textures none.
+    /// The factor of the light from behind (`refraction` in a finish): as measured, that of the uppermost layer counts, and for
+    /// blended textures there is none.
     fn refraction(&self) -> f64 {
         let mut texture = self;
         loop {
@@ -415,7 +415,7 @@ impl PlainTexture {
         let color = self.pigment.color_at(point);
         let normal = self.tilted(point, n, space);
         let cos_view = -normal.dot(point.direction);
-        // What is below an opaque layer does not reflect; otherwise layers above do not weaken reflections (measured).
+        // A layer below an opaque layer does not reflect; otherwise the layers above do not weaken its reflection (measured).
         let reflectance = if stack.above.is_black() {
             Color::BLACK
         } else {

@@ -1,7 +1,7 @@
-//! A bound on the memory of the whole program: an allocator that counts, and knows when it is enough.
+//! A limit on the memory of the whole program: an allocator that counts the bytes in use.
 //!
-//! A scene may ask for any amount of memory: by a picture of a few bytes that unpacks to gigabytes, by a loop. The system
-//! answers by ending some program. [`Bounded`] answers before that, and lets the program say what it was doing.
+//! A scene may ask for any amount of memory, by a small picture that decompresses to gigabytes or by a loop. The system then
+//! kills some program. [`Bounded`] refuses the request before that, and lets the program report what it was doing.
 #![expect(
     unsafe_code,
     reason = "an allocator can't be written without, see the crate's documentation"
@@ -12,23 +12,23 @@ use std::cell::Cell;
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicIsize, AtomicUsize, Ordering};
 
-/// A thread counts by itself up to so many bytes before it tells the common counter: that costs a nanosecond instead of
-/// a fight for a cache line.
+/// The number of bytes that a thread counts by itself before it updates the common counter: this takes a nanosecond, while
+/// threads would contend for the common counter's cache line.
 const OWN: isize = 64 << 10;
 
 thread_local! {
-    /// Bytes that this thread has taken (or given back) and not told yet.
+    /// Bytes allocated (or freed) by this thread that the common counter does not include yet.
     static UNTOLD: Cell<isize> = const { Cell::new(0) };
-    /// Whether this thread can go on without the memory it asks for.
+    /// Whether this thread can continue if an allocation is refused.
     static CAN_DO_WITHOUT: Cell<bool> = const { Cell::new(false) };
-    /// Whether this thread is ending the program, and needs memory for it.
+    /// Whether this thread is ending the program, for which it needs memory.
     static ENDING: Cell<bool> = const { Cell::new(false) };
 }
 
-/// Memory that is not to be had.
+/// A refused allocation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Refusal {
-    /// Bytes asked for.
+    /// Bytes requested.
     pub asked: usize,
     /// Bytes in use.
     pub used: usize,
@@ -36,7 +36,7 @@ pub struct Refusal {
     pub limit: usize,
 }
 
-/// The system's allocator with a limit. As the global allocator of a program it bounds everything but mapped files and the
+/// The system's allocator with a limit. As the global allocator of a program it limits all memory except mapped files and the
 /// stacks of threads.
 #[derive(Debug)]
 pub struct Bounded {
@@ -52,7 +52,7 @@ impl Default for Bounded {
 }
 
 impl Bounded {
-    /// Without a limit.
+    /// An allocator without a limit.
     pub const fn new() -> Self {
         Self {
             used: AtomicIsize::new(0),
@@ -61,20 +61,20 @@ impl Bounded {
         }
     }
 
-    /// Sets the limit in bytes, and who ends the program when somebody asks for more who can't do without. The function may
-    /// take memory itself. Only the first function counts.
+    /// Sets the limit in bytes, and the function that ends the program if an allocation is refused to a thread that can't
+    /// continue without it. The function may allocate memory. Only the first function counts.
     pub fn limit(&self, bytes: usize, end: fn(Refusal) -> !) {
-        // The second of two is ignored, as documented.
+        // A second function is ignored, as documented.
         let _ = self.end.set(end);
         self.limit.store(bytes, Ordering::Relaxed);
     }
 
-    /// Bytes in use, to within some ten thousand per thread.
+    /// Bytes in use, accurate to some ten thousand per thread.
     pub fn used(&self) -> usize {
         usize::try_from(self.used.load(Ordering::Relaxed)).unwrap_or(0)
     }
 
-    /// Counts bytes taken; `false`, and nothing is counted, if that is too much.
+    /// Counts bytes before an allocation; returns `false`, and counts nothing, if they exceed the limit.
     fn take(&self, bytes: usize) -> bool {
         let Ok(bytes) = isize::try_from(bytes) else {
             return false;
@@ -94,7 +94,7 @@ impl Bounded {
         true
     }
 
-    /// Counts bytes given back.
+    /// Counts freed bytes.
     fn give(&self, bytes: usize) {
         let untold = UNTOLD.get() - bytes as isize;
         if untold >= -OWN {
@@ -105,7 +105,7 @@ impl Bounded {
         }
     }
 
-    /// There is no memory: the answer to who can do without, the end of the program for others.
+    /// Refuses an allocation: returns null to threads that can continue, ends the program for others.
     #[cold]
     fn refused(&self, asked: usize) -> *mut u8 {
         if !CAN_DO_WITHOUT.get()
@@ -122,8 +122,8 @@ impl Bounded {
     }
 }
 
-// SAFETY: every request is handed on to the system's allocator, whose contract it is, or answered by null, which the contract
-// allows. Nothing in between takes memory: the thread's counters have no destructors and are there from the beginning.
+// SAFETY: every request is passed to the system's allocator, which fulfils the contract, or answered with null, which the
+// contract allows. Nothing in between allocates: the thread's counters have no destructors and exist from the beginning.
 unsafe impl GlobalAlloc for Bounded {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         if !self.take(layout.size()) {
@@ -153,7 +153,7 @@ unsafe impl GlobalAlloc for Bounded {
 
     unsafe fn dealloc(&self, start: *mut u8, layout: Layout) {
         self.give(layout.size());
-        // SAFETY: what the caller got from one of the functions here, which got it from the system with this layout.
+        // SAFETY: the caller got the block from a function here, which got it from the system with this layout.
         unsafe { System.dealloc(start, layout) };
     }
 
@@ -162,7 +162,7 @@ unsafe impl GlobalAlloc for Bounded {
         if !self.take(more) {
             return self.refused(more);
         }
-        // SAFETY: what the caller got from one of the functions here, which got it from the system with this layout.
+        // SAFETY: the caller got the block from a function here, which got it from the system with this layout.
         let moved = unsafe { System.realloc(start, layout, new_size) };
         if moved.is_null() {
             self.give(more);
@@ -173,7 +173,8 @@ unsafe impl GlobalAlloc for Bounded {
     }
 }
 
-/// Whether so many bytes can be had now: to be asked before a large request whose refusal has a reason worth telling.
+/// Whether this many bytes can be allocated now. Readers ask before a large allocation, so that their error can say what it was
+/// for.
 pub fn fits(bytes: u64) -> bool {
     let Ok(bytes) = usize::try_from(bytes) else {
         return false;
@@ -195,9 +196,9 @@ mod tests {
     #[test]
     fn the_limit_counts_what_is_in_use() {
         let memory = Bounded::new();
-        // Nobody ends this program: a refusal is null.
+        // No function ends this program, so a refusal is null.
         memory.limit.store(1 << 20, Ordering::Relaxed);
-        // SAFETY: layouts of some bytes; each block is given back once, with its layout.
+        // SAFETY: layouts of some bytes; each block is freed once, with its layout.
         unsafe {
             let half = memory.alloc(layout(1 << 19));
             assert!(!half.is_null());
@@ -219,7 +220,7 @@ mod tests {
         let memory = Bounded::new();
         memory.limit.store(1 << 20, Ordering::Relaxed);
         let mut blocks = vec![];
-        // SAFETY: layouts of 64 bytes; each block is given back once.
+        // SAFETY: layouts of 64 bytes; each block is freed once.
         unsafe {
             loop {
                 let block = memory.alloc(layout(64));

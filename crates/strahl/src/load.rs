@@ -88,7 +88,7 @@ pub struct LoadOptions {
     pub fonts: Vec<PathBuf>,
     /// Folders that are searched last; [`povray_folders`] names those of an installed POV-Ray.
     pub installed: Vec<PathBuf>,
-    /// Where the scene may write files; nowhere at first.
+    /// The place where the scene may write files; nowhere by default.
     pub writing: Writing,
     /// Receives the output of `#debug` and the like.
     pub on_message: Option<Listener>,
@@ -179,7 +179,7 @@ pub fn load_path(path: &Path, options: LoadOptions) -> Loaded {
         Some(Format::File(format)) => scene::load_path(path, Some(format)),
         None => {
             let mut loaded = scene::load_path(path, None);
-            // Who lists the formats of files does not know that of POV-Ray.
+            // The list of file formats does not include POV-Ray's.
             let of_files: Vec<&str> = scene::formats().iter().map(|info| info.name).collect();
             let hints = loaded.diagnostics.iter_mut().flat_map(|d| &mut d.hints);
             for hint in hints {

@@ -1,4 +1,4 @@
-//! A studio for things that come without one: a mesh file has neither camera nor lights.
+//! The studio: a ground, a camera and lights for mesh files, which have none.
 
 use std::sync::Arc;
 use strahl_geometry::{Disc, Primitive};
@@ -11,18 +11,17 @@ use strahl_shade::{AreaLight, Color, Light, Material};
 /// Vertical angle of the camera.
 const ANGLE: f64 = 32.0 * std::f64::consts::PI / 180.0;
 
-/// How much of the picture's height the things may take.
+/// The fraction of the picture's height that the objects fill.
 const MARGIN: f64 = 0.86;
 
-/// How far the ground lies below the things, in parts of their size: where they end in a flat face, that face is seen and not the
-/// ground.
+/// The gap between the objects and the ground, relative to their size. Without it, a flat bottom would coincide with the ground.
 const GAP: f64 = 1e-4;
 
-/// Puts a scene that has neither camera nor lights into a studio: on a ground, in front of a camera, under a large soft key light
-/// from the left, a weak one from the right and one from behind. Tells whether there was something to do.
+/// Adds a ground, a camera and three lights to a scene without camera and lights: a large soft key light from the left, a weak
+/// light from the right and one from behind. Returns whether anything was added.
 ///
-/// Nothing happens to scenes with a camera or a light, and to those without bounds. `up` is the direction that is up in
-/// the scene. All that is added depends on the bounds of the objects only, and grows with them.
+/// Scenes with a camera or a light, and scenes without bounds, stay as they are. `up` is the scene's up direction. All additions
+/// depend only on the bounds of the objects, and scale with them.
 pub fn studio(scene: &mut Scene, up: DVec3) -> bool {
     if scene.camera.is_some() || !scene.lights.is_empty() || has_lights(&scene.objects) {
         return false;
@@ -33,7 +32,7 @@ pub fn studio(scene: &mut Scene, up: DVec3) -> bool {
         return false;
     }
     let up = up.normalize_or(DVec3::Y);
-    // To the right of the picture, and towards the viewer.
+    // To the right in the picture, and towards the viewer.
     let across = if up == DVec3::Z {
         DVec3::X
     } else {
@@ -50,7 +49,7 @@ pub fn studio(scene: &mut Scene, up: DVec3) -> bool {
     let half = 0.5 * bounds.size();
     let below = (half * up).abs().element_sum() + GAP * radius;
     let foot = center - up * below;
-    // What has no colour of its own looks like plaster.
+    // Objects without a material look like plaster.
     for object in &mut scene.objects.0 {
         if object.material.is_none() && matches!(object.kind, ObjectKind::Shape(_)) {
             object.material = Some(plaster());
@@ -107,12 +106,12 @@ pub fn studio(scene: &mut Scene, up: DVec3) -> bool {
     true
 }
 
-/// What has no material: off-white, with a soft highlight.
+/// The material of objects without one: off-white, with a soft highlight.
 fn plaster() -> Arc<Material> {
     Arc::new(Material::shiny(Color::new(0.84, 0.77, 0.67), 0.18, 24.0).named("plaster"))
 }
 
-/// A camera in this direction that sees all of a box.
+/// A camera looking against `towards` that sees all of a box.
 fn camera(center: DVec3, half: DVec3, towards: DVec3, up: DVec3) -> Camera {
     let right = up.cross(towards).normalize();
     let above = towards.cross(right);
@@ -146,7 +145,7 @@ fn has_lights(objects: &Children) -> bool {
     false
 }
 
-/// Deepest nesting that is looked into.
+/// The largest nesting depth that is searched.
 const DEEPEST: u32 = 100;
 
 /// A box around all objects, without those that have no bounds.
@@ -220,7 +219,7 @@ mod tests {
             let d = difference(&reference, &other);
             assert!(d < 0.02, "{center} {radius} {up}: {d}");
         }
-        // A light thing before darker ground, neither black nor burnt out.
+        // A light object on a darker ground, neither black nor overexposed.
         let gray = |x: usize, y: usize| reference[y * 40 + x][1];
         assert!((0.3..1.0).contains(&gray(17, 12)), "{}", gray(17, 12));
         assert!((0.05..0.6).contains(&gray(2, 2)), "{}", gray(2, 2));

@@ -1,4 +1,4 @@
-//! The alpha channel of pictures; the values are those of POV-Ray 3.7 (`+UA`), whose codes of 8 bits they agree with.
+//! The alpha channel of pictures, with POV-Ray 3.7's values (`+UA`), to the precision of 8-bit codes.
 
 use strahl::{Format, LoadOptions, load_bytes};
 

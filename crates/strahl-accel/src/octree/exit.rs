@@ -37,7 +37,8 @@ pub(super) fn by_three_faces(walk: &Walk, cell: &Aabb) -> Leaving {
     }
 }
 
-/// The axis whose face is tried first, the same for all cells: that of the largest component of the direction, of several the first.
+/// The axis whose face is tried first, the same for all cells: that of the largest component of the direction; of equal
+/// components, the first.
 pub(super) fn trial_axis(walk: &Walk) -> usize {
     let speed = walk.moved.direction.abs();
     let axis = usize::from(speed.y > speed.x);
@@ -225,20 +226,20 @@ mod tests {
         }
     }
 
-    /// The trial is the plane perpendicular to the largest component of the direction, whatever the cells' shape.
+    /// The trial plane is perpendicular to the largest component of the direction, whatever the shape of the cells.
     #[test]
     fn the_trial_plane_is_that_of_the_largest_component() {
         for (through, axis) in [
             (DVec3::new(3.0, 2.0, 1.0), 0),
             (DVec3::new(-2.0, -3.0, 1.0), 1),
             (DVec3::new(1.0, 2.0, -3.0), 2),
-            // Of equal ones the first.
+            // Of equal components, the first.
             (DVec3::new(1.0, -1.0, 1.0), 0),
             (DVec3::new(0.5, 1.0, 1.0), 1),
         ] {
             let w = walk(DVec3::ZERO, through);
             assert_eq!(trial_axis(&w), axis);
-            // In a flat cell too, where the ray leaves by another face: beyond an edge or a corner of the trial's.
+            // The same in a flat cell, where the ray leaves through another face: beyond an edge or a corner of the trial face.
             let flat = Aabb::new(DVec3::splat(-4.0), DVec3::new(4.0, 0.1, 4.0));
             let (tried, full) = (by_trial_plane(&w, &flat, axis), by_three_faces(&w, &flat));
             assert_eq!((tried.axis, tried.t), (full.axis, full.t), "{through}");

@@ -18,7 +18,7 @@ pub enum ImageFormat {
     Hdr,
     /// Portable pixmap.
     Ppm,
-    /// JPEG, with losses.
+    /// JPEG, with lossy compression.
     Jpeg,
     /// Windows bitmap.
     Bmp,

@@ -1,4 +1,4 @@
-//! What the codes of a picture file mean: what its header says, else what is usual for its format.
+//! The meaning of the codes of a picture file, from its header, or else from the convention of its format.
 
 use std::io::Cursor;
 
@@ -6,24 +6,24 @@ use ::image::ImageFormat as FileFormat;
 
 use super::texture::{EXR_MAGIC, open_picture};
 
-/// What the codes of a picture file are.
+/// The meaning of the codes of a picture file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PictureCodes {
     /// Linear light: files of floating-point numbers.
     Linear,
-    /// Codes of sRGB, by the file's own words.
+    /// Codes of sRGB, as the file specifies.
     Srgb,
-    /// Linear light to the power of one over this number, by the file's own words.
+    /// Linear light to the power of one over this number, as the file specifies.
     Gamma(f64),
-    /// The file doesn't say it, and files of its format are sRGB nearly always: PNG, JPEG, GIF, BMP, TGA.
+    /// Not specified, but files of its format are nearly always sRGB: PNG, JPEG, GIF, BMP, TGA.
     UsuallySrgb,
-    /// Neither the file nor its format says it: TIFF, PNM.
+    /// Specified neither by the file nor by its format: TIFF, PNM.
     Unsaid,
 }
 
-/// What the codes of a picture file are; `name` tells the format where the first bytes don't.
+/// The meaning of the codes of a picture file; `name` determines the format if the first bytes don't.
 ///
-/// Of a PNG file the chunks sRGB and gAMA count. Embedded colour profiles are not read.
+/// For a PNG file, the chunks sRGB and gAMA are used. Embedded colour profiles are not read.
 pub fn picture_codes(bytes: &[u8], name: &str) -> PictureCodes {
     if bytes.starts_with(&EXR_MAGIC) {
         return PictureCodes::Linear;
@@ -37,11 +37,11 @@ pub fn picture_codes(bytes: &[u8], name: &str) -> PictureCodes {
     }
 }
 
-/// What the chunks of a PNG file say.
+/// The meaning according to the chunks of a PNG file.
 fn png_codes(bytes: &[u8]) -> PictureCodes {
     let mut decoder = ::png::Decoder::new(Cursor::new(bytes));
     decoder.set_ignore_text_chunk(true);
-    // A broken file is told of where its texels are decoded.
+    // Decoding the texels reports a broken file.
     let Ok(reader) = decoder.read_info() else {
         return PictureCodes::UsuallySrgb;
     };

@@ -23,9 +23,9 @@ pub struct Heights {
 
 /// Reads the heights of a picture: PNG, JPEG, HDR, TIFF, TGA, BMP, GIF (the first picture) or PNM.
 ///
-/// What a pixel is worth depends on its kind, as POV-Ray 3.7 has it (measured): of pictures with a palette the index, times
-/// 256; of greys the value, 8 bits times 257; of colours of 8 bits, and of floating-point numbers, red as the high and green as
-/// the low byte; of colours of 16 bits the brightness. Alpha doesn't count.
+/// The height of a pixel depends on the kind of picture, as in POV-Ray 3.7 (measured): for pictures with a palette it is the
+/// index, times 256; for greys the value, 8 bits times 257; for 8-bit colours, and floating-point numbers, red is the high and
+/// green the low byte; for 16-bit colours it is the brightness. Alpha is ignored.
 pub fn decode_heights(bytes: &[u8], name: &str) -> Result<Heights, ImageError> {
     let reader = open_picture(bytes, name)?;
     let indexed = match reader.format() {
@@ -76,9 +76,9 @@ fn two_bytes(high: u8, low: u8) -> u16 {
     u16::from_be_bytes([high, low])
 }
 
-/// The height of a colour of floating-point numbers: red is the high byte and green the low one, but neither is whole.
+/// The height of a floating-point colour: red is the high byte and green the low one, and both may have fractions.
 fn float_bytes([r, g, _]: [f32; 3]) -> u16 {
-    // The cast saturates and takes NaN for 0.
+    // The cast saturates and turns NaN into 0.
     (f64::from(r) * (255.0 * 256.0) + f64::from(g) * 255.0) as u16
 }
 

@@ -1,4 +1,4 @@
-//! JPEG (ITU T.81, in a JFIF file): small, and close to the picture only.
+//! JPEG (ITU T.81, in a JFIF file): small files with lossy compression.
 
 use std::io::{self, Write};
 
@@ -23,7 +23,7 @@ pub(super) fn encode(
         .map_err(io_error)
 }
 
-/// The system's error, where there is one behind that of the encoder.
+/// The system's error behind an error of the encoder, if there is one.
 pub(super) fn io_error(error: ::image::ImageError) -> io::Error {
     match error {
         ::image::ImageError::IoError(error) => error,

@@ -15,8 +15,8 @@ pub struct Picture<'a> {
     pub window: Window,
     /// Linear radiance with Rec. 709 primaries of the window's pixels, row by row from the top left.
     pub rgb: &'a [[f32; 3]],
-    /// How much each pixel covers what lies behind the picture, from 0 to 1; the colours are multiplied by it. Only formats whose
-    /// [`FormatInfo::alpha`] is set take it; the others refuse the picture.
+    /// The coverage of each pixel, from 0 to 1; the colours are premultiplied by it. Only formats with [`FormatInfo::alpha`]
+    /// accept it; the others reject the picture.
     ///
     /// [`FormatInfo::alpha`]: super::FormatInfo::alpha
     pub alpha: Option<&'a [f32]>,
@@ -260,7 +260,7 @@ pub struct WriteOptions {
     /// Stores the colours of EXR as 16-bit floats, which keep 11 bits and reach 65504; larger values become 65504.
     /// Layers keep 32 bits.
     pub half: bool,
-    /// Quality of JPEG, from 1 (smallest) to 100; 85 at first, as in POV-Ray.
+    /// Quality of JPEG, from 1 (smallest) to 100; the default is 85, as in POV-Ray.
     pub jpeg_quality: u8,
 }
 

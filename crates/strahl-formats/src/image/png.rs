@@ -85,7 +85,7 @@ pub(super) fn push_codes(pixels: &[[f32; 3]], depth: BitDepth, codes: &mut Vec<u
     }
 }
 
-/// Appends the codes of pixels with alpha. PNG's colours are those of the covering itself: not multiplied by alpha.
+/// Appends the codes of pixels with alpha. In PNG, colours are straight: not multiplied by alpha.
 fn push_straight(pixels: &[[f32; 3]], alpha: &[f32], depth: BitDepth, codes: &mut Vec<u8>) {
     for (pixel, alpha) in pixels.iter().zip(alpha) {
         let straight = pixel.map(|x| if *alpha > 0.0 { x / alpha } else { 0.0 });

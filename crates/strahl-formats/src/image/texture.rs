@@ -44,8 +44,8 @@ pub fn read_texture(
 ///
 /// The format is recognised by the first bytes; TGA, which has no mark, by the extension of `name`. Errors mention `name`.
 /// Embedded colour profiles, gamma values and orientations are not applied. NaN becomes 0, infinity the largest number.
-/// More than [`MAX_TEXELS`] texels, or 4 GiB of them, are refused before any memory is taken, as are those that there is no
-/// memory for.
+/// Textures of more than [`MAX_TEXELS`] texels or more than 4 GiB are rejected before allocation, as are those that exceed the
+/// available memory.
 pub fn decode_texture(
     bytes: &[u8],
     name: &str,

@@ -46,7 +46,7 @@ pub fn write_bytes(path: impl AsRef<Path>, bytes: &[u8]) -> Result<(), ImageErro
     write_atomically(path.as_ref(), |writer| writer.write_all(bytes))
 }
 
-/// Writes any other file in the same manner, by a function that gets the stream; when it fails, nothing is left behind.
+/// Writes any other file in the same way, by a function that gets the stream; if it fails, no file is left.
 pub fn write_file(
     path: impl AsRef<Path>,
     fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,

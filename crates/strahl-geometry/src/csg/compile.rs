@@ -209,7 +209,7 @@ impl Compiler {
         let map = if baked.is_some() { None } else { context.map };
         let shape = baked.unwrap_or(shape);
         let solid = shape.as_solid();
-        // What has no inside has no complement: no point is inside of it.
+        // A shape without an inside has no complement: no point is inside of it.
         let negative = context.negative && solid.is_some();
         let bounds = solid.map_or_else(|| shape.bounds(), |solid| solid.inside_bounds());
         let bounds = map.map_or(bounds, |map| map.bounds_to_world(&bounds));
@@ -306,7 +306,7 @@ impl Compiler {
         }
     }
 
-    /// What the nodes are within, if it takes several of them to tell their common bounds and one is curved.
+    /// The forms that contain the nodes, if several of them are needed for a common bound and one is curved.
     fn forms(&self, nodes: &[u32]) -> Vec<Form> {
         let leaf = |node: &u32| match self.nodes.get(*node as usize)?.kind {
             Kind::Leaf(index) => self.leaves.get(index as usize),

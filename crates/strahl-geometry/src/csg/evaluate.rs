@@ -98,7 +98,7 @@ impl<'a> Evaluation<'a> {
         evaluation.walk(wide, &mut workspace, scratch, out);
         scratch.give_csg(workspace);
         if evaluation.from.is_some() {
-            // Lids and inner surfaces that coincide with the surface the ray leaves have been crossed.
+            // Lids and inner surfaces that coincide with the surface on which the ray starts are already crossed.
             let reach = |crossing: &Crossing| evaluation.fusing.reach(crossing);
             out.list
                 .retain(|c| c.side != Side::Inner || c.hit.t > reach(c));

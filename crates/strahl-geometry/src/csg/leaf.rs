@@ -77,7 +77,7 @@ impl Leaf {
         self.shape.as_solid()
     }
 
-    /// From the shape's space to the tree's, if they differ.
+    /// The map from the shape's space to the tree's, if they differ.
     pub(super) fn map(&self) -> Option<&Transform> {
         self.placement.as_ref().map(|placement| &placement.map)
     }
@@ -104,17 +104,18 @@ impl Leaf {
     pub(super) fn is_convex(&self) -> bool {
         match &self.shape {
             Shape::Sphere(_) | Shape::Cuboid(_) | Shape::Plane(_) => true,
-            // Of open ones not every end of a span can be seen.
+            // An end of a span of an open shape may be invisible.
             Shape::Cylinder(cylinder) => cylinder.is_capped(),
             Shape::Cone(cone) => cone.is_capped(),
             _ => false,
         }
     }
 
-    /// Whether the shape's surface counts as inside of it, which matters where faces coincide only.
+    /// Whether the points of the shape's surface count as inside, which matters only where faces coincide.
     ///
-    /// These are POV-Ray's rules as far as it has any (measured: planes, blobs, superellipsoids and isosurfaces always have their
-    /// surface, cylinders, cones and meshes never; of the others rounding decides, and this is what it says for faces along the axes).
+    /// These are POV-Ray's rules where it has any (measured: the surfaces of planes, blobs, superellipsoids and isosurfaces
+    /// always count, those of cylinders, cones and meshes never; for the others rounding decides, and this is the result for
+    /// axis-aligned faces).
     fn has_its_surface(&self) -> bool {
         self.solid().is_some()
             && !matches!(

@@ -16,9 +16,10 @@ use strahl_math::{Aabb, DVec3, Interval, Ray};
 /// Surface elements: each leaf takes as many numbers as its shape has elements, in the order of the description;
 /// [`Csg::leaf_of`] leads back. Facets and `uv` of a hit are the leaf's own.
 ///
-/// Where surfaces of several leaves coincide, POV-Ray's rules hold: an intersection shows those that are inside of all other operands,
-/// a merge those that are outside, and whether a surface counts as inside of its own solid is a matter of the shape. Of several the
-/// last one shows, in a union the first one. So a difference may have a lid: a surface with nothing before and behind it.
+/// Where surfaces of several leaves coincide, POV-Ray's rules apply: an intersection keeps those that are inside of all other
+/// operands, a merge those that are outside of them; whether a surface counts as inside of its own solid depends on the shape. Of
+/// several surfaces the last one is visible, in a union the first. So a difference may have a lid: a surface with nothing in
+/// front of it or behind it.
 ///
 /// `n_geom` points out of the combined solid, so the normals of subtracted solids are reversed. On inner surfaces it is the
 /// leaf's.

@@ -109,8 +109,8 @@ pub(super) fn sort(events: &mut [Event]) {
 /// Combines the operands' sorted crossings into those of the node. `always_inside` says that there is one more operand, which
 /// the ray never leaves.
 ///
-/// Crossings of different operands that coincide are one event: all operands change their states, then the result is looked
-/// at. Which of the faces shows is decided by [`Group`].
+/// Crossings of different operands that coincide are one event: all operands change their states, then the result is determined.
+/// [`Group`] decides which of the faces is visible.
 pub(super) fn sweep(
     rule: Rule,
     events: &[Event],
@@ -129,8 +129,8 @@ pub(super) fn sweep(
 
     let (mut rest, mut number) = (events, 0);
     while let Some(first) = rest.first() {
-        // The group: what coincides with its first crossing, one crossing per operand (an operand's own list is in
-        // order already, however close its crossings are).
+        // A group: the crossings that coincide with its first one, one per operand (an operand's own list is already in order,
+        // however close its crossings are).
         number += 1;
         let before = count;
         let mut length = 0;
@@ -180,26 +180,26 @@ fn is_inside(slots: &[Slot], event: &Event) -> bool {
     slots.get(event.slot as usize).is_some_and(|s| s.inside)
 }
 
-/// Crossings of different operands that coincide, one per operand; mostly it is one alone.
+/// Crossings of different operands that coincide, one per operand; most groups have a single member.
 struct Group<'a> {
     rule: Rule,
     members: &'a [Event],
-    /// How many operands the ray is inside of before the group and after it ...
+    /// The number of operands that the ray is inside of before the group and after it ...
     before: usize,
     after: usize,
-    /// ... of so many.
+    /// ... and the number of all operands.
     total: usize,
-    /// Of how many of the operands that take no part the ray is inside.
+    /// The number of operands without a member in the group that the ray is inside of.
     inside_elsewhere: usize,
 }
 
 impl Group<'_> {
-    /// How many of the members count as inside of their own operand.
+    /// The number of members whose surface counts as inside of its own operand.
     fn closed(&self) -> usize {
         self.members.iter().filter(|e| e.crossing.closed).count()
     }
 
-    /// Whether all operands that take no part let the group's surfaces stay.
+    /// Whether the operands without a member in the group keep its surfaces.
     fn is_kept_elsewhere(&self) -> bool {
         match self.rule {
             Rule::Union => true,
@@ -208,7 +208,7 @@ impl Group<'_> {
         }
     }
 
-    /// Whether the other members let the surface of one stay.
+    /// Whether the other members keep the surface of one member.
     fn stays(&self, crossing: &Crossing, closed: usize) -> bool {
         let others = closed - usize::from(crossing.closed);
         match self.rule {
@@ -218,7 +218,7 @@ impl Group<'_> {
         }
     }
 
-    /// The visible surface that stays: the last one, of a union the first one.
+    /// The visible surface that is kept: the last one, in a union the first one.
     fn shown(&self) -> Option<&Crossing> {
         if !self.is_kept_elsewhere() {
             return None;
@@ -233,7 +233,7 @@ impl Group<'_> {
         }
     }
 
-    /// A crossing of this group as one of the result.
+    /// A crossing of this group as a crossing of the result.
     fn result(&self, crossing: &Crossing, side: Side) -> Crossing {
         let closed = self.closed();
         Crossing {
@@ -246,7 +246,7 @@ impl Group<'_> {
         }
     }
 
-    /// The crossing where the result changes. There is one always, even if all surfaces are inside of others that coincide.
+    /// The crossing at which the result changes. There always is one, even if all surfaces are inside of others that coincide.
     fn change(&self, side: Side) -> Option<Crossing> {
         let chosen = match self.members {
             [alone] => Some(&alone.crossing),
@@ -255,7 +255,7 @@ impl Group<'_> {
         chosen.map(|crossing| self.result(crossing, side))
     }
 
-    /// The inner surface that stays where the result does not change, if any.
+    /// The inner surface that is kept where the result does not change, if there is one.
     fn inner(&self, slots: &[Slot]) -> Option<Crossing> {
         let chosen = match self.members {
             [Event { crossing, slot }] => {
@@ -267,10 +267,10 @@ impl Group<'_> {
         chosen.map(|crossing| self.result(crossing, Side::Inner))
     }
 
-    /// Whether the surface of a single member stays though the result does not change.
+    /// Whether the surface of a single member is kept although the result does not change.
     fn stays_alone(&self, crossing: &Crossing, inside: bool) -> bool {
         let inner = crossing.side == Side::Inner;
-        // How many of the *other* operands the ray is inside of, on either side.
+        // The number of *other* operands that the ray is inside of, on either side.
         let own = usize::from(inner && inside);
         let (before, after) = (
             self.before.saturating_sub(own),

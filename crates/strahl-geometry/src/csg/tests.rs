@@ -135,13 +135,14 @@ fn flush_faces_show_as_in_povray() {
     let rod = |x0: f64, x1: f64, radius: f64, tag: u32| {
         CsgNode::leaf(Cylinder::new(DVec3::X * x0, DVec3::X * x1, radius), tag)
     };
-    // The pocket begins exactly in the face of the block: the face of what is taken out is inside of the box, as a lid.
+    // The pocket begins exactly in the face of the block: the face of the subtracted solid is inside of the box, as a lid.
     let flush = CsgNode::difference([slab(-1.0, 1.0, 2.0, 1), slab(-1.0, 0.0, 1.0, 2)]);
     let pocket = [(0.0, '>', 2), (1.0, '<', 1)];
     assert_eq!(along_x(flush), [(-1.0, '|', 2), pocket[0], pocket[1]]);
     let through = CsgNode::difference([slab(-1.0, 1.0, 2.0, 1), slab(-1.0, 1.0, 1.0, 2)]);
     assert_eq!(along_x(through), [(-1.0, '|', 2), (1.0, '|', 2)]);
-    // `difference { cylinder { -y, y, 1 } cylinder { -0.9 * y, y, 0.8 } }` keeps its lid: it is not inside of the second one.
+    // `difference { cylinder { -y, y, 1 } cylinder { -0.9 * y, y, 0.8 } }` keeps its lid, which is not inside of the second
+    // cylinder.
     let cup = CsgNode::difference([rod(-1.0, 1.0, 2.0, 1), rod(-1.0, 0.0, 1.0, 2)]);
     assert_eq!(along_x(cup), [(-1.0, '|', 1), pocket[0], pocket[1]]);
     let both = CsgNode::difference([slab(-1.0, 1.0, 2.0, 1), rod(-1.0, 0.0, 1.0, 2)]);
@@ -328,8 +329,8 @@ fn open_surfaces_are_cut() {
     };
     assert_eq!((hit(1.9), hit(2.1)), (Some(10.0), None));
     assert!((csg.bounds().max.y - 2.0).abs() < 1e-12);
-    // An intersection keeps the part inside, a difference with it the part outside. It has no inside, nor an outside to keep anything
-    // else in.
+    // An intersection keeps the part inside, a difference the part outside. The open surface has no inside, and no outside that
+    // could keep a surface.
     let inside = CsgNode::intersection([screen(0.0, 1), ball(0.0, 2.0, 2)]);
     assert_eq!(along_x(inside), [(0.0, '|', 1)]);
     let outside = CsgNode::difference([screen(0.0, 1), ball(0.0, 2.0, 2)]);
@@ -573,7 +574,7 @@ mod conformance {
     )));
 }
 
-/// As POV-Ray 3.7 renders them: `open` takes away the caps from what is seen, not from what is inside.
+/// As POV-Ray 3.7 renders them: `open` removes the visible caps, not the inside.
 #[test]
 fn open_cylinders_cones_and_discs_carve() {
     let tube = || CsgNode::leaf(Cylinder::open(DVec3::X * -5.0, DVec3::X, 1.0), 2);
@@ -584,7 +585,7 @@ fn open_cylinders_cones_and_discs_carve() {
     assert_eq!(along_x(carved), [(1.0, 'i', 2), (3.0, '<', 1)]);
     let kept = CsgNode::intersection([slab(-2.0, 3.0, 2.0, 1), tube()]);
     assert_eq!(along_x(kept), [(-2.0, '>', 1), (1.0, 'o', 2)]);
-    // A disc has the half-space behind it for its inside.
+    // The inside of a disc is the half-space behind it.
     let disc =
         |normal: DVec3, hole: f64| CsgNode::leaf(crate::Disc::new(DVec3::X, normal, 3.0, hole), 2);
     let cut = CsgNode::intersection([slab(-2.0, 3.0, 2.0, 1), disc(DVec3::X, 0.0)]);

@@ -1,16 +1,16 @@
 //! Tighter boxes around intersections of curved and flat parts.
 //!
-//! An endless cylinder between two planes has no bounded part, yet their intersection is bounded. Every part that is a polynomial of
-//! degree at most 2 (planes, spheres, quadrics, the mantles of cylinders and cones) says of a box whether the box certainly lies
-//! outside of it. Boxes of which one part says so are cut off, from each of the six sides, by bisection: the first box along an
-//! axis that nothing is known of is where the bounds begin (branch and bound; Ratschek and Rokne 1988).
+//! An infinite cylinder and two planes are unbounded, but their intersection is bounded. For every part that is a polynomial of
+//! degree at most 2 (planes, spheres, quadrics, the sides of cylinders and cones) one can test whether a box is certainly outside
+//! of it. Such boxes are cut off from each of the six sides by bisection: the bounds begin at the first box along an axis for
+//! which no test succeeds (branch and bound; Ratschek and Rokne 1988).
 
 use super::leaf::Leaf;
 use crate::Shape;
 use strahl_math::{Aabb, DVec3, Transform};
 
-/// A symmetric form of four variables: `pᵀ M p` with `p = (x, y, z, w)`. A point is inside of the part where the form is not positive, with `w = 1`;
-/// `w = 0` is infinitely far away.
+/// A quadratic form of four variables: `pᵀ M p` with `p = (x, y, z, w)`. A point is inside of the part where the form is not
+/// positive, with `w = 1`; points with `w = 0` are infinitely far away.
 #[derive(Clone, Debug)]
 pub(super) struct Form([[f64; 4]; 4]);
 
@@ -21,19 +21,19 @@ struct Cell {
     half: [f64; 4],
 }
 
-/// Rounding errors of a form's value, relative to the sum of the magnitudes of its terms, are far below this.
+/// Far above the rounding error of a form's value, relative to the sum of the magnitudes of its terms.
 const SLACK: f64 = 1e-12;
-/// Boxes looked at for each side of the bounds, in each round.
+/// The number of boxes tested for each side of the bounds, in each round.
 const BUDGET: u32 = 64;
-/// Most rounds; the last one cuts off less than a fifth.
+/// The largest number of rounds; the last one cuts off less than a fifth.
 const ROUNDS: u32 = 6;
-/// Boxes looked at for each of six directions to infinity.
+/// The number of boxes tested for each of six directions to infinity.
 const FAR_BUDGET: u32 = 256;
-/// The bounds begin at a box this small, relative to the bounds found so far.
+/// The size of the smallest boxes, relative to the bounds found so far.
 const FINE: f64 = 1.0 / 64.0;
 
 impl Form {
-    /// What a leaf keeps its inside (or, if it is open, its surface) within; `None` for other shapes and for complements.
+    /// The form that contains a leaf's inside (or, if it is open, its surface); `None` for other shapes and for complements.
     pub(super) fn of(leaf: &Leaf) -> Option<Self> {
         if leaf.negative {
             return None;
@@ -116,7 +116,7 @@ impl Form {
         ])
     }
 
-    /// The form of a part that a map has moved.
+    /// The form of a part after a transformation.
     fn moved(&self, map: &Transform) -> Self {
         let origin = map.point_to_object(DVec3::ZERO);
         let [x, y, z] = [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| map.vector_to_object(axis));
@@ -139,12 +139,12 @@ impl Form {
         }))
     }
 
-    /// Whether the form is positive in all of a cell.
+    /// Whether the form is positive in the whole cell.
     fn excludes(&self, cell: &Cell) -> bool {
         self.excludes_by_terms(cell) || self.excludes_about_the_center(cell)
     }
 
-    /// Term by term: exact for squares. Points infinitely far away don't count.
+    /// Tests term by term, which is exact for squares. Points infinitely far away don't count.
     fn excludes_by_terms(&self, cell: &Cell) -> bool {
         let range = |i: usize| (cell.center[i] - cell.half[i], cell.center[i] + cell.half[i]);
         let product = |(a, b): (f64, f64), (c, d): (f64, f64)| {
@@ -194,7 +194,7 @@ impl Form {
         squares + rest > SLACK * (magnitude + rest.abs() + constant.abs() * far * far)
     }
 
-    /// About the centre c: q(c) + 2 (M c)·d + dᵀ M d, with d within the half widths.
+    /// Tests around the centre c: q(c) + 2 (M c)·d + dᵀ M d, with d within the half widths.
     fn excludes_about_the_center(&self, cell: &Cell) -> bool {
         let (mut value, mut reach, mut magnitude) = (0.0, 0.0, 0.0);
         for (i, row) in self.0.iter().enumerate() {
@@ -245,7 +245,7 @@ impl Cell {
     }
 }
 
-/// The part of a box that the inside of all forms can lie in. The result is never larger; it is the box itself where nothing is gained.
+/// The part of a box that may contain the inside of all forms. It is never larger than the box.
 pub(super) fn tightened(bounds: &Aabb, forms: &[Form]) -> Aabb {
     if forms.is_empty() || bounds.is_empty() {
         return *bounds;
@@ -268,7 +268,7 @@ pub(super) fn tightened(bounds: &Aabb, forms: &[Form]) -> Aabb {
     result
 }
 
-/// Cuts off what lies outside, from each side.
+/// Cuts off the parts outside, from each side.
 fn cut(mut result: Aabb, forms: &[Form]) -> Aabb {
     for axis in 0..3 {
         let cell = Cell::of(&result);
@@ -289,8 +289,8 @@ fn cut(mut result: Aabb, forms: &[Form]) -> Aabb {
     result
 }
 
-/// The coordinate along an axis, seen from below (`side` 1) or above (-1), where the first box begins of which nothing is known; `None` if there
-/// is none.
+/// The coordinate along an axis, seen from below (`side` 1) or above (-1), at which the first box begins that may contain a
+/// point; `None` if there is no such box.
 fn first_possible(mut cell: Cell, axis: usize, side: f64, forms: &[Form]) -> Option<f64> {
     // Seen from above everything is mirrored.
     cell.center[axis] *= side;
@@ -304,7 +304,7 @@ fn first_possible(mut cell: Cell, axis: usize, side: f64, forms: &[Form]) -> Opt
         if forms.iter().any(|form| form.excludes(&there)) {
             continue;
         }
-        // Across the axis boxes need not be as fine: what counts is how far along it they can be cut off.
+        // Across the axis boxes may be coarse: only the distance along the axis matters.
         let widest = (0..3)
             .map(|i| {
                 let share = if whole[i] > 0.0 {
@@ -327,7 +327,7 @@ fn first_possible(mut cell: Cell, axis: usize, side: f64, forms: &[Form]) -> Opt
     None
 }
 
-/// The box that begins first along an axis; of several the largest.
+/// The box that begins first along an axis; of several, the largest.
 fn nearest(cells: &[Cell], axis: usize) -> Option<usize> {
     let key = |cell: &Cell| (cell.low(axis), -cell.half[axis]);
     (0..cells.len()).reduce(|best, next| {
@@ -339,7 +339,8 @@ fn nearest(cells: &[Cell], axis: usize) -> Option<usize> {
     })
 }
 
-/// Half the side of a cube around the origin beyond which nothing is inside of all forms and of the box, if that can be proven.
+/// Half the side of a cube around the origin outside of which no point is inside of all forms and of the box, if that can be
+/// proven.
 fn reach(bounds: &Aabb, forms: &[Form]) -> Option<f64> {
     let finite = |v: f64| if v.is_finite() { v.abs() } else { 0.0 };
     let corners = bounds
@@ -384,8 +385,8 @@ fn reach(bounds: &Aabb, forms: &[Form]) -> Option<f64> {
         })
 }
 
-/// Whether no point is inside of all forms whose coordinate along an axis, seen from a side, is above `reach` and larger than the two others:
-/// such points are `(±1, v, u) / w` with v and u in `-1..=1` and w in `0..1/reach`.
+/// Whether no point is inside of all forms whose coordinate along an axis, seen from a side, exceeds `reach` and the two other
+/// coordinates: such points are `(±1, v, u) / w` with v and u in `-1..=1` and w in `0..1/reach`.
 fn nothing_beyond(axis: usize, side: f64, reach: f64, forms: &[Form]) -> bool {
     let mut cell = Cell {
         center: [0.0; 4],

@@ -7,10 +7,10 @@ use strahl_math::Transform;
 ///
 /// The operations mean what they mean in POV-Ray. Trees may be nested arbitrarily deep.
 ///
-/// Open surfaces (triangles, patches, meshes without an inside) may take part as leaves: no point is inside of them, nor of their
-/// complement, and of their own surface what lies inside of all operands of an intersection (outside of all others of a merge) is
-/// kept. So a difference with an open surface subtracted is that surface, where it is inside of the others. A tree with an open
-/// leaf is no [`Solid`](crate::Solid).
+/// Open surfaces (triangles, patches, meshes without an inside) may be leaves: no point is inside of them, nor of their
+/// complement. An intersection keeps the part of their surface inside of all other operands, a merge the part outside of all
+/// others. So a difference with an open surface subtracted is that surface, where it is inside of the other operands. A tree with
+/// an open leaf is not a [`Solid`](crate::Solid).
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum CsgNode {

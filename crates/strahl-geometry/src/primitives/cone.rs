@@ -7,7 +7,7 @@ use strahl_math::{Aabb, DVec3, Interval, Ray, Transform};
 
 /// A right circular cone or truncated cone: closed with caps, or open, without thickness.
 ///
-/// An *open* cone lacks the caps to be seen, but is a solid nonetheless: it ends where the caps would be.
+/// An *open* cone has no visible caps, but it is still a solid, which ends where the caps would be.
 ///
 /// The radius changes linearly from the base to the apex; either may be 0 (a tip), both may be equal. Texture coordinates
 /// and facets as for [`crate::Cylinder`]: 0 the side, 1 the cap at the base, 2 the cap at the apex. The normal of the
@@ -21,7 +21,7 @@ impl Cone {
         Self(Frustum::new(base, base_radius, apex, apex_radius, true))
     }
 
-    /// The same without caps to be seen.
+    /// The same without visible caps.
     pub fn open(base: DVec3, base_radius: f64, apex: DVec3, apex_radius: f64) -> Self {
         Self(Frustum::new(base, base_radius, apex, apex_radius, false))
     }
@@ -60,7 +60,7 @@ impl Cone {
         self.0.apex_radius()
     }
 
-    /// Whether it has caps that can be seen.
+    /// Whether it has visible caps.
     pub fn is_capped(&self) -> bool {
         self.0.capped
     }

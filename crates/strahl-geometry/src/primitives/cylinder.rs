@@ -8,7 +8,7 @@ use strahl_math::{Aabb, DVec3, Interval, Ray, Transform};
 
 /// A right circular cylinder: closed with caps, or an open tube without thickness.
 ///
-/// An *open* cylinder lacks the caps to be seen, but is a solid nonetheless: it ends where the caps would be.
+/// An *open* cylinder has no visible caps, but it is still a solid, which ends where the caps would be.
 ///
 /// Texture coordinates of the side: `u` is the angle, 0 to 1, `v` the height, 0 at the base and 1 at the apex; of a cap: `u` the
 /// angle, `v` the distance from the axis, 1 at the rim. Facets: 0 the side, 1 the cap at the base, 2 the cap at
@@ -22,7 +22,7 @@ impl Cylinder {
         Self(Frustum::new(base, radius, apex, radius, true))
     }
 
-    /// The same without caps to be seen.
+    /// The same without visible caps.
     pub fn open(base: DVec3, apex: DVec3, radius: f64) -> Self {
         Self(Frustum::new(base, radius, apex, radius, false))
     }
@@ -51,7 +51,7 @@ impl Cylinder {
         self.0.base_radius
     }
 
-    /// Whether it has caps that can be seen.
+    /// Whether it has visible caps.
     pub fn is_capped(&self) -> bool {
         self.0.capped
     }

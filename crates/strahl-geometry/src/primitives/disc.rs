@@ -11,7 +11,8 @@ use strahl_math::{Aabb, DVec2, DVec3, Interval, Ray, Transform};
 
 /// A flat round disc, optionally with a round hole in its middle.
 ///
-/// It is seen from both sides. As a solid it is the half-space behind its normal, of whose plane only the disc can be seen.
+/// It is visible from both sides. As a solid it is the half-space behind its normal; of that half-space's plane only the disc is
+/// visible.
 ///
 /// Texture coordinates: `u` is the angle, 0 to 1; `v` is 0 at the hole (or the centre) and 1 at the rim. Facets: one, 0. The
 /// rims belong to the disc. A ray within its plane does not hit it.
@@ -75,7 +76,7 @@ impl Disc {
         Plane::new(self.center, self.normal)
     }
 
-    /// Whether a point of the plane, from the centre, is on the disc.
+    /// Whether a point of the plane, relative to the centre, is on the disc.
     fn covers(&self, local: DVec3) -> bool {
         let distance = (local - self.normal * local.dot(self.normal)).length();
         self.hole <= distance && distance <= self.radius

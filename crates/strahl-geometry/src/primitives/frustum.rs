@@ -246,7 +246,7 @@ impl Frustum {
         if self.capped {
             return span.closest(range, from);
         }
-        // The open surface: those ends that are on the side.
+        // Of an open frustum, only the ends on the side are visible.
         let counts = |end: &End| {
             end.facet == SIDE
                 && range.accepts(end.t)

@@ -1,22 +1,22 @@
 //! Powers, exponentials and logarithms from tables.
 //!
-//! The method is that of Tang (ACM TOMS 1989 and 1990) as refined by Nagy for ARM's Optimized Routines (2018), for processors without fused
-//! multiply-adds: the argument is brought near 1 (or 0) by a table of 128 entries, a short polynomial does the rest, and the logarithm
-//! of a power is carried in two doubles. Results are within one unit in the last place. What is rare (zeros, negative numbers, infinities, results near
-//! overflow) is left to the `libm` crate.
+//! The method is that of Tang (ACM TOMS 1989 and 1990) as refined by Nagy for ARM's Optimized Routines (2018), for processors
+//! without fused multiply-adds: a table of 128 entries reduces the argument to a number near 1 (or 0), then a short polynomial is
+//! evaluated, and powers use the logarithm in two doubles. Results are within one unit in the last place. Rare cases (zeros,
+//! negative numbers, infinities, results near overflow) are left to the `libm` crate.
 
 mod tables;
 
 use tables::{EXP, LOG};
 
-/// The logarithm's table begins at this number, a little below 0.71, so that 1 lies inside an interval.
+/// The beginning of the logarithm's table, slightly below 0.71, so that 1 lies inside an interval.
 const START: u64 = 0x3fe6_9555_0000_0000;
-/// ln 2 in two parts; the first has zeros at its end, so that products with exponents are exact.
+/// ln 2 in two parts; the first ends with zero bits, so that its products with exponents are exact.
 const LN_2: [f64; 2] = [0.6931471805598903, 5.497923018708371e-14];
 /// ln 2 / 128 in two parts, and 128 / ln 2.
 const STEP: [f64; 2] = [0.005415212348111709, 1.2864023111638346e-14];
 const STEPS: f64 = 184.6649652337873;
-/// Adding and taking away 1.5 * 2^52 rounds to a whole number.
+/// Adding and subtracting 1.5 * 2^52 rounds to an integer.
 const ROUND: f64 = 6_755_399_441_055_744.0;
 
 /// Whether a number is positive, finite and not subnormal.
@@ -35,7 +35,7 @@ fn ln_parts(x: f64) -> (f64, f64) {
     let exponent = (above as i64 >> 52) as f64;
     let mantissa = bits.wrapping_sub(above & (0xfff << 52));
     let z = f64::from_bits(mantissa);
-    // z / c - 1 in two parts, both exact: the inverse has nine bits, the upper part of z twenty-one.
+    // z / c - 1 in two parts, both exact: 1 / c has nine bits, the upper part of z twenty-one.
     let z_high = f64::from_bits(mantissa.wrapping_add(1 << 31) & !0xffff_ffff);
     let r_high = z_high * inverse - 1.0;
     let r_low = (z - z_high) * inverse;
@@ -67,7 +67,7 @@ fn exp_parts(x: f64, low: f64) -> f64 {
     let steps = rounded - ROUND;
     let r = x - steps * STEP[0] - steps * STEP[1] + low;
     let (scale, tail) = EXP[(number & 127) as usize];
-    // The number of the step without its last seven bits is the power of two.
+    // The number of the step, without its last seven bits, is the exponent of the power of two.
     let scale = f64::from_bits(scale.wrapping_add((number & !127) << 45));
     let r2 = r * r;
     let change =
@@ -92,7 +92,7 @@ pub(super) fn pow(base: f64, exponent: f64) -> f64 {
         return libm::pow(base, exponent);
     }
     let (high, low) = ln_parts(base);
-    // The product with the exponent, in two parts (Dekker 1971).
+    // The product of logarithm and exponent, in two parts (Dekker 1971).
     let upper = |v: f64| f64::from_bits(v.to_bits() & !0x07ff_ffff);
     let (e, l) = (upper(exponent), upper(high));
     let product = e * l;
@@ -108,7 +108,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// How many numbers lie between two.
+    /// The number of doubles between two numbers.
     fn apart(a: f64, b: f64) -> u64 {
         a.to_bits().abs_diff(b.to_bits())
     }

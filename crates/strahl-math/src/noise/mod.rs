@@ -156,10 +156,11 @@ fn unit(x: f64) -> f64 {
     x.clamp(0.0, 1.0)
 }
 
-/// The cell of the lattice that a coordinate lies in, and how far.
+/// The lattice cell of a coordinate, and the position within the cell.
 #[inline]
 fn place(x: f64) -> (i64, f64) {
-    // Rounding down without a call: the cast cuts off towards zero. Beyond 2^52 all numbers are whole; NaN and infinities spoil only their own value.
+    // Rounds down without a function call: the cast truncates towards zero. Beyond 2^52 all numbers are integers; NaN and
+    // infinities only affect their own value.
     let mut cell = x as i64;
     let mut floor = cell as f64;
     if floor > x {
@@ -169,16 +170,16 @@ fn place(x: f64) -> (i64, f64) {
     (cell, x - floor)
 }
 
-/// What cell 0 of the table of the value-gradient noise is shifted by.
+/// The offset of cell 0 in the lattice of the value-gradient noise.
 const CELL_SHIFT: i64 = 10_000;
 
-/// Hands to `visit` the eight corners of the cell of the value-gradient lattice around a place: the corner's entries in the table of values
-/// and gradients, the way from the corner to the place, and the corner's share of the result; the shares sum to 1.
+/// Calls `visit` for the eight corners of a cell of the value-gradient lattice: with the corner's entries in the table of values
+/// and gradients, the vector from the corner to the point, and the corner's weight; the weights sum to 1.
 #[inline(always)]
 fn corners(p: DVec3, mut visit: impl FnMut(&[f64; 12], DVec3, f64)) {
     let [x, y, z] = p.to_array().map(place);
     let cells = [x, y, z].map(|(cell, _)| {
-        // Hostile coordinates wrap to some cell.
+        // Huge coordinates wrap around to some cell.
         let cell = cell.wrapping_add(CELL_SHIFT);
         [cell, cell.wrapping_add(1)].map(|c| (c & 4095) as usize)
     });

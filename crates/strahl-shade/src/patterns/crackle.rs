@@ -36,8 +36,8 @@ impl CrackleMetric {
         }
     }
 
-    /// What coordinates and the offset add up to before [`CrackleMetric::distance_of`] makes a distance of it. It grows with the distance; for
-    /// powers that are not positive it is the distance.
+    /// The sum over coordinates and offset that [`CrackleMetric::distance_of`] converts to a distance. It grows with the
+    /// distance; for non-positive powers it is the distance itself.
     fn measure(self, v: DVec3, offset: f64) -> f64 {
         match self {
             Self::Manhattan => v.x.abs() + v.y.abs() + v.z.abs() + offset,
@@ -59,7 +59,7 @@ impl CrackleMetric {
         }
     }
 
-    /// What one coordinate adds to the measure.
+    /// The contribution of one coordinate to the measure.
     fn part(self, x: f64) -> f64 {
         match self {
             Self::Manhattan => x.abs(),
@@ -68,7 +68,7 @@ impl CrackleMetric {
         }
     }
 
-    /// Whether larger coordinates never make a smaller distance.
+    /// Whether larger coordinates never give a smaller distance.
     fn is_monotone(self) -> bool {
         match self {
             Self::Manhattan | Self::Euclidean => true,
@@ -102,7 +102,7 @@ impl Default for Crackle {
     }
 }
 
-/// The 5³ cubes around one, without those that lie two cubes off in more than one direction, the nearest first.
+/// The 5³ cubes around a cube, except those that are two cubes away in more than one direction, the nearest first.
 const NEIGHBOURS: [[i64; 3]; 81] = {
     let mut all = [[0; 3]; 81];
     let (mut count, mut square) = (0, 0);
@@ -126,12 +126,12 @@ const NEIGHBOURS: [[i64; 3]; 81] = {
 impl Crackle {
     /// The value at `p`, cut off at 0 and 1.
     ///
-    /// Points are looked for in the [`NEIGHBOURS`] of the cube of `p`. A cube that is farther away than the farthest point that counts
-    /// is passed over; as a rule those are all that lie two cubes off.
+    /// The nearest points are searched in the [`NEIGHBOURS`] of the cube of `p`. Cubes farther away than the nearest points
+    /// found so far (one to three, as `form` needs) are skipped; usually these are all cubes two cubes away.
     pub(super) fn value(&self, p: DVec3, generator: NoiseGenerator) -> f64 {
         let home = cell(p);
         let fraction = (p - p.floor()).to_array();
-        // What the gaps between p and the cubes along each axis add to the measure.
+        // The contributions of the gaps between p and the cubes along each axis.
         let gaps =
             fraction.map(|f| [f + 1.0, f, 0.0, 1.0 - f, 2.0 - f].map(|g| self.metric.part(g)));
         let rest = self.metric.measure(DVec3::ZERO, self.offset);
@@ -141,7 +141,7 @@ impl Crackle {
             form if form.y != 0.0 => 2,
             _ => 1,
         };
-        // By less than rounding can tell a cube is not farther away.
+        // Rounding errors must not make a cube appear farther away than it is.
         let slack = if self.metric.is_monotone() {
             1.0 - 1e-12
         } else {
@@ -183,7 +183,7 @@ impl Crackle {
 mod tests {
     use super::*;
 
-    /// All cubes, none passed over.
+    /// The value from all cubes, without skipping.
     fn slowly(crackle: &Crackle, p: DVec3) -> f64 {
         let mut all: Vec<f64> = NEIGHBOURS
             .iter()

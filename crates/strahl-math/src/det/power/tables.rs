@@ -132,7 +132,7 @@ pub(super) static LOG: [[f64; 3]; 128] = [
     [0.71484375, 0.3356912916381134, 2.8136969901227338e-14],
     [0.7109375, 0.3411707574027787, -1.156568624616423e-14],
 ];
-/// For each j below 128: the bits of 2^(j/128), and how much the true number is larger, as a part of it.
+/// For each j below 128: the bits of 2^(j/128), and the relative error of that rounded number.
 pub(super) static EXP: [(u64, f64); 128] = [
     (0x3ff0000000000000, 0.0),
     (0x3ff0163da9fb3335, 9.447885451727065e-17),
