@@ -1,5 +1,7 @@
 //! Runs the program as users do.
 
+#[path = "../common/mod.rs"]
+mod common;
 mod errors;
 mod explain;
 mod factors;
@@ -8,9 +10,9 @@ mod pictures;
 mod questions;
 mod safety;
 
+use common::{stderr, strahl};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
 
 const SCENE: &str = "\
 b 0.1 0.2 0.4
@@ -34,20 +36,10 @@ p 4
 -4 -1 -4
 ";
 
-fn strahl(folder: &Path, args: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_strahl"));
-    command.current_dir(folder).args(args).stdin(Stdio::null());
-    command.output().expect("the program starts")
-}
-
 fn folder_with_scene() -> tempfile::TempDir {
     let folder = tempfile::tempdir().expect("a folder");
     std::fs::write(folder.path().join("scene.nff"), SCENE).expect("writable");
     folder
-}
-
-fn stderr(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stderr).into_owned()
 }
 
 fn stats(folder: &Path, args: &[&str]) -> Value {

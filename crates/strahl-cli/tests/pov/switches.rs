@@ -1,0 +1,168 @@
+//! POV-Ray's switches and .ini files.
+
+use super::common::{stderr, strahl};
+use super::{fails, folder, size, succeeds, write};
+
+#[test]
+fn povray_switches_render() {
+    let folder = folder();
+    let f = folder.path();
+    let line = "render +Iscene.pov +Ob.png +W20 +H10 +A0.3 +AM2 +R2 +Linc -D +Q9 +WT1 +FN16 -P +V";
+    succeeds(f, &line.split(' ').collect::<Vec<_>>());
+    assert_eq!(size(f, "b.png"), (20, 10));
+    assert_eq!(
+        std::fs::read(f.join("b.png")).expect("written")[24],
+        16,
+        "bits"
+    );
+    // A region within a picture of the full size.
+    succeeds(f, &["render", "scene.pov", "+W20", "+H10", "+SC0.5", "+Oc"]);
+    assert_eq!(size(f, "c.png"), (20, 10));
+    fails(f, &["render", "scene.pov", "+Y3"], 2, &["+Y3", "--help"]);
+    let noted = succeeds(f, &["render", "scene.pov", "+W8", "+H6", "+Q3", "+UA"]);
+    assert!(
+        noted.contains("quality 3") && !noted.contains("alpha"),
+        "{noted}"
+    );
+    let bytes = std::fs::read(f.join("scene.png")).expect("written");
+    assert_eq!(bytes[25], 6, "colours with alpha");
+    fails(
+        f,
+        &["scene.pov", "--alpha", "-o", "a.jpg"],
+        1,
+        &[".png, .exr"],
+    );
+}
+
+#[test]
+fn ini_files_have_sections() {
+    let folder = folder();
+    let f = folder.path();
+    let ini = "Input_File_Name=scene.pov ; the scene\n+W12 +H9\nDeclare=Unused=3\nAntialias=Off\n\
+               [Small]\nWidth=4\nHeight=3\nOutput_File_Name=small.png\n[Broken]\nWidht=3\n";
+    write(f, "run.ini", ini);
+    succeeds(f, &["render", "run.ini"]);
+    assert_eq!(size(f, "scene.png"), (12, 9));
+    succeeds(f, &["render", "run.ini[small]"]);
+    assert_eq!(size(f, "small.png"), (4, 3));
+    // Later words override earlier ones.
+    succeeds(f, &["render", "run[Small]", "+W5", "+Olater.png"]);
+    assert_eq!(size(f, "later.png"), (5, 3));
+    let parts = ["run.ini:10", "Widht", "`Width`"];
+    fails(f, &["render", "run.ini[broken]"], 2, &parts);
+    fails(
+        f,
+        &["render", "run.ini[none]"],
+        2,
+        &["[none]", "Small, Broken"],
+    );
+}
+
+#[test]
+fn render_may_be_left_out() {
+    let folder = folder();
+    let f = folder.path();
+    for (line, name) in [
+        ("+Iscene.pov +W8 +H6", "scene.png"),
+        ("scene.pov --size 8x6 -o a.png", "a.png"),
+        ("scene +W8 +H6 +Ob", "b.png"),
+        ("--strict +Iscene +W8 +H6 +Oc.png", "c.png"),
+    ] {
+        succeeds(f, &line.split(' ').collect::<Vec<_>>());
+        assert_eq!(size(f, name), (8, 6), "{line}");
+    }
+    write(
+        f,
+        "run.ini",
+        "Input_File_Name=scene\nWidth=90\nHeight=60\nOutput_File_Name=x.png\nAntialias=on\n",
+    );
+    // Options of strahl override those of POV-Ray.
+    succeeds(
+        f,
+        &[
+            "run.ini",
+            "--size",
+            "8x6",
+            "-o",
+            "d.png",
+            "--sampling",
+            "center",
+        ],
+    );
+    assert_eq!(size(f, "d.png"), (8, 6));
+    succeeds(f, &["run", "+W10"]);
+    assert_eq!(size(f, "x.png"), (10, 60));
+    let version = strahl(f, &["render", "-V"]);
+    assert!(String::from_utf8_lossy(&version.stdout).starts_with("strahl "));
+    fails(f, &["rendr", "scene.pov"], 2, &["unrecognized", "render"]);
+}
+
+#[test]
+fn pictures_of_povs_types_are_written() {
+    let folder = folder();
+    let f = folder.path();
+    for (switch, name, magic) in [
+        ("+FB", "scene.bmp", &b"BM"[..]),
+        ("+FJ", "scene.jpg", &[0xff, 0xd8, 0xff]),
+        ("+FP", "scene.ppm", b"P6"),
+        ("+FT", "scene.tga", &[0, 0, 10]),
+        ("+FE", "scene.exr", &[0x76, 0x2f, 0x31, 1]),
+    ] {
+        succeeds(f, &["+Iscene.pov", "+W8", "+H6", switch]);
+        let bytes = std::fs::read(f.join(name)).expect(name);
+        assert!(bytes.starts_with(magic), "{name}");
+    }
+    let output = strahl(f, &["+Iscene.pov", "+W8", "+H6", "+O-", "+FP", "-GA"]);
+    assert!(output.stdout.starts_with(b"P6"), "{}", stderr(&output));
+    let output = strahl(
+        f,
+        &["scene.pov", "--size", "8x6", "-o", "-", "--stats", "s.json"],
+    );
+    assert!(output.stdout.starts_with(b"\x89PNG"), "{}", stderr(&output));
+    assert!(f.join("s.json").exists() && !f.join("-").exists());
+    let output = strahl(f, &["scene.pov", "--size", "8x6", "--stats", "-", "-q"]);
+    assert!(output.stdout.starts_with(b"{"), "{}", stderr(&output));
+    std::fs::create_dir(f.join("out")).expect("a folder");
+    succeeds(
+        f,
+        &[
+            "scene.pov",
+            "--size",
+            "8x6",
+            "-o",
+            "out/",
+            "--picture-format",
+            "jpg",
+        ],
+    );
+    assert!(f.join("out/scene.jpg").exists());
+    let help = ["scene.pov", "-o", "a", "--picture-format", "gif"];
+    fails(f, &help, 2, &["png", "jpg", "tga"]);
+}
+
+#[test]
+fn what_is_left_out_is_noted() {
+    let folder = folder();
+    let f = folder.path();
+    let said = succeeds(
+        f,
+        &[
+            "+Iscene.pov",
+            "+W4",
+            "+H3",
+            "+GDlog.txt",
+            "Dither=on",
+            "Field_Render=on",
+        ],
+    );
+    for part in ["not written to files", "not dithered", "fields"] {
+        assert!(said.contains(part), "{said}");
+    }
+    assert!(!f.join("log.txt").exists());
+    fails(
+        f,
+        &["+Iscene.pov", "+W4", "+H3", "Dither=on", "--strict"],
+        3,
+        &["--strict"],
+    );
+}

@@ -1,0 +1,151 @@
+//! Pictures in textures: palettes, and the meaning of their codes.
+
+use super::color_at;
+use super::common::parse_with;
+use strahl_math::DVec3;
+use strahl_sdl::MemoryHost;
+use strahl_shade::Color;
+use strahl_shade::patterns::TexturePoint;
+
+/// A BMP of 2 x 1 texels with a palette whose entries have the same colour.
+fn picture_with_a_palette() -> Vec<u8> {
+    let mut bytes = b"BM".to_vec();
+    let (palette, row) = ([9u8, 9, 9, 0].repeat(2), [0u8, 1, 0, 0]);
+    let header = 14 + 40;
+    let offset = header + palette.len() as u32;
+    for number in [offset + row.len() as u32, 0, offset, 40, 2, 1] {
+        bytes.extend(number.to_le_bytes());
+    }
+    for number in [1u16, 8] {
+        bytes.extend(number.to_le_bytes());
+    }
+    for number in [0u32, 4, 0, 0, 2, 2] {
+        bytes.extend(number.to_le_bytes());
+    }
+    bytes.extend(palette);
+    bytes.extend(row);
+    bytes
+}
+
+#[test]
+fn material_maps_choose_by_the_index_in_a_palette() {
+    let mut host = MemoryHost::new().with_file("codes.bmp", picture_with_a_palette());
+    let text = "sphere { 0, 1 texture { material_map { bmp \"codes.bmp\"
+        texture { pigment { rgb x } } texture { pigment { rgb y } } } } }";
+    let parsed = parse_with(&mut host, text);
+    let scene = parsed.scene.expect("a scene");
+    let texture = scene.objects.0[0]
+        .material
+        .as_ref()
+        .unwrap()
+        .texture
+        .clone();
+    let texture = texture.unwrap().0;
+    let seen = |x: f64| {
+        let point = TexturePoint::in_space(DVec3::new(x, 0.5, 0.0));
+        let mut paint = strahl_shade::texture::TexturePaint::default();
+        texture.layers_at(&point, 1.0, &mut paint);
+        paint.layers[0].color.rgb
+    };
+    assert_eq!(seen(0.25), Color::new(1.0, 0.0, 0.0));
+    assert_eq!(seen(0.75), Color::new(0.0, 1.0, 0.0));
+}
+
+/// A picture of one grey texel with code 128 in three formats: BMP, whose codes are usually sRGB; PPM, which doesn't specify
+/// them; and HDR, which is linear.
+fn one_texel() -> MemoryHost {
+    let mut bmp =
+        b"BM\x3a\0\0\0\0\0\0\0\x36\0\0\0\x28\0\0\0\x01\0\0\0\x01\0\0\0\x01\0\x18\0".to_vec();
+    bmp.resize(54, 0);
+    bmp.extend([128, 128, 128, 0]);
+    MemoryHost::new()
+        .with_file("p.bmp", bmp)
+        .with_file("p.ppm", b"P6\n1 1\n255\n\x80\x80\x80".to_vec())
+        .with_file(
+            "p.hdr",
+            b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 1\n\x80\x80\x80\x80".to_vec(),
+        )
+}
+
+fn red_of(pigment: &str, header: &str) -> f64 {
+    let text = format!("{header} sphere {{ 0, 1 pigment {{ {pigment} }} }}");
+    let parsed = parse_with(&mut one_texel(), &text);
+    let messages: Vec<_> = parsed.diagnostics.iter().map(ToString::to_string).collect();
+    let scene = parsed
+        .scene
+        .unwrap_or_else(|| panic!("{text}\n{}", messages.join("\n")));
+    let material = scene.objects.0[0].material.as_ref().expect("a material");
+    let texture = &material.texture.as_ref().expect("a texture").0;
+    color_at(texture, DVec3::splat(0.5)).rgb.r
+}
+
+/// How POV-Ray 3.7 converts the codes of pictures: by version, `assumed_gamma` and the format's own specification.
+#[test]
+fn image_maps_of_scenes_that_are_not_linear_have_povrays_colours() {
+    let code = 128.0 / 255.0;
+    let linear = strahl_shade::srgb::decode(code);
+    let float = 0.5;
+    let in_2_2 = |x: f64| x.powf(1.0 / 2.2);
+    let raised = code.powf(2.2);
+    let set = |version: &str, gamma: &str| {
+        format!("#version {version}; global_settings {{ assumed_gamma {gamma} }}")
+    };
+    // The values of BMP, PPM, HDR, and of the BMP with `gamma 2.2`.
+    let table = [
+        (String::new(), [code, code, float, raised]),
+        ("#version 3.6;".to_owned(), [code, code, float, raised]),
+        (set("3.6", "1"), [code, code, float, raised]),
+        (set("3.6", "2.2"), [code, code, in_2_2(float), code]),
+        ("#version 3.7;".to_owned(), [linear, code, float, raised]),
+        (set("3.7", "1"), [linear, code, float, raised]),
+        (
+            set("3.7", "2.2"),
+            [in_2_2(linear), code, in_2_2(float), code],
+        ),
+        (
+            set("3.7", "srgb"),
+            [
+                code,
+                code,
+                strahl_shade::srgb::encode(float),
+                strahl_shade::srgb::encode(raised),
+            ],
+        ),
+    ];
+    for (header, expected) in table {
+        let pictures = [
+            "image_map { bmp \"p.bmp\" }",
+            "image_map { ppm \"p.ppm\" }",
+            "image_map { hdr \"p.hdr\" }",
+            "image_map { bmp \"p.bmp\" gamma 2.2 }",
+        ];
+        for (picture, expected) in pictures.iter().zip(expected) {
+            let got = red_of(picture, &header);
+            assert!(
+                (got - expected).abs() < 0.003,
+                "{header} {picture}: {got} is not {expected}"
+            );
+        }
+        // Data always use the codes.
+        let pattern = "image_pattern { bmp \"p.bmp\" } color_map { [0 rgb 0] [1 rgb 1] }";
+        assert!((red_of(pattern, &header) - code).abs() < 1e-6, "{header}");
+    }
+    // A setting after the picture has no effect on it.
+    let late = "#version 3.7; #declare P = pigment { image_map { bmp \"p.bmp\" } } global_settings { assumed_gamma 2.2 }";
+    assert!((red_of("P", late) - linear).abs() < 1e-6);
+}
+
+#[test]
+fn srgb_colours_are_numbers_of_the_scene() {
+    for (header, expected) in [
+        (
+            "#version 3.7; global_settings { assumed_gamma 1 }",
+            strahl_shade::srgb::decode(0.5),
+        ),
+        ("#version 3.7; global_settings { assumed_gamma srgb }", 0.5),
+        ("", 0.5),
+    ] {
+        let got = red_of("srgb 0.5", header);
+        assert!((got - expected).abs() < 1e-9, "{header}: {got}");
+    }
+}
