@@ -40,7 +40,7 @@ fn every_format_is_found_by_name_and_by_extension() {
         .to_string();
     assert_eq!(
         error,
-        "unknown scene format `vrml`; there are: nff, obj, ply, stl, gltf"
+        "unknown scene format `vrml`; the formats are nff, obj, ply, stl, gltf"
     );
 }
 
@@ -113,7 +113,7 @@ fn files_that_cannot_be_read_are_one_error() {
     );
     assert!(
         unknown.contains(
-            "= help: name the format with `--format`; there are: nff, obj, ply, stl, gltf"
+            "= help: name the format with `--format`; the formats are nff, obj, ply, stl, gltf"
         )
     );
     std::fs::write(path("noise.nff"), [0u8, 255, 3, 9, 200, 17]).expect("written");
