@@ -1,5 +1,6 @@
 //! Speed against other programs: interleaved runs, medians, ratios.
 
+use crate::arguments::Arguments;
 use crate::convert;
 use anyhow::{Context, Result, bail};
 use serde_json::Value;
@@ -12,13 +13,11 @@ const SPD: [&str; 4] = ["--max-depth", "5", "--adc-bailout", "0"];
 /// Trace times of the SPD scenes at 512x512, no antialiasing, equal depth, against POV-Ray and Tachyon.
 pub(crate) fn spd(args: &[&str]) -> Result<()> {
     let (mut folder, mut runs, mut threads) = (PathBuf::from("../shared/data/spd"), 5, 1);
-    let mut rest = args.iter();
-    while let Some(arg) = rest.next() {
-        match *arg {
-            "--runs" => runs = rest.next().context("--runs needs a number")?.parse()?,
-            "--threads" => {
-                threads = rest.next().context("--threads needs a number")?.parse()?;
-            }
+    let mut args = Arguments::new(args);
+    while let Some(option) = args.option() {
+        match option {
+            "--runs" => runs = args.number()?,
+            "--threads" => threads = args.number()?,
             other => folder = PathBuf::from(other),
         }
     }

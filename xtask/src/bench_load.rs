@@ -1,5 +1,6 @@
 //! Compares the time to read large files with the time to build the accelerator.
 
+use crate::arguments::Arguments;
 use crate::bench::{build_strahl, median, strahl_binary};
 use crate::lab;
 use anyhow::{Context, Result, bail};
@@ -12,11 +13,11 @@ use std::process::Command;
 /// Reads a landscape of `2 side²` triangles in every format that has meshes or lists of triangles, and two NFF scenes.
 pub(crate) fn run(args: &[&str]) -> Result<()> {
     let (mut runs, mut side) = (5, 2236);
-    let mut rest = args.iter();
-    while let Some(arg) = rest.next() {
-        match *arg {
-            "--runs" => runs = rest.next().context("--runs needs a number")?.parse()?,
-            "--side" => side = rest.next().context("--side needs a number")?.parse()?,
+    let mut args = Arguments::new(args);
+    while let Some(option) = args.option() {
+        match option {
+            "--runs" => runs = args.number()?,
+            "--side" => side = args.number()?,
             other => bail!("unknown option {other}"),
         }
     }

@@ -1,5 +1,6 @@
 //! Speed of parsing against POV-Ray: both programs take turns on the same generated files.
 
+use crate::arguments::Arguments;
 use crate::bench::median;
 use anyhow::{Context, Result, bail};
 use std::fmt::Write as _;
@@ -28,13 +29,11 @@ struct Case {
 /// Processor time for parsing a scene of a million spheres made by loops and macros, and an exported scene of `--megabytes`.
 pub(crate) fn parse(args: &[&str]) -> Result<()> {
     let (mut runs, mut megabytes) = (5, 300);
-    let mut rest = args.iter();
-    while let Some(arg) = rest.next() {
-        match *arg {
-            "--runs" => runs = rest.next().context("--runs needs a number")?.parse()?,
-            "--megabytes" => {
-                megabytes = rest.next().context("--megabytes needs a number")?.parse()?;
-            }
+    let mut args = Arguments::new(args);
+    while let Some(option) = args.option() {
+        match option {
+            "--runs" => runs = args.number()?,
+            "--megabytes" => megabytes = args.number()?,
             other => bail!("unknown option {other}"),
         }
     }

@@ -3,6 +3,7 @@
 //! A page shows each scene of a folder: its name, its picture, the comment at its beginning, and its text. So the manual shows
 //! only features that exist.
 
+use crate::arguments::Arguments;
 use anyhow::{Context, Result, bail};
 use std::collections::BTreeSet;
 use std::fmt::Write;
@@ -106,15 +107,11 @@ struct Scene {
 pub(crate) fn run(args: &[&str]) -> Result<()> {
     let mut check = false;
     let mut only = "";
-    let mut rest = args.iter();
-    while let Some(arg) = rest.next() {
-        match *arg {
+    let mut args = Arguments::new(args);
+    while let Some(option) = args.option() {
+        match option {
             "--check" => check = true,
-            "--only" => {
-                only = rest
-                    .next()
-                    .context("--only needs a part of a file's name")?
-            }
+            "--only" => only = args.value()?,
             other => bail!("unknown argument {other}"),
         }
     }

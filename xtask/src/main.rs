@@ -5,6 +5,7 @@
     reason = "programs may print"
 )]
 
+mod arguments;
 mod bench;
 mod bench_csg;
 mod bench_load;

@@ -2,6 +2,7 @@
 
 mod scenes;
 
+use crate::arguments::Arguments;
 use crate::bench::{build_strahl, geometric_mean, median, run_povray, run_strahl, strahl_binary};
 use crate::compare_pov::picture;
 use anyhow::{Context, Result, bail};
@@ -15,14 +16,12 @@ const BOUND: f64 = 0.5;
 /// Prints and saves a table of trace times, one row per scene.
 pub(crate) fn run(args: &[&str]) -> Result<()> {
     let (mut runs, mut threads, mut only) = (5, 1, "");
-    let mut rest = args.iter();
-    while let Some(arg) = rest.next() {
-        match *arg {
-            "--runs" => runs = rest.next().context("--runs needs a number")?.parse()?,
-            "--threads" => {
-                threads = rest.next().context("--threads needs a number")?.parse()?;
-            }
-            "--only" => only = rest.next().context("--only needs a part of a name")?,
+    let mut args = Arguments::new(args);
+    while let Some(option) = args.option() {
+        match option {
+            "--runs" => runs = args.number()?,
+            "--threads" => threads = args.number()?,
+            "--only" => only = args.value()?,
             other => bail!("unknown option {other}"),
         }
     }

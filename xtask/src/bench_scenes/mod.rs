@@ -4,8 +4,9 @@ mod antialiasing;
 mod measure;
 mod report;
 
+use crate::arguments::Arguments;
 use crate::compare_pov::{find_scenes, picture, size};
-use anyhow::{Context, Result, bail};
+use anyhow::{Result, bail};
 use measure::{Program, Timed};
 use std::path::{Path, PathBuf};
 
@@ -51,16 +52,15 @@ impl Options {
             errors: false,
             most: 120.0,
         };
-        let mut rest = args.iter();
-        while let Some(arg) = rest.next() {
-            let mut value = || rest.next().with_context(|| format!("{arg} needs a value"));
-            match *arg {
-                "--size" => options.size = size(value()?)?,
-                "--runs" => options.runs = value()?.parse().context("--runs needs a number")?,
-                "--limit" => options.limit = value()?.parse().context("--limit needs a number")?,
-                "--most" => options.most = value()?.parse().context("--most needs seconds")?,
-                "--only" => options.only = Some((*value()?).to_owned()),
-                "--out" => options.out = PathBuf::from(value()?),
+        let mut args = Arguments::new(args);
+        while let Some(option) = args.option() {
+            match option {
+                "--size" => options.size = size(args.value()?)?,
+                "--runs" => options.runs = args.number()?,
+                "--limit" => options.limit = args.number()?,
+                "--most" => options.most = args.number()?,
+                "--only" => options.only = Some(args.value()?.to_owned()),
+                "--out" => options.out = PathBuf::from(args.value()?),
                 "--aa" => options.antialiased = true,
                 "--errors" => (options.antialiased, options.errors) = (true, true),
                 other if other.starts_with('-') => bail!("unknown option {other}"),

@@ -6,6 +6,7 @@ pub(crate) mod picture;
 pub(crate) mod programs;
 mod report;
 
+use crate::arguments::Arguments;
 use anyhow::{Context, Result, bail};
 use programs::{Outcome, Programs};
 use std::path::{Path, PathBuf};
@@ -51,15 +52,14 @@ impl Options {
             out: PathBuf::from("target/compare-pov/report"),
             only: None,
         };
-        let mut rest = args.iter();
-        while let Some(arg) = rest.next() {
-            let mut value = || rest.next().with_context(|| format!("{arg} needs a value"));
-            match *arg {
-                "--size" => options.size = size(value()?)?,
-                "--limit" => options.limit = value()?.parse().context("--limit needs a number")?,
-                "--jobs" => options.jobs = value()?.parse().context("--jobs needs a number")?,
-                "--out" => options.out = PathBuf::from(value()?),
-                "--only" => options.only = Some((*value()?).to_owned()),
+        let mut args = Arguments::new(args);
+        while let Some(option) = args.option() {
+            match option {
+                "--size" => options.size = size(args.value()?)?,
+                "--limit" => options.limit = args.number()?,
+                "--jobs" => options.jobs = args.number()?,
+                "--out" => options.out = PathBuf::from(args.value()?),
+                "--only" => options.only = Some(args.value()?.to_owned()),
                 other if other.starts_with('-') => bail!("unknown option {other}"),
                 folder => options.folder = PathBuf::from(folder),
             }

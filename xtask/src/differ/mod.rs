@@ -9,6 +9,7 @@ mod reduce;
 mod render;
 mod report;
 
+use crate::arguments::Arguments;
 use crate::compare_pov::picture::Shown;
 use crate::compare_pov::programs::Programs;
 use anyhow::{Context, Result, bail};
@@ -60,21 +61,15 @@ impl Options {
             strahl: None,
             print: false,
         };
-        let mut rest = args.iter();
-        while let Some(arg) = rest.next() {
-            let mut value = || {
-                rest.next()
-                    .copied()
-                    .with_context(|| format!("{arg} needs a value"))
-            };
-            let number = |text: &str| text.parse().with_context(|| format!("{arg} {text}?"));
-            match *arg {
-                "--seed" => options.seed = number(value()?)?,
-                "--first" => options.first = number(value()?)?,
-                "--count" => options.count = number(value()?)?,
-                "--jobs" => options.jobs = number(value()?)?.max(1) as usize,
-                "--out" => options.out = PathBuf::from(value()?),
-                "--strahl" => options.strahl = Some(PathBuf::from(value()?)),
+        let mut args = Arguments::new(args);
+        while let Some(option) = args.option() {
+            match option {
+                "--seed" => options.seed = args.number()?,
+                "--first" => options.first = args.number()?,
+                "--count" => options.count = args.number()?,
+                "--jobs" => options.jobs = args.number::<usize>()?.max(1),
+                "--out" => options.out = PathBuf::from(args.value()?),
+                "--strahl" => options.strahl = Some(PathBuf::from(args.value()?)),
                 "--print" => options.print = true,
                 other => bail!(
                     "unknown option {other}: differ takes --seed N --first N --count M --jobs J --out DIR \

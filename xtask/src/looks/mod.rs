@@ -4,6 +4,7 @@
 mod measure;
 mod report;
 
+use crate::arguments::Arguments;
 use crate::compare_pov::picture::{self, Shown};
 use crate::compare_pov::programs::{Outcome, Programs};
 use crate::plates::{self, Name, Sheet};
@@ -40,18 +41,17 @@ impl Options {
             table: None,
             means: None,
         };
-        let mut rest = args.iter();
-        while let Some(arg) = rest.next() {
-            let mut value = || rest.next().with_context(|| format!("{arg} needs a value"));
+        let mut args = Arguments::new(args);
+        while let Some(option) = args.option() {
             let path = |text: &str| Ok::<_, anyhow::Error>(Some(std::path::absolute(text)?));
-            match *arg {
-                "--only" => options.only = Some((*value()?).to_owned()),
-                "--out" => options.out = PathBuf::from(value()?),
-                "--cell" => options.cell = crate::compare_pov::size(value()?)?,
-                "--program" => options.program = path(value()?)?,
-                "--library" => options.library = path(value()?)?,
-                "--table" => options.table = path(value()?)?,
-                "--means" => options.means = path(value()?)?,
+            match option {
+                "--only" => options.only = Some(args.value()?.to_owned()),
+                "--out" => options.out = PathBuf::from(args.value()?),
+                "--cell" => options.cell = crate::compare_pov::size(args.value()?)?,
+                "--program" => options.program = path(args.value()?)?,
+                "--library" => options.library = path(args.value()?)?,
+                "--table" => options.table = path(args.value()?)?,
+                "--means" => options.means = path(args.value()?)?,
                 other => bail!("unknown option {other}"),
             }
         }

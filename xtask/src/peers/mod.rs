@@ -9,6 +9,7 @@ mod race;
 mod rays;
 mod trees;
 
+use crate::arguments::Arguments;
 use crate::bench::strahl_binary;
 use anyhow::{Context, Result, bail};
 use builds::Built;
@@ -55,19 +56,18 @@ pub(crate) fn run(args: &[&str]) -> Result<()> {
         accelerator: AcceleratorKind::default(),
         trees: false,
     };
-    let mut rest = args.iter();
-    while let Some(arg) = rest.next() {
-        let mut value = || rest.next().with_context(|| format!("{arg} needs a value"));
-        match *arg {
-            "--rounds" => plan.rounds = value()?.parse()?,
-            "--builds" => plan.builds = value()?.parse()?,
-            "--side" => plan.side = value()?.parse()?,
-            "--only" => plan.only = value()?.split(',').collect(),
+    let mut args = Arguments::new(args);
+    while let Some(option) = args.option() {
+        match option {
+            "--rounds" => plan.rounds = args.number()?,
+            "--builds" => plan.builds = args.number()?,
+            "--side" => plan.side = args.number()?,
+            "--only" => plan.only = args.value()?.split(',').collect(),
             "--brief" => plan.brief = true,
             "--trees" => plan.trees = true,
-            "--threads" => plan.threads = value()?.parse()?,
-            "--model" => plan.model = Some(value()?),
-            "--accelerator" => plan.accelerator = value()?.parse()?,
+            "--threads" => plan.threads = args.number()?,
+            "--model" => plan.model = Some(args.value()?),
+            "--accelerator" => plan.accelerator = args.value()?.parse()?,
             other => bail!(
                 "unknown option {other}; there are --rounds N, --builds N, --side PIXELS (a multiple of 4), --only PART,PART..., --threads N, --model FILE, --accelerator NAME, --brief, --trees"
             ),
