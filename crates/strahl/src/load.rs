@@ -49,7 +49,7 @@ impl fmt::Display for Format {
 
 /// There is no scene format of that name.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("unknown scene format `{found}`; there are: {}", names())]
+#[error("unknown scene format `{found}`; the formats are {}", names())]
 pub struct UnknownFormat {
     found: String,
 }

@@ -111,11 +111,9 @@ fn files_that_cannot_be_read_are_one_error() {
         unknown.contains("unknown ending `.xyz`, and the content does not show its format"),
         "{unknown}"
     );
-    assert!(
-        unknown.contains(
-            "= help: name the format with `--format`; the formats are nff, obj, ply, stl, gltf"
-        )
-    );
+    assert!(unknown.contains(
+        "= help: name the format with `--format`; the formats are nff, obj, ply, stl, gltf"
+    ));
     std::fs::write(path("noise.nff"), [0u8, 255, 3, 9, 200, 17]).expect("written");
     assert!(
         load(&path("noise.nff")).contains("noise.nff` is not an NFF scene: it is a binary file")
