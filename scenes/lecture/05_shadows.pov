@@ -1,7 +1,7 @@
 // Shadow rays: p + t (s - p) with the light's position s. The light counts only if there is no intersection with 0 < t < 1.
 //
 // The ball hides the lamp from a part of the floor. The pane of red glass is hit as well, but lets a part of the light through: its
-// shadow is red. The lamp itself is an object that looks like what it is, and does not hide its own light.
+// shadow is red. The lamp itself is visible (`looks_like`), and does not block its own light.
 //
 //     strahl explain scenes/lecture/05_shadows.pov --size 320x180 --sampling center --pixel 225,123
 //     strahl explain scenes/lecture/05_shadows.pov --size 320x180 --sampling center --pixel 80,130

@@ -5,7 +5,7 @@
 //
 //     strahl explain scenes/lecture/08_total_reflection.pov --size 320x180 --sampling center --pixel 20,60
 //
-// says that the ray meets the surface of the water too flat, with the sine that Snell's law would ask for.
+// reports total reflection at the surface of the water, with the value of sin a2 that Snell's law would need.
 #version 3.7;
 global_settings { assumed_gamma 1 max_trace_level 8 }
 camera { location <0, 0.6, -3.4> right x * image_width / image_height angle 95 look_at <0, 2.2, 0> }

@@ -1,13 +1,13 @@
 // Bounding volumes: a ray that misses the sphere around an object misses the object.
 //
 // A chain of balls and what a program knows about it: bounding spheres around each four, around each sixteen, and around all. A ray
-// that meets the outer sphere tries four, and of those only the ones it meets: about log n tests instead of n.
+// that hits the outer sphere tests four inside it, and so on down: about log n tests instead of n.
 //
 //     strahl compare scenes/lecture/11_bounding_volumes.pov --size 160x90 --sampling center --with list --with spheres --with bvh
 //     strahl trace-ray scenes/lecture/11_bounding_volumes.pov --size 320x180 --pixel 200,90 --accelerator spheres
 //
-// print how many nodes are looked at and how many objects are tried for each ray, without a hierarchy, with one of spheres and with one
-// of boxes, and the spheres that a single ray meets. The pictures are the same to the last bit: so says the last column.
+// print the numbers of nodes visited and objects tested per ray, without a hierarchy, with one of spheres and with one of boxes, and the
+// spheres that a single ray hits. The last column shows that the pictures are equal to the last bit.
 #version 3.7;
 global_settings { assumed_gamma 1 max_trace_level 8 }
 camera { location <0, 2.4, -8.5> right x * image_width / image_height angle 56 look_at <0, 1.2, 0> }

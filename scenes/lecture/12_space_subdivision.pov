@@ -1,14 +1,14 @@
-// Space subdivision: a ray looks at the cells along its way only, and ends at the first hit inside of the current cell.
+// Space subdivision: a ray visits only the cells along its way, and ends at the first hit inside of the current cell.
 //
 // The scene walks a grid itself, in the manner of a 3-D Bresenham: from cell to cell through the face that is left first, the smallest
-// t_k = (-D_k - n_k.p) / (n_k.d). The cells that the ray visits are drawn as glass; of all balls only those in them are tried (red).
+// t_k = (-D_k - n_k.p) / (n_k.d). The cells that the ray visits are drawn as glass; of all balls only those in them are tested (red).
 //
 //     strahl trace-ray scenes/lecture/12_space_subdivision.pov --size 320x180 --pixel 200,90 --accelerator grid
 //     strahl trace-ray scenes/lecture/12_space_subdivision.pov --size 320x180 --pixel 200,90 --accelerator octree:traversal=trial-plane
 //     strahl compare scenes/lecture/12_space_subdivision.pov --size 160x90 --sampling center --with list --with grid --with octree
 //
-// print the cells along the way of a primary ray with the face it leaves each by and the objects tried in it, and what the structures
-// cost for all rays. The trial exit plane is the one perpendicular to the largest component of d; `region` says where the ray meets it:
+// print the cells along the way of a primary ray, with the face by which it leaves each and the objects tested in it, and the costs of the
+// structures for all rays. The trial exit plane is the one perpendicular to the largest component of d; `region` says where the ray meets it:
 // 0 inside the cell's face, 1 to 4 beyond an edge, 5 to 8 beyond a corner.
 #version 3.7;
 global_settings { assumed_gamma 1 max_trace_level 8 }

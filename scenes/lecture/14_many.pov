@@ -1,6 +1,6 @@
 // Why acceleration: 1,000 balls on a picture of 1,000 by 1,000 pixels are a thousand million tests for the primary rays alone.
 //
-// Change `Side` to have more: 30 are 27,000 balls. `--accelerator list` tries all of them for every ray.
+// Change `Side` to have more: 30 are 27,000 balls. `--accelerator list` tests all of them for every ray.
 //
 //     strahl compare scenes/lecture/14_many.pov --declare Side=20 --size 64x36 --sampling center --with list --with bvh
 //
