@@ -166,7 +166,7 @@ pub fn load_path(path: &Path, options: LoadOptions) -> Loaded {
     if options.format.is_none() && ending(path).is_some_and(|e| e == "inc") {
         let shown = path.display();
         return failed(
-            Diagnostic::error(format!("`{shown}` is an include file, no scene")).hint(
+            Diagnostic::error(format!("`{shown}` is an include file, not a scene")).hint(
                 "give the .pov file that includes it; `--format pov` reads it as a scene anyway",
             ),
         );

@@ -55,17 +55,17 @@ impl Parameters for Bvh8Parameters {
         Parameter {
             name: "build",
             values: "default|fast|high",
-            about: "how carefully it is built: `fast` is ready sooner, its rays take longer; `high` is ready later, its rays are faster",
+            about: "quality of the build: `fast` builds faster, for slower rays; `high` builds more slowly, for faster rays",
         },
         Parameter {
             name: "compact",
             values: "",
-            about: "spend a fifth of the memory on triangles of meshes; rays take longer",
+            about: "use a sixth of the memory for triangles of meshes; rays take longer",
         },
         Parameter {
             name: "simd",
             values: "scalar|sse4|avx2|avx512",
-            about: "walk with these instructions instead of the best that the processor has; the picture is the same",
+            about: "traverse with these instructions instead of the processor's best; the picture is the same",
         },
     ];
 

@@ -42,7 +42,7 @@ impl Parameters for GridParameters {
         Parameter {
             name: "havran",
             values: "",
-            about: "build and count as V. Havran's published figures do: boxes decide, no mailbox, no skipping",
+            about: "build and count as for V. Havran's published figures: by boxes, without mailboxes, without skipping empty cells",
         },
     ];
 

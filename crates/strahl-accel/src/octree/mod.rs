@@ -70,7 +70,7 @@ impl Parameters for OctreeParameters {
         Parameter {
             name: "split",
             values: "cost|centre",
-            about: "where cells are divided [cost]",
+            about: "the planes that divide cells [cost]",
         },
         Parameter {
             name: "leaf",
@@ -80,12 +80,12 @@ impl Parameters for OctreeParameters {
         Parameter {
             name: "traversal",
             values: "parametric|exit-face|trial-plane|neighbours",
-            about: "how rays walk [parametric]",
+            about: "method of traversal [parametric]",
         },
         Parameter {
             name: "havran",
             values: "",
-            about: "build and count as V. Havran's published figures do (centre, leaf=1, exit-face): boxes decide, no mailbox",
+            about: "build and count as for V. Havran's published figures (centre, leaf=1, exit-face): by boxes, without mailboxes",
         },
     ];
 

@@ -35,7 +35,7 @@ impl Parameters for SpheresParameters {
     const ALL: &'static [Parameter] = &[Parameter {
         name: "build",
         values: "bvh|agglomerative",
-        about: "group as a hierarchy of boxes does, from the top, or neighbours with the smallest common sphere, from the bottom",
+        about: "top-down, with the groups of a hierarchy of boxes, or bottom-up, joining neighbours with the smallest common sphere",
     }];
 
     fn set(&mut self, _: &str, value: &str) -> Option<()> {
