@@ -1,4 +1,4 @@
-//! Any bytes read as NFF: no panic, no memory beyond measure, and a scene or an error.
+//! Any bytes read as NFF: no panic, no excessive memory, and a scene or an error.
 
 #![no_main]
 
@@ -11,7 +11,7 @@ fuzz_target!(|data: &[u8]| {
     assert_eq!(failed, loaded.scene.is_none());
     assert!(loaded.diagnostics.len() < 100);
     for diagnostic in &loaded.diagnostics {
-        // Placing a caret must not fail either.
+        // Placing the caret must not fail either.
         let _ = diagnostic.to_string();
     }
 });

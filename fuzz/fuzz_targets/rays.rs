@@ -1,5 +1,5 @@
-//! Any scene and any rays: every structure, every level of vector instructions and every packet finds the same hits. A third of the
-//! scenes are rendered too, for the rays that start on things.
+//! Any scene and any rays: every structure, every level of vector instructions and every packet finds the same hits. A third of
+//! the scenes are also rendered, for rays that start on objects.
 
 #![no_main]
 
@@ -9,7 +9,7 @@ use strahl::math::{Interval, Ray};
 use strahl::prelude::*;
 use strahl::tracing::{Hit, PACKET, Prepared, RayClass, Tracer};
 
-/// Makes choices of bytes; zeros when they are used up.
+/// Makes choices from the input bytes; zeros when they are used up.
 struct Choices<'d>(&'d [u8]);
 
 impl Choices<'_> {
@@ -25,7 +25,7 @@ impl Choices<'_> {
         usize::from(self.byte() % n)
     }
 
-    /// On a coarse lattice, where ties abound, or anywhere near it.
+    /// A point on a coarse lattice, where ties are frequent, or anywhere near it.
     fn number(&mut self) -> f64 {
         let b = self.byte();
         let coarse = f64::from(b >> 2) / 8.0 - 4.0;
@@ -93,7 +93,7 @@ impl Choices<'_> {
         }
     }
 
-    /// Objects of all kinds, or of one kind and material: such are searched in another way.
+    /// Objects of all kinds, or of one kind and material, for which there are specialised searches.
     fn scene(&mut self, scale: f64) -> Scene {
         let scaled = Transform::try_scale(DVec3::splat(scale)).expect("a scale that is not 0");
         let (kind, common) = (self.below(6), self.material());
@@ -110,7 +110,7 @@ impl Choices<'_> {
     }
 }
 
-/// The structures, with the ways to walk them.
+/// The structures, with the methods to traverse them.
 fn kinds() -> Vec<AcceleratorKind> {
     let more = [
         "octree:traversal=neighbours",
@@ -152,7 +152,7 @@ fuzz_target!(|data: &[u8]| {
                 Color::gray(0.5),
             ));
     }
-    // A scene with a shape that can't be is none.
+    // A scene with an invalid shape is skipped.
     let Ok(prepared) = Prepared::new(&scene) else {
         return;
     };

@@ -1,5 +1,5 @@
-//! Any bytes read as a scene in POV-Ray's language: no panic, no loop without end, and a scene or an error; a scene of a few
-//! objects can be made ready for rendering, or that ends in an error too.
+//! Any bytes read as a scene in POV-Ray's language: no panic, no infinite loop, and a scene or an error; a scene of a few objects
+//! is also compiled, which may end in an error.
 
 #![no_main]
 
@@ -8,7 +8,7 @@ use strahl_sdl::{MemoryHost, Options, Source, parse};
 
 fuzz_target!(|data: &[u8]| {
     let mut options = Options::default();
-    // Small enough for many runs in a second, and for loops that don't end to be told apart from slow ones.
+    // Small enough for many runs per second, and for distinguishing infinite loops from slow ones.
     options.limits.steps = 5_000;
     options.limits.array_elements = 1 << 12;
     options.limits.string_bytes = 1 << 12;
@@ -20,7 +20,7 @@ fuzz_target!(|data: &[u8]| {
     options.limits.nesting = 50;
     options.limits.function_cost = 1 << 10;
     options.limits.function_operations = 1 << 12;
-    // Finding advice for misspelt names is what most inputs would spend their time on.
+    // Most inputs would spend their time on finding suggestions for misspelt names.
     options.limits.errors = 5;
     let mut host = MemoryHost::new().with_file("a.inc", data.to_vec());
     let parsed = parse(Source::new("fuzz.pov", data), &options, &mut host);
@@ -28,7 +28,7 @@ fuzz_target!(|data: &[u8]| {
     assert_eq!(failed, parsed.scene.is_none());
     assert!(parsed.diagnostics.len() < 300);
     for diagnostic in &parsed.diagnostics {
-        // Placing a caret must not fail either.
+        // Placing the caret must not fail either.
         let _ = diagnostic.to_string();
     }
     if let Some(scene) = &parsed.scene

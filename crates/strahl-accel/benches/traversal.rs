@@ -1,4 +1,4 @@
-//! What accelerators cost over random balls: building, and rays of every kind a picture needs.
+//! The cost of accelerators over random balls: building, and rays of every kind.
 //!
 //! `cargo bench -p strahl-accel` runs all; `cargo bench -p strahl-accel -- 7k/bvh` one accelerator on one scene.
 //! Rays are measured in batches of 65 536, so a throughput of 1 Melem/s is a million rays per second.
@@ -57,12 +57,12 @@ impl Ball {
     }
 }
 
-/// What a ray is asked for, and the answer.
+/// A query with a ray, and its answer.
 struct Query<'a> {
     balls: &'a [Ball],
     ray: &'a Ray,
     range: Interval,
-    /// Whether any hit will do.
+    /// Whether the query is for any hit.
     any: bool,
     found: Option<f64>,
 }
@@ -119,7 +119,7 @@ fn trace(
     query.found
 }
 
-/// Rays from an eye through pixels, and what starts where they hit.
+/// Rays from an eye through pixels, and the rays that start at their hits.
 fn workloads(accelerator: &AnyAccelerator, balls: &[Ball]) -> [Workload; 5] {
     let mut rng = Rng(8);
     let primary: Vec<Ray> = (0..SIDE * SIDE)
@@ -135,7 +135,7 @@ fn workloads(accelerator: &AnyAccelerator, balls: &[Ball]) -> [Workload; 5] {
             trace(accelerator, balls, ray, Interval::FORWARD, false).map(|t| ray.at(t))
         })
         .collect();
-    // As many of each kind, so that the figures compare.
+    // As many rays of each kind, so that the figures are comparable.
     let mut from_points = |to: &mut dyn FnMut(DVec3, DVec3) -> DVec3| -> Vec<Ray> {
         let starts = points.iter().cycle().take(SIDE * SIDE);
         starts.map(|p| Ray::new(*p, to(*p, rng.point()))).collect()
@@ -147,7 +147,7 @@ fn workloads(accelerator: &AnyAccelerator, balls: &[Ball]) -> [Workload; 5] {
     let past = past
         .into_iter()
         .map(|r| Ray::new(r.origin + DVec3::Y * 3.5, r.direction));
-    // Off the surface that it starts on.
+    // Starts slightly off the surface.
     let leaving = Interval::new(1e-9, 1.0);
     let workload = |name, rays, range, any| Workload {
         name,
@@ -170,7 +170,7 @@ fn traversal(c: &mut Criterion) {
         let bounds: Vec<Aabb> = balls.iter().map(Ball::bounds).collect();
         for kind in AcceleratorKind::ALL {
             if matches!(kind, AcceleratorKind::List(_)) {
-                // Nothing to learn, and minutes to wait.
+                // It would take minutes and show nothing new.
                 continue;
             }
             let mut group = c.benchmark_group(format!("{scene}/{kind}"));

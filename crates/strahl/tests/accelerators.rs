@@ -46,7 +46,7 @@ fn size() -> (u32, u32) {
 
 /// Compares all combinations for one scene.
 fn compare(path: &Path) {
-    // Scenes with many parts are made of fewer.
+    // Scenes with many parts are rendered with fewer.
     let mut sdl = Options::default();
     sdl.declare = ["Across", "Deep"]
         .map(|name| (name.to_owned(), Value::Float(60.0)))
@@ -59,7 +59,7 @@ fn compare(path: &Path) {
     let loaded = load_path(path, options);
     let Some(scene) = loaded.scene else {
         let said = format!("{:?}", loaded.diagnostics);
-        // Without fonts there are no letters.
+        // Without fonts there is no text.
         assert!(said.contains("the font `"), "{}: {said}", path.display());
         return;
     };
@@ -95,7 +95,7 @@ fn compare(path: &Path) {
     }
 }
 
-/// The files of a folder and those in it whose names end so.
+/// The files in a folder and its subfolders with this extension.
 fn files(folder: &Path, endings: &[&str]) -> Vec<PathBuf> {
     let mut found = Vec::new();
     let Ok(entries) = std::fs::read_dir(folder) else {

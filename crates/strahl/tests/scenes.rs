@@ -1,4 +1,4 @@
-//! All scenes of the repository: each must be read without a complaint, have a picture, and look as POV-Ray shows it.
+//! All scenes of the repository: each must be read without a message, have a picture, and look as in POV-Ray.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -8,7 +8,7 @@ use strahl::shade::srgb;
 use strahl::tracing::CompileOptions;
 use strahl::{LoadOptions, load_path};
 
-/// Scenes that POV-Ray 3.7 shows differently, and why.
+/// Scenes that look different in POV-Ray 3.7, with the reason.
 const DIFFERENT: [(&str, &str); 5] = [
     (
         "patterns/cubic.pov",
@@ -29,10 +29,10 @@ const DIFFERENT: [(&str, &str); 5] = [
     ),
 ];
 
-/// Scenes of many parts that are read with fewer: what they take the number from.
+/// Scenes of many parts that are rendered with fewer: the declarations of their numbers.
 const COARSE: [(&str, f64); 3] = [("Across", 40.0), ("Deep", 40.0), ("Generations", 2.0)];
 
-/// Enough to see whether something is missing.
+/// Large enough to see whether something is missing.
 const SIZE: (u32, u32) = (32, 24);
 
 /// 8-bit codes, row by row.
@@ -56,7 +56,7 @@ fn scenes() -> Vec<PathBuf> {
     found
 }
 
-/// Renders a scene without antialiasing; what is wrong with it otherwise.
+/// Renders a scene without antialiasing, or returns its problem.
 fn ours(scene: &Path) -> Result<Codes, String> {
     let mut sdl = Options::default();
     (sdl.image_width, sdl.image_height) = SIZE;
@@ -72,10 +72,10 @@ fn ours(scene: &Path) -> Result<Codes, String> {
     );
     let mut said: Vec<String> = loaded.diagnostics.iter().map(ToString::to_string).collect();
     if scene.ends_with("text.pov") {
-        // Another font stands in for POV-Ray's, which may not be here.
+        // Another font replaces POV-Ray's, which may be missing here.
         said.retain(|text| !text.contains("replaces it"));
     } else if scene.to_string_lossy().contains("exporters") {
-        // What other programs export may deserve advice, but nothing of it may be left out.
+        // Scenes of exporters may cause advice, but nothing in them may be left out.
         said.retain(|text| text.contains("left out") || text.contains("not supported"));
     }
     if !said.is_empty() {
@@ -118,7 +118,7 @@ fn theirs(povray: &Path, scene: &Path) -> Result<Codes, String> {
     Ok(codes.map(|code| f64::from(*code)).collect())
 }
 
-/// Lets several threads try all scenes; all that they complain about.
+/// Tries all scenes with several threads; returns all problems.
 fn try_all(check: impl Fn(&Path) -> Result<(), String> + Sync) -> Vec<String> {
     let scenes = scenes();
     let threads = std::thread::available_parallelism().map_or(2, |n| n.get());
@@ -129,7 +129,7 @@ fn try_all(check: impl Fn(&Path) -> Result<(), String> + Sync) -> Vec<String> {
                 let own = scenes.iter().skip(first).step_by(threads);
                 scope.spawn(move || {
                     own.filter_map(|scene| {
-                        // A machine without fonts cannot show letters.
+                        // A machine without fonts cannot render text.
                         let said = check(scene).err().filter(|e| !e.contains("the font `"))?;
                         Some(format!("{}: {said}", scene.display()))
                     })
@@ -172,7 +172,7 @@ fn scenes_are_read_without_complaint_and_look_as_povray_shows_them() {
     assert!(failed.is_empty(), "{}", failed.join("\n"));
 }
 
-/// A program to compare with; without it the caller skips, unless the environment requires all tools.
+/// A program to compare with; without it the caller skips its test, unless the environment requires all tools.
 fn tool(name: &str) -> Option<PathBuf> {
     let path = std::env::var_os("PATH")?;
     let found = std::env::split_paths(&path)

@@ -1,4 +1,4 @@
-//! The same answers from all.
+//! All accelerators give the same answers.
 
 use crate::hits::{Balls, Hit, answers, hit_box, hit_sphere};
 use crate::kinds;
@@ -8,8 +8,8 @@ use strahl_accel::{AcceleratorKind, AnyAccelerator, Boxes, Bvh8, List, Shapes};
 use strahl_math::{Aabb, DVec3, Interval, Ray};
 use strahl_simd::Simd;
 
-/// How many times the usual number of rays to try: `STRAHL_BATTERY=20 cargo test --release` makes it more than a million
-/// for each structure.
+/// The factor of the usual number of rays: `STRAHL_BATTERY=20 cargo test --release` traces more than a million for each
+/// structure.
 pub(crate) fn effort() -> usize {
     let asked = std::env::var("STRAHL_BATTERY").ok();
     asked.map_or(1, |n| n.parse().expect("STRAHL_BATTERY is a number"))
@@ -30,7 +30,7 @@ fn compare(
     }
     let list = List::build(&boxes);
     let balls = Balls(&boxes);
-    // Where balls are what is hit, the builders may know.
+    // If the primitives are balls, the builders may use that.
     let exact = std::ptr::fn_addr_eq(hit, hit_sphere as Hit);
     let shapes: &dyn Shapes = if exact { &balls } else { &Boxes(&boxes) };
     let mut others: Vec<(AcceleratorKind, AnyAccelerator)> = kinds()
@@ -106,7 +106,7 @@ fn they_agree_on_spheres_inside_the_boxes() {
     assert!(rays > 5_000 && hits > rays / 8, "{rays} {hits}");
 }
 
-/// Where f32 underflows, where products of coordinates overflow it, and where it ends.
+/// Scales at which f32 underflows, at which products of coordinates overflow f32, and at the limits of f32.
 #[test]
 fn they_agree_on_scenes_at_the_ends_of_f32() {
     let mut rng = Rng(6);
@@ -121,7 +121,7 @@ fn they_agree_on_scenes_at_the_ends_of_f32() {
     assert!(rays > 8_000 && hits > rays / 8, "{rays} {hits}");
 }
 
-/// Every power of two as the length of the direction, subnormal numbers too.
+/// Directions whose length is any power of two, subnormal numbers included.
 #[test]
 fn they_agree_on_directions_of_any_length() {
     let boxes: Vec<Aabb> = (0..20)
@@ -179,7 +179,7 @@ fn hostile_rays_are_harmless() {
                 )
             };
             let ray = Ray::new(any(), any());
-            // No panic, and no hit that the list does not have.
+            // It must not panic, and must not find a hit that the list does not find.
             let found = answers(&accelerator, hit_box, &boxes, &ray, Interval::FORWARD);
             if let Some((t, _)) = found.0 {
                 assert!(t > 0.0);
@@ -197,7 +197,7 @@ fn point() -> impl Strategy<Value = DVec3> {
 }
 
 proptest! {
-    /// The same with shrinking, on small scenes.
+    /// The same on small scenes, with shrinking.
     #[test]
     fn small_scenes_agree_with_the_list(
         corners in prop::collection::vec((point(), point()), 1..12),

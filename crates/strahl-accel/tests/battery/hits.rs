@@ -1,9 +1,9 @@
-//! What rays meet: boxes, or balls inside of them.
+//! The primitives of the battery: boxes, or balls inside of them.
 
 use strahl_accel::{Accelerator, Shapes, TraversalStats, Visitor};
 use strahl_math::{Aabb, DVec3, Interval, Ray};
 
-/// Balls inside of boxes, as their builder knows them.
+/// Balls inside of boxes, of which their builders know.
 pub(crate) struct Balls<'b>(pub(crate) &'b [Aabb]);
 
 impl Balls<'_> {
@@ -13,7 +13,7 @@ impl Balls<'_> {
     }
 }
 
-/// Boxes that the builders take for thin things that hardly fill them.
+/// Boxes that the builders treat as thin primitives that hardly fill them.
 pub(crate) struct Thin<'b>(pub(crate) &'b [Aabb]);
 
 impl Shapes for Thin<'_> {
@@ -52,7 +52,7 @@ impl Shapes for Balls<'_> {
     }
 }
 
-/// Where a ray enters a box, or leaves it if it starts inside: exact up to f64 rounding, no tolerance.
+/// The t at which a ray enters a box, or leaves it if it starts inside: exact up to f64 rounding, without tolerance.
 pub(crate) fn hit_box(b: &Aabb, ray: &Ray, range: Interval) -> Option<f64> {
     let (mut near, mut far) = (f64::NEG_INFINITY, f64::INFINITY);
     for axis in 0..3 {
@@ -71,13 +71,13 @@ pub(crate) fn hit_box(b: &Aabb, ray: &Ray, range: Interval) -> Option<f64> {
     if !(near <= far) {
         return None;
     }
-    // A crossing whose t overflows is none.
+    // A crossing whose t overflows does not count.
     [near, far]
         .into_iter()
         .find(|t| range.accepts(*t) && t.is_finite())
 }
 
-/// The first crossing of the ball inside of a box, which touches it where the box is a cube.
+/// The first crossing with the ball inside of a box; the ball touches the box if that is a cube.
 pub(crate) fn hit_sphere(b: &Aabb, ray: &Ray, range: Interval) -> Option<f64> {
     let radius = b.size().min_element() * 0.5;
     let to_center = b.center() - ray.origin;
@@ -91,7 +91,7 @@ pub(crate) fn hit_sphere(b: &Aabb, ray: &Ray, range: Interval) -> Option<f64> {
         .find(|t| range.accepts(*t))
 }
 
-/// How a primitive is hit, known its box.
+/// The intersection test of a primitive, given its box.
 pub(crate) type Hit = fn(&Aabb, &Ray, Interval) -> Option<f64>;
 
 pub(crate) struct Closest<'a> {
@@ -137,7 +137,7 @@ impl Visitor for Any<'_> {
     }
 }
 
-/// The closest hit, and whether there is any.
+/// The closest hit, and whether there is any hit.
 pub(crate) fn answers(
     accelerator: &impl Accelerator,
     hit: Hit,

@@ -13,7 +13,7 @@ mod way;
 
 use strahl_accel::AcceleratorKind;
 
-/// Every structure, with every choice that changes how it is built or walked.
+/// Every structure, with every parameter that changes how it is built or traversed.
 pub(crate) fn kinds() -> Vec<AcceleratorKind> {
     let variants = [
         "bvh:compact",

@@ -1,4 +1,4 @@
-//! Accelerators as text.
+//! Accelerators and their parameters as text.
 
 use crate::kinds;
 use strahl_accel::AcceleratorKind;

@@ -1,4 +1,4 @@
-//! Packets find what their rays find alone.
+//! Packets find the same hits as their rays alone.
 
 use crate::agreement::effort;
 use crate::hits::{Any, Closest, answers, hit_box};
@@ -24,7 +24,7 @@ impl<const ANY: bool, V: Visitor> PacketVisitor for Lanes<ANY, V> {
     }
 }
 
-/// Rays that start in one point, or go in one direction, or have little in common.
+/// Rays that start at one point, or have one direction, or have little in common.
 fn together(rng: &mut Rng, boxes: &[Aabb], offset: DVec3, scale: f64) -> Vec<Ray> {
     let first = ray(rng, boxes, offset, scale);
     let size = [1e-9, 1e-3, 0.1][rng.below(3)];

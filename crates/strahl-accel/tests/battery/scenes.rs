@@ -65,7 +65,7 @@ pub(crate) fn boxes(rng: &mut Rng, count: usize, offset: DVec3, scale: f64) -> V
     all
 }
 
-/// Rays of every nastiness: at corners, edges and faces, along axes, in planes, from inside, far and near, long and short.
+/// Difficult rays: at corners, edges and faces, along axes, in planes, from inside, far and near, long and short.
 pub(crate) fn ray(rng: &mut Rng, boxes: &[Aabb], offset: DVec3, scale: f64) -> Ray {
     let b = loop {
         let b = boxes[rng.below(boxes.len())];

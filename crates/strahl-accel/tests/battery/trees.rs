@@ -1,4 +1,4 @@
-//! How the hierarchies of boxes are built.
+//! The construction of the hierarchies of boxes.
 
 use crate::hits::{Closest, Thin, answers, hit_box};
 use crate::scenes::{Rng, boxes, ray};
@@ -8,7 +8,7 @@ use strahl_accel::{
 };
 use strahl_math::{Aabb, DVec3, Interval, Ray};
 
-/// The wide tree as each of the builders makes it, with primitives of three classes.
+/// The wide tree of each builder, with primitives of three classes.
 fn wide(boxes: &[Aabb]) -> Vec<Bvh8> {
     let build = |build: &Build| {
         let parameters = Bvh8Parameters {
@@ -20,7 +20,7 @@ fn wide(boxes: &[Aabb]) -> Vec<Bvh8> {
     Build::ALL.iter().map(build).collect()
 }
 
-/// The wide tree over primitives that the builders take for thin, and cut.
+/// The wide tree over primitives that the builders treat as thin and split.
 fn cut(boxes: &[Aabb]) -> Vec<Bvh8> {
     let build = |build: &Build| {
         let parameters = Bvh8Parameters {
@@ -104,7 +104,7 @@ fn degenerate_builds_are_valid() {
             Aabb::new(p, p)
         })
         .collect();
-    // As far as f32 culls, and next to nothing.
+    // At the limit of culling in f32, and very small.
     let far = 2f64.powi(64);
     let extremes = [far, -far, far * 0.1, 1e-40, -1e-40, 0.0]
         .map(|x| Aabb::new(DVec3::splat(x * 0.999), DVec3::splat(x)).union(&point));
@@ -151,7 +151,7 @@ fn the_tree_does_not_depend_on_the_number_of_threads() {
         assert!(wide.nodes() > 1000);
     }
     for threads in [2, 5] {
-        // Too much to print.
+        // The tree is too long to print.
         assert!(build(threads) == one, "{threads} threads");
     }
 }

@@ -1,4 +1,4 @@
-//! What is told of the way through a structure.
+//! The reported path of a ray through a structure.
 
 use crate::hits::{Closest, hit_box};
 use crate::kinds;
@@ -6,7 +6,7 @@ use crate::scenes::{Rng, boxes, ray};
 use strahl_accel::{Accelerator, AnyAccelerator, Place, Step, TraversalStats, Visitor};
 use strahl_math::{Aabb, DVec3, Interval, Ray};
 
-/// Looks for the closest hit and keeps what it is told.
+/// Looks for the closest hit and records the reported steps.
 struct Watcher<'a> {
     closest: Closest<'a>,
     events: Vec<Event>,
@@ -40,7 +40,7 @@ fn closest<'a>(boxes: &'a [Aabb], ray: &Ray) -> Closest<'a> {
     }
 }
 
-/// A scene with rays through it, and what is told of each.
+/// A scene, rays through it, and the steps reported for each.
 fn watched(
     accelerator: &AnyAccelerator,
     boxes: &[Aabb],
@@ -71,7 +71,7 @@ fn bounded(seed: u64, count: usize) -> Vec<Aabb> {
     boxes
 }
 
-/// Whether a box lies in another, but for f32's rounding.
+/// Whether a box lies in another, up to f32 rounding.
 fn within(inner: &Aabb, outer: &Aabb) -> bool {
     let outer = outer.padded(DVec3::splat(1e-6));
     outer.contains(inner.min) && outer.contains(inner.max)
@@ -93,8 +93,7 @@ fn watching_changes_nothing_and_all_but_the_list_tell_of_places() {
     }
 }
 
-/// From the root downwards: the box of every place lies in that of a node one level up that was told before, and primitives in
-/// the leaf told last.
+/// Top-down: the box of every step lies in that of an earlier node one level up, and primitives lie in the last leaf.
 #[test]
 fn trees_of_boxes_tell_of_every_node() {
     let boxes = bounded(11, 300);
