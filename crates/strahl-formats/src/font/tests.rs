@@ -1,6 +1,6 @@
 use super::*;
 
-/// A font of three glyphs made by hand: a triangle for what is missing, a diamond with a round side for `A`, and a space.
+/// A font of three glyphs made by hand: a triangle for missing characters, a diamond with one curved side for `A`, and a space.
 pub(crate) fn tiny_font() -> Vec<u8> {
     let be16 = |list: &[i32]| -> Vec<u8> {
         let bytes = list.iter().flat_map(|v| (*v as i16).to_be_bytes());

@@ -1,4 +1,4 @@
-//! Whole pictures: what is written is what other programs' readers find.
+//! Whole pictures: other programs' readers find what was written.
 
 use std::fs;
 use std::io::{self, Cursor, Write};
@@ -321,7 +321,7 @@ fn exr_colours_may_be_halves() {
 
 #[test]
 fn alpha_is_straight_in_png_and_associated_in_exr() {
-    // Half covered red, nothing, opaque green.
+    // Half covered red, empty, opaque green.
     let rgb = [[0.5, 0.0, 0.0], [0.0; 3], [0.0, 1.0, 0.0]];
     let alpha = [0.5, 0.0, 1.0];
     let picture = Picture {
@@ -391,7 +391,7 @@ fn files_hold_what_streams_do() {
     );
 }
 
-/// Takes some bytes, then nothing.
+/// Accepts some bytes, then fails.
 struct Full(usize);
 
 impl Write for Full {
@@ -589,7 +589,7 @@ fn textures_of_the_other_formats() {
     ] {
         let mut bytes = Cursor::new(Vec::new());
         pixels.write_to(&mut bytes, format).unwrap();
-        // TGA is recognised by its name only.
+        // TGA is recognised only by its name.
         let name = format!("texture.{}", format.extensions_str()[0]);
         let texture = decode_texture(bytes.get_ref(), &name, TextureUse::Data).unwrap();
         assert_eq!(texture.channels(), TexelChannels::Rgba, "{format:?}");
@@ -608,7 +608,7 @@ fn textures_of_the_other_formats() {
 #[test]
 fn damaged_textures_are_errors() {
     let rgb = colors(20, 9);
-    // What is left of a JPEG still is a picture.
+    // A truncated JPEG is still a picture.
     let exact = |info: &&FormatInfo| info.format != ImageFormat::Jpeg;
     for info in formats().iter().filter(exact) {
         let bytes = encoded(info.format, &region(&rgb), &WriteOptions::default());
@@ -616,7 +616,7 @@ fn damaged_textures_are_errors() {
             let result = decode_texture(&bytes[..length], "cut", TextureUse::Color);
             assert!(result.is_err(), "{} cut at {length}", info.name);
         }
-        // Changed bytes may still make a picture; they must not make a panic.
+        // Changed bytes may still decode; they must not cause a panic.
         for position in (0..bytes.len()).step_by(3) {
             let mut changed = bytes.clone();
             changed[position] ^= 0xff;
@@ -638,7 +638,7 @@ fn damaged_textures_are_errors() {
 
 #[test]
 fn enormous_textures_are_refused_before_they_take_memory() {
-    // A header that announces 65536 x 32768 texels.
+    // A header that claims 65536 x 32768 texels.
     let bytes = b"P6\n65536 32768\n255\n".to_vec();
     let error = decode_texture(&bytes, "huge.ppm", TextureUse::Color).unwrap_err();
     assert!(

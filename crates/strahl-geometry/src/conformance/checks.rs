@@ -4,7 +4,7 @@ use strahl_math::error::offset_origin;
 use strahl_math::{DVec3, Interval, Ray, Transform};
 
 impl Subject {
-    /// The parameters pass the primitive's own check, and there is something to hit.
+    /// The parameters pass the primitive's own check, and some ray hits the primitive.
     pub fn is_valid(&self) {
         assert_eq!(self.shape.validate(), Ok(()));
         assert!(self.shape.elements() >= 1);
@@ -156,7 +156,7 @@ impl Subject {
                     let from = Some(hit.surface);
                     let Some(again) = self.shape.closest_hit(&ray, Interval::FORWARD, from, &mut scratch) else { continue };
                     let distance = again.t * ray.direction.length();
-                    // As far as the error of the place reaches along the ray, but short of the far side of a curved surface.
+                    // As far as the error of the position reaches along the ray, but not to the far side of a curved surface.
                     let reach = 8.0 * surface.position_error.length() / sine;
                     let spot = reach.min(self.thickness * sine / 64.0);
                     assert!(
@@ -199,7 +199,7 @@ impl Subject {
         }
     }
 
-    /// `any_hit` says the same as `closest_hit`, whatever the range.
+    /// `any_hit` agrees with `closest_hit`, whatever the range.
     pub fn any_hit_agrees_with_closest_hit(&self) {
         let (mut random, mut scratch) = (Random::new(6), Scratch::default());
         for i in 0..self.rays {

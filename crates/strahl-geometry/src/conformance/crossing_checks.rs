@@ -5,7 +5,7 @@ use strahl_math::{DVec3, Interval, Ray};
 
 impl Subject {
     /// Crossings ascend and alternate, agree with `contains` between them, with the normals, with `closest_hit`, and do not
-    /// depend on the range. Nothing to check on open surfaces.
+    /// depend on the range. Open surfaces are not checked.
     pub fn crossings_alternate(&self) {
         let Some(solid) = self.shape.as_solid() else {
             return;
@@ -107,7 +107,7 @@ impl Subject {
         assert_eq!(first, closest, "{context}");
     }
 
-    /// Halfway between two crossings the point is inside exactly if the list says so.
+    /// Halfway between two crossings the point is inside exactly if the list implies it.
     fn check_inside(&self, solid: &dyn Solid, ray: &Ray, list: &Crossings) {
         let far = 2.0 * self.size / ray.direction.length();
         let first = list.list.first().map_or(0.0, |c| c.hit.t - far);
@@ -183,7 +183,7 @@ impl Subject {
         }
     }
 
-    /// Rays along the surface: no promise about hits, but what is listed is consistent.
+    /// Rays along the surface: hits are not guaranteed, but the list is consistent.
     fn check_tangent_rays(
         &self,
         solid: &dyn Solid,

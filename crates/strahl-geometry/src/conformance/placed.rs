@@ -5,7 +5,7 @@ use std::sync::Arc;
 use strahl_math::error::{ROUNDOFF, gamma};
 use strahl_math::{Aabb, DVec3, Interval, Ray, Transform};
 
-/// A primitive in a space of its own: what a renderer does with shapes it can't bake.
+/// A primitive in a space of its own, as a renderer treats shapes that it can't bake.
 #[derive(Debug)]
 pub(super) struct Placed {
     shape: Arc<dyn Primitive>,

@@ -67,7 +67,7 @@ impl Subject {
         self.region.center() + self.region.size() * 0.5 * random.cube()
     }
 
-    /// A ray that may well hit: from within, near by or far away towards a point of the region, of any length.
+    /// A ray that probably hits: from within, nearby or far away towards a point of the region, of any length.
     pub(super) fn ray(&self, random: &mut Random) -> Ray {
         let target = self.point(random);
         let direction = random.direction();

@@ -1,4 +1,4 @@
-//! The search for the first surface against the lists of the general way: the same bits, and rarely unclear.
+//! The search for the first surface against the general method with lists: it gives the same bits and is rarely undecided.
 
 use super::evaluate::Evaluation;
 use super::first::{Answer, Lists, first_visible};
@@ -57,7 +57,7 @@ fn tree(random: &mut Random, depth: u32, lattice: bool) -> CsgNode {
         let tag = random.below(9) as u32;
         return leaf(random, lattice, tag);
     }
-    // Now and then many operands, for which there is a hierarchy.
+    // Sometimes many operands, for which there is a hierarchy.
     let (count, depth) = match random.below(4) {
         0 => (10 + random.below(30), 0),
         _ => (2 + random.below(3), depth - 1),
@@ -81,7 +81,7 @@ fn tree(random: &mut Random, depth: u32, lattice: bool) -> CsgNode {
     }
 }
 
-/// How often the search was sure, and what it found.
+/// The number of decided searches, and their results.
 #[derive(Debug, Default)]
 struct Tally {
     sure: u32,
@@ -89,7 +89,7 @@ struct Tally {
     hits: u32,
 }
 
-/// Asks both ways; they must agree to the last bit.
+/// Runs both methods; they must agree to the last bit.
 fn compare(
     csg: &Csg,
     ray: &Ray,
@@ -111,7 +111,7 @@ fn compare(
     expected
 }
 
-/// Rays that come from somewhere, and go on from surface to surface as light does.
+/// Rays from outside that continue from surface to surface, as light does.
 fn follow_rays(seed: u64, trees: u32, lattice: bool) -> Tally {
     let (mut random, mut tally) = (Random::new(seed), Tally::default());
     for _ in 0..trees {
@@ -168,7 +168,7 @@ fn follow_rays(seed: u64, trees: u32, lattice: bool) -> Tally {
 fn the_first_surface_is_that_of_the_list() {
     let tally = follow_rays(21, 1500, false);
     assert!(tally.hits > 60_000, "{tally:?}");
-    // Only rays that really touch two surfaces at once may be left to the general way.
+    // Only rays that touch two surfaces at once may be left to the general method.
     assert!(tally.unclear * 50 < tally.sure, "{tally:?}");
 }
 
@@ -179,7 +179,7 @@ fn coincident_and_touching_surfaces_are_left_to_the_general_way() {
     assert!(tally.sure > 10_000, "{tally:?}");
 }
 
-/// What begins behind the surface found is not asked: the second of two tori costs nothing.
+/// Operands that begin behind the surface found are not tested: the second of two tori costs nothing.
 #[test]
 fn a_thousand_holes_are_not_all_looked_at() {
     let holes = (0..1000).map(|i| {

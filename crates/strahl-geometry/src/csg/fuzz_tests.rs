@@ -1,4 +1,4 @@
-//! Random trees against brute force: the logic of the tree asked point by point, POV-Ray's rule asked surface by surface.
+//! Random trees against brute force: the logic of the tree evaluated point by point, POV-Ray's rule surface by surface.
 
 use super::{Csg, CsgNode};
 use crate::conformance::Random;
@@ -9,7 +9,7 @@ use crate::{
 use std::sync::Arc;
 use strahl_math::{DVec3, Interval, Ray, Transform};
 
-/// A tree that is evaluated as it is written.
+/// A tree that is evaluated directly.
 enum Model {
     Leaf(u32),
     Node(Operation, Vec<Model>),
@@ -52,7 +52,7 @@ impl Model {
             return Self::Leaf(leaves.len() as u32 - 1);
         }
         let operation = Operation::ALL[random.below(6) as usize];
-        // Now and then many leaves, for which boxes are looked up in a hierarchy.
+        // Sometimes many leaves, for which there is a hierarchy of boxes.
         let (operands, depth) = match (operation, random.below(10)) {
             (Operation::Inverse, _) => (1, depth - 1),
             (_, 0) => (12, 0),
@@ -97,7 +97,7 @@ impl Model {
         }
     }
 
-    /// The leaves whose surface shows at a place where the surface of leaf `crossed` is (and no other).
+    /// The leaves whose surface is visible at a point of the surface of leaf `crossed` (and of no other).
     ///
     /// POV-Ray's rule: an intersection keeps an operand's surface inside of all siblings, a merge outside of all siblings,
     /// a union keeps it anyway; complements by De Morgan's laws, without unions.
@@ -226,7 +226,7 @@ fn random_leaf(random: &mut Random) -> Placed {
     (shape, map)
 }
 
-/// What a fuzzing run has looked at.
+/// The counts of a fuzzing run.
 #[derive(Debug, Default)]
 struct Tally {
     rays: u64,
@@ -301,7 +301,7 @@ fn check_ray(
         tally.spans += 1;
     }
 
-    // Crossings ascend and alternate; those seen are those that POV-Ray's rule keeps.
+    // Crossings ascend and alternate; the visible ones are those that POV-Ray's rule keeps.
     let mut inside = found.inside_at_start;
     for crossing in &found.list {
         match crossing.side {
@@ -330,7 +330,7 @@ fn check_ray(
         let expected: Vec<u32> = places
             .iter()
             .filter(|(t, leaf)| {
-                // The leaf itself counts as crossed; the others are asked at the point.
+                // The leaf itself counts as crossed; the others are tested at the point.
                 let point = ray.at(*t);
                 model.shows(*leaf, false, true, &|i| {
                     inside_leaf(&leaves[i as usize], point)
@@ -346,7 +346,7 @@ fn check_ray(
     }
 }
 
-/// A part of the line gives the part of the list; a ray from a surface knows its side.
+/// A part of the line gives a part of the list; a ray from a surface knows its side.
 fn check_start(
     csg: &Csg,
     ray: &Ray,
@@ -404,8 +404,8 @@ fn check_start(
     }
 }
 
-/// Trees of boxes on a small lattice, where nearly all faces coincide with others, seen through a map that makes them coincide
-/// only up to rounding.
+/// Trees of boxes on a small lattice, where nearly all faces coincide, seen through a map that makes them coincide only up to
+/// rounding.
 fn fuzz_lattice(seed: u64, trees: u32, rays: u32) -> Tally {
     let (mut random, mut scratch, mut tally) =
         (Random::new(seed), Scratch::default(), Tally::default());
@@ -488,7 +488,7 @@ fn check_lattice(
     tally: &mut Tally,
     scratch: &mut Scratch,
 ) {
-    // Where the ray meets planes of the lattice; not too near to edges.
+    // The points where the ray hits planes of the lattice, not too close to edges.
     let mut planes: Vec<f64> = (0..3)
         .flat_map(|axis| {
             (-2..=4).map(move |k| (f64::from(k) - ray.origin[axis]) / ray.direction[axis])
@@ -552,7 +552,7 @@ fn coincident_faces_leave_nothing_in_random_trees() {
     assert!(tally.rays > 95_000 && tally.spans > 20_000, "{tally:?}");
 }
 
-/// One more seed, or as many as one has time for:
+/// One more seed; the variable asks for more:
 /// `STRAHL_FUZZ_SEEDS=100 cargo test --release -p strahl-geometry more_random_trees`.
 #[test]
 fn more_random_trees() {

@@ -1,4 +1,4 @@
-//! Gems: intersections of half-spaces, met in one pass or plane by plane.
+//! Gems: intersections of half-spaces, intersected in one pass or plane by plane.
 
 use super::{Csg, CsgNode};
 use crate::conformance::Random;
@@ -19,7 +19,7 @@ fn list(csg: &Csg, ray: &Ray, range: Interval, from: Option<SurfaceId>) -> Cross
     out
 }
 
-/// Facets around the origin; some lie in one plane, some are turned outside in, so that little or nothing is left.
+/// Facets around the origin; some lie in one plane, some are inverted, so that little or nothing is left.
 fn random_facets(random: &mut Random, center: DVec3) -> Vec<CsgNode> {
     let count = 2 + random.below(30);
     let mut facets = vec![];
@@ -58,7 +58,7 @@ fn one_pass_and_plane_by_plane_give_the_same_bits() {
                 Interval::new(0.5 * random.unit(), 0.5 + random.unit()),
             ];
             let mut from = None;
-            // From the outside onto the gem, through it and out again, as light does.
+            // Rays from outside onto the gem, through it and out again, as light does.
             for _ in 0..4 {
                 for range in ranges {
                     let (a, b) = (
@@ -125,7 +125,7 @@ fn gems_have_tight_boxes() {
         octahedron.bounds(),
         Aabb::new(center - DVec3::ONE, center + DVec3::ONE),
     );
-    // A roof without a floor: open below, and the corner is its highest point.
+    // A roof without a floor: open below, and its corner is the highest point.
     let roof = gem([
         DVec3::Y,
         DVec3::new(1.0, 1.0, 0.0),
@@ -138,7 +138,7 @@ fn gems_have_tight_boxes() {
         bounds.min.y == f64::NEG_INFINITY && (bounds.max.y - 1.0).abs() < 1e-6,
         "{bounds:?}"
     );
-    // Without a corner nothing is known.
+    // Without a corner the bounds are unknown.
     let slab = gem([facet(DVec3::ZERO, corner), facet(-corner, -corner)]);
     assert_eq!(slab.bounds(), Aabb::EVERYTHING);
 }

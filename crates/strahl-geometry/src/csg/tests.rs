@@ -32,7 +32,7 @@ fn list(csg: &Csg, ray: &Ray, range: Interval) -> Crossings {
     out
 }
 
-/// Where the x axis crosses, and how: `>` in, `<` out, `|` inner, lower case for invisible.
+/// The crossings of the x axis and their kind: `>` in, `<` out, `|` inner, lower case for invisible.
 fn along_x(tree: CsgNode) -> Vec<(f64, char, u32)> {
     let csg = compiled(tree);
     let ray = Ray::new(DVec3::new(-10.0, 0.0, 0.0), DVec3::X);
@@ -129,7 +129,7 @@ fn a_box_with_a_ball_taken_out() {
     assert!(csg.contains(DVec3::splat(1.5)) && !csg.contains(DVec3::ZERO));
 }
 
-/// As POV-Ray 3.7 renders them. A box has its surface, a cylinder has not.
+/// As POV-Ray 3.7 renders them. The surface of a box counts as inside, that of a cylinder does not.
 #[test]
 fn flush_faces_show_as_in_povray() {
     let rod = |x0: f64, x1: f64, radius: f64, tag: u32| {
@@ -176,7 +176,7 @@ fn flush_faces_show_as_in_povray() {
 
 #[test]
 fn faces_that_coincide_up_to_rounding_are_one() {
-    // 0.1 + 0.2 differs from 0.3 in the last bit; seen in spaces turned about the axis the faces are perpendicular to.
+    // 0.1 + 0.2 differs from 0.3 in the last bit; the boxes are in spaces rotated about the axis perpendicular to the faces.
     let mut random = Random::new(3);
     for _ in 0..2000 {
         let turn = Transform::rotate(DVec3::X, random.between(0.0, 6.0));
@@ -204,8 +204,8 @@ fn faces_that_coincide_up_to_rounding_are_one() {
 
 #[test]
 fn rounding_of_maps_counts_for_coincidence() {
-    // Rays that come in flat from far away: what rounding does to their origins, taken into the two spaces, moves `t`
-    // by more than the boxes' own error bounds.
+    // Rays from far away at a flat angle: rounding of their origins in the two spaces moves `t` by more than the error bounds of
+    // the boxes.
     let mut random = Random::new(4);
     let thrice = Transform::try_scale(DVec3::new(3.0, 1.0, 1.0)).expect("regular");
     for _ in 0..2000 {
@@ -249,13 +249,13 @@ fn unions_keep_inner_surfaces_and_merges_drop_them() {
         [left, inner[0], inner[1], right]
     );
     assert_eq!(along_x(CsgNode::merge(balls())), [left, right]);
-    // As POV-Ray has it: an intersection with something around them keeps them, ...
+    // As in POV-Ray: an intersection with an object around them keeps them, ...
     let around = CsgNode::intersection([cube(-5.0, 5.0, 3), CsgNode::union(balls())]);
     assert_eq!(along_x(around), [left, inner[0], inner[1], right]);
-    // ... a merge with something beside them too, ...
+    // ... so does a merge with an object beside them, ...
     let beside = CsgNode::merge([CsgNode::union(balls()), ball(6.0, 1.0, 3)]);
     assert_eq!(along_x(beside)[..4], [left, inner[0], inner[1], right]);
-    // ... and in a merge with something around them they are gone.
+    // ... and a merge with an object around them removes them.
     let within = CsgNode::merge([CsgNode::union(balls()), cube(-5.0, 5.0, 3)]);
     assert_eq!(along_x(within), [(-5.0, '>', 3), (5.0, '<', 3)]);
 }
@@ -298,7 +298,7 @@ fn inverses_nest() {
     let complement = compiled(shell(1).inverted());
     assert!(complement.contains(DVec3::ZERO) && complement.contains(DVec3::splat(9.0)));
     assert!(!complement.contains(DVec3::new(1.5, 0.0, 0.0)));
-    // The outside of two things is what neither has.
+    // The outside of two objects is the part outside of both.
     let outside = CsgNode::Inverse(vec![ball(-1.0, 2.0, 1), ball(1.0, 2.0, 2)].into());
     assert_eq!(along_x(outside), [(-3.0, '<', 1), (3.0, '>', 2)]);
 }
@@ -312,7 +312,7 @@ fn a_clipped_object_has_no_cap() {
     let hit = csg.closest_hit(&ray, Interval::FORWARD, None, &mut Scratch::default());
     assert_eq!(hit.map(|hit| hit.t), Some(12.0), "through the open end");
     assert!(csg.contains(DVec3::ZERO) && !csg.contains(DVec3::X));
-    // Taken out of something, what remains ends at the cut without a surface, too.
+    // Subtracted from another object, the result also ends at the cut without a surface.
     let rest = CsgNode::difference([cube(-5.0, 5.0, 3), half()]);
     let expected = [(-5.0, '>', 3), (-2.0, '<', 1), (0.5, 'i', 2), (5.0, '<', 3)];
     assert_eq!(along_x(rest), expected);
@@ -492,7 +492,7 @@ fn depth_needs_no_stack() {
         assert_eq!(csg.contains(ray.at(t)), crossings.inside_after(t));
     }
     assert!(!crossings.list.is_empty());
-    // Neither does dropping one that is never compiled, or one whose compilation fails half-way.
+    // Neither does dropping a tree that is never compiled, or one whose compilation fails half-way.
     drop(chain(10_000));
     drop(CsgNode::clip(chain(10_000), [chain(10_000)]).transformed(Transform::IDENTITY));
     let bad = CsgNode::union([ball(0.0, f64::NAN, 1), chain(10_000)]);

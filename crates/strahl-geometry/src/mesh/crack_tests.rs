@@ -55,7 +55,7 @@ fn no_ray_leaves_a_closed_mesh_through_its_seams() {
 
 #[test]
 fn no_ray_leaves_a_flat_regular_mesh_through_its_seams() {
-    // No noise: many edges in coordinate planes, and rays along them.
+    // No noise: many edges lie in coordinate planes, and rays run along them.
     let mesh = TriangleMesh::try_new(icosphere(1, 0.0)).expect("a mesh");
     let count = passes(&mesh, 200_000, |target, random| {
         from_within(target, DVec3::ZERO, random)

@@ -33,7 +33,7 @@ fn star(n: u32) -> Vec<(i32, i32)> {
         .collect()
 }
 
-/// Where an integer point is, exactly: `None` on an edge, else whether the winding number of the rings is odd.
+/// The exact position of an integer point: `None` on an edge, else whether the winding number of the rings is odd.
 fn oracle(rings: &[Vec<(i32, i32)>], (x, y): (i32, i32)) -> Option<bool> {
     let mut winding = 0;
     for ring in rings {
@@ -247,7 +247,7 @@ fn runs_and_projection_along_the_ray_agree() {
 fn exactly_one_of_two_neighbours_gets_a_ray_at_their_common_edge() {
     let mut random = Random::new(11);
     let (a, b) = (DVec3::new(0.1, 0.7, 0.3), DVec3::new(1.3, 0.2, 0.9));
-    // Far over the edge's ends on both sides, in one plane and at an angle.
+    // Far beyond the edge's ends on both sides, in one plane and at an angle.
     let ahead = DVec3::new(-0.3, 1.1, 0.45);
     for behind in [
         -ahead,
@@ -261,7 +261,7 @@ fn exactly_one_of_two_neighbours_gets_a_ray_at_their_common_edge() {
         let right = Polygon::try_new(&[b, a, f, e]).expect("flat");
         for _ in 0..200_000 {
             let target = a + (b - a) * random.between(0.0, 1.0);
-            // From where both are seen side by side.
+            // From a point that sees both side by side.
             let view =
                 (ahead.cross(b - a).normalize() + behind.cross(a - b).normalize()).normalize();
             let origin = target + (view + random.cube() * 0.2) * random.magnitude(-2.0, 3.0);

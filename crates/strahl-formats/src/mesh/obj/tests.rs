@@ -122,12 +122,12 @@ fn smoothing_groups_give_smooth_normals_and_off_gives_none() {
     assert!((apart - flat).length() < 1e-6, "{apart}");
     let off = n_at_ridge(&format!("{ROOF}s 3\ns off\n{faces}"));
     assert_eq!(off, flat);
-    // One smooth face in the mesh leaves flat ones flat.
+    // A smooth face in the mesh leaves the flat ones flat.
     let mixed = n_at_ridge(&format!(
         "{ROOF}{faces}s 1\nv 9 9 9\nv 9 8 9\nv 8 8 9\nf 7 8 9\n"
     ));
     assert!((mixed - flat).length() < 1e-12, "{mixed}");
-    // Normals are not cut at the border of materials.
+    // Normals are averaged across the border of materials.
     let two = load(&format!("{ROOF}s 1\nf 1 4 3 2\nusemtl x\nf 4 5 6 3\n"));
     let n = look_down(
         &mesh(&two.scene.expect("warnings only").objects.0[0]),
@@ -343,7 +343,7 @@ fn errors_in_libraries_are_placed_there() {
     assert!(messages(&loaded)[1].contains("my colours.mtl:3:6\n"));
 }
 
-/// Statements right and wrong.
+/// Valid and invalid statements.
 const STATEMENTS: [&str; 28] = [
     SQUARE,
     "v 0 0 1\r\nv 1 0 1\r\n",

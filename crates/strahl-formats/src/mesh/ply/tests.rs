@@ -45,7 +45,7 @@ fn unknown_elements_and_properties_are_skipped() {
     }
 }
 
-/// A triangle and its header in one of the binary encodings, `y` being a double and the indices of 16 bits.
+/// A triangle and its header in one of the binary encodings; `y` is a double and the indices have 16 bits.
 fn binary(big_endian: bool, line_end: &str, face: &[u16]) -> Vec<u8> {
     let order = if big_endian { "big" } else { "little" };
     let header = format!(
@@ -142,7 +142,7 @@ fn headers_that_lie_about_the_size_are_caught_before_memory_is_taken() {
             || message.contains("ends too early");
         assert!(known, "{message}");
     }
-    // Elements without properties take no room; there may be any number of them.
+    // Elements without properties take no bytes, so there may be any number of them.
     let many = SQUARE.replace(
         "element edge 1\nproperty int vertex1\nproperty int vertex2\n",
         "element nothing 18446744073709551615\n",

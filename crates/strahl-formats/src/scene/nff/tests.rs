@@ -403,7 +403,7 @@ fn large_files_are_mapped_and_read_in_parts() {
     let (triangles, vertices) = (mesh.triangle_count(), mesh.positions().len());
     assert_eq!(triangles as i32, 2 * side * side);
     assert_eq!(vertices as i32, (side + 1) * (side + 1));
-    // The line of the last triangle, and of an error at the end.
+    // The line of the last triangle is known, and that of an error at the end.
     let lines = text.lines().count() as u32;
     assert_eq!(mesh.face_line(triangles - 1), Some(lines - 3));
     text.push_str("p 3 0 0\n");

@@ -16,7 +16,7 @@ crate::primitive_tests!(quaternion, || julia(QUATERNION, 6));
 crate::primitive_tests!(cubed, || julia(CUBE, 4));
 crate::primitive_tests!(hypercomplex, || julia(HYPERCOMPLEX, 5));
 
-/// Where along a line of 4001 points the inside begins and ends.
+/// The points at which a line of 4001 points enters and leaves the inside.
 fn changes(set: &Julia, from: DVec3, to: DVec3) -> Vec<u32> {
     let mut inside = false;
     let mut found = vec![];

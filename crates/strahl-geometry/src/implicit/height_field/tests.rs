@@ -170,7 +170,7 @@ fn normals_between_vertices_are_those_measured() {
 
 #[test]
 fn smooth_normals_are_those_measured() {
-    // Heights and normals of a field of POV-Ray 3.7, row by row with ascending z (y of the normals is what is cut off).
+    // Heights and normals of a field in POV-Ray 3.7, row by row with ascending z (without y of the normals).
     let rows = [
         [13107, 17845, 6560, 14410],
         [13107, 17366, 14424, 23456],

@@ -151,7 +151,7 @@ fn the_container_closes_what_it_cuts_unless_open() {
     assert!(open.contains(DVec3::ZERO) && !open.contains(DVec3::X * 0.6));
 }
 
-/// A field that tells nothing about itself.
+/// A field that reports no bounds.
 #[derive(Debug)]
 struct Opaque;
 
@@ -189,7 +189,7 @@ fn without_bounds_the_gradient_is_trusted() {
 
 #[test]
 fn what_is_not_a_number_is_outside() {
-    // A root of x: there is nothing for negative x.
+    // A root of x, which is undefined for negative x.
     let half = function(|g, [x, y, _]| {
         let root = g.sqrt(x);
         let sum = g.add(root, y);

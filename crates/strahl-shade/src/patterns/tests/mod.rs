@@ -25,10 +25,10 @@ const POINTS: [[f64; 3]; 12] = [
     [2.3757, -0.4203, -2.1139],
 ];
 
-/// For each pattern as it is written its values at [`POINTS`].
+/// For each pattern as it is written in a scene, its values at [`POINTS`].
 const MEASURED: &str = include_str!("measured.tsv");
 
-/// A pattern as it is written, and as it is built.
+/// A pattern as it is written in a scene, and as it is constructed here.
 type Built = (&'static str, PatternField);
 
 fn field(pattern: Pattern, modifiers: Modifiers) -> PatternField {
