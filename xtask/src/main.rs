@@ -17,6 +17,7 @@ mod differ;
 mod gallery;
 mod lab;
 mod looks;
+mod parallel;
 mod peers;
 #[path = "../../crates/strahl-sdl/tests/common/plates.rs"]
 mod plates;

@@ -7,10 +7,10 @@ pub(crate) mod programs;
 mod report;
 
 use crate::arguments::Arguments;
+use crate::parallel::in_parallel;
 use anyhow::{Context, Result, bail};
 use programs::{Outcome, Programs};
 use std::path::{Path, PathBuf};
-use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// The folder of Debian's package povray-examples.
@@ -111,38 +111,15 @@ pub(crate) fn run(args: &[&str]) -> Result<()> {
     Ok(())
 }
 
-/// Works through the scenes with several threads; the rows come back in the order of the scenes.
+/// Compares the pictures of all scenes with several threads; the rows are in the order of the scenes.
 fn compare_all(options: &Options, scenes: &[PathBuf], programs: &Programs) -> Result<Vec<Row>> {
-    let (next, done) = (AtomicUsize::new(0), AtomicUsize::new(0));
-    let rows = Mutex::new(vec![]);
-    std::thread::scope(|scope| {
-        let work = || -> Result<()> {
-            loop {
-                let index = next.fetch_add(1, Ordering::Relaxed);
-                let Some(scene) = scenes.get(index) else {
-                    return Ok(());
-                };
-                let row = compare(options, scene, index, programs)?;
-                let done = done.fetch_add(1, Ordering::Relaxed) + 1;
-                eprintln!("{done}/{} {}", scenes.len(), report::line(&row));
-                if let Ok(mut rows) = rows.lock() {
-                    rows.push((index, row));
-                }
-            }
-        };
-        let threads: Vec<_> = (0..options.jobs.max(1))
-            .map(|_| scope.spawn(work))
-            .collect();
-        threads
-            .into_iter()
-            .try_for_each(|thread| match thread.join() {
-                Ok(result) => result,
-                Err(_) => bail!("a thread panicked"),
-            })
-    })?;
-    let mut rows = rows.into_inner().unwrap_or_default();
-    rows.sort_by_key(|(index, _)| *index);
-    Ok(rows.into_iter().map(|(_, row)| row).collect())
+    let done = AtomicUsize::new(0);
+    in_parallel(scenes, options.jobs, |index, scene| {
+        let row = compare(options, scene, index, programs)?;
+        let done = done.fetch_add(1, Ordering::Relaxed) + 1;
+        eprintln!("{done}/{} {}", scenes.len(), report::line(&row));
+        Ok(row)
+    })
 }
 
 fn compare(options: &Options, scene: &Path, index: usize, programs: &Programs) -> Result<Row> {

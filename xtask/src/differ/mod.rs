@@ -12,12 +12,11 @@ mod report;
 use crate::arguments::Arguments;
 use crate::compare_pov::picture::Shown;
 use crate::compare_pov::programs::Programs;
+use crate::parallel::in_parallel;
 use anyhow::{Context, Result, bail};
 use render::Verdict;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
 /// The size of the pictures. They are small: many scenes find more than many pixels.
@@ -96,7 +95,7 @@ pub(crate) fn run(args: &[&str]) -> Result<()> {
     std::fs::create_dir_all(&options.out)
         .with_context(|| format!("cannot create {}", options.out.display()))?;
     let start = Instant::now();
-    let verdicts = in_parallel(&numbers, options.jobs, |number| {
+    let verdicts = in_parallel(&numbers, options.jobs, |_, number| {
         render::judge(&programs, &grammar::scene(options.seed, *number).text())
     })?;
     let seconds = start.elapsed().as_secs_f64();
@@ -141,7 +140,7 @@ fn examine(
     let scene = grammar::scene(options.seed, number);
     let mut failed = None;
     let smallest = reduce::reduce(&scene, options.jobs, TRIES, |texts| {
-        let all = in_parallel(texts, options.jobs, |text| render::judge(programs, text));
+        let all = in_parallel(texts, options.jobs, |_, text| render::judge(programs, text));
         match all {
             Ok(all) => all.iter().map(|now| now.is_like(&verdict)).collect(),
             Err(error) => {
@@ -197,50 +196,5 @@ fn totals(numbers: &[u64], verdicts: &[Verdict], seconds: f64) {
             numbers.len(),
             numbers[0]
         );
-    }
-}
-
-/// Processes a list with several threads; the results are in the order of the list.
-fn in_parallel<T: Sync, R: Send>(
-    things: &[T],
-    jobs: usize,
-    work: impl Fn(&T) -> Result<R> + Sync,
-) -> Result<Vec<R>> {
-    let next = AtomicUsize::new(0);
-    let results = Mutex::new(vec![]);
-    std::thread::scope(|scope| {
-        let one = || -> Result<()> {
-            while let Some(thing) = {
-                let index = next.fetch_add(1, Ordering::Relaxed);
-                things.get(index).map(|thing| (index, thing))
-            } {
-                let result = work(thing.1)?;
-                if let Ok(mut results) = results.lock() {
-                    results.push((thing.0, result));
-                }
-            }
-            Ok(())
-        };
-        let threads: Vec<_> = (0..jobs).map(|_| scope.spawn(one)).collect();
-        threads.into_iter().try_for_each(|t| match t.join() {
-            Ok(result) => result,
-            Err(_) => bail!("a thread panicked"),
-        })
-    })?;
-    let mut results = results.into_inner().unwrap_or_default();
-    results.sort_by_key(|(index, _)| *index);
-    Ok(results.into_iter().map(|(_, result)| result).collect())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn results_come_in_order() {
-        let numbers: Vec<u64> = (0..50).collect();
-        let doubled = in_parallel(&numbers, 7, |n| Ok(2 * n)).unwrap();
-        assert_eq!(doubled, (0..50).map(|n| 2 * n).collect::<Vec<_>>());
-        assert!(in_parallel(&numbers, 3, |n| if *n == 9 { bail!("no") } else { Ok(()) }).is_err());
     }
 }

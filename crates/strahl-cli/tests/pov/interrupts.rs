@@ -70,35 +70,14 @@ fn ctrl_c_ends_the_middle_of_something_long() {
                    light_source { y/2 rgb 1 area_light x, z, 32, 32 }\n\
                    plane { z, 1 pigment { rgb 1 } finish { reflection 1 } } plane { z, -1 pigment { rgb 1 } finish { reflection 1 } }";
     write(f, "mirrors.pov", mirrors);
+    let limits = ["--limit", "steps=1e17", "--limit", "idle_steps=1e17"];
+    let deep = ["--max-depth", "10000", "--max-tree-rays", "4000000000"];
     for args in [
-        &[
-            "check",
-            "loop.pov",
-            "--limit",
-            "steps=1e17",
-            "--limit",
-            "idle_steps=1e17",
-        ][..],
-        &[
-            "render",
-            "loop.pov",
-            "--limit",
-            "steps=1e17",
-            "--limit",
-            "idle_steps=1e17",
-        ],
-        &[
-            "render",
-            "mirrors.pov",
-            "--size",
-            "2x2",
-            "--max-depth",
-            "10000",
-            "--max-tree-rays",
-            "4000000000",
-        ],
+        [&["check", "loop.pov"], &limits[..]].concat(),
+        [&["render", "loop.pov"], &limits[..]].concat(),
+        [&["render", "mirrors.pov", "--size", "2x2"], &deep[..]].concat(),
     ] {
-        let child = start(f, args);
+        let child = start(f, &args);
         std::thread::sleep(Duration::from_millis(1500));
         let (said, seconds) = interrupt(child);
         assert!(said.contains("interrupted"), "{args:?}: {said}");

@@ -231,6 +231,6 @@ fn shadows_are_attenuated_as_measured() {
     for (g, e) in got.to_array().iter().zip([0.06, 0.15, 0.27]) {
         assert!((g - e).abs() < 1e-12, "{got:?}");
     }
-    // Shadows don't lose the light that is reflected, even where energy is conserved.
+    // Reflection does not darken the light in a shadow, even with `conserve_energy`.
     assert_eq!(glass().shadow_attenuation(&point), Color::gray(0.6));
 }
