@@ -210,9 +210,7 @@ impl<'a> Input<'a> {
         sdl.clock = moment.clock;
         sdl.frame = moment.frame;
         (sdl.image_width, sdl.image_height) = self.size;
-        if let Some(version) = self.pov.language_version {
-            sdl.version = version;
-        }
+        sdl.version = self.pov.language_version;
         let header = self.pov.include.as_ref();
         sdl.header = header.map(|file| file.to_string_lossy().into_owned());
         for (name, value) in &self.pov.limit {

@@ -1,6 +1,7 @@
 //! What of a pixel is background: the alpha channel.
 
 use crate::observer::{RayKind, RayReport, TraceObserver};
+use strahl_scene::{Background, BackgroundAlpha};
 use strahl_shade::Color;
 
 /// Adds up how much of the background a primary ray sees, directly and through things that let light pass. Mirrors show the
@@ -10,8 +11,10 @@ use strahl_shade::Color;
 #[derive(Debug, Default)]
 pub(crate) struct Coverage {
     nodes: Vec<Node>,
-    /// The part of the background's light that the alpha channel takes out of the picture.
-    transmit: f64,
+    /// What rays see that hit nothing.
+    background: Background,
+    /// What the alpha channel makes of it.
+    alpha: BackgroundAlpha,
     /// The light of the pixel without it.
     pub(crate) color: Color,
     /// How much of what lies behind the picture shows: 0 is opaque.
@@ -25,16 +28,17 @@ struct Node {
     kind: RayKind,
     taken: Color,
     attenuation: Color,
-    /// The background's light in that of the ray.
+    /// The background's light in that of the ray that is left out of the picture.
     background: Color,
     clear: f64,
 }
 
 impl Coverage {
-    /// For a background of which this part is see-through.
-    pub(crate) fn new(transmit: f64) -> Self {
+    /// For a background and what the alpha channel makes of it.
+    pub(crate) fn new(background: Background, alpha: BackgroundAlpha) -> Self {
         Self {
-            transmit,
+            background,
+            alpha,
             ..Self::default()
         }
     }
@@ -53,14 +57,18 @@ fn luminance(c: Color) -> f64 {
 
 impl TraceObserver for Coverage {
     fn ray(&mut self, report: RayReport) {
-        let seen = report.background;
+        let nothing = (Color::BLACK, Color::BLACK);
+        let (background, clear) = report.background.map_or(nothing, |_| {
+            let direction = report.ray.direction;
+            self.background.left_out(direction, self.alpha)
+        });
         self.nodes.push(Node {
             parent: report.parent,
             kind: report.kind,
             taken: report.share.factor,
             attenuation: report.attenuation,
-            background: seen.map_or(Color::BLACK, |color| color * self.transmit),
-            clear: seen.map_or(0.0, |_| self.transmit),
+            background,
+            clear: luminance(clear),
         });
     }
 

@@ -10,7 +10,9 @@ use std::sync::Arc;
 use strahl_accel::{Accelerator, AnyAccelerator};
 use strahl_geometry::{PrimHit, Primitive, Shape, SurfaceId, SurfacePoint, TriangleMesh};
 use strahl_math::{Aabb, DVec3, Ray, Transform};
-use strahl_scene::{Background, Camera, Fog, Rainbow, SceneLight, Settings, SourceMap};
+use strahl_scene::{
+    Background, BackgroundAlpha, Camera, Fog, Rainbow, SceneLight, Settings, SourceMap,
+};
 use strahl_shade::patterns::TexturePoint;
 use strahl_shade::texture::Texture;
 use strahl_shade::{Color, Material};
@@ -119,7 +121,7 @@ pub struct RenderScene {
     pub(crate) ambient: Color,
     pub(crate) background: Background,
     /// How much of the background the alpha channel leaves out of the picture.
-    pub(crate) background_transmit: f64,
+    pub(crate) background_alpha: BackgroundAlpha,
     pub(crate) fogs: Vec<Fog>,
     /// Whether some material has dispersion.
     pub(crate) disperses: bool,

@@ -21,6 +21,31 @@ pub enum Background {
     Sky(Arc<SkySphere>),
 }
 
+/// What the alpha channel makes of rays that hit nothing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum BackgroundAlpha {
+    /// All that they see is left out of the picture.
+    LeftOut,
+    /// The background is in the picture, but for what the filter and transmit of its colour let pass. A sky in front of it lets pass what its
+    /// pigments do.
+    Seen {
+        /// Share that passes tinted by the background's colour.
+        filter: f64,
+        /// Share that passes unchanged.
+        transmit: f64,
+    },
+}
+
+impl Default for BackgroundAlpha {
+    /// An opaque background.
+    fn default() -> Self {
+        Self::Seen {
+            filter: 0.0,
+            transmit: 0.0,
+        }
+    }
+}
+
 impl Default for Background {
     fn default() -> Self {
         Self::Solid(Color::BLACK)
@@ -43,6 +68,21 @@ impl Background {
                 bottom.lerp(*top, 0.5 + 0.5 * height)
             }
         }
+    }
+
+    /// The light along a direction that is left out of a picture with an alpha channel, and what part of what lies behind the picture
+    /// shows through, as measured with POV-Ray 3.7.
+    pub fn left_out(&self, direction: DVec3, alpha: BackgroundAlpha) -> (Color, Color) {
+        let BackgroundAlpha::Seen { filter, transmit } = alpha else {
+            return (self.along(direction), Color::WHITE);
+        };
+        let (behind, passes) = match self {
+            Self::Sky(sky) => (sky.behind, sky.passes(direction)),
+            _ => (self.along(direction), Color::WHITE),
+        };
+        let hidden = behind * passes * (filter + transmit).clamp(0.0, 1.0);
+        let clear = (behind * filter + Color::gray(transmit)).map(|c| c.clamp(0.0, 1.0));
+        (hidden, passes * clear)
     }
 }
 

@@ -18,7 +18,7 @@ mod sky;
 mod span;
 mod working;
 
-pub use background::Background;
+pub use background::{Background, BackgroundAlpha};
 pub use builder::ObjectExt;
 pub use camera::Camera;
 pub use diagnostic::{Diagnostic, Severity, SourceLine};

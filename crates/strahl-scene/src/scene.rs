@@ -1,5 +1,6 @@
 use crate::{
-    Background, Camera, Children, Fog, Group, GroupId, Rainbow, Settings, SourceMap, Span,
+    Background, BackgroundAlpha, Camera, Children, Fog, Group, GroupId, Rainbow, Settings,
+    SourceMap, Span,
 };
 use std::sync::Arc;
 use strahl_math::Transform;
@@ -58,8 +59,8 @@ pub struct Scene {
     pub ambient: Option<Color>,
     /// The radiance along rays that hit nothing; `None` is black, or a soft gradient behind objects framed by the renderer.
     pub background: Option<Background>,
-    /// The transparency of the background in an alpha channel, from 0 (opaque) to 1; 1 if there is no `background`.
-    pub background_transmit: f64,
+    /// What an alpha channel makes of the background; all of it is left out if there is no `background`.
+    pub background_alpha: BackgroundAlpha,
     /// Fogs; each fills all space outside of solid objects.
     pub fogs: Vec<Fog>,
     /// Rainbows, in front of the background or of all distant objects.

@@ -51,6 +51,22 @@ impl SkySphere {
     }
 }
 
+impl SkySphere {
+    /// What all layers let pass along a direction, layers tinting those below.
+    pub fn passes(&self, direction: DVec3) -> Color {
+        let at = self
+            .transform
+            .point_to_object(direction.normalize_or(DVec3::Y));
+        let point = TexturePoint::in_space(at);
+        let mut passes = Color::WHITE;
+        for layer in self.layers.iter().rev() {
+            let color = layer.color_at(&point);
+            passes *= color.rgb * color.filter + Color::gray(color.transmit);
+        }
+        passes
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

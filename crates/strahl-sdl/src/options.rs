@@ -16,8 +16,8 @@ pub struct Options {
     pub declare: Vec<(String, Value)>,
     /// A file that is included before the scene begins (`Include_Header`).
     pub header: Option<String>,
-    /// The language version of a scene that has no `#version`.
-    pub version: f64,
+    /// The language version of a scene that has no `#version`. Without either, `version` is 3.7, but the scene is read as an older one.
+    pub version: Option<f64>,
     /// Limits on the resources that a scene may use.
     pub limits: Limits,
 }
@@ -31,7 +31,7 @@ impl Default for Options {
             image_height: 600,
             declare: vec![],
             header: None,
-            version: 3.8,
+            version: None,
             limits: Limits::default(),
         }
     }

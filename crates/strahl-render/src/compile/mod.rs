@@ -28,7 +28,8 @@ use std::sync::Arc;
 use strahl_accel::{Accelerator, AcceleratorKind, AnyAccelerator};
 use strahl_math::{Aabb, Transform};
 use strahl_scene::{
-    Background, Camera, Diagnostic, Fog, Rainbow, Scene, SceneLight, Settings, SourceMap,
+    Background, BackgroundAlpha, Camera, Diagnostic, Fog, Rainbow, Scene, SceneLight, Settings,
+    SourceMap,
 };
 use strahl_shade::{Color, Material};
 
@@ -51,7 +52,7 @@ pub struct Prepared {
     masks: Vec<Option<InstanceUse>>,
     ambient: Color,
     background: Background,
-    background_transmit: f64,
+    background_alpha: BackgroundAlpha,
     fogs: Vec<Fog>,
     rainbows: Vec<Rainbow>,
     camera: Camera,
@@ -105,9 +106,9 @@ impl Prepared {
             light_sets,
             masks,
             ambient,
-            background_transmit: match scene.background {
-                Some(_) => scene.background_transmit,
-                None => 1.0,
+            background_alpha: match scene.background {
+                Some(_) => scene.background_alpha,
+                None => BackgroundAlpha::LeftOut,
             },
             background: scene
                 .background
@@ -181,7 +182,7 @@ impl Prepared {
             masks,
             ambient: self.ambient,
             background: self.background,
-            background_transmit: self.background_transmit,
+            background_alpha: self.background_alpha,
             fogs: self.fogs,
             rainbows: self.rainbows,
             camera: self.camera,

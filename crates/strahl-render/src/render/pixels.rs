@@ -95,7 +95,7 @@ impl<'s> PixelTracer<'s> {
             ahead: Ahead::default(),
             coverage: options
                 .alpha
-                .then(|| Coverage::new(scene.background_transmit)),
+                .then(|| Coverage::new(scene.background.clone(), scene.background_alpha)),
             together: options.follows_together(rays),
         }
     }

@@ -72,10 +72,15 @@ impl Parser<'_> {
         Ok(Flow::On)
     }
 
-    /// `declare`, `include`, `default` and `version` as statements, for which the language allows the `#` to be omitted.
+    /// `declare`, `include`, `default`, `version` and old settings as statements, for which the language allows the `#` to be omitted.
     pub(crate) fn bare_directive(&mut self, token: Token) -> PResult<bool> {
         let word = match token.word() {
             Some(word @ (Word::Declare | Word::Include | Word::Default | Word::Version)) => word,
+            Some(word @ (Word::MaxTraceLevel | Word::MaxIntersections)) => {
+                self.take(token)?;
+                self.enclosed(|p| p.old_setting(word.text()))?;
+                return Ok(true);
+            }
             _ => return Ok(false),
         };
         let text = word.text();

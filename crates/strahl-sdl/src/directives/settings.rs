@@ -2,6 +2,9 @@ use crate::keywords::Word;
 use crate::parser::{PResult, Parser};
 use crate::token::Kind;
 
+/// The version since which the default `ambient` is 0, by its documentation.
+const DARK_SINCE: f64 = 3.8;
+
 impl Parser<'_> {
     /// Runs `#version 3.7;`, whose keyword is taken; `#version unofficial ...` is skipped.
     pub(super) fn version(&mut self) -> PResult<()> {
@@ -11,7 +14,8 @@ impl Parser<'_> {
                 self.take(token)?;
             }
         }
-        let version = self.float()?;
+        // Without a semicolon the next directive is carried out in the new version.
+        let version = self.declared_value(Self::float)?;
         let place = self.place();
         if version > 3.8 {
             self.warn(
@@ -21,10 +25,23 @@ impl Parser<'_> {
                 ),
             );
         }
-        self.version = version;
-        self.state.global.versioned = true;
+        self.begin_version(version);
         self.raw_accept(Kind::Semicolon)?;
         Ok(())
+    }
+
+    /// What follows is written for this version.
+    pub(crate) fn begin_version(&mut self, version: f64) {
+        self.version = version;
+        let scene_file = self.in_scene_file();
+        let global = &mut self.state.global;
+        if scene_file {
+            global.scene_version = Some(version);
+        }
+        let first = !std::mem::replace(&mut global.versioned, true);
+        if first && scene_file && version >= DARK_SINCE {
+            self.state.darken();
+        }
     }
 
     /// Runs `#max_trace_level` and `#max_intersections`, which were directives up to version 2.2.

@@ -17,7 +17,7 @@ impl Parser<'_> {
         match token.word() {
             Some(w) if w.kind() == crate::keywords::WordKind::Color => self.color_expression(),
             _ => {
-                let color = self.expression()?;
+                let color = self.calculation()?;
                 self.color_parts(opaque(color))
             }
         }
@@ -64,7 +64,7 @@ impl Parser<'_> {
     /// it.
     fn rgb(&mut self, count: usize, encoded: bool) -> PResult<[f64; 5]> {
         self.next()?;
-        let value = self.nested_end(Self::expression)?;
+        let value = self.nested_end(Self::calculation)?;
         let value = match value.len() {
             1 => value.promoted(count).components(),
             _ => value.components(),
@@ -76,7 +76,7 @@ impl Parser<'_> {
     /// `rgbt`: the fourth number is transmit.
     fn rgbt(&mut self, encoded: bool) -> PResult<[f64; 5]> {
         self.next()?;
-        let value = self.nested_end(Self::expression)?;
+        let value = self.nested_end(Self::calculation)?;
         let [r, g, b, t, _] = value.promoted(4).components();
         let color = self.in_working_space([r, g, b, 0.0, t], encoded);
         self.color_parts(color)

@@ -8,7 +8,6 @@ use crate::symbol::Symbol;
 use crate::token::{Kind, Token};
 use crate::value::Value;
 use strahl_function::{BinaryOp, Expr, Function, FunctionError, Graph, UnaryOp, internal};
-use strahl_math::noise::NoiseGenerator;
 
 /// A function while its body is parsed.
 struct Body {
@@ -87,7 +86,7 @@ impl Parser<'_> {
         let names: Vec<String> = coordinates.into_iter().chain(parameters).collect();
         let mut graph = Graph::new(names.iter().cloned());
         let arguments: Vec<Expr> = names.iter().map(|name| graph.parameter(name)).collect();
-        let root = graph.internal(known.name, &arguments, NoiseGenerator::default());
+        let root = graph.internal(known.name, &arguments, self.default_noise());
         match graph.finish(root) {
             Ok(function) => Value::Function(function),
             Err(_) => Value::Unsupported("an internal function that is not supported yet"),

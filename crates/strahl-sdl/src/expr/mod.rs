@@ -35,6 +35,10 @@ use strahl_math::DVec3;
 /// Numbers closer than this count as equal in comparisons; measured with POV-Ray 3.7.
 const EPSILON: f64 = 1e-10;
 
+/// The version since which numbers may be calculated without parentheses. Before it `<1 -2 3>` has three components; measured
+/// with POV-Ray 3.7.
+const OPERATORS_SINCE: f64 = 1.5;
+
 /// The precedence of an operator; 0 for other tokens. `&` and `|` have the same precedence, measured with POV-Ray 3.7 (but not
 /// in functions).
 const fn precedence(kind: Kind) -> u8 {
@@ -141,7 +145,18 @@ impl Parser<'_> {
         if let Some(number) = self.quick_number(4) {
             return Ok(number);
         }
+        if self.stands_alone(4) {
+            return self.factor();
+        }
         self.binary(4)
+    }
+
+    /// A number of any kind where operators stand in all versions: a colour.
+    fn calculation(&mut self) -> PResult<Vector> {
+        if self.stands_alone(4) {
+            return self.binary(4);
+        }
+        self.expression()
     }
 
     /// An expression in parentheses, with comparisons, logic and `?:`.

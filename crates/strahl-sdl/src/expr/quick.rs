@@ -4,7 +4,7 @@
 //! tokens, without expanding macros and without errors; at the first token that needs more, the attempt ends, nothing has
 //! changed, and the full evaluator starts from the beginning. Both give the same bits, because the operations are the same.
 
-use super::{equal, precedence, truth};
+use super::{OPERATORS_SINCE, equal, precedence, truth};
 use crate::keywords::Word;
 use crate::parser::Parser;
 use crate::token::{Kind, Token};
@@ -83,7 +83,8 @@ impl Parser<'_> {
         if !matches!(
             first,
             Kind::Number | Kind::Name | Kind::Minus | Kind::LeftParen | Kind::Word
-        ) {
+        ) || self.stands_alone(weakest)
+        {
             return None;
         }
         let begin = self.position();
@@ -96,6 +97,9 @@ impl Parser<'_> {
     /// The same for expressions of floats and vectors.
     #[inline]
     pub(super) fn quick_number(&mut self, weakest: u8) -> Option<Vector> {
+        if self.stands_alone(weakest) {
+            return None;
+        }
         let first = self.raw();
         let vector = match first.kind {
             Kind::Less => true,
@@ -110,6 +114,11 @@ impl Parser<'_> {
         let value = self.quick_vector_binary(&mut position, weakest)?;
         self.pass(position - begin);
         Some(value)
+    }
+
+    /// Whether numbers of this version have no operators here.
+    pub(super) fn stands_alone(&self, weakest: u8) -> bool {
+        weakest == 4 && self.version < OPERATORS_SINCE
     }
 
     fn quick_vector_binary(&self, position: &mut usize, weakest: u8) -> Option<Vector> {

@@ -37,7 +37,10 @@ impl Parser<'_> {
                 };
                 // The name may be the first operand of a longer expression.
                 let number = self.components_of(number)?;
-                self.binary_from(number, 4)?
+                match self.stands_alone(4) && number.len() < 5 {
+                    true => number,
+                    false => self.binary_from(number, 4)?,
+                }
             }
         };
         let followed = self.peek_behind()?;
@@ -47,6 +50,24 @@ impl Parser<'_> {
                 Ok(Value::Vector(crate::value::Vector::rgbft(color)))
             }
             _ => Ok(number.into()),
+        }
+    }
+
+    fn thing_value(&mut self, token: Token, word: Word) -> PResult<Value> {
+        match self.thing(token)? {
+            Some(thing) => Ok(Value::Thing(thing)),
+            None if self.raw_ahead(1).kind == Kind::LeftBrace => {
+                self.take(token)?;
+                let (place, text) = (self.place(), word.text());
+                self.warn_hint(
+                    place,
+                    format!("`{text}` is not supported yet and is left out"),
+                    "uses of this declaration are left out too",
+                );
+                self.skip_body()?;
+                Ok(Value::Unsupported("a thing that is not supported yet"))
+            }
+            None => Err(self.unexpected(token, "a value")),
         }
     }
 
@@ -82,21 +103,10 @@ impl Parser<'_> {
                 self.take(token)?;
                 self.nested(Self::dictionary)
             }
-            WordKind::Object | WordKind::Statement | WordKind::Thing => match self.thing(token)? {
-                Some(thing) => Ok(Value::Thing(thing)),
-                None if self.raw_ahead(1).kind == Kind::LeftBrace => {
-                    self.take(token)?;
-                    let (place, text) = (self.place(), word.text());
-                    self.warn_hint(
-                        place,
-                        format!("`{text}` is not supported yet and is left out"),
-                        "uses of this declaration are left out too",
-                    );
-                    self.skip_body()?;
-                    Ok(Value::Unsupported("a thing that is not supported yet"))
-                }
-                None => Err(self.unexpected(token, "a value")),
-            },
+            WordKind::Object | WordKind::Statement | WordKind::Thing => {
+                self.thing_value(token, word)
+            }
+            _ if word == Word::Composite => self.thing_value(token, word),
             _ => self.expression().map(Value::from),
         }
     }

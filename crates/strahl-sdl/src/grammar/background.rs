@@ -1,16 +1,19 @@
 use crate::parser::{PResult, Parser};
 use std::sync::Arc;
-use strahl_scene::{Background, SkySphere};
+use strahl_scene::{Background, BackgroundAlpha, SkySphere};
 use strahl_shade::Color;
 
 /// `background { colour }`; a sky sphere replaces it.
 pub(super) fn background(p: &mut Parser<'_>) -> PResult<()> {
-    let [r, g, b, _, transmit] = p.braces(Parser::color)?;
+    let [r, g, b, filter, transmit] = p.braces(Parser::color)?;
     let color = Color::new(r, g, b);
-    // Only for the alpha channel; before version 3.7 every background was transparent there.
-    p.scene.background_transmit = match p.version < 3.7 {
-        true => 1.0,
-        false => transmit.clamp(0.0, 1.0),
+    // Old backgrounds are see-through, even if the scene ends as a newer one (measured).
+    p.scene.background_alpha = match p.before_3_7() {
+        true => BackgroundAlpha::Seen {
+            filter: 0.0,
+            transmit: 1.0,
+        },
+        false => BackgroundAlpha::Seen { filter, transmit },
     };
     p.scene.background = Some(match p.scene.background.take() {
         Some(Background::Sky(sky)) => Background::Sky(Arc::new(SkySphere {

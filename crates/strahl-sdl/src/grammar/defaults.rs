@@ -1,9 +1,10 @@
 use super::Texture;
 use super::objects::KnownFont;
-use super::texture::{KnownMaterials, KnownPicture};
+use super::texture::{KnownMaterials, KnownPicture, top_of};
 use crate::keywords::Word;
 use crate::parser::{PResult, Parser};
 use std::sync::Arc;
+use strahl_shade::Color;
 use strahl_shade::pov_finish::PovFinish;
 
 /// State that the grammar keeps between statements.
@@ -27,6 +28,15 @@ pub struct State {
     pub(super) pictures: Vec<KnownPicture>,
     /// The fonts read so far.
     pub(super) fonts: Vec<KnownFont>,
+}
+
+impl State {
+    /// Objects that say nothing about it don't glow.
+    pub(crate) fn darken(&mut self) {
+        if let Some(top) = top_of(Arc::make_mut(&mut self.default_texture.surface)) {
+            Arc::make_mut(&mut top.finish).ambient = Color::BLACK;
+        }
+    }
 }
 
 /// The items in the braces of `#default`.

@@ -1,7 +1,7 @@
 use crate::grammar::Thing;
 use crate::keywords::{Word, WordKind};
 use crate::parser::{PResult, Parser, Place};
-use crate::token::Token;
+use crate::token::{Kind, Token};
 use strahl_math::DVec3;
 use strahl_math::noise::Turbulence;
 use strahl_scene::{Fog, FogKind, FogTurbulence};
@@ -94,6 +94,11 @@ impl Parser<'_> {
         }
         let word = match token.word() {
             Some(word) if word.kind() != WordKind::Color => word,
+            // Up to version 2.2 the distance has no word.
+            None if token.kind == Kind::Number => {
+                draft.distance = self.float()?;
+                return Ok(());
+            }
             _ => {
                 let [r, g, b, filter, transmit] = self.color()?;
                 draft.color = ColorFt {

@@ -1,18 +1,28 @@
 use crate::keywords::Word;
-use crate::parser::{PResult, Parser};
+use crate::parser::{PResult, Parser, Place};
 use crate::token::Token;
 use std::sync::Arc;
-use strahl_scene::{Background, WorkingSpace};
+use strahl_math::noise::NoiseGenerator;
+use strahl_scene::{Background, BackgroundAlpha, WorkingSpace};
 use strahl_shade::Color;
+use strahl_shade::patterns::Pattern;
 
 /// The default of `max_trace_level`.
 const TRACE_LEVEL: u32 = 5;
+
+/// The version since which patterns are made of noise that is not cut off; measured with POV-Ray 3.7.
+const RANGE_CORRECTED_SINCE: f64 = 3.5;
+
+/// The version of scenes that name none.
+pub(crate) const UNVERSIONED: f64 = 3.7;
 
 /// The settings of `global_settings` so far; for the rest, the language's defaults apply, which depend on its version.
 #[derive(Debug, Default)]
 pub struct GlobalSettings {
     /// Whether the scene has a `#version`; scenes without one are old.
     pub versioned: bool,
+    /// The last version that the scene's own file names: versions of included files don't change what its patterns are made of.
+    pub scene_version: Option<f64>,
     /// `assumed_gamma`
     pub working_space: Option<WorkingSpace>,
     /// `max_trace_level`
@@ -21,6 +31,8 @@ pub struct GlobalSettings {
     pub ambient: Option<Color>,
     /// `noise_generator`: 1, 2 or 3.
     pub noise_generator: Option<u8>,
+    /// The noise that patterns were made of without saying it, with the first pattern of each.
+    pub noise_taken: Vec<(NoiseGenerator, Place)>,
     /// `number_of_waves`
     pub number_of_waves: Option<u32>,
     /// `irid_wavelength`
@@ -159,6 +171,10 @@ impl Parser<'_> {
         if let Some(Background::Sky(sky)) = &mut self.scene.background {
             Arc::make_mut(sky).tints_layers = !old;
         }
+        if old {
+            self.scene.background_alpha = BackgroundAlpha::LeftOut;
+        }
+        self.noise_settled();
         let global = &self.state.global;
         self.scene.ambient = Some(global.ambient.unwrap_or(Color::WHITE));
         let settings = &mut self.scene.settings;
@@ -166,6 +182,55 @@ impl Parser<'_> {
         settings.straight_counts = false;
         settings.filter_by_color = old;
         settings.working_space = working_space;
+    }
+
+    /// The noise of what says nothing about it.
+    pub(crate) fn default_noise(&self) -> NoiseGenerator {
+        let global = &self.state.global;
+        self.noise_at(global.scene_version.unwrap_or(UNVERSIONED))
+    }
+
+    /// The noise of a pattern that says nothing about it.
+    pub(super) fn noise_of(&mut self, pattern: &Pattern) -> NoiseGenerator {
+        let noise = self.default_noise();
+        let noisy = matches!(
+            pattern,
+            Pattern::Agate { .. }
+                | Pattern::Bozo
+                | Pattern::Dents
+                | Pattern::Granite
+                | Pattern::Wrinkles
+        );
+        let taken = &self.state.global.noise_taken;
+        if noisy && taken.iter().all(|(other, _)| *other != noise) {
+            let place = self.place();
+            self.state.global.noise_taken.push((noise, place));
+        }
+        noise
+    }
+
+    fn noise_at(&self, version: f64) -> NoiseGenerator {
+        let number = self.state.global.noise_generator.map(u32::from);
+        let of_version = match version < RANGE_CORRECTED_SINCE {
+            true => NoiseGenerator::Original,
+            false => NoiseGenerator::RangeCorrected,
+        };
+        number
+            .and_then(NoiseGenerator::from_number)
+            .unwrap_or(of_version)
+    }
+
+    /// Says at the end of the scene if patterns were made of another noise than POV-Ray takes, which asks at the end only.
+    fn noise_settled(&mut self) {
+        let last = self.noise_at(self.version);
+        let taken = std::mem::take(&mut self.state.global.noise_taken);
+        for (_, place) in taken.into_iter().filter(|(noise, _)| *noise != last) {
+            self.warn_hint(
+                place,
+                "the `noise_generator` or `#version` behind this pattern does not change its noise",
+                "write `#version` and `global_settings { noise_generator ... }` before the first pattern",
+            );
+        }
     }
 
     /// Whether the current version is older than 3.7, as in a scene without a version.

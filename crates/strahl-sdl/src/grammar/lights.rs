@@ -139,7 +139,7 @@ impl Draft {
             parallel: false,
             position,
             point_at: DVec3::Z,
-            color: [1.0; 5],
+            color: [0.0; 5],
             radius: None,
             falloff: None,
             tightness: 0.0,

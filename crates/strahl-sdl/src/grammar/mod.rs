@@ -26,6 +26,7 @@ pub use defaults::State;
 pub(crate) use defaults::default_items;
 pub use entity::{Declared, Entity};
 pub use global_settings::GlobalSettings;
+pub(crate) use global_settings::UNVERSIONED;
 pub use objects::object_words;
 pub use texture::{Texture, pattern_words};
 pub use thing::Thing;

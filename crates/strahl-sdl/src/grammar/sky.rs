@@ -2,17 +2,24 @@ use crate::keywords::Word;
 use crate::parser::{PResult, Parser};
 use std::sync::Arc;
 use strahl_math::Transform;
-use strahl_scene::{Background, SkySphere};
+use strahl_scene::{Background, BackgroundAlpha, SkySphere};
 use strahl_shade::Color;
 
 /// `sky_sphere { pigment { ... } ... }` as a statement: the last one counts.
 pub(super) fn sky_statement(p: &mut Parser<'_>) -> PResult<()> {
     let mut sky = p.sky_sphere()?;
-    if let Some(Background::Solid(color)) = p.scene.background {
-        sky.behind = color;
+    match &p.scene.background {
+        Some(Background::Solid(color)) => sky.behind = *color,
+        Some(Background::Sky(before)) => sky.behind = before.behind,
+        // Nothing is behind the sky.
+        _ => {
+            p.scene.background_alpha = BackgroundAlpha::Seen {
+                filter: 0.0,
+                transmit: 1.0,
+            };
+        }
     }
     p.scene.background = Some(Background::Sky(Arc::new(sky)));
-    p.scene.background_transmit = if p.version < 3.7 { 1.0 } else { 0.0 };
     Ok(())
 }
 

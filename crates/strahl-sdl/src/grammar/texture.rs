@@ -13,6 +13,8 @@ mod bitmap;
 mod finish;
 mod inside;
 mod interior;
+mod layers;
+mod loose;
 mod maps;
 mod material;
 mod modifiers;
@@ -95,24 +97,13 @@ fn is_uniform(texture: &Surface) -> bool {
 }
 
 /// The pigment, normal and finish of the uppermost layer, which further items change.
-fn top_of(texture: &mut Surface) -> Option<&mut PlainTexture> {
+pub(super) fn top_of(texture: &mut Surface) -> Option<&mut PlainTexture> {
     match texture {
         Surface::Plain(plain) => Some(plain),
         Surface::Layered(layers) => layers.last_mut().and_then(top_of),
         Surface::Transformed(_, inner) | Surface::UvMapped(inner) => top_of(inner),
         _ => None,
     }
-}
-
-/// The layers of `upper` over those of `lower`.
-fn layered(lower: Surface, upper: Surface) -> Surface {
-    let layers = |texture| match texture {
-        Surface::Layered(layers) => layers,
-        single => vec![single],
-    };
-    let mut all = layers(lower);
-    all.extend(layers(upper));
-    Surface::Layered(all)
 }
 
 impl Texture {
@@ -167,10 +158,11 @@ impl Texture {
         self.surface = if self.written {
             p.weigh(weight::of_texture(&self.surface))?;
             let lower = Surface::clone(&self.surface);
-            Arc::new(layered(lower, Surface::clone(&surface)))
+            Arc::new(layers::layered(lower, Surface::clone(&surface)))
         } else {
             surface
         };
+        p.layers_of_version(&mut self.surface);
         self.written = true;
         Ok(())
     }

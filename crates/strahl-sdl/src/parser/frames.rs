@@ -1,6 +1,6 @@
 use super::{Failed, Floor, PResult, Parser, Place, Scopes};
 use crate::directives::{Files, Flow};
-use crate::grammar::State;
+use crate::grammar::{State, UNVERSIONED};
 use crate::include;
 use crate::options::Options;
 use crate::source::{Chunk, Host, HostError, Source, SourceFile};
@@ -59,7 +59,7 @@ impl<'h> Parser<'h> {
             scopes: Scopes::default(),
             scene,
             state: State::default(),
-            version: options.version,
+            version: options.version.unwrap_or(UNVERSIONED),
             random: vec![],
             workspace: strahl_function::Workspace::new(),
             io: Files::default(),
@@ -97,8 +97,16 @@ impl<'h> Parser<'h> {
             back: (Arc::clone(&file), file.end()),
             blocks: 0,
         });
+        if let Some(version) = options.version {
+            parser.begin_version(version);
+        }
         parser.report_lexing(0, problems);
         parser
+    }
+
+    /// Whether the position is in the scene's own file, not in an included one.
+    pub(crate) fn in_scene_file(&self) -> bool {
+        self.file.file.0 == 0
     }
 
     /// The end of the readable tokens, at the position.

@@ -13,9 +13,17 @@ use strahl_math::{DVec3, Transform, det};
 use strahl_scene::{Camera, Projection, Span};
 use strahl_shade::normal::PovNormal;
 
+/// The version since which `angle` and `direction` count for orthographic cameras, and each camera begins anew.
+const CAMERAS_SINCE: f64 = 3.5;
+
 /// `camera { ... }` as a statement: the last one counts.
 pub(super) fn camera_statement(p: &mut Parser<'_>) -> PResult<()> {
-    let camera = p.camera()?;
+    // Before version 3.5 a second camera changes the first (measured).
+    let base = match (&p.scene.camera, p.version < CAMERAS_SINCE) {
+        (Some(camera), true) => Draft::of(camera),
+        _ => Draft::new(),
+    };
+    let camera = p.camera_on(base)?;
     p.scene.camera = Some(camera);
     Ok(())
 }
@@ -60,6 +68,10 @@ struct Draft {
     sized: bool,
     /// Whether it is a declared camera, whose view is already computed.
     named: bool,
+    /// Whether an item has been read.
+    begun: bool,
+    /// Whether `right` and `up` are the size of what is seen, as in orthographic cameras before version 3.5.
+    fixed: bool,
     transform: Transform,
 }
 
@@ -80,6 +92,8 @@ impl Draft {
             normal: None,
             sized: false,
             named: false,
+            begun: false,
+            fixed: false,
             transform: Transform::IDENTITY,
         }
     }
@@ -95,6 +109,7 @@ impl Draft {
             normal: camera.normal.clone(),
             sized: true,
             named: true,
+            begun: true,
             ..Self::new()
         }
     }
@@ -120,6 +135,19 @@ impl Draft {
         self.right = right * (self.right.length() * side);
         self.up = up * self.up.length();
         true
+    }
+
+    /// `orthographic` before version 3.5 (measured): as the first item it says that `right` and `up` are the size of what is seen; behind
+    /// others, that they become what the perspective camera described so far sees at the point looked at.
+    fn fix_size(&mut self) {
+        if self.begun && !self.fixed {
+            self.apply_angle();
+            let distance = (self.look_at.unwrap_or(DVec3::Z) - self.location).length();
+            let scale = distance / self.direction.length();
+            self.right *= scale;
+            self.up *= scale;
+        }
+        self.fixed = true;
     }
 
     /// Scales the vectors to fit the angle.
@@ -189,8 +217,11 @@ fn projection_of(word: Word) -> Option<Projection> {
 impl Parser<'_> {
     /// `{ ... }` or `{ Name ... }` after `camera`.
     pub(super) fn camera(&mut self) -> PResult<Camera> {
+        self.camera_on(Draft::new())
+    }
+
+    fn camera_on(&mut self, mut draft: Draft) -> PResult<Camera> {
         let place = self.place();
-        let mut draft = Draft::new();
         self.braces(|p| {
             p.items("`camera`", |p, token| {
                 let named = p.accept_thing(|thing| match thing {
@@ -201,7 +232,9 @@ impl Parser<'_> {
                     draft = Draft::of(&camera);
                     return Ok(());
                 }
-                p.camera_item(&mut draft, token)
+                p.camera_item(&mut draft, token)?;
+                draft.begun = true;
+                Ok(())
             })
         })?;
         self.finish_camera(draft, place)
@@ -217,6 +250,9 @@ impl Parser<'_> {
         };
         if let Some(projection) = projection_of(word) {
             self.take(token)?;
+            if projection == Projection::Orthographic && self.version < CAMERAS_SINCE {
+                draft.fix_size();
+            }
             draft.projection = projection;
             return Ok(());
         }
@@ -307,7 +343,7 @@ impl Parser<'_> {
             return Err(self.fail(place, message));
         }
         draft.fill_angle();
-        if !draft.named || draft.angle.is_some() {
+        if !draft.fixed && (!draft.named || draft.angle.is_some()) {
             draft.apply_angle();
         }
         if let Some(mesh) = draft.mesh.take() {

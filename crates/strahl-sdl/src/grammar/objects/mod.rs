@@ -129,8 +129,11 @@ impl Parser<'_> {
         &mut self,
         token: Token,
     ) -> PResult<Option<ObjectParser>> {
-        let Some(word) = token.word() else {
-            return Ok(None);
+        let word = match token.word() {
+            // The union of version 1.0.
+            Some(Word::Composite) => Word::Union,
+            Some(word) => word,
+            None => return Ok(None),
         };
         let Some(parse) = OBJECTS.get(word as usize).copied().flatten() else {
             return Ok(None);

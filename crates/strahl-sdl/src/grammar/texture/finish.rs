@@ -10,7 +10,7 @@ use strahl_shade::pov_finish::{PovFinish, PovReflection};
 
 /// Which strengths are given as `albedo`, the fraction of all light that is reflected; they depend on items that may follow.
 #[derive(Default)]
-struct Albedo {
+pub(super) struct Albedo {
     diffuse: bool,
     phong: bool,
     specular: bool,
@@ -56,7 +56,8 @@ impl Parser<'_> {
         })
     }
 
-    fn finish_item(
+    /// A part of a finish.
+    pub(super) fn finish_item(
         &mut self,
         finish: &mut PovFinish,
         albedo: &mut Albedo,

@@ -31,17 +31,17 @@ enum Choice {
 }
 
 /// A normal being read: its parts may come in any order.
-struct Draft {
+pub(super) struct Draft {
     chooser: Chooser,
     choice: Choice,
     /// Everything but the kind.
-    normal: PovNormal,
+    pub(super) normal: PovNormal,
     /// Whether the pattern perturbs the normal by its own method, and not by its value as a height.
     special: bool,
 }
 
 /// A normal without perturbation.
-fn flat() -> PovNormal {
+pub(super) fn flat() -> PovNormal {
     PovNormal::new(NormalKind::Average(vec![]))
 }
 
@@ -97,7 +97,7 @@ impl From<PovNormal> for Draft {
 }
 
 impl Draft {
-    fn finish(self) -> PovNormal {
+    pub(super) fn finish(self) -> PovNormal {
         let kind = match (self.chooser, self.choice) {
             (Chooser::Flat, _) => NormalKind::Average(vec![]),
             (Chooser::Fixed(kind), _) => kind,
@@ -176,7 +176,8 @@ impl Parser<'_> {
         Ok(normal)
     }
 
-    fn normal_item(&mut self, draft: &mut Draft, token: Token) -> PResult<()> {
+    /// A part of a normal.
+    pub(super) fn normal_item(&mut self, draft: &mut Draft, token: Token) -> PResult<()> {
         match token.word() {
             Some(Word::BumpSize) => {
                 self.take(token)?;
@@ -233,7 +234,7 @@ impl Parser<'_> {
             draft.choice = Choice::Own;
             self.block_normals(draft, &pattern)?;
             if let Chooser::Flat = draft.chooser {
-                draft.normal.modifiers.noise = self.default_noise();
+                draft.normal.modifiers.noise = self.noise_of(&pattern);
             }
             draft.chooser = Chooser::Pattern(pattern);
             return self.normal_amount(draft);

@@ -6,7 +6,6 @@ use crate::keywords::Word;
 use crate::parser::{PResult, Parser};
 use crate::token::{Kind, Token};
 use std::sync::Arc;
-use strahl_math::noise::NoiseGenerator;
 use strahl_math::{DVec2, DVec3};
 use strahl_shade::patterns::{
     Altitude, Crackle, CrackleMetric, Exterior, Fractal, FractalInterior, FractalKind, Pattern,
@@ -125,7 +124,7 @@ impl Parser<'_> {
                 p.expect(Kind::RightBrace)?;
             }
             let mut field = PatternField::from(pattern);
-            field.modifiers.noise = p.default_noise();
+            field.modifiers.noise = p.noise_of(&field.pattern);
             p.items("`pattern`", |p, token| {
                 if p.pattern_parameter(Some(&mut field.pattern), token)?
                     || p.pattern_modifier(&mut field.modifiers, token)?
@@ -221,14 +220,6 @@ impl Parser<'_> {
     /// The default number of wave sources: that of `number_of_waves`.
     fn wave_sources(&self) -> u32 {
         self.state.global.number_of_waves.unwrap_or(10)
-    }
-
-    /// The default noise generator of patterns.
-    pub(in crate::grammar) fn default_noise(&self) -> NoiseGenerator {
-        let number = self.state.global.noise_generator.map(u32::from);
-        number
-            .and_then(NoiseGenerator::from_number)
-            .unwrap_or_default()
     }
 
     /// An integer within bounds.

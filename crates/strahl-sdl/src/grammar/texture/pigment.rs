@@ -54,10 +54,10 @@ impl Choice {
 }
 
 /// A pigment being read: its parts may come in any order.
-struct Draft {
+pub(super) struct Draft {
     chooser: Chooser,
     choice: Choice,
-    modifiers: Modifiers,
+    pub(super) modifiers: Modifiers,
     uv_mapped: bool,
 }
 
@@ -109,7 +109,7 @@ impl From<Pigment> for Draft {
 }
 
 impl Draft {
-    fn finish(self) -> Pigment {
+    pub(super) fn finish(self) -> Pigment {
         let Self {
             chooser,
             choice,
@@ -371,7 +371,8 @@ impl Parser<'_> {
         self.state.default_texture.top().pigment.clone()
     }
 
-    fn pigment_item(&mut self, draft: &mut Draft, token: Token) -> PResult<()> {
+    /// A part of a pigment.
+    pub(super) fn pigment_item(&mut self, draft: &mut Draft, token: Token) -> PResult<()> {
         match token.word() {
             Some(Word::ColorMap | Word::ColourMap) => {
                 self.take(token)?;
@@ -430,7 +431,7 @@ impl Parser<'_> {
                     .of_pattern(token.word()),
             };
             if let Chooser::Solid(_) = draft.chooser {
-                draft.modifiers.noise = self.default_noise();
+                draft.modifiers.noise = self.noise_of(&pattern);
             }
             modifiers::begin(&mut draft.modifiers, &pattern);
             draft.chooser = Chooser::Pattern(pattern);

@@ -1,7 +1,9 @@
 //! `texture { ... }` and `material { ... }`
 
+use super::layers::layered;
+use super::loose::{BLOCKS_SINCE, Loose};
 use super::maps::{blends_blocks, numbered};
-use super::{Texture, layered, modifiers, top_of, transform, weight};
+use super::{Texture, modifiers, top_of, transform, weight};
 use crate::grammar::Thing;
 use crate::keywords::Word;
 use crate::parser::{PResult, Parser};
@@ -35,6 +37,8 @@ struct Draft {
     choice: Choice,
     modifiers: Modifiers,
     uv_mapped: bool,
+    /// Of scenes before version 3.0.
+    loose: Loose,
 }
 
 impl From<Surface> for Draft {
@@ -45,6 +49,7 @@ impl From<Surface> for Draft {
             choice,
             modifiers: field.modifiers,
             uv_mapped: false,
+            loose: Loose::default(),
         };
         match texture {
             Surface::Map(field, map) => patterned(field, Choice::Map(map)),
@@ -55,6 +60,7 @@ impl From<Surface> for Draft {
                 choice: Choice::Map(BlendMap::new(members)),
                 modifiers: *modifiers,
                 uv_mapped: false,
+                loose: Loose::default(),
             },
             Surface::UvMapped(inner) => Self {
                 uv_mapped: true,
@@ -66,13 +72,15 @@ impl From<Surface> for Draft {
                 choice: Choice::Nothing,
                 modifiers: Modifiers::default(),
                 uv_mapped: false,
+                loose: Loose::default(),
             },
         }
     }
 }
 
 impl Draft {
-    fn finish(self) -> Surface {
+    fn finish(mut self) -> Surface {
+        self.loose.put_into(&mut self.single);
         let texture = match (self.chooser, self.choice) {
             (Chooser::Single, _) => self.single,
             (Chooser::Average, Choice::Map(map)) => {
@@ -121,6 +129,7 @@ impl Parser<'_> {
             self.weigh(weight::of_texture(&all))?;
             all = Arc::new(layered(Surface::clone(&all), Surface::clone(&upper)));
         }
+        self.layers_of_version(&mut all);
         Ok(all)
     }
 
@@ -179,7 +188,14 @@ impl Parser<'_> {
         if let Some(by) = self.transformation(token)? {
             transform(&mut draft.single, &by, true);
             modifiers::transform(&mut draft.modifiers.warps, &by);
+            draft.loose.transform(&by);
             return Ok(());
+        }
+        if self.version < BLOCKS_SINCE {
+            if self.loose_item(&mut draft.loose, &mut draft.single, token)? {
+                return Ok(());
+            }
+            draft.loose.put_into(&mut draft.single);
         }
         match token.word() {
             Some(Word::Pigment | Word::Normal | Word::Finish) => {
@@ -233,7 +249,7 @@ impl Parser<'_> {
         if let Some(pattern) = self.pattern(token)? {
             self.block_textures(draft, &pattern)?;
             if let Chooser::Single = draft.chooser {
-                draft.modifiers.noise = self.default_noise();
+                draft.modifiers.noise = self.noise_of(&pattern);
             }
             modifiers::begin(&mut draft.modifiers, &pattern);
             draft.chooser = Chooser::Pattern(pattern);
