@@ -25,6 +25,11 @@ pub(crate) fn paint<'s>(
         paint.layers.clear();
         return;
     };
+    // An interpolated normal that faces away from the viewer is turned round, as in POV-Ray.
+    if surface.n_shade.dot(surface.v) < 0.0 {
+        surface.n_shade = -surface.n_shade;
+    }
+    surface.n_smooth = Some(surface.n_shade);
     let point = &surface.resolved.point;
     let place = TexturePoint {
         position: point.position,
@@ -69,6 +74,8 @@ pub(crate) fn paint<'s>(
 pub(crate) struct Mirror {
     pub(crate) share: Share,
     pub(crate) direction: DVec3,
+    /// The factor of the ray's weight.
+    pub(crate) weight: f64,
 }
 
 /// The reflection rays of a surface: one for all layers with the same normal and `exponent`; a single one on total reflection.
@@ -84,9 +91,18 @@ pub(crate) fn mirrors(
         return;
     };
     let (factor, power) = (split.kr, 1.0);
+    let weight = if paint.layers.is_empty() || factor.is_black() {
+        factor.max_component()
+    } else if split.total_reflection {
+        // As in POV-Ray (measured): the weight of light that passes, although all of it is reflected.
+        paint.transmission.max_component()
+    } else {
+        weight_of(&paint.layers)
+    };
     out.push(Mirror {
         share: Share { factor, power },
         direction,
+        weight,
     });
     let mut reflecting = paint
         .layers
@@ -99,6 +115,14 @@ pub(crate) fn mirrors(
     {
         mirrors_of_layers(paint, surface, out);
     }
+}
+
+/// The greatest weight of these layers' reflection rays.
+fn weight_of(layers: &[LayerPoint<'_>]) -> f64 {
+    layers
+        .iter()
+        .map(|layer| layer.reflection_weight)
+        .fold(0.0, f64::max)
 }
 
 fn mirrors_alike(a: &LayerPoint<'_>, b: &LayerPoint<'_>) -> bool {
@@ -120,14 +144,17 @@ fn mirrors_of_layers(paint: &TexturePaint<'_>, surface: &Surface<'_>, out: &mut 
             .iter()
             .filter(|other| mirrors_alike(layer, other));
         let mut factor = Color::BLACK;
+        let mut weight = 0.0_f64;
         for other in alike {
             factor += other.reflectance * other.share;
+            weight = weight.max(other.reflection_weight);
         }
         if !factor.is_black() {
             let power = 1.0 / exponent;
             out.push(Mirror {
                 share: Share { factor, power },
                 direction: surface.mirrored(layer.normal),
+                weight,
             });
         }
     }

@@ -8,8 +8,8 @@ use crate::scene::{RenderScene, Resolved, Uv};
 use crate::trace::{Branch, FirstHit};
 use strahl_math::{DVec3, Ray, error};
 use strahl_shade::{
-    Color, MaterialId, MaterialPoint, ShadingModel, SpectralPart, fresnel_dielectric, reflect,
-    refract,
+    Color, MaterialId, MaterialPoint, Refracted, ShadingModel, SpectralPart, fresnel_dielectric,
+    reflect, refract,
 };
 
 /// The index of refraction of a medium for a part of the spectrum; `None` is air.
@@ -62,6 +62,9 @@ pub(crate) struct Surface<'s> {
     pub(crate) v: DVec3,
     pub(crate) n_geom: DVec3,
     pub(crate) n_shade: DVec3,
+    /// Under a POV-Ray texture: the interpolated normal before `normal` bends it, turned to the viewer. POV-Ray decides by it on
+    /// which side of the surface a direction is; everything else decides by `n_geom`.
+    pub(crate) n_smooth: Option<DVec3>,
     /// Whether the ray meets the front (or outside).
     pub(crate) entering: bool,
     /// Whether the material is a thin sheet without an inside.
@@ -124,6 +127,7 @@ impl<'s> Surface<'s> {
             v,
             n_geom: point.n_geom * side,
             n_shade: n_shade * side,
+            n_smooth: None,
             entering,
             thin: material.thin,
             lit: scene.lit(hit.id, resolved.look.object),
@@ -136,6 +140,11 @@ impl<'s> Surface<'s> {
             front: start(&resolved, hit, entering),
             resolved,
         }
+    }
+
+    /// Whether light passes without refraction, at any angle.
+    pub(crate) fn is_straight(&self) -> bool {
+        self.thin || self.eta_1 == self.eta_2
     }
 
     /// The media a ray is in after passing the surface.
@@ -205,7 +214,7 @@ impl<'s> Surface<'s> {
             ..Split::NONE
         };
         let refracted = if transmits || dielectric {
-            refract(self.n_shade, self.v, self.eta_1 / self.eta_2)
+            self.refract(self.eta_1 / self.eta_2)
         } else {
             None
         };
@@ -224,8 +233,7 @@ impl<'s> Surface<'s> {
             match refracted {
                 Some(r) => {
                     // Without refraction the direction is unchanged to the last bit.
-                    let straight = self.thin || self.eta_1 == self.eta_2;
-                    split.refracted = if straight {
+                    split.refracted = if self.is_straight() {
                         Some(ray.direction)
                     } else {
                         self.bent(r.direction, self.eta_1 / self.eta_2)
@@ -244,19 +252,42 @@ impl<'s> Surface<'s> {
         split
     }
 
-    /// The direction of a reflection ray at this normal, or at the geometric normal if it would point into the surface.
+    /// The direction of a reflection ray at this normal. A direction that would point into the surface is replaced by the one
+    /// mirrored at the geometric normal.
+    ///
+    /// Under a POV-Ray texture it is done as POV-Ray 3.7 does (measured): a direction that points below the interpolated normal's
+    /// tangent plane is mirrored at that plane, and a normal that faces away from the viewer is replaced by the interpolated one.
     pub(crate) fn mirrored(&self, normal: DVec3) -> DVec3 {
-        let r = reflect(normal, self.v);
-        if r.dot(self.n_geom) <= 0.0 {
-            reflect(self.n_geom, self.v)
+        let Some(smooth) = self.n_smooth else {
+            let r = reflect(normal, self.v);
+            return if r.dot(self.n_geom) <= 0.0 {
+                reflect(self.n_geom, self.v)
+            } else {
+                r
+            };
+        };
+        let faces = normal.dot(self.v) > 0.0;
+        let r = reflect(if faces { normal } else { smooth }, self.v);
+        let height = r.dot(smooth);
+        if height < 0.0 {
+            r - smooth * (2.0 * height)
         } else {
             r
         }
     }
 
-    /// The direction of a transparency ray. If the shading normal turns it to the wrong side, the geometric normal is used.
+    /// Snell's law at the shading normal for light that comes from index `eta` times the index behind the surface.
+    fn refract(&self, eta: f64) -> Option<Refracted> {
+        // POV-Ray turns a normal that faces away to the viewer.
+        let turned = self.n_smooth.is_some() && self.n_shade.dot(self.v) < 0.0;
+        let normal = if turned { -self.n_shade } else { self.n_shade };
+        refract(normal, self.v, eta)
+    }
+
+    /// The direction of a transparency ray. Where the shading normal turns it to the wrong side, the geometric normal is used,
+    /// but not under a POV-Ray texture.
     fn bent(&self, direction: DVec3, eta: f64) -> Option<DVec3> {
-        if direction.dot(self.n_geom) >= 0.0 {
+        if self.n_smooth.is_none() && direction.dot(self.n_geom) >= 0.0 {
             refract(self.n_geom, self.v, eta).map(|r| r.direction)
         } else {
             Some(direction)
@@ -279,7 +310,7 @@ impl<'s> Surface<'s> {
     pub(crate) fn bent_part(&self, scene: &RenderScene, part: SpectralPart) -> Option<DVec3> {
         let index = |id| index_of(scene, id, part);
         let eta = index(self.medium_1) / index(self.medium_2);
-        self.bent(refract(self.n_shade, self.v, eta)?.direction, eta)
+        self.bent(self.refract(eta)?.direction, eta)
     }
 
     /// Whether light that the surface would let through finds no way behind it.
@@ -289,7 +320,7 @@ impl<'s> Surface<'s> {
         !self.thin
             && eta > 1.0
             && scene.transmits(self.resolved.look)
-            && refract(self.n_shade, self.v, eta).is_none()
+            && self.refract(eta).is_none()
     }
 
     /// All that ray trees tell of the hit.

@@ -108,8 +108,8 @@ struct Offshoot {
     kind: RayKind,
     /// How much it contributes to the hit.
     share: Share,
-    /// The maximum of that contribution, for the weight.
-    coefficient: Color,
+    /// The factor of the weight.
+    coefficient: f64,
     direction: DVec3,
     part: SpectralPart,
     /// Whether it stands for a part of the spectrum while the hit's ray stands for all of it.
@@ -125,7 +125,7 @@ impl Offshoot {
         Self {
             kind,
             share,
-            coefficient: share.factor,
+            coefficient: share.factor.max_component(),
             direction,
             part,
             divided: false,
@@ -352,12 +352,12 @@ impl<'s> TreeTracer<'s> {
         }
 
         let mut split = surface.split(&branch.ray);
-        if split.total_reflection && !self.paint.layers.is_empty() {
-            // As in POV-Ray (measured): total reflection ignores colour and finish.
-            split.kr = Color::WHITE;
-        }
         if let Some(inside) = fading {
             split.fade = scene.faded(inside, length);
+        }
+        if split.total_reflection && !self.paint.layers.is_empty() {
+            // As in POV-Ray (measured): total reflection ignores colour and finish, and fades like light that passes.
+            split.kr = split.fade;
         }
         if O::ACTIVE {
             let seen = self.hit_report(surface, hit, split, model);
@@ -429,7 +429,7 @@ impl<'s> TreeTracer<'s> {
             if parts == 0 {
                 // As in POV-Ray (measured) fading does not count for the weight.
                 let whole = Offshoot {
-                    coefficient: split.kt,
+                    coefficient: split.kt.max_component(),
                     ..Offshoot::new(RayKind::Refraction, through, direction, branch.part)
                 };
                 self.queue(branch, index, surface, hit, &whole, observer);
@@ -439,7 +439,7 @@ impl<'s> TreeTracer<'s> {
                 let offshoot = Offshoot {
                     divided: true,
                     returned: bent.is_none(),
-                    coefficient: split.kt * part.share(),
+                    coefficient: (split.kt * part.share()).max_component(),
                     ..Offshoot::new(
                         RayKind::Refraction,
                         through,
@@ -453,8 +453,15 @@ impl<'s> TreeTracer<'s> {
         let mut mirrors = std::mem::take(&mut self.mirrors);
         layers::mirrors(&self.paint, surface, split, &mut mirrors);
         for mirror in mirrors.iter().rev() {
-            let Mirror { share, direction } = *mirror;
-            let mirrored = Offshoot::new(RayKind::Reflection, share, direction, branch.part);
+            let Mirror {
+                share,
+                direction,
+                weight,
+            } = *mirror;
+            let mirrored = Offshoot {
+                coefficient: weight,
+                ..Offshoot::new(RayKind::Reflection, share, direction, branch.part)
+            };
             self.queue(branch, index, surface, hit, &mirrored, observer);
         }
         self.mirrors = mirrors;
@@ -484,7 +491,7 @@ impl<'s> TreeTracer<'s> {
         let Offshoot {
             kind, direction, ..
         } = *offshoot;
-        let weight = branch.weight * offshoot.coefficient.max_component();
+        let weight = branch.weight * offshoot.coefficient;
         let end = if branch.depth >= self.settings.max_depth {
             Some(BranchEnd::DepthLimit)
         } else if weight < self.settings.adc_bailout {
@@ -507,7 +514,7 @@ impl<'s> TreeTracer<'s> {
             }
             _ => branch.media,
         };
-        let straight = kind == RayKind::Refraction && direction == branch.ray.direction;
+        let straight = kind == RayKind::Refraction && surface.is_straight();
         let (point, origin) = surface.start(hit, direction);
         self.waiting.push(Branch {
             ray: Ray::new(point, direction),

@@ -66,6 +66,18 @@ impl PovReflection {
         reflectance * metallic_tint(self.metallic, cos, pigment)
     }
 
+    /// The number by which POV-Ray 3.7 weighs the reflection ray for `adc_bailout` (measured): the largest component of the
+    /// reflectance; where it rises with the angle other than by Fresnel's equations, the largest at any angle. `metallic` does
+    /// not count.
+    pub fn weight(&self, cos_view: f64, eta: f64) -> f64 {
+        if self.fresnel {
+            let reflectance = self.min + (self.max - self.min) * self.rise(cos_view, eta);
+            reflectance.max_component()
+        } else {
+            self.min.max_component().max(self.max.max_component())
+        }
+    }
+
     /// The position of the reflectance between `min` (0) and `max` (1): Fresnel's F, or `(1 - cos θ)^falloff`.
     #[inline]
     pub fn rise(&self, cos_view: f64, eta: f64) -> f64 {

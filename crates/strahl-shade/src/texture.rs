@@ -108,6 +108,9 @@ pub struct LayerPoint<'a> {
     pub above: Color,
     /// The factor of the radiance from the mirror direction.
     pub reflectance: Color,
+    /// The weight of the ray in the mirror direction, as POV-Ray has it: [`PovReflection::weight`] times the layer's share and
+    /// the largest component of `above`.
+    pub reflection_weight: f64,
 }
 
 /// A texture evaluated at a point. Reused from point to point, it stops allocating.
@@ -416,10 +419,15 @@ impl PlainTexture {
         let normal = self.tilted(point, n, space);
         let cos_view = -normal.dot(point.direction);
         // A layer below an opaque layer does not reflect; otherwise the layers above do not weaken its reflection (measured).
-        let reflectance = if stack.above.is_black() {
-            Color::BLACK
+        let reflection = &self.finish.reflection;
+        let (reflectance, reflection_weight) = if stack.above.is_black() || reflection.is_none() {
+            (Color::BLACK, 0.0)
         } else {
-            self.finish.reflection.reflectance(cos_view, color.rgb, eta)
+            let weight = reflection.weight(cos_view, eta);
+            (
+                reflection.reflectance(cos_view, color.rgb, eta),
+                weight * stack.share * stack.above.max_component(),
+            )
         };
         out.layers.push(LayerPoint {
             color,
@@ -428,6 +436,7 @@ impl PlainTexture {
             share: stack.share,
             above: stack.above,
             reflectance,
+            reflection_weight,
         });
         let mut passes = color.attenuation();
         if self.finish.conserve_energy {

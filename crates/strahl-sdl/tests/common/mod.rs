@@ -2,6 +2,7 @@
 #![allow(dead_code, reason = "each test binary uses a part of this")]
 
 pub(crate) mod pictures;
+pub(crate) mod pixel;
 
 use std::path::PathBuf;
 use strahl_sdl::{MemoryHost, Options, Parsed, Source, Stream, parse};
