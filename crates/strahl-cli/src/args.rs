@@ -59,7 +59,7 @@ pub(crate) enum Command {
     Info(SceneArgs),
     /// Look for errors in a scene without rendering it
     Check(CheckArgs),
-    /// List the scene and picture formats
+    /// List scene formats, picture formats and accelerators
     Formats,
     /// Print a completion script for a shell: `strahl completions bash > ~/.local/share/bash-completion/completions/strahl`
     Completions {
@@ -304,14 +304,14 @@ pub(crate) struct CheckArgs {
     /// Format of the scenes, if the file names don't show it (see `strahl formats`)
     #[arg(long, alias = "scene-format", value_name = "NAME")]
     pub(crate) format: Option<Format>,
-    #[command(flatten)]
-    pub(crate) pov: PovArgs,
     /// Print JSON: one object with all diagnostics for each scene
     #[arg(long)]
     pub(crate) json: bool,
     /// Check only the text, not whether the scene can be rendered
     #[arg(long)]
     pub(crate) syntax: bool,
+    #[command(flatten)]
+    pub(crate) pov: PovArgs,
 }
 
 #[derive(Debug, Args)]
@@ -359,8 +359,6 @@ pub(crate) enum ExplainForm {
 #[derive(Debug, Args)]
 pub(crate) struct CompareArgs {
     #[command(flatten)]
-    pub(crate) scene: SceneArgs,
-    #[command(flatten)]
     pub(crate) picture: PictureArgs,
     /// Accelerator to compare; may be given several times [default: all, the octree with each of its traversals]
     #[arg(long = "with", value_name = "NAME[:PARAMETER=VALUE,...]")]
@@ -381,12 +379,12 @@ pub(crate) struct CompareArgs {
     /// Print comma-separated values
     #[arg(long)]
     pub(crate) csv: bool,
+    #[command(flatten)]
+    pub(crate) scene: SceneArgs,
 }
 
 #[derive(Debug, Args)]
 pub(crate) struct HeatmapArgs {
-    #[command(flatten)]
-    pub(crate) scene: SceneArgs,
     #[command(flatten)]
     pub(crate) picture: PictureArgs,
     #[command(flatten)]
@@ -404,6 +402,8 @@ pub(crate) struct HeatmapArgs {
     /// Number of threads; 0 means one per processor
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub(crate) threads: usize,
+    #[command(flatten)]
+    pub(crate) scene: SceneArgs,
 }
 
 /// A cost of a pixel.
@@ -423,8 +423,6 @@ pub(crate) enum Metric {
 
 #[derive(Debug, Args)]
 pub(crate) struct TraceRayArgs {
-    #[command(flatten)]
-    pub(crate) scene: SceneArgs,
     /// The pixel, counted from 0,0 at the top left; the ray goes through its centre
     #[arg(long, value_name = "X,Y", value_parser = parse_pixel)]
     pub(crate) pixel: (u32, u32),
@@ -436,6 +434,8 @@ pub(crate) struct TraceRayArgs {
     /// Print JSON
     #[arg(long)]
     pub(crate) json: bool,
+    #[command(flatten)]
+    pub(crate) scene: SceneArgs,
 }
 
 fn parse_pair(s: &str, separator: char) -> Option<(u32, u32)> {
