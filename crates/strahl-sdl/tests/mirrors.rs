@@ -31,3 +31,8 @@ fn total_reflection_fades_and_weighs_like_light_that_passes() {
 fn reflection_weighs_its_maximum_over_the_angles() {
     agree("reflection_weighs_its_maximum_over_the_angles");
 }
+
+#[test]
+fn reflectance_of_a_normal_that_faces_away() {
+    agree("reflectance_of_a_normal_that_faces_away");
+}

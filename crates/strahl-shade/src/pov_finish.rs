@@ -61,9 +61,8 @@ impl PovReflection {
         if self.is_none() {
             return Color::BLACK;
         }
-        let cos = cos_view.abs().clamp(0.0, 1.0);
         let reflectance = self.min + (self.max - self.min) * self.rise(cos_view, eta);
-        reflectance * metallic_tint(self.metallic, cos, pigment)
+        reflectance * self.tint(cos_view, pigment)
     }
 
     /// The number by which POV-Ray 3.7 weighs the reflection ray for `adc_bailout` (measured): the largest component of the
@@ -79,10 +78,15 @@ impl PovReflection {
     }
 
     /// The position of the reflectance between `min` (0) and `max` (1): Fresnel's F, or `(1 - cos θ)^falloff`.
+    ///
+    /// A tilted normal may face away from the viewer. Then, as in POV-Ray 3.7 (measured), F is 1, and the power is above 1.
     #[inline]
     pub fn rise(&self, cos_view: f64, eta: f64) -> f64 {
-        let cos = cos_view.abs().clamp(0.0, 1.0);
+        let cos = cos_view.clamp(-1.0, 1.0);
         if self.fresnel {
+            if cos < 0.0 {
+                return 1.0;
+            }
             let sin2 = (1.0 - cos * cos) / (eta * eta);
             if sin2 < 1.0 {
                 fresnel_dielectric(1.0, cos, eta, (1.0 - sin2).sqrt())
@@ -98,7 +102,7 @@ impl PovReflection {
 
     /// The tint of the reflection by `metallic`, for a surface of this pigment.
     pub fn tint(&self, cos_view: f64, pigment: Color) -> Color {
-        metallic_tint(self.metallic, cos_view.abs().clamp(0.0, 1.0), pigment)
+        metallic_tint(self.metallic, cos_view, pigment)
     }
 
     /// The reflected light: `reflectance · light^(1 / exponent)`.
