@@ -35,6 +35,7 @@ pub(super) fn totals(rows: &[Row]) -> String {
         .filter(|r| r.marks.is_empty())
         .copied()
         .collect();
+    let complete: Vec<&Row> = theirs.iter().filter(is_whole).copied().collect();
     let _ = writeln!(
         out,
         "{} scenes, {} of them rendered by POV-Ray at this size within the time",
@@ -47,6 +48,7 @@ pub(super) fn totals(rows: &[Row]) -> String {
             "of those without radiosity, photons, media, subsurface",
             &plain,
         ),
+        ("of those with nothing left out", &complete),
     ] {
         let percent = |n: usize| 100.0 * n as f64 / rows.len().max(1) as f64;
         let counts = [
@@ -62,6 +64,14 @@ pub(super) fn totals(rows: &[Row]) -> String {
         for (text, n) in counts {
             let _ = writeln!(out, "  {:5.1} % {text} ({n})", percent(n));
         }
+    }
+    let apart: Vec<&&Row> = complete.iter().filter(|r| !is_close(r)).collect();
+    if !apart.is_empty() {
+        let _ = writeln!(out, "differ although nothing is left out:");
+    }
+    for row in apart {
+        let mean = row.difference.map_or(f64::NAN, |(mean, _)| mean);
+        let _ = writeln!(out, "  {mean:6.2} {}", row.scene);
     }
     let both: Vec<&Row> = rows.iter().filter(|r| r.difference.is_some()).collect();
     let sum = |seconds: fn(&Row) -> f64| both.iter().map(|r| seconds(r)).sum::<f64>();
