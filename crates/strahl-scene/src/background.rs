@@ -21,17 +21,17 @@ pub enum Background {
     Sky(Arc<SkySphere>),
 }
 
-/// What the alpha channel makes of rays that hit nothing.
+/// The alpha channel of rays that hit nothing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum BackgroundAlpha {
-    /// All that they see is left out of the picture.
+    /// The picture is transparent there.
     LeftOut,
-    /// The background is in the picture, but for what the filter and transmit of its colour let pass. A sky in front of it lets pass what its
-    /// pigments do.
+    /// The background is in the picture; the filter and transmit of its colour are its transparency. A sky in front of it has the
+    /// transparency of its pigments.
     Seen {
-        /// Share that passes tinted by the background's colour.
+        /// The fraction transmitted with the tint of the background's colour.
         filter: f64,
-        /// Share that passes unchanged.
+        /// The fraction transmitted unchanged.
         transmit: f64,
     },
 }
@@ -70,8 +70,8 @@ impl Background {
         }
     }
 
-    /// The light along a direction that is left out of a picture with an alpha channel, and what part of what lies behind the picture
-    /// shows through, as measured with POV-Ray 3.7.
+    /// The light along a direction that a picture with an alpha channel leaves out, and the transmittance for the light from behind
+    /// the picture, as measured with POV-Ray 3.7.
     pub fn left_out(&self, direction: DVec3, alpha: BackgroundAlpha) -> (Color, Color) {
         let BackgroundAlpha::Seen { filter, transmit } = alpha else {
             return (self.along(direction), Color::WHITE);

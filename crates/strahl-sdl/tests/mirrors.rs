@@ -1,4 +1,4 @@
-//! Where reflection and transparency rays go, and when they are cut: one pixel of each scene of `data/mirrors.tsv`, which has the
+//! The directions of reflection and transparency rays, and when they are cut: one pixel of each scene of `data/mirrors.tsv`, which has the
 //! values of POV-Ray 3.7.
 
 mod common;

@@ -1,4 +1,4 @@
-//! What the language's versions make of a scene: the rows of `data/versions.tsv`, which docs/src/versions.md explains.
+//! The effects of language versions: the rows of `data/versions.tsv`, which docs/src/versions.md explains.
 
 mod common;
 
@@ -52,7 +52,7 @@ fn shown(parsed: &Parsed, alpha: bool) -> Vec<Vec<u8>> {
         .map(|(at, color)| match &film.alpha {
             None => color.map(code).to_vec(),
             Some(alpha) => {
-                // Files have the colour without what shows through.
+                // Files have colours that are not multiplied by alpha.
                 let share = if alpha[at] > 0.0 { alpha[at] } else { 1.0 };
                 let mut codes = color.map(|c| code(c / share)).to_vec();
                 codes.push((alpha[at] * 255.0).round() as u8);
@@ -72,7 +72,7 @@ fn codes(text: &str) -> Vec<Vec<u8>> {
         .collect()
 }
 
-/// What is wrong with a case.
+/// The problem of a case.
 fn problem(case: &Case<'_>) -> Option<String> {
     let text = match case.version {
         "none" => case.scene.to_owned(),

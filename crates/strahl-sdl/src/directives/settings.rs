@@ -2,7 +2,7 @@ use crate::keywords::Word;
 use crate::parser::{PResult, Parser};
 use crate::token::Kind;
 
-/// The version since which the default `ambient` is 0, by its documentation.
+/// The version from which on the default `ambient` is 0, according to its documentation.
 const DARK_SINCE: f64 = 3.8;
 
 impl Parser<'_> {
@@ -30,7 +30,7 @@ impl Parser<'_> {
         Ok(())
     }
 
-    /// What follows is written for this version.
+    /// Sets the version of the following text.
     pub(crate) fn begin_version(&mut self, version: f64) {
         self.version = version;
         let scene_file = self.in_scene_file();

@@ -35,7 +35,7 @@ use strahl_math::DVec3;
 /// Numbers closer than this count as equal in comparisons; measured with POV-Ray 3.7.
 const EPSILON: f64 = 1e-10;
 
-/// The version since which numbers may be calculated without parentheses. Before it `<1 -2 3>` has three components; measured
+/// The version from which on operators need no parentheses. Before it `<1 -2 3>` has three components; measured
 /// with POV-Ray 3.7.
 const OPERATORS_SINCE: f64 = 1.5;
 
@@ -151,7 +151,7 @@ impl Parser<'_> {
         self.binary(4)
     }
 
-    /// A number of any kind where operators stand in all versions: a colour.
+    /// A number of any kind in a colour, where operators are allowed in all versions.
     fn calculation(&mut self) -> PResult<Vector> {
         if self.stands_alone(4) {
             return self.binary(4);

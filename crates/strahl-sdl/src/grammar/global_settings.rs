@@ -10,7 +10,7 @@ use strahl_shade::patterns::Pattern;
 /// The default of `max_trace_level`.
 const TRACE_LEVEL: u32 = 5;
 
-/// The version since which patterns are made of noise that is not cut off; measured with POV-Ray 3.7.
+/// The version from which on the default noise of patterns is not clamped (`noise_generator 2`); measured with POV-Ray 3.7.
 const RANGE_CORRECTED_SINCE: f64 = 3.5;
 
 /// The version of scenes that name none.
@@ -21,7 +21,7 @@ pub(crate) const UNVERSIONED: f64 = 3.7;
 pub struct GlobalSettings {
     /// Whether the scene has a `#version`; scenes without one are old.
     pub versioned: bool,
-    /// The last version that the scene's own file names: versions of included files don't change what its patterns are made of.
+    /// The last `#version` in the scene's own file: versions of included files don't change the noise of its patterns.
     pub scene_version: Option<f64>,
     /// `assumed_gamma`
     pub working_space: Option<WorkingSpace>,
@@ -31,7 +31,7 @@ pub struct GlobalSettings {
     pub ambient: Option<Color>,
     /// `noise_generator`: 1, 2 or 3.
     pub noise_generator: Option<u8>,
-    /// The noise that patterns were made of without saying it, with the first pattern of each.
+    /// The default noises that patterns have used, with the first pattern of each.
     pub noise_taken: Vec<(NoiseGenerator, Place)>,
     /// `number_of_waves`
     pub number_of_waves: Option<u32>,
@@ -184,13 +184,13 @@ impl Parser<'_> {
         settings.working_space = working_space;
     }
 
-    /// The noise of what says nothing about it.
+    /// The default noise.
     pub(crate) fn default_noise(&self) -> NoiseGenerator {
         let global = &self.state.global;
         self.noise_at(global.scene_version.unwrap_or(UNVERSIONED))
     }
 
-    /// The noise of a pattern that says nothing about it.
+    /// The default noise of a pattern; it is recorded for [`Self::noise_settled`].
     pub(super) fn noise_of(&mut self, pattern: &Pattern) -> NoiseGenerator {
         let noise = self.default_noise();
         let noisy = matches!(
@@ -220,14 +220,14 @@ impl Parser<'_> {
             .unwrap_or(of_version)
     }
 
-    /// Says at the end of the scene if patterns were made of another noise than POV-Ray takes, which asks at the end only.
+    /// Warns at the end of the scene if patterns have used another noise than POV-Ray, which decides only there.
     fn noise_settled(&mut self) {
         let last = self.noise_at(self.version);
         let taken = std::mem::take(&mut self.state.global.noise_taken);
         for (_, place) in taken.into_iter().filter(|(noise, _)| *noise != last) {
             self.warn_hint(
                 place,
-                "the `noise_generator` or `#version` behind this pattern does not change its noise",
+                "the `noise_generator` or `#version` after this pattern does not change its noise",
                 "write `#version` and `global_settings { noise_generator ... }` before the first pattern",
             );
         }

@@ -13,7 +13,7 @@ use strahl_math::{DVec3, Transform, det};
 use strahl_scene::{Camera, Projection, Span};
 use strahl_shade::normal::PovNormal;
 
-/// The version since which `angle` and `direction` count for orthographic cameras, and each camera begins anew.
+/// The version from which on `angle` and `direction` have an effect on orthographic cameras, and each camera starts from the default.
 const CAMERAS_SINCE: f64 = 3.5;
 
 /// `camera { ... }` as a statement: the last one counts.
@@ -70,7 +70,7 @@ struct Draft {
     named: bool,
     /// Whether an item has been read.
     begun: bool,
-    /// Whether `right` and `up` are the size of what is seen, as in orthographic cameras before version 3.5.
+    /// Whether `right` and `up` are the size of the view, as in orthographic cameras before version 3.5.
     fixed: bool,
     transform: Transform,
 }
@@ -137,8 +137,8 @@ impl Draft {
         true
     }
 
-    /// `orthographic` before version 3.5 (measured): as the first item it says that `right` and `up` are the size of what is seen; behind
-    /// others, that they become what the perspective camera described so far sees at the point looked at.
+    /// `orthographic` before version 3.5 (measured): as the first item it makes `right` and `up` the size of the view; after other
+    /// items it sets them to the view of the perspective camera described so far, at the distance of `look_at`.
     fn fix_size(&mut self) {
         if self.begun && !self.fixed {
             self.apply_angle();

@@ -1,4 +1,4 @@
-//! Layers of textures. Up to version 3.1 `filter` in a layer above others is `transmit`: what lies below is not tinted (measured
+//! Layers of textures. Up to version 3.1 `filter` in an upper layer acts as `transmit`: the layers below are not tinted (measured
 //! with POV-Ray 3.7).
 
 use crate::parser::Parser;

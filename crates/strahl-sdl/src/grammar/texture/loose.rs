@@ -1,7 +1,7 @@
-//! Parts of a pigment, normal or finish that stand in the texture itself, as they may before version 3.0:
+//! Parts of a pigment, normal or finish that are written directly in the texture, as versions before 3.0 allow:
 //! `texture { color red 1 bumps 0.5 phong 1 }`.
 //!
-//! Turbulence belongs to the pigment, frequency and phase to the normal; a number by itself is `crand` (measured with POV-Ray 3.7).
+//! Turbulence belongs to the pigment, frequency and phase to the normal; a single number is `crand` (measured with POV-Ray 3.7).
 
 use super::{finish, modifiers, normal, pigment, top_of};
 use crate::keywords::{Word, WordKind};
@@ -12,7 +12,7 @@ use strahl_math::Transform;
 use strahl_shade::patterns::Wave;
 use strahl_shade::texture::Texture as Surface;
 
-/// The version since which all parts stand in blocks of their own.
+/// The version from which on all parts must be in their own blocks.
 pub(super) const BLOCKS_SINCE: f64 = 3.0;
 
 /// Pigment and normal while parts of them are read; they are taken from the texture, and put back when other items follow.
@@ -22,7 +22,7 @@ pub(super) struct Loose {
     normal: Option<normal::Draft>,
 }
 
-/// Where a part belongs.
+/// The block that a part belongs to.
 enum Home {
     Pigment,
     Normal,
@@ -82,7 +82,7 @@ fn home(token: Token) -> Option<Home> {
 }
 
 impl Loose {
-    /// Moves what has been read.
+    /// Transforms the parts read so far.
     pub(super) fn transform(&mut self, by: &Transform) {
         if let Some(pigment) = &mut self.pigment {
             modifiers::transform(&mut pigment.modifiers.warps, by);
@@ -92,7 +92,7 @@ impl Loose {
         }
     }
 
-    /// Puts what has been read into the texture.
+    /// Puts the parts read so far into the texture.
     pub(super) fn put_into(&mut self, texture: &mut Surface) {
         let Some(top) = top_of(texture) else {
             return;
@@ -107,10 +107,10 @@ impl Loose {
 }
 
 impl Parser<'_> {
-    /// If a part stands here that belongs into a block of the texture, reads it.
+    /// Reads a part that belongs to a block of the texture, if one follows.
     ///
     /// # Errors
-    /// If it is wrong.
+    /// If it is invalid.
     pub(super) fn loose_item(
         &mut self,
         loose: &mut Loose,
@@ -130,7 +130,7 @@ impl Parser<'_> {
                     .get_or_insert_with(|| std::mem::take(taken).into());
                 let wave = draft.modifiers.wave;
                 self.pigment_item(draft, token)?;
-                // Here marble and wood go up once, and not up and down.
+                // Here marble and wood use a ramp wave instead of a triangle wave.
                 if token.is(Word::Marble) || token.is(Word::Wood) {
                     draft.modifiers.wave = Some(wave.unwrap_or(Wave::Ramp));
                 }
