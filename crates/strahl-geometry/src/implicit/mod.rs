@@ -3,6 +3,7 @@
 mod container;
 mod height_field;
 mod isosurface;
+mod octree;
 mod parametric;
 mod workspace;
 
@@ -10,4 +11,5 @@ pub use container::Container;
 pub(crate) use container::Passage;
 pub use height_field::HeightField;
 pub use isosurface::{Isosurface, IsosurfaceOptions};
+pub(crate) use octree::{Octree, Visitor};
 pub use parametric::{Parametric, ParametricOptions};

@@ -1,7 +1,7 @@
 //! What noise can be within a box: for proofs that a function has no zero there.
 
 use super::tables::{R, hash};
-use super::{CELL_SHIFT, NoiseGenerator, SHIFT, perlin_gradient, smooth, unit};
+use super::{CELL_SHIFT, NoiseGenerator, SHIFT, each, perlin_gradient, smooth, unit};
 use crate::DVec3;
 
 /// More than the rounding errors of noise, whose terms are of the size of 1.
@@ -20,7 +20,7 @@ pub fn noise_bounds(min: DVec3, max: DVec3, generator: NoiseGenerator) -> Range 
         NoiseGenerator::Perlin => {
             let shift = DVec3::splat(SHIFT);
             over_cells(min + shift, max + shift, |cell, corner, d| {
-                let index = cell.map(|c| (c & 2047) as usize);
+                let index = each(cell, |c| (c & 2047) as usize);
                 linear(0.0, perlin_gradient(index, corner), d)
             })
         }
@@ -56,6 +56,7 @@ struct Offset {
 }
 
 /// The range of `value + gradient · d`.
+#[inline(always)]
 fn linear(value: f64, gradient: DVec3, d: &Offset) -> Range {
     let middle = value + gradient.dot(d.middle);
     let reach = gradient.abs().dot(d.reach);
@@ -86,13 +87,14 @@ fn over_cells(
         }
         let from = (min - cell).max(DVec3::ZERO);
         let to = (max - cell).min(DVec3::ONE);
-        let (low, high) = in_cell(cell.to_array().map(|c| c as i64), from, to, &corner);
+        let (low, high) = in_cell(each(cell.to_array(), |c| c as i64), from, to, &corner);
         hull = Some(hull.map_or((low, high), |(a, b)| (a.min(low), b.max(high))));
     }
     hull
 }
 
 /// Bounds over the part of one cell between `from` and `to`, both in the unit cube.
+#[inline(always)]
 fn in_cell(
     cell: [i64; 3],
     from: DVec3,
@@ -100,7 +102,8 @@ fn in_cell(
     corner: &impl Fn([i64; 3], [usize; 3], &Offset) -> Range,
 ) -> Range {
     let (middle, reach) = (0.5 * (from + to), 0.5 * (to - from));
-    let [s0, s1] = [from, to].map(|v| DVec3::from_array(v.to_array().map(smooth)));
+    let shares = |v: DVec3| DVec3::new(smooth(v.x), smooth(v.y), smooth(v.z));
+    let (s0, s1) = (shares(from), shares(to));
     let at = |x: usize, y: usize, z: usize| {
         let step = DVec3::new(x as f64, y as f64, z as f64);
         let middle = middle - step;
@@ -112,6 +115,7 @@ fn in_cell(
 }
 
 /// Bounds of `a + s (b - a)` for a share between `s0` and `s1`: it is linear in the share, so an end is extreme.
+#[inline(always)]
 fn blend(a: Range, b: Range, s0: f64, s1: f64) -> Range {
     let mix = |a: f64, b: f64, s: f64| a * (1.0 - s) + b * s;
     let low = mix(a.0, b.0, s0).min(mix(a.0, b.0, s1));

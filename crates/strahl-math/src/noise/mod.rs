@@ -147,8 +147,14 @@ fn stretched(p: DVec3, generator: NoiseGenerator) -> f64 {
 ///
 /// It is the hash of the value-gradient noise without that noise's shift of the lattice; it repeats every 4096 cells.
 pub fn lattice_hash(cell: [i64; 3]) -> usize {
-    let [i, j, k] = cell.map(|c| (c & 4095) as usize);
+    let [i, j, k] = each(cell, |c| (c & 4095) as usize);
     usize::from(hash(usize::from(hash(usize::from(hash(i)) ^ j)) ^ k))
+}
+
+/// `array::map`, which is not always inlined.
+#[inline(always)]
+fn each<A, B>([a, b, c]: [A; 3], f: impl Fn(A) -> B) -> [B; 3] {
+    [f(a), f(b), f(c)]
 }
 
 /// `x` cut off at 0 and 1.
@@ -177,14 +183,17 @@ const CELL_SHIFT: i64 = 10_000;
 /// and gradients, the vector from the corner to the point, and the corner's weight; the weights sum to 1.
 #[inline(always)]
 fn corners(p: DVec3, mut visit: impl FnMut(&[f64; 12], DVec3, f64)) {
-    let [x, y, z] = p.to_array().map(place);
-    let cells = [x, y, z].map(|(cell, _)| {
+    let [x, y, z] = each(p.to_array(), place);
+    let cells = each([x, y, z], |(cell, _)| {
         // Huge coordinates wrap around to some cell.
         let cell = cell.wrapping_add(CELL_SHIFT);
-        [cell, cell.wrapping_add(1)].map(|c| (c & 4095) as usize)
+        [
+            (cell & 4095) as usize,
+            (cell.wrapping_add(1) & 4095) as usize,
+        ]
     });
-    let ways = [x, y, z].map(|(_, fraction)| [fraction, fraction - 1.0]);
-    let shares = [x, y, z].map(|(_, t)| {
+    let ways = each([x, y, z], |(_, fraction)| [fraction, fraction - 1.0]);
+    let shares = each([x, y, z], |(_, t)| {
         let s = smooth(t);
         [1.0 - s, s]
     });
@@ -224,7 +233,7 @@ const SHIFT: f64 = 10_000_000.0 + 12_432_434.0 / 536_870_912.0;
 
 /// The gradient at a corner of a cell, whose index is below 2048.
 fn perlin_gradient(index: [usize; 3], step: [usize; 3]) -> DVec3 {
-    let [i, j, k] = std::array::from_fn(|a| (index[a] + step[a]) & 2047);
+    let [i, j, k] = each([0, 1, 2], |a: usize| (index[a] + step[a]) & 2047);
     GRADIENTS[(perlin_row(i, j) + k) & 2047]
 }
 
@@ -234,10 +243,12 @@ fn perlin_row(i: usize, j: usize) -> usize {
 }
 
 fn perlin(p: DVec3) -> f64 {
-    let [x, y, z] = (p + DVec3::splat(SHIFT)).to_array().map(place);
-    let cells = [x, y, z].map(|(c, _)| [c, c.wrapping_add(1)].map(|c| (c & 2047) as usize));
-    let ways = [x, y, z].map(|(_, fraction)| [fraction, fraction - 1.0]);
-    let shares = [x, y, z].map(|(_, t)| {
+    let [x, y, z] = each((p + DVec3::splat(SHIFT)).to_array(), place);
+    let cells = each([x, y, z], |(c, _)| {
+        [(c & 2047) as usize, (c.wrapping_add(1) & 2047) as usize]
+    });
+    let ways = each([x, y, z], |(_, fraction)| [fraction, fraction - 1.0]);
+    let shares = each([x, y, z], |(_, t)| {
         let s = smooth(t);
         [1.0 - s, s]
     });

@@ -1,6 +1,7 @@
 //! The orbit of a point: its end, and the derivatives of the end by the point.
 
 use super::complex::{Complex, HypercomplexFunction};
+use super::power::{Degree, Powers};
 use super::{JuliaAlgebra, QuaternionFunction};
 
 /// A number with four components.
@@ -11,14 +12,18 @@ pub(super) fn norm2(h: Four) -> f64 {
     (h[0] * h[0] + h[1] * h[1]) + (h[2] * h[2] + h[3] * h[3])
 }
 
-/// The end of an orbit: the first point beyond the bail-out radius, or the last one computed.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct End {
-    /// The logarithm of the distance from the origin, over that of the bail-out radius: negative inside of the set.
+/// How a point lies to the surface.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Place {
+    /// Half of the squared length of the orbit's end over that of the bail-out radius, less a half: negative inside of the set,
+    /// infinite if the end is not a number.
     pub(super) value: f64,
-    /// A bound (to first order) of its derivative by the starting point.
-    pub(super) slope: f64,
+    /// There is no surface nearer than this, by an estimate.
+    pub(super) reach: f64,
 }
+
+/// The part of an estimated distance that is taken where the estimate may be too long.
+pub(super) const CAUTION: f64 = 0.5;
 
 /// The rule of an orbit.
 #[derive(Clone, Copy, Debug)]
@@ -32,28 +37,107 @@ pub(super) struct Rule {
 }
 
 impl Rule {
-    /// Computes the orbit of a point.
-    pub(super) fn end(&self, start: Four) -> End {
+    /// A bound (to first order) of the derivative of [`Place::value`] by the point.
+    pub(super) fn slope(&self, start: Four) -> f64 {
+        let (r2, slope) = self.follow(start);
+        slope * r2.sqrt() / (self.exit * self.exit)
+    }
+
+    /// Squares or cubes of quaternions.
+    fn quaternion_powers(&self, f: QuaternionFunction) -> Powers<Four> {
+        Powers {
+            degree: match f {
+                QuaternionFunction::Square => Degree::Two,
+                QuaternionFunction::Cube => Degree::Three,
+            },
+            parameter: self.parameter,
+            points: self.points,
+            exit: self.exit,
+        }
+    }
+
+    /// Squares or cubes of hypercomplex numbers, if the function is one of them.
+    fn hypercomplex_powers(&self, f: HypercomplexFunction) -> Option<Powers<[Complex; 2]>> {
+        let degree = match f {
+            HypercomplexFunction::Square => Degree::Two,
+            HypercomplexFunction::Cube => Degree::Three,
+            _ => return None,
+        };
+        Some(Powers {
+            degree,
+            parameter: split(self.parameter),
+            points: self.points,
+            exit: self.exit,
+        })
+    }
+
+    /// The [`Place::value`] of a point. Its orbit ends with the first number beyond the bail-out radius, or the last one computed.
+    pub(super) fn value(&self, start: Four) -> f64 {
+        self.value_of(match self.algebra {
+            JuliaAlgebra::Quaternion(f) => self.quaternion_powers(f).end(start),
+            JuliaAlgebra::Hypercomplex(f) => match self.hypercomplex_powers(f) {
+                Some(powers) => powers.end(split(start)),
+                None => self.follow(start).0,
+            },
+        })
+    }
+
+    fn value_of(&self, r2: f64) -> f64 {
+        let value = 0.5 * (r2 / (self.exit * self.exit) - 1.0);
+        if value.is_nan() { f64::INFINITY } else { value }
+    }
+
+    /// How a point lies to the surface.
+    pub(super) fn place(&self, start: Four) -> Place {
+        let powers = match self.algebra {
+            JuliaAlgebra::Quaternion(f) => Some(self.quaternion_powers(f).estimate(start)),
+            JuliaAlgebra::Hypercomplex(f) => self
+                .hypercomplex_powers(f)
+                .map(|powers| powers.estimate(split(start))),
+        };
+        let (r2, reach) = powers.unwrap_or_else(|| {
+            let (r2, slope) = self.follow(start);
+            // The logarithm of the end's length is more like a straight line than the length.
+            let log = 0.5 * strahl_math::det::ln(r2 / (self.exit * self.exit));
+            (r2, CAUTION * log.abs() * r2.sqrt() / slope)
+        });
+        Place {
+            value: self.value_of(r2),
+            // At poles there is no estimate.
+            reach: if reach.is_finite() { reach } else { 0.0 },
+        }
+    }
+
+    /// Whether the numbers up to this distance from a number are all inside of the set or all outside: proven for squares and
+    /// cubes, by the estimate for other functions.
+    pub(super) fn is_decided(&self, start: Four, radius: f64) -> bool {
+        match self.algebra {
+            JuliaAlgebra::Quaternion(f) => self.quaternion_powers(f).is_decided(start, radius),
+            JuliaAlgebra::Hypercomplex(f) => match self.hypercomplex_powers(f) {
+                Some(powers) => powers.is_decided(split(start), radius),
+                None => self.place(start).reach > radius,
+            },
+        }
+    }
+
+    /// The squared length of the end of an orbit, and the bound of the end's derivative.
+    fn follow(&self, start: Four) -> (f64, f64) {
         match self.algebra {
             JuliaAlgebra::Quaternion(f) => {
-                let step = |h: Four, slope: f64| {
-                    let r = norm2(h).sqrt();
-                    match f {
-                        QuaternionFunction::Square => (f.value(h), slope * 2.0 * r),
-                        QuaternionFunction::Cube => (f.value(h), slope * 3.0 * (r * r)),
-                    }
-                };
                 let add = |h: Four| std::array::from_fn(|k| h[k] + self.parameter[k]);
-                self.follow(start, norm2, |h, slope| {
-                    let (h, slope) = step(h, slope);
-                    (add(h), slope)
+                self.follow_with(start, norm2, |h, slope| {
+                    let r2 = norm2(h);
+                    match f {
+                        QuaternionFunction::Square => (add(f.value(h)), slope * 2.0 * r2.sqrt()),
+                        QuaternionFunction::Cube => (add(f.value(h)), slope * 3.0 * r2),
+                    }
                 })
             }
             JuliaAlgebra::Hypercomplex(f) => {
                 let [p, q] = split(self.parameter);
                 // Each of the two complex numbers has its own slope; the larger one bounds that of the whole.
                 let mut slopes = [1.0, 1.0];
-                self.follow(split(start), joint_norm2, |[a, b], _| {
+                self.follow_with(split(start), joint_norm2, |[a, b], _| {
                     let (fa, fb) = (f.value(a), f.value(b));
                     slopes[0] *= f.slope(a, fa).norm2().sqrt();
                     slopes[1] *= f.slope(b, fb).norm2().sqrt();
@@ -68,12 +152,12 @@ impl Rule {
         }
     }
 
-    fn follow<T: Copy>(
+    fn follow_with<T: Copy>(
         &self,
         start: T,
         norm2: impl Fn(T) -> f64,
         mut step: impl FnMut(T, f64) -> (T, f64),
-    ) -> End {
+    ) -> (f64, f64) {
         let limit = self.exit * self.exit;
         let (mut h, mut slope) = (start, 1.0);
         let mut r2 = norm2(h);
@@ -85,11 +169,7 @@ impl Rule {
             (h, slope) = step(h, slope);
             r2 = norm2(h);
         }
-        let value = 0.5 * strahl_math::det::ln(r2 / limit);
-        End {
-            value: if value.is_nan() { f64::INFINITY } else { value },
-            slope: slope / r2.sqrt(),
-        }
+        (r2, slope)
     }
 
     /// The gradient of the end's value by the four components of the starting point, at the end or this many points behind it.
@@ -120,8 +200,7 @@ impl Rule {
         for _ in 0..behind {
             step(&mut h);
         }
-        let r2 = norm2(h);
-        rows.map(|d| ((h[0] * d[0] + h[1] * d[1]) + (h[2] * d[2] + h[3] * d[3])) / r2)
+        rows.map(|d| ((h[0] * d[0] + h[1] * d[1]) + (h[2] * d[2] + h[3] * d[3])) / limit)
     }
 
     fn hypercomplex_gradient(&self, f: HypercomplexFunction, start: Four, behind: u32) -> Four {
@@ -145,7 +224,7 @@ impl Rule {
         }
         // The gradient of |a|²/2 by the real and imaginary part of its start is a conj(a'); so for b.
         let (ga, gb) = (a * da.conjugate(), b * db.conjugate());
-        let scale = 0.5 / joint_norm2([a, b]);
+        let scale = 0.5 / limit;
         [ga.re + gb.re, ga.im + gb.im, gb.im - ga.im, ga.re - gb.re].map(|g| g * scale)
     }
 }
@@ -210,12 +289,12 @@ mod tests {
                 exit: 4.0,
             };
             let start = [0.3, -0.2, 0.25, 0.1];
-            let (gradient, end) = (rule.gradient(start, 0), rule.end(start));
+            let (gradient, slope) = (rule.gradient(start, 0), rule.slope(start));
             for k in 0..4 {
                 let moved = |by: f64| {
                     let mut p = start;
                     p[k] += by;
-                    rule.end(p).value
+                    rule.value(p)
                 };
                 let difference = (moved(1e-5) - moved(-1e-5)) / 2e-5;
                 assert!(
@@ -223,7 +302,74 @@ mod tests {
                     "{algebra:?} {k} {difference} {gradient:?}"
                 );
             }
-            assert!(norm2(gradient).sqrt() <= end.slope * 1.5, "{algebra:?}");
+            assert!(norm2(gradient).sqrt() <= slope * 1.5, "{algebra:?}");
+        }
+    }
+
+    #[test]
+    fn all_points_of_a_decided_ball_are_on_the_same_side() {
+        let mut seed = 1_u64;
+        let mut random = || {
+            seed = seed
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            (seed >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+        };
+        for algebra in [
+            JuliaAlgebra::Quaternion(QuaternionFunction::Square),
+            JuliaAlgebra::Quaternion(QuaternionFunction::Cube),
+            JuliaAlgebra::Hypercomplex(HypercomplexFunction::Square),
+            JuliaAlgebra::Hypercomplex(HypercomplexFunction::Cube),
+        ] {
+            let quaternion = matches!(algebra, JuliaAlgebra::Quaternion(_));
+            let rule = Rule {
+                algebra,
+                parameter: [0.2, 0.1, 0.5, -0.2],
+                points: 7,
+                exit: if quaternion { 1.6 } else { 4.0 },
+            };
+            let (mut inside, mut outside) = (0, 0);
+            for _ in 0..2000 {
+                let start: Four = std::array::from_fn(|_| 1.2 * random());
+                let radius = 0.05;
+                if !rule.is_decided(start, radius) {
+                    continue;
+                }
+                let value = rule.value(start);
+                *if value < 0.0 {
+                    &mut inside
+                } else {
+                    &mut outside
+                } += 1;
+                for _ in 0..100 {
+                    let way: Four = std::array::from_fn(|_| random());
+                    let scale = 0.999 * radius / norm2(way).sqrt();
+                    let moved = std::array::from_fn(|k| start[k] + scale * way[k]);
+                    let same = (rule.value(moved) < 0.0) == (value < 0.0);
+                    assert!(same, "{algebra:?} {start:?} {way:?}");
+                }
+            }
+            assert!(
+                inside > 10 && outside > 500,
+                "{algebra:?} {inside} {outside}"
+            );
+        }
+    }
+
+    #[test]
+    fn powers_have_the_values_of_the_functions() {
+        let start = [0.3, -0.2, 0.25, 0.1];
+        for f in [QuaternionFunction::Square, QuaternionFunction::Cube] {
+            let algebra = JuliaAlgebra::Quaternion(f);
+            let rule = Rule {
+                algebra,
+                parameter: [-0.083, 0.1, -0.53, -0.025],
+                points: 6,
+                exit: 4.0,
+            };
+            let value = rule.value_of(rule.follow(start).0);
+            assert_eq!(rule.value(start).to_bits(), value.to_bits());
+            assert_eq!(rule.place(start).value.to_bits(), value.to_bits());
         }
     }
 }

@@ -1,17 +1,16 @@
 //! Surfaces where a function of space has a given value.
 
-mod octree;
 mod search;
 #[cfg(test)]
 mod tests;
 
 use super::container::Container;
+use super::octree::Octree;
 use super::workspace::with_workspace;
 use crate::{
     Crossing, Crossings, GeometryError, PrimHit, Primitive, Scratch, Side, Solid, SurfaceId,
     SurfacePoint,
 };
-use octree::Octree;
 use search::{Course, Search, excludes_change, least_value};
 use std::ops::ControlFlow;
 use strahl_function::{Bounds, Function, Workspace};
@@ -77,6 +76,9 @@ const SURFACE: SurfaceId = SurfaceId {
 /// point on a ray out of the cell it is in.
 const CELL_PAD: f64 = 256.0 * f64::EPSILON;
 
+/// The octree's cells are halved so often.
+const LEVELS: u32 = 7;
+
 /// The shortest and the longest part of a ray that is not divided, as a part of the container's size.
 const SHORTEST: (f64, f64) = (1e-6, 1e-3);
 
@@ -114,7 +116,7 @@ impl Isosurface {
             container,
             options,
             is_bounded,
-            octree: Octree::new(bounds),
+            octree: Octree::new(bounds, LEVELS),
             cell_pad: DVec3::splat(CELL_PAD * bounds.max_abs()),
         })
     }

@@ -1,7 +1,7 @@
 //! The crossings of one ray with a surface, found in parts that shrink until they are proven empty or short.
 
-use super::octree::Visitor;
 use super::{Event, Isosurface, SURFACE};
+use crate::implicit::octree::Visitor;
 use crate::{Crossing, PrimHit, Side};
 use std::ops::ControlFlow;
 use strahl_function::{Bounds, Workspace};

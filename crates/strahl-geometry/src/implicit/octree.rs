@@ -5,9 +5,6 @@ use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU8, Ordering};
 use strahl_math::{Aabb, DVec3, Interval};
 
-/// Cells are halved so often.
-const DEPTH: u32 = 7;
-
 /// What is known about a cell: nothing yet, that it contains no surface, or that it may contain one.
 const UNKNOWN: u8 = 0;
 const EMPTY: u8 = 1;
@@ -17,7 +14,7 @@ const FULL: u8 = 2;
 const SLANT: f64 = 1.0 / (1u64 << 60) as f64;
 
 /// What goes through the tree along a line.
-pub(super) trait Visitor {
+pub(crate) trait Visitor {
     /// The origin and the direction of the line.
     fn line(&self) -> (DVec3, DVec3);
     /// Whether a cell of which nothing is known yet may contain a surface. The answer must depend on the cell alone.
@@ -30,8 +27,9 @@ pub(super) trait Visitor {
 ///
 /// What a cell holds depends on the cell alone, so it does not matter which ray, of which thread, asks first.
 #[derive(Debug)]
-pub(super) struct Octree {
+pub(crate) struct Octree {
     bounds: Aabb,
+    levels: u32,
     root: Cell,
 }
 
@@ -71,20 +69,21 @@ fn choose(bits: usize, a: DVec3, b: DVec3) -> DVec3 {
 }
 
 impl Octree {
-    /// The tree of a box, of which nothing is known yet.
-    pub(super) fn new(bounds: Aabb) -> Self {
+    /// The tree of a box, of which nothing is known yet and whose cells are halved so often.
+    pub(crate) fn new(bounds: Aabb, levels: u32) -> Self {
         Self {
             bounds,
+            levels,
             root: Cell::default(),
         }
     }
 
     /// Passes the parts of the visitor's line that lie in cells which may have a surface to the visitor, in ascending order:
     /// neighbours share the same parameter, to the bit. Only cells that reach into the range are met.
-    pub(super) fn walk(&self, range: Interval, visitor: &mut impl Visitor) -> ControlFlow<()> {
+    pub(crate) fn walk(&self, range: Interval, visitor: &mut impl Visitor) -> ControlFlow<()> {
         let (origin, direction) = visitor.line();
         let least = direction.abs().max_element() * SLANT;
-        let inverse = direction.to_array().map(|d| {
+        let inverse = |d: f64| {
             if d.abs() >= least {
                 1.0 / d
             } else if d < 0.0 {
@@ -92,22 +91,32 @@ impl Octree {
             } else {
                 1.0 / least
             }
-        });
+        };
         let line = Line {
             origin,
-            inverse: DVec3::from_array(inverse),
+            inverse: DVec3::new(
+                inverse(direction.x),
+                inverse(direction.y),
+                inverse(direction.z),
+            ),
             first: (0..3).fold(0, |bits, k| bits | usize::from(direction[k] < 0.0) << k),
             range,
         };
         let (low, high) = (line.at(self.bounds.min), line.at(self.bounds.max));
-        let passage = Planes {
-            near: choose(line.first, high, low),
-            far: choose(line.first, low, high),
-        };
-        if !line.meets(&passage) || !self.root.is_full(&self.bounds, visitor) {
+        let (near, far) = (choose(line.first, high, low), choose(line.first, low, high));
+        let later = |a: f64, b: f64| if a > b { a } else { b };
+        let earlier = |a: f64, b: f64| if a < b { a } else { b };
+        let enter = later(later(near.x, near.y), near.z);
+        let exit = earlier(earlier(far.x, far.y), far.z);
+        if !line.needs(enter, exit) || !self.root.is_full(&self.bounds, visitor) {
             return ControlFlow::Continue(());
         }
-        line.descend((&self.root, DEPTH), &self.bounds, &passage, visitor)
+        line.descend(
+            (&self.root, self.levels),
+            &self.bounds,
+            (enter, exit),
+            visitor,
+        )
     }
 }
 
@@ -119,67 +128,58 @@ struct Line {
     range: Interval,
 }
 
-/// The parameters at which a line meets the planes of a cell: those on the line's side, and those opposite.
-struct Planes {
-    near: DVec3,
-    far: DVec3,
-}
-
-impl Planes {
-    /// The part of the line within the cell; the end is before the start if there is none.
-    fn span(&self) -> (f64, f64) {
-        let (n, f) = (self.near, self.far);
-        let later = |a: f64, b: f64| if a > b { a } else { b };
-        let earlier = |a: f64, b: f64| if a < b { a } else { b };
-        (later(later(n.x, n.y), n.z), earlier(earlier(f.x, f.y), f.z))
-    }
-}
-
 impl Line {
     /// The parameters at which the planes through a corner are met.
     fn at(&self, corner: DVec3) -> DVec3 {
         (corner - self.origin) * self.inverse
     }
 
-    /// Whether a part within the range lies in the cell.
-    fn meets(&self, passage: &Planes) -> bool {
-        let (enter, exit) = passage.span();
+    /// Whether there is such a part, and some of it within the range.
+    fn needs(&self, enter: f64, exit: f64) -> bool {
         enter < exit && enter <= self.range.max && exit >= self.range.min
     }
 
-    /// Visits a cell that may have a surface, below which there are so many levels.
+    /// Visits a cell that may have a surface, below which there are so many levels and in which the line is from `enter` to `exit`.
     fn descend(
         &self,
         (cell, levels): (&Cell, u32),
         bounds: &Aabb,
-        passage: &Planes,
+        (enter, exit): (f64, f64),
         visitor: &mut impl Visitor,
     ) -> ControlFlow<()> {
         let Some(levels) = levels.checked_sub(1) else {
-            let (enter, exit) = passage.span();
             return visitor.part(enter, exit);
         };
         let children = cell.children.get_or_init(Box::default);
         let middle = bounds.center();
-        let halves = self.at(middle);
-        // A line passes from lower to upper halves only, along each axis, if halves are named in its own order; so children in
-        // the order of these names are met in the order of the line.
-        for name in 0..8 {
-            let passage = Planes {
-                near: choose(name, halves, passage.near),
-                far: choose(name, passage.far, halves),
-            };
-            if !self.meets(&passage) {
-                continue;
-            }
-            let octant = name ^ self.first;
-            let bounds = child(bounds, middle, octant);
-            let cell = &children[octant];
-            if cell.is_full(&bounds, visitor) {
-                self.descend((cell, levels), &bounds, &passage, visitor)?;
-            }
+        let halves = self.at(middle).to_array();
+        // The halves it is in, along each axis: the line passes from the first to the second one only.
+        let mut seconds = 0;
+        for (axis, &half) in halves.iter().enumerate() {
+            seconds |= usize::from(half <= enter) << axis;
         }
-        ControlFlow::Continue(())
+        let mut enter = enter;
+        loop {
+            let (mut until, mut crossed) = (exit, 0);
+            for (axis, &half) in halves.iter().enumerate() {
+                if seconds >> axis & 1 == 0 && half < until {
+                    (until, crossed) = (half, 1 << axis);
+                }
+            }
+            if self.needs(enter, until) {
+                let octant = seconds ^ self.first;
+                let bounds = child(bounds, middle, octant);
+                let cell = &children[octant];
+                if cell.is_full(&bounds, visitor) {
+                    self.descend((cell, levels), &bounds, (enter, until), visitor)?;
+                }
+            }
+            if crossed == 0 || until > self.range.max {
+                return ControlFlow::Continue(());
+            }
+            seconds |= crossed;
+            enter = until;
+        }
     }
 }
 
@@ -228,7 +228,7 @@ mod tests {
 
     #[test]
     fn parts_ascend_and_hold_the_surface() {
-        let tree = Octree::new(BOX);
+        let tree = Octree::new(BOX, 7);
         for (origin, direction) in [
             (DVec3::new(-3.0, 0.1, 0.05), DVec3::new(1.0, 0.0, 0.0)),
             (DVec3::new(3.0, 2.0, -2.5), DVec3::new(-1.5, -1.0, 1.2)),
@@ -256,8 +256,8 @@ mod tests {
     fn the_first_ray_to_ask_does_not_matter() {
         let line = (DVec3::new(3.0, 2.0, -2.5), DVec3::new(-1.5, -1.0, 1.2));
         let other = (DVec3::new(-3.0, 0.1, 0.05), DVec3::X);
-        let alone = parts(&Octree::new(BOX), line, Interval::LINE, has_shell);
-        let tree = Octree::new(BOX);
+        let alone = parts(&Octree::new(BOX, 7), line, Interval::LINE, has_shell);
+        let tree = Octree::new(BOX, 7);
         parts(&tree, other, Interval::LINE, has_shell);
         assert_eq!(parts(&tree, line, Interval::LINE, has_shell), alone);
         // Now everything on the line is known.
@@ -267,7 +267,7 @@ mod tests {
 
     #[test]
     fn cells_are_asked_about_once_on_the_way_and_within_the_range() {
-        let tree = Octree::new(BOX);
+        let tree = Octree::new(BOX, 7);
         let line = (DVec3::new(-2.0, 0.1, 0.05), DVec3::X);
         let mut asked = 0;
         let first = parts(&tree, line, Interval::new(0.0, 1.5), |_| {

@@ -1,0 +1,180 @@
+//! A ray on its way through the cells that may have a surface of a Julia set.
+
+use super::orbit::{Place, norm2};
+use super::{BALL, Event, Julia, SURFACE};
+use crate::implicit::Visitor;
+use std::ops::ControlFlow;
+use strahl_math::roots::find_crossing;
+use strahl_math::{Aabb, DVec3};
+
+/// The longest step, as a part of the radius of the ball around the set: estimates are good for short distances only, and empty cells
+/// are passed at once anyway.
+const LONGEST: f64 = 1.0 / 16.0;
+
+/// The march along a ray: the point at `s` is `origin + s direction`.
+pub(super) struct March<'a, V> {
+    julia: &'a Julia,
+    origin: DVec3,
+    direction: DVec3,
+    /// The distance between numbers per unit of `s`.
+    speed: f64,
+    /// The least and the longest step.
+    steps: (f64, f64),
+    /// The parameter of the ray at which `s` is zero, and the one at which the ball around the set ends.
+    start: f64,
+    length: f64,
+    /// Where the ray is not needed any more.
+    needed: f64,
+    /// The last place that was looked at, and its value.
+    s: f64,
+    pub(super) value: f64,
+    /// There is no surface before this place, or it is nearer than the least step.
+    clear: f64,
+    /// Whether it is the latter.
+    is_near: bool,
+    /// Whether the ray is inside of the set.
+    pub(super) inside: bool,
+    pub(super) visit: &'a mut V,
+}
+
+impl<'a, V: FnMut(Event) -> ControlFlow<()>> March<'a, V> {
+    /// The march along a line that is in the ball from `start` on and leaves it at `length`.
+    pub(super) fn new(
+        julia: &'a Julia,
+        (origin, direction): (DVec3, DVec3),
+        (start, length, needed): (f64, f64, f64),
+        visit: &'a mut V,
+    ) -> Self {
+        let fourth = julia.fourth.1.dot(direction);
+        let fastest = direction.abs().max_element();
+        let longest = LONGEST * julia.radius / fastest;
+        let shortest = julia.shortest / fastest;
+        let mut march = Self {
+            julia,
+            origin,
+            direction,
+            speed: norm2([direction.x, direction.y, direction.z, fourth]).sqrt(),
+            steps: (
+                shortest,
+                if longest > shortest {
+                    longest
+                } else {
+                    shortest
+                },
+            ),
+            start,
+            length,
+            needed,
+            s: 0.0,
+            value: 0.0,
+            clear: 0.0,
+            is_near: true,
+            inside: false,
+            visit,
+        };
+        let here = march.look(0.0);
+        march.inside = here.value < 0.0;
+        march
+    }
+
+    /// Says on which side the ray is.
+    pub(super) fn set_side(&mut self, inside: bool) {
+        self.inside = inside;
+        self.value = if inside {
+            -f64::MIN_POSITIVE
+        } else {
+            f64::MIN_POSITIVE
+        };
+    }
+
+    fn number(&self, s: f64) -> [f64; 4] {
+        self.julia.number(self.origin + self.direction * s)
+    }
+
+    /// Goes to a place and looks how far it is clear.
+    fn look(&mut self, s: f64) -> Place {
+        let place = self.julia.rule.place(self.number(s));
+        let (shortest, longest) = self.steps;
+        let reach = place.reach / self.speed;
+        self.is_near = !(reach > shortest);
+        let step = if self.is_near {
+            shortest
+        } else if reach < longest {
+            reach
+        } else {
+            longest
+        };
+        (self.s, self.value, self.clear) = (s, place.value, s + step);
+        place
+    }
+
+    /// Goes to a place and reports the crossing on the way, if there is one.
+    fn go(&mut self, to: f64) -> ControlFlow<()> {
+        let (s, value) = (self.s, self.value);
+        let there = self.look(to);
+        if (there.value < 0.0) == self.inside {
+            return ControlFlow::Continue(());
+        }
+        let at = |s| self.julia.rule.value(self.number(s));
+        let zero = find_crossing(s, to, value, there.value, at);
+        self.inside = !self.inside;
+        (self.visit)(Event::Crossing {
+            t: self.start + zero,
+            surface: SURFACE,
+            enters: self.inside,
+        })
+    }
+
+    /// Leaves the ball around the set.
+    pub(super) fn leave(&mut self) -> ControlFlow<()> {
+        if self.inside && self.s < self.length {
+            self.go(self.length)?;
+        }
+        if self.inside {
+            (self.visit)(Event::Crossing {
+                t: self.start + self.length,
+                surface: BALL,
+                enters: false,
+            })?;
+        }
+        ControlFlow::Continue(())
+    }
+}
+
+impl<V: FnMut(Event) -> ControlFlow<()>> Visitor for March<'_, V> {
+    fn line(&self) -> (DVec3, DVec3) {
+        (self.origin, self.direction)
+    }
+
+    fn may_have_surface(&mut self, cell: &Aabb) -> bool {
+        let center = self.julia.number(cell.center());
+        // A little more than half of the diagonal, for the rounding of points on rays.
+        let radius = 0.5 * cell.size().length() * self.julia.tilt * (1.0 + 1e-9);
+        !self.julia.rule.is_decided(center, radius)
+    }
+
+    fn part(&mut self, enter: f64, exit: f64) -> ControlFlow<()> {
+        let exit = if exit < self.length {
+            exit
+        } else {
+            self.length
+        };
+        loop {
+            if self.s > self.needed {
+                return ControlFlow::Break(());
+            }
+            let mut next = if enter > self.clear {
+                enter
+            } else {
+                self.clear
+            };
+            if self.is_near && self.s < exit && next > exit {
+                next = exit;
+            }
+            if !(next > self.s && (next < exit || next == exit && self.is_near)) {
+                return ControlFlow::Continue(());
+            }
+            self.go(next)?;
+        }
+    }
+}
