@@ -7,6 +7,7 @@
 
 pub mod algebraic;
 pub mod blocks;
+mod bounded;
 pub mod conformance;
 pub mod csg;
 pub mod fractal;
@@ -19,6 +20,7 @@ mod spans;
 pub mod swept;
 
 pub use algebraic::{Blob, BlobComponent, Polynomial, Superellipsoid};
+pub use bounded::Bounded;
 pub use csg::{Csg, CsgNode, Operands};
 pub use fractal::{HypercomplexFunction, Julia, JuliaAlgebra, JuliaOptions, QuaternionFunction};
 pub use implicit::{

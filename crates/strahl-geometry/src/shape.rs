@@ -4,7 +4,9 @@ use crate::implicit::{HeightField, Isosurface, Parametric};
 use crate::mesh::{Brep, Polygon, SmoothTriangle, Triangle, TriangleMesh};
 use crate::primitives::{Cone, Cuboid, Cylinder, Disc, Plane, Quadric, Sphere, Torus};
 use crate::swept::{Glyph, Lathe, Prism, Sor, SphereSweep};
-use crate::{Csg, GeometryError, PrimHit, Primitive, Scratch, Solid, SurfaceId, SurfacePoint};
+use crate::{
+    Bounded, Csg, GeometryError, PrimHit, Primitive, Scratch, Solid, SurfaceId, SurfacePoint,
+};
 use std::sync::Arc;
 use strahl_math::{Aabb, Interval, Ray, Transform};
 
@@ -138,6 +140,8 @@ shapes! {
     Csg(Arc<Csg>),
     /// A closed mesh with an inside.
     Brep(Arc<Brep>),
+    /// A shape that is seen through its bounds only.
+    Bounded(Arc<Bounded>),
     /// A primitive from outside of this crate.
     Custom(Arc<dyn Primitive>),
 }
@@ -168,6 +172,7 @@ shared!(
     Polynomial,
     Blob,
     Csg,
+    Bounded,
     Brep
 );
 

@@ -24,6 +24,9 @@ pub enum CsgOp {
     Inverse,
     /// The part of the first child's surface that is inside of the others; the cut is not closed by a cap.
     Clip,
+    /// The first child, seen only by rays that hit each of the others somewhere. Meshes of triangles that are no operands are seen by
+    /// all rays.
+    Bound,
     /// A union whose own lights (those that are children themselves, not parts of children) shine only on the other children. A
     /// group within the group has its own lights only. Objects of all groups cast shadows.
     LightGroup {
@@ -48,6 +51,7 @@ impl CsgOp {
             Self::Difference => "difference",
             Self::Inverse => "inverse",
             Self::Clip => "clipped-by",
+            Self::Bound => "bounded-by",
             Self::LightGroup { .. } => "light group",
         }
     }

@@ -415,8 +415,16 @@ impl PlainTexture {
         stack: &mut Stack,
         out: &mut TexturePaint<'a>,
     ) {
-        let color = self.pigment.color_at(point);
         let normal = self.tilted(point, n, space);
+        let color = if self.normal.is_none() {
+            self.pigment.color_at(point)
+        } else {
+            // The patterns `slope` and `aoi` see the tilted normal (measured).
+            self.pigment.color_at(&TexturePoint {
+                n_shade: normal,
+                ..*point
+            })
+        };
         let cos_view = -normal.dot(point.direction);
         // A layer below an opaque layer does not reflect; otherwise the layers above do not weaken its reflection (measured).
         let reflection = &self.finish.reflection;

@@ -117,9 +117,13 @@ impl Leaf {
     /// always count, those of cylinders, cones and meshes never; for the others rounding decides, and this is the result for
     /// axis-aligned faces).
     fn has_its_surface(&self) -> bool {
+        let shape = match &self.shape {
+            Shape::Bounded(bounded) => bounded.shape(),
+            shape => shape,
+        };
         self.solid().is_some()
             && !matches!(
-                self.shape,
+                shape,
                 Shape::Cylinder(_)
                     | Shape::Cone(_)
                     | Shape::Prism(_)

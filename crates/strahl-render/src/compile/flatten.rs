@@ -1,3 +1,4 @@
+use super::bounds::{Bound, bounded};
 use super::inside;
 use super::materials::{
     MaterialTable, material_fills, material_of, material_problem, material_transmits,
@@ -11,6 +12,7 @@ use crate::runs::RunList;
 use crate::scene::{InstanceUse, MeshUse, ShapeUse};
 use crate::spheres::{PlainSphere, Spheres};
 use std::collections::HashSet;
+use std::rc::Rc;
 use std::sync::Arc;
 use strahl_geometry::{Csg, CsgNode, GeometryError, Polygon, Primitive, Shape};
 use strahl_math::Transform;
@@ -137,6 +139,8 @@ struct Todo<'a> {
     lit: Lit,
     /// The body that it is or is a part of; `None` if it is the first of one that has no number yet.
     body: Option<u32>,
+    /// The bounds that it is seen through.
+    bounds: Rc<[Bound]>,
 }
 
 impl<'a> Todo<'a> {
@@ -157,6 +161,7 @@ impl<'a> Todo<'a> {
                     ..Lit::PLAIN
                 },
                 body: None,
+                bounds: Rc::default(),
             };
         };
         let (a, b) = (object.visibility, p.visibility);
@@ -187,6 +192,7 @@ impl<'a> Todo<'a> {
             } else {
                 p.body
             },
+            bounds: Rc::clone(&p.bounds),
             lit: Lit {
                 set: p.lit.set,
                 both_sides: object.double_illuminated || p.lit.both_sides,
@@ -204,6 +210,13 @@ impl Pass {
             self.number_body(&mut todo);
             let object = todo.object;
             match &object.kind {
+                ObjectKind::Csg {
+                    op: CsgOp::Bound,
+                    children,
+                } => {
+                    let inner = self.bounded_part(children, &mut todo);
+                    waiting.extend(inner.map(|c| Todo::new(c, Some(&todo))));
+                }
                 ObjectKind::Csg { op, children } if op.is_union() => {
                     let children = self.union_parts(*op, children, &mut todo);
                     waiting.extend(children.rev().map(|c| Todo::new(c, Some(&todo))));
@@ -243,6 +256,30 @@ impl Pass {
             self.bodies = self.bodies.wrapping_add(1);
             self.bodies
         });
+    }
+
+    /// The object within its bounds, which the bounds of `todo` become.
+    fn bounded_part<'a>(
+        &mut self,
+        children: &'a Children,
+        todo: &mut Todo<'a>,
+    ) -> Option<&'a Object> {
+        if let Some(problem) = wrong_count(CsgOp::Bound, children.0.len()) {
+            self.errors.push(Diagnostic::error(problem).at(todo.span));
+        }
+        let (inner, others) = children.0.split_first()?;
+        let mut bounds = todo.bounds.to_vec();
+        for other in others {
+            match Bound::of(other, &todo.transform) {
+                Some(bound) => bounds.push(bound),
+                None => {
+                    let message = "what bounds this object is no valid shape; give a solid or a surface with finite parameters";
+                    self.errors.push(Diagnostic::error(message).at(todo.span));
+                }
+            }
+        }
+        todo.bounds = bounds.into();
+        Some(inner)
     }
 
     /// The children of a union. Those of a light group get a light set, which the lights of the group join here.
@@ -352,6 +389,11 @@ impl Pass {
         let flags = self.flags(look.material);
         let visible = visible(todo.visibility);
         let identity = todo.transform.is_identity();
+        // Triangles of meshes are seen by all rays.
+        let is_mesh = matches!(shape, Shape::TriangleMesh(_));
+        let hidden = (!is_mesh).then(|| bounded(shape, &todo.bounds, &todo.transform));
+        let hidden = hidden.flatten();
+        let shape = hidden.as_ref().unwrap_or(shape);
         let baked = if identity {
             Some(shape.clone())
         } else {
@@ -430,6 +472,14 @@ impl Pass {
                 Step::Visit(mut todo) => {
                     self.number_body(&mut todo);
                     match &todo.object.kind {
+                        ObjectKind::Csg {
+                            op: CsgOp::Bound,
+                            children,
+                        } => {
+                            let inner = self.bounded_part(children, &mut todo)?;
+                            let inner = Todo::new(inner, Some(&todo));
+                            steps.push(Step::Visit(Box::new(inner)));
+                        }
                         ObjectKind::Csg { op, children } => {
                             // Lights among the operands shine, but are not operands.
                             let is_light = |c: &Object| matches!(c.kind, ObjectKind::Light(_));
@@ -456,7 +506,8 @@ impl Pass {
                             let transform =
                                 (!todo.transform.is_identity()).then(|| Box::new(todo.transform));
                             done.push(CsgNode::Leaf {
-                                shape: shape.clone(),
+                                shape: bounded(shape, &todo.bounds, &todo.transform)
+                                    .unwrap_or_else(|| shape.clone()),
                                 transform,
                                 tag,
                             });
@@ -515,6 +566,7 @@ fn wrong_count(op: CsgOp, count: usize) -> Option<String> {
     let (right, expected) = match op {
         CsgOp::Inverse => (count == 1, "exactly one object"),
         CsgOp::Clip => (count >= 2, "an object and at least one to clip it by"),
+        CsgOp::Bound => (count >= 2, "an object and at least one to bound it by"),
         CsgOp::Union
         | CsgOp::Merge
         | CsgOp::Intersection
@@ -524,10 +576,16 @@ fn wrong_count(op: CsgOp, count: usize) -> Option<String> {
     (!right).then(|| format!("{} takes {expected}, found {count}", op.name()))
 }
 
+/// The operation without regard to who sees the result.
 pub(super) fn combine(op: CsgOp, children: Vec<CsgNode>) -> CsgNode {
-    let operands = children.into_iter().collect();
+    let count = if op == CsgOp::Bound {
+        1
+    } else {
+        children.len()
+    };
+    let operands = children.into_iter().take(count).collect();
     match op {
-        CsgOp::Union | CsgOp::LightGroup { .. } => CsgNode::Union(operands),
+        CsgOp::Union | CsgOp::Bound | CsgOp::LightGroup { .. } => CsgNode::Union(operands),
         CsgOp::Merge => CsgNode::Merge(operands),
         CsgOp::Intersection => CsgNode::Intersection(operands),
         CsgOp::Difference => CsgNode::Difference(operands),

@@ -54,7 +54,7 @@ fn bounds(solid: &Csg) -> Aabb {
 }
 
 /// From an object's own space to that of its group, given the same for what it is a part of.
-fn placed(object: &Object, outer: &Transform) -> Transform {
+pub(super) fn placed(object: &Object, outer: &Transform) -> Transform {
     match object.transform.as_deref() {
         None => *outer,
         Some(own) => own.then(outer),
@@ -62,7 +62,7 @@ fn placed(object: &Object, outer: &Transform) -> Transform {
 }
 
 /// The tree of an object by itself; `to_group` is from its own space. Walked with a list, since trees may be deeper than the stack.
-fn solid(object: &Object, to_group: &Transform) -> Option<Csg> {
+pub(super) fn solid(object: &Object, to_group: &Transform) -> Option<Csg> {
     enum Step<'a> {
         Visit(&'a Object, Transform),
         Build(CsgOp, usize),

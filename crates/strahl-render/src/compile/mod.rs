@@ -8,6 +8,7 @@
 //! 5. the acceleration structures ([`Prepared::build`]).
 
 mod assemble;
+mod bounds;
 mod cut;
 mod flatten;
 mod inside;

@@ -241,10 +241,14 @@ impl Parser<'_> {
         match word {
             Word::Spotlight | Word::Cylinder | Word::Parallel | Word::Shadowless => {
                 self.take(token)?;
-                // Of spotlight, cylinder and shadowless the last keyword counts (measured).
+                // Of spotlight, cylinder and shadowless the last keyword counts, but the light of a cylinder stays
+                // parallel (measured).
                 (draft.form, draft.shadowless) = match word {
                     Word::Spotlight => (Form::Spot, false),
-                    Word::Cylinder => (Form::Cylinder, false),
+                    Word::Cylinder => {
+                        draft.parallel = true;
+                        (Form::Cylinder, false)
+                    }
                     Word::Shadowless => (Form::Point, true),
                     _ => {
                         draft.parallel = true;

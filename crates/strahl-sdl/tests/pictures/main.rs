@@ -1,10 +1,12 @@
-//! Small pictures of planes and spheres, rendered by POV-Ray 3.7 and by strahl: lights, cameras, fog and global settings.
+//! Small pictures, rendered by POV-Ray 3.7 and by strahl: lights, cameras, fog, global settings, bounds and what random scenes have shown.
 //!
 //! Both write linear values. Only single pixels at the edges of objects and shadows differ.
 
+mod bounds;
 mod cameras;
 #[path = "../common/mod.rs"]
 mod common;
+mod found;
 mod lights;
 mod reading;
 mod world;

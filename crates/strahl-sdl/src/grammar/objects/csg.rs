@@ -1,3 +1,5 @@
+use super::bounds;
+use super::modifiers::surround;
 use crate::grammar::Entity;
 use crate::grammar::entity::is_nothing;
 use crate::parser::{PResult, Parser};
@@ -39,7 +41,10 @@ impl Parser<'_> {
                     if children.is_empty() {
                         p.warn(place, format!("the {} has no objects", op.name()));
                     }
-                    Entity::from(Object::csg(op, combine(op, children)))
+                    let narrowed = bounds::narrowed(op, &children, &p.state.shared);
+                    let mut object = Object::csg(op, combine(op, children));
+                    surround(&mut object, CsgOp::Bound, narrowed.into_iter().collect());
+                    Entity::from(object)
                 }
             };
             entity.object.span = p.span_at(place);

@@ -3,6 +3,7 @@
 //! `modifiers` reads the items common to all objects; `reuse` lets uses of a declared object share a group.
 
 mod blob;
+mod bounds;
 mod boxes;
 mod cone;
 mod csg;

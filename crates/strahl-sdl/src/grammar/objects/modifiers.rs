@@ -1,3 +1,4 @@
+use super::bounds;
 use crate::grammar::Entity;
 use crate::grammar::entity::{is_nothing, transform};
 use crate::grammar::texture::fill_parts;
@@ -17,6 +18,8 @@ struct Draft {
     bounds: Vec<Object>,
     /// The objects of `clipped_by`, for `bounded_by { clipped_by }`.
     clips: Vec<Object>,
+    /// Whether the bounds also clip, so that they hide nothing more.
+    bounds_clip: bool,
 }
 
 impl Parser<'_> {
@@ -83,6 +86,11 @@ impl Parser<'_> {
             if fills || self.state.materials.has_bare() {
                 fill_parts(&mut entity.object, texture);
             }
+        }
+        let object = &mut entity.object;
+        if !draft.bounds_clip {
+            let bounds = bounds::deciding(object, draft.bounds, &self.state.shared);
+            surround(object, CsgOp::Bound, bounds);
         }
         Ok(())
     }
@@ -154,14 +162,19 @@ impl Parser<'_> {
             }
             Some(Word::ClippedBy) => {
                 self.take(token)?;
-                let clips = self.enclosing("`clipped_by`", Word::BoundedBy, &draft.bounds)?;
+                let (clips, named) =
+                    self.enclosing("`clipped_by`", Word::BoundedBy, &draft.bounds)?;
+                draft.bounds_clip |= named;
                 draft.clips.clone_from(&clips);
-                clip(&mut entity.object, clips);
+                surround(&mut entity.object, CsgOp::Clip, clips);
                 return Ok(true);
             }
             Some(Word::BoundedBy) => {
                 self.take(token)?;
-                draft.bounds = self.enclosing("`bounded_by`", Word::ClippedBy, &draft.clips)?;
+                let (bounds, named) =
+                    self.enclosing("`bounded_by`", Word::ClippedBy, &draft.clips)?;
+                draft.bounds_clip |= named && draft.bounds.is_empty();
+                draft.bounds.extend(bounds);
                 return Ok(true);
             }
             Some(Word::Hollow) => entity.object.hollow = Some(true),
@@ -217,13 +230,21 @@ impl Parser<'_> {
         })
     }
 
-    /// The objects in the braces of `clipped_by` or `bounded_by`, or, if the braces name the other keyword, its objects.
-    fn enclosing(&mut self, what: &str, other: Word, known: &[Object]) -> PResult<Vec<Object>> {
+    /// The objects in the braces of `clipped_by` or `bounded_by`, or, if the braces name the other keyword, its objects; and whether
+    /// they do.
+    fn enclosing(
+        &mut self,
+        what: &str,
+        other: Word,
+        known: &[Object],
+    ) -> PResult<(Vec<Object>, bool)> {
         let place = self.place();
         let mut found = vec![];
+        let mut named = false;
         self.braces(|p| {
             if p.accept_word(other)? {
                 found = known.to_vec();
+                named = true;
                 return Ok(());
             }
             found = p.parts()?;
@@ -245,32 +266,38 @@ impl Parser<'_> {
                 format!("there is no `{other}` before this {what}, so it has no effect"),
             );
         }
-        Ok(found)
+        Ok((found, named))
     }
 }
 
-/// Clips an object without a cap; the clipping objects are in the space of its parent.
-fn clip(object: &mut Object, clips: Vec<Object>) {
-    if clips.is_empty() || is_nothing(object) {
+/// Clips an object without a cap, or bounds it; the others are in the space of its parent.
+pub(super) fn surround(object: &mut Object, op: CsgOp, others: Vec<Object>) {
+    if others.is_empty() || is_nothing(object) {
         return;
     }
     let back = object.transform.as_deref().map(|t| t.inverted());
-    wrap(object, CsgOp::Clip);
+    wrap(object, op);
     if let ObjectKind::Csg { children, .. } = &mut object.kind {
-        children.0.extend(clips.into_iter().map(|mut clip| {
+        children.0.extend(others.into_iter().map(|mut other| {
             if let Some(back) = &back {
-                transform(&mut clip, back);
+                transform(&mut other, back);
             }
-            clip
+            other
         }));
     }
 }
 
 /// Swaps inside and outside; surfaces without an inside stay as they are.
 fn invert(object: &mut Object) {
+    let is_open =
+        |kind: &ObjectKind| matches!(kind, ObjectKind::Shape(shape) if shape.as_solid().is_none());
     let open = match &object.kind {
-        ObjectKind::Shape(shape) => shape.as_solid().is_none(),
-        _ => is_nothing(object),
+        // A mesh of several textures, above all.
+        ObjectKind::Csg {
+            op: CsgOp::Union,
+            children,
+        } => children.0.iter().all(|part| is_open(&part.kind)),
+        kind => is_open(kind) || is_nothing(object),
     };
     if !open {
         wrap(object, CsgOp::Inverse);

@@ -7,6 +7,7 @@
 //! instances. Operations other than unions need all their parts: within them the last use of a declared object takes its parts,
 //! and earlier uses copy them.
 
+use super::bounds::own_extent;
 use crate::grammar::Entity;
 use crate::grammar::entity::{Declared, is_nothing};
 use crate::grammar::texture::is_bare;
@@ -16,6 +17,7 @@ use std::collections::HashMap;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use strahl_geometry::Primitive;
+use strahl_math::Aabb;
 use strahl_scene::{Children, CsgOp, Group, GroupId, Object, ObjectKind, Scene};
 use strahl_shade::Material;
 
@@ -89,13 +91,21 @@ impl Tally {
 #[derive(Debug, Default)]
 pub(crate) struct Shared {
     objects: Vec<Arc<Declared>>,
+    /// The boxes around them, in their own spaces.
+    extents: Vec<Aabb>,
     names: HashMap<Symbol, Arc<str>>,
 }
 
 impl Shared {
-    fn kind_of(&self, id: GroupId) -> Option<&Object> {
+    pub(super) fn kind_of(&self, id: GroupId) -> Option<&Object> {
         let declared = self.objects.get(id.0 as usize)?;
         Some(&declared.entity.object)
+    }
+
+    /// The box around a declared object.
+    pub(super) fn extent(&self, id: GroupId) -> Aabb {
+        let extent = self.extents.get(id.0 as usize);
+        extent.copied().unwrap_or(Aabb::EMPTY)
     }
 }
 
@@ -121,10 +131,12 @@ impl Parser<'_> {
         if !(large || (parts > 1 && uses >= OFTEN)) {
             return declared.entity.clone();
         }
-        let objects = &mut self.state.shared.objects;
+        let shared = &mut self.state.shared;
         let id = *declared.shared.get_or_init(|| {
-            objects.push(Arc::clone(declared));
-            objects.len() as u32 - 1
+            let extent = own_extent(&declared.entity.object.kind, shared);
+            shared.extents.push(extent);
+            shared.objects.push(Arc::clone(declared));
+            shared.objects.len() as u32 - 1
         });
         let kind = ObjectKind::Instance(GroupId(id));
         Entity {

@@ -1,6 +1,6 @@
 use crate::grammar::Entity;
 use crate::parser::{PResult, Parser};
-use strahl_geometry::{Shape, SmoothTriangle, Triangle};
+use strahl_geometry::{GeometryError, Shape, SmoothTriangle, Triangle};
 use strahl_math::DVec3;
 
 /// `triangle { corner, corner, corner ... }`
@@ -11,6 +11,13 @@ pub(super) fn triangle(p: &mut Parser<'_>) -> PResult<Entity> {
     })
 }
 
+/// Whether the normals stand on one side of the plane through the corners. POV-Ray shows nothing of other smooth triangles, but for
+/// those of meshes (measured).
+fn on_one_side([a, b, c]: [DVec3; 3], normals: [DVec3; 3]) -> bool {
+    let side = (b - a).cross(c - a);
+    normals.iter().all(|n| side.dot(*n) > 0.0) || normals.iter().all(|n| side.dot(*n) < 0.0)
+}
+
 /// `smooth_triangle { corner, normal, corner, normal, corner, normal ... }`
 pub(super) fn smooth_triangle(p: &mut Parser<'_>) -> PResult<Entity> {
     p.shape(|p| {
@@ -19,6 +26,12 @@ pub(super) fn smooth_triangle(p: &mut Parser<'_>) -> PResult<Entity> {
         // Interpolation needs all three normals.
         if normals.contains(&DVec3::ZERO) {
             return Ok(Triangle::try_new(a, b, c).map(Shape::from));
+        }
+        if !on_one_side(corners, normals) {
+            return Ok(Err(GeometryError::Degenerate {
+                what: "smooth triangle",
+                why: "its normals stand on both sides of it, or along it; within a `mesh` it would be seen",
+            }));
         }
         Ok(SmoothTriangle::try_new(corners, normals).map(Shape::from))
     })

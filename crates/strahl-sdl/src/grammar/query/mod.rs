@@ -91,9 +91,15 @@ fn node(object: &Object) -> Option<CsgNode> {
                 ObjectKind::Instance(_) | ObjectKind::Light(_) => return None,
             },
             Step::Build(object, op, count) => {
-                let operands = done.split_off(done.len() - count).into();
+                let mut parts = done.split_off(done.len() - count);
+                if op == CsgOp::Bound {
+                    parts.truncate(1);
+                }
+                let operands = parts.into();
                 let node = match op {
-                    CsgOp::Union | CsgOp::LightGroup { .. } => CsgNode::Union(operands),
+                    CsgOp::Union | CsgOp::Bound | CsgOp::LightGroup { .. } => {
+                        CsgNode::Union(operands)
+                    }
                     CsgOp::Merge => CsgNode::Merge(operands),
                     CsgOp::Intersection => CsgNode::Intersection(operands),
                     CsgOp::Difference => CsgNode::Difference(operands),
@@ -131,16 +137,24 @@ fn cost(object: &Object) -> (Cost, u64) {
 }
 
 /// The bounding box of an object without its clipping and inversion, or of a shape's surface without its inside, because POV-Ray
-/// computes extents from these.
+/// computes extents from these. Of a bounded object it is that of the bounds.
 fn unclipped(object: &Object) -> Option<Aabb> {
     let mut maps = vec![];
     let mut inner = object;
     while let ObjectKind::Csg {
-        op: CsgOp::Clip | CsgOp::Inverse,
+        op: op @ (CsgOp::Clip | CsgOp::Bound | CsgOp::Inverse),
         children,
     } = &inner.kind
     {
         maps.push(inner.transform.as_deref());
+        if *op == CsgOp::Bound {
+            let mut box_of_all = Aabb::EVERYTHING;
+            for bound in children.0.get(1..)? {
+                box_of_all = box_of_all.intersection(&Csg::try_new(node(bound)?).ok()?.bounds());
+            }
+            let outwards = maps.into_iter().rev().flatten();
+            return Some(outwards.fold(box_of_all, |b, map| map.bounds_to_world(&b)));
+        }
         inner = children.0.first()?;
     }
     let bounds = match &inner.kind {

@@ -74,9 +74,11 @@ impl Parser<'_> {
                 albedo.diffuse = self.accept_word(Word::Albedo)?;
                 finish.diffuse = self.float()?;
                 self.comma()?;
-                if self.starts_number()? {
-                    finish.diffuse_back = self.float()?;
-                }
+                // Without a second number the back is dark, whatever was said before.
+                finish.diffuse_back = match self.starts_number()? {
+                    true => self.float()?,
+                    false => 0.0,
+                };
             }
             Word::Brilliance => finish.brilliance = self.finish_float(token)?,
             Word::Phong => {

@@ -127,7 +127,8 @@ impl Parser<'_> {
             self.next()?;
             let upper = self.surface_block()?;
             self.weigh(weight::of_texture(&all))?;
-            all = Arc::new(layered(Surface::clone(&all), Surface::clone(&upper)));
+            let (lower, upper) = (Surface::clone(&all), Surface::clone(&upper));
+            all = Arc::new(layered(lower, upper));
         }
         self.layers_of_version(&mut all);
         Ok(all)
@@ -253,6 +254,11 @@ impl Parser<'_> {
             }
             modifiers::begin(&mut draft.modifiers, &pattern);
             draft.chooser = Chooser::Pattern(pattern);
+            return Ok(());
+        }
+        if let Chooser::Average = draft.chooser
+            && self.pattern_modifier(&mut draft.modifiers, token)?
+        {
             return Ok(());
         }
         if let Chooser::Pattern(pattern) = &mut draft.chooser

@@ -1,3 +1,4 @@
+use super::blend::blended;
 use super::builder::{Builder, NONE};
 use super::{Parts, has_area};
 use crate::grammar::{Entity, Texture};
@@ -16,8 +17,8 @@ struct Lists {
     uvs: Vec<[f64; 2]>,
     textures: Vec<Texture>,
     faces: Vec<[u32; 3]>,
-    /// The texture of each face with one.
-    face_textures: HashMap<usize, usize>,
+    /// The textures at the corners of each face with textures.
+    face_textures: HashMap<usize, [usize; 3]>,
     normal_faces: Vec<[u32; 3]>,
     uv_faces: Vec<[u32; 3]>,
     has_inside: bool,
@@ -173,10 +174,10 @@ impl Parser<'_> {
         Err(self.fail_hint(place, message, "entries are counted from 0"))
     }
 
-    /// The index of a face's texture; of three, one for each corner, the first is used.
-    fn face_texture(&mut self, count: usize) -> PResult<Option<usize>> {
-        let mut first = None;
-        for _ in 0..3 {
+    /// The indices of the textures at the corners of a face, if it has textures.
+    fn face_texture(&mut self, count: usize) -> PResult<Option<[usize; 3]>> {
+        let mut corners = [None; 3];
+        for corner in &mut corners {
             // The comma may also separate this face from the next.
             self.comma()?;
             if !self.number_follows()? {
@@ -185,15 +186,15 @@ impl Parser<'_> {
             let token = self.peek()?;
             let place = self.place_of(token);
             let number = self.float()?;
-            let texture = self.entry(number, count, "texture_list", place)?;
-            if *first.get_or_insert(texture) != texture {
-                self.warn(
-                    place,
-                    "textures at the corners of a face are not blended; the first is used",
-                );
-            }
+            *corner = Some(self.entry(number, count, "texture_list", place)?);
         }
-        Ok(first)
+        let [first, second, third] = corners;
+        let textures = first.map(|a| [a, second.unwrap_or(a), third.unwrap_or(a)]);
+        if textures.is_some_and(|t| !is_same(t)) {
+            // The face becomes an object of its own.
+            self.count_parts(64)?;
+        }
+        Ok(textures)
     }
 
     /// The list of faces that indexes normals or texture coordinates: their own, that of the vertices, or none.
@@ -226,6 +227,10 @@ impl Parser<'_> {
     }
 }
 
+fn is_same([a, b, c]: [usize; 3]) -> bool {
+    a == b && b == c
+}
+
 impl Lists {
     fn into_parts(self, normals: Numbering, uvs: Numbering) -> Parts {
         let vertex = |i: u32| self.vertices.get(i as usize).copied().unwrap_or_default();
@@ -254,8 +259,10 @@ impl Lists {
             let normal = self.normals.get(*i as usize);
             normal.is_some_and(|n| *n != DVec3::ZERO)
         };
-        // Faces by texture and by whether they have normals: the normals of a face may be zero.
-        let mut builders: BTreeMap<(Option<usize>, bool), Builder> = BTreeMap::new();
+        // Faces by texture and by whether they have normals: the normals of a face may be zero. A face of several textures is a
+        // mesh of its own.
+        let mut builders: BTreeMap<(Option<[usize; 3]>, Option<usize>, bool), Builder> =
+            BTreeMap::new();
         for (index, face) in self.faces.iter().enumerate() {
             if !sound(face) {
                 continue;
@@ -267,11 +274,20 @@ impl Lists {
             let n = if smooth { n } else { [NONE; 3] };
             let uv = numbers(uvs, &self.uv_faces, index, *face);
             let texture = self.face_textures.get(&index).copied();
-            let builder = builders.entry((texture, smooth)).or_default();
+            let alone = texture.is_some_and(|t| !is_same(t)).then_some(index);
+            let builder = builders.entry((texture, alone, smooth)).or_default();
             builder.add(std::array::from_fn(|k| [face[k], n[k], uv[k]]));
         }
-        let meshes = builders.into_iter().map(|((texture, _), builder)| {
-            let texture = texture.and_then(|t| self.textures.get(t).cloned());
+        let meshes = builders.into_iter().map(|((texture, alone, _), builder)| {
+            let texture = texture.and_then(|corners| {
+                let face = alone.and_then(|index| self.faces.get(index));
+                match (face, corners.map(|t| self.textures.get(t))) {
+                    (Some(face), [Some(a), Some(b), Some(c)]) => {
+                        Some(blended(face.map(vertex), [a, b, c]))
+                    }
+                    (_, [first, ..]) => first.cloned(),
+                }
+            });
             let data = builder.finish(&self.vertices, &self.normals, &self.uvs);
             (texture, data)
         });

@@ -1,5 +1,6 @@
 //! Triangle meshes: `mesh` and `mesh2`.
 
+mod blend;
 mod builder;
 mod indexed;
 mod orient;

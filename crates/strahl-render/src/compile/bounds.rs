@@ -1,0 +1,64 @@
+//! Bounds of objects that decide which rays see them (`CsgOp::Bound`).
+
+use super::inside::{placed, solid};
+use std::sync::Arc;
+use strahl_geometry::{Bounded, Csg, Primitive, Shape, Solid};
+use strahl_math::Transform;
+use strahl_scene::{CsgOp, Object, ObjectKind};
+
+/// One bound, in the space of the group.
+#[derive(Clone, Debug)]
+pub(super) struct Bound {
+    solid: Arc<Csg>,
+    /// Whether a box lies in it as soon as its corners do.
+    convex: bool,
+}
+
+impl Bound {
+    /// The bound that an object is; `to_group` is from its parent's space. `None` if it is no valid shape.
+    pub(super) fn of(object: &Object, to_group: &Transform) -> Option<Self> {
+        Some(Self {
+            solid: Arc::new(solid(object, &placed(object, to_group))?),
+            convex: is_convex(object),
+        })
+    }
+
+    /// Whether the bound certainly surrounds a shape.
+    fn surrounds(&self, shape: &Shape, to_group: &Transform) -> bool {
+        let bounds = match shape.as_solid() {
+            Some(solid) => solid.inside_bounds().union(&shape.bounds()),
+            None => shape.bounds(),
+        };
+        let is_within = |corner| self.solid.contains(to_group.point_to_world(corner));
+        self.convex && bounds.is_bounded() && bounds.corners().into_iter().all(is_within)
+    }
+}
+
+/// A shape as it is seen through all these bounds; `to_group` is from its own space.
+pub(super) fn bounded(shape: &Shape, bounds: &[Bound], to_group: &Transform) -> Option<Shape> {
+    let deciding = bounds.iter().filter(|b| !b.surrounds(shape, to_group));
+    let solids: Vec<Arc<Csg>> = deciding.map(|b| Arc::clone(&b.solid)).collect();
+    let map = (!to_group.is_identity()).then(|| to_group.inverted());
+    (!solids.is_empty()).then(|| Bounded::new(shape.clone(), solids, map).into())
+}
+
+fn is_convex(object: &Object) -> bool {
+    let mut waiting = vec![object];
+    while let Some(object) = waiting.pop() {
+        match &object.kind {
+            ObjectKind::Shape(
+                Shape::Sphere(_)
+                | Shape::Cuboid(_)
+                | Shape::Cylinder(_)
+                | Shape::Cone(_)
+                | Shape::Plane(_),
+            ) => {}
+            ObjectKind::Csg {
+                op: CsgOp::Intersection,
+                children,
+            } => waiting.extend(&children.0),
+            _ => return false,
+        }
+    }
+    true
+}

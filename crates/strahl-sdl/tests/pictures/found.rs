@@ -1,0 +1,207 @@
+//! What random scenes (`cargo xtask differ`) have shown.
+
+use crate::SETTINGS;
+use crate::common::pictures::agree;
+
+const CAMERA: &str = "camera { location <0, 2, -5> look_at 0 }\n";
+
+fn scenes(of: &[(&'static str, &str)]) {
+    let scenes: Vec<_> = of
+        .iter()
+        .map(|(name, text)| (*name, format!("{SETTINGS}{CAMERA}{text}")))
+        .collect();
+    agree(0.01, &scenes);
+}
+
+#[test]
+fn slope_and_aoi_see_the_tilted_normal() {
+    let map = "color_map { [0 rgb x] [0.5 rgb y] [1 rgb z] }";
+    let tilted = "normal { gradient x+z 1 sine_wave scale 2 } finish { ambient 1 }";
+    scenes(&[
+        (
+            "slope",
+            &format!("plane {{ y, -1 texture {{ pigment {{ slope z {map} }} {tilted} }} }}"),
+        ),
+        (
+            "aoi",
+            &format!("plane {{ y, -1 texture {{ pigment {{ aoi {map} }} {tilted} }} }}"),
+        ),
+        (
+            "a ball",
+            &format!(
+                "sphere {{ 0, 1.3 texture {{ pigment {{ slope y {map} }} {tilted} scale 0.5 rotate 30 }} }}"
+            ),
+        ),
+        (
+            "in a map",
+            &format!(
+                "sphere {{ 0, 1.3 texture {{ pigment {{ gradient y pigment_map {{ [0 rgb x] [1 slope y {map}] }} }} {tilted} }} }}"
+            ),
+        ),
+        (
+            "in a texture_map",
+            &format!(
+                "sphere {{ 0, 1.3 texture {{ checker texture {{ pigment {{ rgb x }} }} texture {{ pigment {{ slope z {map} }} {tilted} }} }} }}"
+            ),
+        ),
+    ]);
+}
+
+#[test]
+fn the_back_is_dark_where_diffuse_has_one_number() {
+    let light = "light_source { <0, 5, 5>, 1 }";
+    scenes(&[
+        (
+            "one finish",
+            &format!(
+                "{light} plane {{ z, 0 pigment {{ rgb 1 }} finish {{ ambient 0.1 diffuse 0.22, 0.58 diffuse 0.34 }} }}"
+            ),
+        ),
+        (
+            "a declared one",
+            &format!(
+                "{light} #declare T = texture {{ pigment {{ rgb 1 }} finish {{ ambient 0.1 diffuse 0.22, 0.58 }} }} plane {{ z, 0 texture {{ T finish {{ diffuse 0.34 }} }} }}"
+            ),
+        ),
+        (
+            "two numbers",
+            &format!(
+                "{light} plane {{ z, 0 pigment {{ rgb 1 }} finish {{ diffuse 0.22, 0.58 }} }}"
+            ),
+        ),
+    ]);
+}
+
+#[test]
+fn lights_that_were_cylinders_stay_parallel() {
+    let plane = "plane { y, -1 pigment { rgb 1 } } sphere { 0, 0.5 pigment { rgb x } }";
+    let light = |words: &str| format!("light_source {{ <1, 5, -3>, rgb 1 {words} }} {plane}");
+    scenes(&[
+        (
+            "cylinder",
+            &light("cylinder point_at <0, -0.2, 0.5> radius 1 falloff 2 tightness 10"),
+        ),
+        (
+            "cylinder, shadowless",
+            &light("cylinder point_at <0, -0.2, 0.5> radius 1 falloff 2 shadowless"),
+        ),
+        (
+            "cylinder, spotlight",
+            &light("cylinder point_at <0, -0.2, 0.5> radius 10 falloff 20 spotlight"),
+        ),
+        (
+            "shadowless, cylinder",
+            &light("shadowless cylinder point_at <0, -0.2, 0.5> radius 1 falloff 2"),
+        ),
+        (
+            "spotlight, shadowless",
+            &light("spotlight point_at <0, -0.2, 0.5> radius 10 falloff 20 shadowless"),
+        ),
+    ]);
+}
+
+#[test]
+fn smooth_triangles_with_normals_on_both_sides_are_not_seen() {
+    let corners = |n: [&str; 3]| {
+        format!(
+            "<-1, -1, 0>, {}, <1, -1, 0>, {}, <0, 1, 0>, {}",
+            n[0], n[1], n[2]
+        )
+    };
+    let light =
+        "light_source { -20*z, 1 } box { <-0.2, -1.5, 0>, <0.2, -1.2, 0.2> pigment { rgb y } }";
+    let alone = |n| {
+        format!(
+            "{light} smooth_triangle {{ {} pigment {{ rgb 1 }} }}",
+            corners(n)
+        )
+    };
+    let meshed = |n| {
+        format!(
+            "{light} mesh {{ smooth_triangle {{ {} }} pigment {{ rgb 1 }} }}",
+            corners(n)
+        )
+    };
+    scenes(&[
+        ("one side", &alone(["-z", "-z+x", "-z-y"])),
+        ("the other side", &alone(["z", "z+x", "z-y"])),
+        ("both sides", &alone(["-z", "-z", "z"])),
+        ("along it", &alone(["x", "x", "x"])),
+        ("one along it", &alone(["-z", "-z", "x"])),
+        ("in a mesh", &meshed(["-z", "-z", "z"])),
+    ]);
+}
+
+#[test]
+fn faces_of_mesh2_blend_the_textures_of_their_corners() {
+    let texture =
+        |color: &str| format!("texture {{ pigment {{ rgb {color} }} finish {{ ambient 1 }} }}");
+    let mesh = |textures: &str, numbers: &str| {
+        format!(
+            "mesh2 {{ vertex_vectors {{ 4, <-1, -1, 0>, <1, -1, 0>, <0, 1, 0>, <2, 1, 0> }} texture_list {{ {textures} }}
+             face_indices {{ 2, <0, 1, 2>, {numbers}, <1, 2, 3>, 1 }} rotate 20*y scale 1.2 }}"
+        )
+    };
+    let three = format!(
+        "3, {} {} {}",
+        texture("x"),
+        texture("y"),
+        texture("<1, 0.5, 1>")
+    );
+    let patterned = format!(
+        "2, texture {{ pigment {{ checker rgb 1 rgb x scale 0.3 }} finish {{ ambient 1 }} }} {}",
+        texture("y")
+    );
+    scenes(&[
+        ("three", &mesh(&three, "0, 1, 2")),
+        ("two", &mesh(&three, "0, 1, 1")),
+        ("one", &mesh(&three, "2")),
+        ("patterns", &mesh(&patterned, "0, 1, 0")),
+        (
+            "inside out",
+            &mesh(&three, "0").replace("rotate", "inverse rotate"),
+        ),
+    ]);
+}
+
+#[test]
+fn textures_of_averages_are_turbulent_and_moved() {
+    scenes(&[(
+        "average",
+        "sphere { 0, 1.5 texture { average texture_map { [1 pigment { gradient x } finish { ambient 1 }] [2 pigment { rgb y } finish { ambient 1 }] }
+         turbulence 0.4 frequency 2 phase 0.3 cubic_wave rotate 20 scale 0.7 } }",
+    )]);
+}
+
+/// Versions before 3.5 have another noise, and layers that let light through without giving it their colour.
+#[test]
+fn versions_before_3_5_have_their_noise_and_layers() {
+    let versions = ["3.0", "3.1", "3.5", "3.6", "3.7"];
+    let box_of = |textures: &str| format!("box {{ -1, 0.99 {textures} }}");
+    let ambient = "finish { ambient 1 diffuse 0 }";
+    let things = [
+        format!(
+            "plane {{ -z, 0 pigment {{ bozo color_map {{ [0.26 rgb x] [0.94 rgb y] }} }} {ambient} }}"
+        ),
+        format!("plane {{ -z, 0 pigment {{ granite }} {ambient} }}"),
+        box_of(&format!(
+            "texture {{ pigment {{ rgbf <0.5, 0.4, 0.3, 0.8> }} {ambient} }} texture {{ pigment {{ rgbf <0.5, 0.6, 0.7, 0.9> }} finish {{ ambient 0 diffuse 0 }} }}"
+        )),
+        box_of(&format!(
+            "texture {{ pigment {{ rgb 0 }} {ambient} }} texture {{ pigment {{ rgbft <0.5, 0.6, 0.7, 0.5, 0.2> }} {ambient} }}"
+        )),
+        box_of(&format!(
+            "texture {{ pigment {{ rgbf <0.5, 0.4, 0.3, 0.8> }} {ambient} }}"
+        )),
+    ];
+    let mut scenes = vec![];
+    for version in versions {
+        for thing in &things {
+            let text = format!(
+                "#version {version}; global_settings {{ assumed_gamma 1 }} {CAMERA} background {{ rgb 0.25 }} {thing}"
+            );
+            scenes.push((version, text));
+        }
+    }
+    agree(0.01, &scenes);
+}
