@@ -17,7 +17,7 @@ fn seen(objects: &[(&'static str, &str)]) {
 }
 
 #[test]
-fn operations_texts_and_polynomials_are_seen_through_their_bounds() {
+fn operations_and_polynomials_are_seen_through_their_bounds() {
     let two = "cylinder { -y, y, 1 } cylinder { -y, y, 0.5 }";
     let ball = "bounded_by { sphere { 0, 0.6 } }";
     seen(&[
@@ -34,12 +34,6 @@ fn operations_texts_and_polynomials_are_seen_through_their_bounds() {
         (
             "poly",
             &format!("poly {{ 2, <1,0,0,0,-1,0,0,1,0,-.1> {ball} rotate 30*x {RED} }}"),
-        ),
-        (
-            "text",
-            &format!(
-                "text {{ ttf \"crystal.ttf\" \"AB\", 1, 0 bounded_by {{ sphere {{ <0.5, 0.4, 0>, 0.2 }} }} translate <-0.6, -0.3, 0> scale 1.8 {RED} }}"
-            ),
         ),
         (
             "a wide bound",

@@ -48,6 +48,32 @@ fn slope_and_aoi_see_the_tilted_normal() {
 }
 
 #[test]
+fn slope_and_aoi_are_zero_where_there_is_no_surface() {
+    let map = "color_map { [0 rgb x] [1 rgb z] }";
+    let ball = "sphere { 0, 1 pigment { rgb 1 } finish { ambient 0.5 } }";
+    scenes(&[
+        (
+            "sky",
+            &format!("sky_sphere {{ pigment {{ slope <-0.5, 0.6, -0.7> {map} }} }} {ball}"),
+        ),
+        (
+            "sky with altitude",
+            &format!("sky_sphere {{ pigment {{ slope {{ y altitude y }} {map} }} }} {ball}"),
+        ),
+        (
+            "aoi",
+            &format!("sky_sphere {{ pigment {{ aoi {map} }} }} {ball}"),
+        ),
+        (
+            "a picture",
+            &format!(
+                "plane {{ -z, 0 pigment {{ image_map {{ function 4, 4 {{ pigment {{ slope y {map} }} }} }} }} finish {{ ambient 1 }} }}"
+            ),
+        ),
+    ]);
+}
+
+#[test]
 fn the_back_is_dark_where_diffuse_has_one_number() {
     let light = "light_source { <0, 5, 5>, 1 }";
     scenes(&[
@@ -149,7 +175,7 @@ fn faces_of_mesh2_blend_the_textures_of_their_corners() {
         texture("<1, 0.5, 1>")
     );
     let patterned = format!(
-        "2, texture {{ pigment {{ checker rgb 1 rgb x scale 0.3 }} finish {{ ambient 1 }} }} {}",
+        "2, texture {{ pigment {{ gradient x color_map {{ [0 rgb 1] [1 rgb x] }} scale 0.3 }} finish {{ ambient 1 }} }} {}",
         texture("y")
     );
     scenes(&[

@@ -53,13 +53,13 @@ pub struct TexturePoint {
 }
 
 impl TexturePoint {
-    /// A point of space without a surface: the normal is `y`, the direction `-y`.
+    /// A point of space without a surface: the shading normal is zero, the direction `-y`.
     pub fn in_space(position: DVec3) -> Self {
         Self {
             position,
             surface: position,
             n_geom: DVec3::Y,
-            n_shade: DVec3::Y,
+            n_shade: DVec3::ZERO,
             uv: DVec2::ZERO,
             direction: DVec3::NEG_Y,
         }

@@ -136,11 +136,16 @@ fn alignment(a: DVec3, b: DVec3) -> f64 {
     1.0 - det::acos(cos.clamp(-1.0, 1.0)) / std::f64::consts::PI
 }
 
+/// 0 where there is no surface (measured).
 pub(super) fn aoi(point: &TexturePoint) -> f64 {
+    if point.n_shade == DVec3::ZERO {
+        return 0.0;
+    }
     alignment(point.n_shade, -point.direction)
 }
 
-/// The normal is the surface's, whatever transformation the pattern has; the altitude is that of the moved point `p`.
+/// The normal is the surface's, whatever transformation the pattern has; the altitude is that of the moved point `p`. 0 where there is no surface
+/// (measured).
 pub(super) fn slope(
     p: DVec3,
     point: &TexturePoint,
@@ -148,6 +153,9 @@ pub(super) fn slope(
     range: [f64; 2],
     altitude: Option<&Altitude>,
 ) -> f64 {
+    if point.n_shade == DVec3::ZERO {
+        return 0.0;
+    }
     let direction = match reference {
         SlopeReference::Direction(direction) => *direction,
         SlopeReference::Point(target) => *target - point.surface,

@@ -9,8 +9,8 @@ use crate::pov_finish::PovReflection;
 fn plain(color: ColorFt, finish: PovFinish) -> PlainTexture {
     PlainTexture {
         pigment: color.into(),
-        normal: None,
         finish: finish.into(),
+        ..PlainTexture::default()
     }
 }
 

@@ -85,9 +85,12 @@ impl Writer {
             let (a, b) = (self.texture(1), self.texture(1));
             let list = vec![needed(list!["2,", a, ",", b])];
             parts.push(needed(block(Sort::Other, "texture_list", list)));
-            parts.push(needed(words(
-                "face_indices { 3, <0,1,2>, 0, <1,2,3>, 1, <2,3,4>, 0 }",
-            )));
+            // Three numbers are the textures of the corners.
+            let faces = match self.dice.chance(50) {
+                true => "face_indices { 3, <0,1,2>, 0, <1,2,3>, 1, <2,3,4>, 0 }",
+                false => "face_indices { 3, <0,1,2>, 0, 1, 0, <1,2,3>, 1, <2,3,4>, 1, 1, 0 }",
+            };
+            parts.push(needed(words(faces)));
         } else {
             parts.push(needed(words(
                 "face_indices { 3, <0,1,2>, <1,2,3>, <2,3,4> }",
