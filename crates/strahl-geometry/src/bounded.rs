@@ -173,7 +173,7 @@ mod tests {
 
     #[test]
     fn a_sheet_bounds_what_lies_behind_it() {
-        let sheet = Disc::new(DVec3::Z * -2.0, DVec3::Z, 0.5);
+        let sheet = Disc::new(DVec3::Z * -2.0, DVec3::Z, 0.5, 0.0);
         let moved = Some(Transform::translate(DVec3::X * 0.5));
         let bounded = Bounded::new(cylinder(), bound(sheet), moved);
         assert!(sees(&bounded, [0.8, 0.0, -9.0]) && !sees(&bounded, [-0.2, 0.0, -9.0]));
