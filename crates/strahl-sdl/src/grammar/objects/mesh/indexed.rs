@@ -9,6 +9,10 @@ use std::collections::{BTreeMap, HashMap};
 use strahl_geometry::MeshData;
 use strahl_math::DVec3;
 
+/// Faces that may share a mesh: the textures of the corners, the number of a face whose corners differ, and whether the normals are
+/// interpolated.
+type FaceKind = (Option<[usize; 3]>, Option<usize>, bool);
+
 /// The lists of a `mesh2`.
 #[derive(Default)]
 struct Lists {
@@ -261,8 +265,7 @@ impl Lists {
         };
         // Faces by texture and by whether they have normals: the normals of a face may be zero. A face of several textures is a
         // mesh of its own.
-        let mut builders: BTreeMap<(Option<[usize; 3]>, Option<usize>, bool), Builder> =
-            BTreeMap::new();
+        let mut builders = BTreeMap::<FaceKind, Builder>::new();
         for (index, face) in self.faces.iter().enumerate() {
             if !sound(face) {
                 continue;
