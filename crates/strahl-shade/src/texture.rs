@@ -108,8 +108,9 @@ pub struct LayerPoint<'a> {
     pub above: Color,
     /// The factor of the radiance from the mirror direction.
     pub reflectance: Color,
-    /// The weight of the ray in the mirror direction, as POV-Ray has it: [`PovReflection::weight`] times the layer's share and
-    /// the largest component of `above`.
+    /// The weight of the ray in the mirror direction, as POV-Ray has it:
+    /// [`PovReflection::weight`](crate::pov_finish::PovReflection::weight) times the layer's share and the largest component of
+    /// `above`.
     pub reflection_weight: f64,
 }
 
