@@ -31,11 +31,58 @@ pub fn decode(encoded: f64) -> f64 {
 
 /// The 8-bit code of linear light: clamped to `0..=1`, encoded, rounded half up; NaN is 0.
 pub fn encode_u8(linear: f64) -> u8 {
-    // Where each code but 0 begins: searching them takes a fifth of the time of a power.
-    static BEGINNINGS: LazyLock<[f64; 255]> =
-        LazyLock::new(|| std::array::from_fn(|i| beginning(i as f64 + 1.0, 255.0)));
-    // NaN is not at or above any of them.
-    BEGINNINGS.partition_point(|begin| linear >= *begin) as u8
+    static CODES: LazyLock<Codes> = LazyLock::new(Codes::new);
+    CODES.of(linear)
+}
+
+/// Codes by the leading bits of a number: the number of powers of two below 1 that are told apart, and of parts of each.
+const OCTAVES: usize = 13;
+const PARTS: usize = 64;
+
+/// The 8-bit codes, found without a power.
+struct Codes {
+    /// Where each code but 0 begins, and infinity.
+    beginnings: [f64; 256],
+    /// The code of the smallest number of each part of each octave from 2⁻¹³ to 1.
+    lowest: [u8; OCTAVES * PARTS],
+}
+
+impl Codes {
+    fn new() -> Self {
+        let mut beginnings = [f64::INFINITY; 256];
+        for (code, begin) in (1..).zip(&mut beginnings[..255]) {
+            *begin = beginning(f64::from(code), 255.0);
+        }
+        let lowest = std::array::from_fn(|index| {
+            let start = Self::start_of(index);
+            beginnings.partition_point(|begin| start >= *begin) as u8
+        });
+        Self { beginnings, lowest }
+    }
+
+    /// The smallest number of a part.
+    fn start_of(index: usize) -> f64 {
+        f64::from_bits(Self::ORIGIN + ((index as u64) << Self::SHIFT))
+    }
+
+    /// The bits below those that number a part.
+    const SHIFT: u32 = 52 - PARTS.ilog2();
+    /// The bits of 2⁻¹³.
+    const ORIGIN: u64 = (1023 - OCTAVES as u64) << 52;
+
+    fn of(&self, linear: f64) -> u8 {
+        // NaN is not at or above any beginning.
+        if linear >= 1.0 {
+            return 255;
+        }
+        let index = (linear.to_bits().wrapping_sub(Self::ORIGIN) >> Self::SHIFT) as usize;
+        // Negative numbers and NaN have indices beyond the table, as do numbers below 2^-13, whose code is 0.
+        let mut code = self.lowest.get(index).copied().unwrap_or(0);
+        while linear >= self.beginnings[usize::from(code)] {
+            code += 1;
+        }
+        code
+    }
 }
 
 /// The smallest number that is quantized to `code` or more: bisection of the few numbers around the inverse.

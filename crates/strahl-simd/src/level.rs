@@ -1,7 +1,7 @@
 use crate::Portable;
 #[cfg(target_arch = "x86_64")]
 use crate::{Avx2, Avx512, Sse4};
-use std::{fmt, str::FromStr};
+use std::{fmt, str::FromStr, sync::LazyLock};
 
 /// A set of instructions that kernels are compiled for. Each level includes those before it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -83,6 +83,13 @@ impl Simd {
         let mut all = Level::ALL.iter().rev();
         let found = all.find_map(|level| Self::of(*level));
         found.unwrap_or(Self::Portable(Portable))
+    }
+
+    /// The same, detected once.
+    #[inline]
+    pub fn best() -> Self {
+        static BEST: LazyLock<Simd> = LazyLock::new(Simd::detect);
+        *BEST
     }
 
     /// A certain level, or `None` if this processor does not have it.

@@ -3,13 +3,17 @@
 use std::io::{self, Write};
 
 use ::png::chunk::ChunkType;
-use ::png::{ColorType, Encoder, EncodingError, SrgbRenderingIntent};
+use ::png::{ColorType, DeflateCompression, Encoder, EncodingError, SrgbRenderingIntent};
 use strahl_shade::srgb;
 
 use super::{BitDepth, Picture, WriteOptions};
 
 /// Offset of the picture on a page, a chunk of the PNG extensions 1.5: a region's place in the full picture.
 const OFFSET_CHUNK: ChunkType = ChunkType(*b"oFFs");
+
+/// The level of deflate, `1..=9`. Level 2 takes a third of the time of zlib's default, 6; grainy pictures grow by a tenth, clean ones
+/// by a quarter.
+const COMPRESSION: u8 = 2;
 
 pub(super) fn encode(
     writer: &mut dyn Write,
@@ -37,6 +41,7 @@ fn encode_png(
         BitDepth::Eight => ::png::BitDepth::Eight,
         BitDepth::Sixteen => ::png::BitDepth::Sixteen,
     });
+    encoder.set_deflate_compression(DeflateCompression::Level(COMPRESSION));
     encoder.set_source_srgb(SrgbRenderingIntent::Perceptual);
     for (key, value) in picture.metadata_with_region() {
         let keyword = keyword(key);

@@ -30,6 +30,19 @@ struct End {
     index: usize,
 }
 
+/// The edges of an intersection.
+struct Edges {
+    /// What their ends are relative to.
+    center: DVec3,
+    /// How far the ends may be in front of a plane.
+    slack: f64,
+    /// Two for each edge; infinite along some axis where an edge is endless.
+    ends: Vec<DVec3>,
+}
+
+/// Relative to the coordinates, far above the error of a corner.
+const SLACK: f64 = 1e-9;
+
 /// Half-spaces that are operands of one intersection.
 #[derive(Clone, Debug)]
 pub(super) struct HalfSpaces(Vec<HalfSpace>);
@@ -134,13 +147,38 @@ impl HalfSpaces {
 
     /// A box around the intersection, unless it has no corner or would take too much work.
     ///
-    /// Every edge lies on the line of two planes, where that is behind all others; a set with a corner is bounded by its edges.
+    /// A set with a corner is bounded by its edges.
     pub(super) fn bounds(&self) -> Option<Aabb> {
+        let edges = self.edges()?;
+        let (mut bounds, mut has_corner) = (Aabb::EMPTY, false);
+        for end in &edges.ends {
+            has_corner |= end.is_finite();
+            bounds = bounds.union(&Aabb::new(*end, *end));
+        }
+        if !has_corner || bounds.is_empty() {
+            return None;
+        }
+        let wide = DVec3::splat(edges.slack + SLACK * edges.center.abs().max_element())
+            + bounds_abs(&bounds) * SLACK;
+        Some(Aabb::new(
+            bounds.min + edges.center - wide,
+            bounds.max + edges.center + wide,
+        ))
+    }
+
+    /// The corners of the intersection, within rounding, if it is bounded and not too much work; each may be there several times.
+    pub(super) fn corners(&self) -> Option<Vec<DVec3>> {
+        let edges = self.edges()?;
+        let bounded = edges.ends.len() > 2 && edges.ends.iter().all(|end| end.is_finite());
+        let corners = edges.ends.into_iter().map(|end| edges.center + end);
+        bounded.then(|| corners.collect())
+    }
+
+    /// The edges of the intersection. Every edge lies on the line of two planes, where that is behind all others.
+    fn edges(&self) -> Option<Edges> {
         /// Two unit normals that are closer are parallel within rounding, or their line can't be located.
         const PARALLEL: f64 = 1e-12;
         const NEARLY: f64 = 1e-6;
-        /// Relative to the coordinates, far above the error of a corner.
-        const SLACK: f64 = 1e-9;
         if self.0.len() > Self::BOXED {
             return None;
         }
@@ -151,7 +189,7 @@ impl HalfSpaces {
             if offset > size { offset } else { size }
         });
         let slack = SLACK * size;
-        let (mut bounds, mut has_corner) = (Aabb::EMPTY, false);
+        let mut ends = vec![];
         for (index, a) in self.0.iter().enumerate() {
             for b in self.0.iter().skip(index + 1) {
                 let along = a.normal.cross(b.normal);
@@ -170,29 +208,23 @@ impl HalfSpaces {
                     continue;
                 };
                 for t in [edge.min, edge.max] {
-                    has_corner |= t.is_finite();
                     let reach = |x: f64, d: f64| {
                         // No step along this axis, however long the edge.
                         if d.abs() < PARALLEL { x } else { x + d * t }
                     };
-                    let end = DVec3::new(
+                    ends.push(DVec3::new(
                         reach(foot.x, along.x),
                         reach(foot.y, along.y),
                         reach(foot.z, along.z),
-                    );
-                    bounds = bounds.union(&Aabb::new(end, end));
+                    ));
                 }
             }
         }
-        if !has_corner || bounds.is_empty() {
-            return None;
-        }
-        let wide =
-            DVec3::splat(slack + SLACK * center.abs().max_element()) + bounds_abs(&bounds) * SLACK;
-        Some(Aabb::new(
-            bounds.min + center - wide,
-            bounds.max + center + wide,
-        ))
+        Some(Edges {
+            center,
+            slack,
+            ends,
+        })
     }
 
     /// The part of a line that is behind all planes, up to `slack`.

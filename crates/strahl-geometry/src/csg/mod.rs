@@ -23,6 +23,7 @@ mod sweep;
 mod tighten;
 mod timeline;
 mod tree;
+mod within;
 
 pub use solid::Csg;
 pub use tree::{CsgNode, Operands};

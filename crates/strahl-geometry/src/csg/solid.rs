@@ -148,6 +148,11 @@ impl Csg {
         self.leaves.get(leaf).map(|leaf| &leaf.shape)
     }
 
+    /// Whether it is an operation that is not nested too deep for recursion.
+    pub(super) fn is_shallow(&self) -> bool {
+        self.shallow
+    }
+
     pub(super) fn node_count(&self) -> usize {
         self.nodes.len()
     }

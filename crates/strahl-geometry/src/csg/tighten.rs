@@ -16,7 +16,7 @@ pub(super) struct Form([[f64; 4]; 4]);
 
 /// A box in the four variables: centre and half widths.
 #[derive(Clone, Copy)]
-struct Cell {
+pub(super) struct Cell {
     center: [f64; 4],
     half: [f64; 4],
 }
@@ -139,8 +139,19 @@ impl Form {
         }))
     }
 
+    /// This form minus another one, plus a constant.
+    pub(super) fn minus(&self, other: &Self, constant: f64) -> Self {
+        let mut result = self.clone();
+        let all = result.0.as_flattened_mut().iter_mut();
+        for (a, b) in all.zip(other.0.as_flattened()) {
+            *a -= b;
+        }
+        result.0[3][3] += constant;
+        result
+    }
+
     /// Whether the form is positive in the whole cell.
-    fn excludes(&self, cell: &Cell) -> bool {
+    pub(super) fn excludes(&self, cell: &Cell) -> bool {
         self.excludes_by_terms(cell) || self.excludes_about_the_center(cell)
     }
 
@@ -218,7 +229,7 @@ impl Form {
 }
 
 impl Cell {
-    fn of(bounds: &Aabb) -> Self {
+    pub(super) fn of(bounds: &Aabb) -> Self {
         let (c, h) = (
             (bounds.min + bounds.max) * 0.5,
             (bounds.max - bounds.min) * 0.5,

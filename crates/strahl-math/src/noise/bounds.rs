@@ -1,7 +1,8 @@
 //! What noise can be within a box: for proofs that a function has no zero there.
 
+use super::kernel::CELL_SHIFT;
 use super::tables::{R, hash};
-use super::{CELL_SHIFT, NoiseGenerator, SHIFT, each, perlin_gradient, smooth, unit};
+use super::{NoiseGenerator, SHIFT, each, perlin_gradient, smooth, unit};
 use crate::DVec3;
 
 /// More than the rounding errors of noise, whose terms are of the size of 1.
@@ -27,7 +28,7 @@ pub fn noise_bounds(min: DVec3, max: DVec3, generator: NoiseGenerator) -> Range 
         _ => over_cells(min, max, |cell, corner, d| {
             let at = |k: usize| {
                 (cell[k]
-                    .wrapping_add(CELL_SHIFT)
+                    .wrapping_add(i64::from(CELL_SHIFT))
                     .wrapping_add(corner[k] as i64)
                     & 4095) as usize
             };

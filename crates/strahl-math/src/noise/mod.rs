@@ -21,12 +21,14 @@
 //! The first repeats every 4096, the second every 2048 units.
 
 mod bounds;
+mod kernel;
 mod tables;
 
 pub use bounds::noise_bounds;
 
 use crate::DVec3;
-use tables::{GRADIENTS, PERMUTATION, R, hash};
+use strahl_simd::{Isa, Simd, dispatch};
+use tables::{GRADIENTS, PERMUTATION, hash};
 
 /// Which of the three scalar noise functions of POV-Ray 3.7 to use.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -54,23 +56,14 @@ impl NoiseGenerator {
 
 /// Scalar noise at `p`, `0..=1` with a mean near 1/2; NaN where a coordinate is not finite.
 pub fn noise(p: DVec3, generator: NoiseGenerator) -> f64 {
-    match generator {
-        NoiseGenerator::Original => unit(value_gradient(p) + 0.5),
-        NoiseGenerator::RangeCorrected => unit((value_gradient(p) + 1.05242) * 0.48985582),
-        NoiseGenerator::Perlin => unit(0.4925 + 0.795 * perlin(p)),
-    }
+    dispatch!(Simd::best(), isa => kernel::noise(isa, p, generator))
 }
 
 /// Vector noise at `p`: three independent value-gradient noises, each with a mean near zero and seldom beyond ±1.
 ///
 /// The same for every [`NoiseGenerator`]; what turbulence displaces points by.
 pub fn dnoise(p: DVec3) -> DVec3 {
-    let mut sum = DVec3::ZERO;
-    corners(p, |r, d, share| {
-        let linear = |k: usize| 0.5 * r[k] + (r[k + 1] * d.x + r[k + 2] * d.y + r[k + 3] * d.z);
-        sum += DVec3::new(linear(0), linear(4), linear(8)) * share;
-    });
-    sum
+    dispatch!(Simd::best(), isa => kernel::vector(isa, p))
 }
 
 /// Octaves of noise: each has `lambda` times the frequency and `omega` times the strength of the one before.
@@ -98,14 +91,16 @@ impl Default for Turbulence {
 impl Turbulence {
     /// The sum of `omega^i dnoise(lambda^i p)` over the octaves `i`.
     pub fn vector(&self, p: DVec3) -> DVec3 {
-        let (mut frequency, mut strength) = (1.0, 1.0);
-        let mut sum = DVec3::ZERO;
-        for _ in 0..self.octaves {
-            sum += dnoise(p * frequency) * strength;
-            frequency *= self.lambda;
-            strength *= self.omega;
-        }
-        sum
+        dispatch!(Simd::best(), isa => {
+            let (mut frequency, mut strength) = (1.0, 1.0);
+            let mut sum = DVec3::ZERO;
+            for _ in 0..self.octaves {
+                sum += kernel::vector(isa, p * frequency) * strength;
+                frequency *= self.lambda;
+                strength *= self.omega;
+            }
+            sum
+        })
     }
 
     /// The scalar sum of `omega^i n_i(lambda^i p)` over the octaves `i`, as marble and agate use it.
@@ -113,29 +108,32 @@ impl Turbulence {
     /// `n_i` is [`noise`] with [`NoiseGenerator::Original`], and `2 noise - 1/2` with the others; of the latter only the
     /// first octave is cut off at 0 and 1 (measured).
     pub fn scalar(&self, p: DVec3, generator: NoiseGenerator) -> f64 {
-        let (mut frequency, mut strength) = (self.lambda, self.omega);
-        let mut sum = if self.octaves > 0 {
-            pattern_noise(p, generator)
-        } else {
-            0.0
-        };
-        for _ in 1..self.octaves {
-            sum += stretched(p * frequency, generator) * strength;
-            frequency *= self.lambda;
-            strength *= self.omega;
-        }
-        sum
+        dispatch!(Simd::best(), isa => {
+            let (mut frequency, mut strength) = (self.lambda, self.omega);
+            let mut sum = if self.octaves > 0 {
+                unit(stretched(isa, p, generator))
+            } else {
+                0.0
+            };
+            for _ in 1..self.octaves {
+                sum += stretched(isa, p * frequency, generator) * strength;
+                frequency *= self.lambda;
+                strength *= self.omega;
+            }
+            sum
+        })
     }
 }
 
 /// Noise as granite, wrinkles and turbulence want it: with [`NoiseGenerator::Original`] the [`noise`] itself, else
 /// `2 noise - 1/2`, cut off at 0 and 1, which has about the same distribution.
 pub fn pattern_noise(p: DVec3, generator: NoiseGenerator) -> f64 {
-    unit(stretched(p, generator))
+    dispatch!(Simd::best(), isa => unit(stretched(isa, p, generator)))
 }
 
-fn stretched(p: DVec3, generator: NoiseGenerator) -> f64 {
-    let n = noise(p, generator);
+#[inline(always)]
+fn stretched<I: Isa>(isa: I, p: DVec3, generator: NoiseGenerator) -> f64 {
+    let n = kernel::noise(isa, p, generator);
     if generator == NoiseGenerator::Original {
         n
     } else {
@@ -158,73 +156,15 @@ fn each<A, B>([a, b, c]: [A; 3], f: impl Fn(A) -> B) -> [B; 3] {
 }
 
 /// `x` cut off at 0 and 1.
+#[inline(always)]
 fn unit(x: f64) -> f64 {
     x.clamp(0.0, 1.0)
 }
 
-/// The lattice cell of a coordinate, and the position within the cell.
-#[inline]
-fn place(x: f64) -> (i64, f64) {
-    // Rounds down without a function call: the cast truncates towards zero. Beyond 2^52 all numbers are integers; NaN and
-    // infinities only affect their own value.
-    let mut cell = x as i64;
-    let mut floor = cell as f64;
-    if floor > x {
-        cell = cell.wrapping_sub(1);
-        floor -= 1.0;
-    }
-    (cell, x - floor)
-}
-
-/// The offset of cell 0 in the lattice of the value-gradient noise.
-const CELL_SHIFT: i64 = 10_000;
-
-/// Calls `visit` for the eight corners of a cell of the value-gradient lattice: with the corner's entries in the table of values
-/// and gradients, the vector from the corner to the point, and the corner's weight; the weights sum to 1.
-#[inline(always)]
-fn corners(p: DVec3, mut visit: impl FnMut(&[f64; 12], DVec3, f64)) {
-    let [x, y, z] = each(p.to_array(), place);
-    let cells = each([x, y, z], |(cell, _)| {
-        // Huge coordinates wrap around to some cell.
-        let cell = cell.wrapping_add(CELL_SHIFT);
-        [
-            (cell & 4095) as usize,
-            (cell.wrapping_add(1) & 4095) as usize,
-        ]
-    });
-    let ways = each([x, y, z], |(_, fraction)| [fraction, fraction - 1.0]);
-    let shares = each([x, y, z], |(_, t)| {
-        let s = smooth(t);
-        [1.0 - s, s]
-    });
-    for i in 0..2 {
-        let row = usize::from(hash(cells[0][i]));
-        for j in 0..2 {
-            let column = usize::from(hash(row ^ cells[1][j]));
-            let share = shares[0][i] * shares[1][j];
-            for k in 0..2 {
-                let h = usize::from(hash(column ^ cells[2][k]) & 255);
-                let way = DVec3::new(ways[0][i], ways[1][j], ways[2][k]);
-                if let Some(entries) = R[h..].first_chunk() {
-                    visit(entries, way, share * shares[2][k]);
-                }
-            }
-        }
-    }
-}
-
 /// `3t² - 2t³`.
-#[inline]
+#[inline(always)]
 fn smooth(t: f64) -> f64 {
     t * t * (3.0 - 2.0 * t)
-}
-
-fn value_gradient(p: DVec3) -> f64 {
-    let mut sum = 0.0;
-    corners(p, |r, d, share| {
-        sum += share * (0.5 * r[0] + (r[1] * d.x + r[2] * d.y + r[3] * d.z));
-    });
-    sum
 }
 
 /// What the lattice of the gradient noise is shifted by. 12432434 · 2⁻²⁹ is what is left of the fraction .0231572 at this
@@ -237,34 +177,9 @@ fn perlin_gradient(index: [usize; 3], step: [usize; 3]) -> DVec3 {
     GRADIENTS[(perlin_row(i, j) + k) & 2047]
 }
 
-#[inline]
+#[inline(always)]
 fn perlin_row(i: usize, j: usize) -> usize {
     usize::from(PERMUTATION[(usize::from(PERMUTATION[i]) + j) & 2047])
-}
-
-fn perlin(p: DVec3) -> f64 {
-    let [x, y, z] = each((p + DVec3::splat(SHIFT)).to_array(), place);
-    let cells = each([x, y, z], |(c, _)| {
-        [(c & 2047) as usize, (c.wrapping_add(1) & 2047) as usize]
-    });
-    let ways = each([x, y, z], |(_, fraction)| [fraction, fraction - 1.0]);
-    let shares = each([x, y, z], |(_, t)| {
-        let s = smooth(t);
-        [1.0 - s, s]
-    });
-    let mut sum = 0.0;
-    for i in 0..2 {
-        for j in 0..2 {
-            let row = perlin_row(cells[0][i], cells[1][j]);
-            let share = shares[0][i] * shares[1][j];
-            for k in 0..2 {
-                let gradient = GRADIENTS[(row + cells[2][k]) & 2047];
-                let way = DVec3::new(ways[0][i], ways[1][j], ways[2][k]);
-                sum += share * shares[2][k] * gradient.dot(way);
-            }
-        }
-    }
-    sum
 }
 
 #[cfg(test)]

@@ -30,10 +30,36 @@ static HASH: [u16; 4096] = {
 };
 
 /// The permutation of `0..4096`; the argument is taken modulo 4096.
-#[inline]
+#[inline(always)]
 pub(super) fn hash(i: usize) -> u16 {
     HASH[i & 4095]
 }
+
+/// For scalar noise: half the values of 256 corners, and their gradients along x, y and z.
+pub(super) static VALUES: [[f64; 256]; 4] = {
+    let mut table = [[0.0; 256]; 4];
+    let mut h = 0;
+    while h < 256 {
+        table[0][h] = 0.5 * R[h];
+        table[1][h] = R[h + 1];
+        table[2][h] = R[h + 2];
+        table[3][h] = R[h + 3];
+        h += 1;
+    }
+    table
+};
+
+/// For vector noise: what its three components have at a corner. Entry `h` has the values of corner `h`, the next three entries the
+/// gradients along x, y and z.
+pub(super) static SPREAD: [[f64; 4]; R_LEN - 8] = {
+    let mut table = [[0.0; 4]; R_LEN - 8];
+    let mut h = 0;
+    while h < R_LEN - 8 {
+        table[h] = [R[h], R[h + 4], R[h + 8], 0.0];
+        h += 1;
+    }
+    table
+};
 
 /// Values and gradients in `-1..=1`, overlapping.
 pub(super) static R: [f64; R_LEN] = {

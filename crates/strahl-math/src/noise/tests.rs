@@ -234,7 +234,7 @@ fn the_hash_is_a_permutation_and_the_gradients_are_units() {
     }
     assert!(seen.iter().all(|&s| s));
     assert!(GRADIENTS.iter().all(|g| (g.length() - 1.0).abs() < 1e-15));
-    assert_eq!(R[0], -1.0);
+    assert_eq!(tables::R[0], -1.0);
 }
 
 #[test]
@@ -287,4 +287,33 @@ fn hostile_places_do_not_panic() {
         }
     }
     assert!(NoiseGenerator::from_number(4).is_none());
+}
+
+#[test]
+fn every_simd_level_has_the_same_noise() {
+    use super::kernel;
+    use strahl_simd::{Simd, dispatch};
+    let mut x = 0.0;
+    for step in 0..2000 {
+        // From tiny to huge coordinates of both signs, integers among them.
+        x = (x * 1.37 + 0.111) % 41.0 - 20.0;
+        let scale = [1.0, 1e-9, 1e3, 1e8, 1e15, 1e17][step % 6];
+        let p = DVec3::new(x * scale, (x * 3.7 * scale).round(), -x * x * scale);
+        let reference = |generator| kernel::noise(strahl_simd::Portable, p, generator).to_bits();
+        let vector = kernel::vector(strahl_simd::Portable, p);
+        for simd in Simd::available() {
+            for number in 1..=3 {
+                let generator = NoiseGenerator::from_number(number).unwrap();
+                let found = dispatch!(simd, isa => kernel::noise(isa, p, generator));
+                assert_eq!(
+                    found.to_bits(),
+                    reference(generator),
+                    "{p} {:?}",
+                    simd.level()
+                );
+            }
+            let found = dispatch!(simd, isa => kernel::vector(isa, p));
+            assert_eq!(found, vector, "{p} {:?}", simd.level());
+        }
+    }
 }

@@ -23,6 +23,14 @@ impl Bound {
         })
     }
 
+    /// Whether the bound certainly surrounds an object as a whole; `to_group` is from the space of its parent.
+    pub(super) fn surrounds_object(&self, object: &Object, to_group: &Transform) -> bool {
+        self.convex
+            && is_small(object)
+            && solid(object, &placed(object, to_group))
+                .is_some_and(|tree| tree.lies_within(&self.solid))
+    }
+
     /// Whether the bound certainly surrounds a shape.
     fn surrounds(&self, shape: &Shape, to_group: &Transform) -> bool {
         let bounds = match shape.as_solid() {
@@ -40,6 +48,23 @@ pub(super) fn bounded(shape: &Shape, bounds: &[Bound], to_group: &Transform) -> 
     let solids: Vec<Arc<Csg>> = deciding.map(|b| Arc::clone(&b.solid)).collect();
     let map = (!to_group.is_identity()).then(|| to_group.inverted());
     (!solids.is_empty()).then(|| Bounded::new(shape.clone(), solids, map).into())
+}
+
+/// Whether an object has so few parts that its tree can be made once more.
+fn is_small(object: &Object) -> bool {
+    const PARTS: usize = 64;
+    let mut parts = vec![object];
+    let mut next = 0;
+    while let Some(object) = parts.get(next) {
+        if let ObjectKind::Csg { children, .. } = &object.kind {
+            parts.extend(&children.0);
+        }
+        if parts.len() > PARTS {
+            return false;
+        }
+        next += 1;
+    }
+    true
 }
 
 fn is_convex(object: &Object) -> bool {

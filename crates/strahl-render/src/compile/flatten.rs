@@ -271,6 +271,7 @@ impl Pass {
         let mut bounds = todo.bounds.to_vec();
         for other in others {
             match Bound::of(other, &todo.transform) {
+                Some(bound) if bound.surrounds_object(inner, &todo.transform) => {}
                 Some(bound) => bounds.push(bound),
                 None => {
                     let message = "what bounds this object is no valid shape; give a solid or a surface with finite parameters";

@@ -1,0 +1,176 @@
+//! Noise at a point, for the vectors of one level.
+
+use super::tables::{GRADIENTS, SPREAD, VALUES, hash};
+use super::{NoiseGenerator, SHIFT, perlin_row, smooth, unit};
+use crate::DVec3;
+use strahl_simd::{Isa, Level};
+
+/// The offset of cell 0 in the lattice of the value-gradient noise.
+pub(super) const CELL_SHIFT: u32 = 10_000;
+
+/// Numbers below it have room for a fraction of two bits.
+const LARGE: f64 = 2_251_799_813_685_248.0; // 2^51
+
+/// The lattice cell of a coordinate, modulo 2³², and the position within the cell. From 2⁵¹ on the cell is some cell; NaN and infinities
+/// have a NaN for a position.
+#[inline(always)]
+fn place<I: Isa>(x: f64) -> (u32, f64) {
+    // The sum with a number below 2^51 has no bits for a fraction; its lowest bits are those of the integer.
+    const ROUND: f64 = 3.0 * LARGE;
+    let floor = if I::LEVEL >= Level::Sse4 || x.abs() >= LARGE {
+        x.floor()
+    } else {
+        // Without an instruction for it.
+        let nearest = (x + ROUND) - ROUND;
+        nearest - if nearest > x { 1.0 } else { 0.0 }
+    };
+    ((floor + ROUND).to_bits() as u32, x - floor)
+}
+
+/// The numbers of a cell and the next one in the lattice of the value-gradient noise.
+#[inline(always)]
+fn neighbours(cell: u32) -> [usize; 2] {
+    let cell = cell.wrapping_add(CELL_SHIFT);
+    [cell as usize & 4095, cell.wrapping_add(1) as usize & 4095]
+}
+
+/// From the lower and the upper corners to a position within a cell, along one axis.
+#[inline(always)]
+fn ways(position: f64) -> [f64; 2] {
+    [position, position - 1.0]
+}
+
+/// The weights of the lower and the upper corners.
+#[inline(always)]
+fn shares(position: f64) -> [f64; 2] {
+    let s = smooth(position);
+    [1.0 - s, s]
+}
+
+/// The eight corners of a cell of the lattice around a point. Corner `4 i + 2 j + k` is the lower (0) or the upper (1) one along
+/// each axis.
+struct Corners {
+    /// From the lower and the upper corners to the point, along each axis.
+    ways: [[f64; 2]; 3],
+    /// Their weights along each axis; the products sum to 1.
+    shares: [[f64; 2]; 3],
+    /// Their numbers in the table of values and gradients.
+    numbers: [usize; 8],
+}
+
+impl Corners {
+    #[inline(always)]
+    fn around<I: Isa>(p: DVec3) -> Self {
+        let (x, y, z) = (place::<I>(p.x), place::<I>(p.y), place::<I>(p.z));
+        let [i, j, k] = [neighbours(x.0), neighbours(y.0), neighbours(z.0)];
+        let mut numbers = [0; 8];
+        for a in 0..2 {
+            let row = usize::from(hash(i[a]));
+            for b in 0..2 {
+                let column = usize::from(hash(row ^ j[b]));
+                for c in 0..2 {
+                    numbers[4 * a + 2 * b + c] = usize::from(hash(column ^ k[c]) & 255);
+                }
+            }
+        }
+        Self {
+            ways: [ways(x.1), ways(y.1), ways(z.1)],
+            shares: [shares(x.1), shares(y.1), shares(z.1)],
+            numbers,
+        }
+    }
+}
+
+/// [`noise`](super::noise).
+#[inline(always)]
+pub(super) fn noise<I: Isa>(isa: I, p: DVec3, generator: NoiseGenerator) -> f64 {
+    match generator {
+        NoiseGenerator::Original => unit(scalar(isa, p) + 0.5),
+        NoiseGenerator::RangeCorrected => unit((scalar(isa, p) + 1.05242) * 0.48985582),
+        NoiseGenerator::Perlin => unit(0.4925 + 0.795 * perlin::<I>(p)),
+    }
+}
+
+/// The scalar noise, with a mean near zero: the sum over the corners, in their order, of weight times `v/2 + g · way`.
+#[inline(always)]
+fn scalar<I: Isa>(isa: I, p: DVec3) -> f64 {
+    let c = Corners::around::<I>(p);
+    let [[y0, y1], [z0, z1]] = [c.ways[1], c.ways[2]];
+    let (dy, dz) = (isa.load(&[y0, y0, y1, y1]), isa.load(&[z0, z1, z0, z1]));
+    let [[t0, t1], [u0, u1]] = [c.shares[1], c.shares[2]];
+    let (t, u) = (isa.load(&[t0, t0, t1, t1]), isa.load(&[u0, u1, u0, u1]));
+    let mut sum = 0.0;
+    for i in 0..2 {
+        // Four corners at once.
+        let x = isa.mul(four(isa, 1, &c, i), isa.splat(c.ways[0][i]));
+        let y = isa.mul(four(isa, 2, &c, i), dy);
+        let z = isa.mul(four(isa, 3, &c, i), dz);
+        let linear = isa.add(four(isa, 0, &c, i), isa.add(isa.add(x, y), z));
+        let share = isa.mul(isa.mul(isa.splat(c.shares[0][i]), t), u);
+        let [a, b, c, d] = isa.store(isa.mul(share, linear));
+        sum = sum + a + b + c + d;
+    }
+    sum
+}
+
+/// Entries of a table for the four lower or the four upper corners along x.
+#[inline(always)]
+fn four<I: Isa>(isa: I, table: usize, c: &Corners, i: usize) -> I::F64x4 {
+    let table = &VALUES[table];
+    let n = &c.numbers;
+    isa.load(&[
+        table[n[4 * i] & 255],
+        table[n[4 * i + 1] & 255],
+        table[n[4 * i + 2] & 255],
+        table[n[4 * i + 3] & 255],
+    ])
+}
+
+/// The vector noise.
+#[inline(always)]
+pub(super) fn vector<I: Isa>(isa: I, p: DVec3) -> DVec3 {
+    let c = Corners::around::<I>(p);
+    let mut sum = isa.splat(0.0);
+    let half = isa.splat(0.5);
+    for i in 0..2 {
+        for j in 0..2 {
+            let share = c.shares[0][i] * c.shares[1][j];
+            for k in 0..2 {
+                let h = c.numbers[4 * i + 2 * j + k] & 255;
+                let x = isa.mul(isa.load(&SPREAD[h + 1]), isa.splat(c.ways[0][i]));
+                let y = isa.mul(isa.load(&SPREAD[h + 2]), isa.splat(c.ways[1][j]));
+                let z = isa.mul(isa.load(&SPREAD[h + 3]), isa.splat(c.ways[2][k]));
+                let value = isa.mul(half, isa.load(&SPREAD[h]));
+                let linear = isa.add(value, isa.add(isa.add(x, y), z));
+                sum = isa.add(sum, isa.mul(linear, isa.splat(share * c.shares[2][k])));
+            }
+        }
+    }
+    let [x, y, z, _] = isa.store(sum);
+    DVec3::new(x, y, z)
+}
+
+/// The gradient noise.
+#[inline(always)]
+fn perlin<I: Isa>(p: DVec3) -> f64 {
+    let p = p + DVec3::splat(SHIFT);
+    let (x, y, z) = (place::<I>(p.x), place::<I>(p.y), place::<I>(p.z));
+    let [i, j, k] = [x.0, y.0, z.0];
+    let (i, j) = ([i, i.wrapping_add(1)], [j, j.wrapping_add(1)]);
+    let k = [k as usize & 2047, k.wrapping_add(1) as usize & 2047];
+    let (dx, dy, dz) = (ways(x.1), ways(y.1), ways(z.1));
+    let (sx, sy, sz) = (shares(x.1), shares(y.1), shares(z.1));
+    let mut sum = 0.0;
+    for a in 0..2 {
+        for b in 0..2 {
+            let row = perlin_row(i[a] as usize & 2047, j[b] as usize & 2047);
+            let share = sx[a] * sy[b];
+            for c in 0..2 {
+                let gradient = GRADIENTS[(row + k[c]) & 2047];
+                let way = DVec3::new(dx[a], dy[b], dz[c]);
+                sum += share * sz[c] * gradient.dot(way);
+            }
+        }
+    }
+    sum
+}
