@@ -80,31 +80,68 @@ impl Fractal {
     }
 
     pub(super) fn value(&self, point: DVec2) -> f64 {
-        let magnet = !matches!(self.kind, FractalKind::Power { .. });
+        if let Interior::Constant(value) = self.interior
+            && self.is_mandelbrot()
+            && in_largest_parts(point)
+        {
+            return value;
+        }
         let c = self.julia.unwrap_or(point);
-        let mut z = if magnet && self.julia.is_none() {
-            DVec2::ZERO
-        } else {
-            point
-        };
-        // A magnet's Mandelbrot orbit starts at zero, which would always be the smallest.
-        let mut smallest = if magnet && self.julia.is_none() {
-            f64::INFINITY
-        } else {
-            z.length_squared()
-        };
+        // Each iteration has its own loop.
+        match self.kind {
+            FractalKind::Power { exponent: 2 } => self.follow(point, |z| product(z, z) + c),
+            FractalKind::Power { exponent } => self.follow(point, |z| {
+                let mut power = z;
+                for _ in 1..exponent {
+                    power = product(power, z);
+                }
+                power + c
+            }),
+            FractalKind::Magnet1 => self.follow(point, |z| magnet_1(z, c)),
+            FractalKind::Magnet2 => self.follow(point, |z| magnet_2(z, c)),
+        }
+    }
+
+    fn is_mandelbrot(&self) -> bool {
+        self.julia.is_none() && self.kind == FractalKind::Power { exponent: 2 }
+    }
+
+    /// The value at a point, by its orbit under `step`.
+    ///
+    /// An orbit that returns exactly to one of its points is a cycle from there on, so whole rounds are left out (Brent 1980). Most
+    /// orbits of the inside do so long before they are complete.
+    #[inline(always)]
+    fn follow(&self, point: DVec2, step: impl Fn(DVec2) -> DVec2) -> f64 {
         /// The magnet iterations also end when they have converged to 1.
         const CONVERGED: f64 = 1e-4;
+        let magnet = !matches!(self.kind, FractalKind::Power { .. });
         let bailout = if magnet { 1e4 } else { 4.0 };
-        for step in 0..self.iterations {
-            z = self.step(z, c);
+        // A magnet's Mandelbrot orbit starts at zero, which would always be the smallest.
+        let (mut z, mut smallest) = if magnet && self.julia.is_none() {
+            (DVec2::ZERO, f64::INFINITY)
+        } else {
+            (point, point.length_squared())
+        };
+        let (mut number, mut end) = (0, self.iterations);
+        // A point that the orbit may return to, where it was reached, and the steps to the next such point.
+        let (mut seen, mut seen_at, mut stretch) = (z, 0, 8);
+        while number < end {
+            z = step(z);
             let absolute = z.length_squared();
             if absolute < smallest {
                 smallest = absolute;
             }
             let converged = magnet && (z - DVec2::X).length_squared() < CONVERGED;
             if !(absolute <= bailout) || converged {
-                return self.outside(step, z);
+                return self.outside(number, z);
+            }
+            number += 1;
+            if z == seen {
+                // All points of the cycle have been visited.
+                end = number + (end - number) % (number - seen_at);
+            } else if number - seen_at == stretch {
+                (seen, seen_at) = (z, number);
+                stretch *= 2;
             }
         }
         match self.interior {
@@ -129,42 +166,45 @@ impl Fractal {
             Exterior::Absolute(f) => z.length() * f,
         }
     }
+}
 
-    fn step(&self, z: DVec2, c: DVec2) -> DVec2 {
-        let one = DVec2::X;
-        match self.kind {
-            FractalKind::Power { exponent } => {
-                let mut power = z;
-                for _ in 1..exponent {
-                    power = product(power, z);
-                }
-                power + c
-            }
-            FractalKind::Magnet1 => {
-                let numerator = product(z, z) + c - one;
-                let denominator = z * 2.0 + c - one * 2.0;
-                let q = quotient(numerator, denominator);
-                product(q, q)
-            }
-            FractalKind::Magnet2 => {
-                let (c1, c2) = (c - one, c - one * 2.0);
-                let c12 = product(c1, c2);
-                let z2 = product(z, z);
-                let numerator = product(z2, z) + product(c1, z) * 3.0 + c12;
-                let denominator = z2 * 3.0 + product(c2, z) * 3.0 + c12 + one;
-                let q = quotient(numerator, denominator);
-                product(q, q)
-            }
-        }
-    }
+/// Whether a point is certainly in the cardioid or the disc to its left, the two largest parts of the Mandelbrot set: farther from
+/// their edges than rounding could move an orbit.
+fn in_largest_parts(c: DVec2) -> bool {
+    const INNER: f64 = 1.0 - 1e-6;
+    let (x, y2) = (c.x - 0.25, c.y * c.y);
+    let q = x * x + y2;
+    let left = c.x + 1.0;
+    q * (q + x) < 0.25 * y2 * INNER || left * left + y2 < 0.0625 * INNER
+}
+
+fn magnet_1(z: DVec2, c: DVec2) -> DVec2 {
+    let one = DVec2::X;
+    let numerator = product(z, z) + c - one;
+    let denominator = z * 2.0 + c - one * 2.0;
+    let q = quotient(numerator, denominator);
+    product(q, q)
+}
+
+fn magnet_2(z: DVec2, c: DVec2) -> DVec2 {
+    let one = DVec2::X;
+    let (c1, c2) = (c - one, c - one * 2.0);
+    let c12 = product(c1, c2);
+    let z2 = product(z, z);
+    let numerator = product(z2, z) + product(c1, z) * 3.0 + c12;
+    let denominator = z2 * 3.0 + product(c2, z) * 3.0 + c12 + one;
+    let q = quotient(numerator, denominator);
+    product(q, q)
 }
 
 /// The product of complex numbers.
+#[inline]
 fn product(a: DVec2, b: DVec2) -> DVec2 {
     DVec2::new(a.x * b.x - a.y * b.y, a.x * b.y + a.y * b.x)
 }
 
 /// The quotient of complex numbers.
+#[inline]
 fn quotient(a: DVec2, b: DVec2) -> DVec2 {
     product(a, DVec2::new(b.x, -b.y)) / b.length_squared()
 }

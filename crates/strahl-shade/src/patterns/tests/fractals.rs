@@ -61,3 +61,51 @@ pub(super) fn built() -> Vec<Built> {
         ),
     ]
 }
+
+/// The end of the orbit is that of all its steps, although whole rounds of a cycle are left out.
+#[test]
+fn cycles_are_left_out_exactly() {
+    const STEPS: u32 = 3001;
+    let mut cycles = 0;
+    for step in 0..400 {
+        let angle = f64::from(step) * 0.37;
+        let point = DVec2::new(angle.cos(), angle.sin()) * (f64::from(step) / 400.0);
+        let fractal = Fractal {
+            interior: FractalInterior::Real(1.0),
+            exterior: Exterior::Real(1.0),
+            ..Fractal::mandelbrot(STEPS)
+        };
+        let (mut z, mut all) = (point, vec![]);
+        for _ in 0..STEPS {
+            let (x, y) = (z.x * z.x - z.y * z.y, z.x * z.y + z.y * z.x);
+            z = DVec2::new(x, y) + point;
+            if z.length_squared() > 4.0 {
+                break;
+            }
+            cycles += u32::from(all.len() == 1000 && all.contains(&z));
+            all.push(z);
+        }
+        assert_eq!(fractal.value(point), z.x, "{point}");
+    }
+    assert!(cycles > 50, "{cycles}");
+}
+
+/// Points that are known to be in the set without their orbit have none that escapes.
+#[test]
+fn the_largest_parts_of_the_mandelbrot_set_are_inside() {
+    let inside = Fractal {
+        exterior: Exterior::Constant(0.5),
+        ..Fractal::mandelbrot(2000)
+    };
+    let orbit = Fractal {
+        interior: FractalInterior::Smallest(0.0),
+        ..inside
+    };
+    for i in 0..60 {
+        for j in 0..40 {
+            let point = DVec2::new(f64::from(i) / 25.0 - 1.8, f64::from(j) / 30.0);
+            let (known, found) = (inside.value(point), orbit.value(point));
+            assert_eq!(known == 1.0, found == 0.0, "{point}");
+        }
+    }
+}
