@@ -144,6 +144,7 @@ fn stretched<I: Isa>(isa: I, p: DVec3, generator: NoiseGenerator) -> f64 {
 /// The hash of a lattice cell, `0..4096`, by which cells are told apart in patterns that need a random number per cell.
 ///
 /// It is the hash of the value-gradient noise without that noise's shift of the lattice; it repeats every 4096 cells.
+#[inline]
 pub fn lattice_hash(cell: [i64; 3]) -> usize {
     let [i, j, k] = each(cell, |c| (c & 4095) as usize);
     usize::from(hash(usize::from(hash(usize::from(hash(i)) ^ j)) ^ k))

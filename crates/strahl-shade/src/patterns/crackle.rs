@@ -1,7 +1,7 @@
 use strahl_math::noise::{NoiseGenerator, lattice_hash, noise};
 use strahl_math::{DVec3, det};
 
-use super::random::uniform;
+use super::random::{numbers, uniform};
 
 /// The cell of the unit lattice around `p`.
 fn cell(p: DVec3) -> [i64; 3] {
@@ -38,6 +38,7 @@ impl CrackleMetric {
 
     /// The sum over coordinates and offset that [`CrackleMetric::distance_of`] converts to a distance. It grows with the
     /// distance; for non-positive powers it is the distance itself.
+    #[inline]
     fn measure(self, v: DVec3, offset: f64) -> f64 {
         match self {
             Self::Manhattan => v.x.abs() + v.y.abs() + v.z.abs() + offset,
@@ -60,6 +61,7 @@ impl CrackleMetric {
     }
 
     /// The contribution of one coordinate to the measure.
+    #[inline]
     fn part(self, x: f64) -> f64 {
         match self {
             Self::Manhattan => x.abs(),
@@ -102,63 +104,124 @@ impl Default for Crackle {
     }
 }
 
-/// The 5³ cubes around a cube, except those that are two cubes away in more than one direction, the nearest first.
+/// The 5³ cubes around a cube, except those that are two cubes away in more than one direction. First the inner 3³, then the others; both
+/// by their distances from a point in the lower half of the cube along each axis.
 const NEIGHBOURS: [[i64; 3]; 81] = {
+    /// 16 times the squared distances from 1/4 to the cubes from -2 to 2.
+    const SQUARES: [u32; 5] = [25, 1, 0, 9, 49];
     let mut all = [[0; 3]; 81];
-    let (mut count, mut square) = (0, 0);
-    while square <= 6 {
+    let (mut count, mut outer, mut square) = (0, 0, 0);
+    while outer < 2 {
         let mut n = 0;
         while n < 125 {
-            let d = [n / 25 - 2, n / 5 % 5 - 2, n % 5 - 2];
-            let squares = [d[0] * d[0], d[1] * d[1], d[2] * d[2]];
-            let far = squares[0] / 4 + squares[1] / 4 + squares[2] / 4;
-            if far < 2 && squares[0] + squares[1] + squares[2] == square {
-                all[count] = d;
+            let d = [n / 25, n / 5 % 5, n % 5];
+            let two_away = (d[0] % 4 == 0) as u32 + (d[1] % 4 == 0) as u32 + (d[2] % 4 == 0) as u32;
+            if two_away == outer && SQUARES[d[0]] + SQUARES[d[1]] + SQUARES[d[2]] == square {
+                all[count] = [d[0] as i64 - 2, d[1] as i64 - 2, d[2] as i64 - 2];
                 count += 1;
             }
             n += 1;
         }
         square += 1;
+        if square > 49 + 9 + 9 {
+            (outer, square) = (outer + 1, 0);
+        }
     }
     all
 };
 
+/// The number of the inner ones.
+const INNER: usize = 27;
+
 impl Crackle {
     /// The value at `p`, cut off at 0 and 1.
-    ///
-    /// The nearest points are searched in the [`NEIGHBOURS`] of the cube of `p`. Cubes farther away than the nearest points
-    /// found so far (one to three, as `form` needs) are skipped; usually these are all cubes two cubes away.
     pub(super) fn value(&self, p: DVec3, generator: NoiseGenerator) -> f64 {
-        let home = cell(p);
-        let fraction = (p - p.floor()).to_array();
-        // The contributions of the gaps between p and the cubes along each axis.
-        let gaps =
-            fraction.map(|f| [f + 1.0, f, 0.0, 1.0 - f, 2.0 - f].map(|g| self.metric.part(g)));
-        let rest = self.metric.measure(DVec3::ZERO, self.offset);
-        let counting = match self.form {
+        // Each metric has its own loop.
+        let (nearest, center) = match self.metric {
+            CrackleMetric::Manhattan => self.search(CrackleMetric::Manhattan, p),
+            CrackleMetric::Euclidean => self.search(CrackleMetric::Euclidean, p),
+            metric => self.search(metric, p),
+        };
+        if self.solid {
+            return noise(center, generator);
+        }
+        let mut distances = DVec3::ZERO;
+        for (i, measure) in nearest.into_iter().enumerate().take(self.counting()) {
+            distances[i] = self.metric.distance_of(measure);
+        }
+        distances.dot(self.form).clamp(0.0, 1.0)
+    }
+
+    /// How many of the nearest points matter.
+    fn counting(&self) -> usize {
+        match self.form {
             _ if self.solid => 1,
             form if form.z != 0.0 => 3,
             form if form.y != 0.0 => 2,
             _ => 1,
+        }
+    }
+
+    /// The measures of the nearest points, as many as matter, and the nearest point.
+    ///
+    /// They are searched in the [`NEIGHBOURS`] of the cube of `p`. Cubes farther away than the nearest points found so far are skipped;
+    /// usually these are all cubes two cubes away.
+    #[inline(always)]
+    fn search(&self, metric: CrackleMetric, p: DVec3) -> ([f64; 3], DVec3) {
+        let home = cell(p);
+        let fraction = p - p.floor();
+        // The contributions of the gaps between p and the cubes along each axis.
+        let gaps = |f: f64| {
+            let part = |gap| metric.part(gap);
+            [
+                part(f + 1.0),
+                part(f),
+                part(0.0),
+                part(1.0 - f),
+                part(2.0 - f),
+            ]
         };
+        let [x, y, z] = [gaps(fraction.x), gaps(fraction.y), gaps(fraction.z)];
+        // The neighbours are sorted for a point in the lower half along each axis, otherwise they are mirrored.
+        let sign = |f: f64| if f > 0.5 { -1 } else { 1 };
+        let signs = [sign(fraction.x), sign(fraction.y), sign(fraction.z)];
+        let rest = metric.measure(DVec3::ZERO, self.offset);
+        let counting = self.counting();
         // Rounding errors must not make a cube appear farther away than it is.
-        let slack = if self.metric.is_monotone() {
+        let slack = if metric.is_monotone() {
             1.0 - 1e-12
         } else {
             0.0
         };
+        let random = numbers();
         let mut nearest = [f64::INFINITY; 3];
         let mut center = p;
-        for d in NEIGHBOURS {
-            let gap = (0..3).map(|axis| gaps[axis][(d[axis] + 2) as usize]);
-            if (gap.sum::<f64>() + rest) * slack > nearest[counting - 1] {
+        for (number, d) in NEIGHBOURS.iter().enumerate() {
+            if number == INNER {
+                let smaller = |a: f64, b: f64| if a < b { a } else { b };
+                let nearest_outer = |g: &[f64; 5]| smaller(g[0], g[4]);
+                let outer = smaller(
+                    smaller(nearest_outer(&x), nearest_outer(&y)),
+                    nearest_outer(&z),
+                );
+                if (outer + rest) * slack > nearest[counting - 1] {
+                    break;
+                }
+            }
+            let [i, j, k] = [d[0] * signs[0], d[1] * signs[1], d[2] * signs[2]];
+            let gap = x[(i + 2) as usize] + y[(j + 2) as usize] + z[(k + 2) as usize];
+            if (gap + rest) * slack > nearest[counting - 1] {
                 continue;
             }
-            let cell: [i64; 3] = std::array::from_fn(|axis| home[axis].wrapping_add(d[axis]));
+            let cell = [
+                home[0].wrapping_add(i),
+                home[1].wrapping_add(j),
+                home[2].wrapping_add(k),
+            ];
             let h = lattice_hash(cell);
-            let corner = DVec3::from_array(cell.map(|c| c as f64));
-            let place = corner + DVec3::new(uniform(h), uniform(h + 1), uniform(h + 2));
-            let measure = self.metric.measure(p - place, self.offset);
+            let corner = DVec3::new(cell[0] as f64, cell[1] as f64, cell[2] as f64);
+            let place = corner + DVec3::new(random[h], random[h + 1], random[h + 2]);
+            let measure = metric.measure(p - place, self.offset);
             if measure < nearest[0] {
                 nearest = [measure, nearest[0], nearest[1]];
                 center = place;
@@ -168,14 +231,7 @@ impl Crackle {
                 nearest[2] = measure;
             }
         }
-        if self.solid {
-            return noise(center, generator);
-        }
-        let mut distances = DVec3::ZERO;
-        for (i, measure) in nearest.into_iter().enumerate().take(counting) {
-            distances[i] = self.metric.distance_of(measure);
-        }
-        distances.dot(self.form).clamp(0.0, 1.0)
+        (nearest, center)
     }
 }
 
@@ -231,5 +287,8 @@ mod tests {
         let all: std::collections::BTreeSet<_> = NEIGHBOURS.into_iter().collect();
         assert_eq!(all.len(), 81);
         assert_eq!(NEIGHBOURS[0], [0, 0, 0]);
+        let is_inner = |d: &[i64; 3]| d.iter().all(|d| d.abs() < 2);
+        assert_eq!(NEIGHBOURS.iter().position(|d| !is_inner(d)), Some(INNER));
+        assert!(!NEIGHBOURS[INNER..].iter().any(is_inner));
     }
 }

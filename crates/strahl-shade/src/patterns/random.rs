@@ -18,6 +18,11 @@ pub(super) fn uniform(index: usize) -> f64 {
     UNIFORM[index % 4098]
 }
 
+/// The first numbers of the stream: three from each hash below 4096 on.
+pub(super) fn numbers() -> &'static [f64] {
+    &UNIFORM
+}
+
 /// MT19937 (Matsumoto and Nishimura, "Mersenne Twister", ACM TOMACS 8, 1998).
 struct Twister {
     state: [u32; 624],
