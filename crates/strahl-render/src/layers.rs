@@ -41,7 +41,7 @@ pub(crate) fn paint<'s>(
     };
     let space = scene.texture_space(hit, look);
     let eta = surface.eta_2 / surface.eta_1;
-    texture.0.layers_in(space.as_ref(), &place, eta, paint);
+    texture.0.layers_in(space.as_deref(), &place, eta, paint);
 
     let mut sum = Finish {
         transmission: paint.transmission,

@@ -6,6 +6,7 @@ use crate::objects::Objects;
 use crate::prim::{Prim, PrimKind};
 use crate::runs::RunList;
 use crate::spheres::Spheres;
+use std::borrow::Cow;
 use std::sync::Arc;
 use strahl_accel::{Accelerator, AnyAccelerator};
 use strahl_geometry::{PrimHit, Primitive, Shape, SurfaceId, SurfacePoint, TriangleMesh};
@@ -112,6 +113,8 @@ pub struct RenderScene {
     pub(crate) groups: Vec<RenderGroup>,
     pub(crate) objects: Objects,
     pub(crate) materials: Vec<Arc<Material>>,
+    /// Whether each of them uses texture coordinates.
+    pub(crate) uses_uv: Vec<bool>,
     /// Transforms from texture space to the group's space.
     pub(crate) texture_spaces: Vec<Transform>,
     pub(crate) lights: Vec<SceneLight>,
@@ -392,7 +395,7 @@ impl RenderScene {
     /// Whether texture coordinates are wanted for a material.
     #[inline]
     fn wants_uv(&self, look: &Look, uv: Uv) -> bool {
-        uv == Uv::Always || self.materials[look.material.0 as usize].is_textured()
+        uv == Uv::Always || self.uses_uv[look.material.0 as usize]
     }
 
     /// [`RenderScene::resolve`] for a hit within an instance.
@@ -443,14 +446,24 @@ impl RenderScene {
     }
 
     /// The map from the space of the texture at a hit to the world; `None` if they are the same.
-    pub(crate) fn texture_space(&self, hit: &Hit, look: &Look) -> Option<Transform> {
-        let to_world = self.locate(hit.id).to_world;
+    pub(crate) fn texture_space(&self, hit: &Hit, look: &Look) -> Option<Cow<'_, Transform>> {
         let to_group = self.texture_spaces.get(look.texture_space as usize);
-        match (to_group, to_world) {
-            (None, outer) => outer,
-            (Some(inner), None) => Some(*inner),
-            (Some(inner), Some(outer)) => Some(inner.then(&outer)),
+        if self.is_in_world(hit.id) {
+            return to_group.map(Cow::Borrowed);
         }
+        let outer = self.locate(hit.id).to_world?;
+        Some(Cow::Owned(match to_group {
+            None => outer,
+            Some(inner) => inner.then(&outer),
+        }))
+    }
+
+    /// Whether an element belongs to no instance; the number must come from a hit in this scene.
+    #[inline]
+    fn is_in_world(&self, id: u64) -> bool {
+        let world = &self.groups[0];
+        let prim = world.prims.at(world.prim_of(id));
+        !matches!(prim.kind(), PrimKind::Instance(_))
     }
 
     /// The attenuation of light along a direction by the texture at a hit; `caustics` is that of the interior.
@@ -479,7 +492,7 @@ impl RenderScene {
         };
         let space = self.texture_space(hit, &resolved.look);
         if caustics > 0.0 {
-            return texture.gathered_attenuation(space.as_ref(), &place, caustics);
+            return texture.gathered_attenuation(space.as_deref(), &place, caustics);
         }
         match space {
             None => texture.shadow_attenuation(&place),

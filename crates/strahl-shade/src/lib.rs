@@ -8,6 +8,7 @@
 
 mod color;
 mod color_ft;
+mod coordinates;
 mod cost;
 mod fresnel;
 pub mod functions;

@@ -227,12 +227,6 @@ impl Material {
         self.pbr.as_deref().is_some_and(cutoff)
     }
 
-    /// Whether the material uses texture coordinates.
-    #[inline]
-    pub fn is_textured(&self) -> bool {
-        self.pbr.is_some() || self.texture.is_some()
-    }
-
     /// The attenuation of light on a path of this length inside.
     #[inline]
     pub fn attenuation(&self, length: f64) -> Color {

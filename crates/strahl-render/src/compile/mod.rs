@@ -176,6 +176,7 @@ impl Prepared {
             fills: self.materials.iter().any(fills),
             groups: groups.collect(),
             objects: self.objects,
+            uses_uv: self.materials.iter().map(|m| m.uses_uv()).collect(),
             materials: self.materials,
             texture_spaces: self.texture_spaces,
             lights: self.lights,
