@@ -6,7 +6,7 @@ use crate::shadow::ShadowRay;
 use crate::surface::Surface;
 use crate::trace::{Branch, TreeTracer};
 use strahl_math::{DVec3, Ray};
-use strahl_shade::{AreaLight, Color, Light, LightSample, ShadingModel};
+use strahl_shade::{AreaGrid, AreaLight, Color, Light, LightSample, ShadingModel};
 
 /// If the visibilities of the corners of a cell differ by more than this, an adaptive light subdivides the cell: less than a
 /// step of an 8-bit channel.
@@ -42,6 +42,7 @@ struct AreaQuery<'q> {
     number: usize,
     light: &'q Light,
     area: &'q AreaLight,
+    grid: AreaGrid<'q>,
     /// The centre of the light.
     center: &'q LightSample,
     surface: &'q Surface<'q>,
@@ -54,8 +55,7 @@ struct AreaQuery<'q> {
 impl AreaQuery<'_> {
     /// From the centre of the light to a point of its grid, as seen from the lit point.
     fn offset(&self, i: u32, j: u32) -> DVec3 {
-        let lit = self.surface.resolved.point.position;
-        let offset = self.area.offset(i, j, lit, self.center.l);
+        let offset = self.grid.offset(i, j);
         if self.light.is_parallel() {
             offset * (self.center.shadow_direction.length() / self.area.reach)
         } else {
@@ -88,6 +88,7 @@ impl TreeTracer<'_> {
             number: light,
             light: &self.tracer.scene.lights[light].light,
             area,
+            grid: area.grid(surface.resolved.point.position, sample.l),
             center: sample,
             surface,
             hit,

@@ -1,7 +1,7 @@
 mod area;
 mod falloff;
 
-pub use area::AreaLight;
+pub use area::{AreaGrid, AreaLight};
 pub use falloff::Falloff;
 
 use crate::Color;

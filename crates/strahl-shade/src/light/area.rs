@@ -51,32 +51,17 @@ impl AreaLight {
         }
     }
 
-    /// The vector from the centre of the light to point `(i, j)` of its grid, for the point `lit`, which sees the centre in the
-    /// unit direction `l`.
-    pub fn offset(&self, i: u32, j: u32, lit: DVec3, l: DVec3) -> DVec3 {
-        let (jitter_1, jitter_2) = if self.jitter {
-            random_pair(lit, i, j)
-        } else {
-            (0.5, 0.5)
-        };
-        let mut u = place(i, self.size_1, jitter_1);
-        let mut v = place(j, self.size_2, jitter_2);
-        if self.circular {
-            // Squares around the centre become circles: each point keeps its direction, its larger coordinate becomes
-            // its distance.
-            let length = (u * u + v * v).sqrt();
-            if length > 0.0 {
-                let larger = if u.abs() > v.abs() { u.abs() } else { v.abs() };
-                u *= larger / length;
-                v *= larger / length;
-            }
+    /// The grid as it is for the point `lit`, which sees the centre in the unit direction `l`.
+    pub fn grid(&self, lit: DVec3, l: DVec3) -> AreaGrid<'_> {
+        AreaGrid {
+            area: self,
+            axes: if self.orient {
+                self.turned(l)
+            } else {
+                (self.axis_1, self.axis_2)
+            },
+            state: if self.jitter { random_state(lit) } else { 0 },
         }
-        let (axis_1, axis_2) = if self.orient {
-            self.turned(l)
-        } else {
-            (self.axis_1, self.axis_2)
-        };
-        axis_1 * u + axis_2 * v
     }
 
     /// Axes of the same lengths perpendicular to `l`. As in POV-Ray their roll around `l` follows from `l` alone.
@@ -94,6 +79,40 @@ impl AreaLight {
     }
 }
 
+/// The points of an area light for one lit point.
+#[derive(Clone, Copy, Debug)]
+pub struct AreaGrid<'a> {
+    area: &'a AreaLight,
+    axes: (DVec3, DVec3),
+    /// Of the random numbers for jitter.
+    state: u64,
+}
+
+impl AreaGrid<'_> {
+    /// The vector from the centre of the light to point `(i, j)`.
+    pub fn offset(&self, i: u32, j: u32) -> DVec3 {
+        let area = self.area;
+        let (jitter_1, jitter_2) = if area.jitter {
+            random_pair(self.state, i, j)
+        } else {
+            (0.5, 0.5)
+        };
+        let mut u = place(i, area.size_1, jitter_1);
+        let mut v = place(j, area.size_2, jitter_2);
+        if area.circular {
+            // Squares around the centre become circles: each point keeps its direction, its larger coordinate becomes
+            // its distance.
+            let length = (u * u + v * v).sqrt();
+            if length > 0.0 {
+                let larger = if u.abs() > v.abs() { u.abs() } else { v.abs() };
+                u *= larger / length;
+                v *= larger / length;
+            }
+        }
+        self.axes.0 * u + self.axes.1 * v
+    }
+}
+
 /// Place of a point in a row from -1/2 to 1/2.
 fn place(index: u32, size: u32, jitter: f64) -> f64 {
     if size > 1 {
@@ -103,18 +122,24 @@ fn place(index: u32, size: u32, jitter: f64) -> f64 {
     }
 }
 
-/// Two numbers in `0..1` that depend on a place and two indices only: SplitMix64 (Steele, Lea, Flood 2014).
-fn random_pair(at: DVec3, i: u32, j: u32) -> (f64, f64) {
-    let mix = |state: u64, input: u64| {
-        let mut z = (state ^ input).wrapping_add(0x9e37_79b9_7f4a_7c15);
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    };
-    let place = at.to_array().iter().fold(0, |s, x| mix(s, x.to_bits()));
-    let first = mix(place, u64::from(i) << 32 | u64::from(j));
+/// The state of [`random_pair`] at a place.
+fn random_state(at: DVec3) -> u64 {
+    at.to_array().iter().fold(0, |s, x| mix(s, x.to_bits()))
+}
+
+/// Two numbers in `0..1` that depend on a place and two indices only.
+fn random_pair(state: u64, i: u32, j: u32) -> (f64, f64) {
+    let first = mix(state, u64::from(i) << 32 | u64::from(j));
     let unit = |bits: u64| (bits >> 40) as f64 / (1u64 << 24) as f64;
     (unit(first), unit(first << 24))
+}
+
+/// A step of SplitMix64 (Steele, Lea, Flood 2014).
+fn mix(state: u64, input: u64) -> u64 {
+    let mut z = (state ^ input).wrapping_add(0x9e37_79b9_7f4a_7c15);
+    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    z ^ (z >> 31)
 }
 
 #[cfg(test)]
@@ -126,16 +151,18 @@ mod tests {
     #[test]
     fn the_grid_reaches_from_edge_to_edge() {
         let area = AreaLight::new(DVec3::X * 4.0, DVec3::Z * 2.0, 5, 1);
-        let x: Vec<f64> = (0..5).map(|i| area.offset(i, 0, LIT, DVec3::Y).x).collect();
+        let x: Vec<f64> = (0..5)
+            .map(|i| area.grid(LIT, DVec3::Y).offset(i, 0).x)
+            .collect();
         assert_eq!(x, [-2.0, -1.0, 0.0, 1.0, 2.0]);
-        assert_eq!(area.offset(2, 0, LIT, DVec3::Y).z, 0.0);
+        assert_eq!(area.grid(LIT, DVec3::Y).offset(2, 0).z, 0.0);
     }
 
     #[test]
     fn a_circular_light_has_no_corners() {
         let mut area = AreaLight::new(DVec3::X * 2.0, DVec3::Z * 2.0, 5, 5);
         area.circular = true;
-        let length = |i, j| area.offset(i, j, LIT, DVec3::Y).length();
+        let length = |i, j| area.grid(LIT, DVec3::Y).offset(i, j).length();
         assert!((length(0, 0) - 1.0).abs() < 1e-15 && (length(4, 1) - 1.0).abs() < 1e-15);
         assert!((length(1, 1) - 0.5).abs() < 1e-15 && length(2, 2) == 0.0);
     }
@@ -146,7 +173,7 @@ mod tests {
         (area.circular, area.orient) = (true, true);
         let l = DVec3::new(0.6, 0.8, 0.0);
         for (i, j) in [(0, 0), (2, 1), (1, 2)] {
-            let offset = area.offset(i, j, LIT, l);
+            let offset = area.grid(LIT, l).offset(i, j);
             assert!(offset.dot(l).abs() < 1e-15 && (offset.length() - 1.0).abs() < 1e-15);
         }
     }
@@ -155,9 +182,9 @@ mod tests {
     fn jitter_stays_in_its_cell_and_differs_from_place_to_place() {
         let mut area = AreaLight::new(DVec3::X * 4.0, DVec3::Z * 4.0, 5, 5);
         area.jitter = true;
-        let a = area.offset(1, 3, LIT, DVec3::Y);
+        let a = area.grid(LIT, DVec3::Y).offset(1, 3);
         assert!((a.x + 1.0).abs() <= 0.5 && (a.z - 1.0).abs() <= 0.5);
-        assert_eq!(a, area.offset(1, 3, LIT, DVec3::Y));
-        assert_ne!(a, area.offset(1, 3, LIT * 2.0, DVec3::Y));
+        assert_eq!(a, area.grid(LIT, DVec3::Y).offset(1, 3));
+        assert_ne!(a, area.grid(LIT * 2.0, DVec3::Y).offset(1, 3));
     }
 }
