@@ -224,6 +224,10 @@ fn term(
     light: Color,
 ) -> SurfaceTerm {
     let cos = layer.normal.dot(l);
+    let film = layer
+        .film
+        .map(|film| film.factor(cos, layer.normal.dot(surface.v)));
+    let light = film.map_or(light, |factor| light * factor);
     let both_sides = surface.lit.both_sides;
     let diffuse_factor = finish.diffuse_factor(if both_sides { cos.abs() } else { cos });
     let mut term = SurfaceTerm {
@@ -231,6 +235,7 @@ fn term(
         diffuse_factor,
         diffuse: body * light * diffuse_factor,
         tint: Color::WHITE,
+        film,
         ..SurfaceTerm::default()
     };
     if !(cos > 0.0 || both_sides) || (finish.phong == 0.0 && finish.specular == 0.0) {
@@ -273,6 +278,7 @@ pub(crate) fn grain(paint: &TexturePaint<'_>, place: DVec3) -> f64 {
 pub(crate) fn report(paint: &TexturePaint<'_>, v: DVec3, eta: f64) -> Vec<LayerReport> {
     let report = |layer: &LayerPoint<'_>| {
         let reflection = &layer.finish.reflection;
+        let cos_view = layer.normal.dot(v);
         LayerReport {
             color: layer.color,
             normal: layer.normal,
@@ -280,7 +286,8 @@ pub(crate) fn report(paint: &TexturePaint<'_>, v: DVec3, eta: f64) -> Vec<LayerR
             share: layer.share,
             above: layer.above,
             body: paint.body(layer),
-            rise: (!reflection.is_none()).then(|| reflection.rise(layer.normal.dot(v), eta)),
+            rise: (!reflection.is_none()).then(|| reflection.rise(cos_view, eta)),
+            film: layer.film.map(|film| film.factor(cos_view, cos_view)),
             reflectance: layer.reflectance,
         }
     };

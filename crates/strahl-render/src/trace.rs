@@ -174,6 +174,7 @@ impl<'s> TreeTracer<'s> {
             shadow_hits: Vec::new(),
             paint: TexturePaint {
                 filter_by_color: scene.settings.filter_by_color,
+                irid: scene.settings.irid,
                 ..TexturePaint::default()
             },
             area_points: Vec::new(),

@@ -1,5 +1,6 @@
 use crate::WorkingSpace;
 use strahl_shade::ShadingModel;
+use strahl_shade::pov_finish::IridSettings;
 
 /// Settings that a scene may choose; the caller may override each.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,6 +22,8 @@ pub struct Settings {
     /// Whether a filter reduces the surface's own colour as in scenes from before POV-Ray 3.7: by `filter · max(r, g, b)` instead
     /// of `filter`.
     pub filter_by_color: bool,
+    /// The wavelengths and the noise of thin films.
+    pub irid: IridSettings,
 }
 
 impl Default for Settings {
@@ -33,6 +36,7 @@ impl Default for Settings {
             working_space: WorkingSpace::Linear,
             straight_counts: true,
             filter_by_color: false,
+            irid: IridSettings::default(),
         }
     }
 }

@@ -61,3 +61,8 @@ fn lights_shine_from_surfaces() {
 fn flat_boxes_are_sheets() {
     agree("flat_boxes_are_sheets");
 }
+
+#[test]
+fn films_interfere() {
+    agree("films_interfere");
+}

@@ -234,7 +234,8 @@ fn words_of_old_versions_are_read() {
 
 #[test]
 fn features_that_are_missing_are_named_in_their_blocks_only() {
-    let text = "sphere { 0, 1 photons { target } no_radiosity finish { irid { 0.1 } } }";
+    let text =
+        "sphere { 0, 1 photons { target } no_radiosity finish { subsurface { translucency 1 } } }";
     let parsed = parse_with(&mut MemoryHost::new(), text);
     let count = parsed.diagnostics.iter().filter(|d| !d.is_error()).count();
     assert!(parsed.scene.is_some() && count >= 1);

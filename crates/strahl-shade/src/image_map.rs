@@ -60,6 +60,15 @@ pub enum Interpolation {
     NormalizedDistance,
 }
 
+/// The transparency of single entries of an image's palette (`filter N, V` and `transmit N, V`).
+#[derive(Clone, Debug, PartialEq)]
+pub struct PaletteTransparency {
+    /// The entry of each texel, row by row from the top.
+    pub indices: Arc<[u8]>,
+    /// `filter` and `transmit` of each entry; they replace the image's alpha channel.
+    pub entries: Vec<[f64; 2]>,
+}
+
 /// An image and its mapping.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ImageMap {
@@ -75,6 +84,8 @@ pub struct ImageMap {
     pub filter_all: f64,
     /// `transmit all`: added to every texel.
     pub transmit_all: f64,
+    /// The transparency of single entries of the palette.
+    pub palette: Option<Arc<PaletteTransparency>>,
     /// Whether the alpha channel is the value of [`ImageMap::gray`] (`use_alpha`).
     pub use_alpha: bool,
 }
@@ -89,16 +100,17 @@ impl ImageMap {
             once: false,
             filter_all: 0.0,
             transmit_all: 0.0,
+            palette: None,
             use_alpha: false,
         }
     }
 
     /// The colour at a point; `None` outside of an image with `once`.
     pub fn color(&self, p: DVec3) -> Option<ColorFt> {
-        let [r, g, b, a] = self.sample(p)?;
+        let [r, g, b, a, filter] = self.sample(p)?;
         Some(ColorFt {
             rgb: Color::new(r, g, b),
-            filter: self.filter_all,
+            filter: self.filter_all + filter,
             transmit: self.transmit_all + (1.0 - a),
         })
     }
@@ -107,9 +119,9 @@ impl ImageMap {
     pub fn gray(&self, p: DVec3) -> f64 {
         match self.sample(p) {
             None => 0.0,
-            Some([_, _, _, a]) if self.use_alpha => a,
+            Some([_, _, _, a, _]) if self.use_alpha => a,
             // A transparent texel counts as lying on black.
-            Some([r, g, b, a]) => crate::color_ft::gray(Color::new(r, g, b)) * a,
+            Some([r, g, b, a, _]) => crate::color_ft::gray(Color::new(r, g, b)) * a,
         }
     }
 
@@ -127,7 +139,7 @@ impl ImageMap {
         );
         let gray = |dx: f64, dy: f64| {
             let sample = self.sample_at(place + DVec2::new(dx, dy) * texel);
-            sample.map_or(0.0, |[r, g, b, a]| {
+            sample.map_or(0.0, |[r, g, b, a, _]| {
                 crate::color_ft::gray(Color::new(r, g, b)) * a
             })
         };
@@ -149,11 +161,26 @@ impl ImageMap {
         east * across + north * up
     }
 
-    fn sample(&self, p: DVec3) -> Option<[f64; 4]> {
+    /// Red, green, blue, alpha and the filter of the palette.
+    fn sample(&self, p: DVec3) -> Option<[f64; 5]> {
         self.sample_at(self.map_type.place(p))
     }
 
-    fn sample_at(&self, place: DVec2) -> Option<[f64; 4]> {
+    /// The texel with the transparency of its entry in the palette; row 0 is the top.
+    fn texel(&self, column: u32, row: u32) -> [f64; 5] {
+        let [r, g, b, a] = self.image.fetch(column, row).map(f64::from);
+        let Some(palette) = &self.palette else {
+            return [r, g, b, a, 0.0];
+        };
+        let place = row as usize * self.image.width() as usize + column as usize;
+        let index = palette.indices.get(place);
+        match index.and_then(|&index| palette.entries.get(usize::from(index))) {
+            Some([filter, transmit]) => [r, g, b, 1.0 - transmit, *filter],
+            None => [r, g, b, a, 0.0],
+        }
+    }
+
+    fn sample_at(&self, place: DVec2) -> Option<[f64; 5]> {
         let inside = |x: f64| (0.0..1.0).contains(&x);
         let beside = match self.map_type {
             MapType::Planar => !inside(place.x) || !inside(place.y),
@@ -171,7 +198,7 @@ impl ImageMap {
         let texel = |column: f64, row: f64| {
             let column = (column as i64).rem_euclid(i64::from(width)) as u32;
             let row = (row as i64).rem_euclid(i64::from(height)) as u32;
-            self.image.fetch(column, height - 1 - row).map(f64::from)
+            self.texel(column, height - 1 - row)
         };
         if self.interpolation == Interpolation::Nearest {
             return Some(texel(x.floor(), y.floor()));
@@ -179,7 +206,7 @@ impl ImageMap {
         let (x, y) = (x - 0.5, y - 0.5);
         let (left, low) = (x.floor(), y.floor());
         let (s, t) = (x - left, y - low);
-        let mut sum = [0.0; 4];
+        let mut sum = [0.0; 5];
         let mut total = 0.0;
         for (i, j) in [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)] {
             let texel = texel(left + i, low + j);

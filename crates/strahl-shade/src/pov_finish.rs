@@ -3,9 +3,13 @@
 //! Every formula here was found or confirmed by rendering small scenes with POV-Ray 3.7 into 16-bit pictures of gamma 1;
 //! the largest difference was 1e-5, the pictures' own step.
 
+mod irid;
+
 use strahl_math::{DVec3, det};
 
 use crate::{Color, ShadingModel, fresnel_dielectric};
+
+pub use irid::{FilmPoint, IridSettings, Iridescence};
 
 /// The specular reflection of a finish (`reflection { min, max ... }`).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -105,6 +109,12 @@ impl PovReflection {
         metallic_tint(self.metallic, cos_view, pigment)
     }
 
+    /// What a film makes of the reflectance: its factor for light from the mirror direction, to the power of `1 / exponent`
+    /// as the light itself.
+    pub fn of_film(&self, film: &FilmPoint, cos_view: f64) -> Color {
+        self.reflected(Color::WHITE, film.factor(cos_view, cos_view))
+    }
+
     /// The reflected light: `reflectance · light^(1 / exponent)`.
     pub fn reflected(&self, reflectance: Color, light: Color) -> Color {
         if self.exponent == 0.0 {
@@ -147,6 +157,8 @@ pub struct PovFinish {
     pub conserve_energy: bool,
     /// Strength of the random darkening of diffuse light (`crand`); default 0.
     pub crand: f64,
+    /// The colours of a thin film (`irid`).
+    pub irid: Option<Iridescence>,
     /// Factor of the light from behind, in scenes from before POV-Ray 3.1; default 1.
     pub refraction: f64,
     /// The index of refraction of the object, in such scenes; it replaces that of the interior.
@@ -172,6 +184,7 @@ impl Default for PovFinish {
             reflection: PovReflection::default(),
             conserve_energy: false,
             crand: 0.0,
+            irid: None,
             refraction: 1.0,
             ior: None,
             caustics: None,

@@ -9,7 +9,7 @@ use crate::interior::Interior;
 use crate::normal::PovNormal;
 use crate::patterns::{Modifiers, PatternField, TexturePoint, Warp};
 use crate::pigment::{Blend, BlendMap, Pigment};
-use crate::pov_finish::PovFinish;
+use crate::pov_finish::{FilmPoint, IridSettings, PovFinish};
 use crate::{Color, ColorFt};
 
 /// One texture statement: pigment, normal and finish.
@@ -92,6 +92,8 @@ impl From<Texture> for SharedTexture {
 /// + share · finish.reflection.reflected(reflectance, R)
 /// ```
 ///
+/// With a film (`irid`) the light L is multiplied by [`FilmPoint::factor`]; `reflectance` contains the factor already;
+///
 /// plus [`TexturePaint::transmission`] times the light from behind. Layers above weaken all but the reflection; the
 /// opacity `1 - filter - transmit` weakens all but highlights and reflection (all this as measured).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -106,6 +108,8 @@ pub struct LayerPoint<'a> {
     pub share: f64,
     /// The transmittance of the layers above.
     pub above: Color,
+    /// The thin film on the layer (`irid`).
+    pub film: Option<FilmPoint>,
     /// The factor of the radiance from the mirror direction.
     pub reflectance: Color,
     /// The weight of the ray in the mirror direction, as POV-Ray has it:
@@ -125,6 +129,8 @@ pub struct TexturePaint<'a> {
     pub transmission: Color,
     /// Selects the opacity of layers: [`ColorFt::opacity_by_color`] instead of [`ColorFt::opacity`]. Set by the owner.
     pub filter_by_color: bool,
+    /// What the scene says about films. Set by the owner.
+    pub irid: IridSettings,
 }
 
 impl TexturePaint<'_> {
@@ -438,13 +444,22 @@ impl PlainTexture {
                 weight * stack.share * stack.above.max_component(),
             )
         };
+        let film = self
+            .finish
+            .irid
+            .map(|irid| irid.at(point.surface, &out.irid));
+        let seen = match &film {
+            None => reflectance,
+            Some(film) => reflectance * reflection.of_film(film, cos_view),
+        };
         out.layers.push(LayerPoint {
             color,
             normal,
             finish: &self.finish,
             share: stack.share,
             above: stack.above,
-            reflectance,
+            film,
+            reflectance: seen,
             reflection_weight,
         });
         let mut passes = color.attenuation();

@@ -155,6 +155,11 @@ fn layer_value(layer: &LayerReport) -> Value {
             "roughness": f.roughness,
             "metallic": f.metallic,
             "crand": f.crand,
+            "irid": f.irid.map(|irid| json!({
+                "amount": irid.amount,
+                "thickness": irid.thickness,
+                "turbulence": irid.turbulence,
+            })),
             "conserve_energy": f.conserve_energy,
             "reflection": {
                 "min": color(r.min),
@@ -167,6 +172,7 @@ fn layer_value(layer: &LayerReport) -> Value {
         },
         "rise": layer.rise,
         "fresnel": layer.rise.filter(|_| r.fresnel),
+        "reflection_film": layer.film.filter(|_| layer.rise.is_some()).map(color),
         "reflectance": color(layer.reflectance),
     })
 }
@@ -219,6 +225,7 @@ fn surface_term(shading: Option<&Shading>, term: &SurfaceTerm) -> Value {
                 "specular_cosine_is": if by_half { "h·n" } else { "r·v" },
                 "specular": term.specular,
                 "tint": color(term.tint),
+                "film": term.film.map(color),
             })
         }
         _ => match (term.r_dot_v, term.h_dot_n) {

@@ -175,6 +175,14 @@ fn finish(w: &Writer<'_>, f: &PovFinish, model: Option<ShadingModel>) -> String 
     item(f.specular != 0.0, "roughness", f.roughness);
     item(f.metallic != 0.0, "metallic", f.metallic);
     item(f.crand != 0.0, "crand", f.crand);
+    if let Some(irid) = f.irid {
+        let mut parts = vec![d.number(irid.amount)];
+        parts.push(format!("thickness {}", d.number(irid.thickness)));
+        if irid.turbulence != 0.0 {
+            parts.push(format!("turbulence {}", d.number(irid.turbulence)));
+        }
+        items.push(format!("irid {{ {} }}", parts.join(" ")));
+    }
     if !f.emission.is_black() {
         items.push(format!("emission {}", d.gray_or_color(f.emission)));
     }
@@ -241,9 +249,14 @@ fn reflection(w: &Writer<'_>, layer: &LayerReport, rise: f64) -> String {
         " · metallic"
     };
     let share = if layer.share == 1.0 { "" } else { " · share" };
+    let film = match layer.film {
+        None => String::new(),
+        Some(factor) if r.exponent == 1.0 => format!(" · irid {}", d.color(factor)),
+        Some(factor) => format!(" · irid {}^(1/exponent)", d.color(factor)),
+    };
     let kr = d.color(layer.reflectance * layer.share);
     if r.min == r.max {
-        return format!("kr = reflection{tint}{share} = {kr}");
+        return format!("kr = reflection{tint}{film}{share} = {kr}");
     }
     let (name, value) = if r.fresnel {
         ("F".to_owned(), format!("Fresnel's F = {}", d.number(rise)))
@@ -257,7 +270,7 @@ fn reflection(w: &Writer<'_>, layer: &LayerReport, rise: f64) -> String {
             format!("f = (1 - cos θ1){power} = {}", d.number(rise)),
         )
     };
-    format!("{value}, kr = (min + (max - min) · {name}){tint}{share} = {kr}")
+    format!("{value}, kr = (min + (max - min) · {name}){tint}{film}{share} = {kr}")
 }
 
 /// Writes a light at a hit: its position, the shadow rays, and its terms.
@@ -433,6 +446,10 @@ fn write_finish_terms(
     let f = &layer.finish;
     let light = d.color(arriving);
     let behind = term.n_dot_l < 0.0;
+    let (film, by_film) = match term.film {
+        None => ("", String::new()),
+        Some(factor) => (" · irid", format!(" · {}", d.color(factor))),
+    };
     let (strength, named) = match behind && f.diffuse_back != 0.0 {
         true => (f.diffuse_back, "diffuse from behind"),
         false => (f.diffuse, "diffuse"),
@@ -450,7 +467,7 @@ fn write_finish_terms(
         page.line(
             INNER,
             &format!(
-                "{name}{named} · {n_dot_l}{power} · C · L = {} · {value} · {} · {light} = {}",
+                "{name}{named} · {n_dot_l}{power} · C · L{film} = {} · {value} · {} · {light}{by_film} = {}",
                 d.number(strength),
                 d.color(layer.body),
                 d.color(term.diffuse)
@@ -496,6 +513,9 @@ fn write_finish_terms(
         d.color(layer.above),
     );
     other(layer.share != 1.0, "share", d.number(layer.share));
+    if let Some(factor) = term.film {
+        other(true, "irid", d.color(factor));
+    }
     match parts.as_slice() {
         [] => {}
         [(names, strength, power)] => page.line(

@@ -188,6 +188,8 @@ fn factors_multiply_to_their_products_whatever_the_texture() {
         ("transparency", "sphere { 0, 1.5 pigment { rgbf 1 } finish { reflection .1 } interior { ior 1.5 dispersion 1.1 dispersion_samples 5 } }
             plane { -z, -5 pigment { gradient x } finish { ambient .5 emission .2 } }"),
         ("exponent", "sphere { 0, 1 pigment { rgb .2 } finish { reflection { .8 exponent .7 } } } plane { y, -2 pigment { rgb .9 } }"),
+        ("irid", "sphere { 0, 1 pigment { rgb <.9, .8, .7> } finish { phong .4 specular .2 reflection { .1, .5 }
+            irid { .5 thickness .7 turbulence .4 } } } plane { y, -2 pigment { rgb .9 } }"),
         ("blocked", "plane { z, 0 pigment { rgb 1 } finish { diffuse .4, .3 } } plane { -z, 5.5 pigment { rgb 1 } }"),
     ] {
         let folder = pov(&format!("{lamp}\n{scene}"));

@@ -155,7 +155,13 @@ fn check_layer(layer: &Value, seen: &mut Vec<String>) {
         seen.push("reflection".to_owned());
         let (min, max) = (triple(&reflection["min"]), triple(&reflection["max"]));
         let kr: Triple = std::array::from_fn(|i| min[i] + (max[i] - min[i]) * rise);
-        if number(&reflection["metallic"]) == 0.0 {
+        let film = &layer["reflection_film"];
+        let kr = match film.is_null() {
+            true => kr,
+            false => times(kr, triple(film)),
+        };
+        let plain = film.is_null() || number(&reflection["exponent"]) == 1.0;
+        if plain && number(&reflection["metallic"]) == 0.0 {
             assert_eq!(kr, triple(&layer["reflectance"]));
         }
     }
@@ -240,7 +246,11 @@ fn check_finish_term(
     seen: &mut Vec<String>,
 ) {
     let finish = &layer["finish"];
-    let arriving = triple(&light["L"]);
+    let mut arriving = triple(&light["L"]);
+    if !term["film"].is_null() {
+        seen.push("irid".to_owned());
+        arriving = times(arriving, triple(&term["film"]));
+    }
     let n_dot_l = number(&term["n_dot_l"]);
     let brilliance = match hit["terms_of"].is_null() {
         true => number(&finish["brilliance"]),

@@ -1,6 +1,6 @@
 //! Picture files as height fields: the height of each pixel, as POV-Ray computes it.
 
-use std::io::{BufRead, Cursor, Seek};
+use std::io::Cursor;
 
 use ::image::codecs::bmp::BmpDecoder;
 use ::image::{DynamicImage, ImageDecoder, ImageFormat as FileFormat};
@@ -21,23 +21,45 @@ pub struct Heights {
     pub gray: bool,
 }
 
+/// The texels of a picture with a palette.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PaletteIndices {
+    /// Columns.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+    /// `width * height` positions in the palette, row by row from the top.
+    pub indices: Vec<u8>,
+    /// Number of colours in the palette.
+    pub colors: usize,
+}
+
+/// Reads the indices of a PNG, GIF (the first picture) or BMP file; `None` if the picture has no palette.
+pub fn decode_indices(bytes: &[u8], name: &str) -> Result<Option<PaletteIndices>, ImageError> {
+    match open_picture(bytes, name)?.format() {
+        Some(FileFormat::Png) => png_indices(bytes, name),
+        Some(FileFormat::Gif) => gif_indices(bytes, name),
+        Some(FileFormat::Bmp) => bmp_indices(bytes, name),
+        _ => Ok(None),
+    }
+}
+
 /// Reads the heights of a picture: PNG, JPEG, HDR, TIFF, TGA, BMP, GIF (the first picture) or PNM.
 ///
 /// The height of a pixel depends on the kind of picture, as in POV-Ray 3.7 (measured): for pictures with a palette it is the
 /// index, times 256; for greys the value, 8 bits times 257; for 8-bit colours, and floating-point numbers, red is the high and
 /// green the low byte; for 16-bit colours it is the brightness. Alpha is ignored.
 pub fn decode_heights(bytes: &[u8], name: &str) -> Result<Heights, ImageError> {
-    let reader = open_picture(bytes, name)?;
-    let indexed = match reader.format() {
-        Some(FileFormat::Png) => png_indices(bytes, name)?,
-        Some(FileFormat::Gif) => gif_indices(bytes, name)?,
-        Some(FileFormat::Bmp) => bmp_indices(Cursor::new(bytes), name)?,
-        _ => None,
-    };
-    if let Some(indexed) = indexed {
-        return Ok(indexed);
+    if let Some(indexed) = decode_indices(bytes, name)? {
+        let values = indexed.indices.into_iter();
+        return Ok(Heights {
+            width: indexed.width,
+            height: indexed.height,
+            values: values.map(|index| two_bytes(index, 0)).collect(),
+            gray: false,
+        });
     }
-    let decoder = reader
+    let decoder = open_picture(bytes, name)?
         .into_decoder()
         .map_err(|error| decode_error(name, error))?;
     let (width, height) = decoder.dimensions();
@@ -88,18 +110,8 @@ fn brightness([r, g, b]: [f64; 3]) -> u16 {
     ((0.297 * r + 0.589 * g + 0.114 * b) * 65535.0 + 1e-3) as u16
 }
 
-/// The heights of palette indices.
-fn indexed(width: u32, height: u32, indices: impl Iterator<Item = u8>) -> Heights {
-    Heights {
-        width,
-        height,
-        values: indices.map(|index| two_bytes(index, 0)).collect(),
-        gray: false,
-    }
-}
-
 /// The indices of a PNG file, if it has a palette.
-fn png_indices(bytes: &[u8], name: &str) -> Result<Option<Heights>, ImageError> {
+fn png_indices(bytes: &[u8], name: &str) -> Result<Option<PaletteIndices>, ImageError> {
     let failed = |error: ::png::DecodingError| decode_error(name, error);
     let mut decoder = ::png::Decoder::new(Cursor::new(bytes));
     decoder.set_transformations(::png::Transformations::IDENTITY);
@@ -110,6 +122,8 @@ fn png_indices(bytes: &[u8], name: &str) -> Result<Option<Heights>, ImageError> 
     let (width, height, depth) = (header.width, header.height, header.bit_depth as u8);
     check_size(name, width.into(), height.into(), 1)?;
     let mut reader = decoder.read_info().map_err(failed)?;
+    let palette = reader.info().palette.as_ref();
+    let colors = palette.map_or(0, |palette| palette.len() / 3);
     let size = reader.output_buffer_size().unwrap_or(0);
     let mut packed = vec![0; size];
     let info = reader.next_frame(&mut packed).map_err(failed)?;
@@ -123,21 +137,31 @@ fn png_indices(bytes: &[u8], name: &str) -> Result<Option<Heights>, ImageError> 
         };
         (0..width as usize).map(index)
     });
-    Ok(Some(indexed(width, height, indices)))
+    Ok(Some(PaletteIndices {
+        width,
+        height,
+        indices: indices.collect(),
+        colors,
+    }))
 }
 
 /// The indices of the first picture of a GIF file, on a screen of index 0.
-fn gif_indices(bytes: &[u8], name: &str) -> Result<Option<Heights>, ImageError> {
+fn gif_indices(bytes: &[u8], name: &str) -> Result<Option<PaletteIndices>, ImageError> {
     let failed = |error: ::gif::DecodingError| decode_error(name, error);
     let mut options = ::gif::DecodeOptions::new();
     options.set_color_output(::gif::ColorOutput::Indexed);
     let mut reader = options.read_info(Cursor::new(bytes)).map_err(failed)?;
     let (width, height) = (reader.width(), reader.height());
     let mut screen = vec![0; usize::from(width) * usize::from(height)];
+    let global = reader
+        .global_palette()
+        .map_or(0, |palette| palette.len() / 3);
     let frame = reader
         .read_next_frame()
         .map_err(failed)?
         .ok_or_else(|| decode_error(name, "it has no picture"))?;
+    let own = frame.palette.as_ref();
+    let colors = own.map_or(global, |palette| palette.len() / 3);
     let rows = frame.buffer.chunks(usize::from(frame.width).max(1));
     let left = usize::from(frame.left).min(usize::from(width));
     for (y, row) in rows.enumerate() {
@@ -147,26 +171,38 @@ fn gif_indices(bytes: &[u8], name: &str) -> Result<Option<Heights>, ImageError> 
             place.copy_from_slice(&row[..room]);
         }
     }
-    Ok(Some(indexed(
-        width.into(),
-        height.into(),
-        screen.into_iter(),
-    )))
+    Ok(Some(PaletteIndices {
+        width: width.into(),
+        height: height.into(),
+        indices: screen,
+        colors,
+    }))
 }
 
 /// The indices of a BMP file, if it has a palette.
-fn bmp_indices(bytes: impl BufRead + Seek, name: &str) -> Result<Option<Heights>, ImageError> {
+fn bmp_indices(bytes: &[u8], name: &str) -> Result<Option<PaletteIndices>, ImageError> {
     let failed = |error: ::image::ImageError| decode_error(name, error);
-    let mut decoder = BmpDecoder::new(bytes).map_err(failed)?;
-    if decoder.get_palette().is_none() {
+    let mut decoder = BmpDecoder::new(Cursor::new(bytes)).map_err(failed)?;
+    let Some(palette) = decoder.get_palette().map(<[_]>::len) else {
         return Ok(None);
-    }
+    };
+    // The decoder fills the palette up with black; the header has the number of its colours, 0 for all.
+    let said = bytes.get(46..50).and_then(|said| said.try_into().ok());
+    let colors = match said.map(u32::from_le_bytes) {
+        Some(said @ 1..=255) => palette.min(said as usize),
+        _ => palette,
+    };
     decoder.set_indexed_color(true);
     let (width, height) = decoder.dimensions();
     check_size(name, width.into(), height.into(), 1)?;
     let mut indices = vec![0; decoder.total_bytes() as usize];
     decoder.read_image(&mut indices).map_err(failed)?;
-    Ok(Some(indexed(width, height, indices.into_iter())))
+    Ok(Some(PaletteIndices {
+        width,
+        height,
+        indices,
+        colors,
+    }))
 }
 
 #[cfg(test)]

@@ -41,7 +41,7 @@ pub use diff::{Difference, compare};
 pub use error::ImageError;
 pub use format::{FormatInfo, ImageFormat, formats};
 pub use gamma::{PictureCodes, picture_codes};
-pub use heights::{Heights, decode_heights};
+pub use heights::{Heights, PaletteIndices, decode_heights, decode_indices};
 pub use picture::{BitDepth, Layer, LayerData, Picture, Window, WriteOptions};
 pub use texture::{MAX_TEXELS, TextureUse, decode_texture, read_texture};
 pub use write::{encode_picture, write_bytes, write_file, write_picture};

@@ -35,6 +35,8 @@ pub struct LayerReport {
     pub body: Color,
     /// How far the reflection has come from `min` to `max`: Fresnel's F or `(1 - cos θ)^falloff`; `None` without reflection.
     pub rise: Option<f64>,
+    /// The factor of a thin film (`irid`) for light from the mirror direction.
+    pub film: Option<Color>,
     /// The share of the light from the mirror direction that is reflected.
     pub reflectance: Color,
 }
@@ -75,6 +77,8 @@ pub struct SurfaceTerm {
     pub specular: f64,
     /// The colour `metallic` gives the highlights of a finish.
     pub tint: Color,
+    /// The factor of a thin film (`irid`), which both parts contain.
+    pub film: Option<Color>,
     /// The diffuse part of what is seen.
     pub diffuse: Color,
     /// The highlights.

@@ -6,6 +6,7 @@ use strahl_math::noise::NoiseGenerator;
 use strahl_scene::{Background, BackgroundAlpha, WorkingSpace};
 use strahl_shade::Color;
 use strahl_shade::patterns::Pattern;
+use strahl_shade::pov_finish::IridSettings;
 
 /// The default of `max_trace_level`.
 const TRACE_LEVEL: u32 = 5;
@@ -177,7 +178,14 @@ impl Parser<'_> {
         self.noise_settled();
         let global = &self.state.global;
         self.scene.ambient = Some(global.ambient.unwrap_or(Color::WHITE));
+        let irid = IridSettings {
+            wavelength: global
+                .irid_wavelength
+                .unwrap_or(IridSettings::default().wavelength),
+            noise: self.noise_at(self.version),
+        };
         let settings = &mut self.scene.settings;
+        settings.irid = irid;
         settings.max_depth = global.trace_level.unwrap_or(TRACE_LEVEL);
         settings.straight_counts = false;
         settings.filter_by_color = old;

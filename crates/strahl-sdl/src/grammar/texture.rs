@@ -19,6 +19,7 @@ mod maps;
 mod material;
 mod modifiers;
 mod normal;
+mod palette;
 mod pattern;
 mod pigment;
 mod statement;

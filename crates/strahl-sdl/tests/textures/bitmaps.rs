@@ -149,3 +149,45 @@ fn srgb_colours_are_numbers_of_the_scene() {
         assert!((got - expected).abs() < 1e-9, "{header}: {got}");
     }
 }
+
+/// In pictures with a palette `filter` and `transmit` set entries, and the last item counts, as POV-Ray 3.7 shows it.
+#[test]
+fn entries_of_a_palette_filter_and_transmit() {
+    for (items, left, right) in [
+        ("", [0.0, 0.0], [0.0, 0.0]),
+        ("transmit 1, 0.8", [0.0, 0.0], [0.0, 0.8]),
+        ("filter 0 0.5 filter 1, 0.25", [0.5, 0.0], [0.25, 0.0]),
+        ("transmit 1, 0.8 transmit all 0.1", [0.0, 0.1], [0.0, 0.1]),
+        ("transmit all 0.1 transmit 1, 0.8", [0.0, 0.1], [0.0, 0.8]),
+        ("filter all 0.1 transmit 1, 0.5", [0.1, 0.0], [0.1, 0.5]),
+        ("transmit 1, 0.8 transmit 1, 0.3", [0.0, 0.0], [0.0, 0.3]),
+    ] {
+        let mut host = MemoryHost::new().with_file("codes.bmp", picture_with_a_palette());
+        let map = format!("image_map {{ bmp \"codes.bmp\" {items} }}");
+        let text = format!("sphere {{ 0, 1 pigment {{ {map} }} }}");
+        let parsed = parse_with(&mut host, &text);
+        assert!(parsed.scene.is_some(), "{:?}", parsed.diagnostics);
+        let scene = parsed.scene.expect("a scene");
+        let material = scene.objects.0[0].material.as_ref().unwrap();
+        let texture = material.texture.clone().unwrap().0;
+        for (x, expected) in [(0.25, left), (0.75, right)] {
+            let point = TexturePoint::in_space(DVec3::new(x, 0.5, 0.0));
+            let mut paint = strahl_shade::texture::TexturePaint::default();
+            texture.layers_at(&point, 1.0, &mut paint);
+            let color = paint.layers[0].color;
+            let seen = [color.filter, color.transmit];
+            let near = (0..2).all(|i| (seen[i] - expected[i]).abs() < 1e-15);
+            assert!(near, "{items} at {x}: {seen:?}, not {expected:?}");
+        }
+    }
+}
+
+#[test]
+fn entries_beyond_the_palette_are_an_error() {
+    let mut host = MemoryHost::new().with_file("codes.bmp", picture_with_a_palette());
+    let text = "sphere { 0, 1 pigment { image_map { bmp \"codes.bmp\" transmit 2, 0.5 } } }";
+    let parsed = parse_with(&mut host, text);
+    let error = parsed.diagnostics.iter().find(|d| d.is_error());
+    let message = error.expect("an error").to_string();
+    assert!(message.contains("2 entries"), "{message}");
+}

@@ -10,7 +10,7 @@ fn what_is_not_supported_is_named() {
         ("pigment { facets }", "facets"),
         ("pigment { density_file df3 \"x.df3\" }", "density_file"),
         ("normal { facets size 0.1 }", "facets"),
-        ("finish { irid { 0.3 thickness 1 } phong 1 }", "irid"),
+        ("pigment { tiling 25 }", "tiling 25"),
         ("interior { media { emission 1 } ior 1.5 }", "media"),
         ("pigment { checker warp { cubic } }", "cubic"),
     ] {
@@ -34,6 +34,12 @@ fn mistakes_have_a_line_and_advice() {
         ("pigment { image_map { png \"none.png\" } }", &["none.png"]),
         ("pigment { image_map { png \"bad.png\" } }", &["bad.png"]),
         ("pigment { mandel 0 }", &["whole number"]),
+        ("pigment { tiling 28 }", &["from 1 to 27", "28"]),
+        (
+            "pigment { image_map { ppm \"p.ppm\" transmit 1, 0.5 } }",
+            &["no palette", "transmit all"],
+        ),
+        ("finish { irid { 0.3 thicknes 2 } }", &["thicknes"]),
         (
             "pigment { brick brick_size 0 }",
             &["size in every direction"],

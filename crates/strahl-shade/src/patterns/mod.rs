@@ -14,6 +14,7 @@ mod modifiers;
 mod noisy;
 mod plain;
 mod random;
+mod tiling;
 mod warp;
 pub(crate) mod water;
 
@@ -27,6 +28,7 @@ pub use fractal::{Exterior, Fractal, FractalKind, Interior as FractalInterior};
 pub use modifiers::{Modifiers, Wave};
 pub(crate) use plain::quilted_tilt;
 pub use plain::{Altitude, SlopeReference};
+pub use tiling::TilingNumber;
 pub use warp::{BlackHole, Mapping, Warp};
 
 use crate::image_map::ImageMap;
@@ -171,6 +173,8 @@ pub enum Pattern {
     Spiral2(f64),
     /// Square rods along y in four colours.
     Square,
+    /// Tiles of the x-z plane with bevelled edges.
+    Tiling(TilingNumber),
     /// Triangular rods along y, of side 1, in six colours.
     Triangular,
     /// Waves from ten sources, each of its own wavelength.
@@ -256,6 +260,7 @@ impl Pattern {
             Self::Spherical => plain::spherical(p),
             Self::Spiral1(arms) => plain::spiral1(p, *arms, modifiers),
             Self::Spiral2(arms) => plain::spiral2(p, *arms, modifiers),
+            Self::Tiling(number) => number.value(p),
             Self::Waves { sources } => water::waves(p, *sources, modifiers),
             Self::Wood => noisy::wood(p, modifiers),
             Self::Wrinkles => noisy::wrinkles(p, noise),

@@ -1,7 +1,7 @@
 //! Pictures in textures: `image_map`, `image_pattern`, `bump_map` and `material_map`.
 
 use crate::keywords::Word;
-use crate::parser::{PResult, Parser};
+use crate::parser::{PResult, Parser, Place};
 use crate::token::{Kind, Token};
 use std::sync::Arc;
 use strahl_formats::image::{
@@ -16,6 +16,12 @@ use strahl_shade::image_texture::{ColorSpace, TexelChannels, TexelData, TextureI
 
 /// The red, green, blue and alpha at a point.
 type PictureFunction = Box<dyn Fn(DVec3) -> [f64; 4]>;
+
+/// The name of a picture's file, and where the scene names it.
+pub(super) type PictureFile = (String, Place);
+
+/// A picture, and its file if it has one.
+type Picture = (Arc<TextureImage>, Option<PictureFile>);
 
 /// The use of a picture, which determines the meaning of its codes if no `gamma` is given.
 #[derive(Clone, Copy, PartialEq)]
@@ -110,7 +116,7 @@ impl Parser<'_> {
     }
 
     /// `[type] "file"`: the code of each texel, as red. For pictures with a palette it is the index, for others red or grey.
-    fn codes_file(&mut self) -> PResult<Option<Arc<TextureImage>>> {
+    fn codes_file(&mut self) -> PResult<Option<Picture>> {
         self.picture_type()?;
         let name = self.file_name()?;
         let place = self.place();
@@ -129,28 +135,30 @@ impl Parser<'_> {
             TexelData::U8(texels.collect()),
         );
         match image {
-            Ok(image) => Ok(Some(Arc::new(image))),
+            Ok(image) => Ok(Some((Arc::new(image), Some((name, place))))),
             Err(error) => Err(self.fail(place, error.to_string())),
         }
     }
 
     fn bitmap(
         &mut self,
-        picture_file: impl FnOnce(&mut Self) -> PResult<Option<Arc<TextureImage>>>,
+        picture_file: impl FnOnce(&mut Self) -> PResult<Option<Picture>>,
         mut other: impl FnMut(&mut Self, &mut ImageMap, Token) -> PResult<bool>,
     ) -> PResult<Option<Arc<ImageMap>>> {
         self.braces(|p| {
             let token = p.peek()?;
             let image = if token.is(Word::Function) {
                 p.take(token)?;
-                Some(p.function_picture()?)
+                Some((p.function_picture()?, None))
             } else {
                 picture_file(p)?
             };
             let supported = image.is_some();
+            let (image, file) = image.unzip();
+            let file = file.flatten();
             let mut map = ImageMap::new(image.unwrap_or_else(blank));
             p.items("the picture", |p, token| {
-                if p.bitmap_item(&mut map, token)? || other(p, &mut map, token)? {
+                if p.bitmap_item(&mut map, file.as_ref(), token)? || other(p, &mut map, token)? {
                     return Ok(());
                 }
                 p.skip_item(token, "the picture")
@@ -187,7 +195,7 @@ impl Parser<'_> {
     }
 
     /// `[type] "file" [gamma g] [premultiplied on]`
-    fn picture_file(&mut self, purpose: Purpose) -> PResult<Option<Arc<TextureImage>>> {
+    fn picture_file(&mut self, purpose: Purpose) -> PResult<Option<Picture>> {
         let kind = self.picture_type()?;
         let name = self.file_name()?;
         let place = self.place();
@@ -230,7 +238,7 @@ impl Parser<'_> {
         };
         let mut known = self.state.pictures.iter();
         if let Some(known) = known.find(|k| k.name == name && k.recoding == recoding) {
-            return Ok(Some(Arc::clone(&known.image)));
+            return Ok(Some((Arc::clone(&known.image), Some((name, place)))));
         }
         let from_srgb = Recoding {
             from: WorkingSpace::Srgb,
@@ -254,12 +262,12 @@ impl Parser<'_> {
             Err(error) => return Err(self.fail(place, error.to_string())),
         };
         self.state.pictures.push(KnownPicture {
-            name,
+            name: name.clone(),
             codes,
             recoding,
             image: Arc::clone(&image),
         });
-        Ok(Some(image))
+        Ok(Some((image, Some((name, place)))))
     }
 
     /// The conversion from the codes of a picture to numbers, according to the picture's `gamma`, its file, the scene's version
@@ -375,7 +383,12 @@ impl Parser<'_> {
         Ok((Box::new(value), cost))
     }
 
-    fn bitmap_item(&mut self, map: &mut ImageMap, token: Token) -> PResult<bool> {
+    fn bitmap_item(
+        &mut self,
+        map: &mut ImageMap,
+        file: Option<&PictureFile>,
+        token: Token,
+    ) -> PResult<bool> {
         let place = self.place_of(token);
         match token.word() {
             Some(Word::MapType) => {
@@ -419,26 +432,7 @@ impl Parser<'_> {
             }
             Some(word @ (Word::Filter | Word::Transmit)) => {
                 self.take(token)?;
-                if self.accept_word(Word::All)? {
-                    let amount = self.float()?;
-                    if word == Word::Filter {
-                        map.filter_all = amount;
-                    } else {
-                        map.transmit_all = amount;
-                    }
-                } else {
-                    self.float()?;
-                    self.comma()?;
-                    self.float()?;
-                    self.warn_hint(
-                        place,
-                        format!(
-                            "`{}` of single palette entries is not supported yet",
-                            word.text()
-                        ),
-                        "give the picture an alpha channel instead",
-                    );
-                }
+                self.picture_transparency(map, file, word)?;
             }
             _ => return Ok(false),
         }

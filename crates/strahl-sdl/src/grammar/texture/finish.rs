@@ -6,7 +6,7 @@ use crate::parser::{PResult, Parser};
 use crate::token::{Kind, Token};
 use std::sync::Arc;
 use strahl_shade::Color;
-use strahl_shade::pov_finish::{PovFinish, PovReflection};
+use strahl_shade::pov_finish::{Iridescence, PovFinish, PovReflection};
 
 /// Which strengths are given as `albedo`, the fraction of all light that is reflected; they depend on items that may follow.
 #[derive(Default)]
@@ -118,6 +118,10 @@ impl Parser<'_> {
                 self.take(token)?;
                 finish.conserve_energy = self.flag()?;
             }
+            Word::Irid => {
+                self.take(token)?;
+                finish.irid = Some(self.irid()?);
+            }
             Word::Crand => finish.crand = self.finish_float(token)?,
             // Since version 3.1 it belongs to `interior`; before, it has an effect here.
             Word::Ior => {
@@ -139,6 +143,26 @@ impl Parser<'_> {
     fn finish_color(&mut self, word: Token) -> PResult<Color> {
         self.take(word)?;
         self.plain_color()
+    }
+
+    /// `{ amount thickness T turbulence V }`
+    fn irid(&mut self) -> PResult<Iridescence> {
+        self.braces(|p| {
+            let mut irid = Iridescence {
+                amount: p.float()?,
+                thickness: 0.0,
+                turbulence: 0.0,
+            };
+            p.items("`irid`", |p, token| {
+                match token.word() {
+                    Some(Word::Thickness) => irid.thickness = p.finish_float(token)?,
+                    Some(Word::Turbulence) => irid.turbulence = p.finish_float(token)?,
+                    _ => return p.skip_item(token, "`irid`"),
+                }
+                Ok(())
+            })?;
+            Ok(irid)
+        })
     }
 
     /// A number, if one follows.

@@ -39,6 +39,12 @@ fn straight_pigment(pigment: &mut Pigment) {
             let image = Arc::make_mut(image);
             image.transmit_all += image.filter_all;
             image.filter_all = 0.0;
+            if let Some(palette) = &mut image.palette {
+                for [filter, transmit] in &mut Arc::make_mut(palette).entries {
+                    *transmit += *filter;
+                    *filter = 0.0;
+                }
+            }
         }
         Pigment::Average(members, _) => members.iter_mut().for_each(|(_, p)| straight_pigment(p)),
         Pigment::UvMapped(inner) => straight_pigment(inner),

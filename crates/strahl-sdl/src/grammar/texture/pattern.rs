@@ -9,7 +9,7 @@ use std::sync::Arc;
 use strahl_math::{DVec2, DVec3};
 use strahl_shade::patterns::{
     Altitude, Crackle, CrackleMetric, Exterior, Fractal, FractalInterior, FractalKind, Pattern,
-    PatternField, SlopeReference,
+    PatternField, SlopeReference, TilingNumber,
 };
 
 /// Reads the required parameters after the keyword of a pattern; the keyword is taken.
@@ -75,6 +75,7 @@ static PATTERNS: [Option<PatternParser>; Word::ALL.len()] = by_word::<PatternPar
     (Word::Spiral2, |p| p.float().map(Pattern::Spiral2)),
     (Word::Spotted, |_| Ok(Pattern::Bozo)),
     (Word::Square, |_| Ok(Pattern::Square)),
+    (Word::Tiling, |p| p.tiling()),
     (Word::Triangular, |_| Ok(Pattern::Triangular)),
     (Word::Waves, |p| {
         let sources = p.wave_sources();
@@ -303,6 +304,22 @@ impl Parser<'_> {
             }
             _ => Err(self.unexpected(token, "`mandel` or `julia`")),
         }
+    }
+
+    /// `tiling N`
+    fn tiling(&mut self) -> PResult<Pattern> {
+        let place = self.place();
+        let number = self.whole(1, 27)?;
+        if let Some(tiling) = TilingNumber::try_new(number) {
+            return Ok(Pattern::Tiling(tiling));
+        }
+        self.warn_hint(
+            place,
+            format!("`tiling {number}` is not supported yet and is left out"),
+            "the tilings 1 to 24 are supported",
+        );
+        // A single colour: the first of the map.
+        Ok(Pattern::Gradient(DVec3::ZERO))
     }
 
     /// `type, factor`; the default factor is 1.

@@ -6,6 +6,7 @@ mod fractals;
 mod modifiers;
 mod noisy;
 mod plain;
+mod tiling;
 mod warps;
 
 use super::*;
