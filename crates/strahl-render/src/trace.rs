@@ -175,6 +175,7 @@ impl<'s> TreeTracer<'s> {
             paint: TexturePaint {
                 filter_by_color: scene.settings.filter_by_color,
                 irid: scene.settings.irid,
+                bailout: settings.adc_bailout,
                 ..TexturePaint::default()
             },
             area_points: Vec::new(),

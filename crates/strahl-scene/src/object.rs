@@ -22,7 +22,8 @@ pub enum CsgOp {
     Difference,
     /// The points outside of the one child.
     Inverse,
-    /// The part of the first child's surface that is inside of the others; the cut is not closed by a cap.
+    /// The part of the first child's surface that is inside of the others; the cut is not closed by a cap. Its inverse is that of the
+    /// first child, clipped by the same others.
     Clip,
     /// The first child, seen only by rays that hit each of the others somewhere. Meshes of triangles that are no operands are seen by
     /// all rays.

@@ -36,6 +36,12 @@ impl Color {
         if self.b > m { self.b } else { m }
     }
 
+    /// POV-Ray's grey value, `0.297 r + 0.589 g + 0.114 b`.
+    #[inline]
+    pub fn gray_value(self) -> f64 {
+        0.297 * self.r + 0.589 * self.g + 0.114 * self.b
+    }
+
     /// Whether every component is exactly zero.
     #[inline]
     pub fn is_black(self) -> bool {

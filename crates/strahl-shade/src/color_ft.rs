@@ -52,7 +52,7 @@ impl ColorFt {
     /// The grey value `0.297 r + 0.589 g + 0.114 b` POV-Ray reads heights and patterns from.
     #[inline]
     pub fn gray(self) -> f64 {
-        gray(self.rgb)
+        self.rgb.gray_value()
     }
 
     /// `self · (1 - t) + other · t` in all five components.
@@ -60,12 +60,6 @@ impl ColorFt {
     pub fn lerp(self, other: Self, t: f64) -> Self {
         self * (1.0 - t) + other * t
     }
-}
-
-/// POV-Ray's grey value of a colour.
-#[inline]
-pub(crate) fn gray(c: Color) -> f64 {
-    0.297 * c.r + 0.589 * c.g + 0.114 * c.b
 }
 
 impl From<Color> for ColorFt {

@@ -56,6 +56,9 @@ pub enum Interpolation {
     Nearest,
     /// The four texels around, weighted linearly (`interpolate 2`).
     Bilinear,
+    /// The sixteen texels around, by the cubic of Catmull and Rom (1974) in both directions, limited to the values 0 to 1
+    /// (`interpolate 3`, measured).
+    Bicubic,
     /// The four texels around, weighted by the inverse square of their distance (`interpolate 4`).
     NormalizedDistance,
 }
@@ -121,17 +124,17 @@ impl ImageMap {
             None => 0.0,
             Some([_, _, _, a, _]) if self.use_alpha => a,
             // A transparent texel counts as lying on black.
-            Some([r, g, b, a, _]) => crate::color_ft::gray(Color::new(r, g, b)) * a,
+            Some([r, g, b, a, _]) => Color::new(r, g, b).gray_value() * a,
         }
     }
 
-    /// The perturbation of a normal per unit of `bump_size` if the image is taken as a relief; zero outside of an image with
+    /// The perturbation of the normal `n` per unit of `bump_size` if the image is taken as a relief; zero outside of an image with
     /// `once`.
     ///
     /// The relief is the plane through the grey values at the place and one texel below it to the left and to the right, at
-    /// a distance of one per texel (measured for planar maps). On the others the tilt follows the map's longitude and
-    /// latitude, which was not compared with POV-Ray.
-    pub fn tilt(&self, p: DVec3) -> DVec3 {
+    /// a distance of one per texel. For all kinds of maps the image's x axis is horizontal on the surface, and its y axis points
+    /// up; on a surface that faces straight up or down the x axis is x (all this as measured).
+    pub fn tilt(&self, p: DVec3, n: DVec3) -> DVec3 {
         let place = self.map_type.place(p);
         let texel = DVec2::new(
             1.0 / f64::from(self.image.width()),
@@ -139,26 +142,16 @@ impl ImageMap {
         );
         let gray = |dx: f64, dy: f64| {
             let sample = self.sample_at(place + DVec2::new(dx, dy) * texel);
-            sample.map_or(0.0, |[r, g, b, a, _]| {
-                crate::color_ft::gray(Color::new(r, g, b)) * a
-            })
+            sample.map_or(0.0, |[r, g, b, a, _]| Color::new(r, g, b).gray_value() * a)
         };
         if self.sample_at(place).is_none() {
             return DVec3::ZERO;
         }
         let (center, left, right) = (gray(0.0, 0.0), gray(-1.0, -1.0), gray(1.0, -1.0));
         let (across, up) = (0.5 * (left - right), 0.5 * (left + right) - center);
-        if self.map_type == MapType::Planar {
-            return DVec3::new(across, up, 0.0);
-        }
-        let east = DVec3::new(-p.z, 0.0, p.x).normalize_or_zero();
-        let outwards = match self.map_type {
-            MapType::Spherical => p,
-            MapType::Toroidal => p - DVec3::new(p.x, 0.0, p.z).normalize_or_zero(),
-            MapType::Planar | MapType::Cylindrical => DVec3::new(p.x, 0.0, p.z),
-        };
-        let north = outwards.normalize_or_zero().cross(east) * -1.0;
-        east * across + north * up
+        let right = DVec3::new(-n.z, 0.0, n.x).normalize_or(DVec3::X);
+        let above = right.cross(n).normalize_or_zero();
+        right * across + above * up
     }
 
     /// Red, green, blue, alpha and the filter of the palette.
@@ -180,6 +173,15 @@ impl ImageMap {
         }
     }
 
+    /// The number of a texel in a row or column of `count`: a single image goes on as it ends (measured), others are repeated.
+    fn within(&self, number: f64, count: u32) -> u32 {
+        if self.once {
+            number.clamp(0.0, f64::from(count - 1)) as u32
+        } else {
+            (number as i64).rem_euclid(i64::from(count)) as u32
+        }
+    }
+
     fn sample_at(&self, place: DVec2) -> Option<[f64; 5]> {
         let inside = |x: f64| (0.0..1.0).contains(&x);
         let beside = match self.map_type {
@@ -196,8 +198,8 @@ impl ImageMap {
         let y = fraction.y * f64::from(height);
         // Row 0 of the picture is its top, v points up.
         let texel = |column: f64, row: f64| {
-            let column = (column as i64).rem_euclid(i64::from(width)) as u32;
-            let row = (row as i64).rem_euclid(i64::from(height)) as u32;
+            let column = self.within(column, width);
+            let row = self.within(row, height);
             self.texel(column, height - 1 - row)
         };
         if self.interpolation == Interpolation::Nearest {
@@ -207,6 +209,17 @@ impl ImageMap {
         let (left, low) = (x.floor(), y.floor());
         let (s, t) = (x - left, y - low);
         let mut sum = [0.0; 5];
+        if self.interpolation == Interpolation::Bicubic {
+            for (j, across) in catmull_rom(t).iter().enumerate() {
+                for (i, along) in catmull_rom(s).iter().enumerate() {
+                    let texel = texel(left + i as f64 - 1.0, low + j as f64 - 1.0);
+                    for (sum, channel) in sum.iter_mut().zip(texel) {
+                        *sum += along * across * channel;
+                    }
+                }
+            }
+            return Some(sum.map(|channel| channel.clamp(0.0, 1.0)));
+        }
         let mut total = 0.0;
         for (i, j) in [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)] {
             let texel = texel(left + i, low + j);
@@ -227,6 +240,17 @@ impl ImageMap {
         }
         Some(sum.map(|channel| channel / total))
     }
+}
+
+/// The weights of four values for a place at `t` from the second to the third.
+fn catmull_rom(t: f64) -> [f64; 4] {
+    let (t2, t3) = (t * t, t * t * t);
+    [
+        0.5 * (2.0 * t2 - t - t3),
+        0.5 * (2.0 - 5.0 * t2 + 3.0 * t3),
+        0.5 * (t + 4.0 * t2 - 3.0 * t3),
+        0.5 * (t3 - t2),
+    ]
 }
 
 #[cfg(test)]
@@ -335,18 +359,25 @@ mod tests {
         };
         assert!(once.color(DVec3::new(0.5, 0.5, 3.0)).is_some());
         assert!(once.color(DVec3::new(1.5, 0.5, 3.0)).is_none());
-        assert_eq!(once.tilt(DVec3::new(1.5, 0.5, 3.0)), DVec3::ZERO);
+        assert_eq!(
+            once.tilt(DVec3::new(1.5, 0.5, 3.0), DVec3::NEG_Z),
+            DVec3::ZERO
+        );
         for x in [f64::NAN, f64::INFINITY, 1e300, -1e-300] {
             for interpolation in [
                 Interpolation::Nearest,
                 Interpolation::Bilinear,
+                Interpolation::Bicubic,
                 Interpolation::NormalizedDistance,
             ] {
                 let map = ImageMap {
                     interpolation,
                     ..ImageMap::new(picture())
                 };
-                let _ = (map.color(DVec3::splat(x)), map.tilt(DVec3::splat(x)));
+                let _ = (
+                    map.color(DVec3::splat(x)),
+                    map.tilt(DVec3::splat(x), DVec3::Y),
+                );
             }
         }
     }

@@ -146,7 +146,7 @@ impl PovNormal {
                 let center = field.moved(transformed);
                 n - tetrahedral_gradient(center, self.accuracy, height) * self.amount
             }
-            NormalKind::BumpMap(image) => n + image.tilt(p) * self.amount,
+            NormalKind::BumpMap(image) => n + image.tilt(p, n) * self.amount,
             NormalKind::Map(pattern, map) => {
                 let field = self.field(pattern);
                 let value = field.value_inside(&inner);

@@ -113,8 +113,7 @@ pub struct LayerPoint<'a> {
     /// The factor of the radiance from the mirror direction.
     pub reflectance: Color,
     /// The weight of the ray in the mirror direction, as POV-Ray has it:
-    /// [`PovReflection::weight`](crate::pov_finish::PovReflection::weight) times the layer's share and the largest component of
-    /// `above`.
+    /// [`PovReflection::weight`](crate::pov_finish::PovReflection::weight) times the layer's share and the grey value of `above`.
     pub reflection_weight: f64,
 }
 
@@ -131,6 +130,9 @@ pub struct TexturePaint<'a> {
     pub filter_by_color: bool,
     /// What the scene says about films. Set by the owner.
     pub irid: IridSettings,
+    /// Nothing passes layers whose transmittance together has a grey value below this: what is behind, lower layers too, stays unseen
+    /// (measured). Set by the owner.
+    pub bailout: f64,
 }
 
 impl TexturePaint<'_> {
@@ -441,7 +443,7 @@ impl PlainTexture {
             let weight = reflection.weight(cos_view, eta);
             (
                 reflection.reflectance(cos_view, color.rgb, eta),
-                weight * stack.share * stack.above.max_component(),
+                weight * stack.share * stack.above.gray_value(),
             )
         };
         let film = self
@@ -467,6 +469,9 @@ impl PlainTexture {
             passes *= Color::WHITE - reflectance;
         }
         stack.above *= passes;
+        if stack.above.gray_value() < out.bailout {
+            stack.above = Color::BLACK;
+        }
     }
 }
 

@@ -13,6 +13,8 @@ const TIMEOUT: Duration = Duration::from_secs(120);
 pub(crate) struct Outcome {
     /// Whether there is a picture.
     pub(crate) rendered: bool,
+    /// Whether the time limit ended the program.
+    pub(crate) stopped: bool,
     /// Seconds of wall time, reading included.
     pub(crate) seconds: f64,
     /// The first error, or else the first warning.
@@ -197,6 +199,7 @@ fn run(mut command: Command, folder: &Path, output: &Path, timeout: Duration) ->
     let success = status.is_some_and(|s| s.success());
     Ok(Outcome {
         rendered: success && (output.as_os_str().is_empty() || output.is_file()),
+        stopped: status.is_none(),
         seconds,
         reason,
         lacks: BTreeSet::new(),
@@ -208,6 +211,7 @@ fn read_note(file: &Path) -> Option<Outcome> {
     let mut lines = text.lines();
     Some(Outcome {
         rendered: lines.next()? == "rendered",
+        stopped: false,
         seconds: lines.next()?.parse().ok()?,
         reason: lines.next().unwrap_or_default().to_owned(),
         lacks: BTreeSet::new(),

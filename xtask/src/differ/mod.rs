@@ -22,8 +22,8 @@ use std::time::{Duration, Instant};
 /// The size of the pictures. They are small: many scenes find more than many pixels.
 const SIZE: (u32, u32) = (32, 24);
 
-/// The time limit of a program for a scene, in seconds.
-const TIMEOUT: Duration = Duration::from_secs(12);
+/// The default time limit of a program for a scene, in seconds: a hundred times what a scene takes, because the machine may be busy.
+const TIMEOUT: u64 = 60;
 
 /// The largest number of scenes that a reduction tries.
 const TRIES: usize = 1500;
@@ -47,6 +47,7 @@ struct Options {
     out: PathBuf,
     strahl: Option<PathBuf>,
     print: bool,
+    timeout: Duration,
 }
 
 impl Options {
@@ -59,6 +60,7 @@ impl Options {
             out: PathBuf::from("target/differ"),
             strahl: None,
             print: false,
+            timeout: Duration::from_secs(TIMEOUT),
         };
         let mut args = Arguments::new(args);
         while let Some(option) = args.option() {
@@ -70,9 +72,10 @@ impl Options {
                 "--out" => options.out = PathBuf::from(args.value()?),
                 "--strahl" => options.strahl = Some(PathBuf::from(args.value()?)),
                 "--print" => options.print = true,
+                "--timeout" => options.timeout = Duration::from_secs(args.number()?),
                 other => bail!(
                     "unknown option {other}: differ takes --seed N --first N --count M --jobs J --out DIR \
-                     --strahl BINARY --print"
+                     --strahl BINARY --timeout SECONDS --print"
                 ),
             }
         }
@@ -91,7 +94,7 @@ pub(crate) fn run(args: &[&str]) -> Result<()> {
         return Ok(());
     }
     let mut programs = Programs::new(SIZE, options.strahl.as_deref())?;
-    programs.timeout = TIMEOUT;
+    programs.timeout = options.timeout;
     std::fs::create_dir_all(&options.out)
         .with_context(|| format!("cannot create {}", options.out.display()))?;
     let start = Instant::now();
@@ -168,11 +171,13 @@ fn examine(
 fn totals(numbers: &[u64], verdicts: &[Verdict], seconds: f64) {
     let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
     let mut theirs: BTreeMap<String, Vec<u64>> = BTreeMap::new();
+    let mut stopped: BTreeMap<&str, Vec<u64>> = BTreeMap::new();
     for (number, verdict) in numbers.iter().zip(verdicts) {
         let kind = match verdict {
             Verdict::Same => "look the same",
             Verdict::Differs(_) => "differ",
             Verdict::OursFails(_) => "fail in strahl only",
+            Verdict::Stopped(_) => "exceed the time limit",
             Verdict::TheirsFails(message) => {
                 let message = render::plain(message);
                 theirs.entry(message).or_default().push(*number);
@@ -184,11 +189,17 @@ fn totals(numbers: &[u64], verdicts: &[Verdict], seconds: f64) {
                 "fail in both"
             }
         };
+        if let Verdict::Stopped(program) = verdict {
+            stopped.entry(program).or_default().push(*number);
+        }
         *counts.entry(kind).or_default() += 1;
     }
     println!("{} scenes in {seconds:.0} s:", numbers.len());
     for (kind, count) in counts {
         println!("{count:6} {kind}");
+    }
+    for (program, numbers) in stopped {
+        println!("  {program} was stopped: {numbers:?}");
     }
     for (message, numbers) in theirs {
         println!(

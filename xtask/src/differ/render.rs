@@ -1,6 +1,6 @@
 use super::compare::{Distance, distance};
 use crate::compare_pov::picture::{self, Shown};
-use crate::compare_pov::programs::{Programs, povray_reason, strahl_reason};
+use crate::compare_pov::programs::{Outcome, Programs, povray_reason, strahl_reason};
 use anyhow::Result;
 use std::path::Path;
 
@@ -17,6 +17,8 @@ pub(super) enum Verdict {
     TheirsFails(String),
     /// Both fail; this is POV-Ray's message.
     BothFail(String),
+    /// The time limit ended this program: nothing is known about the scene.
+    Stopped(&'static str),
 }
 
 impl Verdict {
@@ -57,21 +59,30 @@ pub(super) fn judge_in(
     let (theirs, ours) = (folder.join("povray.png"), folder.join("strahl.png"));
     let strahl = programs.run_strahl(&scene, folder, &ours)?;
     let povray = programs.run_povray(&scene, folder, &theirs)?;
-    let verdict = match (povray.rendered, strahl.rendered) {
-        (true, true) => {
-            let (a, b) = (picture::read(&theirs)?, picture::read(&ours)?);
-            let verdict = match distance(&a, &b) {
-                Some(far) if far.counts() => Verdict::Differs(far),
-                Some(_) => Verdict::Same,
-                None => Verdict::OursFails("another size".to_owned()),
-            };
-            return Ok((verdict, Some((a, b))));
-        }
-        (true, false) => Verdict::OursFails(strahl_reason(&strahl.reason)),
-        (false, true) => Verdict::TheirsFails(povray_reason(&povray.reason)),
-        (false, false) => Verdict::BothFail(povray_reason(&povray.reason)),
+    if let Some(verdict) = failure(&povray, &strahl) {
+        return Ok((verdict, None));
+    }
+    let (a, b) = (picture::read(&theirs)?, picture::read(&ours)?);
+    let verdict = match distance(&a, &b) {
+        Some(far) if far.counts() => Verdict::Differs(far),
+        Some(_) => Verdict::Same,
+        None => Verdict::OursFails("another size".to_owned()),
     };
-    Ok((verdict, None))
+    Ok((verdict, Some((a, b))))
+}
+
+/// The verdict if not both programs have rendered the scene.
+fn failure(povray: &Outcome, strahl: &Outcome) -> Option<Verdict> {
+    let stopped = [("POV-Ray", povray), ("strahl", strahl)];
+    if let Some((program, _)) = stopped.iter().find(|(_, outcome)| outcome.stopped) {
+        return Some(Verdict::Stopped(program));
+    }
+    match (povray.rendered, strahl.rendered) {
+        (true, true) => None,
+        (true, false) => Some(Verdict::OursFails(strahl_reason(&strahl.reason))),
+        (false, true) => Some(Verdict::TheirsFails(povray_reason(&povray.reason))),
+        (false, false) => Some(Verdict::BothFail(povray_reason(&povray.reason))),
+    }
 }
 
 #[cfg(test)]
@@ -86,5 +97,23 @@ mod tests {
         assert!(!a.is_like(&fails("error: unknown word (scene.pov:3:5)")));
         assert!(!a.is_like(&Verdict::Same));
         assert!(a.is_finding() && !Verdict::TheirsFails(String::new()).is_finding());
+    }
+
+    #[test]
+    fn a_program_that_is_stopped_is_not_a_finding() {
+        let outcome = |rendered: bool, stopped: bool| Outcome {
+            rendered,
+            stopped,
+            seconds: 1.0,
+            reason: "error: of some kind".to_owned(),
+            lacks: std::collections::BTreeSet::new(),
+        };
+        assert_eq!(failure(&outcome(true, false), &outcome(true, false)), None);
+        let fails = failure(&outcome(true, false), &outcome(false, false)).unwrap();
+        assert!(fails.is_finding());
+        let verdict = failure(&outcome(true, false), &outcome(false, true)).unwrap();
+        assert_eq!(verdict, Verdict::Stopped("strahl"));
+        assert!(!verdict.is_finding());
+        assert!(!verdict.is_like(&verdict));
     }
 }

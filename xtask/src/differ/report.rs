@@ -42,6 +42,7 @@ pub(super) fn describe(verdict: &Verdict) -> String {
         ),
         Verdict::OursFails(message) => format!("strahl: {message}"),
         Verdict::TheirsFails(message) => format!("POV-Ray: {message}"),
+        Verdict::Stopped(program) => format!("{program} was stopped"),
         Verdict::BothFail(message) => format!("both fail, POV-Ray: {message}"),
     }
 }

@@ -37,9 +37,10 @@ impl Context {
         }
     }
 
-    fn invisible(self) -> Self {
+    fn clipping(self) -> Self {
         Self {
             visible: false,
+            negative: false,
             keeps_inner: false,
             ..self
         }
@@ -113,11 +114,11 @@ impl Compiler {
                     continue;
                 }
                 CsgNode::Clip(operands) => {
-                    let rest = |c: Context| c.invisible();
-                    let rule = context.rule(Rule::Intersection);
+                    // As in POV-Ray (measured) the complement is clipped by the same solids.
+                    let rest = |c: Context| c.clipping();
                     self.expand(
                         "clipped object",
-                        rule,
+                        Rule::Intersection,
                         operands,
                         context,
                         rest,

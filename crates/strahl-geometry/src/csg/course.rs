@@ -229,7 +229,9 @@ impl Search<'_> {
         let Some(span) = leaf.span(self.ray, from).ok_or(TooClose)? else {
             return Ok(outside);
         };
-        if span.exit.t < range.min || span.enter.t > range.max {
+        // Crossings just outside of the range may coincide with others in it.
+        let near = self.fusing.widened(range);
+        if span.exit.t < near.min || span.enter.t > near.max {
             return Ok(outside);
         }
         let start = self.begin;

@@ -34,6 +34,28 @@ impl Operation {
         Self::Inverse,
         Self::Clip,
     ];
+
+    /// Whether the complement of an operand takes part in the operation, or in its complement.
+    fn negates(self, operand: usize, negative: bool) -> bool {
+        match self {
+            Self::Difference => negative != (operand > 0),
+            Self::Inverse => !negative,
+            // What clips is never inverted.
+            Self::Clip => negative && operand == 0,
+            Self::Union | Self::Merge | Self::Intersection => negative,
+        }
+    }
+
+    /// Whether it takes all operands to contain a point, by De Morgan's laws; otherwise one suffices.
+    fn needs_all(self, negative: bool) -> bool {
+        match self {
+            Self::Clip => true,
+            Self::Intersection | Self::Difference => !negative,
+            // An inverse is a merge, inverted.
+            Self::Inverse => !negative,
+            Self::Union | Self::Merge => negative,
+        }
+    }
 }
 
 /// Shapes of a model, by number.
@@ -82,16 +104,20 @@ impl Model {
         }
     }
 
-    fn contains(&self, inside: &dyn Fn(u32) -> bool) -> bool {
+    /// Whether a point is inside of the model, or of its complement: in the language of [`Operation::negates`] and
+    /// [`Operation::needs_all`].
+    fn contains(&self, negative: bool, inside: &dyn Fn(u32) -> bool) -> bool {
         match self {
-            Self::Leaf(i) => inside(*i),
+            Self::Leaf(i) => inside(*i) != negative,
             Self::Node(operation, operands) => {
-                let mut answers = operands.iter().map(|operand| operand.contains(inside));
-                match operation {
-                    Operation::Union | Operation::Merge => answers.any(|a| a),
-                    Operation::Intersection | Operation::Clip => answers.all(|a| a),
-                    Operation::Difference => answers.next() == Some(true) && answers.all(|a| !a),
-                    Operation::Inverse => answers.all(|a| !a),
+                let mut answers = operands
+                    .iter()
+                    .enumerate()
+                    .map(|(i, operand)| operand.contains(operation.negates(i, negative), inside));
+                if operation.needs_all(negative) {
+                    answers.all(|a| a)
+                } else {
+                    answers.any(|a| a)
                 }
             }
         }
@@ -111,14 +137,7 @@ impl Model {
         match self {
             Self::Leaf(i) => *i == crossed,
             Self::Node(operation, operands) => {
-                let negated = |i: usize| {
-                    negative
-                        != match operation {
-                            Operation::Difference => i > 0,
-                            Operation::Inverse => true,
-                            _ => false,
-                        }
-                };
+                let negated = |i: usize| operation.negates(i, negative);
                 let shown = operands.iter().enumerate().find(|(i, operand)| {
                     let clips = *operation == Operation::Clip && *i > 0;
                     let keeps = keeps && !negated(*i);
@@ -127,18 +146,12 @@ impl Model {
                 let Some((shown, _)) = shown else {
                     return false;
                 };
-                let all = matches!(
-                    operation,
-                    Operation::Intersection | Operation::Difference | Operation::Clip
-                );
-                // An inverse is a merge, inverted.
-                let all = all != negative && *operation != Operation::Inverse
-                    || *operation == Operation::Inverse && !negative;
+                let all = operation.needs_all(negative);
                 if *operation == Operation::Union && !negative && keeps {
                     return true;
                 }
                 let mut siblings = operands.iter().enumerate().filter(|(i, _)| *i != shown);
-                siblings.all(|(i, sibling)| (sibling.contains(inside) != negated(i)) == all)
+                siblings.all(|(i, sibling)| sibling.contains(negated(i), inside) == all)
             }
         }
     }
@@ -291,7 +304,7 @@ fn check_ray(
         let t = 0.5 * (pair[0] + pair[1]);
         let point = ray.at(t);
         let inside = |i: u32| inside_leaf(&leaves[i as usize], point);
-        let expected = model.contains(&inside);
+        let expected = model.contains(false, &inside);
         assert_eq!(
             found.inside_after(t),
             expected,
@@ -505,7 +518,7 @@ fn check_lattice(
     tally.rays += 1;
     let state = |t: f64| {
         let point = ray.at(t);
-        model.contains(&|i| inside_leaf(&leaves[i as usize], point))
+        model.contains(false, &|i| inside_leaf(&leaves[i as usize], point))
     };
     let mut expected = Vec::new();
     let mut before = state(planes[0] - 1.0);

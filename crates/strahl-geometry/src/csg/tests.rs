@@ -312,10 +312,18 @@ fn a_clipped_object_has_no_cap() {
     let hit = csg.closest_hit(&ray, Interval::FORWARD, None, &mut Scratch::default());
     assert_eq!(hit.map(|hit| hit.t), Some(12.0), "through the open end");
     assert!(csg.contains(DVec3::ZERO) && !csg.contains(DVec3::X));
-    // Subtracted from another object, the result also ends at the cut without a surface.
-    let rest = CsgNode::difference([cube(-5.0, 5.0, 3), half()]);
-    let expected = [(-5.0, '>', 3), (-2.0, '<', 1), (0.5, 'i', 2), (5.0, '<', 3)];
-    assert_eq!(along_x(rest), expected);
+}
+
+#[test]
+fn the_complement_of_a_clipped_object_is_clipped() {
+    let half = |high| CsgNode::clip(ball(0.0, 2.0, 1), [slab(-9.0, high, 9.0, 2)]);
+    // The other object is cut by the slab as well, which leaves no surface.
+    let rest = |high| CsgNode::difference([cube(-5.0, 5.0, 3), half(high)]);
+    assert_eq!(along_x(rest(0.5)), [(-5.0, '>', 3), (-2.0, '<', 1)]);
+    let beyond = [(-5.0, '>', 3), (-2.0, '<', 1), (2.0, '>', 1), (3.0, 'o', 2)];
+    assert_eq!(along_x(rest(3.0)), beyond);
+    // A second inversion restores the object.
+    assert_eq!(along_x(half(0.5).inverted().inverted()), along_x(half(0.5)));
 }
 
 #[test]

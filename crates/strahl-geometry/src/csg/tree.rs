@@ -36,7 +36,8 @@ pub enum CsgNode {
     /// second inversion does not restore them.
     Inverse(Operands),
     /// The part of the first operand that is inside of all others, without a surface where they cut it. The cuts are still
-    /// boundaries for the operations above, but invisible.
+    /// boundaries for the operations above, but invisible. An inverse or difference around it inverts the first operand only, which the
+    /// others clip as before: so it is in POV-Ray (measured).
     Clip(Operands),
     /// The union of the operands (usually one), moved together.
     Transformed {

@@ -145,7 +145,9 @@ impl PrimaryRays {
             Projection::Panoramic => {
                 let (a, b) = (half_u * std::f64::consts::PI, half_v * std::f64::consts::PI);
                 let level = right * det::sin(a) + c.direction * det::cos(a);
-                (level * det::cos(b) + up * det::sin(b), [a, b])
+                // The place for `normal` is measured from the right (as in POV-Ray).
+                let place = [std::f64::consts::FRAC_PI_2 - a, b];
+                (level * det::cos(b) + up * det::sin(b), place)
             }
             Projection::Cylinder {
                 upright,

@@ -347,6 +347,10 @@ impl FieldRef<'_> {
         let raw = self.pattern.raw(p, point, self.modifiers);
         let wave = self.modifiers.wave;
         let wave = wave.unwrap_or_else(|| self.pattern.default_wave());
+        if self.modifiers.frequency == 0.0 && self.pattern.block_count().is_some() {
+            // The numbers of blocks are not repeated (measured).
+            return wave.apply(raw);
+        }
         self.modifiers.shape(raw, wave)
     }
 

@@ -1,6 +1,25 @@
 use super::super::node::{Node, Part, Sort, block, list, needed, optional, words};
 use super::Writer;
 
+/// An operand without flags that hide it from some rays: strahl hides whole operations only.
+fn without_visibility(operand: Node) -> Node {
+    let Node::Group {
+        sort,
+        head,
+        mut parts,
+    } = operand
+    else {
+        return operand;
+    };
+    parts.retain(|part| {
+        !matches!(
+            part.node.text().trim(),
+            "no_shadow" | "no_image" | "no_reflection"
+        )
+    });
+    Node::Group { sort, head, parts }
+}
+
 impl Writer {
     /// An object with its texture and modifiers; `depth` limits the nesting of CSG.
     pub(super) fn object(&mut self, depth: usize) -> Node {
@@ -42,7 +61,10 @@ impl Writer {
                 ("difference", 1..) if self.dice.chance(60) => self.cutter(),
                 _ => self.part(depth - 1),
             };
-            parts.push(optional(object));
+            parts.push(optional(match head {
+                "union" => object,
+                _ => without_visibility(object),
+            }));
         }
         if self.dice.chance(70) {
             parts.extend(self.modifiers(2));

@@ -63,7 +63,8 @@ impl Writer {
             parts.extend(self.declaration());
         }
         if self.dice.chance(60) {
-            let height = self.dice.number(-1.6, -0.9);
+            // Not at a whole number, where rounding decides between the cells of many patterns.
+            let height = self.dice.number(-1.6, -0.9) + 0.003;
             let mut plane = vec![needed(list![[0.0, 1.0, 0.0], ",", height])];
             plane.extend(self.look(1));
             parts.push(optional(block(Sort::Object, "plane", plane)));

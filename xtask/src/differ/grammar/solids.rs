@@ -116,7 +116,9 @@ impl Writer {
         let mut parts = vec![
             needed(list!["function {", f, "}"]),
             optional(list!["threshold", self.dice.number(-0.1, 0.2)]),
-            optional(words("max_gradient 12")),
+            needed(words("max_gradient 12")),
+            // POV-Ray looks for the first surface only without this.
+            needed(words("all_intersections")),
             optional(words("accuracy 0.0001")),
         ];
         let size = self.number(0.8, 1.3);
@@ -126,9 +128,6 @@ impl Writer {
         }));
         if self.dice.chance(20) {
             parts.push(optional(words("open")));
-        }
-        if self.dice.chance(40) {
-            parts.push(optional(words("all_intersections")));
         }
         parts
     }

@@ -409,13 +409,7 @@ impl Parser<'_> {
                     0 | 1 => Interpolation::Nearest,
                     4 => Interpolation::NormalizedDistance,
                     2 => Interpolation::Bilinear,
-                    _ => {
-                        self.warn(
-                            place,
-                            "bicubic interpolation is not supported yet; bilinear is used",
-                        );
-                        Interpolation::Bilinear
-                    }
+                    _ => Interpolation::Bicubic,
                 };
             }
             Some(Word::Once) => {

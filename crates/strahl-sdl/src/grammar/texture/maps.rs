@@ -22,7 +22,7 @@ pub(super) fn color_ft([r, g, b, filter, transmit]: [f64; 5]) -> ColorFt {
 /// Whether a modifier repeats or changes a pattern's values. The values of a block pattern are then no longer indices of blocks,
 /// but choose from its blocks as from a map (as measured).
 pub(super) fn blends_blocks(modifiers: &Modifiers) -> bool {
-    !matches!(modifiers.frequency, 0.0 | 1.0) || modifiers.wave.is_some()
+    modifiers.frequency != 0.0 || modifiers.wave.is_some()
 }
 
 /// The blocks of a block pattern as a map, each at its index.

@@ -17,10 +17,11 @@ pub(super) fn transform(warps: &mut Vec<Warp>, transform: &Transform) {
     }
 }
 
-/// Settings that a pattern's keyword implies: the values of `quilted` are not repeated, unless a frequency follows; the triangle
-/// waves of marble, wood and spirals remain when another pattern replaces them (measured).
+/// Settings that a pattern's keyword implies: the values of `quilted`, `image_pattern` and block patterns are not repeated, unless a
+/// frequency follows; the triangle waves of marble, wood and spirals remain when another pattern replaces them (measured).
 pub(super) fn begin(modifiers: &mut Modifiers, pattern: &Pattern) {
-    if let Pattern::Quilted { .. } = pattern {
+    let as_it_is = matches!(pattern, Pattern::Quilted { .. } | Pattern::Image(_));
+    if as_it_is || pattern.block_count().is_some() {
         modifiers.frequency = 0.0;
     }
     let wave = pattern.default_wave();

@@ -30,6 +30,17 @@ enum Choice {
     Blocks(Vec<PovNormal>),
 }
 
+impl Choice {
+    /// The choice for a pattern that replaces another one: as in pigments, an existing map remains, and existing normals of blocks
+    /// become a map at 0, 1, 2 and so on (measured).
+    fn of_pattern(self) -> Self {
+        match self {
+            Self::Blocks(list) => Self::Normals(numbered(list)),
+            other => other,
+        }
+    }
+}
+
 /// A normal being read: its parts may come in any order.
 pub(super) struct Draft {
     chooser: Chooser,
@@ -231,8 +242,12 @@ impl Parser<'_> {
         }
         if let Some(pattern) = self.pattern(token)? {
             draft.special = token.is(Word::Bumps);
-            draft.choice = Choice::Own;
+            let before = std::mem::replace(&mut draft.choice, Choice::Own);
             self.block_normals(draft, &pattern)?;
+            if pattern.block_count().is_none() {
+                draft.choice = before.of_pattern();
+            }
+            modifiers::begin(&mut draft.normal.modifiers, &pattern);
             if let Chooser::Flat = draft.chooser {
                 draft.normal.modifiers.noise = self.noise_of(&pattern);
             }
