@@ -134,3 +134,58 @@ fn names_look_as_they_were_measured() {
     assert!(far.is_empty(), "{}", far.join("\n"));
     assert!(missing.is_empty(), "no longer in the library: {missing:?}");
 }
+
+/// The red of 8x6 pixels of POV-Ray's pictures: veins and clouds are where POV-Ray's are, not only of their colours.
+#[test]
+fn clouds_and_woods_are_where_povrays_are() {
+    const LOOKS: [(&str, &str, [u8; 48]); 3] = [
+        (
+            "skies.inc",
+            "camera { location 0 angle 90 look_at <0, 0.9, 1> } sky_sphere { S_Cloud5 }",
+            [
+                188, 163, 159, 171, 194, 195, 161, 161, 161, 204, 161, 179, 194, 162, 158, 139,
+                146, 193, 171, 167, 163, 157, 152, 198, 168, 176, 155, 169, 142, 191, 184, 174,
+                173, 177, 167, 148, 156, 193, 188, 175, 179, 192, 164, 171, 221, 225, 217, 207,
+            ],
+        ),
+        (
+            "woods.inc",
+            "plane { -z, 0 texture { T_Wood34 } }",
+            [
+                166, 159, 186, 157, 153, 186, 186, 174, 141, 167, 179, 172, 163, 178, 166, 144,
+                170, 174, 162, 156, 162, 161, 157, 167, 176, 176, 156, 160, 158, 153, 156, 170,
+                159, 178, 184, 166, 170, 173, 182, 163, 165, 157, 186, 147, 151, 184, 166, 186,
+            ],
+        ),
+        (
+            "woods.inc",
+            "plane { -z, 0 texture { T_Wood35 } }",
+            [
+                191, 185, 214, 203, 206, 184, 215, 190, 214, 195, 203, 210, 214, 203, 217, 213,
+                211, 213, 184, 207, 196, 193, 210, 215, 206, 210, 216, 182, 200, 210, 213, 211,
+                210, 180, 208, 211, 185, 188, 194, 215, 190, 203, 215, 200, 204, 210, 192, 195,
+            ],
+        ),
+    ];
+    for (file, objects, theirs) in LOOKS {
+        let text = format!(
+            "#version 3.7; global_settings {{ assumed_gamma 1 }}
+            #include \"colors.inc\"
+            #include \"{file}\"
+            light_source {{ -1000*z, rgb 1 }}
+            camera {{ orthographic location -9*z look_at 0 right 4*x up 3*y }}
+            {objects}"
+        );
+        let parsed = parse_with(&mut MemoryHost::new(), &text);
+        let scene = parsed.scene.expect("the scene is read");
+        let scene = compile(&scene, &CompileOptions::default()).expect("the scene compiles");
+        let film = render(&scene, &RenderOptions::new(&scene, 8, 6), &())
+            .expect("the scene renders")
+            .film;
+        for (pixel, theirs) in film.pixels.iter().zip(theirs) {
+            let ours = 255.0 * strahl_shade::srgb::encode(f64::from(pixel[0]).clamp(0.0, 1.0));
+            let apart = (ours - f64::from(theirs)).abs();
+            assert!(apart < 4.0, "{objects}: {ours} instead of {theirs}");
+        }
+    }
+}
