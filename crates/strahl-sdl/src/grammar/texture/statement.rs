@@ -343,6 +343,7 @@ impl Parser<'_> {
             list.push(Surface::clone(&texture));
         }
         list.reverse();
+        modifiers::begin(&mut draft.modifiers, &Pattern::Checker);
         draft.chooser = Chooser::Pattern(Pattern::Checker);
         draft.choice = Choice::Blocks(list);
         Ok(())
