@@ -614,7 +614,14 @@ fn damaged_textures_are_errors() {
         let bytes = encoded(info.format, &region(&rgb), &WriteOptions::default());
         for length in (0..bytes.len()).step_by(7) {
             let result = decode_texture(&bytes[..length], "cut", TextureUse::Color);
-            assert!(result.is_err(), "{} cut at {length}", info.name);
+            // PNG's last chunk, of twelve bytes, only marks the end.
+            let is_whole = info.format == ImageFormat::Png && bytes.len() - length <= 12;
+            assert!(
+                result.is_err() || is_whole,
+                "{} cut at {length} of {}",
+                info.name,
+                bytes.len()
+            );
         }
         // Changed bytes may still decode; they must not cause a panic.
         for position in (0..bytes.len()).step_by(3) {
