@@ -3,7 +3,7 @@ use crate::{
     SurfacePoint,
 };
 use std::sync::Arc;
-use strahl_math::{Aabb, DVec3, Interval, Ray, Transform};
+use strahl_math::{Aabb, DVec2, DVec3, Interval, Ray, Transform};
 
 /// A shape that only those rays see that meet all its bounds too: POV-Ray's `bounded_by`.
 ///
@@ -77,6 +77,10 @@ impl Primitive for Bounded {
 
     fn surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
         self.shape.surface_at(ray, hit)
+    }
+
+    fn texture_uv(&self, hit: &PrimHit, uv: DVec2) -> Option<DVec2> {
+        self.shape.texture_uv(hit, uv)
     }
 
     fn bare_surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {

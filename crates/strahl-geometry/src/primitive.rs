@@ -177,6 +177,12 @@ pub trait Primitive: Send + Sync + std::fmt::Debug {
         self.surface_at(ray, hit)
     }
 
+    /// Where textures with `uv_mapping` are evaluated at a hit; `uv` is what `surface_at` gave. `None` for surfaces that POV-Ray
+    /// has no mapping for, even if `uv` is a useful parameter: there x and y of the world are taken.
+    fn texture_uv(&self, _hit: &PrimHit, _uv: DVec2) -> Option<DVec2> {
+        None
+    }
+
     /// The primitive as a solid, if it encloses a volume.
     fn as_solid(&self) -> Option<&dyn Solid> {
         None
@@ -261,6 +267,10 @@ impl<P: Primitive + ?Sized> Primitive for Arc<P> {
 
     fn bare_surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
         (**self).bare_surface_at(ray, hit)
+    }
+
+    fn texture_uv(&self, hit: &PrimHit, uv: DVec2) -> Option<DVec2> {
+        (**self).texture_uv(hit, uv)
     }
 
     fn as_solid(&self) -> Option<&dyn Solid> {

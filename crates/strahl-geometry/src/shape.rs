@@ -8,7 +8,7 @@ use crate::{
     Bounded, Csg, GeometryError, PrimHit, Primitive, Scratch, Solid, SurfaceId, SurfacePoint,
 };
 use std::sync::Arc;
-use strahl_math::{Aabb, Interval, Ray, Transform};
+use strahl_math::{Aabb, DVec2, Interval, Ray, Transform};
 
 /// Makes the enum of all shapes from the table below: the variants, the dispatch without virtual calls, the conversions.
 macro_rules! shapes {
@@ -67,6 +67,10 @@ macro_rules! shapes {
 
             fn bare_surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
                 match self { $(Self::$variant(shape) => shape.bare_surface_at(ray, hit),)+ }
+            }
+
+            fn texture_uv(&self, hit: &PrimHit, uv: DVec2) -> Option<DVec2> {
+                match self { $(Self::$variant(shape) => shape.texture_uv(hit, uv),)+ }
             }
 
             fn as_solid(&self) -> Option<&dyn Solid> {

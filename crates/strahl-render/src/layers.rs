@@ -33,13 +33,15 @@ pub(crate) fn paint<'s>(
     let point = &surface.resolved.point;
     let place = TexturePoint {
         position: point.position,
+        tilted_at: None,
+        in_object: None,
         surface: point.position,
         n_geom: surface.n_geom,
         n_shade: surface.n_shade,
         uv: point.uv,
         direction: -surface.v,
     };
-    let space = scene.texture_space(hit, look);
+    let (place, space) = scene.texture_place(place, hit, look);
     let eta = surface.eta_2 / surface.eta_1;
     texture.0.layers_in(space.as_deref(), &place, eta, paint);
 
@@ -125,11 +127,14 @@ fn weight_of(layers: &[LayerPoint<'_>]) -> f64 {
         .fold(0.0, f64::max)
 }
 
+/// Whether one ray serves both layers. Their weights decide when the rays that follow end.
 fn mirrors_alike(a: &LayerPoint<'_>, b: &LayerPoint<'_>) -> bool {
-    a.normal == b.normal && a.finish.reflection.exponent == b.finish.reflection.exponent
+    a.normal == b.normal
+        && a.finish.reflection.exponent == b.finish.reflection.exponent
+        && a.reflection_weight == b.reflection_weight
 }
 
-/// The rays of layers that differ in normal or `exponent`.
+/// The rays of layers that differ in normal, `exponent` or weight.
 #[cold]
 fn mirrors_of_layers(paint: &TexturePaint<'_>, surface: &Surface<'_>, out: &mut Vec<Mirror>) {
     out.clear();
@@ -144,17 +149,15 @@ fn mirrors_of_layers(paint: &TexturePaint<'_>, surface: &Surface<'_>, out: &mut 
             .iter()
             .filter(|other| mirrors_alike(layer, other));
         let mut factor = Color::BLACK;
-        let mut weight = 0.0_f64;
         for other in alike {
             factor += other.reflectance * other.share;
-            weight = weight.max(other.reflection_weight);
         }
         if !factor.is_black() {
             let power = 1.0 / exponent;
             out.push(Mirror {
                 share: Share { factor, power },
                 direction: surface.mirrored(layer.normal),
-                weight,
+                weight: layer.reflection_weight,
             });
         }
     }

@@ -46,6 +46,8 @@ pub(crate) struct Look {
     pub(crate) body: u32,
     /// Whether fog is inside too.
     pub(crate) hollow: bool,
+    /// Whether its textures lie on texture coordinates.
+    pub(crate) uv_mapped: bool,
 }
 
 impl Look {

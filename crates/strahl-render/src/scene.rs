@@ -10,7 +10,7 @@ use std::borrow::Cow;
 use std::sync::Arc;
 use strahl_accel::{Accelerator, AnyAccelerator};
 use strahl_geometry::{PrimHit, Primitive, Shape, SurfaceId, SurfacePoint, TriangleMesh};
-use strahl_math::{Aabb, DVec3, Ray, Transform};
+use strahl_math::{Aabb, DVec2, DVec3, Ray, Transform};
 use strahl_scene::{
     Background, BackgroundAlpha, Camera, Fog, Rainbow, SceneLight, Settings, SourceMap,
 };
@@ -384,8 +384,12 @@ impl RenderScene {
         let element = (hit.id - world.first_id(prim)) as u32;
         let look = world.look(prim, element);
         let uv = self.wants_uv(&look, uv);
+        let mut point = world.surface_at(prim, ray, hit, element, uv);
+        if uv {
+            point.uv = world.texture_uv(prim, hit, element, &point);
+        }
         Resolved {
-            point: world.surface_at(prim, ray, hit, element, uv),
+            point,
             local: None,
             look,
             space: 0,
@@ -395,7 +399,7 @@ impl RenderScene {
     /// Whether texture coordinates are wanted for a material.
     #[inline]
     fn wants_uv(&self, look: &Look, uv: Uv) -> bool {
-        uv == Uv::Always || self.uses_uv[look.material.0 as usize]
+        uv == Uv::Always || look.uv_mapped || self.uses_uv[look.material.0 as usize]
     }
 
     /// [`RenderScene::resolve`] for a hit within an instance.
@@ -425,28 +429,46 @@ impl RenderScene {
         let inner = at
             .group
             .surface_at(at.prim, &local_ray, hit, at.element, uv);
-        match &at.to_world {
-            None => Resolved {
-                point: inner,
-                local: None,
-                look,
-                space: at.space,
-            },
-            Some(m) => Resolved {
-                point: surface_to_world(m, &inner),
-                local: Some(LocalPoint {
+        let (mut point, local) = match &at.to_world {
+            None => (inner, None),
+            Some(m) => {
+                let local = LocalPoint {
                     position: inner.position,
                     error: inner.position_error,
                     normal: inner.n_geom,
-                }),
-                look,
-                space: at.space,
-            },
+                };
+                (surface_to_world(m, &inner), Some(local))
+            }
+        };
+        if uv {
+            point.uv = at.group.texture_uv(at.prim, hit, at.element, &point);
+        }
+        Resolved {
+            point,
+            local,
+            look,
+            space: at.space,
         }
     }
 
-    /// The map from the space of the texture at a hit to the world; `None` if they are the same.
-    pub(crate) fn texture_space(&self, hit: &Hit, look: &Look) -> Option<Cow<'_, Transform>> {
+    /// Where the texture at a hit is evaluated, and the map from the space of the texture to the world; `None` if they are the same.
+    pub(crate) fn texture_place(
+        &self,
+        place: TexturePoint,
+        hit: &Hit,
+        look: &Look,
+    ) -> (TexturePoint, Option<Cow<'_, Transform>>) {
+        let space = self.texture_space(hit, look);
+        if !look.uv_mapped {
+            return (place, space);
+        }
+        let in_object = space.map_or(place.position, |space| {
+            space.point_to_object(place.position)
+        });
+        (place.on_surface(in_object), None)
+    }
+
+    fn texture_space(&self, hit: &Hit, look: &Look) -> Option<Cow<'_, Transform>> {
         let to_group = self.texture_spaces.get(look.texture_space as usize);
         if self.is_in_world(hit.id) {
             return to_group.map(Cow::Borrowed);
@@ -484,13 +506,15 @@ impl RenderScene {
         };
         let place = TexturePoint {
             position: point.position,
+            tilted_at: None,
+            in_object: None,
             surface: point.position,
             n_geom: point.n_geom * facing,
             n_shade: point.n_shade * facing,
             uv: point.uv,
             direction,
         };
-        let space = self.texture_space(hit, &resolved.look);
+        let (place, space) = self.texture_place(place, hit, &resolved.look);
         if caustics > 0.0 {
             return texture.gathered_attenuation(space.as_deref(), &place, caustics);
         }
@@ -578,15 +602,7 @@ impl RenderGroup {
         element: u32,
         uv: bool,
     ) -> SurfacePoint {
-        let surface = SurfaceId {
-            element,
-            facet: hit.facet,
-        };
-        let hit = PrimHit {
-            t: hit.t,
-            surface,
-            uv: hit.uv,
-        };
+        let hit = prim_hit(hit, element);
         let surface = |shape: &Shape, ray: &Ray| {
             if uv {
                 shape.surface_at(ray, &hit)
@@ -616,6 +632,35 @@ impl RenderGroup {
             }
             PrimKind::Instance(_) => unreachable!("locate ends at a primitive that is no instance"),
         }
+    }
+
+    /// The texture coordinates at a hit: the surface's own, or x and y of the world where it has none, as in POV-Ray.
+    #[cold]
+    fn texture_uv(&self, prim: u32, hit: &Hit, element: u32, point: &SurfacePoint) -> DVec2 {
+        let hit = prim_hit(hit, element);
+        let own = match self.prims.at(prim).kind() {
+            PrimKind::Triangle(mesh, _) => {
+                self.meshes[mesh as usize].mesh.texture_uv(&hit, point.uv)
+            }
+            PrimKind::Sphere(_) => Some(point.uv),
+            PrimKind::Shape(index) | PrimKind::Placed(index) => {
+                self.shapes[index as usize].shape.texture_uv(&hit, point.uv)
+            }
+            PrimKind::Instance(_) => unreachable!("locate ends at a primitive that is no instance"),
+        };
+        own.unwrap_or_else(|| point.position.truncate())
+    }
+}
+
+/// A hit as the primitive reported it.
+fn prim_hit(hit: &Hit, element: u32) -> PrimHit {
+    PrimHit {
+        t: hit.t,
+        surface: SurfaceId {
+            element,
+            facet: hit.facet,
+        },
+        uv: hit.uv,
     }
 }
 

@@ -129,6 +129,8 @@ pub struct Object {
     pub hollow: Option<bool>,
     /// Whether light on its back shows on its front, too (POV-Ray's `double_illuminate`).
     pub double_illuminated: bool,
+    /// Whether its textures and those of its parts lie on the texture coordinates of the surfaces (POV-Ray's `uv_mapping`).
+    pub uv_mapped: bool,
     /// Its kind.
     pub kind: ObjectKind,
 }
@@ -153,6 +155,7 @@ impl Object {
             visibility: Visibility::default(),
             hollow: None,
             double_illuminated: false,
+            uv_mapped: false,
             kind,
         }
     }

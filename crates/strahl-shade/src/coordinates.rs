@@ -53,22 +53,28 @@ impl Pigment {
 
 impl PovNormal {
     fn uses_uv(&self) -> bool {
-        match &self.kind {
-            NormalKind::Height(pattern, _) => pattern.uses_uv(),
-            NormalKind::Map(pattern, map) => {
+        self.uv_mapped || self.kind.uses_uv()
+    }
+}
+
+impl NormalKind {
+    fn uses_uv(&self) -> bool {
+        match self {
+            Self::Height(pattern, _) => pattern.uses_uv(),
+            Self::Map(pattern, map) => {
                 pattern.uses_uv() || map.entries.iter().any(|(_, n)| n.uses_uv())
             }
-            NormalKind::Blocks(pattern, normals) => {
-                pattern.uses_uv() || normals.iter().any(Self::uses_uv)
+            Self::Blocks(pattern, normals) => {
+                pattern.uses_uv() || normals.iter().any(PovNormal::uses_uv)
             }
-            NormalKind::Average(members) => members.iter().any(|(_, n)| n.uses_uv()),
-            NormalKind::Bumps
-            | NormalKind::Dents
-            | NormalKind::Wrinkles
-            | NormalKind::Ripples(_)
-            | NormalKind::Waves(_)
-            | NormalKind::Quilted(_)
-            | NormalKind::BumpMap(_) => false,
+            Self::Average(members) => members.iter().any(|(_, n)| n.uses_uv()),
+            Self::Bumps
+            | Self::Dents
+            | Self::Wrinkles
+            | Self::Ripples(_)
+            | Self::Waves(_)
+            | Self::Quilted(_)
+            | Self::BumpMap(_) => false,
         }
     }
 }

@@ -68,6 +68,8 @@ pub struct PovNormal {
     pub accuracy: f64,
     /// Whether a transformation that enlarges the pattern flattens the bumps instead of enlarging them too (`no_bump_scale`).
     pub no_bump_scale: bool,
+    /// Whether the pattern lies on the surface's texture coordinates (`uv_mapping`); the normal is tilted in the world's space then.
+    pub uv_mapped: bool,
     /// Warps, transformations, turbulence, frequency, phase and wave.
     pub modifiers: Modifiers,
 }
@@ -80,6 +82,7 @@ impl PovNormal {
             amount: 0.5,
             accuracy: 0.02,
             no_bump_scale: false,
+            uv_mapped: false,
             modifiers: Modifiers::default(),
         }
     }

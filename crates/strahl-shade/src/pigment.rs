@@ -2,16 +2,14 @@
 
 use std::sync::Arc;
 
-use strahl_math::DVec3;
-
 use crate::ColorFt;
 use crate::image_map::ImageMap;
 use crate::patterns::{Modifiers, PatternField, TexturePoint};
 
 /// Entries at positions in `0..=1`, between which a value is looked up: the common part of all maps.
 ///
-/// Positions must not decrease. Before the first and after the last entry, that entry holds. Of two entries at one position,
-/// the first belongs to the values up to there and the second to those beyond.
+/// Before the first and after the last entry, that entry holds. Of two entries at one position, the first belongs to the values up
+/// to there and the second to those beyond; at the last position of all it is the second.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BlendMap<T> {
     /// Position and entry.
@@ -34,25 +32,26 @@ impl<T> BlendMap<T> {
     }
 
     /// The entries for `value`; `None` only if the map is empty.
+    ///
+    /// Positions may decrease. As in POV-Ray, a value of at least the last position gets the last entry; any other gets the first
+    /// entry whose position is not below it, mixed with the entry before (measured).
     pub fn lookup(&self, value: f64) -> Option<Blend<'_, T>> {
-        let (first_at, first) = self.entries.first()?;
-        if !(value > *first_at) {
-            return Some(Blend::One(first));
+        let (last_at, last) = self.entries.last()?;
+        if value >= *last_at {
+            return Some(Blend::One(last));
         }
-        // The first entry at or beyond the value; of equal positions that is the first written.
-        let above = self.entries.partition_point(|(at, _)| *at < value);
-        match (self.entries.get(above), above.checked_sub(1)) {
-            (Some((high_at, high)), Some(below)) => {
-                let (low_at, low) = &self.entries[below];
-                let t = (value - low_at) / (high_at - low_at);
-                Some(if t >= 1.0 {
-                    Blend::One(high)
-                } else {
-                    Blend::Two(low, high, t)
-                })
-            }
-            _ => self.entries.last().map(|(_, last)| Blend::One(last)),
-        }
+        let above = self.entries.iter().position(|(at, _)| !(value > *at));
+        let (high_at, high) = &self.entries[above?];
+        let below = above.and_then(|above| above.checked_sub(1));
+        let Some((low_at, low)) = below.and_then(|below| self.entries.get(below)) else {
+            return Some(Blend::One(high));
+        };
+        let t = (value - low_at) / (high_at - low_at);
+        Some(if t >= 1.0 {
+            Blend::One(high)
+        } else {
+            Blend::Two(low, high, t)
+        })
     }
 }
 
@@ -146,10 +145,7 @@ impl Pigment {
                     sum * (1.0 / total)
                 }
             }
-            Self::UvMapped(pigment) => {
-                let uv = DVec3::new(point.uv.x, point.uv.y, 0.0);
-                pigment.color_at(&point.at(uv))
-            }
+            Self::UvMapped(pigment) => pigment.color_at(&point.on_surface_but_normals()),
         }
     }
 }

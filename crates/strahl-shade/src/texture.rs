@@ -43,7 +43,8 @@ pub enum Texture {
     Shared(Arc<dyn Shares>, Vec<Texture>),
     /// A texture in a space of its own.
     Transformed(Box<Transform>, Box<Texture>),
-    /// A texture at the surface's own coordinates: (u, v, 0) takes the place of the point.
+    /// A texture with everything but its normals at the surface's own coordinates: (u, v, 0) takes the place of the point. It is
+    /// POV-Ray's `texture { uv_mapping ... }`; under `uv_mapping` of an object normals are there too ([`TexturePoint::on_surface`]).
     UvMapped(Box<Texture>),
 }
 
@@ -311,7 +312,7 @@ impl Texture {
             Self::Plain(_) | Self::Layered(_) => visit(self, point, &Identity, 1.0),
             Self::Map(field, map) => {
                 let warps = &field.modifiers.warps;
-                let inner = point.at(field.moved(point.position));
+                let inner = point.moved(|p| field.moved(p));
                 match map.lookup(field.value(point)) {
                     None => {}
                     Some(Blend::One(texture)) => visit(texture, &inner, warps, 1.0),
@@ -323,20 +324,20 @@ impl Texture {
             }
             Self::Blocks(field, textures) => {
                 let warps = &field.modifiers.warps;
-                let inner = point.at(field.moved(point.position));
+                let inner = point.moved(|p| field.moved(p));
                 if let Some(texture) = textures.get(field.block(point)).or(textures.last()) {
                     visit(texture, &inner, warps, 1.0);
                 }
             }
             Self::Average(members, modifiers) => {
-                let inner = point.at(modifiers.moved(point.position));
+                let inner = point.moved(|p| modifiers.moved(p));
                 let total: f64 = members.iter().map(|(weight, _)| weight).sum();
                 for (weight, texture) in members.iter().filter(|_| total != 0.0) {
                     visit(texture, &inner, &modifiers.warps, weight / total);
                 }
             }
             Self::MaterialMap(image, modifiers, textures) => {
-                let inner = point.at(modifiers.moved(point.position));
+                let inner = point.moved(|p| modifiers.moved(p));
                 let index = match image.color(inner.position) {
                     None => 0,
                     Some(color) => (color.rgb.r * 255.0).round() as usize,
@@ -346,19 +347,19 @@ impl Texture {
                 }
             }
             Self::Shared(shares, textures) => {
-                shares.shares_at(point.position, &mut |index, share| {
+                let place = point.in_object.unwrap_or(point.position);
+                shares.shares_at(place, &mut |index, share| {
                     if let Some(texture) = textures.get(index) {
                         visit(texture, point, &Identity, share);
                     }
                 });
             }
             Self::Transformed(transform, texture) => {
-                let inner = point.at(transform.point_to_object(point.position));
+                let inner = point.moved(|p| transform.point_to_object(p));
                 visit(texture, &inner, transform.as_ref(), 1.0);
             }
             Self::UvMapped(texture) => {
-                let uv = DVec3::new(point.uv.x, point.uv.y, 0.0);
-                visit(texture, &point.at(uv), &Identity, 1.0);
+                visit(texture, &point.on_surface_but_normals(), &Identity, 1.0);
             }
         }
     }
@@ -409,8 +410,11 @@ impl PlainTexture {
         match &self.normal {
             // A layer without a normal of its own leaves the surface's untouched, to the last bit.
             None => point.n_shade,
+            Some(normal) if normal.uv_mapped => normal
+                .tilt(&point.at(point.uv.extend(0.0)), point.n_shade)
+                .normalize_or(point.n_shade),
             Some(normal) => space
-                .leave(normal.tilt(point, n))
+                .leave(normal.tilt(&point.for_normals(), n))
                 .normalize_or(point.n_shade),
         }
     }

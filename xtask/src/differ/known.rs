@@ -1,7 +1,7 @@
 /// Differences that are intended or that are POV-Ray's: the words that the smallest scene contains, and the reason.
 ///
 /// docs/src/differ.md explains them.
-pub(super) const KNOWN: [(&[&str], &str); 3] = [
+pub(super) const KNOWN: [(&[&str], &str); 4] = [
     (&["crystal.ttf"], "the fonts of POV-Ray's names are our own"),
     (
         &["cyrvetic.ttf"],
@@ -11,12 +11,51 @@ pub(super) const KNOWN: [(&[&str], &str); 3] = [
         &["sky_sphere", "onion"],
         "an onion's shells jump exactly on the sky's unit sphere",
     ),
+    (
+        &["sky_sphere", "spherical"],
+        "the pattern is 0 exactly on the sky's unit sphere",
+    ),
 ];
 
 /// The known reason for the difference of a smallest scene, if there is one.
 pub(super) fn reason(text: &str) -> Option<&'static str> {
-    find(&KNOWN, text)
+    find(&KNOWN, text).or_else(|| {
+        repeats_an_operand(text).then_some("two operands have the same surface: rounding decides")
+    })
 }
+
+/// Whether an operation has an operand twice: the same word with the same numbers, written on one line.
+fn repeats_an_operand(text: &str) -> bool {
+    let combines = ["intersection", "difference", "merge"]
+        .iter()
+        .any(|operation| text.contains(operation));
+    let operands: Vec<&str> = SOLIDS
+        .iter()
+        .flat_map(|solid| {
+            text.match_indices(solid).filter_map(|(at, _)| {
+                let rest = &text[at..];
+                let start = rest.find('{')? + 1;
+                let numbers = rest[start..].find(|c: char| c.is_alphabetic() || c == '}')?;
+                Some(rest[..start + numbers].trim_end())
+            })
+        })
+        .collect();
+    combines
+        && operands
+            .iter()
+            .enumerate()
+            .any(|(i, operand)| operands[..i].contains(operand))
+}
+
+/// The solids with few parameters, of which random scenes repeat one by chance.
+const SOLIDS: [&str; 6] = [
+    "sphere {",
+    "box {",
+    "plane {",
+    "cylinder {",
+    "cone {",
+    "torus {",
+];
 
 fn find(known: &[(&'static [&'static str], &'static str)], text: &str) -> Option<&'static str> {
     let has = |word: &&str| {
@@ -41,5 +80,17 @@ mod tests {
             Some("noise")
         );
         assert_eq!(find(&known, "sphere { finish { crandy 0.1 } }"), None);
+    }
+
+    #[test]
+    fn operands_that_repeat_are_seen() {
+        let twice = "intersection { sphere { 0, 1 } sphere { 0, 1 pigment { rgb 1 } } }";
+        assert!(repeats_an_operand(twice));
+        assert!(!repeats_an_operand(
+            "intersection { sphere { 0, 1 } sphere { 0, 2 } }"
+        ));
+        assert!(!repeats_an_operand(
+            "union { sphere { 0, 1 } sphere { 0, 1 } }"
+        ));
     }
 }

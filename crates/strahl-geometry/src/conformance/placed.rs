@@ -3,7 +3,7 @@ use crate::{
 };
 use std::sync::Arc;
 use strahl_math::error::{ROUNDOFF, gamma};
-use strahl_math::{Aabb, DVec3, Interval, Ray, Transform};
+use strahl_math::{Aabb, DVec2, DVec3, Interval, Ray, Transform};
 
 /// A primitive in a space of its own, as a renderer treats shapes that it can't bake.
 #[derive(Debug)]
@@ -103,6 +103,10 @@ impl Primitive for Placed {
                 .primitive()
                 .surface_at(&self.map.ray_to_object(ray), hit),
         )
+    }
+
+    fn texture_uv(&self, hit: &PrimHit, uv: DVec2) -> Option<DVec2> {
+        self.primitive().texture_uv(hit, uv)
     }
 
     fn as_solid(&self) -> Option<&dyn Solid> {

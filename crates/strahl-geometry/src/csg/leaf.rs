@@ -4,7 +4,7 @@ use crate::{
     Crossing, Crossings, PrimHit, Primitive, Scratch, Shape, Side, Solid, SurfaceId, SurfacePoint,
 };
 use strahl_math::error::{ROUNDOFF, gamma};
-use strahl_math::{Aabb, DVec3, Interval, Ray, Transform};
+use strahl_math::{Aabb, DVec2, DVec3, Interval, Ray, Transform};
 
 /// A shape of a compiled tree, with everything that the operations above determine about it.
 #[derive(Clone, Debug)]
@@ -247,15 +247,25 @@ impl Leaf {
         }
     }
 
-    /// The surface at a hit, in the tree's space, with normals that point out of the tree's solid. `bare` leaves out what textures need.
-    pub(super) fn surface_at(&self, ray: &Ray, hit: &PrimHit, bare: bool) -> SurfacePoint {
-        let local = PrimHit {
+    /// See [`Primitive::texture_uv`].
+    pub(super) fn texture_uv(&self, hit: &PrimHit, uv: DVec2) -> Option<DVec2> {
+        self.shape.texture_uv(&self.own_hit(hit), uv)
+    }
+
+    /// A hit with the number that the element has in the shape.
+    fn own_hit(&self, hit: &PrimHit) -> PrimHit {
+        PrimHit {
             surface: SurfaceId {
                 element: hit.surface.element.saturating_sub(self.first_element),
                 ..hit.surface
             },
             ..*hit
-        };
+        }
+    }
+
+    /// The surface at a hit, in the tree's space, with normals that point out of the tree's solid. `bare` leaves out what textures need.
+    pub(super) fn surface_at(&self, ray: &Ray, hit: &PrimHit, bare: bool) -> SurfacePoint {
+        let local = self.own_hit(hit);
         let ray = self.ray_to_object(ray);
         let mut surface = if bare {
             self.shape.bare_surface_at(&ray, &local)

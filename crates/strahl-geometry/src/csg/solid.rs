@@ -9,7 +9,7 @@ use crate::{
     Crossings, GeometryError, PrimHit, Primitive, Scratch, Shape, Solid, SurfaceId, SurfacePoint,
 };
 use strahl_accel::Bvh2;
-use strahl_math::{Aabb, DVec3, Interval, Ray};
+use strahl_math::{Aabb, DVec2, DVec3, Interval, Ray};
 
 /// A compiled CSG tree: several solids combined into one.
 ///
@@ -253,6 +253,11 @@ impl Primitive for Csg {
 
     fn bare_surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
         self.surface(ray, hit, true)
+    }
+
+    fn texture_uv(&self, hit: &PrimHit, uv: DVec2) -> Option<DVec2> {
+        let (leaf, _) = self.leaf_of(hit.surface.element);
+        self.leaves.get(leaf)?.texture_uv(hit, uv)
     }
 
     fn as_solid(&self) -> Option<&dyn Solid> {

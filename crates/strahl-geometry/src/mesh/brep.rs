@@ -8,7 +8,7 @@ use crate::{
 use std::sync::Arc;
 use strahl_accel::{Accelerator, Bvh2, TraversalStats, Visitor};
 use strahl_math::error::gamma;
-use strahl_math::{Aabb, DVec3, Interval, Ray, Transform};
+use strahl_math::{Aabb, DVec2, DVec3, Interval, Ray, Transform};
 
 /// A solid bounded by triangles: a closed mesh with an inside (boundary representation).
 ///
@@ -215,6 +215,10 @@ impl Primitive for Brep {
 
     fn surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
         self.mesh.surface_at(ray, hit)
+    }
+
+    fn texture_uv(&self, hit: &PrimHit, uv: DVec2) -> Option<DVec2> {
+        self.mesh.texture_uv(hit, uv)
     }
 
     fn as_solid(&self) -> Option<&dyn Solid> {

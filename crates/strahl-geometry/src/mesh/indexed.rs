@@ -445,6 +445,11 @@ impl Primitive for TriangleMesh {
         self.surface_at_element(hit.surface.element, hit.uv)
     }
 
+    /// Triangles of a mesh without texture coordinates are mapped by 0, as in POV-Ray.
+    fn texture_uv(&self, _hit: &PrimHit, uv: DVec2) -> Option<DVec2> {
+        Some(if self.uvs.is_some() { uv } else { DVec2::ZERO })
+    }
+
     /// Any map will do, within the rounding of f32 (see [`TriangleMesh::transformed`]).
     fn baked(&self, map: &Transform) -> Option<Shape> {
         self.transformed(map).ok().map(|mesh| Arc::new(mesh).into())

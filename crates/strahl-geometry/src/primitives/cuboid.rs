@@ -9,8 +9,9 @@ use strahl_math::{Aabb, DMat3, DVec2, DVec3, Interval, Ray, Transform};
 /// A box whose faces are perpendicular to the coordinate axes, called `box` in scenes.
 ///
 /// Facets: 0 and 1 are the faces at the smallest and the largest x, 2 and 3 those of y, 4 and 5 those of z. An edge belongs
-/// to the face of the earlier axis. Texture coordinates run from 0 to 1 over each face: `uv` is `(z, y)` on the faces of
-/// x, `(x, z)` on those of y and `(x, y)` on those of z, measured from the smallest corner.
+/// to the face of the earlier axis. Texture coordinates are POV-Ray's: the six faces unfolded into a cross, four columns of `u` by
+/// three rows of `v`. The middle row shows, from left to right, the faces of the smallest x, the largest z, the largest x and the
+/// smallest z; below and above the largest z are the faces of the smallest and the largest y.
 ///
 /// Rays are cut by the three pairs of planes (Kay and Kajiya, "Ray Tracing Complex Scenes", SIGGRAPH 1986), in f64 with real
 /// divisions. A ray that runs within a face or touches an edge or a corner only does not hit.
@@ -19,6 +20,47 @@ pub struct Cuboid {
     min: DVec3,
     max: DVec3,
 }
+
+/// A coordinate of the unfolded box: `start` plus a part of the way along an axis, backwards if `scale` is negative.
+struct Unfolded {
+    start: f64,
+    scale: f64,
+    axis: usize,
+}
+
+impl Unfolded {
+    const fn new(start: f64, scale: f64, axis: usize) -> Self {
+        Self { start, scale, axis }
+    }
+
+    /// The coordinate at a place within the box, from 0 to 1 on each axis, and the derivative of the point by it.
+    fn at(&self, part: DVec3, size: DVec3) -> (f64, DVec3) {
+        let mut derivative = DVec3::ZERO;
+        derivative[self.axis] = size[self.axis] / self.scale;
+        (self.start + part[self.axis] * self.scale, derivative)
+    }
+}
+
+/// The `u` and `v` of the faces at the smallest and the largest x, y and z.
+const UNFOLDED: [[[Unfolded; 2]; 2]; 3] = {
+    const COLUMN: f64 = 1.0 / 4.0;
+    const ROW: f64 = 1.0 / 3.0;
+    const fn column(start: f64, scale: f64, axis: usize) -> Unfolded {
+        Unfolded::new(start * COLUMN, scale * COLUMN, axis)
+    }
+    const fn row(start: f64, scale: f64, axis: usize) -> Unfolded {
+        Unfolded::new(start * ROW, scale * ROW, axis)
+    }
+    const UP: Unfolded = row(1.0, 1.0, 1);
+    [
+        [[column(0.0, 1.0, 2), UP], [column(3.0, -1.0, 2), UP]],
+        [
+            [column(1.0, 1.0, 0), row(0.0, 1.0, 2)],
+            [column(1.0, 1.0, 0), row(3.0, -1.0, 2)],
+        ],
+        [[column(4.0, -1.0, 0), UP], [column(1.0, 1.0, 0), UP]],
+    ]
+};
 
 impl Cuboid {
     /// The box between two corners; every coordinate of `min` must be less than that of `max`.
@@ -134,32 +176,22 @@ impl Primitive for Cuboid {
 
         let size = self.max - self.min;
         let part = (position - self.min) / size;
-        let (uv, dpdu, dpdv) = match axis {
-            0 => (
-                DVec2::new(part.z, part.y),
-                DVec3::Z * size.z,
-                DVec3::Y * size.y,
-            ),
-            1 => (
-                DVec2::new(part.x, part.z),
-                DVec3::X * size.x,
-                DVec3::Z * size.z,
-            ),
-            _ => (
-                DVec2::new(part.x, part.y),
-                DVec3::X * size.x,
-                DVec3::Y * size.y,
-            ),
-        };
+        let [right, up] = &UNFOLDED[axis][usize::from(at_max)];
+        let (u, dpdu) = right.at(part, size);
+        let (v, dpdv) = up.at(part, size);
         SurfacePoint {
             position,
             position_error: point_error(position, 0.0, 1),
             n_geom: n,
             n_shade: n,
-            uv,
+            uv: DVec2::new(u, v),
             dpdu,
             dpdv,
         }
+    }
+
+    fn texture_uv(&self, _hit: &PrimHit, uv: DVec2) -> Option<DVec2> {
+        Some(uv)
     }
 
     fn as_solid(&self) -> Option<&dyn Solid> {

@@ -205,11 +205,11 @@ impl Primitive for Sphere {
         } else {
             (1.0, 0.0)
         };
-        let east = axes.y_axis * east_x - axes.x_axis * east_y;
+        let west = axes.x_axis * east_y - axes.y_axis * east_x;
         let north = axes.z_axis * ring - (axes.x_axis * east_x + axes.y_axis * east_y) * height;
         SurfacePoint {
-            uv: DVec2::new(turn(local.y, local.x), 1.0 - det::acos(height) / PI),
-            dpdu: east * (2.0 * PI * r * ring),
+            uv: DVec2::new(turn(-local.y, local.x), 1.0 - det::acos(height) / PI),
+            dpdu: west * (2.0 * PI * r * ring),
             dpdv: north * (PI * r),
             ..bare
         }
@@ -222,6 +222,10 @@ impl Primitive for Sphere {
         let position = self.center + outward * r;
         let n = if self.radius < 0.0 { -outward } else { outward };
         SurfacePoint::bare(position, point_error(position, r, 8), n)
+    }
+
+    fn texture_uv(&self, _hit: &PrimHit, uv: DVec2) -> Option<DVec2> {
+        Some(uv)
     }
 
     fn as_solid(&self) -> Option<&dyn Solid> {

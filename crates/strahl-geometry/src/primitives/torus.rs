@@ -413,11 +413,15 @@ impl Primitive for Torus {
             position_error: point_error(position, self.major + self.minor, 16),
             n_geom: n,
             n_shade: n,
-            uv: DVec2::new(turn(y, x), turn(sin, cos)),
+            uv: DVec2::new(turn(-y, -x), turn(-sin, -cos)),
             dpdu: (axes.y_axis * x - axes.x_axis * y)
                 * (2.0 * PI * (self.major + self.minor * cos)),
             dpdv: (self.axis * cos - outward * sin) * (2.0 * PI * self.minor),
         }
+    }
+
+    fn texture_uv(&self, _hit: &PrimHit, uv: DVec2) -> Option<DVec2> {
+        Some(uv)
     }
 
     fn as_solid(&self) -> Option<&dyn Solid> {

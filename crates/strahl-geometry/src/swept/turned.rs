@@ -6,7 +6,7 @@ use super::{Lathe, Sor};
 use crate::{
     Crossings, GeometryError, PrimHit, Primitive, Scratch, Solid, SurfaceId, SurfacePoint,
 };
-use strahl_math::{Aabb, DVec3, Interval, Ray};
+use strahl_math::{Aabb, DVec2, DVec3, Interval, Ray};
 
 /// Makes a shape with a field `meridian` a primitive.
 macro_rules! turned_about_the_axis {
@@ -42,6 +42,10 @@ macro_rules! turned_about_the_axis {
 
             fn surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
                 Revolution(&self.meridian).surface_at(ray, hit)
+            }
+
+            fn texture_uv(&self, _hit: &PrimHit, uv: DVec2) -> Option<DVec2> {
+                Some(uv)
             }
 
             fn as_solid(&self) -> Option<&dyn Solid> {

@@ -136,6 +136,7 @@ struct Todo<'a> {
     span: Span,
     visibility: Visibility,
     hollow: bool,
+    uv_mapped: bool,
     lit: Lit,
     /// The body that it is or is a part of; `None` if it is the first of one that has no number yet.
     body: Option<u32>,
@@ -156,6 +157,7 @@ impl<'a> Todo<'a> {
                 span: object.span,
                 visibility: object.visibility,
                 hollow: object.hollow == Some(true),
+                uv_mapped: object.uv_mapped,
                 lit: Lit {
                     both_sides: object.double_illuminated,
                     ..Lit::PLAIN
@@ -187,6 +189,7 @@ impl<'a> Todo<'a> {
                 shadow: a.shadow && b.shadow,
             },
             hollow: object.hollow.unwrap_or(p.hollow),
+            uv_mapped: object.uv_mapped || p.uv_mapped,
             body: if fills_itself(object, p.material) {
                 None
             } else {
@@ -345,6 +348,7 @@ impl Pass {
             texture_space,
             body: todo.body.unwrap_or(0),
             hollow: todo.hollow,
+            uv_mapped: todo.uv_mapped,
         }
     }
 

@@ -49,8 +49,6 @@ pub struct Texture {
     pub interior: Option<Arc<Interior>>,
     /// Whether `surface` is written in the scene and is not the default: further textures are then layered over it.
     pub(super) written: bool,
-    /// Whether `uv_mapping` was given, which applies to everything written after it.
-    pub(super) uv_mapped: bool,
     /// The transformation of a uniform surface since it was written. The surface itself does not store it, but a pattern that
     /// later replaces its colour is transformed by it.
     pub(super) placed: Option<Box<Transform>>,
@@ -62,7 +60,7 @@ fn transform(texture: &mut Surface, by: &Transform, uv: bool) {
         Surface::Plain(plain) => {
             pigment::transform(&mut plain.pigment, by, uv);
             if let Some(normal) = &mut plain.normal {
-                normal::transform(normal, by);
+                normal::transform(normal, by, uv);
             }
         }
         Surface::Layered(layers) => layers.iter_mut().for_each(|l| transform(l, by, uv)),
@@ -77,9 +75,13 @@ fn transform(texture: &mut Surface, by: &Transform, uv: bool) {
             *texture = Surface::Transformed(Box::new(*by), Box::new(own));
         }
         Surface::Transformed(own, _) => **own = own.then(by),
+        // Its normals follow the transformation, the rest does not.
         Surface::UvMapped(inner) => {
             if uv {
                 transform(inner, by, uv);
+            } else {
+                let own = std::mem::take(texture);
+                *texture = Surface::Transformed(Box::new(*by), Box::new(own));
             }
         }
     }
@@ -124,7 +126,6 @@ impl Texture {
             inner_surface: self.inner_surface.as_ref().map(moved),
             interior: self.interior.clone(),
             written: self.written,
-            uv_mapped: self.uv_mapped,
             placed: if by.is_identity() || !self.written || !is_uniform(&self.surface) {
                 self.placed.clone()
             } else {
@@ -152,10 +153,7 @@ impl Texture {
     }
 
     /// Layers a texture over those written before, or replaces the default.
-    fn cover(&mut self, p: &mut Parser<'_>, mut surface: Arc<Surface>) -> PResult<()> {
-        if self.uv_mapped && !matches!(*surface, Surface::UvMapped(_)) {
-            surface = Arc::new(Surface::UvMapped(Box::new(Surface::clone(&surface))));
-        }
+    fn cover(&mut self, p: &mut Parser<'_>, surface: Arc<Surface>) -> PResult<()> {
         self.surface = if self.written {
             p.weigh(weight::of_texture(&self.surface))?;
             let lower = Surface::clone(&self.surface);
@@ -171,7 +169,7 @@ impl Texture {
 
 impl Parser<'_> {
     /// Reads an item of an object's look, if one follows: `pigment`, `normal`, `finish`, `texture`, `interior_texture`,
-    /// `interior`, `material`, `uv_mapping`.
+    /// `interior`, `material`.
     ///
     /// # Errors
     /// If it is invalid.
@@ -206,14 +204,6 @@ impl Parser<'_> {
                 }
                 if material.interior.is_some() {
                     texture.interior = material.interior;
-                }
-            }
-            Some(Word::UvMapping) => {
-                self.take(token)?;
-                texture.uv_mapped = self.flag()?;
-                if texture.uv_mapped && !matches!(*texture.surface, Surface::UvMapped(_)) {
-                    let inner = Surface::clone(&texture.surface);
-                    texture.surface = Arc::new(Surface::UvMapped(Box::new(inner)));
                 }
             }
             _ => return Ok(false),

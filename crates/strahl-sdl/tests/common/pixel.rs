@@ -51,3 +51,28 @@ pub(crate) fn agree(cases: &str, group: &str) {
         wrong.join("\n")
     );
 }
+
+/// Fails if a table has a group that is not among those named.
+pub(crate) fn all_named(cases: &str, groups: &[&str]) {
+    let of = |row: &str| row.split('\t').next().map(str::to_owned);
+    for group in cases.lines().skip(1).filter_map(of) {
+        assert!(groups.contains(&&*group), "{group} has no test");
+    }
+}
+
+/// Makes a test of each group of a table ([`agree`]).
+macro_rules! groups {
+    ($cases:expr; $($group:ident,)+) => {
+        $(#[test]
+        fn $group() {
+            common::pixel::agree($cases, stringify!($group));
+        })+
+
+        #[test]
+        fn every_group_has_a_test() {
+            common::pixel::all_named($cases, &[$(stringify!($group)),+]);
+        }
+    };
+}
+
+pub(crate) use groups;

@@ -42,6 +42,10 @@ use crate::pigment::Pigment;
 pub struct TexturePoint {
     /// The position on the surface, in the space of the texture.
     pub position: DVec3,
+    /// Where normals are evaluated, if that is not `position`: under a texture whose pigments alone lie on texture coordinates.
+    pub tilted_at: Option<DVec3>,
+    /// The position in the object's space, if `position` is on texture coordinates of an object with `uv_mapping`.
+    pub in_object: Option<DVec3>,
     /// The same position in world space, unaffected by the transformations of textures, pigments and patterns.
     pub surface: DVec3,
     /// Unit normal of the surface, turned towards the viewer.
@@ -59,6 +63,8 @@ impl TexturePoint {
     pub fn in_space(position: DVec3) -> Self {
         Self {
             position,
+            tilted_at: None,
+            in_object: None,
             surface: position,
             n_geom: DVec3::Y,
             n_shade: DVec3::ZERO,
@@ -71,6 +77,42 @@ impl TexturePoint {
     #[must_use]
     pub fn at(&self, position: DVec3) -> Self {
         Self { position, ..*self }
+    }
+
+    /// The same in another space, to which a map carries positions.
+    #[must_use]
+    pub(crate) fn moved(&self, map: impl Fn(DVec3) -> DVec3) -> Self {
+        Self {
+            position: map(self.position),
+            tilted_at: self.tilted_at.map(&map),
+            in_object: self.in_object.map(&map),
+            ..*self
+        }
+    }
+
+    /// The same at `(u, v, 0)`, where all textures of an object with `uv_mapping` are evaluated, in the world's space; `in_object` is
+    /// the position in the object's space.
+    #[must_use]
+    pub fn on_surface(&self, in_object: DVec3) -> Self {
+        Self {
+            in_object: Some(in_object),
+            ..self.at(self.uv.extend(0.0))
+        }
+    }
+
+    /// The same at `(u, v, 0)`, but normals are evaluated where they were.
+    #[must_use]
+    pub(crate) fn on_surface_but_normals(&self) -> Self {
+        Self {
+            tilted_at: self.tilted_at.or(Some(self.position)),
+            ..self.at(self.uv.extend(0.0))
+        }
+    }
+
+    /// The same where normals are evaluated.
+    #[must_use]
+    pub(crate) fn for_normals(&self) -> Self {
+        self.at(self.tilted_at.unwrap_or(self.position))
     }
 }
 

@@ -128,8 +128,9 @@ impl Writer {
         vec![
             needed(shape),
             needed(words("contained_by { box { -1.5, 1.5 } }")),
-            optional(words("max_gradient 8")),
-            optional(words("accuracy 0.001")),
+            // With less of either, POV-Ray misses parts and is off by more than a colour's width.
+            needed(words("max_gradient 20")),
+            needed(words("accuracy 0.00001")),
             optional(words("precompute 8 x, y, z")),
         ]
     }

@@ -380,4 +380,8 @@ impl Primitive for Parametric {
             }
         })
     }
+
+    fn texture_uv(&self, _hit: &PrimHit, uv: DVec2) -> Option<DVec2> {
+        Some(uv)
+    }
 }

@@ -8,6 +8,7 @@ use crate::token::{Kind, Token};
 use crate::value::Value;
 use strahl_geometry::{GeometryError, Primitive, Shape};
 use strahl_scene::{CsgOp, Object, ObjectKind};
+use strahl_shade::texture::Texture as Surface;
 
 /// State between the items of an object, besides the object itself.
 #[derive(Default)]
@@ -112,24 +113,37 @@ impl Parser<'_> {
                 | Word::Texture
                 | Word::InteriorTexture
                 | Word::Interior
-                | Word::Material
-                | Word::UvMapping,
+                | Word::Material,
             ) => {
                 // The item is in the space to which the object has been moved, and so is the default texture, which the object
                 // gets only here.
+                let moved = entity.object.transform.is_some() && !entity.object.uv_mapped;
                 let mut texture = match entity.texture.take() {
-                    Some(texture) if entity.object.transform.is_some() => {
-                        texture.transformed(&entity.placement())
-                    }
+                    Some(texture) if moved => texture.transformed(&entity.placement()),
                     Some(texture) => texture,
                     None => self.state.default_texture.clone(),
                 };
                 self.texture_item(&mut texture, token)?;
-                entity.texture = Some(match entity.object.transform {
-                    None => texture,
-                    Some(_) => texture.transformed(&entity.placement().inverted()),
+                entity.texture = Some(if moved {
+                    texture.transformed(&entity.placement().inverted())
+                } else {
+                    texture
                 });
                 draft.textured = true;
+                return Ok(true);
+            }
+            Some(Word::UvMapping) => {
+                self.take(token)?;
+                // As measured, components of blobs with textures of their own stay as they are.
+                let of_components = matches!(entity.object.kind, ObjectKind::Shape(Shape::Blob(_)))
+                    && entity
+                        .texture
+                        .as_ref()
+                        .is_some_and(|t| matches!(*t.surface, Surface::Shared(..)));
+                entity.object.uv_mapped = self.flag()? && !of_components;
+                if entity.object.uv_mapped {
+                    self.expand_instances(&mut entity.object)?;
+                }
                 return Ok(true);
             }
             Some(Word::NoShadow) => visibility.shadow = false,

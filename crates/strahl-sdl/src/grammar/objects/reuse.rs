@@ -196,6 +196,7 @@ fn attributes(object: &Object, kind: ObjectKind) -> Object {
         visibility: object.visibility,
         hollow: object.hollow,
         double_illuminated: object.double_illuminated,
+        uv_mapped: object.uv_mapped,
         kind,
     }
 }

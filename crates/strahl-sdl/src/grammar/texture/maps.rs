@@ -177,18 +177,18 @@ impl Parser<'_> {
         Ok(())
     }
 
-    /// A map with non-decreasing positions, as lookups require; a position that is too small is raised, with a warning.
+    /// The map, with a warning if its positions decrease; a position that is not a number becomes that before it.
     pub(super) fn in_order<T>(&mut self, mut map: BlendMap<T>) -> BlendMap<T> {
-        let mut highest = f64::NEG_INFINITY;
-        let mut raised = false;
+        let mut before = f64::NEG_INFINITY;
+        let mut falls = false;
         for (at, _) in &mut map.entries {
-            if *at < highest || at.is_nan() {
-                *at = highest;
-                raised = true;
+            falls |= !(*at >= before);
+            if at.is_nan() {
+                *at = before;
             }
-            highest = *at;
+            before = *at;
         }
-        if raised {
+        if falls {
             let place = self.place();
             self.warn_hint(
                 place,

@@ -66,7 +66,7 @@ impl Texture {
     /// Whether the object has an interior but no texture, so that it takes its texture from the object it is a part of, or else
     /// the default.
     pub(in crate::grammar) fn is_bare(&self) -> bool {
-        !self.written && !self.uv_mapped && self.inner_surface.is_none() && self.interior.is_some()
+        !self.written && self.inner_surface.is_none() && self.interior.is_some()
     }
 }
 

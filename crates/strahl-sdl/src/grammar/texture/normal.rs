@@ -145,8 +145,10 @@ impl Draft {
 }
 
 /// Transforms a normal.
-pub(super) fn transform(normal: &mut PovNormal, by: &Transform) {
-    modifiers::transform(&mut normal.modifiers.warps, by);
+pub(super) fn transform(normal: &mut PovNormal, by: &Transform, uv: bool) {
+    if uv || !normal.uv_mapped {
+        modifiers::transform(&mut normal.modifiers.warps, by);
+    }
 }
 
 impl Parser<'_> {
@@ -236,6 +238,11 @@ impl Parser<'_> {
                     draft.normal.amount = size;
                 }
                 return self.normal_amount(draft);
+            }
+            Some(Word::UvMapping) => {
+                self.take(token)?;
+                draft.normal.uv_mapped = self.flag()?;
+                return Ok(());
             }
             Some(Word::Facets) => return self.skip_facets(token),
             _ => {}

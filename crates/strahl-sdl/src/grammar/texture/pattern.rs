@@ -236,7 +236,7 @@ impl Parser<'_> {
     }
 
     /// `on`, `off`, a number, or nothing for `on`.
-    pub(super) fn flag(&mut self) -> PResult<bool> {
+    pub(in crate::grammar) fn flag(&mut self) -> PResult<bool> {
         if self.starts_number()? {
             return Ok(self.float()? != 0.0);
         }

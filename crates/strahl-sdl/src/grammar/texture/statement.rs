@@ -81,7 +81,8 @@ impl From<Surface> for Draft {
 impl Draft {
     fn finish(mut self) -> Surface {
         self.loose.put_into(&mut self.single);
-        let texture = match (self.chooser, self.choice) {
+        let is_patterned = !matches!(self.chooser, Chooser::Single);
+        let mut texture = match (self.chooser, self.choice) {
             (Chooser::Single, _) => self.single,
             (Chooser::Average, Choice::Map(map)) => {
                 Surface::Average(map.entries, Box::new(self.modifiers))
@@ -102,11 +103,55 @@ impl Draft {
                 }
             }
         };
+        if is_patterned {
+            normals_in_space(&mut texture);
+        }
         if self.uv_mapped {
-            Surface::UvMapped(Box::new(texture))
+            on_surface_but_normals(texture)
         } else {
             texture
         }
+    }
+}
+
+/// The texture with everything but its normals on texture coordinates, as POV-Ray's `texture { uv_mapping ... }` shows it.
+fn on_surface_but_normals(texture: Surface) -> Surface {
+    match texture {
+        Surface::Plain(mut plain) => {
+            if let Some(normal) = &mut plain.normal {
+                normal.uv_mapped = false;
+            }
+            plain.pigment = match plain.pigment {
+                mapped @ Pigment::UvMapped(_) => mapped,
+                pigment => Pigment::UvMapped(Box::new(pigment)),
+            };
+            Surface::Plain(plain)
+        }
+        Surface::Layered(layers) => {
+            Surface::Layered(layers.into_iter().map(on_surface_but_normals).collect())
+        }
+        patterned => Surface::UvMapped(Box::new(patterned)),
+    }
+}
+
+/// Makes `uv_mapping` of the normals ineffective, as it is in the members of patterned textures.
+fn normals_in_space(texture: &mut Surface) {
+    match texture {
+        Surface::Plain(plain) => {
+            if let Some(normal) = plain.normal.as_mut().filter(|normal| normal.uv_mapped) {
+                normal.uv_mapped = false;
+            }
+        }
+        Surface::Layered(list)
+        | Surface::Blocks(_, list)
+        | Surface::MaterialMap(_, _, list)
+        | Surface::Shared(_, list) => list.iter_mut().for_each(normals_in_space),
+        Surface::Map(_, map) => map
+            .entries
+            .iter_mut()
+            .for_each(|(_, t)| normals_in_space(t)),
+        Surface::Average(members, _) => members.iter_mut().for_each(|(_, t)| normals_in_space(t)),
+        Surface::Transformed(_, inner) | Surface::UvMapped(inner) => normals_in_space(inner),
     }
 }
 

@@ -1,0 +1,12 @@
+//! Textures with `uv_mapping`: one pixel of each scene of `data/texture_coordinates.tsv`, which has the values of POV-Ray 3.7.
+
+mod common;
+
+common::pixel::groups! {
+    include_str!("data/texture_coordinates.tsv");
+    surfaces_with_coordinates_of_their_own,
+    other_surfaces_are_mapped_by_x_and_y_of_the_world,
+    normals_by_texture_coordinates_are_tilted_in_the_world,
+    a_texture_with_uv_mapping_leaves_normals_in_space,
+    uv_mapping_of_an_object_is_that_of_its_parts,
+}
