@@ -233,10 +233,18 @@ fn term(
     let light = film.map_or(light, |factor| light * factor);
     let both_sides = surface.lit.both_sides;
     let diffuse_factor = finish.diffuse_factor(if both_sides { cos.abs() } else { cos });
+    let mut diffuse = body * light * diffuse_factor;
+    let mut grain = 0.0;
+    if finish.crand != 0.0 && diffuse_factor != 0.0 {
+        // As in POV-Ray (measured): the pigment's colour counts in full, also where the layer is transparent.
+        grain = finish.grain(surface.resolved.point.position);
+        diffuse = diffuse - layer.above * layer.color.rgb * light * grain;
+    }
     let mut term = SurfaceTerm {
         n_dot_l: cos,
         diffuse_factor,
-        diffuse: body * light * diffuse_factor,
+        grain,
+        diffuse,
         tint: Color::WHITE,
         film,
         ..SurfaceTerm::default()
@@ -262,19 +270,12 @@ pub(crate) fn faces(paint: &TexturePaint<'_>, l: DVec3) -> bool {
         .any(|layer| layer.normal.dot(l) > 0.0 || layer.finish.diffuse_back != 0.0)
 }
 
-/// Subtracts the grain of `crand` from the surface's own light.
-pub(crate) fn grained(paint: &TexturePaint<'_>, place: DVec3, light: Color) -> Color {
-    let loss = grain(paint, place);
-    if loss == 0.0 {
+/// The surface's own light, which is not below zero although `crand` may subtract more than there is.
+pub(crate) fn grained(paint: &TexturePaint<'_>, light: Color) -> Color {
+    if paint.layers.iter().all(|layer| layer.finish.crand == 0.0) {
         return light;
     }
-    light.map(|x| if x > loss { x - loss } else { 0.0 })
-}
-
-/// What `crand` subtracts from each channel.
-pub(crate) fn grain(paint: &TexturePaint<'_>, place: DVec3) -> f64 {
-    let grain = |layer: &LayerPoint<'_>| layer.finish.grain(place) * layer.share;
-    paint.layers.iter().map(grain).sum()
+    light.map(|x| if x > 0.0 { x } else { 0.0 })
 }
 
 /// The layers at a hit, for ray trees; `eta` is that of [`paint`].

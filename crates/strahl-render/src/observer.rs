@@ -162,8 +162,6 @@ pub struct HitReport {
     pub specular: Color,
     /// p, for `specular`.
     pub shininess: f64,
-    /// What `crand` takes from each channel of the surface's own light.
-    pub grain: f64,
     /// kr as it was applied (including Fresnel and total reflection), all layers together.
     pub reflection: Color,
     /// kt as it was applied.

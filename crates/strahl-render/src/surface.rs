@@ -331,7 +331,6 @@ impl<'s> Surface<'s> {
         hit: &Hit,
         split: Split,
         shading: Shading,
-        grain: f64,
     ) -> HitReport {
         let finish = &self.material.finish;
         HitReport {
@@ -356,7 +355,6 @@ impl<'s> Surface<'s> {
             diffuse: finish.diffuse,
             specular: finish.specular,
             shininess: finish.shininess,
-            grain,
             reflection: split.kr,
             transmission: split.kt * split.fade,
         }

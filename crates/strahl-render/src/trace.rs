@@ -346,7 +346,7 @@ impl<'s> TreeTracer<'s> {
             node.local = surface.diagnose(scene, model, &first);
             if O::ACTIVE {
                 let shading = Shading::Model(model);
-                let seen = surface.report(scene, hit, Split::NONE, shading, 0.0);
+                let seen = surface.report(scene, hit, Split::NONE, shading);
                 observer.ray(report(Some(seen), None));
             }
             self.nodes.push(node);
@@ -382,7 +382,7 @@ impl<'s> TreeTracer<'s> {
                 observer.light(index, term, detail);
             }
         }
-        node.local = layers::grained(&self.paint, first.position, node.local);
+        node.local = layers::grained(&self.paint, node.local);
         self.nodes.push(node);
         self.queue_branches(branch, index, surface, hit, &split, observer);
         Some(first)

@@ -137,8 +137,8 @@ fn names_look_as_they_were_measured() {
 
 /// The red of 8x6 pixels of POV-Ray's pictures: veins and clouds are where POV-Ray's are, not only of their colours.
 #[test]
-fn clouds_and_woods_are_where_povrays_are() {
-    const LOOKS: [(&str, &str, [u8; 48]); 3] = [
+fn clouds_woods_and_stones_are_where_povrays_are() {
+    const LOOKS: [(&str, &str, [u8; 48]); 5] = [
         (
             "skies.inc",
             "camera { location 0 angle 90 look_at <0, 0.9, 1> } sky_sphere { S_Cloud5 }",
@@ -164,6 +164,24 @@ fn clouds_and_woods_are_where_povrays_are() {
                 191, 185, 214, 203, 206, 184, 215, 190, 214, 195, 203, 210, 214, 203, 217, 213,
                 211, 213, 184, 207, 196, 193, 210, 215, 206, 210, 216, 182, 200, 210, 213, 211,
                 210, 180, 208, 211, 185, 188, 194, 215, 190, 203, 215, 200, 204, 210, 192, 195,
+            ],
+        ),
+        (
+            "stones1.inc",
+            "plane { -z, 0 texture { T_Stone9 finish { phong 0 } } }",
+            [
+                192, 179, 199, 185, 198, 173, 186, 198, 200, 197, 193, 194, 198, 176, 199, 182,
+                172, 198, 188, 195, 197, 195, 183, 187, 172, 185, 188, 171, 178, 179, 190, 172,
+                202, 184, 179, 182, 199, 182, 181, 194, 183, 193, 187, 195, 191, 194, 198, 201,
+            ],
+        ),
+        (
+            "stones2.inc",
+            "plane { -z, 0 texture { T_Stone44 } }",
+            [
+                156, 157, 151, 154, 151, 166, 149, 148, 141, 163, 169, 147, 145, 166, 144, 146,
+                153, 158, 150, 161, 166, 153, 140, 161, 151, 163, 158, 150, 147, 136, 152, 167,
+                158, 156, 156, 165, 150, 148, 169, 138, 157, 153, 141, 160, 161, 173, 142, 146,
             ],
         ),
     ];

@@ -100,7 +100,6 @@ fn hit_value(scene: &RenderScene, hit: &HitReport) -> Value {
         "Ia": color(hit.ambient_light),
         "ka_Ia": color(hit.ambient),
         "emission": color(hit.emission),
-        "grain": hit.grain,
         "kr": color(hit.reflection),
         "kt": color(hit.transmission),
     });
@@ -209,6 +208,7 @@ fn surface_term(shading: Option<&Shading>, term: &SurfaceTerm) -> Value {
     let mut value = json!({
         "n_dot_l": term.n_dot_l,
         "diffuse_factor": term.diffuse_factor,
+        "grain": term.grain,
         "diffuse": color(term.diffuse),
         "highlight": color(term.highlight),
     });

@@ -464,10 +464,22 @@ fn write_finish_terms(
                 format!("{cos}^{}", d.number(f.brilliance)),
             ),
         };
+        let (grain, by_grain) = match term.grain == 0.0 {
+            true => ("", String::new()),
+            false => (
+                " - crand · rgb · above · L",
+                format!(
+                    " - {} · {} · {} · {light}{by_film}",
+                    d.number(term.grain),
+                    d.color(layer.color.rgb),
+                    d.color(layer.above)
+                ),
+            ),
+        };
         page.line(
             INNER,
             &format!(
-                "{name}{named} · {n_dot_l}{power} · C · L{film} = {} · {value} · {} · {light}{by_film} = {}",
+                "{name}{named} · {n_dot_l}{power} · C · L{film}{grain} = {} · {value} · {} · {light}{by_film}{by_grain} = {}",
                 d.number(strength),
                 d.color(layer.body),
                 d.color(term.diffuse)

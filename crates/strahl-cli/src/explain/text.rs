@@ -191,8 +191,10 @@ impl Writer<'_> {
         if !node.lights.is_empty() {
             local.push_str(" + lights");
         }
-        if hit.grain != 0.0 {
-            local.push_str(&format!(" - crand {}", d.number(hit.grain)));
+        if let Shading::Finish { layers, .. } = &hit.shading
+            && layers.iter().any(|layer| layer.finish.crand != 0.0)
+        {
+            local.push_str(" (crand: not below 0)");
         }
         page.line(RAY, &format!("{local} = {}", d.color(node.local)));
     }

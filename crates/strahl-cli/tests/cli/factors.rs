@@ -136,10 +136,10 @@ fn local(ray: &Value, seen: &mut Vec<String>) -> Triple {
             plus(triple(&light["diffuse"]), triple(&light["highlight"])),
         );
     }
-    let grain = number(&hit["grain"]);
-    if grain != 0.0 {
+    let grainy = |layer: &&Value| number(&layer["finish"]["crand"]) != 0.0;
+    if list(&hit["layers"]).iter().any(|layer| grainy(&layer)) {
         seen.push("crand".to_owned());
-        local = local.map(|x| if x > grain { x - grain } else { 0.0 });
+        local = local.map(|x| if x > 0.0 { x } else { 0.0 });
     }
     local
 }
@@ -261,7 +261,13 @@ fn check_finish_term(
         let expected = number(&finish["diffuse"]) * n_dot_l.powf(brilliance);
         assert!(close(expected, factor), "{expected} {term:#} {layer:#}");
     }
-    let diffuse = scaled(times(triple(&layer["C"]), arriving), factor);
+    let mut diffuse = scaled(times(triple(&layer["C"]), arriving), factor);
+    let grain = number(&term["grain"]);
+    if grain != 0.0 {
+        let color = times(triple(&layer["above"]), triple(&layer["pigment"]["rgb"]));
+        let loss = scaled(times(color, arriving), grain);
+        diffuse = [0, 1, 2].map(|i| diffuse[i] - loss[i]);
+    }
     assert_eq!(diffuse, triple(&term["diffuse"]));
     let roughness = number(&finish["roughness"]);
     for (name, exponent) in [

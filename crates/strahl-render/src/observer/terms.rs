@@ -67,6 +67,8 @@ pub struct SurfaceTerm {
     pub n_dot_l: f64,
     /// What the diffuse term takes of the light, without the colour: `n·l`, for finishes `diffuse (n·l)^brilliance`.
     pub diffuse_factor: f64,
+    /// What `crand` takes from that factor. It counts with the layer's whole colour, also where the layer is transparent.
+    pub grain: f64,
     /// r·v, where there is a highlight around the mirror direction.
     pub r_dot_v: Option<f64>,
     /// h·n, where there is a highlight by half vectors.

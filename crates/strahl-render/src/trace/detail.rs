@@ -27,8 +27,7 @@ impl TreeTracer<'_> {
                 model: self.settings.force_shading,
             }
         };
-        let grain = layers::grain(&self.paint, surface.resolved.point.position);
-        surface.report(self.tracer.scene, hit, split, shading, grain)
+        surface.report(self.tracer.scene, hit, split, shading)
     }
 
     /// What the term of a light is made of.
