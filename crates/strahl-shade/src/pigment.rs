@@ -155,6 +155,7 @@ mod tests {
     use super::*;
     use crate::Color;
     use crate::patterns::Pattern;
+    use strahl_math::DVec3;
 
     fn gray(value: f64) -> ColorFt {
         Color::gray(value).into()
