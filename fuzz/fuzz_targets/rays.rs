@@ -52,6 +52,18 @@ impl Choices<'_> {
         }
     }
 
+    /// A patch, perhaps collapsed.
+    fn patch(&mut self) -> Object {
+        let points = std::array::from_fn(|_| std::array::from_fn(|_| self.point()));
+        let weights = std::array::from_fn(|_| {
+            std::array::from_fn(|_| [1.0, 1.0, 0.5, 3.0][self.below(4)])
+        });
+        match BicubicPatch::try_rational(points, weights) {
+            Ok(patch) => patch.into(),
+            Err(_) => self.solid(),
+        }
+    }
+
     fn material(&mut self) -> Material {
         match self.below(4) {
             0 => Material::glass(1.5),
@@ -81,7 +93,8 @@ impl Choices<'_> {
     fn object(&mut self) -> Object {
         match self.below(9) {
             0 => Triangle::new(self.point(), self.point(), self.point()).into(),
-            1 | 2 => self.mesh(),
+            1 => self.mesh(),
+            2 => self.patch(),
             3 => Plane::new(self.point(), DVec3::Y).into(),
             4 => {
                 let op = [CsgOp::Union, CsgOp::Difference, CsgOp::Intersection][self.below(3)];

@@ -13,6 +13,7 @@ pub mod csg;
 pub mod fractal;
 pub mod implicit;
 pub mod mesh;
+pub mod patch;
 mod primitive;
 pub mod primitives;
 mod shape;
@@ -29,6 +30,7 @@ pub use implicit::{
 pub use mesh::{
     Brep, MeshData, PlaneHit, Polygon, RayShear, SmoothTriangle, Triangle, TriangleMesh,
 };
+pub use patch::BicubicPatch;
 pub use primitive::{GeometryError, PrimHit, Primitive, Scratch, Solid, SurfaceId, SurfacePoint};
 pub use primitives::{Cone, Cuboid, Cylinder, Disc, Plane, Quadric, Sphere, Torus};
 pub use shape::Shape;

@@ -2,6 +2,7 @@ use crate::algebraic::{Blob, Polynomial, Superellipsoid};
 use crate::fractal::Julia;
 use crate::implicit::{HeightField, Isosurface, Parametric};
 use crate::mesh::{Brep, Polygon, SmoothTriangle, Triangle, TriangleMesh};
+use crate::patch::BicubicPatch;
 use crate::primitives::{Cone, Cuboid, Cylinder, Disc, Plane, Quadric, Sphere, Torus};
 use crate::swept::{Glyph, Lathe, Prism, Sor, SphereSweep};
 use crate::{
@@ -138,6 +139,8 @@ shapes! {
     Isosurface(Arc<Isosurface>),
     /// A surface whose points are functions of two parameters.
     Parametric(Arc<Parametric>),
+    /// A bicubic Bezier patch.
+    BicubicPatch(Arc<BicubicPatch>),
     /// A slice of a Julia set in four dimensions.
     Julia(Arc<Julia>),
     /// A tree of solids, combined.
@@ -172,6 +175,7 @@ shared!(
     HeightField,
     Isosurface,
     Parametric,
+    BicubicPatch,
     Julia,
     Polynomial,
     Blob,

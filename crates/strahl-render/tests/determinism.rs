@@ -4,7 +4,7 @@ mod common;
 
 use std::collections::BTreeMap;
 
-use common::{compiled, every_shape, glass_and_mirrors, rendered};
+use common::{compiled, every_shape, glass_and_mirrors, patches, rendered};
 use strahl_accel::AcceleratorKind;
 use strahl_geometry::Primitive;
 use strahl_render::{CompileOptions, Refinement, Region, Sampling, TileOrder, compile};
@@ -43,7 +43,7 @@ fn accelerators() -> Vec<AcceleratorKind> {
 
 #[test]
 fn all_accelerators_give_the_same_bits() {
-    for scene in [glass_and_mirrors(), every_shape()] {
+    for scene in [glass_and_mirrors(), every_shape(), patches()] {
         let mut hashes = Vec::new();
         for accelerator in accelerators() {
             let scene = compile(&scene, &CompileOptions { accelerator }).expect("valid");

@@ -139,6 +139,7 @@ const OBJECTS: &[&str] = &[
     "superellipsoid",
     "sphere_sweep",
     "parametric",
+    "bicubic_patch",
     "julia_fractal",
     "quadric",
     "poly",

@@ -157,7 +157,7 @@ fn strict_takes_warnings_for_errors() {
     write(
         f,
         "w.pov",
-        "sphere { 0, 1 }\nbicubic_patch { type 0 <0,0,0> }\n#warning \"beware\"",
+        "sphere { 0, 1 }\nsphere { 0, 0 }\n#warning \"beware\"",
     );
     let small = ["render", "w.pov", "--size", "4x3"];
     assert!(strahl(f, &small).status.success());

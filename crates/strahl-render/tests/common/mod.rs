@@ -2,8 +2,8 @@
 #![allow(dead_code, reason = "each test binary uses a part of it")]
 
 use strahl_geometry::{
-    Brep, Cone, Cuboid, Cylinder, Disc, MeshData, Plane, Polygon, Primitive, Quadric, Shape,
-    SmoothTriangle, Sphere, Torus, Triangle, TriangleMesh,
+    BicubicPatch, Brep, Cone, Cuboid, Cylinder, Disc, MeshData, Plane, Polygon, Primitive, Quadric,
+    Shape, SmoothTriangle, Sphere, Torus, Triangle, TriangleMesh,
 };
 use strahl_math::{DVec3, Transform};
 use strahl_render::{CompileOptions, RenderOptions, RenderScene, Rendered, compile, render};
@@ -176,6 +176,55 @@ pub(crate) fn every_shape() -> Scene {
     for i in 0..5 {
         let place = DVec3::new(1e6 + 2e-6 * f64::from(i), 3.0, -1e6);
         scene = scene.add(Sphere::new(place, 1e-6).named("tiny"));
+    }
+    scene
+}
+
+/// A ball of glass and a curtain behind it, of Bezier patches with common borders, some of them turned and scaled.
+pub(crate) fn patches() -> Scene {
+    let mut scene = Scene::new()
+        .light(Light::point(DVec3::new(3.0, 5.0, 9.0), Color::gray(0.8)))
+        .light(Light::directional(
+            -DVec3::new(4.0, 2.0, 5.0),
+            Color::gray(0.4),
+        ))
+        .background(Background::Solid(Color::new(0.1, 0.2, 0.3)))
+        .camera(Camera::orthographic(
+            DVec3::new(0.3, 0.2, 9.0),
+            DVec3::ZERO,
+            DVec3::Y,
+            3.2,
+        ));
+    // A quarter of a circle, nearly.
+    let arc = [[1.0, 0.0], [1.0, 0.55], [0.55, 1.0], [0.0, 1.0]];
+    for octant in 0..8 {
+        let sign = |bit: usize| if octant >> bit & 1 == 0 { 1.0 } else { -1.0 };
+        let points = std::array::from_fn(|j| {
+            std::array::from_fn(|i| {
+                let ([c, s], [r, y]) = (arc[i], arc[j]);
+                DVec3::new(sign(0) * r * c, sign(1) * y, sign(2) * r * s)
+            })
+        });
+        let patch = BicubicPatch::try_new(points).expect("a patch");
+        scene = scene.add(patch.material(Material::glass(1.1)));
+    }
+    let height = |i: usize, j: usize| [0.0, 0.9, -0.7, 0.3, -0.8, 0.6, 0.1][(3 * i + 2 * j) % 7];
+    let turn = Transform::rotate(DVec3::new(1.0, 2.0, 0.5), 0.3)
+        .then(&Transform::try_scale(DVec3::new(1.4, 1.2, -0.8)).expect("regular"))
+        .then(&Transform::translate(DVec3::new(0.0, 0.0, -1.8)));
+    for column in 0..2 {
+        let points = std::array::from_fn(|j| {
+            std::array::from_fn(|i| {
+                let i = 3 * column + i;
+                DVec3::new(i as f64 / 3.0 - 1.0, j as f64 * 0.6 - 0.9, height(i, j))
+            })
+        });
+        let weights = std::array::from_fn(|j| {
+            std::array::from_fn(|i| 1.0 + ((3 * column + i + j) % 3) as f64 * 0.5)
+        });
+        let patch = BicubicPatch::try_rational(points, weights).expect("a patch");
+        let cloth = Material::matte(Color::new(0.8, 0.5, 0.3)).with_reflection(Color::gray(0.2));
+        scene = scene.add(Object::from(patch).material(cloth).transformed(&turn));
     }
     scene
 }

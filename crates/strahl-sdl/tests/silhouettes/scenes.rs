@@ -386,6 +386,14 @@ pub(crate) const SCENES: &[(&str, &str)] = &[
         "parametric { function { (1 + 0.4 * cos(v)) * cos(u) } function { 0.4 * sin(v) } function { (1 + 0.4 * cos(v)) * sin(u) } <0, 0>, <2 * pi, 2 * pi> contained_by { box { -1.5, 1.5 } } max_gradient 3 accuracy 0.0001 precompute 8 x, y, z texture { Red } no_shadow rotate <-40, 0, 10> }",
     ),
     (
+        "bicubic patch",
+        "bicubic_patch { type 1 u_steps 5 v_steps 5 <-1, -1, 0>, <-0.4, -1.3, 1>, <0.4, -0.8, -1>, <1, -1, 0>, <-1.2, -0.3, 0.8>, <-0.4, -0.3, -1>, <0.4, -0.4, 1>, <1.1, -0.3, 0>, <-0.8, 0.3, 0>, <-0.4, 0.4, 1>, <0.4, 0.3, -1>, <1.2, 0.3, 0.6>, <-1, 1, 0>, <-0.4, 1.3, -1>, <0.4, 0.8, 1>, <1, 1, 0> texture { Red } no_shadow rotate <30, 40, 0> }",
+    ),
+    (
+        "bicubic patches cut by a ball",
+        "intersection { bicubic_patch { type 0 u_steps 4 v_steps 4 <-1, -1, 0>, <-0.4, -1, 0>, <0.4, -1, 0>, <1, -1, 0>, <-1, -0.3, 0>, <-0.4, -0.3, -1>, <0.4, -0.3, -1>, <1, -0.3, 0>, <-1, 0.3, 0>, <-0.4, 0.3, -1>, <0.4, 0.3, -1>, <1, 0.3, 0>, <0, 1, 0>, <0, 1, 0>, <0, 1, 0>, <0, 1, 0> texture { Red } } sphere { <0.2, 0, 0>, 0.9 texture { Green } } no_shadow }",
+    ),
+    (
         "object around an object",
         "object { object { Ball scale 0.5 } texture { Red } translate y * 0.5 }",
     ),

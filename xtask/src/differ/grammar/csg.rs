@@ -147,7 +147,7 @@ impl Writer {
 
     /// A surface without an inside.
     fn patch(&mut self) -> (&'static str, Vec<Part>) {
-        match self.dice.below(8) {
+        match self.dice.below(9) {
             0 => {
                 let (center, normal) = (self.point(0.5), self.direction());
                 let radius = self.number(0.6, 1.5);
@@ -164,6 +164,7 @@ impl Writer {
             4 => ("mesh", self.mesh()),
             5 => ("mesh2", self.mesh2()),
             6 => ("parametric", self.parametric()),
+            7 => ("bicubic_patch", self.bicubic_patch()),
             _ => {
                 let (normal, distance) = (self.direction(), self.number(-1.0, 1.0));
                 ("plane", vec![needed(list![normal, ",", distance])])

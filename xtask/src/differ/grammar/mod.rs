@@ -209,6 +209,7 @@ mod tests {
             "mesh",
             "mesh2",
             "parametric",
+            "bicubic_patch",
             "plane",
             "poly",
             "polygon",

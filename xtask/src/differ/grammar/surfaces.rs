@@ -102,6 +102,20 @@ impl Writer {
         parts
     }
 
+    /// Sixteen points about a bent square, as fine as POV-Ray divides them.
+    pub(super) fn bicubic_patch(&mut self) -> Vec<Part> {
+        let mut parts = vec![needed(words("type 1 u_steps 5 v_steps 5"))];
+        for j in 0..4 {
+            for i in 0..4 {
+                let near = |k: i32| f64::from(k) * 0.8 - 1.2;
+                let shake = [0, 1, 2].map(|_| self.dice.number(-0.4, 0.4));
+                let point = [near(i) + shake[0], near(j) + shake[1], 2.0 * shake[2]];
+                parts.push(needed(list![Node::from(point)]));
+            }
+        }
+        parts
+    }
+
     pub(super) fn parametric(&mut self) -> Vec<Part> {
         let (a, b) = (self.dice.number(0.3, 1.0), self.dice.number(0.0, 0.5));
         let shape = match self.dice.below(3) {

@@ -2,6 +2,7 @@
 //!
 //! `modifiers` reads the items common to all objects; `reuse` lets uses of a declared object share a group.
 
+mod bicubic_patch;
 mod blob;
 mod bounds;
 mod boxes;
@@ -46,6 +47,7 @@ pub(super) type ObjectParser = fn(&mut Parser<'_>) -> PResult<Entity>;
 
 /// All objects by keyword.
 static OBJECTS: [Option<ObjectParser>; Word::ALL.len()] = by_word::<ObjectParser, _>([
+    (Word::BicubicPatch, bicubic_patch::bicubic_patch),
     (Word::Blob, blob::blob),
     (Word::Box, boxes::cuboid),
     (Word::Isosurface, isosurface::isosurface),

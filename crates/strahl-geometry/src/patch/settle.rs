@@ -1,0 +1,75 @@
+//! Which candidates of a search are hits, where they are doubtful.
+
+use super::border::winding;
+use super::net::Net;
+use super::search::{Candidate, Frame};
+
+/// The hits among all candidates of a line.
+///
+/// Twins from neighbouring pieces are made one. Then the hits, with their signs, must add up to the number of times that
+/// the border of the patch winds around the ray, which is known exactly and agrees with that of the neighbours: if they
+/// don't, the decisions nearest to the border are turned around.
+pub(super) fn settle(mut found: Vec<Candidate>, net: &Net<4>, frame: &Frame) -> Vec<Candidate> {
+    // The order of parameters, so that nothing depends on the order of the search.
+    found.sort_by(|a, b| {
+        a.t.total_cmp(&b.t)
+            .then(a.u.total_cmp(&b.u))
+            .then(a.v.total_cmp(&b.v))
+    });
+    let mut single: Vec<Candidate> = Vec::with_capacity(found.len());
+    let mut unsure: Vec<Candidate> = vec![];
+    for candidate in found {
+        if candidate.sign == 0 {
+            unsure.push(candidate);
+            continue;
+        }
+        let is_twin = |other: &Candidate| {
+            other.sign == candidate.sign
+                && (other.u - candidate.u).abs() <= other.zone[0] + candidate.zone[0]
+                && (other.v - candidate.v).abs() <= other.zone[1] + candidate.zone[1]
+        };
+        if !single.iter().any(is_twin) {
+            single.push(candidate);
+        }
+    }
+    let is_at_border = |c: &Candidate| c.margin().abs() <= 1.0;
+    let (at_border, mut hits): (Vec<_>, Vec<_>) = single.into_iter().partition(is_at_border);
+    if at_border.is_empty() && unsure.is_empty() {
+        return hits;
+    }
+    let mut missing = winding(&frame.view(net));
+    for hit in &hits {
+        missing -= hit.sign;
+    }
+    let mut open: Vec<(Candidate, bool)> = Vec::with_capacity(at_border.len());
+    for candidate in at_border {
+        let inside = candidate.margin() >= 0.0;
+        if inside {
+            missing -= candidate.sign;
+        }
+        open.push((candidate, inside));
+    }
+    open.sort_by(|(a, _), (b, _)| a.margin().abs().total_cmp(&b.margin().abs()));
+    for (candidate, inside) in &mut open {
+        // What turning this decision around adds to the sum.
+        let gain = if *inside {
+            -candidate.sign
+        } else {
+            candidate.sign
+        };
+        if missing * gain > 0 {
+            *inside = !*inside;
+            missing -= gain;
+        }
+    }
+    hits.extend(
+        open.into_iter()
+            .filter(|(_, inside)| *inside)
+            .map(|(c, _)| c),
+    );
+    // Places where the search gave up are hits if the border demands it: the tip of a collapsed edge.
+    if missing != 0 {
+        hits.extend(unsure.first());
+    }
+    hits
+}
