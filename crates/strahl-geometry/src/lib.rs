@@ -32,7 +32,7 @@ pub use mesh::{
 };
 pub use patch::BicubicPatch;
 pub use primitive::{GeometryError, PrimHit, Primitive, Scratch, Solid, SurfaceId, SurfacePoint};
-pub use primitives::{Cone, Cuboid, Cylinder, Disc, Plane, Quadric, Sphere, Torus};
+pub use primitives::{Cone, Cuboid, Cylinder, Disc, Lemon, Ovus, Plane, Quadric, Sphere, Torus};
 pub use shape::Shape;
 pub use spans::{Crossing, Crossings, Side};
 pub use swept::{

@@ -3,7 +3,7 @@ use crate::fractal::Julia;
 use crate::implicit::{HeightField, Isosurface, Parametric};
 use crate::mesh::{Brep, Polygon, SmoothTriangle, Triangle, TriangleMesh};
 use crate::patch::BicubicPatch;
-use crate::primitives::{Cone, Cuboid, Cylinder, Disc, Plane, Quadric, Sphere, Torus};
+use crate::primitives::{Cone, Cuboid, Cylinder, Disc, Lemon, Ovus, Plane, Quadric, Sphere, Torus};
 use crate::swept::{Glyph, Lathe, Prism, Sor, SphereSweep};
 use crate::{
     Bounded, Csg, GeometryError, PrimHit, Primitive, Scratch, Solid, SurfaceId, SurfacePoint,
@@ -107,6 +107,10 @@ shapes! {
     Cone(Cone),
     /// A torus.
     Torus(Torus),
+    /// An egg.
+    Ovus(Arc<Ovus>),
+    /// An arc turned about an axis, with caps.
+    Lemon(Arc<Lemon>),
     /// A surface of degree 2.
     Quadric(Arc<Quadric>),
     /// A plane figure swept along an axis.
@@ -165,6 +169,8 @@ macro_rules! shared {
 }
 
 shared!(
+    Ovus,
+    Lemon,
     Quadric,
     Prism,
     Lathe,

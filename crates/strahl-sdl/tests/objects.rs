@@ -173,21 +173,38 @@ fn what_cannot_be_seen_is_left_out_with_a_warning() {
 }
 
 #[test]
-fn objects_that_are_missing_yet_are_named() {
-    for word in ["ovus", "lemon"] {
-        let body = "{ threshold 1 sphere { 0, 1, 1 } \"text\" function { x } }";
-        let text = format!(
-            "{word} {body} union {{ {word} {body} sphere {{ 0, 1 }} }} #declare A = {word} {body} object {{ A }}"
-        );
-        let (scene, messages) = scene(&text);
-        assert_eq!(scene.objects.0.len(), 1, "{text}");
-        assert_eq!(messages.len(), 3, "{messages:?}");
-        let expected = format!("warning: `{word}` is not supported yet and is left out");
-        assert!(
-            messages.iter().all(|m| m.starts_with(&expected)),
-            "{messages:?}"
-        );
-    }
+fn eggs_and_lemons_are_read() {
+    let plain = shape("ovus { 1, 0.5 }");
+    assert!(matches!(&plain, Shape::Ovus(egg) if (egg.bottom(), egg.top()) == (1.0, 0.5)));
+    let loose = shape("ovus { 1 0.5, sturm scale 1 }");
+    assert_eq!(format!("{loose:?}"), format!("{plain:?}"));
+    let plain = format!("{:?}", shape("lemon { 0, 0.5, y, 0.2, 2 open }"));
+    let loose = shape("lemon { <0,0,0> 0.5 y 0.2 2 sturm open }");
+    assert_eq!(format!("{loose:?}"), plain);
+    let closed = format!("{:?}", shape("lemon { 0, 0.5, y, 0.2, 2 }"));
+    assert_ne!(closed, plain);
+    // The least inner radius is taken instead of a smaller one.
+    let (_, messages) = scene("lemon { -y, 0, y, 0, 0.3 }");
+    assert!(
+        messages[0].contains("inner radius of the lemon, 0.3, is too small"),
+        "{messages:?}"
+    );
+    assert!(
+        messages[0].contains("the least one is used: 1"),
+        "{messages:?}"
+    );
+    let (read, messages) = scene("ovus { 1, -0.5 }");
+    assert!(
+        read.objects.0.is_empty() && messages[0].contains("top radius"),
+        "{messages:?}"
+    );
+    // Scenes of version 3.7 may use the word as a name.
+    let (read, _) = scene("#version 3.7; #declare lemon = sphere { 0, 1 } object { lemon }");
+    assert_eq!(read.objects.0.len(), 1);
+}
+
+#[test]
+fn items_that_are_missing_yet_are_named() {
     let (_, messages) =
         scene("sphere { 0, 1 photons { target } double_illuminate radiosity { importance 1 } }");
     assert_eq!(messages.len(), 2, "{messages:?}");

@@ -140,6 +140,8 @@ const OBJECTS: &[&str] = &[
     "sphere_sweep",
     "parametric",
     "bicubic_patch",
+    "ovus",
+    "lemon",
     "julia_fractal",
     "quadric",
     "poly",

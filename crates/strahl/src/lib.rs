@@ -93,8 +93,8 @@ pub mod prelude {
     pub use strahl_accel::AcceleratorKind;
     pub use strahl_formats::image::WriteOptions;
     pub use strahl_geometry::{
-        BicubicPatch, Brep, Cone, Cuboid, Cylinder, Disc, Plane, Polygon, Quadric, Shape, Sphere,
-        Torus, Triangle, TriangleMesh,
+        BicubicPatch, Brep, Cone, Cuboid, Cylinder, Disc, Lemon, Ovus, Plane, Polygon, Quadric,
+        Shape, Sphere, Torus, Triangle, TriangleMesh,
     };
     pub use strahl_math::{DVec2, DVec3, Transform};
     pub use strahl_render::{CompileOptions, Film, RenderOptions, RenderScene, Sampling};

@@ -9,13 +9,17 @@ use strahl::tracing::CompileOptions;
 use strahl::{LoadOptions, load_path};
 
 /// Scenes that look different in POV-Ray 3.7, with the reason.
-const DIFFERENT: [(&str, &str); 5] = [
+const DIFFERENT: [(&str, &str); 6] = [
     (
         "patterns/cubic.pov",
         "the pattern is new in version 3.8 of the language",
     ),
     (
         "objects/polynomial.pov",
+        "the object is new in version 3.8 of the language",
+    ),
+    (
+        "objects/lemon.pov",
         "the object is new in version 3.8 of the language",
     ),
     (

@@ -1,5 +1,6 @@
 //! The analytic shapes: surfaces with a formula of their own, one file each.
 
+mod arcs;
 mod cone;
 pub(crate) mod convex;
 mod cuboid;
@@ -7,6 +8,8 @@ mod cylinder;
 mod disc;
 pub(crate) mod frame;
 mod frustum;
+mod lemon;
+mod ovus;
 mod plane;
 mod quadric;
 mod sphere;
@@ -16,6 +19,8 @@ pub use cone::Cone;
 pub use cuboid::Cuboid;
 pub use cylinder::Cylinder;
 pub use disc::Disc;
+pub use lemon::Lemon;
+pub use ovus::Ovus;
 pub use plane::Plane;
 pub use quadric::Quadric;
 pub use sphere::Sphere;

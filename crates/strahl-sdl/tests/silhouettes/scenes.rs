@@ -394,6 +394,14 @@ pub(crate) const SCENES: &[(&str, &str)] = &[
         "intersection { bicubic_patch { type 0 u_steps 4 v_steps 4 <-1, -1, 0>, <-0.4, -1, 0>, <0.4, -1, 0>, <1, -1, 0>, <-1, -0.3, 0>, <-0.4, -0.3, -1>, <0.4, -0.3, -1>, <1, -0.3, 0>, <-1, 0.3, 0>, <-0.4, 0.3, -1>, <0.4, 0.3, -1>, <1, 0.3, 0>, <0, 1, 0>, <0, 1, 0>, <0, 1, 0>, <0, 1, 0> texture { Red } } sphere { <0.2, 0, 0>, 0.9 texture { Green } } no_shadow }",
     ),
     (
+        "ovus",
+        "ovus { 1, 0.55 texture { Red } no_shadow translate -0.3 * y rotate 20 * z }",
+    ),
+    (
+        "ovus with the larger ball on top, cut",
+        "difference { ovus { 0.6, 0.8 texture { Green } } box { <0, -2, -2>, <2, 2, 0> } texture { Red } no_shadow translate -0.4 * y rotate <-20, 30, 0> }",
+    ),
+    (
         "object around an object",
         "object { object { Ball scale 0.5 } texture { Red } translate y * 0.5 }",
     ),

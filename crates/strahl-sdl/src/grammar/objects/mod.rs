@@ -14,9 +14,11 @@ mod height_field;
 mod isosurface;
 mod julia_fractal;
 mod lathe;
+mod lemon;
 mod mesh;
 mod modifiers;
 mod named;
+mod ovus;
 mod parametric;
 mod plane;
 mod polygon;
@@ -37,7 +39,7 @@ pub(crate) use reuse::{Shared, Tally, expanded};
 pub(super) use text::KnownFont;
 
 use super::{Entity, by_word, words_of};
-use crate::keywords::{Word, WordKind};
+use crate::keywords::Word;
 use crate::parser::{PResult, Parser};
 use crate::token::{Kind, Token};
 use strahl_scene::Object;
@@ -53,6 +55,7 @@ static OBJECTS: [Option<ObjectParser>; Word::ALL.len()] = by_word::<ObjectParser
     (Word::Isosurface, isosurface::isosurface),
     (Word::JuliaFractal, julia_fractal::julia_fractal),
     (Word::Lathe, lathe::lathe),
+    (Word::Lemon, lemon::lemon),
     (Word::LightGroup, super::lights::light_group),
     (Word::LightSource, super::lights::light_source),
     (Word::Cone, cone::cone),
@@ -66,6 +69,7 @@ static OBJECTS: [Option<ObjectParser>; Word::ALL.len()] = by_word::<ObjectParser
     (Word::Mesh, mesh::mesh),
     (Word::Mesh2, mesh::mesh2),
     (Word::Object, object),
+    (Word::Ovus, ovus::ovus),
     (Word::Parametric, parametric::parametric),
     (Word::Plane, plane::plane),
     (Word::Poly, polynomial::poly),
@@ -99,7 +103,7 @@ impl Parser<'_> {
         Ok(self.entity()?.map(|entity| entity.object))
     }
 
-    /// Reads an object or the name of one, if one follows, with its texture. An unsupported object gives an empty one.
+    /// Reads an object or the name of one, if one follows, with its texture.
     ///
     /// # Errors
     /// If the object is invalid.
@@ -112,15 +116,10 @@ impl Parser<'_> {
             }
             return Ok(named);
         }
-        if let Some(parse) = self.object_parser(token)? {
-            return self.nested(parse).map(Some);
+        match self.object_parser(token)? {
+            Some(parse) => self.nested(parse).map(Some),
+            None => Ok(None),
         }
-        let is_object = |word: Word| word.kind() == WordKind::Object;
-        if !token.word().is_some_and(is_object) {
-            return Ok(None);
-        }
-        self.leave_out(token)?;
-        Ok(Some(Entity::nothing()))
     }
 
     /// The parser for the object that begins with a token, which is then taken.
@@ -157,7 +156,7 @@ impl Parser<'_> {
         Ok(Some(if named { object } else { parse }))
     }
 
-    /// Skips an unsupported object with a warning; `token` is its keyword.
+    /// Skips an unsupported statement with a warning; `token` is its keyword.
     ///
     /// # Errors
     /// If it has no end.
