@@ -332,6 +332,10 @@ impl Primitive for BicubicPatch {
         }
     }
 
+    fn texture_uv(&self, _hit: &PrimHit, uv: DVec2) -> Option<DVec2> {
+        Some(uv)
+    }
+
     fn baked(&self, map: &Transform) -> Option<Shape> {
         let points = self.points().map(|row| row.map(|p| map.point_to_world(p)));
         let mut mapped = Self::new(points, self.weights());

@@ -269,6 +269,8 @@ fn texture_coordinates_are_interpolated_between_the_corners() {
         assert!((*a - *b).length() < 1e-15, "{found:?}");
     }
     let middle = at(0.5, 0.5);
+    let hit = PrimHit::simple(1.0, 0);
+    assert_eq!(patch.texture_uv(&hit, middle.uv), Some(middle.uv));
     assert!((middle.uv - DVec2::new(0.475, 0.425)).length() < 1e-15);
     // One texture that is the same everywhere has no derivatives.
     let patch = patch_with_one_corner();

@@ -3,7 +3,7 @@ use super::{check_finite, check_length, check_positive, unit_vector};
 use crate::{
     Crossings, GeometryError, PrimHit, Primitive, Scratch, Solid, SurfaceId, SurfacePoint,
 };
-use strahl_math::{Aabb, DVec3, Interval, Ray};
+use strahl_math::{Aabb, DVec2, DVec3, Interval, Ray};
 
 /// A lemon: two ends on an axis, each with a radius, and between them a circular arc turned about the axis.
 ///
@@ -129,6 +129,10 @@ impl Primitive for Lemon {
 
     fn surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
         self.body.surface_at(ray, hit)
+    }
+
+    fn texture_uv(&self, _hit: &PrimHit, uv: DVec2) -> Option<DVec2> {
+        Some(uv)
     }
 
     fn as_solid(&self) -> Option<&dyn Solid> {

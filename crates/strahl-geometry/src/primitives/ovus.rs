@@ -3,7 +3,7 @@ use super::{check_length, check_positive};
 use crate::{
     Crossings, GeometryError, PrimHit, Primitive, Scratch, Solid, SurfaceId, SurfacePoint,
 };
-use strahl_math::{Aabb, DVec3, Interval, Ray};
+use strahl_math::{Aabb, DVec2, DVec3, Interval, Ray};
 
 /// An egg: a ball at the bottom, a ball at the top, and between them a part of a spindle torus that touches both.
 ///
@@ -114,6 +114,10 @@ impl Primitive for Ovus {
         self.body.surface_at(ray, hit)
     }
 
+    fn texture_uv(&self, _hit: &PrimHit, uv: DVec2) -> Option<DVec2> {
+        Some(uv)
+    }
+
     fn as_solid(&self) -> Option<&dyn Solid> {
         Some(self)
     }
@@ -180,6 +184,29 @@ mod tests {
             sphere.closest_hit(&ray, Interval::FORWARD, None, scratch),
         ];
         assert!((a.unwrap().t - b.unwrap().t).abs() < 1e-13);
+    }
+
+    /// Measured with POV-Ray 3.7: the longitude from +x towards +z, the latitude from halfway between the ends.
+    #[test]
+    fn textures_lie_on_eggs_as_in_povray() {
+        let (egg, scratch) = (Ovus::new(1.0, 0.5), &mut Scratch::default());
+        for (y, v) in [
+            (1.425, 0.932),
+            (0.975, 0.759),
+            (0.225, 0.495),
+            (-0.975, 0.056),
+        ] {
+            let ray = Ray::new(DVec3::new(0.0, y, -5.0), DVec3::Z);
+            let hit = egg
+                .closest_hit(&ray, Interval::FORWARD, None, scratch)
+                .unwrap();
+            let uv = egg.surface_at(&ray, &hit).uv;
+            assert!(
+                (uv.x - 0.75).abs() < 1e-12 && (uv.y - v).abs() < 0.005,
+                "{y}: {uv}"
+            );
+            assert_eq!(egg.texture_uv(&hit, uv), Some(uv));
+        }
     }
 
     #[test]
