@@ -207,3 +207,25 @@ fn clouds_woods_and_stones_are_where_povrays_are() {
         }
     }
 }
+
+/// POV-Ray's extents: inverted letters hang from the circle by their tops, and the spacing is in units of the size.
+#[test]
+fn circle_text_stands_where_povrays_does() {
+    let text = r#"
+        #include "shapes.inc"
+        #declare Hanging = Circle_Text("cyrvetic.ttf", "H", 0.4, 0, 0.01, 1.1, true, Align_Center, -90)
+        #declare Low = min_extent(Hanging);
+        #declare High = max_extent(Hanging);
+        #if (abs(Low.y + 1.39) > 0.015 | abs(High.y + 1.1) > 0.015 | abs(Low.x + High.x) > 0.015)
+            #error concat("hanging: ", vstr(3, Low, ", ", 0, 3), " to ", vstr(3, High, ", ", 0, 3))
+        #end
+        #declare Pair = Circle_Text("cyrvetic.ttf", "HH", 0.4, 0.3, 0.01, 1.1, false, Align_Left, 90)
+        #declare High = max_extent(Pair);
+        #if (abs(High.x - 0.74) > 0.03)
+            #error concat("spaced: ", vstr(3, High, ", ", 0, 3))
+        #end"#;
+    let parsed = parse_with(&mut MemoryHost::new(), text);
+    let errors = parsed.diagnostics.iter().filter(|d| d.is_error());
+    let errors: Vec<String> = errors.map(ToString::to_string).collect();
+    assert!(errors.is_empty(), "{}", errors.join("\n"));
+}
