@@ -36,6 +36,18 @@ impl Looks {
     }
 }
 
+/// Whether textures are evaluated at the texture coordinates of the surface.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum UvMapping {
+    /// In space.
+    Off,
+    /// At (u, v, 0); transformations of objects don't move the texture: the object that has it has `uv_mapping`.
+    Fixed,
+    /// At (u, v, 0), with the transformations of objects: another object has `uv_mapping`, or the textures are those of a blob's
+    /// components (measured with POV-Ray).
+    Moved,
+}
+
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Look {
     pub(crate) object: u32,
@@ -47,7 +59,7 @@ pub(crate) struct Look {
     /// Whether fog is inside too.
     pub(crate) hollow: bool,
     /// Whether its textures lie on texture coordinates.
-    pub(crate) uv_mapped: bool,
+    pub(crate) uv: UvMapping,
 }
 
 impl Look {

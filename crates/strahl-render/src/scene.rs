@@ -1,7 +1,7 @@
 use crate::blocks::Blocks;
 use crate::hit::Hit;
 use crate::light_sets::{LightSets, Lit};
-use crate::look::{Look, Looks};
+use crate::look::{Look, Looks, UvMapping};
 use crate::objects::Objects;
 use crate::prim::{Prim, PrimKind};
 use crate::runs::RunList;
@@ -399,7 +399,7 @@ impl RenderScene {
     /// Whether texture coordinates are wanted for a material.
     #[inline]
     fn wants_uv(&self, look: &Look, uv: Uv) -> bool {
-        uv == Uv::Always || look.uv_mapped || self.uses_uv[look.material.0 as usize]
+        uv == Uv::Always || look.uv != UvMapping::Off || self.uses_uv[look.material.0 as usize]
     }
 
     /// [`RenderScene::resolve`] for a hit within an instance.
@@ -459,13 +459,15 @@ impl RenderScene {
         look: &Look,
     ) -> (TexturePoint, Option<Cow<'_, Transform>>) {
         let space = self.texture_space(hit, look);
-        if !look.uv_mapped {
+        if look.uv == UvMapping::Off {
             return (place, space);
         }
-        let in_object = space.map_or(place.position, |space| {
-            space.point_to_object(place.position)
-        });
-        (place.on_surface(in_object), None)
+        let in_object = match &space {
+            None => place.position,
+            Some(space) => space.point_to_object(place.position),
+        };
+        let moves = look.uv == UvMapping::Moved;
+        (place.on_surface(in_object), space.filter(|_| moves))
     }
 
     fn texture_space(&self, hit: &Hit, look: &Look) -> Option<Cow<'_, Transform>> {

@@ -5,7 +5,7 @@ use super::materials::{
 };
 use crate::hit::RayClass;
 use crate::light_sets::{LightSetsDraft, Lit};
-use crate::look::{Look, Looks};
+use crate::look::{Look, Looks, UvMapping};
 use crate::objects::{ObjectInfo, Objects};
 use crate::prim::{Prim, PrimKind};
 use crate::runs::RunList;
@@ -19,6 +19,7 @@ use strahl_math::Transform;
 use strahl_scene::{
     Children, CsgOp, Diagnostic, Object, ObjectKind, Scene, SceneLight, Span, Visibility,
 };
+use strahl_shade::texture::Texture;
 use strahl_shade::{Material, MaterialId, Sides};
 
 /// The lists of one group.
@@ -136,7 +137,10 @@ struct Todo<'a> {
     span: Span,
     visibility: Visibility,
     hollow: bool,
+    /// Whether it or an object that it is a part of has `uv_mapping`.
     uv_mapped: bool,
+    /// Whether the object that has the material has `uv_mapping`.
+    material_uv_mapped: bool,
     lit: Lit,
     /// The body that it is or is a part of; `None` if it is the first of one that has no number yet.
     body: Option<u32>,
@@ -158,6 +162,7 @@ impl<'a> Todo<'a> {
                 visibility: object.visibility,
                 hollow: object.hollow == Some(true),
                 uv_mapped: object.uv_mapped,
+                material_uv_mapped: object.uv_mapped,
                 lit: Lit {
                     both_sides: object.double_illuminated,
                     ..Lit::PLAIN
@@ -190,6 +195,11 @@ impl<'a> Todo<'a> {
             },
             hollow: object.hollow.unwrap_or(p.hollow),
             uv_mapped: object.uv_mapped || p.uv_mapped,
+            material_uv_mapped: if object.material.is_some() {
+                object.uv_mapped
+            } else {
+                p.material_uv_mapped
+            },
             body: if fills_itself(object, p.material) {
                 None
             } else {
@@ -348,7 +358,22 @@ impl Pass {
             texture_space,
             body: todo.body.unwrap_or(0),
             hollow: todo.hollow,
-            uv_mapped: todo.uv_mapped,
+            uv: self.uv_mapping(todo, material, kind),
+        }
+    }
+
+    fn uv_mapping(&self, todo: &Todo<'_>, material: MaterialId, kind: &str) -> UvMapping {
+        let of_components = || {
+            let texture = &self.flat.materials.get(material).texture;
+            kind == "blob"
+                && texture
+                    .as_ref()
+                    .is_some_and(|t| matches!(*t.0, Texture::Shared(..)))
+        };
+        match todo.uv_mapped {
+            false => UvMapping::Off,
+            true if todo.material_uv_mapped && !of_components() => UvMapping::Fixed,
+            true => UvMapping::Moved,
         }
     }
 

@@ -4,9 +4,11 @@ use super::common::{debug, errors};
 use super::{color_at, plain, scene, texture, textures};
 use std::sync::Arc;
 use strahl_math::DVec3;
+use strahl_scene::ObjectKind;
 use strahl_shade::Color;
 use strahl_shade::normal::NormalKind;
 use strahl_shade::patterns::TexturePoint;
+use strahl_shade::pigment::Pigment;
 use strahl_shade::texture::Texture;
 
 #[test]
@@ -88,7 +90,7 @@ fn declared_layers_and_patterned_textures() {
     assert!(matches!(&*found[3], Texture::Blocks(..)));
     assert!(matches!(&*found[4], Texture::Average(m, _) if m[1].0 == 1.0));
     assert!(matches!(&*found[5], Texture::MaterialMap(_, m, _) if m.warps.len() == 1));
-    assert!(matches!(&*found[6], Texture::UvMapped(_)));
+    assert!(matches!(&*found[6], Texture::Plain(p) if matches!(p.pigment, Pigment::UvMapped(_))));
     let (scene, _) = scene(text);
     let glass = scene.objects.0[7].material.as_ref().unwrap();
     assert_eq!(
@@ -98,20 +100,21 @@ fn declared_layers_and_patterned_textures() {
 }
 
 #[test]
-fn uv_mapping_of_an_object_is_for_what_follows_it() {
-    let found = textures(
+fn uv_mapping_is_an_attribute_of_the_object() {
+    let (scene, _) = scene(
         "#declare T = texture { pigment { checker } }
          sphere { 0, 1 uv_mapping texture { T } }
          sphere { 0, 1 uv_mapping pigment { checker } }
-         sphere { 0, 1 uv_mapping texture { T } texture { pigment { rgbt 1 } } }
-         sphere { 0, 1 uv_mapping off texture { T } }",
+         sphere { 0, 1 uv_mapping off texture { T } }
+         union { sphere { 0, 1 uv_mapping } sphere { 1, 1 } texture { T } }",
     );
-    assert!(matches!(&*found[0], Texture::UvMapped(_)));
-    assert!(matches!(&*found[1], Texture::UvMapped(_)));
-    assert!(
-        matches!(&*found[2], Texture::Layered(all) if all.iter().all(|t| matches!(t, Texture::UvMapped(_))))
-    );
-    assert!(matches!(&*found[3], Texture::Plain(_)));
+    let mapped: Vec<bool> = scene.objects.0.iter().map(|o| o.uv_mapped).collect();
+    assert_eq!(mapped, [true, true, false, false]);
+    let ObjectKind::Csg { children, .. } = &scene.objects.0[3].kind else {
+        panic!("a union");
+    };
+    let mapped: Vec<bool> = children.0.iter().map(|o| o.uv_mapped).collect();
+    assert_eq!(mapped, [true, false]);
 }
 
 #[test]

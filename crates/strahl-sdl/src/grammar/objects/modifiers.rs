@@ -8,7 +8,6 @@ use crate::token::{Kind, Token};
 use crate::value::Value;
 use strahl_geometry::{GeometryError, Primitive, Shape};
 use strahl_scene::{CsgOp, Object, ObjectKind};
-use strahl_shade::texture::Texture as Surface;
 
 /// State between the items of an object, besides the object itself.
 #[derive(Default)]
@@ -134,13 +133,7 @@ impl Parser<'_> {
             }
             Some(Word::UvMapping) => {
                 self.take(token)?;
-                // As measured, components of blobs with textures of their own stay as they are.
-                let of_components = matches!(entity.object.kind, ObjectKind::Shape(Shape::Blob(_)))
-                    && entity
-                        .texture
-                        .as_ref()
-                        .is_some_and(|t| matches!(*t.surface, Surface::Shared(..)));
-                entity.object.uv_mapped = self.flag()? && !of_components;
+                entity.object.uv_mapped = self.flag()?;
                 if entity.object.uv_mapped {
                     self.expand_instances(&mut entity.object)?;
                 }
