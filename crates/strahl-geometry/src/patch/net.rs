@@ -17,15 +17,9 @@ pub(super) struct Jet<const N: usize> {
     pub(super) by_v: [f64; N],
 }
 
-// Loops over arrays instead of `std::array::from_fn`, whose closures are not always inlined: this is the innermost code.
-
 #[inline(always)]
 fn each<const N: usize>(f: impl Fn(usize) -> f64) -> [f64; N] {
-    let mut all = [0.0; N];
-    for (k, x) in all.iter_mut().enumerate() {
-        *x = f(k);
-    }
-    all
+    std::array::from_fn(f)
 }
 
 #[inline(always)]
@@ -36,12 +30,6 @@ fn mean<const N: usize>(a: &[f64; N], b: &[f64; N]) -> [f64; N] {
 #[inline(always)]
 fn weighted<const N: usize>(c: &Curve<N>, w: &[f64; 4]) -> [f64; N] {
     each(|k| ((c[0][k] * w[0] + c[1][k] * w[1]) + c[2][k] * w[2]) + c[3][k] * w[3])
-}
-
-/// One vector for each row.
-#[inline(always)]
-fn rows<const N: usize>(f: impl Fn(usize) -> [f64; N]) -> Curve<N> {
-    [f(0), f(1), f(2), f(3)]
 }
 
 /// The Bernstein polynomials of degree 3 and their derivatives.
@@ -73,10 +61,7 @@ impl<const N: usize> Net<N> {
     #[inline(always)]
     pub(super) fn map<const M: usize>(&self, f: impl Fn(&[f64; N]) -> [f64; M]) -> Net<M> {
         Net {
-            rows: [0, 1, 2, 3].map(|j: usize| {
-                let [a, b, c, d] = &self.rows[j];
-                [f(a), f(b), f(c), f(d)]
-            }),
+            rows: std::array::from_fn(|j| std::array::from_fn(|i| f(&self.rows[j][i]))),
         }
     }
 
@@ -89,15 +74,15 @@ impl<const N: usize> Net<N> {
     #[inline]
     pub(super) fn at(&self, u: f64, v: f64) -> [f64; N] {
         let ((bu, _), (bv, _)) = (bernstein(u), bernstein(v));
-        weighted(&rows(|j| weighted(&self.rows[j], &bu)), &bv)
+        weighted(&std::array::from_fn(|j| weighted(&self.rows[j], &bu)), &bv)
     }
 
     /// The value and the derivatives at two parameters.
     #[inline]
     pub(super) fn jet(&self, u: f64, v: f64) -> Jet<N> {
         let ((bu, su), (bv, sv)) = (bernstein(u), bernstein(v));
-        let values = rows(|j| weighted(&self.rows[j], &bu));
-        let slopes = rows(|j| weighted(&self.rows[j], &su));
+        let values: Curve<N> = std::array::from_fn(|j| weighted(&self.rows[j], &bu));
+        let slopes: Curve<N> = std::array::from_fn(|j| weighted(&self.rows[j], &su));
         Jet {
             value: weighted(&values, &bv),
             by_u: weighted(&slopes, &bv),
@@ -108,33 +93,25 @@ impl<const N: usize> Net<N> {
     /// Both halves along the first parameter.
     #[inline]
     pub(super) fn halves_u(&self) -> [Self; 2] {
-        let mut both = [*self; 2];
-        for j in 0..4 {
-            let [a, b] = halves(&self.rows[j]);
-            both[0].rows[j] = a;
-            both[1].rows[j] = b;
-        }
-        both
+        let both: [_; 4] = std::array::from_fn(|j| halves(&self.rows[j]));
+        [0, 1].map(|side| Self {
+            rows: std::array::from_fn(|j| both[j][side]),
+        })
     }
 
     /// Both halves along the second parameter.
     #[inline]
     pub(super) fn halves_v(&self) -> [Self; 2] {
-        let mut both = [*self; 2];
-        for i in 0..4 {
-            let [a, b] = halves(&self.column(i));
-            for j in 0..4 {
-                both[0].rows[j][i] = a[j];
-                both[1].rows[j][i] = b[j];
-            }
-        }
-        both
+        let both: [_; 4] = std::array::from_fn(|i| halves(&self.column(i)));
+        [0, 1].map(|side| Self {
+            rows: std::array::from_fn(|j| std::array::from_fn(|i| both[i][side][j])),
+        })
     }
 
     /// The coefficients of column `i`, along the second parameter.
     #[inline(always)]
     pub(super) fn column(&self, i: usize) -> Curve<N> {
-        rows(|j| self.rows[j][i])
+        std::array::from_fn(|j| self.rows[j][i])
     }
 
     /// The part over the square number `(i, j)` of `2^level` by `2^level`.
@@ -150,40 +127,31 @@ impl<const N: usize> Net<N> {
     /// The least and the greatest coefficient of each coordinate: bounds of all values between 0 and 1.
     #[inline]
     pub(super) fn extents(&self) -> ([f64; N], [f64; N]) {
-        let (mut low, mut high) = (self.rows[0][0], self.rows[0][0]);
-        for row in &self.rows {
-            for p in row {
-                for k in 0..N {
-                    low[k] = if p[k] < low[k] { p[k] } else { low[k] };
-                    high[k] = if p[k] > high[k] { p[k] } else { high[k] };
-                }
-            }
-        }
-        (low, high)
+        let first = self.rows[0][0];
+        self.points().fold((first, first), |(low, high), p| {
+            (
+                each(|k| if p[k] < low[k] { p[k] } else { low[k] }),
+                each(|k| if p[k] > high[k] { p[k] } else { high[k] }),
+            )
+        })
     }
 
     /// The coefficients of the derivative by the first parameter.
     #[inline]
     pub(super) fn slopes_u(&self) -> [[f64; N]; 12] {
-        let mut slopes = [[0.0; N]; 12];
-        for j in 0..4 {
-            for i in 0..3 {
-                slopes[3 * j + i] = each(|k| 3.0 * (self.rows[j][i + 1][k] - self.rows[j][i][k]));
-            }
-        }
-        slopes
+        std::array::from_fn(|n| {
+            let (j, i) = (n / 3, n % 3);
+            each(|k| 3.0 * (self.rows[j][i + 1][k] - self.rows[j][i][k]))
+        })
     }
 
     /// The coefficients of the derivative by the second parameter.
     #[inline]
     pub(super) fn slopes_v(&self) -> [[f64; N]; 12] {
-        let mut slopes = [[0.0; N]; 12];
-        for j in 0..3 {
-            for i in 0..4 {
-                slopes[4 * j + i] = each(|k| 3.0 * (self.rows[j + 1][i][k] - self.rows[j][i][k]));
-            }
-        }
-        slopes
+        std::array::from_fn(|n| {
+            let (j, i) = (n / 4, n % 4);
+            each(|k| 3.0 * (self.rows[j + 1][i][k] - self.rows[j][i][k]))
+        })
     }
 }
 

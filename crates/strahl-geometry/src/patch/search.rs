@@ -452,11 +452,10 @@ fn certain(
     let off = |slopes: &[[f64; 2]; 12], unit: [f64; 2]| {
         slopes.iter().fold([0.0; 2], |most: [f64; 2], s| {
             let s = solved(*s);
-            let (x, y) = ((s[0] - unit[0]).abs(), (s[1] - unit[1]).abs());
-            [
-                if x > most[0] { x } else { most[0] },
-                if y > most[1] { y } else { most[1] },
-            ]
+            std::array::from_fn(|k| {
+                let x = (s[k] - unit[k]).abs();
+                if x > most[k] { x } else { most[k] }
+            })
         })
     };
     let (u, v) = (off(slopes_u, [1.0, 0.0]), off(slopes_v, [0.0, 1.0]));
