@@ -3,7 +3,7 @@
 
 mod common;
 
-common::pixel::groups! {
+groups! {
     include_str!("data/media.tsv");
     the_eye_is_in_all_that_contains_it,
     media_are_entered_and_left_by_turns,

@@ -3,7 +3,7 @@
 
 mod common;
 
-common::pixel::groups! {
+groups! {
     include_str!("data/mirrors.tsv");
     an_interpolated_normal_is_turned_to_the_viewer,
     a_tilted_normal_reflects_to_the_side_of_the_viewer,

@@ -2,7 +2,7 @@
 
 mod common;
 
-common::pixel::groups! {
+groups! {
     include_str!("data/random.tsv");
     a_layer_vanishes_below_adc_bailout,
     light_from_behind_ends_where_its_grey_value_is_below_adc_bailout,

@@ -2,7 +2,7 @@
 
 mod common;
 
-common::pixel::groups! {
+groups! {
     include_str!("data/texture_coordinates.tsv");
     surfaces_with_coordinates_of_their_own,
     other_surfaces_are_mapped_by_x_and_y_of_the_world,

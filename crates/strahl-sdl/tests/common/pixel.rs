@@ -61,6 +61,7 @@ pub(crate) fn all_named(cases: &str, groups: &[&str]) {
 }
 
 /// Makes a test of each group of a table ([`agree`]).
+#[macro_export]
 macro_rules! groups {
     ($cases:expr; $($group:ident,)+) => {
         $(#[test]
@@ -74,5 +75,3 @@ macro_rules! groups {
         }
     };
 }
-
-pub(crate) use groups;

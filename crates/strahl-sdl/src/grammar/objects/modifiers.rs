@@ -133,9 +133,19 @@ impl Parser<'_> {
             }
             Some(Word::UvMapping) => {
                 self.take(token)?;
-                entity.object.uv_mapped = self.flag()?;
-                if entity.object.uv_mapped {
+                let mapped = self.flag()?;
+                entity.object.uv_mapped = mapped;
+                if mapped {
                     self.expand_instances(&mut entity.object)?;
+                }
+                // The parts of a mesh with several textures are one object.
+                let object = &mut entity.object;
+                if let ObjectKind::Csg { children, .. } = &mut object.kind {
+                    let own = children
+                        .0
+                        .iter_mut()
+                        .filter(|part| part.span == object.span);
+                    own.for_each(|part| part.uv_mapped = mapped);
                 }
                 return Ok(true);
             }
