@@ -29,6 +29,7 @@ mod observer;
 mod prim;
 mod query;
 mod render;
+mod resolve;
 mod runs;
 mod sampling;
 mod scene;

@@ -3,7 +3,8 @@ mod report;
 use crate::hit::{Hit, Origin};
 use crate::media::{Crossing, MediaArena, MediaStack};
 use crate::query::Tracer;
-use crate::scene::{InstanceUse, Uv};
+use crate::resolve::Uv;
+use crate::scene::InstanceUse;
 use strahl_math::{Interval, Ray};
 use strahl_shade::Color;
 

@@ -4,7 +4,8 @@ use crate::hit::{Hit, Origin};
 use crate::light_sets::Lit;
 use crate::media::{Crossing, MediaArena, MediaStack, Medium};
 use crate::observer::{HitReport, Shading};
-use crate::scene::{RenderScene, Resolved, Uv};
+use crate::resolve::{Resolved, Uv};
+use crate::scene::RenderScene;
 use crate::trace::{Branch, FirstHit};
 use strahl_math::{DVec3, Ray, error};
 use strahl_shade::{

@@ -7,7 +7,7 @@
 //! "Practical ray tracing of trimmed NURBS surfaces", Journal of Graphics Tools 5(1), 2000).
 
 use super::net::{Jet, Net};
-use super::tree::{OVERLAP, Piece, Tree, project};
+use super::tree::{LEVELS, OVERLAP, Piece, Tree, project};
 use strahl_math::error::gamma;
 use strahl_math::{DVec3, Interval, Ray};
 
@@ -175,7 +175,8 @@ impl<'a> Search<'a> {
             (near <= far).then_some(near)
         };
         let blur = tree.blur + pad.length();
-        let mut stack = [(0_u32, 0.0); 16];
+        // Three of four quarters wait on each level.
+        let mut stack = [(0_u32, 0.0); 3 * LEVELS as usize + 1];
         let mut height = 0;
         let Some(root) = tree.pieces.first() else {
             return;

@@ -1,0 +1,320 @@
+//! From a hit to its surface, and to the place where the texture of the surface is evaluated.
+
+use crate::hit::Hit;
+use crate::look::{Look, UvMapping};
+use crate::prim::PrimKind;
+use crate::scene::{RenderGroup, RenderScene};
+use std::borrow::Cow;
+use strahl_geometry::{PrimHit, Primitive, Shape, SurfaceId, SurfacePoint};
+use strahl_math::{DVec2, DVec3, Ray, Transform};
+use strahl_shade::Color;
+use strahl_shade::patterns::TexturePoint;
+use strahl_shade::texture::Texture;
+
+/// Everything about a hit, in world space.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Resolved {
+    pub(crate) point: SurfacePoint,
+    /// The same point in the innermost space, if that is not the world's.
+    pub(crate) local: Option<LocalPoint>,
+    pub(crate) look: Look,
+    /// Where the elements of the innermost instance begin; 0 in the world.
+    pub(crate) space: u64,
+}
+
+/// The properties of a surface point that determine the start of a ray.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct LocalPoint {
+    pub(crate) position: DVec3,
+    pub(crate) error: DVec3,
+    /// Unit normal of the geometry.
+    pub(crate) normal: DVec3,
+}
+
+/// Whether texture coordinates are wanted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Uv {
+    /// Where the material has textures.
+    IfTextured,
+    /// Everywhere.
+    Always,
+}
+
+impl RenderScene {
+    /// The surface at a hit, in world space: `ray` is the ray that found it, whose origin does not lie on a surface (no
+    /// [`crate::Origin`]).
+    pub fn surface_at(&self, ray: &Ray, hit: &Hit) -> SurfacePoint {
+        self.resolve(ray, None, hit, Uv::Always).point
+    }
+
+    /// The surface at a hit: `ray` is the world ray that found it, `origin` where it started.
+    #[inline]
+    pub(crate) fn resolve(
+        &self,
+        ray: &Ray,
+        origin: Option<&crate::Origin>,
+        hit: &Hit,
+        uv: Uv,
+    ) -> Resolved {
+        let world = &self.groups[0];
+        let prim = world.prim_of(hit.id);
+        if matches!(world.prims.at(prim).kind(), PrimKind::Instance(_)) {
+            return self.resolve_within(ray, origin, hit, uv);
+        }
+        let element = (hit.id - world.first_id(prim)) as u32;
+        let look = world.look(prim, element);
+        let uv = self.wants_uv(&look, uv);
+        let mut point = world.surface_at(prim, ray, hit, element, uv);
+        if uv {
+            point.uv = world.texture_uv(prim, hit, element, &point);
+        }
+        Resolved {
+            point,
+            local: None,
+            look,
+            space: 0,
+        }
+    }
+
+    /// Whether texture coordinates are wanted for a material.
+    #[inline]
+    fn wants_uv(&self, look: &Look, uv: Uv) -> bool {
+        uv == Uv::Always || look.uv != UvMapping::Off || self.uses_uv[look.material.0 as usize]
+    }
+
+    /// [`RenderScene::resolve`] for a hit within an instance.
+    fn resolve_within(
+        &self,
+        ray: &Ray,
+        origin: Option<&crate::Origin>,
+        hit: &Hit,
+        uv: Uv,
+    ) -> Resolved {
+        let at = self.locate(hit.id);
+        let look = at.group.look(at.prim, at.element);
+        let uv = self.wants_uv(&look, uv);
+        let local_ray = match &at.to_world {
+            None => *ray,
+            Some(m) => {
+                let entered = m.ray_to_object(ray);
+                // If the ray starts in this space, it keeps the exact origin.
+                match origin {
+                    Some(o) if self.same_space(o.id, hit.id) => {
+                        Ray::new(o.local, entered.direction)
+                    }
+                    _ => entered,
+                }
+            }
+        };
+        let inner = at
+            .group
+            .surface_at(at.prim, &local_ray, hit, at.element, uv);
+        let (mut point, local) = match &at.to_world {
+            None => (inner, None),
+            Some(m) => {
+                let local = LocalPoint {
+                    position: inner.position,
+                    error: inner.position_error,
+                    normal: inner.n_geom,
+                };
+                (surface_to_world(m, &inner), Some(local))
+            }
+        };
+        if uv {
+            point.uv = at.group.texture_uv(at.prim, hit, at.element, &point);
+        }
+        Resolved {
+            point,
+            local,
+            look,
+            space: at.space,
+        }
+    }
+
+    /// Where the texture at a hit is evaluated, and the map from the space of the texture to the world; `None` if they are the same.
+    pub(crate) fn texture_place(
+        &self,
+        place: TexturePoint,
+        hit: &Hit,
+        look: &Look,
+    ) -> (TexturePoint, Option<Cow<'_, Transform>>) {
+        let space = self.texture_space(hit, look);
+        if look.uv == UvMapping::Off {
+            return (place, space);
+        }
+        let in_object = match &space {
+            None => place.position,
+            Some(space) => space.point_to_object(place.position),
+        };
+        let moves = look.uv == UvMapping::Moved;
+        (place.on_surface(in_object), space.filter(|_| moves))
+    }
+
+    fn texture_space(&self, hit: &Hit, look: &Look) -> Option<Cow<'_, Transform>> {
+        let to_group = self.texture_spaces.get(look.texture_space as usize);
+        if self.is_in_world(hit.id) {
+            return to_group.map(Cow::Borrowed);
+        }
+        let outer = self.locate(hit.id).to_world?;
+        Some(Cow::Owned(match to_group {
+            None => outer,
+            Some(inner) => inner.then(&outer),
+        }))
+    }
+
+    /// Whether an element belongs to no instance; the number must come from a hit in this scene.
+    #[inline]
+    fn is_in_world(&self, id: u64) -> bool {
+        let world = &self.groups[0];
+        let prim = world.prims.at(world.prim_of(id));
+        !matches!(prim.kind(), PrimKind::Instance(_))
+    }
+
+    /// The attenuation of light along a direction by the texture at a hit; `caustics` is that of the interior.
+    pub(crate) fn attenuated(
+        &self,
+        texture: &Texture,
+        resolved: &Resolved,
+        direction: DVec3,
+        hit: &Hit,
+        caustics: f64,
+    ) -> Color {
+        let point = &resolved.point;
+        let direction = direction.normalize();
+        let facing = if point.n_geom.dot(direction) <= 0.0 {
+            1.0
+        } else {
+            -1.0
+        };
+        let place = TexturePoint {
+            position: point.position,
+            tilted_at: None,
+            in_object: None,
+            surface: point.position,
+            n_geom: point.n_geom * facing,
+            n_shade: point.n_shade * facing,
+            uv: point.uv,
+            direction,
+        };
+        let (place, space) = self.texture_place(place, hit, &resolved.look);
+        if caustics > 0.0 {
+            return texture.gathered_attenuation(space.as_deref(), &place, caustics);
+        }
+        match space {
+            None => texture.shadow_attenuation(&place),
+            Some(space) => {
+                texture.shadow_attenuation(&place.at(space.point_to_object(place.position)))
+            }
+        }
+    }
+
+    /// Whether two elements lie in the same innermost space (the same chain of instances).
+    fn same_space(&self, a: u64, b: u64) -> bool {
+        let (mut group, mut a, mut b) = (&self.groups[0], a, b);
+        loop {
+            let (prim_a, prim_b) = (group.prim_of(a), group.prim_of(b));
+            let kinds = (group.prims.at(prim_a).kind(), group.prims.at(prim_b).kind());
+            match kinds {
+                (PrimKind::Instance(index), PrimKind::Instance(_)) if prim_a == prim_b => {
+                    a -= group.first_id(prim_a);
+                    b -= group.first_id(prim_b);
+                    group = &self.groups[group.instances[index as usize].group as usize];
+                }
+                (PrimKind::Instance(_), _) | (_, PrimKind::Instance(_)) => return false,
+                _ => return true,
+            }
+        }
+    }
+}
+
+impl RenderGroup {
+    /// The surface at a hit, in this group's space, with texture coordinates if `uv`.
+    #[inline]
+    pub(crate) fn surface_at(
+        &self,
+        prim: u32,
+        ray: &Ray,
+        hit: &Hit,
+        element: u32,
+        uv: bool,
+    ) -> SurfacePoint {
+        let hit = prim_hit(hit, element);
+        let surface = |shape: &Shape, ray: &Ray| {
+            if uv {
+                shape.surface_at(ray, &hit)
+            } else {
+                shape.bare_surface_at(ray, &hit)
+            }
+        };
+        match self.prims.at(prim).kind() {
+            PrimKind::Triangle(mesh, triangle) => self.meshes[mesh as usize]
+                .mesh
+                .surface_at_element(triangle, hit.uv),
+            PrimKind::Sphere(number) => {
+                let sphere = self.spheres.get(number, &self.blocks);
+                if uv {
+                    sphere.surface_at(ray, &hit)
+                } else {
+                    sphere.bare_surface_at(ray, &hit)
+                }
+            }
+            PrimKind::Shape(index) => surface(&self.shapes[index as usize].shape, ray),
+            PrimKind::Placed(index) => {
+                let used = &self.shapes[index as usize];
+                match &used.transform {
+                    None => surface(&used.shape, ray),
+                    Some(m) => surface_to_world(m, &surface(&used.shape, &m.ray_to_object(ray))),
+                }
+            }
+            PrimKind::Instance(_) => unreachable!("locate ends at a primitive that is no instance"),
+        }
+    }
+
+    /// The texture coordinates at a hit: the surface's own, or x and y of the world where it has none, as in POV-Ray.
+    #[cold]
+    fn texture_uv(&self, prim: u32, hit: &Hit, element: u32, point: &SurfacePoint) -> DVec2 {
+        let hit = prim_hit(hit, element);
+        let own = match self.prims.at(prim).kind() {
+            PrimKind::Triangle(mesh, _) => {
+                self.meshes[mesh as usize].mesh.texture_uv(&hit, point.uv)
+            }
+            PrimKind::Sphere(_) => Some(point.uv),
+            PrimKind::Shape(index) | PrimKind::Placed(index) => {
+                self.shapes[index as usize].shape.texture_uv(&hit, point.uv)
+            }
+            PrimKind::Instance(_) => unreachable!("locate ends at a primitive that is no instance"),
+        };
+        own.unwrap_or_else(|| point.position.truncate())
+    }
+}
+
+/// A hit as the primitive reported it.
+fn prim_hit(hit: &Hit, element: u32) -> PrimHit {
+    PrimHit {
+        t: hit.t,
+        surface: SurfaceId {
+            element,
+            facet: hit.facet,
+        },
+        uv: hit.uv,
+    }
+}
+
+/// Transforms a surface point from object space to the space around it.
+pub(crate) fn surface_to_world(m: &Transform, p: &SurfacePoint) -> SurfacePoint {
+    let position = m.point_to_world(p.position);
+    // The transformation rounds too: three products and three sums per coordinate.
+    let magnitude = m.error_to_world(p.position.abs()) + m.translation().abs();
+    let position_error =
+        m.error_to_world(p.position_error) + magnitude * strahl_math::error::gamma(8);
+    let unit = |n| m.normal_to_world(n).normalize_or(n);
+    SurfacePoint {
+        position,
+        position_error,
+        n_geom: unit(p.n_geom),
+        n_shade: unit(p.n_shade),
+        uv: p.uv,
+        dpdu: m.vector_to_world(p.dpdu),
+        dpdv: m.vector_to_world(p.dpdv),
+    }
+}
