@@ -175,7 +175,7 @@ impl BicubicPatch {
         search.run();
         match search.aim {
             Aim::All(found) => settle::settle(found, &self.net, frame),
-            Aim::Nearest { .. } => vec![],
+            Aim::Nearest { .. } | Aim::Any { .. } => vec![],
         }
     }
 
@@ -311,6 +311,32 @@ impl Primitive for BicubicPatch {
                 let nearest = hits.min_by(|a, b| a.t.total_cmp(&b.t));
                 nearest.map(Self::hit)
             }
+        }
+    }
+
+    fn any_hit(
+        &self,
+        ray: &Ray,
+        range: Interval,
+        _from: Option<SurfaceId>,
+        _scratch: &mut Scratch,
+    ) -> bool {
+        let Some(frame) = Frame::new(ray) else {
+            return false;
+        };
+        let aim = Aim::Any {
+            range,
+            found: false,
+            is_doubtful: false,
+        };
+        let mut search = Search::new(&self.net, self.tree(), &frame, aim);
+        search.run();
+        match search.aim {
+            Aim::Any { found: true, .. } => true,
+            Aim::Any {
+                is_doubtful: false, ..
+            } => false,
+            _ => self.all_hits(&frame).iter().any(|c| range.accepts(c.t)),
         }
     }
 

@@ -117,6 +117,12 @@ pub(super) enum Aim {
         nearest: Option<Candidate>,
         is_doubtful: bool,
     },
+    /// Whether there is a candidate in a range that is not doubtful; ends with the first of either kind.
+    Any {
+        range: Interval,
+        found: bool,
+        is_doubtful: bool,
+    },
     /// All candidates.
     All(Vec<Candidate>),
 }
@@ -140,6 +146,12 @@ impl<'a> Search<'a> {
             Aim::Nearest {
                 is_doubtful: true, ..
             } => None,
+            Aim::Any {
+                range,
+                found: false,
+                is_doubtful: false,
+            } => Some(*range),
+            Aim::Any { .. } => None,
             Aim::Nearest { range, nearest, .. } => {
                 Some(nearest.map_or(*range, |n| range.with_max(n.t)))
             }
@@ -411,6 +423,14 @@ impl<'a> Search<'a> {
     fn add(&mut self, candidate: Candidate) {
         match &mut self.aim {
             Aim::All(list) => list.push(candidate),
+            Aim::Any {
+                range,
+                found,
+                is_doubtful,
+            } => {
+                *is_doubtful |= candidate.is_doubtful;
+                *found |= !candidate.is_doubtful && range.accepts(candidate.t);
+            }
             Aim::Nearest {
                 range,
                 nearest,
