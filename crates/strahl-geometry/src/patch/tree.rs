@@ -8,9 +8,9 @@ use strahl_math::{Aabb, DVec3};
 /// them.
 pub(super) const OVERLAP: f64 = 1.0 / (1u64 << 20) as f64;
 /// Pieces are quartered so often at most; a ray that needs smaller ones makes them for itself.
-pub(super) const LEVELS: u8 = 5;
+pub(super) const LEVELS: u8 = 4;
 /// A piece is flat if its derivatives differ from their middle by this part of it at most.
-const FLAT: f64 = 0.05;
+const FLAT: f64 = 0.1;
 
 /// A piece of a patch over a square of its parameters. All vectors are relative to the anchor of the tree.
 #[derive(Clone, Copy, Debug)]
