@@ -1,8 +1,10 @@
 //! Convex bodies of revolution whose outline is made of circular arcs: eggs and lemons.
 
 use super::convex::{End, Span};
-use super::point_error;
-use crate::{SurfaceId, SurfacePoint};
+use super::{Lemon, Ovus, point_error};
+use crate::{
+    Crossings, GeometryError, PrimHit, Primitive, Scratch, Solid, SurfaceId, SurfacePoint,
+};
 use strahl_math::error::gamma;
 use strahl_math::{Aabb, DVec2, DVec3, Interval, Ray, det};
 
@@ -202,7 +204,7 @@ impl ArcBody {
     }
 
     /// The span in which a line is inside of the body. For a ray that starts on a facet, the end there is exactly at 0.
-    pub(super) fn span(&self, ray: &Ray, from: Option<SurfaceId>) -> Option<Span> {
+    fn span(&self, ray: &Ray, from: Option<SurfaceId>) -> Option<Span> {
         let span = self.line(ray)?;
         let Some(from) = from else { return Some(span) };
         let start = End {
@@ -229,24 +231,31 @@ impl ArcBody {
     }
 
     /// Whether an end of a span is seen.
-    pub(super) fn is_seen(&self, end: End) -> bool {
+    fn is_seen(&self, end: End) -> bool {
         self.is_capped || self.cap(end.facet).is_none()
     }
 
     /// The first end in the range that is seen.
-    pub(super) fn closest(
-        &self,
-        ray: &Ray,
-        range: Interval,
-        from: Option<SurfaceId>,
-    ) -> Option<crate::PrimHit> {
+    fn closest(&self, ray: &Ray, range: Interval, from: Option<SurfaceId>) -> Option<PrimHit> {
         let span = self.span(ray, from)?;
         let hit = |end: End| {
             let starts = from.is_some_and(|from| end.t == 0.0 && from.facet == end.facet);
             let counts = range.accepts(end.t) && self.is_seen(end) && !starts;
-            counts.then(|| crate::PrimHit::simple(end.t, end.facet))
+            counts.then(|| PrimHit::simple(end.t, end.facet))
         };
         hit(span.enter).or_else(|| hit(span.exit))
+    }
+
+    /// See [`Solid::crossings`].
+    fn crossings(&self, ray: &Ray, range: Interval, from: Option<SurfaceId>, out: &mut Crossings) {
+        let Some(span) = self.span(ray, from) else {
+            return;
+        };
+        span.list(range, from, |end| self.t_error(ray, end), out);
+        for crossing in &mut out.list {
+            let (t, facet) = (crossing.hit.t, crossing.surface().facet);
+            crossing.visible = self.is_seen(End { t, facet });
+        }
     }
 
     /// The largest length in it.
@@ -270,7 +279,7 @@ impl ArcBody {
         [low, high]
     }
 
-    pub(super) fn surface_at(&self, ray: &Ray, hit: &crate::PrimHit) -> SurfacePoint {
+    fn surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
         let p = (ray.origin - self.base) + ray.direction * hit.t;
         let height = p.dot(self.axis);
         let across = p - self.axis * height;
@@ -308,7 +317,7 @@ impl ArcBody {
 
     /// The error of the parameter of an end: that of the point, divided by the speed at which the ray crosses the surface; near a
     /// tangent it grows to the square root.
-    pub(super) fn t_error(&self, ray: &Ray, end: End) -> f64 {
+    fn t_error(&self, ray: &Ray, end: End) -> f64 {
         let extent = self.extent();
         let p = (ray.origin - self.base) + ray.direction * end.t;
         let point = gamma(32) * (ray.origin.length() + self.base.length() + p.length() + extent);
@@ -323,7 +332,7 @@ impl ArcBody {
             }
     }
 
-    pub(super) fn bounds(&self) -> Aabb {
+    fn bounds(&self) -> Aabb {
         let [lowest, highest] = self.ends();
         let mut all = Aabb::EMPTY;
         let side = (DVec3::ONE - self.axis * self.axis).max(DVec3::ZERO);
@@ -342,7 +351,7 @@ impl ArcBody {
         all.padded(point_error(largest, self.extent(), 64))
     }
 
-    pub(super) fn contains(&self, point: DVec3) -> bool {
+    fn contains(&self, point: DVec3) -> bool {
         let p = point - self.base;
         let height = p.dot(self.axis);
         self.arcs.iter().any(|arc| {
@@ -353,3 +362,64 @@ impl ArcBody {
         })
     }
 }
+
+/// Makes a shape with a field `body` and a method `check` a primitive.
+macro_rules! made_of_arcs {
+    ($shape:ident, $kind:literal) => {
+        impl Primitive for $shape {
+            fn kind(&self) -> &'static str {
+                $kind
+            }
+
+            fn validate(&self) -> Result<(), GeometryError> {
+                self.check()
+            }
+
+            fn bounds(&self) -> Aabb {
+                self.body.bounds()
+            }
+
+            fn closest_hit(
+                &self,
+                ray: &Ray,
+                range: Interval,
+                from: Option<SurfaceId>,
+                _scratch: &mut Scratch,
+            ) -> Option<PrimHit> {
+                self.body.closest(ray, range, from)
+            }
+
+            fn surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
+                self.body.surface_at(ray, hit)
+            }
+
+            fn texture_uv(&self, _hit: &PrimHit, uv: DVec2) -> Option<DVec2> {
+                Some(uv)
+            }
+
+            fn as_solid(&self) -> Option<&dyn Solid> {
+                Some(self)
+            }
+        }
+
+        impl Solid for $shape {
+            fn crossings(
+                &self,
+                ray: &Ray,
+                range: Interval,
+                from: Option<SurfaceId>,
+                _scratch: &mut Scratch,
+                out: &mut Crossings,
+            ) {
+                self.body.crossings(ray, range, from, out);
+            }
+
+            fn contains(&self, point: DVec3) -> bool {
+                self.body.contains(point)
+            }
+        }
+    };
+}
+
+made_of_arcs!(Lemon, "lemon");
+made_of_arcs!(Ovus, "ovus");

@@ -1,9 +1,7 @@
 use super::arcs::{Arc, ArcBody};
 use super::{check_finite, check_length, check_positive, unit_vector};
-use crate::{
-    Crossings, GeometryError, PrimHit, Primitive, Scratch, Solid, SurfaceId, SurfacePoint,
-};
-use strahl_math::{Aabb, DVec2, DVec3, Interval, Ray};
+use crate::GeometryError;
+use strahl_math::DVec3;
 
 /// A lemon: two ends on an axis, each with a radius, and between them a circular arc turned about the axis.
 ///
@@ -16,7 +14,7 @@ pub struct Lemon {
     ends: [DVec3; 2],
     radii: [f64; 2],
     inner: f64,
-    body: ArcBody,
+    pub(super) body: ArcBody,
 }
 
 impl Lemon {
@@ -80,7 +78,7 @@ impl Lemon {
         inner: f64,
     ) -> Result<Self, GeometryError> {
         let lemon = Self::new(base, base_radius, apex, apex_radius, inner);
-        lemon.validate().map(|()| lemon)
+        lemon.check().map(|()| lemon)
     }
 
     /// The least inner radius for ends of these radii at a distance: that of the sphere through both rims.
@@ -89,14 +87,9 @@ impl Lemon {
         let height = 0.5 * (length + (b - a) * (b + a) / length);
         (a * a + height * height).sqrt()
     }
-}
 
-impl Primitive for Lemon {
-    fn kind(&self) -> &'static str {
-        "lemon"
-    }
-
-    fn validate(&self) -> Result<(), GeometryError> {
+    /// See [`crate::Primitive::validate`].
+    pub(super) fn check(&self) -> Result<(), GeometryError> {
         for end in self.ends {
             check_finite("end of the lemon", end)?;
         }
@@ -112,63 +105,15 @@ impl Primitive for Lemon {
         }
         Ok(())
     }
-
-    fn bounds(&self) -> Aabb {
-        self.body.bounds()
-    }
-
-    fn closest_hit(
-        &self,
-        ray: &Ray,
-        range: Interval,
-        from: Option<SurfaceId>,
-        _scratch: &mut Scratch,
-    ) -> Option<PrimHit> {
-        self.body.closest(ray, range, from)
-    }
-
-    fn surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
-        self.body.surface_at(ray, hit)
-    }
-
-    fn texture_uv(&self, _hit: &PrimHit, uv: DVec2) -> Option<DVec2> {
-        Some(uv)
-    }
-
-    fn as_solid(&self) -> Option<&dyn Solid> {
-        Some(self)
-    }
-}
-
-impl Solid for Lemon {
-    fn crossings(
-        &self,
-        ray: &Ray,
-        range: Interval,
-        from: Option<SurfaceId>,
-        _scratch: &mut Scratch,
-        out: &mut Crossings,
-    ) {
-        let Some(span) = self.body.span(ray, from) else {
-            return;
-        };
-        span.list(range, from, |end| self.body.t_error(ray, end), out);
-        for crossing in &mut out.list {
-            let (t, facet) = (crossing.hit.t, crossing.surface().facet);
-            crossing.visible = self.body.is_seen(super::convex::End { t, facet });
-        }
-    }
-
-    fn contains(&self, point: DVec3) -> bool {
-        self.body.contains(point)
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::conformance::Random;
+    use crate::{Primitive, Scratch, Solid};
     use crate::{Sphere, Torus};
+    use strahl_math::{Interval, Ray};
 
     crate::primitive_tests!(pointed, || Lemon::new(-DVec3::Y, 0.0, DVec3::Y, 0.0, 1.5));
     crate::primitive_tests!(cut, || Lemon::new(

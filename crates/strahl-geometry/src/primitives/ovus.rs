@@ -1,9 +1,7 @@
 use super::arcs::{Arc, ArcBody};
 use super::{check_length, check_positive};
-use crate::{
-    Crossings, GeometryError, PrimHit, Primitive, Scratch, Solid, SurfaceId, SurfacePoint,
-};
-use strahl_math::{Aabb, DVec2, DVec3, Interval, Ray};
+use crate::GeometryError;
+use strahl_math::DVec3;
 
 /// An egg: a ball at the bottom, a ball at the top, and between them a part of a spindle torus that touches both.
 ///
@@ -15,7 +13,7 @@ use strahl_math::{Aabb, DVec2, DVec3, Interval, Ray};
 pub struct Ovus {
     bottom: f64,
     top: f64,
-    body: ArcBody,
+    pub(super) body: ArcBody,
 }
 
 impl Ovus {
@@ -71,7 +69,7 @@ impl Ovus {
     /// A radius is not finite or not positive.
     pub fn try_new(bottom: f64, top: f64) -> Result<Self, GeometryError> {
         let ovus = Self::new(bottom, top);
-        ovus.validate().map(|()| ovus)
+        ovus.check().map(|()| ovus)
     }
 
     /// The radius of the bottom.
@@ -83,69 +81,20 @@ impl Ovus {
     pub const fn top(&self) -> f64 {
         self.top
     }
-}
 
-impl Primitive for Ovus {
-    fn kind(&self) -> &'static str {
-        "ovus"
-    }
-
-    fn validate(&self) -> Result<(), GeometryError> {
+    /// See [`crate::Primitive::validate`].
+    pub(super) fn check(&self) -> Result<(), GeometryError> {
         check_length("bottom radius of the ovus", self.bottom)?;
         check_length("top radius of the ovus", self.top)?;
         check_positive("sum of the radii of the ovus", self.bottom + self.top)
-    }
-
-    fn bounds(&self) -> Aabb {
-        self.body.bounds()
-    }
-
-    fn closest_hit(
-        &self,
-        ray: &Ray,
-        range: Interval,
-        from: Option<SurfaceId>,
-        _scratch: &mut Scratch,
-    ) -> Option<PrimHit> {
-        self.body.closest(ray, range, from)
-    }
-
-    fn surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
-        self.body.surface_at(ray, hit)
-    }
-
-    fn texture_uv(&self, _hit: &PrimHit, uv: DVec2) -> Option<DVec2> {
-        Some(uv)
-    }
-
-    fn as_solid(&self) -> Option<&dyn Solid> {
-        Some(self)
-    }
-}
-
-impl Solid for Ovus {
-    fn crossings(
-        &self,
-        ray: &Ray,
-        range: Interval,
-        from: Option<SurfaceId>,
-        _scratch: &mut Scratch,
-        out: &mut Crossings,
-    ) {
-        if let Some(span) = self.body.span(ray, from) {
-            span.list(range, from, |end| self.body.t_error(ray, end), out);
-        }
-    }
-
-    fn contains(&self, point: DVec3) -> bool {
-        self.body.contains(point)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Sphere;
+    use crate::{PrimHit, Primitive, Scratch, Sphere};
+    use strahl_math::{Interval, Ray};
 
     crate::primitive_tests!(egg, || Ovus::new(1.0, 0.5));
     crate::primitive_tests!(pointed_below, || Ovus::new(0.6, 1.0));
