@@ -18,4 +18,12 @@ groups! {
     normal_of_a_panoramic_camera,
     maps_may_fall,
     layers_with_different_weights_have_rays_of_their_own,
+    aoi_and_slope_see_the_normal_evaluated_last,
+    triangles_have_fronts,
+    parts_have_the_interior_texture_of_the_whole,
+    components_of_blobs_keep_their_textures,
+    default_pigments_are_those_of_objects,
+    a_repeated_black_hole_lies_in_its_block,
+    beside_a_single_bump_map_are_its_other_edges,
+    inverse_objects_end_with_their_boxes,
 }

@@ -141,8 +141,8 @@ impl ImageMap {
             1.0 / f64::from(self.image.height()),
         );
         let gray = |dx: f64, dy: f64| {
-            let sample = self.sample_at(place + DVec2::new(dx, dy) * texel);
-            sample.map_or(0.0, |[r, g, b, a, _]| Color::new(r, g, b).gray_value() * a)
+            let [r, g, b, a, _] = self.sample_around(place + DVec2::new(dx, dy) * texel);
+            Color::new(r, g, b).gray_value() * a
         };
         if self.sample_at(place).is_none() {
             return DVec3::ZERO;
@@ -192,6 +192,11 @@ impl ImageMap {
         if self.once && beside {
             return None;
         }
+        Some(self.sample_around(place))
+    }
+
+    /// The same for an image that is repeated.
+    fn sample_around(&self, place: DVec2) -> [f64; 5] {
         let (width, height) = (self.image.width(), self.image.height());
         let fraction = place - place.floor();
         let x = fraction.x * f64::from(width);
@@ -203,7 +208,7 @@ impl ImageMap {
             self.texel(column, height - 1 - row)
         };
         if self.interpolation == Interpolation::Nearest {
-            return Some(texel(x.floor(), y.floor()));
+            return texel(x.floor(), y.floor());
         }
         let (x, y) = (x - 0.5, y - 0.5);
         let (left, low) = (x.floor(), y.floor());
@@ -218,7 +223,7 @@ impl ImageMap {
                     }
                 }
             }
-            return Some(sum.map(|channel| channel.clamp(0.0, 1.0)));
+            return sum.map(|channel| channel.clamp(0.0, 1.0));
         }
         let mut total = 0.0;
         for (i, j) in [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)] {
@@ -229,7 +234,7 @@ impl ImageMap {
             } else {
                 let squared = ds * ds + dt * dt;
                 if squared == 0.0 {
-                    return Some(texel);
+                    return texel;
                 }
                 1.0 / squared
             };
@@ -238,7 +243,7 @@ impl ImageMap {
                 *sum += weight * channel;
             }
         }
-        Some(sum.map(|channel| channel / total))
+        sum.map(|channel| channel / total)
     }
 }
 

@@ -153,6 +153,18 @@ impl TexturePaint<'_> {
 struct Stack {
     share: f64,
     above: Color,
+    /// The normal that the patterns `slope` and `aoi` see: that of the texture evaluated last, in its own space, as in POV-Ray (measured).
+    seen: DVec3,
+}
+
+impl Stack {
+    fn new(point: &TexturePoint) -> Self {
+        Self {
+            share: 1.0,
+            above: Color::WHITE,
+            seen: point.n_shade,
+        }
+    }
 }
 
 impl Texture {
@@ -161,11 +173,12 @@ impl Texture {
     pub fn layers_at<'a>(&'a self, point: &TexturePoint, eta: f64, out: &mut TexturePaint<'a>) {
         out.layers.clear();
         out.transmission = Color::BLACK;
-        let mut stack = Stack {
-            share: 1.0,
-            above: Color::WHITE,
+        let mut stack = Stack::new(point);
+        let ways = Ways {
+            out: &Identity,
+            to_map: &Identity,
         };
-        self.paint(point, point.n_shade, &Identity, eta, &mut stack, out);
+        self.paint(point, point.n_shade, ways, eta, &mut stack, out);
         out.transmission += stack.above * stack.share;
         let passing = self.refraction();
         if passing != 1.0 {
@@ -186,13 +199,14 @@ impl Texture {
         };
         out.layers.clear();
         out.transmission = Color::BLACK;
-        let mut stack = Stack {
-            share: 1.0,
-            above: Color::WHITE,
-        };
+        let mut stack = Stack::new(point);
         let inner = point.at(space.point_to_object(point.position));
         let n = NormalSpace::enter(space, point.n_shade);
-        self.paint(&inner, n, space, eta, &mut stack, out);
+        let ways = Ways {
+            out: space,
+            to_map: space,
+        };
+        self.paint(&inner, n, ways, eta, &mut stack, out);
         out.transmission += stack.above * stack.share;
         let passing = self.refraction();
         if passing != 1.0 {
@@ -280,7 +294,13 @@ impl Texture {
     ) -> Color {
         match self {
             Self::Plain(texture) => {
-                let cos = texture.tilted(point, n, space).dot(point.direction);
+                let ways = Ways {
+                    out: space,
+                    to_map: &Identity,
+                };
+                let tilted = texture.tilt(point, n, ways);
+                let normal = tilted.map_or(point.n_shade, |(outer, _)| outer);
+                let cos = normal.dot(point.direction);
                 texture.pigment.color_at(point).attenuation() * Interior::gathered(caustics, cos)
             }
             Self::Layered(layers) => layers.iter().fold(Color::WHITE, |passed, layer| {
@@ -317,8 +337,9 @@ impl Texture {
                     None => {}
                     Some(Blend::One(texture)) => visit(texture, &inner, warps, 1.0),
                     Some(Blend::Two(low, high, t)) => {
-                        visit(low, &inner, warps, 1.0 - t);
+                        // POV-Ray's order, which `slope` and `aoi` show (measured).
                         visit(high, &inner, warps, t);
+                        visit(low, &inner, warps, 1.0 - t);
                     }
                 }
             }
@@ -368,16 +389,16 @@ impl Texture {
         &'a self,
         point: &TexturePoint,
         n: DVec3,
-        space: &dyn NormalSpace,
+        ways: Ways<'_>,
         eta: f64,
         stack: &mut Stack,
         out: &mut TexturePaint<'a>,
     ) {
         match self {
-            Self::Plain(texture) => texture.paint(point, n, space, eta, stack, out),
+            Self::Plain(texture) => texture.paint(point, n, ways, eta, stack, out),
             Self::Layered(layers) => {
                 for layer in layers.iter().rev() {
-                    layer.paint(point, n, space, eta, stack, out);
+                    layer.paint(point, n, ways, eta, stack, out);
                 }
             }
             _ => {
@@ -385,18 +406,26 @@ impl Texture {
                 // again.
                 let (share, above) = (stack.share, stack.above);
                 let mut passed = Color::BLACK;
+                let is_map = !matches!(self, Self::Transformed(..) | Self::UvMapped(_));
                 self.for_members(point, |texture, inner, member_space, weight| {
                     let mut member = Stack {
                         share: share * weight,
                         above,
+                        seen: stack.seen,
                     };
-                    let chain = Chain {
-                        outer: space,
+                    let chain = |outer| Chain {
+                        outer,
                         inner: member_space,
                     };
+                    let (out_of, to_map) = (chain(ways.out), chain(ways.to_map));
+                    let ways = Ways {
+                        out: &out_of,
+                        to_map: if is_map { &Identity } else { &to_map },
+                    };
                     let n_inner = member_space.enter(n);
-                    texture.paint(inner, n_inner, &chain, eta, &mut member, out);
+                    texture.paint(inner, n_inner, ways, eta, &mut member, out);
                     passed += member.above * weight;
+                    stack.seen = member.seen;
                 });
                 stack.above = passed;
             }
@@ -405,39 +434,41 @@ impl Texture {
 }
 
 impl PlainTexture {
-    /// The tilted unit normal in the space around; `n` is the normal in the texture's space.
-    fn tilted(&self, point: &TexturePoint, n: DVec3, space: &dyn NormalSpace) -> DVec3 {
-        match &self.normal {
-            // A layer without a normal of its own leaves the surface's untouched, to the last bit.
-            None => point.n_shade,
-            Some(normal) if normal.uv_mapped => normal
-                .tilt(&point.at(point.uv.extend(0.0)), point.n_shade)
-                .normalize_or(point.n_shade),
-            Some(normal) => space
-                .leave(normal.tilt(&point.for_normals(), n))
-                .normalize_or(point.n_shade),
-        }
+    /// The tilted unit normals in the space around and in that of the innermost map; `n` is the normal in the texture's space. `None`
+    /// without a normal of its own.
+    fn tilt(&self, point: &TexturePoint, n: DVec3, ways: Ways<'_>) -> Option<(DVec3, DVec3)> {
+        let normal = self.normal.as_ref()?;
+        let (outer, in_map) = if normal.uv_mapped {
+            let tilted = normal.tilt(&point.at(point.uv.extend(0.0)), point.n_shade);
+            (tilted, tilted)
+        } else {
+            let tilted = normal.tilt(&point.for_normals(), n);
+            (ways.out.leave(tilted), ways.to_map.leave(tilted))
+        };
+        Some((
+            outer.normalize_or(point.n_shade),
+            in_map.normalize_or(point.n_shade),
+        ))
     }
 
     fn paint<'a>(
         &'a self,
         point: &TexturePoint,
         n: DVec3,
-        space: &dyn NormalSpace,
+        ways: Ways<'_>,
         eta: f64,
         stack: &mut Stack,
         out: &mut TexturePaint<'a>,
     ) {
-        let normal = self.tilted(point, n, space);
-        let color = if self.normal.is_none() {
-            self.pigment.color_at(point)
-        } else {
-            // The patterns `slope` and `aoi` see the tilted normal (measured).
-            self.pigment.color_at(&TexturePoint {
-                n_shade: normal,
-                ..*point
-            })
-        };
+        // A layer without a normal of its own leaves the surface's untouched, to the last bit.
+        let mut normal = point.n_shade;
+        if let Some((outer, in_map)) = self.tilt(point, n, ways) {
+            (normal, stack.seen) = (outer, in_map);
+        }
+        let color = self.pigment.color_at(&TexturePoint {
+            n_shade: stack.seen,
+            ..*point
+        });
         let cos_view = -normal.dot(point.direction);
         // A layer below an opaque layer does not reflect; otherwise the layers above do not weaken its reflection (measured).
         let reflection = &self.finish.reflection;
@@ -522,6 +553,15 @@ impl NormalSpace for Vec<Warp> {
             _ => n,
         })
     }
+}
+
+/// The way of normals from a texture's own space.
+#[derive(Clone, Copy)]
+struct Ways<'s> {
+    /// To the space around the whole texture.
+    out: &'s dyn NormalSpace,
+    /// To the space of the innermost map around: the transformations of a plain texture are those of its normal.
+    to_map: &'s dyn NormalSpace,
 }
 
 /// A space inside of another.

@@ -352,7 +352,7 @@ impl TriangleMesh {
 
     /// The same surface with fronts and backs exchanged.
     #[must_use]
-    pub(super) fn turned_inside_out(mut self) -> Self {
+    pub fn turned_inside_out(mut self) -> Self {
         self.flipped = !self.flipped;
         self
     }

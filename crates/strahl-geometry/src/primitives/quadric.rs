@@ -81,6 +81,12 @@ impl Quadric {
         self.value_at(point - self.origin)
     }
 
+    /// Whether xy, xz or yz occur in its polynomial.
+    pub fn has_mixed_terms(&self) -> bool {
+        let q = self.square;
+        q.x_axis.y != 0.0 || q.x_axis.z != 0.0 || q.y_axis.z != 0.0
+    }
+
     fn value_at(&self, p: DVec3) -> f64 {
         p.dot(self.square * p + self.half_linear * 2.0) + self.constant
     }

@@ -3,8 +3,8 @@
 use super::flatten::combine;
 use crate::scene::Inside;
 use std::sync::Arc;
-use strahl_geometry::{Csg, CsgNode, Primitive, Shape};
-use strahl_math::{Aabb, Transform};
+use strahl_geometry::{Csg, CsgNode, Cuboid, Plane, Primitive, Shape};
+use strahl_math::{Aabb, DVec3, Transform};
 use strahl_scene::{CsgOp, Object, ObjectKind};
 
 /// The inside of an object that is cut or inverted as a whole; `to_group` is from its own space to that of its group. As in POV-Ray
@@ -21,7 +21,7 @@ pub(super) fn of(object: &Object, to_group: &Transform) -> Option<Inside> {
         let (first, others) = children.0.split_first()?;
         inverted ^= *op == CsgOp::Inverse;
         for other in others {
-            limit = limit.intersection(&bounds(&solid(other, &placed(other, &map))?));
+            limit = limit.intersection(&bounds(other, &placed(other, &map))?);
         }
         map = placed(first, &map);
         inner = first;
@@ -30,7 +30,7 @@ pub(super) fn of(object: &Object, to_group: &Transform) -> Option<Inside> {
         return None;
     }
     let own = solid(inner, &map)?;
-    limit = limit.intersection(&bounds(&own));
+    limit = limit.intersection(&bounds(inner, &map)?);
     let own = if inverted {
         let node = CsgNode::leaf(Arc::new(own), 0).inverted();
         Csg::try_new(node).ok()?
@@ -43,13 +43,28 @@ pub(super) fn of(object: &Object, to_group: &Transform) -> Option<Inside> {
     })
 }
 
-/// The box of something bounded; that of half-spaces and the like bounds nothing.
-fn bounds(solid: &Csg) -> Aabb {
-    let bounds = solid.bounds();
-    if bounds.is_bounded() {
+/// The box that POV-Ray has around something bounded; that of half-spaces and the like bounds nothing.
+fn bounds(object: &Object, to_group: &Transform) -> Option<Aabb> {
+    let bounds = combined(object, to_group, &boxed)?.bounds();
+    Some(if bounds.is_bounded() {
         bounds
     } else {
         Aabb::EVERYTHING
+    })
+}
+
+/// Something with the box of a shape, if the shape as a solid has another in strahl (measured): height fields end with their surface, and
+/// quadrics that are written with mixed terms have none.
+fn boxed(shape: &Shape) -> Shape {
+    match shape {
+        Shape::HeightField(field) => {
+            let bounds = field.bounds();
+            Cuboid::try_new(bounds.min, bounds.max).map_or_else(|_| shape.clone(), Shape::from)
+        }
+        Shape::Quadric(quadric) if quadric.has_mixed_terms() => {
+            Plane::new(DVec3::ZERO, DVec3::Y).into()
+        }
+        _ => shape.clone(),
     }
 }
 
@@ -63,6 +78,11 @@ pub(super) fn placed(object: &Object, outer: &Transform) -> Transform {
 
 /// The tree of an object by itself; `to_group` is from its own space. Walked with a list, since trees may be deeper than the stack.
 pub(super) fn solid(object: &Object, to_group: &Transform) -> Option<Csg> {
+    combined(object, to_group, &Shape::clone)
+}
+
+/// The same with other shapes in their places.
+fn combined(object: &Object, to_group: &Transform, shape: &dyn Fn(&Shape) -> Shape) -> Option<Csg> {
     enum Step<'a> {
         Visit(&'a Object, Transform),
         Build(CsgOp, usize),
@@ -81,7 +101,7 @@ pub(super) fn solid(object: &Object, to_group: &Transform) -> Option<Csg> {
                     steps.extend(parts.map(|part| Step::Visit(part, placed(part, &map))));
                     continue;
                 }
-                ObjectKind::Shape(shape) => CsgNode::leaf(Shape::clone(shape), 0).transformed(map),
+                ObjectKind::Shape(own) => CsgNode::leaf(shape(own), 0).transformed(map),
                 ObjectKind::Instance(_) | ObjectKind::Light(_) => return None,
             },
         };

@@ -99,7 +99,7 @@ impl Parser<'_> {
     pub(super) fn pigment_function(&mut self) -> PResult<Value> {
         let pigment = self.braces(|p| {
             p.next()?;
-            p.pigment_block()
+            p.free_pigment_block()
         })?;
         let function = PigmentFunction {
             cost: pigment.cost(),

@@ -50,7 +50,7 @@ impl Parser<'_> {
                 match token.word() {
                     Some(Word::Pigment) => {
                         p.take(token)?;
-                        sky.layers.push(p.pigment_block()?);
+                        sky.layers.push(p.free_pigment_block()?);
                     }
                     Some(Word::Emission) => {
                         p.take(token)?;

@@ -36,7 +36,7 @@ use crate::token::Token;
 use std::sync::{Arc, LazyLock};
 use strahl_math::Transform;
 use strahl_shade::interior::Interior;
-use strahl_shade::texture::{PlainTexture, Texture as Surface};
+use strahl_shade::texture::{PlainTexture, Shares, Texture as Surface};
 
 /// The look of an object: its surface and its interior.
 #[derive(Clone, Debug, Default)]
@@ -52,6 +52,8 @@ pub struct Texture {
     /// The transformation of a uniform surface since it was written. The surface itself does not store it, but a pattern that
     /// later replaces its colour is transformed by it.
     pub(super) placed: Option<Box<Transform>>,
+    /// The textures of the components of a blob, which neither `surface` nor `inner_surface` replaces.
+    pub(super) components: Option<Arc<Components>>,
 }
 
 /// Transforms a texture. With `uv`, also its parts in surface coordinates, which do not follow the transformations of objects.
@@ -109,6 +111,23 @@ pub(super) fn top_of(texture: &mut Surface) -> Option<&mut PlainTexture> {
     }
 }
 
+/// The textures of parts of one surface, and their shares at its points; number 0 is the texture of the whole.
+#[derive(Clone, Debug)]
+pub(super) struct Components {
+    pub shares: Arc<dyn Shares>,
+    /// The textures from number 1 on.
+    pub own: Vec<Arc<Surface>>,
+}
+
+impl Components {
+    /// The texture of the whole and of these parts.
+    fn around(&self, whole: Surface) -> Surface {
+        let own = self.own.iter().map(|own| Surface::clone(own));
+        let members = std::iter::once(whole).chain(own).collect();
+        Surface::Shared(Arc::clone(&self.shares), members)
+    }
+}
+
 impl Texture {
     /// The texture after a transformation of its space; parts in surface coordinates stay.
     #[must_use]
@@ -132,6 +151,12 @@ impl Texture {
                 let before = self.placed.as_deref();
                 Some(Box::new(before.map_or(*by, |before| before.then(by))))
             },
+            components: self.components.as_ref().map(|components| {
+                Arc::new(Components {
+                    shares: Arc::clone(&components.shares),
+                    own: components.own.iter().map(moved).collect(),
+                })
+            }),
         }
     }
 

@@ -68,7 +68,8 @@ pub struct BlackHole {
     pub falloff: f64,
     /// Whether the pattern is pushed away.
     pub inverse: bool,
-    /// Edge lengths of the blocks in which the hole is repeated; 0 is no repetition along that axis.
+    /// Edge lengths of the blocks in which the hole is repeated; 0 is no repetition along that axis. A hole that isn't wholly in its block
+    /// is moved up and the block made longer, until it is (measured).
     pub repeat: DVec3,
 }
 
@@ -86,16 +87,13 @@ impl BlackHole {
     }
 
     fn apply(&self, p: DVec3) -> DVec3 {
-        let block = |x: f64, length: f64| {
-            if length == 0.0 {
-                0.0
-            } else {
-                (x / length).floor() * length
-            }
-        };
-        let r = self.repeat;
-        let corner = DVec3::new(block(p.x, r.x), block(p.y, r.y), block(p.z, r.z));
-        let from_center = p - corner - self.center;
+        let mut from_center = p - self.center;
+        for axis in (0..3).filter(|axis| self.repeat[*axis] != 0.0) {
+            let center = self.center[axis].max(self.radius);
+            let length = self.repeat[axis].max(center + self.radius);
+            let corner = (p[axis] / length).floor() * length;
+            from_center[axis] = p[axis] - corner - center;
+        }
         let distance = from_center.length();
         if !(distance < self.radius) {
             return p;

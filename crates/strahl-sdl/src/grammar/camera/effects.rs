@@ -139,7 +139,7 @@ impl Parser<'_> {
                 return Err(p.unexpected(token, "`pigment`"));
             }
             p.take(token)?;
-            p.pigment_block()
+            p.free_pigment_block()
         })?;
         let bokeh = Bokeh::new(|x, y| {
             let point = TexturePoint::in_space(DVec3::new(x, y, 0.0));

@@ -1,3 +1,4 @@
+use crate::grammar::texture::Components;
 use crate::grammar::{Entity, Texture};
 use crate::keywords::Word;
 use crate::parser::{PResult, Parser};
@@ -45,20 +46,21 @@ pub(super) fn blob(p: &mut Parser<'_>) -> PResult<Entity> {
     if let Some(blob) = shape
         && !draft.own.is_empty()
     {
-        // The texture of the whole blob is known only here; a default texture does not move with the object.
+        // A default texture does not move with the object.
         let whole = entity.texture.take().unwrap_or_else(|| {
             let back = entity.placement().inverted();
             p.state.default_texture.transformed(&back)
         });
-        let mut members = vec![Surface::clone(&whole.surface)];
-        members.extend(draft.own.iter().map(|own| Surface::clone(own)));
         let shares = ByField {
             blob,
             textures: draft.textures,
         };
+        let components = Components {
+            shares: Arc::new(shares),
+            own: draft.own,
+        };
         let texture = Texture {
-            surface: Arc::new(Surface::Shared(Arc::new(shares), members)),
-            written: true,
+            components: Some(Arc::new(components)),
             ..whole
         };
         entity.object.material = Some(p.material(&texture));

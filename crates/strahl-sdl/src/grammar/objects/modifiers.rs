@@ -79,7 +79,7 @@ impl Parser<'_> {
             && let Some(texture) = &entity.texture
         {
             entity.object.material = Some(self.material(texture));
-            let fills = texture.whole_interior().is_some();
+            let fills = texture.whole_interior().is_some() || texture.inner_surface.is_some();
             if fills {
                 self.expand_unfilled(&mut entity.object)?;
             }

@@ -7,7 +7,8 @@ use strahl_math::DVec3;
 pub(super) fn triangle(p: &mut Parser<'_>) -> PResult<Entity> {
     p.shape(|p| {
         let [a, b, c] = corners(p)?;
-        Ok(Triangle::try_new(a, b, c))
+        // POV-Ray's front is the other side (measured).
+        Ok(Triangle::try_new(a, c, b))
     })
 }
 
@@ -25,13 +26,20 @@ pub(super) fn smooth_triangle(p: &mut Parser<'_>) -> PResult<Entity> {
         let [a, b, c] = corners;
         // Interpolation needs all three normals.
         if normals.contains(&DVec3::ZERO) {
-            return Ok(Triangle::try_new(a, b, c).map(Shape::from));
+            return Ok(Triangle::try_new(a, c, b).map(Shape::from));
         }
         if !on_one_side(corners, normals) {
             return Ok(Err(GeometryError::Degenerate {
                 what: "smooth triangle",
                 why: "its normals stand on both sides of it, or along it; within a `mesh` it would be seen",
             }));
+        }
+        // The front is the side of the normals (measured).
+        if (b - a).cross(c - a).dot(normals[0]) < 0.0 {
+            return Ok(
+                SmoothTriangle::try_new([a, c, b], [normals[0], normals[2], normals[1]])
+                    .map(Shape::from),
+            );
         }
         Ok(SmoothTriangle::try_new(corners, normals).map(Shape::from))
     })

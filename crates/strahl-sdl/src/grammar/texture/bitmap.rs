@@ -353,7 +353,7 @@ impl Parser<'_> {
         if inner.is(Word::Pigment) {
             let pigment = self.braces(|p| {
                 p.next()?;
-                p.pigment_block()
+                p.free_pigment_block()
             })?;
             let cost = pigment.cost();
             let value = move |p| {

@@ -36,18 +36,37 @@ impl PartialEq for Texture {
             (Some(a), Some(b)) => same_surface(a, b),
             _ => false,
         };
-        same_inner && self.interior == other.interior && same_surface(&self.surface, &other.surface)
+        let same_components = match (&self.components, &other.components) {
+            (None, None) => true,
+            (Some(a), Some(b)) => Arc::ptr_eq(a, b),
+            _ => false,
+        };
+        same_inner
+            && same_components
+            && self.interior == other.interior
+            && same_surface(&self.surface, &other.surface)
     }
 }
 
 impl Texture {
     fn to_material(&self) -> Material {
         let interior = self.whole_interior();
+        let (mut outer, mut inner) = (Arc::clone(&self.surface), self.inner_surface.clone());
+        // Textures of components are seen from both sides (measured).
+        if let Some(components) = &self.components {
+            let whole = if self.written {
+                Surface::clone(&outer)
+            } else {
+                missing()
+            };
+            outer = Arc::new(components.around(whole));
+            inner = Some(Arc::clone(&outer));
+        }
         Material {
             eta: interior.as_ref().map_or(1.0, |i| i.ior),
-            inner_texture: self.inner_surface.clone().map(SharedTexture),
+            inner_texture: inner.map(SharedTexture),
             interior,
-            ..Material::textured(SharedTexture(Arc::clone(&self.surface)))
+            ..Material::textured(SharedTexture(outer))
         }
     }
 
@@ -66,7 +85,10 @@ impl Texture {
     /// Whether the object has an interior but no texture, so that it takes its texture from the object it is a part of, or else
     /// the default.
     pub(in crate::grammar) fn is_bare(&self) -> bool {
-        !self.written && self.inner_surface.is_none() && self.interior.is_some()
+        !self.written
+            && self.inner_surface.is_none()
+            && self.components.is_none()
+            && self.interior.is_some()
     }
 }
 
@@ -75,12 +97,42 @@ pub(in crate::grammar) fn is_bare(material: &Material) -> bool {
     material.texture.is_none()
 }
 
-/// Completes the looks of the parts of a CSG object: parts without a texture get that of the whole, parts without an interior get
-/// that of the whole.
+/// The texture of a blob whose components have textures, as long as that of the whole is not known: it paints nothing.
+fn missing() -> Surface {
+    Surface::Average(vec![], Box::default())
+}
+
+/// The texture with that of the whole where it is missing, which then is missing on both sides; `None` if nothing is missing.
+fn filled(texture: &SharedTexture, whole: &Surface) -> Option<SharedTexture> {
+    let Surface::Shared(shares, members) = &*texture.0 else {
+        return None;
+    };
+    let is_missing = |t: &Surface| matches!(t, Surface::Average(list, _) if list.is_empty());
+    members.first().filter(|first| is_missing(first))?;
+    let mut members = members.clone();
+    members[0] = whole.clone();
+    let surface = Surface::Shared(Arc::clone(shares), members);
+    Some(SharedTexture(Arc::new(surface)))
+}
+
+/// Completes the looks of an object and of its parts: what has no texture, no interior texture or no interior gets that of the whole.
 pub(in crate::grammar) fn fill_parts(object: &mut Object, whole: &Texture) {
-    // Parts that shared a material share the completed one too.
-    let mut filled: Vec<(Arc<Material>, Arc<Material>)> = vec![];
     let interior = object.material.as_ref().and_then(|m| m.interior.clone());
+    let mut fill = Fill {
+        whole,
+        interior,
+        known: vec![],
+    };
+    if let Some(before) = &object.material
+        && let Some(texture) = &before.texture
+        && let Some(texture) = filled(texture, &whole.surface)
+    {
+        object.material = Some(Arc::new(Material {
+            texture: Some(texture.clone()),
+            inner_texture: Some(texture),
+            ..Material::clone(before)
+        }));
+    }
     // The transformation from the space of a part to that of the whole.
     let mut waiting = vec![(object, Transform::IDENTITY)];
     while let Some((object, map)) = waiting.pop() {
@@ -92,39 +144,75 @@ pub(in crate::grammar) fn fill_parts(object: &mut Object, whole: &Texture) {
                 Some(own) => own.then(&map),
                 None => map,
             };
-            if let Some(before) = &child.material {
-                let after = if is_bare(before) {
-                    (!whole.is_bare()).then(|| {
-                        let covered = whole.transformed(&map.inverted());
-                        let texture = Texture {
-                            interior: before.interior.clone(),
-                            ..covered
-                        };
-                        Arc::new(texture.to_material())
-                    })
-                } else if let (None, Some(interior)) = (&before.interior, &interior) {
-                    let mut known = filled.iter().rev().take(RECENT);
-                    Some(match known.find(|(old, _)| Arc::ptr_eq(old, before)) {
-                        Some((_, after)) => Arc::clone(after),
-                        None => {
-                            let after = Arc::new(Material {
-                                interior: Some(Arc::clone(interior)),
-                                eta: interior.ior,
-                                ..Material::clone(before)
-                            });
-                            filled.push((Arc::clone(before), Arc::clone(&after)));
-                            after
-                        }
-                    })
-                } else {
-                    None
-                };
-                if after.is_some() {
-                    child.material = after;
-                }
+            if let Some(before) = &child.material
+                && let Some(after) = fill.completed(before, &map)
+            {
+                child.material = Some(after);
             }
             waiting.push((child, map));
         }
+    }
+}
+
+/// The look of a whole that its parts are completed by.
+struct Fill<'a> {
+    whole: &'a Texture,
+    interior: Option<Arc<Interior>>,
+    /// Materials that got an interior only, before and after: parts that shared a material share the completed one too.
+    known: Vec<(Arc<Material>, Arc<Material>)>,
+}
+
+impl Fill<'_> {
+    /// The completed material of a part in a space that `map` carries to that of the whole; `None` if it is complete.
+    fn completed(&mut self, before: &Arc<Material>, map: &Transform) -> Option<Arc<Material>> {
+        if is_bare(before) {
+            return (!self.whole.is_bare()).then(|| {
+                let texture = Texture {
+                    interior: before.interior.clone(),
+                    ..self.whole.transformed(&map.inverted())
+                };
+                Arc::new(texture.to_material())
+            });
+        }
+        let missing = before
+            .texture
+            .as_ref()
+            .filter(|t| filled(t, &Surface::default()).is_some());
+        let inner = self.whole.inner_surface.as_ref();
+        let inner = inner.filter(|_| before.inner_texture.is_none());
+        let interior = self.interior.clone();
+        let interior = interior.filter(|_| before.interior.is_none());
+        if missing.is_none() && inner.is_none() {
+            return Some(self.with_interior(before, &interior?));
+        }
+        let mut after = Material::clone(before);
+        let whole = self.whole.transformed(&map.inverted());
+        if let Some(texture) = missing {
+            after.texture = filled(texture, &whole.surface);
+            after.inner_texture.clone_from(&after.texture);
+        }
+        if inner.is_some() {
+            after.inner_texture = whole.inner_surface.map(SharedTexture);
+        }
+        if let Some(interior) = interior {
+            after.eta = interior.ior;
+            after.interior = Some(interior);
+        }
+        Some(Arc::new(after))
+    }
+
+    fn with_interior(&mut self, before: &Arc<Material>, interior: &Arc<Interior>) -> Arc<Material> {
+        let mut known = self.known.iter().rev().take(RECENT);
+        if let Some((_, after)) = known.find(|(old, _)| Arc::ptr_eq(old, before)) {
+            return Arc::clone(after);
+        }
+        let after = Arc::new(Material {
+            interior: Some(Arc::clone(interior)),
+            eta: interior.ior,
+            ..Material::clone(before)
+        });
+        self.known.push((Arc::clone(before), Arc::clone(&after)));
+        after
     }
 }
 
@@ -136,7 +224,7 @@ pub(in crate::grammar) struct KnownMaterials {
     /// Materials with one colour and finish, in a hash table in which a newer one replaces an older one. Exported scenes repeat
     /// the same few colours; scenes with a different colour for each object need no table of all of them.
     plain: Vec<Option<(u64, Arc<Material>)>>,
-    /// Whether there are bare materials.
+    /// Whether there are materials that a whole completes: bare ones, and blobs with textures of components only.
     bare: bool,
 }
 
@@ -145,7 +233,8 @@ impl KnownMaterials {
     /// freed.
     const PLAIN: usize = 1 << 10;
 
-    /// Whether a material with an interior but no texture has been created.
+    /// Whether a material that a whole completes has been created: one with an interior but no texture, or of a blob with textures of
+    /// components only.
     pub(in crate::grammar) const fn has_bare(&self) -> bool {
         self.bare
     }
@@ -159,6 +248,7 @@ impl KnownMaterials {
                 ..texture.to_material()
             });
         }
+        self.bare |= texture.components.is_some() && !texture.written;
         match plain_hash(texture) {
             Some(hash) => self.of_plain(texture, hash),
             None => self.of_pattern(texture),
@@ -208,7 +298,8 @@ fn plain_hash(texture: &Texture) -> Option<u64> {
     let Pigment::Solid(color) = &plain.pigment else {
         return None;
     };
-    if texture.inner_surface.is_some() || plain.normal.is_some() {
+    let is_more = texture.inner_surface.is_some() || texture.components.is_some();
+    if is_more || plain.normal.is_some() {
         return None;
     }
     let (rgb, finish) = (&color.rgb, &plain.finish);

@@ -54,7 +54,7 @@ static PATTERNS: [Option<PatternParser>; Word::ALL.len()] = by_word::<PatternPar
     (Word::Object, |p| p.object_pattern()),
     (Word::Onion, |_| Ok(Pattern::Onion)),
     (Word::PigmentPattern, |p| {
-        let pigment = p.nested(Parser::pigment_block)?;
+        let pigment = p.nested(Parser::free_pigment_block)?;
         Ok(Pattern::Pigment(Arc::new(pigment)))
     }),
     (Word::Planar, |_| Ok(Pattern::Planar)),

@@ -273,6 +273,12 @@ impl Parser<'_> {
         self.pigment_block_on(base)
     }
 
+    /// `{ ... }` after `pigment` where it is not the look of an object (skies, functions, pictures, patterns): `#default` does not count
+    /// there (measured).
+    pub(crate) fn free_pigment_block(&mut self) -> PResult<Pigment> {
+        self.pigment_block_on(Pigment::default())
+    }
+
     /// `{ ... }` after `pigment`, which changes `base` unless it begins with a name.
     pub(super) fn pigment_block_on(&mut self, base: Pigment) -> PResult<Pigment> {
         self.braces(|p| p.pigment_items(Kind::RightBrace, base))

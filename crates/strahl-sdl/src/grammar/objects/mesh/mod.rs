@@ -68,7 +68,10 @@ impl Parser<'_> {
         for (texture, mut data) in parts.meshes {
             if parts.has_inside && single {
                 orient::orient(&mut data);
+            } else {
+                orient::turn_to_front(&mut data);
             }
+            let smooth = data.normals.is_some();
             let mesh = match TriangleMesh::try_new(data) {
                 Ok(mesh) => mesh,
                 Err(error) => return Err(self.fail(place, error.to_string())),
@@ -76,7 +79,13 @@ impl Parser<'_> {
             let shape = if parts.has_inside && single {
                 self.closed_mesh(mesh, place)
             } else {
-                mesh.into()
+                // POV-Ray's fronts of flat triangles are the other sides (measured).
+                if smooth {
+                    mesh
+                } else {
+                    mesh.turned_inside_out()
+                }
+                .into()
             };
             let mut object = Object::new(ObjectKind::Shape(shape));
             object.span = self.span_at(place);

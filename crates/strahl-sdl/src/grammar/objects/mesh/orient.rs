@@ -1,5 +1,6 @@
 use std::collections::HashMap;
 use strahl_geometry::MeshData;
+use strahl_math::DVec3;
 
 /// Orients triangles consistently with their neighbours, as a solid requires: meshes in scenes may have any winding.
 ///
@@ -49,6 +50,31 @@ pub(super) fn orient(data: &mut MeshData) {
                 }
                 waiting.push(other);
             }
+        }
+    }
+}
+
+/// Turns the triangles of a mesh with normals so that their corners run counterclockwise as seen from POV-Ray's front (measured): the side
+/// of the normals if they differ, and otherwise the side from which the corners run clockwise as written.
+pub(super) fn turn_to_front(data: &mut MeshData) {
+    let MeshData {
+        positions,
+        indices,
+        normals: Some(normals),
+        ..
+    } = data
+    else {
+        return;
+    };
+    let corner = |list: &[[f32; 3]], vertex: u32| {
+        let corner = list.get(vertex as usize).copied().unwrap_or_default();
+        DVec3::from(corner.map(f64::from))
+    };
+    for face in indices {
+        let n = face.map(|vertex| corner(normals, vertex));
+        let [a, b, c] = face.map(|vertex| corner(positions, vertex));
+        if n == [n[0]; 3] || (b - a).cross(c - a).dot(n[0] + n[1] + n[2]) < 0.0 {
+            face.swap(1, 2);
         }
     }
 }
