@@ -97,7 +97,7 @@ pub(crate) fn mirrors(
         factor.max_component()
     } else if split.total_reflection {
         // As in POV-Ray (measured): the weight of light that passes, although all of it is reflected.
-        paint.transmission.max_component()
+        paint.transmission_weight
     } else {
         weight_of(&paint.layers)
     };

@@ -427,12 +427,16 @@ impl<'s> TreeTracer<'s> {
     ) {
         if let Some(direction) = split.refracted {
             let (factor, power) = (split.kt * split.fade, 1.0);
+            let weight = match self.paint.layers.is_empty() {
+                true => split.kt.max_component(),
+                false => self.paint.transmission_weight,
+            };
             let through = Share { factor, power };
             let parts = self.parts_behind(branch, surface);
             if parts == 0 {
                 // As in POV-Ray (measured) fading does not count for the weight.
                 let whole = Offshoot {
-                    coefficient: split.kt.max_component(),
+                    coefficient: weight,
                     ..Offshoot::new(RayKind::Refraction, through, direction, branch.part)
                 };
                 self.queue(branch, index, surface, hit, &whole, observer);
@@ -442,7 +446,7 @@ impl<'s> TreeTracer<'s> {
                 let offshoot = Offshoot {
                     divided: true,
                     returned: bent.is_none(),
-                    coefficient: (split.kt * part.share()).max_component(),
+                    coefficient: weight * part.share().max_component(),
                     ..Offshoot::new(
                         RayKind::Refraction,
                         through,

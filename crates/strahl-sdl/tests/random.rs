@@ -26,4 +26,6 @@ groups! {
     a_repeated_black_hole_lies_in_its_block,
     beside_a_single_bump_map_are_its_other_edges,
     inverse_objects_end_with_their_boxes,
+    light_through_one_of_blended_textures_weighs_all_that_passes_it,
+    nothing_is_seen_with_an_adc_bailout_of_1,
 }

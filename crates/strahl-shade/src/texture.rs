@@ -127,6 +127,8 @@ pub struct TexturePaint<'a> {
     /// filter + transmit`, with `conserve_energy` also times `1 - reflectance`; and all that times the `refraction` of the
     /// uppermost layer.
     pub transmission: Color,
+    /// The factor of the weight of the ray behind: the largest component of the transmittance of any stack, whatever its share (measured).
+    pub transmission_weight: f64,
     /// Selects the opacity of layers: [`ColorFt::opacity_by_color`] instead of [`ColorFt::opacity`]. Set by the owner.
     pub filter_by_color: bool,
     /// What the scene says about films. Set by the owner.
@@ -153,15 +155,23 @@ impl TexturePaint<'_> {
 struct Stack {
     share: f64,
     above: Color,
+    /// The largest component of the transmittance; of blended textures that of the one which has most.
+    weight: f64,
     /// The normal that the patterns `slope` and `aoi` see: that of the texture evaluated last, in its own space, as in POV-Ray (measured).
     seen: DVec3,
 }
 
 impl Stack {
-    fn new(point: &TexturePoint) -> Self {
+    fn new(point: &TexturePoint, bailout: f64) -> Self {
         Self {
             share: 1.0,
-            above: Color::WHITE,
+            // From 1 on nothing is seen (measured).
+            above: if bailout < 1.0 {
+                Color::WHITE
+            } else {
+                Color::BLACK
+            },
+            weight: 1.0,
             seen: point.n_shade,
         }
     }
@@ -171,19 +181,7 @@ impl Texture {
     /// Evaluates the texture at a point; `eta` is the index of refraction behind the surface divided by the one before it,
     /// for reflections with `fresnel`.
     pub fn layers_at<'a>(&'a self, point: &TexturePoint, eta: f64, out: &mut TexturePaint<'a>) {
-        out.layers.clear();
-        out.transmission = Color::BLACK;
-        let mut stack = Stack::new(point);
-        let ways = Ways {
-            out: &Identity,
-            to_map: &Identity,
-        };
-        self.paint(point, point.n_shade, ways, eta, &mut stack, out);
-        out.transmission += stack.above * stack.share;
-        let passing = self.refraction();
-        if passing != 1.0 {
-            out.transmission = out.transmission * passing;
-        }
+        self.layers_in(None, point, eta, out);
     }
 
     /// The same for a texture in a space of its own, as [`Texture::Transformed`] has it; `None` is the point's space.
@@ -194,24 +192,25 @@ impl Texture {
         eta: f64,
         out: &mut TexturePaint<'a>,
     ) {
-        let Some(space) = space else {
-            return self.layers_at(point, eta, out);
-        };
         out.layers.clear();
-        out.transmission = Color::BLACK;
-        let mut stack = Stack::new(point);
-        let inner = point.at(space.point_to_object(point.position));
-        let n = NormalSpace::enter(space, point.n_shade);
-        let ways = Ways {
-            out: space,
-            to_map: space,
-        };
-        self.paint(&inner, n, ways, eta, &mut stack, out);
-        out.transmission += stack.above * stack.share;
+        let mut stack = Stack::new(point, out.bailout);
+        match space {
+            None => {
+                let ways = Ways::of(&Identity);
+                self.paint(point, point.n_shade, ways, eta, &mut stack, out);
+            }
+            Some(space) => {
+                let inner = point.at(space.point_to_object(point.position));
+                let n = NormalSpace::enter(space, point.n_shade);
+                self.paint(&inner, n, Ways::of(space), eta, &mut stack, out);
+            }
+        }
         let passing = self.refraction();
+        out.transmission = Color::BLACK + stack.above * stack.share;
         if passing != 1.0 {
             out.transmission = out.transmission * passing;
         }
+        out.transmission_weight = stack.weight * passing;
     }
 
     /// The factor of the light from behind (`refraction` in a finish): as measured, that of the uppermost layer counts, and for
@@ -294,11 +293,7 @@ impl Texture {
     ) -> Color {
         match self {
             Self::Plain(texture) => {
-                let ways = Ways {
-                    out: space,
-                    to_map: &Identity,
-                };
-                let tilted = texture.tilt(point, n, ways);
+                let tilted = texture.tilt(point, n, Ways::of(space));
                 let normal = tilted.map_or(point.n_shade, |(outer, _)| outer);
                 let cos = normal.dot(point.direction);
                 texture.pigment.color_at(point).attenuation() * Interior::gathered(caustics, cos)
@@ -395,7 +390,10 @@ impl Texture {
         out: &mut TexturePaint<'a>,
     ) {
         match self {
-            Self::Plain(texture) => texture.paint(point, n, ways, eta, stack, out),
+            Self::Plain(texture) => {
+                texture.paint(point, n, ways, eta, stack, out);
+                stack.weight = stack.above.max_component();
+            }
             Self::Layered(layers) => {
                 for layer in layers.iter().rev() {
                     layer.paint(point, n, ways, eta, stack, out);
@@ -405,12 +403,13 @@ impl Texture {
                 // Each member starts with the transmittance of the layers above; the transmittances of all members are mixed
                 // again.
                 let (share, above) = (stack.share, stack.above);
-                let mut passed = Color::BLACK;
+                let (mut passed, mut weight) = (Color::BLACK, 0.0_f64);
                 let is_map = !matches!(self, Self::Transformed(..) | Self::UvMapped(_));
-                self.for_members(point, |texture, inner, member_space, weight| {
+                self.for_members(point, |texture, inner, member_space, part| {
                     let mut member = Stack {
-                        share: share * weight,
+                        share: share * part,
                         above,
+                        weight: 0.0,
                         seen: stack.seen,
                     };
                     let chain = |outer| Chain {
@@ -424,10 +423,12 @@ impl Texture {
                     };
                     let n_inner = member_space.enter(n);
                     texture.paint(inner, n_inner, ways, eta, &mut member, out);
-                    passed += member.above * weight;
+                    passed += member.above * part;
+                    weight = weight.max(member.weight);
                     stack.seen = member.seen;
                 });
                 stack.above = passed;
+                stack.weight = weight;
             }
         }
     }
@@ -562,6 +563,16 @@ struct Ways<'s> {
     out: &'s dyn NormalSpace,
     /// To the space of the innermost map around: the transformations of a plain texture are those of its normal.
     to_map: &'s dyn NormalSpace,
+}
+
+impl<'s> Ways<'s> {
+    /// Those of a texture that is not in a map.
+    const fn of(space: &'s dyn NormalSpace) -> Self {
+        Self {
+            out: space,
+            to_map: space,
+        }
+    }
 }
 
 /// A space inside of another.

@@ -107,6 +107,17 @@ impl Programs {
 
     /// Runs POV-Ray in a folder, without antialiasing and with one thread; `reason` is its whole output.
     pub(crate) fn run_povray(&self, scene: &Path, folder: &Path, output: &Path) -> Result<Outcome> {
+        self.run_povray_on(scene, folder, output, None)
+    }
+
+    /// The same for one pixel, if one is given; the rest of the picture is black then.
+    pub(crate) fn run_povray_on(
+        &self,
+        scene: &Path,
+        folder: &Path,
+        output: &Path,
+        pixel: Option<(u32, u32)>,
+    ) -> Result<Outcome> {
         let (w, h) = self.size;
         let mut command = Command::new("povray");
         command
@@ -115,6 +126,12 @@ impl Programs {
             .arg(format!("+L{}", parent(scene).display()))
             .args([format!("+W{w}"), format!("+H{h}")])
             .args(["-A", "+FN", "-D", "+WT1"]);
+        if let Some((x, y)) = pixel {
+            // POV-Ray counts from 1.
+            let (column, row) = (x + 1, y + 1);
+            command.args([format!("+SC{column}"), format!("+EC{column}")]);
+            command.args([format!("+SR{row}"), format!("+ER{row}")]);
+        }
         run(command, folder, output, self.timeout)
     }
 

@@ -34,6 +34,27 @@ impl Distance {
     }
 }
 
+/// Whether a pixel of the two pictures differs by more than rounding.
+fn differs_at(a: &Shown, b: &Shown, x: u32, y: u32) -> bool {
+    (0..3).any(|c| a.code(x, y, c).abs_diff(b.code(x, y, c)) > SLACK)
+}
+
+/// At most `most` of the pixels that differ by more than rounding, spread over the pictures.
+pub(super) fn some_that_differ(a: &Shown, b: &Shown, most: usize) -> Vec<(u32, u32)> {
+    let (width, height) = a.size();
+    let all: Vec<_> = (0..height)
+        .flat_map(|y| (0..width).map(move |x| (x, y)))
+        .filter(|&(x, y)| differs_at(a, b, x, y))
+        .collect();
+    let step = all.len().div_ceil(most.max(1)).max(1);
+    all.into_iter().step_by(step).collect()
+}
+
+/// Whether the two pictures have the same colour at a pixel, but for rounding.
+pub(super) fn agree_at(a: &Shown, b: &Shown, (x, y): (u32, u32)) -> bool {
+    !differs_at(a, b, x, y)
+}
+
 /// `None` for different sizes.
 pub(super) fn distance(a: &Shown, b: &Shown) -> Option<Distance> {
     let (mean, _) = crate::compare_pov::picture::compare(a, b)?;
@@ -41,8 +62,7 @@ pub(super) fn distance(a: &Shown, b: &Shown) -> Option<Distance> {
     let mut pixels = 0;
     for y in 0..height {
         for x in 0..width {
-            let differs = (0..3).any(|c| a.code(x, y, c).abs_diff(b.code(x, y, c)) > SLACK);
-            if differs && !(is_between(a, b, x, y) && is_between(b, a, x, y)) {
+            if differs_at(a, b, x, y) && !(is_between(a, b, x, y) && is_between(b, a, x, y)) {
                 pixels += 1;
             }
         }
@@ -122,6 +142,18 @@ mod tests {
         );
         assert_eq!(distance(&a, &b).unwrap().share, 0.0);
         assert!(distance(&a, &b).unwrap().counts());
+    }
+
+    #[test]
+    fn the_pixels_that_differ_are_spread() {
+        let (a, b) = (
+            shown(|_, _| 100),
+            shown(|x, _| if x < 4 { 120 } else { 100 }),
+        );
+        let some = some_that_differ(&a, &b, 5);
+        assert_eq!(some, [(0, 0), (3, 1), (2, 3), (1, 5), (0, 7)]);
+        assert!(!agree_at(&a, &b, some[4]) && agree_at(&a, &b, (4, 0)));
+        assert!(some_that_differ(&a, &a, 5).is_empty());
     }
 
     #[test]

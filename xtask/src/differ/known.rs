@@ -1,12 +1,17 @@
 /// Differences that are intended or that are POV-Ray's: the words that the smallest scene contains, and the reason.
 ///
 /// docs/src/differ.md explains them.
-pub(super) const KNOWN: [(&[&str], &str); 4] = [
-    (&["crystal.ttf"], "the fonts of POV-Ray's names are our own"),
-    (
-        &["cyrvetic.ttf"],
-        "the fonts of POV-Ray's names are our own",
-    ),
+pub(super) const KNOWN: [(&[&str], &str); 12] = [
+    (&["crystal.ttf"], FONTS),
+    (&["cyrvetic.ttf"], FONTS),
+    (&["timrom.ttf"], FONTS),
+    (&["bicubic_patch"], "POV-Ray shows triangles"),
+    (&["mesh", "intersection"], OPEN_MESHES),
+    (&["mesh", "difference"], OPEN_MESHES),
+    (&["mesh", "merge"], OPEN_MESHES),
+    (&["mesh2", "intersection"], OPEN_MESHES),
+    (&["mesh2", "difference"], OPEN_MESHES),
+    (&["mesh2", "merge"], OPEN_MESHES),
     (
         &["sky_sphere", "onion"],
         "an onion's shells jump exactly on the sky's unit sphere",
@@ -16,6 +21,9 @@ pub(super) const KNOWN: [(&[&str], &str); 4] = [
         "the pattern is 0 exactly on the sky's unit sphere",
     ),
 ];
+
+const FONTS: &str = "the fonts of POV-Ray's names are others";
+const OPEN_MESHES: &str = "POV-Ray misses faces of meshes behind other faces in CSG";
 
 /// The known reason for the difference of a smallest scene, if there is one.
 pub(super) fn reason(text: &str) -> Option<&'static str> {

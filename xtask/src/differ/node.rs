@@ -116,6 +116,42 @@ impl Node {
         }
     }
 
+    /// The same with every coordinate changed by some ten-thousandths, so that no surfaces, borders of blocks or points coincide any more.
+    /// Colours and whole numbers stay.
+    pub(super) fn nudged(&self) -> Self {
+        let mut count = 0;
+        self.nudged_from(&mut count)
+    }
+
+    fn nudged_from(&self, count: &mut u32) -> Self {
+        let mut moved = |x: f64| {
+            *count += 1;
+            // 1 to 7 steps up or down, by turns.
+            let steps = [3.0, -5.0, 1.0, 7.0, -2.0, 6.0, -1.0, -7.0, 4.0, 2.0, -3.0];
+            x + 1e-4 * steps[*count as usize % steps.len()]
+        };
+        match self {
+            Self::Words(_) => self.clone(),
+            Self::Group {
+                sort: Sort::Color, ..
+            } => self.clone(),
+            Self::Number(number) if number.fract() == 0.0 => self.clone(),
+            Self::Number(number) => Self::Number(moved(*number)),
+            Self::Vector(numbers) => Self::Vector(numbers.iter().map(|x| moved(*x)).collect()),
+            Self::Group { sort, head, parts } => Self::Group {
+                sort: *sort,
+                head: head.clone(),
+                parts: parts
+                    .iter()
+                    .map(|part| Part {
+                        node: part.node.nudged_from(count),
+                        needed: part.needed,
+                    })
+                    .collect(),
+            },
+        }
+    }
+
     /// The scene's text.
     pub(super) fn text(&self) -> String {
         match self {
@@ -135,9 +171,9 @@ impl Node {
     fn flat(&self) -> String {
         match self {
             Self::Words(text) => text.clone(),
-            Self::Number(number) => format!("{number}"),
+            Self::Number(number) => decimal(*number),
             Self::Vector(numbers) => {
-                let numbers: Vec<String> = numbers.iter().map(f64::to_string).collect();
+                let numbers: Vec<String> = numbers.iter().map(|n| decimal(*n)).collect();
                 format!("<{}>", numbers.join(", "))
             }
             Self::Group { head, parts, .. } => {
@@ -215,6 +251,12 @@ impl Node {
     }
 }
 
+/// A number without the noise of its last binary digits.
+fn decimal(number: f64) -> String {
+    // Adding 0 turns -0 into 0.
+    ((number * 1e9).round() / 1e9 + 0.0).to_string()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -236,6 +278,21 @@ mod tests {
         assert_eq!(
             scene.text(),
             "#version 3.7;\nsphere { <0, 1.5, -2>, 1 scale 0.5 }\n"
+        );
+    }
+
+    #[test]
+    fn nudging_moves_coordinates_but_neither_colours_nor_whole_numbers() {
+        let scene = list![
+            [0.0, 1.5, -2.0],
+            0.5,
+            3.0,
+            run(Sort::Color, vec![needed(list!["rgb", [1.0, 0.0, 0.5]])])
+        ];
+        let text = scene.nudged().text();
+        assert_eq!(
+            text,
+            "<-0.0005, 1.5001, -1.9993> 0.4998 3 rgb <1, 0, 0.5>\n"
         );
     }
 

@@ -1,23 +1,25 @@
 //! Delta debugging on the generator's tree (Zeller and Hildebrandt 2002; Misherghi and Su 2006): tries everything that makes a
 //! scene smaller, the largest cuts first, and keeps a cut if the finding remains.
 
-use super::node::{Node, Part, Sort, run, words};
+use super::node::{Node, Part, Sort, block, list, needed, run, words};
 use std::collections::HashSet;
 
 /// Steps from a group to one of its parts, from the root.
 type Path = Vec<usize>;
 
-/// Finds a smaller scene for which `fails` still holds. `fails` gets up to `batch` scenes at once and returns for each whether
-/// the finding remains; at most `most` scenes are tried.
+/// Finds a smaller scene for which `fails` still holds. `fails` gets up to `batch` scenes at once, as `write` writes them, and returns for
+/// each whether the finding remains; at most `most` scenes are tried.
 pub(super) fn reduce(
     scene: &Node,
     batch: usize,
     most: usize,
+    write: fn(&Node) -> String,
     fails: impl FnMut(&[String]) -> Vec<bool>,
 ) -> Node {
     let mut search = Search {
         smallest: scene.clone(),
-        tried: HashSet::from([scene.text()]),
+        tried: HashSet::from([write(scene)]),
+        write,
         left: most,
         batch: batch.max(1),
         fails,
@@ -42,6 +44,7 @@ struct Search<F> {
     tried: HashSet<String>,
     left: usize,
     batch: usize,
+    write: fn(&Node) -> String,
     fails: F,
 }
 
@@ -60,7 +63,7 @@ impl<F: FnMut(&[String]) -> Vec<bool>> Search<F> {
                 let mut found = vec![];
                 cuts(&self.smallest, &paths[place], &mut found);
                 for node in found.into_iter().filter(|node| weigh(node) < weight) {
-                    let text = node.text();
+                    let text = (self.write)(&node);
                     if self.tried.insert(text.clone()) {
                         some.push((place, node, text));
                     }
@@ -204,7 +207,17 @@ fn simpler_things(scene: &Node, path: &[usize], found: &mut Vec<Node>) {
         return;
     }
     let simplest: &[&str] = match sort {
-        Sort::Object => &["sphere { 0, 1 }", "sphere { 0, 1 pigment { rgb 1 } }"],
+        Sort::Object => {
+            // With a vector, which can be nudged: spheres that coincide are another finding.
+            let ball = |texture: &str| {
+                let parts = vec![needed(list![[0.0; 3], ", 1", texture])];
+                block(Sort::Object, "sphere", parts)
+            };
+            for texture in ["", "pigment { rgb 1 }"] {
+                found.push(replaced(scene, path, ball(texture)));
+            }
+            &[]
+        }
         Sort::Texture => &["texture { pigment { rgb 1 } }"],
         Sort::Pigment => &["rgb 1", "rgb x"],
         Sort::Normal => &["bumps"],
@@ -276,12 +289,12 @@ fn simpler(number: f64) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::super::grammar;
-    use super::super::node::{block, list, needed, optional};
+    use super::super::node::optional;
     use super::*;
 
     fn reduced(scene: &Node, fails: impl Fn(&str) -> bool) -> String {
         let all = |texts: &[String]| texts.iter().map(|t| fails(t)).collect();
-        reduce(scene, 4, 100_000, all).text()
+        reduce(scene, 4, 100_000, Node::text, all).text()
     }
 
     #[test]
@@ -333,7 +346,7 @@ mod tests {
     fn the_budget_is_kept() {
         let scene = grammar::scene(7, 1);
         let mut count = 0;
-        reduce(&scene, 3, 20, |texts| {
+        reduce(&scene, 3, 20, Node::text, |texts| {
             count += texts.len();
             vec![false; texts.len()]
         });
@@ -344,7 +357,7 @@ mod tests {
     fn the_size_of_a_batch_changes_nothing() {
         let scene = grammar::scene(8, 3);
         let fails = |texts: &[String]| texts.iter().map(|t| t.contains("location")).collect();
-        let one = reduce(&scene, 1, 100_000, fails);
-        assert_eq!(one, reduce(&scene, 7, 100_000, fails));
+        let one = reduce(&scene, 1, 100_000, Node::text, fails);
+        assert_eq!(one, reduce(&scene, 7, 100_000, Node::text, fails));
     }
 }

@@ -1,4 +1,4 @@
-use super::compare::{Distance, distance};
+use super::compare::{Distance, agree_at, distance, some_that_differ};
 use crate::compare_pov::picture::{self, Shown};
 use crate::compare_pov::programs::{Outcome, Programs, povray_reason, strahl_reason};
 use anyhow::Result;
@@ -26,6 +26,11 @@ impl Verdict {
         matches!(self, Self::Differs(_) | Self::OursFails(_))
     }
 
+    /// Whether both programs have rendered the scene.
+    pub(super) fn is_known(&self) -> bool {
+        matches!(self, Self::Same | Self::Differs(_))
+    }
+
     /// Whether both are the same finding.
     pub(super) fn is_like(&self, before: &Self) -> bool {
         match (self, before) {
@@ -48,8 +53,54 @@ pub(super) fn judge(programs: &Programs, text: &str) -> Result<Verdict> {
     Ok(judge_in(programs, text, folder.path())?.0)
 }
 
+/// A scene that both programs have been given.
+pub(super) struct Judgement {
+    pub(super) text: String,
+    pub(super) verdict: Verdict,
+    /// POV-Ray's picture and strahl's, if both have rendered it.
+    pub(super) pictures: Option<(Shown, Shown)>,
+}
+
+/// The number of pixels that POV-Ray is asked to render alone.
+const ALONE: usize = 12;
+
+impl Judgement {
+    /// Whether POV-Ray shows the same colours as strahl where the pictures differ if it renders nothing but the pixel: then its picture
+    /// depends on the pixels before (it remembers, for one, the object that cast the last shadow).
+    pub(super) fn shown_alone(&self, programs: &Programs) -> Result<bool> {
+        let Some((theirs, ours)) = &self.pictures else {
+            return Ok(false);
+        };
+        let folder = tempfile::tempdir()?;
+        let (scene, picture) = (
+            folder.path().join("scene.pov"),
+            folder.path().join("pixel.png"),
+        );
+        std::fs::write(&scene, &self.text)?;
+        let pixels = some_that_differ(theirs, ours, ALONE);
+        for pixel in &pixels {
+            let outcome = programs.run_povray_on(&scene, folder.path(), &picture, Some(*pixel))?;
+            if !outcome.rendered || !agree_at(&picture::read(&picture)?, ours, *pixel) {
+                return Ok(false);
+            }
+        }
+        Ok(!pixels.is_empty())
+    }
+}
+
+/// Renders a scene with both programs and keeps the pictures.
+pub(super) fn judgement(programs: &Programs, text: &str) -> Result<Judgement> {
+    let folder = tempfile::tempdir()?;
+    let (verdict, pictures) = judge_in(programs, text, folder.path())?;
+    Ok(Judgement {
+        text: text.to_owned(),
+        verdict,
+        pictures,
+    })
+}
+
 /// Renders a scene in a folder, where the pictures stay: `scene.pov`, `povray.png`, `strahl.png`.
-pub(super) fn judge_in(
+fn judge_in(
     programs: &Programs,
     text: &str,
     folder: &Path,
