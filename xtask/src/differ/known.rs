@@ -1,11 +1,15 @@
 /// Differences that are intended or that are POV-Ray's: the words that the smallest scene contains, and the reason.
 ///
 /// docs/src/differ.md explains them.
-pub(super) const KNOWN: [(&[&str], &str); 12] = [
+pub(super) const KNOWN: [(&[&str], &str); 16] = [
     (&["crystal.ttf"], FONTS),
     (&["cyrvetic.ttf"], FONTS),
     (&["timrom.ttf"], FONTS),
     (&["bicubic_patch"], "POV-Ray shows triangles"),
+    (&["prism", "interior_texture"], INSIDES),
+    (&["lathe", "interior_texture"], INSIDES),
+    (&["sor", "interior_texture"], INSIDES),
+    (&["text", "interior_texture"], INSIDES),
     (&["mesh", "intersection"], OPEN_MESHES),
     (&["mesh", "difference"], OPEN_MESHES),
     (&["mesh", "merge"], OPEN_MESHES),
@@ -23,6 +27,7 @@ pub(super) const KNOWN: [(&[&str], &str); 12] = [
 ];
 
 const FONTS: &str = "the fonts of POV-Ray's names are others";
+const INSIDES: &str = "POV-Ray's inside of the surface depends on the order of the points";
 const OPEN_MESHES: &str = "POV-Ray misses faces of meshes behind other faces in CSG";
 
 /// The known reason for the difference of a smallest scene, if there is one.

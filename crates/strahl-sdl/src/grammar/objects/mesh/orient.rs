@@ -54,8 +54,8 @@ pub(super) fn orient(data: &mut MeshData) {
     }
 }
 
-/// Turns the triangles of a mesh with normals so that their corners run counterclockwise as seen from POV-Ray's front (measured): the side
-/// of the normals if they differ, and otherwise the side from which the corners run clockwise as written.
+/// Turns the triangles of a mesh with normals so that their fronts are POV-Ray's (measured): on the side of the normals if they differ, and
+/// otherwise on the side to which `(c - a) x (b - a)` points for the corners as they are written.
 pub(super) fn turn_to_front(data: &mut MeshData) {
     let MeshData {
         positions,
