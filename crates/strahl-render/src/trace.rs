@@ -58,6 +58,8 @@ pub struct TreeTracer<'s> {
     pub(crate) shadow_hits: Vec<Hit>,
     /// The visibilities of the points of an area light that are known, for one lit point at a time.
     pub(crate) area_points: Vec<Option<Color>>,
+    /// Whether some material has no texture: the surfaces of a packet are found together for their shadow rays only.
+    has_plain: bool,
     /// The layers at the current hit; empty without a texture.
     pub(crate) paint: TexturePaint<'s>,
     /// The reflection rays of the current hit.
@@ -180,6 +182,7 @@ impl<'s> TreeTracer<'s> {
                 ..TexturePaint::default()
             },
             area_points: Vec::new(),
+            has_plain: scene.materials.iter().any(|m| m.texture.is_none()),
             mirrors: Vec::new(),
             samples: Samples::default(),
         }

@@ -466,10 +466,14 @@ impl PlainTexture {
         if let Some((outer, in_map)) = self.tilt(point, n, ways) {
             (normal, stack.seen) = (outer, in_map);
         }
-        let color = self.pigment.color_at(&TexturePoint {
-            n_shade: stack.seen,
-            ..*point
-        });
+        let color = if stack.seen == point.n_shade {
+            self.pigment.color_at(point)
+        } else {
+            self.pigment.color_at(&TexturePoint {
+                n_shade: stack.seen,
+                ..*point
+            })
+        };
         let cos_view = -normal.dot(point.direction);
         // A layer below an opaque layer does not reflect; otherwise the layers above do not weaken its reflection (measured).
         let reflection = &self.finish.reflection;

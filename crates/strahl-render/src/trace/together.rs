@@ -80,6 +80,13 @@ impl<'s> TreeTracer<'s> {
         let mut hits = [None; PACKET];
         self.tracer
             .closest_hits(rays, range, &[None; PACKET], RayClass::Camera, &mut hits);
+        if !self.has_plain {
+            let colors = rays
+                .iter()
+                .zip(hits)
+                .map(|(ray, hit)| self.grow(ray, hit, None, &mut ()).color);
+            return colors.collect();
+        }
         let mut all = ArrayVec::<Ahead<'s>, PACKET>::new();
         for (ray, hit) in rays.iter().zip(&hits) {
             if let Some(hit) = hit {
