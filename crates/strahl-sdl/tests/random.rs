@@ -28,4 +28,7 @@ groups! {
     inverse_objects_end_with_their_boxes,
     light_through_one_of_blended_textures_weighs_all_that_passes_it,
     nothing_is_seen_with_an_adc_bailout_of_1,
+    radial_with_frequency_0_goes_beyond_1,
+    parts_of_unions_that_are_not_split_are_not_hidden,
+    height_fields_end_with_their_lowest_point,
 }

@@ -1,7 +1,7 @@
 /// Differences that are intended or that are POV-Ray's: the words that the smallest scene contains, and the reason.
 ///
 /// docs/src/differ.md explains them.
-pub(super) const KNOWN: [(&[&str], &str); 16] = [
+pub(super) const KNOWN: [(&[&str], &str); 21] = [
     (&["crystal.ttf"], FONTS),
     (&["cyrvetic.ttf"], FONTS),
     (&["timrom.ttf"], FONTS),
@@ -10,6 +10,11 @@ pub(super) const KNOWN: [(&[&str], &str); 16] = [
     (&["lathe", "interior_texture"], INSIDES),
     (&["sor", "interior_texture"], INSIDES),
     (&["text", "interior_texture"], INSIDES),
+    (&["triangle", "interior_texture"], INSIDES),
+    (&["union", "inverse", "intersection"], BOXES),
+    (&["union", "inverse", "difference"], BOXES),
+    (&["merge", "inverse", "intersection"], BOXES),
+    (&["merge", "inverse", "difference"], BOXES),
     (&["mesh", "intersection"], OPEN_MESHES),
     (&["mesh", "difference"], OPEN_MESHES),
     (&["mesh", "merge"], OPEN_MESHES),
@@ -28,6 +33,7 @@ pub(super) const KNOWN: [(&[&str], &str); 16] = [
 
 const FONTS: &str = "the fonts of POV-Ray's names are others";
 const INSIDES: &str = "POV-Ray's inside of the surface depends on the order of the points";
+const BOXES: &str = "POV-Ray's unions with inverse parts end with their boxes in CSG";
 const OPEN_MESHES: &str = "POV-Ray misses faces of meshes behind other faces in CSG";
 
 /// The known reason for the difference of a smallest scene, if there is one.

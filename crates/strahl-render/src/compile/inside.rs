@@ -58,7 +58,8 @@ fn bounds(object: &Object, to_group: &Transform) -> Option<Aabb> {
 fn boxed(shape: &Shape) -> Shape {
     match shape {
         Shape::HeightField(field) => {
-            let bounds = field.bounds();
+            // A flat one has no volume.
+            let bounds = field.bounds().padded(DVec3::splat(1e-9));
             Cuboid::try_new(bounds.min, bounds.max).map_or_else(|_| shape.clone(), Shape::from)
         }
         Shape::Quadric(quadric) if quadric.has_mixed_terms() => {

@@ -120,10 +120,15 @@ impl Filled {
     }
 }
 
-/// Whether a place is inside of a shape. A disc, which is a half-space for CSG, is a sheet by itself.
+/// Whether a place is inside of a shape. A disc, which is a half-space for CSG, is a sheet by itself, and a height field ends with its
+/// lowest point (measured).
 fn holds(shape: &Shape, place: DVec3) -> bool {
-    let is_sheet = matches!(shape, Shape::Disc(_));
-    !is_sheet && shape.as_solid().is_some_and(|solid| solid.contains(place))
+    let is_without = match shape {
+        Shape::Disc(_) => true,
+        Shape::HeightField(field) => !field.bounds().contains(place),
+        _ => false,
+    };
+    !is_without && shape.as_solid().is_some_and(|solid| solid.contains(place))
 }
 
 impl RenderScene {

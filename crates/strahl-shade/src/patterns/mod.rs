@@ -389,8 +389,10 @@ impl FieldRef<'_> {
         let raw = self.pattern.raw(p, point, self.modifiers);
         let wave = self.modifiers.wave;
         let wave = wave.unwrap_or_else(|| self.pattern.default_wave());
-        if self.modifiers.frequency == 0.0 && self.pattern.block_count().is_some() {
-            // The numbers of blocks are not repeated (measured).
+        let is_beyond =
+            matches!(self.pattern, Pattern::Radial) || self.pattern.block_count().is_some();
+        if self.modifiers.frequency == 0.0 && is_beyond {
+            // The numbers of blocks, and the angles of `radial` above 1, are not repeated (measured).
             return wave.apply(raw);
         }
         self.modifiers.shape(raw, wave)

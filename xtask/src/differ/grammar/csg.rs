@@ -26,7 +26,9 @@ impl Writer {
         if self.dice.chance(25)
             && let Some(name) = self.known(Sort::Object)
         {
-            let mut parts = vec![needed(words(name))];
+            // Moved, since two at the same place leave it to rounding which is seen.
+            let place = self.point(0.7);
+            let mut parts = vec![needed(words(name)), needed(list!["translate", place])];
             if self.dice.chance(60) {
                 parts.extend(self.transforms());
             }

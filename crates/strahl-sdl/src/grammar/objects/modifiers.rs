@@ -20,6 +20,8 @@ struct Draft {
     clips: Vec<Object>,
     /// Whether the bounds also clip, so that they hide nothing more.
     bounds_clip: bool,
+    /// Whether `split_union off` is given.
+    is_whole: bool,
 }
 
 impl Parser<'_> {
@@ -88,6 +90,9 @@ impl Parser<'_> {
             }
         }
         let object = &mut entity.object;
+        if draft.is_whole || !draft.bounds.is_empty() {
+            show_parts(object);
+        }
         if !draft.bounds_clip {
             let bounds = bounds::deciding(object, draft.bounds, &self.state.shared);
             surround(object, CsgOp::Bound, bounds);
@@ -209,7 +214,11 @@ impl Parser<'_> {
             _ => return Ok(false),
         }
         self.take(token)?;
-        if !self.switched()? {
+        let on = self.switched()?;
+        if token.is(Word::SplitUnion) {
+            draft.is_whole = !on;
+        }
+        if !on {
             let visibility = &mut entity.object.visibility;
             match token.word() {
                 Some(Word::NoShadow) => visibility.shadow = true,
@@ -318,6 +327,28 @@ fn invert(object: &mut Object) {
     };
     if !open {
         wrap(object, CsgOp::Inverse);
+    }
+}
+
+/// Makes the parts of a union visible to camera and shadow rays, at any depth: in a union that is not split (one with `bounded_by` or
+/// `split_union off`) POV-Ray ignores `no_image` and `no_shadow` of parts, unless all parts have `no_shadow` (measured).
+fn show_parts(object: &mut Object) {
+    let ObjectKind::Csg {
+        op: CsgOp::Union,
+        children,
+    } = &mut object.kind
+    else {
+        return;
+    };
+    let casts_shadows = children.0.iter().any(|part| part.visibility.shadow);
+    object.visibility.shadow &= casts_shadows;
+    let mut waiting: Vec<&mut Object> = children.0.iter_mut().collect();
+    while let Some(part) = waiting.pop() {
+        part.visibility.camera = true;
+        part.visibility.shadow |= casts_shadows;
+        if let ObjectKind::Csg { children, .. } = &mut part.kind {
+            waiting.extend(children.0.iter_mut());
+        }
     }
 }
 
