@@ -31,4 +31,5 @@ groups! {
     radial_with_frequency_0_goes_beyond_1,
     parts_of_unions_that_are_not_split_are_not_hidden,
     height_fields_end_with_their_lowest_point,
+    parallel_light_fades_by_its_distance_from_its_plane,
 }

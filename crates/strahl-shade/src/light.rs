@@ -236,7 +236,7 @@ impl Light {
         };
         let from_light = point - position;
         let distance = from_light.dot(direction);
-        let mut strength = self.falloff.at(distance.abs());
+        let mut strength = self.falloff.at(distance);
         if let Some((inner, outer, tightness)) = beam {
             let radius = (from_light - direction * distance).length();
             // Near the axis the distance is small, while the cosine in a cone is large; hence the reversed sign.

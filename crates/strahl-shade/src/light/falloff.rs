@@ -20,13 +20,20 @@ pub enum Falloff {
 }
 
 impl Falloff {
-    /// The factor at distance `d > 0`.
+    /// The factor at distance `d`, which is negative behind the plane that parallel light comes from. There `Fade` takes the power of the negative
+    /// number, as POV-Ray does (measured): the light may be stronger, take light away, or be 0 where the power is not a whole number.
     pub fn at(self, d: f64) -> f64 {
         match self {
             Self::None => 1.0,
             Self::InverseSquare => 1.0 / (d * d),
-            Self::Fade { distance, power } => 2.0 / (1.0 + det::pow(d / distance, power)),
-            Self::Polynomial([c0, c1, c2]) => 1.0 / (c0 + d * (c1 + d * c2)),
+            Self::Fade { distance, power } => {
+                let factor = 2.0 / (1.0 + det::pow(d / distance, power));
+                if factor.is_nan() { 0.0 } else { factor }
+            }
+            Self::Polynomial([c0, c1, c2]) => {
+                let d = d.abs();
+                1.0 / (c0 + d * (c1 + d * c2))
+            }
         }
     }
 }
