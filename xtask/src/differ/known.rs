@@ -1,10 +1,14 @@
 /// Differences that are intended or that are POV-Ray's: the words that the smallest scene contains, and the reason.
 ///
 /// docs/src/differ.md explains them.
-pub(super) const KNOWN: [(&[&str], &str); 21] = [
+pub(super) const KNOWN: [(&[&str], &str); 22] = [
     (&["crystal.ttf"], FONTS),
     (&["cyrvetic.ttf"], FONTS),
     (&["timrom.ttf"], FONTS),
+    (
+        &["polygon", "checker"],
+        "a polygon lies exactly between two layers of cells",
+    ),
     (&["bicubic_patch"], "POV-Ray shows triangles"),
     (&["prism", "interior_texture"], INSIDES),
     (&["lathe", "interior_texture"], INSIDES),
