@@ -5,7 +5,7 @@ use crate::observer::{LayerReport, Share, SurfaceTerm};
 use crate::scene::RenderScene;
 use crate::surface::{Split, Surface};
 use std::borrow::Cow;
-use strahl_math::DVec3;
+use strahl_math::{DVec3, Ray};
 use strahl_shade::patterns::TexturePoint;
 use strahl_shade::pov_finish::PovFinish;
 use strahl_shade::texture::{LayerPoint, TexturePaint};
@@ -66,6 +66,11 @@ pub(crate) fn paint<'s>(
             surface.n_shade = layer.normal;
         }
     }
+    surface.n_refract = paint
+        .stacks
+        .iter()
+        .find(|stack| !stack.transmittance.is_black())
+        .map_or(surface.n_shade, |stack| stack.normal);
     surface.material.finish = Cow::Owned(sum);
     surface.material.fresnel = false;
     surface.material.fresnel_reflection = Color::BLACK;
@@ -78,6 +83,108 @@ pub(crate) struct Mirror {
     pub(crate) direction: DVec3,
     /// The factor of the ray's weight.
     pub(crate) weight: f64,
+}
+
+/// The light behind a surface that transparent textures with one normal let through.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Passage {
+    pub(crate) normal: DVec3,
+    /// The direction of the transparency ray; `None` on total internal reflection.
+    pub(crate) direction: Option<DVec3>,
+    /// The transmittance times the share of the surface, summed over the textures.
+    pub(crate) kt: Color,
+    /// The attenuation besides, of light that passes and of light that is reflected totally.
+    pub(crate) fade: Color,
+    /// The share of the surface that these textures have.
+    pub(crate) share: f64,
+    /// The factor of the ray's weight.
+    pub(crate) weight: f64,
+}
+
+/// The passages of blended textures: one for each normal of a texture that lets light through, as in POV-Ray (measured).
+#[cold]
+pub(crate) fn passages(
+    paint: &TexturePaint<'_>,
+    surface: &Surface<'_>,
+    ray: &Ray,
+    fade: Color,
+    out: &mut Vec<Passage>,
+) {
+    out.clear();
+    for stack in paint.stacks.iter().filter(|s| !s.transmittance.is_black()) {
+        let kt = stack.transmittance * stack.share;
+        match out.iter_mut().find(|p| p.normal == stack.normal) {
+            Some(passage) => {
+                passage.kt += kt;
+                passage.share += stack.share;
+                passage.weight = passage.weight.max(stack.weight);
+            }
+            None => out.push(Passage {
+                normal: stack.normal,
+                direction: surface.behind_at(ray, stack.normal),
+                kt,
+                fade,
+                share: stack.share,
+                weight: stack.weight,
+            }),
+        }
+    }
+    if let [only] = &mut out[..] {
+        only.kt = paint.transmission;
+    }
+}
+
+/// The reflection rays of blended textures of which some reflect totally. Those do not reflect otherwise.
+#[cold]
+pub(crate) fn mirrors_of_passages(
+    paint: &TexturePaint<'_>,
+    surface: &Surface<'_>,
+    passages: &[Passage],
+    out: &mut Vec<Mirror>,
+) {
+    mirrors_of_layers(
+        paint,
+        surface,
+        |layer| !totally(paint, passages, layer),
+        out,
+    );
+    for passage in passages.iter().filter(|p| p.direction.is_none()) {
+        out.push(Mirror {
+            share: Share {
+                factor: passage.fade * passage.share,
+                power: 1.0,
+            },
+            direction: surface.mirrored(passage.normal),
+            weight: passage.weight,
+        });
+    }
+}
+
+/// Whether the texture of a layer reflects totally.
+fn totally(paint: &TexturePaint<'_>, passages: &[Passage], layer: &LayerPoint<'_>) -> bool {
+    let stack = &paint.stacks[layer.stack as usize];
+    let mut same = passages.iter().filter(|p| p.normal == stack.normal);
+    !stack.transmittance.is_black() && same.any(|p| p.direction.is_none())
+}
+
+/// The coefficients of reflection and transmission of all passages together.
+#[cold]
+pub(crate) fn sums_of_passages(paint: &TexturePaint<'_>, passages: &[Passage]) -> (Color, Color) {
+    let (mut kr, mut kt) = (Color::BLACK, Color::BLACK);
+    for layer in paint
+        .layers
+        .iter()
+        .filter(|layer| !totally(paint, passages, layer))
+    {
+        kr += layer.reflectance * layer.share;
+    }
+    for passage in passages {
+        match passage.direction {
+            Some(_) => kt += passage.kt,
+            None => kr += passage.fade * passage.share,
+        }
+    }
+    (kr, kt)
 }
 
 /// The reflection rays of a surface: one for all layers with the same normal and `exponent`; a single one on total reflection.
@@ -97,7 +204,7 @@ pub(crate) fn mirrors(
         factor.max_component()
     } else if split.total_reflection {
         // As in POV-Ray (measured): the weight of light that passes, although all of it is reflected.
-        paint.transmission_weight
+        paint.stacks.first().map_or(0.0, |stack| stack.weight)
     } else {
         weight_of(&paint.layers)
     };
@@ -115,7 +222,7 @@ pub(crate) fn mirrors(
         && (first.finish.reflection.exponent != 1.0
             || reflecting.any(|layer| !mirrors_alike(first, layer)))
     {
-        mirrors_of_layers(paint, surface, out);
+        mirrors_of_layers(paint, surface, |_| true, out);
     }
 }
 
@@ -134,20 +241,23 @@ fn mirrors_alike(a: &LayerPoint<'_>, b: &LayerPoint<'_>) -> bool {
         && a.reflection_weight == b.reflection_weight
 }
 
-/// The rays of layers that differ in normal, `exponent` or weight.
+/// The rays of the layers that `counts` selects, which may differ in normal, `exponent` or weight.
 #[cold]
-fn mirrors_of_layers(paint: &TexturePaint<'_>, surface: &Surface<'_>, out: &mut Vec<Mirror>) {
+fn mirrors_of_layers(
+    paint: &TexturePaint<'_>,
+    surface: &Surface<'_>,
+    counts: impl Fn(&LayerPoint<'_>) -> bool,
+    out: &mut Vec<Mirror>,
+) {
     out.clear();
     for (number, layer) in paint.layers.iter().enumerate() {
-        let before = &paint.layers[..number];
+        let alike = |other: &&LayerPoint<'_>| counts(other) && mirrors_alike(layer, other);
         let exponent = layer.finish.reflection.exponent;
         // Light to the power of infinity: black.
-        if exponent == 0.0 || before.iter().any(|other| mirrors_alike(layer, other)) {
+        if exponent == 0.0 || !counts(layer) || paint.layers[..number].iter().any(|o| alike(&o)) {
             continue;
         }
-        let alike = paint.layers[number..]
-            .iter()
-            .filter(|other| mirrors_alike(layer, other));
+        let alike = paint.layers[number..].iter().filter(alike);
         let mut factor = Color::BLACK;
         for other in alike {
             factor += other.reflectance * other.share;

@@ -63,6 +63,8 @@ pub(crate) struct Surface<'s> {
     pub(crate) v: DVec3,
     pub(crate) n_geom: DVec3,
     pub(crate) n_shade: DVec3,
+    /// The unit normal that refracts, and mirrors on total internal reflection: the shading normal, or that of a texture's transparent stack.
+    pub(crate) n_refract: DVec3,
     /// Under a POV-Ray texture: the interpolated normal before `normal` bends it, turned to the viewer. POV-Ray decides by it on
     /// which side of the surface a direction is; everything else decides by `n_geom`.
     pub(crate) n_smooth: Option<DVec3>,
@@ -128,6 +130,7 @@ impl<'s> Surface<'s> {
             v,
             n_geom: point.n_geom * side,
             n_shade: n_shade * side,
+            n_refract: n_shade * side,
             n_smooth: None,
             entering,
             thin: material.thin,
@@ -215,7 +218,7 @@ impl<'s> Surface<'s> {
             ..Split::NONE
         };
         let refracted = if transmits || dielectric {
-            self.refract(self.eta_1 / self.eta_2)
+            self.refract(self.n_refract, self.eta_1 / self.eta_2)
         } else {
             None
         };
@@ -232,14 +235,7 @@ impl<'s> Surface<'s> {
         }
         if transmits {
             match refracted {
-                Some(r) => {
-                    // Without refraction the direction is unchanged to the last bit.
-                    split.refracted = if self.is_straight() {
-                        Some(ray.direction)
-                    } else {
-                        self.bent(r.direction, self.eta_1 / self.eta_2)
-                    };
-                }
+                Some(r) => split.refracted = self.behind(ray, r, self.eta_1 / self.eta_2),
                 None => {
                     split.total_reflection = true;
                     if !self.material.fresnel {
@@ -249,7 +245,12 @@ impl<'s> Surface<'s> {
                 }
             }
         }
-        split.reflected = Some(self.mirrored(self.n_shade));
+        let normal = if split.total_reflection {
+            self.n_refract
+        } else {
+            self.n_shade
+        };
+        split.reflected = Some(self.mirrored(normal));
         split
     }
 
@@ -277,12 +278,26 @@ impl<'s> Surface<'s> {
         }
     }
 
-    /// Snell's law at the shading normal for light that comes from index `eta` times the index behind the surface.
-    fn refract(&self, eta: f64) -> Option<Refracted> {
+    /// Snell's law at a normal for light that comes from index `eta` times the index behind the surface.
+    fn refract(&self, normal: DVec3, eta: f64) -> Option<Refracted> {
         // POV-Ray turns a normal that faces away to the viewer.
-        let turned = self.n_smooth.is_some() && self.n_shade.dot(self.v) < 0.0;
-        let normal = if turned { -self.n_shade } else { self.n_shade };
-        refract(normal, self.v, eta)
+        let turned = self.n_smooth.is_some() && normal.dot(self.v) < 0.0;
+        refract(if turned { -normal } else { normal }, self.v, eta)
+    }
+
+    /// The direction of the transparency ray at a normal; `None` on total internal reflection.
+    pub(crate) fn behind_at(&self, ray: &Ray, normal: DVec3) -> Option<DVec3> {
+        let eta = self.eta_1 / self.eta_2;
+        self.behind(ray, self.refract(normal, eta)?, eta)
+    }
+
+    fn behind(&self, ray: &Ray, refracted: Refracted, eta: f64) -> Option<DVec3> {
+        // Without refraction the direction is unchanged to the last bit.
+        if self.is_straight() {
+            Some(ray.direction)
+        } else {
+            self.bent(refracted.direction, eta)
+        }
     }
 
     /// The direction of a transparency ray. Where the shading normal turns it to the wrong side, the geometric normal is used,
@@ -307,11 +322,16 @@ impl<'s> Surface<'s> {
         parts(self.medium_1).max(parts(self.medium_2)).unwrap_or(0)
     }
 
-    /// The direction in which a part of the spectrum is refracted; `None` on total reflection.
-    pub(crate) fn bent_part(&self, scene: &RenderScene, part: SpectralPart) -> Option<DVec3> {
+    /// The direction in which a part of the spectrum is refracted at a normal; `None` on total reflection.
+    pub(crate) fn bent_part(
+        &self,
+        scene: &RenderScene,
+        normal: DVec3,
+        part: SpectralPart,
+    ) -> Option<DVec3> {
         let index = |id| index_of(scene, id, part);
         let eta = index(self.medium_1) / index(self.medium_2);
-        self.bent(self.refract(eta)?.direction, eta)
+        self.bent(self.refract(normal, eta)?.direction, eta)
     }
 
     /// Whether light that the surface would let through finds no way behind it.
@@ -321,7 +341,7 @@ impl<'s> Surface<'s> {
         !self.thin
             && eta > 1.0
             && scene.transmits(self.resolved.look)
-            && self.refract(eta).is_none()
+            && self.refract(self.n_refract, eta).is_none()
     }
 
     /// All that ray trees tell of the hit.

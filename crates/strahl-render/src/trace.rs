@@ -28,7 +28,7 @@ pub use outcome::{FirstHit, RayCounts, SampleResult};
 pub use settings::TraceSettings;
 
 use crate::hit::{Hit, Origin, RayClass};
-use crate::layers::{self, Mirror};
+use crate::layers::{self, Mirror, Passage};
 use crate::media::{MediaArena, MediaStack};
 use crate::observer::{BranchEnd, RayKind, RayReport, Shading, Share, TraceObserver};
 use crate::query::Tracer;
@@ -64,6 +64,7 @@ pub struct TreeTracer<'s> {
     pub(crate) paint: TexturePaint<'s>,
     /// The reflection rays of the current hit.
     mirrors: Vec<Mirror>,
+    passages: Vec<Passage>,
     /// The light samples of the current packet.
     samples: Samples,
 }
@@ -184,6 +185,7 @@ impl<'s> TreeTracer<'s> {
             area_points: Vec::new(),
             has_plain: scene.materials.iter().any(|m| m.texture.is_none()),
             mirrors: Vec::new(),
+            passages: Vec::new(),
             samples: Samples::default(),
         }
     }
@@ -361,7 +363,16 @@ impl<'s> TreeTracer<'s> {
         if let Some(inside) = fading {
             split.fade = scene.faded(inside, length);
         }
-        if split.total_reflection && !self.paint.layers.is_empty() {
+        if self.paint.stacks.len() > 1 && !surface.material.finish.transmission.is_black() {
+            layers::passages(
+                &self.paint,
+                surface,
+                &branch.ray,
+                split.fade,
+                &mut self.passages,
+            );
+            (split.kr, split.kt) = layers::sums_of_passages(&self.paint, &self.passages);
+        } else if split.total_reflection && !self.paint.layers.is_empty() {
             // As in POV-Ray (measured): total reflection ignores colour and finish, and fades like light that passes.
             split.kr = split.fade;
         }
@@ -428,40 +439,33 @@ impl<'s> TreeTracer<'s> {
         split: &Split,
         observer: &mut O,
     ) {
-        if let Some(direction) = split.refracted {
-            let (factor, power) = (split.kt * split.fade, 1.0);
-            let weight = match self.paint.layers.is_empty() {
-                true => split.kt.max_component(),
-                false => self.paint.transmission_weight,
-            };
-            let through = Share { factor, power };
-            let parts = self.parts_behind(branch, surface);
-            if parts == 0 {
-                // As in POV-Ray (measured) fading does not count for the weight.
-                let whole = Offshoot {
-                    coefficient: weight,
-                    ..Offshoot::new(RayKind::Refraction, through, direction, branch.part)
-                };
-                self.queue(branch, index, surface, hit, &whole, observer);
-            }
-            for part in SpectralPart::all(parts) {
-                let bent = surface.bent_part(self.tracer.scene, part);
-                let offshoot = Offshoot {
-                    divided: true,
-                    returned: bent.is_none(),
-                    coefficient: weight * part.share().max_component(),
-                    ..Offshoot::new(
-                        RayKind::Refraction,
-                        through,
-                        bent.or(split.reflected).unwrap_or(direction),
-                        part,
-                    )
-                };
-                self.queue(branch, index, surface, hit, &offshoot, observer);
-            }
-        }
         let mut mirrors = std::mem::take(&mut self.mirrors);
-        layers::mirrors(&self.paint, surface, split, &mut mirrors);
+        if self.paint.stacks.len() > 1 && !surface.material.finish.transmission.is_black() {
+            let passages = std::mem::take(&mut self.passages);
+            for passage in passages.iter().rev() {
+                self.queue_passage(branch, index, surface, hit, passage, observer);
+            }
+            if passages.iter().all(|passage| passage.direction.is_some()) {
+                layers::mirrors(&self.paint, surface, split, &mut mirrors);
+            } else {
+                layers::mirrors_of_passages(&self.paint, surface, &passages, &mut mirrors);
+            }
+            self.passages = passages;
+        } else {
+            let only = Passage {
+                normal: surface.n_refract,
+                direction: split.refracted,
+                kt: split.kt,
+                fade: split.fade,
+                share: 1.0,
+                weight: match self.paint.stacks.first() {
+                    None => split.kt.max_component(),
+                    Some(stack) => stack.weight,
+                },
+            };
+            self.queue_passage(branch, index, surface, hit, &only, observer);
+            layers::mirrors(&self.paint, surface, split, &mut mirrors);
+        }
         for mirror in mirrors.iter().rev() {
             let Mirror {
                 share,
@@ -475,6 +479,46 @@ impl<'s> TreeTracer<'s> {
             self.queue(branch, index, surface, hit, &mirrored, observer);
         }
         self.mirrors = mirrors;
+    }
+
+    /// Queues the transparency ray of a passage, or the rays of the parts of its spectrum.
+    #[inline(always)]
+    fn queue_passage<O: TraceObserver>(
+        &mut self,
+        branch: &Branch,
+        index: u32,
+        surface: &Surface<'_>,
+        hit: &Hit,
+        passage: &Passage,
+        observer: &mut O,
+    ) {
+        let Some(direction) = passage.direction else {
+            return;
+        };
+        let through = Share {
+            factor: passage.kt * passage.fade,
+            power: 1.0,
+        };
+        let parts = self.parts_behind(branch, surface);
+        if parts == 0 {
+            // As in POV-Ray (measured) fading does not count for the weight.
+            let whole = Offshoot {
+                coefficient: passage.weight,
+                ..Offshoot::new(RayKind::Refraction, through, direction, branch.part)
+            };
+            self.queue(branch, index, surface, hit, &whole, observer);
+        }
+        for part in SpectralPart::all(parts) {
+            let bent = surface.bent_part(self.tracer.scene, passage.normal, part);
+            let direction = bent.unwrap_or_else(|| surface.mirrored(passage.normal));
+            let offshoot = Offshoot {
+                divided: true,
+                returned: bent.is_none(),
+                coefficient: passage.weight * part.share().max_component(),
+                ..Offshoot::new(RayKind::Refraction, through, direction, part)
+            };
+            self.queue(branch, index, surface, hit, &offshoot, observer);
+        }
     }
 
     /// The number of spectral parts into which a branch is split behind a surface; 0 if it is not.

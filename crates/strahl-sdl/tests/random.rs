@@ -19,6 +19,7 @@ groups! {
     maps_may_fall,
     layers_with_different_weights_have_rays_of_their_own,
     aoi_and_slope_see_the_normal_evaluated_last,
+    slope_begins_again_beside_its_ranges,
     triangles_have_fronts,
     parts_have_the_interior_texture_of_the_whole,
     components_of_blobs_keep_their_textures,

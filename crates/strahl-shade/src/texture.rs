@@ -116,6 +116,22 @@ pub struct LayerPoint<'a> {
     /// The weight of the ray in the mirror direction, as POV-Ray has it:
     /// [`PovReflection::weight`](crate::pov_finish::PovReflection::weight) times the layer's share and the grey value of `above`.
     pub reflection_weight: f64,
+    /// The number of its stack in [`TexturePaint::stacks`].
+    pub stack: u32,
+}
+
+/// A stack of layers at a point: a texture, or one of several that are blended there.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StackPoint {
+    /// The unit normal of the uppermost layer, which refracts.
+    pub normal: DVec3,
+    /// The share of the surface, 0 to 1.
+    pub share: f64,
+    /// The transmittance of all layers together, without the share.
+    pub transmittance: Color,
+    /// The factor of the weight of the ray behind: the largest component of the transmittance, whatever the share (measured), times
+    /// the `refraction` of the finish.
+    pub weight: f64,
 }
 
 /// A texture evaluated at a point. Reused from point to point, it stops allocating.
@@ -127,8 +143,8 @@ pub struct TexturePaint<'a> {
     /// filter + transmit`, with `conserve_energy` also times `1 - reflectance`; and all that times the `refraction` of the
     /// uppermost layer.
     pub transmission: Color,
-    /// The factor of the weight of the ray behind: the largest component of the transmittance of any stack, whatever its share (measured).
-    pub transmission_weight: f64,
+    /// The stacks: one, or those of all textures that are blended here.
+    pub stacks: Vec<StackPoint>,
     /// Selects the opacity of layers: [`ColorFt::opacity_by_color`] instead of [`ColorFt::opacity`]. Set by the owner.
     pub filter_by_color: bool,
     /// What the scene says about films. Set by the owner.
@@ -139,6 +155,24 @@ pub struct TexturePaint<'a> {
 }
 
 impl TexturePaint<'_> {
+    /// Makes the layers from number `first` on a stack.
+    fn end_stack(&mut self, first: usize, stack: &Stack) {
+        let number = self.stacks.len() as u32;
+        let layers = &mut self.layers[first..];
+        let Some(normal) = layers.first().map(|top| top.normal) else {
+            return;
+        };
+        for layer in layers {
+            layer.stack = number;
+        }
+        self.stacks.push(StackPoint {
+            normal,
+            share: stack.share,
+            transmittance: stack.above,
+            weight: stack.above.max_component(),
+        });
+    }
+
     /// The colour of a layer times its opacity, its share and the transmittance of the layers above.
     #[inline]
     pub fn body(&self, layer: &LayerPoint<'_>) -> Color {
@@ -155,8 +189,6 @@ impl TexturePaint<'_> {
 struct Stack {
     share: f64,
     above: Color,
-    /// The largest component of the transmittance; of blended textures that of the one which has most.
-    weight: f64,
     /// The normal that the patterns `slope` and `aoi` see: that of the texture evaluated last, in its own space, as in POV-Ray (measured).
     seen: DVec3,
 }
@@ -171,7 +203,6 @@ impl Stack {
             } else {
                 Color::BLACK
             },
-            weight: 1.0,
             seen: point.n_shade,
         }
     }
@@ -193,6 +224,7 @@ impl Texture {
         out: &mut TexturePaint<'a>,
     ) {
         out.layers.clear();
+        out.stacks.clear();
         let mut stack = Stack::new(point, out.bailout);
         match space {
             None => {
@@ -210,7 +242,9 @@ impl Texture {
         if passing != 1.0 {
             out.transmission = out.transmission * passing;
         }
-        out.transmission_weight = stack.weight * passing;
+        for stack in &mut out.stacks {
+            stack.weight *= passing;
+        }
     }
 
     /// The factor of the light from behind (`refraction` in a finish): as measured, that of the uppermost layer counts, and for
@@ -391,25 +425,29 @@ impl Texture {
     ) {
         match self {
             Self::Plain(texture) => {
+                let first = out.layers.len();
                 texture.paint(point, n, ways, eta, stack, out);
-                stack.weight = stack.above.max_component();
+                out.end_stack(first, stack);
             }
             Self::Layered(layers) => {
+                let (first, number) = (out.layers.len(), out.stacks.len());
                 for layer in layers.iter().rev() {
                     layer.paint(point, n, ways, eta, stack, out);
                 }
+                // All layers together are one stack.
+                out.stacks.truncate(number);
+                out.end_stack(first, stack);
             }
             _ => {
                 // Each member starts with the transmittance of the layers above; the transmittances of all members are mixed
                 // again.
                 let (share, above) = (stack.share, stack.above);
-                let (mut passed, mut weight) = (Color::BLACK, 0.0_f64);
+                let mut passed = Color::BLACK;
                 let is_map = !matches!(self, Self::Transformed(..) | Self::UvMapped(_));
                 self.for_members(point, |texture, inner, member_space, part| {
                     let mut member = Stack {
                         share: share * part,
                         above,
-                        weight: 0.0,
                         seen: stack.seen,
                     };
                     let chain = |outer| Chain {
@@ -424,11 +462,9 @@ impl Texture {
                     let n_inner = member_space.enter(n);
                     texture.paint(inner, n_inner, ways, eta, &mut member, out);
                     passed += member.above * part;
-                    weight = weight.max(member.weight);
                     stack.seen = member.seen;
                 });
                 stack.above = passed;
-                stack.weight = weight;
             }
         }
     }
@@ -503,6 +539,7 @@ impl PlainTexture {
             film,
             reflectance: seen,
             reflection_weight,
+            stack: 0,
         });
         let mut passes = color.attenuation();
         if self.finish.conserve_energy {

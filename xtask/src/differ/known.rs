@@ -1,7 +1,7 @@
 /// Differences that are intended or that are POV-Ray's: the words that the smallest scene contains, and the reason.
 ///
 /// docs/src/differ.md explains them.
-pub(super) const KNOWN: [(&[&str], &str); 22] = [
+pub(super) const KNOWN: [(&[&str], &str); 29] = [
     (&["crystal.ttf"], FONTS),
     (&["cyrvetic.ttf"], FONTS),
     (&["timrom.ttf"], FONTS),
@@ -15,10 +15,26 @@ pub(super) const KNOWN: [(&[&str], &str); 22] = [
     (&["sor", "interior_texture"], INSIDES),
     (&["text", "interior_texture"], INSIDES),
     (&["triangle", "interior_texture"], INSIDES),
+    (
+        &["smooth_triangle", "interior_texture"],
+        "POV-Ray decides by the interpolated normal which side is seen",
+    ),
     (&["union", "inverse", "intersection"], BOXES),
     (&["union", "inverse", "difference"], BOXES),
     (&["merge", "inverse", "intersection"], BOXES),
     (&["merge", "inverse", "difference"], BOXES),
+    (&["isosurface", "intersection"], CAPS),
+    (&["isosurface", "difference"], CAPS),
+    (&["isosurface", "merge"], CAPS),
+    (&["isosurface", "clipped_by"], CAPS),
+    (
+        &["image_map", "once", "conserve_energy"],
+        "POV-Ray's reflection takes no light from what passes beside an image",
+    ),
+    (
+        &["smooth_triangle", "matrix"],
+        "POV-Ray looks again after shears whether the normals stand on one side",
+    ),
     (&["mesh", "intersection"], OPEN_MESHES),
     (&["mesh", "difference"], OPEN_MESHES),
     (&["mesh", "merge"], OPEN_MESHES),
@@ -38,6 +54,7 @@ pub(super) const KNOWN: [(&[&str], &str); 22] = [
 const FONTS: &str = "the fonts of POV-Ray's names are others";
 const INSIDES: &str = "POV-Ray's inside of the surface depends on the order of the points";
 const BOXES: &str = "POV-Ray's unions with inverse parts end with their boxes in CSG";
+const CAPS: &str = "POV-Ray does not close an isosurface at the far side of its container";
 const OPEN_MESHES: &str = "POV-Ray misses faces of meshes behind other faces in CSG";
 
 /// The known reason for the difference of a smallest scene, if there is one.

@@ -209,11 +209,13 @@ impl Writer<'_> {
             let sin_1 = (1.0 - hit.cos_1 * hit.cos_1).max(0.0).sqrt();
             let sin_2 = d.number(hit.eta_1 / hit.eta_2 * sin_1);
             page.line(RAY, &format!("θ1 = {theta_1}°, n1 = {n1}, n2 = {n2}"));
+            let so = match hit.transmission.is_black() {
+                true => "so there is no transparency ray",
+                false => "but not at the other normals of the blended textures",
+            };
             page.line(
                 RAY,
-                &format!(
-                    "total internal reflection: sin θ2 = n1/n2 · sin θ1 = {sin_2} > 1, so there is no transparency ray"
-                ),
+                &format!("total internal reflection: sin θ2 = n1/n2 · sin θ1 = {sin_2} > 1, {so}"),
             );
         } else if let Some(cos_2) = hit.cos_2 {
             page.line(

@@ -160,16 +160,19 @@ pub(super) fn slope(
         SlopeReference::Direction(direction) => *direction,
         SlopeReference::Point(target) => *target - point.surface,
     };
-    let slope = rescaled(alignment(point.n_shade, direction), range);
-    let Some(altitude) = altitude else {
-        return slope;
-    };
-    let (a, b) = (direction.length(), altitude.direction.length());
-    let height = p.dot(altitude.direction.normalize_or_zero());
-    let height = rescaled(height, altitude.range);
-    if a + b > 0.0 {
-        (a * slope + b * height) / (a + b)
+    let mut value = rescaled(alignment(point.n_shade, direction), range);
+    if let Some(altitude) = altitude {
+        let (a, b) = (direction.length(), altitude.direction.length());
+        let height = p.dot(altitude.direction.normalize_or_zero());
+        let height = rescaled(height, altitude.range);
+        if a + b > 0.0 {
+            value = (a * value + b * height) / (a + b);
+        }
+    }
+    // Values beside the ranges begin again before `frequency` counts (measured).
+    if (0.0..=1.0).contains(&value) {
+        value
     } else {
-        slope
+        value - value.floor()
     }
 }

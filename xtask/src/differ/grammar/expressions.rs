@@ -85,7 +85,7 @@ impl Writer {
         match self.dice.below(22) {
             0 => {
                 let f = self.dice.pick(&[
-                    "sin", "cos", "atan", "abs", "floor", "ceil", "int", "sinh", "tanh", "degrees",
+                    "sin", "cos", "atan", "abs", "floor", "ceil", "int", "tanh", "degrees",
                     "radians", "asinh",
                 ]);
                 list![format!("{f}("), a, ")"]
@@ -132,7 +132,7 @@ impl Writer {
                 list![format!("strlen(str({}.5,{n},2)) +", n), a]
             }
             14 => list!["val(str(", a, ",0,3))"],
-            15 => list!["exp(min(", a, ",2))"],
+            15 => list![self.dice.pick(&["exp", "sinh"]), "(max(-2,min(", a, ",2)))"],
             16 => list!["ln(abs(", a, ")+0.1)"],
             17 => list!["asc(chr(65+int(abs(", a, "))))"],
             18 => {
