@@ -50,6 +50,35 @@ fn branches_and_loops() {
 }
 
 #[test]
+fn braces_may_open_in_a_branch_and_close_behind_it() {
+    let value = |text: &str| {
+        let text = format!("{text} #debug concat(str(max_extent(U).x, 0, 1))");
+        assert_eq!(debug(&text), "2.0", "{text}");
+    };
+    // Open Babel writes this.
+    value(
+        "#declare T = 1; #ifdef (T) #declare U = merge { #else #declare U = union { #end sphere { x, 1 } }",
+    );
+    value("#ifdef (T) #declare U = merge { #else #declare U = union { #end sphere { x, 1 } }");
+    value("#if (1) #declare U = union { #end sphere { x, 1 } }");
+    value("#declare U = union { sphere { x, 1 } #if (1) sphere { 0, 1 } } #else } #end");
+    value("#macro Open() union { #end #declare U = Open() sphere { x, 1 } }");
+    value("#macro Open() #declare U = union { #end Open() sphere { x, 1 } }");
+    value("#macro Close() sphere { 0, 1 } } #end #declare U = union { sphere { x, 1 } Close()");
+    value(
+        "#switch (2) #case (1) #declare U = sphere { 0, 1 #break #case (2) #declare U = sphere { x, 1 #break #else #declare U = box { 0, 1 #end }",
+    );
+    value(
+        "#declare I = 0; #while (I < 5) #declare I = I + 1; #declare U = union { #break #end sphere { x, 1 } }",
+    );
+    // A declaration without a semicolon still ends with its branch.
+    assert_eq!(
+        debug("#if (1) #declare A = 1 #else #declare A = 2 #end #debug str(A, 0, 0)"),
+        "1"
+    );
+}
+
+#[test]
 fn switches_fall_through_until_a_break() {
     let switch = |n: i32| {
         debug(&format!(

@@ -377,8 +377,13 @@ fn number(value: &str) -> Result<f64, String> {
     parsed.ok_or_else(|| format!("expected a number, found `{value}`"))
 }
 
+/// A whole number; decimals are cut off, as in POV-Ray (programs write `Height=320.4585`).
 fn whole(value: &str, least: u32, most: u32) -> Result<u32, String> {
-    let parsed = value.parse().ok().filter(|v| (least..=most).contains(v));
+    let (digits, decimals) = value.split_once('.').unwrap_or((value, ""));
+    let parsed = digits
+        .parse()
+        .ok()
+        .filter(|v| decimals.bytes().all(|b| b.is_ascii_digit()) && (least..=most).contains(v));
     parsed.ok_or_else(|| format!("expected a whole number from {least} to {most}, found `{value}`"))
 }
 

@@ -74,7 +74,7 @@ fn render_may_be_left_out() {
     write(
         f,
         "run.ini",
-        "Input_File_Name=scene\nWidth=90\nHeight=60\nOutput_File_Name=x.png\nAntialias=on\n",
+        "Input_File_Name=scene\nWidth=90\nHeight=60.93\nOutput_File_Name=x.png\nAntialias=on\n",
     );
     // Options of strahl override those of POV-Ray.
     succeeds(

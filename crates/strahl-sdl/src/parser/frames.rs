@@ -70,6 +70,7 @@ impl<'h> Parser<'h> {
             frames: vec![],
             blocks: vec![],
             floor: Floor::default(),
+            open_braces: 0,
             arguments: vec![],
             brace_taken: false,
             value_nesting: None,
@@ -166,18 +167,22 @@ impl<'h> Parser<'h> {
         }
     }
 
-    /// Whether the position is at the end of the frame and block that the running directive must not leave.
+    /// Whether the position is at the end of the frame and block that the running directive must not leave. It may leave them within
+    /// braces: `#if (A) #declare B = union { #else #declare B = merge { #end ... }`.
     pub(crate) fn at_floor(&self) -> bool {
-        self.frames.len() <= self.floor.frames && self.blocks.len() <= self.floor.blocks
+        self.frames.len() <= self.floor.frames
+            && self.blocks.len() <= self.floor.blocks
+            && self.open_braces <= self.floor.braces
     }
 
     /// Runs `f` such that the input ends for it at the end of the current frame or block: directives and arguments never read
-    /// beyond the frame or block they are in.
+    /// beyond the frame or block they are in, except within braces.
     pub(crate) fn enclosed<T>(&mut self, f: impl FnOnce(&mut Self) -> PResult<T>) -> PResult<T> {
         let before = self.floor;
         self.floor = Floor {
             frames: self.frames.len(),
             blocks: self.blocks.len(),
+            braces: self.open_braces,
         };
         let stopping = std::mem::take(&mut self.stopping);
         let value_nesting = self.value_nesting.take();

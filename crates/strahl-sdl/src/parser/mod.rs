@@ -41,11 +41,12 @@ pub struct Place {
     start: u32,
 }
 
-/// Where directives must stop reading: the end of the current frame and block.
+/// Where directives must stop reading: the end of the current frame and block, unless a brace is open that they opened.
 #[derive(Clone, Copy, Debug, Default)]
 struct Floor {
     frames: usize,
     blocks: usize,
+    braces: usize,
 }
 
 /// The state of parsing one scene.
@@ -80,6 +81,8 @@ pub struct Parser<'h> {
     frames: Vec<Frame>,
     blocks: Vec<Block>,
     floor: Floor,
+    /// The number of open braces.
+    open_braces: usize,
     /// Memory for the arguments of the next call.
     arguments: Vec<Argument>,
     /// Whether the next `{` is already taken, because a function looked at the token after it.
@@ -143,6 +146,11 @@ impl Parser<'_> {
     #[inline]
     pub(crate) fn take(&mut self, token: Token) -> PResult<()> {
         self.mark(token);
+        match token.kind {
+            Kind::LeftBrace => self.open_braces += 1,
+            Kind::RightBrace => self.open_braces = self.open_braces.saturating_sub(1),
+            _ => {}
+        }
         if token.kind != Kind::End {
             self.position += 1;
         }

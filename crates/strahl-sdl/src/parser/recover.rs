@@ -83,6 +83,7 @@ impl Parser<'_> {
         self.stopping = false;
         self.value_nesting = None;
         self.floor = Floor::default();
+        self.open_braces = 0;
         let same = mark.file == self.file.file.0 && mark.frames == self.frames.len();
         let begin = if same { mark.position } else { self.position };
         if same && begin == self.position && self.raw().kind != Kind::End {
