@@ -54,9 +54,14 @@ pub(crate) fn transform(object: &mut Object, map: &Transform) {
     }
 }
 
-/// Whether an object has no surface.
+/// Whether an object has no surface: it is nothing or everything.
 pub(crate) fn is_nothing(object: &Object) -> bool {
     matches!(&object.kind, ObjectKind::Csg { children, .. } if children.0.is_empty())
+}
+
+/// Whether an object is all of space, as the inverse of nothing.
+pub(crate) fn is_everything(object: &Object) -> bool {
+    matches!(&object.kind, ObjectKind::Csg { op: CsgOp::Inverse, children } if children.0.is_empty())
 }
 
 /// A declared object: read once, used any number of times.

@@ -44,14 +44,20 @@ pub(super) fn onion(p: DVec3) -> f64 {
     p.length() % 1.0
 }
 
-/// The angle around the y axis in turns, `1/4..=5/4`.
+/// The angle around the y axis in turns, `1/4..=5/4`; 1/4 near the axis (measured).
 pub(super) fn radial(p: DVec3) -> f64 {
     use std::f64::consts::{PI, TAU};
+    if p.x.abs() < 0.001 && p.z.abs() < 0.001 {
+        return 0.25;
+    }
     0.25 + (det::atan2(p.x, p.z) + PI) / TAU
 }
 
-/// The angle around the z axis in turns, `0..1`, from the negative y axis.
+/// The angle around the z axis in turns, `0..1`, from the negative y axis; 0 on the axis (measured).
 fn turn(p: DVec3) -> f64 {
+    if p.x == 0.0 && p.y == 0.0 {
+        return 0.0;
+    }
     let turn = 0.25 + det::atan2(p.y, p.x) / std::f64::consts::TAU;
     if turn < 0.0 { turn + 1.0 } else { turn }
 }

@@ -35,12 +35,18 @@ impl Body {
         self.0.triangles()
     }
 
+    /// The level of the water, which does not rise above the highest point (measured).
+    fn level(&self) -> f64 {
+        let [_, high] = self.0.grid.full_range();
+        (f64::from(high) / super::SCALE).min(self.0.water)
+    }
+
     /// The plane of a piece of wall.
     fn wall(&self, surface: SurfaceId) -> Option<(DVec3, DVec3)> {
         if surface.element != self.walls_element() {
             return None;
         }
-        walls(self.0.water).get(surface.facet as usize).copied()
+        walls(self.level()).get(surface.facet as usize).copied()
     }
 
     /// All candidates for crossings of a line, ascending; all marked as inner.
@@ -51,7 +57,7 @@ impl Body {
             out.list.push(Crossing::new(hit, error, Side::Inner));
             ControlFlow::Continue(())
         });
-        for (facet, (normal, point)) in walls(self.0.water).into_iter().enumerate() {
+        for (facet, (normal, point)) in walls(self.level()).into_iter().enumerate() {
             let surface = SurfaceId {
                 element: self.walls_element(),
                 facet: facet as u32,
@@ -104,14 +110,8 @@ impl Body {
 impl Solid for Body {
     fn inside_bounds(&self) -> Aabb {
         let [_, high] = self.0.grid.full_range();
-        let high = f64::from(high) / super::SCALE;
-        let top = if high < self.0.water {
-            self.0.water
-        } else {
-            high
-        };
         let min = DVec3::new(0.0, f64::NEG_INFINITY, 0.0);
-        Aabb::new(min, DVec3::new(1.0, top, 1.0))
+        Aabb::new(min, DVec3::new(1.0, f64::from(high) / super::SCALE, 1.0))
     }
 
     fn crossings(
@@ -182,7 +182,7 @@ impl Solid for Body {
         if !(unit.contains(&point.x) && unit.contains(&point.z)) {
             return false;
         }
-        point.y <= self.0.water || point.y <= self.0.grid.height_at(point.x, point.z)
+        point.y <= self.level() || point.y <= self.0.grid.height_at(point.x, point.z)
     }
 }
 

@@ -21,10 +21,10 @@ use traverse::Descent;
 /// the diagonal from its corner of large x and small z to that of small x and large z. What lies below the *water level* is
 /// no surface.
 ///
-/// As a solid a height field contains everything below the surface or the water level within the square, without a lower bound;
-/// the walls along the square's edges, the surface of the water and everything below it are invisible. This is how POV-Ray 3.7
-/// behaves (measured), except that it raises the vertices below the water to its level before it classifies points, so that the
-/// cells on the shore differ.
+/// As a solid a height field contains everything below the surface or the water level within the square, without a lower bound; a
+/// water level above the highest point counts as that point. The walls along the square's edges, the surface of the water and
+/// everything below it are invisible. This is how POV-Ray 3.7 behaves (measured), except that it raises the vertices below the water
+/// to its level before it classifies points, so that the cells on the shore differ.
 ///
 /// Elements are the triangles, two for each cell, rows of cells with ascending z; the last element is the walls. Rays don't
 /// slip through between triangles. Texture coordinates are x and z. For shading, smooth height fields interpolate normals as

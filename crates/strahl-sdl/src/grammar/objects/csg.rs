@@ -1,7 +1,7 @@
 use super::bounds;
 use super::modifiers::surround;
 use crate::grammar::Entity;
-use crate::grammar::entity::is_nothing;
+use crate::grammar::entity::{is_everything, is_nothing};
 use crate::parser::{PResult, Parser};
 use crate::token::Kind;
 use strahl_scene::{CsgOp, Object};
@@ -42,7 +42,8 @@ impl Parser<'_> {
                         p.warn(place, format!("the {} has no objects", op.name()));
                     }
                     let narrowed = bounds::narrowed(op, &children, &p.state.shared);
-                    let mut object = Object::csg(op, combine(op, children));
+                    let (op, children) = combine(op, children);
+                    let mut object = Object::csg(op, children);
                     surround(&mut object, CsgOp::Bound, narrowed.into_iter().collect());
                     Entity::from(object)
                 }
@@ -69,16 +70,30 @@ impl Parser<'_> {
     }
 }
 
-/// The children without those that have no surface; an empty list if the result has no surface.
-fn combine(op: CsgOp, mut children: Vec<Object>) -> Vec<Object> {
-    let empty = match op {
-        CsgOp::Intersection => children.iter().any(is_nothing),
-        CsgOp::Difference => children.first().is_some_and(is_nothing),
-        _ => false,
-    };
-    if empty {
-        return vec![];
+/// The operation without children that have no surface. Without children it is nothing, or everything if it is an inverse.
+fn combine(op: CsgOp, mut children: Vec<Object>) -> (CsgOp, Vec<Object>) {
+    let nothing = || (CsgOp::Union, vec![]);
+    let everything = || (CsgOp::Inverse, vec![]);
+    let is_void = |child: &Object| is_nothing(child) && !is_everything(child);
+    let (all, any_everything) = (children.len(), children.iter().any(is_everything));
+    match op {
+        CsgOp::Intersection if children.iter().any(is_void) => return nothing(),
+        CsgOp::Difference if children.first().is_some_and(is_void) => return nothing(),
+        CsgOp::Difference if children.iter().skip(1).any(is_everything) => return nothing(),
+        CsgOp::Merge if any_everything => return everything(),
+        _ => {}
     }
     children.retain(|child| !is_nothing(child));
-    children
+    match op {
+        CsgOp::Intersection if children.is_empty() && all > 0 => everything(),
+        CsgOp::Difference if any_everything && children.is_empty() => everything(),
+        CsgOp::Difference if any_everything => {
+            let outside = |child| Object::csg(CsgOp::Inverse, vec![child]);
+            (
+                CsgOp::Intersection,
+                children.into_iter().map(outside).collect(),
+            )
+        }
+        _ => (op, children),
+    }
 }

@@ -1,6 +1,6 @@
 use super::bounds;
 use crate::grammar::Entity;
-use crate::grammar::entity::{is_nothing, transform};
+use crate::grammar::entity::{is_everything, is_nothing, transform};
 use crate::grammar::texture::fill_parts;
 use crate::keywords::{Word, WordKind};
 use crate::parser::{PResult, Parser};
@@ -297,7 +297,15 @@ impl Parser<'_> {
 }
 
 /// Clips an object without a cap, or bounds it; the others are in the space of its parent.
-pub(super) fn surround(object: &mut Object, op: CsgOp, others: Vec<Object>) {
+pub(super) fn surround(object: &mut Object, op: CsgOp, mut others: Vec<Object>) {
+    if op == CsgOp::Clip
+        && others
+            .iter()
+            .any(|other| is_nothing(other) && !is_everything(other))
+    {
+        object.kind = Object::csg(CsgOp::Union, vec![]).kind;
+    }
+    others.retain(|other| !is_nothing(other));
     if others.is_empty() || is_nothing(object) {
         return;
     }
@@ -315,6 +323,15 @@ pub(super) fn surround(object: &mut Object, op: CsgOp, others: Vec<Object>) {
 
 /// Swaps inside and outside; surfaces without an inside stay as they are.
 fn invert(object: &mut Object) {
+    if let ObjectKind::Csg { op, children } = &mut object.kind
+        && children.0.is_empty()
+    {
+        *op = match op {
+            CsgOp::Inverse => CsgOp::Union,
+            _ => CsgOp::Inverse,
+        };
+        return;
+    }
     let is_open =
         |kind: &ObjectKind| matches!(kind, ObjectKind::Shape(shape) if shape.as_solid().is_none());
     let open = match &object.kind {
@@ -323,7 +340,7 @@ fn invert(object: &mut Object) {
             op: CsgOp::Union,
             children,
         } => children.0.iter().all(|part| is_open(&part.kind)),
-        kind => is_open(kind) || is_nothing(object),
+        kind => is_open(kind),
     };
     if !open {
         wrap(object, CsgOp::Inverse);
