@@ -207,7 +207,7 @@ impl TreeTracer<'_> {
         let shadow = self.tracer.shadow(&shadow_ray, media, hits);
         self.counts.shadow += 1;
         self.counts.shadow_hit += u64::from(shadow.hit);
-        if O::ACTIVE {
+        if O::DETAILED {
             let report = self.tracer.shadow_report(&shadow_ray, media, hits);
             observer.area_shadow(query.node, query.number as u32, report);
         }

@@ -56,6 +56,8 @@ fn luminance(c: Color) -> f64 {
 }
 
 impl TraceObserver for Coverage {
+    const DETAILED: bool = false;
+
     fn ray(&mut self, report: RayReport) {
         let nothing = (Color::BLACK, Color::BLACK);
         let (background, clear) = report.background.map_or(nothing, |_| {

@@ -195,6 +195,10 @@ pub trait TraceObserver {
     /// Whether reports are wanted; otherwise they are not even made.
     const ACTIVE: bool = true;
 
+    /// Whether what happens at hits is wanted: their data in [`RayReport::hit`], lights, shadows and branches that end. The reports on
+    /// shadows trace their rays again.
+    const DETAILED: bool = true;
+
     /// A ray was traced (before its lights and branches are).
     fn ray(&mut self, _report: RayReport) {}
 
@@ -214,4 +218,5 @@ pub trait TraceObserver {
 
 impl TraceObserver for () {
     const ACTIVE: bool = false;
+    const DETAILED: bool = false;
 }

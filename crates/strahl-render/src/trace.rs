@@ -352,8 +352,8 @@ impl<'s> TreeTracer<'s> {
             node.local = surface.diagnose(scene, model, &first);
             if O::ACTIVE {
                 let shading = Shading::Model(model);
-                let seen = surface.report(scene, hit, Split::NONE, shading);
-                observer.ray(report(Some(seen), None));
+                let seen = O::DETAILED.then(|| surface.report(scene, hit, Split::NONE, shading));
+                observer.ray(report(seen, None));
             }
             self.nodes.push(node);
             return Some(first);
@@ -377,9 +377,9 @@ impl<'s> TreeTracer<'s> {
             split.kr = split.fade;
         }
         if O::ACTIVE {
-            let seen = self.hit_report(surface, hit, split, model);
-            let total = seen.total_reflection;
-            observer.ray(report(Some(seen), None));
+            let seen = O::DETAILED.then(|| self.hit_report(surface, hit, split, model));
+            let total = seen.as_ref().is_some_and(|seen| seen.total_reflection);
+            observer.ray(report(seen, None));
             if total {
                 observer.ended(index, RayKind::Refraction, 0.0, BranchEnd::TotalReflection);
             }
@@ -392,7 +392,7 @@ impl<'s> TreeTracer<'s> {
             let light = shining.map_or(number, |list| list[number] as usize);
             let term = self.light(surface, hit, model, light, known, branch, index, observer);
             node.local += term.diffuse + term.specular;
-            if O::ACTIVE {
+            if O::DETAILED {
                 let detail = self.light_detail(surface, hit, model, branch, &term);
                 observer.light(index, term, detail);
             }
@@ -557,7 +557,7 @@ impl<'s> TreeTracer<'s> {
         };
         if let Some(end) = end {
             self.counts.cut_trees += u64::from(end == BranchEnd::TreeLimit);
-            if O::ACTIVE {
+            if O::DETAILED {
                 observer.ended(index, kind, weight, end);
             }
             return;

@@ -70,7 +70,7 @@ impl TreeTracer<'_> {
         } else if (scene_light.casts_shadows || masked) && !sample.range.is_empty() {
             let (origin_point, origin) = surface.start(hit, sample.shadow_direction);
             let ray = Ray::new(origin_point, sample.shadow_direction);
-            if O::ACTIVE {
+            if O::DETAILED {
                 term.shadow_ray = Some(ray);
             }
             if let Some(area) = &scene_light.area {
