@@ -376,6 +376,21 @@ fn several_errors_are_found_in_one_run() {
 }
 
 #[test]
+fn a_warning_at_many_places_is_shown_three_times() {
+    let text = "sphere { 0, 1 radiosity { importance 1 } }\n".repeat(300);
+    let parsed = parse_with(&mut MemoryHost::default(), &text);
+    assert_eq!(parsed.diagnostics.len(), 3);
+    assert_eq!(parsed.diagnostics[2].hints, ["the same at 297 more places"]);
+    // In a loop it is one place.
+    let text = format!(
+        "#for (I, 1, 300) {} #end",
+        text.lines().next().expect("a line")
+    );
+    let parsed = parse_with(&mut MemoryHost::default(), &text);
+    assert_eq!(parsed.diagnostics.len(), 1);
+}
+
+#[test]
 fn an_error_in_a_loop_is_told_once() {
     let found = errors("#for (I, 1, 100) sphere { 0, Nope } #end");
     assert_eq!(found.len(), 1, "{found:#?}");

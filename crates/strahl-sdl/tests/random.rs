@@ -23,6 +23,8 @@ groups! {
     a_blob_below_its_threshold_is_nothing_and_its_inverse_everything,
     angles_on_their_axis,
     water_does_not_rise_above_a_height_field,
+    negative_strengths_of_a_finish_count_as_0,
+    textures_with_little_weight_are_left_out,
     triangles_have_fronts,
     parts_have_the_interior_texture_of_the_whole,
     components_of_blobs_keep_their_textures,

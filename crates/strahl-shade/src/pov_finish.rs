@@ -239,6 +239,15 @@ impl PovFinish {
         0.5 * (phong_size + 1.0)
     }
 
+    /// The power of the cosine in the highlight of `specular`: `1 / roughness`, and 0 without roughness (measured).
+    fn highlight_power(&self) -> f64 {
+        if self.roughness == 0.0 {
+            0.0
+        } else {
+            1.0 / self.roughness
+        }
+    }
+
     /// The factor that turns `specular albedo x` into `specular`: `(p + 2) / (4 (2 - 2^(-p/2)))`, `p = 1 / roughness`.
     pub fn specular_from_albedo(roughness: f64) -> f64 {
         let p = 1.0 / roughness;
@@ -299,11 +308,11 @@ impl PovFinish {
                 parts.phong = self.phong * det::pow(cos, self.phong_size);
             }
         }
-        if self.specular != 0.0 && self.roughness > 0.0 {
+        if self.specular != 0.0 {
             let cos = cosine(model.unwrap_or(ShadingModel::BlinnPhong));
             parts.specular_cos = cos;
             if cos > 0.0 {
-                parts.specular = self.specular * det::pow(cos, 1.0 / self.roughness);
+                parts.specular = self.specular * det::pow(cos, self.highlight_power());
             }
         }
         parts

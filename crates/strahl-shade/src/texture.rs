@@ -444,7 +444,15 @@ impl Texture {
                 let (share, above) = (stack.share, stack.above);
                 let mut passed = Color::BLACK;
                 let is_map = !matches!(self, Self::Transformed(..) | Self::UvMapped(_));
+                // Of the textures of a mesh's vertices and of a blob's components those with less are left out (measured).
+                let least = match self {
+                    Self::Shared(..) => out.bailout,
+                    _ => 0.0,
+                };
                 self.for_members(point, |texture, inner, member_space, part| {
+                    if part < least {
+                        return;
+                    }
                     let mut member = Stack {
                         share: share * part,
                         above,

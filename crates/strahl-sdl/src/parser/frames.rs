@@ -85,6 +85,7 @@ impl<'h> Parser<'h> {
             read_bytes,
             message_bytes: 0,
             diagnostics: vec![],
+            warned: std::collections::HashMap::new(),
             errors: 0,
             doubtful: std::collections::BTreeSet::new(),
             failures: 0,

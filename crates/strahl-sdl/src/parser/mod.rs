@@ -106,6 +106,8 @@ pub struct Parser<'h> {
     read_bytes: u64,
     message_bytes: u64,
     diagnostics: Vec<Diagnostic>,
+    /// The places of each warning, as file and offset.
+    warned: std::collections::HashMap<String, std::collections::HashSet<(u32, u32)>>,
     errors: usize,
     /// Names with a reported error: not declared, or with an invalid value.
     pub(crate) doubtful: BTreeSet<Symbol>,

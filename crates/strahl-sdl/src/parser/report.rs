@@ -75,12 +75,18 @@ impl Parser<'_> {
     /// Adds a diagnostic; returns `false` if the same message was reported for the same place before, as in loops.
     fn report(&mut self, place: Place, mut diagnostic: Diagnostic) -> bool {
         const WARNINGS: usize = 200;
+        /// The same warning is shown at this many places; the others are counted.
+        const PLACES: usize = 3;
         if self.is_known(place, &diagnostic) {
             return false;
         }
         let span = self.span_at(place);
-        if diagnostic.severity == Severity::Warning && self.diagnostics.len() >= WARNINGS {
-            return false;
+        if diagnostic.severity == Severity::Warning {
+            let places = self.warned.entry(diagnostic.message.clone()).or_default();
+            places.insert((place.file, place.start));
+            if places.len() > PLACES || self.diagnostics.len() >= WARNINGS {
+                return false;
+            }
         }
         diagnostic = diagnostic.at(span);
         if let Some(chunk) = self.sources.get(place.file as usize) {
@@ -225,7 +231,20 @@ impl Parser<'_> {
 
     /// All diagnostics, and whether one of them is an error.
     pub(crate) fn take_diagnostics(&mut self) -> (Vec<Diagnostic>, bool) {
-        (std::mem::take(&mut self.diagnostics), self.errors > 0)
+        let mut diagnostics = std::mem::take(&mut self.diagnostics);
+        for (message, places) in std::mem::take(&mut self.warned) {
+            let same =
+                |d: &&mut Diagnostic| d.severity == Severity::Warning && d.message == message;
+            let shown = diagnostics.iter_mut().filter(|d| same(d)).count();
+            let more = places.len().saturating_sub(shown);
+            if more > 0
+                && let Some(last) = diagnostics.iter_mut().rfind(same)
+            {
+                let s = if more == 1 { "" } else { "s" };
+                last.hints.push(format!("the same at {more} more place{s}"));
+            }
+        }
+        (diagnostics, self.errors > 0)
     }
 }
 

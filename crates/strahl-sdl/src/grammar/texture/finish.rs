@@ -72,11 +72,11 @@ impl Parser<'_> {
             Word::Diffuse => {
                 self.take(token)?;
                 albedo.diffuse = self.accept_word(Word::Albedo)?;
-                finish.diffuse = self.float()?;
+                finish.diffuse = self.strength()?;
                 self.comma()?;
                 // Without a second number the back is dark, whatever was said before.
                 finish.diffuse_back = match self.starts_number()? {
-                    true => self.float()?,
+                    true => self.strength()?,
                     false => 0.0,
                 };
             }
@@ -84,28 +84,31 @@ impl Parser<'_> {
             Word::Phong => {
                 self.take(token)?;
                 albedo.phong = self.accept_word(Word::Albedo)?;
-                finish.phong = self.float()?;
+                finish.phong = self.strength()?;
             }
             Word::PhongSize => finish.phong_size = self.finish_float(token)?,
             Word::Specular => {
                 self.take(token)?;
                 albedo.specular = self.accept_word(Word::Albedo)?;
-                finish.specular = self.float()?;
+                finish.specular = self.strength()?;
             }
             Word::Roughness => {
                 finish.roughness = self.finish_float(token)?;
                 if !(finish.roughness > 0.0) {
                     let place = self.place();
-                    return Err(self.fail_hint(
+                    self.warn_hint(
                         place,
-                        format!("roughness must be positive, not {}", finish.roughness),
+                        format!(
+                            "with a roughness of {} the highlight is everywhere",
+                            finish.roughness
+                        ),
                         "0.001 is very smooth, 1 very rough",
-                    ));
+                    );
                 }
             }
             Word::Metallic => {
                 self.take(token)?;
-                finish.metallic = self.optional_float(1.0)?;
+                finish.metallic = self.optional_float(1.0)?.max(0.0);
             }
             Word::Reflection => {
                 self.take(token)?;
@@ -122,7 +125,10 @@ impl Parser<'_> {
                 self.take(token)?;
                 finish.irid = Some(self.irid()?);
             }
-            Word::Crand => finish.crand = self.finish_float(token)?,
+            Word::Crand => {
+                self.take(token)?;
+                finish.crand = self.strength()?;
+            }
             // Since version 3.1 it belongs to `interior`; before, it has an effect here.
             Word::Ior => {
                 self.take(token)?;
@@ -140,6 +146,11 @@ impl Parser<'_> {
         self.float()
     }
 
+    /// The strength of a part of the finish. Negative ones count as 0, as in POV-Ray (measured); PyMOL writes `phong -1`.
+    fn strength(&mut self) -> PResult<f64> {
+        Ok(self.float()?.max(0.0))
+    }
+
     fn finish_color(&mut self, word: Token) -> PResult<Color> {
         self.take(word)?;
         self.plain_color()
@@ -149,7 +160,7 @@ impl Parser<'_> {
     fn irid(&mut self) -> PResult<Iridescence> {
         self.braces(|p| {
             let mut irid = Iridescence {
-                amount: p.float()?,
+                amount: p.strength()?,
                 thickness: 0.0,
                 turbulence: 0.0,
             };
