@@ -120,22 +120,23 @@ impl TreeTracer<'_> {
         let (mut diffuse, mut specular) = (Color::BLACK, Color::BLACK);
         for j in 0..query.area.size_2 {
             for i in 0..query.area.size_1 {
-                // The point has the intensity of the centre, seen from the point's position.
                 let offset = query.offset(i, j);
-                let Some(sample) = query.light.illuminate(lit - offset) else {
-                    continue;
+                let (l, color) = if query.light.is_parallel() {
+                    // As in POV-Ray (measured) the points light from their own directions, with the intensity of the centre.
+                    let direction = query.center.shadow_direction + offset;
+                    (direction.normalize_or(query.center.l), query.center.color)
+                } else {
+                    // The point has the intensity of the centre, seen from the point's position.
+                    match query.light.illuminate(lit - offset) {
+                        Some(sample) => (sample.l, sample.color),
+                        None => continue,
+                    }
                 };
-                let n_dot_l = query.surface.n_shade.dot(sample.l);
-                if self.faces(query.surface, sample.l, n_dot_l) {
-                    let light = sample.color * visible;
-                    let (d, s) = self.reflected(
-                        query.surface,
-                        query.light,
-                        query.model,
-                        light,
-                        sample.l,
-                        n_dot_l,
-                    );
+                let n_dot_l = query.surface.n_shade.dot(l);
+                if self.faces(query.surface, l, n_dot_l) {
+                    let light = color * visible;
+                    let (d, s) =
+                        self.reflected(query.surface, query.light, query.model, light, l, n_dot_l);
                     diffuse += d;
                     specular += s;
                 }

@@ -25,6 +25,8 @@ groups! {
     water_does_not_rise_above_a_height_field,
     negative_strengths_of_a_finish_count_as_0,
     textures_with_little_weight_are_left_out,
+    area_illumination_of_lights_of_all_kinds,
+    a_pigment_over_a_moved_colour_is_moved_with_it,
     triangles_have_fronts,
     parts_have_the_interior_texture_of_the_whole,
     components_of_blobs_keep_their_textures,

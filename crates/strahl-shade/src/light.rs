@@ -203,6 +203,22 @@ impl Light {
         })
     }
 
+    /// For a point that [`Light::illuminate`] finds unlit: the sample of a spotlight without light, if other points of its area may light it
+    /// (`area_illumination`).
+    #[cold]
+    pub fn aim(&self, point: DVec3) -> Option<LightSample> {
+        let LightKind::Spot { position, .. } = self.kind else {
+            return None;
+        };
+        self.area.as_ref().filter(|area| area.illumination)?;
+        let open = Self {
+            kind: LightKind::Point { position },
+            color: Color::BLACK,
+            ..self.clone()
+        };
+        open.illuminate(point)
+    }
+
     /// The range of t in which objects cast a shadow on a point at this distance, where t = 1 is the light.
     #[inline]
     fn until_here(&self, distance: f64) -> Interval {

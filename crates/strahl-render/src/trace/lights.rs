@@ -41,10 +41,14 @@ impl TreeTracer<'_> {
         };
         let (sample, stopped) = match self.samples.known(light, known) {
             Some((sample, stopped)) => (*sample, Some(stopped)),
-            None => match scene_light.illuminate(surface.resolved.point.position) {
-                Some(sample) => (sample, None),
-                None => return term,
-            },
+            None => {
+                let point = surface.resolved.point.position;
+                let sample = scene_light.illuminate(point);
+                match sample.or_else(|| scene_light.aim(point)) {
+                    Some(sample) => (sample, None),
+                    None => return term,
+                }
+            }
         };
         term.n_dot_l = surface.n_shade.dot(sample.l);
         term.color = sample.color;

@@ -49,8 +49,8 @@ pub struct Texture {
     pub interior: Option<Arc<Interior>>,
     /// Whether `surface` is written in the scene and is not the default: further textures are then layered over it.
     pub(super) written: bool,
-    /// The transformation of a uniform surface since it was written. The surface itself does not store it, but a pattern that
-    /// later replaces its colour is transformed by it.
+    /// The transformation of a pigment of one colour, in the uppermost layer, since it was written. The pigment itself does not store
+    /// it, but a pattern that later replaces the colour is transformed by it.
     pub(super) placed: Option<Box<Transform>>,
     /// The textures of the components of a blob, which neither `surface` nor `inner_surface` replaces.
     pub(super) components: Option<Arc<Components>>,
@@ -101,6 +101,16 @@ fn is_uniform(texture: &Surface) -> bool {
     }
 }
 
+/// Whether the pigment of the uppermost layer is one colour.
+fn is_solid(texture: &Surface) -> bool {
+    use strahl_shade::pigment::Pigment;
+    match texture {
+        Surface::Plain(plain) => matches!(plain.pigment, Pigment::Solid(_)),
+        Surface::Layered(layers) => layers.last().is_some_and(is_solid),
+        _ => false,
+    }
+}
+
 /// The pigment, normal and finish of the uppermost layer, which further items change.
 pub(super) fn top_of(texture: &mut Surface) -> Option<&mut PlainTexture> {
     match texture {
@@ -145,7 +155,7 @@ impl Texture {
             inner_surface: self.inner_surface.as_ref().map(moved),
             interior: self.interior.clone(),
             written: self.written,
-            placed: if by.is_identity() || !self.written || !is_uniform(&self.surface) {
+            placed: if by.is_identity() || !self.written || !is_solid(&self.surface) {
                 self.placed.clone()
             } else {
                 let before = self.placed.as_deref();
