@@ -1,7 +1,7 @@
 /// Differences that are intended or that are POV-Ray's: the words that the smallest scene contains, and the reason.
 ///
 /// docs/src/differ.md explains them.
-pub(super) const KNOWN: [(&[&str], &str); 39] = [
+pub(super) const KNOWN: [(&[&str], &str); 41] = [
     (&["crystal.ttf"], FONTS),
     (&["cyrvetic.ttf"], FONTS),
     (&["timrom.ttf"], FONTS),
@@ -16,6 +16,8 @@ pub(super) const KNOWN: [(&[&str], &str); 39] = [
     (&["sor", "interior_texture"], INSIDES),
     (&["text", "interior_texture"], INSIDES),
     (&["triangle", "interior_texture"], INSIDES),
+    (&["mesh", "interior_texture", "inverse"], TURNED),
+    (&["mesh2", "interior_texture", "inverse"], TURNED),
     (&["quadric", "interior_texture", "inverse"], NOT_TURNED),
     (&["quadric", "interior_texture", "difference"], NOT_TURNED),
     (&["quadric", "interior_texture", "merge"], NOT_TURNED),
@@ -61,6 +63,7 @@ const SIDES: &str =
     "POV-Ray looks again after transformations whether the normals stand on one side";
 const INSIDES: &str = "POV-Ray's inside of the surface depends on the order of the points";
 const INTERPOLATED: &str = "POV-Ray decides by the interpolated normal which side is seen";
+const TURNED: &str = "POV-Ray turns the sides of an inverse mesh without an inside";
 const NOT_TURNED: &str = "POV-Ray does not turn the sides of an inverse quadric";
 const BOXES: &str = "POV-Ray's unions with inverse parts end with their boxes in CSG";
 const CAPS: &str = "POV-Ray does not close an isosurface at the far side of its container";
