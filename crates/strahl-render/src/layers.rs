@@ -23,6 +23,7 @@ pub(crate) fn paint<'s>(
     let material = &scene.materials[look.material.0 as usize];
     let Some(texture) = material.texture_seen(surface.entering) else {
         paint.layers.clear();
+        paint.stacks.clear();
         return;
     };
     // An interpolated normal that faces away from the viewer is turned round, as in POV-Ray.

@@ -64,6 +64,7 @@ pub struct TreeTracer<'s> {
     pub(crate) paint: TexturePaint<'s>,
     /// The reflection rays of the current hit.
     mirrors: Vec<Mirror>,
+    /// The passages of the current hit, if textures are blended there.
     passages: Vec<Passage>,
     /// The light samples of the current packet.
     samples: Samples,
