@@ -343,7 +343,11 @@ background { color rgb <0.80, 0.88, 0.80> }
 	 }
 #end
 
+#ifdef (TRANS)
+#declare mol_0 = merge {
+#else
 #declare mol_0 = union {
+#end //(End of TRANS)
 	  object{mol_0_atom1}
 	  object{mol_0_atom2}
 	  object{mol_0_atom3}

@@ -1,11 +1,11 @@
-// In the style of PyMOL's exports, written for strahl: looks down the negative z axis, a light far away, a default texture, and
-// triangles as mesh2 with a list of textures.
+// In the style of PyMOL's exports, written for strahl: looks down the negative z axis, a light far away, a default texture with a
+// negative phong, and triangles as mesh2 with a list of textures.
 camera {direction<0.0,0.0,  -2.836>
  location <0.0 , 0.0 , 0.0>
  right 1.333*x up y
  }
 #default { texture { pigment{ color rgb <1,1,1> }
-finish { ambient 0.140 diffuse 0.450 reflection 0.0 phong 0.500 phong_size 55.0 } } }
+finish { ambient 0.140 diffuse 0.450 reflection 0.0 phong -1.000 phong_size 55.0 } } }
 light_source{<4000.0001,4000.0001,9977.7778>  rgb<1.0,1.0,1.0>}
 plane{z , -62.4560
  pigment{color rgb<1.0,1.0,1.0>}
