@@ -27,6 +27,8 @@ groups! {
     textures_with_little_weight_are_left_out,
     area_illumination_of_lights_of_all_kinds,
     a_pigment_over_a_moved_colour_is_moved_with_it,
+    no_bump_scale_counts_for_the_parts_of_a_normal,
+    an_interior_changes_the_one_before,
     triangles_have_fronts,
     parts_have_the_interior_texture_of_the_whole,
     components_of_blobs_keep_their_textures,

@@ -214,7 +214,7 @@ impl Light {
         let open = Self {
             kind: LightKind::Point { position },
             color: Color::BLACK,
-            ..self.clone()
+            ..*self
         };
         open.illuminate(point)
     }

@@ -90,6 +90,11 @@ impl PovNormal {
     /// The tilted normal at a point, a unit vector; `n` is the unit normal to be tilted, on the side of the viewer, both in the
     /// space around the normal's own transformations.
     pub fn tilt(&self, point: &TexturePoint, n: DVec3) -> DVec3 {
+        self.tilt_part(point, n).normalize_or(n)
+    }
+
+    /// The same for a part of a map: with `no_bump_scale` not of unit length, which weighs where parts are mixed (measured).
+    fn tilt_part(&self, point: &TexturePoint, n: DVec3) -> DVec3 {
         // Into the pattern's space, where the normal is tilted, and back.
         let warps = &self.modifiers.warps;
         let mut inner = n;
@@ -107,7 +112,11 @@ impl PovNormal {
                 tilted = transform.normal_to_world(tilted);
             }
         }
-        tilted.normalize_or(n)
+        if self.no_bump_scale {
+            tilted
+        } else {
+            tilted.normalize_or(n)
+        }
     }
 
     /// The perturbed normal in the pattern's space, not of unit length.
@@ -154,12 +163,12 @@ impl PovNormal {
                 let field = self.field(pattern);
                 let value = field.value_inside(&inner);
                 let inner = inner.at(field.moved(transformed));
-                let unit = n.normalize_or_zero();
+                let unit = self.for_parts(n);
                 match map.lookup(value) {
                     None => n,
-                    Some(Blend::One(normal)) => normal.tilt(&inner, unit),
+                    Some(Blend::One(normal)) => normal.tilt_part(&inner, unit),
                     Some(Blend::Two(low, high, t)) => {
-                        low.tilt(&inner, unit) * (1.0 - t) + high.tilt(&inner, unit) * t
+                        low.tilt_part(&inner, unit) * (1.0 - t) + high.tilt_part(&inner, unit) * t
                     }
                 }
             }
@@ -168,17 +177,26 @@ impl PovNormal {
                 let block = field.block_inside(&inner);
                 let inner = inner.at(field.moved(transformed));
                 let normal = normals.get(block).or(normals.last());
-                normal.map_or(n, |normal| normal.tilt(&inner, n.normalize_or_zero()))
+                normal.map_or(n, |normal| normal.tilt_part(&inner, self.for_parts(n)))
             }
             NormalKind::Average(members) => {
                 let inner = inner.at(p);
-                let unit = n.normalize_or_zero();
+                let unit = self.for_parts(n);
                 let sum = members
                     .iter()
-                    .map(|(weight, normal)| normal.tilt(&inner, unit) * *weight)
+                    .map(|(weight, normal)| normal.tilt_part(&inner, unit) * *weight)
                     .fold(DVec3::ZERO, |a, b| a + b);
                 if sum == DVec3::ZERO { n } else { sum }
             }
+        }
+    }
+
+    /// The normal that the normals of a map are to tilt: of unit length, unless the bumps keep their size.
+    fn for_parts(&self, n: DVec3) -> DVec3 {
+        if self.no_bump_scale {
+            n
+        } else {
+            n.normalize_or_zero()
         }
     }
 

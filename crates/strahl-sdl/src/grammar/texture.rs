@@ -226,11 +226,12 @@ impl Parser<'_> {
             }
             Some(Word::Interior) => {
                 self.take(token)?;
-                texture.interior = Some(Arc::new(self.interior_block()?));
+                let base = texture.interior.as_deref();
+                texture.interior = Some(Arc::new(self.interior_block(base)?));
             }
             Some(Word::Material) => {
                 self.take(token)?;
-                let material = self.material_block()?;
+                let material = self.material_block(texture.interior.clone())?;
                 if material.written {
                     texture.cover(self, material.surface)?;
                 }

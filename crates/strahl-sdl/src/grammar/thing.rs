@@ -66,10 +66,10 @@ static THINGS: [Option<ThingParser>; Word::ALL.len()] = by_word::<ThingParser, _
     (Word::Finish, |p| Ok(Thing::Finish(p.finish_block()?))),
     (Word::Fog, |p| Ok(Thing::Fog(Arc::new(p.fog()?)))),
     (Word::Interior, |p| {
-        Ok(Thing::Interior(Arc::new(p.interior_block()?)))
+        Ok(Thing::Interior(Arc::new(p.interior_block(None)?)))
     }),
     (Word::Material, |p| {
-        Ok(Thing::Material(Arc::new(p.material_block()?)))
+        Ok(Thing::Material(Arc::new(p.material_block(None)?)))
     }),
     (Word::Normal, |p| {
         Ok(Thing::Normal(Arc::new(p.normal_block()?)))

@@ -46,7 +46,7 @@ fn mistakes_have_a_line_and_advice() {
         ),
         ("pigment { bozo warp { repeat 0 } }", &["one axis"]),
         ("pigment { magnet 1 checker }", &["`mandel` or `julia`"]),
-        ("finish { roughness 0 }", &["roughness must be positive"]),
+        ("finish { roughness 0 }", &["a roughness of 0"]),
         ("interior { ior 0 }", &["must be positive"]),
         (
             "texture { material_map { ppm \"p.ppm\" } }",

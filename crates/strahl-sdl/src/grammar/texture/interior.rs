@@ -6,14 +6,14 @@ use crate::parser::{PResult, Parser};
 use strahl_shade::interior::Interior;
 
 impl Parser<'_> {
-    /// `{ ... }` after `interior`.
-    pub(crate) fn interior_block(&mut self) -> PResult<Interior> {
+    /// `{ ... }` after `interior`. It changes `base`, the object's interior so far, unless it begins with a name.
+    pub(crate) fn interior_block(&mut self, base: Option<&Interior>) -> PResult<Interior> {
         self.braces(|p| {
             let named = p.accept_thing(|thing| match thing {
                 Thing::Interior(interior) => Some(interior),
                 _ => None,
             })?;
-            let mut interior = named.map_or_else(Interior::default, |named| *named);
+            let mut interior = named.as_deref().or(base).copied().unwrap_or_default();
             p.items("`interior`", |p, token| {
                 match token.word() {
                     Some(Word::Ior) => {

@@ -151,6 +151,17 @@ pub(super) fn transform(normal: &mut PovNormal, by: &Transform, uv: bool) {
     }
 }
 
+/// Sets `no_bump_scale` for the normals of which one is made: it counts for those too (measured).
+fn keep_bumps(normal: &mut PovNormal) {
+    normal.no_bump_scale = true;
+    match &mut normal.kind {
+        NormalKind::Map(_, map) => map.entries.iter_mut().for_each(|(_, n)| keep_bumps(n)),
+        NormalKind::Blocks(_, normals) => normals.iter_mut().for_each(keep_bumps),
+        NormalKind::Average(members) => members.iter_mut().for_each(|(_, n)| keep_bumps(n)),
+        _ => {}
+    }
+}
+
 impl Parser<'_> {
     /// `{ ... }` after `normal`, which changes the default normal.
     pub(crate) fn normal_block(&mut self) -> PResult<PovNormal> {
@@ -184,7 +195,10 @@ impl Parser<'_> {
         self.items_until(closing, "`normal`", |p, token| {
             p.normal_item(&mut draft, token)
         })?;
-        let normal = draft.finish();
+        let mut normal = draft.finish();
+        if normal.no_bump_scale {
+            keep_bumps(&mut normal);
+        }
         self.weigh(weight::of_normal(&normal))?;
         Ok(normal)
     }

@@ -9,6 +9,7 @@ use crate::keywords::Word;
 use crate::parser::{PResult, Parser};
 use crate::token::{Kind, Token};
 use std::sync::Arc;
+use strahl_shade::interior::Interior;
 use strahl_shade::normal::PovNormal;
 use strahl_shade::patterns::{Modifiers, Pattern, PatternField};
 use strahl_shade::pigment::{BlendMap, Pigment};
@@ -422,8 +423,8 @@ impl Parser<'_> {
         Ok(())
     }
 
-    /// `{ ... }` after `material`.
-    pub(crate) fn material_block(&mut self) -> PResult<Texture> {
+    /// `{ ... }` after `material`. Its interior begins with `interior`, that of the object so far.
+    pub(crate) fn material_block(&mut self, interior: Option<Arc<Interior>>) -> PResult<Texture> {
         self.braces(|p| {
             let named = p.accept_thing(|thing| match thing {
                 Thing::Material(material) => Some(material),
@@ -433,6 +434,7 @@ impl Parser<'_> {
                 Some(named) => Texture::clone(&named),
                 None => Texture {
                     written: false,
+                    interior,
                     ..p.state.default_texture.clone()
                 },
             };
