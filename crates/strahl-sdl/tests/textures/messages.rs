@@ -46,7 +46,6 @@ fn mistakes_have_a_line_and_advice() {
         ),
         ("pigment { bozo warp { repeat 0 } }", &["one axis"]),
         ("pigment { magnet 1 checker }", &["`mandel` or `julia`"]),
-        ("finish { roughness 0 }", &["a roughness of 0"]),
         ("interior { ior 0 }", &["must be positive"]),
         (
             "texture { material_map { ppm \"p.ppm\" } }",
@@ -69,5 +68,13 @@ fn mistakes_have_a_line_and_advice() {
             assert!(message.contains(part), "{items}: {message}");
         }
     }
+    let parsed = parse_with(
+        &mut MemoryHost::new(),
+        "sphere { 0, 1 finish { roughness 0 } }",
+    );
+    let [warning] = &parsed.diagnostics[..] else {
+        panic!("{:?}", parsed.diagnostics);
+    };
+    assert!(!warning.is_error() && warning.message.contains("a roughness of 0"));
     assert!(!errors("sphere { 0, 1 pigment { color_map { [0 rgb 1] 3 } } }").is_empty());
 }
