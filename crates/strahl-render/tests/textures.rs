@@ -6,11 +6,12 @@ use common::{compiled, rendered};
 use strahl_geometry::{Cuboid, Sphere};
 use strahl_math::DVec3;
 use strahl_scene::{Camera, CsgOp, Object, ObjectExt, Scene};
+use strahl_shade::patterns::Modifiers;
 use strahl_shade::patterns::Pattern;
 use strahl_shade::pigment::Pigment;
 use strahl_shade::pov_finish::{PovFinish, PovReflection};
 use strahl_shade::texture::{PlainTexture, Texture};
-use strahl_shade::{Color, ColorFt, Light, Material};
+use strahl_shade::{Color, ColorFt, Finish, Light, Material};
 
 fn material(texture: Texture) -> Material {
     Material {
@@ -147,4 +148,41 @@ fn layers_mirrors_and_shadows_follow_the_formula() {
     let pass = clear.attenuation() * clear.attenuation();
     let found = seen(scene(true), DVec3::new(0.0, 0.0, 9.0));
     assert!(close(found, expected(pass)), "{found:?}");
+}
+
+/// What a ray knows of the blended textures of one hit must not reach the next, which has a finish without texture.
+#[test]
+fn glass_without_texture_behind_blended_textures() {
+    let clear = |transmit: f64| {
+        let color = ColorFt {
+            rgb: Color::BLACK,
+            filter: 0.0,
+            transmit,
+        };
+        (1.0, Texture::from(plain(Pigment::Solid(color))))
+    };
+    let blended = Texture::Average(vec![clear(0.9), clear(0.5)], Box::new(Modifiers::default()));
+    let glass = Material {
+        finish: Finish {
+            transmission: Color::new(0.25, 0.5, 1.0),
+            ..Finish::BLACK
+        }
+        .into(),
+        ..Material::default()
+    };
+    let sheet = |z: f64| Cuboid::new(DVec3::new(-9.0, -9.0, z), DVec3::new(9.0, 9.0, z + 1.0));
+    let sky = Color::new(0.8, 0.6, 0.4);
+    let scene = Scene::new()
+        .add(sheet(2.0).material(material(blended)))
+        .add(sheet(-2.0).material(glass))
+        .background(strahl_scene::Background::Solid(sky));
+    // Two faces each; the textures let 0.9 and 0.5 pass, 0.7 on average.
+    let expected = sky * (0.7 * 0.7) * Color::new(0.25 * 0.25, 0.25, 1.0);
+    let found = seen(scene, DVec3::new(0.0, 0.0, 9.0));
+    for (found, expected) in found.iter().zip(expected.to_array()) {
+        assert!(
+            (f64::from(*found) - expected).abs() < 1e-6,
+            "{found}, not {expected}"
+        );
+    }
 }

@@ -1,5 +1,7 @@
 //! Textures: pigment, normal and finish together, in layers and by patterns.
 
+mod spaces;
+
 use std::sync::Arc;
 
 use strahl_math::{DVec3, Transform};
@@ -7,10 +9,11 @@ use strahl_math::{DVec3, Transform};
 use crate::image_map::ImageMap;
 use crate::interior::Interior;
 use crate::normal::PovNormal;
-use crate::patterns::{Modifiers, PatternField, TexturePoint, Warp};
+use crate::patterns::{Modifiers, PatternField, TexturePoint};
 use crate::pigment::{Blend, BlendMap, Pigment};
 use crate::pov_finish::{FilmPoint, IridSettings, PovFinish};
 use crate::{Color, ColorFt};
+use spaces::{Chain, Identity, NormalSpace, Ways};
 
 /// One texture statement: pigment, normal and finish.
 #[derive(Clone, Debug, Default)]
@@ -557,85 +560,6 @@ impl PlainTexture {
         if stack.above.gray_value() < out.bailout {
             stack.above = Color::BLACK;
         }
-    }
-}
-
-/// The transform of a normal into a texture's own space and back.
-trait NormalSpace {
-    /// The normal in the inner space, of unit length.
-    fn enter(&self, n: DVec3) -> DVec3;
-    /// A normal of the inner space in the outer one.
-    fn leave(&self, n: DVec3) -> DVec3;
-}
-
-/// No space of its own.
-struct Identity;
-
-impl NormalSpace for Identity {
-    fn enter(&self, n: DVec3) -> DVec3 {
-        n
-    }
-    fn leave(&self, n: DVec3) -> DVec3 {
-        n
-    }
-}
-
-impl NormalSpace for Transform {
-    fn enter(&self, n: DVec3) -> DVec3 {
-        (self.linear().transpose() * n).normalize_or(n)
-    }
-    fn leave(&self, n: DVec3) -> DVec3 {
-        self.normal_to_world(n)
-    }
-}
-
-/// The transformations among warps; the other warps leave normals alone.
-impl NormalSpace for Vec<Warp> {
-    fn enter(&self, n: DVec3) -> DVec3 {
-        self.iter().rev().fold(n, |n, warp| match warp {
-            Warp::Transform(transform) => transform.enter(n),
-            _ => n,
-        })
-    }
-    fn leave(&self, n: DVec3) -> DVec3 {
-        self.iter().fold(n, |n, warp| match warp {
-            Warp::Transform(transform) => transform.leave(n),
-            _ => n,
-        })
-    }
-}
-
-/// The way of normals from a texture's own space.
-#[derive(Clone, Copy)]
-struct Ways<'s> {
-    /// To the space around the whole texture.
-    out: &'s dyn NormalSpace,
-    /// To the space of the innermost map around: the transformations of a plain texture are those of its normal.
-    to_map: &'s dyn NormalSpace,
-}
-
-impl<'s> Ways<'s> {
-    /// Those of a texture that is not in a map.
-    const fn of(space: &'s dyn NormalSpace) -> Self {
-        Self {
-            out: space,
-            to_map: space,
-        }
-    }
-}
-
-/// A space inside of another.
-struct Chain<'s> {
-    outer: &'s dyn NormalSpace,
-    inner: &'s dyn NormalSpace,
-}
-
-impl NormalSpace for Chain<'_> {
-    fn enter(&self, n: DVec3) -> DVec3 {
-        self.inner.enter(self.outer.enter(n))
-    }
-    fn leave(&self, n: DVec3) -> DVec3 {
-        self.outer.leave(self.inner.leave(n))
     }
 }
 
