@@ -6,7 +6,6 @@ use common::{compiled, rendered};
 use strahl_geometry::{Cuboid, Sphere};
 use strahl_math::DVec3;
 use strahl_scene::{Camera, CsgOp, Object, ObjectExt, Scene};
-use strahl_shade::patterns::Modifiers;
 use strahl_shade::patterns::Pattern;
 use strahl_shade::pigment::Pigment;
 use strahl_shade::pov_finish::{PovFinish, PovReflection};
@@ -161,7 +160,7 @@ fn glass_without_texture_behind_blended_textures() {
         };
         (1.0, Texture::from(plain(Pigment::Solid(color))))
     };
-    let blended = Texture::Average(vec![clear(0.9), clear(0.5)], Box::new(Modifiers::default()));
+    let blended = Texture::Average(vec![clear(0.9), clear(0.5)], Box::default());
     let glass = Material {
         finish: Finish {
             transmission: Color::new(0.25, 0.5, 1.0),
