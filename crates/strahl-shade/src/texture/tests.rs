@@ -3,7 +3,7 @@
 
 use super::*;
 use crate::normal::NormalKind;
-use crate::patterns::Pattern;
+use crate::patterns::{Pattern, Warp};
 use crate::pov_finish::PovReflection;
 
 fn plain(color: ColorFt, finish: PovFinish) -> PlainTexture {
