@@ -9,6 +9,7 @@ use strahl::formats::image::{BitDepth, ImageFormat};
 use strahl::sdl::{Limits, Word};
 use strahl::shade::ShadingModel;
 use strahl::tracing::{Region, Sampling, TileOrder};
+use strahl_farm::TilePlace;
 
 /// Exact, explainable, reproducible recursive ray tracing.
 #[derive(Debug, Parser)]
@@ -55,6 +56,8 @@ pub(crate) enum Command {
     Heatmap(HeatmapArgs),
     /// Follow the ray of a pixel through an accelerator: every cell, sphere or node with its tests
     TraceRay(TraceRayArgs),
+    /// Put the tiles of a picture together
+    Merge(MergeArgs),
     /// Print the contents of a scene: objects, bounds, lights, camera, memory
     Info(SceneArgs),
     /// Look for errors in a scene without rendering it
@@ -237,6 +240,9 @@ pub(crate) struct RenderArgs {
     /// Render only this part of the picture: left, top, width, height in pixels
     #[arg(long, value_name = "X,Y,WxH", value_parser = parse_region)]
     pub(crate) region: Option<Region>,
+    /// Render tile K of N and write it as an EXR file for `strahl merge`; all N are of about equal cost
+    #[arg(long, value_name = "K/N", conflicts_with_all = ["region", "full_size", "resume"])]
+    pub(crate) tile: Option<TilePlace>,
     /// With --region: write a picture of the full size, black outside of the region
     #[arg(long, requires = "region", conflicts_with = "layers")]
     pub(crate) full_size: bool,
@@ -274,6 +280,31 @@ pub(crate) struct RenderArgs {
     pub(crate) pov: PovArgs,
     #[command(flatten)]
     pub(crate) animation: AnimationArgs,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct MergeArgs {
+    /// The files of all tiles of a picture, in any order
+    #[arg(required = true, value_name = "TILE")]
+    pub(crate) tiles: Vec<PathBuf>,
+    /// Picture file (see `strahl formats`), or `-` for the standard output
+    #[arg(short, long, value_name = "PICTURE")]
+    pub(crate) output: PathBuf,
+    /// Format of the picture, if its file name doesn't show it [default: png]
+    #[arg(long, value_name = "NAME", value_parser = parse_picture_format)]
+    pub(crate) picture_format: Option<ImageFormat>,
+    /// Bits per channel of PNG and PPM pictures
+    #[arg(long, value_name = "8|16", default_value = "8", value_parser = parse_bits)]
+    pub(crate) bit_depth: BitDepth,
+    /// Quality of JPEG pictures, from 1 (smallest) to 100
+    #[arg(long, value_name = "N", default_value_t = 85, value_parser = clap::value_parser!(u8).range(1..=100))]
+    pub(crate) jpeg_quality: u8,
+    /// Write statistics (size and SHA-256 of the film, sums of the counts of the tiles) as JSON; `-` is the standard output
+    #[arg(long, value_name = "FILE")]
+    pub(crate) stats: Option<PathBuf>,
+    /// Print only errors
+    #[arg(short, long)]
+    pub(crate) quiet: bool,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]

@@ -2,16 +2,16 @@ use crate::args::{AcceleratorArgs, PictureArgs, PovArgs, SceneArgs};
 use crate::fonts::font_folders;
 use crate::report::{Failure, Reporter};
 use crate::work;
-use std::cell::Cell;
+use std::cell::{Cell, RefCell};
 use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
-use strahl::formats::scene::{Loaded, SceneFormat};
+use strahl::formats::scene::SceneFormat;
 use strahl::math::DVec3;
 use strahl::scene::Scene;
 use strahl::sdl::{Frame, Stream, Value, Writing};
 use strahl::tracing::{Prepared, RenderOptions, RenderScene, Sampling};
-use strahl::{Format, LoadOptions, load_bytes, load_path};
+use strahl::{Format, Inputs, LoadOptions, Loaded, load_bytes, load_path};
 
 /// The picture size of scenes that don't set one.
 pub(crate) const DEFAULT_SIZE: (u32, u32) = (800, 600);
@@ -50,6 +50,9 @@ pub(crate) struct Input<'a> {
     writes: bool,
     /// Whether the scene was a bare mesh, which gets a ground, a camera and lights.
     staged: Cell<bool>,
+    /// Whether to keep what the scene consists of.
+    records: bool,
+    inputs: RefCell<Option<Inputs>>,
 }
 
 /// The moment of an animation at which a scene is read.
@@ -99,6 +102,8 @@ impl<'a> Input<'a> {
             size: size.unwrap_or(DEFAULT_SIZE),
             writes: false,
             staged: Cell::new(false),
+            records: false,
+            inputs: RefCell::new(None),
         })
     }
 
@@ -116,6 +121,21 @@ impl<'a> Input<'a> {
             writes: true,
             ..self
         })
+    }
+
+    /// Keeps what the scene consists of for [`Input::inputs`].
+    pub(crate) fn recording(self, records: bool) -> Self {
+        Self { records, ..self }
+    }
+
+    /// What the scene that was read last consists of.
+    pub(crate) fn inputs(&self) -> Result<Inputs, Failure> {
+        let inputs = self.inputs.borrow();
+        let lost = || {
+            let name = self.name();
+            Failure::new(format!("{name} has changed while it was read: try again"))
+        };
+        inputs.clone().ok_or_else(lost)
     }
 
     /// The scene's file; `None` for other sources.
@@ -202,6 +222,7 @@ impl<'a> Input<'a> {
             fonts: font_folders(),
             installed: strahl::povray_folders(),
             writing: self.place_of_writing(),
+            record: self.records,
             on_message: (!quiet).then(|| Box::new(print_message) as _),
             ..LoadOptions::default()
         };
@@ -239,7 +260,8 @@ impl<'a> Input<'a> {
 
     /// Reads the scene and prints its diagnostics.
     pub(crate) fn load(&self, moment: Moment, reporter: &Reporter) -> Result<Scene, Failure> {
-        let loaded = self.read(moment, reporter.quiet);
+        let mut loaded = self.read(moment, reporter.quiet);
+        *self.inputs.borrow_mut() = loaded.inputs.take();
         let failed = reporter.print(&loaded.diagnostics, None);
         match loaded.scene {
             Some(mut scene) if !failed => {

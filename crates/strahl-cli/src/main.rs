@@ -21,6 +21,7 @@ mod report;
 mod stats;
 mod target;
 mod terminal;
+mod tile;
 mod work;
 
 use args::{Cli, Command};
@@ -53,6 +54,7 @@ fn main() -> ExitCode {
             reporter.notes(&translated.notes);
             commands::render(args, reporter)
         }
+        Command::Merge(args) => commands::merge(args),
         Command::Explain(args) => commands::explain(args),
         Command::Compare(args) => commands::compare(args),
         Command::Heatmap(args) => commands::heatmap(args),

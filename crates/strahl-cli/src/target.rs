@@ -25,8 +25,17 @@ impl Target {
     pub(crate) fn of(args: &RenderArgs) -> Result<Self, Failure> {
         let format = args.picture_format;
         let own = || {
-            let format = format.unwrap_or(formats()[0].format);
-            let name = format!("{}.{}", scene_name(args)?, format.info().extensions[0]);
+            let of_tile = args.tile.and_then(|_| ImageFormat::from_name("exr"));
+            let format = format.or(of_tile).unwrap_or(formats()[0].format);
+            let place = match args.tile {
+                Some(tile) => format!("-{}of{}", tile.number, tile.count),
+                None => String::new(),
+            };
+            let name = format!(
+                "{}{place}.{}",
+                scene_name(args)?,
+                format.info().extensions[0]
+            );
             Ok((PathBuf::from(name), format))
         };
         let Some(output) = &args.output else {
@@ -46,6 +55,19 @@ impl Target {
             None => ImageFormat::from_path(output).map_err(Failure::new)?,
         };
         Ok(Self::File(output.clone(), format))
+    }
+
+    /// The destination of a picture that is not `render`'s.
+    pub(crate) fn named(output: &Path, format: Option<ImageFormat>) -> Result<Self, Failure> {
+        if output.as_os_str() == "-" {
+            return Ok(Self::Stream(format.unwrap_or(formats()[0].format)));
+        }
+        let format = match format {
+            Some(format) => format,
+            None => ImageFormat::from_path(output).map_err(Failure::new)?,
+        };
+        check_folder(output)?;
+        Ok(Self::File(output.to_owned(), format))
     }
 
     pub(crate) fn format(&self) -> ImageFormat {
@@ -84,6 +106,11 @@ impl Target {
         if args.layers && !self.format().info().layers {
             return Err(Failure::new(format!(
                 "--layers needs a format with layers (.exr), but the picture is {shown}"
+            )));
+        }
+        if args.tile.is_some() && self.file().is_none_or(|_| !self.format().info().layers) {
+            return Err(Failure::new(format!(
+                "--tile writes an EXR file, which keeps all bits, but the picture is {shown}: end its name in .exr"
             )));
         }
         if args.alpha && !self.format().info().alpha {
@@ -180,7 +207,7 @@ fn scene_name(args: &RenderArgs) -> Result<String, Failure> {
 }
 
 /// Checks that a file's folder exists, which is cheaper before the render than after it.
-fn check_folder(file: &Path) -> Result<(), Failure> {
+pub(crate) fn check_folder(file: &Path) -> Result<(), Failure> {
     match file.parent() {
         Some(folder) if !folder.as_os_str().is_empty() && !folder.is_dir() => {
             Err(Failure::new(format!(

@@ -1,3 +1,7 @@
+mod merge;
+
+pub use merge::MergeError;
+
 use crate::trace::SampleResult;
 use sha2::{Digest, Sha256};
 use strahl_shade::Color;

@@ -17,6 +17,7 @@ mod camera;
 mod compile;
 mod cost;
 mod coverage;
+mod estimate;
 mod film;
 mod fog;
 mod hit;
@@ -45,7 +46,8 @@ mod walk;
 pub use camera::PrimaryRays;
 pub use compile::{CompileOptions, Prepared, compile};
 pub use cost::PixelCost;
-pub use film::{Film, FilmError, PixelInfo, Region};
+pub use estimate::{CostMap, estimate};
+pub use film::{Film, FilmError, MergeError, PixelInfo, Region};
 pub use hit::{Hit, Origin, RayClass};
 pub use objects::{ObjectInfo, Objects};
 pub use observer::{

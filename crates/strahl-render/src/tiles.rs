@@ -15,16 +15,17 @@ pub enum TileOrder {
 /// Edge length of a tile in pixels.
 pub(crate) const TILE: u32 = 32;
 
-/// Cuts a region into tiles.
+/// Cuts a region into tiles along a lattice of the whole picture, so that a region whose edges are on the lattice has the
+/// picture's own tiles: their pixels then take the same tests, which depend on the pixels before them in the tile.
 pub(crate) fn tiles(region: Region, order: TileOrder) -> Vec<Region> {
     let mut all = Vec::new();
-    for y in (0..region.height).step_by(TILE as usize) {
-        for x in (0..region.width).step_by(TILE as usize) {
+    for (y, height) in spans(region.y, region.height) {
+        for (x, width) in spans(region.x, region.width) {
             all.push(Region {
-                x: region.x + x,
-                y: region.y + y,
-                width: TILE.min(region.width - x),
-                height: TILE.min(region.height - y),
+                x,
+                y,
+                width,
+                height,
             });
         }
     }
@@ -48,9 +49,40 @@ pub(crate) fn tiles(region: Region, order: TileOrder) -> Vec<Region> {
     all
 }
 
+/// Cuts an interval at the multiples of [`TILE`]: start and length of each part.
+fn spans(start: u32, length: u32) -> impl Iterator<Item = (u32, u32)> {
+    let mut from = start;
+    let end = start.saturating_add(length);
+    std::iter::from_fn(move || {
+        let to = (from / TILE + 1).saturating_mul(TILE).min(end);
+        (from < end).then(|| {
+            let part = (from, to - from);
+            from = to;
+            part
+        })
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_part_of_a_picture_has_the_tiles_of_the_picture() {
+        let rows = TileOrder::Rows;
+        let whole = tiles(Region::full(100, 70), rows);
+        let part = Region {
+            x: 32,
+            y: 32,
+            width: 64,
+            height: 38,
+        };
+        // Antialiasing looks at a pixel more on each side, which makes thin tiles around the others.
+        let wide = tiles(part.grown(1, 100, 70), rows);
+        for tile in tiles(part, rows) {
+            assert!(whole.contains(&tile) && wide.contains(&tile), "{tile:?}");
+        }
+    }
 
     #[test]
     fn tiles_cover_every_pixel_once_in_every_order() {

@@ -56,7 +56,10 @@ pub use grammar::{
 pub use keywords::{Word, WordKind};
 pub use options::{Frame, Limits, Options};
 pub use parser::{Failed, Macro, PResult, Parser, Place};
-pub use source::{FolderHost, Host, HostError, MemoryHost, Source, Stream, Writing};
+pub use source::{
+    FolderHost, Host, HostError, Lookup, MemoryHost, Pinned, Read, Record, Recorder, Source,
+    Stream, Writing,
+};
 pub use symbol::Symbol;
 pub use token::{Kind, Token};
 pub use value::{Value, Vector};

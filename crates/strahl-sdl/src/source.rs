@@ -9,13 +9,15 @@ mod file;
 mod folder;
 mod fonts;
 mod memory;
+mod recorder;
 mod text;
 mod writing;
 
 pub(crate) use chunk::Chunk;
 pub(crate) use file::SourceFile;
-pub use folder::FolderHost;
+pub use folder::{FolderHost, Pinned};
 pub use memory::MemoryHost;
+pub use recorder::{Lookup, Read, Record, Recorder};
 pub(crate) use text::Part;
 pub use writing::Writing;
 
@@ -46,6 +48,19 @@ impl Source {
             name: path.display().to_string(),
             text,
         }))
+    }
+
+    /// All bytes, if they are in memory.
+    fn in_memory(&self) -> Option<&[u8]> {
+        self.text.in_memory()
+    }
+
+    /// SHA-256 of its bytes.
+    ///
+    /// # Errors
+    /// If the file can't be read.
+    pub fn sha256(&self) -> io::Result<[u8; 32]> {
+        recorder::digest(self)
     }
 
     /// Length in bytes.

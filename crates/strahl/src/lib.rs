@@ -69,12 +69,14 @@
 //! assert_eq!(scene.stats().primitives, 1);
 //! ```
 
+mod inputs;
 mod load;
 mod picture;
 mod studio;
 
+pub use inputs::Inputs;
 pub use load::{
-    Format, Listener, LoadOptions, UnknownFormat, load_bytes, load_path, povray_folders,
+    Format, Listener, LoadOptions, Loaded, UnknownFormat, load_bytes, load_path, povray_folders,
 };
 pub use picture::{Problems, layers, metadata, picture, save};
 pub use strahl_accel as accel;

@@ -1,9 +1,10 @@
+use crate::inputs::{Inputs, digest};
 use std::fmt;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
-use strahl_formats::scene::{self, Loaded, SceneFormat, read_decompressed};
-use strahl_scene::Diagnostic;
-use strahl_sdl::{FolderHost, Source, Stream, Writing, parse};
+use strahl_formats::scene::{self, SceneFormat, read_decompressed};
+use strahl_scene::{Diagnostic, Scene};
+use strahl_sdl::{FolderHost, Pinned, Recorder, Source, Stream, Writing, parse};
 
 /// A format that scenes are loaded from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -75,7 +76,37 @@ impl FromStr for Format {
 /// Receives the messages of a scene.
 pub type Listener = Box<dyn FnMut(Stream, &str) + Send>;
 
-/// How a scene is loaded. All fields but `format` matter only to POV-Ray's language.
+/// What came out of loading a scene.
+#[derive(Clone, Debug)]
+pub struct Loaded {
+    /// The scene; `None` if a diagnostic is an error.
+    pub scene: Option<Scene>,
+    /// Errors and warnings.
+    pub diagnostics: Vec<Diagnostic>,
+    /// Everything the scene consists of, if [`LoadOptions::record`] asks for it and it could be read.
+    pub inputs: Option<Inputs>,
+}
+
+impl Loaded {
+    fn failed(problem: Diagnostic) -> Self {
+        Self {
+            scene: None,
+            diagnostics: vec![problem],
+            inputs: None,
+        }
+    }
+
+    /// What a reader of [`strahl_formats`] has loaded.
+    fn of_format(loaded: scene::Loaded) -> Self {
+        Self {
+            scene: loaded.scene,
+            diagnostics: loaded.diagnostics,
+            inputs: None,
+        }
+    }
+}
+
+/// How a scene is loaded. All fields but `format` and `record` matter only to POV-Ray's language.
 #[derive(Default)]
 pub struct LoadOptions {
     /// The format; `None` detects it from the file's name and content.
@@ -90,6 +121,12 @@ pub struct LoadOptions {
     pub installed: Vec<PathBuf>,
     /// The place where the scene may write files; nowhere by default.
     pub writing: Writing,
+    /// The only files that the scene may read; `None` searches them in the folders.
+    pub pinned: Option<Pinned>,
+    /// The value of `now`, in days since the beginning of 2000; `None` is the time of loading.
+    pub now: Option<f64>,
+    /// Whether to return [`Loaded::inputs`], which takes time to compute.
+    pub record: bool,
     /// Receives the output of `#debug` and the like.
     pub on_message: Option<Listener>,
 }
@@ -116,10 +153,32 @@ impl LoadOptions {
         if let Some(f) = self.on_message {
             host = host.on_message(f);
         }
+        if let Some(files) = self.pinned {
+            host = host.pinned(files);
+        }
+        if let Some(days) = self.now {
+            host = host.at_time(days);
+        }
+        if !self.record {
+            let parsed = parse(source, &self.sdl, &mut host);
+            return Loaded {
+                scene: parsed.scene,
+                diagnostics: parsed.diagnostics,
+                inputs: None,
+            };
+        }
+        let (name, sha256) = (source.name.clone(), source.sha256());
+        let mut host = Recorder::new(&mut host);
         let parsed = parse(source, &self.sdl, &mut host);
+        let record = host.into_record();
         Loaded {
             scene: parsed.scene,
             diagnostics: parsed.diagnostics,
+            inputs: sha256.ok().map(|sha256| Inputs {
+                scene: name,
+                sha256,
+                record,
+            }),
         }
     }
 }
@@ -159,10 +218,7 @@ pub fn povray_folders() -> Vec<PathBuf> {
 /// # }
 /// ```
 pub fn load_path(path: &Path, options: LoadOptions) -> Loaded {
-    let failed = |problem| Loaded {
-        scene: None,
-        diagnostics: vec![problem],
-    };
+    let failed = Loaded::failed;
     if options.format.is_none() && ending(path).is_some_and(|e| e == "inc") {
         let shown = path.display();
         return failed(
@@ -176,9 +232,12 @@ pub fn load_path(path: &Path, options: LoadOptions) -> Loaded {
             Ok(source) => options.parse(source),
             Err(problem) => failed(*problem),
         },
-        Some(Format::File(format)) => scene::load_path(path, Some(format)),
+        Some(Format::File(format)) => {
+            with_inputs(scene::load_path(path, Some(format)), path, options.record)
+        }
         None => {
-            let mut loaded = scene::load_path(path, None);
+            let loaded = scene::load_path(path, None);
+            let mut loaded = with_inputs(loaded, path, options.record);
             // The list of file formats does not include POV-Ray's.
             let of_files: Vec<&str> = scene::formats().iter().map(|info| info.name).collect();
             let hints = loaded.diagnostics.iter_mut().flat_map(|d| &mut d.hints);
@@ -187,6 +246,18 @@ pub fn load_path(path: &Path, options: LoadOptions) -> Loaded {
             }
             loaded
         }
+    }
+}
+
+/// Adds what a scene of another format than POV-Ray's consists of, if that is asked for: its file, and those beside it.
+fn with_inputs(loaded: scene::Loaded, path: &Path, record: bool) -> Loaded {
+    let inputs = match record {
+        true => Inputs::of_files(path, &loaded.files).ok(),
+        false => None,
+    };
+    Loaded {
+        inputs,
+        ..Loaded::of_format(loaded)
     }
 }
 
@@ -206,7 +277,17 @@ fn open(path: &Path) -> Result<Source, Box<Diagnostic>> {
 pub fn load_bytes(bytes: Vec<u8>, name: &str, format: Format, options: LoadOptions) -> Loaded {
     match format {
         Format::Pov => options.parse(Source::new(name, bytes)),
-        Format::File(format) => scene::load_bytes(bytes, name, format, None),
+        Format::File(format) => {
+            let inputs = options.record.then(|| Inputs {
+                scene: name.to_owned(),
+                sha256: digest(&bytes),
+                record: Default::default(),
+            });
+            Loaded {
+                inputs,
+                ..Loaded::of_format(scene::load_bytes(bytes, name, format, None))
+            }
+        }
     }
 }
 

@@ -6,6 +6,7 @@ mod formats;
 mod heatmap;
 mod info;
 mod man;
+mod merge;
 mod render;
 mod trace_ray;
 
@@ -17,5 +18,6 @@ pub(crate) use formats::formats;
 pub(crate) use heatmap::heatmap;
 pub(crate) use info::info;
 pub(crate) use man::man;
+pub(crate) use merge::merge;
 pub(crate) use render::render;
 pub(crate) use trace_ray::trace_ray;

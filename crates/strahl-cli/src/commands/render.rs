@@ -5,11 +5,12 @@ use crate::progress::Watch;
 use crate::report::{Failure, Reporter};
 use crate::stats::{RenderTimes, Stats};
 use crate::target::Target;
-use crate::{interrupt, output, terminal, work};
+use crate::{interrupt, output, terminal, tile, work};
 use std::path::Path;
 use std::time::Instant;
 use strahl::formats::image::{Picture, Window, WriteOptions, write_bytes};
 use strahl::tracing::{Film, RenderError, RenderOptions, RenderScene, Rendered, TileOrder};
+use strahl_farm::TileInfo;
 
 /// `strahl render`: renders a scene to a picture, or to the pictures of an animation.
 pub(crate) fn render(args: &RenderArgs, reporter: Reporter) -> Result<(), Failure> {
@@ -22,7 +23,7 @@ pub(crate) fn render(args: &RenderArgs, reporter: Reporter) -> Result<(), Failur
         &args.pov,
         args.picture.size,
     )?;
-    let input = input.writing()?;
+    let input = input.writing()?.recording(args.tile.is_some());
     target.spares(&input, args)?;
     let threads = threads(args.threads, &reporter);
     reporter.settle()?;
@@ -59,6 +60,7 @@ struct Traced {
     rendered: Rendered,
     times: LoadTimes,
     trace: f64,
+    moment: Moment,
 }
 
 impl Job<'_> {
@@ -164,6 +166,15 @@ impl Job<'_> {
         options.tile_order = TileOrder::from(args.tile_order);
         options.info = args.layers;
         options.alpha = args.alpha;
+        if let Some(place) = args.tile {
+            if self.input.inputs()?.record.time {
+                self.reporter.warn(
+                    "the scene reads the time (`now`), which differs from tile to tile: pass a number with --declare instead",
+                );
+            }
+            work::doing("looking where the scene is costly");
+            options.region = Some(tile::region(&scene, &options, place)?);
+        }
         let start = Instant::now();
         let rendered = match strahl::render(&scene, &options, watch) {
             Ok(rendered) => rendered,
@@ -185,6 +196,7 @@ impl Job<'_> {
             rendered,
             times,
             trace,
+            moment,
         })
     }
 
@@ -194,10 +206,28 @@ impl Job<'_> {
         }
         work::doing(format!("writing {}", target.shown()));
         let film = &traced.rendered.film;
+        let notes = [
+            ("scene".to_owned(), self.input.name()),
+            (
+                "accelerator".to_owned(),
+                traced.scene.accelerator_name().into(),
+            ),
+            ("sampling".to_owned(), traced.options.sampling.to_string()),
+        ];
+        if let (Some(place), Some(file)) = (self.args.tile, target.file()) {
+            let info = TileInfo {
+                number: place.number,
+                count: place.count,
+                scene: self.input.inputs()?.identity(),
+                settings: tile::settings(self.args, &traced.options, traced.moment),
+                version: tile::VERSION.to_owned(),
+                notes: notes.into(),
+                rays: tile::rays(&traced.rendered.rays),
+            };
+            return tile::write(film, info, file);
+        }
         let mut metadata = strahl::metadata(film);
-        metadata.push(("scene".into(), self.input.name()));
-        metadata.push(("accelerator".into(), traced.scene.accelerator_name().into()));
-        metadata.push(("sampling".into(), traced.options.sampling.to_string()));
+        metadata.extend(notes);
         let options = WriteOptions {
             bit_depth: self.args.bit_depth,
             jpeg_quality: self.args.jpeg_quality,

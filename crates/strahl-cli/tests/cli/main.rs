@@ -9,6 +9,7 @@ mod lecture;
 mod pictures;
 mod questions;
 mod safety;
+mod tiles;
 
 use common::{stderr, strahl};
 use serde_json::Value;

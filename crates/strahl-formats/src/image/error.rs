@@ -121,6 +121,14 @@ pub enum ImageError {
         /// The decoder's reason.
         reason: String,
     },
+    /// A file is no OpenEXR picture that can be read in full.
+    #[error("`{}` is not a complete OpenEXR picture: {reason}; write it again", path.display())]
+    Exr {
+        /// The file.
+        path: PathBuf,
+        /// The reason.
+        reason: String,
+    },
     /// There is no memory for a texture.
     #[error(
         "the texture `{name}` has {width} x {height} texels; the {mib} MiB of memory for them are not available; \

@@ -2,6 +2,10 @@
 //!
 //! One part with all channels, layers by their names' prefixes (`N.X`): what every program reads.
 
+mod read;
+
+pub use read::{ExrFile, read_exr};
+
 use std::io::{self, Cursor, Write};
 
 use ::exr::error::Error;
@@ -62,6 +66,9 @@ const REC709: Chromaticities = Chromaticities {
     white: Vec2(0.3127, 0.3290),
 };
 
+/// Begins the names of a picture's metadata.
+const PREFIX: &str = "strahl:";
+
 fn layer_attributes(picture: &Picture<'_>) -> LayerAttributes {
     // The format's limit on sides makes the offsets fit.
     let mut attributes = LayerAttributes {
@@ -75,7 +82,7 @@ fn layer_attributes(picture: &Picture<'_>) -> LayerAttributes {
             "comment" | "comments" => attributes.comments = Some(value),
             // A prefix of our own keeps clear of the names that mean something to readers.
             _ => {
-                let name = text(&format!("strahl:{key}"));
+                let name = text(&format!("{PREFIX}{key}"));
                 attributes.other.insert(name, AttributeValue::Text(value));
             }
         }

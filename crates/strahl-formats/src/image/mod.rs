@@ -39,6 +39,7 @@ mod write;
 
 pub use diff::{Difference, compare};
 pub use error::ImageError;
+pub use exr::{ExrFile, read_exr};
 pub use format::{FormatInfo, ImageFormat, formats};
 pub use gamma::{PictureCodes, picture_codes};
 pub use heights::{Heights, PaletteIndices, decode_heights, decode_indices};

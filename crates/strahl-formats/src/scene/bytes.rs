@@ -4,10 +4,12 @@ use super::Fallible;
 use flate2::read::MultiGzDecoder;
 use memmap2::Mmap;
 use std::borrow::Cow;
+use std::collections::BTreeSet;
 use std::fs::{self, File};
 use std::io::{self, ErrorKind, Read};
 use std::ops::Deref;
-use std::path::{Component, Path};
+use std::path::{Component, Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
 use strahl_scene::Diagnostic;
 
 /// Most bytes read from a pipe or device, which has no size.
@@ -183,18 +185,50 @@ pub(crate) fn path_beside(relative: &str) -> Result<String, String> {
     Ok(parts.join("/"))
 }
 
+/// The folder of a scene, where the files that it names are.
+#[derive(Debug)]
+pub(crate) struct Folder {
+    path: PathBuf,
+    /// The files that were read, as the scene names them.
+    read: Mutex<BTreeSet<String>>,
+}
+
+impl Folder {
+    pub(crate) fn new(path: &Path) -> Self {
+        Self {
+            path: path.to_owned(),
+            read: Mutex::default(),
+        }
+    }
+
+    /// The path of a file as shown to the user.
+    pub(crate) fn shown(&self, path: &str) -> String {
+        self.path.join(path).display().to_string()
+    }
+
+    /// The files that were read, in alphabetical order.
+    pub(crate) fn into_read(self) -> Vec<String> {
+        let read = self.read.into_inner();
+        let read = read.unwrap_or_else(PoisonError::into_inner);
+        read.into_iter().collect()
+    }
+}
+
 /// Reads a file that a scene names, by a path from [`path_beside`].
-pub(crate) fn read_beside(folder: Option<&Path>, path: &str) -> Result<Vec<u8>, String> {
+pub(crate) fn read_beside(folder: Option<&Folder>, path: &str) -> Result<Vec<u8>, String> {
     let Some(folder) = folder else {
         return Err("the scene has no folder (it was not read from a file)".into());
     };
-    let path = folder.join(path);
-    let metadata = fs::metadata(&path).map_err(|e| match e.kind() {
+    let file = folder.path.join(path);
+    let metadata = fs::metadata(&file).map_err(|e| match e.kind() {
         ErrorKind::NotFound => "there is no such file".to_owned(),
         _ => e.to_string(),
     })?;
     if !metadata.is_file() {
         return Err("it is not a regular file".into());
     }
-    fs::read(&path).map_err(|e| e.to_string())
+    let bytes = fs::read(&file).map_err(|e| e.to_string())?;
+    let mut read = folder.read.lock().unwrap_or_else(PoisonError::into_inner);
+    read.insert(path.to_owned());
+    Ok(bytes)
 }

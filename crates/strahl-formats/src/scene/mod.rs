@@ -21,6 +21,7 @@ pub(crate) mod text;
 pub(crate) mod textures;
 
 use crate::mesh::{obj, ply, stl};
+pub(crate) use bytes::Folder;
 pub use bytes::read_decompressed;
 pub use detect::{FormatInfo, SceneFormat, UnknownSceneFormat, formats};
 pub(crate) use report::{Fallible, Report};
@@ -35,6 +36,8 @@ pub struct Loaded {
     pub scene: Option<Scene>,
     /// Errors and warnings, at most about twenty of each.
     pub diagnostics: Vec<Diagnostic>,
+    /// The other files that were read, by their paths from the scene's folder.
+    pub files: Vec<String>,
 }
 
 /// What every reader is given.
@@ -44,7 +47,7 @@ pub(crate) struct Input<'a> {
     /// Its name as shown to the user.
     pub(crate) name: &'a str,
     /// Where other files may be read from.
-    pub(crate) folder: Option<&'a Path>,
+    pub(crate) folder: Option<&'a Folder>,
 }
 
 /// Reads a scene file. Without a `format` the file's extension decides, before it `.gz` is ignored; without a known
@@ -86,6 +89,7 @@ impl Loaded {
         Self {
             scene: None,
             diagnostics: vec![problem],
+            files: vec![],
         }
     }
 }
@@ -95,10 +99,11 @@ fn read(bytes: &[u8], name: &str, format: SceneFormat, folder: Option<&Path>) ->
         return Loaded::failed(Diagnostic::error(format!("`{name}` is empty")));
     }
     let mut report = Report::default();
+    let folder = folder.map(Folder::new);
     let input = Input {
         bytes,
         name,
-        folder,
+        folder: folder.as_ref(),
     };
     let scene = match format {
         SceneFormat::Nff => nff::read(&input, &mut report),
@@ -111,6 +116,7 @@ fn read(bytes: &[u8], name: &str, format: SceneFormat, folder: Option<&Path>) ->
     Loaded {
         scene: (!failed).then_some(scene),
         diagnostics,
+        files: folder.map(Folder::into_read).unwrap_or_default(),
     }
 }
 

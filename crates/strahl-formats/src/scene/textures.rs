@@ -1,19 +1,18 @@
-use super::bytes::{path_beside, read_beside};
+use super::bytes::{Folder, path_beside, read_beside};
 use crate::image::{TextureUse, decode_texture};
 use std::collections::HashMap;
-use std::path::Path;
 use std::sync::Arc;
 use strahl_shade::image_texture::TextureImage;
 
 /// Reads the textures a scene names, each once.
 #[derive(Debug)]
 pub(crate) struct TextureFiles<'a> {
-    folder: Option<&'a Path>,
+    folder: Option<&'a Folder>,
     known: HashMap<(String, TextureUse), Result<Arc<TextureImage>, String>>,
 }
 
 impl<'a> TextureFiles<'a> {
-    pub(crate) fn new(folder: Option<&'a Path>) -> Self {
+    pub(crate) fn new(folder: Option<&'a Folder>) -> Self {
         Self {
             folder,
             known: HashMap::new(),

@@ -1,10 +1,15 @@
 use super::fonts::FontFolders;
 use super::writing::{Found, Writing, Written};
-use super::{Host, HostError, Source, Stream};
+use super::{Host, HostError, Lookup, Source, Stream};
+use std::collections::BTreeMap;
 use std::fs;
 use std::io::{ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
+
+/// The only files that a scene may read: the path for each way of asking, name in the scene, and name of the file with the name in it
+/// (empty for fonts and installed files).
+pub type Pinned = BTreeMap<(Lookup, String, String), PathBuf>;
 
 /// Receives the messages of scenes.
 type Listener = dyn FnMut(Stream, &str) + Send;
@@ -22,6 +27,7 @@ pub struct FolderHost {
     max_file: u64,
     on_message: Option<Box<Listener>>,
     now: Option<f64>,
+    pinned: Option<Pinned>,
 }
 
 impl std::fmt::Debug for FolderHost {
@@ -46,6 +52,7 @@ impl FolderHost {
             max_file: u64::from(u32::MAX) - 1,
             on_message: None,
             now: None,
+            pinned: None,
         }
     }
 
@@ -90,6 +97,37 @@ impl FolderHost {
     pub fn at_time(mut self, days: f64) -> Self {
         self.now = Some(days);
         self
+    }
+
+    /// Reads only these files instead of searching folders: a scene that was recorded by [`super::Recorder`] then reads the same files
+    /// on another machine.
+    #[must_use]
+    pub fn pinned(mut self, files: Pinned) -> Self {
+        self.pinned = Some(files);
+        self
+    }
+
+    /// A pinned file, if files are pinned.
+    fn find_pinned(
+        &self,
+        lookup: Lookup,
+        name: &str,
+        from: &str,
+    ) -> Option<Result<Source, HostError>> {
+        let pinned = self.pinned.as_ref()?;
+        let not_found = || HostError::NotFound {
+            name: name.to_owned(),
+            searched: vec!["the bundle".to_owned()],
+        };
+        let key = (lookup, name.to_owned(), from.to_owned());
+        let Some(path) = pinned.get(&key) else {
+            return Some(Err(not_found()));
+        };
+        Some(match self.read(path) {
+            Ok(Some(source)) => Ok(source),
+            Ok(None) => Err(not_found()),
+            Err(error) => Err(error),
+        })
     }
 
     /// Searches a file in folders, in order.
@@ -169,6 +207,9 @@ impl Host for FolderHost {
             }
             None => {}
         }
+        if let Some(found) = self.find_pinned(Lookup::File, name, from) {
+            return found;
+        }
         let beside = Path::new(from).parent().map(Path::to_path_buf);
         let written = self.written.folder().filter(|f| f.is_dir());
         let folders: Vec<PathBuf> = beside
@@ -180,10 +221,18 @@ impl Host for FolderHost {
     }
 
     fn load_installed(&mut self, name: &str) -> Result<Source, HostError> {
+        if let Some(found) = self.find_pinned(Lookup::Installed, name, "") {
+            return found;
+        }
         self.search(name, &self.installed)
     }
 
     fn load_font(&mut self, file: &str) -> Result<Option<Source>, HostError> {
+        match self.find_pinned(Lookup::Font, file, "") {
+            Some(Err(HostError::NotFound { .. })) => return Ok(None),
+            Some(found) => return found.map(Some),
+            None => {}
+        }
         let Some(path) = self.fonts.find(file) else {
             return Ok(None);
         };
@@ -213,6 +262,36 @@ impl Host for FolderHost {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn pinned_files_are_the_only_ones() {
+        let root = tempfile::tempdir().unwrap();
+        let at = |name: &str| root.path().join(name);
+        for name in ["a.inc", "b.inc", "c.ttf"] {
+            fs::write(at(name), name).unwrap();
+        }
+        let from = at("scene.pov").display().to_string();
+        let pin = |lookup, name: &str, from: &str, file| {
+            ((lookup, name.to_owned(), from.to_owned()), at(file))
+        };
+        let mut host = FolderHost::new([root.path().to_path_buf()])
+            .with_fonts([root.path().to_path_buf()])
+            .pinned(Pinned::from([
+                pin(Lookup::File, "x.inc", &from, "b.inc"),
+                pin(Lookup::Font, "font.ttf", "", "c.ttf"),
+            ]));
+        let found = host.load("x.inc", &from).unwrap();
+        assert_eq!(found.into_bytes().unwrap(), b"b.inc");
+        // It is there, but was not there where the scene was recorded.
+        assert!(matches!(
+            host.load("a.inc", &from),
+            Err(HostError::NotFound { .. })
+        ));
+        assert!(host.load("x.inc", "other.pov").is_err());
+        assert!(host.load_installed("a.inc").is_err());
+        assert!(host.load_font("font.ttf").unwrap().is_some());
+        assert!(host.load_font("c.ttf").unwrap().is_none());
+    }
 
     #[test]
     fn beside_the_file_first_then_the_libraries() {

@@ -117,6 +117,11 @@ impl Text {
         }
     }
 
+    /// All bytes, if they are in memory.
+    pub(super) fn in_memory(&self) -> Option<&[u8]> {
+        self.file.is_none().then_some(&self.held)
+    }
+
     /// All bytes.
     pub(super) fn into_bytes(mut self) -> io::Result<Vec<u8>> {
         if let Some(mut large) = self.file.take() {

@@ -243,7 +243,7 @@ impl<'a> Reader<'a, '_> {
 
     fn materials_of(&mut self, path: &str, bytes: &[u8]) {
         let shown = match self.input.folder {
-            Some(folder) => folder.join(path).display().to_string(),
+            Some(folder) => folder.shown(path),
             None => path.to_owned(),
         };
         let text = Text {

@@ -1,9 +1,9 @@
+use crate::scene::Folder;
 use crate::scene::bytes::{path_beside, read_beside};
 use gltf::json::buffer::View;
 use gltf::json::{Index, Root};
 use std::borrow::Cow;
 use std::collections::HashMap;
-use std::path::Path;
 use std::sync::Arc;
 
 /// The bytes of all buffers.
@@ -22,7 +22,7 @@ impl<'a> Buffers<'a> {
     pub(super) fn read(
         root: &'a Root,
         blob: Option<&'a [u8]>,
-        folder: Option<&Path>,
+        folder: Option<&Folder>,
     ) -> Result<Self, String> {
         let mut files: HashMap<String, Arc<Vec<u8>>> = HashMap::new();
         let mut buffers = vec![];
