@@ -21,8 +21,32 @@ pub(crate) struct Animation {
 const MOST_FRAMES: u32 = 1_000_000;
 
 impl Animation {
-    /// The animation that the options ask for; `None` for a single picture.
-    pub(crate) fn new(args: &AnimationArgs) -> Result<Option<Self>, Failure> {
+    /// The animation that the options ask for, or one frame of it; `None` for a single picture.
+    pub(crate) fn new(args: &AnimationArgs, only: Option<u32>) -> Result<Option<Self>, Failure> {
+        let Some(mut animation) = Self::of(args)? else {
+            return Ok(None);
+        };
+        if let Some(frame) = only {
+            if !animation.frames.contains(&frame) {
+                return Err(Failure::new(format!("the animation has no frame {frame}")));
+            }
+            animation.frames = vec![frame];
+        }
+        Ok(Some(animation))
+    }
+
+    /// The animation of these frames, with the clocks of the options.
+    pub(crate) fn range(args: &AnimationArgs, first: u32, last: u32) -> Result<Self, Failure> {
+        let args = AnimationArgs {
+            initial_frame: Some(first),
+            final_frame: Some(last),
+            ..args.clone()
+        };
+        Self::of(&args)?.ok_or_else(|| Failure::new("a film needs a frame above 0"))
+    }
+
+    /// All frames of the animation.
+    fn of(args: &AnimationArgs) -> Result<Option<Self>, Failure> {
         let first = match (args.initial_frame, args.final_frame) {
             // As in POV-Ray, a final frame of 0 switches the animation off.
             (None, None) | (_, Some(0)) => return Ok(None),
@@ -84,9 +108,14 @@ impl Animation {
         }
     }
 
+    /// Digits of the numbers in the names of files.
+    pub(crate) fn digits(&self) -> usize {
+        self.last.to_string().len()
+    }
+
     /// The file of a frame: the frame's number, as wide as that of the final frame, stands before the extension.
     pub(crate) fn file(&self, output: &Path, frame: u32) -> PathBuf {
-        let width = self.last.to_string().len();
+        let width = self.digits();
         let stem = output.file_stem().unwrap_or_default().to_string_lossy();
         let ending = output.extension().unwrap_or_default().to_string_lossy();
         let dot = if ending.is_empty() { "" } else { "." };
@@ -135,7 +164,7 @@ mod tests {
         let Command::Render(args) = Cli::try_parse_from(words).unwrap().command else {
             panic!("it is `render`");
         };
-        Animation::new(&args.animation)
+        Animation::new(&args.animation, None)
     }
 
     fn clocks(words: &str) -> Vec<(u32, f64)> {

@@ -1,5 +1,6 @@
 use crate::explain::{Chosen, Digits, MostRays};
 use crate::memory::MemoryLimit;
+use crate::submit::SubmitCommand;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 use std::path::PathBuf;
@@ -47,7 +48,7 @@ pub(crate) struct GuardArgs {
 pub(crate) enum Command {
     /// Render a scene to a picture
     #[command(args_override_self = true)]
-    Render(RenderArgs),
+    Render(Box<RenderArgs>),
     /// Print the ray tree of a pixel: every ray with its numbers and the line of the scene that caused it
     Explain(ExplainArgs),
     /// Render with every accelerator: prints a table of their costs, and checks that the pictures are the same
@@ -58,6 +59,9 @@ pub(crate) enum Command {
     TraceRay(TraceRayArgs),
     /// Put the tiles of a picture together
     Merge(MergeArgs),
+    /// Give a picture or a film to a cluster or render farm
+    #[command(subcommand)]
+    Submit(SubmitCommand),
     /// Print the contents of a scene: objects, bounds, lights, camera, memory
     Info(SceneArgs),
     /// Look for errors in a scene without rendering it
@@ -117,7 +121,7 @@ pub(crate) struct PovArgs {
 }
 
 /// An animation: a scene rendered at several clocks.
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 #[command(next_help_heading = "Animation of POV-Ray scenes")]
 pub(crate) struct AnimationArgs {
     /// Number of the first frame [default: 1]
@@ -280,6 +284,28 @@ pub(crate) struct RenderArgs {
     pub(crate) pov: PovArgs,
     #[command(flatten)]
     pub(crate) animation: AnimationArgs,
+    #[command(flatten)]
+    pub(crate) job: JobArgs,
+}
+
+/// What tasks of a job tell `render`; users have no need of them.
+#[derive(Debug, Default, Args)]
+pub(crate) struct JobArgs {
+    /// Read only the files of the bundle in this folder
+    #[arg(long, value_name = "DIR", hide = true)]
+    pub(crate) bundle: Option<PathBuf>,
+    /// Render only if the scene has this identity
+    #[arg(long, value_name = "SHA256", hide = true)]
+    pub(crate) expect: Option<String>,
+    /// Render only this frame of the animation
+    #[arg(long, value_name = "N", hide = true)]
+    pub(crate) only_frame: Option<u32>,
+    /// The value of `now`, in days since the beginning of 2000
+    #[arg(long, value_name = "DAYS", hide = true)]
+    pub(crate) now: Option<f64>,
+    /// The job that a tile belongs to
+    #[arg(long, value_name = "ID", hide = true)]
+    pub(crate) job_id: Option<String>,
 }
 
 #[derive(Debug, Args)]

@@ -9,9 +9,10 @@ use std::time::Instant;
 use strahl::formats::scene::SceneFormat;
 use strahl::math::DVec3;
 use strahl::scene::Scene;
-use strahl::sdl::{Frame, Stream, Value, Writing};
+use strahl::sdl::{Frame, Pinned, Stream, Value, Writing};
 use strahl::tracing::{Prepared, RenderOptions, RenderScene, Sampling};
 use strahl::{Format, Inputs, LoadOptions, Loaded, load_bytes, load_path};
+use strahl_farm::Bundle;
 
 /// The picture size of scenes that don't set one.
 pub(crate) const DEFAULT_SIZE: (u32, u32) = (800, 600);
@@ -52,6 +53,9 @@ pub(crate) struct Input<'a> {
     staged: Cell<bool>,
     /// Whether to keep what the scene consists of.
     records: bool,
+    now: Option<f64>,
+    /// The files that the scene may read, if it is bundled.
+    pinned: Option<Pinned>,
     inputs: RefCell<Option<Inputs>>,
 }
 
@@ -103,6 +107,8 @@ impl<'a> Input<'a> {
             writes: false,
             staged: Cell::new(false),
             records: false,
+            now: None,
+            pinned: None,
             inputs: RefCell::new(None),
         })
     }
@@ -126,6 +132,23 @@ impl<'a> Input<'a> {
     /// Keeps what the scene consists of for [`Input::inputs`].
     pub(crate) fn recording(self, records: bool) -> Self {
         Self { records, ..self }
+    }
+
+    /// Fixes the value of `now`.
+    pub(crate) fn at_time(self, now: Option<f64>) -> Self {
+        Self { now, ..self }
+    }
+
+    /// Reads only the files of a bundle.
+    pub(crate) fn bundled(self, folder: &Path) -> Result<Self, Failure> {
+        let bundle = Bundle::read(folder).map_err(|error| {
+            let shown = folder.display();
+            Failure::new(format!("there is no bundle of a scene in {shown}: {error}"))
+        })?;
+        Ok(Self {
+            pinned: Some(bundle.pinned(folder)),
+            ..self
+        })
     }
 
     /// What the scene that was read last consists of.
@@ -223,6 +246,8 @@ impl<'a> Input<'a> {
             installed: strahl::povray_folders(),
             writing: self.place_of_writing(),
             record: self.records,
+            now: self.now,
+            pinned: self.pinned.clone(),
             on_message: (!quiet).then(|| Box::new(print_message) as _),
             ..LoadOptions::default()
         };

@@ -19,6 +19,7 @@ mod pov;
 mod progress;
 mod report;
 mod stats;
+mod submit;
 mod target;
 mod terminal;
 mod tile;
@@ -42,7 +43,7 @@ fn main() -> ExitCode {
             return ExitCode::from(2);
         }
     };
-    let cli = Cli::parse_from(translated.words);
+    let cli = Cli::parse_from(&translated.words);
     interrupt::listen();
     memory::bound(&MEMORY, cli.guard.max_memory);
     if cli.guard.strict {
@@ -54,6 +55,7 @@ fn main() -> ExitCode {
             reporter.notes(&translated.notes);
             commands::render(args, reporter)
         }
+        Command::Submit(command) => submit::submit(command, &translated.words, &translated.notes),
         Command::Merge(args) => commands::merge(args),
         Command::Explain(args) => commands::explain(args),
         Command::Compare(args) => commands::compare(args),

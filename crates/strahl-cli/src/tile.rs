@@ -78,6 +78,9 @@ pub(crate) fn settings(args: &RenderArgs, options: &RenderOptions, moment: Momen
     if let Some(file) = &args.pov.include {
         set("include", file.display().to_string());
     }
+    if let Some(id) = &args.job.job_id {
+        set("job", id.clone());
+    }
     for (name, value) in &args.pov.declare {
         set(&format!("declare {name}"), value.to_string());
     }

@@ -44,6 +44,14 @@ pub fn merge(files: &[PathBuf]) -> Result<Merged, TilesError> {
             Err(error) => problems.push(error.to_string()),
         }
     }
+    assemble(tiles, problems)
+}
+
+/// Puts tiles together that were read from these files; the problems so far are part of the error.
+pub(crate) fn assemble(
+    tiles: Vec<(&Path, TileFile)>,
+    mut problems: Vec<String>,
+) -> Result<Merged, TilesError> {
     let Some(model) = most_common(&tiles) else {
         if problems.is_empty() {
             problems.push("there are no tiles to merge: name their files".into());
@@ -158,7 +166,7 @@ fn difference(tile: &TileFile, model: &TileFile) -> Option<String> {
 }
 
 /// How the metadata of a tile differ from those of the tiles of a picture, in words; `None` if it is one of them.
-pub(crate) fn info_difference(info: &TileInfo, model: &TileInfo) -> Option<String> {
+fn info_difference(info: &TileInfo, model: &TileInfo) -> Option<String> {
     if info.version != model.version {
         return Some(format!(
             "was rendered by {}, the others by {}",
@@ -206,7 +214,7 @@ fn settings_difference(found: &Settings, expected: &Settings) -> String {
 }
 
 /// Numbers in rising order as text: `1, 4-7`.
-pub(crate) fn ranges(numbers: &[u32]) -> String {
+pub fn ranges(numbers: &[u32]) -> String {
     let mut parts: Vec<(u32, u32)> = vec![];
     for &n in numbers {
         match parts.last_mut() {

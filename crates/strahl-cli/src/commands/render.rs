@@ -14,7 +14,7 @@ use strahl_farm::TileInfo;
 
 /// `strahl render`: renders a scene to a picture, or to the pictures of an animation.
 pub(crate) fn render(args: &RenderArgs, reporter: Reporter) -> Result<(), Failure> {
-    let animation = Animation::new(&args.animation)?;
+    let animation = Animation::new(&args.animation, args.job.only_frame)?;
     let target = Target::of(args)?;
     target.check(args, animation.is_some())?;
     let input = Input::new(
@@ -23,7 +23,12 @@ pub(crate) fn render(args: &RenderArgs, reporter: Reporter) -> Result<(), Failur
         &args.pov,
         args.picture.size,
     )?;
-    let input = input.writing()?.recording(args.tile.is_some());
+    let input = match &args.job.bundle {
+        // Many tasks would write the same files; in memory the scene can read them again.
+        Some(folder) => input.bundled(folder)?,
+        None => input.writing()?,
+    };
+    let input = input.recording(args.tile.is_some()).at_time(args.job.now);
     target.spares(&input, args)?;
     let threads = threads(args.threads, &reporter);
     reporter.settle()?;
@@ -111,7 +116,11 @@ impl Job<'_> {
                 written + kept
             ));
             watch.frame(index, *frame);
-            let target = self.target.of_frame(animation, *frame);
+            let target = match self.args.job.only_frame {
+                // The file of a job's part has its number already.
+                Some(_) => self.target.clone(),
+                None => self.target.of_frame(animation, *frame),
+            };
             if self.is_complete(&target) {
                 kept += 1;
                 continue;
@@ -167,7 +176,8 @@ impl Job<'_> {
         options.info = args.layers;
         options.alpha = args.alpha;
         if let Some(place) = args.tile {
-            if self.input.inputs()?.record.time {
+            self.expect()?;
+            if args.job.now.is_none() && self.input.inputs()?.record.time {
                 self.reporter.warn(
                     "the scene reads the time (`now`), which differs from tile to tile: pass a number with --declare instead",
                 );
@@ -198,6 +208,20 @@ impl Job<'_> {
             trace,
             moment,
         })
+    }
+
+    /// Checks that the scene of a job is still the one that was submitted.
+    fn expect(&self) -> Result<(), Failure> {
+        let Some(expected) = &self.args.job.expect else {
+            return Ok(());
+        };
+        match self.input.inputs()?.identity() == *expected {
+            true => Ok(()),
+            false => Err(Failure::new(format!(
+                "{} or a file it reads has changed since the job was submitted: submit it again",
+                self.input.name()
+            ))),
+        }
     }
 
     fn write(&self, traced: &Traced, target: &Target) -> Result<(), Failure> {

@@ -32,9 +32,21 @@ pub(super) fn with_command(mut words: Vec<OsString>, command: &Command) -> Optio
     Some(words)
 }
 
-/// Whether the word at this index is the command.
-pub(super) fn is_command_at(words: &[OsString], at: usize, command: &Command) -> bool {
-    behind_global_options(words, command) == at
+/// The command that renders, now or on a cluster: the index of its last word, and its arguments.
+pub(super) fn rendering<'c>(
+    words: &[OsString],
+    command: &'c Command,
+) -> Option<(usize, &'c Command)> {
+    let at = behind_global_options(words, command);
+    let name = words.get(at)?.to_str()?;
+    let found = command.find_subcommand(name)?;
+    match (name, words.get(at + 1).and_then(|word| word.to_str())) {
+        ("render", _) => Some((at, found)),
+        ("submit", Some(engine @ ("slurm" | "openjd"))) => {
+            Some((at + 1, found.find_subcommand(engine)?))
+        }
+        _ => None,
+    }
 }
 
 /// The index of the command: after the options common to all commands.
@@ -87,11 +99,9 @@ fn begins_render(word: &OsString, command: &Command) -> bool {
         || assignment(text).is_some()
 }
 
-/// The options of `render` and those common to all commands that are followed by a value as a separate word.
-pub(super) fn options_with_value(command: &Command) -> BTreeSet<String> {
-    let render = command.find_subcommand("render");
-    let options = render.into_iter().flat_map(Command::get_arguments);
-    valued(options.chain(command.get_arguments()))
+/// The options of a command and those common to all commands that are followed by a value as a separate word.
+pub(super) fn options_with_value(command: &Command, of: &Command) -> BTreeSet<String> {
+    valued(of.get_arguments().chain(command.get_arguments()))
 }
 
 fn valued<'a>(options: impl Iterator<Item = &'a clap::Arg>) -> BTreeSet<String> {

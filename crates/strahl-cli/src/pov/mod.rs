@@ -23,7 +23,7 @@ pub(crate) struct Translated {
     pub(crate) notes: Vec<String>,
 }
 
-/// Translates a whole command line, with the program's name. Only `render` accepts POV-Ray's words; the word `render` may be left
+/// Translates a whole command line, with the program's name. Only `render`, and `submit` for a cluster, accept POV-Ray's words; the word `render` may be left
 /// out before a scene, an .ini file, a switch or an option of `render`.
 pub(crate) fn translate(words: Vec<OsString>) -> Result<Translated, String> {
     let command = Cli::command();
@@ -33,14 +33,13 @@ pub(crate) fn translate(words: Vec<OsString>) -> Result<Translated, String> {
             notes: vec![],
         });
     };
-    let render = words.iter().position(|w| w == "render");
-    let Some(render) = render.filter(|at| begin::is_command_at(&words, *at, &command)) else {
+    let Some((render, arguments)) = begin::rendering(&words, &command) else {
         return Ok(Translated {
             words,
             notes: vec![],
         });
     };
-    let with_value = begin::options_with_value(&command);
+    let with_value = begin::options_with_value(&command, arguments);
     let mut settings = Settings::default();
     // Strahl's own options come last, because the last occurrence of an option counts.
     let mut own: Vec<OsString> = vec![];

@@ -9,6 +9,7 @@ mod lecture;
 mod pictures;
 mod questions;
 mod safety;
+mod submit;
 mod tiles;
 
 use common::{stderr, strahl};

@@ -1,0 +1,39 @@
+//! `strahl submit`: pictures and films for clusters and render farms.
+
+mod args;
+mod create;
+mod engine;
+mod merge;
+mod resume;
+mod status;
+mod task;
+
+pub(crate) use args::SubmitCommand;
+
+use crate::report::Failure;
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
+use strahl_farm::Job;
+
+/// `strahl submit`: `words` is the whole command line, of which a job keeps what concerns its tasks.
+pub(crate) fn submit(
+    command: &SubmitCommand,
+    words: &[OsString],
+    notes: &[String],
+) -> Result<(), Failure> {
+    match command {
+        SubmitCommand::Slurm(args) => engine::slurm(args, words, notes),
+        SubmitCommand::Openjd(args) => engine::openjd(args, words, notes),
+        SubmitCommand::Status(args) => status::status(args),
+        SubmitCommand::Resume(args) => resume::resume(args),
+        SubmitCommand::Task(args) => task::task(args),
+        SubmitCommand::Merge(args) => merge::merge(args),
+    }
+}
+
+/// A job folder, by its full path, and its manifest.
+fn open(folder: &Path) -> Result<(PathBuf, Job), Failure> {
+    let job = Job::read(folder).map_err(Failure::new)?;
+    let folder = folder.canonicalize().map_err(Failure::new)?;
+    Ok((folder, job))
+}

@@ -1,0 +1,79 @@
+//! `strahl submit resume`: submits what is missing.
+
+use super::args::ResumeArgs;
+use super::engine::{SLURM_JOB, SlurmJob, line, submit_slurm};
+use super::open;
+use super::status::states;
+use crate::output::say;
+use crate::report::Failure;
+use std::collections::BTreeSet;
+use std::path::Path;
+use std::process::Command;
+use strahl_farm::slurm::{quoted, render_command};
+use strahl_farm::{Progress, ranges};
+
+/// Submits the tasks of a job that have parts which are not done, and a merge behind them.
+pub(super) fn resume(args: &ResumeArgs) -> Result<(), Failure> {
+    let (folder, job) = open(&args.job)?;
+    let states = states(&job, &folder);
+    let open_parts = states
+        .iter()
+        .filter(|(_, progress)| !matches!(progress, Progress::Done(_)));
+    let tasks: BTreeSet<u32> = open_parts
+        .map(|(unit, _)| job.task_of(*unit) as u32)
+        .collect();
+    let tasks: Vec<u32> = tasks.into_iter().collect();
+    if tasks.is_empty() {
+        say!(
+            "all parts are done: `strahl submit merge {}` makes the pictures",
+            folder.display()
+        );
+        return Ok(());
+    }
+    if !folder.join("render.sbatch").is_file() {
+        let template = folder.join("template.json");
+        say!(
+            "{} of {} tasks are left; run the job again, parts that are done are not rendered twice:\n  openjd run {}",
+            tasks.len(),
+            job.tasks(),
+            quoted(&template.display().to_string())
+        );
+        return Ok(());
+    }
+    if args.dry_run {
+        say!("sbatch {}", line(&render_command(&folder, &tasks)));
+        return Ok(());
+    }
+    if let Some(known) = submitted(&folder)
+        && in_queue(&known)
+    {
+        return Err(Failure::new(format!(
+            "the job is still in the queue: wait for it, or end it with `scancel {} {}`",
+            known.array, known.merge
+        )));
+    }
+    let new = submit_slurm(&folder, &tasks)?;
+    let list = ranges(&tasks);
+    say!(
+        "tasks {list}: Slurm job {} renders, job {} merges",
+        new.array,
+        new.merge
+    );
+    Ok(())
+}
+
+/// The numbers of the job in Slurm, if it was submitted.
+fn submitted(folder: &Path) -> Option<SlurmJob> {
+    serde_json::from_slice(&std::fs::read(folder.join(SLURM_JOB)).ok()?).ok()
+}
+
+/// Whether Slurm still has tasks of the job. Jobs that it has forgotten are over.
+fn in_queue(job: &SlurmJob) -> bool {
+    let output = Command::new("squeue")
+        .args(["--noheader", "--format=%T", "--jobs", &job.array])
+        .output();
+    output.is_ok_and(|output| {
+        let text = String::from_utf8_lossy(&output.stdout);
+        output.status.success() && text.lines().any(|line| !line.trim().is_empty())
+    })
+}
