@@ -42,4 +42,7 @@ groups! {
     parts_of_unions_that_are_not_split_are_not_hidden,
     height_fields_end_with_their_lowest_point,
     parallel_light_fades_by_its_distance_from_its_plane,
+    a_number_behind_a_named_normal_is_its_strength,
+    the_values_of_a_pattern_that_replaces_an_image_map_are_not_repeated,
+    slopes_see_normals_of_any_length_with_no_bump_scale,
 }

@@ -9,4 +9,5 @@ groups! {
     normals_by_texture_coordinates_are_tilted_in_the_world,
     a_texture_with_uv_mapping_leaves_normals_in_space,
     uv_mapping_of_an_object_is_that_of_its_parts,
+    uv_mapping_is_a_texture_pigment_or_normal_of_its_own,
 }

@@ -87,14 +87,10 @@ impl PovNormal {
         }
     }
 
-    /// The tilted normal at a point, a unit vector; `n` is the unit normal to be tilted, on the side of the viewer, both in the
-    /// space around the normal's own transformations.
+    /// The tilted normal at a point; `n` is the unit normal to be tilted, on the side of the viewer, both in the space around
+    /// the normal's own transformations. A unit vector, except with `no_bump_scale`: its length then counts where the
+    /// normals of a map are mixed, and for the patterns `slope` and `aoi` (measured).
     pub fn tilt(&self, point: &TexturePoint, n: DVec3) -> DVec3 {
-        self.tilt_part(point, n).normalize_or(n)
-    }
-
-    /// The same for a part of a map: with `no_bump_scale` not of unit length, which weighs where parts are mixed (measured).
-    fn tilt_part(&self, point: &TexturePoint, n: DVec3) -> DVec3 {
         // Into the pattern's space, where the normal is tilted, and back.
         let warps = &self.modifiers.warps;
         let mut inner = n;
@@ -112,10 +108,10 @@ impl PovNormal {
                 tilted = transform.normal_to_world(tilted);
             }
         }
-        if self.no_bump_scale {
-            tilted
-        } else {
-            tilted.normalize_or(n)
+        match tilted.try_normalize() {
+            None => n,
+            Some(_) if self.no_bump_scale => tilted,
+            Some(unit) => unit,
         }
     }
 
@@ -158,7 +154,7 @@ impl PovNormal {
                 let center = field.moved(transformed);
                 n - tetrahedral_gradient(center, self.accuracy, height) * self.amount
             }
-            NormalKind::BumpMap(image) => n + image.tilt(p, n) * self.amount,
+            NormalKind::BumpMap(image) => (n + image.tilt(p, n) * self.amount).normalize_or_zero(),
             NormalKind::Map(pattern, map) => {
                 let field = self.field(pattern);
                 let value = field.value_inside(&inner);
@@ -166,9 +162,9 @@ impl PovNormal {
                 let unit = self.for_parts(n);
                 match map.lookup(value) {
                     None => n,
-                    Some(Blend::One(normal)) => normal.tilt_part(&inner, unit),
+                    Some(Blend::One(normal)) => normal.tilt(&inner, unit),
                     Some(Blend::Two(low, high, t)) => {
-                        low.tilt_part(&inner, unit) * (1.0 - t) + high.tilt_part(&inner, unit) * t
+                        low.tilt(&inner, unit) * (1.0 - t) + high.tilt(&inner, unit) * t
                     }
                 }
             }
@@ -177,16 +173,21 @@ impl PovNormal {
                 let block = field.block_inside(&inner);
                 let inner = inner.at(field.moved(transformed));
                 let normal = normals.get(block).or(normals.last());
-                normal.map_or(n, |normal| normal.tilt_part(&inner, self.for_parts(n)))
+                normal.map_or(n, |normal| normal.tilt(&inner, self.for_parts(n)))
             }
             NormalKind::Average(members) => {
                 let inner = inner.at(p);
                 let unit = self.for_parts(n);
                 let sum = members
                     .iter()
-                    .map(|(weight, normal)| normal.tilt_part(&inner, unit) * *weight)
+                    .map(|(weight, normal)| normal.tilt(&inner, unit) * *weight)
                     .fold(DVec3::ZERO, |a, b| a + b);
-                if sum == DVec3::ZERO { n } else { sum }
+                let total: f64 = members.iter().map(|(weight, _)| weight).sum();
+                if sum == DVec3::ZERO || total == 0.0 {
+                    n
+                } else {
+                    sum / total
+                }
             }
         }
     }

@@ -482,8 +482,8 @@ impl Texture {
 }
 
 impl PlainTexture {
-    /// The tilted unit normals in the space around and in that of the innermost map; `n` is the normal in the texture's space. `None`
-    /// without a normal of its own.
+    /// The tilted normals in the space around, of unit length, and in that of the innermost map, where it is of unit length unless
+    /// bumps keep their size; `n` is the normal in the texture's space. `None` without a normal of its own.
     fn tilt(&self, point: &TexturePoint, n: DVec3, ways: Ways<'_>) -> Option<(DVec3, DVec3)> {
         let normal = self.normal.as_ref()?;
         let (outer, in_map) = if normal.uv_mapped {
@@ -493,10 +493,12 @@ impl PlainTexture {
             let tilted = normal.tilt(&point.for_normals(), n);
             (ways.out.leave(tilted), ways.to_map.leave(tilted))
         };
-        Some((
-            outer.normalize_or(point.n_shade),
-            in_map.normalize_or(point.n_shade),
-        ))
+        let in_map = if normal.no_bump_scale {
+            in_map
+        } else {
+            in_map.normalize_or(point.n_shade)
+        };
+        Some((outer.normalize_or(point.n_shade), in_map))
     }
 
     fn paint<'a>(

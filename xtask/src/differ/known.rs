@@ -1,7 +1,7 @@
 /// Differences that are intended or that are POV-Ray's: the words that the smallest scene contains, and the reason.
 ///
 /// docs/src/differ.md explains them.
-pub(super) const KNOWN: [(&[&str], &str); 41] = [
+pub(super) const KNOWN: [(&[&str], &str); 48] = [
     (&["crystal.ttf"], FONTS),
     (&["cyrvetic.ttf"], FONTS),
     (&["timrom.ttf"], FONTS),
@@ -31,6 +31,8 @@ pub(super) const KNOWN: [(&[&str], &str); 41] = [
     (&["union", "inverse", "difference"], BOXES),
     (&["merge", "inverse", "intersection"], BOXES),
     (&["merge", "inverse", "difference"], BOXES),
+    (&["clipped_by", "inverse", "intersection"], BOXES),
+    (&["clipped_by", "inverse", "difference"], BOXES),
     (&["isosurface", "intersection"], CAPS),
     (&["isosurface", "difference"], CAPS),
     (&["isosurface", "merge"], CAPS),
@@ -47,6 +49,14 @@ pub(super) const KNOWN: [(&[&str], &str); 41] = [
     (&["mesh2", "intersection"], OPEN_MESHES),
     (&["mesh2", "difference"], OPEN_MESHES),
     (&["mesh2", "merge"], OPEN_MESHES),
+    (&["sphere_sweep", "rgbt"], JOINTS),
+    (&["sphere_sweep", "rgbf"], JOINTS),
+    (&["sphere_sweep", "transmit"], JOINTS),
+    (&["sphere_sweep", "filter"], JOINTS),
+    (
+        &["bump_map", "no_bump_scale"],
+        "POV-Ray turns the normal of a scaled bump map with no_bump_scale away from the viewer",
+    ),
     (
         &["sky_sphere", "onion"],
         "an onion's shells jump exactly on the sky's unit sphere",
@@ -57,6 +67,7 @@ pub(super) const KNOWN: [(&[&str], &str); 41] = [
     ),
 ];
 
+const JOINTS: &str = "POV-Ray shows discs within a curved sphere_sweep";
 const FONTS: &str = "the fonts of POV-Ray's names are others";
 const CELLS: &str = "a polygon lies exactly between two layers of cells";
 const SIDES: &str =
@@ -65,7 +76,7 @@ const INSIDES: &str = "POV-Ray's inside of the surface depends on the order of t
 const INTERPOLATED: &str = "POV-Ray decides by the interpolated normal which side is seen";
 const TURNED: &str = "POV-Ray turns the sides of an inverse mesh without an inside";
 const NOT_TURNED: &str = "POV-Ray does not turn the sides of an inverse quadric";
-const BOXES: &str = "POV-Ray's unions with inverse parts end with their boxes in CSG";
+const BOXES: &str = "POV-Ray's inverse solids end with their boxes in CSG";
 const CAPS: &str = "POV-Ray does not close an isosurface at the far side of its container";
 const OPEN_MESHES: &str = "POV-Ray misses faces of meshes behind other faces in CSG";
 

@@ -7,7 +7,8 @@ use strahl_math::DVec2;
 ///
 /// Parts of the curve with a negative radius count as if mirrored. As in POV-Ray, the inside is what the curve surrounds an odd
 /// number of times, seen from its smallest radius outwards. A curve that does not return to its first point still makes a
-/// solid, closed by horizontal discs at its ends and a vertical wall at its smallest radius, all invisible.
+/// solid, closed by horizontal discs at its ends and a vertical wall at its smallest radius, all invisible. (For Bézier curves,
+/// the wall is at the smallest radius of their points: measured with POV-Ray 3.7.)
 ///
 /// Texture coordinates: `u` is the angle about the axis, `v` grows along the curve, each of its pieces taking an equal share;
 /// both run from 0 to 1. Facets: one for every part of the curve on which radius and height are monotone, in the order of the
@@ -35,7 +36,11 @@ impl Lathe {
         for (i, piece) in pieces.iter().enumerate() {
             all.piece(piece, false, true, v(i));
         }
-        let [inner, _] = all.radii();
+        let [smallest, _] = all.radii();
+        let inner = match spline {
+            Spline::Bezier => points.iter().fold(smallest, |r, p| r.min(p.x.abs())),
+            _ => smallest,
+        };
         let mut builder = MeridianBuilder::default();
         let mut first: Option<DVec2> = None;
         for (i, piece) in pieces.iter().enumerate() {
@@ -206,6 +211,21 @@ mod tests {
             at.is_some_and(|t| (t - 2.8).abs() < 1e-14),
             "{at:?}: through the open top"
         );
+    }
+
+    #[test]
+    fn an_open_bezier_curve_is_closed_at_the_smallest_radius_of_its_points() {
+        // As POV-Ray's `inside` says of the same curve, whose own smallest radius is 0.67.
+        let open = lathe(
+            Spline::Bezier,
+            &[[1.0, -1.0], [0.25, -0.6], [1.4, -0.3], [1.0, 0.0]],
+        );
+        for (r, inside) in [(0.2, false), (0.3, true), (0.5, true), (0.65, true)] {
+            for y in [-0.9, -0.5, -0.1] {
+                let point = DVec3::new(0.6 * r, y, 0.8 * r);
+                assert_eq!(open.contains(point), inside, "{r} {y}");
+            }
+        }
     }
 
     #[test]

@@ -56,36 +56,29 @@ pub struct Texture {
     pub(super) components: Option<Arc<Components>>,
 }
 
-/// Transforms a texture. With `uv`, also its parts in surface coordinates, which do not follow the transformations of objects.
-fn transform(texture: &mut Surface, by: &Transform, uv: bool) {
+/// Transforms a texture, except its parts in surface coordinates: neither the transformations of objects nor those behind the
+/// texture reach them (measured).
+fn transform(texture: &mut Surface, by: &Transform) {
     match texture {
         Surface::Plain(plain) => {
-            pigment::transform(&mut plain.pigment, by, uv);
+            pigment::transform(&mut plain.pigment, by);
             if let Some(normal) = &mut plain.normal {
-                normal::transform(normal, by, uv);
+                normal::transform(normal, by);
             }
         }
-        Surface::Layered(layers) => layers.iter_mut().for_each(|l| transform(l, by, uv)),
+        Surface::Layered(layers) => layers.iter_mut().for_each(|l| transform(l, by)),
         Surface::Map(field, _) | Surface::Blocks(field, _) => {
             modifiers::transform(&mut field.modifiers.warps, by);
         }
         Surface::Average(_, modifiers) | Surface::MaterialMap(_, modifiers, _) => {
             modifiers::transform(&mut modifiers.warps, by);
         }
-        Surface::Shared(..) => {
+        // Of a texture in surface coordinates, the normals follow the transformation, the rest does not.
+        Surface::Shared(..) | Surface::UvMapped(_) => {
             let own = std::mem::take(texture);
             *texture = Surface::Transformed(Box::new(*by), Box::new(own));
         }
         Surface::Transformed(own, _) => **own = own.then(by),
-        // Its normals follow the transformation, the rest does not.
-        Surface::UvMapped(inner) => {
-            if uv {
-                transform(inner, by, uv);
-            } else {
-                let own = std::mem::take(texture);
-                *texture = Surface::Transformed(Box::new(*by), Box::new(own));
-            }
-        }
     }
 }
 
@@ -147,7 +140,7 @@ impl Texture {
                 return Arc::clone(surface);
             }
             let mut surface = Surface::clone(surface);
-            transform(&mut surface, by, false);
+            transform(&mut surface, by);
             Arc::new(surface)
         };
         Self {

@@ -136,9 +136,10 @@ fn rescaled(x: f64, [low, high]: [f64; 2]) -> f64 {
     }
 }
 
-/// `1 - angle/π` for the angle between two vectors: 1 along, 1/2 across, 0 against.
-fn alignment(a: DVec3, b: DVec3) -> f64 {
-    let cos = a.normalize_or_zero().dot(b.normalize_or_zero());
+/// `1 - angle/π` for the angle between a normal and a direction: 1 along, 1/2 across, 0 against. A normal that is not of unit
+/// length is taken as it is (measured).
+fn alignment(n: DVec3, direction: DVec3) -> f64 {
+    let cos = n.dot(direction.normalize_or_zero());
     1.0 - det::acos(cos.clamp(-1.0, 1.0)) / std::f64::consts::PI
 }
 
@@ -147,7 +148,7 @@ pub(super) fn aoi(point: &TexturePoint) -> f64 {
     if point.n_shade == DVec3::ZERO {
         return 0.0;
     }
-    alignment(point.n_shade, -point.direction)
+    alignment(point.n_shade.normalize_or_zero(), -point.direction)
 }
 
 /// The normal is the surface's, whatever transformation the pattern has; the altitude is that of the moved point `p`. 0 where there is no surface

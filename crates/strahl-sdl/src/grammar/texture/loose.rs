@@ -88,7 +88,7 @@ impl Loose {
             modifiers::transform(&mut pigment.modifiers.warps, by);
         }
         if let Some(normal) = &mut self.normal {
-            normal::transform(&mut normal.normal, by, true);
+            normal::transform(&mut normal.normal, by);
         }
     }
 

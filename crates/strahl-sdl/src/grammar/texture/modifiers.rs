@@ -17,12 +17,18 @@ pub(super) fn transform(warps: &mut Vec<Warp>, transform: &Transform) {
     }
 }
 
+/// The setting that `image_map` implies, which remains when a pattern replaces it: values are not repeated, unless a frequency follows
+/// (measured).
+pub(super) fn begin_as_it_is(modifiers: &mut Modifiers) {
+    modifiers.frequency = 0.0;
+}
+
 /// Settings that a pattern's keyword implies: the values of `quilted`, `image_pattern` and block patterns are not repeated, unless a
 /// frequency follows; the triangle waves of marble, wood and spirals remain when another pattern replaces them (measured).
 pub(super) fn begin(modifiers: &mut Modifiers, pattern: &Pattern) {
     let as_it_is = matches!(pattern, Pattern::Quilted { .. } | Pattern::Image(_));
     if as_it_is || pattern.block_count().is_some() {
-        modifiers.frequency = 0.0;
+        begin_as_it_is(modifiers);
     }
     let wave = pattern.default_wave();
     if wave != Wave::Ramp {

@@ -19,6 +19,8 @@ enum Chooser {
     Average,
     /// A kind of normal without a pattern.
     Fixed(NormalKind),
+    /// A normal in surface coordinates.
+    UvMapped(Box<PovNormal>),
 }
 
 /// The use of the pattern's value.
@@ -58,6 +60,14 @@ pub(super) fn flat() -> PovNormal {
 
 impl From<PovNormal> for Draft {
     fn from(mut normal: PovNormal) -> Self {
+        if normal.uv_mapped {
+            return Self {
+                chooser: Chooser::UvMapped(Box::new(normal)),
+                choice: Choice::Own,
+                normal: flat(),
+                special: false,
+            };
+        }
         let kind = std::mem::replace(&mut normal.kind, NormalKind::Average(vec![]));
         let (chooser, choice, special) = match kind {
             NormalKind::Bumps => (Chooser::Pattern(Pattern::Bozo), Choice::Own, true),
@@ -112,6 +122,7 @@ impl Draft {
         let kind = match (self.chooser, self.choice) {
             (Chooser::Flat, _) => NormalKind::Average(vec![]),
             (Chooser::Fixed(kind), _) => kind,
+            (Chooser::UvMapped(normal), _) => return *normal,
             (Chooser::Average, Choice::Normals(map)) => NormalKind::Average(map.entries),
             (Chooser::Average, _) => NormalKind::Average(vec![]),
             (Chooser::Pattern(pattern), Choice::Normals(map)) => NormalKind::Map(pattern, map),
@@ -144,9 +155,9 @@ impl Draft {
     }
 }
 
-/// Transforms a normal.
-pub(super) fn transform(normal: &mut PovNormal, by: &Transform, uv: bool) {
-    if uv || !normal.uv_mapped {
+/// Transforms a normal, unless it is in surface coordinates.
+pub(super) fn transform(normal: &mut PovNormal, by: &Transform) {
+    if !normal.uv_mapped {
         modifiers::transform(&mut normal.modifiers.warps, by);
     }
 }
@@ -184,6 +195,15 @@ impl Parser<'_> {
             Thing::Normal(normal) => Some(normal),
             _ => None,
         })?;
+        if self.accept_word(Word::UvMapping)? {
+            // What follows is a whole normal of its own (measured).
+            let inner = self.nested(|p| p.normal_items(closing, base))?;
+            return Ok(PovNormal {
+                uv_mapped: true,
+                ..inner
+            });
+        }
+        let is_named = named.is_some();
         let base = match named {
             Some(named) => PovNormal::clone(&named),
             None => base.unwrap_or_else(flat),
@@ -192,6 +212,9 @@ impl Parser<'_> {
             return Ok(base);
         }
         let mut draft = Draft::from(base);
+        if is_named {
+            self.normal_amount(&mut draft)?;
+        }
         self.items_until(closing, "`normal`", |p, token| {
             p.normal_item(&mut draft, token)
         })?;
@@ -253,17 +276,20 @@ impl Parser<'_> {
                 }
                 return self.normal_amount(draft);
             }
-            Some(Word::UvMapping) => {
-                self.take(token)?;
-                draft.normal.uv_mapped = self.flag()?;
-                return Ok(());
-            }
+            Some(Word::UvMapping) => return Err(self.late_uv_mapping(token, "normal")),
             Some(Word::Facets) => return self.skip_facets(token),
             _ => {}
         }
         if let Some(pattern) = self.pattern(token)? {
             draft.special = token.is(Word::Bumps);
-            let before = std::mem::replace(&mut draft.choice, Choice::Own);
+            let before = match &draft.chooser {
+                Chooser::UvMapped(inner) => Choice::Normals(numbered(vec![PovNormal {
+                    uv_mapped: false,
+                    ..PovNormal::clone(inner)
+                }])),
+                _ => std::mem::replace(&mut draft.choice, Choice::Own),
+            };
+            draft.choice = Choice::Own;
             self.block_normals(draft, &pattern)?;
             if pattern.block_count().is_none() {
                 draft.choice = before.of_pattern();

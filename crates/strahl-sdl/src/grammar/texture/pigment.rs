@@ -22,6 +22,8 @@ enum Chooser {
     Pattern(Pattern),
     Average,
     Image(Arc<ImageMap>),
+    /// The surface coordinates, at which the first pigment of the map is evaluated.
+    UvMapped,
 }
 
 /// The colours or pigments to select from.
@@ -58,7 +60,6 @@ pub(super) struct Draft {
     chooser: Chooser,
     choice: Choice,
     pub(super) modifiers: Modifiers,
-    uv_mapped: bool,
 }
 
 /// A block pattern with the pigments of its blocks.
@@ -75,7 +76,6 @@ impl From<Pigment> for Draft {
             chooser,
             choice,
             modifiers,
-            uv_mapped: false,
         };
         let field = |field: Box<PatternField>, choice| {
             draft(Chooser::Pattern(field.pattern), choice, field.modifiers)
@@ -100,10 +100,11 @@ impl From<Pigment> for Draft {
                 Choice::Pigments(BlendMap::new(members)),
                 *modifiers,
             ),
-            Pigment::UvMapped(inner) => Self {
-                uv_mapped: true,
-                ..Self::from(*inner)
-            },
+            Pigment::UvMapped(inner) => draft(
+                Chooser::UvMapped,
+                Choice::Pigments(numbered(vec![*inner])),
+                Modifiers::default(),
+            ),
         }
     }
 }
@@ -114,10 +115,9 @@ impl Draft {
             chooser,
             choice,
             modifiers,
-            uv_mapped,
         } = self;
-        let pigment = match chooser {
-            Chooser::Solid(color) => return Pigment::Solid(color),
+        match chooser {
+            Chooser::Solid(color) => Pigment::Solid(color),
             Chooser::Image(image) => Pigment::Image(image, Box::new(modifiers)),
             Chooser::Average => {
                 let members = match choice {
@@ -141,11 +141,17 @@ impl Draft {
                     },
                 }
             }
-        };
-        if uv_mapped {
-            Pigment::UvMapped(Box::new(pigment))
-        } else {
-            pigment
+            Chooser::UvMapped => match choice {
+                Choice::Pigments(map) => match map.entries.into_iter().next() {
+                    Some((_, first)) => Pigment::UvMapped(Box::new(first)),
+                    None => Pigment::default(),
+                },
+                Choice::Colors(map) => match map.entries.first() {
+                    Some((_, first)) => Pigment::Solid(*first),
+                    None => Pigment::default(),
+                },
+                Choice::Default(_) | Choice::Usual(_) | Choice::Blocks(_) => Pigment::default(),
+            },
         }
     }
 }
@@ -251,18 +257,16 @@ fn is_default_map(pattern: &Pattern, map: &BlendMap<ColorFt>) -> bool {
     words.any(|word| *map == default_map(pattern, word))
 }
 
-/// Transforms a pigment. With `uv`, also its parts in surface coordinates, which do not follow the transformations of objects.
-pub(super) fn transform(pigment: &mut Pigment, by: &Transform, uv: bool) {
+/// Transforms a pigment, unless it is in surface coordinates.
+pub(super) fn transform(pigment: &mut Pigment, by: &Transform) {
     match pigment {
-        Pigment::Solid(_) => {}
+        Pigment::Solid(_) | Pigment::UvMapped(_) => {}
         Pigment::ColorMap(field, _) | Pigment::PigmentMap(field, _) | Pigment::Blocks(field, _) => {
             modifiers::transform(&mut field.modifiers.warps, by)
         }
         Pigment::Image(_, modifiers) | Pigment::Average(_, modifiers) => {
             modifiers::transform(&mut modifiers.warps, by);
         }
-        Pigment::UvMapped(inner) if uv => transform(inner, by, uv),
-        Pigment::UvMapped(_) => {}
     }
 }
 
@@ -306,7 +310,13 @@ impl Parser<'_> {
         base: Pigment,
         placed: Option<&Transform>,
     ) -> PResult<Pigment> {
-        let (base, placed) = match self.named_pigment()? {
+        let named = self.named_pigment()?;
+        if self.accept_word(Word::UvMapping)? {
+            // What follows is a whole pigment of its own (measured).
+            let inner = self.nested(|p| p.pigment_items(closing, base))?;
+            return Ok(Pigment::UvMapped(Box::new(inner)));
+        }
+        let (base, placed) = match named {
             Some(named) => (named, None),
             None => (base, placed),
         };
@@ -410,6 +420,7 @@ impl Parser<'_> {
                     Some(image) => Chooser::Image(image),
                     None => Chooser::Solid(WHITE),
                 };
+                modifiers::begin_as_it_is(&mut draft.modifiers);
                 return Ok(());
             }
             Some(Word::Average) => {
@@ -422,11 +433,7 @@ impl Parser<'_> {
                 self.take(token)?;
                 return self.color().map(|_| ());
             }
-            Some(Word::UvMapping) => {
-                self.take(token)?;
-                draft.uv_mapped = self.flag()?;
-                return Ok(());
-            }
+            Some(Word::UvMapping) => return Err(self.late_uv_mapping(token, "pigment")),
             _ => {}
         }
         if let Some(pattern) = self.pattern(token)? {

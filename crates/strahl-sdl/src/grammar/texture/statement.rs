@@ -6,7 +6,7 @@ use super::maps::{blends_blocks, numbered};
 use super::{Texture, modifiers, top_of, transform, weight};
 use crate::grammar::Thing;
 use crate::keywords::Word;
-use crate::parser::{PResult, Parser};
+use crate::parser::{Failed, PResult, Parser};
 use crate::token::{Kind, Token};
 use std::sync::Arc;
 use strahl_shade::interior::Interior;
@@ -37,7 +37,6 @@ struct Draft {
     chooser: Chooser,
     choice: Choice,
     modifiers: Modifiers,
-    uv_mapped: bool,
     /// Of scenes before version 3.0.
     loose: Loose,
 }
@@ -49,7 +48,6 @@ impl From<Surface> for Draft {
             chooser: Chooser::Pattern(field.pattern),
             choice,
             modifiers: field.modifiers,
-            uv_mapped: false,
             loose: Loose::default(),
         };
         match texture {
@@ -60,19 +58,13 @@ impl From<Surface> for Draft {
                 chooser: Chooser::Average,
                 choice: Choice::Map(BlendMap::new(members)),
                 modifiers: *modifiers,
-                uv_mapped: false,
                 loose: Loose::default(),
-            },
-            Surface::UvMapped(inner) => Self {
-                uv_mapped: true,
-                ..Self::from(*inner)
             },
             single => Self {
                 single,
                 chooser: Chooser::Single,
                 choice: Choice::Nothing,
                 modifiers: Modifiers::default(),
-                uv_mapped: false,
                 loose: Loose::default(),
             },
         }
@@ -107,11 +99,7 @@ impl Draft {
         if is_patterned {
             normals_in_space(&mut texture);
         }
-        if self.uv_mapped {
-            on_surface_but_normals(texture)
-        } else {
-            texture
-        }
+        texture
     }
 }
 
@@ -131,6 +119,7 @@ fn on_surface_but_normals(texture: Surface) -> Surface {
         Surface::Layered(layers) => {
             Surface::Layered(layers.into_iter().map(on_surface_but_normals).collect())
         }
+        mapped @ Surface::UvMapped(_) => mapped,
         patterned => Surface::UvMapped(Box::new(patterned)),
     }
 }
@@ -206,6 +195,11 @@ impl Parser<'_> {
     }
 
     fn rest_of_texture(&mut self, closing: Kind, named: Option<Arc<Surface>>) -> PResult<Surface> {
+        if named.is_none() && self.accept_word(Word::UvMapping)? {
+            return self
+                .nested(|p| p.texture_items(closing))
+                .map(on_surface_but_normals);
+        }
         let base = named.unwrap_or_else(|| Arc::clone(&self.state.default_texture.surface));
         let mut single = Surface::clone(&base);
         // Most textures consist of a pigment and a finish.
@@ -231,9 +225,18 @@ impl Parser<'_> {
         Ok(texture)
     }
 
+    /// The error for `uv_mapping` behind the beginning of a pigment, normal or texture, where POV-Ray rejects it too.
+    pub(super) fn late_uv_mapping(&mut self, token: Token, statement: &str) -> Failed {
+        self.fail_hint(
+            self.place_of(token),
+            "`uv_mapping` must come first",
+            format!("write it directly behind `{statement} {{`"),
+        )
+    }
+
     fn texture_part(&mut self, draft: &mut Draft, token: Token) -> PResult<()> {
         if let Some(by) = self.transformation(token)? {
-            transform(&mut draft.single, &by, true);
+            transform(&mut draft.single, &by);
             modifiers::transform(&mut draft.modifiers.warps, &by);
             draft.loose.transform(&by);
             return Ok(());
@@ -262,11 +265,7 @@ impl Parser<'_> {
                 draft.chooser = Chooser::Average;
                 return Ok(());
             }
-            Some(Word::UvMapping) => {
-                self.take(token)?;
-                draft.uv_mapped = self.flag()?;
-                return Ok(());
-            }
+            Some(Word::UvMapping) => return Err(self.late_uv_mapping(token, "texture")),
             Some(Word::Tiles) => {
                 self.take(token)?;
                 return self.tiles(draft);
@@ -441,7 +440,7 @@ impl Parser<'_> {
             p.items("`material`", |p, token| {
                 if let Some(by) = p.transformation(token)? {
                     let transformed = |surface: &mut Arc<Surface>| {
-                        transform(Arc::make_mut(surface), &by, false);
+                        transform(Arc::make_mut(surface), &by);
                     };
                     transformed(&mut material.surface);
                     if let Some(inner) = &mut material.inner_surface {
