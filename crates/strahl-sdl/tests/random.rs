@@ -45,4 +45,6 @@ groups! {
     a_number_behind_a_named_normal_is_its_strength,
     the_values_of_a_pattern_that_replaces_an_image_map_are_not_repeated,
     slopes_see_normals_of_any_length_with_no_bump_scale,
+    of_several_assumed_gammas_the_first_counts,
+    a_comma_may_follow_the_spline_of_a_sphere_sweep,
 }

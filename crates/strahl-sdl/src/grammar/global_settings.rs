@@ -40,7 +40,7 @@ pub struct GlobalSettings {
     pub irid_wavelength: Option<Color>,
 }
 
-/// `global_settings { ... }`; of several, each item's last value counts.
+/// `global_settings { ... }`; of several, each item's last value counts, except that of `assumed_gamma`.
 pub(super) fn global_settings(p: &mut Parser<'_>) -> PResult<()> {
     p.braces(|p| p.items("`global_settings`", Parser::global_setting))
 }
@@ -128,10 +128,20 @@ impl Parser<'_> {
         Ok(())
     }
 
-    /// A number or `srgb` after `assumed_gamma`.
+    /// A number or `srgb` after `assumed_gamma`; of several the first counts (measured).
     fn assumed_gamma(&mut self) -> PResult<()> {
         let place = self.place();
         let space = self.transfer_function("assumed_gamma")?;
+        if let Some(first) = self.state.global.working_space {
+            if space != first {
+                self.warn_hint(
+                    place,
+                    "this `assumed_gamma` has no effect, because the scene has another one before",
+                    "as in POV-Ray, the first one counts",
+                );
+            }
+            return Ok(());
+        }
         if space != WorkingSpace::Linear {
             self.warn_hint(
                 place,

@@ -17,6 +17,7 @@ pub(super) fn sphere_sweep(p: &mut Parser<'_>) -> PResult<Entity> {
             }
         };
         p.take(token)?;
+        p.comma()?;
         let count = p.float()?;
         let place = p.place();
         if !(count >= spline.least() as f64) {
