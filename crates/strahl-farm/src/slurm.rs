@@ -38,12 +38,20 @@ pub fn render_script(options: &SlurmOptions, program: &Path, folder: &Path) -> S
     format!(
         "{head}#SBATCH --cpus-per-task={cpus}
 #SBATCH --requeue
-{program} submit task {shown} --task \"$SLURM_ARRAY_TASK_ID\" --threads \"${{SLURM_CPUS_PER_TASK:-1}}\"
-code=$?
-# A task that was killed (no memory, a person, a broken node) is tried again, twice at most. One whose scene has an error is not.
+render() {{
+    {program} submit task {shown} --task \"$SLURM_ARRAY_TASK_ID\" --threads \"${{SLURM_CPUS_PER_TASK:-1}}\"
+    code=$?
+}}
+render
+# A task that was killed (no memory, a person, a broken node) is tried again here, then elsewhere, where Slurm lets it wait for two minutes first.
+# One whose scene has an error is not tried again.
+if [ \"$code\" -gt 128 ]; then
+    echo \"strahl: the task was killed (code $code) and is tried again\"
+    render
+fi
 # An element's SLURM_JOB_ID may be that of the whole array, so it is named by array and index.
 if [ \"$code\" -gt 128 ] && [ \"${{SLURM_RESTART_COUNT:-0}}\" -lt 2 ]; then
-    echo \"strahl: the task was killed (code $code) and is queued again\"
+    echo \"strahl: the task was killed again (code $code) and is put back into the queue\"
     scontrol requeue \"${{SLURM_ARRAY_JOB_ID}}_${{SLURM_ARRAY_TASK_ID}}\" && sleep 60
 fi
 exit \"$code\"

@@ -53,9 +53,9 @@ pub(super) fn resume(args: &ResumeArgs) -> Result<(), Failure> {
         )));
     }
     let new = submit_slurm(&folder, &tasks)?;
-    let list = ranges(&tasks);
+    let (s, list) = (if tasks.len() == 1 { "" } else { "s" }, ranges(&tasks));
     say!(
-        "tasks {list}: Slurm job {} renders, job {} merges",
+        "task{s} {list}: Slurm job {} renders, job {} merges",
         new.array,
         new.merge
     );

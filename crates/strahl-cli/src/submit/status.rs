@@ -130,7 +130,8 @@ impl Status {
                 say!("           and {} more", parts.len() - MOST_SHOWN);
             }
         }
-        if let Some(left) = self.seconds_left.filter(|_| self.done < all) {
+        let waits = self.running.len() + self.missing.len() > 0;
+        if let Some(left) = self.seconds_left.filter(|_| waits) {
             say!("about {} left", duration(left));
         }
         match (self.merged, self.done == all) {
