@@ -6,7 +6,9 @@ use crate::interrupt::pressed;
 use crate::report::Failure;
 use std::collections::BTreeMap;
 use std::path::Path;
-use strahl::tracing::{Film, RayCounts, Region, RenderError, RenderOptions, RenderScene, estimate};
+use strahl::tracing::{
+    CostMeasure, Film, RayCounts, Region, RenderError, RenderOptions, RenderScene, estimate,
+};
 use strahl_farm::{Settings, TileFile, TileInfo, TilePlace, split};
 
 /// The program that renders tiles: those of different versions are not merged.
@@ -27,10 +29,13 @@ pub(crate) fn region(
     if place.count == 1 {
         return Ok(Region::full(options.width, options.height));
     }
-    let map = estimate(scene, options, SPACING, &()).map_err(|error| match error {
-        RenderError::Cancelled => Failure::Interrupted,
-        other => Failure::new(other),
-    })?;
+    let map =
+        estimate(scene, options, SPACING, CostMeasure::Counted, &()).map_err(
+            |error| match error {
+                RenderError::Cancelled => Failure::Interrupted,
+                other => Failure::new(other),
+            },
+        )?;
     let tiles = split(&map, place.count).map_err(Failure::new)?;
     let tile = tiles.get(place.number as usize - 1).copied();
     tile.ok_or_else(|| Failure::new(format!("there is no tile {place}")))

@@ -46,7 +46,7 @@ mod walk;
 pub use camera::PrimaryRays;
 pub use compile::{CompileOptions, Prepared, compile};
 pub use cost::PixelCost;
-pub use estimate::{CostMap, estimate};
+pub use estimate::{CostMap, CostMeasure, estimate};
 pub use film::{Film, FilmError, MergeError, PixelInfo, Region};
 pub use hit::{Hit, Origin, RayClass};
 pub use objects::{ObjectInfo, Objects};

@@ -13,9 +13,9 @@ use std::collections::BTreeSet;
 use std::ffi::OsString;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::time::{SystemTime, UNIX_EPOCH};
+use std::time::{Instant, SystemTime, UNIX_EPOCH};
 use strahl::Inputs;
-use strahl::tracing::{CostMap, Region, RenderOptions, estimate};
+use strahl::tracing::{CostMap, CostMeasure, Progress, Region, RenderOptions, estimate};
 use strahl_farm::{Bundle, Job, JobFrame, Movie, split};
 
 /// One ray for so many pixels in both directions looks where the scene is costly; it is done once for a job.
@@ -48,6 +48,15 @@ const NOT_FOR_TASKS: [&str; 15] = [
 
 /// Options of `render` for the file of the picture, which the merge writes.
 const OF_PICTURES: [&str; 3] = ["picture_format", "bit_depth", "jpeg_quality"];
+
+/// The clock for the look.
+struct Clock(Instant);
+
+impl Progress for Clock {
+    fn now(&self) -> u64 {
+        u64::try_from(self.0.elapsed().as_nanos()).unwrap_or(u64::MAX)
+    }
+}
 
 /// A job folder that was made.
 pub(super) struct Created {
@@ -342,7 +351,14 @@ fn tiles(
         1 => even,
         _ => {
             work::doing("looking where the scene is costly");
-            estimate(&scene, &options, SPACING, &()).map_err(Failure::new)?
+            estimate(
+                &scene,
+                &options,
+                SPACING,
+                CostMeasure::Timed,
+                &Clock(Instant::now()),
+            )
+            .map_err(Failure::new)?
         }
     };
     let tiles = split(&map, count).map_err(Failure::new)?;

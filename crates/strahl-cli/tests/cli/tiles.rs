@@ -186,3 +186,17 @@ fn impossible_tiles_are_told() {
         &["is one of the tiles"],
     );
 }
+
+#[test]
+fn machines_with_other_vector_instructions_find_the_same_tiles() {
+    let folder = folder();
+    let options = "--size 130x100 --sampling center";
+    both(folder.path(), options, 3);
+    run(
+        folder.path(),
+        &format!("render scene.pov -q -o t2.exr {options} --tile 2/3 --simd scalar --threads 2"),
+    );
+    run(folder.path(), "merge t1.exr t2.exr t3.exr -q -o merged.exr");
+    let read = |name: &str| fs::read(folder.path().join(name)).unwrap();
+    assert!(read("merged.exr") == read("whole.exr"));
+}
