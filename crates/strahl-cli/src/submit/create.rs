@@ -13,13 +13,16 @@ use std::collections::BTreeSet;
 use std::ffi::OsString;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::time::{Instant, SystemTime, UNIX_EPOCH};
+use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 use strahl::Inputs;
 use strahl::tracing::{CostMap, CostMeasure, Progress, Region, RenderOptions, estimate};
 use strahl_farm::{Bundle, Job, JobFrame, Movie, split};
 
-/// One ray for so many pixels in both directions looks where the scene is costly; it is done once for a job.
-const SPACING: u32 = 8;
+/// Rays that look where the scene is costly, once for a job: with 4,800 the longest of ten tiles took 1.5 times the mean in two of six scenes.
+const LOOKS: f64 = 30_000.0;
+
+/// One ray looks for so many pixels in both directions, at most.
+const WIDEST: f64 = 8.0;
 
 /// A tile of a job has at least this many pixels, unless more tiles are asked for.
 const LEAST_PIXELS: u64 = 96 * 96;
@@ -49,13 +52,26 @@ const NOT_FOR_TASKS: [&str; 15] = [
 /// Options of `render` for the file of the picture, which the merge writes.
 const OF_PICTURES: [&str; 3] = ["picture_format", "bit_depth", "jpeg_quality"];
 
-/// The clock for the look.
+/// The clock for the look: the time of the thread, which other programs on the machine don't disturb, or else the time of day.
 struct Clock(Instant);
 
 impl Progress for Clock {
     fn now(&self) -> u64 {
-        u64::try_from(self.0.elapsed().as_nanos()).unwrap_or(u64::MAX)
+        let time = thread_time().unwrap_or_else(|| self.0.elapsed());
+        u64::try_from(time.as_nanos()).unwrap_or(u64::MAX)
     }
+}
+
+#[cfg(unix)]
+fn thread_time() -> Option<Duration> {
+    use nix::time::{ClockId, clock_gettime};
+    let time = clock_gettime(ClockId::CLOCK_THREAD_CPUTIME_ID).ok()?;
+    Some(Duration::from(time))
+}
+
+#[cfg(not(unix))]
+fn thread_time() -> Option<Duration> {
+    None
 }
 
 /// A job folder that was made.
@@ -351,10 +367,12 @@ fn tiles(
         1 => even,
         _ => {
             work::doing("looking where the scene is costly");
+            let spacing = (f64::from(width) * f64::from(height) / LOOKS).sqrt();
+            let spacing = spacing.clamp(1.0, WIDEST) as u32;
             estimate(
                 &scene,
                 &options,
-                SPACING,
+                spacing,
                 CostMeasure::Timed,
                 &Clock(Instant::now()),
             )

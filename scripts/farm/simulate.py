@@ -1,0 +1,71 @@
+#!/usr/bin/env python3
+"""How long a still takes on many machines, from the measured costs of its tiles.
+
+    simulate.py SCENE-40.seconds [--seconds 1200] [--load 0.3] [--start 0.05] [--merge 0.01]
+
+The file has the CPU seconds of each tile (measure.sh writes it). The picture is scaled to --seconds of work on one
+machine. Each task costs --load seconds for reading and building the scene besides, the scheduler starts one task every
+--start seconds, and the merge reads one tile every --merge
+seconds and writes the picture in 0.4 seconds. Tasks are given to machines in order, the next
+one to the machine that is free first, as an array of Slurm does.
+"""
+
+import argparse
+import heapq
+import random
+
+parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+parser.add_argument("file")
+parser.add_argument("--seconds", type=float, default=1200)
+parser.add_argument("--load", type=float, default=0.3)
+parser.add_argument("--start", type=float, default=0.05)
+parser.add_argument("--merge", type=float, default=0.01)
+# A picture of 1920x1080 has so many blocks of 32x32 pixels.
+parser.add_argument("--most", type=int, default=2040)
+options = parser.parse_args()
+
+with open(options.file) as file:
+    measured = [float(line) for line in file if line.strip()]
+mean = sum(measured) / len(measured)
+# How unlike the tiles are; finer tiles are assumed to be as unlike.
+ratios = [cost / mean for cost in measured]
+
+
+def margin(tiles):
+    """What antialiasing adds at the edges: a row of first rays (a fifth of all) around square tiles."""
+    side = (1920 * 1080 / tiles) ** 0.5
+    return 4 / side / 5
+
+
+def run(nodes, tiles):
+    """Seconds until the last tile is done, and what each task took."""
+    draw = random.Random(tiles)
+    work = options.seconds / tiles * (1 + margin(tiles))
+    tasks = [options.load + work * draw.choice(ratios) for _ in range(tiles)]
+    free = [0.0] * nodes
+    end = 0.0
+    for index, task in enumerate(tasks):
+        begin = max(heapq.heappop(free), index * options.start)
+        heapq.heappush(free, begin + task)
+        end = max(end, begin + task)
+    return end, tasks
+
+
+print(f"{'nodes':>6} {'tiles':>6} {'tiles [s]':>10} {'merge [s]':>10} {'all [s]':>9} {'speed-up':>9} {'efficiency':>10}  bound by")
+for nodes in [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000]:
+    best = None
+    for each in [1, 2, 4, 8]:
+        tiles = min(nodes * each, options.most)
+        end, tasks = run(nodes, tiles)
+        merge = 0.4 + tiles * options.merge
+        if best is None or end + merge < best[0]:
+            bounds = {
+                "work": sum(tasks) / nodes,
+                "the longest tile": max(tasks),
+                "starting tasks": tiles * options.start,
+                "merging": merge,
+            }
+            best = (end + merge, tiles, end, merge, max(bounds, key=bounds.get))
+    all_, tiles, end, merge, bound = best
+    speed = options.seconds / all_
+    print(f"{nodes:>6} {tiles:>6} {end:>10.1f} {merge:>10.1f} {all_:>9.1f} {speed:>9.1f} {100 * speed / nodes:>9.1f}%  {bound}")
