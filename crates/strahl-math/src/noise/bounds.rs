@@ -1,6 +1,6 @@
 //! What noise can be within a box: for proofs that a function has no zero there.
 
-use super::kernel::CELL_SHIFT;
+use super::kernel::{CELL_SHIFT, OVERFLOW};
 use super::tables::{R, hash};
 use super::{NoiseGenerator, SHIFT, each, perlin_gradient, smooth, unit};
 use crate::DVec3;
@@ -64,14 +64,17 @@ fn linear(value: f64, gradient: DVec3, d: &Offset) -> Range {
     (middle - reach, middle + reach)
 }
 
-/// The hull of the bounds in all cells that the box meets; `None` if they are too many or the box is not finite.
+/// The hull of the bounds in all cells that the box meets; `None` if they are too many or beyond the range of 32-bit integers.
 fn over_cells(
     min: DVec3,
     max: DVec3,
     corner: impl Fn([i64; 3], [usize; 3], &Offset) -> Range,
 ) -> Option<Range> {
     let (first, last) = (min.floor(), max.floor());
-    // Also refuses NaN and infinity.
+    if min.cmple(DVec3::splat(-OVERFLOW)).any() || max.cmpge(DVec3::splat(OVERFLOW)).any() {
+        return None;
+    }
+    // Also refuses NaN.
     if !((last - first).cmple(DVec3::ONE).all() && max.cmpge(min).all()) {
         return None;
     }

@@ -11,13 +11,26 @@ pub(super) const CELL_SHIFT: u32 = 10_000;
 /// Numbers below it have room for a fraction of two bits.
 const LARGE: f64 = 2_251_799_813_685_248.0; // 2^51
 
-/// The lattice cell of a coordinate, modulo 2³², and the position within the cell. From 2⁵¹ on the cell is some cell; NaN and infinities
-/// have a NaN for a position.
+/// From here on, coordinates are beyond the range of 32-bit integers.
+pub(super) const OVERFLOW: f64 = 2_147_483_648.0; // 2^31
+
+/// As the conversion to an integer on x86 processors has it, which POV-Ray shows: the cell is the smallest integer, and the
+/// position is far outside of it, so that noise is 0 or 1 (measured).
+#[cold]
+fn overflowed(x: f64) -> (u32, f64) {
+    (1 << 31, x + OVERFLOW)
+}
+
+/// The lattice cell of a coordinate, modulo 2³², and the position within the cell. NaN has a NaN for a position, infinities have an
+/// infinite one.
 #[inline(always)]
 fn place<I: Isa>(x: f64) -> (u32, f64) {
     // The sum with a number below 2^51 has no bits for a fraction; its lowest bits are those of the integer.
     const ROUND: f64 = 3.0 * LARGE;
-    let floor = if I::LEVEL >= Level::Sse4 || x.abs() >= LARGE {
+    if x.abs() >= OVERFLOW {
+        return overflowed(x);
+    }
+    let floor = if I::LEVEL >= Level::Sse4 {
         x.floor()
     } else {
         // Without an instruction for it.

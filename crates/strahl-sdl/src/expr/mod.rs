@@ -233,11 +233,12 @@ impl Parser<'_> {
                 if divisor.as_slice().contains(&0.0) {
                     self.warn_hint(
                         place,
-                        "division by zero gives an infinite number or NaN",
+                        "division by zero gives infinity, as in POV-Ray",
                         "objects and colours that use it will be rejected",
                     );
                 }
-                a.zip(b, |x, y| x / y)
+                // Of any number, also of 0 and of negative ones (measured).
+                a.zip(b, |x, y| if y == 0.0 { f64::INFINITY } else { x / y })
             }
             Kind::Ampersand => a.zip(b, |x, y| truth(x != 0.0 && y != 0.0)),
             Kind::Bar => a.zip(b, |x, y| truth(x != 0.0 || y != 0.0)),
