@@ -37,11 +37,12 @@ def margin(tiles):
     return 4 / side / 5
 
 
-def run(nodes, tiles):
+def run(nodes, tiles, seed):
     """Seconds until the last tile is done, and what each task took."""
-    draw = random.Random(tiles)
-    work = options.seconds / tiles * (1 + margin(tiles))
-    tasks = [options.load + work * draw.choice(ratios) for _ in range(tiles)]
+    draw = random.Random(1000 * tiles + seed)
+    shares = [draw.choice(ratios) for _ in range(tiles)]
+    work = options.seconds * (1 + margin(tiles)) / sum(shares)
+    tasks = [options.load + work * share for share in shares]
     free = [0.0] * nodes
     end = 0.0
     for index, task in enumerate(tasks):
@@ -51,17 +52,24 @@ def run(nodes, tiles):
     return end, tasks
 
 
+def mean_run(nodes, tiles):
+    """The mean of several draws."""
+    runs = [run(nodes, tiles, seed) for seed in range(9)]
+    longest = sum(max(tasks) for _, tasks in runs) / len(runs)
+    return sum(end for end, _ in runs) / len(runs), sum(runs[0][1]), longest
+
+
 print(f"{'nodes':>6} {'tiles':>6} {'tiles [s]':>10} {'merge [s]':>10} {'all [s]':>9} {'speed-up':>9} {'efficiency':>10}  bound by")
 for nodes in [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000]:
     best = None
     for each in [1, 2, 4, 8]:
         tiles = min(nodes * each, options.most)
-        end, tasks = run(nodes, tiles)
+        end, work, longest = mean_run(nodes, tiles)
         merge = 0.4 + tiles * options.merge
         if best is None or end + merge < best[0]:
             bounds = {
-                "work": sum(tasks) / nodes,
-                "the longest tile": max(tasks),
+                "work": work / nodes,
+                "the longest tile": longest,
                 "starting tasks": tiles * options.start,
                 "merging": merge,
             }

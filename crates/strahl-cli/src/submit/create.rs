@@ -168,6 +168,12 @@ pub(super) fn create(
         if animation.is_none() {
             return Err(Failure::new("--movie needs a film: add --frames A-B"));
         }
+        let numbers: Vec<u32> = job.frames.iter().filter_map(|frame| frame.number).collect();
+        if numbers.windows(2).any(|pair| pair[1] != pair[0] + 1) {
+            return Err(Failure::new(
+                "--movie needs consecutive frames, but some are left out (--frame-step)",
+            ));
+        }
         job.movie = Some(Movie {
             file: absolute(file)?,
             rate: parts.movie_rate,

@@ -262,6 +262,11 @@ fn jobs_that_cannot_be_are_told() {
             2,
             "--frames",
         ),
+        (
+            "submit slurm scene.pov -o a.png -Llib --frames 1-5 --frame-step 2 --movie m.mp4 --dry-run",
+            1,
+            "consecutive",
+        ),
         ("submit status lib", 1, "not a job folder"),
         ("submit task lib --task 1", 1, "not a job folder"),
     ];
