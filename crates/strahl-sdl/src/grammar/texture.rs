@@ -182,15 +182,15 @@ impl Texture {
 
     /// Layers a texture over those written before, or replaces the default.
     fn cover(&mut self, p: &mut Parser<'_>, surface: Arc<Surface>) -> PResult<()> {
-        self.surface = if self.written {
-            p.weigh(weight::of_texture(&self.surface))?;
-            let lower = Surface::clone(&self.surface);
-            Arc::new(layers::layered(lower, Surface::clone(&surface)))
-        } else {
-            surface
-        };
-        p.layers_of_version(&mut self.surface);
+        let lower = self.written.then_some(&self.surface);
+        self.surface = p.layered_over(lower, surface)?;
         self.written = true;
+        Ok(())
+    }
+
+    /// Layers a texture over those written before for the inside.
+    fn cover_inside(&mut self, p: &mut Parser<'_>, surface: Arc<Surface>) -> PResult<()> {
+        self.inner_surface = Some(p.layered_over(self.inner_surface.as_ref(), surface)?);
         Ok(())
     }
 }
@@ -215,7 +215,8 @@ impl Parser<'_> {
             }
             Some(Word::InteriorTexture) => {
                 self.take(token)?;
-                texture.inner_surface = Some(self.surface_block()?);
+                let surface = self.surface_block()?;
+                texture.cover_inside(self, surface)?;
             }
             Some(Word::Interior) => {
                 self.take(token)?;
@@ -224,20 +225,29 @@ impl Parser<'_> {
             }
             Some(Word::Material) => {
                 self.take(token)?;
-                let material = self.material_block(texture.interior.clone())?;
-                if material.written {
-                    texture.cover(self, material.surface)?;
-                }
-                if material.inner_surface.is_some() {
-                    texture.inner_surface = material.inner_surface;
-                }
-                if material.interior.is_some() {
-                    texture.interior = material.interior;
-                }
+                self.material_block(texture)?;
             }
             _ => return Ok(false),
         }
         Ok(true)
+    }
+
+    /// `upper` over `lower`, if there is one.
+    fn layered_over(
+        &mut self,
+        lower: Option<&Arc<Surface>>,
+        upper: Arc<Surface>,
+    ) -> PResult<Arc<Surface>> {
+        let mut surface = match lower {
+            None => upper,
+            Some(lower) => {
+                self.weigh(weight::of_texture(lower))?;
+                let lower = Surface::clone(lower);
+                Arc::new(layers::layered(lower, Surface::clone(&upper)))
+            }
+        };
+        self.layers_of_version(&mut surface);
+        Ok(surface)
     }
 
     /// `pigment`, `normal` or `finish` with its block, changing the uppermost layer.

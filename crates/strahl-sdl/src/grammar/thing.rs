@@ -69,7 +69,7 @@ static THINGS: [Option<ThingParser>; Word::ALL.len()] = by_word::<ThingParser, _
         Ok(Thing::Interior(Arc::new(p.interior_block(None)?)))
     }),
     (Word::Material, |p| {
-        Ok(Thing::Material(Arc::new(p.material_block(None)?)))
+        Ok(Thing::Material(Arc::new(p.declared_material()?)))
     }),
     (Word::Normal, |p| {
         Ok(Thing::Normal(Arc::new(p.normal_block()?)))

@@ -9,7 +9,6 @@ use crate::keywords::Word;
 use crate::parser::{Failed, PResult, Parser};
 use crate::token::{Kind, Token};
 use std::sync::Arc;
-use strahl_shade::interior::Interior;
 use strahl_shade::normal::PovNormal;
 use strahl_shade::patterns::{Modifiers, Pattern, PatternField};
 use strahl_shade::pigment::{BlendMap, Pigment};
@@ -422,38 +421,47 @@ impl Parser<'_> {
         Ok(())
     }
 
-    /// `{ ... }` after `material`. Its interior begins with `interior`, that of the object so far.
-    pub(crate) fn material_block(&mut self, interior: Option<Arc<Interior>>) -> PResult<Texture> {
+    /// `{ ... }` after `material`, which changes the look of an object: its textures are layered over those of the object, and
+    /// its transformations transform them all, except those of the inside (measured).
+    pub(crate) fn material_block(&mut self, look: &mut Texture) -> PResult<()> {
         self.braces(|p| {
             let named = p.accept_thing(|thing| match thing {
                 Thing::Material(material) => Some(material),
                 _ => None,
             })?;
-            let mut material = match named {
-                Some(named) => Texture::clone(&named),
-                None => Texture {
-                    written: false,
-                    interior,
-                    ..p.state.default_texture.clone()
-                },
-            };
+            if let Some(named) = named {
+                if named.written {
+                    look.cover(p, Arc::clone(&named.surface))?;
+                }
+                if let Some(inner) = &named.inner_surface {
+                    look.cover_inside(p, Arc::clone(inner))?;
+                }
+                if named.interior.is_some() {
+                    look.interior.clone_from(&named.interior);
+                }
+            }
             p.items("`material`", |p, token| {
                 if let Some(by) = p.transformation(token)? {
-                    let transformed = |surface: &mut Arc<Surface>| {
-                        transform(Arc::make_mut(surface), &by);
-                    };
-                    transformed(&mut material.surface);
-                    if let Some(inner) = &mut material.inner_surface {
-                        transformed(inner);
-                    }
+                    let inside = look.inner_surface.take();
+                    *look = look.transformed(&by);
+                    look.inner_surface = inside;
                     return Ok(());
                 }
-                if p.texture_item(&mut material, token)? {
+                if p.texture_item(look, token)? {
                     return Ok(());
                 }
                 p.skip_item(token, "`material`")
-            })?;
-            Ok(material)
+            })
         })
+    }
+
+    /// `{ ... }` after `material` in a declaration.
+    pub(crate) fn declared_material(&mut self) -> PResult<Texture> {
+        let mut material = Texture {
+            written: false,
+            ..self.state.default_texture.clone()
+        };
+        self.material_block(&mut material)?;
+        Ok(material)
     }
 }
