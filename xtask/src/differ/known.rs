@@ -1,7 +1,7 @@
 /// Differences that are intended or that are POV-Ray's: the words that the smallest scene contains, and the reason.
 ///
 /// docs/src/differ.md explains them.
-pub(super) const KNOWN: [(&[&str], &str); 48] = [
+pub(super) const KNOWN: [(&[&str], &str); 51] = [
     (&["crystal.ttf"], FONTS),
     (&["cyrvetic.ttf"], FONTS),
     (&["timrom.ttf"], FONTS),
@@ -31,6 +31,8 @@ pub(super) const KNOWN: [(&[&str], &str); 48] = [
     (&["union", "inverse", "difference"], BOXES),
     (&["merge", "inverse", "intersection"], BOXES),
     (&["merge", "inverse", "difference"], BOXES),
+    (&["merge", "inverse", "fog"], BOXES),
+    (&["merge", "inverse", "rainbow"], BOXES),
     (&["clipped_by", "inverse", "intersection"], BOXES),
     (&["clipped_by", "inverse", "difference"], BOXES),
     (&["isosurface", "intersection"], CAPS),
@@ -49,6 +51,10 @@ pub(super) const KNOWN: [(&[&str], &str); 48] = [
     (&["mesh2", "intersection"], OPEN_MESHES),
     (&["mesh2", "difference"], OPEN_MESHES),
     (&["mesh2", "merge"], OPEN_MESHES),
+    (
+        &["parametric", "accuracy", "clipped_by"],
+        "POV-Ray's parametric surfaces lie beside themselves by their accuracy",
+    ),
     (&["sphere_sweep", "rgbt"], JOINTS),
     (&["sphere_sweep", "rgbf"], JOINTS),
     (&["sphere_sweep", "transmit"], JOINTS),
