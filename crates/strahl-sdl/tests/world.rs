@@ -62,6 +62,29 @@ fn what_is_missing_is_named_and_read_past() {
 }
 
 #[test]
+fn smooth_within_the_braces_of_a_mesh_camera_interpolates_normals() {
+    // As in POV-Ray, which rejects it behind the braces.
+    let smooth = |word: &str| {
+        let text =
+            format!("camera {{ mesh_camera {{ 1 3 mesh {{ triangle {{ 0, x, y }} }} {word} }} }}");
+        match scene(&text).0.camera.unwrap().projection {
+            Projection::Mesh(mesh) => mesh.smooth,
+            other => panic!("{other:?} is not a mesh camera"),
+        }
+    };
+    assert!(smooth("smooth"));
+    assert!(!smooth(""));
+}
+
+#[test]
+fn a_second_assumed_gamma_is_ignored_with_a_warning() {
+    let text = "global_settings { assumed_gamma 1 } global_settings { assumed_gamma 2.2 }";
+    let (scene, messages) = scene(text);
+    assert_eq!(scene.settings.working_space, WorkingSpace::Linear);
+    assert!(messages.contains("the first one counts"), "{messages}");
+}
+
+#[test]
 fn versions_decide_what_numbers_mean() {
     let space = |text: &str| scene(text).0.settings.working_space;
     assert_eq!(space("#version 3.7;"), WorkingSpace::Linear);

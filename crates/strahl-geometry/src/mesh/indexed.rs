@@ -76,6 +76,8 @@ pub struct TriangleMesh {
     /// Whether fronts are clockwise, as after a mirroring transform, which keeps the order of the vertices (and with it the
     /// barycentric coordinates).
     flipped: bool,
+    /// Triangles whose last two vertices are exchanged against the order in which they were written; `None` if there are none.
+    exchanged: Option<Box<[bool]>>,
 }
 
 impl TriangleMesh {
@@ -161,6 +163,7 @@ impl TriangleMesh {
             face_materials: data.face_materials.map(Into::into),
             face_lines: data.face_lines.map(Into::into),
             flipped: false,
+            exchanged: None,
         })
     }
 
@@ -348,6 +351,20 @@ impl TriangleMesh {
         check_finite("vertex", &copy.positions)?;
         copy.bounds = bounds_of(copy.anchor, &copy.positions, &copy.indices);
         Ok(copy)
+    }
+
+    /// Says of every triangle whether its last two vertices are exchanged against the order in which they were written, which cameras
+    /// made of meshes follow.
+    #[must_use]
+    pub fn with_exchanged(mut self, exchanged: Vec<bool>) -> Self {
+        self.exchanged = exchanged.contains(&true).then(|| exchanged.into());
+        self
+    }
+
+    /// Whether the last two vertices of a triangle are exchanged against the order in which they were written.
+    pub fn is_exchanged(&self, triangle: u32) -> bool {
+        let list = self.exchanged.as_deref().unwrap_or_default();
+        list.get(triangle as usize).copied().unwrap_or(false)
     }
 
     /// The same surface with fronts and backs exchanged.

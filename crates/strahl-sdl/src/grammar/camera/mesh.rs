@@ -7,9 +7,10 @@ use strahl_geometry::{Shape, TriangleMesh};
 use strahl_math::{DVec3, Transform};
 use strahl_scene::{CameraFace, MeshCamera, MeshLayout, Object, ObjectKind};
 
-/// A mesh camera being read; `location`, `direction` and `smooth` are outside of its braces.
+/// A mesh camera being read; `location` and `direction` are outside of its braces.
 pub(super) struct MeshDraft {
     layout: MeshLayout,
+    smooth: bool,
     meshes: Vec<Vec<CameraFace>>,
 }
 
@@ -20,7 +21,7 @@ impl MeshDraft {
             meshes: self.meshes,
             offset,
             reversed,
-            smooth,
+            smooth: smooth || self.smooth,
         }
     }
 }
@@ -89,14 +90,20 @@ impl Parser<'_> {
                     format!("{needed} rays per pixel need as many meshes, but there are {count}");
                 return Err(p.fail(place, message));
             }
-            // The remaining items are words that concern the meshes.
+            let mut smooth = false;
             p.items("`mesh_camera`", |p, token| {
                 if token.is(Word::Smooth) {
-                    return p.take(token);
+                    p.take(token)?;
+                    smooth = p.switched()?;
+                    return Ok(());
                 }
                 p.skip_item(token, "`mesh_camera`")
             })?;
-            Ok(MeshDraft { layout, meshes })
+            Ok(MeshDraft {
+                layout,
+                smooth,
+                meshes,
+            })
         })
     }
 }
@@ -123,13 +130,18 @@ fn add_faces(mesh: &TriangleMesh, map: &Transform, faces: &mut Vec<CameraFace>) 
     for number in 0..mesh.triangle_count() {
         let corners = mesh.corners(number).map(|c| map.point_to_world(c));
         let [a, b, c] = corners;
+        let clockwise = (c - a).cross(b - a).normalize_or(DVec3::Z);
         let turned = |n: DVec3| map.normal_to_world(n).normalize_or_zero();
         let at = |u: f64, v: f64| mesh.surface_at_element(number, [u, v]).uv;
         faces.push(CameraFace {
             corners,
-            // The normal points to the side from which the corners are in clockwise order, in left-handed space (measured with
-            // POV-Ray 3.7).
-            normal: (c - a).cross(b - a).normalize_or(DVec3::Z),
+            // The normal points to the side from which the corners, as they are written, are in clockwise order, in left-handed
+            // space (measured with POV-Ray 3.7).
+            normal: if mesh.is_exchanged(number) {
+                -clockwise
+            } else {
+                clockwise
+            },
             normals: mesh.corner_normals(number).map(|n| n.map(turned)),
             uv: Some([at(0.0, 0.0), at(1.0, 0.0), at(0.0, 1.0)]),
         });

@@ -66,14 +66,18 @@ impl Parser<'_> {
         }
         let mut objects = vec![];
         for (texture, mut data) in parts.meshes {
+            let smooth = data.normals.is_some();
+            let turns = smooth || (parts.has_inside && single);
+            let written = if turns { data.indices.clone() } else { vec![] };
             if parts.has_inside && single {
                 orient::orient(&mut data);
             } else {
                 orient::turn_to_front(&mut data);
             }
-            let smooth = data.normals.is_some();
+            let exchanged = written.iter().zip(&data.indices).map(|(a, b)| a != b);
+            let exchanged = exchanged.collect();
             let mesh = match TriangleMesh::try_new(data) {
-                Ok(mesh) => mesh,
+                Ok(mesh) => mesh.with_exchanged(exchanged),
                 Err(error) => return Err(self.fail(place, error.to_string())),
             };
             let shape = if parts.has_inside && single {
