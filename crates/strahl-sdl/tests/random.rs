@@ -46,6 +46,7 @@ groups! {
     the_values_of_a_pattern_that_replaces_an_image_map_are_not_repeated,
     slopes_see_normals_of_any_length_with_no_bump_scale,
     of_several_assumed_gammas_the_first_counts,
+    fractals_with_frequency_0_go_beyond_1,
     rays_of_mesh_cameras_leave_the_clockwise_side_of_faces_as_written,
     a_material_changes_the_look_that_the_object_has,
     anything_divided_by_0_is_infinity,

@@ -389,10 +389,13 @@ impl FieldRef<'_> {
         let raw = self.pattern.raw(p, point, self.modifiers);
         let wave = self.modifiers.wave;
         let wave = wave.unwrap_or_else(|| self.pattern.default_wave());
-        let is_beyond =
-            matches!(self.pattern, Pattern::Radial) || self.pattern.block_count().is_some();
+        let is_beyond = match self.pattern {
+            Pattern::Radial => true,
+            Pattern::Fractal(_) => raw > 1.0,
+            pattern => pattern.block_count().is_some(),
+        };
         if self.modifiers.frequency == 0.0 && is_beyond {
-            // The numbers of blocks, and the angles of `radial` above 1, are not repeated (measured).
+            // The numbers of blocks, and the values of `radial` and fractals above 1, are not repeated (measured).
             return wave.apply(raw);
         }
         self.modifiers.shape(raw, wave)
