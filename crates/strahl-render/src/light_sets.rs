@@ -90,11 +90,17 @@ pub(crate) struct LightSetsDraft {
     special: bool,
 }
 
-#[derive(Debug)]
+#[derive(Debug, Default)]
 struct GroupDraft {
     global_lights: bool,
     /// Numbers of its own lights among those found in objects.
     lights: Vec<u32>,
+    /// Whether it has objects that are not bodies of its lights.
+    has_objects: bool,
+    /// The set of the bodies of its lights.
+    lamps: Option<u32>,
+    /// The set of the group whose lights' bodies these are.
+    lamps_of: Option<u32>,
 }
 
 impl LightSetsDraft {
@@ -107,9 +113,28 @@ impl LightSetsDraft {
         };
         self.groups.push(GroupDraft {
             global_lights,
-            lights: vec![],
+            ..GroupDraft::default()
         });
         self.groups.len() as u32
+    }
+
+    /// The set of the bodies that the lights of a group have. As in POV-Ray (measured) the lights outside shine on them whether the
+    /// group has `global_lights` or not, and the lights of the group only if there are objects in it.
+    pub(crate) fn of_lamps(&mut self, set: u32) -> u32 {
+        let next = self.groups.len() as u32 + 1;
+        let Some(group) = self.group(set) else {
+            return set;
+        };
+        if let Some(lamps) = group.lamps {
+            return lamps;
+        }
+        group.lamps = Some(next);
+        self.groups.push(GroupDraft {
+            global_lights: true,
+            lamps_of: Some(set),
+            ..GroupDraft::default()
+        });
+        next
     }
 
     fn group(&mut self, set: u32) -> Option<&mut GroupDraft> {
@@ -125,6 +150,9 @@ impl LightSetsDraft {
 
     /// Sets how an object is lit; objects come in the order of their numbers.
     pub(crate) fn add_object(&mut self, lit: Lit, object: u32) {
+        if let Some(group) = self.group(lit.set) {
+            group.has_objects = true;
+        }
         if lit != Lit::PLAIN {
             self.of_objects.resize(object as usize, Lit::PLAIN);
             self.of_objects.push(lit);
@@ -134,6 +162,9 @@ impl LightSetsDraft {
 
     /// Takes note of how an instance is lit.
     pub(crate) fn add_instance(&mut self, lit: Lit) {
+        if let Some(group) = self.group(lit.set) {
+            group.has_objects = true;
+        }
         self.special |= lit != Lit::PLAIN;
     }
 
@@ -159,7 +190,12 @@ impl LightSetsDraft {
             } else {
                 vec![]
             };
-            list.extend(group.lights.iter().map(|light| light + before));
+            let own = match group.lamps_of.map(|set| &self.groups[set as usize - 1]) {
+                None => Some(group),
+                Some(around) => around.has_objects.then_some(around),
+            };
+            let own = own.iter().flat_map(|group| &group.lights);
+            list.extend(own.map(|light| light + before));
             list
         };
         let of_groups: Vec<Vec<u32>> = self.groups.iter().map(of_group).collect();

@@ -131,6 +131,9 @@ pub struct Object {
     pub double_illuminated: bool,
     /// Whether its textures and those of its parts lie on the texture coordinates of the surfaces (POV-Ray's `uv_mapping`).
     pub uv_mapped: bool,
+    /// Whether it is the visible body of a light (POV-Ray's `looks_like`). As in POV-Ray (measured) rays of the eye never start inside
+    /// of it, and in a light group the lights outside of the group shine on it too.
+    pub is_lamp: bool,
     /// Its kind.
     pub kind: ObjectKind,
 }
@@ -156,6 +159,7 @@ impl Object {
             hollow: None,
             double_illuminated: false,
             uv_mapped: false,
+            is_lamp: false,
             kind,
         }
     }

@@ -52,4 +52,8 @@ groups! {
     anything_divided_by_0_is_infinity,
     noise_beyond_the_range_of_integers,
     a_comma_may_follow_the_spline_of_a_sphere_sweep,
+    solids_without_an_interior_hold_the_eye_too,
+    discs_hold_the_eye_within_their_boxes,
+    the_eye_is_never_in_the_body_of_a_light,
+    bodies_of_lights_in_light_groups,
 }

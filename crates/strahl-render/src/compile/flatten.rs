@@ -79,7 +79,6 @@ pub(super) fn flatten(scene: &Scene) -> Result<Flat, Vec<Diagnostic>> {
         errors: vec![],
         checked: HashSet::new(),
         in_world: false,
-        air: !scene.fogs.is_empty() || !scene.rainbows.is_empty(),
         bodies: 0,
     };
     let world = std::iter::once(&scene.objects);
@@ -119,8 +118,6 @@ struct Pass {
     checked: HashSet<MaterialId>,
     /// Whether the world is being flattened, not a group.
     in_world: bool,
-    /// Whether there are fogs or rainbows.
-    air: bool,
     /// Bodies so far.
     bodies: u32,
 }
@@ -142,6 +139,8 @@ struct Todo<'a> {
     /// Whether the object that has the material has `uv_mapping`.
     material_uv_mapped: bool,
     lit: Lit,
+    /// Whether it is the body of a light.
+    is_lamp: bool,
     /// The body that it is or is a part of; `None` if it is the first of one that has no number yet.
     body: Option<u32>,
     /// The bounds that it is seen through.
@@ -167,6 +166,7 @@ impl<'a> Todo<'a> {
                     both_sides: object.double_illuminated,
                     ..Lit::PLAIN
                 },
+                is_lamp: object.is_lamp,
                 body: None,
                 bounds: Rc::default(),
             };
@@ -210,6 +210,7 @@ impl<'a> Todo<'a> {
                 set: p.lit.set,
                 both_sides: object.double_illuminated || p.lit.both_sides,
             },
+            is_lamp: object.is_lamp || p.is_lamp,
         }
     }
 }
@@ -238,17 +239,19 @@ impl Pass {
                 ObjectKind::Shape(shape) => self.shape(shape, &todo, group),
                 ObjectKind::Light(light) => self.light(light, &todo),
                 ObjectKind::Instance(id) if (id.0 as usize) < scene.groups.len() => {
+                    let lit = self.lit(&todo);
                     group.instances.push(InstanceUse {
                         group: id.0,
                         transform: todo.transform,
-                        lit: todo.lit,
+                        lit,
                     });
-                    self.flat.light_sets.add_instance(todo.lit);
+                    self.flat.light_sets.add_instance(lit);
                     let index = group.instances.len() as u32 - 1;
+                    let filled = if todo.is_lamp { 0 } else { Prim::FILLED };
                     group.prims.push(Prim::new(
                         PrimKind::Instance(index),
                         visible(todo.visibility),
-                        Prim::STOPS | Prim::TRANSMITS | Prim::FILLED,
+                        Prim::STOPS | Prim::TRANSMITS | filled,
                     ));
                 }
                 ObjectKind::Instance(id) => {
@@ -319,6 +322,15 @@ impl Pass {
         children.0.iter().filter(move |c| !own_light(c))
     }
 
+    /// How an object is lit: the bodies of lights in a light group have a set of their own.
+    fn lit(&mut self, todo: &Todo<'_>) -> Lit {
+        let mut lit = todo.lit;
+        if todo.is_lamp {
+            lit.set = self.flat.light_sets.of_lamps(lit.set);
+        }
+        lit
+    }
+
     fn light(&mut self, light: &SceneLight, todo: &Todo<'_>) {
         self.flat.lights.push(SceneLight {
             name: light.name.as_ref().or(todo.name).cloned(),
@@ -340,7 +352,8 @@ impl Pass {
             span: todo.span,
         });
         let object = self.flat.objects.len() as u32 - 1;
-        self.flat.light_sets.add_object(todo.lit, object);
+        let lit = self.lit(todo);
+        self.flat.light_sets.add_object(lit, object);
         let spaces = &mut self.flat.texture_spaces;
         let textured = self.flat.materials.get(material).texture.is_some();
         let texture_space = if !textured || todo.material_space.is_identity() {
@@ -377,7 +390,7 @@ impl Pass {
         }
     }
 
-    fn flags(&self, material: MaterialId) -> u8 {
+    fn flags(&self, todo: &Todo<'_>, material: MaterialId) -> u8 {
         let material = self.flat.materials.get(material);
         let light = if material_transmits(material) {
             Prim::TRANSMITS
@@ -394,7 +407,7 @@ impl Pass {
             0
         };
         let filtered = if sides | mask == 0 { 0 } else { Prim::FILTERED };
-        let filled = if material_fills(material, self.air) {
+        let filled = if material_fills(material) && !todo.is_lamp {
             Prim::FILLED
         } else {
             0
@@ -416,7 +429,7 @@ impl Pass {
             return;
         }
         let look = self.look(todo, shape.kind());
-        let flags = self.flags(look.material);
+        let flags = self.flags(todo, look.material);
         let visible = visible(todo.visibility);
         let identity = todo.transform.is_identity();
         // Triangles of meshes are seen by all rays.
@@ -472,7 +485,7 @@ impl Pass {
             Ok(csg) => {
                 let flags = looks
                     .iter()
-                    .fold(0, |f, look| f | self.flags(look.material));
+                    .fold(0, |f, look| f | self.flags(todo, look.material));
                 let looks = Looks::of_leaves(looks, todo.body.unwrap_or(0));
                 let visible = visible(todo.visibility);
                 group.add_shape(Arc::new(csg).into(), looks, visible, flags);

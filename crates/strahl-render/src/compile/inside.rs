@@ -53,15 +53,17 @@ fn bounds(object: &Object, to_group: &Transform) -> Option<Aabb> {
     })
 }
 
-/// Something with the box of a shape, if the shape as a solid has another in strahl (measured): height fields end with their surface, and
-/// quadrics that are written with mixed terms have none.
+/// Something with the box of a shape, if the shape as a solid has another in strahl (measured): height fields and discs end with their
+/// surface, and quadrics that are written with mixed terms have none.
 fn boxed(shape: &Shape) -> Shape {
+    let cuboid = |bounds: Aabb| {
+        // A flat one has no volume.
+        let bounds = bounds.padded(DVec3::splat(1e-9));
+        Cuboid::try_new(bounds.min, bounds.max).map_or_else(|_| shape.clone(), Shape::from)
+    };
     match shape {
-        Shape::HeightField(field) => {
-            // A flat one has no volume.
-            let bounds = field.bounds().padded(DVec3::splat(1e-9));
-            Cuboid::try_new(bounds.min, bounds.max).map_or_else(|_| shape.clone(), Shape::from)
-        }
+        Shape::HeightField(field) => cuboid(field.bounds()),
+        Shape::Disc(disc) => cuboid(disc.bounds()),
         Shape::Quadric(quadric) if quadric.has_mixed_terms() => {
             Plane::new(DVec3::ZERO, DVec3::Y).into()
         }

@@ -49,13 +49,20 @@ pub(crate) fn material_transmits(material: &Material) -> bool {
     }
 }
 
-/// Whether it may matter to rays that they start inside of the material; `air` is whether there are fogs or rainbows.
-pub(super) fn material_fills(material: &Material, air: bool) -> bool {
-    if material.texture.is_some() {
-        return air || material.interior.is_some();
+/// Whether rays may start inside of the material. Objects without an `interior` count too: the eye is in the one it gets out of last.
+pub(super) fn material_fills(material: &Material) -> bool {
+    material.texture.is_some() || !material.thin && material_transmits(material)
+}
+
+/// Whether it is seen that a ray is inside of the material, or has left it.
+pub(super) fn material_shows(material: &Material) -> bool {
+    match material.texture {
+        Some(_) => material.interior.is_some(),
+        None => {
+            let seen = material.eta != 1.0 || !material.absorption.is_black();
+            seen && material_fills(material)
+        }
     }
-    let seen = material.eta != 1.0 || !material.absorption.is_black();
-    (seen || air) && !material.thin && material_transmits(material)
 }
 
 /// The error in a material's numbers, if there is one.

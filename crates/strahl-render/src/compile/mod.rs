@@ -168,12 +168,12 @@ impl Prepared {
             mask.group = renumber(mask.group);
         }
         let air = !self.fogs.is_empty() || !self.rainbows.is_empty();
-        let fills = |m: &Arc<Material>| materials::material_fills(m, air);
+        let shows = |m: &Arc<Material>| materials::material_shows(m);
         let transmits = self.materials.iter().any(|m| material_transmits(m));
         let disperses = |m: &Arc<Material>| m.interior.as_ref().is_some_and(|i| i.disperses());
         RenderScene {
             disperses: self.materials.iter().any(disperses),
-            fills: self.materials.iter().any(fills),
+            fills: air || self.materials.iter().any(shows),
             groups: groups.collect(),
             objects: self.objects,
             uses_uv: self.materials.iter().map(|m| m.uses_uv()).collect(),

@@ -120,15 +120,16 @@ impl Filled {
     }
 }
 
-/// Whether a place is inside of a shape. A disc, which is a half-space for CSG, is a sheet by itself, and a height field ends with its
-/// lowest point (measured).
+/// Whether a place is inside of a shape. A disc, which is a half-space for CSG, fills no more than its box by itself, and a height field
+/// ends with its lowest point (measured).
 fn holds(shape: &Shape, place: DVec3) -> bool {
-    let is_without = match shape {
-        Shape::Disc(_) => true,
-        Shape::HeightField(field) => !field.bounds().contains(place),
-        _ => false,
+    let bounds = match shape {
+        Shape::Disc(disc) => Some(disc.bounds()),
+        Shape::HeightField(field) => Some(field.bounds()),
+        _ => None,
     };
-    !is_without && shape.as_solid().is_some_and(|solid| solid.contains(place))
+    let may_hold = bounds.is_none_or(|bounds| bounds.contains(place));
+    may_hold && shape.as_solid().is_some_and(|solid| solid.contains(place))
 }
 
 impl RenderScene {

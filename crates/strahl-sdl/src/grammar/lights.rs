@@ -358,6 +358,7 @@ impl Parser<'_> {
     fn looks_like(&mut self) -> PResult<Object> {
         let mut object = super::objects::object(self)?.object;
         object.visibility.shadow = false;
+        object.is_lamp = true;
         Ok(object)
     }
 

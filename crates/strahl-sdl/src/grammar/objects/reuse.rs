@@ -197,6 +197,7 @@ fn attributes(object: &Object, kind: ObjectKind) -> Object {
         hollow: object.hollow,
         double_illuminated: object.double_illuminated,
         uv_mapped: object.uv_mapped,
+        is_lamp: object.is_lamp,
         kind,
     }
 }
