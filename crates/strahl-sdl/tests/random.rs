@@ -56,4 +56,5 @@ groups! {
     discs_hold_the_eye_within_their_boxes,
     the_eye_is_never_in_the_body_of_a_light,
     bodies_of_lights_in_light_groups,
+    height_fields_in_intersections_have_no_box,
 }
