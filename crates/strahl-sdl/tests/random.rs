@@ -57,4 +57,5 @@ groups! {
     the_eye_is_never_in_the_body_of_a_light,
     bodies_of_lights_in_light_groups,
     height_fields_in_intersections_have_no_box,
+    no_cone_lights_what_is_behind_it,
 }

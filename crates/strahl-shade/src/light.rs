@@ -48,7 +48,8 @@ pub enum LightKind {
         position: DVec3,
         /// Unit direction in which the light travels, the axis.
         direction: DVec3,
-        /// Distance from the axis up to which the light has its full strength.
+        /// Distance from the axis up to which the light has its full strength; infinite for light that fills the half-space before its
+        /// plane.
         inner: f64,
         /// Distance from the axis beyond which there is no light; with `inner` above it the beam ends sharply at `inner`.
         outer: f64,
@@ -189,7 +190,8 @@ impl Light {
         if let Some((direction, cos_inner, cos_outer, tightness)) = cone {
             let cosine = -l.dot(direction);
             strength *= smooth_step(cos_outer, cos_inner, cosine);
-            if strength == 0.0 {
+            // There is no light behind the plane through the light, however wide the cone is (measured with POV-Ray).
+            if strength == 0.0 || cosine <= 0.0 {
                 return None;
             }
             strength *= power(cosine, tightness);

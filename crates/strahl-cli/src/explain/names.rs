@@ -67,6 +67,7 @@ pub(crate) fn light_kind(light: &Light) -> &'static str {
         LightKind::Point { .. } => "point light",
         LightKind::Spot { .. } => "spot light",
         LightKind::Directional { .. } | LightKind::Parallel { .. } => "parallel light",
+        LightKind::Beam { inner, .. } if inner.is_infinite() => "parallel light",
         LightKind::Beam { .. } => "cylindrical light",
         _ => "light",
     }

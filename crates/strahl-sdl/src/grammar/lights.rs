@@ -185,7 +185,15 @@ impl Draft {
                 outer: self.falloff.unwrap_or(1.0),
                 tightness: self.tightness,
             },
-            // For a parallel light, every point is in the middle of the cone.
+            // For a parallel light, every point in front of its plane is in the middle of the cone. As in POV-Ray (measured) light without
+            // shadows and that of no cone is behind the plane too.
+            Form::Spot if self.parallel && !self.shadowless => LightKind::Beam {
+                position,
+                direction,
+                inner: f64::INFINITY,
+                outer: f64::INFINITY,
+                tightness: 0.0,
+            },
             _ if self.parallel => LightKind::Parallel {
                 position,
                 direction,
