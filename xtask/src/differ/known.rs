@@ -88,8 +88,27 @@ const OPEN_MESHES: &str = "POV-Ray misses faces of meshes behind other faces in 
 
 /// The known reason for the difference of a smallest scene, if there is one.
 pub(super) fn reason(text: &str) -> Option<&'static str> {
-    find(&KNOWN, text).or_else(|| {
-        repeats_an_operand(text).then_some("two operands have the same surface: rounding decides")
+    if let Some(reason) = find(&KNOWN, text) {
+        return Some(reason);
+    }
+    if repeats_an_operand(text) {
+        return Some("two operands have the same surface: rounding decides");
+    }
+    divides_constants(text)
+        .then_some("POV-Ray divides constants in brackets by the product of what follows")
+}
+
+/// Whether a function divides a bracket without variables by a number, and multiplies or divides the result.
+fn divides_constants(text: &str) -> bool {
+    text.match_indices(")/").any(|(close, _)| {
+        let behind = text[close + 2..].trim_start_matches(|c: char| c.is_ascii_digit() || c == '.');
+        let goes_on = behind.trim_start().starts_with(['*', '/']);
+        let mut depth = 0;
+        let open = text[..=close].rfind(|c| {
+            depth += i32::from(c == ')') - i32::from(c == '(');
+            depth == 0
+        });
+        goes_on && open.is_some_and(|open| !text[open..close].contains(char::is_alphabetic))
     })
 }
 
@@ -149,6 +168,25 @@ mod tests {
             Some("noise")
         );
         assert_eq!(find(&known, "sphere { finish { crandy 0.1 } }"), None);
+    }
+
+    #[test]
+    fn divided_constants_are_seen() {
+        for text in [
+            "sin( floor( ( 1 ) *3)/3 *3)",
+            "(1)/4/.5",
+            "max(1, .5)/4 * 2",
+        ] {
+            assert!(divides_constants(text), "{text}");
+        }
+        for text in [
+            "floor( ( x ) *3)/3 *3",
+            "floor(1)/4 + 1",
+            "(1)*4/8",
+            "1)/3*3",
+        ] {
+            assert!(!divides_constants(text), "{text}");
+        }
     }
 
     #[test]

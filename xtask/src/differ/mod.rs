@@ -185,7 +185,8 @@ fn smallest(
     verdict: &Verdict,
 ) -> Result<String> {
     let mut failed = None;
-    let smallest = reduce::reduce(scene, options.jobs, TRIES, write, |texts| {
+    let is_known = |text: &str| known::reason(text).is_some();
+    let smallest = reduce::reduce(scene, options.jobs, TRIES, write, is_known, |texts| {
         let all = in_parallel(texts, options.jobs, |_, text| render::judge(programs, text));
         match all {
             Ok(all) => all.iter().map(|now| now.is_like(verdict)).collect(),

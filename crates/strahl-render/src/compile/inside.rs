@@ -121,7 +121,8 @@ fn combined(
                     let parts = || children.0.iter().filter(|c| !is_light(c));
                     steps.push(Step::Build(*op, parts().count()));
                     let parts = parts().rev();
-                    steps.extend(parts.map(|part| Step::Visit(part, placed(part, &map), Some(*op))));
+                    steps
+                        .extend(parts.map(|part| Step::Visit(part, placed(part, &map), Some(*op))));
                     continue;
                 }
                 ObjectKind::Shape(own) => CsgNode::leaf(shape(own, parent), 0).transformed(map),
