@@ -1,6 +1,6 @@
 #!/bin/bash
 # A Slurm cluster of two virtual nodes on this machine, without systemd: munged, slurmctld and two slurmd, all of them in one folder.
-# Needs Debian's packages slurm-wlm and munge.
+# Needs Debian's packages slurm-wlm and munge. Nodes have one processor each, or NODE_CPUS.
 #
 #   cluster.sh start DIR     starts it; `export SLURM_CONF=DIR/slurm.conf` then makes sbatch, squeue, ... use it
 #   cluster.sh node DIR N    starts the slurmd of node N (again)
@@ -47,8 +47,8 @@ KillWait=3
 MinJobAge=3600
 SchedulerParameters=sched_interval=2,batch_sched_delay=0,sched_min_interval=0,bf_interval=2
 SlurmdParameters=config_overrides
-NodeName=n1 NodeHostname=$(hostname) NodeAddr=127.0.0.1 Port=26818 CPUs=1 RealMemory=1024
-NodeName=n2 NodeHostname=$(hostname) NodeAddr=127.0.0.1 Port=26819 CPUs=1 RealMemory=1024
+NodeName=n1 NodeHostname=$(hostname) NodeAddr=127.0.0.1 Port=26818 CPUs=${NODE_CPUS:-1} RealMemory=1024
+NodeName=n2 NodeHostname=$(hostname) NodeAddr=127.0.0.1 Port=26819 CPUs=${NODE_CPUS:-1} RealMemory=1024
 PartitionName=all Nodes=n1,n2 Default=YES MaxTime=60 State=UP
 END
 }

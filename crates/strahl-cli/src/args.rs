@@ -17,6 +17,7 @@ use strahl_farm::TilePlace;
 #[command(
     name = "strahl",
     version,
+    long_version = env!("STRAHL_BUILD"),
     arg_required_else_help = true,
     after_help = "`strahl scene.pov` and POV-Ray's command lines, such as `strahl +Iscene.pov +W640 +H480`, work without `render`."
 )]

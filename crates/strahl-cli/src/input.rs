@@ -5,6 +5,7 @@ use crate::work;
 use std::cell::{Cell, RefCell};
 use std::io::Read;
 use std::path::{Path, PathBuf};
+use std::rc::Rc;
 use std::time::Instant;
 use strahl::formats::scene::SceneFormat;
 use strahl::math::DVec3;
@@ -57,6 +58,17 @@ pub(crate) struct Input<'a> {
     /// The files that the scene may read, if it is bundled.
     pinned: Option<Pinned>,
     inputs: RefCell<Option<Inputs>>,
+}
+
+/// The scene that was compiled last, with the moment it was read at. Tiles of one picture that one task renders share it.
+#[derive(Debug, Default)]
+pub(crate) struct Kept(RefCell<Option<KeptScene>>);
+
+#[derive(Clone, Debug)]
+struct KeptScene {
+    moment: Moment,
+    scene: Rc<RenderScene>,
+    inputs: Option<Inputs>,
 }
 
 /// The moment of an animation at which a scene is read.
@@ -349,6 +361,39 @@ impl<'a> Input<'a> {
     }
 }
 
+impl Input<'_> {
+    /// As [`Input::compiled`], but takes the scene that is kept if it is that of this moment, and keeps what it has compiled. The scene and the
+    /// options must be those of the input that has filled `kept`.
+    pub(crate) fn shared(
+        &self,
+        moment: Moment,
+        accelerator: &AcceleratorArgs,
+        reporter: &Reporter,
+        kept: &Kept,
+    ) -> Result<(Rc<RenderScene>, LoadTimes), Failure> {
+        // Taken, so that the scene of another moment makes room for this one's.
+        let last = kept.0.borrow_mut().take();
+        let (known, times) = match last {
+            Some(known) if known.moment == moment => {
+                *self.inputs.borrow_mut() = known.inputs.clone();
+                (known, LoadTimes::default())
+            }
+            other => {
+                drop(other);
+                let (scene, times) = self.compiled(moment, accelerator, reporter)?;
+                let known = KeptScene {
+                    moment,
+                    scene: Rc::new(scene),
+                    inputs: self.inputs.borrow().clone(),
+                };
+                (known, times)
+            }
+        };
+        *kept.0.borrow_mut() = Some(known.clone());
+        Ok((known.scene, times))
+    }
+}
+
 /// Prints a message of a scene on the standard error at once; warnings are already among the diagnostics.
 fn print_message(stream: Stream, text: &str) {
     if stream != Stream::Warning {
@@ -386,4 +431,39 @@ pub(crate) fn threads(asked: usize, reporter: &Reporter) -> usize {
         return most;
     }
     asked
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::args::{Cli, Command};
+    use clap::Parser;
+
+    #[test]
+    fn tiles_of_one_moment_share_the_scene() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("scene.pov");
+        std::fs::write(&file, "sphere { clock * x, 1 }").unwrap();
+        let cli = Cli::parse_from(["strahl", "render", &file.display().to_string()]);
+        let Command::Render(args) = &cli.command else {
+            panic!("another command");
+        };
+        let (reporter, kept) = (Reporter::new(true), Kept::default());
+        let load = |clock: f64| {
+            let input = Input::new(args.scene.as_deref(), None, &args.pov, None).unwrap();
+            let input = input.recording(true);
+            let moment = Moment {
+                clock,
+                ..input.still()
+            };
+            let accelerator = &args.accelerator;
+            let (scene, _) = input.shared(moment, accelerator, &reporter, &kept).unwrap();
+            (scene, input.inputs().unwrap().identity())
+        };
+        let (first, same) = (load(0.0), load(0.0));
+        assert!(Rc::ptr_eq(&first.0, &same.0));
+        assert_eq!(first.1, same.1);
+        let other = load(1.0);
+        assert!(!Rc::ptr_eq(&first.0, &other.0));
+    }
 }

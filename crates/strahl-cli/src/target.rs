@@ -146,8 +146,16 @@ impl Target {
         Ok(())
     }
 
+    /// The scene of `render`, which the picture must not overwrite.
+    pub(crate) fn input<'a>(&self, args: &'a RenderArgs) -> Result<Input<'a>, Failure> {
+        let scene = args.scene.as_deref();
+        let input = Input::new(scene, args.format, &args.pov, args.picture.size)?;
+        self.spares(&input, args)?;
+        Ok(input)
+    }
+
     /// Checks that the picture does not overwrite the scene itself, which would be a typing error.
-    pub(crate) fn spares(&self, input: &Input<'_>, args: &RenderArgs) -> Result<(), Failure> {
+    fn spares(&self, input: &Input<'_>, args: &RenderArgs) -> Result<(), Failure> {
         let real = |path: &Path| path.canonicalize().ok();
         let scene = input.path().and_then(real);
         for file in [self.file(), args.stats.as_deref()].into_iter().flatten() {

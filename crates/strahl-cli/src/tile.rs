@@ -11,8 +11,8 @@ use strahl::tracing::{
 };
 use strahl_farm::{Settings, TileFile, TileInfo, TilePlace, split};
 
-/// The program that renders tiles: those of different versions are not merged.
-pub(crate) const VERSION: &str = concat!("strahl ", env!("CARGO_PKG_VERSION"));
+/// The program that renders tiles, with the fingerprint of its sources: those of different programs are not merged.
+pub(crate) const VERSION: &str = concat!("strahl ", env!("STRAHL_BUILD"));
 
 /// One ray for so many pixels in both directions looks where the scene is costly. Every tile has to look.
 const SPACING: u32 = 16;

@@ -1,5 +1,6 @@
 //! A scene with everything it reads, in one folder.
 
+use crate::hex;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fs;
@@ -7,7 +8,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 use strahl::Inputs;
 use strahl::formats::image::write_bytes;
-use strahl::sdl::{Lookup, Pinned, Read};
+use strahl::sdl::{Lookup, Pinned};
 
 /// How a file of a bundle is found.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -56,7 +57,7 @@ impl Bundle {
         };
         let reads = inputs.iter().flat_map(|inputs| &inputs.record.reads);
         for read in reads.clone() {
-            copies.copy(&read.found, &hex(read))?;
+            copies.copy(&read.found, &hex(&read.sha256[..4]))?;
         }
         for read in reads {
             let entry = Entry {
@@ -127,13 +128,6 @@ fn lookup_name(lookup: Lookup) -> &'static str {
         Lookup::Font => "font",
         Lookup::Installed => "installed",
     }
-}
-
-fn hex(read: &Read) -> String {
-    read.sha256[..4]
-        .iter()
-        .map(|byte| format!("{byte:02x}"))
-        .collect()
 }
 
 /// The files that were copied.

@@ -1,7 +1,8 @@
 //! The manifest of a job: a picture in tiles, or a film in frames.
 
+use crate::hex;
 use crate::merge::{Merged, TilesError, assemble, ranges};
-use crate::tile::{TileFile, TilePlace};
+use crate::tile::{TileFile, TileHead, TilePlace};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::path::{Path, PathBuf};
@@ -34,7 +35,7 @@ pub struct Movie {
 pub struct Job {
     /// The layout of this manifest.
     pub layout: u32,
-    /// The program that wrote it, with its version.
+    /// The program that wrote it, with its version and build: its tasks must be run by the same one.
     pub version: String,
     /// The arguments of `strahl render`, without scene and picture.
     pub words: Vec<String>,
@@ -68,6 +69,15 @@ pub struct Job {
 #[derive(Debug, thiserror::Error)]
 #[error("{0}")]
 pub struct JobError(pub String);
+
+/// How much of a tile's file is read to find out whether it is the right one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Care {
+    /// The header and the end: enough to see how far a job is.
+    Header,
+    /// All values, whose checksum must be the one that was written.
+    Whole,
+}
 
 /// A part of a job: a tile of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -145,6 +155,20 @@ impl Job {
         Ok(job)
     }
 
+    /// Fails unless the job was submitted by this program, whose tiles are merged with those of no other one.
+    ///
+    /// # Errors
+    /// It was submitted by another version, or another build of the version.
+    pub fn check_program(&self, version: &str) -> Result<(), JobError> {
+        match self.version == version {
+            true => Ok(()),
+            false => Err(JobError(format!(
+                "the job was submitted by {}, but this is {version}: run it with the program that submitted it (`strahl --version`), or submit it again",
+                self.version
+            ))),
+        }
+    }
+
     /// A hash of everything that decides the pixels of the job's tiles. It is in their settings, so the tiles of an earlier job in the same
     /// folder are recognised.
     pub fn id(&self) -> String {
@@ -161,11 +185,7 @@ impl Job {
             add(&format!("{:?} {}", frame.number, frame.scene));
         }
         add(&format!("{:?}", self.now));
-        let digest = hasher.finalize();
-        digest[..8]
-            .iter()
-            .map(|byte| format!("{byte:02x}"))
-            .collect()
+        hex(&hasher.finalize()[..8])
     }
 
     /// Number of parts.
@@ -259,13 +279,17 @@ impl Job {
     ///
     /// # Errors
     /// See above.
-    pub fn check_tile(&self, folder: &Path, unit: Unit) -> Result<(), Option<String>> {
+    pub fn check_tile(&self, folder: &Path, unit: Unit, care: Care) -> Result<(), Option<String>> {
         let file = self.tile_file(folder, unit);
         if !file.is_file() {
             return Err(None);
         }
-        let tile = TileFile::read(&file).map_err(|error| Some(error.to_string()))?;
-        match self.foreign(&tile, unit) {
+        let head = match care {
+            Care::Header => TileFile::head(&file),
+            Care::Whole => TileFile::read(&file).map(|tile| tile.to_head()),
+        };
+        let head = head.map_err(|error| Some(error.to_string()))?;
+        match self.foreign(&head, unit) {
             None => Ok(()),
             Some(how) => Err(Some(format!("{}: {how}", file.display()))),
         }
@@ -286,7 +310,7 @@ impl Job {
             }
             match TileFile::read(&file) {
                 Err(error) => problems.push(error.to_string()),
-                Ok(tile) => match self.foreign(&tile, unit) {
+                Ok(tile) => match self.foreign(&tile.to_head(), unit) {
                     Some(how) => problems.push(format!("{}: {how}", file.display())),
                     None => files.push((file, tile)),
                 },
@@ -311,7 +335,7 @@ impl Job {
     }
 
     /// How a tile differs from the one of a part; `None` if it is the one.
-    fn foreign(&self, tile: &TileFile, unit: Unit) -> Option<String> {
+    fn foreign(&self, tile: &TileHead, unit: Unit) -> Option<String> {
         let info = &tile.info;
         let place = self.place(unit.tile)?;
         let frame = self.frames.get(unit.frame)?;
@@ -332,7 +356,7 @@ impl Job {
             return Some("is of another scene or frame".into());
         }
         let is_place = (info.number, info.count) == (place.number, place.count);
-        (!is_place || Some(tile.film.region) != region).then(|| "is another tile".to_owned())
+        (!is_place || Some(tile.region) != region).then(|| "is another tile".to_owned())
     }
 }
 
@@ -397,6 +421,9 @@ mod tests {
         assert!(error.contains("submit the job again"), "{error}");
         std::fs::write(folder.path().join("job.json"), "{").unwrap();
         assert!(Job::read(folder.path()).is_err());
+        job.check_program("strahl 0.1.0").unwrap();
+        let error = job.check_program("strahl 0.1.0+7f").unwrap_err();
+        assert!(error.to_string().contains("this is strahl 0.1.0+7f"));
         let error = Job::read(&folder.path().join("none"))
             .unwrap_err()
             .to_string();

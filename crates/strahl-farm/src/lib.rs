@@ -16,8 +16,13 @@ mod state;
 mod tile;
 
 pub use bundle::Bundle;
-pub use job::{Job, JobError, JobFrame, Movie, Unit};
+pub use job::{Care, Job, JobError, JobFrame, Movie, Unit};
 pub use merge::{Merged, TilesError, merge, ranges};
 pub use split::{TooManyTiles, split};
 pub use state::{Progress, SILENCE, State, progress, time_of};
-pub use tile::{Settings, TileError, TileFile, TileInfo, TilePlace, UnknownTile};
+pub use tile::{Settings, TileError, TileFile, TileHead, TileInfo, TilePlace, UnknownTile};
+
+/// Bytes as hexadecimal digits.
+fn hex(bytes: &[u8]) -> String {
+    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
+}

@@ -297,6 +297,12 @@ mod tests {
         );
         let version = other(|t| t.info.version = "strahl 0.0.9".into());
         assert!(version.contains("strahl 0.0.9"), "{version}");
+        // Two builds of one version.
+        let build = other(|t| t.info.version += "+6f1c");
+        assert!(
+            build.contains("rendered by strahl 0.1.0+6f1c, the others by strahl 0.1.0"),
+            "{build}"
+        );
         let count = other(|t| t.info.count = 5);
         assert!(count.contains("one of 5 tiles"), "{count}");
         let missing = problem(|tiles| drop(tiles.drain(1..3)));
@@ -323,7 +329,10 @@ mod tests {
         one.film.pixels[3] = [1.0, 2.0, 3.0];
         let mut metadata = strahl::metadata(&one.film);
         metadata.push(("tile".into(), serde_json::to_string(&one.info).unwrap()));
-        let sums = strahl::formats::image::read_exr(&path).unwrap().metadata;
+        let sums = strahl::formats::image::read_exr(&path)
+            .unwrap()
+            .header
+            .metadata;
         metadata.push(("tile sha256".into(), sums["tile sha256"].clone()));
         let picture = strahl::picture(&one.film, &[], metadata);
         let options = strahl::formats::image::WriteOptions::default();

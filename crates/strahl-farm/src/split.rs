@@ -16,9 +16,15 @@ pub struct TooManyTiles {
     most: u32,
 }
 
-/// Cuts a picture into `count` tiles of about equal cost, by halving it again and again where the costs of the halves fit the numbers of their
-/// tiles best. The edges of tiles are on multiples of [`CostMap::BLOCK`] pixels, so that a tile's pixels take the same tests as those of
-/// the picture.
+/// Up to so many tiles of a rectangle several cuts are tried to the end; for more the best one is taken, as the tiles behind it can still be
+/// made equal.
+const FEW: u32 = 16;
+
+/// The number of cuts that are tried for a rectangle of few tiles.
+const TRIED: usize = 4;
+
+/// Cuts a picture into `count` tiles of about equal cost, by halving it again and again so that the dearest tile is as cheap as possible. The
+/// edges of tiles are on multiples of [`CostMap::BLOCK`] pixels, so that a tile's pixels take the same tests as those of the picture.
 ///
 /// # Errors
 /// [`TooManyTiles`]: fewer blocks than tiles, or no tile.
@@ -43,16 +49,26 @@ pub fn split(map: &CostMap, count: u32) -> Result<Vec<Region>, TooManyTiles> {
     // Explicit, so that no number of tiles overflows the stack; the first half is cut first.
     let mut left = vec![(whole, count)];
     while let Some((blocks, count)) = left.pop() {
-        match sums.best_cut(blocks, count) {
-            None => tiles.push(blocks.region(map)),
+        if count <= FEW {
+            tiles.extend(sums.division(blocks, count).tiles);
+            continue;
+        }
+        match sums.cuts(blocks, count, 1).first() {
+            None => tiles.push(blocks),
             Some(cut) => {
-                let [first, second] = blocks.cut(cut);
+                let [first, second] = blocks.cut(*cut);
                 left.push((second, count - cut.first));
                 left.push((first, cut.first));
             }
         }
     }
-    Ok(tiles)
+    Ok(tiles.iter().map(|blocks| blocks.region(map)).collect())
+}
+
+/// The tiles of a rectangle, and the cost of the dearest one.
+struct Division {
+    tiles: Vec<Blocks>,
+    dearest: u128,
 }
 
 /// A rectangle of blocks, with the right and bottom ends excluded.
@@ -142,9 +158,38 @@ impl Sums {
         at(right, bottom) + at(left, top) - at(left, bottom) - at(right, top)
     }
 
-    /// The cut after which the dearest tile will be cheapest; `None` for one tile.
-    fn best_cut(&self, blocks: Blocks, count: u32) -> Option<Cut> {
-        let mut best: Option<(u128, Cut)> = None;
+    /// The cost of a tile, in thousandths: antialiasing takes a row of pixels of the neighbours along its edges.
+    fn cost_of_tile(&self, tile: &Blocks) -> u128 {
+        let edge = 2 * (tile.columns() + tile.rows());
+        let pixels = u128::from(tile.number()) * u128::from(CostMap::BLOCK);
+        self.cost(tile) * 1000 * (pixels + u128::from(edge)) / pixels
+    }
+
+    /// The best division of a rectangle into few tiles that was found.
+    fn division(&self, blocks: Blocks, count: u32) -> Division {
+        let mut best: Option<Division> = None;
+        for cut in self.cuts(blocks, count, TRIED) {
+            let [first, second] = blocks.cut(cut);
+            let mut found = self.division(first, cut.first);
+            if best.as_ref().is_some_and(|b| found.dearest >= b.dearest) {
+                continue;
+            }
+            let second = self.division(second, count - cut.first);
+            found.dearest = found.dearest.max(second.dearest);
+            found.tiles.extend(second.tiles);
+            if best.as_ref().is_none_or(|b| found.dearest < b.dearest) {
+                best = Some(found);
+            }
+        }
+        best.unwrap_or_else(|| Division {
+            tiles: vec![blocks],
+            dearest: self.cost_of_tile(&blocks),
+        })
+    }
+
+    /// The cuts after which the dearest tile will probably be cheapest, the best one first; none for one tile.
+    fn cuts(&self, blocks: Blocks, count: u32, most: usize) -> Vec<Cut> {
+        let mut all: Vec<(u128, Cut)> = vec![];
         for vertical in [
             blocks.columns() >= blocks.rows(),
             blocks.columns() < blocks.rows(),
@@ -159,19 +204,16 @@ impl Sums {
                     at,
                     first: 0,
                 };
-                let Some((score, first)) = self.score(blocks, cut, count) else {
-                    continue;
-                };
-                if best.is_none_or(|(known, _)| score < known) {
-                    best = Some((score, Cut { first, ..cut }));
-                }
+                all.extend(self.score(blocks, cut, count));
             }
         }
-        best.map(|(_, cut)| cut)
+        // Stable: of equal cuts the first one.
+        all.sort_by_key(|(score, _)| *score);
+        all.into_iter().take(most).map(|(_, cut)| cut).collect()
     }
 
-    /// How dear the tiles get with a cut, and the best number of tiles of the first part; `None` where the parts can't have so many tiles.
-    fn score(&self, blocks: Blocks, cut: Cut, count: u32) -> Option<(u128, u32)> {
+    /// The cut with the best number of tiles of the first part, and how dear the tiles get; `None` where the parts can't have so many tiles.
+    fn score(&self, blocks: Blocks, cut: Cut, count: u32) -> Option<(u128, Cut)> {
         let [a, b] = blocks.cut(cut);
         let (cost_a, cost_b) = (self.cost(&a), self.cost(&b));
         let wanted = (u128::from(count) * cost_a * 2 / (cost_a + cost_b).max(1)).div_ceil(2) as u32;
@@ -194,7 +236,7 @@ impl Sums {
         let margin = (cost_a + cost_b) * 1000 * u128::from(length)
             / u128::from(blocks.number())
             / u128::from(CostMap::BLOCK);
-        Some((dearest + margin, first))
+        Some((dearest + margin, Cut { first, ..cut }))
     }
 }
 

@@ -1,6 +1,6 @@
 //! What tasks leave in a job folder about the state of their parts.
 
-use crate::job::{Job, Unit};
+use crate::job::{Care, Job, Unit};
 use serde::{Deserialize, Serialize};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -56,12 +56,12 @@ impl State {
 }
 
 /// The state of a part. `now` is the time of the disk that the job folder is on.
-pub fn progress(job: &Job, folder: &Path, unit: Unit, now: SystemTime) -> Progress {
+pub fn progress(job: &Job, folder: &Path, unit: Unit, now: SystemTime, care: Care) -> Progress {
     let file = State::file(job, folder, unit);
     let state: Option<State> = fs::read(&file)
         .ok()
         .and_then(|bytes| serde_json::from_slice(&bytes).ok());
-    let bad = match job.check_tile(folder, unit) {
+    let bad = match job.check_tile(folder, unit, care) {
         Ok(()) => return Progress::Done(state.and_then(|state| state.seconds)),
         Err(why) => why,
     };

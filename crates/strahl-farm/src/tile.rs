@@ -1,5 +1,6 @@
 //! The file of a tile: an OpenEXR picture of a part, whose metadata tell what it is a part of.
 
+use crate::hex;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
@@ -7,7 +8,8 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 use strahl::formats::image::{
-    ExrFile, ImageError, LayerData, Picture, WriteOptions, read_exr, write_picture,
+    ExrFile, ExrHeader, ImageError, LayerData, Picture, WriteOptions, read_exr, read_exr_header,
+    write_picture,
 };
 use strahl::tracing::{Film, PixelInfo, Region};
 
@@ -84,7 +86,7 @@ pub struct TileInfo {
     pub scene: String,
     /// Everything else that decides the values of the pixels.
     pub settings: Settings,
-    /// The program that rendered it, with its version.
+    /// The program that rendered it: its version and build.
     pub version: String,
     /// Metadata for the picture that is made of the tiles.
     pub notes: Vec<(String, String)>,
@@ -97,6 +99,15 @@ pub struct TileInfo {
 pub struct TileFile {
     /// The pixels.
     pub film: Film,
+    /// What they are.
+    pub info: TileInfo,
+}
+
+/// What the header of a tile's file says.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct TileHead {
+    /// The tile's pixels.
+    pub region: Region,
     /// What they are.
     pub info: TileInfo,
 }
@@ -152,23 +163,67 @@ impl TileFile {
     /// # Errors
     /// [`TileError`]: no such file, a damaged or cut off file, or another kind of picture.
     pub fn read(path: &Path) -> Result<Self, TileError> {
-        let damaged = |reason: &str| TileError::Damaged {
-            path: path.to_owned(),
-            reason: reason.to_owned(),
-        };
         let mut file = read_exr(path)?;
-        let metadata = std::mem::take(&mut file.metadata);
-        let (Some(info), Some(expected)) = (metadata.get(TILE), metadata.get(CHECKSUM)) else {
-            return Err(TileError::NoTile {
-                path: path.to_owned(),
-            });
-        };
-        let info = serde_json::from_str(info).map_err(|error| damaged(&error.to_string()))?;
-        let film = film(file).ok_or_else(|| damaged("its channels are not those of a tile"))?;
-        if checksum(&film) != *expected {
-            return Err(damaged("its values are not those that were written"));
+        let metadata = std::mem::take(&mut file.header.metadata);
+        let (info, expected) = info(path, &metadata)?;
+        let film =
+            film(file).ok_or_else(|| damaged(path, "its channels are not those of a tile"))?;
+        if checksum(&film) != expected {
+            return Err(damaged(path, "its values are not those that were written"));
         }
         Ok(Self { film, info })
+    }
+
+    /// What the tile is.
+    pub fn to_head(&self) -> TileHead {
+        TileHead {
+            region: self.film.region,
+            info: self.info.clone(),
+        }
+    }
+
+    /// Reads what a tile is, without its values. A file that was cut off is noticed, one whose values were changed is not.
+    ///
+    /// # Errors
+    /// [`TileError`]: no such file, a cut off file, or another kind of picture.
+    pub fn head(path: &Path) -> Result<TileHead, TileError> {
+        let header = read_exr_header(path)?;
+        let (info, _) = info(path, &header.metadata)?;
+        Ok(TileHead {
+            region: region(&header),
+            info,
+        })
+    }
+}
+
+fn damaged(path: &Path, reason: &str) -> TileError {
+    TileError::Damaged {
+        path: path.to_owned(),
+        reason: reason.to_owned(),
+    }
+}
+
+/// What a tile is, and the checksum of its values.
+fn info<'m>(
+    path: &Path,
+    metadata: &'m BTreeMap<String, String>,
+) -> Result<(TileInfo, &'m str), TileError> {
+    let (Some(info), Some(checksum)) = (metadata.get(TILE), metadata.get(CHECKSUM)) else {
+        return Err(TileError::NoTile {
+            path: path.to_owned(),
+        });
+    };
+    let info = serde_json::from_str(info).map_err(|error| damaged(path, &error.to_string()))?;
+    Ok((info, checksum))
+}
+
+fn region(header: &ExrHeader) -> Region {
+    let window = header.window;
+    Region {
+        x: window.x,
+        y: window.y,
+        width: window.width,
+        height: window.height,
     }
 }
 
@@ -196,14 +251,13 @@ fn checksum(film: &Film) -> String {
         let numbers = [info.object, info.material, info.tree_depth, info.tests];
         part(&mut floats.into_iter().chain(numbers.map(u32::to_le_bytes)));
     }
-    let digest = hasher.finalize();
-    digest.iter().map(|byte| format!("{byte:02x}")).collect()
+    hex(&hasher.finalize())
 }
 
 /// The film that was written to a file.
 fn film(mut file: ExrFile) -> Option<Film> {
-    let window = file.window;
-    let pixels = window.width as usize * window.height as usize;
+    let region = region(&file.header);
+    let pixels = region.width as usize * region.height as usize;
     let mut floats = |name: &str| match file.channels.remove(name) {
         Some(LayerData::F32(values)) if values.len() == pixels => Some(values),
         _ => None,
@@ -240,14 +294,9 @@ fn film(mut file: ExrFile) -> Option<Film> {
         }
     };
     Some(Film {
-        width: file.width,
-        height: file.height,
-        region: Region {
-            x: window.x,
-            y: window.y,
-            width: window.width,
-            height: window.height,
-        },
+        width: file.header.width,
+        height: file.header.height,
+        region,
         pixels: rgb,
         alpha,
         info,

@@ -2,11 +2,10 @@
 
 use crate::cost::PixelCost;
 use crate::film::Region;
-use crate::render::{Progress, RenderError, RenderOptions, render};
-use crate::sampling::{Compared, Sampling};
+use crate::render::{Probe, Progress, RenderError, RenderOptions, Seen, probe_rows};
+use crate::sampling::{Compared, Refinement, Sampling};
 use crate::scene::RenderScene;
 use crate::tiles::TILE;
-use strahl_shade::Color;
 
 /// The expected cost of each block of a picture: a number without unit, at least 1.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -73,10 +72,11 @@ pub enum CostMeasure {
     Timed,
 }
 
-/// Looks at the scene with one ray for every `spacing` x `spacing` pixels and says what the picture's blocks will cost.
+/// Looks at the scene with one ray for every `spacing` x `spacing` pixels and says what the picture's blocks will cost. Where two of these rays
+/// beside each other differ so much that antialiasing will refine pixels between them, it finds these pixels by halving.
 ///
 /// # Errors
-/// Those of [`render`].
+/// [`RenderError`]: no threads, or cancelled.
 pub fn estimate(
     scene: &RenderScene,
     options: &RenderOptions,
@@ -84,109 +84,247 @@ pub fn estimate(
     measure: CostMeasure,
     progress: &dyn Progress,
 ) -> Result<CostMap, RenderError> {
-    let spacing = spacing.max(1);
-    let small = RenderOptions {
-        width: options.width.div_ceil(spacing),
-        height: options.height.div_ceil(spacing),
-        region: None,
-        sampling: Sampling::Center,
-        info: false,
-        alpha: false,
-        costs: true,
-        ..options.clone()
+    let look = Look {
+        scene,
+        options,
+        progress,
+        spacing: spacing.max(1),
     };
-    let seen = render(scene, &small, progress)?;
-    let rough = roughness(&seen.film.pixels, &small, options.sampling);
-    let costs = seen.costs.unwrap_or_default();
-    let ones: Vec<u64> = match measure {
-        CostMeasure::Counted => costs.iter().map(counted).collect(),
-        CostMeasure::Timed => timed(&costs),
+    let seen = look.everywhere()?;
+    let edges = match antialiasing(options.sampling) {
+        Some((refinement, more)) if more > 0 => look.edges(&seen, refinement, more)?,
+        _ => vec![],
     };
+    let measured: Vec<PixelCost> = seen.iter().flatten().map(|seen| seen.cost).collect();
+    let scale = Scale::new(measure, &measured);
+
     let mut map = CostMap::even(options.width, options.height);
-    let mut sums = vec![(0_u64, 0_u64); map.costs.len()];
-    for (index, (one, rough)) in ones.into_iter().zip(rough).enumerate() {
-        let width = small.width as usize;
-        // The middle of the place that this ray stands for.
-        let at = |i: usize, of: u32| (i as u32 * spacing + spacing / 2).min(of - 1) / TILE;
-        let block =
-            at(index / width, options.height) * map.columns() + at(index % width, options.width);
-        let (sum, count) = &mut sums[block as usize];
-        *sum += expected(one, rough, options.sampling, spacing);
-        *count += 1;
+    let columns = map.columns();
+    let block = |(x, y): (u32, u32)| (y / TILE * columns + x / TILE) as usize;
+    let mut blocks = vec![Block::default(); map.costs.len()];
+    for (place, cost) in look.places().zip(&measured) {
+        let block = &mut blocks[block(place)];
+        block.rays += 1;
+        block.sum += scale.of(cost);
     }
-    let all: (u64, u64) = sums
-        .iter()
-        .fold((0, 0), |(s, c), (sum, count)| (s + sum, c + count));
-    for (cost, (sum, count)) in map.costs.iter_mut().zip(sums) {
+    for edge in edges {
+        let further = edge.more * scale.of(&edge.cost);
+        match edge.along_row {
+            true => blocks[block(edge.place)].along_rows += further,
+            false => blocks[block(edge.place)].along_columns += further,
+        }
+    }
+    let all: (u64, u64) = blocks.iter().fold((0, 0), |(sum, rays), block| {
+        (sum + block.cost(look.spacing), rays + block.rays)
+    });
+    for (cost, block) in map.costs.iter_mut().zip(&blocks) {
         // A block without a ray of its own, at the edge of a small picture, is an average one.
-        let (sum, count) = if count == 0 { all } else { (sum, count) };
-        *cost = (*cost * sum / count.max(1)).max(1);
+        let (sum, rays) = match block.rays {
+            0 => all,
+            rays => (block.cost(look.spacing), rays),
+        };
+        *cost = (*cost * sum / rays.max(1)).max(1);
     }
     Ok(map)
 }
 
-/// How many of its two neighbours to the right and below each place differs from.
-fn roughness(pixels: &[[f32; 3]], small: &RenderOptions, sampling: Sampling) -> Vec<u64> {
-    let (Sampling::Adaptive(refinement) | Sampling::Recursive(refinement)) = sampling else {
-        return vec![0; pixels.len()];
-    };
-    let shown: Vec<Compared> = pixels
-        .iter()
-        .map(|[r, g, b]| {
-            let color = Color::new((*r).into(), (*g).into(), (*b).into());
-            Compared::new(color, &refinement)
-        })
-        .collect();
-    let width = small.width as usize;
-    let differs = |a: usize, b: usize| {
-        let there = shown.get(b);
-        u64::from(there.is_some_and(|there| shown[a].differs(*there, &refinement)))
-    };
-    (0..shown.len())
-        .map(|i| {
-            let right = match (i + 1).is_multiple_of(width) {
-                true => 0,
-                false => differs(i, i + 1),
+/// What the rays in a block have cost.
+#[derive(Clone, Copy, Debug, Default)]
+struct Block {
+    rays: u64,
+    sum: u64,
+    /// Of the further rays of the refined pixels on rows of rays.
+    along_rows: u64,
+    /// ... and on columns of rays.
+    along_columns: u64,
+}
+
+impl Block {
+    /// The cost of as many pixels as there are rays.
+    fn cost(&self, spacing: u32) -> u64 {
+        // A row of rays crosses an upright edge, a column crosses a level one, and both cross a slanting edge.
+        let (a, b) = (self.along_rows, self.along_columns);
+        let further = a.max(b) + a.min(b) / 4;
+        // Only one of `spacing` rows and columns has rays.
+        self.sum + further / u64::from(spacing)
+    }
+}
+
+/// A pixel that antialiasing will refine.
+struct Edge {
+    place: (u32, u32),
+    /// Whether it was found between rays beside each other, rather than one above the other.
+    along_row: bool,
+    /// The rays that it gets.
+    more: u64,
+    /// What one of them costs.
+    cost: PixelCost,
+}
+
+/// When pixels are refined, and how many rays they get.
+fn antialiasing(sampling: Sampling) -> Option<(Refinement, u64)> {
+    match sampling {
+        Sampling::Adaptive(refinement) => {
+            let side = u64::from(refinement.depth);
+            Some((refinement, side * side - 1))
+        }
+        Sampling::Recursive(refinement) => {
+            // Half of the places of the finest division, as for an edge.
+            let side = (1_u64 << (refinement.depth - 1)) + 1;
+            Some((refinement, (side * side - 4) / 2))
+        }
+        _ => None,
+    }
+}
+
+/// A look at a scene.
+struct Look<'a> {
+    scene: &'a RenderScene,
+    options: &'a RenderOptions,
+    progress: &'a dyn Progress,
+    spacing: u32,
+}
+
+impl Look<'_> {
+    fn columns(&self) -> u32 {
+        self.options.width.div_ceil(self.spacing)
+    }
+
+    fn rows(&self) -> u32 {
+        self.options.height.div_ceil(self.spacing)
+    }
+
+    /// The pixel of a column or row of rays: the middle of the pixels that the ray stands for.
+    fn pixel(&self, number: u32, of: u32) -> u32 {
+        (number * self.spacing + self.spacing / 2).min(of - 1)
+    }
+
+    fn x(&self, column: u32) -> u32 {
+        self.pixel(column, self.options.width)
+    }
+
+    fn y(&self, row: u32) -> u32 {
+        self.pixel(row, self.options.height)
+    }
+
+    /// The pixels of all rays, row by row.
+    fn places(&self) -> impl Iterator<Item = (u32, u32)> {
+        let all = (0..self.rows()).flat_map(|row| (0..self.columns()).map(move |c| (c, row)));
+        all.map(|(column, row)| (self.x(column), self.y(row)))
+    }
+
+    /// What all rays see, in rows.
+    fn everywhere(&self) -> Result<Vec<Vec<Seen>>, RenderError> {
+        let row = |probe: &mut Probe<'_>, row: u32| {
+            let columns = 0..self.columns();
+            columns.map(|c| probe(self.x(c), self.y(row))).collect()
+        };
+        probe_rows(self.scene, self.options, self.progress, self.rows(), row)
+    }
+
+    /// The pixels that are refined on the lines between rays beside and above each other.
+    fn edges(
+        &self,
+        seen: &[Vec<Seen>],
+        refinement: Refinement,
+        more: u64,
+    ) -> Result<Vec<Edge>, RenderError> {
+        let row = |probe: &mut Probe<'_>, row: u32| {
+            let (mut edges, y) = (vec![], self.y(row));
+            let mut keep = |line: Vec<(u32, PixelCost)>, along_row: bool, other: u32| {
+                edges.extend(line.into_iter().map(|(position, cost)| Edge {
+                    place: match along_row {
+                        true => (position, other),
+                        false => (other, position),
+                    },
+                    along_row,
+                    more,
+                    cost,
+                }));
             };
-            right + differs(i, i + width)
-        })
-        .collect()
+            let own = &seen[row as usize];
+            for (column, pair) in (0..).zip(own.windows(2)) {
+                let ends = [(self.x(column), pair[0]), (self.x(column + 1), pair[1])];
+                keep(refined(ends, &refinement, &mut |x| probe(x, y)), true, y);
+            }
+            let below = seen.get(row as usize + 1).into_iter().flatten();
+            for (column, (a, b)) in (0..).zip(own.iter().zip(below)) {
+                let x = self.x(column);
+                let ends = [(y, *a), (self.y(row + 1), *b)];
+                keep(refined(ends, &refinement, &mut |y| probe(x, y)), false, x);
+            }
+            edges
+        };
+        let rows = probe_rows(self.scene, self.options, self.progress, self.rows(), row)?;
+        Ok(rows.into_iter().flatten().collect())
+    }
+}
+
+/// The pixels on a line that differ from a neighbour, found by halving the line where its ends differ, with the costs of their rays.
+fn refined(
+    ends: [(u32, Seen); 2],
+    refinement: &Refinement,
+    probe: &mut dyn FnMut(u32) -> Seen,
+) -> Vec<(u32, PixelCost)> {
+    let mut found: Vec<(u32, PixelCost)> = vec![];
+    let mut left = vec![ends];
+    while let Some([a, b]) = left.pop() {
+        let shown = |seen: &Seen| Compared::new(seen.color, refinement);
+        if a.0 >= b.0 || !shown(&a.1).differs(shown(&b.1), refinement) {
+            continue;
+        }
+        if a.0 + 1 == b.0 {
+            for (position, seen) in [a, b] {
+                if found.last().is_none_or(|(last, _)| *last < position) {
+                    found.push((position, seen.cost));
+                }
+            }
+            continue;
+        }
+        let middle = a.0.midpoint(b.0);
+        let middle = (middle, probe(middle));
+        left.extend([[middle, b], [a, middle]]);
+    }
+    found
 }
 
 fn counted(cost: &PixelCost) -> u64 {
     RAY * cost.rays + STEP * cost.steps + TEST * cost.tests
 }
 
-/// The times of rays in nanoseconds. A ray during which the thread was interrupted is not believed: it took at most as much time for what it has
-/// counted as the slowest but one in two hundred.
-fn timed(costs: &[PixelCost]) -> Vec<u64> {
-    // Thousandths of the time that the counts stand for.
-    let ratio = |cost: &PixelCost| cost.nanoseconds * 1000 / counted(cost).max(1);
-    let mut ratios: Vec<u64> = costs.iter().map(ratio).collect();
-    ratios.sort_unstable();
-    let most = ratios.get(ratios.len() * 199 / 200).copied().unwrap_or(0);
-    let capped = |cost: &PixelCost| cost.nanoseconds.min(counted(cost) * most / 1000);
-    costs.iter().map(capped).collect()
+/// How costs become numbers.
+enum Scale {
+    Counted,
+    /// The longest time that is believed, in thousandths of what the counts stand for.
+    Timed(u64),
 }
 
-/// The cost of a pixel around a ray: what the ray took, and what antialiasing will add where neighbours differ.
-fn expected(one: u64, rough: u64, sampling: Sampling, spacing: u32) -> u64 {
-    let more = match sampling {
-        Sampling::Adaptive(refinement) => u64::from(refinement.depth * refinement.depth) - 1,
-        Sampling::Recursive(refinement) => {
-            // Half of the places of the finest division, as for an edge.
-            let side = (1_u64 << (refinement.depth - 1)) + 1;
-            (side * side - 4) / 2
+impl Scale {
+    /// A ray during which the thread was interrupted is not believed: it took at most as much time for what it has counted as the slowest but
+    /// one in two hundred.
+    fn new(measure: CostMeasure, costs: &[PixelCost]) -> Self {
+        if measure == CostMeasure::Counted {
+            return Self::Counted;
         }
-        _ => 0,
-    };
-    // An edge between two rays crosses one row of `spacing` pixels at two of them.
-    one + one * more * (2 * rough).min(u64::from(spacing)) / u64::from(spacing)
+        let ratio = |cost: &PixelCost| cost.nanoseconds * 1000 / counted(cost).max(1);
+        let mut ratios: Vec<u64> = costs.iter().map(ratio).collect();
+        ratios.sort_unstable();
+        let most = ratios.get(ratios.len() * 199 / 200).copied();
+        Self::Timed(most.unwrap_or(0))
+    }
+
+    fn of(&self, cost: &PixelCost) -> u64 {
+        match self {
+            Self::Counted => counted(cost),
+            Self::Timed(most) => cost.nanoseconds.min(counted(cost) * most / 1000),
+        }
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use strahl_shade::Color;
 
     #[test]
     fn an_interruption_makes_no_ray_dear() {
@@ -201,21 +339,59 @@ mod tests {
             rays: 100,
             ..ray(20_000)
         };
-        let times = timed(&costs);
+        let scale = Scale::new(CostMeasure::Timed, &costs);
+        let times: Vec<u64> = costs.iter().map(|cost| scale.of(cost)).collect();
         // As dear as its counts say, up to rounding.
         assert!(times[0] <= 2_000 && times[2] <= 2_000);
         assert!((19_000..=20_000).contains(&times[1]), "{}", times[1]);
     }
 
+    /// The refined pixels of a line with these grey values, and how many of its pixels were looked at.
+    fn refined_of(greys: &[f64]) -> (Vec<u32>, usize) {
+        let seen = |x: u32| Seen {
+            color: Color::gray(greys[x as usize]),
+            cost: PixelCost::default(),
+        };
+        let last = greys.len() as u32 - 1;
+        let mut looks = 0;
+        let found = refined(
+            [(0, seen(0)), (last, seen(last))],
+            &Refinement::DEFAULT,
+            &mut |x| {
+                looks += 1;
+                seen(x)
+            },
+        );
+        (found.into_iter().map(|(x, _)| x).collect(), looks)
+    }
+
     #[test]
-    fn edges_cost_what_antialiasing_adds_there() {
-        let adaptive = Sampling::ADAPTIVE;
-        assert_eq!(expected(100, 0, adaptive, 8), 100);
-        // Two pixels of eight get eight rays more.
-        assert_eq!(expected(100, 1, adaptive, 8), 100 + 800 * 2 / 8);
-        assert_eq!(expected(100, 2, Sampling::Center, 8), 100);
-        // No more than all pixels.
-        assert_eq!(expected(100, 2, adaptive, 1), 900);
+    fn edges_are_found_by_halving() {
+        let edge = [0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0];
+        assert_eq!(refined_of(&edge), (vec![4, 5], 3));
+        // An edge is found between ends that differ, not all of them.
+        let stripes = [0.0, 1.0, 0.0, 1.0, 0.0, 1.0];
+        assert_eq!(refined_of(&stripes), (vec![2, 3], 2));
+        // A slope is nowhere steep enough.
+        let slope: Vec<f64> = (0..9).map(|x| 0.1 + 0.02 * f64::from(x)).collect();
+        assert_eq!(refined_of(&slope).0, vec![]);
+        assert_eq!(refined_of(&[0.5; 9]), (vec![], 0));
+    }
+
+    #[test]
+    fn refined_pixels_stand_for_the_rows_between() {
+        let block = Block {
+            rays: 16,
+            sum: 1600,
+            along_rows: 80,
+            along_columns: 0,
+        };
+        assert_eq!(block.cost(8), 1610);
+        let slanting = Block {
+            along_columns: 80,
+            ..block
+        };
+        assert_eq!(slanting.cost(8), 1612);
     }
 
     #[test]

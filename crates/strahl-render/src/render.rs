@@ -1,5 +1,8 @@
 mod pixels;
+mod probe;
 mod refine;
+
+pub(crate) use probe::{Probe, Seen, probe_rows};
 
 use crate::camera::PrimaryRays;
 use crate::cost::PixelCost;

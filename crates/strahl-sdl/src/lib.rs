@@ -58,7 +58,7 @@ pub use options::{Frame, Limits, Options};
 pub use parser::{Failed, Macro, PResult, Parser, Place};
 pub use source::{
     FolderHost, Host, HostError, Lookup, MemoryHost, Pinned, Read, Record, Recorder, Source,
-    Stream, Writing,
+    Stream, Writing, present,
 };
 pub use symbol::Symbol;
 pub use token::{Kind, Token};

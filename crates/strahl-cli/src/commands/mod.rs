@@ -19,5 +19,5 @@ pub(crate) use heatmap::heatmap;
 pub(crate) use info::info;
 pub(crate) use man::man;
 pub(crate) use merge::merge;
-pub(crate) use render::render;
+pub(crate) use render::{render, render_with};
 pub(crate) use trace_ray::trace_ray;

@@ -1,12 +1,13 @@
 use crate::animation::Animation;
 use crate::args::RenderArgs;
-use crate::input::{DEFAULT_SIZE, Input, LoadTimes, Moment, render_options, threads};
+use crate::input::{DEFAULT_SIZE, Input, Kept, LoadTimes, Moment, render_options, threads};
 use crate::progress::Watch;
 use crate::report::{Failure, Reporter};
 use crate::stats::{RenderTimes, Stats};
 use crate::target::Target;
 use crate::{interrupt, output, terminal, tile, work};
 use std::path::Path;
+use std::rc::Rc;
 use std::time::Instant;
 use strahl::formats::image::{Picture, Window, WriteOptions, write_bytes};
 use strahl::tracing::{Film, RenderError, RenderOptions, RenderScene, Rendered, TileOrder};
@@ -14,22 +15,25 @@ use strahl_farm::TileInfo;
 
 /// `strahl render`: renders a scene to a picture, or to the pictures of an animation.
 pub(crate) fn render(args: &RenderArgs, reporter: Reporter) -> Result<(), Failure> {
+    render_with(args, reporter, &Kept::default())
+}
+
+/// `strahl render` with a scene that may be known from an earlier tile of the same picture.
+pub(crate) fn render_with(
+    args: &RenderArgs,
+    reporter: Reporter,
+    kept: &Kept,
+) -> Result<(), Failure> {
     let animation = Animation::new(&args.animation, args.job.only_frame)?;
     let target = Target::of(args)?;
     target.check(args, animation.is_some())?;
-    let input = Input::new(
-        args.scene.as_deref(),
-        args.format,
-        &args.pov,
-        args.picture.size,
-    )?;
+    let input = target.input(args)?;
     let input = match &args.job.bundle {
         // Many tasks would write the same files; in memory the scene can read them again.
         Some(folder) => input.bundled(folder)?,
         None => input.writing()?,
     };
     let input = input.recording(args.tile.is_some()).at_time(args.job.now);
-    target.spares(&input, args)?;
     let threads = threads(args.threads, &reporter);
     reporter.settle()?;
     let job = Job {
@@ -38,6 +42,7 @@ pub(crate) fn render(args: &RenderArgs, reporter: Reporter) -> Result<(), Failur
         reporter,
         target,
         threads,
+        kept,
         start: Instant::now(),
     };
     match animation {
@@ -55,12 +60,13 @@ struct Job<'a> {
     reporter: Reporter,
     target: Target,
     threads: usize,
+    kept: &'a Kept,
     start: Instant,
 }
 
 /// A picture that is not yet written.
 struct Traced {
-    scene: RenderScene,
+    scene: Rc<RenderScene>,
     options: RenderOptions,
     rendered: Rendered,
     times: LoadTimes,
@@ -166,9 +172,9 @@ impl Job<'_> {
         }
         let args = self.args;
         let picture = &args.picture;
-        let (scene, times) = self
-            .input
-            .compiled(moment, &args.accelerator, &self.reporter)?;
+        let (scene, times) =
+            self.input
+                .shared(moment, &args.accelerator, &self.reporter, self.kept)?;
         let mut options = render_options(&scene, picture);
         options.region = args.region;
         options.threads = self.threads;

@@ -1,6 +1,7 @@
 //! Makes job folders.
 
 use super::args::PartArgs;
+use super::status::duration;
 use crate::animation::Animation;
 use crate::args::{Cli, RenderArgs};
 use crate::input::{Input, Moment, render_options, threads};
@@ -13,12 +14,13 @@ use std::collections::BTreeSet;
 use std::ffi::OsString;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
+use std::time::{Duration, Instant};
 use strahl::Inputs;
 use strahl::tracing::{CostMap, CostMeasure, Progress, Region, RenderOptions, estimate};
 use strahl_farm::{Bundle, Job, JobFrame, Movie, split};
 
-/// Rays that look where the scene is costly, once for a job: with 4,800 the longest of ten tiles took 1.5 times the mean in two of six scenes.
+/// Rays that look where the scene is costly, once for a job, besides those that look for edges: with 4,800 the longest of ten tiles took 1.5 times
+/// the mean in two of six scenes.
 const LOOKS: f64 = 30_000.0;
 
 /// One ray looks for so many pixels in both directions, at most.
@@ -26,6 +28,9 @@ const WIDEST: f64 = 8.0;
 
 /// A tile of a job has at least this many pixels, unless more tiles are asked for.
 const LEAST_PIXELS: u64 = 96 * 96;
+
+/// The share of a task that reading the scene may take, before a picture is cut into fewer tiles.
+const READING: f64 = 0.05;
 
 /// The most tasks of a job: Slurm's default limit of an array is 1001.
 const MOST_TASKS: usize = 1000;
@@ -108,17 +113,8 @@ pub(super) fn create(
             "{shown} exists already: `strahl submit resume {shown}` goes on with it, --job DIR names another folder"
         )));
     }
-    let input = Input::new(
-        args.scene.as_deref(),
-        args.format,
-        &args.pov,
-        args.picture.size,
-    )?;
-    target.spares(&input, args)?;
-    let now = SystemTime::now().duration_since(UNIX_EPOCH);
-    let now = now.map_or(0.0, |since| {
-        (since.as_secs_f64() - 946_684_800.0) / 86_400.0
-    });
+    let input = target.input(args)?;
+    let now = strahl::sdl::present();
     let input = input.recording(true).at_time(Some(now));
     let animation = animation(parts, args, &input)?;
     let picture_words = render_words(engine, words, |id| OF_PICTURES.contains(&id))?;
@@ -159,7 +155,7 @@ pub(super) fn create(
         (None, Some(_)) => Some(1),
         (None, None) => None,
     };
-    let (tiles, size) = tiles(&input, moments[0].1, args, parts, count, &reporter)?;
+    let Division { tiles, size } = divide(&input, moments[0].1, args, parts, count, &reporter)?;
     job.tiles = tiles.iter().map(Region::to_string).collect();
     job.size = size;
     let least = job.units().div_ceil(MOST_TASKS);
@@ -348,43 +344,76 @@ fn tell(inputs: &[Inputs], parts: &PartArgs, reporter: &Reporter) {
     }
 }
 
-/// The tiles of the picture, and its size.
-fn tiles(
+/// How a picture is cut.
+struct Division {
+    tiles: Vec<Region>,
+    size: (u32, u32),
+}
+
+/// Cuts the picture into tiles of about equal cost. Tells what tasks will take, as far as the look shows it.
+fn divide(
     input: &Input<'_>,
     moment: Moment,
     args: &RenderArgs,
     parts: &PartArgs,
     count: Option<u32>,
     reporter: &Reporter,
-) -> Result<(Vec<Region>, (u32, u32)), Failure> {
-    let (scene, _) = input.compiled(moment, &args.accelerator, reporter)?;
+) -> Result<Division, Failure> {
+    let (scene, times) = input.compiled(moment, &args.accelerator, reporter)?;
     let mut options: RenderOptions = render_options(&scene, &args.picture);
     options.threads = threads(args.threads, reporter);
     let (width, height) = (options.width, options.height);
-    let even = CostMap::even(width, height);
-    let count = count.unwrap_or_else(|| {
-        let pixels = u64::from(width) * u64::from(height);
-        let most = (pixels / LEAST_PIXELS).min(even.costs.len() as u64).max(1);
-        let wanted = u64::from(parts.nodes) * 4;
-        u32::try_from(wanted.min(most)).unwrap_or(u32::MAX)
-    });
+    let size = (width, height);
     // Also the error for impossible sizes, which is the film's.
-    let map = match count {
-        1 => even,
-        _ => {
-            work::doing("looking where the scene is costly");
-            let spacing = (f64::from(width) * f64::from(height) / LOOKS).sqrt();
-            let spacing = spacing.clamp(1.0, WIDEST) as u32;
-            estimate(
-                &scene,
-                &options,
-                spacing,
-                CostMeasure::Timed,
-                &Clock(Instant::now()),
-            )
-            .map_err(Failure::new)?
-        }
-    };
+    let even = CostMap::even(width, height);
+    if count == Some(1) {
+        let tiles = split(&even, 1).map_err(Failure::new)?;
+        return Ok(Division { tiles, size });
+    }
+    work::doing("looking where the scene is costly");
+    let spacing = (f64::from(width) * f64::from(height) / LOOKS).sqrt();
+    let spacing = spacing.clamp(1.0, WIDEST) as u32;
+    let clock = Clock(Instant::now());
+    let map = estimate(&scene, &options, spacing, CostMeasure::Timed, &clock);
+    let map = map.map_err(Failure::new)?;
+    let work = map.costs.iter().map(|cost| *cost as f64).sum::<f64>() / 1e9;
+    let reading = times.load + times.compile;
+    let count = count.unwrap_or_else(|| number_of_tiles(&map, parts.nodes, work, reading));
     let tiles = split(&map, count).map_err(Failure::new)?;
-    Ok((tiles, (width, height)))
+    let each = work / f64::from(count);
+    reporter.say(&format!(
+        "about {} of processor time for each of {count} tiles; every task also reads and builds the scene, which took {} here",
+        duration(each),
+        duration(reading)
+    ));
+    Ok(Division { tiles, size })
+}
+
+/// Four tiles for each node, but not so many that reading the scene would take more than a twentieth of each task, as long as every node has one.
+fn number_of_tiles(map: &CostMap, nodes: u32, work: f64, reading: f64) -> u32 {
+    let pixels = u64::from(map.width) * u64::from(map.height);
+    let most = (pixels / LEAST_PIXELS).min(map.costs.len() as u64).max(1);
+    // Saturating, as conversions of floats are.
+    let affordable = (work * READING / reading.max(1e-9)) as u64;
+    let wanted = affordable.clamp(nodes.into(), u64::from(nodes) * 4);
+    u32::try_from(wanted.min(most)).unwrap_or(u32::MAX)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn scenes_that_are_slow_to_read_get_fewer_tiles() {
+        let map = CostMap::even(1920, 1080);
+        let number = |work, reading| number_of_tiles(&map, 10, work, reading);
+        assert_eq!(number(100.0, 0.01), 40);
+        assert_eq!(number(100.0, 0.25), 20);
+        // One for each node in any case.
+        assert_eq!(number(100.0, 60.0), 10);
+        assert_eq!(number(100.0, 0.0), 40);
+        // No tile is smaller than it should be.
+        let small = CostMap::even(200, 100);
+        assert_eq!(number_of_tiles(&small, 10, 100.0, 0.01), 2);
+    }
 }

@@ -10,12 +10,13 @@ use std::collections::BTreeSet;
 use std::path::Path;
 use std::process::Command;
 use strahl_farm::slurm::{quoted, render_command};
-use strahl_farm::{Progress, ranges};
+use strahl_farm::{Care, Progress, ranges};
 
 /// Submits the tasks of a job that have parts which are not done, and a merge behind them.
 pub(super) fn resume(args: &ResumeArgs) -> Result<(), Failure> {
     let (folder, job) = open(&args.job)?;
-    let states = states(&job, &folder);
+    // As carefully as the merge will read them, which would refuse a damaged tile.
+    let states = states(&job, &folder, Care::Whole);
     let open_parts = states
         .iter()
         .filter(|(_, progress)| !matches!(progress, Progress::Done(_)));

@@ -7,7 +7,7 @@ use crate::output::say;
 use crate::report::Failure;
 use serde::Serialize;
 use std::path::Path;
-use strahl_farm::{Job, Progress, Unit, progress, time_of};
+use strahl_farm::{Care, Job, Progress, Unit, progress, time_of};
 
 /// The most failed or missing parts that the table names.
 const MOST_SHOWN: usize = 10;
@@ -39,10 +39,10 @@ struct Part {
 }
 
 /// The states of all parts of a job.
-pub(super) fn states(job: &Job, folder: &Path) -> Vec<(Unit, Progress)> {
+pub(super) fn states(job: &Job, folder: &Path, care: Care) -> Vec<(Unit, Progress)> {
     let now = time_of(folder);
     let all = job.all();
-    all.map(|unit| (unit, progress(job, folder, unit, now)))
+    all.map(|unit| (unit, progress(job, folder, unit, now, care)))
         .collect()
 }
 
@@ -63,7 +63,7 @@ impl Status {
     fn of(job: &Job, folder: &Path) -> Self {
         let (mut done, mut seconds) = (0, vec![]);
         let (mut running, mut failed, mut missing) = (vec![], vec![], vec![]);
-        for (unit, progress) in states(job, folder) {
+        for (unit, progress) in states(job, folder, Care::Header) {
             let part = |host, why| Part {
                 name: job.name(unit),
                 host,
@@ -145,10 +145,11 @@ impl Status {
     }
 }
 
-fn duration(seconds: f64) -> String {
+pub(super) fn duration(seconds: f64) -> String {
     let whole = seconds.round() as u64;
     match whole {
-        0..=99 => format!("{whole} s"),
+        0..=9 => format!("{seconds:.2} s"),
+        10..=99 => format!("{whole} s"),
         100..=5999 => format!("{} min", whole.div_ceil(60)),
         _ => format!("{:.1} h", seconds / 3600.0),
     }
@@ -160,6 +161,7 @@ mod tests {
 
     #[test]
     fn durations_have_fitting_units() {
+        assert_eq!(duration(0.0123), "0.01 s");
         assert_eq!(duration(12.4), "12 s");
         assert_eq!(duration(100.0), "2 min");
         assert_eq!(duration(9000.0), "2.5 h");

@@ -3,26 +3,30 @@
 use super::args::TaskArgs;
 use super::open;
 use crate::args::{Cli, Command};
+use crate::input::Kept;
 use crate::output::say;
 use crate::report::{Failure, Reporter};
-use crate::{commands, terminal};
+use crate::{commands, terminal, tile};
 use clap::Parser;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc;
 use std::thread::JoinHandle;
 use std::time::Instant;
-use strahl_farm::{Job, State, Unit};
+use strahl_farm::{Care, Job, State, Unit};
 
 /// Renders the parts of a task, one after the other. Parts that are complete already are left alone, so a task that is run again, or twice
 /// at once, does no harm.
 pub(super) fn task(args: &TaskArgs) -> Result<(), Failure> {
     let (folder, job) = open(&args.job)?;
+    job.check_program(tile::VERSION).map_err(Failure::new)?;
     let units = units(args, &job)?;
     if !job.bundled {
         std::env::set_current_dir(&job.folder).map_err(|error| {
             Failure::new(format!("cannot go to {}: {error}", job.folder.display()))
         })?;
     }
+    // Tiles of one frame share the scene.
+    let kept = Kept::default();
     let mut failures = vec![];
     for (index, unit) in units.iter().enumerate() {
         let name = job.name(*unit);
@@ -33,7 +37,7 @@ pub(super) fn task(args: &TaskArgs) -> Result<(), Failure> {
             );
             say!("openjd_status: rendering {name}");
         }
-        match job.check_tile(&folder, *unit) {
+        match job.check_tile(&folder, *unit, Care::Whole) {
             Ok(()) => {
                 say!("{name}: complete already");
                 continue;
@@ -41,7 +45,7 @@ pub(super) fn task(args: &TaskArgs) -> Result<(), Failure> {
             Err(Some(why)) => say!("{name} is rendered again: {why}"),
             Err(None) => {}
         }
-        match render(&job, &folder, *unit, args.threads) {
+        match render(&job, &folder, *unit, args.threads, &kept) {
             Ok(seconds) => say!("{name}: {seconds:.2} s"),
             Err(Failure::Interrupted) => return Err(Failure::Interrupted),
             Err(failure) => {
@@ -119,7 +123,13 @@ fn words(job: &Job, folder: &Path, unit: Unit, threads: usize) -> Vec<String> {
 }
 
 /// Renders a part; returns the seconds it took.
-fn render(job: &Job, folder: &Path, unit: Unit, threads: usize) -> Result<f64, Failure> {
+fn render(
+    job: &Job,
+    folder: &Path,
+    unit: Unit,
+    threads: usize,
+    kept: &Kept,
+) -> Result<f64, Failure> {
     let start = Instant::now();
     let cli = Cli::try_parse_from(words(job, folder, unit, threads)).map_err(Failure::new)?;
     let Command::Render(args) = &cli.command else {
@@ -133,12 +143,12 @@ fn render(job: &Job, folder: &Path, unit: Unit, threads: usize) -> Result<f64, F
     };
     note(&state, &file);
     let beat = beat(state.clone(), file.clone());
-    let rendered = commands::render(args, Reporter::new(true));
+    let rendered = commands::render_with(args, Reporter::new(true), kept);
     drop(beat.0);
     // The thread returns nothing.
     let _ = beat.1.join();
     let checked = rendered.and_then(|()| {
-        job.check_tile(folder, unit).map_err(|why| {
+        job.check_tile(folder, unit, Care::Whole).map_err(|why| {
             Failure::new(why.unwrap_or_else(|| "the tile was written, but is not there".into()))
         })
     });

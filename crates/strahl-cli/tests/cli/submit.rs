@@ -162,6 +162,64 @@ fn a_film_has_the_frames_of_one_process() {
     assert!(!f.join("film11.png").exists());
 }
 
+/// Another build of the same version may render other bits.
+#[test]
+fn jobs_of_another_build_are_not_rendered() {
+    let folder = folder();
+    let f = folder.path();
+    run(f, STILL);
+    let own = run(f, "--version");
+    let (version, build) = own.trim().split_once('+').expect("a build");
+    assert!(version.starts_with("strahl ") && build.len() == 16, "{own}");
+    let manifest = f.join("still.job/job.json");
+    let text = fs::read_to_string(&manifest).unwrap();
+    let other = text.replace(build, "0123456789abcdef");
+    assert_ne!(text, other);
+    fs::write(&manifest, other).unwrap();
+    let problem = failure(f, "submit task still.job --task 1");
+    assert!(
+        problem.contains("was submitted by strahl") && problem.contains("0123456789abcdef"),
+        "{problem}"
+    );
+}
+
+/// A task with several tiles reads the scene once.
+#[test]
+fn tiles_of_one_task_are_those_of_several() {
+    let folder = folder();
+    let f = folder.path();
+    run(f, STILL);
+    run(f, &format!("{STILL} --chunk 3 --job all.job"));
+    run(f, "submit task all.job --task 1");
+    for task in 1..=3 {
+        run(f, &format!("submit task still.job --task {task}"));
+    }
+    let hash = |job: &str| {
+        run(f, &format!("submit merge {job}"));
+        json(&fs::read(f.join(job).join("result.json")).unwrap())["pictures"][0]["sha256"].clone()
+    };
+    assert_eq!(hash("all.job"), hash("still.job"));
+}
+
+/// `status` reads the headers of tiles only; `resume` reads all, as the merge does.
+#[test]
+fn a_tile_with_changed_values_is_submitted_again() {
+    let folder = folder();
+    let f = folder.path();
+    run(f, STILL);
+    for task in 1..=3 {
+        run(f, &format!("submit task still.job --task {task}"));
+    }
+    let tile = f.join("still.job/tiles/t2.exr");
+    let mut bytes = fs::read(&tile).unwrap();
+    let middle = bytes.len() / 2;
+    bytes[middle] ^= 0xff;
+    fs::write(&tile, bytes).unwrap();
+    assert_eq!(status(f, "still.job")["done"], 3);
+    assert!(failure(f, "submit merge still.job").contains("t2.exr"));
+    assert!(run(f, "submit resume still.job --dry-run").contains("--array=2 "));
+}
+
 #[test]
 fn changed_scenes_are_noticed_without_a_bundle() {
     let folder = folder();

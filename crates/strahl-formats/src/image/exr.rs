@@ -4,7 +4,7 @@
 
 mod read;
 
-pub use read::{ExrFile, read_exr};
+pub use read::{ExrFile, ExrHeader, read_exr, read_exr_header};
 
 use std::io::{self, Cursor, Write};
 

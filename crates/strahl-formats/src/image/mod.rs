@@ -39,7 +39,7 @@ mod write;
 
 pub use diff::{Difference, compare};
 pub use error::ImageError;
-pub use exr::{ExrFile, read_exr};
+pub use exr::{ExrFile, ExrHeader, read_exr, read_exr_header};
 pub use format::{FormatInfo, ImageFormat, formats};
 pub use gamma::{PictureCodes, picture_codes};
 pub use heights::{Heights, PaletteIndices, decode_heights, decode_indices};

@@ -1,5 +1,6 @@
 //! Traces the pixels of tiles on one thread.
 
+use super::probe::Seen;
 use super::{RenderOptions, Samples, TileResult};
 use crate::camera::PrimaryRays;
 use crate::cost::PixelCost;
@@ -121,17 +122,8 @@ impl PixelTracer<'_> {
             if !tracer.options.costs {
                 return trace(tracer, x, y);
             }
-            let (before, start) = (tracer.spent(), tracer.progress.now());
-            tracer.depth = 0;
-            let value = trace(tracer, x, y);
-            let after = tracer.spent();
-            costs.push(PixelCost {
-                tests: after.tests - before.tests,
-                steps: after.steps - before.steps,
-                rays: after.rays - before.rays,
-                depth: tracer.depth,
-                nanoseconds: tracer.progress.now().saturating_sub(start),
-            });
+            let (value, cost) = tracer.measured(|tracer| trace(tracer, x, y));
+            costs.push(cost);
             value
         };
         let mut values = Vec::with_capacity(tile.pixels() as usize);
@@ -186,6 +178,33 @@ impl PixelTracer<'_> {
             rays: self.tree.counts.total(),
             ..PixelCost::default()
         }
+    }
+
+    /// What the ray through the centre of a pixel sees, and its cost.
+    pub(super) fn probe(&mut self, x: u32, y: u32) -> Seen {
+        let (x, y) = (f64::from(x) + 0.5, f64::from(y) + 0.5);
+        let (sample, cost) = self.measured(|tracer| tracer.sample(x, y, false));
+        let color = sample.color;
+        Seen { color, cost }
+    }
+
+    /// The value that `trace` returns, and its cost.
+    // Inline: a value that is returned in parts and then loaded as a whole would wait for the stores.
+    #[inline(always)]
+    fn measured<T>(&mut self, trace: impl FnOnce(&mut Self) -> T) -> (T, PixelCost) {
+        let (before, start) = (self.spent(), self.progress.now());
+        self.depth = 0;
+        let value = trace(self);
+        let nanoseconds = self.progress.now().saturating_sub(start);
+        let after = self.spent();
+        let cost = PixelCost {
+            tests: after.tests - before.tests,
+            steps: after.steps - before.steps,
+            rays: after.rays - before.rays,
+            depth: self.depth,
+            nanoseconds,
+        };
+        (value, cost)
     }
 
     /// The samples of each of `pixels` pixels in the first pass, if all of them see the same background colour.

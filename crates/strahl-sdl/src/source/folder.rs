@@ -250,13 +250,16 @@ impl Host for FolderHost {
     }
 
     fn now(&mut self) -> f64 {
-        /// Seconds from 1970 to 2000.
-        const EPOCH: f64 = 946_684_800.0;
-        self.now.unwrap_or_else(|| {
-            let since = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH);
-            since.map_or(0.0, |d| (d.as_secs_f64() - EPOCH) / 86_400.0)
-        })
+        self.now.unwrap_or_else(present)
     }
+}
+
+/// The value of `now` at this moment: the days since the beginning of 2000.
+pub fn present() -> f64 {
+    /// Seconds from 1970 to 2000.
+    const EPOCH: f64 = 946_684_800.0;
+    let since = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH);
+    since.map_or(0.0, |d| (d.as_secs_f64() - EPOCH) / 86_400.0)
 }
 
 #[cfg(test)]

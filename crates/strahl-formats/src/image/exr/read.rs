@@ -1,33 +1,42 @@
 //! Reads OpenEXR files with all their channels and texts, such as the tiles of a picture.
 
 use std::collections::BTreeMap;
-use std::fs;
-use std::io::{Cursor, ErrorKind};
+use std::fs::{self, File};
+use std::io::{self, BufReader, Cursor, ErrorKind};
 use std::path::Path;
 
+use ::exr::block::reader::Reader;
 use ::exr::image::read::read;
 use ::exr::image::{AnyChannels, FlatSamples, Image, Layer};
 use ::exr::meta::MetaData;
 use ::exr::meta::attribute::AttributeValue;
+use ::exr::meta::header::Header;
 use ::exr::prelude::{ReadChannels, ReadLayers};
 
 use super::super::texture::check_size;
 use super::super::{ImageError, LayerData, Window};
 use super::PREFIX;
 
-/// An OpenEXR file: one part, all channels.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ExrFile {
+/// What the header of an OpenEXR file says.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ExrHeader {
     /// Columns of the full picture, which is the display window.
     pub width: u32,
     /// Rows of the full picture.
     pub height: u32,
     /// The part of the full picture that the file has: the data window.
     pub window: Window,
-    /// The samples of each channel by its full name (`R`, `depth.Z`), row by row. Halves are widened.
-    pub channels: BTreeMap<String, LayerData>,
     /// The metadata that a [`super::super::Picture`] was written with.
     pub metadata: BTreeMap<String, String>,
+}
+
+/// An OpenEXR file: one part, all channels.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ExrFile {
+    /// What its header says.
+    pub header: ExrHeader,
+    /// The samples of each channel by its full name (`R`, `depth.Z`), row by row. Halves are widened.
+    pub channels: BTreeMap<String, LayerData>,
 }
 
 /// Reads an OpenEXR file of one part whose display window begins at 0,0, as all files of this program do.
@@ -36,20 +45,28 @@ pub struct ExrFile {
 /// [`ImageError`]: the file can't be read, is damaged or cut off, or is another kind of OpenEXR file.
 pub fn read_exr(path: impl AsRef<Path>) -> Result<ExrFile, ImageError> {
     let path = path.as_ref();
-    let failed = |reason: String| ImageError::Exr {
-        path: path.to_owned(),
-        reason,
+    let bytes = fs::read(path).map_err(|error| unreadable(path, &error))?;
+    let name = path.display().to_string();
+    decode(&bytes, &name).map_err(|problem| problem.of(path))
+}
+
+/// Reads the header of a file that [`read_exr`] would read, and its last rows: a file that was cut off is noticed, one whose samples were
+/// changed is not.
+///
+/// # Errors
+/// As for [`read_exr`].
+pub fn read_exr_header(path: impl AsRef<Path>) -> Result<ExrHeader, ImageError> {
+    let path = path.as_ref();
+    let file = File::open(path).map_err(|error| unreadable(path, &error))?;
+    header_and_end(BufReader::new(file)).map_err(|problem| problem.of(path))
+}
+
+fn unreadable(path: &Path, error: &io::Error) -> ImageError {
+    let reason = match error.kind() {
+        ErrorKind::NotFound => "there is no such file".to_owned(),
+        _ => error.to_string(),
     };
-    let bytes = fs::read(path).map_err(|error| {
-        failed(match error.kind() {
-            ErrorKind::NotFound => "there is no such file".to_owned(),
-            _ => error.to_string(),
-        })
-    })?;
-    decode(&bytes, &path.display().to_string()).map_err(|problem| match problem {
-        Problem::Exr(reason) => failed(reason),
-        Problem::Size(error) => error,
-    })
+    Problem::Exr(reason).of(path)
 }
 
 enum Problem {
@@ -63,14 +80,86 @@ impl From<::exr::error::Error> for Problem {
     }
 }
 
-fn decode(bytes: &[u8], name: &str) -> Result<ExrFile, Problem> {
-    let other = |what: &str| Problem::Exr(what.to_owned());
-    let meta = MetaData::read_from_buffered(Cursor::new(bytes), false)?;
-    let [header] = &meta.headers[..] else {
-        return Err(other("it has several parts"));
+impl Problem {
+    fn of(self, path: &Path) -> ImageError {
+        match self {
+            Self::Exr(reason) => ImageError::Exr {
+                path: path.to_owned(),
+                reason,
+            },
+            Self::Size(error) => error,
+        }
+    }
+}
+
+fn other(what: &str) -> Problem {
+    Problem::Exr(what.to_owned())
+}
+
+/// The header of the only part.
+fn only_part(meta: &MetaData) -> Result<&Header, Problem> {
+    match &meta.headers[..] {
+        [header] => Ok(header),
+        _ => Err(other("it has several parts")),
+    }
+}
+
+fn header_and_end(file: BufReader<File>) -> Result<ExrHeader, Problem> {
+    let reader = Reader::read_from_buffered(file, false)?;
+    let part = only_part(reader.meta_data())?;
+    let (header, count) = (header(part)?, part.chunk_count);
+    let mut number = 0;
+    let last = reader.filter_chunks(false, |_, _, _| {
+        number += 1;
+        number == count
+    })?;
+    for chunk in last {
+        chunk?;
+    }
+    Ok(header)
+}
+
+/// What a header says, in this program's words.
+fn header(part: &Header) -> Result<ExrHeader, Problem> {
+    let display = part.shared_attributes.display_window;
+    let attributes = &part.own_attributes;
+    let position = attributes.layer_position;
+    let number = |n: usize| u32::try_from(n).map_err(|_| other("its windows are too large"));
+    let (Ok(x), Ok(y)) = (u32::try_from(position.x()), u32::try_from(position.y())) else {
+        return Err(other("its data window begins before its display window"));
     };
-    let size = header.layer_size;
-    let sample_bytes = 4 * header.channels.list.len().max(1) as u64;
+    if (display.position.x(), display.position.y()) != (0, 0) {
+        return Err(other("its display window does not begin at 0,0"));
+    }
+    let texts = attributes.other.iter();
+    let metadata = texts.filter_map(|(name, value)| {
+        let name = name.to_string();
+        let key = name.strip_prefix(PREFIX)?.to_owned();
+        match value {
+            AttributeValue::Text(value) => {
+                Some((key, String::from_utf8_lossy(value.as_slice()).into_owned()))
+            }
+            _ => None,
+        }
+    });
+    Ok(ExrHeader {
+        width: number(display.size.width())?,
+        height: number(display.size.height())?,
+        window: Window {
+            x,
+            y,
+            width: number(part.layer_size.width())?,
+            height: number(part.layer_size.height())?,
+        },
+        metadata: metadata.collect(),
+    })
+}
+
+fn decode(bytes: &[u8], name: &str) -> Result<ExrFile, Problem> {
+    let meta = MetaData::read_from_buffered(Cursor::new(bytes), false)?;
+    let part = only_part(&meta)?;
+    let size = part.layer_size;
+    let sample_bytes = 4 * part.channels.list.len().max(1) as u64;
     check_size(
         name,
         size.width() as u64,
@@ -85,16 +174,7 @@ fn decode(bytes: &[u8], name: &str) -> Result<ExrFile, Problem> {
         .first_valid_layer()
         .all_attributes()
         .from_buffered(Cursor::new(bytes))?;
-    let display = image.attributes.display_window;
     let layer = image.layer_data;
-    let position = layer.attributes.layer_position;
-    let number = |n: usize| u32::try_from(n).map_err(|_| other("its windows are too large"));
-    let (Ok(x), Ok(y)) = (u32::try_from(position.x()), u32::try_from(position.y())) else {
-        return Err(other("its data window begins before its display window"));
-    };
-    if (display.position.x(), display.position.y()) != (0, 0) {
-        return Err(other("its display window does not begin at 0,0"));
-    }
     let pixels = layer.size.area();
     let mut channels = BTreeMap::new();
     for channel in layer.channel_data.list {
@@ -110,28 +190,9 @@ fn decode(bytes: &[u8], name: &str) -> Result<ExrFile, Problem> {
         }
         channels.insert(channel.name.to_string(), data);
     }
-    let texts = layer.attributes.other.into_iter();
-    let metadata = texts.filter_map(|(name, value)| {
-        let name = name.to_string();
-        let key = name.strip_prefix(PREFIX)?.to_owned();
-        match value {
-            AttributeValue::Text(value) => {
-                Some((key, String::from_utf8_lossy(value.as_slice()).into_owned()))
-            }
-            _ => None,
-        }
-    });
     Ok(ExrFile {
-        width: number(display.size.width())?,
-        height: number(display.size.height())?,
-        window: Window {
-            x,
-            y,
-            width: number(layer.size.width())?,
-            height: number(layer.size.height())?,
-        },
+        header: header(part)?,
         channels,
-        metadata: metadata.collect(),
     })
 }
 
@@ -172,8 +233,13 @@ mod tests {
         };
         write_picture(&path, &picture, &WriteOptions::default()).unwrap();
         let file = read_exr(&path).unwrap();
-        assert_eq!((file.width, file.height, file.window), (10, 20, window));
-        assert_eq!(file.metadata["tile"], "2/3 \u{e9}");
+        let header = &file.header;
+        assert_eq!(
+            (header.width, header.height, header.window),
+            (10, 20, window)
+        );
+        assert_eq!(header.metadata["tile"], "2/3 \u{e9}");
+        assert_eq!(read_exr_header(&path).unwrap(), *header);
         assert_eq!(file.channels["depth.Z"], layers[0].data);
         assert_eq!(file.channels["object.id"], layers[1].data);
         assert_eq!(file.channels["A"], LayerData::F32(vec![0.5; 6]));
@@ -189,6 +255,7 @@ mod tests {
             fs::write(&path, &bytes[..length]).unwrap();
             let error = read_exr(&path).unwrap_err().to_string();
             assert!(error.contains("tile.exr"), "{error}");
+            assert!(read_exr_header(&path).is_err(), "{length}");
         }
         fs::remove_file(&path).unwrap();
         assert!(read_exr(&path).is_err());
