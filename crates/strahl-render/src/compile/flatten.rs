@@ -1,8 +1,7 @@
 use super::bounds::{Bound, bounded};
-use super::inside;
-use super::materials::{
-    MaterialTable, material_fills, material_of, material_problem, material_transmits,
-};
+use super::csg::wrong_count;
+use super::inherit::Todo;
+use super::materials::{MaterialTable, material_fills, material_problem, material_transmits};
 use crate::hit::RayClass;
 use crate::light_sets::{LightSetsDraft, Lit};
 use crate::look::{Look, Looks, UvMapping};
@@ -12,15 +11,14 @@ use crate::runs::RunList;
 use crate::scene::{InstanceUse, MeshUse, ShapeUse};
 use crate::spheres::{PlainSphere, Spheres};
 use std::collections::HashSet;
-use std::rc::Rc;
 use std::sync::Arc;
-use strahl_geometry::{Csg, CsgNode, GeometryError, Polygon, Primitive, Shape};
+use strahl_geometry::{GeometryError, Polygon, Primitive, Shape};
 use strahl_math::Transform;
 use strahl_scene::{
-    Children, CsgOp, Diagnostic, Object, ObjectKind, Scene, SceneLight, Span, Visibility,
+    Children, CsgOp, Diagnostic, Object, ObjectKind, Scene, SceneLight, Visibility,
 };
 use strahl_shade::texture::Texture;
-use strahl_shade::{Material, MaterialId, Sides};
+use strahl_shade::{MaterialId, Sides};
 
 /// The lists of one group.
 #[derive(Debug, Default)]
@@ -111,108 +109,15 @@ pub(super) fn flatten(scene: &Scene) -> Result<Flat, Vec<Diagnostic>> {
     Err(pass.errors)
 }
 
-struct Pass {
-    flat: Flat,
-    errors: Vec<Diagnostic>,
+pub(super) struct Pass {
+    pub(super) flat: Flat,
+    pub(super) errors: Vec<Diagnostic>,
     /// Materials already validated.
-    checked: HashSet<MaterialId>,
+    pub(super) checked: HashSet<MaterialId>,
     /// Whether the world is being flattened, not a group.
-    in_world: bool,
+    pub(super) in_world: bool,
     /// Bodies so far.
-    bodies: u32,
-}
-
-/// An object with the attributes it inherits.
-#[derive(Clone)]
-struct Todo<'a> {
-    object: &'a Object,
-    transform: Transform,
-    material: Option<&'a Arc<Material>>,
-    /// From the space of the object that has the material to the group's.
-    material_space: Transform,
-    name: Option<&'a Arc<str>>,
-    span: Span,
-    visibility: Visibility,
-    hollow: bool,
-    /// Whether it or an object that it is a part of has `uv_mapping`.
-    uv_mapped: bool,
-    /// Whether the object that has the material has `uv_mapping`.
-    material_uv_mapped: bool,
-    lit: Lit,
-    /// Whether it is the body of a light.
-    is_lamp: bool,
-    /// The body that it is or is a part of; `None` if it is the first of one that has no number yet.
-    body: Option<u32>,
-    /// The bounds that it is seen through.
-    bounds: Rc<[Bound]>,
-}
-
-impl<'a> Todo<'a> {
-    fn new(object: &'a Object, parent: Option<&Self>) -> Self {
-        let own = object.transform.as_deref().copied().unwrap_or_default();
-        let Some(p) = parent else {
-            return Self {
-                object,
-                transform: own,
-                material: object.material.as_ref(),
-                material_space: own,
-                name: object.name.as_ref(),
-                span: object.span,
-                visibility: object.visibility,
-                hollow: object.hollow == Some(true),
-                uv_mapped: object.uv_mapped,
-                material_uv_mapped: object.uv_mapped,
-                lit: Lit {
-                    both_sides: object.double_illuminated,
-                    ..Lit::PLAIN
-                },
-                is_lamp: object.is_lamp,
-                body: None,
-                bounds: Rc::default(),
-            };
-        };
-        let (a, b) = (object.visibility, p.visibility);
-        let transform = own.then(&p.transform);
-        Self {
-            object,
-            transform,
-            material_space: if object.material.is_some() {
-                transform
-            } else {
-                p.material_space
-            },
-            material: material_of(object, p.material),
-            name: object.name.as_ref().or(p.name),
-            span: if object.span.is_some() {
-                object.span
-            } else {
-                p.span
-            },
-            visibility: Visibility {
-                camera: a.camera && b.camera,
-                secondary: a.secondary && b.secondary,
-                shadow: a.shadow && b.shadow,
-            },
-            hollow: object.hollow.unwrap_or(p.hollow),
-            uv_mapped: object.uv_mapped || p.uv_mapped,
-            material_uv_mapped: if object.material.is_some() {
-                object.uv_mapped
-            } else {
-                p.material_uv_mapped
-            },
-            body: if fills_itself(object, p.material) {
-                None
-            } else {
-                p.body
-            },
-            bounds: Rc::clone(&p.bounds),
-            lit: Lit {
-                set: p.lit.set,
-                both_sides: object.double_illuminated || p.lit.both_sides,
-            },
-            is_lamp: object.is_lamp || p.is_lamp,
-        }
-    }
+    pub(super) bodies: u32,
 }
 
 impl Pass {
@@ -267,7 +172,7 @@ impl Pass {
     }
 
     /// Numbers the body that an object is the first of.
-    fn number_body(&mut self, todo: &mut Todo<'_>) {
+    pub(super) fn number_body(&mut self, todo: &mut Todo<'_>) {
         todo.body.get_or_insert_with(|| {
             self.bodies = self.bodies.wrapping_add(1);
             self.bodies
@@ -275,7 +180,7 @@ impl Pass {
     }
 
     /// The object within its bounds, which the bounds of `todo` become.
-    fn bounded_part<'a>(
+    pub(super) fn bounded_part<'a>(
         &mut self,
         children: &'a Children,
         todo: &mut Todo<'a>,
@@ -300,7 +205,7 @@ impl Pass {
     }
 
     /// The children of a union. Those of a light group get a light set, which the lights of the group join here.
-    fn union_parts<'a>(
+    pub(super) fn union_parts<'a>(
         &mut self,
         op: CsgOp,
         children: &'a Children,
@@ -331,7 +236,7 @@ impl Pass {
         lit
     }
 
-    fn light(&mut self, light: &SceneLight, todo: &Todo<'_>) {
+    pub(super) fn light(&mut self, light: &SceneLight, todo: &Todo<'_>) {
         self.flat.lights.push(SceneLight {
             name: light.name.as_ref().or(todo.name).cloned(),
             ..light.transformed(&todo.transform)
@@ -339,7 +244,7 @@ impl Pass {
     }
 
     /// Registers object and material.
-    fn look(&mut self, todo: &Todo<'_>, kind: &'static str) -> Look {
+    pub(super) fn look(&mut self, todo: &Todo<'_>, kind: &'static str) -> Look {
         let material = self.flat.materials.id(todo.material);
         if self.checked.insert(material)
             && let Some(problem) = material_problem(self.flat.materials.get(material))
@@ -390,7 +295,7 @@ impl Pass {
         }
     }
 
-    fn flags(&self, todo: &Todo<'_>, material: MaterialId) -> u8 {
+    pub(super) fn flags(&self, todo: &Todo<'_>, material: MaterialId) -> u8 {
         let material = self.flat.materials.get(material);
         let light = if material_transmits(material) {
             Prim::TRANSMITS
@@ -415,7 +320,7 @@ impl Pass {
         light | sides | mask | filtered | filled
     }
 
-    fn invalid(&mut self, todo: &Todo<'_>, kind: &str, error: &GeometryError) {
+    pub(super) fn invalid(&mut self, todo: &Todo<'_>, kind: &str, error: &GeometryError) {
         let name = todo.name.map_or_else(String::new, |n| format!(" `{n}`"));
         self.errors
             .push(Diagnostic::error(format!("{kind}{name}: {error}")).at(todo.span));
@@ -469,111 +374,6 @@ impl Pass {
         let kind = PrimKind::Placed(group.shapes.len() as u32 - 1);
         group.prims.push(Prim::new(kind, visible, flags));
     }
-
-    /// A CSG tree becomes one primitive whose leaves know their objects and materials.
-    fn csg(&mut self, todo: &Todo<'_>, group: &mut FlatGroup) {
-        let errors_before = self.errors.len();
-        let mut looks = Vec::new();
-        let Some(node) = self.csg_node(todo, &mut looks) else {
-            return;
-        };
-        if self.errors.len() > errors_before {
-            return;
-        }
-        match Csg::try_new(node) {
-            Err(error) => self.invalid(todo, "CSG object", &error),
-            Ok(csg) => {
-                let flags = looks
-                    .iter()
-                    .fold(0, |f, look| f | self.flags(todo, look.material));
-                let looks = Looks::of_leaves(looks, todo.body.unwrap_or(0));
-                let visible = visible(todo.visibility);
-                group.add_shape(Arc::new(csg).into(), looks, visible, flags);
-                if flags & Prim::FILLED != 0
-                    && let Some(used) = group.shapes.last_mut()
-                {
-                    used.inside = inside::of(todo.object, &todo.transform).map(Box::new);
-                }
-            }
-        }
-    }
-
-    /// Translates a tree of objects, bottom-up with a stack of its own.
-    fn csg_node(&mut self, root: &Todo<'_>, looks: &mut Vec<Look>) -> Option<CsgNode> {
-        enum Step<'a> {
-            Visit(Box<Todo<'a>>),
-            Combine(CsgOp, usize),
-        }
-        let mut steps = vec![Step::Visit(Box::new(root.clone()))];
-        let mut done: Vec<CsgNode> = Vec::new();
-        while let Some(step) = steps.pop() {
-            match step {
-                Step::Combine(op, count) => {
-                    let children = done.split_off(done.len() - count);
-                    done.push(combine(op, children));
-                }
-                Step::Visit(mut todo) => {
-                    self.number_body(&mut todo);
-                    match &todo.object.kind {
-                        ObjectKind::Csg {
-                            op: CsgOp::Bound,
-                            children,
-                        } => {
-                            let inner = self.bounded_part(children, &mut todo)?;
-                            let inner = Todo::new(inner, Some(&todo));
-                            steps.push(Step::Visit(Box::new(inner)));
-                        }
-                        ObjectKind::Csg { op, children } => {
-                            // Lights among the operands shine, but are not operands.
-                            let is_light = |c: &Object| matches!(c.kind, ObjectKind::Light(_));
-                            let count = children.0.iter().filter(|c| !is_light(c)).count();
-                            let children = self.union_parts(*op, children, &mut todo);
-                            if let Some(problem) = wrong_count(*op, count) {
-                                self.errors.push(Diagnostic::error(problem).at(todo.span));
-                                return None;
-                            }
-                            steps.push(Step::Combine(*op, count));
-                            steps.extend(
-                                children
-                                    .rev()
-                                    .map(|c| Step::Visit(Box::new(Todo::new(c, Some(&todo))))),
-                            );
-                        }
-                        ObjectKind::Light(light) => self.light(light, &todo),
-                        ObjectKind::Shape(shape) => {
-                            if let Err(error) = shape.validate() {
-                                self.invalid(&todo, shape.kind(), &error);
-                            }
-                            looks.push(self.look(&todo, shape.kind()));
-                            let tag = looks.len() as u32 - 1;
-                            let transform =
-                                (!todo.transform.is_identity()).then(|| Box::new(todo.transform));
-                            done.push(CsgNode::Leaf {
-                                shape: bounded(shape, &todo.bounds, &todo.transform)
-                                    .unwrap_or_else(|| shape.clone()),
-                                transform,
-                                tag,
-                            });
-                        }
-                        ObjectKind::Instance(_) => {
-                            let message = "a group cannot be instanced inside of a CSG object other than a union; \
-                                       repeat its objects instead";
-                            self.errors.push(Diagnostic::error(message).at(todo.span));
-                            return None;
-                        }
-                    }
-                }
-            }
-        }
-        done.pop()
-    }
-}
-
-/// Whether an object has a medium of its own and not that of the whole: parts that got theirs from the whole share it.
-fn fills_itself(object: &Object, whole: Option<&Arc<Material>>) -> bool {
-    let interior = |m: Option<&Arc<Material>>| m.and_then(|m| m.interior.as_ref().map(Arc::as_ptr));
-    let own = interior(object.material.as_ref());
-    own.is_some() && own != interior(whole)
 }
 
 /// A box whose opposite faces coincide within rounding, as the one sheet that it is by itself. (In CSG it stays a solid without content.)
@@ -598,41 +398,9 @@ fn rectangle(shape: &Shape) -> Option<Shape> {
     Polygon::try_new(&corners).map(Shape::from).ok()
 }
 
-fn visible(v: Visibility) -> u8 {
+pub(super) fn visible(v: Visibility) -> u8 {
     let bit = |seen: bool, class: RayClass| if seen { class.bit() } else { 0 };
     bit(v.camera, RayClass::Camera)
         | bit(v.secondary, RayClass::Secondary)
         | bit(v.shadow, RayClass::Shadow)
-}
-
-fn wrong_count(op: CsgOp, count: usize) -> Option<String> {
-    let (right, expected) = match op {
-        CsgOp::Inverse => (count == 1, "exactly one object"),
-        CsgOp::Clip => (count >= 2, "an object and at least one to clip it by"),
-        CsgOp::Bound => (count >= 2, "an object and at least one to bound it by"),
-        CsgOp::Union
-        | CsgOp::Merge
-        | CsgOp::Intersection
-        | CsgOp::Difference
-        | CsgOp::LightGroup { .. } => (count >= 1, "at least one object"),
-    };
-    (!right).then(|| format!("{} takes {expected}, found {count}", op.name()))
-}
-
-/// The operation without regard to who sees the result.
-pub(super) fn combine(op: CsgOp, children: Vec<CsgNode>) -> CsgNode {
-    let count = if op == CsgOp::Bound {
-        1
-    } else {
-        children.len()
-    };
-    let operands = children.into_iter().take(count).collect();
-    match op {
-        CsgOp::Union | CsgOp::Bound | CsgOp::LightGroup { .. } => CsgNode::Union(operands),
-        CsgOp::Merge => CsgNode::Merge(operands),
-        CsgOp::Intersection => CsgNode::Intersection(operands),
-        CsgOp::Difference => CsgNode::Difference(operands),
-        CsgOp::Inverse => CsgNode::Inverse(operands),
-        CsgOp::Clip => CsgNode::Clip(operands),
-    }
 }

@@ -1,6 +1,6 @@
 //! Where the insides of solids are that are cut or inverted.
 
-use super::flatten::combine;
+use super::csg::combine;
 use crate::scene::Inside;
 use std::sync::Arc;
 use strahl_geometry::{Csg, CsgNode, Cuboid, Plane, Primitive, Shape};

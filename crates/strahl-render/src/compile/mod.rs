@@ -9,8 +9,10 @@
 
 mod assemble;
 mod bounds;
+mod csg;
 mod cut;
 mod flatten;
+mod inherit;
 mod inside;
 mod materials;
 mod shapes;
