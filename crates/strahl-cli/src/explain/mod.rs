@@ -3,6 +3,7 @@
 mod digits;
 mod dot;
 mod json;
+mod lights;
 mod names;
 mod page;
 mod summary;

@@ -1,8 +1,9 @@
+use super::lights::write_light;
 use super::names::{material_name, object_at};
 use super::page::Page;
 use super::summary::{write_outline, write_pixel, write_samples};
 use super::tally::Tally;
-use super::terms::{write_light, write_shading};
+use super::terms::write_shading;
 use super::{Chosen, Digits, Pixel, Shown};
 use strahl::math::det;
 use strahl::shade::Color;
