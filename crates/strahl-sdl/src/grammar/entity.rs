@@ -55,8 +55,13 @@ pub(crate) fn transform(object: &mut Object, map: &Transform) {
 }
 
 /// Whether an object has no surface: it is nothing or everything.
-pub(crate) fn is_nothing(object: &Object) -> bool {
+pub(crate) fn has_no_surface(object: &Object) -> bool {
     matches!(&object.kind, ObjectKind::Csg { children, .. } if children.0.is_empty())
+}
+
+/// Whether an object has no points at all.
+pub(crate) fn is_nothing(object: &Object) -> bool {
+    has_no_surface(object) && !is_everything(object)
 }
 
 /// Whether an object is all of space, as the inverse of nothing.

@@ -1,4 +1,4 @@
-use crate::grammar::entity::{is_nothing, transform};
+use crate::grammar::entity::{has_no_surface, transform};
 use crate::grammar::{Entity, Thing};
 use crate::keywords::Word;
 use crate::parser::{PResult, Parser, Place};
@@ -69,7 +69,7 @@ pub(super) fn light_group(p: &mut Parser<'_>) -> PResult<Entity> {
                 None => break,
             }
         }
-        parts.retain(|part| !is_nothing(part));
+        parts.retain(|part| !has_no_surface(part));
         let mut entity = Entity::from(Object::csg(CsgOp::LightGroup { global_lights }, parts));
         entity.object.span = p.span_at(place);
         p.modifiers(&mut entity)?;

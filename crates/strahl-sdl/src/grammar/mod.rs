@@ -34,7 +34,7 @@ pub use thing::Thing;
 use crate::keywords::{Word, WordKind};
 use crate::parser::{PResult, Parser};
 use crate::token::{Kind, Token};
-use entity::is_nothing;
+use entity::has_no_surface;
 use texture::{fill_parts, is_bare};
 
 /// Reads a statement whose keyword is taken.
@@ -169,7 +169,7 @@ impl Parser<'_> {
     #[inline]
     fn add(&mut self, mut entity: Entity) {
         let object = &mut entity.object;
-        if is_nothing(object) {
+        if has_no_surface(object) {
             return;
         }
         let uncovered = object.material.as_deref().is_none_or(is_bare);

@@ -1,7 +1,7 @@
 use super::bounds;
 use super::modifiers::surround;
 use crate::grammar::Entity;
-use crate::grammar::entity::{is_everything, is_nothing};
+use crate::grammar::entity::{has_no_surface, is_everything, is_nothing};
 use crate::parser::{PResult, Parser};
 use crate::token::Kind;
 use strahl_scene::{CsgOp, Object};
@@ -74,16 +74,15 @@ impl Parser<'_> {
 fn combine(op: CsgOp, mut children: Vec<Object>) -> (CsgOp, Vec<Object>) {
     let nothing = || (CsgOp::Union, vec![]);
     let everything = || (CsgOp::Inverse, vec![]);
-    let is_void = |child: &Object| is_nothing(child) && !is_everything(child);
     let (all, any_everything) = (children.len(), children.iter().any(is_everything));
     match op {
-        CsgOp::Intersection if children.iter().any(is_void) => return nothing(),
-        CsgOp::Difference if children.first().is_some_and(is_void) => return nothing(),
+        CsgOp::Intersection if children.iter().any(is_nothing) => return nothing(),
+        CsgOp::Difference if children.first().is_some_and(is_nothing) => return nothing(),
         CsgOp::Difference if children.iter().skip(1).any(is_everything) => return nothing(),
         CsgOp::Merge if any_everything => return everything(),
         _ => {}
     }
-    children.retain(|child| !is_nothing(child));
+    children.retain(|child| !has_no_surface(child));
     match op {
         CsgOp::Intersection if children.is_empty() && all > 0 => everything(),
         CsgOp::Difference if any_everything && children.is_empty() => everything(),

@@ -1,6 +1,6 @@
 use super::bounds;
 use crate::grammar::Entity;
-use crate::grammar::entity::{is_everything, is_nothing, transform};
+use crate::grammar::entity::{has_no_surface, is_nothing, transform};
 use crate::grammar::texture::fill_parts;
 use crate::keywords::{Word, WordKind};
 use crate::parser::{PResult, Parser};
@@ -298,15 +298,11 @@ impl Parser<'_> {
 
 /// Clips an object without a cap, or bounds it; the others are in the space of its parent.
 pub(super) fn surround(object: &mut Object, op: CsgOp, mut others: Vec<Object>) {
-    if op == CsgOp::Clip
-        && others
-            .iter()
-            .any(|other| is_nothing(other) && !is_everything(other))
-    {
+    if op == CsgOp::Clip && others.iter().any(is_nothing) {
         object.kind = Object::csg(CsgOp::Union, vec![]).kind;
     }
-    others.retain(|other| !is_nothing(other));
-    if others.is_empty() || is_nothing(object) {
+    others.retain(|other| !has_no_surface(other));
+    if others.is_empty() || has_no_surface(object) {
         return;
     }
     let back = object.transform.as_deref().map(|t| t.inverted());

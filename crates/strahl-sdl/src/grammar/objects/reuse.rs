@@ -9,7 +9,7 @@
 
 use super::bounds::own_extent;
 use crate::grammar::Entity;
-use crate::grammar::entity::{Declared, is_nothing};
+use crate::grammar::entity::{Declared, has_no_surface};
 use crate::grammar::texture::is_bare;
 use crate::parser::{PResult, Parser};
 use crate::symbol::Symbol;
@@ -243,7 +243,7 @@ fn copy(object: &Object, expand: Option<&Shared>) -> Object {
             Step::Build(like, op, count) => {
                 let mut children = done.split_off(done.len() - count);
                 // A use of an object without a surface.
-                children.retain(|child| !is_nothing(child));
+                children.retain(|child| !has_no_surface(child));
                 let children = Children(children);
                 done.push(attributes(like, ObjectKind::Csg { op, children }));
             }
