@@ -58,4 +58,5 @@ groups! {
     bodies_of_lights_in_light_groups,
     height_fields_in_intersections_have_no_box,
     no_cone_lights_what_is_behind_it,
+    area_lights_that_turn_are_circles_of_their_first_axis,
 }

@@ -338,7 +338,8 @@ impl Parser<'_> {
             }
             Word::Orient => {
                 self.take(token)?;
-                draft.area().orient = true;
+                // As in POV-Ray (measured) such a light is circular, too.
+                (draft.area().orient, draft.area().circular) = (true, true);
             }
             Word::AreaIllumination => {
                 self.take(token)?;

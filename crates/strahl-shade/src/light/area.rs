@@ -21,7 +21,7 @@ pub struct AreaLight {
     pub jitter: bool,
     /// Whether the rectangle is shrunk to the ellipse inside.
     pub circular: bool,
-    /// Whether the light turns towards each lit point.
+    /// Whether the light turns towards each lit point, as a square with the length of `axis_1`.
     pub orient: bool,
     /// Whether each point of the grid is shaded by its own direction; otherwise the grid is used for shadows only, and the
     /// centre for shading.
@@ -64,7 +64,8 @@ impl AreaLight {
         }
     }
 
-    /// Axes of the same lengths perpendicular to `l`. As in POV-Ray their roll around `l` follows from `l` alone.
+    /// Axes perpendicular to `l`. As in POV-Ray (measured) both are as long as the first one, and their roll around `l` follows from `l`
+    /// alone.
     fn turned(&self, l: DVec3) -> (DVec3, DVec3) {
         let across = l.cross(DVec3::Z);
         let across = if across == DVec3::ZERO {
@@ -72,10 +73,8 @@ impl AreaLight {
         } else {
             across.normalize()
         };
-        (
-            across * self.axis_1.length(),
-            l.cross(across) * self.axis_2.length(),
-        )
+        let length = self.axis_1.length();
+        (across * length, l.cross(across) * length)
     }
 }
 
@@ -169,7 +168,7 @@ mod tests {
 
     #[test]
     fn an_oriented_light_faces_what_it_lights() {
-        let mut area = AreaLight::new(DVec3::X * 2.0, DVec3::Y * 2.0, 3, 3);
+        let mut area = AreaLight::new(DVec3::X * 2.0, DVec3::Y * 5.0, 3, 3);
         (area.circular, area.orient) = (true, true);
         let l = DVec3::new(0.6, 0.8, 0.0);
         for (i, j) in [(0, 0), (2, 1), (1, 2)] {
