@@ -4,7 +4,7 @@
 #
 #   scripts/farm/check.sh [STRAHL [SIZE]]       default: target/release/strahl and 1920x1080
 #
-# Needs Debian's packages slurm-wlm and munge, and openjd-cli from PyPI (OPENJD=path/to/openjd, or `openjd` in PATH).
+# Must be run by root. Needs Debian's packages slurm-wlm, munge and bc, and openjd-cli from PyPI (OPENJD=path/to/openjd, or `openjd` in PATH).
 # Ends with code 1 if anything is not as it should be.
 set -u
 

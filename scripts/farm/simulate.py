@@ -1,13 +1,15 @@
 #!/usr/bin/env python3
 """How long a still takes on many machines, from the measured costs of its tiles.
 
-    simulate.py SCENE-40.seconds [--seconds 1200] [--load 0.3] [--start 0.05] [--merge 0.01]
+    simulate.py SCENE-40.seconds [--seconds 1200] [--starts 90] [--latency 2.2]
+        [--merge 0.01] [--write 0.4]
 
-The file has the CPU seconds of each tile (measure.sh writes it). The picture is scaled to --seconds of work on one
-machine. Each task costs --load seconds for reading and building the scene besides, the scheduler starts one task every
---start seconds, and the merge reads one tile every --merge
-seconds and writes the picture in 0.4 seconds. Tasks are given to machines in order, the next
-one to the machine that is free first, as an array of Slurm does.
+The file has the processor seconds of each task, and those for reading and building the scene (measure.sh writes it). The
+picture is scaled to --seconds of work on one machine; reading the scene is not scaled. The scheduler starts --starts
+tasks a second, the first one --latency seconds after the submission (starts.sh measures both), and the merge, which
+waits as long to be started, reads one tile every --merge seconds and writes the picture in
+--write seconds. Tasks are given to machines in order, the next one to the machine that is free first, as an array of
+Slurm does.
 """
 
 import argparse
@@ -17,15 +19,19 @@ import random
 parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
 parser.add_argument("file")
 parser.add_argument("--seconds", type=float, default=1200)
-parser.add_argument("--load", type=float, default=0.3)
-parser.add_argument("--start", type=float, default=0.05)
+parser.add_argument("--starts", type=float, default=90)
+parser.add_argument("--latency", type=float, default=2.2)
 parser.add_argument("--merge", type=float, default=0.01)
+parser.add_argument("--write", type=float, default=0.4)
 # A picture of 1920x1080 has so many blocks of 32x32 pixels.
 parser.add_argument("--most", type=int, default=2040)
 options = parser.parse_args()
 
 with open(options.file) as file:
-    measured = [float(line) for line in file if line.strip()]
+    lines = [line.split() for line in file if line.strip()]
+reading = next(float(words[-1]) for words in lines if words[0] == "#")
+# Every task has read the scene; what is left is its tile.
+measured = [max(float(words[0]) - reading, 0.0) for words in lines if words[0] != "#"]
 mean = sum(measured) / len(measured)
 # How unlike the tiles are; finer tiles are assumed to be as unlike.
 ratios = [cost / mean for cost in measured]
@@ -42,11 +48,11 @@ def run(nodes, tiles, seed):
     draw = random.Random(1000 * tiles + seed)
     shares = [draw.choice(ratios) for _ in range(tiles)]
     work = options.seconds * (1 + margin(tiles)) / sum(shares)
-    tasks = [options.load + work * share for share in shares]
+    tasks = [reading + work * share for share in shares]
     free = [0.0] * nodes
     end = 0.0
     for index, task in enumerate(tasks):
-        begin = max(heapq.heappop(free), index * options.start)
+        begin = max(heapq.heappop(free), index / options.starts)
         heapq.heappush(free, begin + task)
         end = max(end, begin + task)
     return end, tasks
@@ -62,15 +68,18 @@ def mean_run(nodes, tiles):
 print(f"{'nodes':>6} {'tiles':>6} {'tiles [s]':>10} {'merge [s]':>10} {'all [s]':>9} {'speed-up':>9} {'efficiency':>10}  bound by")
 for nodes in [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000]:
     best = None
-    for each in [1, 2, 4, 8]:
-        tiles = min(nodes * each, options.most)
+    for each in [0.25, 0.5, 1, 2, 4, 8]:
+        tiles = min(max(int(nodes * each), 1), options.most)
         end, work, longest = mean_run(nodes, tiles)
-        merge = 0.4 + tiles * options.merge
+        merge = options.latency + options.write + tiles * options.merge
+        end += options.latency
         if best is None or end + merge < best[0]:
             bounds = {
-                "work": work / nodes,
+                "work": work / min(nodes, tiles),
+                "waiting to be started": 2 * options.latency,
                 "the longest tile": longest,
-                "starting tasks": tiles * options.start,
+                "starting tasks": tiles / options.starts,
+                "reading the scene": reading * max(tiles / nodes, 1),
                 "merging": merge,
             }
             best = (end + merge, tiles, end, merge, max(bounds, key=bounds.get))

@@ -73,6 +73,17 @@ pub fn merge_script(options: &SlurmOptions, program: &Path, folder: &Path) -> St
     )
 }
 
+/// Begins the line of a script that has the job folder.
+const FOLDER: &str = "# Job folder: ";
+
+/// The job folder that a script was written for.
+pub fn folder_of(script: &str) -> Option<&Path> {
+    script
+        .lines()
+        .find_map(|line| line.strip_prefix(FOLDER))
+        .map(Path::new)
+}
+
 /// The lines that both scripts begin with.
 fn head(options: &SlurmOptions, folder: &Path, log: &str) -> String {
     let log = folder.join("log").join(log);
@@ -91,6 +102,7 @@ fn head(options: &SlurmOptions, folder: &Path, log: &str) -> String {
     for option in &options.more {
         head.push_str(&format!("#SBATCH {option}\n"));
     }
+    head.push_str(&format!("{FOLDER}{}\n", folder.display()));
     head
 }
 
@@ -136,6 +148,7 @@ mod tests {
             script.contains("#SBATCH --time=10:00\n") && script.contains("--cpus-per-task=4\n")
         );
         assert!(script.starts_with("#!/bin/sh\n#SBATCH"));
+        assert_eq!(folder_of(&script), Some(Path::new("/data/a's job")));
         let merge = merge_script(&options, Path::new("strahl"), Path::new("/job"));
         assert!(merge.contains("strahl submit merge /job\n") && !merge.contains("--time"));
     }

@@ -62,6 +62,9 @@ const RAY: u64 = 120;
 const STEP: u64 = 10;
 const TEST: u64 = 12;
 
+/// Blocks around a block that tell with it how fine a texture is, in each direction.
+const FINE: usize = 2;
+
 /// How the cost of a ray is measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CostMeasure {
@@ -73,7 +76,8 @@ pub enum CostMeasure {
 }
 
 /// Looks at the scene with one ray for every `spacing` x `spacing` pixels and says what the picture's blocks will cost. Where two of these rays
-/// beside each other differ so much that antialiasing will refine pixels between them, it finds these pixels by halving.
+/// beside each other differ so much that antialiasing will refine pixels between them, it finds these pixels by halving. Where they do not, one pixel
+/// beside the ray tells how often fine textures differ from pixel to pixel.
 ///
 /// # Errors
 /// [`RenderError`]: no threads, or cancelled.
@@ -91,9 +95,9 @@ pub fn estimate(
         spacing: spacing.max(1),
     };
     let seen = look.everywhere()?;
-    let edges = match antialiasing(options.sampling) {
-        Some((refinement, more)) if more > 0 => look.edges(&seen, refinement, more)?,
-        _ => vec![],
+    let (edges, more) = match antialiasing(options.sampling) {
+        Some((refinement, more)) if more > 0 => (look.edges(&seen, refinement)?, more),
+        _ => (Edges::default(), 0),
     };
     let measured: Vec<PixelCost> = seen.iter().flatten().map(|seen| seen.cost).collect();
     let scale = Scale::new(measure, &measured);
@@ -107,12 +111,24 @@ pub fn estimate(
         block.rays += 1;
         block.sum += scale.of(cost);
     }
-    for edge in edges {
-        let further = edge.more * scale.of(&edge.cost);
+    for edge in edges.found {
+        let further = more * scale.of(&edge.cost);
         match edge.along_row {
             true => blocks[block(edge.place)].along_rows += further,
             false => blocks[block(edge.place)].along_columns += further,
         }
+    }
+    for quiet in edges.quiet {
+        let block = &mut blocks[block(quiet.place)];
+        block.fine.pairs += 1;
+        block.fine.differ += u64::from(quiet.differs);
+    }
+    let around = |index: usize| around(&blocks, columns as usize, index);
+    let fine: Vec<u64> = (0..blocks.len())
+        .map(|index| more * blocks[index].fine_cost(around(index)))
+        .collect();
+    for (block, fine) in blocks.iter_mut().zip(fine) {
+        block.sum += fine;
     }
     let all: (u64, u64) = blocks.iter().fold((0, 0), |(sum, rays), block| {
         (sum + block.cost(look.spacing), rays + block.rays)
@@ -137,6 +153,40 @@ struct Block {
     along_rows: u64,
     /// ... and on columns of rays.
     along_columns: u64,
+    fine: Fine,
+}
+
+/// Pairs of neighbouring pixels where no edge is expected.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+struct Fine {
+    pairs: u64,
+    /// Those that differ all the same.
+    differ: u64,
+}
+
+impl Fine {
+    /// The share of pixels that are refined.
+    fn refined(self) -> f64 {
+        // A pixel is refined if it differs from one of its four neighbours.
+        let alike = 1.0 - self.differ as f64 / self.pairs.max(1) as f64;
+        1.0 - alike * alike * alike * alike
+    }
+}
+
+/// The pairs of a block and its neighbours: those of one are too few to tell how fine its texture is.
+fn around(blocks: &[Block], columns: usize, index: usize) -> Fine {
+    let (x, y) = (index % columns, index / columns);
+    let mut all = Fine::default();
+    for row in y.saturating_sub(FINE)..=y + FINE {
+        for column in x.saturating_sub(FINE)..=(x + FINE).min(columns - 1) {
+            let Some(block) = blocks.get(row * columns + column) else {
+                continue;
+            };
+            all.pairs += block.fine.pairs;
+            all.differ += block.fine.differ;
+        }
+    }
+    all
 }
 
 impl Block {
@@ -148,6 +198,12 @@ impl Block {
         // Only one of `spacing` rows and columns has rays.
         self.sum + further / u64::from(spacing)
     }
+
+    /// The cost of one more ray for each of these pixels that is refined because of a fine texture, which pairs of pixels around have told.
+    fn fine_cost(&self, around: Fine) -> u64 {
+        let quiet = self.fine.pairs as f64 / self.rays.max(1) as f64;
+        (around.refined() * quiet * self.sum as f64) as u64
+    }
 }
 
 /// A pixel that antialiasing will refine.
@@ -155,10 +211,22 @@ struct Edge {
     place: (u32, u32),
     /// Whether it was found between rays beside each other, rather than one above the other.
     along_row: bool,
-    /// The rays that it gets.
-    more: u64,
-    /// What one of them costs.
+    /// What one of its rays costs.
     cost: PixelCost,
+}
+
+/// A pixel where no edge is expected.
+struct Quiet {
+    place: (u32, u32),
+    /// Whether it differs from the pixel beside it all the same.
+    differs: bool,
+}
+
+/// What a look for edges has found.
+#[derive(Default)]
+struct Edges {
+    found: Vec<Edge>,
+    quiet: Vec<Quiet>,
 }
 
 /// When pixels are refined, and how many rays they get.
@@ -223,41 +291,53 @@ impl Look<'_> {
     }
 
     /// The pixels that are refined on the lines between rays beside and above each other.
-    fn edges(
-        &self,
-        seen: &[Vec<Seen>],
-        refinement: Refinement,
-        more: u64,
-    ) -> Result<Vec<Edge>, RenderError> {
+    fn edges(&self, seen: &[Vec<Seen>], refinement: Refinement) -> Result<Edges, RenderError> {
         let row = |probe: &mut Probe<'_>, row: u32| {
-            let (mut edges, y) = (vec![], self.y(row));
-            let mut keep = |line: Vec<(u32, PixelCost)>, along_row: bool, other: u32| {
-                edges.extend(line.into_iter().map(|(position, cost)| Edge {
-                    place: match along_row {
-                        true => (position, other),
-                        false => (other, position),
-                    },
-                    along_row,
-                    more,
-                    cost,
-                }));
-            };
+            let (mut edges, y) = (Edges::default(), self.y(row));
             let own = &seen[row as usize];
             for (column, pair) in (0..).zip(own.windows(2)) {
                 let ends = [(self.x(column), pair[0]), (self.x(column + 1), pair[1])];
-                keep(refined(ends, &refinement, &mut |x| probe(x, y)), true, y);
+                let found = refined(ends, &refinement, &mut |x| probe(x, y));
+                if found.is_empty() && ends[0].0 + 1 < ends[1].0 {
+                    let beside = probe(ends[0].0 + 1, y);
+                    edges.quiet.push(Quiet {
+                        place: (ends[0].0, y),
+                        differs: differ(&pair[0], &beside, &refinement),
+                    });
+                }
+                edges.found.extend(found.into_iter().map(|(x, cost)| Edge {
+                    place: (x, y),
+                    along_row: true,
+                    cost,
+                }));
             }
             let below = seen.get(row as usize + 1).into_iter().flatten();
             for (column, (a, b)) in (0..).zip(own.iter().zip(below)) {
                 let x = self.x(column);
                 let ends = [(y, *a), (self.y(row + 1), *b)];
-                keep(refined(ends, &refinement, &mut |y| probe(x, y)), false, x);
+                let found = refined(ends, &refinement, &mut |y| probe(x, y));
+                edges.found.extend(found.into_iter().map(|(y, cost)| Edge {
+                    place: (x, y),
+                    along_row: false,
+                    cost,
+                }));
             }
             edges
         };
         let rows = probe_rows(self.scene, self.options, self.progress, self.rows(), row)?;
-        Ok(rows.into_iter().flatten().collect())
+        let mut all = Edges::default();
+        for row in rows {
+            all.found.extend(row.found);
+            all.quiet.extend(row.quiet);
+        }
+        Ok(all)
     }
+}
+
+/// Whether two pixels differ so much that they are refined, if they are neighbours.
+fn differ(a: &Seen, b: &Seen, refinement: &Refinement) -> bool {
+    let shown = |seen: &Seen| Compared::new(seen.color, refinement);
+    shown(a).differs(shown(b), refinement)
 }
 
 /// The pixels on a line that differ from a neighbour, found by halving the line where its ends differ, with the costs of their rays.
@@ -269,8 +349,7 @@ fn refined(
     let mut found: Vec<(u32, PixelCost)> = vec![];
     let mut left = vec![ends];
     while let Some([a, b]) = left.pop() {
-        let shown = |seen: &Seen| Compared::new(seen.color, refinement);
-        if a.0 >= b.0 || !shown(&a.1).differs(shown(&b.1), refinement) {
+        if a.0 >= b.0 || !differ(&a.1, &b.1, refinement) {
             continue;
         }
         if a.0 + 1 == b.0 {
@@ -379,12 +458,39 @@ mod tests {
     }
 
     #[test]
+    fn fine_textures_are_told_by_pairs_of_pixels() {
+        let speckled = Fine {
+            pairs: 100,
+            differ: 10,
+        };
+        // A tenth of the pairs: 1 - 0.9^4 of the pixels.
+        assert!((speckled.refined() - 0.3439).abs() < 1e-9);
+        assert_eq!(Fine::default().refined(), 0.0);
+        let block = Block {
+            rays: 16,
+            sum: 1600,
+            fine: Fine {
+                pairs: 8,
+                differ: 0,
+            },
+            ..Block::default()
+        };
+        // Half of the rays saw no edge beside them.
+        assert_eq!(block.fine_cost(speckled), 275);
+        let mut blocks = vec![Block::default(); 40];
+        blocks[17].fine = speckled;
+        let near = |index| around(&blocks, 8, index).differ;
+        assert_eq!((near(17), near(35), near(16), near(20)), (10, 10, 10, 0));
+        assert_eq!(near(39), 0);
+    }
+
+    #[test]
     fn refined_pixels_stand_for_the_rows_between() {
         let block = Block {
             rays: 16,
             sum: 1600,
             along_rows: 80,
-            along_columns: 0,
+            ..Block::default()
         };
         assert_eq!(block.cost(8), 1610);
         let slanting = Block {

@@ -2,6 +2,7 @@
 
 use super::args::PartArgs;
 use super::status::duration;
+use super::word;
 use crate::animation::Animation;
 use crate::args::{Cli, RenderArgs};
 use crate::input::{Input, Moment, render_options, threads};
@@ -108,9 +109,10 @@ pub(super) fn create(
         None => output.with_extension("job"),
     };
     if folder.exists() {
-        let shown = folder.display();
         return Err(Failure::new(format!(
-            "{shown} exists already: `strahl submit resume {shown}` goes on with it, --job DIR names another folder"
+            "{} exists already: `strahl submit resume {}` goes on with it, --job DIR names another folder",
+            folder.display(),
+            word(&folder)
         )));
     }
     let input = target.input(args)?;
@@ -155,26 +157,12 @@ pub(super) fn create(
         (None, Some(_)) => Some(1),
         (None, None) => None,
     };
+    job.movie = movie(parts, &job)?;
     let Division { tiles, size } = divide(&input, moments[0].1, args, parts, count, &reporter)?;
     job.tiles = tiles.iter().map(Region::to_string).collect();
     job.size = size;
     let least = job.units().div_ceil(MOST_TASKS);
     job.chunk = chunk.unwrap_or(u32::try_from(least).unwrap_or(u32::MAX));
-    if let Some(file) = &parts.movie {
-        if animation.is_none() {
-            return Err(Failure::new("--movie needs a film: add --frames A-B"));
-        }
-        let numbers: Vec<u32> = job.frames.iter().filter_map(|frame| frame.number).collect();
-        if numbers.windows(2).any(|pair| pair[1] != pair[0] + 1) {
-            return Err(Failure::new(
-                "--movie needs consecutive frames, but some are left out (--frame-step)",
-            ));
-        }
-        job.movie = Some(Movie {
-            file: absolute(file)?,
-            rate: parts.movie_rate,
-        });
-    }
     job.words = words;
     job.picture_words = picture_words;
     job.output = output;
@@ -228,6 +216,26 @@ fn fill(
     }
     job.write(new).map_err(Failure::new)?;
     finish(job, new, folder)
+}
+
+/// The film file of a job with these frames.
+fn movie(parts: &PartArgs, job: &Job) -> Result<Option<Movie>, Failure> {
+    let Some(file) = &parts.movie else {
+        return Ok(None);
+    };
+    let numbers: Vec<u32> = job.frames.iter().filter_map(|frame| frame.number).collect();
+    if numbers.is_empty() {
+        return Err(Failure::new("--movie needs a film: add --frames A-B"));
+    }
+    if numbers.windows(2).any(|pair| pair[1] != pair[0] + 1) {
+        return Err(Failure::new(
+            "--movie needs consecutive frames, but some are left out (--frame-step)",
+        ));
+    }
+    Ok(Some(Movie {
+        file: absolute(file)?,
+        rate: parts.movie_rate,
+    }))
 }
 
 /// Refuses options that have no meaning for a job.
@@ -382,8 +390,9 @@ fn divide(
     let tiles = split(&map, count).map_err(Failure::new)?;
     let each = work / f64::from(count);
     reporter.say(&format!(
-        "about {} of processor time for each of {count} tiles; every task also reads and builds the scene, which took {} here",
+        "about {} of processor time for each of {count} tile{}; every task also reads and builds the scene, which took {} here",
         duration(each),
+        if count == 1 { "" } else { "s" },
         duration(reading)
     ));
     Ok(Division { tiles, size })

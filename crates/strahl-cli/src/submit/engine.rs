@@ -2,6 +2,7 @@
 
 use super::args::{OpenjdArgs, SlurmArgs};
 use super::create::{Created, create};
+use super::word;
 use crate::report::{Failure, Reporter};
 use serde::{Deserialize, Serialize};
 use std::ffi::OsString;
@@ -69,7 +70,7 @@ pub(super) fn slurm(args: &SlurmArgs, words: &[OsString], notes: &[String]) -> R
         "Slurm job {} renders, job {} merges; `strahl submit status {}` tells how far they are",
         submitted.array,
         submitted.merge,
-        quoted(&folder.display().to_string())
+        word(&folder)
     ));
     reporter.settle()
 }
@@ -98,11 +99,21 @@ pub(super) fn openjd(
         },
     )?;
     say_parts(&reporter, &folder, &job);
-    let shown = quoted(&folder.join("template.json").display().to_string());
-    let pictures = job.output.parent().unwrap_or(Path::new("/"));
-    let pictures = quoted(&pictures.display().to_string());
-    reporter.say(&format!("openjd run {shown} -p Pictures={pictures} runs it here, a step at a time; AWS Deadline Cloud takes the folder as a job bundle"));
+    let line = openjd_line(&folder, &job);
+    reporter.say(&format!(
+        "{line} runs it here, a step at a time; AWS Deadline Cloud takes the folder as a job bundle"
+    ));
     reporter.settle()
+}
+
+/// The command that runs a job of Open Job Description on this machine.
+pub(super) fn openjd_line(folder: &Path, job: &Job) -> String {
+    let pictures = job.output.parent().unwrap_or(Path::new("/"));
+    format!(
+        "openjd run {} -p Pictures={}",
+        word(&folder.join("template.json")),
+        word(pictures)
+    )
 }
 
 fn say_parts(reporter: &Reporter, folder: &Path, job: &Job) {
@@ -129,13 +140,19 @@ pub(super) fn line(words: &[String]) -> String {
 
 /// Submits tasks of a job and the merge behind them, and keeps their numbers.
 pub(super) fn submit_slurm(folder: &Path, tasks: &[u32]) -> Result<SlurmJob, Failure> {
-    let array = sbatch(&render_command(folder, tasks))?;
-    let merge = sbatch(&merge_command(folder, &array)).map_err(|failure| match failure {
-        Failure::Message(text) => Failure::Message(format!(
-            "{text}\nthe tasks are submitted (job {array}), but not the merge: run `strahl submit merge {}` when they are done",
-            folder.display()
-        )),
+    let hint = |failure: Failure, hint: &str| match failure {
+        Failure::Message(text) => Failure::Message(format!("{text}\n{hint}")),
         other => other,
+    };
+    let folder_word = word(folder);
+    let array = sbatch(&render_command(folder, tasks)).map_err(|failure| {
+        let text =
+            format!("the job folder is complete: `strahl submit resume {folder_word}` submits it");
+        hint(failure, &text)
+    })?;
+    let merge = sbatch(&merge_command(folder, &array)).map_err(|failure| {
+        let text = format!("the tasks are submitted (job {array}), but not the merge: run `strahl submit merge {folder_word}` when they are done");
+        hint(failure, &text)
     })?;
     let submitted = SlurmJob { array, merge };
     let json = serde_json::to_vec(&submitted).map_err(Failure::new)?;

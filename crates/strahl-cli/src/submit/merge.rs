@@ -1,7 +1,7 @@
 //! `strahl submit merge`: makes the pictures of a job.
 
 use super::args::MergeJobArgs;
-use super::open;
+use super::{open, word};
 use crate::args::{Cli, Command as Parsed};
 use crate::output::say;
 use crate::report::Failure;
@@ -94,7 +94,7 @@ pub(super) fn merge(args: &MergeJobArgs) -> Result<(), Failure> {
     let text = format!(
         "{more}{made} of {} pictures are complete; `strahl submit resume {}` renders what is missing",
         job.frames.len(),
-        folder.display()
+        word(&folder)
     );
     if args.openjd {
         say!(

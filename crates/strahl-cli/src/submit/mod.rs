@@ -14,6 +14,7 @@ use crate::report::Failure;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use strahl_farm::Job;
+use strahl_farm::slurm::quoted;
 
 /// `strahl submit`: `words` is the whole command line, of which a job keeps what concerns its tasks.
 pub(crate) fn submit(
@@ -29,6 +30,11 @@ pub(crate) fn submit(
         SubmitCommand::Task(args) => task::task(args),
         SubmitCommand::Merge(args) => merge::merge(args),
     }
+}
+
+/// A path as a word of a shell, for commands that are shown.
+fn word(path: &Path) -> String {
+    quoted(&path.display().to_string())
 }
 
 /// A job folder, by its full path, and its manifest.

@@ -1,15 +1,15 @@
 //! `strahl submit resume`: submits what is missing.
 
 use super::args::ResumeArgs;
-use super::engine::{SLURM_JOB, SlurmJob, line, submit_slurm};
-use super::open;
+use super::engine::{SLURM_JOB, SlurmJob, line, openjd_line, submit_slurm};
 use super::status::states;
+use super::{open, word};
 use crate::output::say;
 use crate::report::Failure;
 use std::collections::BTreeSet;
 use std::path::Path;
 use std::process::Command;
-use strahl_farm::slurm::{quoted, render_command};
+use strahl_farm::slurm::{folder_of, render_command};
 use strahl_farm::{Care, Progress, ranges};
 
 /// Submits the tasks of a job that have parts which are not done, and a merge behind them.
@@ -27,19 +27,28 @@ pub(super) fn resume(args: &ResumeArgs) -> Result<(), Failure> {
     if tasks.is_empty() {
         say!(
             "all parts are done: `strahl submit merge {}` makes the pictures",
-            folder.display()
+            word(&folder)
         );
         return Ok(());
     }
-    if !folder.join("render.sbatch").is_file() {
-        let template = folder.join("template.json");
+    let script = folder.join("render.sbatch");
+    if !script.is_file() {
         say!(
-            "{} of {} tasks are left; run the job again, parts that are done are not rendered twice:\n  openjd run {}",
+            "{} of {} tasks are left; run the job again, parts that are done are not rendered twice:\n  {}",
             tasks.len(),
             job.tasks(),
-            quoted(&template.display().to_string())
+            openjd_line(&folder, &job)
         );
         return Ok(());
+    }
+    let text = std::fs::read_to_string(&script).map_err(Failure::new)?;
+    // By any of its names: there may be symbolic links.
+    let named = folder_of(&text).and_then(|place| place.canonicalize().ok());
+    if named.as_deref() != Some(&*folder) {
+        return Err(Failure::new(format!(
+            "{} was moved after it was submitted, and its scripts name its old place: move it back, or submit the job again",
+            folder.display()
+        )));
     }
     if args.dry_run {
         say!("sbatch {}", line(&render_command(&folder, &tasks)));

@@ -2,7 +2,7 @@
 
 use super::args::StatusArgs;
 use super::merge::{OUTCOME, Outcome};
-use super::open;
+use super::{open, word};
 use crate::output::say;
 use crate::report::Failure;
 use serde::Serialize;
@@ -138,7 +138,7 @@ impl Status {
             (Some(true), true) => say!("the pictures are made"),
             (_, true) => say!(
                 "the pictures are not made yet: `strahl submit merge {}`",
-                folder.display()
+                word(folder)
             ),
             _ => {}
         }

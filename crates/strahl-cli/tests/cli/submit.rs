@@ -201,6 +201,29 @@ fn tiles_of_one_task_are_those_of_several() {
     assert_eq!(hash("all.job"), hash("still.job"));
 }
 
+/// The scripts of a job name its folder, so tasks of a moved one would look for it in vain.
+#[test]
+fn jobs_that_were_moved_are_not_submitted() {
+    let folder = folder();
+    let f = folder.path();
+    run(f, STILL);
+    fs::rename(f.join("still.job"), f.join("a moved job")).unwrap();
+    let moved = f.join("a moved job").display().to_string();
+    let output = strahl(f, &["submit", "resume", &moved, "--dry-run"]);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(stderr(&output).contains("was moved"), "{}", stderr(&output));
+    // What works without the scheduler still does.
+    for task in ["1", "2", "3"] {
+        let output = strahl(f, &["submit", "task", &moved, "--task", task]);
+        assert!(output.status.success(), "{}", stderr(&output));
+    }
+    let output = strahl(f, &["submit", "merge", &moved]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    let output = strahl(f, &["submit", "resume", &moved]);
+    let said = String::from_utf8(output.stdout).unwrap();
+    assert!(said.contains(&format!("merge '{moved}'")), "{said}");
+}
+
 /// `status` reads the headers of tiles only; `resume` reads all, as the merge does.
 #[test]
 fn a_tile_with_changed_values_is_submitted_again() {
