@@ -59,4 +59,6 @@ groups! {
     height_fields_in_intersections_have_no_box,
     no_cone_lights_what_is_behind_it,
     area_lights_that_turn_are_circles_of_their_first_axis,
+    smooth_height_fields_interpolate_normals_where_they_are,
+    the_share_of_a_blended_texture_is_not_in_the_weight_of_its_ray,
 }

@@ -117,7 +117,8 @@ pub struct LayerPoint<'a> {
     /// The factor of the radiance from the mirror direction.
     pub reflectance: Color,
     /// The weight of the ray in the mirror direction, as POV-Ray has it:
-    /// [`PovReflection::weight`](crate::pov_finish::PovReflection::weight) times the layer's share and the grey value of `above`.
+    /// [`PovReflection::weight`](crate::pov_finish::PovReflection::weight) times the grey value of `above`, whatever the share
+    /// (measured).
     pub reflection_weight: f64,
     /// The number of its stack in [`TexturePaint::stacks`].
     pub stack: u32,
@@ -532,7 +533,7 @@ impl PlainTexture {
             let weight = reflection.weight(cos_view, eta);
             (
                 reflection.reflectance(cos_view, color.rgb, eta),
-                weight * stack.share * stack.above.gray_value(),
+                weight * stack.above.gray_value(),
             )
         };
         let film = self

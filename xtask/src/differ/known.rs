@@ -1,7 +1,7 @@
 /// Differences that are intended or that are POV-Ray's: the words that the smallest scene contains, and the reason.
 ///
 /// docs/src/differ.md explains them.
-pub(super) const KNOWN: [(&[&str], &str); 51] = [
+pub(super) const KNOWN: [(&[&str], &str); 55] = [
     (&["crystal.ttf"], FONTS),
     (&["cyrvetic.ttf"], FONTS),
     (&["timrom.ttf"], FONTS),
@@ -33,6 +33,10 @@ pub(super) const KNOWN: [(&[&str], &str); 51] = [
     (&["merge", "inverse", "difference"], BOXES),
     (&["merge", "inverse", "fog"], BOXES),
     (&["merge", "inverse", "rainbow"], BOXES),
+    (&["union", "height_field", "intersection"], UNIONS),
+    (&["union", "height_field", "difference"], UNIONS),
+    (&["number_of_waves", "waves", "function"], WAVES),
+    (&["number_of_waves", "ripples", "function"], WAVES),
     (&["clipped_by", "inverse", "intersection"], BOXES),
     (&["clipped_by", "inverse", "difference"], BOXES),
     (&["isosurface", "intersection"], CAPS),
@@ -83,6 +87,9 @@ const INTERPOLATED: &str = "POV-Ray decides by the interpolated normal which sid
 const TURNED: &str = "POV-Ray turns the sides of an inverse mesh without an inside";
 const NOT_TURNED: &str = "POV-Ray does not turn the sides of an inverse quadric";
 const BOXES: &str = "POV-Ray's inverse solids end with their boxes in CSG";
+const UNIONS: &str = "in POV-Ray a height field in a union in CSG ends with its box";
+const WAVES: &str =
+    "POV-Ray takes 10 waves while it reads a scene, and the last number for all of it";
 const CAPS: &str = "POV-Ray does not close an isosurface at the far side of its container";
 const OPEN_MESHES: &str = "POV-Ray misses faces of meshes behind other faces in CSG";
 

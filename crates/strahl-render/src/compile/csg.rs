@@ -1,7 +1,7 @@
 //! CSG trees: one primitive each.
 
 use super::bounds::bounded;
-use super::flatten::{FlatGroup, Pass, visible};
+use super::flatten::{FlatGroup, Pass, shape_at, visible};
 use super::inherit::Todo;
 use super::inside;
 use crate::look::{Look, Looks};
@@ -89,6 +89,8 @@ impl Pass {
                             let tag = looks.len() as u32 - 1;
                             let transform =
                                 (!todo.transform.is_identity()).then(|| Box::new(todo.transform));
+                            let here = shape_at(shape, &todo.transform);
+                            let shape = here.as_ref().unwrap_or(shape);
                             done.push(CsgNode::Leaf {
                                 shape: bounded(shape, &todo.bounds, &todo.transform)
                                     .unwrap_or_else(|| shape.clone()),

@@ -339,6 +339,8 @@ impl Pass {
         let identity = todo.transform.is_identity();
         // Triangles of meshes are seen by all rays.
         let is_mesh = matches!(shape, Shape::TriangleMesh(_));
+        let here = shape_at(shape, &todo.transform);
+        let shape = here.as_ref().unwrap_or(shape);
         let hidden = (!is_mesh).then(|| bounded(shape, &todo.bounds, &todo.transform));
         let hidden = hidden.flatten();
         let shape = hidden.as_ref().unwrap_or(shape);
@@ -373,6 +375,14 @@ impl Pass {
         });
         let kind = PrimKind::Placed(group.shapes.len() as u32 - 1);
         group.prims.push(Prim::new(kind, visible, flags));
+    }
+}
+
+/// A shape as it is at its place in the group, if that matters to more than its place.
+pub(super) fn shape_at(shape: &Shape, to_group: &Transform) -> Option<Shape> {
+    match shape {
+        Shape::HeightField(field) => field.shaded_in(to_group).map(Shape::from),
+        _ => None,
     }
 }
 

@@ -11,8 +11,10 @@ use crate::mesh::{RayShear, combine, intersect_sheared};
 use crate::{GeometryError, PrimHit, Primitive, Scratch, Solid, SurfaceId, SurfacePoint};
 use body::Body;
 use grid::{Cell, Grid, SCALE};
+use smooth::Normals;
 use std::ops::ControlFlow;
-use strahl_math::{Aabb, DVec2, DVec3, Interval, Ray};
+use std::sync::Arc;
+use strahl_math::{Aabb, DVec2, DVec3, Interval, Ray, Transform};
 use traverse::Descent;
 
 /// A height field: heights over a grid of points on the unit square of the xz plane, joined by triangles.
@@ -40,10 +42,10 @@ const MOST_HEIGHTS: u64 = 1 << 30;
 /// The surface alone.
 #[derive(Debug)]
 struct Surface {
-    grid: Grid,
+    grid: Arc<Grid>,
     /// The water level.
     water: f64,
-    normals: Option<Box<[[i16; 3]]>>,
+    normals: Option<Normals>,
 }
 
 impl HeightField {
@@ -100,12 +102,27 @@ impl HeightField {
             a.swap_with_slice(b);
         }
         let grid = Grid::new(width, depth, rows.into());
-        let normals = smooth.then(|| smooth::normals(&grid));
+        let normals = smooth.then(|| Normals::of(&grid));
         Ok(Self {
             body: Body(Surface {
-                grid,
+                grid: Arc::new(grid),
                 water: water_level,
                 normals,
+            }),
+        })
+    }
+
+    /// The field with the normals that it has in the space that `to_world` leads to; `None` if it is not smooth. As in POV-Ray (measured) normals are
+    /// interpolated where the field is, so a scale that differs from axis to axis changes which vertex counts how much. Positions
+    /// stay, and the heights are shared.
+    #[must_use]
+    pub fn shaded_in(&self, to_world: &Transform) -> Option<Self> {
+        let surface = &self.body.0;
+        Some(Self {
+            body: Body(Surface {
+                grid: Arc::clone(&surface.grid),
+                water: surface.water,
+                normals: Some(surface.normals.as_ref()?.seen_from(to_world)),
             }),
         })
     }
@@ -209,7 +226,7 @@ impl Surface {
         let (by_x, by_z) = ((b.y - a.y) / (b.x - a.x), (c.y - a.y) / (c.z - a.z));
         let n_geom = DVec3::new(-by_x, 1.0, -by_z).normalize();
         let n_shade = self.normals.as_ref().map_or(n_geom, |normals| {
-            smooth::interpolated(&self.grid, normals, element / 2, position, n_geom)
+            normals.interpolated(&self.grid, element / 2, position, n_geom)
         });
         SurfacePoint {
             position,

@@ -178,7 +178,7 @@ fn smooth_normals_are_those_measured() {
         [13107, 19338, 45802, 61234],
     ];
     let field = HeightField::try_new(4, 4, rows.concat(), 0.0, true).unwrap();
-    let normals = field.body.0.normals.as_ref().unwrap();
+    let normals = field.body.0.normals.as_ref().unwrap().vertices();
     assert_eq!(normals[0][1], 5);
     assert_eq!(normals[4][1], 9);
     assert_eq!(normals[8][1], 7);
