@@ -61,4 +61,5 @@ groups! {
     area_lights_that_turn_are_circles_of_their_first_axis,
     smooth_height_fields_interpolate_normals_where_they_are,
     the_share_of_a_blended_texture_is_not_in_the_weight_of_its_ray,
+    edges_of_hexagons_in_the_plane_of_x_and_y,
 }

@@ -60,7 +60,9 @@ pub(super) fn hexagon(p: DVec3) -> usize {
     let k = -i - j;
     let (mut ri, mut rj, rk) = (i.round(), j.round(), k.round());
     let (ei, ej, ek) = ((ri - i).abs(), (rj - j).abs(), (rk - k).abs());
-    if ei > ej && ei > ek {
+    // The edges in the plane z = 0 belong to the hexagons of positive z, as in POV-Ray (measured).
+    let is_upper = -rj - rk > ri;
+    if ei > ej && (ei > ek || ei == ek && is_upper) {
         ri = -rj - rk;
     } else if ej > ek {
         rj = -ri - rk;
