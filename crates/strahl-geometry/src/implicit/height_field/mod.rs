@@ -132,6 +132,11 @@ impl HeightField {
         self.body.0.grid.size()
     }
 
+    /// Whether normals are interpolated for shading.
+    pub fn is_smooth(&self) -> bool {
+        self.body.0.normals.is_some()
+    }
+
     /// The height below which there is no surface.
     pub fn water_level(&self) -> f64 {
         self.body.0.water

@@ -16,7 +16,7 @@ use crate::symbol::Symbol;
 use std::collections::HashMap;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
-use strahl_geometry::Primitive;
+use strahl_geometry::{Primitive, Shape};
 use strahl_math::Aabb;
 use strahl_scene::{Children, CsgOp, Group, GroupId, Object, ObjectKind, Scene};
 use strahl_shade::Material;
@@ -46,6 +46,8 @@ pub(crate) struct Tally {
     bare: bool,
     /// Whether a part is a light or a light group.
     lights: bool,
+    /// Whether a part is a smooth height field, whose normals depend on the scale of each use. Copies share the heights.
+    smooth_fields: bool,
     /// The number of shapes and operations, including those of the declared objects in it.
     pub(in crate::grammar) expanded: u64,
 }
@@ -70,6 +72,8 @@ impl Tally {
                 }
                 ObjectKind::Shape(shape) => {
                     tally.elements += u64::from(shape.elements());
+                    tally.smooth_fields |=
+                        matches!(shape, Shape::HeightField(field) if field.is_smooth());
                     tally.inherits |= !has_material;
                 }
                 ObjectKind::Instance(id) => {
@@ -123,8 +127,15 @@ impl Parser<'_> {
             parts, elements, ..
         } = declared.tally;
         let uses = declared.uses.fetch_add(1, Ordering::Relaxed);
-        // Lights illuminate from their own positions, so each use needs its own; and each use gives bare parts their texture.
-        if declared.tally.lights || declared.tally.bare {
+        // Lights illuminate from their own positions, so each use needs its own; each use gives bare parts their texture, and smooth
+        // height fields their normals.
+        let Tally {
+            lights,
+            bare,
+            smooth_fields,
+            ..
+        } = declared.tally;
+        if lights || bare || smooth_fields {
             return declared.entity.clone();
         }
         let large = parts > SMALL || elements > FEW_TRIANGLES + parts;
