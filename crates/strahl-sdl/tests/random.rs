@@ -62,4 +62,5 @@ groups! {
     smooth_height_fields_interpolate_normals_where_they_are,
     the_share_of_a_blended_texture_is_not_in_the_weight_of_its_ray,
     edges_of_hexagons_in_the_plane_of_x_and_y,
+    the_eye_is_in_closed_parts_beside_open_ones,
 }

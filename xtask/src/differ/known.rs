@@ -1,7 +1,7 @@
 /// Differences that are intended or that are POV-Ray's: the words that the smallest scene contains, and the reason.
 ///
 /// docs/src/differ.md explains them.
-pub(super) const KNOWN: [(&[&str], &str); 55] = [
+pub(super) const KNOWN: [(&[&str], &str); 62] = [
     (&["crystal.ttf"], FONTS),
     (&["cyrvetic.ttf"], FONTS),
     (&["timrom.ttf"], FONTS),
@@ -37,6 +37,8 @@ pub(super) const KNOWN: [(&[&str], &str); 55] = [
     (&["union", "height_field", "difference"], UNIONS),
     (&["number_of_waves", "waves", "function"], WAVES),
     (&["number_of_waves", "ripples", "function"], WAVES),
+    (&["disc", "intersection"], DISCS),
+    (&["disc", "difference"], DISCS),
     (&["clipped_by", "inverse", "intersection"], BOXES),
     (&["clipped_by", "inverse", "difference"], BOXES),
     (&["isosurface", "intersection"], CAPS),
@@ -59,6 +61,11 @@ pub(super) const KNOWN: [(&[&str], &str); 55] = [
         &["parametric", "accuracy", "clipped_by"],
         "POV-Ray's parametric surfaces lie beside themselves by their accuracy",
     ),
+    (&["parametric", "rgbt"], MISSED),
+    (&["parametric", "rgbf"], MISSED),
+    (&["parametric", "transmit"], MISSED),
+    (&["parametric", "filter"], MISSED),
+    (&["sor", "light_source"], SPECKLES),
     (&["sphere_sweep", "rgbt"], JOINTS),
     (&["sphere_sweep", "rgbf"], JOINTS),
     (&["sphere_sweep", "transmit"], JOINTS),
@@ -77,6 +84,8 @@ pub(super) const KNOWN: [(&[&str], &str); 55] = [
     ),
 ];
 
+const MISSED: &str = "POV-Ray misses parts of a parametric surface behind others of it";
+const SPECKLES: &str = "a surface of revolution shadows itself here and there in POV-Ray";
 const JOINTS: &str = "POV-Ray shows discs within a curved sphere_sweep";
 const FONTS: &str = "the fonts of POV-Ray's names are others";
 const CELLS: &str = "a polygon lies exactly between two layers of cells";
@@ -87,6 +96,8 @@ const INTERPOLATED: &str = "POV-Ray decides by the interpolated normal which sid
 const TURNED: &str = "POV-Ray turns the sides of an inverse mesh without an inside";
 const NOT_TURNED: &str = "POV-Ray does not turn the sides of an inverse quadric";
 const BOXES: &str = "POV-Ray's inverse solids end with their boxes in CSG";
+const DISCS: &str =
+    "in CSG a disc is a half-space: POV-Ray hides what a ray sees of it beyond the disc's box";
 const UNIONS: &str = "in POV-Ray a height field in a union in CSG ends with its box";
 const WAVES: &str =
     "POV-Ray takes 10 waves while it reads a scene, and the last number for all of it";

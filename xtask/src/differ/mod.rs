@@ -206,6 +206,7 @@ fn totals(numbers: &[u64], verdicts: &[Verdict], seconds: f64) {
     let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
     let mut theirs: BTreeMap<String, Vec<u64>> = BTreeMap::new();
     let mut stopped: BTreeMap<&str, Vec<u64>> = BTreeMap::new();
+    let mut found = vec![];
     for (number, verdict) in numbers.iter().zip(verdicts) {
         let kind = match verdict {
             Verdict::Same => "look the same",
@@ -226,12 +227,16 @@ fn totals(numbers: &[u64], verdicts: &[Verdict], seconds: f64) {
         if let Verdict::Stopped(program) = verdict {
             stopped.entry(program).or_default().push(*number);
         }
+        if verdict.is_finding() {
+            found.push(*number);
+        }
         *counts.entry(kind).or_default() += 1;
     }
     println!("{} scenes in {seconds:.0} s:", numbers.len());
     for (kind, count) in counts {
         println!("{count:6} {kind}");
     }
+    println!("  looked at one by one below: {found:?}");
     for (program, numbers) in stopped {
         println!("  {program} was stopped: {numbers:?}");
     }

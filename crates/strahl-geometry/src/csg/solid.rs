@@ -265,7 +265,15 @@ impl Primitive for Csg {
     }
 }
 
+/// A tree with open parts is no operand of another tree ([`Primitive::as_solid`]), but it contains what its closed parts enclose.
 impl Solid for Csg {
+    fn inside_bounds(&self) -> Aabb {
+        match self.node(0) {
+            Some(root) if !root.far => root.bounds,
+            _ => Aabb::EVERYTHING,
+        }
+    }
+
     fn crossings(
         &self,
         ray: &Ray,

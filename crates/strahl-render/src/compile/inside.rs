@@ -3,7 +3,7 @@
 use super::csg::combine;
 use crate::scene::Inside;
 use std::sync::Arc;
-use strahl_geometry::{Csg, CsgNode, Cuboid, Plane, Primitive, Shape};
+use strahl_geometry::{Csg, CsgNode, Cuboid, Plane, Primitive, Shape, Solid};
 use strahl_math::{Aabb, DVec3, Transform};
 use strahl_scene::{CsgOp, Object, ObjectKind};
 
@@ -45,7 +45,7 @@ pub(super) fn of(object: &Object, to_group: &Transform) -> Option<Inside> {
 
 /// The box that POV-Ray has around something bounded; that of half-spaces and the like bounds nothing.
 fn bounds(object: &Object, to_group: &Transform) -> Option<Aabb> {
-    let bounds = combined(object, to_group, &boxed)?.bounds();
+    let bounds = combined(object, to_group, &boxed)?.inside_bounds();
     Some(if bounds.is_bounded() {
         bounds
     } else {

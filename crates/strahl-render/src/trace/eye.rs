@@ -129,7 +129,15 @@ fn holds(shape: &Shape, place: DVec3) -> bool {
         _ => None,
     };
     let may_hold = bounds.is_none_or(|bounds| bounds.contains(place));
-    may_hold && shape.as_solid().is_some_and(|solid| solid.contains(place))
+    may_hold && solid(shape).is_some_and(|solid| solid.contains(place))
+}
+
+/// The shape as a solid. A CSG object with triangles among its parts is one too: the eye is in what the other parts enclose.
+fn solid(shape: &Shape) -> Option<&dyn Solid> {
+    match shape {
+        Shape::Csg(csg) => Some(&**csg),
+        _ => shape.as_solid(),
+    }
 }
 
 impl RenderScene {
@@ -218,7 +226,7 @@ impl RenderGroup {
                 if let Some(inside) = &used.inside {
                     return inside.limit;
                 }
-                let bounds = used.shape.as_solid().map(|s| s.inside_bounds());
+                let bounds = solid(&used.shape).map(|s| s.inside_bounds());
                 let bounds = bounds.unwrap_or(Aabb::EMPTY);
                 let map = used.transform.as_ref();
                 map.map_or(bounds, |map| moved(bounds, map))
