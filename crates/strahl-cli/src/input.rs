@@ -325,7 +325,7 @@ impl<'a> Input<'a> {
         let prepared = match Prepared::new(&scene) {
             Ok(prepared) => prepared,
             Err(errors) => {
-                reporter.print(&errors, Some(&scene.sources));
+                reporter.print(&errors.0, Some(&scene.sources));
                 return Err(Failure::Reported);
             }
         };

@@ -4,7 +4,7 @@ pub use merge::MergeError;
 
 use crate::trace::SampleResult;
 use sha2::{Digest, Sha256};
-use strahl_shade::Color;
+use strahl_shade::{Color, srgb};
 
 /// A rectangle of pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -153,6 +153,14 @@ pub enum FilmError {
         /// Height of the picture.
         of_height: u32,
     },
+    /// A buffer for the picture is not as long as the picture has pixels.
+    #[error("the buffer has {found} elements, the picture {expected} pixels")]
+    Buffer {
+        /// Pixels of the picture.
+        expected: u64,
+        /// Elements of the buffer.
+        found: usize,
+    },
     /// There is not enough memory for the film.
     #[error(
         "a picture of {width} x {height} pixels needs {gib:.1} GiB of memory, more than there is; \
@@ -231,6 +239,56 @@ impl Film {
     pub fn pixel(&self, x: u32, y: u32) -> Option<[f32; 3]> {
         let r = &self.region;
         r.contains(x, y).then(|| self.pixels[r.index(x, y)])
+    }
+
+    /// The part of the film in a region of the picture, as far as the film has it: a film of the same picture. `None` if it has nothing of
+    /// it.
+    pub fn part(&self, region: Region) -> Option<Self> {
+        Some(self.cut(region.intersection(&self.region)?))
+    }
+
+    /// A part that lies within the film.
+    pub(crate) fn cut(&self, region: Region) -> Self {
+        fn cut<T: Copy>(list: &[T], from: Region, region: Region) -> Vec<T> {
+            let mut part = Vec::with_capacity(region.pixels() as usize);
+            for y in region.y..region.y + region.height {
+                let start = from.index(region.x, y);
+                part.extend_from_slice(&list[start..start + region.width as usize]);
+            }
+            part
+        }
+        let from = self.region;
+        Self {
+            region,
+            pixels: cut(&self.pixels, from, region),
+            alpha: self.alpha.as_ref().map(|list| cut(list, from, region)),
+            info: self.info.as_ref().map(|list| cut(list, from, region)),
+            ..*self
+        }
+    }
+
+    /// The colours as sRGB codes of 8 bits, three for each pixel, row by row: what a PNG holds. Values outside `0..=1` are clipped.
+    pub fn to_srgb8(&self) -> Vec<u8> {
+        let codes = self.pixels.iter().flatten();
+        codes.map(|v| srgb::encode_u8(f64::from(*v))).collect()
+    }
+
+    /// Copies the colours to their place in a buffer of the whole picture, row by row from the top.
+    ///
+    /// # Errors
+    /// [`FilmError::Buffer`] if the buffer has not one element for each pixel of the picture.
+    pub fn write_to(&self, buffer: &mut [[f32; 3]]) -> Result<(), FilmError> {
+        let (whole, found) = (Region::full(self.width, self.height), buffer.len());
+        if found as u64 != whole.pixels() {
+            let expected = whole.pixels();
+            return Err(FilmError::Buffer { expected, found });
+        }
+        let width = self.region.width as usize;
+        for (y, row) in (self.region.y..).zip(self.pixels.chunks_exact(width)) {
+            let start = whole.index(self.region.x, y);
+            buffer[start..start + width].copy_from_slice(row);
+        }
+        Ok(())
     }
 
     /// SHA-256 of the pixels (three little-endian f32 each, row by row), in hexadecimal digits: equal exactly if all bits

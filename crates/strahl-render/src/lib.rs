@@ -34,13 +34,16 @@ mod resolve;
 mod runs;
 mod sampling;
 mod scene;
+mod session;
 mod shadow;
 mod sight;
+mod sink;
 mod spheres;
 mod surface;
 mod tiles;
 pub mod trace;
 mod tree;
+mod view;
 mod walk;
 
 pub use camera::PrimaryRays;
@@ -55,11 +58,14 @@ pub use observer::{
     ShadowHit, ShadowReport, Share, SurfaceTerm, TraceObserver,
 };
 pub use query::Tracer;
-pub use render::{Progress, RenderError, RenderOptions, Rendered, render};
+pub use render::{Pass, PixelState, Progress, RenderError, RenderOptions, Rendered, render};
 pub use sampling::{Refinement, Sampling, UnknownSampling};
 pub use scene::{RenderScene, SceneStats};
+pub use session::{Outcome, Session, Threads, Unfinished};
+pub use sink::{Sink, Tile};
 pub use strahl_accel::PACKET;
 pub use tiles::TileOrder;
 pub use trace::{RayCounts, SampleResult, TraceSettings};
 pub use tree::{LightReport, PixelSample, PixelTree, RayNode, RayTree, explain};
+pub use view::{Output, View};
 pub use walk::{RayWalk, WalkEvent, walk};

@@ -1,20 +1,25 @@
+mod crew;
 mod pixels;
+mod plan;
 mod probe;
 mod refine;
+mod work;
 
+pub(crate) use crew::Crew;
+pub use plan::Pass;
 pub(crate) use probe::{Probe, Seen, probe_rows};
+pub(crate) use refine::is_refined;
+pub use work::PixelState;
+pub(crate) use work::Work;
 
 use crate::camera::PrimaryRays;
 use crate::cost::PixelCost;
-use crate::film::{Film, FilmError, PixelInfo, Region, try_filled};
+use crate::film::{Film, FilmError, PixelInfo, Region};
 use crate::sampling::{Sample, Sampling};
 use crate::scene::RenderScene;
-use crate::tiles::{TileOrder, tiles};
+use crate::tiles::TileOrder;
 use crate::trace::{RayCounts, TraceSettings};
 use pixels::PixelTracer;
-pub(crate) use refine::is_refined;
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Mutex, PoisonError};
 use strahl_accel::TraversalStats;
 use strahl_shade::Color;
 
@@ -35,6 +40,9 @@ pub struct RenderOptions {
     pub threads: usize,
     /// Order of the tiles.
     pub tile_order: TileOrder,
+    /// Whether to trace every eighth pixel of every eighth row first, then every fourth, and so on. The picture is the same, and no ray
+    /// is traced twice.
+    pub coarse_first: bool,
     /// How ray trees are grown.
     pub trace: TraceSettings,
     /// Whether to fill [`Film::info`].
@@ -56,6 +64,7 @@ impl RenderOptions {
             seed: 0,
             threads: 0,
             tile_order: TileOrder::Rows,
+            coarse_first: false,
             trace: TraceSettings::of(scene),
             info: false,
             costs: false,
@@ -66,12 +75,6 @@ impl RenderOptions {
     /// Whether neighbouring rays are traced in packets. Not where costs are shown, since these are the costs of single rays.
     fn follows_together(&self, rays: &PrimaryRays) -> bool {
         self.trace.packets && !self.costs && !self.info && !self.alpha && rays.is_sharp()
-    }
-
-    /// The part of the picture that the film holds.
-    fn film_region(&self) -> Region {
-        let whole = Region::full(self.width, self.height);
-        self.region.unwrap_or(whole)
     }
 }
 
@@ -103,6 +106,9 @@ pub enum RenderError {
     /// The film can't be made.
     #[error(transparent)]
     Film(#[from] FilmError),
+    /// The camera makes no rays.
+    #[error("{0}")]
+    Camera(&'static str),
     /// [`Progress::cancelled`] returned true.
     #[error("cancelled")]
     Cancelled,
@@ -127,7 +133,8 @@ pub struct Rendered {
     pub costs: Option<Vec<PixelCost>>,
 }
 
-/// Renders a picture.
+/// Renders a picture with threads of its own. Programs that render several pictures, or look at one on the way, have a
+/// [`Session`](crate::Session).
 ///
 /// # Errors
 /// [`RenderError`]: no such picture, no memory, no threads, or cancelled.
@@ -136,56 +143,28 @@ pub fn render(
     options: &RenderOptions,
     progress: &dyn Progress,
 ) -> Result<Rendered, RenderError> {
-    let mut film = Film::try_new(options.width, options.height, options.region, options.info)?;
-    if options.alpha {
-        film.alpha = Some(try_filled(film.region, 1.0)?);
-    }
+    let mut work = Work::new(options)?;
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(options.threads)
         .build()
         .map_err(|e| RenderError::Threads(options.threads, e.to_string()))?;
-    let mut job = Job {
+    let crew = Crew {
         scene,
-        options,
+        rays: &PrimaryRays::new(scene.camera(), options.width, options.height),
+        pool: &pool,
         progress,
-        rays: PrimaryRays::new(scene.camera(), options.width, options.height),
-        counts: RayCounts::default(),
-        traversal: TraversalStats::default(),
-        costs: match options.costs {
-            true => Some(try_filled(film.region, PixelCost::default())?),
-            false => None,
-        },
     };
-    pool.install(|| match options.sampling {
-        Sampling::Corners => job.corners(&mut film),
-        Sampling::Adaptive(refinement) => job.adaptive(&mut film, &refinement),
-        Sampling::Recursive(refinement) => job.recursive(&mut film, &refinement),
-        Sampling::Center | Sampling::Grid(_) => job.single_pass(&mut film),
-    })?;
-    let threads = pool.current_num_threads();
-    Ok(Rendered {
-        film,
-        rays: job.counts,
-        traversal: job.traversal,
-        threads,
-        costs: job.costs,
-    })
-}
-
-struct Job<'a> {
-    scene: &'a RenderScene,
-    options: &'a RenderOptions,
-    progress: &'a dyn Progress,
-    rays: PrimaryRays,
-    counts: RayCounts,
-    traversal: TraversalStats,
-    /// Of the pixels of the film.
-    costs: Option<Vec<PixelCost>>,
+    match work.go_on(&crew, None)? {
+        true => Ok(work.rendered(pool.current_num_threads())),
+        false => Err(RenderError::Cancelled),
+    }
 }
 
 /// The result of a tile.
 struct TileResult<T> {
     tile: Region,
+    /// The pixels traced; `None` for all of the tile.
+    points: Option<Vec<(u32, u32)>>,
     values: Vec<T>,
     /// One for each value, if requested.
     infos: Vec<PixelInfo>,
@@ -193,6 +172,16 @@ struct TileResult<T> {
     costs: Vec<PixelCost>,
     counts: RayCounts,
     traversal: TraversalStats,
+}
+
+impl<T> TileResult<T> {
+    /// The pixels with a value each.
+    fn places(&self) -> Box<dyn Iterator<Item = (u32, u32)> + '_> {
+        match &self.points {
+            Some(points) => Box::new(points.iter().copied()),
+            None => Box::new(self.tile.positions()),
+        }
+    }
 }
 
 /// The samples of a pixel so far.
@@ -217,6 +206,14 @@ impl Samples {
         count: 0,
         clear: 0.0,
     };
+
+    /// With one sample more.
+    fn with(mut self, sample: Sample) -> Self {
+        self.sum += sample.color;
+        self.clear += sample.clear;
+        self.count += 1;
+        self
+    }
 
     /// What the film holds of the pixel.
     fn shown(&self) -> Shown {
@@ -248,111 +245,26 @@ impl Samples {
     }
 }
 
-impl Job<'_> {
-    /// Traces tiles on all threads (see [`PixelTracer::tile`]) and hands each finished tile to `store`.
-    fn tiles<T: Clone + Send>(
-        &mut self,
-        all: &[Region],
-        pass: u32,
-        blank: impl Fn(&mut PixelTracer<'_>, u32) -> Option<T> + Sync,
-        trace: impl Fn(&mut PixelTracer<'_>, u32, u32) -> T + Sync,
-        mut store: impl FnMut(TileResult<T>) + Send,
-    ) -> Result<(), RenderError> {
-        self.progress
-            .pass(pass, self.options.sampling.passes(), all.len());
-        let (scene, options, progress) = (self.scene, self.options, self.progress);
-        let rays = &self.rays;
-        let mut stored = 0;
-        let mut take = |result: TileResult<T>| {
-            self.counts += result.counts;
-            self.traversal += result.traversal;
-            if let Some(all) = &mut self.costs {
-                let film = options.film_region();
-                for ((x, y), cost) in result.tile.positions().zip(&result.costs) {
-                    if film.contains(x, y) {
-                        all[film.index(x, y)] += *cost;
-                    }
-                }
-            }
-            store(result);
-            stored += 1;
-        };
-        // A thread that is free takes the next tile. Tiles end in any order; the result does not depend on it.
-        let (next, take) = (AtomicUsize::new(0), Mutex::new(&mut take));
-        rayon::broadcast(|_| {
-            let mut tracer = PixelTracer::new(scene, rays, options, progress);
-            while !progress.cancelled() {
-                let number = next.fetch_add(1, Ordering::Relaxed);
-                let Some(tile) = all.get(number) else { break };
-                let result = tracer.tile(*tile, pass, &blank, &trace);
-                progress.tile(result.counts.total());
-                let mut take = take.lock().unwrap_or_else(PoisonError::into_inner);
-                (*take)(result);
-            }
-        });
-        match stored == all.len() {
-            true => Ok(()),
-            false => Err(RenderError::Cancelled),
-        }
-    }
-
-    /// Renders with one pass.
-    fn single_pass(&mut self, film: &mut Film) -> Result<(), RenderError> {
-        self.tiles(
-            &tiles(film.region, self.options.tile_order),
-            0,
-            |tracer, pixels| Some(tracer.blank(pixels)?.shown()),
-            |tracer, x, y| tracer.pixel(0, x, y).shown(),
-            |result| {
-                film.set_infos(result.tile, &result.infos);
-                film.set_tile(result.tile, &result.values);
-            },
-        )
-    }
-
-    /// Traces the lattice of pixel corners first, then makes every pixel the mean of its four.
-    fn corners(&mut self, film: &mut Film) -> Result<(), RenderError> {
-        let lattice = self.lattice(film)?;
-        for (x, y) in film.region.positions() {
-            film.set((x, y), mean_of_corners(lattice.around(x, y)));
-        }
-        Ok(())
-    }
-
-    /// The colours at the corners of all pixels of the film.
-    fn lattice(&mut self, film: &mut Film) -> Result<Lattice, RenderError> {
-        let region = Region {
-            width: film.region.width + 1,
-            height: film.region.height + 1,
-            ..film.region
-        };
-        let mut corners = try_filled(region, Sample::NOTHING)?;
-        self.tiles(
-            &tiles(region, self.options.tile_order),
-            0,
-            |tracer, corners| Some(Sample::from(tracer.tree.same_nothing(corners as usize)?)),
-            |tracer, x, y| tracer.corner(x, y),
-            |result| {
-                film.set_infos(result.tile, &result.infos);
-                for ((x, y), value) in result.tile.positions().zip(result.values) {
-                    corners[region.index(x, y)] = value;
-                }
-            },
-        )?;
-        Ok(Lattice { region, corners })
-    }
-}
-
-/// Colours at the corners of pixels.
+/// Samples of a rectangle of pixels, or of the corners of pixels.
+#[derive(Clone, Debug, PartialEq)]
 struct Lattice {
     region: Region,
-    corners: Vec<Sample>,
+    samples: Vec<Sample>,
 }
 
 impl Lattice {
+    fn at(&self, x: u32, y: u32) -> Sample {
+        self.samples[self.region.index(x, y)]
+    }
+
+    fn put(&mut self, (x, y): (u32, u32), sample: Sample) {
+        let index = self.region.index(x, y);
+        self.samples[index] = sample;
+    }
+
     /// The corners of a pixel: top left, top right, bottom left, bottom right.
     fn around(&self, x: u32, y: u32) -> [Sample; 4] {
-        let at = |dx, dy| self.corners[self.region.index(x + dx, y + dy)];
+        let at = |dx, dy| self.at(x + dx, y + dy);
         [at(0, 0), at(1, 0), at(0, 1), at(1, 1)]
     }
 }
@@ -395,10 +307,25 @@ impl Film {
         }
     }
 
+    /// Shows a sample in all pixels of a block, as far as they lie in the film.
+    fn fill(&mut self, block: Region, sample: Sample) {
+        let Some(block) = block.intersection(&self.region) else {
+            return;
+        };
+        let (color, width) = (sample.color.to_f32(), block.width as usize);
+        for y in block.y..block.y + block.height {
+            let start = self.region.index(block.x, y);
+            self.pixels[start..start + width].fill(color);
+            if let Some(alpha) = &mut self.alpha {
+                alpha[start..start + width].fill((1.0 - sample.clear) as f32);
+            }
+        }
+    }
+
     /// Writes the further data of the pixels of a tile, as far as they lie in the film.
-    fn set_infos(&mut self, tile: Region, infos: &[PixelInfo]) {
+    fn set_infos<T>(&mut self, result: &TileResult<T>) {
         if let Some(list) = &mut self.info {
-            for ((x, y), info) in tile.positions().zip(infos) {
+            for ((x, y), info) in result.places().zip(&result.infos) {
                 if self.region.contains(x, y) {
                     list[self.region.index(x, y)] = *info;
                 }

@@ -35,14 +35,6 @@ impl Sampling {
     /// The adaptive sampling one gets by its bare name: POV-Ray's `+A0.3 +R3`.
     pub const ADAPTIVE: Self = Self::Adaptive(Refinement::DEFAULT);
 
-    /// How many passes over the picture there are.
-    pub(crate) fn passes(self) -> u32 {
-        match self {
-            Self::Adaptive(_) | Self::Recursive(_) => 2,
-            _ => 1,
-        }
-    }
-
     /// The place in every pixel in pass `pass`, if there is one only.
     pub(crate) fn common_place(self, pass: u32) -> Option<(f64, f64)> {
         match (self, pass) {

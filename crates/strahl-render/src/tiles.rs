@@ -18,9 +18,14 @@ pub(crate) const TILE: u32 = 32;
 /// Cuts a region into tiles along a lattice of the whole picture, so that a region whose edges are on the lattice has the
 /// picture's own tiles: their pixels then take the same tests, which depend on the pixels before them in the tile.
 pub(crate) fn tiles(region: Region, order: TileOrder) -> Vec<Region> {
+    tiles_of(region, TILE, order)
+}
+
+/// The same with tiles of `edge` pixels.
+pub(crate) fn tiles_of(region: Region, edge: u32, order: TileOrder) -> Vec<Region> {
     let mut all = Vec::new();
-    for (y, height) in spans(region.y, region.height) {
-        for (x, width) in spans(region.x, region.width) {
+    for (y, height) in spans(region.y, region.height, edge) {
+        for (x, width) in spans(region.x, region.width, edge) {
             all.push(Region {
                 x,
                 y,
@@ -49,12 +54,12 @@ pub(crate) fn tiles(region: Region, order: TileOrder) -> Vec<Region> {
     all
 }
 
-/// Cuts an interval at the multiples of [`TILE`]: start and length of each part.
-fn spans(start: u32, length: u32) -> impl Iterator<Item = (u32, u32)> {
+/// Cuts an interval at the multiples of `edge`: start and length of each part.
+fn spans(start: u32, length: u32, edge: u32) -> impl Iterator<Item = (u32, u32)> {
     let mut from = start;
     let end = start.saturating_add(length);
     std::iter::from_fn(move || {
-        let to = (from / TILE + 1).saturating_mul(TILE).min(end);
+        let to = (from / edge + 1).saturating_mul(edge).min(end);
         (from < end).then(|| {
             let part = (from, to - from);
             from = to;

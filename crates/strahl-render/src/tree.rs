@@ -6,6 +6,7 @@ use crate::render::{RenderError, RenderOptions, is_refined, mean_of_corners};
 use crate::sampling::{Sample, Sampling, subdivided};
 use crate::scene::RenderScene;
 use crate::trace::TreeTracer;
+use strahl_scene::Camera;
 use strahl_shade::Color;
 
 /// One light at the hit of a ray.
@@ -122,6 +123,17 @@ pub fn explain(
     x: u32,
     y: u32,
 ) -> Result<PixelTree, RenderError> {
+    explain_from(scene, scene.camera(), options, x, y)
+}
+
+/// The same from any camera.
+pub(crate) fn explain_from(
+    scene: &RenderScene,
+    camera: &Camera,
+    options: &RenderOptions,
+    x: u32,
+    y: u32,
+) -> Result<PixelTree, RenderError> {
     let region = Some(crate::Region {
         x,
         y,
@@ -129,7 +141,7 @@ pub fn explain(
         height: 1,
     });
     crate::Film::try_new(options.width, options.height, region, false)?;
-    let rays = PrimaryRays::new(scene.camera(), options.width, options.height);
+    let rays = PrimaryRays::new(camera, options.width, options.height);
     let mut tracer = TreeTracer::new(scene, options.trace);
     let (mut samples, mut count) = (Vec::new(), 0);
     let mut sample = |pass: u32, dx: f64, dy: f64| {
@@ -175,7 +187,7 @@ pub fn explain(
                 (sum, count)
             };
             let (mut sum, mut count) = pass_sum(0);
-            if is_refined(scene, options, x, y)? {
+            if is_refined(scene, &rays, options, x, y)? {
                 let more = pass_sum(1);
                 sum = more.0 + sum;
                 count += more.1;

@@ -156,6 +156,28 @@ impl fmt::Display for Diagnostic {
     }
 }
 
+/// All errors of a scene as one error.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Problems(pub Vec<Diagnostic>);
+
+impl fmt::Display for Problems {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (i, problem) in self.0.iter().enumerate() {
+            let end = if i > 0 { "\n" } else { "" };
+            write!(f, "{end}{problem}")?;
+        }
+        Ok(())
+    }
+}
+
+impl std::error::Error for Problems {}
+
+impl From<Vec<Diagnostic>> for Problems {
+    fn from(all: Vec<Diagnostic>) -> Self {
+        Self(all)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

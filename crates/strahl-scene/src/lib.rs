@@ -21,7 +21,7 @@ mod working;
 pub use background::{Background, BackgroundAlpha};
 pub use builder::ObjectExt;
 pub use camera::Camera;
-pub use diagnostic::{Diagnostic, Severity, SourceLine};
+pub use diagnostic::{Diagnostic, Problems, Severity, SourceLine};
 pub use fog::{Fog, FogKind, FogTurbulence};
 pub use lens::{Bokeh, Lens};
 pub use object::{Children, CsgOp, Group, GroupId, Object, ObjectKind, Visibility};

@@ -15,7 +15,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             .nth(1)
             .unwrap_or("machine_part.png".into()),
     );
-    let scene = strahl::compile(&scene(), &CompileOptions::default()).map_err(strahl::Problems)?;
+    let scene = strahl::compile(&scene(), &CompileOptions::default())?;
     let mut options = RenderOptions::new(&scene, 960, 720);
     options.sampling = Sampling::ADAPTIVE;
     let picture = strahl::render(&scene, &options, &())?;

@@ -11,7 +11,7 @@ use strahl::prelude::*;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let output = PathBuf::from(std::env::args_os().nth(1).unwrap_or("whitted.png".into()));
-    let scene = strahl::compile(&scene(), &CompileOptions::default()).map_err(strahl::Problems)?;
+    let scene = strahl::compile(&scene(), &CompileOptions::default())?;
     let mut options = RenderOptions::new(&scene, 960, 720);
     options.sampling = Sampling::Grid(3);
     let picture = strahl::render(&scene, &options, &())?;

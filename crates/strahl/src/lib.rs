@@ -19,7 +19,7 @@
 //!     .light(Light::point(DVec3::new(4.0, 8.0, 6.0), Color::WHITE))
 //!     .background(Background::Solid(Color::new(0.3, 0.5, 0.8)))
 //!     .camera(Camera::perspective(DVec3::new(0.0, 2.0, 7.0), DVec3::Y, DVec3::Y, 0.7));
-//! let scene = strahl::compile(&scene, &CompileOptions::default()).map_err(strahl::Problems)?;
+//! let scene = strahl::compile(&scene, &CompileOptions::default())?;
 //! let picture = strahl::render(&scene, &RenderOptions::new(&scene, 64, 48), &())?;
 //! strahl::save(&path, &picture.film, &WriteOptions::default())?;
 //! # Ok(())
@@ -38,7 +38,7 @@
 //!     .add(Sphere::new(DVec3::ZERO, 1.0).named("ball"))
 //!     .light(Light::point(DVec3::new(3.0, 3.0, 5.0), Color::WHITE))
 //!     .camera(Camera::orthographic(DVec3::new(0.0, 0.0, 5.0), DVec3::ZERO, DVec3::Y, 3.0));
-//! let scene = strahl::compile(&scene, &CompileOptions::default()).map_err(strahl::Problems)?;
+//! let scene = strahl::compile(&scene, &CompileOptions::default())?;
 //! let pixel = strahl::explain(&scene, &RenderOptions::new(&scene, 9, 9), 4, 4)?;
 //! let primary = &pixel.samples[0].tree.nodes[0];
 //! let hit = primary.report.hit.as_ref().expect("the ball is in the middle");
@@ -78,13 +78,16 @@ pub use inputs::Inputs;
 pub use load::{
     Format, Listener, LoadOptions, Loaded, UnknownFormat, load_bytes, load_path, povray_folders,
 };
-pub use picture::{Problems, layers, metadata, picture, save};
+pub use picture::{layers, metadata, picture, save};
 pub use strahl_accel as accel;
 pub use strahl_formats as formats;
 pub use strahl_geometry as geometry;
 pub use strahl_math as math;
-pub use strahl_render::{self as tracing, compile, explain, render};
-pub use strahl_scene as scene;
+pub use strahl_render::{
+    self as tracing, Outcome, Output, Session, Sink, Threads, Tile, Unfinished, View, compile,
+    explain, render,
+};
+pub use strahl_scene::{self as scene, Problems};
 pub use strahl_sdl as sdl;
 pub use strahl_shade as shade;
 pub use strahl_simd::memory;
@@ -99,7 +102,10 @@ pub mod prelude {
         Shape, Sphere, Torus, Triangle, TriangleMesh,
     };
     pub use strahl_math::{DVec2, DVec3, Transform};
-    pub use strahl_render::{CompileOptions, Film, RenderOptions, RenderScene, Sampling};
+    pub use strahl_render::{
+        CompileOptions, Film, Outcome, Output, Pass, PixelState, Progress, Region, RenderOptions,
+        RenderScene, Sampling, Session, Sink, Threads, Tile, TileOrder, Unfinished, View,
+    };
     pub use strahl_scene::{
         Background, Camera, CsgOp, Diagnostic, Object, ObjectExt, Scene, Settings, Visibility,
     };

@@ -1,26 +1,8 @@
-use std::fmt;
 use std::path::Path;
 use strahl_formats::image::{
     ImageError, Layer, LayerData, Picture, Window, WriteOptions, write_picture,
 };
 use strahl_render::{Film, PixelInfo};
-use strahl_scene::Diagnostic;
-
-/// All errors of a scene as one error.
-#[derive(Clone, Debug)]
-pub struct Problems(pub Vec<Diagnostic>);
-
-impl fmt::Display for Problems {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (i, problem) in self.0.iter().enumerate() {
-            let end = if i > 0 { "\n" } else { "" };
-            write!(f, "{end}{problem}")?;
-        }
-        Ok(())
-    }
-}
-
-impl std::error::Error for Problems {}
 
 /// Writes a film to a picture file whose extension chooses the format; layers are written if the film and the format have
 /// them.

@@ -6,7 +6,6 @@ use crate::bench::median;
 use anyhow::{Context, Result};
 use std::fs;
 use std::time::Instant;
-use strahl::Problems;
 use strahl::prelude::*;
 use strahl::tracing::Prepared;
 
@@ -32,7 +31,7 @@ pub(super) fn race<'e>(
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(plan.threads)
         .build()?;
-    let prepared = Prepared::new(scene).map_err(Problems)?;
+    let prepared = Prepared::new(scene)?;
     let (mut our_times, mut their_times) = (vec![], vec![]);
     let mut built = None;
     for _ in 0..plan.builds {

@@ -6,7 +6,6 @@ use super::meshes::Mesh;
 use super::rays::{Batch, Segment, make};
 use super::{Plan, Table, mean};
 use anyhow::{Context, Result, bail};
-use strahl::Problems;
 use strahl::accel::{Accelerator, AnyAccelerator, BLOCK, Content};
 use strahl::math::DVec3;
 use strahl::prelude::*;
@@ -253,7 +252,7 @@ pub(super) fn compare(
 ) -> Result<()> {
     let vertex = |i: u32| DVec3::from(mesh.positions[i as usize].map(f64::from));
     let corners: Vec<[DVec3; 3]> = mesh.indices.iter().map(|t| t.map(vertex)).collect();
-    let prepared = Prepared::new(&mesh.scene()?).map_err(Problems)?;
+    let prepared = Prepared::new(&mesh.scene()?)?;
     let mut batches = vec![];
     for (builder, accelerator, quality) in TREES {
         let scene = prepared.clone().build(accelerator.parse()?);

@@ -69,7 +69,7 @@ fn check_one(args: &CheckArgs, scene: &Path, reporter: &Reporter) -> Result<Chec
     if let (Some(scene), false) = (&loaded.scene, args.syntax) {
         let more = match Prepared::new(scene) {
             Ok(prepared) => prepared.warnings().to_vec(),
-            Err(errors) => errors,
+            Err(errors) => errors.0,
         };
         tell(&more, Some(&scene.sources));
     }

@@ -16,7 +16,7 @@ pub(crate) fn info(args: &SceneArgs) -> Result<(), Failure> {
     let prepared = match Prepared::new(&description) {
         Ok(prepared) => prepared,
         Err(errors) => {
-            reporter.print(&errors, Some(&description.sources));
+            reporter.print(&errors.0, Some(&description.sources));
             return Err(Failure::Reported);
         }
     };

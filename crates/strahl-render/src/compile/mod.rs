@@ -31,8 +31,8 @@ use std::sync::Arc;
 use strahl_accel::{Accelerator, AcceleratorKind, AnyAccelerator};
 use strahl_math::{Aabb, Transform};
 use strahl_scene::{
-    Background, BackgroundAlpha, Camera, Diagnostic, Fog, Rainbow, Scene, SceneLight, Settings,
-    SourceMap,
+    Background, BackgroundAlpha, Camera, Diagnostic, Fog, Problems, Rainbow, Scene, SceneLight,
+    Settings, SourceMap,
 };
 use strahl_shade::{Color, Material};
 
@@ -64,11 +64,11 @@ pub struct Prepared {
     warnings: Vec<Diagnostic>,
 }
 
-/// Compiles a scene.
+/// Compiles a scene. [`Session::compile`](crate::Session::compile) returns the warnings too.
 ///
 /// # Errors
 /// All errors of the scene, each with its place.
-pub fn compile(scene: &Scene, options: &CompileOptions) -> Result<RenderScene, Vec<Diagnostic>> {
+pub fn compile(scene: &Scene, options: &CompileOptions) -> Result<RenderScene, Problems> {
     Ok(Prepared::new(scene)?.build(options.accelerator))
 }
 
@@ -77,7 +77,7 @@ impl Prepared {
     ///
     /// # Errors
     /// All errors of the scene, each with its place.
-    pub fn new(scene: &Scene) -> Result<Self, Vec<Diagnostic>> {
+    pub fn new(scene: &Scene) -> Result<Self, Problems> {
         let mut flat = flatten::flatten(scene)?;
         spaces::open_spaces(&mut flat);
         let mut masks = masks(scene, &flat.lights)?;
@@ -87,7 +87,9 @@ impl Prepared {
         let camera = match &scene.camera {
             Some(camera) => match camera.problem() {
                 None => camera.clone(),
-                Some(problem) => return Err(vec![Diagnostic::error(problem).at(camera.span)]),
+                Some(problem) => {
+                    return Err(vec![Diagnostic::error(problem).at(camera.span)].into());
+                }
             },
             None => view::frame(bounds),
         };

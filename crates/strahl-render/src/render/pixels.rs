@@ -112,9 +112,7 @@ impl PixelTracer<'_> {
         blank: impl Fn(&mut Self, u32) -> Option<T>,
         trace: impl Fn(&mut Self, u32, u32) -> T,
     ) -> TileResult<T> {
-        self.tree.counts = RayCounts::default();
-        self.tree.tracer.stats = TraversalStats::default();
-        self.tree.tracer.forget_occluders();
+        self.start_tile();
         let mut costs = Vec::new();
         let sight = self.sight(tile);
         self.ahead.colors.clear();
@@ -148,8 +146,96 @@ impl PixelTracer<'_> {
                 }
             }
         }
+        self.end_tile(tile, None, values, costs)
+    }
+
+    /// The first samples of the pixels of a tile.
+    pub(super) fn centers(&mut self, tile: Region) -> TileResult<Sample> {
+        self.tile(
+            tile,
+            0,
+            |tracer, pixels| Some(tracer.blank(pixels)?.sample()),
+            |tracer, x, y| tracer.pixel(0, x, y).sample(),
+        )
+    }
+
+    /// Traces one ray through each of some pixels of a tile: that of its first sample, or that through its top left corner.
+    pub(super) fn points(
+        &mut self,
+        tile: Region,
+        points: Vec<(u32, u32)>,
+        corners: bool,
+    ) -> TileResult<Sample> {
+        self.start_tile();
+        let small = tile.width <= TILE && tile.height <= TILE;
+        let sight = small.then(|| self.sight(tile));
+        let mut values = vec![Sample::NOTHING; points.len()];
+        let mut costs = Vec::new();
+        let mut packet = ArrayVec::<(usize, Option<Ray>), PACKET>::new();
+        for (index, &(x, y)) in points.iter().enumerate() {
+            self.blind = sight.is_some_and(|sight| sight.is_empty(x, y));
+            let options = self.options;
+            let (dx, dy) = match corners {
+                true => (0.0, 0.0),
+                false => options
+                    .sampling
+                    .places(0, x, y, options.seed)
+                    .next()
+                    .unwrap_or((0.5, 0.5)),
+            };
+            let place = (f64::from(x) + dx, f64::from(y) + dy);
+            if self.together && !self.blind {
+                packet.push((index, self.rays.ray(place.0, place.1)));
+                if packet.is_full() {
+                    self.trace_packet(&mut packet, &mut values);
+                }
+            } else if options.costs {
+                let (value, cost) = self.measured(|tracer| tracer.sample(place.0, place.1, true));
+                values[index] = value;
+                costs.push(cost);
+            } else {
+                values[index] = self.sample(place.0, place.1, true);
+            }
+        }
+        self.trace_packet(&mut packet, &mut values);
+        if !corners {
+            for value in &mut values {
+                *value = Samples::NONE.with(*value).sample();
+            }
+        }
+        self.end_tile(tile, Some(points), values, costs)
+    }
+
+    /// Traces numbered rays in a packet, which is then empty.
+    fn trace_packet(
+        &mut self,
+        packet: &mut ArrayVec<(usize, Option<Ray>), PACKET>,
+        values: &mut [Sample],
+    ) {
+        let rays: ArrayVec<Option<Ray>, PACKET> = packet.iter().map(|(_, ray)| *ray).collect();
+        let colors = self.follow(&rays);
+        for ((index, _), color) in packet.drain(..).zip(colors) {
+            values[index] = color.into();
+        }
+    }
+
+    /// Forgets what is known of the last tile.
+    fn start_tile(&mut self) {
+        self.tree.counts = RayCounts::default();
+        self.tree.tracer.stats = TraversalStats::default();
+        self.tree.tracer.forget_occluders();
+    }
+
+    fn end_tile<T>(
+        &mut self,
+        tile: Region,
+        points: Option<Vec<(u32, u32)>>,
+        values: Vec<T>,
+        costs: Vec<PixelCost>,
+    ) -> TileResult<T> {
         TileResult {
             tile,
+            points,
             values,
             costs,
             infos: std::mem::take(&mut self.infos),
@@ -241,6 +327,22 @@ impl PixelTracer<'_> {
             samples.sum += sample.color;
             samples.clear += sample.clear;
             samples.count += 1;
+        }
+        samples
+    }
+
+    /// All samples of a pixel in the first pass, of which the first is known.
+    pub(super) fn remaining(&mut self, first: Sample, x: u32, y: u32) -> Samples {
+        let mut samples = Samples::NONE.with(first);
+        let options = self.options;
+        let places = options.sampling.places(0, x, y, options.seed).skip(1);
+        if self.together && !self.blind && places.len() >= FEW {
+            self.samples_together(x, y, places, &mut samples);
+            return samples;
+        }
+        for (dx, dy) in places {
+            let sample = self.sample(f64::from(x) + dx, f64::from(y) + dy, false);
+            samples = samples.with(sample);
         }
         samples
     }

@@ -1,0 +1,291 @@
+//! All threads trace the tiles of a pass, and the thread that asked for the picture hands finished parts to a sink.
+
+use super::{Pass, PixelTracer, Progress, RenderOptions, TileResult};
+use crate::camera::PrimaryRays;
+use crate::cost::PixelCost;
+use crate::film::{Film, Region};
+use crate::scene::RenderScene;
+use crate::sink::{Sink, Tile};
+use crate::trace::RayCounts;
+use arrayvec::ArrayVec;
+use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::{Mutex, MutexGuard, PoisonError, mpsc};
+use strahl_accel::TraversalStats;
+
+/// The threads, and what they look at.
+pub(crate) struct Crew<'a> {
+    pub(crate) scene: &'a RenderScene,
+    pub(crate) rays: &'a PrimaryRays,
+    pub(crate) pool: &'a rayon::ThreadPool,
+    pub(crate) progress: &'a dyn Progress,
+}
+
+/// What the threads write to.
+#[derive(Clone, Debug)]
+pub(super) struct Canvas {
+    pub(super) film: Film,
+    pub(super) counts: RayCounts,
+    pub(super) traversal: TraversalStats,
+    /// Of the pixels of the film, if requested.
+    pub(super) costs: Option<Vec<PixelCost>>,
+}
+
+/// A part of the film that is handed over at once.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Part {
+    pub(super) region: Region,
+    /// Number of tiles that it still needs.
+    pub(super) waits: u32,
+    pub(super) changed: bool,
+    delivered: bool,
+}
+
+impl Part {
+    pub(super) const fn new(region: Region, waits: u32) -> Self {
+        Self {
+            region,
+            waits,
+            changed: waits > 0,
+            delivered: false,
+        }
+    }
+}
+
+/// The tiles of a pass.
+#[derive(Clone, Debug, Default)]
+pub(super) struct TileList {
+    pub(super) tiles: Vec<Region>,
+    pub(super) done: Vec<bool>,
+    pub(super) parts: Vec<Part>,
+    /// The parts that need each tile: corners belong to the pixels on all sides.
+    pub(super) feeds: Vec<ArrayVec<u32, 4>>,
+}
+
+/// How the work at a pass has ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Ended {
+    /// All of it is done.
+    Complete,
+    /// All of it is done, and the sink wants no more.
+    CompleteAndStopped,
+    /// There was a stop.
+    Stopped,
+}
+
+/// A message to the thread that waits for tiles.
+enum Message {
+    /// This part of the film is complete.
+    Ready(u32),
+    /// A thread has found no more tiles.
+    Ended,
+}
+
+/// Tells the waiting thread that this one has ended, also if it panics.
+struct Farewell<'a>(&'a mpsc::Sender<Message>);
+
+impl Drop for Farewell<'_> {
+    fn drop(&mut self) {
+        // Without a receiver nobody waits.
+        let _ = self.0.send(Message::Ended);
+    }
+}
+
+/// Ends the work of all threads when it goes out of scope.
+struct StopAtEnd<'a>(&'a AtomicBool);
+
+impl Drop for StopAtEnd<'_> {
+    fn drop(&mut self) {
+        self.0.store(true, Ordering::Relaxed);
+    }
+}
+
+struct Shared<'a, S> {
+    canvas: &'a mut Canvas,
+    done: &'a mut [bool],
+    parts: &'a mut [Part],
+    store: S,
+}
+
+impl<S> Shared<'_, S> {
+    /// Adds a finished tile, and returns the parts of the film that are complete with it.
+    fn take<T>(&mut self, index: usize, result: TileResult<T>, feeds: &[u32]) -> ArrayVec<u32, 4>
+    where
+        S: FnMut(&mut Film, TileResult<T>, &[Region]),
+    {
+        self.done[index] = true;
+        let mut ready = ArrayVec::<u32, 4>::new();
+        let mut regions = ArrayVec::<Region, 4>::new();
+        for &number in feeds {
+            let part = &mut self.parts[number as usize];
+            part.waits -= 1;
+            if part.waits == 0 {
+                ready.push(number);
+                regions.push(part.region);
+            }
+        }
+        let canvas = &mut *self.canvas;
+        canvas.counts += result.counts;
+        canvas.traversal += result.traversal;
+        canvas.film.set_infos(&result);
+        if let Some(all) = &mut canvas.costs {
+            let region = canvas.film.region;
+            for ((x, y), cost) in result.places().zip(&result.costs) {
+                if region.contains(x, y) {
+                    all[region.index(x, y)] += *cost;
+                }
+            }
+        }
+        (self.store)(&mut canvas.film, result, &regions);
+        ready
+    }
+}
+
+fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// A pass that is to be traced, or traced further.
+pub(super) struct Turn<'a, 's> {
+    pub(super) crew: &'a Crew<'a>,
+    pub(super) options: &'a RenderOptions,
+    pub(super) pass: Pass,
+    pub(super) canvas: &'a mut Canvas,
+    pub(super) list: &'a mut TileList,
+    pub(super) sink: Option<&'a mut (dyn Sink + 's)>,
+}
+
+impl Turn<'_, '_> {
+    /// Traces the tiles that are not done, and hands each to `store`, together with the parts of the film that are complete with it.
+    // Tiles end in any order; the result does not depend on it.
+    pub(super) fn trace<T>(
+        self,
+        trace: impl Fn(&mut PixelTracer<'_>, Region) -> TileResult<T> + Sync,
+        store: impl FnMut(&mut Film, TileResult<T>, &[Region]) + Send,
+    ) -> Ended {
+        let Self {
+            crew,
+            options,
+            pass,
+            canvas,
+            list,
+            mut sink,
+        } = self;
+        let TileList {
+            tiles,
+            done,
+            parts,
+            feeds,
+        } = list;
+        let pending: Vec<usize> = (0..done.len()).filter(|index| !done[*index]).collect();
+        crew.progress.pass(pass.number, pass.of, pending.len());
+        if let Some(sink) = &mut sink {
+            // Those that need no rays, and those that were ready when a sink stopped the render.
+            let all = begin(&mut **sink, &pass, parts, &canvas.film);
+            if all.is_break() {
+                return Ended::Stopped;
+            }
+        }
+        let mut delivered = parts.iter().filter(|part| part.delivered).count();
+        let of = parts.len();
+        let watched = sink.is_some();
+        let (stop, next) = (AtomicBool::new(false), AtomicUsize::new(0));
+        let (sender, receiver) = mpsc::channel();
+        let sender = watched.then_some(sender);
+        let shared = Mutex::new(Shared {
+            canvas,
+            done,
+            parts,
+            store,
+        });
+        let work = || {
+            let _farewell = sender.as_ref().map(Farewell);
+            let mut tracer = PixelTracer::new(crew.scene, crew.rays, options, crew.progress);
+            while !stop.load(Ordering::Relaxed) && !crew.progress.cancelled() {
+                let number = next.fetch_add(1, Ordering::Relaxed);
+                let Some(&index) = pending.get(number) else {
+                    break;
+                };
+                let result = trace(&mut tracer, tiles[index]);
+                crew.progress.tile(result.counts.total());
+                let ready = lock(&shared).take(index, result, &feeds[index]);
+                if let Some(sender) = &sender {
+                    for part in ready {
+                        // Without a receiver the sink has failed, and `stop` is set.
+                        let _ = sender.send(Message::Ready(part));
+                    }
+                }
+                // Other work of the same threads goes first: it is newer.
+                rayon::yield_now();
+            }
+        };
+        let mut broke = false;
+        let mut deliver = |sink: &mut dyn Sink| {
+            let _stop = StopAtEnd(&stop);
+            let mut running = crew.pool.current_num_threads();
+            while running > 0 {
+                match receiver.recv() {
+                    Ok(Message::Ready(number)) if !broke => {
+                        let (film, part) = {
+                            let mut shared = lock(&shared);
+                            let part = &mut shared.parts[number as usize];
+                            part.delivered = true;
+                            let part = *part;
+                            (shared.canvas.film.cut(part.region), part)
+                        };
+                        delivered += 1;
+                        broke = tile(sink, pass, &film, &part, (delivered, of)).is_break();
+                        if broke {
+                            stop.store(true, Ordering::Relaxed);
+                        }
+                    }
+                    Ok(Message::Ready(_)) => {}
+                    Ok(Message::Ended) => running -= 1,
+                    Err(_) => break,
+                }
+            }
+        };
+        crew.pool.in_place_scope(|scope| {
+            scope.spawn_broadcast(|_, _| work());
+            if let Some(sink) = sink {
+                deliver(sink);
+            }
+        });
+        let shared = lock(&shared);
+        let traced = shared.done.iter().all(|done| *done);
+        match traced && (!watched || delivered == of) {
+            true if broke => Ended::CompleteAndStopped,
+            true => Ended::Complete,
+            false => Ended::Stopped,
+        }
+    }
+}
+
+/// Hands over the beginning of a pass and all parts that are complete already.
+fn begin(sink: &mut dyn Sink, pass: &Pass, parts: &mut [Part], film: &Film) -> ControlFlow<()> {
+    sink.pass(pass)?;
+    let of = parts.len();
+    let mut done = parts.iter().filter(|part| part.delivered).count();
+    for part in parts.iter_mut().filter(|p| p.waits == 0 && !p.delivered) {
+        part.delivered = true;
+        done += 1;
+        tile(sink, *pass, &film.cut(part.region), part, (done, of))?;
+    }
+    ControlFlow::Continue(())
+}
+
+fn tile(
+    sink: &mut dyn Sink,
+    pass: Pass,
+    film: &Film,
+    part: &Part,
+    (done, of): (usize, usize),
+) -> ControlFlow<()> {
+    sink.tile(&Tile {
+        pass,
+        film,
+        changed: part.changed,
+        done,
+        of,
+    })
+}

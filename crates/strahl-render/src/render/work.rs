@@ -1,0 +1,465 @@
+//! A picture in the making: what has been traced so far, and what comes next.
+
+use super::crew::{Canvas, Ended, Part, TileList, Turn};
+use super::plan::{Stage, edge, points};
+use super::{
+    Crew, Lattice, Pass, RenderError, RenderOptions, Rendered, Samples, Shown, mean_of_corners,
+};
+use crate::cost::PixelCost;
+use crate::film::{Film, Region, try_filled};
+use crate::sampling::{Sample, Sampling, subdivided};
+use crate::sink::Sink;
+use crate::tiles::{TILE, tiles, tiles_of};
+use crate::trace::RayCounts;
+use arrayvec::ArrayVec;
+use std::collections::HashMap;
+use strahl_accel::TraversalStats;
+
+/// What a film that is not finished has of a pixel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PixelState {
+    /// Nothing: it is black.
+    Missing,
+    /// A colour that later passes replace: that of a pixel nearby, or one without antialiasing.
+    Provisional,
+    /// Its final colour.
+    Final,
+}
+
+/// A picture in the making.
+#[derive(Clone, Debug)]
+pub(crate) struct Work {
+    options: RenderOptions,
+    canvas: Canvas,
+    stages: Vec<Stage>,
+    /// Number of the current stage.
+    at: usize,
+    /// The tiles of the current stage, if it has begun.
+    list: Option<TileList>,
+    /// The first samples of pixels, or those of corners, where a later pass needs them.
+    lattice: Option<Lattice>,
+    /// The pixels of the lattice that are refined.
+    rough: Vec<bool>,
+}
+
+impl Work {
+    /// Nothing is traced yet.
+    pub(crate) fn new(options: &RenderOptions) -> Result<Self, RenderError> {
+        let mut film = Film::try_new(options.width, options.height, options.region, options.info)?;
+        let region = film.region;
+        if options.alpha {
+            film.alpha = Some(try_filled(region, 1.0)?);
+        }
+        let kept = match options.sampling {
+            Sampling::Center => None,
+            Sampling::Grid(_) => options.coarse_first.then_some(region),
+            // A margin of one pixel, so that what is refined does not depend on regions.
+            Sampling::Adaptive(_) => Some(region.grown(1, options.width, options.height)),
+            Sampling::Corners | Sampling::Recursive(_) => Some(Region {
+                width: region.width + 1,
+                height: region.height + 1,
+                ..region
+            }),
+        };
+        let lattice = match kept {
+            None => None,
+            Some(region) => Some(Lattice {
+                region,
+                samples: try_filled(region, Sample::NOTHING)?,
+            }),
+        };
+        let costs = match options.costs {
+            true => Some(try_filled(region, PixelCost::default())?),
+            false => None,
+        };
+        Ok(Self {
+            stages: Stage::all(options),
+            options: options.clone(),
+            canvas: Canvas {
+                film,
+                counts: RayCounts::default(),
+                traversal: TraversalStats::default(),
+                costs,
+            },
+            at: 0,
+            list: None,
+            lattice,
+            rough: vec![],
+        })
+    }
+
+    /// The film so far.
+    pub(crate) fn film(&self) -> &Film {
+        &self.canvas.film
+    }
+
+    /// The film so far, without the rest.
+    pub(crate) fn into_film(self) -> Film {
+        self.canvas.film
+    }
+
+    /// The rays so far.
+    pub(crate) fn rays(&self) -> RayCounts {
+        self.canvas.counts
+    }
+
+    /// The pass that is going on, or comes next.
+    pub(crate) fn pass(&self) -> Pass {
+        Stage::pass(&self.stages, self.at)
+    }
+
+    /// The finished picture.
+    pub(crate) fn rendered(self, threads: usize) -> Rendered {
+        Rendered {
+            film: self.canvas.film,
+            rays: self.canvas.counts,
+            traversal: self.canvas.traversal,
+            threads,
+            costs: self.canvas.costs,
+        }
+    }
+
+    /// Traces until the picture is finished, which is true, or until there is a stop.
+    pub(crate) fn go_on(
+        &mut self,
+        crew: &Crew<'_>,
+        mut sink: Option<&mut (dyn Sink + '_)>,
+    ) -> Result<bool, RenderError> {
+        while let Some(&stage) = self.stages.get(self.at) {
+            if self.list.is_none() {
+                self.list = Some(self.begin(stage)?);
+            }
+            let sink = sink.as_mut().map(|sink| &mut **sink as &mut dyn Sink);
+            let ended = self.trace(stage, crew, sink);
+            if ended == Ended::Stopped {
+                return Ok(false);
+            }
+            self.list = None;
+            self.at += 1;
+            if ended == Ended::CompleteAndStopped {
+                break;
+            }
+        }
+        Ok(self.at == self.stages.len())
+    }
+
+    /// The tiles of a stage.
+    fn begin(&mut self, stage: Stage) -> Result<TileList, RenderError> {
+        let (film, order) = (self.canvas.film.region, self.options.tile_order);
+        let region = self.lattice.as_ref().map_or(film, |l| l.region);
+        Ok(match stage {
+            Stage::Pixels | Stage::Rest | Stage::Divide => one_to_one(tiles(film, order), film),
+            Stage::First { step } => one_to_one(tiles_of(region, edge(step), order), film),
+            Stage::Corners { step: 1 } => by_corners(tiles(region, order), tiles(film, order)),
+            Stage::Corners { step } => one_to_one(tiles_of(region, edge(step), order), film),
+            Stage::Refine => {
+                if let (Some(first), Sampling::Adaptive(refinement)) =
+                    (&self.lattice, &self.options.sampling)
+                {
+                    self.rough = first.rough(refinement)?;
+                }
+                let rough = |x, y| self.rough[region.index(x, y)];
+                let all = tiles(film, order).into_iter();
+                let (wanted, rest) =
+                    all.partition(|tile| tile.positions().any(|(x, y)| rough(x, y)));
+                let mut list = one_to_one(wanted, film);
+                let rest: Vec<Region> = rest;
+                list.parts
+                    .extend(rest.into_iter().map(|tile| Part::new(tile, 0)));
+                list
+            }
+        })
+    }
+
+    /// The step of the lattice that is known at a stage of this step; `None` at the first stage.
+    fn known(&self, step: u32) -> Option<u32> {
+        let before = self.at.checked_sub(1).and_then(|n| self.stages.get(n));
+        before.map(|_| 2 * step)
+    }
+
+    /// Traces the current stage, from where it was left.
+    fn trace(
+        &mut self,
+        stage: Stage,
+        crew: &Crew<'_>,
+        sink: Option<&mut (dyn Sink + '_)>,
+    ) -> Ended {
+        let (pass, options) = (self.pass(), self.options.clone());
+        let origin = (self.canvas.film.region.x, self.canvas.film.region.y);
+        let known = match stage {
+            Stage::First { step } | Stage::Corners { step } => self.known(step),
+            _ => None,
+        };
+        let Self {
+            canvas,
+            list: Some(list),
+            lattice,
+            rough,
+            ..
+        } = self
+        else {
+            return Ended::Complete;
+        };
+        let mut none = Lattice {
+            region: canvas.film.region,
+            samples: vec![],
+        };
+        let keeps = lattice.is_some();
+        let lattice = lattice.as_mut().unwrap_or(&mut none);
+        let turn = Turn {
+            crew,
+            options: &options,
+            pass,
+            canvas,
+            list,
+            sink,
+        };
+        match stage {
+            Stage::Pixels => turn.trace(
+                |tracer, tile| {
+                    tracer.tile(
+                        tile,
+                        0,
+                        |tracer, pixels| Some(tracer.blank(pixels)?.shown()),
+                        |tracer, x, y| tracer.pixel(0, x, y).shown(),
+                    )
+                },
+                |film, result, _| film.set_tile(result.tile, &result.values),
+            ),
+            Stage::First { step: 1 } if known.is_none() => turn.trace(
+                |tracer, tile| tracer.centers(tile),
+                |film, result, _| {
+                    for (place, sample) in result.tile.positions().zip(result.values) {
+                        lattice.put(place, sample);
+                        if film.region.contains(place.0, place.1) {
+                            film.set(place, sample);
+                        }
+                    }
+                },
+            ),
+            Stage::First { step } => turn.trace(
+                |tracer, tile| tracer.points(tile, points(tile, origin, step, known), false),
+                |film, result, _| {
+                    for (place, sample) in result.places().zip(&result.values) {
+                        if keeps {
+                            lattice.put(place, *sample);
+                        }
+                        film.fill(block(place, step), *sample);
+                    }
+                },
+            ),
+            Stage::Corners { step: 1 } => turn.trace(
+                |tracer, tile| match known {
+                    Some(_) => tracer.points(tile, points(tile, origin, 1, known), true),
+                    None => tracer.tile(
+                        tile,
+                        0,
+                        |tracer, corners| {
+                            Some(Sample::from(tracer.tree.same_nothing(corners as usize)?))
+                        },
+                        |tracer, x, y| tracer.corner(x, y),
+                    ),
+                },
+                |film, result, ready| {
+                    for (place, sample) in result.places().zip(&result.values) {
+                        lattice.put(place, *sample);
+                    }
+                    for (x, y) in ready.iter().flat_map(|part| part.positions()) {
+                        film.set((x, y), mean_of_corners(lattice.around(x, y)));
+                    }
+                },
+            ),
+            Stage::Corners { step } => turn.trace(
+                |tracer, tile| tracer.points(tile, points(tile, origin, step, known), true),
+                |film, result, _| {
+                    for (place, sample) in result.places().zip(&result.values) {
+                        lattice.put(place, *sample);
+                        film.fill(block(place, step), *sample);
+                    }
+                },
+            ),
+            Stage::Rest => {
+                let first = &*lattice;
+                turn.trace(
+                    |tracer, tile| {
+                        tracer.tile(
+                            tile,
+                            1,
+                            |_, _| None::<Shown>,
+                            |tracer, x, y| tracer.remaining(first.at(x, y), x, y).shown(),
+                        )
+                    },
+                    |film, result, _| film.set_tile(result.tile, &result.values),
+                )
+            }
+            Stage::Refine => {
+                let (first, rough) = (&*lattice, &*rough);
+                let is_rough = |x, y| rough[first.region.index(x, y)];
+                let more = |tracer: &mut super::PixelTracer<'_>, x, y| {
+                    let mut samples: Samples = tracer.pixel(1, x, y);
+                    let center = first.at(x, y);
+                    samples.sum += center.color;
+                    samples.clear += center.clear;
+                    samples.count += 1;
+                    samples.sample()
+                };
+                turn.trace(
+                    |tracer, tile| {
+                        tracer.tile(
+                            tile,
+                            1,
+                            |_, _| None,
+                            |tracer, x, y| is_rough(x, y).then(|| more(tracer, x, y)),
+                        )
+                    },
+                    |film, result, _| set_some(film, result.tile, result.values),
+                )
+            }
+            Stage::Divide => {
+                let (lattice, refinement) = (
+                    &*lattice,
+                    match &options.sampling {
+                        Sampling::Recursive(refinement) => *refinement,
+                        _ => Default::default(),
+                    },
+                );
+                turn.trace(
+                    |tracer, tile| {
+                        tracer.tile(
+                            tile,
+                            1,
+                            |_, _| None,
+                            |tracer, x, y| {
+                                let corners = lattice.around(x, y);
+                                // Most pixels have four equal corners.
+                                corners
+                                    .iter()
+                                    .any(|corner| corner.color != corners[0].color)
+                                    .then(|| {
+                                        subdivided(corners, &refinement, &mut |dx, dy| {
+                                            tracer.sample(
+                                                f64::from(x) + dx,
+                                                f64::from(y) + dy,
+                                                false,
+                                            )
+                                        })
+                                    })
+                            },
+                        )
+                    },
+                    |film, result, _| set_some(film, result.tile, result.values),
+                )
+            }
+        }
+    }
+
+    /// What there is of each pixel of the film, row by row.
+    pub(crate) fn states(&self) -> Vec<PixelState> {
+        let region = self.canvas.film.region;
+        let Some(&stage) = self.stages.get(self.at) else {
+            return vec![PixelState::Final; region.pixels() as usize];
+        };
+        // What pixels have that the current stage has not reached, and those it has.
+        let last = self.at + 1 == self.stages.len();
+        let before = match self.at {
+            0 => PixelState::Missing,
+            _ => PixelState::Provisional,
+        };
+        let after = match last {
+            true => PixelState::Final,
+            false => PixelState::Provisional,
+        };
+        let mut states = vec![before; region.pixels() as usize];
+        if let (Stage::First { step: 1 }, true, Some(coarse)) = (stage, last, self.known(1)) {
+            // Samples of the coarse passes are final where no pass follows.
+            for (x, y) in points(region, (region.x, region.y), coarse, None) {
+                states[region.index(x, y)] = PixelState::Final;
+            }
+        }
+        if stage == Stage::Refine
+            && let Some(first) = self.lattice.as_ref().filter(|_| !self.rough.is_empty())
+        {
+            for (x, y) in region.positions() {
+                if !self.rough[first.region.index(x, y)] {
+                    states[region.index(x, y)] = PixelState::Final;
+                }
+            }
+        }
+        let parts = self.list.iter().flat_map(|list| &list.parts);
+        for part in parts.filter(|part| part.waits == 0) {
+            for (x, y) in part.region.positions() {
+                states[region.index(x, y)] = after;
+            }
+        }
+        states
+    }
+}
+
+/// The pixels that a sample of this step shows.
+fn block((x, y): (u32, u32), step: u32) -> Region {
+    Region {
+        x,
+        y,
+        width: step,
+        height: step,
+    }
+}
+
+/// Writes the pixels that have a new value.
+fn set_some(film: &mut Film, tile: Region, values: Vec<Option<Sample>>) {
+    for (place, sample) in tile.positions().zip(values) {
+        if let Some(sample) = sample {
+            film.set(place, sample);
+        }
+    }
+}
+
+/// Tiles that each make their own part of the film.
+fn one_to_one(tiles: Vec<Region>, film: Region) -> TileList {
+    let mut list = TileList {
+        done: vec![false; tiles.len()],
+        ..TileList::default()
+    };
+    for tile in &tiles {
+        let mut feeds = ArrayVec::new();
+        if let Some(region) = tile.intersection(&film) {
+            feeds.push(list.parts.len() as u32);
+            list.parts.push(Part::new(region, 1));
+        }
+        list.feeds.push(feeds);
+    }
+    list.tiles = tiles;
+    list
+}
+
+/// Tiles of corners: a part needs those of all corners of its pixels.
+fn by_corners(corners: Vec<Region>, pixels: Vec<Region>) -> TileList {
+    let cell = |x: u32, y: u32| (x / TILE, y / TILE);
+    let numbers: HashMap<(u32, u32), usize> = corners
+        .iter()
+        .enumerate()
+        .map(|(number, tile)| (cell(tile.x, tile.y), number))
+        .collect();
+    let mut list = TileList {
+        done: vec![false; corners.len()],
+        feeds: vec![ArrayVec::new(); corners.len()],
+        ..TileList::default()
+    };
+    for (number, part) in (0u32..).zip(pixels) {
+        let (right, bottom) = (part.x + part.width, part.y + part.height);
+        let (left, top) = cell(part.x, part.y);
+        let (last, lowest) = cell(right, bottom);
+        let mut waits = 0;
+        for row in top..=lowest {
+            for column in left..=last {
+                if let Some(&tile) = numbers.get(&(column, row)) {
+                    list.feeds[tile].push(number);
+                    waits += 1;
+                }
+            }
+        }
+        list.parts.push(Part::new(part, waits));
+    }
+    list.tiles = corners;
+    list
+}
