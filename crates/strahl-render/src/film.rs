@@ -354,4 +354,31 @@ mod tests {
         film.pixels[5][2] = f32::from_bits(1);
         assert_ne!(film.sha256(), before);
     }
+
+    #[test]
+    fn parts_go_back_to_their_place() {
+        let mut film = Film::try_new(5, 4, None, true).expect("small");
+        for (number, pixel) in film.pixels.iter_mut().enumerate() {
+            *pixel = [number as f32, 0.5, 2.0];
+        }
+        let region = |x, y, width, height| Region {
+            x,
+            y,
+            width,
+            height,
+        };
+        let part = film.part(region(3, 1, 9, 2)).expect("in the film");
+        assert_eq!(part.region, region(3, 1, 2, 2));
+        assert_eq!((part.width, part.height), (5, 4));
+        let numbers: Vec<f32> = part.pixels.iter().map(|p| p[0]).collect();
+        assert_eq!(numbers, [8.0, 9.0, 13.0, 14.0]);
+        assert_eq!(part.info.as_ref().map(Vec::len), Some(4));
+        assert_eq!(film.part(region(5, 0, 1, 1)), None);
+        let mut buffer = vec![[-1.0; 3]; 20];
+        part.write_to(&mut buffer).expect("as large");
+        assert_eq!((buffer[13], buffer[12]), (film.pixels[13], [-1.0; 3]));
+        let short = part.write_to(&mut buffer[1..]).expect_err("too short");
+        assert!(short.to_string().contains("19 elements"));
+        assert_eq!(part.to_srgb8()[..6], [255, 188, 255, 255, 188, 255]);
+    }
 }

@@ -336,6 +336,31 @@ fn a_stopped_picture_goes_on_to_the_same_bits() {
     }
 }
 
+/// Every ray of a coarse pass is known to be final where there is one for each pixel.
+#[test]
+fn samples_of_coarse_passes_are_final() {
+    let session = session();
+    let view = view(&session, &glass_and_mirrors());
+    let output = Output {
+        coarse_first: true,
+        ..Output::default()
+    };
+    let mut outcome = session
+        .render(&view, &output, &mut |_: &Tile<'_>| ControlFlow::Break(()))
+        .expect("renders");
+    let (mut finals, mut stops) = (0, 0);
+    while let Outcome::Stopped(unfinished) = outcome {
+        let states = unfinished.states();
+        finals = states.iter().filter(|s| **s == PixelState::Final).count();
+        let traced = unfinished.rays().primary as usize;
+        assert_eq!(finals, traced);
+        stops += 1;
+        let mut next = |_: &Tile<'_>| ControlFlow::Break(());
+        outcome = session.resume(unfinished, &mut next).expect("renders");
+    }
+    assert!(stops > 4 && finals > 2000);
+}
+
 /// A stop at the beginning of a pass traces nothing of it.
 #[test]
 fn a_pass_may_be_declined() {

@@ -2,7 +2,7 @@
 
 use super::RenderOptions;
 use crate::film::Region;
-use crate::sampling::Sampling;
+use crate::sampling::{Refinement, Sampling};
 use crate::tiles::TILE;
 
 /// A pass over the picture.
@@ -19,7 +19,7 @@ pub struct Pass {
 }
 
 /// What a pass does.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Stage {
     /// Traces all samples of each pixel.
     Pixels,
@@ -29,11 +29,11 @@ pub(super) enum Stage {
     /// Traces the other samples of each pixel.
     Rest,
     /// Traces more samples of pixels that differ from their neighbours.
-    Refine,
+    Refine(Refinement),
     /// Traces rays through corners of pixels, as [`Stage::First`] does through pixels.
     Corners { step: u32 },
     /// Divides the pixels whose corners differ.
-    Divide,
+    Divide(Refinement),
 }
 
 /// The step of the first of the coarse passes; each halves it.
@@ -49,9 +49,9 @@ impl Stage {
         let first = || steps().map(|step| Self::First { step });
         let corners = || steps().map(|step| Self::Corners { step });
         match options.sampling {
-            Sampling::Adaptive(_) => first().chain([Self::Refine]).collect(),
+            Sampling::Adaptive(r) => first().chain([Self::Refine(r)]).collect(),
             Sampling::Corners => corners().collect(),
-            Sampling::Recursive(_) => corners().chain([Self::Divide]).collect(),
+            Sampling::Recursive(r) => corners().chain([Self::Divide(r)]).collect(),
             _ if !options.coarse_first => vec![Self::Pixels],
             Sampling::Center | Sampling::Grid(0 | 1) => first().collect(),
             Sampling::Grid(_) => first().chain([Self::Rest]).collect(),
@@ -64,7 +64,7 @@ impl Stage {
         let (step, refines) = match stage {
             Self::First { step } | Self::Corners { step } => (step, false),
             Self::Pixels => (1, false),
-            Self::Rest | Self::Refine | Self::Divide => (1, true),
+            Self::Rest | Self::Refine(_) | Self::Divide(_) => (1, true),
         };
         Pass {
             number: number as u32,

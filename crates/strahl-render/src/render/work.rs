@@ -148,15 +148,13 @@ impl Work {
         let (film, order) = (self.canvas.film.region, self.options.tile_order);
         let region = self.lattice.as_ref().map_or(film, |l| l.region);
         Ok(match stage {
-            Stage::Pixels | Stage::Rest | Stage::Divide => one_to_one(tiles(film, order), film),
+            Stage::Pixels | Stage::Rest | Stage::Divide(_) => one_to_one(tiles(film, order), film),
             Stage::First { step } => one_to_one(tiles_of(region, edge(step), order), film),
             Stage::Corners { step: 1 } => by_corners(tiles(region, order), tiles(film, order)),
             Stage::Corners { step } => one_to_one(tiles_of(region, edge(step), order), film),
-            Stage::Refine => {
-                if let (Some(first), Sampling::Adaptive(refinement)) =
-                    (&self.lattice, &self.options.sampling)
-                {
-                    self.rough = first.rough(refinement)?;
+            Stage::Refine(refinement) => {
+                if let Some(first) = &self.lattice {
+                    self.rough = first.rough(&refinement)?;
                 }
                 let rough = |x, y| self.rough[region.index(x, y)];
                 let all = tiles(film, order).into_iter();
@@ -292,7 +290,7 @@ impl Work {
                     |film, result, _| film.set_tile(result.tile, &result.values),
                 )
             }
-            Stage::Refine => {
+            Stage::Refine(_) => {
                 let (first, rough) = (&*lattice, &*rough);
                 let is_rough = |x, y| rough[first.region.index(x, y)];
                 let more = |tracer: &mut super::PixelTracer<'_>, x, y| {
@@ -315,14 +313,8 @@ impl Work {
                     |film, result, _| set_some(film, result.tile, result.values),
                 )
             }
-            Stage::Divide => {
-                let (lattice, refinement) = (
-                    &*lattice,
-                    match &options.sampling {
-                        Sampling::Recursive(refinement) => *refinement,
-                        _ => Default::default(),
-                    },
-                );
+            Stage::Divide(refinement) => {
+                let lattice = &*lattice;
                 turn.trace(
                     |tracer, tile| {
                         tracer.tile(
@@ -370,13 +362,17 @@ impl Work {
             false => PixelState::Provisional,
         };
         let mut states = vec![before; region.pixels() as usize];
-        if let (Stage::First { step: 1 }, true, Some(coarse)) = (stage, last, self.known(1)) {
-            // Samples of the coarse passes are final where no pass follows.
-            for (x, y) in points(region, (region.x, region.y), coarse, None) {
+        // Samples of coarse passes are final where no pass takes more of them.
+        let one_each = matches!(self.stages.last(), Some(Stage::First { .. }));
+        let origin = (region.x, region.y);
+        if let (Stage::First { step }, true) = (stage, one_each)
+            && let Some(known) = self.known(step)
+        {
+            for (x, y) in points(region, origin, known, None) {
                 states[region.index(x, y)] = PixelState::Final;
             }
         }
-        if stage == Stage::Refine
+        if matches!(stage, Stage::Refine(_))
             && let Some(first) = self.lattice.as_ref().filter(|_| !self.rough.is_empty())
         {
             for (x, y) in region.positions() {
@@ -388,7 +384,16 @@ impl Work {
         let parts = self.list.iter().flat_map(|list| &list.parts);
         for part in parts.filter(|part| part.waits == 0) {
             for (x, y) in part.region.positions() {
-                states[region.index(x, y)] = after;
+                let state = &mut states[region.index(x, y)];
+                *state = match *state {
+                    PixelState::Final => PixelState::Final,
+                    _ => after,
+                };
+            }
+            if let (Stage::First { step }, true) = (stage, one_each) {
+                for (x, y) in points(part.region, origin, step, None) {
+                    states[region.index(x, y)] = PixelState::Final;
+                }
             }
         }
         states
