@@ -28,6 +28,7 @@ mod media;
 mod objects;
 mod observer;
 mod prim;
+mod queries;
 mod query;
 mod render;
 mod resolve;
@@ -57,6 +58,7 @@ pub use observer::{
     BranchEnd, HitReport, LayerReport, LightDetail, LightTerm, RayKind, RayReport, Shading,
     ShadowHit, ShadowReport, Share, SurfaceTerm, TraceObserver,
 };
+pub use queries::HitInfo;
 pub use query::Tracer;
 pub use render::{Pass, PixelState, Progress, RenderError, RenderOptions, Rendered, render};
 pub use sampling::{Refinement, Sampling, UnknownSampling};

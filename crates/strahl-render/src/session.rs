@@ -25,7 +25,7 @@ pub enum Threads {
 /// threads.
 #[derive(Clone, Debug)]
 pub struct Session {
-    pool: Arc<rayon::ThreadPool>,
+    pub(crate) pool: Arc<rayon::ThreadPool>,
 }
 
 /// What came of a render.

@@ -22,6 +22,7 @@ mod settings;
 mod together;
 
 use eye::Eye;
+pub(crate) use eye::Filled;
 use together::{Ahead, KnownLights, Samples};
 
 pub use outcome::{FirstHit, RayCounts, SampleResult};

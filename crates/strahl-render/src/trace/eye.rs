@@ -1,6 +1,7 @@
 //! What the eye is inside of.
 
 use super::TreeTracer;
+use crate::look::Look;
 use crate::media::{MediaStack, Medium};
 use crate::prim::{Prim, PrimKind};
 use crate::scene::{RenderGroup, RenderScene};
@@ -21,7 +22,9 @@ pub(super) struct Eye {
 
 /// A solid that fills a part of space.
 #[derive(Clone, Copy, Debug)]
-struct Filled {
+pub(crate) struct Filled {
+    /// A box around its inside, in the world.
+    pub(crate) bounds: Aabb,
     group: u32,
     prim: u32,
     /// From the group's space to the world; `None` for the world itself.
@@ -63,7 +66,7 @@ impl Eye {
             // Twice as large each time: rays from everywhere find this out a few times only.
             let size = all.size();
             self.region = all.padded(size * 0.5);
-            self.near = scene.filled(&self.region);
+            self.near = scene.filled(&self.region, may_be_filled);
         }
         let before = std::mem::take(&mut self.media);
         for bounded in [false, true] {
@@ -92,6 +95,13 @@ impl TreeTracer<'_> {
 
 impl Filled {
     fn medium_at(&self, scene: &RenderScene, place: DVec3) -> Option<Medium> {
+        let look = self.look_at(scene, place)?;
+        let material = &scene.materials[look.material.0 as usize];
+        Some(look.medium(material, self.space))
+    }
+
+    /// Object and material, if the place is inside.
+    pub(crate) fn look_at(&self, scene: &RenderScene, place: DVec3) -> Option<Look> {
         let group = &scene.groups[self.group as usize];
         let place = match &self.to_world {
             None => place,
@@ -115,8 +125,7 @@ impl Filled {
             }
             PrimKind::Triangle(..) | PrimKind::Instance(_) => return None,
         };
-        let material = &scene.materials[look.material.0 as usize];
-        contains.then(|| look.medium(material, self.space))
+        contains.then_some(look)
     }
 }
 
@@ -141,10 +150,10 @@ fn solid(shape: &Shape) -> Option<&dyn Solid> {
 }
 
 impl RenderScene {
-    /// The solids whose boxes meet a region, in the order of the scene.
+    /// The solids among the `wanted` primitives whose boxes meet a region, in the order of the scene.
     #[cold]
-    fn filled(&self, region: &Aabb) -> Vec<Filled> {
-        let reach = self.reach_of_filled();
+    pub(crate) fn filled(&self, region: &Aabb, wanted: fn(Prim) -> bool) -> Vec<Filled> {
+        let reach = self.reach_of_filled(wanted);
         let mut found = vec![];
         let mut waiting = vec![(0, None::<Transform>, 0)];
         while let Some((number, to_world, space)) = waiting.pop() {
@@ -155,7 +164,7 @@ impl RenderScene {
             };
             let mut inner = vec![];
             for (prim, places) in group.prims.runs() {
-                if !may_be_filled(prim) {
+                if !wanted(prim) {
                     continue;
                 }
                 for prim in places {
@@ -172,6 +181,7 @@ impl RenderScene {
                         inner.push((instance.group, Some(map), space + group.first_id(prim)));
                     } else {
                         found.push(Filled {
+                            bounds: to_world.map_or(bounds, |map| moved(bounds, &map)),
                             group: number,
                             prim,
                             to_world,
@@ -187,11 +197,11 @@ impl RenderScene {
     }
 
     /// By group, a box around its solids that fill a part of space.
-    fn reach_of_filled(&self) -> Vec<Aabb> {
+    fn reach_of_filled(&self, wanted: fn(Prim) -> bool) -> Vec<Aabb> {
         let mut reach = vec![Aabb::EMPTY; self.groups.len()];
         // Groups refer to those behind them.
         for (number, group) in self.groups.iter().enumerate().rev() {
-            let runs = group.prims.runs().filter(|(prim, _)| may_be_filled(*prim));
+            let runs = group.prims.runs().filter(|(prim, _)| wanted(*prim));
             let bounds = runs
                 .flat_map(|(_, places)| places)
                 .map(|prim| group.filled_bounds(prim, &reach));
@@ -206,18 +216,20 @@ fn may_be_filled(prim: Prim) -> bool {
     prim.flags & Prim::FILLED != 0 && !matches!(prim.kind(), PrimKind::Triangle(..))
 }
 
+/// A box in another space.
+fn moved(bounds: Aabb, map: &Transform) -> Aabb {
+    if bounds.is_bounded() {
+        map.bounds_to_world(&bounds)
+    } else if bounds.is_empty() {
+        bounds
+    } else {
+        Aabb::EVERYTHING
+    }
+}
+
 impl RenderGroup {
     /// A box around the inside of a primitive, given those of the solids in groups.
     fn filled_bounds(&self, prim: u32, reach: &[Aabb]) -> Aabb {
-        let moved = |bounds: Aabb, map: &Transform| {
-            if bounds.is_bounded() {
-                map.bounds_to_world(&bounds)
-            } else if bounds.is_empty() {
-                bounds
-            } else {
-                Aabb::EVERYTHING
-            }
-        };
         match self.prims.at(prim).kind() {
             PrimKind::Triangle(..) => Aabb::EMPTY,
             PrimKind::Sphere(number) => self.spheres.get(number, &self.blocks).bounds(),
