@@ -453,7 +453,7 @@ mod tests {
         assert_eq!(refined_of(&stripes), (vec![2, 3], 2));
         // A slope is nowhere steep enough.
         let slope: Vec<f64> = (0..9).map(|x| 0.1 + 0.02 * f64::from(x)).collect();
-        assert_eq!(refined_of(&slope).0, vec![]);
+        assert_eq!(refined_of(&slope).0, Vec::<u32>::new());
         assert_eq!(refined_of(&[0.5; 9]), (vec![], 0));
     }
 

@@ -18,6 +18,7 @@ mod compile;
 mod cost;
 mod coverage;
 mod estimate;
+pub mod explanation;
 mod film;
 mod fog;
 mod hit;
@@ -25,6 +26,7 @@ mod layers;
 mod light_sets;
 mod look;
 mod media;
+mod names;
 mod objects;
 mod observer;
 mod prim;
@@ -51,8 +53,10 @@ pub use camera::PrimaryRays;
 pub use compile::{CompileOptions, Prepared, compile};
 pub use cost::PixelCost;
 pub use estimate::{CostMap, CostMeasure, estimate};
+pub use explanation::Explanation;
 pub use film::{Film, FilmError, MergeError, PixelInfo, Region};
 pub use hit::{Hit, Origin, RayClass};
+pub use names::{light_kind, light_position};
 pub use objects::{ObjectInfo, Objects};
 pub use observer::{
     BranchEnd, HitReport, LayerReport, LightDetail, LightTerm, RayKind, RayReport, Shading,

@@ -1,4 +1,5 @@
 use crate::compile::{CompileOptions, Prepared};
+use crate::explanation::Explanation;
 use crate::film::Film;
 use crate::render::{Crew, Pass, PixelState, Progress, RenderError, Rendered, Work};
 use crate::scene::RenderScene;
@@ -211,11 +212,28 @@ impl Session {
         })
     }
 
-    /// The ray trees of a pixel: those of exactly the samples that a picture of the view takes.
+    /// The ray trees of a pixel with names, places and numbers, as plain data: those of exactly the samples that a picture of the view
+    /// takes.
     ///
     /// # Errors
     /// [`RenderError`] if there is no such pixel, or the camera makes no rays.
-    pub fn explain(&self, view: &View, x: u32, y: u32) -> Result<PixelTree, RenderError> {
+    pub fn explain(&self, view: &View, x: u32, y: u32) -> Result<Explanation, RenderError> {
+        let tree = self.trees(view, x, y)?;
+        let (at, size) = ((x, y), (view.width, view.height));
+        Ok(Explanation::new(
+            view.scene(),
+            at,
+            size,
+            view.sampling,
+            &tree,
+        ))
+    }
+
+    /// The ray trees of a pixel, with the numbers of objects, materials and lights instead of names.
+    ///
+    /// # Errors
+    /// [`RenderError`] if there is no such pixel, or the camera makes no rays.
+    pub fn trees(&self, view: &View, x: u32, y: u32) -> Result<PixelTree, RenderError> {
         view.rays()?;
         let options = view.options(&Output::default());
         explain_from(view.scene(), &view.camera, &options, x, y)

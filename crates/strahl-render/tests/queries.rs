@@ -193,7 +193,9 @@ fn hits_are_described() {
         (info.position, info.normal, info.shading_normal),
         (DVec3::Z, DVec3::Z, DVec3::Z)
     );
+    assert_eq!(scene.material_name(info.material), "material \"chalk\"");
     assert_eq!((info.object, info.element), (1, 1));
+    assert_eq!(scene.object_name(info.object), "sphere \"ball\"");
 }
 
 /// Questions may be asked while a picture is rendered, also by its sink.

@@ -1,4 +1,3 @@
-use super::names::{light_name, object_name, object_place};
 use super::{Chosen, Digits, Pixel, Shown};
 use std::fmt::Write;
 use strahl::shade::Color;
@@ -41,11 +40,12 @@ fn write_node(
     let what = match &report.hit {
         None => "background".to_owned(),
         Some(hit) => {
-            let place = object_place(scene, hit.object, hit.line)
+            let place = scene
+                .object_place(hit.object, hit.line)
                 .map_or_else(String::new, |p| format!("\n{p}"));
             format!(
                 "{}{place}\nt = {}",
-                object_name(scene, hit.object),
+                scene.object_name(hit.object),
                 digits.number(hit.hit.t)
             )
         }
@@ -88,11 +88,11 @@ fn write_node(
             .find(|m| m.blocks);
         let seen = match blocker {
             _ if !term.visible.is_black() => "lit".to_owned(),
-            Some(met) => format!("blocked by {}", object_name(scene, met.object)),
+            Some(met) => format!("blocked by {}", scene.object_name(met.object)),
             None => "in shadow".to_owned(),
         };
         let (fill, ink) = shown(term.diffuse + term.specular);
-        let label = format!("{}\n{seen}", light_name(scene, term.light));
+        let label = format!("{}\n{seen}", scene.light_name(term.light));
         let _ = writeln!(
             out,
             "  {light_id} [label=\"{}\", shape=ellipse, fillcolor=\"{fill}\", fontcolor={ink}];\n  {id} -> {light_id} \

@@ -1,6 +1,6 @@
 //! The summary of a pixel: its value, its samples, and an outline of the trees.
 
-use super::names::{object_name, object_place, without_folders};
+use super::names::without_folders;
 use super::page::Page;
 use super::tally::{Counts, Tally, plural};
 use super::{Digits, Pixel};
@@ -154,8 +154,8 @@ fn seen(scene: &RenderScene, node: &RayNode) -> String {
     match &node.report.hit {
         None => "background".to_owned(),
         Some(hit) => {
-            let name = object_name(scene, hit.object);
-            match object_place(scene, hit.object, hit.line) {
+            let name = scene.object_name(hit.object);
+            match scene.object_place(hit.object, hit.line) {
                 Some(place) => format!("{name} {}", without_folders(&place)),
                 None => name,
             }

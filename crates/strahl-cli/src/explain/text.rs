@@ -1,5 +1,5 @@
 use super::lights::write_light;
-use super::names::{material_name, object_at};
+use super::names::object_at;
 use super::page::Page;
 use super::summary::{write_outline, write_pixel, write_samples};
 use super::tally::Tally;
@@ -157,7 +157,7 @@ impl Writer<'_> {
             &format!(
                 "hits {}, {}, at t = {}",
                 object_at(self.scene, hit.object, hit.line, hit.hit.id),
-                material_name(self.scene, hit.material.0),
+                self.scene.material_name(hit.material.0),
                 d.number(hit.hit.t)
             ),
         );
@@ -300,7 +300,7 @@ impl Writer<'_> {
                 let length = hit.map_or(f64::INFINITY, |hit| hit.hit.t);
                 words.push(format!(
                     "in {} over a length of {}",
-                    material_name(self.scene, id.0),
+                    self.scene.material_name(id.0),
                     d.number(length * report.ray.direction.length())
                 ));
             }

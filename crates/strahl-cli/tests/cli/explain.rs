@@ -364,3 +364,50 @@ fn the_pixels_of_the_documents_have_a_reflection_and_a_refraction() {
         );
     }
 }
+
+/// The program prints what the library builds: one schema.
+#[test]
+fn json_is_the_librarys() {
+    let folder = pov(
+        "light_source { <3, 5, -6> 1 }
+         light_source { <-3, 5, -6> rgb 0.5 area_light x, y, 2, 2 }
+         sphere { 0, 1 pigment { rgbf <0.9, 0.5, 0.5, 0.6> } finish { phong 0.6 reflection { 0.1, 0.4 fresnel } } interior { ior 1.3 } }
+         plane { y, -1 pigment { checker } finish { specular 0.3 roughness 0.02 } }",
+    );
+    let path = folder.path().join("scene.pov");
+    for sampling in ["center", "2x2", "adaptive", "recursive"] {
+        let args = [
+            "scene.pov",
+            "--size",
+            "40x30",
+            "--sampling",
+            sampling,
+            "--pixel",
+            "17,16",
+        ];
+        let printed = text(folder.path(), &[&args[..], &["--format", "json"]].concat());
+        let session = strahl::Session::new(strahl::Threads::Count(1)).expect("a thread");
+        let mut options = strahl::LoadOptions::default();
+        (options.sdl.image_width, options.sdl.image_height) = (40, 30);
+        let loaded = strahl::load_path(&path, options).scene.expect("a scene");
+        let (scene, _) = session
+            .compile(&loaded, &Default::default())
+            .expect("valid");
+        let view = scene
+            .view(40, 30)
+            .with_sampling(sampling.parse().expect("a sampling"));
+        let explained = session.explain(&view, 17, 16).expect("a pixel").to_json();
+        // The program names files as it was given them.
+        let without_places = |json: &str| -> String {
+            json.lines()
+                .filter(|line| !line.contains("\"source\""))
+                .collect()
+        };
+        assert_eq!(
+            without_places(&printed),
+            without_places(&explained),
+            "{sampling}"
+        );
+        assert!(printed.contains("\"source\": \"scene.pov:"));
+    }
+}
