@@ -15,10 +15,10 @@ fn main() -> Result<(), Box<dyn Error>> {
             .nth(1)
             .unwrap_or("machine_part.png".into()),
     );
-    let scene = strahl::compile(&scene(), &CompileOptions::default())?;
-    let mut options = RenderOptions::new(&scene, 960, 720);
-    options.sampling = Sampling::ADAPTIVE;
-    let picture = strahl::render(&scene, &options, &())?;
+    let session = Session::new(Threads::All)?;
+    let (scene, _warnings) = session.compile(&scene(), &CompileOptions::default())?;
+    let view = scene.view(960, 720).with_sampling(Sampling::ADAPTIVE);
+    let picture = session.picture(&view, &Output::default())?;
     strahl::save(&output, &picture.film, &WriteOptions::default())?;
     Ok(())
 }

@@ -11,10 +11,10 @@ use strahl::prelude::*;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let output = PathBuf::from(std::env::args_os().nth(1).unwrap_or("whitted.png".into()));
-    let scene = strahl::compile(&scene(), &CompileOptions::default())?;
-    let mut options = RenderOptions::new(&scene, 960, 720);
-    options.sampling = Sampling::Grid(3);
-    let picture = strahl::render(&scene, &options, &())?;
+    let session = Session::new(Threads::All)?;
+    let (scene, _warnings) = session.compile(&scene(), &CompileOptions::default())?;
+    let view = scene.view(960, 720).with_sampling(Sampling::Grid(3));
+    let picture = session.picture(&view, &Output::default())?;
     strahl::save(&output, &picture.film, &WriteOptions::default())?;
     Ok(())
 }

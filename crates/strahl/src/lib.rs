@@ -19,8 +19,9 @@
 //!     .light(Light::point(DVec3::new(4.0, 8.0, 6.0), Color::WHITE))
 //!     .background(Background::Solid(Color::new(0.3, 0.5, 0.8)))
 //!     .camera(Camera::perspective(DVec3::new(0.0, 2.0, 7.0), DVec3::Y, DVec3::Y, 0.7));
-//! let scene = strahl::compile(&scene, &CompileOptions::default())?;
-//! let picture = strahl::render(&scene, &RenderOptions::new(&scene, 64, 48), &())?;
+//! let session = Session::new(Threads::All)?;
+//! let (scene, _warnings) = session.compile(&scene, &CompileOptions::default())?;
+//! let picture = session.picture(&scene.view(64, 48), &Output::default())?;
 //! strahl::save(&path, &picture.film, &WriteOptions::default())?;
 //! # Ok(())
 //! # }
@@ -28,7 +29,7 @@
 //!
 //! # Why is that pixel blue?
 //!
-//! [`explain`] records the ray tree of a pixel with all its numbers:
+//! [`Session::explain`] gives the ray trees of a pixel with all their numbers:
 //!
 //! ```
 //! use strahl::prelude::*;
@@ -38,12 +39,13 @@
 //!     .add(Sphere::new(DVec3::ZERO, 1.0).named("ball"))
 //!     .light(Light::point(DVec3::new(3.0, 3.0, 5.0), Color::WHITE))
 //!     .camera(Camera::orthographic(DVec3::new(0.0, 0.0, 5.0), DVec3::ZERO, DVec3::Y, 3.0));
-//! let scene = strahl::compile(&scene, &CompileOptions::default())?;
-//! let pixel = strahl::explain(&scene, &RenderOptions::new(&scene, 9, 9), 4, 4)?;
-//! let primary = &pixel.samples[0].tree.nodes[0];
-//! let hit = primary.report.hit.as_ref().expect("the ball is in the middle");
-//! assert_eq!(hit.hit.t, 4.0);
-//! assert_eq!(scene.objects().get(hit.object).expect("its number is right").name.as_deref(), Some("ball"));
+//! let session = Session::new(Threads::All)?;
+//! let (scene, _warnings) = session.compile(&scene, &CompileOptions::default())?;
+//! let pixel = session.explain(&scene.view(9, 9), 4, 4)?;
+//! let primary = &pixel.samples[0].rays[0];
+//! let hit = primary.hit.as_ref().expect("the ball is in the middle");
+//! assert_eq!(hit.t, 4.0);
+//! assert_eq!(hit.object, "sphere \"ball\"");
 //! assert_eq!(primary.total, pixel.color);
 //! # Ok(())
 //! # }
@@ -84,8 +86,8 @@ pub use strahl_formats as formats;
 pub use strahl_geometry as geometry;
 pub use strahl_math as math;
 pub use strahl_render::{
-    self as tracing, Outcome, Output, Session, Sink, Threads, Tile, Unfinished, View, compile,
-    explain, render,
+    self as tracing, Explanation, HitInfo, Outcome, Output, Session, Sink, Threads, Tile,
+    Unfinished, View, compile, explain, render,
 };
 pub use strahl_scene::{self as scene, Problems};
 pub use strahl_sdl as sdl;
@@ -93,21 +95,39 @@ pub use strahl_shade as shade;
 pub use strahl_simd::memory;
 pub use studio::studio;
 
+#[cfg(doctest)]
+#[doc = include_str!("../../../docs/src/rust.md")]
+struct Guide;
+
+#[cfg(doctest)]
+#[doc = include_str!("../../../README.md")]
+struct Readme;
+
 /// Everything a program that builds and renders scenes is likely to name.
 pub mod prelude {
     pub use strahl_accel::AcceleratorKind;
     pub use strahl_formats::image::WriteOptions;
     pub use strahl_geometry::{
-        BicubicPatch, Brep, Cone, Cuboid, Cylinder, Disc, Lemon, Ovus, Plane, Polygon, Quadric,
-        Shape, Sphere, Torus, Triangle, TriangleMesh,
+        BicubicPatch, Brep, Cone, Cuboid, Cylinder, Disc, Lemon, MeshData, Ovus, Plane, Polygon,
+        Quadric, Shape, Sphere, Torus, Triangle, TriangleMesh,
     };
-    pub use strahl_math::{DVec2, DVec3, Transform};
+    pub use strahl_math::{Aabb, DVec2, DVec3, Interval, Ray, Transform};
     pub use strahl_render::{
-        CompileOptions, Film, Outcome, Output, Pass, PixelState, Progress, Region, RenderOptions,
-        RenderScene, Sampling, Session, Sink, Threads, Tile, TileOrder, Unfinished, View,
+        CompileOptions, Explanation, Film, Hit, HitInfo, Outcome, Output, Pass, PixelState,
+        Progress, Refinement, Region, RenderOptions, RenderScene, Rendered, Sampling, Session,
+        Sink, Threads, Tile, TileOrder, Unfinished, View,
     };
     pub use strahl_scene::{
-        Background, Camera, CsgOp, Diagnostic, Object, ObjectExt, Scene, Settings, Visibility,
+        Background, Camera, CsgOp, Diagnostic, Fog, FogKind, Lens, Object, ObjectExt, Problems,
+        Projection, Rainbow, Scene, Settings, SkySphere, Visibility,
     };
-    pub use strahl_shade::{Color, Falloff, Light, Material, ShadingModel, Sides};
+    pub use strahl_shade::interior::Interior;
+    pub use strahl_shade::normal::PovNormal;
+    pub use strahl_shade::patterns::{Pattern, PatternField};
+    pub use strahl_shade::pigment::Pigment;
+    pub use strahl_shade::pov_finish::PovFinish;
+    pub use strahl_shade::texture::{PlainTexture, Texture};
+    pub use strahl_shade::{
+        AreaLight, Color, ColorFt, Falloff, Light, Material, ShadingModel, Sides,
+    };
 }

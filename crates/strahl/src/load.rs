@@ -3,7 +3,7 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 use strahl_formats::scene::{self, SceneFormat, read_decompressed};
-use strahl_scene::{Diagnostic, Scene};
+use strahl_scene::{Diagnostic, Problems, Scene};
 use strahl_sdl::{FolderHost, Pinned, Recorder, Source, Stream, Writing, parse};
 
 /// A format that scenes are loaded from.
@@ -93,6 +93,17 @@ impl Loaded {
             scene: None,
             diagnostics: vec![problem],
             inputs: None,
+        }
+    }
+
+    /// The scene and the warnings about it.
+    ///
+    /// # Errors
+    /// All errors and warnings, if there is no scene.
+    pub fn into_scene(self) -> Result<(Scene, Vec<Diagnostic>), Problems> {
+        match self.scene {
+            Some(scene) => Ok((scene, self.diagnostics)),
+            None => Err(Problems(self.diagnostics)),
         }
     }
 
