@@ -17,12 +17,11 @@ use strahl_scene::{
 };
 use strahl_shade::{Color, ColorFt, Material, ShadingModel};
 
-const SAMPLINGS: [Sampling; 8] = [
+const SAMPLINGS: [Sampling; 7] = [
     Sampling::Center,
     Sampling::Corners,
     Sampling::Grid(1),
     Sampling::Grid(2),
-    Sampling::Grid(3),
     Sampling::Adaptive(Refinement {
         threshold: 0.05,
         ..Refinement::DEFAULT
@@ -150,7 +149,8 @@ fn coarse_passes_change_no_bit_and_trace_no_ray_twice() {
     let session = session();
     for description in [glass_and_mirrors(), every_shape()] {
         let view = view(&session, &description);
-        for sampling in SAMPLINGS {
+        // The other eight rays of nine are traced in a packet.
+        for sampling in SAMPLINGS.into_iter().chain([Sampling::Grid(3)]) {
             let view = view.clone().with_sampling(sampling);
             for region in [None, Some(PART)] {
                 let [plain, coarse] = [false, true].map(|coarse_first| {
