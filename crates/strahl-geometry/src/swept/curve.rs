@@ -1,5 +1,6 @@
 use std::fmt::Debug;
 use std::ops::{Add, Mul, Sub};
+use strahl_math::roots::Bernstein;
 
 /// The coefficients of curves: numbers and vectors.
 pub(crate) trait Linear:
@@ -64,6 +65,52 @@ impl<V: Linear> Piece<V> {
         }
     }
 
+    /// The point and the derivative at `s`, both from one run of de Casteljau's algorithm.
+    #[inline]
+    pub(super) fn at_with_slope(&self, s: f64) -> (V, V) {
+        let mix = |a: V, b: V| a * (1.0 - s) + b * s;
+        match *self {
+            Self::Line([a, b]) => (mix(a, b), b - a),
+            Self::Quadratic([a, b, c]) => {
+                let (ab, bc) = (mix(a, b), mix(b, c));
+                (mix(ab, bc), (bc - ab) * 2.0)
+            }
+            Self::Cubic([a, b, c, d]) => {
+                let (ab, bc, cd) = (mix(a, b), mix(b, c), mix(c, d));
+                let (abc, bcd) = (mix(ab, bc), mix(bc, cd));
+                (mix(abc, bcd), (bcd - abc) * 3.0)
+            }
+        }
+    }
+
+    /// The parts before and behind `s`, each from 0 to 1.
+    pub(super) fn split(&self, s: f64) -> (Self, Self) {
+        let mix = |a: V, b: V| a * (1.0 - s) + b * s;
+        match *self {
+            Self::Line([a, b]) => {
+                let middle = mix(a, b);
+                (Self::Line([a, middle]), Self::Line([middle, b]))
+            }
+            Self::Quadratic([a, b, c]) => {
+                let (ab, bc) = (mix(a, b), mix(b, c));
+                let middle = mix(ab, bc);
+                (
+                    Self::Quadratic([a, ab, middle]),
+                    Self::Quadratic([middle, bc, c]),
+                )
+            }
+            Self::Cubic([a, b, c, d]) => {
+                let (ab, bc, cd) = (mix(a, b), mix(b, c), mix(c, d));
+                let (abc, bcd) = (mix(ab, bc), mix(bc, cd));
+                let middle = mix(abc, bcd);
+                (
+                    Self::Cubic([a, ab, abc, middle]),
+                    Self::Cubic([middle, bcd, cd, d]),
+                )
+            }
+        }
+    }
+
     /// The same curve with four control points.
     pub(super) fn cubic(&self) -> [V; 4] {
         match *self {
@@ -82,6 +129,70 @@ impl<V: Linear> Piece<V> {
             Self::Cubic(points) => points,
         }
     }
+
+    /// The curve whose control points are functions of those of this one.
+    pub(super) fn map<W>(&self, f: impl Fn(V) -> W) -> Piece<W> {
+        match *self {
+            Self::Line(p) => Piece::Line(p.map(f)),
+            Self::Quadratic(p) => Piece::Quadratic(p.map(f)),
+            Self::Cubic(p) => Piece::Cubic(p.map(f)),
+        }
+    }
+}
+
+impl Piece<f64> {
+    /// The parameters within 0..1 at which the value is 0.
+    pub(super) fn zeros(&self) -> Vec<f64> {
+        match *self {
+            Self::Line(c) => roots(c),
+            Self::Quadratic(c) => roots(c),
+            Self::Cubic(c) => roots(c),
+        }
+    }
+
+    /// The parameters within 0..1 at which the derivative is 0; none for lines.
+    pub(super) fn extrema(&self) -> Vec<f64> {
+        match *self {
+            Self::Line(_) => vec![],
+            Self::Quadratic([a, b, c]) => roots([b - a, c - b]),
+            Self::Cubic([a, b, c, d]) => roots([b - a, c - b, d - c]),
+        }
+    }
+
+    /// Bounds of the derivative on `from..to`: its control points there are its blossom's values.
+    #[inline]
+    pub(super) fn slope_range(&self, from: f64, to: f64) -> [f64; 2] {
+        let mix = |s: f64, a: f64, b: f64| (1.0 - s) * a + s * b;
+        match *self {
+            Self::Line([a, b]) => [b - a, b - a],
+            Self::Quadratic([a, b, c]) => range(&[from, to].map(|s| 2.0 * mix(s, b - a, c - b))),
+            Self::Cubic([a, b, c, d]) => {
+                let d = [b - a, c - b, d - c];
+                let blossom = |u: f64, v: f64| mix(v, mix(u, d[0], d[1]), mix(u, d[1], d[2]));
+                let values = [blossom(from, from), blossom(from, to), blossom(to, to)];
+                range(&values.map(|slope| 3.0 * slope))
+            }
+        }
+    }
+}
+
+/// The roots in 0..1 of the polynomial with these Bernstein coefficients.
+fn roots<const N: usize>(coefficients: [f64; N]) -> Vec<f64> {
+    let polynomial = Bernstein::new(coefficients, 0.0, 0.0, 1.0);
+    polynomial.roots().iter().copied().collect()
+}
+
+/// The least and the greatest of the values.
+#[inline]
+pub(super) fn range(values: &[f64]) -> [f64; 2] {
+    values
+        .iter()
+        .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], &v| {
+            [
+                if v < low { v } else { low },
+                if v > high { v } else { high },
+            ]
+        })
 }
 
 /// How the control points of a `prism` or `lathe` become a curve.
@@ -148,7 +259,7 @@ mod tests {
     use strahl_math::DVec2;
 
     #[test]
-    fn ends_are_exact_and_degrees_agree() {
+    fn ends_are_exact_and_slopes_are_right() {
         let p = [
             DVec2::new(0.1, 0.7),
             DVec2::new(1.3, -0.2),
@@ -167,11 +278,32 @@ mod tests {
             for i in 0..=8 {
                 let s = f64::from(i) / 8.0;
                 assert!((cubic.at(s) - piece.at(s)).length() < 1e-15);
-                assert!((cubic.derivative(s) - piece.derivative(s)).length() < 1e-14);
+                let (point, slope) = piece.at_with_slope(s);
+                assert_eq!(point, piece.at(s));
+                assert!((slope - piece.derivative(s)).length() < 1e-14);
                 let difference = (piece.at(s + 1e-6) - piece.at(s - 1e-6)) / 2e-6;
-                assert!((difference - piece.derivative(s)).length() < 1e-8);
+                assert!((difference - slope).length() < 1e-8);
+                let (head, tail) = piece.split(0.3);
+                assert!((head.at(s) - piece.at(0.3 * s)).length() < 1e-14);
+                assert!((tail.at(s) - piece.at(0.3 + 0.7 * s)).length() < 1e-14);
+                let heights = piece.map(|p| p.y);
+                let [low, high] = heights.slope_range(0.5 * s, s);
+                let middle = heights.derivative(0.7 * s);
+                assert!(low <= middle + 1e-14 && middle <= high + 1e-14);
             }
         }
+    }
+
+    #[test]
+    fn zeros_and_extrema() {
+        let parabola = Piece::Quadratic([1.0, -1.25, 1.0]);
+        assert_eq!(parabola.extrema(), [0.5]);
+        let third = 1.0 / 3.0;
+        let zeros = parabola.zeros();
+        assert_eq!(zeros.len(), 2);
+        assert!((zeros[0] - third).abs() < 1e-15 && (zeros[1] - 2.0 * third).abs() < 1e-15);
+        assert_eq!(Piece::Line([-1.0, 3.0]).zeros(), [0.25]);
+        assert!(Piece::Line([-1.0, 3.0]).extrema().is_empty());
     }
 
     #[test]

@@ -34,7 +34,7 @@ impl Lathe {
         let v = |i: usize| [i as f64 * share, (i + 1) as f64 * share];
         let mut all = MeridianBuilder::default();
         for (i, piece) in pieces.iter().enumerate() {
-            all.piece(piece, false, true, v(i));
+            all.piece(piece, true, v(i));
         }
         let [smallest, _] = all.radii();
         let inner = match spline {
@@ -48,7 +48,7 @@ impl Lathe {
                 builder.begin();
                 piece.start()
             });
-            builder.piece(piece, false, true, v(i));
+            builder.piece(piece, true, v(i));
             // Only Bézier curves may continue elsewhere.
             let end = piece.end();
             if pieces.get(i + 1).is_none_or(|next| next.start() != end) {
@@ -80,7 +80,7 @@ fn close(builder: &mut MeridianBuilder, end: DVec2, start: DVec2, inner: f64) {
     ];
     for side in corners.windows(2) {
         if let [a, b] = *side {
-            builder.piece(&Piece::Line([a, b]), false, false, [0.0, 0.0]);
+            builder.piece(&Piece::Line([a, b]), false, [0.0, 0.0]);
         }
     }
 }

@@ -1,3 +1,4 @@
+use super::curve::Piece;
 use super::meridian::{Arc, ArcPoint, Meridian};
 use super::runs::Rect;
 use super::spans::{WholeLine, snap};
@@ -34,20 +35,37 @@ struct Line {
     m2: f64,
 }
 
-/// A value of the function whose roots are searched.
+/// A point of an arc as a line sees it.
 #[derive(Clone, Copy)]
 struct Sample {
     s: f64,
     y: f64,
+    /// The height over the line, as [`Line::level`] says.
+    level: f64,
     /// The distance along the horizontal part from the point nearest to the axis.
     q: f64,
-    value: f64,
 }
 
 impl Sample {
-    fn sign(&self) -> bool {
-        self.value >= 0.0
+    /// The function whose roots are searched, for the half of the line with this [`Half::climb`].
+    #[inline]
+    fn value(&self, half: Half) -> f64 {
+        self.level - half.climb * self.q
     }
+
+    #[inline]
+    fn sign(&self, half: Half) -> bool {
+        self.value(half) >= 0.0
+    }
+}
+
+/// One half of a line.
+#[derive(Clone, Copy)]
+struct Half {
+    /// 1 or -1.
+    sign: f64,
+    /// The vertical speed away from the place nearest to the axis.
+    climb: f64,
 }
 
 impl Line {
@@ -97,20 +115,20 @@ impl Line {
         overlaps(near, far) || overlaps(-near, -far)
     }
 
-    /// The value at a point for the half of the line that `half` (1 or -1) names.
-    fn sample(&self, half: f64, s: f64, point: ArcPoint) -> Sample {
-        let q = self.q(point.square);
+    #[inline]
+    fn sample(&self, s: f64, point: ArcPoint) -> Sample {
         Sample {
             s,
             y: point.y,
-            q,
-            value: self.level(point.y) - half * self.ray.direction.y * q,
+            level: self.level(point.y),
+            q: self.q(point.square),
         }
     }
 
     /// All crossings with an arc: parameter, half of the line, whether the value rises.
+    #[inline]
     fn roots(&self, arc: &Arc, visit: &mut impl FnMut(f64, f64, bool)) {
-        let (first, last) = (arc.at(0.0), arc.at(1.0));
+        let (first, last) = (arc.start(), arc.end());
         let within = |point: ArcPoint| point.square >= self.m2;
         let (mut low, mut high) = ((0.0, first), (1.0, last));
         match (within(first), within(last)) {
@@ -119,8 +137,8 @@ impl Line {
             (outer, _) => {
                 // Points closer to the axis than the line don't matter.
                 let s = find_root(0.0, 1.0, !outer, f64::NAN, |s| {
-                    let point = arc.at(s);
-                    (point.square - self.m2, point.d_square)
+                    let (point, slope) = arc.at_with_slope(s);
+                    (point.square - self.m2, slope.square)
                 });
                 let point = ArcPoint {
                     square: self.m2,
@@ -133,41 +151,40 @@ impl Line {
                 }
             }
         }
+        let (a, b) = (self.sample(low.0, low.1), self.sample(high.0, high.1));
         let dy = self.ray.direction.y;
-        for half in [1.0, -1.0] {
-            let a = self.sample(half, low.0, low.1);
-            let b = self.sample(half, high.0, high.1);
-            // The rounding error of the terms of the value.
-            let tallest = a.y.abs() + b.y.abs() + self.ray.origin.y.abs();
-            let widest = a.q + b.q + self.start.abs();
-            let noise = gamma(16) * (self.speed * tallest + dy.abs() * widest);
-            self.search(arc, half, a, b, noise, visit);
+        // The rounding error of the terms of the value.
+        let tallest = a.y.abs() + b.y.abs() + self.ray.origin.y.abs();
+        let widest = a.q + b.q + self.start.abs();
+        let noise = gamma(16) * (self.speed * tallest + dy.abs() * widest);
+        for sign in [1.0, -1.0] {
+            let climb = sign * dy;
+            self.search(arc, Half { sign, climb }, &a, &b, noise, visit);
         }
     }
 
     fn search(
         &self,
         arc: &Arc,
-        half: f64,
-        a: Sample,
-        b: Sample,
+        half: Half,
+        a: &Sample,
+        b: &Sample,
         noise: f64,
         visit: &mut impl FnMut(f64, f64, bool),
     ) {
-        let change = a.sign() != b.sign();
-        let climb = half * self.ray.direction.y;
+        let change = a.sign(half) != b.sign(half);
         if !change {
             // The two parts of the value are both monotone.
-            let (low, high) = sorted(self.level(a.y), self.level(b.y));
-            let (least, most) = sorted(climb * a.q, climb * b.q);
+            let (low, high) = sorted(a.level, b.level);
+            let (least, most) = sorted(half.climb * a.q, half.climb * b.q);
             if low > most || high < least {
                 return;
             }
         }
-        let [low, high] = self.slopes(arc, climb, &a, &b);
+        let [low, high] = self.slopes(arc, half, a, b);
         if low >= 0.0 || high <= 0.0 {
             if change {
-                visit(self.refine(arc, half, &a, &b), half, b.sign());
+                visit(self.refine(arc, half, a, b), half.sign, b.sign(half));
             }
             return;
         }
@@ -177,21 +194,25 @@ impl Line {
         let worth = steepest * (b.s - a.s) > noise;
         if !(worth && a.s < s && s < b.s) {
             if change {
-                visit(s, half, b.sign());
+                visit(s, half.sign, b.sign(half));
             }
             return;
         }
-        let middle = self.sample(half, s, arc.at(s));
-        if !change && middle.value.abs() > steepest * (b.s - a.s) * 0.5 {
+        let middle = self.sample(s, arc.at(s));
+        if !change && middle.value(half).abs() > steepest * (b.s - a.s) * 0.5 {
             return;
         }
-        self.search(arc, half, a, middle, noise, visit);
-        self.search(arc, half, middle, b, noise, visit);
+        self.search(arc, half, a, &middle, noise, visit);
+        self.search(arc, half, &middle, b, noise, visit);
     }
 
     /// Bounds of the slope of the value between two samples.
-    fn slopes(&self, arc: &Arc, climb: f64, a: &Sample, b: &Sample) -> [f64; 2] {
+    #[inline]
+    fn slopes(&self, arc: &Arc, half: Half, a: &Sample, b: &Sample) -> [f64; 2] {
         let dy = arc.dy_range(a.s, b.s).map(|dy| dy * self.speed);
+        if half.climb == 0.0 {
+            return dy;
+        }
         // q' = (r²)' / 2q.
         let (near, far) = sorted(a.q, b.q);
         let dq = arc.d_square_range(a.s, b.s);
@@ -203,21 +224,46 @@ impl Line {
             }
         };
         let dq = [over(dq[0], near, far), over(dq[1], far, near)];
-        let product = |q: f64| if climb == 0.0 { 0.0 } else { climb * q };
-        let (least, most) = sorted(product(dq[0]), product(dq[1]));
+        let (least, most) = sorted(half.climb * dq[0], half.climb * dq[1]);
         [dy[0] - most, dy[1] - least]
     }
 
-    fn refine(&self, arc: &Arc, half: f64, a: &Sample, b: &Sample) -> f64 {
-        let climb = half * self.ray.direction.y;
-        let guess = a.s + (b.s - a.s) * (a.value / (a.value - b.value));
-        find_root(a.s, b.s, b.sign(), guess, |s| {
-            let point = arc.at(s);
-            let sample = self.sample(half, s, point);
+    /// The root between two samples of different signs, between which the value is monotone.
+    fn refine(&self, arc: &Arc, half: Half, a: &Sample, b: &Sample) -> f64 {
+        let guess = self.straight_root(arc, half, a, b).unwrap_or_else(|| {
+            let (from, to) = (a.value(half), b.value(half));
+            a.s + (b.s - a.s) * (from / (from - to))
+        });
+        find_root(a.s, b.s, b.sign(half), guess, |s| {
+            let (point, slope) = arc.at_with_slope(s);
+            let sample = self.sample(s, point);
             // If q is 0 the slope is NaN, and the interval is halved.
-            let slope = point.dy * self.speed - climb * (point.d_square / (2.0 * sample.q));
-            (sample.value, slope)
+            let dq = half.climb * (slope.square / (2.0 * sample.q));
+            (sample.value(half), slope.y * self.speed - dq)
         })
+    }
+
+    /// The root as far as a formula gives it, for straight arcs: the line crosses a cone, `level² = dy²·q²`.
+    #[inline]
+    fn straight_root(&self, arc: &Arc, half: Half, a: &Sample, b: &Sample) -> Option<f64> {
+        let (Piece::Line([x0, x1]), Piece::Line([y0, y1])) = (arc.x, arc.y) else {
+            return None;
+        };
+        if arc.is_squared() {
+            return None;
+        }
+        let (level, rise) = (self.level(y0), self.speed * (y1 - y0));
+        let (wide, grow) = (half.climb * x0, half.climb * (x1 - x0));
+        let m = half.climb * half.climb * self.m2;
+        // rise·s + level is squared on one side, grow·s + wide on the other.
+        let square = rise * rise - grow * grow;
+        let linear = rise * level - grow * wide;
+        let constant = level * level - wide * wide + m;
+        let root = (linear * linear - square * constant).sqrt();
+        let sum = -(linear + if linear < 0.0 { -root } else { root });
+        let is_here =
+            |s: &f64| a.s < *s && *s < b.s && ((level + rise * s) * half.climb).is_sign_positive();
+        [sum / square, constant / sum].into_iter().find(is_here)
     }
 
     /// The ray's parameter at a point of the meridian that is on the line.
@@ -263,7 +309,7 @@ impl Revolution<'_> {
         let outward = Self::outward(ray, hit);
         let [s, _] = hit.uv;
         let arc = self.arc(hit);
-        let (r, y) = arc.map_or((0.0, 0.0), |arc| (arc.radius(s), arc.at(s).y));
+        let (r, y) = arc.map_or((0.0, 0.0), |arc| (arc.radius(s), arc.y.at(s)));
         let position = DVec3::new(outward.x * r, y, outward.y * r);
         let extent = self.bounds().max_abs();
         let normal = self.normal(ray, hit);
@@ -298,7 +344,7 @@ impl Revolution<'_> {
                 let Some(arc) = self.0.arcs.get(index) else {
                     return;
                 };
-                if (arc.at(0.0).y >= point.y) != (arc.at(1.0).y >= point.y) {
+                if (arc.y.start() >= point.y) != (arc.y.end() >= point.y) {
                     inside ^= arc.at(arc.at_height(point.y)).square > square;
                 }
             },

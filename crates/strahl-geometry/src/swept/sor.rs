@@ -42,7 +42,7 @@ impl Sor {
             }
             if i == 0 {
                 let (middle, rim) = disc(a);
-                builder.piece(&Piece::Line([middle, rim]), false, !open, [0.0, rim.x]);
+                builder.piece(&Piece::Line([middle, rim]), !open, [0.0, rim.x]);
             }
             let (step, third) = (b.y - a.y, 1.0 / 3.0);
             // The slope of the square is twice the radius times that of the radius.
@@ -54,14 +54,12 @@ impl Sor {
                 to - slope(b, a, after) * step * third,
                 to,
             ];
-            let heights = Piece::Line([a.y, b.y]).cubic();
-            let mut pairs = square.into_iter().zip(heights);
-            let corners = [(); 4].map(|()| pairs.next().map_or(a, DVec2::from));
+            let (square, heights) = (Piece::Cubic(square), Piece::Line([a.y, b.y]));
             let share = |i: usize| i as f64 / count as f64;
-            builder.piece(&Piece::Cubic(corners), true, true, [share(i), share(i + 1)]);
+            builder.squared_piece(square, heights, [share(i), share(i + 1)]);
             if i + 1 == count {
                 let (middle, rim) = disc(b);
-                builder.piece(&Piece::Line([rim, middle]), false, !open, [rim.x, 0.0]);
+                builder.piece(&Piece::Line([rim, middle]), !open, [rim.x, 0.0]);
             }
         }
         let sor = Self {
