@@ -87,8 +87,8 @@ impl PovNormal {
         }
     }
 
-    /// The tilted normal at a point; `n` is the unit normal to be tilted, on the side of the viewer, both in the space around
-    /// the normal's own transformations. A unit vector, except with `no_bump_scale`: its length then counts where the
+    /// The tilted normal at a point; `n` is the normal to be tilted, on the side of the viewer, both in the space around
+    /// the normal's own transformations. The length of `n` counts with `no_bump_scale` only: a map of the world to that space has changed it. A unit vector, except with `no_bump_scale`: its length then counts where the
     /// normals of a map are mixed, and for the patterns `slope` and `aoi` (measured).
     pub fn tilt(&self, point: &TexturePoint, n: DVec3) -> DVec3 {
         // Into the pattern's space, where the normal is tilted, and back.
@@ -100,7 +100,7 @@ impl PovNormal {
             }
         }
         if !self.no_bump_scale {
-            inner = inner.normalize_or(n);
+            inner = inner.normalize_or_zero();
         }
         let mut tilted = self.tilt_inside(point, inner);
         for warp in warps {

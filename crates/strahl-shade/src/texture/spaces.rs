@@ -5,7 +5,7 @@ use strahl_math::{DVec3, Transform};
 
 /// The transform of a normal into a texture's own space and back.
 pub(super) trait NormalSpace {
-    /// The normal in the inner space, of unit length.
+    /// The normal in the inner space; its length is the one that bumps with `no_bump_scale` are added to (measured).
     fn enter(&self, n: DVec3) -> DVec3;
     /// A normal of the inner space in the outer one.
     fn leave(&self, n: DVec3) -> DVec3;
@@ -25,7 +25,7 @@ impl NormalSpace for Identity {
 
 impl NormalSpace for Transform {
     fn enter(&self, n: DVec3) -> DVec3 {
-        (self.linear().transpose() * n).normalize_or(n)
+        self.linear().transpose() * n
     }
     fn leave(&self, n: DVec3) -> DVec3 {
         self.normal_to_world(n)
@@ -35,10 +35,11 @@ impl NormalSpace for Transform {
 /// The transformations among warps; the other warps leave normals alone.
 impl NormalSpace for Vec<Warp> {
     fn enter(&self, n: DVec3) -> DVec3 {
-        self.iter().rev().fold(n, |n, warp| match warp {
+        let inner = self.iter().rev().fold(n, |n, warp| match warp {
             Warp::Transform(transform) => transform.enter(n),
             _ => n,
-        })
+        });
+        inner.normalize_or(n)
     }
     fn leave(&self, n: DVec3) -> DVec3 {
         self.iter().fold(n, |n, warp| match warp {
