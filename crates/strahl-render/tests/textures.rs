@@ -107,7 +107,7 @@ fn layers_mirrors_and_shadows_follow_the_formula() {
         filter: 0.5,
         transmit: 0.25,
     };
-    let top = plain(Pigment::Solid(clear));
+    let top = plain(Pigment::from(clear));
     let bottom = |mirror: f64| PlainTexture {
         finish: PovFinish {
             reflection: PovReflection::constant(Color::gray(mirror)),
@@ -124,7 +124,7 @@ fn layers_mirrors_and_shadows_follow_the_formula() {
             .light(Light::directional(DVec3::NEG_Z, Color::WHITE))
             .background(strahl_scene::Background::Solid(Color::new(0.3, 0.2, 0.1)));
         let sheet = Cuboid::new(DVec3::new(-9.0, -9.0, 20.0), DVec3::new(9.0, 9.0, 21.0));
-        let sheet = sheet.material(material(plain(Pigment::Solid(clear)).into()));
+        let sheet = sheet.material(material(plain(Pigment::from(clear)).into()));
         if shade { scene.add(sheet) } else { scene }
     };
     let expected = |light: Color| {
@@ -158,7 +158,7 @@ fn glass_without_texture_behind_blended_textures() {
             filter: 0.0,
             transmit,
         };
-        (1.0, Texture::from(plain(Pigment::Solid(color))))
+        (1.0, Texture::from(plain(Pigment::from(color))))
     };
     let blended = Texture::Average(vec![clear(0.9), clear(0.5)], Box::default());
     let glass = Material {

@@ -63,4 +63,6 @@ groups! {
     the_share_of_a_blended_texture_is_not_in_the_weight_of_its_ray,
     edges_of_hexagons_in_the_plane_of_x_and_y,
     the_eye_is_in_closed_parts_beside_open_ones,
+    bumps_that_keep_their_size_on_scaled_objects,
+    a_pattern_takes_over_what_modified_the_colour,
 }

@@ -39,7 +39,7 @@ impl Pigment {
     /// Whether the pigment uses texture coordinates somewhere.
     pub fn uses_uv(&self) -> bool {
         match self {
-            Self::Solid(_) | Self::Image(..) => false,
+            Self::Solid(..) | Self::Image(..) => false,
             Self::ColorMap(field, _) => field.uses_uv(),
             Self::PigmentMap(field, map) => {
                 field.uses_uv() || map.entries.iter().any(|(_, p)| p.uses_uv())

@@ -35,7 +35,7 @@ impl Pigment {
     /// The cost of a colour.
     pub fn cost(&self) -> Cost {
         match self {
-            Self::Solid(_) => Cost::operations(1),
+            Self::Solid(..) => Cost::operations(1),
             Self::ColorMap(field, _) => field.whole_cost(),
             Self::PigmentMap(field, map) => {
                 let member = dearest(map.entries.iter().map(|(_, pigment)| pigment.cost()));

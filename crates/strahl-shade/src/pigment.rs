@@ -58,8 +58,8 @@ impl<T> BlendMap<T> {
 /// A colour at every point of space.
 #[derive(Clone, Debug)]
 pub enum Pigment {
-    /// The same everywhere.
-    Solid(ColorFt),
+    /// The same everywhere. The modifiers show nothing: a pattern that replaces the colour takes them over.
+    Solid(ColorFt, Option<Box<Modifiers>>),
     /// A value of a pattern, looked up in a map of colours.
     ColorMap(Box<PatternField>, BlendMap<ColorFt>),
     /// A value of a pattern, looked up in a map of pigments.
@@ -77,13 +77,13 @@ pub enum Pigment {
 impl Default for Pigment {
     /// Opaque black, as POV-Ray's.
     fn default() -> Self {
-        Self::Solid(ColorFt::default())
+        Self::Solid(ColorFt::default(), None)
     }
 }
 
 impl From<ColorFt> for Pigment {
     fn from(color: ColorFt) -> Self {
-        Self::Solid(color)
+        Self::Solid(color, None)
     }
 }
 
@@ -92,7 +92,7 @@ impl Pigment {
     pub fn may_transmit(&self) -> bool {
         let passes = |c: &ColorFt| c.filter != 0.0 || c.transmit != 0.0;
         match self {
-            Self::Solid(color) => passes(color),
+            Self::Solid(color, _) => passes(color),
             Self::ColorMap(_, map) => map.entries.iter().any(|(_, c)| passes(c)),
             Self::PigmentMap(_, map) => map.entries.iter().any(|(_, p)| p.may_transmit()),
             Self::Blocks(_, pigments) => pigments.iter().any(Self::may_transmit),
@@ -108,7 +108,7 @@ impl Pigment {
     /// POV-Ray.
     pub fn color_at(&self, point: &TexturePoint) -> ColorFt {
         match self {
-            Self::Solid(color) => *color,
+            Self::Solid(color, _) => *color,
             Self::ColorMap(field, map) => match map.lookup(field.value(point)) {
                 None => ColorFt::default(),
                 Some(Blend::One(color)) => *color,

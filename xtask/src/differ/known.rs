@@ -112,6 +112,9 @@ pub(super) fn reason(text: &str) -> Option<&'static str> {
     if repeats_an_operand(text) {
         return Some("two operands have the same surface: rounding decides");
     }
+    if averages_nothing(text) {
+        return Some("the weights of an average are 0: POV-Ray divides 0 by 0");
+    }
     divides_constants(text)
         .then_some("POV-Ray divides constants in brackets by the product of what follows")
 }
@@ -127,6 +130,29 @@ fn divides_constants(text: &str) -> bool {
             depth == 0
         });
         goes_on && open.is_some_and(|open| !text[open..close].contains(char::is_alphabetic))
+    })
+}
+
+/// Whether all weights of an average are 0.
+fn averages_nothing(text: &str) -> bool {
+    text.match_indices("average").any(|(at, _)| {
+        let Some(map) = text[at..].find("_map {").map(|map| &text[at + map + 6..]) else {
+            return false;
+        };
+        let mut rest = map.trim_start();
+        while let Some(entry) = rest.strip_prefix('[') {
+            let weight = entry.split_whitespace().next();
+            let mut depth = 1;
+            let end = entry.find(|c| {
+                depth += i32::from(c == '[') - i32::from(c == ']');
+                depth == 0
+            });
+            match (weight.and_then(|w| w.parse::<f64>().ok()), end) {
+                (Some(0.0), Some(end)) => rest = entry[end + 1..].trim_start(),
+                _ => return false,
+            }
+        }
+        rest.len() < map.trim_start().len()
     })
 }
 
@@ -186,6 +212,23 @@ mod tests {
             Some("noise")
         );
         assert_eq!(find(&known, "sphere { finish { crandy 0.1 } }"), None);
+    }
+
+    #[test]
+    fn averages_without_weight_are_seen() {
+        for text in [
+            "pigment { average pigment_map { [ 0 rgb 1 ] } }",
+            "average normal_map { [0 dents] [ 0.0 gradient x slope_map { [ 1 <0, 1> ] } ] }",
+        ] {
+            assert!(averages_nothing(text), "{text}");
+        }
+        for text in [
+            "pigment { average pigment_map { [ 0 rgb 1 ] [ 0.1 rgb 1 ] } }",
+            "gradient x pigment_map { [ 0 rgb 1 ] }",
+            "average pigment_map { }",
+        ] {
+            assert!(!averages_nothing(text), "{text}");
+        }
     }
 
     #[test]

@@ -49,9 +49,6 @@ pub struct Texture {
     pub interior: Option<Arc<Interior>>,
     /// Whether `surface` is written in the scene and is not the default: further textures are then layered over it.
     pub(super) written: bool,
-    /// The transformation of a pigment of one colour, in the uppermost layer, since it was written. The pigment itself does not store
-    /// it, but a pattern that later replaces the colour is transformed by it.
-    pub(super) placed: Option<Box<Transform>>,
     /// The textures of the components of a blob, which neither `surface` nor `inner_surface` replaces.
     pub(super) components: Option<Arc<Components>>,
 }
@@ -82,24 +79,14 @@ fn transform(texture: &mut Surface, by: &Transform) {
     }
 }
 
-/// Whether a texture is uniform, so that transforming it changes nothing.
+/// Whether a texture is uniform, so that transforming it changes nothing that is seen.
 fn is_uniform(texture: &Surface) -> bool {
     use strahl_shade::pigment::Pigment;
     match texture {
         Surface::Plain(plain) => {
-            plain.normal.is_none() && matches!(plain.pigment, Pigment::Solid(_))
+            plain.normal.is_none() && matches!(plain.pigment, Pigment::Solid(..))
         }
         Surface::Layered(layers) => layers.iter().all(is_uniform),
-        _ => false,
-    }
-}
-
-/// Whether the pigment of the uppermost layer is one colour.
-fn is_solid(texture: &Surface) -> bool {
-    use strahl_shade::pigment::Pigment;
-    match texture {
-        Surface::Plain(plain) => matches!(plain.pigment, Pigment::Solid(_)),
-        Surface::Layered(layers) => layers.last().is_some_and(is_solid),
         _ => false,
     }
 }
@@ -135,8 +122,19 @@ impl Texture {
     /// The texture after a transformation of its space; parts in surface coordinates stay.
     #[must_use]
     pub fn transformed(&self, by: &Transform) -> Self {
+        // The default colour is not moved with the object (measured).
+        self.moved(by, !self.written)
+    }
+
+    /// The same for a texture into which nothing more is written: uniform ones stay shared.
+    #[must_use]
+    pub(super) fn placed(&self, by: &Transform) -> Self {
+        self.moved(by, true)
+    }
+
+    fn moved(&self, by: &Transform, uniform_stays: bool) -> Self {
         let moved = |surface: &Arc<Surface>| {
-            if by.is_identity() || is_uniform(surface) {
+            if by.is_identity() || uniform_stays && is_uniform(surface) {
                 return Arc::clone(surface);
             }
             let mut surface = Surface::clone(surface);
@@ -148,12 +146,6 @@ impl Texture {
             inner_surface: self.inner_surface.as_ref().map(moved),
             interior: self.interior.clone(),
             written: self.written,
-            placed: if by.is_identity() || !self.written || !is_solid(&self.surface) {
-                self.placed.clone()
-            } else {
-                let before = self.placed.as_deref();
-                Some(Box::new(before.map_or(*by, |before| before.then(by))))
-            },
             components: self.components.as_ref().map(|components| {
                 Arc::new(Components {
                     shares: Arc::clone(&components.shares),
@@ -204,8 +196,7 @@ impl Parser<'_> {
     pub(super) fn texture_item(&mut self, texture: &mut Texture, token: Token) -> PResult<bool> {
         match token.word() {
             Some(Word::Pigment | Word::Normal | Word::Finish) => {
-                let placed = texture.placed.as_deref();
-                self.plain_item(Arc::make_mut(&mut texture.surface), placed, token)?;
+                self.plain_item(Arc::make_mut(&mut texture.surface), token)?;
                 texture.written = true;
             }
             Some(Word::Texture) => {
@@ -251,14 +242,7 @@ impl Parser<'_> {
     }
 
     /// `pigment`, `normal` or `finish` with its block, changing the uppermost layer.
-    ///
-    /// `placed` is the transformation of a uniform pigment since it was written.
-    fn plain_item(
-        &mut self,
-        surface: &mut Surface,
-        placed: Option<&Transform>,
-        token: Token,
-    ) -> PResult<()> {
+    fn plain_item(&mut self, surface: &mut Surface, token: Token) -> PResult<()> {
         self.take(token)?;
         let place = self.place();
         let mut unused;
@@ -277,7 +261,7 @@ impl Parser<'_> {
         match token.word() {
             Some(Word::Pigment) => {
                 let base = std::mem::take(&mut top.pigment);
-                top.pigment = self.pigment_block_placed(base, placed)?;
+                top.pigment = self.pigment_block_on(base)?;
             }
             Some(Word::Normal) => {
                 let base = top.normal.take();

@@ -28,7 +28,7 @@ fn straight_color(color: &mut ColorFt) {
 
 fn straight_pigment(pigment: &mut Pigment) {
     match pigment {
-        Pigment::Solid(color) => straight_color(color),
+        Pigment::Solid(color, _) => straight_color(color),
         Pigment::ColorMap(_, map) => map.entries.iter_mut().for_each(|(_, c)| straight_color(c)),
         Pigment::PigmentMap(_, map) => map
             .entries

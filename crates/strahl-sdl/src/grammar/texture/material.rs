@@ -20,7 +20,7 @@ fn same_surface(a: &Arc<Surface>, b: &Arc<Surface>) -> bool {
         return false;
     };
     match (&a.pigment, &b.pigment) {
-        (Pigment::Solid(first), Pigment::Solid(second)) => {
+        (Pigment::Solid(first, _), Pigment::Solid(second, _)) => {
             let same_finish = Arc::ptr_eq(&a.finish, &b.finish) || a.finish == b.finish;
             first == second && a.normal.is_none() && b.normal.is_none() && same_finish
         }
@@ -169,7 +169,7 @@ impl Fill<'_> {
             return (!self.whole.is_bare()).then(|| {
                 let texture = Texture {
                     interior: before.interior.clone(),
-                    ..self.whole.transformed(&map.inverted())
+                    ..self.whole.placed(&map.inverted())
                 };
                 Arc::new(texture.to_material())
             });
@@ -186,7 +186,7 @@ impl Fill<'_> {
             return Some(self.with_interior(before, &interior?));
         }
         let mut after = Material::clone(before);
-        let whole = self.whole.transformed(&map.inverted());
+        let whole = self.whole.placed(&map.inverted());
         if let Some(texture) = missing {
             after.texture = filled(texture, &whole.surface);
             after.inner_texture.clone_from(&after.texture);
@@ -295,7 +295,7 @@ fn plain_hash(texture: &Texture) -> Option<u64> {
     let Surface::Plain(plain) = &*texture.surface else {
         return None;
     };
-    let Pigment::Solid(color) = &plain.pigment else {
+    let Pigment::Solid(color, _) = &plain.pigment else {
         return None;
     };
     let is_more = texture.inner_surface.is_some() || texture.components.is_some();

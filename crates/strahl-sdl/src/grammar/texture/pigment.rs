@@ -81,10 +81,10 @@ impl From<Pigment> for Draft {
             draft(Chooser::Pattern(field.pattern), choice, field.modifiers)
         };
         match pigment {
-            Pigment::Solid(color) => draft(
+            Pigment::Solid(color, modifiers) => draft(
                 Chooser::Solid(color),
                 Choice::Default(None),
-                Modifiers::default(),
+                modifiers.map_or_else(Modifiers::default, |modifiers| *modifiers),
             ),
             Pigment::ColorMap(f, map) if is_default_map(&f.pattern, &map) => {
                 field(f, Choice::Usual(map))
@@ -117,7 +117,10 @@ impl Draft {
             modifiers,
         } = self;
         match chooser {
-            Chooser::Solid(color) => Pigment::Solid(color),
+            Chooser::Solid(color) => {
+                let kept = (modifiers != Modifiers::default()).then(|| Box::new(modifiers));
+                Pigment::Solid(color, kept)
+            }
             Chooser::Image(image) => Pigment::Image(image, Box::new(modifiers)),
             Chooser::Average => {
                 let members = match choice {
@@ -147,7 +150,7 @@ impl Draft {
                     None => Pigment::default(),
                 },
                 Choice::Colors(map) => match map.entries.first() {
-                    Some((_, first)) => Pigment::Solid(*first),
+                    Some((_, first)) => Pigment::from(*first),
                     None => Pigment::default(),
                 },
                 Choice::Default(_) | Choice::Usual(_) | Choice::Blocks(_) => Pigment::default(),
@@ -184,7 +187,7 @@ fn default_colors(pattern: &Pattern) -> Option<&'static [ColorFt]> {
 
 fn default_blocks(pattern: &Pattern) -> Option<Vec<Pigment>> {
     let colors = default_colors(pattern)?;
-    Some(colors.iter().map(|c| Pigment::Solid(*c)).collect())
+    Some(colors.iter().copied().map(Pigment::from).collect())
 }
 
 /// The default map of a pattern, for most from black to white; measured with POV-Ray 3.7.
@@ -260,7 +263,11 @@ fn is_default_map(pattern: &Pattern, map: &BlendMap<ColorFt>) -> bool {
 /// Transforms a pigment, unless it is in surface coordinates.
 pub(super) fn transform(pigment: &mut Pigment, by: &Transform) {
     match pigment {
-        Pigment::Solid(_) | Pigment::UvMapped(_) => {}
+        Pigment::UvMapped(_) => {}
+        Pigment::Solid(_, kept) => {
+            let kept = kept.get_or_insert_with(Box::default);
+            modifiers::transform(&mut kept.warps, by);
+        }
         Pigment::ColorMap(field, _) | Pigment::PigmentMap(field, _) | Pigment::Blocks(field, _) => {
             modifiers::transform(&mut field.modifiers.warps, by)
         }
@@ -288,46 +295,25 @@ impl Parser<'_> {
         self.braces(|p| p.pigment_items(Kind::RightBrace, base))
     }
 
-    /// The same on a uniform base that has been transformed since it was written: a pattern that replaces it is transformed too.
-    pub(super) fn pigment_block_placed(
-        &mut self,
-        base: Pigment,
-        placed: Option<&Transform>,
-    ) -> PResult<Pigment> {
-        self.braces(|p| p.placed_pigment_items(Kind::RightBrace, base, placed))
-    }
-
     /// The items in a pigment's braces, or in the brackets of an entry of `pigment_map`.
     pub(super) fn pigment_items(&mut self, closing: Kind, base: Pigment) -> PResult<Pigment> {
-        self.placed_pigment_items(closing, base, None)
-    }
-
-    /// The same on a base that has been transformed since it was written, if it is uniform; other bases store their
-    /// transformation.
-    fn placed_pigment_items(
-        &mut self,
-        closing: Kind,
-        base: Pigment,
-        placed: Option<&Transform>,
-    ) -> PResult<Pigment> {
         let named = self.named_pigment()?;
         if self.accept_word(Word::UvMapping)? {
             // What follows is a whole pigment of its own (measured).
             let inner = self.nested(|p| p.pigment_items(closing, base))?;
             return Ok(Pigment::UvMapped(Box::new(inner)));
         }
-        let (base, placed) = match named {
-            Some(named) => (named, None),
-            None => (base, placed),
-        };
+        let base = named.unwrap_or(base);
         // Most pigments are a single name or colour.
         let token = self.peek()?;
         if token.kind == closing {
             return Ok(base);
         }
         let base = match base {
-            Pigment::Solid(_) if token.word().is_some_and(|w| w.kind() == WordKind::Color) => {
-                let color = Pigment::Solid(color_ft(self.color()?));
+            Pigment::Solid(_, kept)
+                if token.word().is_some_and(|w| w.kind() == WordKind::Color) =>
+            {
+                let color = Pigment::Solid(color_ft(self.color()?), kept);
                 if self.peek()?.kind == closing {
                     return Ok(color);
                 }
@@ -335,11 +321,7 @@ impl Parser<'_> {
             }
             other => other,
         };
-        let is_solid = matches!(base, Pigment::Solid(_));
         let mut draft = Draft::from(base);
-        if let Some(placed) = placed.filter(|_| is_solid) {
-            modifiers::transform(&mut draft.modifiers.warps, placed);
-        }
         self.items_until(closing, "`pigment`", |p, token| {
             p.pigment_item(&mut draft, token)
         })?;
@@ -368,7 +350,7 @@ impl Parser<'_> {
                 match (&value, value.numeric()) {
                     (_, Some(color)) => {
                         let color = self.color_from(color)?;
-                        Ok(Some(Pigment::Solid(color_ft(color))))
+                        Ok(Some(color_ft(color).into()))
                     }
                     (Value::Thing(Thing::Pigment(pigment)), _) => Ok(Some(Pigment::clone(pigment))),
                     _ => {
@@ -398,7 +380,7 @@ impl Parser<'_> {
                     Chooser::Average => Choice::Pigments(BlendMap::new(
                         map.entries
                             .into_iter()
-                            .map(|(weight, color)| (weight, Pigment::Solid(color)))
+                            .map(|(weight, color)| (weight, color.into()))
                             .collect(),
                     )),
                     _ => Choice::Colors(self.in_order(map)),
@@ -484,7 +466,7 @@ impl Parser<'_> {
                 pigments = true;
                 list.push(self.nested(Self::pigment_block)?);
             } else if self.starts_color(token) {
-                list.push(Pigment::Solid(color_ft(self.color()?)));
+                list.push(color_ft(self.color()?).into());
             } else {
                 break;
             }
@@ -515,7 +497,7 @@ impl Parser<'_> {
                 self.take(token)?;
                 list.push(self.nested(Self::pigment_block)?);
             } else if self.starts_color(token) {
-                list.push(Pigment::Solid(color_ft(self.color()?)));
+                list.push(color_ft(self.color()?).into());
             } else {
                 break;
             }

@@ -206,7 +206,7 @@ impl Parser<'_> {
             let token = self.peek()?;
             match token.word() {
                 Some(Word::Pigment | Word::Normal | Word::Finish) => {
-                    self.plain_item(&mut single, None, token)?;
+                    self.plain_item(&mut single, token)?;
                 }
                 _ if token.kind == closing => {
                     self.weigh(weight::of_texture(&single))?;
@@ -248,7 +248,7 @@ impl Parser<'_> {
         }
         match token.word() {
             Some(Word::Pigment | Word::Normal | Word::Finish) => {
-                return self.plain_item(&mut draft.single, None, token);
+                return self.plain_item(&mut draft.single, token);
             }
             Some(Word::TextureMap) => {
                 self.take(token)?;

@@ -32,7 +32,7 @@ impl Weight {
 
 pub(super) fn of_pigment(pigment: &Pigment) -> Weight {
     match pigment {
-        Pigment::Solid(_) | Pigment::ColorMap(..) | Pigment::Image(..) => Weight::ONE,
+        Pigment::Solid(..) | Pigment::ColorMap(..) | Pigment::Image(..) => Weight::ONE,
         Pigment::PigmentMap(_, map) => Weight::around(map.entries.iter().map(|e| of_pigment(&e.1))),
         Pigment::Average(list, _) => Weight::around(list.iter().map(|e| of_pigment(&e.1))),
         Pigment::Blocks(_, list) => Weight::around(list.iter().map(of_pigment)),
