@@ -543,3 +543,11 @@ fn loops_need_a_step() {
         "0"
     );
 }
+
+#[test]
+fn heights_of_a_sor_grow() {
+    let text = "sor { 5, <.1, 0>, <.2, .5>, <.3, .5>, <.4, .5>, <.5, 1> }";
+    let errors = errors(text);
+    assert_eq!(errors.len(), 1, "{errors:?}");
+    assert!(errors[0].contains("must grow"), "{errors:?}");
+}

@@ -27,6 +27,12 @@ impl Sor {
             let what = "a point of the surface of revolution";
             return Err(GeometryError::NotFinite { what });
         }
+        if !Self::is_rising(points) {
+            return Err(GeometryError::Degenerate {
+                what: "surface of revolution",
+                why: "its heights do not grow from point to point",
+            });
+        }
         let mut builder = MeridianBuilder::default();
         builder.begin();
         let count = points.len().saturating_sub(3);
@@ -34,12 +40,6 @@ impl Sor {
             let &[before, a, b, after] = four else {
                 continue;
             };
-            if !(a.y < b.y && before.y < b.y && a.y < after.y) {
-                return Err(GeometryError::Degenerate {
-                    what: "surface of revolution",
-                    why: "its heights do not grow from point to point",
-                });
-            }
             if i == 0 {
                 let (middle, rim) = disc(a);
                 builder.piece(&Piece::Line([middle, rim]), !open, [0.0, rim.x]);
@@ -66,6 +66,14 @@ impl Sor {
             meridian: builder.finish(),
         };
         sor.validate().map(|()| sor)
+    }
+
+    /// Whether the heights grow from the second point to the last but one, and the neighbours of each point have different heights.
+    pub fn is_rising(points: &[DVec2]) -> bool {
+        points.windows(4).all(|four| match *four {
+            [before, a, b, after] => a.y < b.y && before.y < b.y && a.y < after.y,
+            _ => true,
+        })
     }
 }
 
