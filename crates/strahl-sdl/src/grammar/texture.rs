@@ -36,6 +36,7 @@ use crate::token::Token;
 use std::sync::{Arc, LazyLock};
 use strahl_math::Transform;
 use strahl_shade::interior::Interior;
+use strahl_shade::pigment::Pigment;
 use strahl_shade::texture::{PlainTexture, Shares, Texture as Surface};
 
 /// The look of an object: its surface and its interior.
@@ -81,7 +82,6 @@ fn transform(texture: &mut Surface, by: &Transform) {
 
 /// Whether a texture is uniform, so that transforming it changes nothing that is seen.
 fn is_uniform(texture: &Surface) -> bool {
-    use strahl_shade::pigment::Pigment;
     match texture {
         Surface::Plain(plain) => {
             plain.normal.is_none() && matches!(plain.pigment, Pigment::Solid(..))
@@ -169,6 +169,18 @@ impl Texture {
                 Surface::Transformed(_, inner) | Surface::UvMapped(inner) => inner,
                 _ => return &DEFAULT,
             };
+        }
+    }
+
+    /// Drops the modifiers of the uppermost layer's pigment if it is one colour.
+    pub(super) fn forget_modifiers_of_color(&mut self) {
+        let is_modified =
+            |plain: &PlainTexture| matches!(plain.pigment, Pigment::Solid(_, Some(_)));
+        if is_modified(self.top())
+            && let Some(top) = top_of(Arc::make_mut(&mut self.surface))
+            && let Pigment::Solid(_, kept) = &mut top.pigment
+        {
+            *kept = None;
         }
     }
 

