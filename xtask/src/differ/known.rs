@@ -1,7 +1,7 @@
 /// Differences that are intended or that are POV-Ray's: the words that the smallest scene contains, and the reason.
 ///
 /// docs/src/differ.md explains them.
-pub(super) const KNOWN: [(&[&str], &str); 62] = [
+pub(super) const KNOWN: [(&[&str], &str); 63] = [
     (&["crystal.ttf"], FONTS),
     (&["cyrvetic.ttf"], FONTS),
     (&["timrom.ttf"], FONTS),
@@ -45,6 +45,10 @@ pub(super) const KNOWN: [(&[&str], &str); 62] = [
     (&["isosurface", "difference"], CAPS),
     (&["isosurface", "merge"], CAPS),
     (&["isosurface", "clipped_by"], CAPS),
+    (
+        &["split_union", "no_image"],
+        "POV-Ray's camera rays see parts with no_image of such a union until they pass something",
+    ),
     (
         &["image_map", "once", "conserve_energy"],
         "POV-Ray's reflection takes no light from what passes beside an image",
