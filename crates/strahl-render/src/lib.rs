@@ -62,7 +62,7 @@ pub use observer::{
     BranchEnd, HitReport, LayerReport, LightDetail, LightTerm, RayKind, RayReport, Shading,
     ShadowHit, ShadowReport, Share, SurfaceTerm, TraceObserver,
 };
-pub use queries::HitInfo;
+pub use queries::{HitInfo, HitSurface};
 pub use query::Tracer;
 pub use render::{Pass, PixelState, Progress, RenderError, RenderOptions, Rendered, render};
 pub use sampling::{Refinement, Sampling, UnknownSampling};

@@ -42,33 +42,66 @@ pub struct HitInfo {
     pub uv: DVec2,
 }
 
+/// The surface at a hit: the numbers of [`HitInfo`], without names and places.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HitSurface {
+    /// Number of the object, as for [`RenderScene::objects`].
+    pub object: u32,
+    /// Number of the material, as for [`RenderScene::materials`].
+    pub material: u32,
+    /// World position.
+    pub position: DVec3,
+    /// Unit normal of the surface: outwards on solids, to the front on open surfaces.
+    pub normal: DVec3,
+    /// Unit normal for shading, which is interpolated on smooth meshes.
+    pub shading_normal: DVec3,
+    /// Texture coordinates.
+    pub uv: DVec2,
+}
+
 impl RenderScene {
+    /// The surface at a hit, without names and places. The arguments are those of [`RenderScene::describe`].
+    ///
+    /// # Panics
+    /// If the hit is of another scene.
+    pub fn surface(&self, ray: &Ray, hit: &Hit) -> HitSurface {
+        let at = self.locate(hit.id);
+        let look = at.group.look(at.prim, at.element);
+        let point = self.surface_at(ray, hit);
+        HitSurface {
+            object: look.object,
+            material: look.material.0,
+            position: point.position,
+            normal: point.n_geom,
+            shading_normal: point.n_shade,
+            uv: point.uv,
+        }
+    }
+
     /// What a ray has hit. `ray` is the ray, which does not start on a surface, and `hit` what [`Session::closest_hits`] has found for
     /// it in this scene.
     ///
     /// # Panics
     /// If the hit is of another scene.
     pub fn describe(&self, ray: &Ray, hit: &Hit) -> HitInfo {
-        let at = self.locate(hit.id);
-        let look = at.group.look(at.prim, at.element);
-        let point = self.surface_at(ray, hit);
-        let info = self.objects.get(look.object);
+        let surface = self.surface(ray, hit);
+        let info = self.objects.get(surface.object);
         let mut span = info.as_ref().map_or(Span::NONE, |info| info.span);
         if let Some(line) = self.face_line(hit.id) {
             (span.line, span.column) = (line, 0);
         }
         HitInfo {
             t: hit.t,
-            object: look.object,
+            object: surface.object,
             kind: info.as_ref().map_or("object", |info| info.kind),
             name: info.and_then(|info| info.name),
             element: hit.id,
-            material: look.material.0,
+            material: surface.material,
             span,
-            position: point.position,
-            normal: point.n_geom,
-            shading_normal: point.n_shade,
-            uv: point.uv,
+            position: surface.position,
+            normal: surface.normal,
+            shading_normal: surface.shading_normal,
+            uv: surface.uv,
         }
     }
 }
@@ -100,6 +133,32 @@ impl Session {
                     }
                 }
             }
+        });
+    }
+
+    /// The surface at each hit of rays, as [`Session::closest_hits`] has found them in this scene.
+    ///
+    /// # Panics
+    /// If the lists are not equally long, or a hit is of another scene.
+    pub fn surfaces(
+        &self,
+        scene: &RenderScene,
+        rays: &[Ray],
+        hits: &[Option<Hit>],
+        answers: &mut [Option<HitSurface>],
+    ) {
+        assert_eq!(rays.len(), hits.len(), "one hit for each ray");
+        assert_eq!(rays.len(), answers.len(), "one answer for each ray");
+        let surface = |((ray, hit), answer): ((&Ray, &Option<Hit>), &mut Option<HitSurface>)| {
+            *answer = hit.as_ref().map(|hit| scene.surface(ray, hit));
+        };
+        if rays.len() <= BATCH {
+            rays.iter().zip(hits).zip(answers).for_each(surface);
+            return;
+        }
+        self.pool.install(|| {
+            let both = rays.par_iter().zip(hits).zip(answers);
+            both.with_min_len(BATCH).for_each(surface);
         });
     }
 

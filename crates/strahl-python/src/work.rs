@@ -1,0 +1,92 @@
+//! Long computations: without Python's lock, and stopped by Ctrl-C.
+
+use crate::errors;
+use pyo3::prelude::*;
+use std::any::Any;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{self, RecvTimeoutError};
+use std::time::Duration;
+
+/// How often Python gets to see signals and progress.
+const TICK: Duration = Duration::from_millis(50);
+
+/// Whether the caller has given up waiting for a computation.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Stop(Arc<AtomicBool>);
+
+impl Stop {
+    /// Whether to stop.
+    pub(crate) fn is_set(&self) -> bool {
+        self.0.load(Ordering::Relaxed)
+    }
+}
+
+/// Runs a computation on a thread of its own, without Python's lock. See [`run_with`].
+pub(crate) fn run<T: Send + 'static>(
+    py: Python<'_>,
+    compute: impl FnOnce() -> T + Send + 'static,
+) -> PyResult<T> {
+    run_with(py, |_| compute(), |_| Ok(()))
+}
+
+/// Runs a computation on a thread of its own, without Python's lock. Meanwhile this thread looks for signals and calls `tick`, twenty times
+/// a second.
+///
+/// An exception from a signal or from `tick` is returned at once: `Stop` tells the computation, which ends by itself some time later,
+/// and its result is dropped. A panic becomes an exception.
+pub(crate) fn run_with<T: Send + 'static>(
+    py: Python<'_>,
+    compute: impl FnOnce(&Stop) -> T + Send + 'static,
+    mut tick: impl FnMut(Python<'_>) -> PyResult<()>,
+) -> PyResult<T> {
+    let stop = Stop::default();
+    let (sender, mut receiver) = mpsc::sync_channel(1);
+    let inner = stop.clone();
+    std::thread::Builder::new()
+        .name("strahl request".to_owned())
+        .spawn(move || {
+            let result = catch_unwind(AssertUnwindSafe(|| compute(&inner)));
+            // Without a receiver the caller has been interrupted.
+            let _ = sender.send(result);
+        })?;
+    loop {
+        let (back, message) = py.detach(move || {
+            let message = receiver.recv_timeout(TICK);
+            (receiver, message)
+        });
+        receiver = back;
+        match message {
+            Ok(Ok(value)) => return Ok(value),
+            Ok(Err(payload)) => return Err(errors::of_panic(py, &*payload)),
+            Err(RecvTimeoutError::Disconnected) => {
+                return Err(errors::internal(py, "a thread ended without a result"));
+            }
+            Err(RecvTimeoutError::Timeout) => {
+                if let Err(error) = py.check_signals().and_then(|()| tick(py)) {
+                    stop.0.store(true, Ordering::Relaxed);
+                    return Err(error);
+                }
+            }
+        }
+    }
+}
+
+/// The text of a panic.
+pub(crate) fn text_of(payload: &(dyn Any + Send)) -> &str {
+    match (
+        payload.downcast_ref::<&str>(),
+        payload.downcast_ref::<String>(),
+    ) {
+        (Some(text), _) => text,
+        (None, Some(text)) => text,
+        (None, None) => "a panic without a text",
+    }
+}
+
+/// Panics as a bug in strahl would: tests look at what Python gets to see.
+#[pyfunction]
+pub(crate) fn panic_for_tests(py: Python<'_>) -> PyResult<()> {
+    run(py, || panic!("asked for by a test"))
+}

@@ -1,0 +1,117 @@
+"""Exact, explainable, reproducible ray tracing.
+
+Scenes come from files (`load`), texts (`parse`) or objects (`Scene`). A scene renders pictures (`Scene.render`), answers questions about rays
+(`Scene.intersect`, `Scene.occluded`, `Scene.inside`) and explains pixels (`Scene.explain`).
+
+Vectors are tuples, lists or arrays of three numbers. Colours are linear: three numbers, one for a grey, or sRGB as ``"#rrggbb"``. Angles are in
+degrees. Positions are in the units of the scene; y is up in cameras unless `up` says otherwise.
+"""
+
+from strahl import _tree as tree
+from strahl._errors import Diagnostic, InternalError, SceneError, SceneWarning
+from strahl._film import Film
+from strahl._lights import (
+    area_light,
+    beam_light,
+    directional_light,
+    Light,
+    parallel_light,
+    point_light,
+    spot_light,
+)
+from strahl._looks import Background, Camera, Material
+from strahl._objects import (
+    bicubic_patch,
+    blob,
+    box,
+    cone,
+    cylinder,
+    difference,
+    disc,
+    from_ase,
+    from_trimesh,
+    height_field,
+    intersection,
+    lathe,
+    lemon,
+    merge,
+    mesh,
+    Object,
+    ovus,
+    plane,
+    polygon,
+    polynomial,
+    pov,
+    prism,
+    quadric,
+    sor,
+    sphere,
+    sphere_sweep,
+    spheres,
+    superellipsoid,
+    torus,
+    triangle,
+    union,
+)
+from strahl._rays import Hits
+from strahl._scene import load, parse, Progress, Scene
+from strahl._strahl import __version__, thread_count
+from strahl._tree import Explanation
+
+__all__ = [
+    "Background",
+    "Camera",
+    "Diagnostic",
+    "Explanation",
+    "Film",
+    "Hits",
+    "InternalError",
+    "Light",
+    "Material",
+    "Object",
+    "Progress",
+    "Scene",
+    "SceneError",
+    "SceneWarning",
+    "__version__",
+    "area_light",
+    "beam_light",
+    "bicubic_patch",
+    "blob",
+    "box",
+    "cone",
+    "cylinder",
+    "difference",
+    "directional_light",
+    "disc",
+    "from_ase",
+    "from_trimesh",
+    "height_field",
+    "intersection",
+    "lathe",
+    "lemon",
+    "load",
+    "merge",
+    "mesh",
+    "ovus",
+    "parallel_light",
+    "parse",
+    "plane",
+    "point_light",
+    "polygon",
+    "polynomial",
+    "pov",
+    "prism",
+    "quadric",
+    "sor",
+    "sphere",
+    "sphere_sweep",
+    "spheres",
+    "spot_light",
+    "superellipsoid",
+    "thread_count",
+    "torus",
+    "tree",
+    "triangle",
+    "union",
+]

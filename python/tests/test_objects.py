@@ -1,0 +1,243 @@
+"""Objects, materials, lights and cameras."""
+
+from __future__ import annotations
+
+import time
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+import strahl
+
+AXIS_ALIGNED = [
+    (strahl.sphere((1, 2, 3), 2), (1, 2, 3)),
+    (strahl.box((-1, -2, -3), (1, 2, 3)), (0, 0, 0)),
+    (strahl.cylinder((0, -1, 0), (0, 1, 0), 0.5), (0, 0, 0)),
+    (strahl.cone((0, -1, 0), 1, (0, 1, 0), 0.2), (0, 0, 0)),
+    (strahl.torus(2, 0.5), (2, 0, 0)),
+    (strahl.ovus(1, 0.5), (0, 0.5, 0)),
+    (strahl.lemon((0, -1, 0), 0.5, (0, 1, 0), 0.5, 3), (0, 0, 0)),
+    (strahl.quadric([1, 1, 1, 0, 0, 0, 0, 0, 0, -1]) & strahl.sphere(radius=3), (0, 0, 0)),
+    (strahl.superellipsoid(0.5, 0.5), (0, 0, 0)),
+    (strahl.blob([[0, 0, 0, 2, 1]], [[0, 0, 0, 0, 2, 0, 1, 1]]), (0, 0, 0)),
+    (strahl.prism([[0, 0], [1, 0], [1, 1], [0, 0]]), (0.7, 0.5, 0.3)),
+    (strahl.lathe([[0, 0], [1, 0], [1, 1], [0, 1]]), (0.5, 0.5, 0.1)),
+    (strahl.sor([[0.5, -0.5], [0.5, 0], [0.5, 1], [0.5, 1.5]]), (0, 0.5, 0)),
+    (strahl.sphere_sweep([[0, 0, 0], [0, 2, 0]], 0.5, curve="linear"), (0, 1, 0)),
+    (strahl.polynomial({(2, 0, 0): 1, (0, 2, 0): 1, (0, 0, 2): 1, (0, 0, 0): -1}), (0, 0, 0)),
+    (strahl.pov("isosurface { function { x*x + y*y + z*z - 1 } contained_by { sphere { 0, 2 } } }"), (0, 0, 0)),
+]
+
+
+@pytest.mark.parametrize(("solid", "point"), AXIS_ALIGNED, ids=lambda thing: getattr(thing, "kind", ""))
+def test_solids_have_an_inside_and_rays_hit_them(solid: strahl.Object, point: tuple[float, float, float]) -> None:
+    scene = strahl.Scene(solid)
+    assert scene.inside([point, (50, 60, 70)]).tolist() == [0, -1]
+    start = np.array([3.0, 9.0, 20.0])
+    assert scene.intersect(start, np.array(point) - start, t_max=1).hit
+
+
+def test_surfaces_are_hit() -> None:
+    patch = np.zeros((4, 4, 3))
+    patch[..., 0], patch[..., 2] = np.meshgrid(np.linspace(-1, 1, 4), np.linspace(-1, 1, 4))
+    for surface in (
+        strahl.plane(),
+        strahl.disc(),
+        strahl.polygon([[-1, 0, -1], [1, 0, -1], [1, 0, 1], [-1, 0, 1]]),
+        strahl.triangle((-1, 0, -1), (1, 0, -1), (0, 0, 2)),
+        strahl.bicubic_patch(patch),
+        strahl.height_field([[0, 0], [0, 0]], x=(-1, 1), z=(-1, 1)),
+    ):
+        hit = strahl.Scene(surface).intersect((0.1, 3, 0.2), (0, -1, 0))
+        assert float(hit.t) == pytest.approx(3, abs=1e-9), surface
+        assert abs(hit.normal[1]) == pytest.approx(1)
+    assert strahl.disc(hole=0.5).kind == "disc"
+    assert not strahl.Scene(strahl.disc(hole=0.5)).intersect((0.1, 3, 0.2), (0, -1, 0)).hit
+
+
+def test_solids_combine() -> None:
+    a, b = strahl.sphere((0, 0, 0), 1, name="a"), strahl.sphere((1, 0, 0), 1, name="b")
+    points = [[-0.5, 0, 0], [0.5, 0, 0], [1.5, 0, 0], [5, 0, 0]]
+    for solid, expected in (
+        (a | b, [True, True, True, False]),
+        (a & b, [False, True, False, False]),
+        (a - b, [True, False, False, False]),
+        (strahl.merge(a, b), [True, True, True, False]),
+        (-a & strahl.box((-9, -9, -9), (9, 9, 9)), [False, False, True, True]),
+    ):
+        assert (strahl.Scene(solid).inside(points) >= 0).tolist() == expected, solid
+    assert (a | b | a).parts == 3 and (a - b - a).parts == 3
+    assert (a | (b | a)).parts == 2 and (a - (b - a)).parts == 2
+    assert ((a | b).named("pair") | a).parts == 2
+    assert "difference" in repr(a - b) and "'a'" in repr(a)
+    with pytest.raises(TypeError):
+        a | 3  # type: ignore[operator]
+    with pytest.raises(TypeError, match="int"):
+        strahl.union([3])  # type: ignore[list-item]
+
+
+def test_deep_nesting_is_refused_and_lists_are_not() -> None:
+    ball = strahl.sphere()
+    nested = ball
+    with pytest.raises(ValueError, match="nested"):
+        for _ in range(2000):
+            nested = strahl.union(nested, ball)
+    many = strahl.union(ball.translate((i, 0, 0)) for i in range(2000))
+    assert many.parts == 2000
+
+
+def test_transformations_chain() -> None:
+    box = strahl.box((0, 0, 0), (1, 1, 1)).scale((2, 1, 1)).rotate((0, 0, 1), 90).translate((5, 0, 0))
+    bounds = strahl.Scene(box).bounds
+    assert bounds is not None
+    np.testing.assert_allclose(bounds, [[4, 0, 0], [5, 2, 1]], atol=1e-6)
+    matrix = np.array([[0, -1, 0, 5], [2, 0, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]])
+    same = strahl.Scene(strahl.box((0, 0, 0), (1, 1, 1)).transform(matrix)).bounds
+    assert same is not None
+    np.testing.assert_allclose(same, bounds, atol=1e-6)
+    for wrong in (np.zeros((3, 4)), np.eye(3), np.ones((4, 4)), np.full((3, 4), np.nan)):
+        with pytest.raises(ValueError):
+            strahl.sphere().transform(wrong)
+    with pytest.raises(ValueError):
+        strahl.sphere().scale(0)
+    with pytest.raises(ValueError, match="axis"):
+        strahl.sphere().rotate((0, 0, 0), 5)
+
+
+def test_wrong_numbers_are_named() -> None:
+    nan = float("nan")
+    for make, message in (
+        (lambda: strahl.sphere((0, 0), 1), "center must have 3 numbers"),
+        (lambda: strahl.sphere((0, 0, nan), 1), "center must be finite"),
+        (lambda: strahl.sphere(radius=nan), "radius"),
+        (lambda: strahl.torus(1, -1), "minor radius"),
+        (lambda: strahl.plane(normal=(0, 0, 0)), "plane is degenerate"),
+        (lambda: strahl.quadric([1, 2]), "10 coefficients"),
+        (lambda: strahl.prism([[0, 0], [1, 0]], curve="round"), "no spline"),
+        (lambda: strahl.mesh([[0, 0, 0]], [[0, 1, 2]]), "between 0 and 0"),
+        (lambda: strahl.mesh(np.zeros((3, 3)), np.empty((0, 3), int)), "no triangles"),
+        (lambda: strahl.mesh(np.zeros((3, 2)), [[0, 1, 2]]), r"\(n, 3\)"),
+        (lambda: strahl.mesh([[nan, 0, 0]] * 3, [[0, 1, 2]]), "row 0 is not finite"),
+        (lambda: strahl.spheres([[0, 0, 0]], [1, 2]), r"\(1,\)"),
+        (lambda: strahl.spheres([[0, 0, 0]], [float("inf")]), "sphere 0"),
+        (lambda: strahl.Material("blue"), "#rrggbb"),
+        (lambda: strahl.Material((1, 2)), "3 numbers"),
+        (lambda: strahl.Material(ior=0), "ior"),
+        (lambda: strahl.Material(model="cook"), "unknown shading model"),
+        (lambda: strahl.Camera.perspective((0, 0, 0), (0, 0, 0), angle=0), "camera"),
+        (lambda: strahl.spot_light((0, 0, 0), (0, 0, 0)), "direction"),
+        (lambda: strahl.height_field([1, 2, 3]), "shape"),
+    ):
+        with pytest.raises(ValueError, match=message):
+            make()
+    with pytest.raises(TypeError, match="whole numbers"):
+        strahl.mesh(np.zeros((3, 3)), [[0.0, 1.0, 2.0]])
+
+
+def test_meshes_come_from_arrays() -> None:
+    vertices = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
+    faces = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]
+    meshes = [
+        strahl.mesh(vertices, faces),
+        strahl.mesh(vertices.astype(np.float32), np.array(faces, np.uint8)),
+        strahl.mesh(np.asfortranarray(vertices), np.array(faces, np.int64)),
+        strahl.from_trimesh(SimpleNamespace(vertices=vertices, faces=np.array(faces))),
+    ]
+    films = {strahl.Scene(mesh).render(16, 16).sha256 for mesh in meshes}
+    assert len(films) == 1
+    smooth = strahl.mesh(vertices, faces, normals=vertices - 0.25, uv=vertices[:, :2])
+    hit = strahl.Scene(smooth).intersect((5, 5, 5), (-1, -1, -1) / np.sqrt(3))
+    assert hit.hit and hit.normal == pytest.approx([3**-0.5] * 3)
+    with pytest.raises(TypeError, match="no faces"):
+        strahl.from_trimesh(SimpleNamespace(vertices=vertices))
+
+
+def test_a_million_spheres_take_less_than_a_second() -> None:
+    generator = np.random.default_rng(1)
+    centers = generator.uniform(-50, 50, (1_000_000, 3))
+    colors = generator.integers(0, 4, (1_000_000, 3)) / 3
+    start = time.perf_counter()
+    atoms = strahl.spheres(centers, 0.3, colors)
+    assert time.perf_counter() - start < 3
+    assert atoms.parts == 1_000_000
+
+
+def test_spheres_have_their_colours() -> None:
+    scene = strahl.Scene(
+        strahl.spheres([[-1, 0, 0], [1, 0, 0]], [0.5, 0.9], [[1, 0, 0], [0, 0, 1]]),
+        strahl.directional_light((0, 0, -1)),
+        strahl.Camera.orthographic((0, 0, 5), height=4),
+    )
+    film = scene.render(40, 40)
+    assert film.rgb[20, 10, 0] > 0.5 > film.rgb[20, 10, 2]
+    assert film.rgb[20, 30, 2] > 0.5 > film.rgb[20, 30, 0]
+    atoms = SimpleNamespace(positions=np.zeros((2, 3)), numbers=np.array([1, 8]))
+    assert strahl.from_ase(atoms, radii=[1, 2], colors=np.ones((2, 3))).parts == 2
+
+
+def test_height_fields_have_their_heights() -> None:
+    z, x = np.mgrid[0:5, 0:7]
+    heights = 3.0 + 0.5 * x - 0.25 * z
+    scene = strahl.Scene(strahl.height_field(heights, x=(0, 6), z=(0, 4)))
+    places = np.array([[0.3, 10, 0.2], [5.5, 10, 3.25], [2, 10, 1]])
+    hits = scene.intersect(places, (0, -1, 0))
+    np.testing.assert_allclose(hits.position[:, 1], 3 + 0.5 * places[:, 0] - 0.25 * places[:, 2], atol=1e-3)
+
+
+def test_texts_of_povray_are_objects_materials_cameras_and_skies() -> None:
+    marble = strahl.Material.pov("texture { pigment { marble } }", name="marble")
+    stones = strahl.Material.pov('#include "colors.inc"\n---\npigment { Red }')
+    ball = strahl.pov("sphere { 0, 1 }", material=marble)
+    scene = strahl.Scene(
+        ball | strahl.sphere((2, 0, 0), material=stones),
+        strahl.Camera.pov("camera { location -8 * z look_at 0 }"),
+        strahl.Background.pov("sky_sphere { pigment { rgb <0, 0.5, 1> } }"),
+        strahl.point_light((5, 5, -5)),
+    )
+    film = scene.render(32, 24)
+    assert film.rgb[0, 0].tolist() == [0, 0.5, 1]
+    explanation = scene.explain(16, 12, 32, 24)
+    assert explanation.root.hit is not None and "marble" in explanation.root.hit.material
+    assert strahl.pov("sphere { 0, 1 } box { 2, 3 }").parts == 2
+    for wrong in (lambda: strahl.pov("#declare A = 1;"), lambda: strahl.Camera.pov("sphere { 0, 1 }")):
+        with pytest.raises(ValueError):
+            wrong()
+
+
+def test_lights_and_cameras_make_different_pictures() -> None:
+    things = [strahl.plane(), strahl.sphere((0, 1, 0))]
+    lights = [
+        strahl.point_light((4, 8, 6)),
+        strahl.point_light((4, 8, 6), 50, falloff="inverse-square"),
+        strahl.point_light((4, 8, 6), falloff=(10, 2)),
+        strahl.directional_light((-1, -2, -1)),
+        strahl.spot_light((4, 8, 6), (0, 0, 0), inner=5, outer=8),
+        strahl.parallel_light((4, 8, 6), (0, 0, 0), shadows=False),
+        strahl.beam_light((4, 8, 6), (0, 0, 0)),
+        strahl.area_light((4, 8, 6), (3, 0, 0), (0, 3, 0), size=(5, 5)),
+    ]
+    camera = strahl.Camera.perspective((0, 3, 8), (0, 1, 0))
+    films = [strahl.Scene(things, light, camera).render(48, 36).sha256 for light in lights]
+    assert len(set(films)) == len(films)
+    cameras = [
+        camera,
+        camera.focused(0.5, (0, 1, 1)),
+        strahl.Camera.orthographic((0, 3, 8), (0, 1, 0), height=5),
+        strahl.Camera.fisheye((0, 3, 8), (0, 1, 0)),
+        strahl.Camera.spherical((0, 3, 8), (0, 1, 0)),
+        strahl.Camera.cylinder((0, 3, 8), (0, 1, 0)),
+    ]
+    scene = strahl.Scene(things, lights[0], background=strahl.Background.gradient(0, "#88f"))
+    films = [scene.render(48, 36, camera=camera).sha256 for camera in cameras]
+    assert len(set(films)) == len(films)
+    assert camera.eye == (0, 3, 8) and "perspective" in repr(camera)
+    with pytest.raises(ValueError, match="falloff"):
+        strahl.point_light((0, 0, 0), falloff="linear")
+
+
+def test_visibility() -> None:
+    ball = strahl.sphere()
+    scene = strahl.Scene(ball.visible_to(camera=False), ball.translate((5, 0, 0)).visible_to(shadows=False))
+    assert scene.intersect([[0, 0, 9], [5, 0, 9]], (0, 0, -1)).hit.tolist() == [False, True]
+    assert scene.occluded([[0, 0, 9], [5, 0, 9]], (0, 0, -1)).tolist() == [True, False]
