@@ -50,6 +50,8 @@ pub(crate) enum Command {
     /// Render a scene to a picture
     #[command(args_override_self = true)]
     Render(Box<RenderArgs>),
+    /// Show a scene in the browser: the picture while it is rendered, and the ray tree of every pixel that is clicked
+    View(Box<ViewArgs>),
     /// Print the ray tree of a pixel: every ray with its numbers and the line of the scene that caused it
     Explain(ExplainArgs),
     /// Render with every accelerator: prints a table of their costs, and checks that the pictures are the same
@@ -94,7 +96,7 @@ pub(crate) struct SceneArgs {
 }
 
 /// Options of scenes in POV-Ray's language.
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 #[command(next_help_heading = "POV-Ray scenes")]
 pub(crate) struct PovArgs {
     /// Also search include files in this folder, after the scene's folder and the current one; may be given several times
@@ -162,7 +164,7 @@ pub(crate) struct AnimationArgs {
 }
 
 /// Options that affect the value of a pixel.
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub(crate) struct PictureArgs {
     /// Size of the picture in pixels, such as 1280x720 [default: the scene's size, or 800x600]
     #[arg(long, value_name = "WxH", value_parser = parse_size)]
@@ -192,7 +194,7 @@ pub(crate) struct PictureArgs {
 }
 
 /// The acceleration structure.
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub(crate) struct AcceleratorArgs {
     /// Acceleration structure with its parameters, such as bvh, grid:density=4 or octree:traversal=trial-plane (see
     /// `strahl formats`); the picture is the same
@@ -404,6 +406,36 @@ pub(crate) struct ExplainArgs {
     pub(crate) pov: PovArgs,
 }
 
+#[derive(Clone, Debug, Args)]
+pub(crate) struct ViewArgs {
+    /// Scene file [default: a choice of the scenes that are built in]
+    pub(crate) scene: Option<PathBuf>,
+    /// Format of the scene, if the file name doesn't show it (see `strahl formats`)
+    #[arg(long, alias = "scene-format", value_name = "NAME")]
+    pub(crate) format: Option<Format>,
+    /// Port on 127.0.0.1; 0 takes a free one
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub(crate) port: u16,
+    /// Open the page in the browser
+    #[arg(long)]
+    pub(crate) open: bool,
+    /// Let the page write the scene's files
+    #[arg(long)]
+    pub(crate) edit: bool,
+    /// Program that opens a line of the scene, with {file} and {line} in its arguments; without them it gets `+LINE FILE`
+    #[arg(long, value_name = "COMMAND")]
+    pub(crate) editor: Option<String>,
+    /// Number of threads, at most one per processor; 0 means one per processor
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub(crate) threads: usize,
+    #[command(flatten)]
+    pub(crate) picture: PictureArgs,
+    #[command(flatten)]
+    pub(crate) accelerator: AcceleratorArgs,
+    #[command(flatten)]
+    pub(crate) pov: PovArgs,
+}
+
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum ExplainForm {
     /// Text for people
@@ -412,6 +444,8 @@ pub(crate) enum ExplainForm {
     Json,
     /// A graph for Graphviz
     Dot,
+    /// A page for browsers, with everything in it
+    Html,
 }
 
 #[derive(Debug, Args)]

@@ -35,7 +35,7 @@ pub(crate) struct LoadTimes {
 enum Place {
     File(PathBuf),
     Text {
-        name: &'static str,
+        name: String,
         format: Format,
         bytes: Vec<u8>,
     },
@@ -88,7 +88,7 @@ impl<'a> Input<'a> {
     ) -> Result<Self, Failure> {
         let place = match scene {
             None => Place::Text {
-                name: "demo.pov",
+                name: "demo.pov".into(),
                 format: Format::Pov,
                 bytes: DEMO.into(),
             },
@@ -104,7 +104,7 @@ impl<'a> Input<'a> {
                     .read_to_end(&mut bytes)
                     .map_err(|e| Failure::new(format!("cannot read the standard input: {e}")))?;
                 Place::Text {
-                    name: "<stdin>",
+                    name: "<stdin>".into(),
                     format,
                     bytes,
                 }
@@ -123,6 +123,19 @@ impl<'a> Input<'a> {
             pinned: None,
             inputs: RefCell::new(None),
         })
+    }
+
+    /// A text to read instead of the scene's file; included files are found beside the file.
+    pub(crate) fn with_text(mut self, text: &str) -> Self {
+        if let Place::File(path) = &self.place {
+            let format = self.format.or_else(|| Format::of_path(path));
+            self.place = Place::Text {
+                name: path.display().to_string(),
+                format: format.unwrap_or(Format::Pov),
+                bytes: text.into(),
+            };
+        }
+        self
     }
 
     /// Lets the scene write files: into the folder of `--allow-write`, or else into SCENE.out beside the scene.
@@ -190,7 +203,7 @@ impl<'a> Input<'a> {
     pub(crate) fn name(&self) -> String {
         match &self.place {
             Place::File(path) => path.display().to_string(),
-            Place::Text { name, .. } => (*name).to_owned(),
+            Place::Text { name, .. } => name.clone(),
         }
     }
 
@@ -293,6 +306,17 @@ impl<'a> Input<'a> {
             Place::File(path) => Writing::Own(path.with_extension("out")),
             Place::Text { .. } => Writing::Nowhere,
         }
+    }
+
+    /// Reads the scene without printing anything, and adds ground, camera and lights to a bare mesh.
+    pub(crate) fn read_staged(&self, moment: Moment) -> Loaded {
+        let mut loaded = self.read(moment, true);
+        if let Some(scene) = &mut loaded.scene
+            && !self.is_pov()
+        {
+            self.staged.set(strahl::studio(scene, self.up()));
+        }
+        loaded
     }
 
     /// Reads the scene and prints its diagnostics.

@@ -44,7 +44,10 @@ fn main() -> ExitCode {
         }
     };
     let cli = Cli::parse_from(&translated.words);
-    interrupt::listen();
+    // The viewer ends by itself.
+    if !matches!(cli.command, Command::View(_)) {
+        interrupt::listen();
+    }
     memory::bound(&MEMORY, cli.guard.max_memory);
     if cli.guard.strict {
         report::be_strict();
@@ -57,6 +60,7 @@ fn main() -> ExitCode {
         }
         Command::Submit(command) => submit::submit(command, &translated.words, &translated.notes),
         Command::Merge(args) => commands::merge(args),
+        Command::View(args) => commands::view(args),
         Command::Explain(args) => commands::explain(args),
         Command::Compare(args) => commands::compare(args),
         Command::Heatmap(args) => commands::heatmap(args),

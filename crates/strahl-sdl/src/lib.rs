@@ -38,6 +38,7 @@
 mod directives;
 mod expr;
 mod grammar;
+mod highlight;
 mod include;
 mod keywords;
 mod lexer;
@@ -53,6 +54,7 @@ pub use expr::{Array, Dictionary, PigmentFunction, Spline, SplineKind};
 pub use grammar::{
     Declared, Entity, GlobalSettings, State, Texture, Thing, object_words, pattern_words,
 };
+pub use highlight::{Piece, highlight};
 pub use keywords::{Word, WordKind};
 pub use options::{Frame, Limits, Options};
 pub use parser::{Failed, Macro, PResult, Parser, Place};

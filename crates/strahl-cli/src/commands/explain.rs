@@ -1,5 +1,5 @@
 use crate::args::{ExplainArgs, ExplainForm};
-use crate::explain::{Chosen, Pixel, Shown, dot, json, text};
+use crate::explain::{Chosen, Pixel, Shown, dot, explanation, json, text};
 use crate::input::{Input, render_options};
 use crate::output::say;
 use crate::report::{Failure, Reporter};
@@ -44,6 +44,10 @@ pub(crate) fn explain(args: &ExplainArgs) -> Result<(), Failure> {
         ExplainForm::Text => text(&scene, &pixel, &shown),
         ExplainForm::Json => json(&scene, &pixel, &shown),
         ExplainForm::Dot => dot(&scene, &pixel, &shown),
+        ExplainForm::Html => {
+            let data = explanation(&scene, &pixel, &shown);
+            strahl_view::explanation_page(&data, &input.name(), "en")
+        }
     };
     say!("{printed}");
     Ok(())

@@ -9,6 +9,7 @@ mod man;
 mod merge;
 mod render;
 mod trace_ray;
+mod view;
 
 pub(crate) use check::check;
 pub(crate) use compare::compare;
@@ -21,3 +22,4 @@ pub(crate) use man::man;
 pub(crate) use merge::merge;
 pub(crate) use render::{render, render_with};
 pub(crate) use trace_ray::trace_ray;
+pub(crate) use view::view;

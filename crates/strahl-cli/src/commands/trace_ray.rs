@@ -2,7 +2,7 @@ use crate::args::TraceRayArgs;
 use crate::input::{DEFAULT_SIZE, Input};
 use crate::output::say;
 use crate::report::{Failure, Reporter};
-use serde_json::{Value, json};
+use serde_json::json;
 use strahl::accel::{Exit, Place, Step};
 use strahl::math::{Aabb, DVec3};
 use strahl::tracing::{PrimaryRays, RayWalk, RenderScene, WalkEvent, walk};
@@ -30,7 +30,7 @@ pub(crate) fn trace_ray(args: &TraceRayArgs) -> Result<(), Failure> {
             "size": [width, height],
             "accelerator": kind.to_string(),
             "ray": { "origin": point(ray.origin), "direction": point(ray.direction) },
-            "events": events_json(&scene, &way),
+            "events": strahl_view::walk_events(&scene, &way),
             "steps": way.stats.node_visits,
             "tests": way.stats.primitive_tests,
             "hit": way.hit.map(|h| json!({ "t": h.t, "element": h.id })),
@@ -139,66 +139,8 @@ fn face(exit: &Exit) -> &'static str {
     }
 }
 
-fn events_json(scene: &RenderScene, way: &RayWalk) -> Vec<Value> {
-    let event = |event: &WalkEvent| match event {
-        WalkEvent::Step(step) => {
-            let (kind, place) = match step.place {
-                Place::Node(b) => ("node", bounds(&b)),
-                Place::Leaf(b) => ("leaf", bounds(&b)),
-                Place::Sphere(c, r) => ("sphere", json!({ "center": point(c), "radius": r })),
-                Place::LeafSphere(c, r) => {
-                    ("leaf sphere", json!({ "center": point(c), "radius": r }))
-                }
-                Place::Cell(index, b) => (
-                    "cell",
-                    json!({ "index": index, "min": point(b.min), "max": point(b.max) }),
-                ),
-                Place::Empty(b) => ("empty block", bounds(&b)),
-                _ => ("place", Value::Null),
-            };
-            json!({
-                "event": kind,
-                "place": place,
-                "level": step.level,
-                "near": number(step.near),
-                "far": number(step.far),
-                "exit": step.exit.map(|e| json!({ "face": face(&e), "region": e.region })),
-            })
-        }
-        WalkEvent::Test {
-            id,
-            object,
-            closest,
-            found,
-        } => {
-            let info = scene.objects().get(*object);
-            let info = info.as_ref();
-            json!({
-                "event": "test",
-                "element": id,
-                "object": object,
-                "kind": info.map(|i| i.kind),
-                "name": info.and_then(|i| i.name.as_deref()),
-                "hit": found.then_some(closest),
-            })
-        }
-        WalkEvent::Enter { id } => json!({ "event": "enter instance", "element": id }),
-        WalkEvent::Leave => json!({ "event": "leave instance" }),
-    };
-    way.events.iter().map(event).collect()
-}
-
-fn bounds(b: &Aabb) -> Value {
-    json!({ "min": point(b.min), "max": point(b.max) })
-}
-
 fn point(p: DVec3) -> [f64; 3] {
     p.to_array()
-}
-
-/// JSON has no infinity: it becomes null.
-fn number(x: f64) -> Option<f64> {
-    x.is_finite().then_some(x)
 }
 
 fn show(p: DVec3) -> String {

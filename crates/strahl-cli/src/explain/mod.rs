@@ -1,4 +1,4 @@
-//! The ray tree of a pixel as text, as JSON and as a graph.
+//! The ray tree of a pixel as text, as JSON, as a graph and as a page.
 
 mod digits;
 mod dot;
@@ -13,7 +13,7 @@ mod text;
 
 pub(crate) use digits::Digits;
 pub(crate) use dot::dot;
-pub(crate) use json::json;
+pub(crate) use json::{explanation, json};
 pub(crate) use text::text;
 
 use std::str::FromStr;

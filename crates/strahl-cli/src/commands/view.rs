@@ -1,0 +1,106 @@
+use crate::args::ViewArgs;
+use crate::input::{Input, Moment, threads};
+use crate::output::say;
+use crate::report::{Failure, Reporter};
+use std::process::{Command, Stdio};
+use strahl::Loaded;
+use strahl::prelude::*;
+use strahl_view::{Defaults, Request, ViewOptions, serve};
+
+/// `strahl view`: serves a page that shows a scene.
+pub(crate) fn view(args: &ViewArgs) -> Result<(), Failure> {
+    let reporter = Reporter::new(false);
+    if let Some(scene) = &args.scene
+        && !scene.is_file()
+    {
+        let shown = scene.display();
+        return Err(Failure::new(format!("there is no scene file {shown}")));
+    }
+    let session = match threads(args.threads, &reporter) {
+        0 => Session::new(Threads::All),
+        count => Session::new(Threads::Count(count)),
+    };
+    let picture = &args.picture;
+    let defaults = Defaults {
+        size: picture.size,
+        sampling: picture.sampling.unwrap_or(Sampling::ADAPTIVE),
+        seed: picture.seed,
+        depth: picture.max_depth,
+        cutoff: picture.adc_bailout,
+        max_tree_rays: picture.max_tree_rays,
+        shading: picture.shading,
+        accelerator: args.accelerator.kind(),
+        clock: args.pov.clock.unwrap_or(0.0),
+    };
+    let (format, pov) = (args.format, args.pov.clone());
+    let load = move |request: &Request| {
+        let input = match Input::new(Some(&request.path), format, &pov, request.size) {
+            Ok(input) => input.recording(true),
+            Err(failure) => return failed(&failure),
+        };
+        let input = match &request.text {
+            Some(text) => input.with_text(text),
+            None => input,
+        };
+        let still = input.still();
+        input.read_staged(Moment {
+            clock: request.clock,
+            ..still
+        })
+    };
+    let options = ViewOptions {
+        port: args.port,
+        scene: args.scene.clone(),
+        load: Box::new(load),
+        defaults,
+        session: session.map_err(Failure::new)?,
+        edit: args.edit,
+        editor: args.editor.clone(),
+    };
+    let mut printed = Ok(());
+    serve(options, |served| {
+        printed = announce(&served.address, args.open, &reporter);
+        if printed.is_err() {
+            served.end();
+        }
+    })
+    .map_err(Failure::new)?;
+    printed
+}
+
+/// Prints the address, and opens the page if that is asked for.
+fn announce(address: &str, open: bool, reporter: &Reporter) -> Result<(), Failure> {
+    say!("{address}");
+    if open {
+        let opener = match () {
+            () if cfg!(target_os = "macos") => "open",
+            () if cfg!(windows) => "explorer",
+            () => "xdg-open",
+        };
+        let mut command = Command::new(opener);
+        command
+            .arg(address)
+            .stdin(Stdio::null())
+            .stdout(Stdio::null())
+            .stderr(Stdio::null());
+        match command.spawn() {
+            // Waits for its end, so that no zombie is left.
+            Ok(mut child) => drop(std::thread::spawn(move || child.wait())),
+            Err(error) => reporter.warn(&format!("cannot open a browser with {opener}: {error}")),
+        }
+    }
+    Ok(())
+}
+
+/// A scene that can't be read.
+fn failed(failure: &Failure) -> Loaded {
+    let message = match failure {
+        Failure::Message(message) => message.clone(),
+        _ => "the scene cannot be read".to_owned(),
+    };
+    Loaded {
+        scene: None,
+        diagnostics: vec![Diagnostic::error(message)],
+        inputs: None,
+    }
+}

@@ -1,0 +1,153 @@
+//! The viewer in a real browser: Chromium, driven by playwright-core (see browser.mjs).
+
+#![allow(
+    clippy::print_stdout,
+    clippy::print_stderr,
+    reason = "tests say what they skip"
+)]
+
+use std::io::{BufRead, BufReader};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+
+const SCENE: &str = "\
+#version 3.7;
+global_settings { assumed_gamma 1 }
+camera { location <0, 1.2, -5> look_at <0, 0.2, 0> angle 40 }
+light_source { <4, 6, -5>, 1 }
+#include \"ball.inc\"
+sphere {
+  <0, 0, 0>, 1
+  pigment { rgb Ball }
+  finish { diffuse 0.7 specular 0.5 reflection 0.2 }
+}
+plane { y, -1 pigment { checker rgb 0.9 rgb 0.2 } }
+";
+
+/// A program that is ended with the test.
+struct Running(Child);
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
+
+/// The folder with playwright-core, and the browser; `None` if one of them or Node.js is missing.
+fn tools() -> Option<(PathBuf, PathBuf)> {
+    let target = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../target/browser");
+    let modules = std::env::var_os("STRAHL_PLAYWRIGHT").map_or(target, PathBuf::from);
+    let paths = std::env::var_os("PATH")?;
+    let program = |name: &str| {
+        let files = std::env::split_paths(&paths).map(|folder| folder.join(name));
+        files.into_iter().find(|file| file.is_file())
+    };
+    program("node")?;
+    let browser = program("chromium").or_else(|| program("chromium-browser"))?;
+    modules
+        .join("node_modules/playwright-core")
+        .is_dir()
+        .then_some((modules, browser))
+}
+
+#[test]
+fn the_viewer_works_in_a_browser() {
+    let Some((modules, browser)) = tools() else {
+        assert!(
+            std::env::var_os("STRAHL_REQUIRE_TOOLS").is_none(),
+            "node, chromium or playwright-core (npm install --prefix target/browser playwright-core) is missing"
+        );
+        eprintln!("SKIPPED: node, chromium or playwright-core is missing");
+        return;
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    std::fs::write(at("scene.pov"), SCENE).unwrap();
+    std::fs::write(at("ball.inc"), "#declare Ball = <1, 0.45, 0.05>;\n").unwrap();
+    let strahl = env!("CARGO_BIN_EXE_strahl");
+    for (name, more) in [
+        ("whole.ppm", [].as_slice()),
+        ("depth1.ppm", &["--max-depth", "1"]),
+    ] {
+        let rendered = Command::new(strahl)
+            .args([
+                "render",
+                "scene.pov",
+                "--size",
+                "160x120",
+                "--quiet",
+                "-o",
+                name,
+            ])
+            .args(more)
+            .current_dir(folder.path())
+            .status();
+        assert!(rendered.unwrap().success());
+    }
+    let mut view = Running(
+        Command::new(strahl)
+            .args(["view", "scene.pov", "--size", "160x120", "--edit"])
+            .current_dir(folder.path())
+            .stdout(Stdio::piped())
+            .spawn()
+            .unwrap(),
+    );
+    let mut address = String::new();
+    let out = view.0.stdout.take().unwrap();
+    BufReader::new(out).read_line(&mut address).unwrap();
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/view/browser.mjs");
+    let checked = Command::new("node")
+        .arg(script)
+        .args([address.trim(), &folder.path().display().to_string()])
+        .env("STRAHL_PLAYWRIGHT", modules)
+        .env("STRAHL_BROWSER", browser)
+        .output()
+        .unwrap();
+    let (said, problems) = (
+        String::from_utf8_lossy(&checked.stdout),
+        String::from_utf8_lossy(&checked.stderr),
+    );
+    assert!(checked.status.success(), "{said}\n{problems}");
+    println!("{said}");
+}
+
+#[cfg(unix)]
+#[test]
+fn the_viewer_prints_one_line_and_ends_on_signals() {
+    for signal in ["-INT", "-TERM"] {
+        let folder = tempfile::tempdir().unwrap();
+        let mut view = Running(
+            Command::new(env!("CARGO_BIN_EXE_strahl"))
+                .args(["view", "--port", "0"])
+                .env("TMPDIR", folder.path())
+                .stdout(Stdio::piped())
+                .spawn()
+                .unwrap(),
+        );
+        let mut lines = BufReader::new(view.0.stdout.take().unwrap()).lines();
+        let address = lines.next().unwrap().unwrap();
+        assert!(address.starts_with("http://127.0.0.1:") && address.contains("/?token="));
+        let kill = Command::new("kill")
+            .args([signal, &view.0.id().to_string()])
+            .status();
+        assert!(kill.unwrap().success());
+        assert!(view.0.wait().unwrap().success(), "{signal}");
+        assert!(lines.next().is_none());
+        assert_eq!(
+            std::fs::read_dir(folder.path()).unwrap().count(),
+            0,
+            "nothing is left"
+        );
+    }
+}
+
+#[test]
+fn a_missing_scene_is_an_error() {
+    let out = Command::new(env!("CARGO_BIN_EXE_strahl"))
+        .args(["view", "nowhere.pov"])
+        .output()
+        .unwrap();
+    assert!(!out.status.success());
+    assert!(String::from_utf8_lossy(&out.stderr).contains("nowhere.pov"));
+}

@@ -1,0 +1,10 @@
+// The page of a pixel that needs no server.
+
+import { el } from "./numbers.js";
+import { showPixel } from "./tree.js";
+import { setLanguage } from "./words.js";
+
+setLanguage(document.documentElement.lang);
+const leaf = document.getElementById("leaf");
+const pixelData = JSON.parse(document.getElementById("explanation").textContent);
+leaf.append(el("h1", { text: leaf.dataset.title }), showPixel(pixelData));

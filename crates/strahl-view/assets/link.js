@@ -1,0 +1,44 @@
+// The connection to the server.
+
+export class Link {
+  constructor(handlers) {
+    this.handlers = handlers;
+    this.waiting = new Map();
+    this.count = 0;
+    const scheme = location.protocol === "https:" ? "wss" : "ws";
+    this.socket = new WebSocket(`${scheme}://${location.host}/ws`);
+    this.socket.binaryType = "arraybuffer";
+    this.socket.onmessage = (event) => this.receive(event.data);
+    this.socket.onclose = () => handlers.lost();
+  }
+
+  send(message) {
+    if (this.socket.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify(message));
+  }
+
+  // Asks a question; the promise has its answer, or fails with the server's reason.
+  ask(message) {
+    const id = (this.count += 1);
+    return new Promise((resolve, reject) => {
+      this.waiting.set(id, { resolve, reject });
+      this.send({ ...message, id });
+    });
+  }
+
+  receive(data) {
+    if (data instanceof ArrayBuffer) {
+      const [kind, picture, x, y, width, height, step, extra] = new Uint32Array(data, 0, 8);
+      this.handlers.binary({ kind, picture, x, y, width, height, step, extra }, data.slice(32));
+      return;
+    }
+    const message = JSON.parse(data);
+    if (message.type !== "reply") {
+      this.handlers[message.type]?.(message);
+      return;
+    }
+    const waiting = this.waiting.get(message.id);
+    this.waiting.delete(message.id);
+    if (message.problem !== undefined) waiting?.reject(new Error(message.problem));
+    else waiting?.resolve(message.value);
+  }
+}

@@ -1,0 +1,263 @@
+// The picture: move, zoom, pick pixels, turn the camera.
+
+import { el, number } from "./numbers.js";
+import { Film } from "./film.js";
+import { dolly, pan, turn } from "./camera.js";
+
+export class Stage {
+  // `actions`: pick(x, y), hover(x, y), leave(), camera(camera), values(region), toggled(), pivot(x, y) -> promise of a point or null.
+  constructor(box, actions) {
+    this.box = box;
+    this.actions = actions;
+    this.film = new Film("picture");
+    this.side = new Film("side");
+    this.side.canvas.hidden = true;
+    this.over = el("canvas", { id: "over" });
+    this.swipe = el("div", { id: "swipe", role: "slider", tabindex: "0", hidden: true });
+    this.progress = el("div", { id: "progress" });
+    box.append(this.film.canvas, this.side.canvas, this.over, this.swipe, this.progress);
+    this.scale = 1;
+    this.left = 0;
+    this.top = 0;
+    this.fitted = true;
+    this.split = 0.5;
+    this.turning = false;
+    this.picked = null;
+    this.marks = null;
+    this.linear = null;
+    this.pointers = new Map();
+    new ResizeObserver(() => { if (this.fitted) this.fit(); else this.place(); }).observe(box);
+    box.addEventListener("pointerdown", (event) => this.down(event));
+    box.addEventListener("pointermove", (event) => this.move(event));
+    box.addEventListener("pointerup", (event) => this.up(event));
+    box.addEventListener("pointercancel", (event) => this.pointers.delete(event.pointerId));
+    box.addEventListener("pointerleave", () => actions.leave());
+    box.addEventListener("wheel", (event) => this.wheel(event), { passive: false });
+    this.swipe.addEventListener("pointerdown", (event) => { event.stopPropagation(); this.swipe.setPointerCapture(event.pointerId); this.swiping = true; });
+    this.swipe.addEventListener("pointermove", (event) => { if (this.swiping) this.swipeTo(event.clientX); });
+    this.swipe.addEventListener("pointerup", () => { this.swiping = false; });
+    this.swipe.addEventListener("keydown", (event) => {
+      const by = { ArrowLeft: -0.02, ArrowRight: 0.02 }[event.key];
+      if (by) { event.preventDefault(); event.stopPropagation(); this.split = Math.min(1, Math.max(0, this.split + by)); this.place(); }
+    });
+  }
+
+  get width() { return this.film.canvas.width; }
+  get height() { return this.film.canvas.height; }
+
+  fit() {
+    this.fitted = true;
+    const { clientWidth, clientHeight } = this.box;
+    const most = Math.min((clientWidth - 24) / this.width, (clientHeight - 24) / this.height);
+    this.scale = most > 1 ? Math.max(1, Math.floor(most * 4) / 4) : most;
+    this.left = Math.round((clientWidth - this.width * this.scale) / 2);
+    this.top = Math.round((clientHeight - this.height * this.scale) / 2);
+    this.place();
+  }
+
+  zoomTo(scale, x = this.box.clientWidth / 2, y = this.box.clientHeight / 2) {
+    this.fitted = false;
+    const clamped = Math.min(256, Math.max(0.05, scale));
+    this.left = x - ((x - this.left) * clamped) / this.scale;
+    this.top = y - ((y - this.top) * clamped) / this.scale;
+    this.scale = clamped;
+    this.place();
+  }
+
+  place() {
+    for (const canvas of [this.film.canvas, this.side.canvas]) {
+      canvas.style.transform = `translate(${this.left}px, ${this.top}px) scale(${this.scale * (this.width / canvas.width)})`;
+      canvas.classList.toggle("pixels", this.scale > 1.5);
+    }
+    const line = this.left + this.split * this.width * this.scale;
+    this.swipe.style.left = `${line}px`;
+    const cut = this.swipe.hidden ? 0 : this.split * this.side.canvas.width;
+    this.side.canvas.style.clipPath = `inset(0 0 0 ${cut}px)`;
+    this.draw();
+  }
+
+  swipeTo(clientX) {
+    const x = clientX - this.box.getBoundingClientRect().left;
+    this.split = Math.min(1, Math.max(0, (x - this.left) / (this.width * this.scale)));
+    this.place();
+  }
+
+  compare(on) {
+    this.swipe.hidden = !on;
+    this.side.canvas.hidden = !on;
+    this.place();
+  }
+
+  pixelAt(event) {
+    const box = this.box.getBoundingClientRect();
+    const x = Math.floor((event.clientX - box.left - this.left) / this.scale);
+    const y = Math.floor((event.clientY - box.top - this.top) / this.scale);
+    return x >= 0 && y >= 0 && x < this.width && y < this.height ? [x, y] : null;
+  }
+
+  isPicture(event) {
+    return event.target === this.box || event.target.classList.contains("film");
+  }
+
+  down(event) {
+    if (!this.isPicture(event) || event.button > 2) return;
+    this.box.setPointerCapture(event.pointerId);
+    this.pointers.set(event.pointerId, event);
+    this.moved = false;
+    this.start = { x: event.clientX, y: event.clientY };
+    this.button = event.button;
+    if (this.turns(event)) {
+      const at = this.pixelAt(event);
+      this.pivot = null;
+      if (at) this.actions.pivot(...at).then((point) => { this.pivot = point; }, () => {});
+    }
+  }
+
+  turns(event) {
+    return this.turning !== event.altKey;
+  }
+
+  move(event) {
+    if (this.pointers.size === 0) {
+      const at = this.isPicture(event) ? this.pixelAt(event) : null;
+      if (at) this.actions.hover(...at); else this.actions.leave();
+      return;
+    }
+    const last = this.pointers.get(event.pointerId);
+    if (!last) return;
+    const [dx, dy] = [event.clientX - last.clientX, event.clientY - last.clientY];
+    if (Math.hypot(event.clientX - this.start.x, event.clientY - this.start.y) > 3) this.moved = true;
+    if (this.pointers.size === 2) {
+      const other = [...this.pointers.values()].find((one) => one.pointerId !== event.pointerId);
+      const before = Math.hypot(last.clientX - other.clientX, last.clientY - other.clientY);
+      const now = Math.hypot(event.clientX - other.clientX, event.clientY - other.clientY);
+      const box = this.box.getBoundingClientRect();
+      if (before > 0) this.zoomTo((this.scale * now) / before, other.clientX - box.left, other.clientY - box.top);
+    } else if (this.moved) {
+      if (this.turns(event)) this.moveCamera(event, dx, dy);
+      else {
+        this.fitted = false;
+        this.left += dx;
+        this.top += dy;
+        this.place();
+      }
+    }
+    this.pointers.set(event.pointerId, event);
+  }
+
+  moveCamera(event, dx, dy) {
+    const camera = this.actions.current();
+    if (!camera) return;
+    const size = this.height * this.scale;
+    const shift = event.shiftKey || this.button === 2 || this.button === 1;
+    const aspect = this.width / this.height;
+    this.actions.camera(shift ? pan(camera, this.pivot, dx / size, dy / size, aspect) : turn(camera, this.pivot, (-dx / size) * 3, (-dy / size) * 3));
+  }
+
+  up(event) {
+    const had = this.pointers.delete(event.pointerId);
+    if (had && !this.moved && this.isPicture(event) && event.button === 0) {
+      const at = this.pixelAt(event);
+      if (at) this.actions.pick(...at);
+    }
+  }
+
+  wheel(event) {
+    if (!this.isPicture(event)) return;
+    event.preventDefault();
+    const lines = event.deltaMode === 1 ? event.deltaY * 30 : event.deltaY;
+    if (this.turns(event)) {
+      const camera = this.actions.current();
+      if (camera) this.actions.camera(dolly(camera, this.pivot ?? this.actions.middle(), Math.exp(lines * 0.0012)));
+      return;
+    }
+    const box = this.box.getBoundingClientRect();
+    this.zoomTo(this.scale * Math.exp(-lines * 0.0018), event.clientX - box.left, event.clientY - box.top);
+  }
+
+  // Marks, the pixel that was picked, and the values of pixels that are large enough.
+  draw() {
+    const { clientWidth, clientHeight } = this.box;
+    const ratio = window.devicePixelRatio || 1;
+    if (this.over.width !== Math.round(clientWidth * ratio) || this.over.height !== Math.round(clientHeight * ratio)) {
+      this.over.width = Math.round(clientWidth * ratio);
+      this.over.height = Math.round(clientHeight * ratio);
+    }
+    const pen = this.over.getContext("2d");
+    pen.setTransform(ratio, 0, 0, ratio, 0, 0);
+    pen.clearRect(0, 0, clientWidth, clientHeight);
+    if (this.marks) {
+      pen.imageSmoothingEnabled = this.scale < 1;
+      pen.drawImage(this.marks, this.left, this.top, this.width * this.scale, this.height * this.scale);
+    }
+    if (this.scale >= 64) this.drawValues(pen, clientWidth, clientHeight);
+    if (this.picked) {
+      const [x, y] = this.picked;
+      const size = Math.max(this.scale, 9);
+      const middle = [this.left + (x + 0.5) * this.scale, this.top + (y + 0.5) * this.scale];
+      for (const [color, width] of [["rgb(0 0 0 / 80%)", 3.5], ["#ffb648", 1.5]]) {
+        pen.strokeStyle = color;
+        pen.lineWidth = width;
+        pen.strokeRect(middle[0] - size / 2, middle[1] - size / 2, size, size);
+      }
+    }
+  }
+
+  drawValues(pen, width, height) {
+    const low = [Math.max(0, Math.floor(-this.left / this.scale)), Math.max(0, Math.floor(-this.top / this.scale))];
+    const high = [Math.min(this.width, Math.ceil((width - this.left) / this.scale)), Math.min(this.height, Math.ceil((height - this.top) / this.scale))];
+    const region = [low[0], low[1], high[0] - low[0], high[1] - low[1]];
+    if (region[2] <= 0 || region[3] <= 0) return;
+    const key = `${this.film.number}:${this.film.finished}:${region}`;
+    if (this.linear?.key !== key) {
+      if (this.asked !== key) {
+        this.asked = key;
+        this.actions.values(region);
+      }
+      return;
+    }
+    pen.font = `${Math.min(13, this.scale / 6.5)}px ui-monospace, Menlo, Consolas, "DejaVu Sans Mono", monospace`;
+    pen.textAlign = "center";
+    pen.textBaseline = "middle";
+    for (let y = 0; y < region[3]; y += 1) {
+      for (let x = 0; x < region[2]; x += 1) {
+        const at = 3 * (y * region[2] + x);
+        const color = [...this.linear.values.slice(at, at + 3)];
+        pen.fillStyle = 0.2 * color[0] + 0.7 * color[1] + 0.1 * color[2] > 0.2 ? "#000" : "#fff";
+        color.forEach((c, i) => {
+          pen.fillText(number(c, 3), this.left + (low[0] + x + 0.5) * this.scale, this.top + (low[1] + y + 0.5) * this.scale + (i - 1) * this.scale * 0.23);
+        });
+      }
+    }
+  }
+
+  setLinear(region, values) {
+    this.linear = { key: this.asked, values };
+    this.draw();
+  }
+
+  setMarks(bytes, width, height) {
+    if (!bytes) {
+      this.marks = null;
+      this.draw();
+      return;
+    }
+    const codes = new Uint8Array(bytes);
+    const canvas = el("canvas", { width, height });
+    const context = canvas.getContext("2d");
+    const image = context.createImageData(width, height);
+    const pixels = new Uint32Array(image.data.buffer);
+    for (let i = 0; i < pixels.length; i += 1) {
+      if (!codes[i]) {
+        pixels[i] = 0x8c101010;
+        continue;
+      }
+      const x = i % width;
+      const edge = x === 0 || x === width - 1 || !codes[i - 1] || !codes[i + 1] || !codes[i - width] || !codes[i + width];
+      if (edge) pixels[i] = 0xff48b6ff;
+    }
+    context.putImageData(image, 0, 0);
+    this.marks = canvas;
+    this.draw();
+  }
+}

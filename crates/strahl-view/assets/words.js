@@ -1,0 +1,80 @@
+// The words of the page in English and German.
+
+const WORDS = {
+  en: {
+    scenes: "Scenes", scene: "Scene", picture: "Picture", tree: "Rays", space: "In space", accelerator: "Accelerator", inspector: "Pixel",
+    waiting: "connecting …", lost: "The connection to strahl is lost. Start `strahl view` again.", loading: "reading the scene …", rendering: "rendering",
+    refining: "antialiasing", done: "finished", rays: "rays", pass: "pass",
+    color: "Colour", normal: "Normals", depth: "Depth", object: "Objects", material: "Materials", levels: "Levels of the tree", tests: "Tests",
+    steps: "Steps", rayCount: "Rays", time: "Time",
+    channel: "Channel", exposure: "Exposure", sampling: "Antialiasing", maxDepth: "Depth", cutoff: "Cutoff", shading: "Shading", size: "Size",
+    materialIs: "material", own: "as in the scene", camera: "Camera", inspect: "Inspect", copyCamera: "Copy camera", resetCamera: "Reset", copied: "copied",
+    compare: "Compare", savePng: "PNG", help: "Help", theme: "Light or dark", language: "Deutsch", export: "Export",
+    fit: "Fit", background: "background", line: "line", pixel: "pixel", of: "of", sample: "sample", samples: "samples", noPixel: "Click a pixel to see where its colour comes from.",
+    primary: "primary ray", reflection: "reflection ray", transparency: "transparency ray", shadow: "shadow ray", adds: "adds",
+    linear: "linear", sum: "The rays add up to", level: "level", weight: "weight", origin: "origin", direction: "direction", point: "point", normalIs: "normal",
+    medium: "runs through", noHit: "It hits nothing: the background is", lightHere: "Light at this point", terms: "Terms", geometry: "Geometry",
+    visible: "visible", blocked: "blocked by", weakened: "weakened by", behind: "behind the surface", noLight: "no light arrives", at: "at", ambient: "ambient", emission: "emission",
+    diffuse: "diffuse", highlight: "highlight", local: "own light", total: "total", ended: "not followed", totalReflection: "Total reflection: Snell's law has no solution, sin θ₂ would be",
+    why: "Why is it dark here?", dark: "dark", bright: "lit", ofRays: "shadow rays", kept: "transmittance", fog: "fog", finish: "POV-Ray's finish", layer: "layer", model: "shading model",
+    meanOf: "mean of %n points of the light", adapt: "The picture has these samples for the pixel:", mean: "mean",
+    error: "error", warning: "warning", errors: "errors", warnings: "warnings", lastGood: "The last good picture is shown.",
+    edit: "Try", stopEdit: "Drop changes", save: "Save", saved: "saved", tryHint: "Changes stay in this page", openEditor: "Editor", tooLong: "not shown",
+    play: "Play", pause: "Pause", next: "Next", previous: "Back", all: "All", perspective: "Perspective", orthographic: "Orthographic", stepOf: "step",
+    node: "node", leaf: "leaf", cell: "cell", test: "test", hits: "hits", misses: "misses", sphere: "sphere", "leaf sphere": "leaf sphere", "empty block": "empty block", "enter instance": "enter instance", "leave instance": "leave instance",
+    exit: "exit face", region: "region", clock: "Clock", swipe: "Drag the line to compare", settingsOf: "Compared with", none: "none", marked: "pixels of line",
+    objects: "objects", lights: "lights", close: "Close",
+    helpTitle: "Keys and mouse",
+    helpList: [
+      ["drag, wheel", "move and zoom the picture"], ["click", "the ray tree of a pixel"], ["arrow keys", "the pixel beside it"],
+      ["C", "camera: drag turns, Shift+drag moves, wheel goes nearer; again: inspect"], ["R", "the scene's own camera"], ["F", "fit the picture"], ["1", "one to one"],
+      ["+ −", "exposure"], ["N D O M", "normals, depth, objects, materials; again: colour"], ["X", "compare two settings"],
+      ["S", "show or hide the scene's text"], ["I", "show or hide the inspector"], ["T", "light or dark"], ["L", "English or German"], ["Space", "play or pause the rays in space"], [", .", "step back, step on"], ["?", "this sheet"], ["Esc", "close, unmark"],
+    ],
+  },
+  de: {
+    scenes: "Szenen", scene: "Szene", picture: "Bild", tree: "Strahlen", space: "Im Raum", accelerator: "Beschleunigung", inspector: "Bildpunkt",
+    waiting: "verbinde …", lost: "Die Verbindung zu strahl ist weg. Starte `strahl view` neu.", loading: "liest die Szene …", rendering: "rechnet",
+    refining: "Kantenglättung", done: "fertig", rays: "Strahlen", pass: "Durchgang",
+    color: "Farbe", normal: "Normalen", depth: "Tiefe", object: "Objekte", material: "Materialien", levels: "Stufen des Baums", tests: "Tests",
+    steps: "Schritte", rayCount: "Strahlen", time: "Zeit",
+    channel: "Kanal", exposure: "Belichtung", sampling: "Kantenglättung", maxDepth: "Tiefe", cutoff: "Abbruch", shading: "Beleuchtung", size: "Größe",
+    materialIs: "Material", own: "wie in der Szene", camera: "Kamera", inspect: "Untersuchen", copyCamera: "Kamera kopieren", resetCamera: "Zurück", copied: "kopiert",
+    compare: "Vergleichen", savePng: "PNG", help: "Hilfe", theme: "Hell oder dunkel", language: "English", export: "Exportieren",
+    fit: "Einpassen", background: "Hintergrund", line: "Zeile", pixel: "Bildpunkt", of: "von", sample: "Abtastung", samples: "Abtastungen", noPixel: "Klicke auf einen Bildpunkt, um zu sehen, woher seine Farbe kommt.",
+    primary: "Primärstrahl", reflection: "Reflexionsstrahl", transparency: "Transparenzstrahl", shadow: "Schattenstrahl", adds: "trägt bei",
+    linear: "linear", sum: "Die Strahlen ergeben zusammen", level: "Stufe", weight: "Gewicht", origin: "Ursprung", direction: "Richtung", point: "Punkt", normalIs: "Normale",
+    medium: "läuft durch", noHit: "Er trifft nichts: der Hintergrund ist", lightHere: "Licht an diesem Punkt", terms: "Terme", geometry: "Geometrie",
+    visible: "sichtbar", blocked: "verdeckt von", weakened: "geschwächt von", behind: "hinter der Fläche", noLight: "es kommt kein Licht an", at: "bei", ambient: "ambient", emission: "Emission",
+    diffuse: "diffus", highlight: "Glanzlicht", local: "eigenes Licht", total: "Summe", ended: "nicht verfolgt", totalReflection: "Totalreflexion: Das Brechungsgesetz hat keine Lösung, sin θ₂ wäre",
+    why: "Warum ist es hier dunkel?", dark: "dunkel", bright: "beleuchtet", ofRays: "Schattenstrahlen", kept: "Durchlässigkeit", fog: "Nebel", finish: "POV-Rays Finish", layer: "Schicht", model: "Beleuchtungsmodell",
+    meanOf: "Mittel aus %n Punkten der Lichtquelle", adapt: "Das Bild hat diese Abtastungen für den Bildpunkt:", mean: "Mittel",
+    error: "Fehler", warning: "Warnung", errors: "Fehler", warnings: "Warnungen", lastGood: "Das letzte gute Bild bleibt stehen.",
+    edit: "Probieren", stopEdit: "Änderungen verwerfen", save: "Sichern", saved: "gesichert", tryHint: "Änderungen bleiben in dieser Seite", openEditor: "Editor", tooLong: "nicht gezeigt",
+    play: "Abspielen", pause: "Anhalten", next: "Weiter", previous: "Zurück", all: "Alle", perspective: "Perspektive", orthographic: "Orthographisch", stepOf: "Schritt",
+    node: "Knoten", leaf: "Blatt", cell: "Zelle", test: "Test", hits: "trifft", misses: "verfehlt", sphere: "Kugel", "leaf sphere": "Blattkugel", "empty block": "leerer Block", "enter instance": "betritt Instanz", "leave instance": "verlässt Instanz",
+    exit: "Austrittsfläche", region: "Bereich", clock: "Uhr", swipe: "Ziehe die Linie, um zu vergleichen", settingsOf: "Verglichen mit", none: "keine", marked: "Bildpunkte der Zeile",
+    objects: "Objekte", lights: "Lichtquellen", close: "Schließen",
+    helpTitle: "Tasten und Maus",
+    helpList: [
+      ["ziehen, Rad", "Bild verschieben und vergrößern"], ["Klick", "Strahlenbaum eines Bildpunkts"], ["Pfeiltasten", "der Bildpunkt daneben"],
+      ["C", "Kamera: ziehen dreht, Umschalt+ziehen verschiebt, Rad geht näher; nochmals: untersuchen"], ["R", "Kamera der Szene"], ["F", "Bild einpassen"], ["1", "eins zu eins"],
+      ["+ −", "Belichtung"], ["N D O M", "Normalen, Tiefe, Objekte, Materialien; nochmals: Farbe"], ["X", "zwei Einstellungen vergleichen"],
+      ["S", "Text der Szene zeigen oder verbergen"], ["I", "Untersuchung zeigen oder verbergen"], ["T", "hell oder dunkel"], ["L", "Englisch oder Deutsch"], ["Leertaste", "Strahlen im Raum abspielen oder anhalten"], [", .", "Schritt zurück, Schritt weiter"], ["?", "diese Hilfe"], ["Esc", "schließen, Markierung löschen"],
+    ],
+  },
+};
+
+let language = "en";
+
+export function setLanguage(name) {
+  language = name === "de" ? "de" : "en";
+}
+
+export function getLanguage() {
+  return language;
+}
+
+export function word(key) {
+  return WORDS[language][key] ?? WORDS.en[key] ?? key;
+}

@@ -1,0 +1,229 @@
+//! What pages and the server tell each other: JSON texts, and binary messages for pixels.
+//!
+//! A binary message begins with eight little-endian `u32`: its kind ([`COLORS`], [`LINEAR`] or [`MARKS`]), the number of the picture,
+//! column, row, width and height of the region, the side of the blocks that show one sample, and 0. Then come the samples, row by row:
+//! three bytes (sRGB) or three little-endian `f32` (linear) for each block, or one byte for each pixel.
+
+use serde::{Deserialize, Serialize};
+use strahl::prelude::*;
+use strahl::scene::{Severity, SourceMap};
+
+/// Kinds of binary messages: colours as sRGB codes.
+pub(crate) const COLORS: u32 = 1;
+/// Linear colours.
+pub(crate) const LINEAR: u32 = 2;
+/// Marked pixels: 1 or 0.
+pub(crate) const MARKS: u32 = 3;
+
+/// The longest message of a page in bytes.
+pub(crate) const LONGEST_MESSAGE: usize = 4 << 20;
+/// The longest text of a scene that the page shows, in bytes.
+pub(crate) const LONGEST_TEXT: usize = 1 << 20;
+/// The longest side of a picture.
+pub(crate) const LONGEST_SIDE: u32 = 8192;
+/// The most pixels of a picture.
+pub(crate) const MOST_PIXELS: u64 = 1 << 24;
+/// The largest depth of ray trees.
+pub(crate) const DEEPEST: u32 = 1000;
+
+/// The picture on the page that a message is about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum Slot {
+    /// The picture itself.
+    Main,
+    /// The one it is compared with.
+    Side,
+    /// The scene from outside, with the rays.
+    Space,
+}
+
+/// A camera in numbers; the rest of it stays as in the scene.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct CameraData {
+    pub(crate) eye: [f64; 3],
+    pub(crate) direction: [f64; 3],
+    pub(crate) right: [f64; 3],
+    pub(crate) up: [f64; 3],
+    /// Whether it is orthographic, for cameras that are perspective or orthographic; `None` leaves it as it is.
+    #[serde(default)]
+    pub(crate) orthographic: Option<bool>,
+}
+
+impl CameraData {
+    pub(crate) fn of(camera: &Camera) -> Self {
+        Self {
+            eye: camera.eye.to_array(),
+            direction: camera.direction.to_array(),
+            right: camera.right.to_array(),
+            up: camera.up.to_array(),
+            orthographic: match camera.projection {
+                Projection::Perspective => Some(false),
+                Projection::Orthographic => Some(true),
+                _ => None,
+            },
+        }
+    }
+
+    /// The scene's camera with these numbers.
+    pub(crate) fn apply(&self, camera: &Camera) -> Camera {
+        let mut camera = camera.clone();
+        camera.eye = self.eye.into();
+        camera.direction = self.direction.into();
+        camera.right = self.right.into();
+        camera.up = self.up.into();
+        if let Some(orthographic) = self.orthographic {
+            camera.projection = match orthographic {
+                true => Projection::Orthographic,
+                false => Projection::Perspective,
+            };
+        }
+        camera
+    }
+}
+
+/// How a picture is shown. What is absent is as the scene and the command line say.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub(crate) struct Settings {
+    pub(crate) size: Option<[u32; 2]>,
+    pub(crate) sampling: Option<String>,
+    pub(crate) depth: Option<u32>,
+    pub(crate) cutoff: Option<f64>,
+    pub(crate) shading: Option<String>,
+    pub(crate) accelerator: Option<String>,
+    pub(crate) camera: Option<CameraData>,
+    pub(crate) clock: Option<f64>,
+    /// Stops of exposure: 1 doubles the light.
+    pub(crate) exposure: f64,
+    pub(crate) channel: Channel,
+}
+
+/// What is shown of the pixels.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum Channel {
+    #[default]
+    Color,
+    Normal,
+    Depth,
+    Object,
+    Material,
+    Levels,
+    Tests,
+    Steps,
+    Rays,
+    Time,
+}
+
+/// A message of a page.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(tag = "type", rename_all = "snake_case", deny_unknown_fields)]
+pub(crate) enum Asked {
+    /// Another one of the scenes that are built in.
+    Open { scene: String },
+    /// Read this text instead of the scene's file; `None` reads the file again.
+    Text { text: Option<String> },
+    /// Show a picture.
+    Picture {
+        slot: Slot,
+        #[serde(default)]
+        settings: Settings,
+    },
+    /// Show it no more.
+    Close { slot: Slot },
+    /// The ray trees of a pixel.
+    Explain { id: u64, slot: Slot, x: u32, y: u32 },
+    /// What is seen at a pixel.
+    Hover { id: u64, slot: Slot, x: u32, y: u32 },
+    /// The pixels of what a line of the scene has made.
+    Mark {
+        id: u64,
+        slot: Slot,
+        file: String,
+        line: u32,
+    },
+    /// Linear values of a part of a picture.
+    Linear { slot: Slot, region: [u32; 4] },
+    /// The text of a file of the scene.
+    Source { id: u64, file: String },
+    /// The pieces of a text that is being edited.
+    Pieces { id: u64, text: String },
+    /// The camera of a picture as text of the scene language.
+    CameraText { id: u64, slot: Slot },
+    /// A page with a pixel's ray trees that needs no server.
+    Export {
+        id: u64,
+        slot: Slot,
+        x: u32,
+        y: u32,
+        language: String,
+    },
+    /// Follow a ray (origin and direction) through the accelerator.
+    Walk {
+        id: u64,
+        slot: Slot,
+        ray: [[f64; 3]; 2],
+    },
+    /// Write a file of the scene.
+    Save { id: u64, file: String, text: String },
+    /// Open a line in the author's editor.
+    Edit { id: u64, file: String, line: u32 },
+}
+
+/// A diagnostic for pages.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(crate) struct Said {
+    pub(crate) severity: &'static str,
+    pub(crate) message: String,
+    pub(crate) file: Option<String>,
+    pub(crate) line: Option<u32>,
+    pub(crate) column: Option<u32>,
+    pub(crate) length: Option<u32>,
+    /// The text of the line around the place, and where in it the caret goes.
+    pub(crate) text: Option<String>,
+    pub(crate) caret: Option<[u32; 2]>,
+    pub(crate) help: Vec<String>,
+    pub(crate) trace: Vec<String>,
+}
+
+impl Said {
+    pub(crate) fn of(diagnostic: &Diagnostic, sources: Option<&SourceMap>) -> Self {
+        let span = diagnostic.span;
+        let known = |n: u32| (n > 0).then_some(n);
+        let source = diagnostic.source.as_ref();
+        let place = || sources.and_then(|s| s.locate(span));
+        Self {
+            severity: match diagnostic.severity {
+                Severity::Warning => "warning",
+                Severity::Error => "error",
+            },
+            message: diagnostic.message.clone(),
+            file: source
+                .map(|source| source.file.clone())
+                .or_else(|| place().map(|place| place.file.to_owned())),
+            line: known(span.line),
+            column: known(span.column),
+            length: known(span.length),
+            text: source.map(|source| source.text.clone()),
+            caret: source.map(|source| [source.column, source.length]),
+            help: diagnostic.hints.clone(),
+            trace: diagnostic.trace.clone(),
+        }
+    }
+}
+
+/// A binary message without its samples.
+pub(crate) fn header(kind: u32, picture: u32, region: Region, step: u32) -> Vec<u8> {
+    let Region {
+        x,
+        y,
+        width,
+        height,
+    } = region;
+    [kind, picture, x, y, width, height, step, 0]
+        .iter()
+        .flat_map(|n| n.to_le_bytes())
+        .collect()
+}

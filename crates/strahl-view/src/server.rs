@@ -1,0 +1,224 @@
+//! The server: one page, its files, and a WebSocket for each page that is open.
+
+use crate::client::Client;
+use crate::guard::{Guard, guard};
+use crate::pictures::Pictures;
+use crate::protocol::LONGEST_MESSAGE;
+use crate::scenes::{LoadScene, Scenes};
+use crate::{Builtin, assets, watch};
+use axum::Router;
+use axum::extract::ws::WebSocketUpgrade;
+use axum::extract::{Path, State};
+use axum::http::StatusCode;
+use axum::http::header::CONTENT_TYPE;
+use axum::middleware::from_fn_with_state;
+use axum::response::{IntoResponse, Response};
+use axum::routing::get;
+use std::net::{Ipv4Addr, SocketAddr};
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+use strahl::prelude::*;
+use tokio::net::TcpListener;
+use tokio::sync::Notify;
+
+/// The settings of pictures for which neither the page nor the scene has a value.
+#[derive(Clone, Debug)]
+pub struct Defaults {
+    /// Width and height in pixels; `None` takes the scene's size, or else 800x600.
+    pub size: Option<(u32, u32)>,
+    /// Where rays go through the pixels.
+    pub sampling: Sampling,
+    /// Seed of the sampling.
+    pub seed: u64,
+    /// The deepest level of ray trees.
+    pub depth: Option<u32>,
+    /// The smallest weight of branches.
+    pub cutoff: Option<f64>,
+    /// The largest number of rays in a tree.
+    pub max_tree_rays: u32,
+    /// The shading model of all objects.
+    pub shading: Option<ShadingModel>,
+    /// The acceleration structure.
+    pub accelerator: AcceleratorKind,
+    /// The value of `clock`.
+    pub clock: f64,
+}
+
+/// What is served, and how.
+pub struct ViewOptions {
+    /// The port on 127.0.0.1; 0 takes a free one.
+    pub port: u16,
+    /// The scene's file; `None` offers those that are built in.
+    pub scene: Option<PathBuf>,
+    /// Reads scenes.
+    pub load: LoadScene,
+    /// Settings of pictures.
+    pub defaults: Defaults,
+    /// The threads.
+    pub session: Session,
+    /// Whether the page may write files of the scene.
+    pub edit: bool,
+    /// A program that opens a file at a line: a command with `{file}` and `{line}`, or without them a program that takes `+LINE FILE`.
+    pub editor: Option<String>,
+}
+
+impl std::fmt::Debug for ViewOptions {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("ViewOptions")
+            .field("port", &self.port)
+            .field("scene", &self.scene)
+            .field("defaults", &self.defaults)
+            .finish_non_exhaustive()
+    }
+}
+
+/// A server that is ready.
+#[derive(Clone, Debug)]
+pub struct Served {
+    /// The address of the page, with the token.
+    pub address: String,
+    end: Arc<Notify>,
+}
+
+impl Served {
+    /// Ends the server.
+    pub fn end(&self) {
+        self.end.notify_one();
+    }
+}
+
+/// Why nothing can be served.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ServeError {
+    /// The port can't be used.
+    #[error("cannot listen on 127.0.0.1:{port}: {error}")]
+    Port {
+        /// The port.
+        port: u16,
+        /// Why.
+        error: std::io::Error,
+    },
+    /// The system gives no random numbers for the token.
+    #[error("cannot make a token: {0}")]
+    Token(#[from] getrandom::Error),
+    /// Files can't be watched.
+    #[error("cannot watch files: {0}")]
+    Watch(#[from] notify::Error),
+    /// Anything else.
+    #[error(transparent)]
+    Io(#[from] std::io::Error),
+}
+
+/// What all pages share.
+pub(crate) struct Hub {
+    pub(crate) scenes: Arc<Scenes>,
+    pub(crate) pictures: Arc<Pictures>,
+    pub(crate) session: Session,
+    pub(crate) builtin: Option<Builtin>,
+    pub(crate) scene: PathBuf,
+    pub(crate) defaults: Defaults,
+    pub(crate) edit: bool,
+    pub(crate) editor: Option<String>,
+    pub(crate) pages: AtomicU64,
+}
+
+/// Serves until Ctrl-C, SIGTERM or [`Served::end`]. `ready` is called once, when the server listens.
+///
+/// # Errors
+/// [`ServeError`].
+pub fn serve(options: ViewOptions, ready: impl FnOnce(&Served)) -> Result<(), ServeError> {
+    let builtin = match options.scene {
+        Some(_) => None,
+        None => Some(Builtin::unpack()?),
+    };
+    let first = |scenes: &Builtin| scenes.path("showcase/whitted.pov");
+    let scene = match &builtin {
+        Some(scenes) => first(scenes).unwrap_or_default(),
+        None => options.scene.unwrap_or_default(),
+    };
+    let scenes = Scenes::new(options.session.clone(), options.load);
+    watch::watch(&scenes)?;
+    let hub = Arc::new(Hub {
+        scenes,
+        pictures: Pictures::new(options.session.clone()),
+        session: options.session,
+        builtin,
+        scene,
+        defaults: options.defaults,
+        edit: options.edit,
+        editor: options.editor,
+        pages: AtomicU64::new(1),
+    });
+    let runtime = tokio::runtime::Builder::new_current_thread()
+        .enable_all()
+        .build()?;
+    runtime.block_on(async {
+        let address = SocketAddr::from((Ipv4Addr::LOCALHOST, options.port));
+        let listener = TcpListener::bind(address)
+            .await
+            .map_err(|error| ServeError::Port {
+                port: options.port,
+                error,
+            })?;
+        let port = listener.local_addr()?.port();
+        let keeper = Guard::new(port)?;
+        let served = Served {
+            address: format!("http://127.0.0.1:{port}/?token={}", keeper.token()),
+            end: Arc::default(),
+        };
+        let router = Router::new()
+            .route("/", get(|| async { asset("index.html") }))
+            .route("/ws", get(page))
+            .route(
+                "/{name}",
+                get(|Path(name): Path<String>| async move { asset(&name) }),
+            )
+            .with_state(hub)
+            .layer(from_fn_with_state(keeper, guard));
+        let end = ended(Arc::clone(&served.end));
+        ready(&served);
+        tokio::select! {
+            outcome = async { axum::serve(listener, router).await } => outcome?,
+            outcome = end => outcome?,
+        }
+        Ok(())
+    })
+}
+
+/// Waits for a signal to end.
+async fn ended(end: Arc<Notify>) -> std::io::Result<()> {
+    #[cfg(unix)]
+    {
+        use tokio::signal::unix::{SignalKind, signal};
+        let mut terminate = signal(SignalKind::terminate())?;
+        tokio::select! {
+            outcome = tokio::signal::ctrl_c() => outcome,
+            _ = terminate.recv() => Ok(()),
+            () = end.notified() => Ok(()),
+        }
+    }
+    #[cfg(not(unix))]
+    tokio::select! {
+        outcome = tokio::signal::ctrl_c() => outcome,
+        () = end.notified() => Ok(()),
+    }
+}
+
+fn asset(name: &str) -> Response {
+    match assets::file(name) {
+        Some((media_type, file)) => ([(CONTENT_TYPE, media_type)], file.data).into_response(),
+        None => (StatusCode::NOT_FOUND, "there is no such file\n").into_response(),
+    }
+}
+
+async fn page(State(hub): State<Arc<Hub>>, upgrade: WebSocketUpgrade) -> Response {
+    upgrade
+        .max_message_size(LONGEST_MESSAGE)
+        .max_frame_size(LONGEST_MESSAGE)
+        .on_upgrade(async move |socket| {
+            let number = hub.pages.fetch_add(1, Ordering::Relaxed);
+            Client::new(hub, number, socket).run().await;
+        })
+}

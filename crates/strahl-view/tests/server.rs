@@ -1,0 +1,533 @@
+//! The server keeps strangers out, and survives whatever a page sends.
+
+#![allow(
+    clippy::unwrap_used,
+    reason = "a test that unwraps fails as a test should"
+)]
+
+use serde_json::{Value, json};
+use std::io::{Read, Write};
+use std::net::TcpStream;
+use std::path::{Path, PathBuf};
+use std::sync::mpsc;
+use std::time::{Duration, Instant};
+use strahl::prelude::*;
+use strahl::{LoadOptions, load_bytes, load_path};
+use strahl_view::{Defaults, Request, Served, ViewOptions, serve};
+use tungstenite::client::IntoClientRequest;
+use tungstenite::{Message, WebSocket, client};
+
+const BALL: &str = "camera { location <0, 1, -4> look_at 0 }\nlight_source { <3, 5, -4>, 1 }\nsphere { 0, 1\n  pigment { rgb <1, 0.4, 0> }\n}\nplane { y, -1 pigment { checker rgb 1 rgb 0.2 } }\n";
+
+/// A server for a scene in a temporary folder.
+struct Running {
+    served: Served,
+    folder: tempfile::TempDir,
+    thread: Option<std::thread::JoinHandle<()>>,
+}
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        self.served.end();
+        if let Some(thread) = self.thread.take() {
+            thread.join().unwrap();
+        }
+    }
+}
+
+fn load(request: &Request) -> strahl::Loaded {
+    let options = LoadOptions {
+        record: true,
+        ..LoadOptions::default()
+    };
+    match &request.text {
+        Some(text) => load_bytes(
+            text.as_bytes().to_vec(),
+            &request.path.display().to_string(),
+            strahl::Format::Pov,
+            options,
+        ),
+        None => load_path(&request.path, options),
+    }
+}
+
+fn start(text: &str, edit: bool) -> Running {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("scene.pov"), text).unwrap();
+    let options = ViewOptions {
+        port: 0,
+        scene: Some(folder.path().join("scene.pov")),
+        load: Box::new(load),
+        defaults: Defaults {
+            size: Some((64, 48)),
+            sampling: Sampling::ADAPTIVE,
+            seed: 0,
+            depth: None,
+            cutoff: None,
+            max_tree_rays: 1 << 18,
+            shading: None,
+            accelerator: AcceleratorKind::default(),
+            clock: 0.0,
+        },
+        session: Session::new(Threads::Count(2)).unwrap(),
+        edit,
+        editor: None,
+    };
+    let (said, heard) = mpsc::channel();
+    let thread = std::thread::spawn(move || {
+        serve(options, |served| said.send(served.clone()).unwrap()).unwrap();
+    });
+    Running {
+        served: heard.recv().unwrap(),
+        folder,
+        thread: Some(thread),
+    }
+}
+
+impl Running {
+    fn scene(&self) -> PathBuf {
+        self.folder.path().join("scene.pov")
+    }
+
+    fn host(&self) -> &str {
+        let rest = self.served.address.strip_prefix("http://").unwrap();
+        rest.split('/').next().unwrap()
+    }
+
+    fn token(&self) -> &str {
+        self.served.address.split("token=").nth(1).unwrap()
+    }
+
+    /// The answer to a request as it is on the wire.
+    fn get(&self, path: &str, headers: &[(&str, &str)]) -> String {
+        let mut stream = TcpStream::connect(self.host()).unwrap();
+        let mut text = format!("GET {path} HTTP/1.1\r\nConnection: close\r\n");
+        for (name, value) in headers {
+            text.push_str(&format!("{name}: {value}\r\n"));
+        }
+        stream.write_all(format!("{text}\r\n").as_bytes()).unwrap();
+        let mut answer = vec![];
+        // A refusal may close the connection early.
+        let _ = stream.read_to_end(&mut answer);
+        String::from_utf8_lossy(&answer).into_owned()
+    }
+
+    fn status(&self, path: &str, headers: &[(&str, &str)]) -> u32 {
+        let answer = self.get(path, headers);
+        answer
+            .split(' ')
+            .nth(1)
+            .and_then(|s| s.parse().ok())
+            .unwrap_or(0)
+    }
+
+    fn page(&self) -> Page {
+        let stream = TcpStream::connect(self.host()).unwrap();
+        stream
+            .set_read_timeout(Some(Duration::from_secs(60)))
+            .unwrap();
+        let address = format!("ws://{}/ws?token={}", self.host(), self.token());
+        let (socket, _) = client(address.into_client_request().unwrap(), stream).unwrap();
+        let mut page = Page(socket);
+        assert_eq!(page.until("hello")["type"], "hello");
+        page
+    }
+}
+
+struct Page(WebSocket<TcpStream>);
+
+impl Page {
+    fn send(&mut self, message: Value) {
+        self.0.send(Message::text(message.to_string())).unwrap();
+    }
+
+    /// The next message of a type; binary ones are passed over.
+    fn until(&mut self, wanted: &str) -> Value {
+        let start = Instant::now();
+        while start.elapsed() < Duration::from_secs(60) {
+            if let Message::Text(text) = self.0.read().unwrap() {
+                let value: Value = serde_json::from_str(&text).unwrap();
+                if value["type"] == wanted {
+                    return value;
+                }
+            }
+        }
+        panic!("no {wanted}");
+    }
+
+    fn ask(&mut self, mut message: Value) -> Result<Value, String> {
+        message["id"] = 7.into();
+        self.send(message);
+        let reply = self.until("reply");
+        match reply["problem"].as_str() {
+            Some(problem) => Err(problem.to_owned()),
+            None => Ok(reply["value"].clone()),
+        }
+    }
+
+    fn show(&mut self, settings: Value) {
+        self.send(json!({ "type": "picture", "slot": "main", "settings": settings }));
+    }
+
+    /// Shows the scene, and returns the finished picture as sRGB codes.
+    fn picture(&mut self, (width, height): (usize, usize)) -> Vec<u8> {
+        let mut codes = vec![0; 3 * width * height];
+        loop {
+            match self.0.read().unwrap() {
+                Message::Binary(bytes) => {
+                    let head: Vec<usize> = bytes[..32]
+                        .chunks_exact(4)
+                        .map(|b| u32::from_le_bytes(b.try_into().unwrap()) as usize)
+                        .collect();
+                    let [1, _, x, y, w, h, step, _] = head[..] else {
+                        panic!("{head:?}");
+                    };
+                    let columns = w.div_ceil(step);
+                    for row in 0..h {
+                        for column in 0..w {
+                            let from = 32 + 3 * (row / step * columns + column / step);
+                            let to = 3 * ((y + row) * width + x + column);
+                            codes[to..to + 3].copy_from_slice(&bytes[from..from + 3]);
+                        }
+                    }
+                }
+                Message::Text(text) => {
+                    let value: Value = serde_json::from_str(&text).unwrap();
+                    if value["type"] == "done" {
+                        return codes;
+                    }
+                }
+                _ => {}
+            }
+        }
+    }
+}
+
+fn expected(path: &Path, settings: impl Fn(View) -> View) -> Vec<u8> {
+    let (scene, _) = load_path(path, LoadOptions::default())
+        .into_scene()
+        .unwrap();
+    let session = Session::new(Threads::Count(2)).unwrap();
+    let (scene, _) = session.compile(&scene, &CompileOptions::default()).unwrap();
+    let view = settings(scene.view(64, 48).with_sampling(Sampling::ADAPTIVE));
+    session
+        .picture(&view, &Output::default())
+        .unwrap()
+        .film
+        .to_srgb8()
+}
+
+#[test]
+fn only_those_who_know_the_token_get_anything() {
+    let running = start(BALL, false);
+    let (host, token) = (running.host(), running.token());
+    let page = format!("/?token={token}");
+    let script = format!("/app.js?token={token}");
+    assert_eq!(running.status(&page, &[("Host", host)]), 200);
+    assert_eq!(running.status(&script, &[("Host", host)]), 200);
+    for path in [
+        "/",
+        "/app.js",
+        "/ws",
+        "/?token=",
+        "/?token=0000",
+        "/nothing",
+    ] {
+        assert_eq!(running.status(path, &[("Host", host)]), 403, "{path}");
+    }
+    let port = host.rsplit(':').next().unwrap();
+    let cookie = format!("strahl-{port}={token}");
+    assert_eq!(
+        running.status("/app.js", &[("Host", host), ("Cookie", &cookie)]),
+        200
+    );
+    let wrong = format!("strahl-{port}=1{}", &token[1..]);
+    let is_wrong = wrong != cookie;
+    assert!(!is_wrong || running.status("/app.js", &[("Host", host), ("Cookie", &wrong)]) == 403);
+    // Another name for this machine, as an attacker's name server could give it, and another page's request.
+    for host in ["example.org", "example.org:80", "127.0.0.1.example.org", ""] {
+        assert_eq!(running.status(&page, &[("Host", host)]), 403, "{host}");
+    }
+    let own = format!("http://{host}");
+    assert_eq!(
+        running.status(&page, &[("Host", host), ("Origin", &own)]),
+        200
+    );
+    for origin in [
+        "http://example.org",
+        "null",
+        "http://127.0.0.1:1",
+        "https://localhost",
+    ] {
+        let headers = [("Host", host), ("Origin", origin)];
+        assert_eq!(running.status(&page, &headers), 403, "{origin}");
+    }
+}
+
+#[test]
+fn every_answer_forbids_foreign_scripts() {
+    let running = start(BALL, false);
+    for path in ["/".to_owned(), format!("/?token={}", running.token())] {
+        let answer = running
+            .get(&path, &[("Host", running.host())])
+            .to_ascii_lowercase();
+        assert!(
+            answer.contains("content-security-policy: default-src 'none'"),
+            "{answer}"
+        );
+        assert!(!answer.contains("unsafe-inline") && answer.contains("nosniff"));
+    }
+}
+
+#[test]
+fn paths_lead_to_no_other_files() {
+    let running = start(BALL, false);
+    std::fs::write(running.folder.path().join("secret.txt"), "secret").unwrap();
+    let (host, token) = (running.host(), running.token());
+    for path in [
+        "/../Cargo.toml",
+        "/%2e%2e/Cargo.toml",
+        "/..%2fCargo.toml",
+        "//etc/passwd",
+        "/%2fetc%2fpasswd",
+        "/scene.pov",
+    ] {
+        let status = running.status(&format!("{path}?token={token}"), &[("Host", host)]);
+        assert!((400..500).contains(&status), "{path}: {status}");
+    }
+    let mut page = running.page();
+    page.show(json!({}));
+    page.until("done");
+    let secret = running
+        .folder
+        .path()
+        .join("secret.txt")
+        .display()
+        .to_string();
+    for file in [
+        "../secret.txt",
+        &secret,
+        "/etc/passwd",
+        "",
+        "scene.pov/../secret.txt",
+    ] {
+        let source = page.ask(json!({ "type": "source", "file": file }));
+        assert!(source.is_err(), "{file}");
+    }
+    let own = running.scene().display().to_string();
+    let source = page.ask(json!({ "type": "source", "file": own })).unwrap();
+    assert_eq!(source["text"], BALL);
+    // Without --edit nothing is written.
+    let saved = page.ask(json!({ "type": "save", "file": own, "text": "" }));
+    assert!(saved.is_err_and(|e| e.contains("--edit")));
+    assert_eq!(std::fs::read_to_string(running.scene()).unwrap(), BALL);
+}
+
+#[test]
+fn the_finished_picture_is_that_of_a_session_and_explains_itself() {
+    let running = start(BALL, false);
+    let mut page = running.page();
+    page.show(json!({}));
+    assert_eq!(
+        page.picture((64, 48)),
+        expected(&running.scene(), |view| view)
+    );
+    page.show(json!({ "depth": 1, "shading": "lambert", "sampling": "center" }));
+    let plain = |view: View| {
+        view.with_depth(1)
+            .with_shading(ShadingModel::Lambert)
+            .with_sampling(Sampling::Center)
+    };
+    assert_eq!(page.picture((64, 48)), expected(&running.scene(), plain));
+
+    let tree = page
+        .ask(json!({ "type": "explain", "slot": "main", "x": 32, "y": 24 }))
+        .unwrap();
+    let seen = page
+        .ask(json!({ "type": "hover", "slot": "main", "x": 32, "y": 24 }))
+        .unwrap();
+    assert_eq!(tree["rgb8"], seen["rgb8"]);
+    assert_eq!(seen["seen"]["line"], 3);
+    assert!(
+        page.ask(json!({ "type": "explain", "slot": "main", "x": 64, "y": 0 }))
+            .is_err()
+    );
+    assert!(
+        page.ask(json!({ "type": "explain", "slot": "side", "x": 0, "y": 0 }))
+            .is_err()
+    );
+    let text = page
+        .ask(json!({ "type": "camera_text", "slot": "main" }))
+        .unwrap();
+    assert!(text["text"].as_str().unwrap().starts_with("camera {"));
+    let export = json!({ "type": "export", "slot": "main", "x": 32, "y": 24, "language": "de" });
+    let html = page.ask(export).unwrap();
+    assert!(html["html"].as_str().unwrap().contains("lang=\"de\""));
+
+    // The pixels of the sphere, whose text begins on line 3.
+    let file = running.scene().display().to_string();
+    page.send(json!({ "type": "mark", "slot": "main", "file": file, "line": 4, "id": 1 }));
+    let marks = loop {
+        if let Message::Binary(bytes) = page.0.read().unwrap() {
+            break bytes;
+        }
+    };
+    assert_eq!((marks.len(), marks[0], marks[28]), (32 + 64 * 48, 3, 3));
+    assert_eq!((marks[32], marks[32 + 24 * 64 + 32]), (0, 1));
+}
+
+#[test]
+fn a_changed_file_is_rendered_and_errors_keep_the_last_picture() {
+    let running = start(BALL, true);
+    let mut page = running.page();
+    page.show(json!({}));
+    let first = page.picture((64, 48));
+    let changed = BALL.replace("sphere { 0, 1", "sphere { 0, 1.3");
+    std::fs::write(running.scene(), &changed).unwrap();
+    let second = page.picture((64, 48));
+    assert_ne!(first, second);
+    assert_eq!(second, expected(&running.scene(), |view| view));
+
+    std::fs::write(
+        running.scene(),
+        BALL.replace("sphere { 0, 1", "sphere { 0, Radius"),
+    )
+    .unwrap();
+    let scene = loop {
+        let scene = page.until("scene");
+        if scene["loading"] == false && scene["stats"].is_null() {
+            break scene;
+        }
+    };
+    let said = &scene["said"][0];
+    assert_eq!(
+        (&said["severity"], &said["line"]),
+        (&json!("error"), &json!(3))
+    );
+    let tree = page.ask(json!({ "type": "explain", "slot": "main", "x": 32, "y": 24 }));
+    assert!(tree.is_ok(), "the last good picture can still be asked");
+
+    // The page writes the file, and the picture comes back.
+    let file = running.scene().display().to_string();
+    page.send(json!({ "type": "save", "file": file, "text": BALL, "id": 2 }));
+    assert_eq!(page.picture((64, 48)), first);
+    // A file that disappears is an error, and one that comes back is read.
+    std::fs::remove_file(running.scene()).unwrap();
+    loop {
+        let scene = page.until("scene");
+        if scene["loading"] == false && scene["stats"].is_null() {
+            break;
+        }
+    }
+    std::fs::write(running.scene(), &changed).unwrap();
+    assert_eq!(page.picture((64, 48)), second);
+}
+
+#[test]
+fn a_text_of_the_page_is_tried_and_not_written() {
+    let running = start(BALL, false);
+    let mut page = running.page();
+    page.show(json!({}));
+    let first = page.picture((64, 48));
+    page.send(
+        json!({ "type": "text", "text": BALL.replace("rgb <1, 0.4, 0>", "rgb <0, 0.4, 1>") }),
+    );
+    assert_ne!(page.picture((64, 48)), first);
+    assert_eq!(std::fs::read_to_string(running.scene()).unwrap(), BALL);
+}
+
+#[test]
+fn malformed_messages_and_pages_that_disappear_do_no_harm() {
+    let running = start(BALL, false);
+    let mut page = running.page();
+    page.show(json!({}));
+    page.until("done");
+    let wrong = [
+        json!({}),
+        json!([]),
+        json!({ "type": "nothing" }),
+        json!({ "type": "picture", "slot": "main", "settings": { "size": [100000, 100000] } }),
+        json!({ "type": "picture", "slot": "main", "settings": { "size": [0, 10] } }),
+        json!({ "type": "picture", "slot": "main", "settings": { "size": [-1, 10] } }),
+        json!({ "type": "picture", "slot": "main", "settings": { "depth": 4000000000u32 } }),
+        json!({ "type": "picture", "slot": "main", "settings": { "depth": 0 } }),
+        json!({ "type": "picture", "slot": "main", "settings": { "cutoff": -1 } }),
+        json!({ "type": "picture", "slot": "main", "settings": { "sampling": "99999x99999" } }),
+        json!({ "type": "picture", "slot": "main", "settings": { "accelerator": "grid:resolution=9999999x1x1x1" } }),
+        json!({ "type": "picture", "slot": "main", "settings": { "shading": "bright" } }),
+        json!({ "type": "picture", "slot": "main", "settings": { "unknown": 1 } }),
+        json!({ "type": "picture", "slot": "other" }),
+        json!({ "type": "open", "scene": "../scene.pov" }),
+        json!({ "type": "linear", "slot": "main", "region": [4000000000u32, 0, 4000000000u32, 4000000000u32] }),
+    ];
+    for message in wrong {
+        page.send(message.clone());
+        assert!(page.until("error")["message"].is_string(), "{message}");
+    }
+    let zero =
+        json!({ "eye": [0, 0, 0], "direction": [0, 0, 0], "right": [0, 0, 0], "up": [0, 0, 0] });
+    page.show(json!({ "camera": zero }));
+    page.until("error");
+    // Random messages, made of pieces of good ones.
+    let pieces = [
+        "{",
+        "}",
+        "\"type\"",
+        ":",
+        "\"picture\"",
+        ",",
+        "\"slot\"",
+        "\"main\"",
+        "1e999",
+        "-1",
+        "null",
+        "[",
+        "]",
+        "\"explain\"",
+        "\"x\"",
+        "\u{0}",
+        "é",
+        "\\",
+    ];
+    let mut state = 7_u64;
+    for _ in 0..300 {
+        let mut text = String::new();
+        for _ in 0..state % 14 {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            text.push_str(pieces[(state >> 33) as usize % pieces.len()]);
+        }
+        state = state.wrapping_add(1);
+        page.0.send(Message::text(text)).unwrap();
+        page.until("error");
+    }
+    page.0.send(Message::binary(vec![0, 1, 2])).unwrap();
+    page.until("error");
+    // Pages that go in the middle of a large picture, and one that sends too much.
+    for _ in 0..5 {
+        let mut page = running.page();
+        page.show(json!({ "size": [2000, 2000] }));
+        page.until("picture");
+        drop(page);
+    }
+    let mut loud = running.page();
+    let sent = loud.0.send(Message::text("x".repeat(5 << 20)));
+    let refused = sent.is_err() || (0..100).any(|_| loud.0.read().is_err());
+    assert!(refused, "a message of 5 MiB is refused");
+    // The first page still works.
+    page.show(json!({}));
+    let start = Instant::now();
+    page.ask(json!({ "type": "hover", "slot": "main", "x": 1, "y": 1 }))
+        .unwrap();
+    assert!(start.elapsed() < Duration::from_secs(30));
+}
+
+#[test]
+fn two_pages_see_the_same_picture() {
+    let running = start(BALL, false);
+    let (mut first, mut second) = (running.page(), running.page());
+    first.show(json!({}));
+    second.show(json!({}));
+    assert_eq!(first.picture((64, 48)), second.picture((64, 48)));
+}
