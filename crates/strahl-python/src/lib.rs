@@ -1,7 +1,7 @@
 //! The compiled half of the Python package `strahl`: thin functions over the crate `strahl`.
 //!
 //! The other half, in `python/strahl/`, is what users see. It checks arguments, has the documentation and the types, and calls what is
-//! here. Nothing here holds Python's lock while it computes ([`work`]).
+//! here. Nothing here holds Python's lock while it computes (`work`).
 
 mod convert;
 mod errors;
