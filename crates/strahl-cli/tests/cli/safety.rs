@@ -256,7 +256,12 @@ fn shells_and_man_know_the_program() {
         render.contains(".TH strahl-render 1") && render.contains("max\\-memory"),
         "{render}"
     );
-    fails(f, &["man", "nothing"], 1, &["nothing", "render, explain"]);
+    fails(
+        f,
+        &["man", "nothing"],
+        1,
+        &["nothing", "render, view, explain"],
+    );
 }
 
 #[test]
