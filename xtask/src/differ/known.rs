@@ -1,7 +1,7 @@
 /// Differences that are intended or that are POV-Ray's: the words that the smallest scene contains, and the reason.
 ///
 /// docs/src/differ.md explains them.
-pub(super) const KNOWN: [(&[&str], &str); 63] = [
+pub(super) const KNOWN: [(&[&str], &str); 64] = [
     (&["crystal.ttf"], FONTS),
     (&["cyrvetic.ttf"], FONTS),
     (&["timrom.ttf"], FONTS),
@@ -33,6 +33,7 @@ pub(super) const KNOWN: [(&[&str], &str); 63] = [
     (&["merge", "inverse", "difference"], BOXES),
     (&["merge", "inverse", "fog"], BOXES),
     (&["merge", "inverse", "rainbow"], BOXES),
+    (&["merge", "inverse", "ior"], BOXES),
     (&["union", "height_field", "intersection"], UNIONS),
     (&["union", "height_field", "difference"], UNIONS),
     (&["number_of_waves", "waves", "function"], WAVES),
