@@ -1,7 +1,7 @@
 /// Differences that are intended or that are POV-Ray's: the words that the smallest scene contains, and the reason.
 ///
 /// docs/src/differ.md explains them.
-pub(super) const KNOWN: [(&[&str], &str); 64] = [
+pub(super) const KNOWN: [(&[&str], &str); 65] = [
     (&["crystal.ttf"], FONTS),
     (&["cyrvetic.ttf"], FONTS),
     (&["timrom.ttf"], FONTS),
@@ -68,6 +68,7 @@ pub(super) const KNOWN: [(&[&str], &str); 64] = [
     ),
     (&["parametric", "rgbt"], MISSED),
     (&["parametric", "rgbf"], MISSED),
+    (&["parametric", "rgbft"], MISSED),
     (&["parametric", "transmit"], MISSED),
     (&["parametric", "filter"], MISSED),
     (&["sor", "light_source"], SPECKLES),
