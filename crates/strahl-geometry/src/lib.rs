@@ -25,7 +25,8 @@ pub use bounded::Bounded;
 pub use csg::{Csg, CsgNode, Operands};
 pub use fractal::{HypercomplexFunction, Julia, JuliaAlgebra, JuliaOptions, QuaternionFunction};
 pub use implicit::{
-    Container, HeightField, Isosurface, IsosurfaceOptions, Parametric, ParametricOptions,
+    Container, GridIsosurface, GridOptions, HeightField, Isosurface, IsosurfaceOptions, Parametric,
+    ParametricOptions,
 };
 pub use mesh::{
     Brep, MeshData, PlaneHit, Polygon, RayShear, SmoothTriangle, Triangle, TriangleMesh,

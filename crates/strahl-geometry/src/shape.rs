@@ -1,6 +1,6 @@
 use crate::algebraic::{Blob, Polynomial, Superellipsoid};
 use crate::fractal::Julia;
-use crate::implicit::{HeightField, Isosurface, Parametric};
+use crate::implicit::{GridIsosurface, HeightField, Isosurface, Parametric};
 use crate::mesh::{Brep, Polygon, SmoothTriangle, Triangle, TriangleMesh};
 use crate::patch::BicubicPatch;
 use crate::primitives::{Cone, Cuboid, Cylinder, Disc, Lemon, Ovus, Plane, Quadric, Sphere, Torus};
@@ -141,6 +141,8 @@ shapes! {
     HeightField(Arc<HeightField>),
     /// A surface where a function has a given value.
     Isosurface(Arc<Isosurface>),
+    /// A surface where the interpolation of samples has a given value.
+    GridIsosurface(Arc<GridIsosurface>),
     /// A surface whose points are functions of two parameters.
     Parametric(Arc<Parametric>),
     /// A bicubic Bezier patch.
@@ -180,6 +182,7 @@ shared!(
     TriangleMesh,
     HeightField,
     Isosurface,
+    GridIsosurface,
     Parametric,
     BicubicPatch,
     Julia,

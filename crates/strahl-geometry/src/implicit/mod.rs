@@ -1,6 +1,7 @@
-//! Surfaces given by data or functions: height fields, isosurfaces and parametric surfaces.
+//! Surfaces given by data or functions: height fields, isosurfaces of functions and of samples, parametric surfaces.
 
 mod container;
+mod grid_isosurface;
 mod height_field;
 mod isosurface;
 mod octree;
@@ -9,6 +10,7 @@ mod workspace;
 
 pub use container::Container;
 pub(crate) use container::Passage;
+pub use grid_isosurface::{GridIsosurface, GridOptions};
 pub use height_field::HeightField;
 pub use isosurface::{Isosurface, IsosurfaceOptions};
 pub(crate) use octree::{Octree, Visitor};
