@@ -85,12 +85,18 @@ impl Value for Dual {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Univariate<const N: usize> {
     pub(super) coefficients: [f64; N],
-    /// How many of them are used; 0 for zero.
+    /// How many of them are used, unless all are computed; 0 for zero.
     used: usize,
 }
 
+impl<const N: usize> Univariate<N> {
+    /// Whether there are so few coefficients that all of them are computed, also those that are not used yet: a loop without
+    /// conditions takes less time than the coefficients it could leave out.
+    const DENSE: bool = N <= 7;
+}
+
 impl<const N: usize> Value for Univariate<N> {
-    /// `a + b s`.
+    /// `a + b s`, both finite.
     type Variable = (f64, f64);
     const ZERO: Self = Self {
         coefficients: [0.0; N],
@@ -99,6 +105,11 @@ impl<const N: usize> Value for Univariate<N> {
 
     #[inline]
     fn add(&mut self, other: &Self) {
+        if Self::DENSE {
+            self.coefficients =
+                std::array::from_fn(|k| self.coefficients[k] + other.coefficients[k]);
+            return;
+        }
         let used = if other.used > self.used {
             other.used
         } else {
@@ -123,10 +134,18 @@ impl<const N: usize> Value for Univariate<N> {
 
     #[inline]
     fn multiply(&mut self, (a, b): (f64, f64)) {
+        let mut below = 0.0;
+        if Self::DENSE {
+            for c in &mut self.coefficients {
+                let here = *c;
+                *c = here * a + below * b;
+                below = here;
+            }
+            return;
+        }
         if self.used == 0 {
             return;
         }
-        let mut below = 0.0;
         for c in self.coefficients.iter_mut().take(self.used + 1) {
             let here = *c;
             *c = here * a + below * b;
