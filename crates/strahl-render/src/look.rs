@@ -2,6 +2,7 @@
 
 use crate::media::{Body, Crossing, Medium};
 use crate::runs::Run;
+use std::sync::Arc;
 use strahl_shade::{Material, MaterialId};
 
 /// Object and material of an element.
@@ -11,7 +12,7 @@ pub(crate) enum Looks {
     /// Of a CSG tree.
     Leaves {
         /// Indexed by the tags of the leaves.
-        looks: Box<[Look]>,
+        looks: Arc<[Look]>,
         /// The leaf that is filled with what the whole is filled with, if there is one.
         whole: Option<u32>,
     },

@@ -21,21 +21,26 @@ impl Pass {
         if self.errors.len() > errors_before {
             return;
         }
-        match Csg::try_new(node) {
-            Err(error) => self.invalid(todo, "CSG object", &error),
-            Ok(csg) => {
-                let flags = looks
-                    .iter()
-                    .fold(0, |f, look| f | self.flags(todo, look.material));
-                let looks = Looks::of_leaves(looks, todo.body.unwrap_or(0));
-                let visible = visible(todo.visibility);
-                group.add_shape(Arc::new(csg).into(), looks, visible, flags);
-                if flags & Prim::FILLED != 0
-                    && let Some(used) = group.shapes.last_mut()
-                {
-                    used.inside = inside::of(todo.object, &todo.transform).map(Box::new);
-                }
+        let flags = looks
+            .iter()
+            .fold(0, |f, look| f | self.flags(todo, look.material));
+        let looks = Looks::of_leaves(looks, todo.body.unwrap_or(0));
+        let visible = visible(todo.visibility);
+        let filled = flags & Prim::FILLED != 0;
+        // The inside belongs to the whole, so a filled solid stays one.
+        let parts = if filled {
+            vec![node]
+        } else {
+            clipped_parts(node)
+        };
+        for part in parts {
+            match Csg::try_new(part) {
+                Err(error) => return self.invalid(todo, "CSG object", &error),
+                Ok(csg) => group.add_shape(Arc::new(csg).into(), looks.clone(), visible, flags),
             }
+        }
+        if filled && let Some(used) = group.shapes.last_mut() {
+            used.inside = inside::of(todo.object, &todo.transform).map(Box::new);
         }
     }
 
@@ -126,6 +131,52 @@ pub(super) fn wrong_count(op: CsgOp, count: usize) -> Option<String> {
     (!right).then(|| format!("{} takes {expected}, found {count}", op.name()))
 }
 
+/// The parts of a union that is clipped, each clipped by the same shapes; a node of another kind is its only part.
+///
+/// All surfaces of a union are kept, so its parts can be clipped one by one: an accelerator then finds the few that a ray meets.
+/// Nested unions and clips are taken apart too, as long as single shapes clip them.
+fn clipped_parts(node: CsgNode) -> Vec<CsgNode> {
+    let mut parts = Vec::new();
+    let mut waiting = vec![(node, Vec::new())];
+    while let Some((node, clips)) = waiting.pop() {
+        match node {
+            CsgNode::Union(operands) if !clips.is_empty() => {
+                let operands = operands.into_vec().into_iter().rev();
+                waiting.extend(operands.map(|part| (part, copies(&clips))));
+            }
+            CsgNode::Clip(operands) if operands.iter().skip(1).all(is_leaf) => {
+                let mut operands = operands.into_vec().into_iter();
+                if let Some(part) = operands.next() {
+                    waiting.push((part, operands.chain(clips).collect()));
+                }
+            }
+            node if clips.is_empty() => parts.push(node),
+            node => parts.push(CsgNode::clip(node, clips)),
+        }
+    }
+    parts
+}
+
+fn is_leaf(node: &CsgNode) -> bool {
+    matches!(node, CsgNode::Leaf { .. })
+}
+
+fn copies(leaves: &[CsgNode]) -> Vec<CsgNode> {
+    let copy = |leaf: &CsgNode| match leaf {
+        CsgNode::Leaf {
+            shape,
+            transform,
+            tag,
+        } => Some(CsgNode::Leaf {
+            shape: shape.clone(),
+            transform: transform.clone(),
+            tag: *tag,
+        }),
+        _ => None,
+    };
+    leaves.iter().filter_map(copy).collect()
+}
+
 /// The operation without regard to who sees the result.
 pub(super) fn combine(op: CsgOp, children: Vec<CsgNode>) -> CsgNode {
     let count = if op == CsgOp::Bound {
@@ -141,5 +192,65 @@ pub(super) fn combine(op: CsgOp, children: Vec<CsgNode>) -> CsgNode {
         CsgOp::Difference => CsgNode::Difference(operands),
         CsgOp::Inverse => CsgNode::Inverse(operands),
         CsgOp::Clip => CsgNode::Clip(operands),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use strahl_geometry::{Cuboid, Scratch, Sphere};
+    use strahl_math::{DVec3, Interval, Ray};
+
+    fn ball(x: f64, tag: u32) -> CsgNode {
+        let center = DVec3::new(x, 0.0, 0.0);
+        CsgNode::leaf(Sphere::try_new(center, 0.8).unwrap(), tag)
+    }
+
+    fn slab(top: f64, tag: u32) -> CsgNode {
+        let far = DVec3::new(3.0, top, 3.0);
+        CsgNode::leaf(Cuboid::try_new(-DVec3::splat(3.0), far).unwrap(), tag)
+    }
+
+    fn quilt() -> CsgNode {
+        let inner = CsgNode::clip(ball(0.5, 2), [slab(0.6, 3)]);
+        let pair = CsgNode::union([ball(-0.5, 1), inner]);
+        let cut = CsgNode::intersection([ball(1.0, 4), slab(0.4, 5)]);
+        CsgNode::clip(CsgNode::union([ball(-1.0, 0), pair, cut]), [slab(0.2, 6)])
+    }
+
+    #[test]
+    fn a_clipped_union_is_as_many_primitives_as_it_has_parts() {
+        assert_eq!(clipped_parts(quilt()).len(), 4);
+        assert_eq!(clipped_parts(ball(0.0, 0)).len(), 1);
+        let whole = CsgNode::union([ball(0.0, 0), ball(1.0, 1)]);
+        assert_eq!(clipped_parts(whole).len(), 1);
+        let by_tree = CsgNode::union([slab(0.1, 2), slab(0.2, 3)]);
+        let clipped = CsgNode::clip(CsgNode::union([ball(0.0, 0), ball(1.0, 1)]), [by_tree]);
+        assert_eq!(clipped_parts(clipped).len(), 1);
+    }
+
+    #[test]
+    fn the_parts_are_hit_where_the_whole_is() {
+        let whole = Csg::try_new(quilt()).unwrap();
+        let parts = clipped_parts(quilt()).into_iter();
+        let parts: Vec<Csg> = parts.map(|part| Csg::try_new(part).unwrap()).collect();
+        let mut scratch = Scratch::default();
+        let mut hits = 0;
+        for i in 0..4000_u32 {
+            let turn = |k: f64| (f64::from(i) * k).fract() * 2.0 - 1.0;
+            let origin = DVec3::new(4.0 * turn(0.618_034), 4.0 * turn(0.414_214), -4.0);
+            let target = DVec3::new(2.0 * turn(0.732_051), turn(0.236_068), turn(0.316_625));
+            let ray = Ray::new(origin, target - origin);
+            let mut first = |csg: &Csg| {
+                let hit =
+                    csg.closest_hit(&ray, Interval::new(0.0, f64::INFINITY), None, &mut scratch)?;
+                Some((hit.t, csg.leaf_tag(hit.surface.element as usize)))
+            };
+            let seen = first(&whole);
+            let of_parts = parts.iter().filter_map(&mut first);
+            assert_eq!(seen, of_parts.min_by(|a, b| a.0.total_cmp(&b.0)), "{ray:?}");
+            hits += u32::from(seen.is_some());
+        }
+        assert!(hits > 500, "{hits}");
     }
 }
