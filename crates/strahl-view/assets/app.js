@@ -4,8 +4,10 @@ import { Code } from "./code.js";
 import { Link } from "./link.js";
 import { Space } from "./space.js";
 import { Stage } from "./stage.js";
+import { Timeline } from "./timeline.js";
 import { el, number, triple } from "./numbers.js";
 import { length, minus } from "./camera.js";
+import { treeSvg } from "./svg.js";
 import { showPixel } from "./tree.js";
 import { getLanguage, setLanguage, word } from "./words.js";
 
@@ -16,8 +18,11 @@ const CHANNELS = ["color", "normal", "depth", "object", "material", ...COUNTS];
 // What a link to this page keeps.
 const state = {
   scene: null, size: null, sampling: null, depth: null, cutoff: null, shading: null, accelerator: null, camera: null, clock: null,
-  exposure: 0, channel: "color", pixel: null, compare: null, panel: "tree",
+  exposure: 0, curve: "srgb", channel: "color", pixel: null, compare: null, beside: null, panel: "tree",
 };
+// What a link leaves out, because it is so without it.
+const USUAL = { exposure: 0, curve: "srgb", channel: "color", panel: "tree" };
+const CURVES = ["srgb", "reinhard", "filmic"];
 let hello = null;
 let own = null;
 let scene = null;
@@ -33,6 +38,7 @@ const link = new Link({
   scene(message) { showScene(message); },
   picture(message) { begin(message); },
   done(message) { finish(message); },
+  scale(message) { if (message.slot === "main" && stage.film.done) { stage.film.done.scale = message.scale; status(null); } },
   error(message) { toast(message.message); },
   binary(head, bytes) { receive(head, bytes); },
   lost() { find("status").replaceChildren(el("span", { class: "mouse", text: word("lost") })); document.body.classList.add("lost"); },
@@ -64,7 +70,9 @@ const code = new Code(find("code"), {
   open: (file, line) => link.ask({ type: "edit", file, line }).catch((problem) => toast(problem.message)),
 });
 
-const space = new Space(link, { onRay: (id) => markRay(id), toast });
+const timeline = new Timeline(find("timeline"), (clock) => { state.clock = clock; show(); });
+
+const space = new Space(link, { onRay: (id) => markRay(id), toast, table: () => showTable(), svg: (text) => text && saveSvg(text, "rays") });
 
 // How far the scene is from the eye, where no point is known.
 function reach() {
@@ -86,7 +94,7 @@ function toast(text) {
 function keep() {
   const words = new URLSearchParams();
   for (const [key, value] of Object.entries(state)) {
-    if (value === null || (key === "exposure" && value === 0) || (key === "channel" && value === "color") || (key === "panel" && value === "tree")) continue;
+    if (value === null || value === USUAL[key]) continue;
     words.set(key, typeof value === "object" ? JSON.stringify(value) : value);
   }
   if (getLanguage() !== "en") words.set("language", getLanguage());
@@ -105,7 +113,8 @@ function recall() {
   };
   for (const key of ["scene", "sampling", "shading", "accelerator", "panel"]) read(key, String);
   for (const key of ["depth", "cutoff", "exposure", "clock"]) read(key, Number);
-  for (const key of ["size", "camera", "pixel", "compare"]) read(key, JSON.parse);
+  for (const key of ["size", "camera", "pixel", "compare", "beside"]) read(key, JSON.parse);
+  if (CURVES.includes(words.get("curve"))) state.curve = words.get("curve");
   if (CHANNELS.includes(words.get("channel"))) state.channel = words.get("channel");
   setLanguage(words.get("language") ?? localStorage.getItem("language") ?? (navigator.language.startsWith("de") ? "de" : "en"));
   const theme = localStorage.getItem("theme") ?? (matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light");
@@ -113,8 +122,8 @@ function recall() {
 }
 
 function settings() {
-  const { size, sampling, depth, cutoff, shading, accelerator, camera, clock, exposure, channel } = state;
-  return { size, sampling, depth, cutoff, shading, accelerator, camera: camera ? plain(camera) : null, clock, exposure, channel };
+  const { size, sampling, depth, cutoff, shading, accelerator, camera, clock, exposure, curve, channel } = state;
+  return { size, sampling, depth, cutoff, shading, accelerator, camera: camera ? plain(camera) : null, clock, exposure, curve, channel };
 }
 
 // The numbers of a camera, without what belongs to the page.
@@ -127,7 +136,7 @@ function show() {
   link.send({ type: "picture", slot: "main", settings: settings() });
   if (state.compare) link.send({ type: "picture", slot: "side", settings: { ...settings(), ...state.compare } });
   else link.send({ type: "close", slot: "side" });
-  stage.compare(Boolean(state.compare));
+  stage.compare(Boolean(state.compare), Boolean(state.beside));
   space.setScene(settings());
 }
 
@@ -176,15 +185,19 @@ function showScene(message) {
   status(null);
 }
 
+let warningsShown = false;
+
 function showProblems(said) {
   const box = find("problems") ?? stage.box.appendChild(el("div", { id: "problems", role: "alert" }));
   const errors = said.filter((one) => one.severity === "error");
-  box.hidden = errors.length === 0;
-  box.replaceChildren(...errors.slice(0, 20).map((one) => {
+  const shown = [...errors.slice(0, 20), ...(warningsShown ? said.filter((one) => one.severity === "warning") : [])];
+  box.hidden = shown.length === 0;
+  box.classList.toggle("mild", errors.length === 0);
+  box.replaceChildren(...shown.map((one) => {
     const where = one.file ? `${one.file}${one.line ? `:${one.line}` : ""}${one.column ? `:${one.column}` : ""}` : "";
     const text = one.text !== null && one.caret ? el("pre", {}, `${one.text.replace(/[\x00-\x1f]/g, " ")}\n${" ".repeat(Math.max(0, one.caret[0] - 1))}`, el("span", { class: "caret", text: "^".repeat(one.caret[1]) })) : null;
     return el("div", { class: "problem" },
-      el("div", { class: "message", text: `${word("error")}: ${one.message}` }),
+      el("div", { class: `message ${one.severity}`, text: `${word(one.severity)}: ${one.message}` }),
       where && el("button", { type: "button", class: "place", text: where, onclick: () => code.show(one.file, one.line) }),
       text,
       ...one.trace.map((step) => el("div", { class: "dim", text: step })),
@@ -204,6 +217,7 @@ function begin(message) {
   stage.setMarks(null);
   stage.progress.style.opacity = "1";
   stage.progress.style.width = "4%";
+  for (const [id, value] of [["depth", message.depth], ["cutoff", Number(message.cutoff.toPrecision(2))]]) if (find(id)) find(id).placeholder = value;
   status(null);
   if (state.pixel && !cameraBusy) explain();
 }
@@ -239,6 +253,7 @@ function finish(message) {
   stage.progress.style.width = "100%";
   stage.progress.style.opacity = "0";
   cameraBusy = false;
+  timeline.finished();
   document.body.dataset.finished = message.sha256;
   status(null);
   stage.draw();
@@ -265,7 +280,8 @@ function status(seen) {
   } else right.textContent = `${current.width} × ${current.height} · ${word("rendering")} …`;
   const stats = scene?.stats ? el("span", { text: `${scene.stats.primitives.toLocaleString(getLanguage())} ${word("objects")} · ${scene.stats.lights} ${word("lights")} · ${scene.stats.accelerator}` }) : "";
   const warnings = scene?.said?.filter((one) => one.severity === "warning") ?? [];
-  const warned = warnings.length ? el("span", { title: warnings.map((one) => one.message).join("\n"), text: `⚠ ${warnings.length} ${word(warnings.length === 1 ? "warning" : "warnings")}` }) : "";
+  const warned = warnings.length ? el("button", { type: "button", class: "warned", id: "warnings", "aria-pressed": String(warningsShown), title: warnings.map((one) => one.message).join("\n"), text: `⚠ ${warnings.length} ${word(warnings.length === 1 ? "warning" : "warnings")}`,
+    onclick: () => { warningsShown = !warningsShown; showProblems(scene.said); status(null); } }) : "";
   bar.replaceChildren(left, el("span", { class: "gap" }), warned, stats, right);
 }
 
@@ -329,7 +345,8 @@ function showInspector() {
       onPlace: (file, line) => { if (find("code").hidden) toggle("code"); code.show(file, line); },
       onRay: (ray) => space.light(ray.id),
       onSample: (index) => space.setSample(index),
-    }), el("p", {}, el("button", { type: "button", class: "tool", id: "export", text: word("export"), onclick: exportPixel })));
+    }), el("p", {}, el("button", { type: "button", class: "tool", id: "export", text: word("export"), onclick: exportPixel }), " ",
+      el("button", { type: "button", class: "tool", id: "export-svg", text: word("treeSvg"), onclick: exportTree })));
   } else body = space.panel(state.panel);
   box.replaceChildren(tabs, body);
   if (explained && state.panel !== "tree") space.opened();
@@ -347,6 +364,17 @@ async function exportPixel() {
     const { html } = await link.ask({ type: "export", slot: "main", x, y, language: getLanguage() });
     download(new Blob([html], { type: "text/html" }), `pixel-${x}-${y}.html`);
   } catch (problem) { toast(problem.message); }
+}
+
+function exportTree() {
+  const ink = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+  const colors = { primary: ink("--primary"), reflection: ink("--reflection"), transparency: ink("--transparency") };
+  const [x, y] = explained.pixel;
+  saveSvg(treeSvg(explained.samples[space.sample] ?? explained.samples[0], `${scene.name.split(/[\\/]/).pop()}, ${word("pixel")} ${x}, ${y}`, colors), "tree");
+}
+
+function saveSvg(text, what) {
+  download(new Blob([text], { type: "image/svg+xml" }), `${what}-${explained.pixel.join("-")}.svg`);
 }
 
 function download(blob, name) {
@@ -370,7 +398,7 @@ function toggle(id) {
 }
 
 function choose(name, title, values, value, change) {
-  const select = el("select", { id: name, onchange: () => change(select.value) }, ...values.map(([key, text]) => el("option", { value: key, text, selected: key === value })));
+  const select = el("select", { id: name, "aria-label": title ? null : word(name), onchange: () => change(select.value) }, ...values.map(([key, text]) => el("option", { value: key, text, selected: key === value })));
   return el("label", { class: "control" }, title, select);
 }
 
@@ -381,7 +409,7 @@ function counted(name, title, value, attributes, change) {
 }
 
 function tool(name, text, title, action, pressed = null) {
-  return el("button", { type: "button", class: "tool", id: name, title, "aria-label": title, "aria-pressed": pressed === null ? null : String(pressed), text, onclick: action });
+  return el("button", { type: "button", class: "tool", id: name, title, "aria-label": /^\w+$/.test(text) && !title.includes(text) ? `${text}: ${title}` : title, "aria-pressed": pressed === null ? null : String(pressed), text, onclick: action });
 }
 
 function samplings() {
@@ -398,25 +426,50 @@ function showBar() {
     })
     : el("span", { class: "file", title: name, text: name });
   const channels = CHANNELS.map((one) => [one, word(one === "rays" ? "rayCount" : one)]);
+  const file = name.split(/[\\/]/).pop().replace(/\.[^.]*$/, "");
   find("bar").replaceChildren(
     el("span", { class: "brand", text: "strahl" }), scenes,
     choose("channel", word("channel"), channels, state.channel, (value) => set({ channel: value })),
     choose("sampling", word("sampling"), samplings(), state.sampling ?? "", (value) => set({ sampling: value || null })),
     counted("depth", word("maxDepth"), state.depth, { min: 1, max: 1000, placeholder: current ? String(current.depth) : "" }, (value) => set({ depth: value })),
-    counted("cutoff", word("cutoff"), state.cutoff, { min: 0, max: 1, step: "any", placeholder: current ? String(Number(current.cutoff.toPrecision(2))) : "" }, (value) => set({ cutoff: value })),
-    choose("shading", word("shading"), [["", word("own")], ...(hello?.shading ?? []).map((one) => [one, one])], state.shading ?? "", (value) => set({ shading: value || null })),
     counted("exposure", word("exposure"), state.exposure, { step: 0.5, min: -20, max: 20 }, (value) => set({ exposure: value ?? 0 })),
-    counted("clock", word("clock"), state.clock, { step: 0.05 }, (value) => set({ clock: value })),
+    menu("more", word("more"),
+      choose("curve", word("curve"), CURVES.map((one) => [one, word(one)]), state.curve, (value) => set({ curve: value })),
+      choose("shading", word("shading"), [["", word("own")], ...(hello?.shading ?? []).map((one) => [one, one])], state.shading ?? "", (value) => set({ shading: value || null })),
+      choose("accelerator", word("accelerator"), [["", word("own")], ...(hello?.accelerators ?? []).map((one) => [one, one])], state.accelerator ?? "", (value) => set({ accelerator: value || null })),
+      counted("cutoff", word("cutoff"), state.cutoff, { min: 0, max: 1, step: "any", placeholder: current ? String(Number(current.cutoff.toPrecision(2))) : "" }, (value) => set({ cutoff: value })),
+      counted("clock", word("clock"), state.clock, { step: 0.05 }, (value) => set({ clock: value }))),
     el("span", { class: "gap" }),
     tool("camera", word("camera"), `${word("camera")} (C)`, () => { stage.turning = !stage.turning; stage.box.classList.toggle("turning", stage.turning); showBar(); }, stage.turning),
     state.camera ? tool("reset", word("resetCamera"), `${word("resetCamera")} (R)`, resetCamera) : "",
-    tool("copy", word("copyCamera"), word("copyCamera"), copyCamera),
     tool("compare", word("compare"), `${word("compare")} (X)`, toggleCompare, Boolean(state.compare)),
-    tool("png", word("savePng"), word("savePng"), () => stage.film.canvas.toBlob((blob) => download(blob, `${name.split(/[\\/]/).pop().replace(/\.[^.]*$/, "")}.png`))),
+    menu("save-menu", word("save"),
+      tool("png", word("savePng"), word("savePng"), () => stage.film.canvas.toBlob((blob) => download(blob, `${file}.png`))),
+      tool("exr", word("saveExr"), word("saveExr"), () => saveExr(`${file}.exr`)),
+      tool("copy", word("copyCamera"), word("copyCamera"), copyCamera)),
     tool("theme", "◐", `${word("theme")} (T)`, toggleTheme),
     tool("language", getLanguage() === "en" ? "DE" : "EN", `${word("language")} (L)`, toggleLanguage),
     tool("help-button", "?", `${word("help")} (?)`, help));
+  timeline.show(scene?.clock || state.clock !== null, state.clock);
   showSide();
+}
+
+// A part of the bar that opens on a click, and stays open when the bar is made again.
+function menu(id, title, ...content) {
+  const box = el("details", { class: "menu", id },
+    el("summary", { class: "tool", text: title }), el("div", { class: "menu-body" }, ...content));
+  box.open = find(id)?.open ?? false;
+  return box;
+}
+
+document.addEventListener("pointerdown", (event) => {
+  for (const one of document.querySelectorAll("details.menu[open]")) if (!one.contains(event.target)) one.open = false;
+});
+
+async function saveExr(name) {
+  const answer = await fetch(`picture/${current.picture}.exr`);
+  if (answer.ok) download(await answer.blob(), name);
+  else toast(await answer.text());
 }
 
 function showSide() {
@@ -426,6 +479,7 @@ function showSide() {
   const change = (values) => { state.compare = { ...state.compare, ...values }; show(); showBar(); };
   box.replaceChildren(
     el("strong", { text: word("settingsOf") }),
+    choose("side-view", word("view"), [["", word("swipe")], ["beside", word("beside")]], state.beside ? "beside" : "", (value) => set({ beside: value ? true : null })),
     choose("side-channel", word("channel"), CHANNELS.map((one) => [one, word(one === "rays" ? "rayCount" : one)]), state.compare.channel ?? state.channel, (value) => change({ channel: value })),
     choose("side-accelerator", word("accelerator"), [["", word("own")], ...hello.accelerators.map((one) => [one, one])], state.compare.accelerator ?? "", (value) => change({ accelerator: value || null })),
     choose("side-shading", word("shading"), [["", word("own")], ...hello.shading.map((one) => [one, one])], state.compare.shading ?? "", (value) => change({ shading: value || null })),
@@ -471,6 +525,8 @@ function toggleLanguage() {
   code.showTools();
   showInspector();
   showProblems(scene?.said ?? []);
+  timeline.clear();
+  showBar();
   status(null);
 }
 
@@ -482,12 +538,36 @@ function help() {
   box.showModal();
 }
 
+// What the picture costs with each accelerator.
+async function showTable() {
+  const box = find("table");
+  const close = el("p", {}, el("button", { type: "button", class: "tool", text: word("close"), onclick: () => box.close() }));
+  box.replaceChildren(el("h2", { text: word("tableTitle") }), el("p", { class: "dim", text: word("measuring") }), close);
+  box.showModal();
+  try {
+    const { width, height, rows } = await link.ask({ type: "table", slot: "main" });
+    const count = (value) => value.toLocaleString(getLanguage());
+    const same = rows.every((row) => row.sha256 === rows[0].sha256);
+    const head = ["accelerator", "build", "seconds", "rayCount", "stepsPerRay", "testsPerRay"];
+    box.replaceChildren(el("h2", { text: word("tableTitle") }),
+      el("table", { class: "figures" }, el("thead", {}, el("tr", {}, ...head.map((key) => el("th", { scope: "col", text: word(key) })))),
+        el("tbody", {}, ...rows.map((row) => el("tr", {}, el("th", { scope: "row", text: row.name }),
+          ...[`${number(row.build, 3)} s`, `${number(row.seconds, 3)} s`, count(row.rays), number(row.steps / Math.max(1, row.rays), 4), number(row.tests / Math.max(1, row.rays), 4)].map((text) => el("td", { text })))))),
+      el("p", { class: "dim", text: `${width} × ${height} · ${word(same ? "samePictures" : "otherPictures")}` }), close);
+  } catch (problem) {
+    box.close();
+    toast(problem.message);
+  }
+}
+
 function toggleChannel(name) {
   set({ channel: state.channel === name ? "color" : name });
 }
 
 document.addEventListener("keydown", (event) => {
   if (event.ctrlKey || event.metaKey || event.altKey || /^(INPUT|TEXTAREA|SELECT)$/.test(event.target.tagName)) return;
+  // An open dialog has its own keys: Escape closes it.
+  if (document.querySelector("dialog[open]") && event.key !== "?") return;
   const step = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] }[event.key];
   if (step && state.pixel && current && !event.target.closest("#code")) {
     event.preventDefault();
@@ -499,7 +579,7 @@ document.addEventListener("keydown", (event) => {
     c: () => find("camera").click(), r: resetCamera, f: () => stage.fit(), 1: () => stage.zoomTo(1), "+": () => set({ exposure: state.exposure + 0.5 }), "-": () => set({ exposure: state.exposure - 0.5 }),
     n: () => toggleChannel("normal"), d: () => toggleChannel("depth"), o: () => toggleChannel("object"), m: () => toggleChannel("material"), x: toggleCompare,
     s: () => toggle("code"), i: () => toggle("inspector"), t: toggleTheme, l: toggleLanguage, "?": help, ",": () => space.step(-1), ".": () => space.step(1),
-    Escape: () => { stage.setMarks(null); code.setMarked(null, null); },
+    Escape: () => { for (const one of document.querySelectorAll("details.menu[open]")) one.open = false; stage.setMarks(null); code.setMarked(null, null); },
   }[event.key.length === 1 ? event.key.toLowerCase() : event.key];
   if (event.key === " " && event.target.tagName !== "BUTTON" && event.target.tagName !== "SUMMARY") {
     event.preventDefault();

@@ -3,6 +3,7 @@
 import { cross, dolly, inner, length, minus, pan, plus, scaled, turn, unit } from "./camera.js";
 import { el, number } from "./numbers.js";
 import { Film } from "./film.js";
+import { SvgPen } from "./svg.js";
 import { word } from "./words.js";
 
 const INK = { primary: "--primary", reflection: "--reflection", transparency: "--transparency", shadow: "--shadow" };
@@ -95,12 +96,13 @@ export class Space {
     const tools = el("div", { class: "space-tools" },
       button("|◀", () => { this.at = 0; this.draw(); }), button("◀", () => this.step(-1)),
       button(this.timer ? `⏸ ${word("pause")}` : `▶ ${word("play")}`, () => this.play()), button("▶", () => this.step(1)), button(word("all"), () => { this.at = -1; this.draw(); }),
-      button(orthographic ? word("perspective") : word("orthographic"), () => this.project()));
+      button(orthographic ? word("perspective") : word("orthographic"), () => this.project()),
+      button("SVG", () => this.actions.svg(this.svg())));
     if (kind === "walk") {
       const kinds = ["", ...(this.accelerators ?? ["bvh", "bvh2", "spheres", "grid", "grids", "octree", "list"])];
       const select = el("select", { id: "walk-accelerator", "aria-label": word("accelerator"), onchange: () => { this.accelerator = select.value || null; this.walk = null; this.at = -1; this.render(); } },
         ...kinds.map((one) => el("option", { value: one, text: one || word("own"), selected: (this.accelerator ?? "") === one })));
-      tools.append(select);
+      tools.append(select, button(word("table"), () => this.actions.table()));
     }
     return el("div", { class: "panel-body canvas" }, this.box, tools, this.say, kind === "walk" ? this.events : "");
   }
@@ -163,7 +165,8 @@ export class Space {
   render() {
     const { clientWidth, clientHeight } = this.box;
     if (!this.isOpen || !this.camera || clientWidth < 2 || clientHeight < 2) return;
-    const camera = { ...this.camera };
+    // Whatever the ratio of the scene's camera, this one is made for the box.
+    const camera = { ...this.camera, aspect: clientWidth / clientHeight };
     const settings = { ...this.settings, size: [Math.min(2000, clientWidth), Math.min(2000, clientHeight)], sampling: "center", channel: "color", camera, clock: this.settings.clock };
     if (this.kind === "walk" && this.accelerator) settings.accelerator = this.accelerator;
     const wanted = JSON.stringify(settings);
@@ -269,6 +272,19 @@ export class Space {
     this.over.height = Math.round(h * ratio);
     const pen = this.over.getContext("2d");
     pen.scale(ratio, ratio);
+    this.paint(pen);
+  }
+
+  // What is shown, as a file.
+  svg() {
+    if (!this.isOpen || !this.camera || !this.steps) return null;
+    const pen = new SvgPen(this.box.clientWidth, this.box.clientHeight);
+    pen.picture(this.film.canvas);
+    this.paint(pen);
+    return String(pen);
+  }
+
+  paint(pen) {
     const style = getComputedStyle(document.documentElement);
     const ink = (name) => style.getPropertyValue(name).trim();
     const line = (from, to, color, width, dash = []) => {

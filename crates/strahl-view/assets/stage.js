@@ -48,9 +48,9 @@ export class Stage {
   fit() {
     this.fitted = true;
     const { clientWidth, clientHeight } = this.box;
-    const most = Math.min((clientWidth - 24) / this.width, (clientHeight - 24) / this.height);
+    const most = Math.min((clientWidth / (this.beside ? 2 : 1) - 24) / this.width, (clientHeight - 24) / this.height);
     this.scale = most > 1 ? Math.max(1, Math.floor(most * 4) / 4) : most;
-    this.left = Math.round((clientWidth - this.width * this.scale) / 2);
+    this.left = Math.round((clientWidth / (this.beside ? 2 : 1) - this.width * this.scale) / 2);
     this.top = Math.round((clientHeight - this.height * this.scale) / 2);
     this.place();
   }
@@ -65,14 +65,23 @@ export class Stage {
   }
 
   place() {
+    const half = this.box.clientWidth / 2;
     for (const canvas of [this.film.canvas, this.side.canvas]) {
-      canvas.style.transform = `translate(${this.left}px, ${this.top}px) scale(${this.scale * (this.width / canvas.width)})`;
+      const left = this.left + (this.beside && canvas === this.side.canvas ? half : 0);
+      canvas.style.transform = `translate(${left}px, ${this.top}px) scale(${this.scale * (this.width / canvas.width)})`;
       canvas.classList.toggle("pixels", this.scale > 1.5);
     }
     const line = this.left + this.split * this.width * this.scale;
     this.swipe.style.left = `${line}px`;
     const cut = this.swipe.hidden ? 0 : this.split * this.side.canvas.width;
     this.side.canvas.style.clipPath = `inset(0 0 0 ${cut}px)`;
+    this.film.canvas.style.clipPath = "";
+    if (this.beside) {
+      // Each picture stays in its half.
+      const over = Math.max(0, this.width - (half - this.left) / this.scale);
+      this.film.canvas.style.clipPath = `inset(0 ${over}px 0 0)`;
+      this.side.canvas.style.clipPath = `inset(0 0 0 ${Math.max(0, ((-this.left / this.scale) * this.side.canvas.width) / this.width)}px)`;
+    }
     this.draw();
   }
 
@@ -82,15 +91,25 @@ export class Stage {
     this.place();
   }
 
-  compare(on) {
-    this.swipe.hidden = !on;
+  // Shows the second picture: under a line to drag, or beside the first.
+  compare(on, beside) {
+    this.swipe.hidden = !on || beside;
     this.side.canvas.hidden = !on;
-    this.place();
+    const changed = this.beside !== (on && beside);
+    this.beside = on && beside;
+    if (changed && this.fitted) this.fit(); else this.place();
+  }
+
+  // A column of the box, counted from the left edge of the picture that is there.
+  column(clientX) {
+    const x = clientX - this.box.getBoundingClientRect().left;
+    const half = this.box.clientWidth / 2;
+    return this.beside && x >= half ? x - half : x;
   }
 
   pixelAt(event) {
     const box = this.box.getBoundingClientRect();
-    const x = Math.floor((event.clientX - box.left - this.left) / this.scale);
+    const x = Math.floor((this.column(event.clientX) - this.left) / this.scale);
     const y = Math.floor((event.clientY - box.top - this.top) / this.scale);
     return x >= 0 && y >= 0 && x < this.width && y < this.height ? [x, y] : null;
   }
@@ -132,7 +151,7 @@ export class Stage {
       const before = Math.hypot(last.clientX - other.clientX, last.clientY - other.clientY);
       const now = Math.hypot(event.clientX - other.clientX, event.clientY - other.clientY);
       const box = this.box.getBoundingClientRect();
-      if (before > 0) this.zoomTo((this.scale * now) / before, other.clientX - box.left, other.clientY - box.top);
+      if (before > 0) this.zoomTo((this.scale * now) / before, this.column(other.clientX), other.clientY - box.top);
     } else if (this.moved) {
       if (this.turns(event)) this.moveCamera(event, dx, dy);
       else {
@@ -172,7 +191,7 @@ export class Stage {
       return;
     }
     const box = this.box.getBoundingClientRect();
-    this.zoomTo(this.scale * Math.exp(-lines * 0.0018), event.clientX - box.left, event.clientY - box.top);
+    this.zoomTo(this.scale * Math.exp(-lines * 0.0018), this.column(event.clientX), event.clientY - box.top);
   }
 
   // Marks, the pixel that was picked, and the values of pixels that are large enough.
@@ -194,11 +213,13 @@ export class Stage {
     if (this.picked) {
       const [x, y] = this.picked;
       const size = Math.max(this.scale, 9);
-      const middle = [this.left + (x + 0.5) * this.scale, this.top + (y + 0.5) * this.scale];
-      for (const [color, width] of [["rgb(0 0 0 / 80%)", 3.5], ["#ffb648", 1.5]]) {
-        pen.strokeStyle = color;
-        pen.lineWidth = width;
-        pen.strokeRect(middle[0] - size / 2, middle[1] - size / 2, size, size);
+      for (const left of this.beside ? [this.left, this.left + clientWidth / 2] : [this.left]) {
+        const middle = [left + (x + 0.5) * this.scale, this.top + (y + 0.5) * this.scale];
+        for (const [color, width] of [["rgb(0 0 0 / 80%)", 3.5], ["#ffb648", 1.5]]) {
+          pen.strokeStyle = color;
+          pen.lineWidth = width;
+          pen.strokeRect(middle[0] - size / 2, middle[1] - size / 2, size, size);
+        }
       }
     }
   }

@@ -34,6 +34,10 @@ export function contributions(sample) {
 // Shows a pixel. `actions` may have `onPlace(file, line)`, `onRay(ray, sample)`, `onSample(index)`.
 export function showPixel(pixel, actions = {}) {
   const box = el("section", { class: "pixel" });
+  // What is cut off is reached with the keyboard, too.
+  box.addEventListener("toggle", () => requestAnimationFrame(() => {
+    for (const formula of box.querySelectorAll(".formula")) if (formula.scrollWidth > formula.clientWidth) formula.tabIndex = 0;
+  }), true);
   const [x, y] = pixel.pixel;
   box.append(
     el("header", { class: "pixel-head" },
@@ -93,15 +97,16 @@ function showSample(sample, actions) {
   return box;
 }
 
-function place(source, actions) {
+// The place in the scene, which leads there. Inside of a summary, which is a button itself, it is one for the mouse only.
+function place(source, actions, inside = false) {
   if (!source) return null;
   const match = /^(.*?):(\d+)(?::\d+)?$/.exec(source);
   if (!match) return el("span", { class: "place", text: source });
   const [, file, line] = match;
   const label = `${file.split(/[\\/]/).pop()}:${line}`;
   if (!actions.onPlace) return el("span", { class: "place", text: label, title: source });
-  return el("button", {
-    type: "button", class: "place", title: source, text: label,
+  return el(inside ? "span" : "button", {
+    type: inside ? null : "button", class: "place way", title: source, text: label,
     onclick: (event) => { event.preventDefault(); event.stopPropagation(); actions.onPlace(file, Number(line)); },
   });
 }
@@ -117,9 +122,9 @@ function showRay(ray, adds, most, byId, actions, sample) {
     el("span", { class: "kind", title: word(ray.kind), text: ray.kind === "primary" ? "E" : ray.kind === "reflection" ? "R" : "T" }),
     swatch(ray.total),
     el("span", { class: "what", text: what }),
-    place(ray.hit?.source, actions),
+    place(ray.hit?.source, actions, true),
     bar,
-    el("span", { class: "figures adds", title: word("adds"), text: `(${adds.map((c) => (c === 0 ? "0" : c.toFixed(4))).join(", ")})` }));
+    el("span", { class: "figures adds", title: `${word("adds")} ${triple(adds, 6)}`, text: `(${adds.map((c) => (c === 0 ? "0" : c.toFixed(3))).join(", ")})` }));
   const details = el("details", { "data-ray": ray.id });
   details.append(summary);
   let filled = false;
@@ -153,6 +158,7 @@ function rayBody(ray, byId, actions) {
     row(word("direction"), triple(ray.ray.direction, 6)));
   if (ray.medium) geometry.append(row(word("medium"), ray.medium));
   const hit = ray.hit;
+  if (hit?.source) geometry.append(row(word("scene"), place(hit.source, actions)));
   if (!hit) {
     body.append(geometry);
     if (ray.background) body.append(el("p", {}, `${word("noHit")} `, swatch(ray.background), triple(ray.background, 5)));
@@ -232,11 +238,11 @@ function obstacles(light) {
 }
 
 // Why a light brings nothing, or less: a list of nodes; null if it is simply visible.
-function reason(light, actions) {
+function reason(light, actions, inside = false) {
   const met = obstacles(light);
   const count = light.shadow_rays.length;
   const parts = met.map((one) => [
-    `${word(one.blocks ? "blocked" : "weakened")} ${one.object} `, place(one.source, actions),
+    `${word(one.blocks ? "blocked" : "weakened")} ${one.object} `, place(one.source, actions, inside),
     ` ${word("at")} t = ${number(one.t, 4)}`, count > 1 ? ` (${one.count} ${word("of")} ${count} ${word("ofRays")})` : "",
   ]);
   if (parts.length) return parts.flatMap((part, i) => (i ? ["; ", ...part] : part));
@@ -247,12 +253,12 @@ function reason(light, actions) {
 
 function showLight(light, hit, actions) {
   const result = light.diffuse.map((c, i) => c + light.highlight[i]);
-  const why = reason(light, actions);
+  const why = reason(light, actions, true);
   const state = isBlack(result) ? "off" : "on";
   const box = el("details", { class: `light ${state}` },
-    el("summary", {}, swatch(result), el("span", { class: "name", text: `${light.light}${light.kind ? `, ${light.kind}` : ""}` }), place(light.source, actions),
+    el("summary", {}, swatch(result), el("span", { class: "name", text: `${light.light}${light.kind ? `, ${light.kind}` : ""}` }), place(light.source, actions, true),
       why ? el("span", { class: "reason" }, ...why) : el("span", { class: "reason good", text: word("visible") })));
-  const body = el("div", { class: "light-body" });
+  const body = el("div", { class: "light-body" }, place(light.source, actions));
   if (light.l) body.append(el("div", { class: "dim", text: `l = ${triple(light.l, 5)}, n·l = ${number(light.n_dot_l)}` }));
   if (light.mean_of_points) body.append(el("div", { class: "dim", text: word("meanOf").replace("%n", light.mean_of_points) }));
   body.append(line("L", light.L, symbol("L"), product([vector(light.color_here), vector(light.visible)]), vector(light.L)));

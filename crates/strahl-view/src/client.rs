@@ -1,38 +1,33 @@
 //! A page that is open: its pictures and its questions.
 
+mod files;
+mod messages;
+mod questions;
+
 use crate::camera::camera_sdl;
 use crate::colors::{Look, srgb8};
 use crate::export::explanation_page;
 use crate::pictures::{End, Kind, News, Picture};
 use crate::protocol::{
-    Asked, COLORS, CameraData, Channel, DEEPEST, LINEAR, LONGEST_SIDE, LONGEST_TEXT, MARKS,
-    MOST_PIXELS, Settings, Slot, header,
+    Asked, COLORS, Channel, Curve, LINEAR, LONGEST_SIDE, LONGEST_TEXT, Settings, Slot, header,
 };
-use crate::scenes::{Compiled, Key, Request};
+use crate::scenes::Compiled;
 use crate::server::Hub;
-use crate::texts::{Text, is_sdl, pieces};
+use crate::texts::pieces;
 use crate::walk::walk_json;
 use axum::extract::ws::{Message, WebSocket};
+use messages::{check, key_of, picture_message, scene_message, view_of};
+use questions::hover;
 use serde_json::{Value, json};
 use std::collections::HashMap;
-use std::io::Write as _;
-use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use strahl::prelude::*;
-use strahl::tracing::PrimaryRays;
 use tokio::sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel};
 
-/// The size of pictures for which nobody has another.
-const USUAL_SIZE: (u32, u32) = (800, 600);
-/// How many questions of a page are worked on at once.
-const MOST_WORK: usize = 8;
 /// The most pixels whose linear values are sent at once.
 const MOST_LINEAR: u64 = 1 << 16;
-/// The longest answer in bytes.
-const LONGEST_ANSWER: usize = 64 << 20;
 
 /// A page.
 pub(crate) struct Client {
@@ -268,73 +263,13 @@ impl Client {
                     Ok(walk_json(picture.view.scene(), &ray))
                 })
             }
+            Asked::Table { id, slot } => self.table(id, slot),
             Asked::Mark {
                 id,
                 slot,
                 file,
                 line,
             } => self.mark(id, slot, file, line),
-        }
-    }
-
-    /// Answers a question at once.
-    async fn reply(&mut self, id: u64, answer: Result<Value, String>) -> Result<(), Gone> {
-        let message = reply(id, answer);
-        Ok(self.socket.send(message).await?)
-    }
-
-    /// Works on a question about a pixel in a thread of its own.
-    fn ask(
-        &self,
-        id: u64,
-        slot: Slot,
-        pixel: Option<(u32, u32)>,
-        work: impl FnOnce(&Hub, &Picture, (u32, u32)) -> Result<Value, String> + Send + 'static,
-    ) -> Result<(), Gone> {
-        let picture = self
-            .slots
-            .get(&slot)
-            .and_then(|shown| shown.picture.clone());
-        let Some(picture) = picture else {
-            let none = reply(id, Err("there is no picture".into()));
-            return self.answer.send(none).map_err(|_| Gone);
-        };
-        let at = pixel.unwrap_or_default();
-        if at.0 >= picture.view.width || at.1 >= picture.view.height {
-            let none = reply(id, Err("there is no such pixel".into()));
-            return self.answer.send(none).map_err(|_| Gone);
-        }
-        self.work(id, move |hub| {
-            work(hub, &picture, at).map(|value| reply(id, Ok(value)))
-        })
-    }
-
-    /// Works on a question in a thread of its own.
-    fn work(
-        &self,
-        id: u64,
-        work: impl FnOnce(&Hub) -> Result<Message, String> + Send + 'static,
-    ) -> Result<(), Gone> {
-        let busy = Busy(Arc::clone(&self.work));
-        if self.work.fetch_add(1, Ordering::Relaxed) >= MOST_WORK {
-            let refused = reply(id, Err("too many questions at once".into()));
-            return self.answer.send(refused).map_err(|_| Gone);
-        }
-        let (hub, answer) = (Arc::clone(&self.hub), self.answer.clone());
-        let thread = std::thread::Builder::new().name("strahl question".into());
-        let spawned = thread.spawn(move || {
-            let _busy = busy;
-            let outcome = catch_unwind(AssertUnwindSafe(|| work(&hub)));
-            let outcome = outcome.unwrap_or_else(|_| Err("strahl failed: please report it".into()));
-            // Without a receiver the page has gone.
-            let _ = answer.send(outcome.unwrap_or_else(|problem| reply(id, Err(problem))));
-        });
-        match spawned {
-            Ok(_) => Ok(()),
-            Err(error) => {
-                let failed = reply(id, Err(error.to_string()));
-                self.answer.send(failed).map_err(|_| Gone)
-            }
         }
     }
 
@@ -359,19 +294,8 @@ impl Client {
         let Some(shown) = self.slots.get_mut(&slot) else {
             return Ok(());
         };
-        let defaults = &self.hub.defaults;
         let settings = &shown.settings;
-        let named = settings.accelerator.as_ref();
-        let accelerator = named.and_then(|name| name.parse().ok());
-        let key = Key {
-            request: Request {
-                path: self.path.clone(),
-                text: self.text.clone(),
-                size: settings.size.map(Into::into).or(defaults.size),
-                clock: settings.clock.unwrap_or(defaults.clock),
-            },
-            accelerator: accelerator.unwrap_or(defaults.accelerator),
-        };
+        let key = key_of(&self.path, self.text.as_ref(), settings, &self.hub.defaults);
         let (compiled, loading) = self.hub.scenes.want(&key);
         let told = (compiled.as_ref().map(|c| c.number), loading);
         let mut messages = vec![];
@@ -383,10 +307,10 @@ impl Client {
         let scene = shown
             .compiled
             .as_ref()
-            .and_then(|c| Some((c.number, c.scene.as_ref()?)));
+            .and_then(|c| Some((c.number, c.scene.as_ref()?, c.camera.as_ref()?)));
         let mut whole = None;
-        if let Some((number, scene)) = scene {
-            let view = view_of(scene, settings, &self.hub);
+        if let Some((number, scene, camera)) = scene {
+            let view = view_of(scene, camera, settings, &self.hub);
             let kind = settings.channel.kind();
             let pictures = &self.hub.pictures;
             let picture = pictures.follow(number, &view, kind, who, &self.follower);
@@ -400,13 +324,15 @@ impl Client {
             let look = Look {
                 channel: settings.channel,
                 gain: settings.exposure.exp2(),
+                curve: settings.curve,
                 diagonal: scene.diagonal(),
                 scale: 0.0,
             };
             if is_new {
-                messages.push(picture_message(slot, &picture));
+                messages.push(picture_message(slot, &picture, camera));
             }
-            let changed = shown.look.channel != look.channel || shown.look.gain != look.gain;
+            let changed = (shown.look.channel, shown.look.gain, shown.look.curve)
+                != (look.channel, look.gain, look.curve);
             if is_new || changed {
                 shown.look = look;
                 let canvas = picture.canvas();
@@ -453,9 +379,7 @@ impl Client {
             }
             News::End => {
                 if counts {
-                    shown.look.scale = channel.scale(&picture);
-                    let look = shown.look;
-                    self.part(&picture, picture.region(), 1, &look).await?;
+                    self.scale(slot, &picture).await?;
                 }
                 let end = picture.canvas().end.clone();
                 let scale = self.slots.get(&slot).map(|shown| shown.look.scale);
@@ -475,6 +399,45 @@ impl Client {
                 self.send(&message).await
             }
         }
+    }
+
+    /// Finds the scale of counts, and sends the picture with it. A second picture of the same counts gets the same scale, so that equal colours
+    /// mean equal numbers.
+    async fn scale(&mut self, slot: Slot, picture: &Picture) -> Result<(), Gone> {
+        let partner = match slot {
+            Slot::Main => Some(Slot::Side),
+            Slot::Side => Some(Slot::Main),
+            Slot::Space => None,
+        };
+        let Some(channel) = self.slots.get(&slot).map(|shown| shown.look.channel) else {
+            return Ok(());
+        };
+        let mut scale = channel.scale(picture);
+        let other = partner.and_then(|partner| {
+            let shown = self.slots.get(&partner)?;
+            let other = shown.picture.clone()?;
+            let ended = matches!(other.canvas().end, Some(End::Finished { .. }));
+            let alike = shown.look.channel == channel && ended;
+            alike.then_some((partner, other, shown.look.scale))
+        });
+        if let Some((partner, other, known)) = other {
+            scale = scale.max(channel.scale(&other));
+            if known != scale
+                && let Some(shown) = self.slots.get_mut(&partner)
+            {
+                shown.look.scale = scale;
+                let look = shown.look;
+                self.part(&other, other.region(), 1, &look).await?;
+                self.send(&json!({ "type": "scale", "slot": partner, "scale": scale }))
+                    .await?;
+            }
+        }
+        if let Some(shown) = self.slots.get_mut(&slot) {
+            shown.look.scale = scale;
+            let look = shown.look;
+            self.part(picture, picture.region(), 1, &look).await?;
+        }
+        Ok(())
     }
 
     /// Sends the colours of a part of a picture.
@@ -525,132 +488,6 @@ impl Client {
         }
         Ok(self.socket.send(Message::Binary(message.into())).await?)
     }
-
-    /// The path of a file of the scene; no other file is read or written.
-    fn file(&self, name: &str) -> Result<PathBuf, String> {
-        let compiled = self
-            .slots
-            .values()
-            .filter_map(|shown| shown.compiled.as_ref());
-        let mut files = compiled.flat_map(|compiled| &compiled.files);
-        let known = files.find(|file| file.name == name);
-        known
-            .map(|file| file.path.clone())
-            .ok_or_else(|| format!("the scene has no file `{name}`"))
-    }
-
-    fn source(&self, name: &str) -> Result<Value, String> {
-        let path = self.file(name)?;
-        let text = match &self.text {
-            Some(text) if path == crate::scenes::absolute(&self.path) => {
-                Text::new(text.to_string(), is_sdl(&path))
-            }
-            _ => Text::read(&path)?,
-        };
-        serde_json::to_value(text).map_err(|e| e.to_string())
-    }
-
-    fn save(&mut self, name: &str, text: &str) -> Result<Value, String> {
-        if !self.hub.edit {
-            return Err("files are written only with `strahl view --edit`".into());
-        }
-        if text.len() > LONGEST_TEXT {
-            return Err("the text is too long".into());
-        }
-        let path = self.file(name)?;
-        let folder = path.parent().unwrap_or(Path::new("."));
-        // Never half a file; and the file's permissions stay.
-        let write = || -> std::io::Result<()> {
-            let mut file = tempfile::NamedTempFile::new_in(folder)?;
-            file.write_all(text.as_bytes())?;
-            if let Ok(known) = std::fs::metadata(&path) {
-                std::fs::set_permissions(file.path(), known.permissions())?;
-            }
-            file.persist(&path)?;
-            Ok(())
-        };
-        write().map_err(|e| e.to_string())?;
-        if path == crate::scenes::absolute(&self.path) {
-            self.text = None;
-        }
-        Ok(json!({}))
-    }
-
-    fn edit(&self, name: &str, line: u32) -> Result<Value, String> {
-        let editor = self.hub.editor.as_ref();
-        let editor = editor.ok_or("start with `strahl view --editor COMMAND`")?;
-        let (path, line) = (self.file(name)?.display().to_string(), line.to_string());
-        let mut words: Vec<String> = editor
-            .split_whitespace()
-            .map(|word| word.replace("{file}", &path).replace("{line}", &line))
-            .collect();
-        if !editor.contains("{file}") {
-            words.extend([format!("+{line}"), path]);
-        }
-        let (program, rest) = words
-            .split_first()
-            .ok_or("the command of --editor is empty")?;
-        let mut child = Command::new(program)
-            .args(rest)
-            .stdin(Stdio::null())
-            .stdout(Stdio::null())
-            .spawn()
-            .map_err(|e| format!("{program}: {e}"))?;
-        // Waits for its end, so that no zombie is left.
-        std::thread::spawn(move || child.wait());
-        Ok(json!({}))
-    }
-
-    /// Marks the pixels of the objects that a line of the scene has made: those that begin on it, or on the last line before.
-    fn mark(&self, id: u64, slot: Slot, file: String, line: u32) -> Result<(), Gone> {
-        let picture = self
-            .slots
-            .get(&slot)
-            .and_then(|shown| shown.picture.clone());
-        let Some(picture) = picture else {
-            let none = reply(id, Err("there is no picture".into()));
-            return self.answer.send(none).map_err(|_| Gone);
-        };
-        self.work(id, move |hub| {
-            let scene = picture.view.scene();
-            let objects = || {
-                (0..scene.objects().len() as u32).filter_map(|n| Some((n, scene.objects().get(n)?)))
-            };
-            let in_file =
-                |span: strahl::scene::Span| scene.sources().name(span.file) == Some(&*file);
-            let lines = objects()
-                .filter(|(_, o)| in_file(o.span))
-                .map(|(_, o)| o.span.line);
-            let first = lines.filter(|l| *l <= line && *l > 0).max();
-            let first = first.ok_or("no object begins here or before")?;
-            let mut made = vec![false; scene.objects().len() + 1];
-            for (number, object) in objects() {
-                made[number as usize + 1] = in_file(object.span) && object.span.line == first;
-            }
-            let view = picture
-                .view
-                .clone()
-                .with_sampling(Sampling::Center)
-                .with_depth(1);
-            let output = Output {
-                info: true,
-                ..Output::default()
-            };
-            let film = hub
-                .session
-                .picture(&view, &output)
-                .map_err(|e| e.to_string())?
-                .film;
-            let mut message = header(MARKS, picture.number, picture.region(), 1);
-            message[28..32].copy_from_slice(&first.to_le_bytes());
-            let info = film.info.unwrap_or_default();
-            message.extend(
-                info.iter()
-                    .map(|info| u8::from(made.get(info.object as usize) == Some(&true))),
-            );
-            Ok(Message::Binary(message.into()))
-        })
-    }
 }
 
 impl Shown {
@@ -663,182 +500,10 @@ impl Shown {
             look: Look {
                 channel: Channel::Color,
                 gain: 1.0,
+                curve: Curve::Srgb,
                 diagonal: 1.0,
                 scale: 0.0,
             },
         }
     }
-}
-
-fn reply(id: u64, answer: Result<Value, String>) -> Message {
-    let value = match answer {
-        Ok(value) => json!({ "type": "reply", "id": id, "value": value }),
-        Err(problem) => json!({ "type": "reply", "id": id, "problem": problem }),
-    };
-    let text = value.to_string();
-    if text.len() > LONGEST_ANSWER {
-        let problem = "the answer is too long: choose a coarser sampling or a smaller depth";
-        return reply(id, Err(problem.into()));
-    }
-    Message::Text(text.into())
-}
-
-/// Whether settings of a page make sense.
-fn check(settings: &Settings) -> Result<(), String> {
-    if let Some([width, height]) = settings.size {
-        let pixels = u64::from(width) * u64::from(height);
-        let sides = 1..=LONGEST_SIDE;
-        if !(sides.contains(&width) && sides.contains(&height) && pixels <= MOST_PIXELS) {
-            return Err(format!(
-                "pictures have at most {LONGEST_SIDE} pixels a side, and {MOST_PIXELS} in all"
-            ));
-        }
-    }
-    if settings
-        .depth
-        .is_some_and(|depth| !(1..=DEEPEST).contains(&depth))
-    {
-        return Err(format!("the depth is a number from 1 to {DEEPEST}"));
-    }
-    if settings
-        .cutoff
-        .is_some_and(|cutoff| !(0.0..=1.0).contains(&cutoff))
-    {
-        return Err("the cutoff is a number from 0 to 1".into());
-    }
-    if !(-30.0..=30.0).contains(&settings.exposure) {
-        return Err("the exposure is a number from -30 to 30".into());
-    }
-    if let Some(sampling) = &settings.sampling {
-        sampling.parse::<Sampling>().map_err(|e| e.to_string())?;
-    }
-    if let Some(shading) = &settings.shading {
-        shading.parse::<ShadingModel>().map_err(|e| e.to_string())?;
-    }
-    if let Some(accelerator) = &settings.accelerator {
-        // Without parameters: a page may not ask for a grid of any size.
-        let mut all = AcceleratorKind::ALL.iter();
-        if !all.any(|kind| kind.name() == accelerator) {
-            return Err(format!("there is no accelerator `{accelerator}`"));
-        }
-    }
-    if settings.clock.is_some_and(|clock| !clock.is_finite()) {
-        return Err("the clock is a number".into());
-    }
-    Ok(())
-}
-
-/// The view that settings ask for. They have been checked.
-fn view_of(scene: &Arc<RenderScene>, settings: &Settings, hub: &Hub) -> View {
-    let defaults = &hub.defaults;
-    let size = settings.size.map(Into::into).or(defaults.size);
-    let (width, height) = size.or(scene.settings().size).unwrap_or(USUAL_SIZE);
-    let mut view = scene.view(width, height);
-    let sampling = settings.sampling.as_ref().and_then(|s| s.parse().ok());
-    view.sampling = sampling.unwrap_or(defaults.sampling);
-    if settings.channel.kind() != Kind::Color {
-        // One ray per pixel shows its values.
-        view.sampling = Sampling::Center;
-    }
-    view.seed = defaults.seed;
-    view.trace.max_tree_rays = defaults.max_tree_rays;
-    let shading = settings.shading.as_ref().and_then(|s| s.parse().ok());
-    view.trace.force_shading = shading.or(defaults.shading);
-    if let Some(depth) = settings.depth.or(defaults.depth) {
-        view.trace.max_depth = depth;
-    }
-    if let Some(cutoff) = settings.cutoff.or(defaults.cutoff) {
-        view.trace.adc_bailout = cutoff;
-    }
-    if let Some(camera) = &settings.camera {
-        view.camera = camera.apply(&view.camera);
-    }
-    view
-}
-
-fn scene_message(slot: Slot, title: &str, compiled: Option<&Compiled>, loading: bool) -> Value {
-    let files = compiled.map_or(&[][..], |compiled| &compiled.files);
-    let stats = compiled.and_then(|compiled| {
-        let scene = compiled.scene.as_ref()?;
-        let (stats, bounds) = (scene.stats(), scene.bounds());
-        Some(json!({
-            "objects": scene.objects().len(),
-            "primitives": stats.primitives,
-            "lights": scene.lights().len(),
-            "accelerator": scene.accelerator_name(),
-            "low": bounds.min.to_array(),
-            "high": bounds.max.to_array(),
-        }))
-    });
-    json!({
-        "type": "scene",
-        "slot": slot,
-        "name": title,
-        "number": compiled.map(|compiled| compiled.number),
-        "loading": loading,
-        "said": compiled.map(|compiled| &compiled.said),
-        "files": files.iter().map(|file| &file.name).collect::<Vec<_>>(),
-        "seconds": compiled.map(|compiled| compiled.seconds),
-        "stats": stats,
-    })
-}
-
-fn picture_message(slot: Slot, picture: &Picture) -> Value {
-    let view = &picture.view;
-    json!({
-        "type": "picture",
-        "slot": slot,
-        "picture": picture.number,
-        "width": view.width,
-        "height": view.height,
-        "sampling": view.sampling.to_string(),
-        "depth": view.trace.max_depth,
-        "cutoff": view.trace.adc_bailout,
-        "camera": CameraData::of(&view.camera),
-        "own_camera": CameraData::of(view.scene().camera()),
-        "aspect": view.camera.aspect,
-    })
-}
-
-/// The ray through the centre of a pixel.
-fn chief_ray(view: &View, x: u32, y: u32) -> Option<Ray> {
-    let rays: PrimaryRays = view.rays().ok()?;
-    rays.ray(f64::from(x) + 0.5, f64::from(y) + 0.5)
-}
-
-/// What is seen at a pixel.
-fn hover(hub: &Hub, picture: &Picture, (x, y): (u32, u32)) -> Result<Value, String> {
-    let view = &picture.view;
-    let linear = {
-        let canvas = picture.canvas();
-        let index = y as usize * view.width as usize + x as usize;
-        canvas.pixels.get(index).copied().unwrap_or_default()
-    };
-    let codes = linear.map(|c| strahl::shade::srgb::encode_u8(f64::from(c)));
-    let scene = view.scene();
-    let ray = chief_ray(view, x, y);
-    let mut hits = [None];
-    if let Some(ray) = ray {
-        hub.session
-            .closest_hits(scene, &[ray], Interval::FORWARD, &mut hits);
-    }
-    let seen = ray.zip(hits[0]).map(|(ray, hit)| {
-        let info = scene.describe(&ray, &hit);
-        let place = scene.sources().locate(info.span);
-        json!({
-            "object": scene.object_name(info.object),
-            "material": scene.material_name(info.material),
-            "t": info.t,
-            "position": info.position.to_array(),
-            "file": place.as_ref().map(|place| place.file),
-            "line": place.as_ref().map(|place| place.span.line),
-        })
-    });
-    Ok(json!({
-        "x": x,
-        "y": y,
-        "linear": linear,
-        "rgb8": codes,
-        "seen": seen,
-    }))
 }

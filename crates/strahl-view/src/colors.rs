@@ -1,7 +1,7 @@
 //! From what is known of pixels to the colours that show it.
 
 use crate::pictures::{Kind, Picture};
-use crate::protocol::Channel;
+use crate::protocol::{Channel, Curve};
 use strahl::prelude::Region;
 use strahl::tracing::{PixelCost, PixelInfo};
 
@@ -59,6 +59,8 @@ pub(crate) struct Look {
     pub(crate) channel: Channel,
     /// What light is multiplied by; 1 shows the colours of the picture's file.
     pub(crate) gain: f64,
+    /// The tone curve of colours.
+    pub(crate) curve: Curve,
     /// The scale of depths: the scene's diagonal.
     pub(crate) diagonal: f64,
     /// See [`Channel::scale`].
@@ -75,7 +77,7 @@ pub(crate) fn srgb8(picture: &Picture, region: Region, step: u32, look: &Look) -
             let color = match look.channel.kind() {
                 Kind::Color => {
                     let pixel = canvas.pixels.get(index).copied().unwrap_or_default();
-                    pixel.map(|c| encode(f64::from(c) * look.gain))
+                    pixel.map(|c| encode(look.curve.apply(f64::from(c) * look.gain)))
                 }
                 Kind::Info => canvas
                     .info
@@ -156,6 +158,18 @@ fn heat(value: f64) -> [u8; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn tone_curves_rise_from_black_and_keep_what_is_bright() {
+        for curve in [Curve::Srgb, Curve::Reinhard, Curve::Filmic] {
+            let codes: Vec<u8> = (0..200)
+                .map(|i| encode(curve.apply(f64::from(i) * 0.01)))
+                .collect();
+            assert!(codes[0] == 0 && codes.is_sorted(), "{curve:?}");
+        }
+        assert_eq!(encode(Curve::Srgb.apply(0.5)), encode(0.5));
+        assert!(Curve::Reinhard.apply(100.0) < 1.0 && Curve::Reinhard.apply(2.0) < 0.7);
+    }
 
     #[test]
     fn heat_rises_and_numbers_differ() {

@@ -12,6 +12,7 @@
 mod assets;
 mod builtin;
 mod camera;
+mod camera_change;
 mod client;
 mod colors;
 mod export;

@@ -4,6 +4,7 @@ use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 use std::time::Instant;
+use strahl::formats::image::{self, ImageError, ImageFormat, Window, encode_picture};
 use strahl::prelude::*;
 use strahl::tracing::{PixelCost, PixelInfo};
 use tokio::sync::mpsc::UnboundedSender;
@@ -94,6 +95,40 @@ impl Picture {
     /// The whole picture.
     pub(crate) fn region(&self) -> Region {
         Region::full(self.view.width, self.view.height)
+    }
+
+    /// Its linear colours as an EXR file with 32 bits a value.
+    ///
+    /// # Errors
+    /// [`ImageError`]: no memory, for instance.
+    pub(crate) fn exr(&self) -> Result<Vec<u8>, ImageError> {
+        let pixels = self.canvas().pixels.clone();
+        let (width, height) = (self.view.width, self.view.height);
+        let picture = image::Picture {
+            width,
+            height,
+            window: Window {
+                x: 0,
+                y: 0,
+                width,
+                height,
+            },
+            rgb: &pixels,
+            alpha: None,
+            layers: &[],
+            metadata: vec![(
+                "Software".into(),
+                concat!("strahl ", env!("CARGO_PKG_VERSION")).into(),
+            )],
+        };
+        let mut file = std::io::Cursor::new(vec![]);
+        encode_picture(
+            &mut file,
+            ImageFormat::Exr,
+            &picture,
+            &WriteOptions::default(),
+        )?;
+        Ok(file.into_inner())
     }
 
     fn tell(&self, news: News) {
@@ -247,6 +282,14 @@ impl Pictures {
         }
     }
 
+    /// The finished picture with this number.
+    pub(crate) fn finished(&self, number: u32) -> Option<Arc<Picture>> {
+        let all = lock(&self.all);
+        let found = all.iter().find(|picture| picture.number == number)?;
+        let finished = matches!(found.canvas().end, Some(End::Finished { .. }));
+        finished.then(|| Arc::clone(found))
+    }
+
     #[cfg(test)]
     pub(crate) fn count(&self) -> usize {
         lock(&self.all).len()
@@ -290,6 +333,14 @@ mod tests {
         wait(&mut more);
         let expected = session.picture(&view, &Output::default()).unwrap();
         assert_eq!(a.canvas().pixels, expected.film.pixels);
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.exr");
+        std::fs::write(&path, pictures.finished(a.number).unwrap().exr().unwrap()).unwrap();
+        let file = image::read_exr(&path).unwrap();
+        for (channel, name) in ["R", "G", "B"].into_iter().enumerate() {
+            let values = expected.film.pixels.iter().map(|p| p[channel]).collect();
+            assert_eq!(file.channels[name], image::LayerData::F32(values));
+        }
         let c = pictures.follow(2, &view, Kind::Color, 1, &first);
         assert!(!Arc::ptr_eq(&a, &c));
     }

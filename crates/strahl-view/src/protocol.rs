@@ -49,6 +49,9 @@ pub(crate) struct CameraData {
     /// Whether it is orthographic, for cameras that are perspective or orthographic; `None` leaves it as it is.
     #[serde(default)]
     pub(crate) orthographic: Option<bool>,
+    /// The ratio of width to height for which it is made; `None` leaves it as it is.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) aspect: Option<f64>,
 }
 
 impl CameraData {
@@ -63,6 +66,7 @@ impl CameraData {
                 Projection::Orthographic => Some(true),
                 _ => None,
             },
+            aspect: None,
         }
     }
 
@@ -73,6 +77,7 @@ impl CameraData {
         camera.direction = self.direction.into();
         camera.right = self.right.into();
         camera.up = self.up.into();
+        camera.aspect = self.aspect.or(camera.aspect);
         if let Some(orthographic) = self.orthographic {
             camera.projection = match orthographic {
                 true => Projection::Orthographic,
@@ -97,7 +102,35 @@ pub(crate) struct Settings {
     pub(crate) clock: Option<f64>,
     /// Stops of exposure: 1 doubles the light.
     pub(crate) exposure: f64,
+    pub(crate) curve: Curve,
     pub(crate) channel: Channel,
+}
+
+/// What becomes of linear values before they are encoded as sRGB.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum Curve {
+    /// Nothing: the colours are those of a file.
+    #[default]
+    Srgb,
+    /// c / (1 + c), by Reinhard et al. (2002): nothing is overexposed.
+    Reinhard,
+    /// An S-shaped curve like that of film: Narkowicz's approximation (2015) of the ACES curve.
+    Filmic,
+}
+
+impl Curve {
+    /// The value that is encoded.
+    pub(crate) fn apply(self, value: f64) -> f64 {
+        match self {
+            Self::Srgb => value,
+            Self::Reinhard => value / (1.0 + value.max(0.0)),
+            Self::Filmic => {
+                let x = value.max(0.0);
+                (x * (2.51 * x + 0.03)) / (x * (2.43 * x + 0.59) + 0.14)
+            }
+        }
+    }
 }
 
 /// What is shown of the pixels.
@@ -166,6 +199,8 @@ pub(crate) enum Asked {
         slot: Slot,
         ray: [[f64; 3]; 2],
     },
+    /// What the picture costs with each accelerator.
+    Table { id: u64, slot: Slot },
     /// Write a file of the scene.
     Save { id: u64, file: String, text: String },
     /// Open a line in the author's editor.
@@ -226,4 +261,19 @@ pub(crate) fn header(kind: u32, picture: u32, region: Region, step: u32) -> Vec<
         .iter()
         .flat_map(|n| n.to_le_bytes())
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_view_from_outside_is_not_squeezed_by_the_aspect_of_the_scenes_camera() {
+        let mut camera = Camera::perspective(DVec3::Z, DVec3::ZERO, DVec3::Y, 0.7);
+        camera.aspect = Some(4.0 / 3.0);
+        let mut data = CameraData::of(&camera);
+        assert_eq!(data.apply(&camera).aspect, Some(4.0 / 3.0));
+        data.aspect = Some(0.7);
+        assert_eq!(data.apply(&camera).aspect, Some(0.7));
+    }
 }

@@ -1,6 +1,8 @@
 //! Scenes that pages look at: loaded and compiled once for all of them, and again when a file changes.
 
-use crate::protocol::Said;
+use crate::camera_change::only_camera;
+use crate::protocol::{LONGEST_TEXT, Said};
+use crate::texts::{is_sdl, names_clock};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -40,11 +42,21 @@ pub(crate) struct Compiled {
     pub(crate) number: u64,
     /// The scene, if there were no errors.
     pub(crate) scene: Option<Arc<RenderScene>>,
+    /// Its camera, which may be newer than the scene.
+    pub(crate) camera: Option<Camera>,
     pub(crate) said: Vec<Said>,
+    /// Whether its texts use `clock`.
+    pub(crate) clock: bool,
     /// All files that it was made of, under the names that messages give them; the first one is the scene's own.
     pub(crate) files: Vec<SceneFile>,
     pub(crate) seconds: f64,
     identity: Option<String>,
+    /// The identity of all its files but the first.
+    others: Option<String>,
+    /// The text of the first file.
+    text: Option<Arc<str>>,
+    /// The warnings of the compiler.
+    warned: Vec<Said>,
 }
 
 /// A file that a scene was made of.
@@ -166,6 +178,17 @@ impl Scenes {
         }
     }
 
+    /// Reads a scene for something else than a picture on a page.
+    ///
+    /// # Errors
+    /// The first error of the scene.
+    pub(crate) fn description(&self, request: &Request) -> Result<Scene, String> {
+        let loaded = (self.load)(request);
+        let first = || loaded.diagnostics.first().map(|d| d.message.clone());
+        let problem = first().unwrap_or_else(|| "the scene cannot be read".into());
+        loaded.scene.ok_or(problem)
+    }
+
     /// The files of all scenes.
     pub(crate) fn files(&self) -> Vec<PathBuf> {
         let entries = self.entries();
@@ -179,12 +202,29 @@ impl Scenes {
     }
 
     fn load(&self, key: &Key) {
-        let before = {
+        let (before, similar) = {
             let entries = self.entries();
             let entry = entries.iter().find(|entry| entry.key == *key);
-            entry.and_then(|entry| entry.compiled.clone())
+            let before = entry.and_then(|entry| entry.compiled.clone());
+            let alike = |other: &Key| {
+                let request = Request {
+                    text: key.request.text.clone(),
+                    ..other.request.clone()
+                };
+                request == key.request && other.accelerator == key.accelerator
+            };
+            // The newest one that differs in nothing but its text.
+            let similar = entries
+                .iter()
+                .filter(|entry| alike(&entry.key))
+                .filter_map(|entry| entry.compiled.clone())
+                .filter(|compiled| compiled.scene.is_some())
+                .max_by_key(|compiled| compiled.number);
+            (before, similar)
         };
-        let outcome = catch_unwind(AssertUnwindSafe(|| self.compile(key, before.as_deref())));
+        let outcome = catch_unwind(AssertUnwindSafe(|| {
+            self.compile(key, before.as_deref(), similar.as_deref())
+        }));
         let compiled = match outcome {
             Ok(Some(compiled)) => Some(Arc::new(compiled)),
             // Nothing has changed.
@@ -192,6 +232,8 @@ impl Scenes {
             Err(_) => Some(Arc::new(Compiled {
                 number: self.numbers.fetch_add(1, Ordering::Relaxed),
                 scene: None,
+                camera: None,
+                clock: false,
                 said: vec![Said::of(
                     &Diagnostic::error("strahl failed while it read this scene")
                         .hint("this is an error of strahl, not of the scene: please report it"),
@@ -200,6 +242,9 @@ impl Scenes {
                 files: vec![SceneFile::new(&key.request.path)],
                 seconds: 0.0,
                 identity: None,
+                others: None,
+                text: None,
+                warned: vec![],
             })),
         };
         if let Some(entry) = self.entries().iter_mut().find(|entry| entry.key == *key) {
@@ -209,9 +254,16 @@ impl Scenes {
         self.changed();
     }
 
-    /// Loads and compiles; `None` if the scene consists of the same as `before`.
-    fn compile(&self, key: &Key, before: Option<&Compiled>) -> Option<Compiled> {
+    /// Loads and compiles; `None` if the scene consists of the same as `before`. Nothing is built if the scene differs from `similar` in
+    /// nothing but its camera.
+    fn compile(
+        &self,
+        key: &Key,
+        before: Option<&Compiled>,
+        similar: Option<&Compiled>,
+    ) -> Option<Compiled> {
         let start = Instant::now();
+        let text = text_of(&key.request);
         let Loaded {
             scene,
             diagnostics,
@@ -223,35 +275,87 @@ impl Scenes {
         if same && identity.is_some() {
             return None;
         }
+        let others = inputs.as_ref().map(|inputs| {
+            let mut others = inputs.clone();
+            others.sha256 = [0; 32];
+            others.identity()
+        });
+        // Nothing is known of a text that has changed while it was read.
+        let text = text.filter(|text| text_of(&key.request).as_ref() == Some(text));
+        let kept = similar.filter(|similar| {
+            let texts = text.as_ref().zip(similar.text.as_ref());
+            others.is_some()
+                && similar.others == others
+                && texts.is_some_and(|(new, old)| only_camera(old, new))
+        });
         let sources = scene.as_ref().map(|scene| scene.sources.clone());
         let mut said: Vec<Said> = diagnostics
             .iter()
             .map(|diagnostic| Said::of(diagnostic, sources.as_ref()))
             .collect();
         let mut compiled = None;
-        if let Some(scene) = scene {
+        let mut camera = None;
+        let mut warned = vec![];
+        let known = scene.as_ref().and_then(|scene| scene.camera.clone());
+        let known = known.filter(|camera| camera.problem().is_none());
+        if let (Some(kept), Some(known)) = (kept, known) {
+            compiled = kept.scene.clone();
+            camera = Some(known);
+            warned = kept.warned.clone();
+        } else if let Some(scene) = scene {
             let options = CompileOptions {
                 accelerator: key.accelerator,
             };
             let more = match self.session.compile(&scene, &options) {
                 Ok((scene, warnings)) => {
+                    camera = Some(scene.camera().clone());
                     compiled = Some(scene);
                     warnings
                 }
                 Err(problems) => problems.0,
             };
-            said.extend(more.iter().map(|d| Said::of(d, sources.as_ref())));
+            warned = more.iter().map(|d| Said::of(d, sources.as_ref())).collect();
         }
+        said.extend(warned.iter().cloned());
         said.truncate(200);
+        let files = files(&key.request.path, inputs.as_ref());
         Some(Compiled {
             number: self.numbers.fetch_add(1, Ordering::Relaxed),
             scene: compiled,
+            camera,
             said,
-            files: files(&key.request.path, inputs.as_ref()),
+            clock: uses_clock(text.as_deref(), &files),
+            files,
             seconds: start.elapsed().as_secs_f64(),
             identity,
+            others,
+            text,
+            warned,
         })
     }
+}
+
+/// The text of a scene's own file, if it is one that a page would show.
+fn text_of(request: &Request) -> Option<Arc<str>> {
+    if let Some(text) = &request.text {
+        return Some(Arc::clone(text));
+    }
+    let size = std::fs::metadata(&request.path).ok()?.len();
+    let fits = is_sdl(&request.path) && size <= LONGEST_TEXT as u64;
+    let text = fits.then(|| std::fs::read_to_string(&request.path).ok())?;
+    text.map(Arc::from)
+}
+
+/// Whether the scene's own text, or that of a file that it includes, has the word `clock`.
+fn uses_clock(text: Option<&str>, files: &[SceneFile]) -> bool {
+    let included = files.iter().skip(1).any(|file| {
+        let small = std::fs::metadata(&file.path).is_ok_and(|m| m.len() <= LONGEST_TEXT as u64);
+        let ending = file.path.extension().map(|e| e.to_ascii_lowercase());
+        small
+            && ending.is_some_and(|e| e == "inc" || e == "pov")
+            && std::fs::read_to_string(&file.path).is_ok_and(|text| names_clock(&text))
+    });
+    included || text.is_some_and(names_clock)
 }
 
 /// The files that a scene was made of.
@@ -277,5 +381,84 @@ pub(crate) fn absolute(path: &Path) -> PathBuf {
     match (folder.canonicalize(), path.file_name()) {
         (Ok(folder), Some(name)) => folder.join(name),
         _ => std::path::absolute(path).unwrap_or_else(|_| path.to_owned()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use strahl::{Format, LoadOptions, load_bytes};
+
+    fn load(request: &Request) -> Loaded {
+        let options = LoadOptions {
+            record: true,
+            ..LoadOptions::default()
+        };
+        let text = request.text.as_deref().unwrap_or_default();
+        load_bytes(text.as_bytes().to_vec(), "a.pov", Format::Pov, options)
+    }
+
+    fn compiled(scenes: &Arc<Scenes>, text: &str) -> Arc<Compiled> {
+        let key = Key {
+            request: Request {
+                path: "a.pov".into(),
+                text: Some(text.into()),
+                size: None,
+                clock: 0.0,
+            },
+            accelerator: AcceleratorKind::default(),
+        };
+        let start = Instant::now();
+        loop {
+            if let (Some(compiled), false) = scenes.want(&key) {
+                return compiled;
+            }
+            assert!(start.elapsed().as_secs() < 60);
+            std::thread::sleep(std::time::Duration::from_millis(2));
+        }
+    }
+
+    #[test]
+    fn another_camera_builds_nothing_and_gives_the_same_bits() {
+        let session = Session::new(Threads::Count(2)).unwrap();
+        let scenes = Scenes::new(session.clone(), Box::new(load));
+        let text = |eye: &str, radius: &str| {
+            format!(
+                "camera {{ location {eye} look_at 0 }}\nlight_source {{ <3, 5, -4>, 1 }}\nsphere {{ 0, {radius} pigment {{ rgb <1, 0.4, 0> }} }}\n"
+            )
+        };
+        let first = compiled(&scenes, &text("<0, 1, -4>", "1"));
+        let moved = compiled(&scenes, &text("<1, 1, -5>", "1"));
+        let scene = |compiled: &Compiled| Arc::clone(compiled.scene.as_ref().unwrap());
+        assert!(Arc::ptr_eq(&scene(&first), &scene(&moved)));
+        assert_ne!(first.number, moved.number);
+        let bits = |view: View| {
+            let picture = session.picture(&view, &Output::default());
+            picture.unwrap().film.sha256()
+        };
+        let camera = moved.camera.clone().unwrap();
+        let found = bits(scene(&moved).view(40, 30).with_camera(camera));
+        let fresh = load_bytes(
+            text("<1, 1, -5>", "1").into(),
+            "a.pov",
+            Format::Pov,
+            LoadOptions::default(),
+        );
+        let (fresh, _) = fresh.into_scene().unwrap();
+        let (fresh, _) = session.compile(&fresh, &CompileOptions::default()).unwrap();
+        assert_eq!(found, bits(fresh.view(40, 30)));
+        assert_ne!(found, bits(scene(&first).view(40, 30)));
+        let other = compiled(&scenes, &text("<1, 1, -5>", "0.5"));
+        assert!(!Arc::ptr_eq(&scene(&other), &scene(&moved)));
+    }
+
+    #[test]
+    fn a_camera_that_makes_no_rays_is_an_error_still() {
+        let session = Session::new(Threads::Count(1)).unwrap();
+        let scenes = Scenes::new(session, Box::new(load));
+        let text = |right: &str| format!("camera {{ right {right} }}\nsphere {{ 4*z, 1 }}\n");
+        assert!(compiled(&scenes, &text("x")).scene.is_some());
+        let broken = compiled(&scenes, &text("0*x"));
+        assert!(broken.scene.is_none() && !broken.said.is_empty());
     }
 }

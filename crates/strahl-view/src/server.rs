@@ -171,6 +171,7 @@ pub fn serve(options: ViewOptions, ready: impl FnOnce(&Served)) -> Result<(), Se
         let router = Router::new()
             .route("/", get(|| async { asset("index.html") }))
             .route("/ws", get(page))
+            .route("/picture/{name}", get(exr))
             .route(
                 "/{name}",
                 get(|Path(name): Path<String>| async move { asset(&name) }),
@@ -210,6 +211,23 @@ fn asset(name: &str) -> Response {
     match assets::file(name) {
         Some((media_type, file)) => ([(CONTENT_TYPE, media_type)], file.data).into_response(),
         None => (StatusCode::NOT_FOUND, "there is no such file\n").into_response(),
+    }
+}
+
+/// A finished picture as a file: `picture/NUMBER.exr`.
+async fn exr(State(hub): State<Arc<Hub>>, Path(name): Path<String>) -> Response {
+    let number = name.strip_suffix(".exr").and_then(|n| n.parse().ok());
+    let Some(picture) = number.and_then(|number| hub.pictures.finished(number)) else {
+        return (
+            StatusCode::NOT_FOUND,
+            "there is no finished picture with this number\n",
+        )
+            .into_response();
+    };
+    match tokio::task::spawn_blocking(move || picture.exr()).await {
+        Ok(Ok(file)) => ([(CONTENT_TYPE, "image/x-exr")], file).into_response(),
+        Ok(Err(error)) => (StatusCode::INTERNAL_SERVER_ERROR, error.to_string()).into_response(),
+        Err(error) => (StatusCode::INTERNAL_SERVER_ERROR, error.to_string()).into_response(),
     }
 }
 

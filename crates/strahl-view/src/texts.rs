@@ -78,8 +78,27 @@ pub(crate) fn pieces(text: &str) -> Vec<u32> {
     all
 }
 
+/// Whether a text uses `clock`, not counting comments and strings.
+pub(crate) fn names_clock(text: &str) -> bool {
+    let mut at = 0;
+    text.contains("clock")
+        && highlight(text).into_iter().any(|(length, piece)| {
+            let part = text.get(at..at + length);
+            at += length;
+            part == Some("clock") && !matches!(piece, Piece::Comment | Piece::String)
+        })
+}
+
 #[cfg(test)]
 mod tests {
+    #[test]
+    fn clock_counts_where_it_is_code() {
+        assert!(names_clock("sphere { clock*x, 1 }") && names_clock("rotate clock"));
+        assert!(!names_clock(
+            "// clock\nsphere { clocks, 1 } #debug \"clock\""
+        ));
+    }
+
     use super::*;
 
     #[test]

@@ -8,6 +8,7 @@ import { pathToFileURL } from "node:url";
 
 const require = createRequire(join(process.env.STRAHL_PLAYWRIGHT, "any.js"));
 const { chromium } = require("playwright-core");
+const { source: axe } = require("axe-core");
 const [address, folder] = process.argv.slice(2);
 const scene = join(folder, "scene.pov");
 const original = readFileSync(scene, "utf8");
@@ -39,6 +40,13 @@ const clickPixel = async (x, y) => {
   const box = await page.locator("#picture").boundingBox();
   await page.mouse.click(box.x + ((x + 0.5) * box.width) / 160, box.y + ((y + 0.5) * box.height) / 120);
 };
+// What axe-core finds wrong in the page for people who use it otherwise than with eyes and a mouse.
+const accessible = async (where) => {
+  await page.evaluate(`${axe}; 0`);
+  const found = await page.evaluate(() => axe.run(document, { runOnly: ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa"] }));
+  const wrong = found.violations.map((one) => `${one.id}: ${one.help} ${one.nodes.slice(0, 4).map((node) => node.html.slice(0, 160)).join(" | ")}`);
+  assert.deepEqual(wrong, [], where);
+};
 const say = (text) => console.log(`ok: ${text}`);
 
 try {
@@ -62,10 +70,58 @@ try {
   });
   const code = (c) => Math.round(255 * (c <= 0.0031308 ? 12.92 * c : 1.055 * c ** (1 / 2.4) - 0.055));
   const samples = await page.locator(".sample").count();
-  if (samples === 0) assert.equal(shown.map((c) => code(Math.min(1, Math.max(0, c)))).join(" "), film);
+  assert.equal(samples, 0);
+  assert.equal(shown.map((c) => code(Math.min(1, Math.max(0, c)))).join(" "), film);
   assert.ok(await page.locator(".tree .reflection").count() >= 1, "the ball reflects");
   assert.ok(await page.locator(".ray-body math").count() >= 2, "formulas");
   say("the tree of a pixel adds up to the pixel");
+
+  await page.locator("#sampling").selectOption("3x3");
+  const grid = await finished(sha);
+  await clickPixel(50, 60);
+  await page.waitForFunction(() => document.querySelectorAll(".sample").length === 9);
+  const sums = [];
+  for (let i = 0; i < 9; i += 1) {
+    await page.locator(".sample").nth(i).click();
+    sums.push(await page.evaluate(() => JSON.parse(document.querySelector("[data-sum]").dataset.sum)));
+  }
+  const mean = [0, 1, 2].map((c) => sums.reduce((all, one) => all + Math.min(Infinity, one[c]), 0) / 9);
+  const linear = (await page.locator(".pixel-head p").innerText()).split("·")[0].trim();
+  assert.equal(mean.map((c) => code(Math.min(1, Math.max(0, c)))).join(" "), linear);
+  assert.equal(linear, await page.evaluate(() => [...document.getElementById("picture").getContext("2d").getImageData(50, 60, 1, 1).data].slice(0, 3).join(" ")));
+  await page.locator("#sampling").selectOption("");
+  sha = await finished(grid);
+  await clickPixel(80, 70);
+  await page.waitForFunction(() => document.querySelector(".pixel-head h2")?.textContent.includes("80, 70"));
+  say("the trees of nine samples have the pixel as their mean");
+
+  for (const theme of ["light", "dark"]) {
+    assert.equal(await page.evaluate(() => document.documentElement.dataset.theme), theme);
+    await accessible(theme);
+    await page.locator("#theme").click();
+  }
+  const tops = await page.evaluate(() => [...document.querySelectorAll("#bar > *")].filter((one) => !one.classList.contains("gap")).map((one) => one.getBoundingClientRect().top));
+  assert.ok(Math.max(...tops) - Math.min(...tops) < 24, "the bar is one line at 1280 pixels");
+  say("axe-core finds nothing, light or dark, and the bar is one line");
+
+  await page.locator("#exposure").fill("1");
+  await page.locator("#exposure").press("Enter");
+  await assertEventually(async () => assert.notDeepEqual(await codes(), ppm("whole.ppm")));
+  const brighter = await codes();
+  await page.locator("#more > summary").click();
+  await page.locator("#curve").selectOption("reinhard");
+  await assertEventually(async () => assert.notDeepEqual(await codes(), brighter));
+  assert.ok(Math.max(...await codes()) < 255);
+  await page.locator("#curve").selectOption("srgb");
+  await page.locator("#exposure").fill("0");
+  await page.locator("#exposure").press("Enter");
+  await assertEventually(async () => assert.deepEqual(await codes(), ppm("whole.ppm")));
+  await page.locator("#save-menu > summary").click();
+  const [exr] = await Promise.all([page.waitForEvent("download"), page.locator("#exr").click()]);
+  await exr.saveAs(join(folder, "saved.exr"));
+  assert.deepEqual([...readFileSync(join(folder, "saved.exr")).subarray(0, 4)], [0x76, 0x2f, 0x31, 0x01]);
+  await page.keyboard.press("Escape");
+  say("exposure and tone curves change what is shown, and the linear values are saved as EXR");
 
   await page.locator("#inspector .tree button.place").first().click();
   await page.waitForSelector('.text-line.under[data-line="6"]');
@@ -105,20 +161,56 @@ try {
   await page.waitForSelector("#side-panel:not([hidden])");
   await page.waitForFunction(() => document.getElementById("side").width === 160);
   await assertEventually(async () => assert.deepEqual(await codes("side"), ppm("depth1.ppm")));
+  await page.locator("#side-view").selectOption("beside");
+  const halves = await page.evaluate(() => ["picture", "side"].map((id) => document.getElementById(id).getBoundingClientRect().x));
+  const stageBox = await page.locator("#stage").boundingBox();
+  assert.ok(Math.abs(halves[1] - halves[0] - stageBox.width / 2) < 1);
+  await page.locator("#channel").selectOption("tests");
+  await page.locator("#side-accelerator").selectOption("list");
+  await page.waitForFunction(() => document.body.dataset.finished);
+  await page.locator("#channel").selectOption("color");
+  await page.locator("#side-view").selectOption("");
   await page.locator("#compare").click();
-  say("two settings are compared");
+  await assertEventually(async () => assert.deepEqual(await codes(), ppm("whole.ppm")));
+  say("two settings are compared, with a line to drag and side by side");
+
+  assert.ok(await page.locator("#timeline").isHidden());
+  const last = await page.evaluate(() => document.body.dataset.finished);
+  writeFileSync(scene, original.replace("<0, 0, 0>, 1", "<clock, 0, 0>, 1"));
+  await page.waitForSelector("#timeline:not([hidden])");
+  await page.locator("#clock-slider").fill("0.5");
+  const half = await finished(last);
+  assert.match(page.url(), /clock=0.5/);
+  await page.locator("#play-clock").click();
+  await page.waitForFunction((known) => document.body.dataset.finished !== known && Number(document.getElementById("clock-slider").value) > 0.55, half);
+  await page.locator("#play-clock").click();
+  writeFileSync(scene, original);
+  await page.waitForSelector("#timeline", { state: "attached" });
+  await page.locator("#more > summary").click();
+  await page.locator("#clock").fill("");
+  await page.locator("#clock").press("Enter");
+  await page.keyboard.press("Escape");
+  await assertEventually(async () => assert.deepEqual(await codes(), ppm("whole.ppm")));
+  say("a scene with clock has a timeline");
 
   await page.locator("#tab-space").click();
   await page.waitForSelector(".space-box canvas");
   await page.keyboard.press(".");
   await page.keyboard.press(".");
   assert.match(await page.locator(".space-say strong").innerText(), /step 2 of \d+/);
+  const [rays] = await Promise.all([page.waitForEvent("download"), page.locator(".space-tools button", { hasText: "SVG" }).click()]);
+  await rays.saveAs(join(folder, "rays.svg"));
   await page.locator("#tab-walk").click();
   await page.waitForSelector(".events button");
   await page.keyboard.press(".");
   await page.waitForSelector('.events [aria-current="true"]');
   await page.locator("#walk-accelerator").selectOption("octree");
   await page.waitForFunction(() => /octree/.test(document.querySelector(".space-say strong").textContent));
+  await page.locator(".space-tools button", { hasText: "Table" }).click();
+  await page.waitForSelector("#table tbody tr");
+  assert.ok(await page.locator("#table tbody tr").count() >= 5);
+  assert.match(await page.locator("#table").innerText(), /bit for bit/);
+  await page.keyboard.press("Escape");
   say("the rays are stepped through in space, and through an accelerator");
   await page.locator("#tab-tree").click();
 
@@ -129,6 +221,8 @@ try {
   const [download] = await Promise.all([page.waitForEvent("download"), page.locator("#export").click()]);
   const leaf = join(folder, "leaf.html");
   await download.saveAs(leaf);
+  const [tree] = await Promise.all([page.waitForEvent("download"), page.locator("#export-svg").click()]);
+  await tree.saveAs(join(folder, "tree.svg"));
   say("the page speaks German");
 
   const other = await context.newPage();
@@ -136,6 +230,10 @@ try {
   await other.goto(pathToFileURL(leaf).href);
   await other.waitForSelector(".pixel [data-sum]");
   assert.match(await other.locator(".ray-body").first().innerText(), /Primärstrahl/);
+  for (const name of ["tree.svg", "rays.svg"]) {
+    await other.goto(pathToFileURL(join(folder, name)).href);
+    assert.ok(await other.evaluate(() => document.documentElement.localName === "svg" && document.querySelectorAll("path").length > 0), name);
+  }
   await other.close();
   say("an exported pixel opens from disk");
 
@@ -149,6 +247,7 @@ try {
   await page.mouse.up();
   await finished(before);
   assert.match(decodeURIComponent(page.url()), /camera=/);
+  await page.locator("#save-menu > summary").click();
   await page.locator("#copy").click();
   await page.waitForFunction(() => window.copiedText?.startsWith("camera {"));
   await page.locator("#reset").click();
@@ -158,6 +257,7 @@ try {
   await page.keyboard.press("?");
   await page.waitForSelector("#help[open]");
   await page.keyboard.press("Escape");
+  await page.waitForSelector("#help:not([open])", { state: "attached" });
   assert.deepEqual(problems, []);
   const host = new URL(address).host;
   assert.deepEqual(requests.filter((url) => /^(https?|wss?):/.test(url) && new URL(url).host !== host), []);

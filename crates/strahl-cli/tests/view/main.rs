@@ -1,4 +1,4 @@
-//! The viewer in a real browser: Chromium, driven by playwright-core (see browser.mjs).
+//! The viewer in a real browser: Chromium, driven by playwright-core and checked by axe-core (see browser.mjs).
 
 #![allow(
     clippy::print_stdout,
@@ -34,7 +34,7 @@ impl Drop for Running {
     }
 }
 
-/// The folder with playwright-core, and the browser; `None` if one of them or Node.js is missing.
+/// The folder with playwright-core and axe-core, and the browser; `None` if one of them or Node.js is missing.
 fn tools() -> Option<(PathBuf, PathBuf)> {
     let target = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../target/browser");
     let modules = std::env::var_os("STRAHL_PLAYWRIGHT").map_or(target, PathBuf::from);
@@ -45,10 +45,8 @@ fn tools() -> Option<(PathBuf, PathBuf)> {
     };
     program("node")?;
     let browser = program("chromium").or_else(|| program("chromium-browser"))?;
-    modules
-        .join("node_modules/playwright-core")
-        .is_dir()
-        .then_some((modules, browser))
+    let is_there = |name: &str| modules.join("node_modules").join(name).is_dir();
+    (is_there("playwright-core") && is_there("axe-core")).then_some((modules, browser))
 }
 
 #[test]
@@ -56,9 +54,9 @@ fn the_viewer_works_in_a_browser() {
     let Some((modules, browser)) = tools() else {
         assert!(
             std::env::var_os("STRAHL_REQUIRE_TOOLS").is_none(),
-            "node, chromium or playwright-core (npm install --prefix target/browser playwright-core) is missing"
+            "node, chromium, playwright-core or axe-core (npm install --prefix target/browser playwright-core axe-core) is missing"
         );
-        eprintln!("SKIPPED: node, chromium or playwright-core is missing");
+        eprintln!("SKIPPED: node, chromium, playwright-core or axe-core is missing");
         return;
     };
     let folder = tempfile::tempdir().unwrap();
