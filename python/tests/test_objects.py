@@ -185,6 +185,58 @@ def test_height_fields_have_their_heights() -> None:
     np.testing.assert_allclose(hits.position[:, 1], 3 + 0.5 * places[:, 0] - 0.25 * places[:, 2], atol=1e-3)
 
 
+def test_isosurfaces_of_arrays_are_where_the_samples_say() -> None:
+    x, y, z = np.mgrid[0:6, 0:7, 0:8]
+    # Trilinear functions are interpolated exactly: x y z = 20 along the diagonal.
+    product = strahl.Scene(strahl.isosurface((x * y * z).astype(float), 20))
+    hits = product.intersect((0.5, 0.5, 0.5), [(1, 1, 1), (-1, 1, 1)])
+    assert float(hits.t[0]) == pytest.approx(20 ** (1 / 3) - 0.5, abs=1e-13) and not hits.hit[1]
+    assert hits.normal[0] == pytest.approx([-(3**-0.5)] * 3)
+
+    axis = np.linspace(-2, 2, 41)
+    distance = np.sqrt(sum(a**2 for a in np.meshgrid(axis, axis, axis, indexing="ij")))
+    place = {"origin": (-2, -2, -2), "spacing": 0.1}
+    ball = strahl.isosurface(distance, 1.5, inside="below", smooth=True, name="ball", **place)  # type: ignore[arg-type]
+    scene = strahl.Scene(ball)
+    directions = np.random.default_rng(2).normal(size=(500, 3))
+    directions /= np.linalg.norm(directions, axis=1, keepdims=True)
+    hits = scene.intersect(-5 * directions, directions)
+    # The error of interpolation is the square of the spacing over 8, times the second derivatives.
+    assert np.abs(hits.t - 3.5).max() < 0.1**2 / 8 * 2 / 1.3
+    assert (-hits.normal * directions).sum(axis=1).min() > 0.999
+    assert scene.inside([[0, 0, 0], [1.4, 0, 0], [1.6, 0, 0]]).tolist() == [0, 0, -1]
+    assert scene.explain(8, 8, 16, 16).root.hit is not None and scene.object_name(0) == 'grid_isosurface "ball"'
+
+    # The walls close what reaches them, unless it is open.
+    shell = {"inside": "above", "spacing": 0.1, "origin": (-2, -2, -2)}
+    closed, opened = (strahl.Scene(strahl.isosurface(distance, 1.5, open=o, **shell)) for o in (False, True))  # type: ignore[arg-type]
+    assert float(closed.intersect((0.03, 0.04, 9), (0, 0, -1)).t) == pytest.approx(7)
+    assert float(opened.intersect((0.03, 0.04, 9), (0, 0, -1)).t) == pytest.approx(7.5, abs=0.01)
+
+
+def test_isosurfaces_take_any_layout_and_refuse_what_is_none() -> None:
+    values = np.random.default_rng(4).integers(0, 200, (5, 6, 7))
+    films = set()
+    for same in (values, values.astype(np.uint8), values.astype(np.float64), np.asfortranarray(values), values.tolist()):
+        films.add(strahl.Scene(strahl.isosurface(same, 100), strahl.directional_light((-1, -2, -3))).render(24, 24).sha256)
+    assert len(films) == 1
+    nan = np.zeros((3, 3, 3))
+    nan[1, 2, 0] = np.nan
+    for arguments, message in (
+        ((np.zeros((3, 3)), 1), "shape"),
+        ((np.zeros((3, 3, 1)), 1), "shape"),
+        ((nan, -1), "sample 15 is not finite"),
+        ((np.zeros((3, 3, 3)), 1), "no sample is on the inner side"),
+        ((np.zeros((3, 3, 3)), np.nan), "level"),
+    ):
+        with pytest.raises(ValueError, match=message):
+            strahl.isosurface(*arguments)
+    with pytest.raises(ValueError, match="spacing"):
+        strahl.isosurface(values, 100, spacing=(1, 0, 1))
+    with pytest.raises(ValueError, match="above"):
+        strahl.isosurface(values, 100, inside="left")  # type: ignore[arg-type]
+
+
 def test_texts_of_povray_are_objects_materials_cameras_and_skies() -> None:
     marble = strahl.Material.pov("texture { pigment { marble } }", name="marble")
     stones = strahl.Material.pov('#include "colors.inc"\n---\npigment { Red }')

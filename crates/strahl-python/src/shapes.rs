@@ -3,13 +3,13 @@
 use crate::convert::{Triple, contiguous, list, vector, vectors, vectors_2};
 use crate::errors;
 use crate::object::{Object, Piece};
-use numpy::{PyReadonlyArray1, PyReadonlyArray2};
+use numpy::{PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use std::collections::HashMap;
 use std::sync::Arc;
 use strahl::geometry::{
-    Blob, BlobComponent, HeightField, Lathe, Polynomial, Primitive, Prism, PrismSweep, Shape, Sor,
-    SphereSweep, Spline, Superellipsoid, SweepSpline,
+    Blob, BlobComponent, GridIsosurface, GridOptions, HeightField, Lathe, Polynomial, Primitive,
+    Prism, PrismSweep, Shape, Sor, SphereSweep, Spline, Superellipsoid, SweepSpline,
 };
 use strahl::math::DVec3;
 use strahl::prelude::{
@@ -34,7 +34,7 @@ pub(crate) fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
         ($($name:ident)+) => { $(module.add_function(wrap_pyfunction!($name, module)?)?;)+ };
     }
     add!(sphere plane cuboid disc cylinder cone torus ovus lemon quadric superellipsoid polygon mesh spheres);
-    add!(blob prism lathe sor sphere_sweep polynomial bicubic_patch height_field);
+    add!(blob prism lathe sor sphere_sweep polynomial bicubic_patch height_field isosurface);
     Ok(())
 }
 
@@ -318,4 +318,29 @@ fn height_field(
     let field =
         HeightField::try_new(width, depth, rows, water_level, smooth).map_err(errors::value)?;
     object(Arc::new(field), place)
+}
+
+/// The surface of samples at the points with whole coordinates.
+#[pyfunction]
+fn isosurface(
+    values: PyReadonlyArray3<'_, f32>,
+    level: f64,
+    inside_below: bool,
+    open: bool,
+    smooth: bool,
+    place: Place,
+) -> PyResult<Object> {
+    let mut samples = [0; 3];
+    for (sample, &count) in samples.iter_mut().zip(values.shape()) {
+        *sample = u32::try_from(count).map_err(errors::value)?;
+    }
+    let options = GridOptions {
+        level,
+        inside_below,
+        open,
+        smooth,
+    };
+    let list = values.as_slice().map_err(errors::value)?.to_vec();
+    let surface = GridIsosurface::try_new(samples, list, options).map_err(errors::value)?;
+    object(Arc::new(surface), place)
 }
