@@ -55,13 +55,14 @@ from strahl._objects import (
     union,
 )
 from strahl._rays import Hits
-from strahl._scene import load, parse, Progress, Scene
+from strahl._scene import Comparison, load, parse, Progress, Scene
 from strahl._strahl import __version__, thread_count
 from strahl._tree import Explanation
 
 __all__ = [
     "Background",
     "Camera",
+    "Comparison",
     "Diagnostic",
     "Explanation",
     "Film",

@@ -45,6 +45,16 @@ class Progress:
         return self.done / self.of if self.of else 0.0
 
 
+class Comparison(list[dict[str, Any]]):
+    """The rows of `Scene.compare`: a list of dictionaries, one for each accelerator."""
+
+    def to_dataframe(self) -> Any:
+        """A pandas.DataFrame with the accelerators as its index. It needs pandas."""
+        import pandas  # type: ignore[import-not-found,import-untyped,unused-ignore]
+
+        return pandas.DataFrame(self).set_index("accelerator")
+
+
 def _fonts() -> list[str]:
     home = Path.home()
     if sys.platform == "darwin":
@@ -426,10 +436,10 @@ class Scene:
         depth: int | None = None,
         camera: Camera | None = None,
         threads: int | None = None,
-    ) -> list[dict[str, Any]]:
+    ) -> Comparison:
         """Renders with one accelerator after the other. Returns a row for each: accelerator, build_s, trace_s, rays, hits, steps_per_ray, tests_per_ray, bytes, nodes,
-        references and sha256, which are all the same. ``pandas.DataFrame(rows)`` is a table."""
-        table = []
+        references and sha256, which are all the same. `Comparison.to_dataframe` makes a table for pandas."""
+        table = Comparison()
         for name in accelerators:
             view = self._view(width, height, sampling, depth, None, None, camera, 0, threads, name)
             numbers, sha256 = self._core.measure(view)
@@ -504,7 +514,7 @@ class _Preview:
             from IPython.display import DisplayHandle  # type: ignore[import-not-found,unused-ignore]
         except ImportError:
             raise ImportError("preview=True needs IPython") from None
-        self._handle: Any = DisplayHandle()
+        self._handle: Any = DisplayHandle()  # type: ignore[no-untyped-call,unused-ignore]
         self._shown = False
         self._last = time.perf_counter()
 
@@ -516,7 +526,7 @@ class _Preview:
 
         width, height = size
         data = _strahl.encode_png(np.ascontiguousarray(pixels).reshape(-1, 3), width, height)
-        self._put(Image(data=data, format="png"))
+        self._put(Image(data=data, format="png"))  # type: ignore[no-untyped-call,unused-ignore]
         self._last = time.perf_counter()
 
     def final(self, film: Film) -> None:

@@ -122,3 +122,10 @@ def test_accelerators_make_the_same_picture(glass: strahl.Scene) -> None:
     assert rows[0]["sha256"] == glass.render(32, 24, sampling="center").sha256
     with pytest.raises(ValueError, match="accelerator"):
         glass.compare(["fast"], 8, 8)
+
+
+def test_comparisons_are_data_frames(glass: strahl.Scene) -> None:
+    pandas = pytest.importorskip("pandas")
+    table = glass.compare(["bvh", "grid"], 16, 12).to_dataframe()
+    assert isinstance(table, pandas.DataFrame) and list(table.index) == ["bvh", "grid"]
+    assert table.sha256.nunique() == 1 and (table.rays > 0).all()
