@@ -129,7 +129,10 @@ export class Space {
     const hand = Math.sign(inner(cross(own.right, own.up), scaled(own.direction, -1))) || 1;
     const side = unit(own.right);
     const from = unit(plus(plus(scaled(view, -0.35), side, 0.9), up, 0.55));
-    const eye = plus(this.middle, from, this.radius * 3.2);
+    // In a box that is higher than wide, from further away.
+    const { clientWidth, clientHeight } = this.box;
+    const narrow = clientWidth > 0 && clientHeight > 0 ? Math.min(1, clientWidth / clientHeight) : 1;
+    const eye = plus(this.middle, from, (this.radius * 3.2) / narrow);
     const direction = scaled(from, -1);
     const right = scaled(unit(cross(direction, up)), hand);
     const top = unit(cross(scaled(right, hand), direction));
