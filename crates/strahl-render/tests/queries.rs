@@ -229,3 +229,57 @@ fn lists_are_equally_long() {
     let scene = compile(&session, &glass_and_mirrors());
     session.inside(&scene, &[DVec3::ZERO], &mut []);
 }
+
+#[test]
+fn surfaces_of_many_hits_are_those_that_describe_names() {
+    let session = session();
+    for description in [glass_and_mirrors(), every_shape()] {
+        let scene = compile(&session, &description);
+        let rays = rays(&scene);
+        let mut hits = vec![None; rays.len()];
+        session.closest_hits(&scene, &rays, Interval::FORWARD, &mut hits);
+        // All at once, and so few that one thread answers.
+        for count in [rays.len(), 700] {
+            let mut surfaces = vec![None; count];
+            session.surfaces(&scene, &rays[..count], &hits[..count], &mut surfaces);
+            for ((ray, hit), surface) in rays.iter().zip(&hits).zip(&surfaces) {
+                assert_eq!(hit.is_some(), surface.is_some());
+                let (Some(hit), Some(surface)) = (hit, surface) else {
+                    continue;
+                };
+                assert_eq!(*surface, scene.surface(ray, hit));
+                let info = scene.describe(ray, hit);
+                assert_eq!(
+                    (info.object, info.material, info.position, info.normal),
+                    (
+                        surface.object,
+                        surface.material,
+                        surface.position,
+                        surface.normal
+                    )
+                );
+                assert_eq!(
+                    (info.shading_normal, info.uv),
+                    (surface.shading_normal, surface.uv)
+                );
+                let size = ray.origin.length() + (ray.direction * hit.t).length();
+                assert!((surface.position - ray.at(hit.t)).length() < 1e-6 * size);
+                assert!((surface.normal.length() - 1.0).abs() < 1e-12);
+            }
+            assert!(surfaces.iter().flatten().count() > 20);
+        }
+    }
+    // A sphere says where the numbers come from.
+    let blue = Material::matte(Color::new(0.0, 0.0, 1.0));
+    let description = Scene::new()
+        .add(Plane::new(DVec3::Y * -9.0, DVec3::Y))
+        .add(Sphere::new(DVec3::ZERO, 2.0).material(blue));
+    let scene = compile(&session, &description);
+    let ray = [Ray::new(DVec3::Z * 5.0, -DVec3::Z)];
+    let (mut hit, mut surface) = ([None], [None]);
+    session.closest_hits(&scene, &ray, Interval::FORWARD, &mut hit);
+    session.surfaces(&scene, &ray, &hit, &mut surface);
+    let surface = surface[0].expect("a hit");
+    assert_eq!((surface.object, surface.position), (1, DVec3::Z * 2.0));
+    assert_eq!(surface.normal, DVec3::Z);
+}
