@@ -1,7 +1,7 @@
 //! Measures what a page waits for. It takes a quiet machine, so it runs only when it is asked for:
 //!
 //! ```sh
-//! cargo test --release -p strahl-view --test measure -- --ignored --nocapture
+//! cargo test --release -p strahl-view --test measure -- --ignored --nocapture --test-threads=1
 //! ```
 
 #![allow(
