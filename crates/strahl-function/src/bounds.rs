@@ -1,3 +1,6 @@
+use crate::rounding::{
+    above, add_down, add_up, below, div_down, div_up, lower, mul_down, mul_up, or, upper,
+};
 use strahl_math::det;
 
 /// An interval that certainly contains every value an expression takes, and whether NaN may be among them.
@@ -18,8 +21,6 @@ pub struct Bounds {
     pub nan: bool,
 }
 
-/// The smallest positive number.
-const TINY: f64 = f64::from_bits(1);
 /// The software functions of `strahl_math::det` are good to about one unit in the last place (musl's documentation);
 /// four are allowed for.
 const LIBRARY_ERROR: f64 = 4.0 * f64::EPSILON;
@@ -198,9 +199,31 @@ impl Bounds {
         if self.is_empty() || other.is_empty() {
             return Self::NAN;
         }
+        if let Some((min, max)) = self.plain_products(other) {
+            let nan = self.nan || other.nan;
+            return Self { min, max, nan };
+        }
         let nan =
             self.has_zero() && other.is_unbounded() || other.has_zero() && self.is_unbounded();
         self.corners(other, mul_down, mul_up).with_nan(nan)
+    }
+
+    /// The least and the largest product of ends, rounded outwards, if none of them is zero, infinite or NaN: the usual case, in which
+    /// rounding the two that count is enough.
+    #[inline]
+    fn plain_products(self, other: Self) -> Option<(f64, f64)> {
+        let (a, b) = (self.min * other.min, self.min * other.max);
+        let (c, d) = (self.max * other.min, self.max * other.max);
+        let plain = |x: f64| x.abs() > 0.0 && x.abs() < f64::INFINITY;
+        if !(plain(a) && plain(b) && plain(c) && plain(d)) {
+            return None;
+        }
+        let least = |x: f64, y: f64| if x < y { x } else { y };
+        let most = |x: f64, y: f64| if x > y { x } else { y };
+        Some((
+            least(least(a, b), least(c, d)).next_down(),
+            most(most(a, b), most(c, d)).next_up(),
+        ))
     }
 
     pub(crate) fn square(self) -> Self {
@@ -493,97 +516,6 @@ impl Bounds {
     }
 }
 
-/// The smaller number, `-0.0` before `+0.0`; neither argument is NaN where it matters.
-fn lower(a: f64, b: f64) -> f64 {
-    if a < b || a == b && a.is_sign_negative() {
-        a
-    } else {
-        b
-    }
-}
-
-fn upper(a: f64, b: f64) -> f64 {
-    if a > b || a == b && a.is_sign_positive() {
-        a
-    } else {
-        b
-    }
-}
-
-/// `x`, or `otherwise` if it is NaN.
-fn or(x: f64, otherwise: f64) -> f64 {
-    if x.is_nan() { otherwise } else { x }
-}
-
-fn below(x: f64, error: f64) -> f64 {
-    or(x - x.abs() * error, x).next_down()
-}
-
-fn above(x: f64, error: f64) -> f64 {
-    or(x + x.abs() * error, x).next_up()
-}
-
-/// The rounding error of `sum = a + b`, exactly (Knuth's TwoSum); NaN at infinities.
-fn sum_error(a: f64, b: f64, sum: f64) -> f64 {
-    let part = sum - a;
-    (a - (sum - part)) + (b - part)
-}
-
-fn add_down(a: f64, b: f64) -> f64 {
-    let sum = a + b;
-    if sum_error(a, b, sum) >= 0.0 {
-        sum
-    } else {
-        sum.next_down()
-    }
-}
-
-fn add_up(a: f64, b: f64) -> f64 {
-    let sum = a + b;
-    if sum_error(a, b, sum) <= 0.0 {
-        sum
-    } else {
-        sum.next_up()
-    }
-}
-
-/// One step down from a rounded product or quotient; a zero that is exact, or positive before it underflowed, stays.
-fn step_down(value: f64, exact: bool) -> f64 {
-    if value != 0.0 {
-        value.next_down()
-    } else if exact || value.is_sign_positive() {
-        value
-    } else {
-        -TINY
-    }
-}
-
-fn step_up(value: f64, exact: bool) -> f64 {
-    if value != 0.0 {
-        value.next_up()
-    } else if exact || value.is_sign_negative() {
-        value
-    } else {
-        TINY
-    }
-}
-
-fn mul_down(a: f64, b: f64) -> f64 {
-    step_down(a * b, a == 0.0 || b == 0.0)
-}
-
-fn mul_up(a: f64, b: f64) -> f64 {
-    step_up(a * b, a == 0.0 || b == 0.0)
-}
-
-fn div_down(a: f64, b: f64) -> f64 {
-    step_down(a / b, a == 0.0 || b.is_infinite())
-}
-
-fn div_up(a: f64, b: f64) -> f64 {
-    step_up(a / b, a == 0.0 || b.is_infinite())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -607,6 +539,44 @@ mod tests {
             Bounds::point(1.0).div(Bounds::argument(0.0, 1.0)).min,
             f64::NEG_INFINITY
         );
+    }
+
+    #[test]
+    fn plain_products_are_those_of_all_corners() {
+        let ends = [
+            -1e300,
+            -3.5,
+            -1.0,
+            -1e-200,
+            -0.0,
+            0.0,
+            1e-200,
+            0.1,
+            2.0,
+            7e9,
+            1e300,
+            f64::INFINITY,
+        ];
+        let mut intervals = vec![];
+        for (i, &min) in ends.iter().enumerate() {
+            for &max in &ends[i..] {
+                intervals.push(Bounds::new(min, max));
+                intervals.push(Bounds::new(min, max).with_nan(true));
+            }
+        }
+        let mut plain = 0;
+        for &a in &intervals {
+            for &b in &intervals {
+                if let Some((min, max)) = a.plain_products(b) {
+                    let all = a.corners(b, mul_down, mul_up);
+                    let same =
+                        min.to_bits() == all.min.to_bits() && max.to_bits() == all.max.to_bits();
+                    assert!(same, "{a:?} {b:?} {all:?}");
+                    plain += 1;
+                }
+            }
+        }
+        assert!(plain > 4_000, "{plain}");
     }
 
     #[test]

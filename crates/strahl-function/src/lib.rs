@@ -27,6 +27,7 @@ mod graph;
 pub mod internal;
 pub mod limits;
 mod op;
+mod rounding;
 mod run;
 mod tape;
 

@@ -84,6 +84,7 @@ pub struct Scratch {
     )]
     csg: Vec<Box<Workspace>>,
     pieces: Vec<Pieces>,
+    hits: Vec<PrimHit>,
 }
 
 impl Scratch {
@@ -96,6 +97,17 @@ impl Scratch {
     pub fn give(&mut self, mut list: Crossings) {
         list.clear();
         self.pool.push(list);
+    }
+
+    /// Borrows an empty list of hits; give it back with [`Scratch::give_hits`].
+    pub fn take_hits(&mut self) -> Vec<PrimHit> {
+        std::mem::take(&mut self.hits)
+    }
+
+    /// Returns it, so that its memory is used again.
+    pub fn give_hits(&mut self, mut hits: Vec<PrimHit>) {
+        hits.clear();
+        self.hits = hits;
     }
 
     /// Borrows the stacks that CSG trees are evaluated with; several when a tree is a leaf of another.
@@ -169,6 +181,18 @@ pub trait Primitive: Send + Sync + std::fmt::Debug {
         self.closest_hit(ray, range, from, scratch).is_some()
     }
 
+    /// Appends all hits in `range` to `out`: those that [`Primitive::closest_hit`] finds one behind the other.
+    fn all_hits(
+        &self,
+        ray: &Ray,
+        range: Interval,
+        from: Option<SurfaceId>,
+        scratch: &mut Scratch,
+        out: &mut Vec<PrimHit>,
+    ) {
+        one_by_one(self, ray, range, from, scratch, out);
+    }
+
     /// The surface at a hit that this primitive reported for this ray.
     fn surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint;
 
@@ -193,6 +217,25 @@ pub trait Primitive: Send + Sync + std::fmt::Debug {
     /// space.
     fn baked(&self, _map: &Transform) -> Option<Shape> {
         None
+    }
+}
+
+/// All hits, each searched behind the one before.
+pub(crate) fn one_by_one<P: Primitive + ?Sized>(
+    primitive: &P,
+    ray: &Ray,
+    mut range: Interval,
+    from: Option<SurfaceId>,
+    scratch: &mut Scratch,
+    out: &mut Vec<PrimHit>,
+) {
+    while let Some(hit) = primitive.closest_hit(ray, range, from, scratch) {
+        out.push(hit);
+        // The lower end of a range is open.
+        range.min = hit.t;
+        if range.is_empty() {
+            return;
+        }
     }
 }
 
@@ -261,6 +304,17 @@ impl<P: Primitive + ?Sized> Primitive for Arc<P> {
         (**self).any_hit(ray, range, from, scratch)
     }
 
+    fn all_hits(
+        &self,
+        ray: &Ray,
+        range: Interval,
+        from: Option<SurfaceId>,
+        scratch: &mut Scratch,
+        out: &mut Vec<PrimHit>,
+    ) {
+        (**self).all_hits(ray, range, from, scratch, out);
+    }
+
     fn surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
         (**self).surface_at(ray, hit)
     }
@@ -327,6 +381,18 @@ pub enum GeometryError {
         what: &'static str,
         /// Its place in the list, counted from 0.
         index: u64,
+    },
+    /// An entry of a list is not as it should be.
+    #[error("{what} {index} must be {expected}, found {found}")]
+    OutOfRangeAt {
+        /// The kind of entry.
+        what: &'static str,
+        /// Its place in the list, counted from 0.
+        index: u64,
+        /// The expected value, in words.
+        expected: &'static str,
+        /// The value given.
+        found: f64,
     },
     /// Lists that belong together differ in length.
     #[error("{found} {what} given, {expected} expected")]

@@ -2,7 +2,7 @@ use crate::algebraic::{Blob, Polynomial, Superellipsoid};
 use crate::fractal::Julia;
 use crate::implicit::{GridIsosurface, HeightField, Isosurface, Parametric};
 use crate::mesh::{Brep, Polygon, SmoothTriangle, Triangle, TriangleMesh};
-use crate::patch::BicubicPatch;
+use crate::patch::{BicubicPatch, Nurbs};
 use crate::primitives::{Cone, Cuboid, Cylinder, Disc, Lemon, Ovus, Plane, Quadric, Sphere, Torus};
 use crate::swept::{Glyph, Lathe, Prism, Sor, SphereSweep};
 use crate::{
@@ -60,6 +60,17 @@ macro_rules! shapes {
                 scratch: &mut Scratch,
             ) -> bool {
                 match self { $(Self::$variant(shape) => shape.any_hit(ray, range, from, scratch),)+ }
+            }
+
+            fn all_hits(
+                &self,
+                ray: &Ray,
+                range: Interval,
+                from: Option<SurfaceId>,
+                scratch: &mut Scratch,
+                out: &mut Vec<PrimHit>,
+            ) {
+                match self { $(Self::$variant(shape) => shape.all_hits(ray, range, from, scratch, out),)+ }
             }
 
             fn surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
@@ -147,6 +158,8 @@ shapes! {
     Parametric(Arc<Parametric>),
     /// A bicubic Bezier patch.
     BicubicPatch(Arc<BicubicPatch>),
+    /// A NURBS surface, trimmed or whole.
+    Nurbs(Arc<Nurbs>),
     /// A slice of a Julia set in four dimensions.
     Julia(Arc<Julia>),
     /// A tree of solids, combined.
@@ -185,6 +198,7 @@ shared!(
     GridIsosurface,
     Parametric,
     BicubicPatch,
+    Nurbs,
     Julia,
     Polynomial,
     Blob,

@@ -61,7 +61,7 @@ impl Word {
         Self::ALL[self as usize].1
     }
 
-    /// Whether the word is new in version 3.8, so that older scenes use it as a name; measured with POV-Ray 3.7.
+    /// Whether scenes may declare it as a name: the words that are new in version 3.8, measured with POV-Ray 3.7, and our own.
     pub(crate) fn is_new(self) -> bool {
         matches!(
             self,
@@ -71,6 +71,7 @@ impl Word {
                 | Self::Grey
                 | Self::Lemon
                 | Self::Mixed
+                | Self::Nurbs
                 | Self::Obj
                 | Self::Optional
                 | Self::Polarity
@@ -392,6 +393,7 @@ words! {
     NumberOfSides "number_of_sides" Item,
     NumberOfTiles "number_of_tiles" Item,
     NumberOfWaves "number_of_waves" Item,
+    Nurbs "nurbs" Object,
     Obj "obj" Item,
     Object "object" Object,
     Octaves "octaves" Item,
@@ -637,7 +639,7 @@ mod tests {
             assert_eq!((word.text(), word.kind()), (*text, *kind));
         }
         assert_eq!(Word::from_number(Word::ALL.len() as u64), None);
-        // 523 words of the language and 9 names of frame and picture.
-        assert_eq!(Word::ALL.len(), 532);
+        // 523 words of the language, 1 of an extension, and 9 names of frame and picture.
+        assert_eq!(Word::ALL.len(), 533);
     }
 }

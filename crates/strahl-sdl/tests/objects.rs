@@ -3,8 +3,8 @@
 mod common;
 
 use common::{debug, errors, parse_with};
-use strahl_geometry::Shape;
-use strahl_math::DVec3;
+use strahl_geometry::{Primitive, Scratch, Shape};
+use strahl_math::{DVec3, Interval, Ray};
 use strahl_scene::{CsgOp, Object, ObjectKind, Scene};
 use strahl_sdl::MemoryHost;
 use strahl_shade::Color;
@@ -267,6 +267,133 @@ fn mistakes_in_patches_are_explained() {
         ),
     ] {
         let text = format!("sphere {{ 0, 1 }} bicubic_patch {{ {text} }}");
+        let parsed = parse_with(&mut MemoryHost::new(), &text);
+        let messages: Vec<String> = parsed.diagnostics.iter().map(ToString::to_string).collect();
+        assert!(
+            messages.iter().any(|m| m.contains(expected)),
+            "{text}: {messages:?}"
+        );
+    }
+}
+
+/// A plane surface of degree 1 over the unit square.
+const FLAT_NURBS: &str = "degree 1 row { <0,0,0>, <1,0,0> } row { <0,1,0>, <1,1,0> }";
+
+#[test]
+fn the_items_of_nurbs_are_read_in_any_order() {
+    let plain = format!("{:?}", shape(&format!("nurbs {{ {FLAT_NURBS} }}")));
+    for text in [
+        "row { 0, x } row { y, x + y } degree <1, 1>",
+        "u_knots { 0, 0, 1, 1 } row { 0 x } row { <0,1,0,1> <1,1,0,1> }, v_knots { 0 0, 1 1 } degree 1",
+        // The words are names as elsewhere, and directives work.
+        "#declare degree = 7; degree 1 #for (I, 0, 1) row { I * y, I * y + x } #end",
+        "#declare row = 3; #declare hole = 2; degree 1 row { 0, x } row { y, x + y }",
+    ] {
+        let found = shape(&format!("nurbs {{ {text} }}"));
+        assert_eq!(format!("{found:?}"), plain, "{text}");
+    }
+    let found = shape(
+        "nurbs { degree <2, 1> row { 0, <1,1,0,2>, x * 2 } row { z, <1,1,1,2>, x * 2 + z } pigment { rgb 1 } uv_mapping scale 2 }",
+    );
+    let Shape::Nurbs(nurbs) = &found else {
+        panic!("no NURBS surface");
+    };
+    assert_eq!(nurbs.elements(), 1);
+    // Scenes may use the word as a name.
+    let (read, _) = scene("#declare nurbs = sphere { 0, 1 } object { nurbs }");
+    assert_eq!(read.objects.0.len(), 1);
+}
+
+#[test]
+fn nurbs_are_trimmed_by_polygons_and_curves() {
+    let hits = |text: &str, x: f64, y: f64| {
+        let found = shape(&format!("nurbs {{ {FLAT_NURBS} {text} }}"));
+        let ray = Ray::new(DVec3::new(x, y, -1.0), DVec3::Z);
+        found.any_hit(&ray, Interval::FORWARD, None, &mut Scratch::default())
+    };
+    assert!(hits("", 0.5, 0.5) && hits("", 0.1, 0.9));
+    let square = "{ <0.25, 0.25>, <0.75, 0.25>, <0.75, 0.75>, <0.25, 0.75> }";
+    assert!(
+        hits(&format!("trim {square}"), 0.5, 0.5) && !hits(&format!("trim {square}"), 0.1, 0.9)
+    );
+    assert!(
+        !hits(&format!("hole {square}"), 0.5, 0.5) && hits(&format!("hole {square}"), 0.1, 0.9)
+    );
+    // A half disc: an arc, and a line back.
+    let half = "trim { curve { degree 2 knots { 0, 0, 0, 1, 1, 2, 2, 2 }
+          <0.9, 0.5>, <0.9, 0.9, sqrt(0.5)>, <0.5, 0.9>, <0.1, 0.9, sqrt(0.5)>, <0.1, 0.5> }
+        curve { <0.1, 0.5>, <0.9, 0.5> } }";
+    let (inner, outer) = (0.5 + 0.399 * 0.6, 0.5 + 0.401 * 0.6);
+    let up = |x: f64| 0.5 + (x - 0.5) / 0.6 * 0.8;
+    assert!(
+        hits(half, inner, up(inner)) && !hits(half, outer, up(outer)) && !hits(half, 0.5, 0.49)
+    );
+}
+
+#[test]
+fn mistakes_in_nurbs_are_explained() {
+    for (text, expected) in [
+        ("", "expected `row`, `degree`, `u_knots`"),
+        ("degree 3", "expected `row`, `degree`, `u_knots`"),
+        (
+            "degree 2.5 row { 0 }",
+            "a degree is a whole number from 1 to 9",
+        ),
+        (
+            "degree 12 row { 0 }",
+            "a degree is a whole number from 1 to 9",
+        ),
+        (
+            "row { 0, x } row { y }",
+            "this row has 1 control points, but the first has 2",
+        ),
+        ("row { }", "this row has 0 control points"),
+        (
+            "row { <1, 2, 3, 4, 5> }",
+            "has 3 components here, or 4 with a weight, found 5",
+        ),
+        (
+            "row { 0, x } row { y, x + y }",
+            "2 columns of control points of the NURBS surface given, 4 expected",
+        ),
+        (
+            "degree 1 u_knots { 0, 1 } row { 0, x } row { y, x + y }",
+            "2 control points in a row of degree 1 need 4 `u_knots`, found 2",
+        ),
+        (
+            "degree <1, 2> v_knots { 0, 1 } row { 0, x } row { y, x + y } row { z, x + z }",
+            "3 rows of degree 2 need 6 `v_knots`, found 2",
+        ),
+        (
+            "degree 1 u_knots { 0, 1, 0, 1 } row { 0, x } row { y, x + y }",
+            "at least as large as the one before",
+        ),
+        (
+            "degree 1 row { <0, 0, 0, 0>, x } row { y, x + y }",
+            "must be greater than 0, found 0",
+        ),
+        (
+            "degree 1 row { 0, <1e200 * 1e200, 0, 0> } row { y, x + y }",
+            "is not finite",
+        ),
+        (
+            "degree 1 row { 0, x } row { y, x + y } trim { <0, 0>, <1, 0> }",
+            "at least three corners",
+        ),
+        (
+            "degree 1 row { 0, x } row { y, x + y } trim { curve { <0, 0>, <1, 0>, <1, 1> } }",
+            "does not end where it begins",
+        ),
+        (
+            "degree 1 row { 0, x } row { y, x + y } trim { curve { <0, 0>, <1, 2, 3, 4> } }",
+            "has 2 components here",
+        ),
+        (
+            "degree 1 row { 0, x } row { y, x + y } hole { <-1, -1>, <2, -1>, <2, 2>, <-1, 2> }",
+            "leave nothing of it",
+        ),
+    ] {
+        let text = format!("sphere {{ 0, 1 }} nurbs {{ {text} }}");
         let parsed = parse_with(&mut MemoryHost::new(), &text);
         let messages: Vec<String> = parsed.diagnostics.iter().map(ToString::to_string).collect();
         assert!(

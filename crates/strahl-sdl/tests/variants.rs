@@ -140,6 +140,7 @@ const OBJECTS: &[&str] = &[
     "sphere_sweep",
     "parametric",
     "bicubic_patch",
+    "nurbs",
     "ovus",
     "lemon",
     "julia_fractal",

@@ -9,7 +9,7 @@ use crate::traversal::Leaf;
 use crate::{Accelerator, Beam, Packet, PacketVisitor, TraversalStats, Visitor};
 use arrayvec::ArrayVec;
 use strahl_math::{Interval, Ray};
-use strahl_simd::{Isa, dispatch};
+use strahl_simd::{Isa, Portable, dispatch};
 
 /// Children still to visit: of each level at most all but one.
 type Stack = ArrayVec<Waiting, { MAX_DEPTH * (WIDTH - 1) }>;
@@ -55,6 +55,11 @@ impl Accelerator for Bvh8 {
             && let Some(tree) = &self.tree
         {
             let range = range.with_max(t_max);
+            if V::WATCHES {
+                // Whoever watches every step doesn't need them fast.
+                tree.walk(Portable, ray, range, visitor, stats);
+                return;
+            }
             dispatch!(self.simd, isa => tree.walk(isa, ray, range, visitor, stats));
         }
     }

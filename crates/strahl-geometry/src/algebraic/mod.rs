@@ -5,6 +5,7 @@
 
 mod blob;
 mod event;
+mod extent;
 mod gauge;
 mod line;
 mod polynomial;

@@ -1,4 +1,5 @@
 use super::event::{self, Event, Question};
+use super::extent::extent;
 use super::line::{Line, Root};
 use super::terms::{Dual, Terms, Univariate};
 use crate::primitives::point_error;
@@ -12,8 +13,9 @@ use strahl_math::{Aabb, DVec3, Interval, Ray};
 
 /// An algebraic surface: where a polynomial in x, y and z of degree 1 to 35 vanishes; inside is where it is not positive.
 ///
-/// POV-Ray's `cubic`, `quartic`, `poly` and `polynomial`. Changing all signs turns the inside out. The surface is unbounded as
-/// far as its box goes, whatever its shape: put it into an intersection or clip it. It has no texture coordinates (`uv` and its
+/// POV-Ray's `cubic`, `quartic`, `poly` and `polynomial`. Changing all signs turns the inside out. A surface that is closed because the
+/// terms of the highest degree have one sign everywhere, as those of a torus, has a box around it; any other is unbounded as far as its box goes, whatever its
+/// shape: put it into an intersection or clip it. It has no texture coordinates (`uv` and its
 /// derivatives are zero). Facets: one, 0. A ray that touches the surface without passing through does not hit it.
 ///
 /// The polynomial is restricted to the ray, about the point of the ray that is nearest to the origin, and its roots are isolated on
@@ -29,6 +31,8 @@ pub struct Polynomial {
     sums: Vec<f64>,
     /// The length, a power of two, above which the terms of the highest degree outweigh the others.
     length: f64,
+    /// The box around the surface, if it is known to be closed.
+    extent: Option<Box<Aabb>>,
 }
 
 /// The ray in the polynomial's own units: the point at `s` is `start + s along`, its parameter `t + s t_per_s`.
@@ -74,7 +78,12 @@ impl Polynomial {
         for (m, sum) in sums.iter_mut().enumerate() {
             *sum *= scale(m as u32);
         }
+        let reach = |scaled: Aabb| {
+            let bounds = Aabb::new(scaled.min * length, scaled.max * length);
+            Box::new(bounds.padded(DVec3::splat(gamma(16) * bounds.max_abs())))
+        };
         Self {
+            extent: extent(&terms, &sums).map(reach),
             terms,
             sums,
             length,
@@ -321,7 +330,7 @@ impl Primitive for Polynomial {
     }
 
     fn bounds(&self) -> Aabb {
-        Aabb::EVERYTHING
+        self.extent.as_deref().copied().unwrap_or(Aabb::EVERYTHING)
     }
 
     fn closest_hit(
@@ -366,6 +375,11 @@ impl Primitive for Polynomial {
 }
 
 impl Solid for Polynomial {
+    /// Everything: the inside may be what is outside of a closed surface.
+    fn inside_bounds(&self) -> Aabb {
+        Aabb::EVERYTHING
+    }
+
     fn crossings(
         &self,
         ray: &Ray,
@@ -486,6 +500,95 @@ mod tests {
         assert!((found[1] - expected).abs() < 1e-9 * expected, "{found:?}");
         // In a plane that the surface meets at infinity only.
         assert_eq!(crossings(&shape, &Ray::new(DVec3::Y, DVec3::X)), []);
+    }
+
+    #[test]
+    fn closed_surfaces_have_tight_boxes() {
+        let bounds = torus().bounds();
+        let outer = DVec3::new(1.25, 0.25, 1.25);
+        let contains = |b: &Aabb, p: DVec3| b.contains(p) && b.contains(-p);
+        assert!(contains(&bounds, outer * DVec3::X + DVec3::ZERO));
+        assert!(contains(&bounds, outer * DVec3::Z));
+        assert!(contains(&bounds, DVec3::new(1.0, 0.25, 0.0)));
+        assert!(bounds.max.x < 1.6 && bounds.max.y < 0.6, "{bounds:?}");
+        for n in [2, 4, 6, 10] {
+            let bounds = rounded_cube(n).bounds();
+            assert!(
+                contains(&bounds, DVec3::X) && bounds.max_abs() < 1.4,
+                "{n} {bounds:?}"
+            );
+        }
+        // Inside out, it is as closed.
+        let inverse = Polynomial::new([
+            ([4, 0, 0], -1.0),
+            ([0, 4, 0], -1.0),
+            ([0, 0, 4], -1.0),
+            ([0, 0, 0], 1.0),
+        ]);
+        assert!(inverse.bounds().is_bounded() && !inverse.inside_bounds().is_bounded());
+        let open = [
+            // A cylinder, a saddle, and one that is closed but not by its terms of degree four.
+            Polynomial::new([([4, 0, 0], 1.0), ([0, 4, 0], 1.0), ([0, 0, 0], -1.0)]),
+            Polynomial::new([([2, 0, 0], 1.0), ([0, 2, 0], -1.0), ([0, 0, 1], -1.0)]),
+            Polynomial::new([
+                ([4, 0, 0], 1.0),
+                ([0, 2, 0], 1.0),
+                ([0, 0, 2], 1.0),
+                ([0, 0, 0], -1.0),
+            ]),
+            Polynomial::new([([3, 0, 0], 1.0), ([0, 2, 0], 1.0), ([0, 0, 2], 1.0)]),
+        ];
+        for shape in open {
+            assert!(!shape.bounds().is_bounded(), "{shape:?}");
+        }
+        // Nothing at all.
+        let empty = Polynomial::new([
+            ([2, 0, 0], 1.0),
+            ([0, 2, 0], 1.0),
+            ([0, 0, 2], 1.0),
+            ([0, 0, 0], 1.0),
+        ]);
+        assert!(empty.bounds().max_abs() < 1e-9);
+    }
+
+    /// Whatever rays hit is in the box, also of surfaces made at random.
+    #[test]
+    fn rays_hit_nothing_outside_of_the_box() {
+        let mut random = crate::conformance::Random::new(35);
+        let (mut closed, mut hits) = (0, 0);
+        for case in 0..60 {
+            let n = 2 + 2 * (case % 3);
+            let size = strahl_math::det::pow(10.0, random.between(-3.0, 3.0));
+            let unit = |power: u32| (0..power).fold(1.0, |product, _| product / size);
+            let ends = [[n, 0, 0], [0, n, 0], [0, 0, n]];
+            let mut terms: Vec<([u32; 3], f64)> =
+                ends.map(|p| (p, random.between(0.5, 2.0) * unit(n))).into();
+            for _ in 0..8 {
+                let p = [0, 1, 2].map(|_| random.below(u64::from(n / 2)) as u32);
+                let degree = p[0] + p[1] + p[2];
+                if degree < n {
+                    terms.push((p, random.between(-2.0, 2.0) * unit(degree)));
+                }
+            }
+            terms.push(([0, 0, 0], -1.0));
+            let shape = Polynomial::new(terms);
+            let bounds = shape.bounds();
+            if !bounds.is_bounded() {
+                continue;
+            }
+            closed += 1;
+            for _ in 0..300 {
+                let origin = random.cube() * (6.0 * size);
+                let ray = Ray::new(origin, random.cube() * (2.0 * size) - origin);
+                for t in crossings(&shape, &ray) {
+                    let p = ray.at(t);
+                    let slack = DVec3::splat(1e-14 * (origin.length() + size));
+                    assert!(bounds.padded(slack).contains(p), "{p} {bounds:?} {shape:?}");
+                    hits += 1;
+                }
+            }
+        }
+        assert!(closed > 40 && hits > 5000, "{closed} {hits}");
     }
 
     #[test]

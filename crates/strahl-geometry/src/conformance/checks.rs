@@ -199,6 +199,31 @@ impl Subject {
         }
     }
 
+    /// `all_hits` are those of `closest_hit`, one behind the other.
+    pub fn all_hits_are_closest_hits_one_behind_the_other(&self) {
+        let (mut random, mut scratch) = (Random::new(16), Scratch::default());
+        for i in 0..self.rays {
+            let ray = if i % 4 == 0 {
+                self.axis_parallel_ray(&mut random)
+            } else {
+                self.ray(&mut random)
+            };
+            let from = random.between(-self.size, self.size) / ray.direction.length();
+            for mut range in [Interval::FORWARD, Interval::new(from, f64::INFINITY)] {
+                let mut all = vec![];
+                self.shape
+                    .all_hits(&ray, range, None, &mut scratch, &mut all);
+                for hit in &all {
+                    let next = self.shape.closest_hit(&ray, range, None, &mut scratch);
+                    assert_eq!(next.as_ref(), Some(hit), "{ray:?} {range:?} {all:?}");
+                    range.min = hit.t;
+                }
+                let next = self.shape.closest_hit(&ray, range, None, &mut scratch);
+                assert_eq!(next, None, "{ray:?} {range:?} {all:?}");
+            }
+        }
+    }
+
     /// `any_hit` agrees with `closest_hit`, whatever the range.
     pub fn any_hit_agrees_with_closest_hit(&self) {
         let (mut random, mut scratch) = (Random::new(6), Scratch::default());
@@ -409,6 +434,7 @@ impl Subject {
         self.hits_lie_on_the_surface();
         self.hits_are_inside_the_bounds();
         self.any_hit_agrees_with_closest_hit();
+        self.all_hits_are_closest_hits_one_behind_the_other();
         self.ranges_cut_exactly();
         self.t_scales_with_the_direction();
         self.rays_leave_the_surface();

@@ -104,6 +104,7 @@ macro_rules! primitive_tests {
                 rays_leave_the_surface
                 hits_are_inside_the_bounds
                 any_hit_agrees_with_closest_hit
+                all_hits_are_closest_hits_one_behind_the_other
                 ranges_cut_exactly
                 t_scales_with_the_direction
                 crossings_alternate

@@ -52,6 +52,13 @@ pub(super) struct Search<'a> {
     pub(super) scratch: &'a mut Scratch,
 }
 
+/// Where a ray that starts on a surface or not begins to be searched, and where its timeline begins ([`Search::begin`]).
+pub(super) fn start_and_begin(range: Interval, on_surface: bool, fusing: &Fusing) -> (f64, f64) {
+    let forward = |t: f64| if on_surface && t < 0.0 { 0.0 } else { t };
+    let start = forward(range.min);
+    (start, forward(start - 4.0 * fusing.gap(start, start)))
+}
+
 /// Searches the first visible surface with `range.min < t <= range.max` of a tree of solids that is not too deep.
 pub(super) fn first_visible(
     csg: &Csg,
@@ -61,33 +68,21 @@ pub(super) fn first_visible(
     lists: &mut Lists,
     scratch: &mut Scratch,
 ) -> Answer {
-    let start = if from.is_some() && range.min < 0.0 {
-        0.0
-    } else {
-        range.min
-    };
+    let fusing = Fusing::new(ray);
+    let (start, begin) = start_and_begin(range, from.is_some(), &fusing);
     if !(start < range.max) {
         return Answer::Certain(None);
     }
     lists.timeline.clear(csg.node_count());
     lists.candidates.clear();
-    let fusing = Fusing::new(ray);
-    let before = start - 4.0 * fusing.gap(start, start);
     let search = Search {
         csg,
         ray,
         slabs: None,
-        from: from.map(|surface| {
-            let (leaf, element) = csg.leaf_of(surface.element);
-            (leaf as u32, SurfaceId { element, ..surface })
-        }),
+        from: from.map(|surface| csg.leaf_surface(surface)),
         fusing,
         range: Interval::new(start, range.max),
-        begin: if from.is_some() && before < 0.0 {
-            0.0
-        } else {
-            before
-        },
+        begin,
         lists,
         scratch,
     };

@@ -81,11 +81,38 @@ fn tree(random: &mut Random, depth: u32, lattice: bool) -> CsgNode {
     }
 }
 
+fn deep(random: &mut Random, lattice: bool) -> CsgNode {
+    tree(random, 4, lattice)
+}
+
+/// A few leaves, some of which are subtracted or only clip the others.
+fn flat(random: &mut Random, lattice: bool) -> CsgNode {
+    let leaves = |random: &mut Random, most: u64| -> Vec<CsgNode> {
+        let count = random.below(most);
+        (0..count).map(|_| leaf(random, lattice, 1)).collect()
+    };
+    let whole = CsgNode::leaf(Cuboid::new(-DVec3::ONE, DVec3::ONE), 0);
+    let kept = CsgNode::intersection([whole].into_iter().chain(leaves(random, 3)));
+    let rest = leaves(random, 4);
+    match random.below(3) {
+        0 => CsgNode::clip(
+            kept,
+            leaves(random, 2)
+                .into_iter()
+                .chain([leaf(random, lattice, 2)]),
+        ),
+        _ => CsgNode::difference([kept].into_iter().chain(rest)),
+    }
+}
+
 /// The number of decided searches, and their results.
 #[derive(Debug, Default)]
 struct Tally {
     sure: u32,
     unclear: u32,
+    /// Those of the way for a few convex shapes.
+    flat: u32,
+    flat_unclear: u32,
     hits: u32,
 }
 
@@ -107,17 +134,32 @@ fn compare(
         }
         Answer::Unclear => tally.unclear += 1,
     }
+    if let Some(flat) = csg.flat() {
+        let from = from.map(|surface| csg.leaf_surface(surface));
+        match flat.first_visible(csg.all_leaves(), ray, range, from) {
+            Answer::Certain(found) => {
+                assert_eq!(found, expected, "{ray:?} {range:?} {from:?}\n{csg:?}");
+                tally.flat += 1;
+            }
+            Answer::Unclear => tally.flat_unclear += 1,
+        }
+    }
     tally.hits += u32::from(expected.is_some());
     expected
 }
 
 /// Rays from outside that continue from surface to surface, as light does.
-fn follow_rays(seed: u64, trees: u32, lattice: bool) -> Tally {
+fn follow_rays(
+    seed: u64,
+    trees: u32,
+    lattice: bool,
+    tree: fn(&mut Random, bool) -> CsgNode,
+) -> Tally {
     let (mut random, mut tally) = (Random::new(seed), Tally::default());
     for _ in 0..trees {
         let csg = loop {
             // A single leaf is no operation.
-            let csg = Csg::try_new(tree(&mut random, 4, lattice)).expect("valid");
+            let csg = Csg::try_new(tree(&mut random, lattice)).expect("valid");
             if csg.leaves() > 1 {
                 break csg;
             }
@@ -166,7 +208,7 @@ fn follow_rays(seed: u64, trees: u32, lattice: bool) -> Tally {
 
 #[test]
 fn the_first_surface_is_that_of_the_list() {
-    let tally = follow_rays(21, 1500, false);
+    let tally = follow_rays(21, 1500, false, deep);
     assert!(tally.hits > 60_000, "{tally:?}");
     // Only rays that touch two surfaces at once may be left to the general method.
     assert!(tally.unclear * 50 < tally.sure, "{tally:?}");
@@ -174,9 +216,21 @@ fn the_first_surface_is_that_of_the_list() {
 
 #[test]
 fn coincident_and_touching_surfaces_are_left_to_the_general_way() {
-    let tally = follow_rays(22, 1500, true);
+    let tally = follow_rays(22, 1500, true, deep);
     assert!(tally.hits > 30_000 && tally.unclear > 10_000, "{tally:?}");
     assert!(tally.sure > 10_000, "{tally:?}");
+}
+
+#[test]
+fn a_few_convex_shapes_have_the_same_first_surface() {
+    let tally = follow_rays(23, 1500, false, flat);
+    assert!(tally.flat > 60_000 && tally.hits > 20_000, "{tally:?}");
+    assert!(tally.flat_unclear * 50 < tally.flat, "{tally:?}");
+    let tally = follow_rays(24, 1500, true, flat);
+    assert!(
+        tally.flat > 20_000 && tally.flat_unclear > 2_000,
+        "{tally:?}"
+    );
 }
 
 /// Operands that begin behind the surface found are not tested: the second of two tori costs nothing.

@@ -9,13 +9,14 @@
 //! * `compile` makes the one from the other, `evaluate` traverses the tree for a ray, `sweep` combines lists, `half_spaces`
 //!   intersects all planes of an intersection in one pass.
 //! * `first` finds the first surface without lists, if no two crossings are close together: `course` finds the crossings that
-//!   matter, `timeline` goes through them.
+//!   matter, `timeline` goes through them. `flat` does the same for a few convex shapes.
 
 mod boxes;
 mod compile;
 mod course;
 mod evaluate;
 mod first;
+mod flat;
 mod half_spaces;
 mod leaf;
 mod solid;

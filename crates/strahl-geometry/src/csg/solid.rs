@@ -2,9 +2,11 @@ use super::CsgNode;
 use super::compile::Compiler;
 use super::evaluate::Evaluation;
 use super::first::{Answer, first_visible};
+use super::flat::Flat;
 use super::half_spaces::HalfSpaces;
 use super::leaf::{Leaf, Next};
 use super::sweep::Rule;
+use crate::primitive::one_by_one;
 use crate::{
     Crossings, GeometryError, PrimHit, Primitive, Scratch, Shape, Solid, SurfaceId, SurfacePoint,
 };
@@ -38,6 +40,8 @@ pub struct Csg {
     closed: bool,
     /// Whether it is an operation on solids that is not nested too deep for recursion.
     shallow: bool,
+    /// The tree as a few convex shapes, if it is that.
+    flat: Option<Flat>,
 }
 
 /// The kind of a compiled node.
@@ -104,7 +108,9 @@ impl Csg {
         }
         let combined = matches!(nodes.first(), Some(root) if root.kind != Kind::Leaf(0));
         let shallow = closed && combined && depths.iter().all(|depth| *depth <= SHALLOW);
+        let flat = closed.then(|| Flat::of(&nodes, &operands, &leaves));
         Self {
+            flat: flat.flatten(),
             nodes,
             operands,
             leaves,
@@ -138,6 +144,12 @@ impl Csg {
         (index, element - first)
     }
 
+    /// The leaf that a surface belongs to, and the surface with the number of its element in that leaf.
+    pub(super) fn leaf_surface(&self, surface: SurfaceId) -> (u32, SurfaceId) {
+        let (leaf, element) = self.leaf_of(surface.element);
+        (leaf as u32, SurfaceId { element, ..surface })
+    }
+
     /// The caller's number for a leaf; 0 if there is no such leaf.
     pub fn leaf_tag(&self, leaf: usize) -> u32 {
         self.leaves.get(leaf).map_or(0, |leaf| leaf.tag)
@@ -151,6 +163,17 @@ impl Csg {
     /// Whether it is an operation that is not nested too deep for recursion.
     pub(super) fn is_shallow(&self) -> bool {
         self.shallow
+    }
+
+    /// The tree as a few convex shapes, if it is that.
+    #[cfg(test)]
+    pub(super) fn flat(&self) -> Option<&Flat> {
+        self.flat.as_ref()
+    }
+
+    #[cfg(test)]
+    pub(super) fn all_leaves(&self) -> &[Leaf] {
+        &self.leaves
     }
 
     pub(super) fn node_count(&self) -> usize {
@@ -230,7 +253,12 @@ impl Primitive for Csg {
         from: Option<SurfaceId>,
         scratch: &mut Scratch,
     ) -> Option<PrimHit> {
-        if self.shallow {
+        if let Some(flat) = &self.flat {
+            let from = from.map(|surface| self.leaf_surface(surface));
+            if let Answer::Certain(hit) = flat.first_visible(&self.leaves, ray, range, from) {
+                return hit;
+            }
+        } else if self.shallow {
             let mut workspace = scratch.take_csg();
             let lists = &mut workspace.first;
             let answer = first_visible(self, ray, range, from, lists, scratch);
@@ -245,6 +273,39 @@ impl Primitive for Csg {
         let hit = first.map(|crossing| crossing.hit);
         scratch.give(list);
         hit
+    }
+
+    fn all_hits(
+        &self,
+        ray: &Ray,
+        range: Interval,
+        from: Option<SurfaceId>,
+        scratch: &mut Scratch,
+        out: &mut Vec<PrimHit>,
+    ) {
+        let before = out.len();
+        if let Some(flat) = &self.flat {
+            let from = from.map(|surface| self.leaf_surface(surface));
+            if flat.all_visible(&self.leaves, ray, range, from, out) {
+                return;
+            }
+            out.truncate(before);
+        } else if self.shallow {
+            // Searching several times is faster than listing what is not needed (measured: 0.85 of the time on cutglass.pov).
+            return one_by_one(self, ray, range, from, scratch, out);
+        }
+        let mut list = scratch.take();
+        Evaluation::run(self, ray, range, from, scratch, &mut list);
+        for crossing in list.list.iter().filter(|crossing| crossing.visible) {
+            // Of several at one place the first is met.
+            if out[before..]
+                .last()
+                .is_none_or(|last| last.t < crossing.hit.t)
+            {
+                out.push(crossing.hit);
+            }
+        }
+        scratch.give(list);
     }
 
     fn surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {

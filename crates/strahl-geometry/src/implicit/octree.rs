@@ -5,7 +5,7 @@ use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU8, Ordering};
 use strahl_math::{Aabb, DVec3, Interval};
 
-/// What is known about a cell: nothing yet, that it contains no surface, or that it may contain one.
+/// Marks of a cell: nothing is known yet, it contains no surface, or it may contain one.
 const UNKNOWN: u8 = 0;
 const EMPTY: u8 = 1;
 const FULL: u8 = 2;
@@ -30,24 +30,30 @@ pub(crate) trait Visitor {
 pub(crate) struct Octree {
     bounds: Aabb,
     levels: u32,
-    root: Cell,
+    mark: Mark,
+    root: Node,
 }
 
-/// A cell that is met, and its eight children if they are met.
+/// What is known of the eight children of a cell, and their nodes if they are met. The smallest cells have no nodes.
 #[derive(Debug, Default)]
-struct Cell {
-    mark: AtomicU8,
-    children: OnceLock<Box<[Cell; 8]>>,
+struct Node {
+    marks: [Mark; 8],
+    children: OnceLock<Box<[Node; 8]>>,
 }
 
-impl Cell {
+/// What is known about a cell.
+#[derive(Debug, Default)]
+struct Mark(AtomicU8);
+
+impl Mark {
     /// Whether there may be a surface: remembered, or asked of the visitor.
-    fn is_full(&self, bounds: &Aabb, visitor: &mut impl Visitor) -> bool {
+    #[inline(always)]
+    fn is_full(&self, bounds: impl FnOnce() -> Aabb, visitor: &mut impl Visitor) -> bool {
         // Nothing else is published with the mark, and threads that ask at the same time get the same answer.
-        match self.mark.load(Ordering::Relaxed) {
+        match self.0.load(Ordering::Relaxed) {
             UNKNOWN => {
-                let full = visitor.may_have_surface(bounds);
-                self.mark
+                let full = visitor.may_have_surface(&bounds());
+                self.0
                     .store(if full { FULL } else { EMPTY }, Ordering::Relaxed);
                 full
             }
@@ -63,9 +69,10 @@ fn child(cell: &Aabb, middle: DVec3, octant: usize) -> Aabb {
 }
 
 /// Component `k` of `a` if bit `k` is set, else of `b`.
+#[inline(always)]
 fn choose(bits: usize, a: DVec3, b: DVec3) -> DVec3 {
-    let pick = |k: usize| if bits >> k & 1 == 1 { a[k] } else { b[k] };
-    DVec3::new(pick(0), pick(1), pick(2))
+    let pick = |bit: usize, a: f64, b: f64| if bits & bit == 0 { b } else { a };
+    DVec3::new(pick(1, a.x, b.x), pick(2, a.y, b.y), pick(4, a.z, b.z))
 }
 
 impl Octree {
@@ -74,7 +81,8 @@ impl Octree {
         Self {
             bounds,
             levels,
-            root: Cell::default(),
+            mark: Mark::default(),
+            root: Node::default(),
         }
     }
 
@@ -108,15 +116,15 @@ impl Octree {
         let earlier = |a: f64, b: f64| if a < b { a } else { b };
         let enter = later(later(near.x, near.y), near.z);
         let exit = earlier(earlier(far.x, far.y), far.z);
-        if !line.needs(enter, exit) || !self.root.is_full(&self.bounds, visitor) {
+        if !line.needs(enter, exit) || !self.mark.is_full(|| self.bounds, visitor) {
             return ControlFlow::Continue(());
         }
-        line.descend(
-            (&self.root, self.levels),
-            &self.bounds,
-            (enter, exit),
-            visitor,
-        )
+        match self.levels.checked_sub(1) {
+            None => visitor.part(enter, exit),
+            Some(levels) => {
+                line.descend((&self.root, levels), &self.bounds, (enter, exit), visitor)
+            }
+        }
     }
 }
 
@@ -139,39 +147,39 @@ impl Line {
         enter < exit && enter <= self.range.max && exit >= self.range.min
     }
 
-    /// Visits a cell that may have a surface, below which there are so many levels and in which the line is from `enter` to `exit`.
+    /// Visits the children of a cell that may have a surface, below which there are so many levels and in which the line is from
+    /// `enter` to `exit`.
     fn descend(
         &self,
-        (cell, levels): (&Cell, u32),
+        (node, levels): (&Node, u32),
         bounds: &Aabb,
-        (enter, exit): (f64, f64),
+        (mut enter, exit): (f64, f64),
         visitor: &mut impl Visitor,
     ) -> ControlFlow<()> {
-        let Some(levels) = levels.checked_sub(1) else {
-            return visitor.part(enter, exit);
-        };
-        let children = cell.children.get_or_init(Box::default);
         let middle = bounds.center();
-        let halves = self.at(middle).to_array();
+        let DVec3 { x, y, z } = self.at(middle);
         // The halves it is in, along each axis: the line passes from the first to the second one only.
-        let mut seconds = 0;
-        for (axis, &half) in halves.iter().enumerate() {
-            seconds |= usize::from(half <= enter) << axis;
-        }
-        let mut enter = enter;
+        let mut seconds =
+            usize::from(x <= enter) | usize::from(y <= enter) << 1 | usize::from(z <= enter) << 2;
         loop {
             let (mut until, mut crossed) = (exit, 0);
-            for (axis, &half) in halves.iter().enumerate() {
-                if seconds >> axis & 1 == 0 && half < until {
-                    (until, crossed) = (half, 1 << axis);
+            for (half, axis) in [(x, 1), (y, 2), (z, 4)] {
+                if seconds & axis == 0 && half < until {
+                    (until, crossed) = (half, axis);
                 }
             }
             if self.needs(enter, until) {
                 let octant = seconds ^ self.first;
-                let bounds = child(bounds, middle, octant);
-                let cell = &children[octant];
-                if cell.is_full(&bounds, visitor) {
-                    self.descend((cell, levels), &bounds, (enter, until), visitor)?;
+                let bounds = || child(bounds, middle, octant);
+                if node.marks[octant].is_full(bounds, visitor) {
+                    match levels.checked_sub(1) {
+                        None => visitor.part(enter, until)?,
+                        Some(levels) => {
+                            let children = node.children.get_or_init(Box::default);
+                            let child = (&children[octant], levels);
+                            self.descend(child, &bounds(), (enter, until), visitor)?;
+                        }
+                    }
                 }
             }
             if crossed == 0 || until > self.range.max {

@@ -27,25 +27,25 @@ pub struct MeshData {
 }
 
 impl MeshData {
-    /// A mesh without normals and texture from vertices in f64, which are rounded to f32.
+    /// A mesh without normals and texture from vertices in f64 (`DVec3` or `[f64; 3]`), which are rounded to f32.
     ///
     /// The anchor stays zero, unless the mesh is so small for its place (extent below 1/1024 of the largest coordinate)
     /// that f32 would leave less than 14 bits for its detail; then it is the middle of the mesh. Vertices that
     /// f32 holds exactly are kept exactly.
-    pub fn from_f64(vertices: &[DVec3], indices: Vec<[u32; 3]>) -> Self {
-        let bounds = Aabb::from_points(vertices.iter().copied());
+    pub fn from_f64<V: Copy + Into<DVec3>>(vertices: &[V], indices: Vec<[u32; 3]>) -> Self {
+        let points = || vertices.iter().map(|&v| v.into());
+        let bounds = Aabb::from_points(points());
         let small = bounds.size().max_element() < bounds.max_abs() / 1024.0;
-        let exact = |v: &DVec3| v.as_vec3().as_dvec3() == *v;
-        let anchor = if small && bounds.is_bounded() && !vertices.iter().all(exact) {
+        let exact = |v: DVec3| v.as_vec3().as_dvec3() == v;
+        let anchor = if small && bounds.is_bounded() && !points().all(exact) {
             bounds.center()
         } else {
             DVec3::ZERO
         };
         Self {
             anchor,
-            positions: vertices
-                .iter()
-                .map(|v| (*v - anchor).as_vec3().to_array())
+            positions: points()
+                .map(|v| (v - anchor).as_vec3().to_array())
                 .collect(),
             indices,
             ..Self::default()

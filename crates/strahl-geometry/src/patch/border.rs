@@ -9,16 +9,16 @@ const DEPTH: u32 = 64;
 ///
 /// The reversed curve gives exactly the opposite number, and curves that share an end agree about it, because the decisions
 /// are comparisons of coordinates that are computed from the curve alone.
-fn crossings(curve: &Curve<2>, depth: u32) -> i32 {
+fn crossings<const K: usize>(curve: &Curve<2, K>, depth: u32) -> i32 {
     let is_above = |p: &[f64; 2]| p[1] >= 0.0;
     let above = curve.iter().filter(|p| is_above(p)).count();
     let right = curve.iter().filter(|p| p[0] > 0.0).count();
-    if above == 0 || above == 4 || right == 0 {
+    if above == 0 || above == K || right == 0 {
         return 0;
     }
-    let (from, to) = (curve[0], curve[3]);
+    let (from, to) = (curve[0], curve[K - 1]);
     let change = i32::from(is_above(&to)) - i32::from(is_above(&from));
-    if right == 4 {
+    if right == K {
         return change;
     }
     if depth > 0 {
@@ -41,10 +41,10 @@ fn crossings(curve: &Curve<2>, depth: u32) -> i32 {
 /// a map).
 /// Of two patches with a common border curve, the curve counts in one as much as it is taken off in the other, to the
 /// last bit. So a ray through the border of a closed surface of patches meets exactly one of the two.
-pub(super) fn winding(net: &Net<2>) -> i32 {
-    let count = |curve: &Curve<2>| crossings(curve, DEPTH);
-    let [bottom, top] = [&net.rows[0], &net.rows[3]];
-    let [left, right] = [net.column(0), net.column(3)];
+pub(super) fn winding<const K: usize>(net: &Net<2, K>) -> i32 {
+    let count = |curve: &Curve<2, K>| crossings(curve, DEPTH);
+    let [bottom, top] = [&net.rows[0], &net.rows[K - 1]];
+    let [left, right] = [net.column(0), net.column(K - 1)];
     count(bottom) + count(&right) - count(top) - count(&left)
 }
 
@@ -57,7 +57,7 @@ mod tests {
     fn a_reversed_curve_crosses_the_other_way() {
         let mut random = Random::new(8);
         for round in 0..20_000 {
-            let mut curve: Curve<2> =
+            let mut curve: Curve<2, 4> =
                 std::array::from_fn(|_| std::array::from_fn(|_| random.between(-1.0, 1.0)));
             if round % 2 == 0 {
                 // Exactly through the origin, up to rounding.
@@ -76,7 +76,7 @@ mod tests {
         let mut seen = [0; 3];
         for _ in 0..2000 {
             let aside: [f64; 2] = std::array::from_fn(|_| random.between(-2.5, 2.5));
-            let net = Net {
+            let net = Net::<2, 4> {
                 rows: std::array::from_fn(|j| {
                     std::array::from_fn(|i| {
                         [i, j].map(|k| k as f64 - 1.5 + 1.5 * random.between(-1.0, 1.0))

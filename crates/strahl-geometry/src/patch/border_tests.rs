@@ -2,7 +2,9 @@
 
 use super::tests::{Points, hits};
 use super::*;
+use crate::Primitive;
 use crate::conformance::Random;
+use strahl_math::{DVec3, Interval, Ray};
 
 /// A closed surface like a pillow or a ball: rings of patches around an axis, with both ends collapsed, out of round. Every other
 /// patch has its parameters turned, so that common borders run in different directions.
@@ -72,7 +74,7 @@ fn shoot(rays: usize, seed: u64) -> [usize; 3] {
         }
         let patch = &patches[random.below(patches.len() as u64) as usize];
         let [u, v] = border_point(patch, &mut random);
-        let [target, ..] = patch.jet(u, v);
+        let [target, ..] = patch.bezier.jet(u, v);
         let origin = match random.below(3) {
             0 => DVec3::ZERO,
             _ => random.cube() * 0.3,

@@ -1,13 +1,13 @@
-//! Nets of 4 by 4 control coefficients in Bernstein form, of any number of coordinates.
+//! Nets of control coefficients in Bernstein form, of any number of coordinates and the same degree in both parameters.
 
-/// A net: `rows[v][u]`, the four coefficients of a row for the first parameter, the rows for the second.
+/// A net: `rows[v][u]`, the `K` coefficients of a row for the first parameter, the rows for the second. Its degree is `K - 1`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Net<const N: usize> {
-    pub(super) rows: [Curve<N>; 4],
+pub(super) struct Net<const N: usize, const K: usize> {
+    pub(super) rows: [Curve<N, K>; K],
 }
 
-/// The four control coefficients of a cubic curve.
-pub(super) type Curve<const N: usize> = [[f64; N]; 4];
+/// The control coefficients of a curve.
+pub(super) type Curve<const N: usize, const K: usize> = [[f64; N]; K];
 
 /// A value with its derivatives by both parameters.
 #[derive(Clone, Copy, Debug)]
@@ -28,61 +28,96 @@ fn mean<const N: usize>(a: &[f64; N], b: &[f64; N]) -> [f64; N] {
 }
 
 #[inline(always)]
-fn weighted<const N: usize>(c: &Curve<N>, w: &[f64; 4]) -> [f64; N] {
-    each(|k| ((c[0][k] * w[0] + c[1][k] * w[1]) + c[2][k] * w[2]) + c[3][k] * w[3])
+fn weighted<const N: usize, const K: usize>(c: &Curve<N, K>, w: &[f64; K]) -> [f64; N] {
+    each(|k| {
+        let mut sum = c[0][k] * w[0];
+        for i in 1..K {
+            sum += c[i][k] * w[i];
+        }
+        sum
+    })
 }
 
-/// The Bernstein polynomials of degree 3 and their derivatives.
+/// The Bernstein polynomials of degree `K - 1` and their derivatives.
 #[inline(always)]
-fn bernstein(t: f64) -> ([f64; 4], [f64; 4]) {
+fn bernstein<const K: usize>(t: f64) -> ([f64; K], [f64; K]) {
     let s = 1.0 - t;
-    let (ss, tt, st) = (s * s, t * t, s * t);
-    let value = [ss * s, 3.0 * (ss * t), 3.0 * (s * tt), tt * t];
-    let slope = [
-        -3.0 * ss,
-        3.0 * (ss - 2.0 * st),
-        3.0 * (2.0 * st - tt),
-        3.0 * tt,
-    ];
+    let (mut value, mut slope) = ([0.0; K], [0.0; K]);
+    if K == 4 {
+        let (ss, tt, st) = (s * s, t * t, s * t);
+        let values = [ss * s, 3.0 * (ss * t), 3.0 * (s * tt), tt * t];
+        let slopes = [
+            -3.0 * ss,
+            3.0 * (ss - 2.0 * st),
+            3.0 * (2.0 * st - tt),
+            3.0 * tt,
+        ];
+        value.copy_from_slice(&values);
+        slope.copy_from_slice(&slopes);
+        return (value, slope);
+    }
+    // Each degree from the one below: B(i, n) = s B(i, n - 1) + t B(i - 1, n - 1).
+    value[0] = 1.0;
+    for n in 1..K {
+        if n == K - 1 {
+            let degree = n as f64;
+            slope[0] = -degree * value[0];
+            for i in 1..n {
+                slope[i] = degree * (value[i - 1] - value[i]);
+            }
+            slope[n] = degree * value[n - 1];
+        }
+        value[n] = t * value[n - 1];
+        for i in (1..n).rev() {
+            value[i] = s * value[i] + t * value[i - 1];
+        }
+        value[0] *= s;
+    }
     (value, slope)
 }
 
 /// Both halves of a curve (de Casteljau 1959). The reversed curve has the reversed halves, to the last bit.
 #[inline(always)]
-pub(super) fn halves<const N: usize>(c: &Curve<N>) -> [Curve<N>; 2] {
-    let (a, b, d) = (mean(&c[0], &c[1]), mean(&c[1], &c[2]), mean(&c[2], &c[3]));
-    let (e, f) = (mean(&a, &b), mean(&b, &d));
-    let middle = mean(&e, &f);
-    [[c[0], a, e, middle], [middle, f, d, c[3]]]
+pub(super) fn halves<const N: usize, const K: usize>(c: &Curve<N, K>) -> [Curve<N, K>; 2] {
+    let mut row = *c;
+    let (mut left, mut right) = (*c, *c);
+    for step in 1..K {
+        for i in 0..K - step {
+            row[i] = mean(&row[i], &row[i + 1]);
+        }
+        left[step] = row[0];
+        right[K - 1 - step] = row[K - 1 - step];
+    }
+    [left, right]
 }
 
-impl<const N: usize> Net<N> {
+impl<const N: usize, const K: usize> Net<N, K> {
     /// The net whose coefficients are made from those of another.
     #[inline(always)]
-    pub(super) fn map<const M: usize>(&self, f: impl Fn(&[f64; N]) -> [f64; M]) -> Net<M> {
+    pub(super) fn map<const M: usize>(&self, f: impl Fn(&[f64; N]) -> [f64; M]) -> Net<M, K> {
         Net {
             rows: std::array::from_fn(|j| std::array::from_fn(|i| f(&self.rows[j][i]))),
         }
     }
 
-    /// All sixteen coefficients.
-    pub(super) fn points(&self) -> impl Iterator<Item = &[f64; N]> {
+    /// All coefficients, row after row.
+    pub(super) fn points(&self) -> impl Iterator<Item = &[f64; N]> + Clone {
         self.rows.iter().flatten()
     }
 
     /// The value at two parameters.
     #[inline]
     pub(super) fn at(&self, u: f64, v: f64) -> [f64; N] {
-        let ((bu, _), (bv, _)) = (bernstein(u), bernstein(v));
+        let ((bu, _), (bv, _)) = (bernstein::<K>(u), bernstein::<K>(v));
         weighted(&std::array::from_fn(|j| weighted(&self.rows[j], &bu)), &bv)
     }
 
     /// The value and the derivatives at two parameters.
     #[inline]
     pub(super) fn jet(&self, u: f64, v: f64) -> Jet<N> {
-        let ((bu, su), (bv, sv)) = (bernstein(u), bernstein(v));
-        let values: Curve<N> = std::array::from_fn(|j| weighted(&self.rows[j], &bu));
-        let slopes: Curve<N> = std::array::from_fn(|j| weighted(&self.rows[j], &su));
+        let ((bu, su), (bv, sv)) = (bernstein::<K>(u), bernstein::<K>(v));
+        let values: Curve<N, K> = std::array::from_fn(|j| weighted(&self.rows[j], &bu));
+        let slopes: Curve<N, K> = std::array::from_fn(|j| weighted(&self.rows[j], &su));
         Jet {
             value: weighted(&values, &bv),
             by_u: weighted(&slopes, &bv),
@@ -93,7 +128,7 @@ impl<const N: usize> Net<N> {
     /// Both halves along the first parameter.
     #[inline]
     pub(super) fn halves_u(&self) -> [Self; 2] {
-        let both: [_; 4] = std::array::from_fn(|j| halves(&self.rows[j]));
+        let both: [_; K] = std::array::from_fn(|j| halves(&self.rows[j]));
         [0, 1].map(|side| Self {
             rows: std::array::from_fn(|j| both[j][side]),
         })
@@ -102,7 +137,7 @@ impl<const N: usize> Net<N> {
     /// Both halves along the second parameter.
     #[inline]
     pub(super) fn halves_v(&self) -> [Self; 2] {
-        let both: [_; 4] = std::array::from_fn(|i| halves(&self.column(i)));
+        let both: [_; K] = std::array::from_fn(|i| halves(&self.column(i)));
         [0, 1].map(|side| Self {
             rows: std::array::from_fn(|j| std::array::from_fn(|i| both[i][side][j])),
         })
@@ -110,7 +145,7 @@ impl<const N: usize> Net<N> {
 
     /// The coefficients of column `i`, along the second parameter.
     #[inline(always)]
-    pub(super) fn column(&self, i: usize) -> Curve<N> {
+    pub(super) fn column(&self, i: usize) -> Curve<N, K> {
         std::array::from_fn(|j| self.rows[j][i])
     }
 
@@ -136,21 +171,19 @@ impl<const N: usize> Net<N> {
         })
     }
 
-    /// The coefficients of the derivative by the first parameter.
-    #[inline]
-    pub(super) fn slopes_u(&self) -> [[f64; N]; 12] {
-        std::array::from_fn(|n| {
-            let (j, i) = (n / 3, n % 3);
-            each(|k| 3.0 * (self.rows[j][i + 1][k] - self.rows[j][i][k]))
+    /// The `K (K - 1)` coefficients of the derivative by the first parameter.
+    #[inline(always)]
+    pub(super) fn slopes_u(&self) -> impl Iterator<Item = [f64; N]> + Clone + '_ {
+        self.rows.iter().flat_map(|row| {
+            (1..K).map(move |i| each(|k| (K - 1) as f64 * (row[i][k] - row[i - 1][k])))
         })
     }
 
-    /// The coefficients of the derivative by the second parameter.
-    #[inline]
-    pub(super) fn slopes_v(&self) -> [[f64; N]; 12] {
-        std::array::from_fn(|n| {
-            let (j, i) = (n / 4, n % 4);
-            each(|k| 3.0 * (self.rows[j + 1][i][k] - self.rows[j][i][k]))
+    /// The `K (K - 1)` coefficients of the derivative by the second parameter.
+    #[inline(always)]
+    pub(super) fn slopes_v(&self) -> impl Iterator<Item = [f64; N]> + Clone + '_ {
+        self.rows.windows(2).flat_map(|pair| {
+            (0..K).map(move |i| each(|k| (K - 1) as f64 * (pair[1][i][k] - pair[0][i][k])))
         })
     }
 }
@@ -160,7 +193,7 @@ mod tests {
     use super::*;
     use crate::conformance::Random;
 
-    fn random_net(random: &mut Random) -> Net<2> {
+    fn random_net<const K: usize>(random: &mut Random) -> Net<2, K> {
         Net {
             rows: std::array::from_fn(|_| {
                 std::array::from_fn(|_| std::array::from_fn(|_| random.between(-1.0, 1.0)))
@@ -168,11 +201,10 @@ mod tests {
         }
     }
 
-    #[test]
-    fn parts_and_derivatives_are_those_of_the_net() {
+    fn parts_and_derivatives<const K: usize>() {
         let mut random = Random::new(3);
         for _ in 0..200 {
-            let net = random_net(&mut random);
+            let net = random_net::<K>(&mut random);
             let (i, j) = (random.below(8) as u32, random.below(8) as u32);
             let (x, y) = (random.unit(), random.unit());
             let part = net.part(3, i, j);
@@ -185,22 +217,32 @@ mod tests {
                 assert!((whole.by_u[k] / 8.0 - piece.by_u[k]).abs() < 1e-13);
                 assert!((whole.by_v[k] / 8.0 - piece.by_v[k]).abs() < 1e-13);
                 let slope = (net.at(u + step, v)[k] - net.at(u - step, v)[k]) / (2.0 * step);
-                assert!((slope - whole.by_u[k]).abs() < 1e-8);
+                assert!((slope - whole.by_u[k]).abs() < 1e-7);
                 let (low, high) = part.extents();
                 assert!(low[k] <= piece.value[k] && piece.value[k] <= high[k]);
-                let slopes = part.slopes_v().map(|s| s[k]);
-                let most = slopes.into_iter().fold(f64::NEG_INFINITY, f64::max);
+                let most = part
+                    .slopes_v()
+                    .map(|s| s[k])
+                    .fold(f64::NEG_INFINITY, f64::max);
                 assert!(piece.by_v[k] <= most + 1e-14);
             }
         }
     }
 
     #[test]
+    fn parts_and_derivatives_are_those_of_the_net() {
+        parts_and_derivatives::<3>();
+        parts_and_derivatives::<4>();
+        parts_and_derivatives::<6>();
+        parts_and_derivatives::<10>();
+    }
+
+    #[test]
     fn a_reversed_curve_has_the_reversed_halves_to_the_last_bit() {
         let mut random = Random::new(5);
         for _ in 0..1000 {
-            let curve = random_net(&mut random).rows[0];
-            let reversed = |c: &Curve<2>| [c[3], c[2], c[1], c[0]];
+            let curve = random_net::<6>(&mut random).rows[0];
+            let reversed = |c: &Curve<2, 6>| [c[5], c[4], c[3], c[2], c[1], c[0]];
             let [a, b] = halves(&curve);
             assert_eq!(halves(&reversed(&curve)), [reversed(&b), reversed(&a)]);
         }

@@ -62,8 +62,16 @@ impl Frame {
 
     /// The patch seen along the ray; for rational ones the numerator, which is zero at the same parameters. It depends on the
     /// ray and each control point alone, so that the common border of two patches is the same in both.
-    pub(super) fn view(&self, net: &Net<4>) -> Net<2> {
-        net.map(|[x, y, z, w]| self.seen(DVec3::new(*x, *y, *z) - self.origin * *w))
+    pub(super) fn view<const K: usize>(&self, net: &Net<4, K>) -> Net<2, K> {
+        net.map(|p| self.seen(self.to(p)))
+    }
+
+    /// The way from the origin to a control point, times its weight. Its rounding error is that of the way, not of the places.
+    fn to(&self, [x, y, z, w]: &[f64; 4]) -> DVec3 {
+        if *w == 1.0 {
+            return DVec3::new(*x, *y, *z) - self.origin;
+        }
+        (DVec3::new(*x, *y, *z) * (1.0 / *w) - self.origin) * *w
     }
 }
 
@@ -82,6 +90,11 @@ pub(super) struct Candidate {
 }
 
 impl Candidate {
+    /// The parameters, moved to the border if they are beyond it.
+    pub(super) fn place(&self) -> [f64; 2] {
+        [self.u.clamp(0.0, 1.0), self.v.clamp(0.0, 1.0)]
+    }
+
     /// How far within the border it lies, in units of its zone; negative outside.
     pub(super) fn margin(&self) -> f64 {
         let side = |x: f64, zone: f64| if x < 0.5 { x / zone } else { (1.0 - x) / zone };
@@ -98,16 +111,20 @@ struct Rectangle {
 }
 
 /// A search with what it has found.
-pub(super) struct Search<'a> {
-    net: &'a Net<4>,
+pub(super) struct Search<'a, const K: usize> {
+    net: &'a Net<4, K>,
     tree: &'a Tree,
     frame: &'a Frame,
     /// The patch seen along the ray, and a bound of its rounding error, when they are needed.
-    view: Option<(Net<2>, f64)>,
+    view: Option<(Net<2, K>, f64)>,
     halvings: u32,
+    keep: Keep<'a>,
     /// What the search is for.
     pub(super) aim: Aim,
 }
+
+/// Whether the surface is there at two parameters, which are between 0 and 1; `None` if all of it is.
+pub(super) type Keep<'a> = Option<&'a dyn Fn(f64, f64) -> bool>;
 
 /// What a search is for.
 pub(super) enum Aim {
@@ -127,14 +144,21 @@ pub(super) enum Aim {
     All(Vec<Candidate>),
 }
 
-impl<'a> Search<'a> {
-    pub(super) fn new(net: &'a Net<4>, tree: &'a Tree, frame: &'a Frame, aim: Aim) -> Self {
+impl<'a, const K: usize> Search<'a, K> {
+    pub(super) fn new(
+        net: &'a Net<4, K>,
+        tree: &'a Tree,
+        frame: &'a Frame,
+        keep: Keep<'a>,
+        aim: Aim,
+    ) -> Self {
         Self {
             net,
             tree,
             frame,
             view: None,
             halvings: HALVINGS,
+            keep,
             aim,
         }
     }
@@ -193,7 +217,8 @@ impl<'a> Search<'a> {
         let Some(root) = tree.pieces.first() else {
             return;
         };
-        if self.range().and_then(|range| enter(root, range)).is_some() {
+        if let Some(near) = self.range().and_then(|range| enter(root, range)) {
+            stack[0] = (0, near);
             height = 1;
         }
         while height > 0 {
@@ -277,30 +302,29 @@ impl<'a> Search<'a> {
         self.divide(&part, &rectangle, DEPTH);
     }
 
-    fn view(&mut self) -> (Net<2>, f64) {
+    fn view(&mut self) -> (Net<2, K>, f64) {
         let (net, frame) = (self.net, self.frame);
         *self.view.get_or_insert_with(|| {
-            let reach = net.points().fold(0.0, |most: f64, [x, y, z, w]| {
-                let size = DVec3::new(*x, *y, *z).abs() + frame.origin.abs() * *w;
-                most.max(size.max_element())
+            let reach = net.points().fold(0.0, |most: f64, p| {
+                let size = frame.to(p).abs().max_element();
+                if size > most { size } else { most }
             });
-            (frame.view(net), reach * gamma(16))
+            (frame.view(net), reach * gamma(4 * K as u32))
         })
     }
 
     /// Searches a piece that is seen as `part`, and halves it as long as nothing is certain about it.
-    fn divide(&mut self, part: &Net<2>, rectangle: &Rectangle, depth: u32) {
+    fn divide(&mut self, part: &Net<2, K>, rectangle: &Rectangle, depth: u32) {
         let (_, noise) = self.view();
         let (low, high) = part.extents();
         let extent: [f64; 2] = std::array::from_fn(|k| high[k] - low[k]);
         for k in 0..2 {
-            let pad = extent[k] * (4.0 * OVERLAP) + noise;
+            let pad = extent[k] * (K as f64 * OVERLAP) + noise;
             if !(low[k] <= pad && high[k] >= -pad) {
                 return;
             }
         }
-        let (slopes_u, slopes_v) = (part.slopes_u(), part.slopes_v());
-        if let Some((start, bend)) = certain(part, &slopes_u, &slopes_v, noise) {
+        if let Some((start, bend)) = certain(part, noise) {
             let slack = 0.5 + 0.5 * bend + 4.0 * OVERLAP;
             // Where the rounding error is large in comparison with the piece, `approach` decides.
             if start.iter().all(|x| (x - 0.5).abs() <= slack)
@@ -331,13 +355,11 @@ impl<'a> Search<'a> {
             return;
         }
         self.halvings -= 1;
-        let longest = |slopes: &[[f64; 2]; 12]| {
-            slopes.iter().fold(0.0, |most: f64, s| {
-                let square = s[0] * s[0] + s[1] * s[1];
-                if square > most { square } else { most }
-            })
+        let longer = |most: f64, s: [f64; 2]| {
+            let square = s[0] * s[0] + s[1] * s[1];
+            if square > most { square } else { most }
         };
-        let along_u = longest(&slopes_u) >= longest(&slopes_v);
+        let along_u = part.slopes_u().fold(0.0, longer) >= part.slopes_v().fold(0.0, longer);
         let halves = if along_u {
             part.halves_u()
         } else {
@@ -421,6 +443,12 @@ impl<'a> Search<'a> {
     }
 
     fn add(&mut self, candidate: Candidate) {
+        // Where a candidate is doubtful, all of them are looked at, whether they are kept or not.
+        let [u, v] = candidate.place();
+        let is_kept = candidate.is_doubtful || self.keep.is_none_or(|keep| keep(u, v));
+        if !is_kept && !matches!(self.aim, Aim::All(_)) {
+            return;
+        }
         match &mut self.aim {
             Aim::All(list) => list.push(candidate),
             Aim::Any {
@@ -446,19 +474,11 @@ impl<'a> Search<'a> {
 }
 
 /// If a part of a map is nearly linear: where its only zero is, nearly, if it has one, and how far it is from linear.
-fn certain(
-    part: &Net<2>,
-    slopes_u: &[[f64; 2]; 12],
-    slopes_v: &[[f64; 2]; 12],
-    noise: f64,
-) -> Option<([f64; 2], f64)> {
-    let mean = |slopes: &[[f64; 2]; 12]| {
-        let sum = slopes
-            .iter()
-            .fold([0.0; 2], |sum, s| [sum[0] + s[0], sum[1] + s[1]]);
-        sum.map(|x| x / 12.0)
-    };
-    let (a, b) = (mean(slopes_u), mean(slopes_v));
+fn certain<const K: usize>(part: &Net<2, K>, noise: f64) -> Option<([f64; 2], f64)> {
+    let count = (K * (K - 1)) as f64;
+    let add = |sum: [f64; 2], s: [f64; 2]| [sum[0] + s[0], sum[1] + s[1]];
+    let a = part.slopes_u().fold([0.0; 2], add).map(|x| x / count);
+    let b = part.slopes_v().fold([0.0; 2], add).map(|x| x / count);
     let per = 1.0 / (a[0] * b[1] - a[1] * b[0]);
     if !per.is_finite() {
         return None;
@@ -470,25 +490,26 @@ fn certain(
             (s[1] * a[0] - s[0] * a[1]) * per,
         ]
     };
-    let off = |slopes: &[[f64; 2]; 12], unit: [f64; 2]| {
-        slopes.iter().fold([0.0; 2], |most: [f64; 2], s| {
-            let s = solved(*s);
+    let off = |unit: [f64; 2]| {
+        move |most: [f64; 2], s: [f64; 2]| {
+            let s = solved(s);
             std::array::from_fn(|k| {
                 let x = (s[k] - unit[k]).abs();
                 if x > most[k] { x } else { most[k] }
             })
-        })
+        }
     };
-    let (u, v) = (off(slopes_u, [1.0, 0.0]), off(slopes_v, [0.0, 1.0]));
+    let u = part.slopes_u().fold([0.0; 2], off([1.0, 0.0]));
+    let v = part.slopes_v().fold([0.0; 2], off([0.0, 1.0]));
     let size = |v: [f64; 2]| v[0].abs() + v[1].abs();
-    let blur = 12.0 * noise * (size(a) + size(b)) * per.abs();
+    let blur = (4 * (K - 1)) as f64 * noise * (size(a) + size(b)) * per.abs();
     let bend = (u[0] + v[0]).max(u[1] + v[1]) + blur;
     (bend < NEARLY_LINEAR).then(|| (solved(part.at(0.5, 0.5)).map(|x| 0.5 - x), bend))
 }
 
 /// How far a part reaches across its longest direction, or `None` if the origin is beside it: a surface seen almost from its
 /// edge is a narrow strip.
-fn thickness(part: &Net<2>, noise: f64) -> Option<f64> {
+fn thickness<const K: usize>(part: &Net<2, K>, noise: f64) -> Option<f64> {
     let from = part.rows[0][0];
     let square = |d: [f64; 2]| d[0] * d[0] + d[1] * d[1];
     let along = part.points().fold([0.0; 2], |best: [f64; 2], p| {
@@ -510,6 +531,6 @@ fn thickness(part: &Net<2>, noise: f64) -> Option<f64> {
                     if x > high { x } else { high },
                 )
             });
-    let pad = (high - low) * (4.0 * OVERLAP) + 2.0 * noise;
+    let pad = (high - low) * (K as f64 * OVERLAP) + 2.0 * noise;
     (low <= pad && high >= -pad).then_some(high - low)
 }

@@ -9,7 +9,11 @@ use super::search::{Candidate, Frame};
 /// Twins from neighbouring pieces are made one. Then the hits, with their signs, must add up to the number of times that
 /// the border of the patch winds around the ray, which is known exactly and agrees with that of the neighbours: if they
 /// don't, the decisions nearest to the border are turned around.
-pub(super) fn settle(mut found: Vec<Candidate>, net: &Net<4>, frame: &Frame) -> Vec<Candidate> {
+pub(super) fn settle<const K: usize>(
+    mut found: Vec<Candidate>,
+    net: &Net<4, K>,
+    frame: &Frame,
+) -> Vec<Candidate> {
     // The order of parameters, so that nothing depends on the order of the search.
     found.sort_by(|a, b| {
         a.t.total_cmp(&b.t)
@@ -69,7 +73,10 @@ pub(super) fn settle(mut found: Vec<Candidate>, net: &Net<4>, frame: &Frame) -> 
     );
     // Places where the search gave up are hits if the border demands it: the tip of a collapsed edge.
     if missing != 0 {
-        hits.extend(unsure.first());
+        hits.extend(unsure.first().map(|first| Candidate {
+            sign: missing.signum(),
+            ..*first
+        }));
     }
     hits
 }

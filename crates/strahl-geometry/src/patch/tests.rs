@@ -1,6 +1,9 @@
+use super::border;
+use super::search::Frame;
 use super::*;
 use crate::conformance::Random;
-use crate::{Sphere, Torus};
+use crate::{GeometryError, PrimHit, Primitive, Scratch, Sphere, Torus};
+use strahl_math::{DVec2, DVec3, Interval, Ray, Transform};
 
 /// Control points, `points[v][u]`.
 pub(super) type Points = [[DVec3; 4]; 4];
@@ -61,7 +64,7 @@ pub(super) fn revolved(profile: [[f64; 3]; 4]) -> BicubicPatch {
 }
 
 /// An eighth of the unit sphere; its upper edge is collapsed.
-fn octant() -> BicubicPatch {
+pub(super) fn octant() -> BicubicPatch {
     revolved(quarter())
 }
 
@@ -170,9 +173,9 @@ fn hits_add_up_to_the_winding_number() {
     for (k, subject) in subjects.iter().enumerate() {
         for round in 0..20_000 {
             let target = {
-                let [p, by_u, by_v] = subject.jet(random.unit(), random.unit());
+                let [p, by_u, by_v] = subject.bezier.jet(random.unit(), random.unit());
                 match round % 4 {
-                    0 => subject.bounds.center() + subject.bounds.size() * 0.5 * random.cube(),
+                    0 => subject.bounds().center() + subject.bounds().size() * 0.5 * random.cube(),
                     1 => p,
                     2 => p + by_u * random.magnitude(-14.0, 0.0),
                     _ => p + by_u.cross(by_v) * random.magnitude(-14.0, 0.0),
@@ -180,7 +183,7 @@ fn hits_add_up_to_the_winding_number() {
             };
             let direction = match round % 5 {
                 0 => {
-                    let [p, by_u, by_v] = subject.jet(random.unit(), random.unit());
+                    let [p, by_u, by_v] = subject.bezier.jet(random.unit(), random.unit());
                     let tangent = by_u * random.between(-1.0, 1.0) + by_v;
                     if round % 2 == 0 { tangent } else { target - p }
                 }
@@ -191,9 +194,9 @@ fn hits_add_up_to_the_winding_number() {
             let Some(frame) = Frame::new(&ray) else {
                 continue;
             };
-            let all = subject.all_hits(&frame);
+            let all = subject.bezier.all(&frame, None);
             let sum: i32 = all.iter().map(|c| c.sign).sum();
-            let expected = border::winding(&frame.view(&subject.net));
+            let expected = border::winding(&frame.view(&subject.bezier.net));
             let unsure = all.iter().filter(|c| c.sign == 0).count() as i32;
             assert!(
                 (sum - expected).abs() <= unsure,
@@ -331,7 +334,7 @@ fn hostile_control_points_are_refused_or_harmless() {
     let curved = BicubicPatch::try_new(curve.map(|row| row)).unwrap();
     let mut random = Random::new(3);
     for _ in 0..2000 {
-        let [p, ..] = curved.jet(random.unit(), 0.5);
+        let [p, ..] = curved.bezier.jet(random.unit(), 0.5);
         let direction = random.direction();
         let ray = Ray::new(p - direction * 3.0, direction);
         assert_eq!(hits(&curved, &ray), []);
@@ -356,4 +359,15 @@ fn huge_and_tiny_patches_are_met() {
             .unwrap();
         assert!((1.0..5.0).contains(&(hit.t / scale)), "{scale} {hit:?}");
     }
+}
+
+/// A range that ends behind the origin was taken as empty.
+#[test]
+fn hits_behind_the_origin_are_found_in_ranges_that_end_there() {
+    let (patch, scratch) = (patch(wavy()), &mut Scratch::default());
+    let ray = Ray::new(DVec3::new(0.2, 0.1, 3.0), DVec3::Z);
+    let behind = Interval::new(f64::NEG_INFINITY, -0.5);
+    assert!(patch.any_hit(&ray, behind, None, scratch));
+    let hit = patch.closest_hit(&ray, behind, None, scratch).unwrap();
+    assert!((-4.0..-2.0).contains(&hit.t), "{hit:?}");
 }

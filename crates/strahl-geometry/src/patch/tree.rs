@@ -45,7 +45,7 @@ pub(super) struct Tree {
 }
 
 /// The control points of a net of points times their weights, and the weights.
-pub(super) fn points(net: &Net<4>) -> impl Iterator<Item = DVec3> {
+pub(super) fn points<const K: usize>(net: &Net<4, K>) -> impl Iterator<Item = DVec3> + Clone {
     net.points().map(|p| project(*p))
 }
 
@@ -55,15 +55,15 @@ pub(super) fn project([x, y, z, w]: [f64; 4]) -> DVec3 {
 }
 
 /// The box around the control points, widened by what lies beyond the ends of the parameters and by rounding errors.
-fn hull(net: &Net<4>) -> Aabb {
+fn hull<const K: usize>(net: &Net<4, K>) -> Aabb {
     let tight = Aabb::from_points(points(net));
-    let noise = tight.min.abs().max(tight.max.abs()) * gamma(64);
-    tight.padded(tight.size() * (4.0 * OVERLAP) + noise)
+    let noise = tight.min.abs().max(tight.max.abs()) * gamma(16 * K as u32);
+    tight.padded(tight.size() * (K as f64 * OVERLAP) + noise)
 }
 
 /// A box around a patch, closer than that around its control points.
-pub(super) fn bounds(net: &Net<4>) -> Aabb {
-    let quarters = |net: &Net<4>| {
+pub(super) fn bounds<const K: usize>(net: &Net<4, K>) -> Aabb {
+    let quarters = |net: &Net<4, K>| {
         let halves = net.halves_u();
         halves.map(|half| half.halves_v())
     };
@@ -77,20 +77,20 @@ pub(super) fn bounds(net: &Net<4>) -> Aabb {
 }
 
 /// The middle of vectors, and how far they are from it at most.
-fn middle(vectors: [[f64; 4]; 12], is_rational: bool) -> ([f32; 3], f32) {
+fn middle(vectors: impl Iterator<Item = [f64; 4]> + Clone, is_rational: bool) -> ([f32; 3], f32) {
     if is_rational {
         return ([0.0; 3], f32::INFINITY);
     }
     let all = vectors.map(|[x, y, z, _]| DVec3::new(x, y, z));
-    let middle = Aabb::from_points(all).center().as_vec3();
-    let spread = all.iter().fold(0.0, |most: f64, v| {
-        most.max((*v - middle.as_dvec3()).length())
+    let middle = Aabb::from_points(all.clone()).center().as_vec3();
+    let spread = all.fold(0.0, |most: f64, v| {
+        most.max((v - middle.as_dvec3()).length())
     });
     (middle.to_array(), round_up_f32(spread * (1.0 + gamma(16))))
 }
 
 impl Tree {
-    pub(super) fn build(net: &Net<4>, is_rational: bool) -> Self {
+    pub(super) fn build<const K: usize>(net: &Net<4, K>, is_rational: bool) -> Self {
         let anchor = bounds(net).min;
         let size = hull(net).size().length();
         let mut tree = Self {
@@ -105,7 +105,12 @@ impl Tree {
         tree
     }
 
-    fn piece(&self, net: &Net<4>, is_rational: bool, (level, i, j): (u8, u8, u8)) -> Piece {
+    fn piece<const K: usize>(
+        &self,
+        net: &Net<4, K>,
+        is_rational: bool,
+        (level, i, j): (u8, u8, u8),
+    ) -> Piece {
         let hull = hull(net);
         let (by_u, spread_u) = middle(net.slopes_u(), is_rational);
         let (by_v, spread_v) = middle(net.slopes_v(), is_rational);
@@ -125,7 +130,7 @@ impl Tree {
         }
     }
 
-    fn divide(&mut self, index: usize, net: &Net<4>, is_rational: bool) {
+    fn divide<const K: usize>(&mut self, index: usize, net: &Net<4, K>, is_rational: bool) {
         let first = self.pieces.len();
         let Some(piece) = self.pieces.get_mut(index) else {
             return;

@@ -12,6 +12,8 @@ pub(super) struct Block {
     /// The byte at which the first of them begins.
     pub(super) start: usize,
     pub(super) positions: Vec<DVec3>,
+    /// The weights of positions that have one other than 1, by their places in the list.
+    pub(super) weights: Vec<(u32, f64)>,
     pub(super) uvs: Vec<DVec2>,
     pub(super) normals: Vec<DVec3>,
     /// Of all faces.
@@ -32,6 +34,8 @@ pub(super) enum Step {
     Material(Arc<str>),
     Smoothing(u32),
     Libraries(Arc<str>, Box<Place>),
+    /// A statement about free-form geometry, which depends on those before it.
+    FreeForm(Box<Place>),
     /// With the reason.
     Ignored(&'static str, Box<Place>),
 }
@@ -131,11 +135,21 @@ impl<'a> Statements<'a> for Parser<'a> {
     }
 }
 
-impl Parser<'_> {
+impl<'a> Parser<'a> {
+    /// Parses a statement again.
+    pub(super) fn at(text: Text<'a>, place: &Place) -> Self {
+        Self {
+            text,
+            words: text.words(place.start, place.line).with_continuation(),
+            block: Block::default(),
+        }
+    }
+
     fn say(&mut self, word: &Word<'_>) -> Fallible<()> {
         let step = match word.bytes {
             b"v" => {
                 let position = self.point()?;
+                self.weight();
                 self.block.positions.push(position);
                 return Ok(());
             }
@@ -171,14 +185,16 @@ impl Parser<'_> {
             b"mtllib" => Step::Libraries(self.rest(), Place::of(word)),
             b"l" => ignored(word, "lines (`l`) are ignored: they have no surface"),
             b"p" => ignored(word, "points (`p`) are ignored: they have no surface"),
-            b"curv" | b"curv2" | b"surf" => {
-                ignored(word, "free-form curves and surfaces are ignored")
+            b"vp" | b"cstype" | b"deg" | b"curv" | b"curv2" | b"surf" | b"parm" | b"trim"
+            | b"hole" | b"scrv" | b"sp" | b"end" | b"con" => {
+                self.block.count();
+                Step::FreeForm(Place::of(word))
             }
-            // What belongs to free-form geometry, and hints for displays.
-            b"vp" | b"cstype" | b"deg" | b"bmat" | b"step" | b"parm" | b"trim" | b"hole"
-            | b"scrv" | b"sp" | b"end" | b"con" | b"mg" | b"bevel" | b"c_interp" | b"d_interp"
-            | b"lod" | b"ctech" | b"stech" | b"shadow_obj" | b"trace_obj" | b"maplib"
-            | b"usemap" => return Ok(()),
+            // Of types of surfaces that are not read, and hints for displays.
+            b"bmat" | b"step" | b"mg" | b"bevel" | b"c_interp" | b"d_interp" | b"lod"
+            | b"ctech" | b"stech" | b"shadow_obj" | b"trace_obj" | b"maplib" | b"usemap" => {
+                return Ok(());
+            }
             _ => ignored(word, "an unknown statement is ignored"),
         };
         self.block.steps.push(step);
@@ -256,7 +272,33 @@ impl Parser<'_> {
         ))
     }
 
-    fn number(&mut self, what: &str) -> Fallible<f64> {
+    /// Takes the weight behind a point, if a single number follows; more of them are a colour.
+    fn weight(&mut self) {
+        if self.words.peek_in_line().is_none() {
+            return;
+        }
+        let mut ahead = self.words.clone();
+        let Some(word) = ahead.next_in_line() else {
+            return;
+        };
+        if ahead.peek_in_line().is_none()
+            && let Ok(weight) = parse_f64(word.bytes)
+            && weight != 1.0
+            && let Ok(place) = u32::try_from(self.block.positions.len())
+        {
+            self.block.weights.push((place, weight));
+        }
+    }
+
+    /// A number, or this one at the end of the line.
+    pub(super) fn optional_number(&mut self, otherwise: f64) -> Fallible<f64> {
+        match self.words.peek_in_line() {
+            Some(_) => self.number("or the end of the line"),
+            None => Ok(otherwise),
+        }
+    }
+
+    pub(super) fn number(&mut self, what: &str) -> Fallible<f64> {
         if let Some(number) = self.words.short_number_in_line() {
             return Ok(number);
         }

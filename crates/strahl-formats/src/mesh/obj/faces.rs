@@ -1,7 +1,7 @@
 use super::vertices::{Key, Link, Vertices};
 use crate::mesh::{MeshParts, Triangulator, Vertex, object_name, polygon_normal};
 use crate::scene::report::Report;
-use crate::scene::text::Text;
+use crate::scene::text::{Text, Word};
 use std::collections::HashMap;
 use std::ops::Add;
 use std::sync::Arc;
@@ -74,6 +74,14 @@ impl RawCorner {
         })
     }
 
+    /// The place of the position alone, or what is wrong with it.
+    pub(super) fn position_of(&self, word: &Word<'_>, counts: &Counts) -> Result<u32, String> {
+        match entry(self.position, counts.positions) {
+            Some(place) => Ok(place),
+            None => Err(check_corner(word.bytes, counts).err().unwrap_or_default()),
+        }
+    }
+
     /// Finds the entries, given the current lengths of the lists.
     #[inline]
     pub(super) fn resolve(&self, counts: &Counts) -> Option<Corner> {
@@ -91,7 +99,7 @@ impl RawCorner {
 
 /// An index into a list of `count` entries, if there is such an entry.
 #[inline]
-fn entry(number: i32, count: usize) -> Option<u32> {
+pub(super) fn entry(number: i32, count: usize) -> Option<u32> {
     let index = match number {
         NO_ENTRY => return None,
         1.. => number as usize - 1,
@@ -170,6 +178,19 @@ pub(super) struct PartKey {
     pub(super) object: Arc<str>,
     pub(super) group: Arc<str>,
     pub(super) material: Arc<str>,
+}
+
+impl PartKey {
+    /// The name of its object.
+    pub(super) fn name(&self, text: Text<'_>) -> Arc<str> {
+        match (&*self.object, &*self.group) {
+            ("", "") => object_name(text.name),
+            (_, "") => Arc::clone(&self.object),
+            ("", _) => Arc::clone(&self.group),
+            (object, group) if object == group => Arc::clone(&self.object),
+            (object, group) => Arc::from(format!("{object}/{group}")),
+        }
+    }
 }
 
 /// The normal of a vertex of a mesh.
@@ -336,13 +357,7 @@ impl Faces {
                 continue;
             };
             let span = Span::line(text.file, line);
-            let name = match (&*key.object, &*key.group) {
-                ("", "") => object_name(text.name),
-                (_, "") => key.object,
-                ("", _) => key.group,
-                (object, group) if object == group => key.object,
-                (object, group) => Arc::from(format!("{object}/{group}")),
-            };
+            let name = key.name(text);
             match mesh {
                 Ok(mesh) => objects.push((
                     Object {

@@ -2,9 +2,9 @@
 //!
 //! The reader is our own: the `tobj` crate reports neither lines nor columns, and gives up at the first error.
 //!
-//! Read are `v` (a weight or colour behind it is ignored), `vt`, `vn`, `f` in all its forms (negative numbers count
+//! Read are `v` (with a weight for rational surfaces; a colour is ignored), `vt`, `vn`, `f` in all its forms (negative numbers count
 //! back from the last vertex; polygons are cut into triangles), `o`, `g`, `s`, `usemtl`, `mtllib`, comments and lines
-//! continued by a backslash. Points, lines and free-form surfaces are ignored with a warning.
+//! continued by a backslash. Points and lines are ignored with a warning. Free-form surfaces are described in `freeform`.
 //!
 //! * All faces of one name (object and group) and one material are one mesh, which knows the line of each triangle.
 //! * Faces with normals are smooth. Without normals, faces in a smoothing group get the mean of the normals around each
@@ -17,6 +17,7 @@
 
 mod block;
 mod faces;
+mod freeform;
 mod mtl;
 mod vertices;
 
@@ -28,10 +29,11 @@ use crate::scene::text::Text;
 use crate::scene::textures::TextureFiles;
 use block::{Block, Face, Parser, Place, Step, read_ahead};
 use faces::{Counts, Faces, PartKey, RawCorner, check_corner};
+use freeform::{FreeForm, Outcome, Points};
 use rayon::Scope;
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
-use strahl_scene::{Diagnostic, Scene};
+use strahl_scene::{Diagnostic, Object, Scene, Span};
 use strahl_shade::Material;
 
 /// Most material libraries of one file.
@@ -62,6 +64,9 @@ fn read_with<'a>(input: &'a Input<'a>, report: &mut Report, ahead: Ahead<'a, Blo
         textures: TextureFiles::new(input.folder),
         input,
         faces: Faces::default(),
+        free_form: FreeForm::default(),
+        weights: HashMap::new(),
+        surfaces: vec![],
         current: PartKey::default(),
         smoothing: 0,
     };
@@ -80,6 +85,11 @@ struct Reader<'a, 'r> {
     materials: HashMap<Arc<str>, Arc<Material>>,
     textures: TextureFiles<'a>,
     faces: Faces,
+    free_form: FreeForm,
+    /// The weights of positions that have one other than 1.
+    weights: HashMap<u32, f64>,
+    /// The free-form surfaces, each with the name of its material.
+    surfaces: Vec<(Object, Arc<str>)>,
     /// Names and material of the following faces.
     current: PartKey,
     /// The smoothing group, 0 for none.
@@ -114,6 +124,10 @@ impl<'a> Reader<'a, '_> {
 
     fn add(&mut self, block: Block) {
         let before = self.faces.counts();
+        let first = u32::try_from(before.positions).unwrap_or(u32::MAX);
+        let weights = block.weights.into_iter();
+        self.weights
+            .extend(weights.map(|(place, weight)| (first.saturating_add(place), weight)));
         self.faces.positions.extend(block.positions);
         self.faces.uvs.extend(block.uvs);
         self.faces.normals.extend(block.normals);
@@ -135,6 +149,11 @@ impl<'a> Reader<'a, '_> {
                         }
                     }
                 }
+                Step::FreeForm(place) => {
+                    if let Err(problem) = self.free_form(*place, &counts) {
+                        self.report.error(|| *problem);
+                    }
+                }
                 Step::Object(name) => self.current.object = name,
                 Step::Group(name) => self.current.group = name,
                 Step::Material(name) => self.current.material = name,
@@ -143,6 +162,29 @@ impl<'a> Reader<'a, '_> {
                 Step::Ignored(what, place) => self.count(what, *place, || what.to_owned()),
             }
         }
+    }
+
+    /// A statement about free-form geometry.
+    fn free_form(&mut self, place: Place, counts: &Counts) -> Fallible<()> {
+        let points = Points {
+            positions: &self.faces.positions,
+            weights: &self.weights,
+            counts: *counts,
+        };
+        match self.free_form.statement(self.text, place, &points)? {
+            Outcome::Nothing => {}
+            Outcome::Warning(key, what, place) => self.count(key, place, || what),
+            Outcome::Surface(nurbs, place) => {
+                let object = Object {
+                    name: Some(self.current.name(self.text)),
+                    span: Span::line(self.text.file, place.line),
+                    ..(*nurbs).into()
+                };
+                let material = Arc::clone(&self.current.material);
+                self.surfaces.push((object, material));
+            }
+        }
+        Ok(())
     }
 
     fn count(&mut self, key: &'static str, place: Place, what: impl FnOnce() -> String) {
@@ -259,16 +301,22 @@ impl<'a> Reader<'a, '_> {
         }
     }
 
-    fn finish(self) -> Scene {
+    fn finish(mut self) -> Scene {
+        if let Some(place) = self.free_form.unfinished() {
+            let what = "the curve or surface is left out: its `end` is missing";
+            self.count("end", place, || what.to_owned());
+        }
         let Self {
             text,
             report,
             mut scene,
             faces,
             materials,
+            surfaces,
             ..
         } = self;
-        for (mut object, material) in faces.finish(text, report) {
+        let meshes = faces.finish(text, report);
+        for (mut object, material) in meshes.into_iter().chain(surfaces) {
             if !material.is_empty() {
                 object.material = materials.get(&material).cloned();
             }

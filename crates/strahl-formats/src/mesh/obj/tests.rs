@@ -169,7 +169,7 @@ fn errors_show_the_place_and_reading_goes_on() {
 #[test]
 fn what_has_no_surface_is_ignored_and_counted() {
     let text = format!(
-        "{SQUARE}l 1 2\nl 2 3\np 1\ncurv 0 1 1 2 \\\n 3 4\nwhat 1 2\nf 1 1 2\nf 1 2 3\nparm u 0 1\nend\n"
+        "{SQUARE}l 1 2\nl 2 3\np 1\ncurv 0 1 1 2 \\\n 3 4\nparm u 0 1\nend\nwhat 1 2\nf 1 1 2\nf 1 2 3\nscrv 0 1 1\ncon 1 0 1 1 2 0 1 1\n"
     );
     let loaded = load(&text);
     let firsts: Vec<_> = loaded
@@ -182,9 +182,11 @@ fn what_has_no_surface_is_ignored_and_counted() {
         [
             "lines (`l`) are ignored: they have no surface (2 times, this is the first)",
             "points (`p`) are ignored: they have no surface",
-            "free-form curves and surfaces are ignored",
+            "free-form curves in space (`curv`) are ignored: they have no surface",
             "an unknown statement is ignored",
             "the face is left out: it has no area",
+            "special curves and points (`scrv`, `sp`) are ignored: surfaces are not made of triangles that they could guide",
+            "connections of surfaces (`con`) are ignored: borders are as close as the file has them",
         ]
     );
     assert!(
@@ -387,4 +389,169 @@ proptest! {
         let text: String = [SQUARE, STATEMENTS[2]].into_iter().chain(statements).collect();
         assert_parts_make_no_difference(&text, super::read_with);
     }
+}
+
+/// Three by three points over a square of side 2, the middle one raised.
+const NET: &str =
+    "v 0 0 0\nv 1 0 0\nv 2 0 0\nv 0 1 0\nv 1 1 1\nv 2 1 0\nv 0 2 0\nv 1 2 0\nv 2 2 0\n";
+const SURF: &str = "cstype bspline\ndeg 2 2\nsurf 0 1 0 1 1 2 3 4 5 6 7 8 9\nparm u 0 0 0 1 1 1\nparm v 0 0 0 1 1 1\n";
+
+/// The height at which a vertical line meets the objects.
+fn height(scene: &Scene, x: f64, y: f64) -> Option<f64> {
+    let scratch = &mut strahl_geometry::Scratch::default();
+    let ray = Ray::new(DVec3::new(x, y, 9.0), -DVec3::Z);
+    scene
+        .objects
+        .0
+        .iter()
+        .find_map(|object| match &object.kind {
+            ObjectKind::Shape(shape) => {
+                let hit = shape.closest_hit(&ray, Interval::FORWARD, None, scratch)?;
+                Some(9.0 - hit.t)
+            }
+            _ => None,
+        })
+}
+
+#[test]
+fn free_form_surfaces_are_read() {
+    let first = scene(&format!("{NET}o sail\n{SURF}end\n"));
+    assert_eq!(names(&first), ["sail"]);
+    assert!(matches!(
+        first.objects.0[0].kind,
+        ObjectKind::Shape(Shape::Nurbs(_))
+    ));
+    let top = height(&first, 1.0, 1.0).unwrap();
+    assert!((top - 0.25).abs() < 1e-14, "{top}");
+    // The same as a Bezier patch, and as a rational one whose weights are 1; numbers count back from the end, too.
+    for (cstype, points) in [
+        ("cstype bezier\ndeg 2", "1 2 3 4 5 6 7 8 9"),
+        (
+            "cstype rat bezier\ndeg 2 2",
+            "-9/1/1 -8 -7 -6 -5//4 -4 -3 -2 -1",
+        ),
+        ("cstype rat bezier\ndeg 2.0", "1 2 3 \\\n4 5 6 7 8 9"),
+    ] {
+        let text = format!("{NET}{cstype}\nsurf 0 1 0 1 {points}\nparm u 0 1\nparm v 0 1\nend\n");
+        let other = scene(&text);
+        for (x, y) in [(1.0, 1.0), (0.3, 1.7), (2.5, 1.0)] {
+            assert_eq!(height(&other, x, y), height(&first, x, y));
+        }
+    }
+    // A weight pulls the surface; only rational surfaces have it.
+    let heavy = NET.replace("1 1 1", "1 1 1 3");
+    let plain = scene(&format!("{heavy}{SURF}end\n"));
+    assert_eq!(height(&plain, 1.0, 1.0), Some(top));
+    let pulled = scene(&format!(
+        "{heavy}{}end\n",
+        SURF.replace("bspline", "rat bspline")
+    ));
+    // 3/4 of the weighted height by 3/4 and the other quarter.
+    let expected = 0.25 * 3.0 / (0.75 + 0.25 * 3.0);
+    let found = height(&pulled, 1.0, 1.0).unwrap();
+    assert!((found - expected).abs() < 1e-14, "{found} {expected}");
+    // A part of the surface.
+    let half = scene(&format!(
+        "{NET}{}end\n",
+        SURF.replace("surf 0 1 0 1", "surf 0.5 1 0 1")
+    ));
+    assert!(height(&half, 0.9, 1.0).is_none() && height(&half, 1.1, 1.0).is_some());
+}
+
+#[test]
+fn free_form_surfaces_are_trimmed() {
+    let disc = "vp 0.9 0.5\nvp 0.9 0.9 0.70710678118\nvp 0.5 0.9\nvp 0.1 0.9 0.70710678118\nvp 0.1 0.5\nvp 0.1 0.1 0.70710678118\n\
+                vp 0.5 0.1\nvp 0.9 0.1 0.70710678118\n\
+                cstype rat bspline\ndeg 2\ncurv2 1 2 3 4 5 6 7 8 1\nparm u 0 0 0 1 1 2 2 3 3 4 4 4\nend\n";
+    let square = "vp 0.4 0.4\nvp 0.6 0.4\nvp 0.6 0.6\nvp 0.4 0.6\ncstype bezier\ndeg 1\n\
+                  curv2 -4 -3 -2 -1 -4\nparm u 0 1 2 3 4\nend\n";
+    let text = |loops: &str| format!("{NET}{disc}{square}{SURF}{loops}\nend\n");
+    let both = scene(&text("trim 0 2 1 2 4 1\nhole 0 4 2"));
+    // The middle of the hole, the ring around it, the corner.
+    let met = |scene: &Scene| {
+        [(1.0, 1.0), (1.0, 1.5), (0.1, 0.1)].map(|(x, y)| height(scene, x, y).is_some())
+    };
+    assert_eq!(met(&both), [false, true, false]);
+    assert_eq!(met(&scene(&text("trim 0 4 1"))), [true, true, false]);
+    assert_eq!(met(&scene(&text("hole 0 4 1"))), [false, false, true]);
+    // Half a disc is no loop.
+    let messages = messages(&load(&text("trim 0 2 1")));
+    let expected = "the surface is left out: the NURBS surface's trimming is not closed";
+    assert!(
+        messages.iter().any(|m| m.contains(expected)),
+        "{messages:?}"
+    );
+}
+
+#[test]
+fn mistakes_in_free_form_surfaces_are_explained() {
+    let with = |from: &str, to: &str| format!("{NET}{SURF}end\n").replace(from, to);
+    for (text, expected) in [
+        (
+            with("bspline", "cardinal"),
+            "the surface is left out: `cstype cardinal` is not supported",
+        ),
+        (with("cstype bspline\n", ""), "`cstype` is missing"),
+        (with("cstype bspline", "cstype"), "a type of surfaces"),
+        (with("parm u 0 0 0 1 1 1\n", ""), "`parm u` is missing"),
+        (with("parm u", "parm w"), "`u` or `v`"),
+        (
+            with("parm u 0 0 0 1 1 1", "parm u 0 0 0 1 1 x"),
+            "expected a number (a knot)",
+        ),
+        (
+            with("parm u 0 0 0 1 1 1", "parm u 0 0 2 1 1 1"),
+            "knot of the NURBS surface along u 3 must be",
+        ),
+        (
+            with("deg 2 2", "deg 2.5"),
+            "degree of the NURBS surface along u must be from 1 to 9",
+        ),
+        (
+            with("deg 2 2", "deg 1e30"),
+            "degree of the NURBS surface along u must be from 1 to 9",
+        ),
+        (
+            with("8 9\n", "8\n"),
+            "8 control points of the NURBS surface given, 9 expected",
+        ),
+        (with("8 9\n", "8 10\n"), "vertex 10 does not exist"),
+        (
+            with("surf 0 1 0 1", "surf 0 4 0 1"),
+            "between its first and its last parameter, found 4",
+        ),
+        (
+            with("end\n", "trim 0 1 3\nend\n"),
+            "expected the number of a `curv2`, found `3`: there are 0 so far",
+        ),
+        (with("end\n", ""), "its `end` is missing"),
+        (
+            with("surf", "p"),
+            "`parm` belongs between `curv2` or `surf` and `end`",
+        ),
+        (
+            format!("{NET}trim 0 1 1\n"),
+            "expected the number of a `curv2`",
+        ),
+        (
+            format!("{NET}curv2 1 2\n"),
+            "expected the number of a `vp`, found `1`: there are 0 so far",
+        ),
+        (
+            format!(
+                "vp 0 0\nvp 1 0\ncstype bmatrix\ndeg 1\ncurv2 1 2\nparm u 0 1\nend\n{NET}{SURF}trim 0 1 1\nend\n"
+            ),
+            "the curve `1` was left out",
+        ),
+    ] {
+        let messages = messages(&load(&text));
+        assert!(
+            messages.iter().any(|m| m.contains(expected)),
+            "{text}: {messages:?}"
+        );
+    }
+    assert_parts_make_no_difference(
+        &format!("{NET}{SURF}end\n{NET}{SURF}end\n"),
+        super::read_with,
+    );
 }

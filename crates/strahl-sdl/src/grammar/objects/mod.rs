@@ -18,6 +18,7 @@ mod lemon;
 mod mesh;
 mod modifiers;
 mod named;
+mod nurbs;
 mod ovus;
 mod parametric;
 mod plane;
@@ -68,6 +69,7 @@ static OBJECTS: [Option<ObjectParser>; Word::ALL.len()] = by_word::<ObjectParser
     (Word::Merge, csg::merge),
     (Word::Mesh, mesh::mesh),
     (Word::Mesh2, mesh::mesh2),
+    (Word::Nurbs, nurbs::nurbs),
     (Word::Object, object),
     (Word::Ovus, ovus::ovus),
     (Word::Parametric, parametric::parametric),

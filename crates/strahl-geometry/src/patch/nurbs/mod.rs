@@ -1,0 +1,418 @@
+//! NURBS surfaces, trimmed or whole.
+
+mod data;
+mod part;
+mod solid;
+mod spline;
+#[cfg(test)]
+mod tests;
+mod trim;
+
+use super::bicubic::LARGEST;
+use super::search::{Candidate, Frame, Keep};
+use crate::primitives::point_error;
+use crate::{GeometryError, PrimHit, Primitive, Scratch, Shape, Solid, SurfaceId, SurfacePoint};
+use part::Part;
+use std::sync::Arc;
+use strahl_accel::{Accelerator, Bvh2, TraversalStats, Visitor};
+use strahl_math::{Aabb, DVec2, DVec3, Interval, Ray, Transform};
+use trim::Region;
+
+pub use data::NurbsData;
+pub use trim::{NurbsCurve, TrimLoop};
+
+/// A NURBS surface: piecewise rational, of degrees up to 9 (L. Piegl, W. Tiller, The NURBS Book, chapter 4),
+///
+/// `S(u, v) = sum w_ij P_ij N_i(u) N_j(v) / sum w_ij N_i(u) N_j(v)`
+///
+/// with control points `P`, positive weights `w` and the B-spline basis functions `N` on two lists of knots. Loops of curves in
+/// the plane of the parameters may cut holes and outer borders.
+///
+/// Rays meet the surface itself, at any scale; nothing is replaced by triangles. Knots are inserted until the surface is made
+/// of Bezier patches, which have their borders in common to the last bit, so that a ray through a border meets exactly
+/// one of them. So do whole surfaces with a common border: the same control points, weights and knots there, and the same larger
+/// degree.
+/// At trimmed borders a point is there or not by the exact side of its rounded parameters; two trimmed surfaces that meet
+/// along curves are as close there as their curves are.
+///
+/// An untrimmed surface that is closed, because its sides are the same curves or collapsed to points, as those of a sphere or a
+/// torus, is a solid: a point is inside if the surface winds around it. Others have no inside; their front is the
+/// side to which `dS/du x dS/dv` points. Texture coordinates are `u` and `v`, scaled to run from 0 to 1. Elements are the
+/// Bezier patches, with one facet each. Parts may be collapsed to lines or points: normals there are those of the surface
+/// beside them.
+#[derive(Debug)]
+pub struct Nurbs {
+    parts: Vec<Part>,
+    /// Over the parts, relative to the anchor.
+    tree: Bvh2,
+    anchor: DVec3,
+    bounds: Aabb,
+    trimming: Option<Arc<Region>>,
+    /// Whether the front is the other side, after a mirroring transform.
+    is_flipped: bool,
+    is_closed: bool,
+    /// Whether the normals of a closed surface have to be turned outwards.
+    is_inside_out: bool,
+}
+
+/// The largest weight is at most so many times the least.
+const WEIGHTS: f64 = 1e9;
+/// Cells that trimming curves are put into, all curves together; with more all patches count as trimmed.
+const MOST_CELLS: usize = 1 << 26;
+
+impl Nurbs {
+    /// The whole surface.
+    ///
+    /// # Errors
+    /// As for [`Nurbs::try_trimmed`].
+    pub fn try_new(data: &NurbsData) -> Result<Self, GeometryError> {
+        Self::try_trimmed(data, &[])
+    }
+
+    /// The part of the surface that the loops leave, if there are any.
+    ///
+    /// # Errors
+    /// Degrees, knots, weights or counts are not as [`NurbsData`] and [`NurbsCurve`] say; a point is not finite or beyond 1e70;
+    /// a weight is more than 1e9 times another; all points lie on a line; a loop is not closed; nothing is left; there are
+    /// more than 8388608 control points after knots are inserted.
+    pub fn try_trimmed(data: &NurbsData, loops: &[TrimLoop]) -> Result<Self, GeometryError> {
+        let mut patches = data.patches()?;
+        let mut trimming = None;
+        if !loops.is_empty() {
+            let region = Region::try_new(loops, patches.domain)?;
+            trim(&mut patches, &region);
+            trimming = Some(Arc::new(region));
+        }
+        if patches.parts.is_empty() {
+            return Err(GeometryError::Degenerate {
+                what: "NURBS surface",
+                why: "its trimming curves leave nothing of it",
+            });
+        }
+        let is_closed = loops.is_empty() && solid::is_closed(&patches);
+        Ok(Self::of(patches.parts, trimming, false, is_closed))
+    }
+
+    fn of(
+        parts: Vec<Part>,
+        trimming: Option<Arc<Region>>,
+        is_flipped: bool,
+        is_closed: bool,
+    ) -> Self {
+        let bounds = parts
+            .iter()
+            .fold(Aabb::EMPTY, |all, part| all.union(&part.patch.bounds()));
+        let anchor = bounds.min;
+        let boxes: Vec<_> = parts
+            .iter()
+            .map(|part| {
+                let own = part.patch.bounds();
+                Aabb::new(own.min - anchor, own.max - anchor)
+            })
+            .collect();
+        let mut surface = Self {
+            parts,
+            tree: Bvh2::build(&boxes),
+            anchor,
+            bounds,
+            trimming,
+            is_flipped,
+            is_closed,
+            is_inside_out: false,
+        };
+        surface.is_inside_out = is_closed && surface.is_inside_out();
+        surface
+    }
+
+    /// Shows the parts along a ray to the visitor.
+    fn walk<V: Visitor>(&self, ray: &Ray, range: Interval, visitor: &mut V) {
+        let local = Ray::new(ray.origin - self.anchor, ray.direction);
+        self.tree
+            .traverse(&local, range, visitor, &mut TraversalStats::default());
+    }
+
+    /// Calls `ask` with a part and what is there of it.
+    fn with_part<T>(&self, id: u32, ask: impl FnOnce(&Part, Keep<'_>) -> T) -> Option<T> {
+        let part = self.parts.get(id as usize)?;
+        Some(match &self.trimming {
+            Some(region) if part.is_trimmed => {
+                ask(part, Some(&|u, v| region.contains(part.place([u, v]))))
+            }
+            _ => ask(part, None),
+        })
+    }
+}
+
+/// Leaves out the patches that the loops cut away, and marks those through which curves run.
+fn trim(patches: &mut data::Patches, region: &Region) {
+    let [across, up] = [0, 1].map(|k| patches.breaks[k].len() - 1);
+    let mut work = 0;
+    for [low, high] in region.boxes() {
+        let cells = |k: usize, count: usize| {
+            let breaks = &patches.breaks[k];
+            let from = breaks.partition_point(|b| *b < low[k]).saturating_sub(1);
+            let to = breaks.partition_point(|b| *b <= high[k]).min(count);
+            from..to
+        };
+        let (columns, rows) = (cells(0, across), cells(1, up));
+        work += columns.len() * rows.len();
+        if work > MOST_CELLS {
+            for part in &mut patches.parts {
+                part.is_trimmed = true;
+            }
+            return;
+        }
+        for row in rows {
+            for part in &mut patches.parts[row * across..][columns.clone()] {
+                part.is_trimmed = true;
+            }
+        }
+    }
+    patches
+        .parts
+        .retain(|part| part.is_trimmed || region.contains(part.place([0.5, 0.5])));
+}
+
+/// Checks control points.
+fn check_points(
+    mut points: impl Iterator<Item = DVec3>,
+    what: &'static str,
+) -> Result<(), GeometryError> {
+    let wrong = points
+        .by_ref()
+        .enumerate()
+        .find(|(_, p)| !(p.is_finite() && p.abs().max_element() <= LARGEST));
+    let Some((index, point)) = wrong else {
+        return Ok(());
+    };
+    let index = index as u64;
+    Err(if point.is_finite() {
+        GeometryError::OutOfRangeAt {
+            what,
+            index,
+            expected: "at most 1e70 from the origin",
+            found: point.abs().max_element(),
+        }
+    } else {
+        GeometryError::NotFiniteAt { what, index }
+    })
+}
+
+/// Checks the weights of so many control points.
+fn check_weights(
+    weights: &[f64],
+    count: usize,
+    what: &'static str,
+    all: &'static str,
+) -> Result<(), GeometryError> {
+    if weights.is_empty() {
+        return Ok(());
+    }
+    if weights.len() != count {
+        return Err(GeometryError::WrongCount {
+            what: all,
+            expected: count as u64,
+            found: weights.len() as u64,
+        });
+    }
+    let least = weights.iter().copied().fold(f64::INFINITY, f64::min);
+    for (index, weight) in weights.iter().enumerate() {
+        let index = index as u64;
+        if !weight.is_finite() {
+            return Err(GeometryError::NotFiniteAt { what, index });
+        }
+        let expected = if *weight <= 0.0 {
+            "greater than 0"
+        } else if *weight > WEIGHTS * least && least > 0.0 {
+            "at most 1e9 times the least one"
+        } else {
+            continue;
+        };
+        return Err(GeometryError::OutOfRangeAt {
+            what,
+            index,
+            expected,
+            found: *weight,
+        });
+    }
+    Ok(())
+}
+
+/// The hit of a candidate on part `id`.
+fn hit(id: u32, candidate: &Candidate) -> PrimHit {
+    PrimHit {
+        t: candidate.t,
+        surface: SurfaceId {
+            element: id,
+            facet: 0,
+        },
+        uv: candidate.place(),
+    }
+}
+
+/// Looks for the nearest hit.
+struct Nearest<'a> {
+    nurbs: &'a Nurbs,
+    frame: Frame,
+    range: Interval,
+    best: Option<PrimHit>,
+}
+
+impl Visitor for Nearest<'_> {
+    fn visit(&mut self, id: u32, t_max: f64) -> f64 {
+        let range = self
+            .best
+            .map_or(self.range, |best| self.range.with_max(best.t));
+        let found = self.nurbs.with_part(id, |part, keep| {
+            part.patch.nearest(&self.frame, range, keep)
+        });
+        let Some(found) = found.flatten() else {
+            return t_max;
+        };
+        let found = hit(id, &found);
+        let key = |hit: &PrimHit| (hit.t, hit.surface.element);
+        if self.best.is_none_or(|best| key(&found) < key(&best)) {
+            self.best = Some(found);
+            return found.t;
+        }
+        t_max
+    }
+}
+
+/// Looks for any hit.
+struct Any<'a> {
+    nurbs: &'a Nurbs,
+    frame: Frame,
+    range: Interval,
+    found: bool,
+}
+
+impl Visitor for Any<'_> {
+    const ANY: bool = true;
+
+    fn visit(&mut self, id: u32, t_max: f64) -> f64 {
+        let found = self.nurbs.with_part(id, |part, keep| {
+            part.patch.any(&self.frame, self.range, keep)
+        });
+        if found == Some(true) {
+            self.found = true;
+            return f64::NEG_INFINITY;
+        }
+        t_max
+    }
+}
+
+impl Primitive for Nurbs {
+    fn kind(&self) -> &'static str {
+        "nurbs"
+    }
+
+    /// The constructors have validated everything.
+    fn validate(&self) -> Result<(), GeometryError> {
+        Ok(())
+    }
+
+    fn bounds(&self) -> Aabb {
+        self.bounds
+    }
+
+    fn elements(&self) -> u32 {
+        self.parts.len() as u32
+    }
+
+    fn closest_hit(
+        &self,
+        ray: &Ray,
+        range: Interval,
+        _from: Option<SurfaceId>,
+        _scratch: &mut Scratch,
+    ) -> Option<PrimHit> {
+        let mut visitor = Nearest {
+            nurbs: self,
+            frame: Frame::new(ray)?,
+            range,
+            best: None,
+        };
+        self.walk(ray, range, &mut visitor);
+        visitor.best
+    }
+
+    fn any_hit(
+        &self,
+        ray: &Ray,
+        range: Interval,
+        _from: Option<SurfaceId>,
+        _scratch: &mut Scratch,
+    ) -> bool {
+        let Some(frame) = Frame::new(ray) else {
+            return false;
+        };
+        let mut visitor = Any {
+            nurbs: self,
+            frame,
+            range,
+            found: false,
+        };
+        self.walk(ray, range, &mut visitor);
+        visitor.found
+    }
+
+    fn surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
+        let toward = || (-ray.direction).try_normalize().unwrap_or(DVec3::Y);
+        let Some(part) = self.parts.get(hit.surface.element as usize) else {
+            return SurfacePoint::bare(ray.at(hit.t), DVec3::ZERO, toward());
+        };
+        let uv = DVec2::from_array(hit.uv);
+        let jet = part.patch.jet(uv.x, uv.y);
+        let is_turned = if self.is_closed {
+            self.is_inside_out
+        } else {
+            self.is_flipped
+        };
+        let turned = |back: DVec3| if is_turned { back } else { -back };
+        let normal = part.patch.normal(uv, jet).map_or_else(toward, turned);
+        let [position, by_u, by_v] = jet;
+        let size = DVec2::from_array(part.to) - DVec2::from_array(part.from);
+        let error = point_error(position, self.bounds.max_abs(), 128);
+        let (dpdu, dpdv) = (by_u / size.x, by_v / size.y);
+        let is_usable = dpdu.is_finite() && dpdv.is_finite();
+        SurfacePoint {
+            uv: DVec2::from_array(part.place(hit.uv)),
+            dpdu: if is_usable { dpdu } else { DVec3::ZERO },
+            dpdv: if is_usable { dpdv } else { DVec3::ZERO },
+            ..SurfacePoint::bare(position, error, normal)
+        }
+    }
+
+    fn texture_uv(&self, _hit: &PrimHit, uv: DVec2) -> Option<DVec2> {
+        Some(uv)
+    }
+
+    fn as_solid(&self) -> Option<&dyn Solid> {
+        self.is_closed.then_some(self as &dyn Solid)
+    }
+
+    fn baked(&self, map: &Transform) -> Option<Shape> {
+        let parts = self
+            .parts
+            .iter()
+            .map(|part| Part {
+                patch: part.patch.mapped(map),
+                ..*part
+            })
+            .collect();
+        let mapped = Self::of(
+            parts,
+            self.trimming.clone(),
+            self.is_flipped != map.mirrors(),
+            self.is_closed,
+        );
+        let (size, far) = (mapped.bounds.size().max_element(), mapped.bounds.max_abs());
+        // Far away from the origin the coordinates would lose its shape.
+        if !(far <= LARGEST && size >= far * f64::from(f32::EPSILON)) {
+            return None;
+        }
+        let is_flat = mapped.parts.iter().all(|part| part.patch.is_on_a_line());
+        (!is_flat).then(|| mapped.into())
+    }
+}

@@ -1,0 +1,95 @@
+//! A Bezier patch as a part of a larger surface, whatever its degree.
+
+use crate::patch::bezier::{Bezier, is_on_a_line};
+use crate::patch::search::{Candidate, Frame, Keep};
+use crate::patch::tree::{points, project};
+use std::fmt::Debug;
+use strahl_math::{Aabb, DVec2, DVec3, Interval, Transform};
+
+/// What a surface asks its patches, whose degrees differ.
+pub(super) trait Patch: Debug + Send + Sync {
+    fn bounds(&self) -> Aabb;
+    fn nearest(&self, frame: &Frame, range: Interval, keep: Keep<'_>) -> Option<Candidate>;
+    fn any(&self, frame: &Frame, range: Interval, keep: Keep<'_>) -> bool;
+    fn jet(&self, u: f64, v: f64) -> [DVec3; 3];
+    fn normal(&self, uv: DVec2, jet: [DVec3; 3]) -> Option<DVec3>;
+    fn mapped(&self, map: &Transform) -> Box<dyn Patch>;
+    fn is_on_a_line(&self) -> bool;
+    /// All hits of the line.
+    fn all(&self, frame: &Frame, keep: Keep<'_>) -> Vec<Candidate>;
+    /// The bits of the control points of a side, counter-clockwise from `v = 0` on.
+    fn border(&self, side: usize) -> Vec<[u64; 4]>;
+}
+
+impl<const K: usize> Patch for Bezier<K> {
+    fn bounds(&self) -> Aabb {
+        self.bounds
+    }
+
+    fn nearest(&self, frame: &Frame, range: Interval, keep: Keep<'_>) -> Option<Candidate> {
+        self.nearest(frame, range, keep)
+    }
+
+    fn any(&self, frame: &Frame, range: Interval, keep: Keep<'_>) -> bool {
+        self.any(frame, range, keep)
+    }
+
+    fn jet(&self, u: f64, v: f64) -> [DVec3; 3] {
+        self.jet(u, v)
+    }
+
+    fn normal(&self, uv: DVec2, jet: [DVec3; 3]) -> Option<DVec3> {
+        self.normal(uv, jet)
+    }
+
+    fn mapped(&self, map: &Transform) -> Box<dyn Patch> {
+        let net = self.net.map(|p| {
+            let [weight, point] = [DVec3::splat(p[3]), map.point_to_world(project(*p))];
+            let DVec3 { x, y, z } = point * weight;
+            [x, y, z, p[3]]
+        });
+        Box::new(Self::new(net))
+    }
+
+    fn all(&self, frame: &Frame, keep: Keep<'_>) -> Vec<Candidate> {
+        self.all(frame, keep)
+    }
+
+    fn border(&self, side: usize) -> Vec<[u64; 4]> {
+        let curve = match side {
+            0 => self.net.rows[0],
+            1 => self.net.column(K - 1),
+            2 => self.net.rows[K - 1],
+            _ => self.net.column(0),
+        };
+        // -0 is 0.
+        let bits = curve.map(|p| p.map(|x| (x + 0.0).to_bits()));
+        if side < 2 {
+            bits.to_vec()
+        } else {
+            bits.into_iter().rev().collect()
+        }
+    }
+
+    fn is_on_a_line(&self) -> bool {
+        is_on_a_line(points(&self.net))
+    }
+}
+
+/// A patch over a rectangle of the surface's parameters.
+#[derive(Debug)]
+pub(super) struct Part {
+    pub(super) patch: Box<dyn Patch>,
+    pub(super) from: [f64; 2],
+    pub(super) to: [f64; 2],
+    /// Whether a trimming curve runs through it.
+    pub(super) is_trimmed: bool,
+}
+
+impl Part {
+    /// The parameters of the surface for those of the patch.
+    pub(super) fn place(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+        let along = |k: usize, x: f64| self.from[k] * (1.0 - x) + self.to[k] * x;
+        [along(0, x), along(1, y)]
+    }
+}
