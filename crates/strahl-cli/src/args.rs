@@ -274,6 +274,13 @@ pub(crate) struct RenderArgs {
     /// Write statistics (counts and times) as JSON; `-` is the standard output
     #[arg(long, value_name = "FILE")]
     pub(crate) stats: Option<PathBuf>,
+    /// Tell what the time went into, by object, texture, light, ...: as a table, or as JSON in a file (`-` is the standard output)
+    #[arg(long, value_name = "FILE", num_args = 0..=1, require_equals = true)]
+    #[expect(
+        clippy::option_option,
+        reason = "without a file the profile is a table on the terminal"
+    )]
+    pub(crate) profile: Option<Option<PathBuf>>,
     /// Render, but write no picture
     #[arg(long)]
     pub(crate) no_output: bool,
@@ -381,9 +388,12 @@ pub(crate) struct ExplainArgs {
     /// Format of the scene, if the file name doesn't show it (see `strahl formats`)
     #[arg(long, value_name = "NAME")]
     pub(crate) scene_format: Option<Format>,
-    /// The pixel, counted from 0,0 at the top left
+    /// The pixel, counted from 0,0 at the top left; `--format html` without it makes a page of the whole picture
     #[arg(long, value_name = "X,Y", value_parser = parse_pixel)]
-    pub(crate) pixel: (u32, u32),
+    pub(crate) pixel: Option<(u32, u32)>,
+    /// Number of pixels with their trees in the page of a whole picture
+    #[arg(long, value_name = "N", default_value_t = strahl_view::USUAL_TREES, conflicts_with = "pixel")]
+    pub(crate) trees: usize,
     /// Form of the output
     #[arg(long, value_enum, value_name = "FORM", default_value_t = ExplainForm::Text)]
     pub(crate) format: ExplainForm,

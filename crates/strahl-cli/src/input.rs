@@ -10,7 +10,7 @@ use std::time::Instant;
 use strahl::formats::scene::SceneFormat;
 use strahl::math::DVec3;
 use strahl::scene::Scene;
-use strahl::sdl::{Frame, Pinned, Stream, Value, Writing};
+use strahl::sdl::{Frame, Pinned, Stream, Texts, Value, Writing};
 use strahl::tracing::{Prepared, RenderOptions, RenderScene, Sampling};
 use strahl::{Format, Inputs, LoadOptions, Loaded, load_bytes, load_path};
 use strahl_farm::Bundle;
@@ -57,6 +57,8 @@ pub(crate) struct Input<'a> {
     now: Option<f64>,
     /// The files that the scene may read, if it is bundled.
     pinned: Option<Pinned>,
+    /// Texts that are read instead of files.
+    texts: Texts,
     inputs: RefCell<Option<Inputs>>,
 }
 
@@ -121,21 +123,14 @@ impl<'a> Input<'a> {
             records: false,
             now: None,
             pinned: None,
+            texts: Texts::new(),
             inputs: RefCell::new(None),
         })
     }
 
-    /// A text to read instead of the scene's file; included files are found beside the file.
-    pub(crate) fn with_text(mut self, text: &str) -> Self {
-        if let Place::File(path) = &self.place {
-            let format = self.format.or_else(|| Format::of_path(path));
-            self.place = Place::Text {
-                name: path.display().to_string(),
-                format: format.unwrap_or(Format::Pov),
-                bytes: text.into(),
-            };
-        }
-        self
+    /// Texts to read instead of files.
+    pub(crate) fn with_texts(self, texts: Texts) -> Self {
+        Self { texts, ..self }
     }
 
     /// Lets the scene write files: into the folder of `--allow-write`, or else into SCENE.out beside the scene.
@@ -273,6 +268,7 @@ impl<'a> Input<'a> {
             record: self.records,
             now: self.now,
             pinned: self.pinned.clone(),
+            texts: self.texts.clone(),
             on_message: (!quiet).then(|| Box::new(print_message) as _),
             ..LoadOptions::default()
         };

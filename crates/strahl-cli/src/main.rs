@@ -16,6 +16,7 @@ mod interrupt;
 mod memory;
 mod output;
 mod pov;
+mod profile;
 mod progress;
 mod report;
 mod stats;

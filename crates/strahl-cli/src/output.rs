@@ -2,8 +2,11 @@
 
 use crate::report::Failure;
 use crate::terminal::{self, visible};
+use serde::Serialize;
 use std::fmt::Arguments;
 use std::io::{self, ErrorKind, IsTerminal, Write};
+use std::path::Path;
+use strahl::formats::image::write_bytes;
 
 /// Prints a line on standard output. If the reader has closed it (`strahl explain ... | head`), the program ends without an
 /// error.
@@ -26,6 +29,21 @@ pub(crate) fn bytes(bytes: &[u8]) -> Result<(), Failure> {
         Ok(()) => Ok(()),
         Err(error) => end(&error),
     }
+}
+
+/// Writes a value as JSON to a file, or to the standard output if the file is `-`.
+pub(crate) fn json(file: &Path, value: &impl Serialize) -> Result<(), Failure> {
+    let mut json = serde_json::to_vec_pretty(value).map_err(Failure::new)?;
+    json.push(b'\n');
+    match is_standard(file) {
+        true => bytes(&json),
+        false => write_bytes(file, &json).map_err(Failure::new),
+    }
+}
+
+/// Whether a file name means the standard output.
+pub(crate) fn is_standard(file: &Path) -> bool {
+    file.as_os_str() == "-"
 }
 
 /// Ends the program, because the output is closed or can't be written.

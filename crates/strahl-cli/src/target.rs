@@ -4,7 +4,7 @@ use crate::animation::Animation;
 use crate::args::RenderArgs;
 use crate::input::Input;
 use crate::interrupt::{Interruptible, pressed};
-use crate::output;
+use crate::output::{self, is_standard};
 use crate::report::Failure;
 use std::io::{self, IsTerminal};
 use std::path::{Path, PathBuf};
@@ -18,6 +18,12 @@ pub(crate) enum Target {
     File(PathBuf, ImageFormat),
     /// The standard output; the pictures of an animation follow each other.
     Stream(ImageFormat),
+}
+
+/// The files that statistics and profile go to. (A profile without a file is a table on the terminal.)
+fn report_files(args: &RenderArgs) -> impl Iterator<Item = &Path> {
+    let profile = args.profile.iter().flatten();
+    args.stats.iter().chain(profile).map(PathBuf::as_path)
 }
 
 impl Target {
@@ -118,29 +124,39 @@ impl Target {
                 "--alpha needs a format with an alpha channel (.png, .exr), but the picture is {shown}"
             )));
         }
-        if animated && args.stats.is_some() {
+        for (option, is_given) in [
+            ("--stats", args.stats.is_some()),
+            ("--profile", args.profile.is_some()),
+        ] {
+            if animated && is_given {
+                return Err(Failure::new(format!(
+                    "{option} works for a single picture: render the frames one by one with --subset-start-frame and \
+                     --subset-end-frame, or leave it out",
+                )));
+            }
+        }
+        let named = || report_files(args);
+        let streams = named().filter(|file| is_standard(file)).count();
+        if streams > 1 {
             return Err(Failure::new(
-                "--stats works for a single picture: render the frames one by one with --subset-start-frame and \
-                 --subset-end-frame, or leave it out",
+                "statistics and profile can't both go to the standard output: name a file for one of them",
             ));
         }
-        let stats = args.stats.as_deref();
-        let stats_to_stream = stats.is_some_and(|s| s.as_os_str() == "-");
         match self {
             Self::Stream(_) if !args.no_output && io::stdout().is_terminal() => {
                 return Err(Failure::new(
                     "a picture can't be printed on a terminal: pipe it to a program, as in `strahl render scene.pov -o - | display`",
                 ));
             }
-            Self::Stream(_) if stats_to_stream => {
+            Self::Stream(_) if streams > 0 => {
                 return Err(Failure::new(
-                    "picture and statistics can't both go to the standard output: name a file for one of them",
+                    "picture and statistics or profile can't both go to the standard output: name a file for one of them",
                 ));
             }
             Self::Stream(_) | Self::File(..) => {}
         }
-        let stats = stats.filter(|_| !stats_to_stream);
-        for file in [self.file(), stats].into_iter().flatten() {
+        let files = named().filter(|file| !is_standard(file));
+        for file in self.file().into_iter().chain(files) {
             check_folder(file)?;
         }
         Ok(())
@@ -158,7 +174,7 @@ impl Target {
     fn spares(&self, input: &Input<'_>, args: &RenderArgs) -> Result<(), Failure> {
         let real = |path: &Path| path.canonicalize().ok();
         let scene = input.path().and_then(real);
-        for file in [self.file(), args.stats.as_deref()].into_iter().flatten() {
+        for file in self.file().into_iter().chain(report_files(args)) {
             if scene.is_some() && real(file) == scene {
                 return Err(Failure::new(format!(
                     "{} is the scene itself, which must not be overwritten",

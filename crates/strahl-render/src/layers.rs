@@ -32,7 +32,7 @@ pub(crate) fn paint<'s>(
     }
     surface.n_smooth = Some(surface.n_shade);
     let point = &surface.resolved.point;
-    let place = TexturePoint {
+    let mut place = TexturePoint {
         position: point.position,
         tilted_at: None,
         in_object: None,
@@ -42,9 +42,10 @@ pub(crate) fn paint<'s>(
         uv: point.uv,
         direction: -surface.v,
     };
-    let (place, space) = scene.texture_place(place, hit, look);
+    let mut made = None;
+    let space = scene.texture_place(&mut place, hit, look, &mut made);
     let eta = surface.eta_2 / surface.eta_1;
-    texture.0.layers_in(space.as_deref(), &place, eta, paint);
+    texture.0.layers_in(space, &place, eta, paint);
 
     let mut sum = Finish {
         transmission: paint.transmission,

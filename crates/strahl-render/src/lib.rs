@@ -11,6 +11,7 @@
 //! A pixel depends on the scene, its position and its samples only, so a film has the same bits for every accelerator,
 //! number of threads, order of tiles and split into regions.
 
+mod activity;
 mod area;
 mod blocks;
 mod camera;
@@ -30,6 +31,7 @@ mod names;
 mod objects;
 mod observer;
 mod prim;
+mod profile;
 mod queries;
 mod query;
 mod render;
@@ -49,6 +51,7 @@ mod tree;
 mod view;
 mod walk;
 
+pub use activity::{Activities, Activity, Phase, RayPurpose};
 pub use camera::PrimaryRays;
 pub use compile::{CompileOptions, Prepared, compile};
 pub use cost::PixelCost;
@@ -62,6 +65,7 @@ pub use observer::{
     BranchEnd, HitReport, LayerReport, LightDetail, LightTerm, RayKind, RayReport, Shading,
     ShadowHit, ShadowReport, Share, SurfaceTerm, TraceObserver,
 };
+pub use profile::{Part as ProfilePart, Profile, ProfileReport};
 pub use queries::{HitInfo, HitSurface};
 pub use query::Tracer;
 pub use render::{Pass, PixelState, Progress, RenderError, RenderOptions, Rendered, render};

@@ -212,6 +212,16 @@ impl Session {
         });
     }
 
+    /// A list whose entries are computed on all threads: the rays of a long list of questions, say, whose memory alone takes a thread longer
+    /// than all threads need to answer easy ones.
+    pub fn list<T: Send>(&self, count: usize, entry: impl Fn(usize) -> T + Sync) -> Vec<T> {
+        if count <= BATCH {
+            return (0..count).map(entry).collect();
+        }
+        let numbers = (0..count).into_par_iter().with_min_len(BATCH);
+        self.pool.install(|| numbers.map(&entry).collect())
+    }
+
     /// Calls `ask` for parts of a list of questions and that of the answers: on this thread for few, on all threads for many.
     fn each_batch<Q: Sync, A: Send>(
         &self,

@@ -3,13 +3,15 @@ mod leaves;
 mod packet;
 mod plain;
 
+use crate::activity::{Phase, Slot};
 use crate::blocks::{Blocks, Fetched, LeafClass};
 use crate::hit::{Hit, Origin, RayClass};
 use crate::prim::{Prim, PrimKind};
 use crate::scene::{InstanceUse, RenderGroup, RenderScene};
 use crate::walk::WalkEvent;
-use kinds::{AnyOpaque, Closest, ClosestOpaque, Query, Transmitting, Watched};
+use kinds::{AnyOpaque, Closest, Query, Transmitting, Watched};
 use plain::Plain;
+use std::sync::Arc;
 use strahl_accel::{Accelerator, AnyAccelerator, Leaf, Step, TraversalStats, Visitor};
 use strahl_geometry::blocks::{SphereBlock, TriangleBlock};
 use strahl_geometry::{PrimHit, Primitive, RayShear, Scratch, SurfaceId};
@@ -28,6 +30,8 @@ pub struct Tracer<'s> {
     occluders: Vec<u32>,
     /// Whether to test that primitive first.
     pub(crate) remembers: bool,
+    /// What this thread is doing.
+    pub(crate) slot: Arc<Slot>,
 }
 
 /// No primitive.
@@ -42,6 +46,7 @@ impl<'s> Tracer<'s> {
             stats: TraversalStats::default(),
             occluders: vec![NONE; scene.lights.len()],
             remembers: true,
+            slot: Arc::default(),
         }
     }
 
@@ -67,8 +72,11 @@ impl<'s> Tracer<'s> {
         class: RayClass,
         events: &mut Vec<WalkEvent>,
     ) -> Option<Hit> {
-        let closest = Closest { best: None };
-        let mut query = Watched { closest, events };
+        let mut query = Watched {
+            closest: Closest { best: None },
+            opaque: false,
+            events: Some(events),
+        };
         self.search(ray, range, None, class, NONE, &mut query);
         query.closest.best
     }
@@ -81,9 +89,13 @@ impl<'s> Tracer<'s> {
         range: Interval,
         from: Option<&Origin>,
     ) -> Option<Hit> {
-        let mut query = ClosestOpaque(Closest { best: None });
+        let mut query = Watched {
+            closest: Closest { best: None },
+            opaque: true,
+            events: None,
+        };
         self.search(ray, range, from, RayClass::Shadow, NONE, &mut query);
-        query.0.best
+        query.closest.best
     }
 
     /// Whether an opaque surface is in `range`.
@@ -140,6 +152,8 @@ impl<'s> Tracer<'s> {
             scene: self.scene,
             scratch: &mut self.scratch,
             stats: &mut self.stats,
+            // Its primitives have no numbers in the scene.
+            slot: &Slot::default(),
             class: u8::MAX,
             parts: false,
             query: &mut query,
@@ -182,10 +196,12 @@ impl<'s> Tracer<'s> {
         first: u32,
         query: &mut Q,
     ) {
+        self.slot.enter(Phase::Traversal);
         let mut search = Search {
             scene: self.scene,
             scratch: &mut self.scratch,
             stats: &mut self.stats,
+            slot: &self.slot,
             class: class.bit(),
             parts: self.remembers,
             query,
@@ -202,6 +218,7 @@ struct Search<'a, 's, Q> {
     scene: &'s RenderScene,
     scratch: &'a mut Scratch,
     stats: &'a mut TraversalStats,
+    slot: &'a Slot,
     class: u8,
     /// Whether to search only the part of a group that matters to the query.
     parts: bool,
@@ -227,12 +244,12 @@ impl<Q: Query> Search<'_, '_, Q> {
             None => (&group.accelerator, &group.blocks, group.sheared),
             Some(part) => (&part.accelerator, &part.blocks, part.sheared),
         };
-        let plain = group
-            .common
-            .is_some_and(|(visible, flags)| visible & self.class != 0 && Q::is_plain(flags));
+        let plain = group.common.is_some_and(|(visible, flags)| {
+            visible & self.class != 0 && self.query.is_plain(flags)
+        });
         let mut alone = None;
-        if plain
-            && !Q::WATCHES
+        if Q::HAS_FAST_SEARCH
+            && plain
             && let AnyAccelerator::Bvh8(bvh) = accelerator
             && let Some(blocks) = blocks.of_one_kind()
             && bvh.has_leaves_only()
@@ -273,7 +290,9 @@ impl<Q: Query> Search<'_, '_, Q> {
             visitor.visit(first, range.max);
         }
         if visitor.t_max != f64::NEG_INFINITY {
-            if let Some(searched) = alone {
+            if Q::HAS_FAST_SEARCH
+                && let Some(searched) = alone
+            {
                 let range = range.with_max(visitor.t_max);
                 *self.stats += stats;
                 return searched.search(ray, range, self);
@@ -339,7 +358,7 @@ impl<Q: Query> Visitor for GroupVisitor<'_, '_, '_, Q> {
     #[inline]
     fn visit(&mut self, id: u32, t_max: f64) -> f64 {
         let prim = self.group.prims.at(id);
-        if prim.visible & self.search.class == 0 || !Q::wants(prim.flags) {
+        if prim.visible & self.search.class == 0 || !self.search.query.wants(prim.flags) {
             return t_max;
         }
         let first = self.group.first_id(id);
@@ -410,28 +429,21 @@ impl<Q: Query> GroupVisitor<'_, '_, '_, Q> {
         if facing == Some(false) {
             return t_max;
         }
-        let mixed = prim.flags & (Prim::TRANSMITS | Prim::STOPS) == Prim::TRANSMITS | Prim::STOPS;
+        let front = facing.is_some();
+        if Q::ALL && matches!(prim.kind(), PrimKind::Shape(_) | PrimKind::Placed(_)) {
+            return self.all_of_shape(id, prim, t_max, from, first, front);
+        }
         let (mut min, mut t_max) = (self.range_min, t_max);
         loop {
-            let Some(found) = self.test(prim.kind(), Interval::new(min, t_max), from) else {
+            let slot = self.search.slot;
+            slot.enter_for(Phase::Intersection, self.base + first);
+            let found = self.test(prim.kind(), Interval::new(min, t_max), from);
+            slot.enter(Phase::Traversal);
+            let Some(found) = found else {
                 return t_max;
             };
-            let hit = Hit {
-                t: found.t,
-                id: self.base + first + u64::from(found.surface.element),
-                facet: found.surface.facet,
-                uv: found.uv,
-            };
-            let exists = prim.flags & Prim::FILTERED == 0
-                || self.exists(id, prim, &hit, found.surface, facing.is_some());
-            let wanted = !mixed
-                || Q::wants_hit(
-                    self.search
-                        .scene
-                        .transmits(self.group.look(id, found.surface.element)),
-                );
-            if exists && wanted {
-                t_max = self.search.query.take(hit, t_max);
+            if let Some(closer) = self.take_met(id, prim, &found, t_max, first, front) {
+                t_max = closer;
                 if !Q::ALL {
                     return t_max;
                 }
@@ -442,6 +454,67 @@ impl<Q: Query> GroupVisitor<'_, '_, '_, Q> {
                 return t_max;
             }
         }
+    }
+
+    /// Takes all hits on a shape at once, which then has to be intersected only once.
+    fn all_of_shape(
+        &mut self,
+        id: u32,
+        prim: Prim,
+        mut t_max: f64,
+        from: Option<SurfaceId>,
+        first: u64,
+        front: bool,
+    ) -> f64 {
+        let (PrimKind::Shape(index) | PrimKind::Placed(index)) = prim.kind() else {
+            return t_max;
+        };
+        let used = &self.group.shapes[index as usize];
+        let map = used.transform.as_ref();
+        let ray = map.map_or(*self.ray, |m| m.ray_to_object(self.ray));
+        let range = Interval::new(self.range_min, t_max);
+        let slot = self.search.slot;
+        slot.enter_for(Phase::Intersection, self.base + first);
+        let mut hits = self.search.scratch.take_hits();
+        let scratch = &mut *self.search.scratch;
+        used.shape.all_hits(&ray, range, from, scratch, &mut hits);
+        slot.enter(Phase::Traversal);
+        for found in &hits {
+            if let Some(closer) = self.take_met(id, prim, found, t_max, first, front) {
+                t_max = closer;
+            }
+        }
+        self.search.scratch.give_hits(hits);
+        t_max
+    }
+
+    /// Takes a hit on a primitive, if there is something at that place and the query wants it; returns the new upper end of the
+    /// range. `front` says that it is known not to be on the back.
+    #[inline]
+    fn take_met(
+        &mut self,
+        id: u32,
+        prim: Prim,
+        found: &PrimHit,
+        t_max: f64,
+        first: u64,
+        front: bool,
+    ) -> Option<f64> {
+        let hit = Hit {
+            t: found.t,
+            id: self.base + first + u64::from(found.surface.element),
+            facet: found.surface.facet,
+            uv: found.uv,
+        };
+        let exists =
+            prim.flags & Prim::FILTERED == 0 || self.exists(id, prim, &hit, found.surface, front);
+        let mixed = prim.flags & (Prim::TRANSMITS | Prim::STOPS) == Prim::TRANSMITS | Prim::STOPS;
+        let wanted = !mixed || {
+            let look = self.group.look(id, found.surface.element);
+            let transmits = self.search.scene.transmits(look);
+            self.search.query.wants_hit(transmits)
+        };
+        (exists && wanted).then(|| self.search.query.take(hit, t_max))
     }
 
     #[inline]

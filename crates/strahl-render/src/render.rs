@@ -12,6 +12,7 @@ pub(crate) use refine::is_refined;
 pub use work::PixelState;
 pub(crate) use work::Work;
 
+use crate::activity::Activities;
 use crate::camera::PrimaryRays;
 use crate::cost::PixelCost;
 use crate::film::{Film, FilmError, PixelInfo, Region};
@@ -91,7 +92,12 @@ pub trait Progress: Sync {
         0
     }
 
-    /// Whether to stop at the next tile.
+    /// Where the threads store what they are doing, for a [`Profile`](crate::Profile).
+    fn activities(&self) -> Option<&Activities> {
+        None
+    }
+
+    /// Whether to stop. It is asked every few pixels, so it must be fast; a tile that is left half done is traced again if the render goes on.
     fn cancelled(&self) -> bool {
         false
     }
@@ -109,7 +115,7 @@ pub enum RenderError {
     /// The camera makes no rays.
     #[error("{0}")]
     Camera(&'static str),
-    /// [`Progress::cancelled`] returned true.
+    /// [`Progress::cancelled`] returned true, or [`Output::stop`](crate::Output::stop) was set.
     #[error("cancelled")]
     Cancelled,
     /// The system gives no threads.

@@ -102,17 +102,17 @@ impl RenderGroup {
     }
 }
 
-/// A scene ready to be traced: immutable, `Sync`, ids instead of references.
-#[derive(Debug)]
+/// A scene ready to be traced: immutable, `Sync`, ids instead of references. Copies share what is large.
+#[derive(Clone, Debug)]
 pub struct RenderScene {
     /// Group 0 is the world.
-    pub(crate) groups: Vec<RenderGroup>,
-    pub(crate) objects: Objects,
-    pub(crate) materials: Vec<Arc<Material>>,
+    pub(crate) groups: Arc<[RenderGroup]>,
+    pub(crate) objects: Arc<Objects>,
+    pub(crate) materials: Arc<[Arc<Material>]>,
     /// Whether each of them uses texture coordinates.
-    pub(crate) uses_uv: Vec<bool>,
+    pub(crate) uses_uv: Arc<[bool]>,
     /// Transforms from texture space to the group's space.
-    pub(crate) texture_spaces: Vec<Transform>,
+    pub(crate) texture_spaces: Arc<[Transform]>,
     pub(crate) lights: Vec<SceneLight>,
     pub(crate) light_sets: LightSets,
     /// By light, the group that its light has to pass through; empty if no light has one.
@@ -196,6 +196,16 @@ impl RenderScene {
         &self.lights
     }
 
+    /// The same scene with one of its lights at another position, given by its number in [`RenderScene::lights`]. Nothing is built again. What the
+    /// light looks like and the object it shines through stay where they are. `None` if there is no such light, or it has no position.
+    #[must_use]
+    pub fn with_light_at(&self, number: usize, position: DVec3) -> Option<Self> {
+        let mut scene = self.clone();
+        let light = &mut scene.lights.get_mut(number)?.light;
+        *light = light.moved_to(position)?;
+        Some(scene)
+    }
+
     /// The group that a light has to pass through, if it is `projected_through` one.
     pub(crate) fn mask(&self, light: usize) -> Option<&InstanceUse> {
         self.masks.get(light)?.as_ref()
@@ -266,7 +276,7 @@ impl RenderScene {
             object_bytes: self.objects.bytes(),
             ..SceneStats::default()
         };
-        for g in &self.groups {
+        for g in self.groups.iter() {
             s.primitives += g.prims.len();
             s.instances += g.instances.len();
             s.accelerator_bytes += g.accelerator.bytes();

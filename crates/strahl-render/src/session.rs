@@ -8,6 +8,7 @@ use crate::trace::RayCounts;
 use crate::tree::{PixelTree, explain_from};
 use crate::view::{Output, View};
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use strahl_scene::{Diagnostic, Problems, Scene};
 
 /// The number of threads of a session.
@@ -39,7 +40,7 @@ pub struct Session {
 pub enum Outcome {
     /// The picture is finished.
     Finished(Rendered),
-    /// The sink stopped it.
+    /// The sink stopped it, or [`Output::stop`] did.
     Stopped(Unfinished),
 }
 
@@ -107,12 +108,20 @@ impl Unfinished {
     }
 }
 
-/// The clock of an [`Output`].
-struct Clock(Option<fn() -> u64>);
+/// The clock and the stop of an [`Output`].
+struct Watch {
+    clock: Option<fn() -> u64>,
+    stop: Option<Arc<AtomicBool>>,
+}
 
-impl Progress for Clock {
+impl Progress for Watch {
     fn now(&self) -> u64 {
-        self.0.map_or(0, |clock| clock())
+        self.clock.map_or(0, |clock| clock())
+    }
+
+    fn cancelled(&self) -> bool {
+        let stop = self.stop.as_ref();
+        stop.is_some_and(|stop| stop.load(Ordering::Relaxed))
     }
 }
 
@@ -186,7 +195,7 @@ impl Session {
     /// Renders a picture of a view without showing it on the way.
     ///
     /// # Errors
-    /// [`RenderError`]: no such picture, no memory, or a camera that makes no rays.
+    /// [`RenderError`]: no such picture, no memory, a camera that makes no rays, or [`RenderError::Cancelled`] by [`Output::stop`].
     pub fn picture(&self, view: &View, output: &Output) -> Result<Rendered, RenderError> {
         match self.go_on(begin(view, output)?, None)? {
             Outcome::Finished(rendered) => Ok(rendered),
@@ -204,7 +213,10 @@ impl Session {
             scene: view.scene(),
             rays: &view.rays()?,
             pool: &self.pool,
-            progress: &Clock(output.clock),
+            progress: &Watch {
+                clock: output.clock,
+                stop: output.stop.clone(),
+            },
         };
         Ok(match work.go_on(&crew, sink)? {
             true => Outcome::Finished(unfinished.0.work.rendered(self.threads())),

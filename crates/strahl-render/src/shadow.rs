@@ -1,5 +1,6 @@
 mod report;
 
+use crate::activity::Phase;
 use crate::hit::{Hit, Origin};
 use crate::media::{Crossing, MediaArena, MediaStack};
 use crate::query::Tracer;
@@ -139,6 +140,7 @@ impl Tracer<'_> {
         let mut visible = Color::WHITE;
         let (mut inside, mut entered_at) = (*media, 0.0);
         for hit in hits.iter() {
+            self.slot.enter_for(Phase::Texture, hit.id);
             let resolved = self.scene.resolve(ray, Some(from), hit, Uv::IfTextured);
             let id = resolved.look.material;
             let material = &self.scene.materials[id.0 as usize];

@@ -13,6 +13,7 @@
 //! bottom-up in the order reflection, transparency, so the sum does not depend on the order of tracing. Layers of a texture
 //! with different reflections send a reflection ray each.
 
+mod branch;
 mod detail;
 mod eye;
 mod lights;
@@ -21,6 +22,8 @@ mod outcome;
 mod settings;
 mod together;
 
+pub(crate) use branch::Branch;
+use branch::{Node, Offshoot};
 use eye::Eye;
 pub(crate) use eye::Filled;
 use together::{Ahead, KnownLights, Samples};
@@ -28,15 +31,16 @@ use together::{Ahead, KnownLights, Samples};
 pub use outcome::{FirstHit, RayCounts, SampleResult};
 pub use settings::TraceSettings;
 
-use crate::hit::{Hit, Origin, RayClass};
+use crate::activity::Phase;
+use crate::hit::{Hit, RayClass};
 use crate::layers::{self, Mirror, Passage};
-use crate::media::{MediaArena, MediaStack};
+use crate::media::MediaArena;
 use crate::observer::{BranchEnd, RayKind, RayReport, Shading, Share, TraceObserver};
 use crate::query::Tracer;
 use crate::resolve::Uv;
 use crate::scene::RenderScene;
 use crate::surface::{Split, Surface};
-use strahl_math::{DVec3, Interval, Ray};
+use strahl_math::{Interval, Ray};
 use strahl_shade::texture::TexturePaint;
 use strahl_shade::{Color, ShadingModel, SpectralPart};
 
@@ -69,93 +73,6 @@ pub struct TreeTracer<'s> {
     passages: Vec<Passage>,
     /// The light samples of the current packet.
     samples: Samples,
-}
-
-/// A ray still to be traced.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Branch {
-    pub(crate) ray: Ray,
-    pub(crate) origin: Option<Origin>,
-    pub(crate) kind: RayKind,
-    /// Its visibility class: transmitted rays see the same objects as the ray that sent them.
-    pub(crate) class: RayClass,
-    pub(crate) parent: u32,
-    pub(crate) depth: u32,
-    /// The part of the spectrum it stands for.
-    pub(crate) part: SpectralPart,
-    /// Whether it stands for a part of the spectrum while its parent stands for all of it.
-    pub(crate) divided: bool,
-    pub(crate) weight: f64,
-    pub(crate) share: Share,
-    pub(crate) media: MediaStack,
-}
-
-impl Branch {
-    /// The root of a tree, in the media the eye is in.
-    fn primary(ray: &Ray, media: MediaStack) -> Self {
-        Self {
-            ray: *ray,
-            origin: None,
-            kind: RayKind::Primary,
-            class: RayClass::Camera,
-            parent: 0,
-            depth: 1,
-            part: SpectralPart::WHITE,
-            divided: false,
-            weight: 1.0,
-            share: Share::ALL,
-            media,
-        }
-    }
-}
-
-/// A branch: a ray sent by a hit.
-struct Offshoot {
-    kind: RayKind,
-    /// How much it contributes to the hit.
-    share: Share,
-    /// The factor of the weight.
-    coefficient: f64,
-    direction: DVec3,
-    part: SpectralPart,
-    /// Whether it stands for a part of the spectrum while the hit's ray stands for all of it.
-    divided: bool,
-    /// Whether it stays on its side of the surface although it is no reflection ray: a part of the spectrum that is totally
-    /// reflected where the rest is refracted.
-    returned: bool,
-}
-
-impl Offshoot {
-    #[inline]
-    fn new(kind: RayKind, share: Share, direction: DVec3, part: SpectralPart) -> Self {
-        Self {
-            kind,
-            share,
-            coefficient: share.factor.max_component(),
-            direction,
-            part,
-            divided: false,
-            returned: false,
-        }
-    }
-}
-
-/// A ray that was traced and waits for its branches.
-#[derive(Clone, Copy, Debug)]
-struct Node {
-    parent: u32,
-    kind: RayKind,
-    /// The hit's own contribution, or the background.
-    local: Color,
-    /// How much it contributes to its parent.
-    share: Share,
-    /// The contributions of its branches.
-    reflected: Color,
-    transmitted: Color,
-    /// The attenuation by the medium in front of the hit.
-    attenuation: Color,
-    /// The light that fog and rainbows in front of the hit add.
-    fog: Color,
 }
 
 impl<'s> TreeTracer<'s> {
@@ -213,6 +130,7 @@ impl<'s> TreeTracer<'s> {
             return self.nothing(primary);
         }
         let shadow_before = self.counts.shadow;
+        self.tracer.slot.ray(RayKind::Primary);
         self.nodes.clear();
         self.waiting.clear();
         let mut branch = Branch::primary(primary, eye);
@@ -227,6 +145,7 @@ impl<'s> TreeTracer<'s> {
                 break;
             };
             branch = next;
+            self.tracer.slot.ray(branch.kind);
             hit = self.tracer.closest_hit(
                 &branch.ray,
                 Interval::FORWARD,
@@ -237,6 +156,8 @@ impl<'s> TreeTracer<'s> {
                 deepest = branch.depth;
             }
         }
+        self.tracer.slot.ray(RayKind::Primary);
+        self.tracer.slot.enter(Phase::Sampling);
         let color = self.combine(observer);
         let color = self.settings.decoded(color);
         let rays = self.nodes.len() as u64 + self.counts.shadow - shadow_before;
@@ -292,6 +213,9 @@ impl<'s> TreeTracer<'s> {
         let scene = self.tracer.scene;
         self.counts.count(branch.kind, hit.is_some());
 
+        if let Some(hit) = hit {
+            self.tracer.slot.enter_for(Phase::Surface, hit.id);
+        }
         let index = self.nodes.len() as u32;
         let length = hit.map_or(f64::INFINITY, |h| h.t * branch.ray.direction.length());
         let mut found;
@@ -340,7 +264,9 @@ impl<'s> TreeTracer<'s> {
             return None;
         };
 
+        self.tracer.slot.enter_for(Phase::Texture, hit.id);
         layers::paint(scene, surface, hit, &mut self.paint);
+        self.tracer.slot.enter_for(Phase::Shading, hit.id);
         let surface = &*surface;
         let first = FirstHit {
             distance: length,

@@ -6,6 +6,7 @@ use crate::scene::RenderScene;
 use crate::tiles::TileOrder;
 use crate::trace::TraceSettings;
 use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 use strahl_scene::Camera;
 use strahl_shade::ShadingModel;
 
@@ -47,6 +48,9 @@ pub struct Output {
     pub alpha: bool,
     /// Whether to fill [`Rendered::costs`](crate::Rendered::costs).
     pub costs: bool,
+    /// Stops the render when it becomes true, also while nothing is ready for the sink: after the few pixels that each thread is at. The picture can
+    /// go on as one that a sink has stopped, once this is false again.
+    pub stop: Option<Arc<AtomicBool>>,
     /// A clock in nanoseconds for the time of each pixel in [`Rendered::costs`](crate::Rendered::costs); nothing here reads the clock
     /// itself.
     pub clock: Option<fn() -> u64>,

@@ -285,3 +285,20 @@ fn surfaces_of_many_hits_are_those_that_describe_names() {
     assert_eq!((surface.object, surface.position), (1, DVec3::Z * 2.0));
     assert_eq!(surface.normal, DVec3::Z);
 }
+
+#[test]
+fn lists_are_in_order_on_any_number_of_threads() {
+    for threads in [Threads::Count(1), Threads::Count(3)] {
+        let session = Session::new(threads).expect("threads");
+        for count in [0, 7, 1024, 100_003] {
+            let squares = session.list(count, |i| i * i);
+            assert!(
+                squares
+                    .iter()
+                    .enumerate()
+                    .all(|(i, square)| *square == i * i)
+            );
+            assert_eq!(squares.len(), count);
+        }
+    }
+}

@@ -4,7 +4,8 @@ mod common;
 
 use common::{compiled, every_shape, glass_and_mirrors, patches, rendered};
 use std::ops::ControlFlow;
-use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{Arc, OnceLock};
 use strahl_geometry::Sphere;
 use strahl_math::DVec3;
 use strahl_render::{
@@ -359,6 +360,78 @@ fn samples_of_coarse_passes_are_final() {
         outcome = session.resume(unfinished, &mut next).expect("renders");
     }
     assert!(stops > 4 && finals > 2000);
+}
+
+/// A stop is noticed within a tile, and costs no bits of a picture that goes on.
+#[test]
+fn a_stop_is_noticed_within_a_tile() {
+    static STOP: OnceLock<Arc<AtomicBool>> = OnceLock::new();
+    static PIXELS: AtomicU64 = AtomicU64::new(0);
+    /// Read before and after each pixel; sets the stop at the twentieth reading.
+    fn clock() -> u64 {
+        let number = PIXELS.fetch_add(1, Ordering::Relaxed);
+        if number == 20 {
+            let stop = STOP.get().expect("it is set before the render");
+            stop.store(true, Ordering::Relaxed);
+        }
+        number
+    }
+    let stop = STOP.get_or_init(Arc::default);
+    let session = Session::new(Threads::Count(1)).expect("a thread");
+    let output = Output {
+        stop: Some(Arc::clone(stop)),
+        costs: true,
+        clock: Some(clock),
+        ..Output::default()
+    };
+    for sampling in [Sampling::Center, Sampling::Corners] {
+        PIXELS.store(0, Ordering::Relaxed);
+        // One tile.
+        let view = view(&session, &glass_and_mirrors())
+            .with_size(32, 32)
+            .with_sampling(sampling);
+        let mut none = |_: &Tile<'_>| panic!("nothing is ready");
+        let outcome = session.render(&view, &output, &mut none);
+        let Ok(Outcome::Stopped(unfinished)) = outcome else {
+            panic!("it is stopped");
+        };
+        assert!(PIXELS.load(Ordering::Relaxed) < 40);
+        assert_eq!(unfinished.rays().primary, 0, "half a tile is no tile");
+        assert!(matches!(
+            session.picture(&view, &output),
+            Err(RenderError::Cancelled)
+        ));
+        stop.store(false, Ordering::Relaxed);
+        let mut all = |_: &Tile<'_>| ControlFlow::Continue(());
+        let outcome = session.resume(unfinished, &mut all).expect("it goes on");
+        let plain = session.picture(&view, &Output::default());
+        assert!(outcome.into_film().pixels == plain.expect("a picture").film.pixels);
+    }
+}
+
+/// A light is moved without building anything, and gives the bits of a scene that was compiled with it there.
+#[test]
+fn a_moved_light_gives_the_bits_of_a_scene_compiled_with_it() {
+    let session = session();
+    let mut description = glass_and_mirrors();
+    let before = view(&session, &description);
+    let to = DVec3::new(-2.0, 5.0, 3.0);
+    let moved = before
+        .scene()
+        .with_light_at(0, to)
+        .expect("it has a position");
+    let moved = Arc::new(moved).view(before.width, before.height);
+    let picture = |view: &View| {
+        let picture = session.picture(view, &Output::default());
+        picture.expect("a picture").film
+    };
+    let light = &mut description.lights[0].light;
+    *light = light.moved_to(to).expect("it has a position");
+    let anew = view(&session, &description);
+    assert!(picture(&moved) == picture(&anew));
+    assert!(picture(&moved) != picture(&before));
+    let count = before.scene().lights().len();
+    assert!(before.scene().with_light_at(count, to).is_none());
 }
 
 /// A stop at the beginning of a pass traces nothing of it.

@@ -55,12 +55,13 @@ pub use grammar::{
     Declared, Entity, GlobalSettings, State, Texture, Thing, object_words, pattern_words,
 };
 pub use highlight::{Piece, highlight};
+pub use include::built_in;
 pub use keywords::{Word, WordKind};
 pub use options::{Frame, Limits, Options};
 pub use parser::{Failed, Macro, PResult, Parser, Place};
 pub use source::{
     FolderHost, Host, HostError, Lookup, MemoryHost, Pinned, Read, Record, Recorder, Source,
-    Stream, Writing, present,
+    Stream, Texts, Writing, present,
 };
 pub use symbol::Symbol;
 pub use token::{Kind, Token};

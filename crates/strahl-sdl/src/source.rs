@@ -15,7 +15,7 @@ mod writing;
 
 pub(crate) use chunk::Chunk;
 pub(crate) use file::SourceFile;
-pub use folder::{FolderHost, Pinned, present};
+pub use folder::{FolderHost, Pinned, Texts, present};
 pub use memory::MemoryHost;
 pub use recorder::{Lookup, Read, Record, Recorder};
 pub(crate) use text::Part;

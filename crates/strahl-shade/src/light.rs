@@ -156,6 +156,19 @@ impl Light {
         Self { falloff, ..self }
     }
 
+    /// The same light at another position. Its direction and its extent stay. `None` for a directional light, which has no position.
+    #[must_use]
+    pub fn moved_to(mut self, to: DVec3) -> Option<Self> {
+        match &mut self.kind {
+            LightKind::Directional { .. } => return None,
+            LightKind::Point { position }
+            | LightKind::Spot { position, .. }
+            | LightKind::Parallel { position, .. }
+            | LightKind::Beam { position, .. } => *position = to,
+        }
+        Some(self)
+    }
+
     /// The light that arrives at `point` without occlusion; `None` if none does, or the point is at the light.
     #[inline]
     pub fn illuminate(&self, point: DVec3) -> Option<LightSample> {

@@ -304,6 +304,18 @@ impl Texture {
         }
     }
 
+    /// [`Texture::shadow_attenuation`] of a texture that has the same everywhere, if that is easy to see.
+    #[inline]
+    pub fn same_shadow_attenuation(&self) -> Option<Color> {
+        match self {
+            Self::Plain(PlainTexture {
+                pigment: Pigment::Solid(color, _),
+                ..
+            }) => Some(color.attenuation()),
+            _ => None,
+        }
+    }
+
     /// The same for a solid whose interior concentrates light ([`Interior::gathered`]), which every layer does with its own
     /// normal; the space is that of [`Texture::layers_in`].
     pub fn gathered_attenuation(

@@ -108,8 +108,9 @@ pub mod prelude {
     pub use strahl_accel::AcceleratorKind;
     pub use strahl_formats::image::WriteOptions;
     pub use strahl_geometry::{
-        BicubicPatch, Brep, Cone, Cuboid, Cylinder, Disc, Lemon, MeshData, Ovus, Plane, Polygon,
-        Quadric, Shape, Sphere, Torus, Triangle, TriangleMesh,
+        BicubicPatch, Brep, Cone, Cuboid, Cylinder, Disc, Lemon, MeshData, Nurbs, NurbsCurve,
+        NurbsData, Ovus, Plane, Polygon, Quadric, Shape, Sphere, Torus, Triangle, TriangleMesh,
+        TrimLoop,
     };
     pub use strahl_math::{Aabb, DVec2, DVec3, Interval, Ray, Transform};
     pub use strahl_render::{

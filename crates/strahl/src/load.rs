@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::str::FromStr;
 use strahl_formats::scene::{self, SceneFormat, read_decompressed};
 use strahl_scene::{Diagnostic, Problems, Scene};
-use strahl_sdl::{FolderHost, Pinned, Recorder, Source, Stream, Writing, parse};
+use strahl_sdl::{FolderHost, Pinned, Recorder, Source, Stream, Texts, Writing, parse};
 
 /// A format that scenes are loaded from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -134,6 +134,8 @@ pub struct LoadOptions {
     pub writing: Writing,
     /// The only files that the scene may read; `None` searches them in the folders.
     pub pinned: Option<Pinned>,
+    /// Texts that are read instead of files, by the paths under which the files are found; that of the scene is the path given to [`load_path`].
+    pub texts: Texts,
     /// The value of `now`, in days since the beginning of 2000; `None` is the time of loading.
     pub now: Option<f64>,
     /// Whether to return [`Loaded::inputs`], which takes time to compute.
@@ -166,6 +168,9 @@ impl LoadOptions {
         }
         if let Some(files) = self.pinned {
             host = host.pinned(files);
+        }
+        if !self.texts.is_empty() {
+            host = host.with_texts(self.texts);
         }
         if let Some(days) = self.now {
             host = host.at_time(days);
@@ -237,6 +242,11 @@ pub fn load_path(path: &Path, options: LoadOptions) -> Loaded {
                 "give the .pov file that includes it; `--format pov` reads it as a scene anyway",
             ),
         );
+    }
+    if let Some(text) = options.texts.get(path) {
+        let (bytes, name) = (text.as_bytes().to_vec(), path.display().to_string());
+        let format = options.format.or_else(|| Format::of_path(path));
+        return load_bytes(bytes, &name, format.unwrap_or(Format::Pov), options);
     }
     match options.format.or_else(|| Format::of_path(path)) {
         Some(Format::Pov) => match open(path) {

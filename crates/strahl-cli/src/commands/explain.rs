@@ -3,6 +3,11 @@ use crate::explain::{Chosen, Pixel, Shown, dot, explanation, json, text};
 use crate::input::{Input, render_options};
 use crate::output::say;
 use crate::report::{Failure, Reporter};
+use std::path::Path;
+use std::sync::Arc;
+use strahl::prelude::{Output, RenderOptions, RenderScene, Session, Threads};
+use strahl::scene::FileId;
+use strahl_view::{PicturePage, Text};
 
 /// `strahl explain`: prints the ray tree of a pixel.
 pub(crate) fn explain(args: &ExplainArgs) -> Result<(), Failure> {
@@ -10,7 +15,10 @@ pub(crate) fn explain(args: &ExplainArgs) -> Result<(), Failure> {
     let input = Input::new(scene_file, format, &args.pov, args.picture.size)?;
     let (scene, _) = input.compiled(input.still(), &args.accelerator, &Reporter::new(false))?;
     let options = render_options(&scene, &args.picture);
-    let (x, y) = args.pixel;
+    let Some((x, y)) = args.pixel else {
+        say!("{}", whole(args, &input, scene, &options)?);
+        return Ok(());
+    };
     if x >= options.width || y >= options.height {
         let (w, h) = (options.width, options.height);
         return Err(Failure::new(format!(
@@ -30,7 +38,7 @@ pub(crate) fn explain(args: &ExplainArgs) -> Result<(), Failure> {
         )));
     }
     let pixel = Pixel {
-        at: args.pixel,
+        at: (x, y),
         size: (options.width, options.height),
         sampling: options.sampling,
         tree: &tree,
@@ -51,4 +59,39 @@ pub(crate) fn explain(args: &ExplainArgs) -> Result<(), Failure> {
     };
     say!("{printed}");
     Ok(())
+}
+
+/// A page with the whole picture, its objects and the trees of some pixels.
+fn whole(
+    args: &ExplainArgs,
+    input: &Input<'_>,
+    scene: RenderScene,
+    options: &RenderOptions,
+) -> Result<String, Failure> {
+    if args.format != ExplainForm::Html {
+        return Err(Failure::new(
+            "which pixel? Give --pixel X,Y; only --format html shows a whole picture",
+        ));
+    }
+    let session = Session::new(Threads::All).map_err(Failure::new)?;
+    let mut view = Arc::new(scene).view(options.width, options.height);
+    (view.sampling, view.seed) = (options.sampling, options.seed);
+    view.trace = options.trace;
+    let picture = session.picture(&view, &Output::default());
+    let film = picture.map_err(Failure::new)?.film;
+    let sources = view.scene().sources();
+    let names = (0..).map_while(|number| sources.name(FileId(number)));
+    // Those that are built in, and the standard input, are no files.
+    let texts: Vec<(String, Text)> = names
+        .filter_map(|name| Some((name.to_owned(), Text::read(Path::new(name)).ok()?)))
+        .collect();
+    let page = PicturePage {
+        title: &input.name(),
+        language: "en",
+        texts: &texts,
+        chosen: &[],
+        trees: args.trees,
+    };
+    page.write(&session, &view, &film.pixels)
+        .map_err(Failure::new)
 }

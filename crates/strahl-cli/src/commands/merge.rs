@@ -6,7 +6,7 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::time::Instant;
-use strahl::formats::image::{WriteOptions, write_bytes};
+use strahl::formats::image::WriteOptions;
 use strahl_farm::Merged;
 
 /// The statistics of a merged picture: the keys of `render`'s that have a meaning here.
@@ -95,10 +95,5 @@ fn statistics(merged: &Merged, args: &MergeArgs) -> Result<(), Failure> {
             sha256: &sha256,
         },
     };
-    let mut json = serde_json::to_vec_pretty(&stats).map_err(Failure::new)?;
-    json.push(b'\n');
-    match path.as_os_str() == "-" {
-        true => output::bytes(&json),
-        false => write_bytes(path, &json).map_err(Failure::new),
-    }
+    output::json(path, &stats)
 }

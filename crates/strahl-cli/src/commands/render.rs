@@ -1,6 +1,7 @@
 use crate::animation::Animation;
 use crate::args::RenderArgs;
 use crate::input::{DEFAULT_SIZE, Input, Kept, LoadTimes, Moment, render_options, threads};
+use crate::profile::{self, Sampler, Seconds};
 use crate::progress::Watch;
 use crate::report::{Failure, Reporter};
 use crate::stats::{RenderTimes, Stats};
@@ -9,7 +10,7 @@ use crate::{interrupt, output, terminal, tile, work};
 use std::path::Path;
 use std::rc::Rc;
 use std::time::Instant;
-use strahl::formats::image::{Picture, Window, WriteOptions, write_bytes};
+use strahl::formats::image::{Picture, Window, WriteOptions};
 use strahl::tracing::{Film, RenderError, RenderOptions, RenderScene, Rendered, TileOrder};
 use strahl_farm::TileInfo;
 
@@ -84,12 +85,30 @@ impl Job<'_> {
         }
         interrupt::would_lose("no picture was written");
         let mut watch = Watch::new(self.args.quiet, 1);
+        let sampler = self.args.profile.is_some().then(Sampler::start);
+        watch.activities = sampler.as_ref().map(Sampler::activities);
         let traced = self.trace(self.input.still(), &watch)?;
         let write_start = Instant::now();
         self.write(&traced, target)?;
         let write = write_start.elapsed().as_secs_f64();
         watch.finish();
         self.statistics(&traced, write)?;
+        if let (Some(sampler), Some(file)) = (sampler, &self.args.profile) {
+            let seconds = Seconds {
+                load: traced.times.load,
+                compile: traced.times.compile,
+                trace: traced.trace,
+                write,
+            };
+            let report = sampler.report(&traced.scene);
+            let threads = traced.rendered.threads;
+            profile::write(
+                &report,
+                &self.input.name(),
+                (threads, seconds),
+                file.as_deref(),
+            )?;
+        }
         let (film, trace) = (&traced.rendered.film, traced.trace);
         let rays = traced.rendered.rays.total();
         self.reporter.say(&format!(
@@ -304,12 +323,7 @@ impl Job<'_> {
             traced.times,
             times,
         );
-        let mut json = serde_json::to_vec_pretty(&stats).map_err(Failure::new)?;
-        json.push(b'\n');
-        match path.as_os_str() == "-" {
-            true => output::bytes(&json),
-            false => write_bytes(path, &json).map_err(Failure::new),
-        }
+        output::json(path, &stats)
     }
 }
 

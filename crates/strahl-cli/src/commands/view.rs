@@ -35,12 +35,8 @@ pub(crate) fn view(args: &ViewArgs) -> Result<(), Failure> {
     let (format, pov) = (args.format, args.pov.clone());
     let load = move |request: &Request| {
         let input = match Input::new(Some(&request.path), format, &pov, request.size) {
-            Ok(input) => input.recording(true),
+            Ok(input) => input.recording(true).with_texts(request.texts.clone()),
             Err(failure) => return failed(&failure),
-        };
-        let input = match &request.text {
-            Some(text) => input.with_text(text),
-            None => input,
         };
         let still = input.still();
         input.read_staged(Moment {

@@ -8,7 +8,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, mpsc};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
-use strahl::tracing::Progress;
+use strahl::tracing::{Activities, Progress};
 
 /// The activity while tiles are traced.
 const RENDERING: &str = "rendering";
@@ -29,6 +29,8 @@ pub(crate) struct Watch {
     state: Arc<Mutex<State>>,
     /// The thread that updates the display, and the channel that ends it.
     ticker: Option<(mpsc::Sender<()>, JoinHandle<()>)>,
+    /// Where the threads that trace tell what they are doing, if somebody wants to know.
+    pub(crate) activities: Option<Arc<Activities>>,
 }
 
 #[derive(Debug)]
@@ -88,7 +90,11 @@ impl Watch {
             trace_start: now,
         }));
         let ticker = (!quiet).then(|| tick(Arc::clone(&state), terminal));
-        Self { state, ticker }
+        Self {
+            state,
+            ticker,
+            activities: None,
+        }
     }
 
     fn state(&self) -> MutexGuard<'_, State> {
@@ -235,6 +241,10 @@ impl Progress for Watch {
         let mut state = self.state();
         state.rays += rays;
         state.done += 1;
+    }
+
+    fn activities(&self) -> Option<&Activities> {
+        self.activities.as_deref()
     }
 
     fn cancelled(&self) -> bool {

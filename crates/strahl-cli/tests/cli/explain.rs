@@ -411,3 +411,26 @@ fn json_is_the_librarys() {
         assert!(printed.contains("\"source\": \"scene.pov:"));
     }
 }
+
+/// One pixel, or the whole picture with the trees of some pixels, as a page that needs nothing else.
+#[test]
+fn pages_have_everything_in_them() {
+    let folder = pov("sphere { 0, 1 pigment { rgb x } } light_source { -9*z, 1 }");
+    let page = |args: &[&str]| {
+        let all = ["scene.pov", "--size", "40x30", "--format", "html"];
+        text(folder.path(), &[&all, args].concat())
+    };
+    let pixel = page(&["--pixel", "22,13"]);
+    assert!(pixel.contains("\"pixel\":[22,13]") && !pixel.contains("base64,"));
+    let picture = page(&["--trees", "6"]);
+    assert!(picture.contains("data:image/png;base64,") && picture.contains("rgb x"));
+    let trees = picture.matches("\"pixel\":[").count();
+    assert!((3..=6).contains(&trees), "{trees}");
+    for html in [pixel, picture] {
+        assert!(html.starts_with("<!doctype html>") && html.contains("scene.pov"));
+        assert!(!html.contains("src=\"") && !html.contains("href=\""));
+    }
+    let output = strahl(folder.path(), &["explain", "scene.pov"]);
+    assert!(!output.status.success());
+    assert!(stderr(&output).contains("--pixel X,Y"));
+}

@@ -7,6 +7,7 @@ mod explain;
 mod factors;
 mod lecture;
 mod pictures;
+mod profile;
 mod questions;
 mod safety;
 mod submit;

@@ -27,20 +27,25 @@ impl Pass {
         let looks = Looks::of_leaves(looks, todo.body.unwrap_or(0));
         let visible = visible(todo.visibility);
         let filled = flags & Prim::FILLED != 0;
-        // The inside belongs to the whole, so a filled solid stays one.
-        let parts = if filled {
+        let mut inside = filled
+            .then(|| inside::of(todo.object, &todo.transform))
+            .flatten();
+        // The inside belongs to the whole: if it is not known by itself, a filled solid stays one. Otherwise one part has it.
+        let parts = if filled && inside.is_none() {
             vec![node]
         } else {
             clipped_parts(node)
         };
+        let mut flags = flags;
         for part in parts {
             match Csg::try_new(part) {
                 Err(error) => return self.invalid(todo, "CSG object", &error),
                 Ok(csg) => group.add_shape(Arc::new(csg).into(), looks.clone(), visible, flags),
             }
-        }
-        if filled && let Some(used) = group.shapes.last_mut() {
-            used.inside = inside::of(todo.object, &todo.transform).map(Box::new);
+            if let (Some(inside), Some(used)) = (inside.take(), group.shapes.last_mut()) {
+                used.inside = Some(Box::new(inside));
+                flags &= !Prim::FILLED;
+            }
         }
     }
 

@@ -8,7 +8,7 @@ use crate::walk::WalkEvent;
 /// What a search does with the primitives that its ray may hit.
 pub(super) trait Query {
     /// Whether primitives with these flags matter.
-    fn wants(flags: u8) -> bool;
+    fn wants(&self, flags: u8) -> bool;
 
     /// The part of a group that has all primitives that matter, if there is a separate accelerator for it.
     fn part(_group: &RenderGroup) -> Option<&Part> {
@@ -17,15 +17,15 @@ pub(super) trait Query {
 
     /// Whether the first hit on a primitive with these flags, if it has only one element, can be taken without further checks.
     #[inline(always)]
-    fn is_plain(flags: u8) -> bool {
-        !Self::ALL && Self::is_plain_flat(flags)
+    fn is_plain(&self, flags: u8) -> bool {
+        Self::HAS_FAST_SEARCH && self.is_plain_flat(flags)
     }
 
     /// The same for a flat primitive, which a ray hits at most once.
     #[inline(always)]
-    fn is_plain_flat(flags: u8) -> bool {
+    fn is_plain_flat(&self, flags: u8) -> bool {
         let mixed = flags & (Prim::TRANSMITS | Prim::STOPS) == Prim::TRANSMITS | Prim::STOPS;
-        flags & Prim::FILTERED == 0 && !mixed && Self::wants(flags)
+        flags & Prim::FILTERED == 0 && !mixed && self.wants(flags)
     }
 
     /// Takes a hit and returns the new upper end of the range, `-inf` to end the search.
@@ -37,8 +37,12 @@ pub(super) trait Query {
     /// Whether any hit will do.
     const ANY: bool = false;
 
+    /// Whether groups of one kind of primitive are searched in a loop of their own. Each loop is compiled once for each instruction set, so
+    /// only the frequent queries have them.
+    const HAS_FAST_SEARCH: bool = !Self::ALL && !Self::WATCHES;
+
     /// Whether hits on elements with a transmitting (or opaque) material matter; called only for primitives with both kinds.
-    fn wants_hit(transmits: bool) -> bool;
+    fn wants_hit(&self, transmits: bool) -> bool;
 
     /// Whether [`Query::tell`] is to be called; if not, it costs nothing.
     const WATCHES: bool = false;
@@ -55,7 +59,7 @@ pub(super) struct Closest {
 impl Query for Closest {
     const ALL: bool = false;
 
-    fn wants(_: u8) -> bool {
+    fn wants(&self, _: u8) -> bool {
         true
     }
 
@@ -69,35 +73,40 @@ impl Query for Closest {
         }
     }
 
-    fn wants_hit(_: bool) -> bool {
+    fn wants_hit(&self, _: bool) -> bool {
         true
     }
 }
 
-/// Finds the closest hit and records the traversal.
+/// Finds the closest hit for an explanation: on any surface or on opaque ones only, with or without a record of the traversal. Tests are
+/// made one by one.
 pub(super) struct Watched<'e> {
     pub(super) closest: Closest,
-    pub(super) events: &'e mut Vec<WalkEvent>,
+    /// Whether only opaque surfaces count: those that block a shadow ray.
+    pub(super) opaque: bool,
+    pub(super) events: Option<&'e mut Vec<WalkEvent>>,
 }
 
 impl Query for Watched<'_> {
     const ALL: bool = false;
     const WATCHES: bool = true;
 
-    fn wants(flags: u8) -> bool {
-        Closest::wants(flags)
+    fn wants(&self, flags: u8) -> bool {
+        !self.opaque || flags & Prim::STOPS != 0
     }
 
     fn take(&mut self, hit: Hit, t_max: f64) -> f64 {
         self.closest.take(hit, t_max)
     }
 
-    fn wants_hit(transmits: bool) -> bool {
-        Closest::wants_hit(transmits)
+    fn wants_hit(&self, transmits: bool) -> bool {
+        !(self.opaque && transmits)
     }
 
     fn tell(&mut self, event: WalkEvent) {
-        self.events.push(event);
+        if let Some(events) = &mut self.events {
+            events.push(event);
+        }
     }
 }
 
@@ -110,7 +119,7 @@ pub(super) struct AnyOpaque {
 impl Query for AnyOpaque {
     const ALL: bool = false;
 
-    fn wants(flags: u8) -> bool {
+    fn wants(&self, flags: u8) -> bool {
         flags & Prim::STOPS != 0
     }
 
@@ -125,27 +134,8 @@ impl Query for AnyOpaque {
         f64::NEG_INFINITY
     }
 
-    fn wants_hit(transmits: bool) -> bool {
+    fn wants_hit(&self, transmits: bool) -> bool {
         !transmits
-    }
-}
-
-/// The closest hit on an opaque surface: what blocks a shadow ray.
-pub(super) struct ClosestOpaque(pub(super) Closest);
-
-impl Query for ClosestOpaque {
-    const ALL: bool = false;
-
-    fn wants(flags: u8) -> bool {
-        AnyOpaque::wants(flags)
-    }
-
-    fn take(&mut self, hit: Hit, t_max: f64) -> f64 {
-        self.0.take(hit, t_max)
-    }
-
-    fn wants_hit(transmits: bool) -> bool {
-        AnyOpaque::wants_hit(transmits)
     }
 }
 
@@ -157,7 +147,7 @@ pub(super) struct Transmitting<'h> {
 impl Query for Transmitting<'_> {
     const ALL: bool = true;
 
-    fn wants(flags: u8) -> bool {
+    fn wants(&self, flags: u8) -> bool {
         flags & Prim::TRANSMITS != 0
     }
 
@@ -170,7 +160,7 @@ impl Query for Transmitting<'_> {
         t_max
     }
 
-    fn wants_hit(transmits: bool) -> bool {
+    fn wants_hit(&self, transmits: bool) -> bool {
         transmits
     }
 }

@@ -105,7 +105,10 @@ impl<Q: Query> GroupVisitor<'_, '_, '_, Q> {
         let plain = is_polygon
             && prim.visible & self.search.class != 0
             && prim.flags & Prim::MASKED == 0
-            && Q::is_plain_flat(prim.flags & !Prim::FILTERED);
+            && self
+                .search
+                .query
+                .is_plain_flat(prim.flags & !Prim::FILTERED);
         let PrimKind::Shape(index) = prim.kind() else {
             return self.visit(id, t_max);
         };
@@ -183,9 +186,9 @@ impl<Q: Query> GroupVisitor<'_, '_, '_, Q> {
     fn is_plain(&self, id: u32, curved: bool) -> bool {
         let prim = self.group.prims.at(id);
         let plain = if curved {
-            Q::is_plain(prim.flags)
+            self.search.query.is_plain(prim.flags)
         } else {
-            Q::is_plain_flat(prim.flags)
+            self.search.query.is_plain_flat(prim.flags)
         };
         prim.visible & self.search.class != 0 && plain
     }
@@ -207,7 +210,11 @@ impl<Q: Query> GroupVisitor<'_, '_, '_, Q> {
     #[inline]
     fn take_filtered(&mut self, id: u32, t: f64, uv: [f64; 2], t_max: f64) -> f64 {
         let prim = self.group.prims.at(id);
-        if prim.visible & self.search.class == 0 || !Q::is_plain_flat(prim.flags & !Prim::FILTERED)
+        if prim.visible & self.search.class == 0
+            || !self
+                .search
+                .query
+                .is_plain_flat(prim.flags & !Prim::FILTERED)
         {
             return self.visit(id, t_max);
         }

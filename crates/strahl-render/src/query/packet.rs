@@ -3,6 +3,7 @@
 
 use super::kinds::{AnyOpaque, Closest, Query};
 use super::{From, GroupVisitor, NONE, Search, Tracer};
+use crate::activity::{Phase, Slot};
 use crate::blocks::{Block, BlockOfLeaf, Blocks, Fetched, Flats, LeafClass, PacketCulls};
 use crate::hit::{Hit, Origin, RayClass};
 use crate::scene::{RenderGroup, RenderScene};
@@ -17,6 +18,38 @@ use strahl_simd::Isa;
 
 /// For fewer rays the culling test of a block does not pay.
 const FEW: u32 = 3;
+
+/// Evaluates an expression with the visitor of a single ray: `of_lane!(self, lane, t_max, visitor => expression)`. A macro,
+/// because a closure would not be compiled for the vector instructions of its caller.
+macro_rules! of_lane {
+    ($self:ident, $lane:expr, $t_max:expr, $visitor:ident => $body:expr) => {{
+        let lane = $lane % PACKET;
+        let mut search = Search {
+            scene: $self.scene,
+            scratch: $self.scratch,
+            stats: $self.stats,
+            slot: $self.slot,
+            class: $self.class,
+            parts: $self.parts,
+            query: &mut $self.queries[lane],
+        };
+        let from: From<'_> = $self.asked.from[lane].map(|o| (o, o.id));
+        let mut $visitor = GroupVisitor {
+            search: &mut search,
+            group: $self.group,
+            blocks: $self.blocks,
+            ray: &$self.asked.rays[lane],
+            shear: $self.shears.get(lane).unwrap_or(&RayShear::UNUSED),
+            range_min: $self.asked.min,
+            from,
+            from_prim: $self.from_prims[lane],
+            base: 0,
+            t_max: $t_max,
+            plain: $self.plain,
+        };
+        $body
+    }};
+}
 
 impl Tracer<'_> {
     /// [`Tracer::closest_hit`] for several rays, at most [`PACKET`], which should be close to each other: the same hits, found
@@ -134,10 +167,12 @@ impl Tracer<'_> {
             lines = PacketLines::new(asked.rays, max_abs);
             culls.lines = Some(&lines);
         }
+        self.slot.enter(Phase::Traversal);
         let mut visitor = Together {
             scene: self.scene,
             scratch: &mut self.scratch,
             stats: &mut nested,
+            slot: &self.slot,
             class,
             parts,
             group,
@@ -148,7 +183,7 @@ impl Tracer<'_> {
             culls,
             plain: group
                 .common
-                .is_some_and(|(visible, flags)| visible & class != 0 && Q::is_plain(flags)),
+                .is_some_and(|(visible, flags)| visible & class != 0 && queries[0].is_plain(flags)),
             queries,
         };
         let mut packet = Packet {
@@ -169,11 +204,8 @@ impl Tracer<'_> {
             for (lane, ray) in asked.rays.iter().enumerate().take(PACKET) {
                 let range = Interval::new(asked.min, packet.t_max[lane]);
                 if range.max > f64::NEG_INFINITY {
-                    let mut one = OfLane {
-                        visitor: &mut visitor,
-                        lane,
-                    };
-                    accelerator.traverse(ray, range, &mut one, &mut stats);
+                    of_lane!(visitor, lane, range.max, one =>
+                        accelerator.traverse(ray, range, &mut one, &mut stats));
                 }
             }
         }
@@ -208,6 +240,7 @@ struct Together<'v, 's, Q> {
     scratch: &'v mut Scratch,
     /// Of the searches in instanced groups.
     stats: &'v mut TraversalStats,
+    slot: &'v Slot,
     class: u8,
     parts: bool,
     group: &'s RenderGroup,
@@ -219,37 +252,6 @@ struct Together<'v, 's, Q> {
     culls: PacketCulls<'v>,
     plain: bool,
     queries: &'v mut [Q; PACKET],
-}
-
-/// Evaluates an expression with the visitor of a single ray: `of_lane!(self, lane, t_max, visitor => expression)`. A macro,
-/// because a closure would not be compiled for the vector instructions of its caller.
-macro_rules! of_lane {
-    ($self:ident, $lane:expr, $t_max:expr, $visitor:ident => $body:expr) => {{
-        let lane = $lane % PACKET;
-        let mut search = Search {
-            scene: $self.scene,
-            scratch: $self.scratch,
-            stats: $self.stats,
-            class: $self.class,
-            parts: $self.parts,
-            query: &mut $self.queries[lane],
-        };
-        let from: From<'_> = $self.asked.from[lane].map(|o| (o, o.id));
-        let mut $visitor = GroupVisitor {
-            search: &mut search,
-            group: $self.group,
-            blocks: $self.blocks,
-            ray: &$self.asked.rays[lane],
-            shear: $self.shears.get(lane).unwrap_or(&RayShear::UNUSED),
-            range_min: $self.asked.min,
-            from,
-            from_prim: $self.from_prims[lane],
-            base: 0,
-            t_max: $t_max,
-            plain: $self.plain,
-        };
-        $body
-    }};
 }
 
 impl<Q: Query> Together<'_, '_, Q> {
@@ -367,24 +369,5 @@ impl<Q: Query> PacketVisitor for Together<'_, '_, Q> {
                 }
             }
         }
-    }
-}
-
-/// The visitor for one ray of a packet, for accelerators that can't traverse packets.
-struct OfLane<'t, V> {
-    visitor: &'t mut V,
-    lane: usize,
-}
-
-impl<V: PacketVisitor> Visitor for OfLane<'_, V> {
-    const ANY: bool = V::ANY;
-
-    fn visit(&mut self, id: u32, t_max: f64) -> f64 {
-        self.visitor.visit(id, self.lane, t_max)
-    }
-
-    #[inline(always)]
-    fn visit_leaf<I: Isa>(&mut self, isa: I, leaf: &Leaf<'_>, t_max: f64) -> f64 {
-        self.visitor.visit_leaf(isa, leaf, self.lane, t_max)
     }
 }

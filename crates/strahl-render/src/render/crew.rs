@@ -207,6 +207,9 @@ impl Turn<'_, '_> {
                     break;
                 };
                 let result = trace(&mut tracer, tiles[index]);
+                if tracer.left_tile() {
+                    break;
+                }
                 crew.progress.tile(result.counts.total());
                 let ready = lock(&shared).take(index, result, &feeds[index]);
                 if let Some(sender) = &sender {

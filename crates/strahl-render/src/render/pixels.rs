@@ -2,10 +2,12 @@
 
 use super::probe::Seen;
 use super::{RenderOptions, Samples, TileResult};
+use crate::activity::Phase;
 use crate::camera::PrimaryRays;
 use crate::cost::PixelCost;
 use crate::coverage::Coverage;
 use crate::film::{PixelInfo, Region};
+use crate::observer::RayKind;
 use crate::render::Progress;
 use crate::sampling::Sample;
 use crate::scene::RenderScene;
@@ -75,6 +77,8 @@ pub(super) struct PixelTracer<'s> {
     ahead: Ahead,
     /// For the alpha channel: what the last sample showed of the background.
     coverage: Option<Coverage>,
+    /// Whether the last tile was left half done, because the render is cancelled.
+    left: bool,
 }
 
 impl<'s> PixelTracer<'s> {
@@ -85,8 +89,14 @@ impl<'s> PixelTracer<'s> {
         options: &'s RenderOptions,
         progress: &'s dyn Progress,
     ) -> Self {
+        let mut tree = TreeTracer::new(scene, options.trace);
+        if let Some(activities) = progress.activities() {
+            tree.tracer.slot = activities.slot();
+            tree.tracer.slot.enter(Phase::Sampling);
+            tree.tracer.slot.ray(RayKind::Primary);
+        }
         Self {
-            tree: TreeTracer::new(scene, options.trace),
+            tree,
             rays,
             options,
             progress,
@@ -98,7 +108,25 @@ impl<'s> PixelTracer<'s> {
                 .alpha
                 .then(|| Coverage::new(scene.background.clone(), scene.background_alpha)),
             together: options.follows_together(rays),
+            left: false,
         }
+    }
+
+    /// Whether the last tile was left half done, because the render is cancelled. What was traced of it is of no use.
+    pub(super) const fn left_tile(&self) -> bool {
+        self.left
+    }
+
+    /// Whether to leave the tile here: it may take seconds, and nobody wants it any more.
+    fn leaves(&mut self) -> bool {
+        self.left |= self.progress.cancelled();
+        self.left
+    }
+}
+
+impl Drop for PixelTracer<'_> {
+    fn drop(&mut self) {
+        self.tree.tracer.slot.idle();
     }
 }
 
@@ -126,7 +154,7 @@ impl PixelTracer<'_> {
         };
         let mut values = Vec::with_capacity(tile.pixels() as usize);
         let place = self.options.sampling.common_place(pass);
-        for y in tile.y..tile.y + tile.height {
+        'tile: for y in tile.y..tile.y + tile.height {
             if let Some(place) = place
                 && self.together
                 && (y - tile.y).is_multiple_of(SQUARE)
@@ -135,6 +163,9 @@ impl PixelTracer<'_> {
             }
             let end = tile.x + tile.width;
             for left in (tile.x..end).step_by(SQUARE as usize) {
+                if self.leaves() {
+                    break 'tile;
+                }
                 let width = (end - left).min(SQUARE);
                 self.blind = sight.is_empty(left, y);
                 if self.blind
@@ -173,6 +204,9 @@ impl PixelTracer<'_> {
         let mut costs = Vec::new();
         let mut packet = ArrayVec::<(usize, Option<Ray>), PACKET>::new();
         for (index, &(x, y)) in points.iter().enumerate() {
+            if self.leaves() {
+                break;
+            }
             self.blind = sight.is_some_and(|sight| sight.is_empty(x, y));
             let options = self.options;
             let (dx, dy) = match corners {
@@ -382,6 +416,9 @@ impl PixelTracer<'_> {
         self.ahead.start(tile.x, y);
         let bottom = (tile.y + tile.height).min(y + SQUARE);
         for left in (tile.x..tile.x + tile.width).step_by(SQUARE as usize) {
+            if self.leaves() {
+                return;
+            }
             if sight.is_empty(left, y) {
                 continue;
             }

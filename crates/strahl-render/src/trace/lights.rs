@@ -2,9 +2,10 @@
 
 use super::together::KnownLights;
 use super::{Branch, TreeTracer};
+use crate::activity::Phase;
 use crate::hit::Hit;
 use crate::layers;
-use crate::observer::{LightTerm, TraceObserver};
+use crate::observer::{LightTerm, RayKind, TraceObserver};
 use crate::shadow::{Shadow, ShadowRay};
 use crate::surface::Surface;
 use strahl_math::{DVec3, Ray};
@@ -77,6 +78,7 @@ impl TreeTracer<'_> {
             if O::DETAILED {
                 term.shadow_ray = Some(ray);
             }
+            self.tracer.slot.shadow(light);
             if let Some(area) = &scene_light.area {
                 // Copies: what is passed by reference stays in memory, and only the rare area lights need that.
                 let (sample, mut seen) = (sample, term);
@@ -85,6 +87,7 @@ impl TreeTracer<'_> {
                 );
                 term = seen;
                 if area.illumination {
+                    self.back_to_shading(branch.kind, hit);
                     return term;
                 }
             } else {
@@ -102,6 +105,7 @@ impl TreeTracer<'_> {
                 };
                 self.count_shadow(&mut term, shadow);
             }
+            self.back_to_shading(branch.kind, hit);
         }
         if let Some(fog) = self.fog_before(scene_light, &sample, surface, branch) {
             term.visible *= fog;
@@ -140,6 +144,13 @@ impl TreeTracer<'_> {
             sample.shadow_direction.length()
         };
         Some(scene.fog_along(&ray, length).0)
+    }
+
+    /// The shadow rays of a hit are traced.
+    #[inline(always)]
+    fn back_to_shading(&self, kind: RayKind, hit: &Hit) {
+        self.tracer.slot.ray(kind);
+        self.tracer.slot.enter_for(Phase::Shading, hit.id);
     }
 
     /// Takes what a shadow ray brought.

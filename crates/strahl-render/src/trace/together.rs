@@ -2,8 +2,10 @@
 //! are the same to the last bit as those of single rays.
 
 use super::{Branch, TreeTracer};
+use crate::activity::Phase;
 use crate::hit::RayClass;
 use crate::media::MediaStack;
+use crate::observer::RayKind;
 use crate::surface::Surface;
 use arrayvec::ArrayVec;
 use strahl_accel::PACKET;
@@ -77,6 +79,7 @@ impl<'s> TreeTracer<'s> {
                 .collect();
         }
         let range = Interval::FORWARD;
+        self.tracer.slot.ray(RayKind::Primary);
         let mut hits = [None; PACKET];
         self.tracer
             .closest_hits(rays, range, &[None; PACKET], RayClass::Camera, &mut hits);
@@ -90,6 +93,7 @@ impl<'s> TreeTracer<'s> {
         let mut all = ArrayVec::<Ahead<'s>, PACKET>::new();
         for (ray, hit) in rays.iter().zip(&hits) {
             if let Some(hit) = hit {
+                self.tracer.slot.enter_for(Phase::Surface, hit.id);
                 let surface =
                     Surface::at(scene, &Branch::primary(ray, eye), hit, &self.media, self.uv);
                 all.push(Ahead {
@@ -105,6 +109,7 @@ impl<'s> TreeTracer<'s> {
         for light in 0..scene.lights.len().min(u32::BITS as usize) {
             self.shadows_together(light, &mut all);
         }
+        self.tracer.slot.ray(RayKind::Primary);
         let mut ahead = all.iter_mut();
         let mut colors = ArrayVec::new();
         for (ray, hit) in rays.iter().zip(hits) {
@@ -159,6 +164,7 @@ impl<'s> TreeTracer<'s> {
         if rays.len() < FEW {
             return;
         }
+        self.tracer.slot.shadow(number);
         let stopped = self.tracer.all_occluded(&rays, min, t_max, &from, number);
         for (lane, place) in places[..rays.len()].iter().enumerate() {
             let lights = &mut ahead[*place].lights;

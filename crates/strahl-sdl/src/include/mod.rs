@@ -59,6 +59,16 @@ pub(crate) fn find(name: &str) -> Option<(&'static str, &'static str)> {
     known.copied()
 }
 
+/// The text of a built-in include file, as it is read where no file of the user's has the name; case is ignored.
+///
+/// ```
+/// assert!(strahl_sdl::built_in("colors.inc").is_some_and(|text| text.contains("Red")));
+/// assert!(strahl_sdl::built_in("ball.inc").is_none());
+/// ```
+pub fn built_in(name: &str) -> Option<&'static str> {
+    find(name).map(|(_, text)| text)
+}
+
 /// The name that our `functions.inc` gives to the internal function with this number.
 pub(crate) fn internal_function(number: u32) -> Option<&'static str> {
     let (_, text) = find("functions.inc")?;

@@ -5,11 +5,15 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::io::{ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::SystemTime;
 
 /// The only files that a scene may read: the path for each way of asking, name in the scene, and name of the file with the name in it
 /// (empty for fonts and installed files).
 pub type Pinned = BTreeMap<(Lookup, String, String), PathBuf>;
+
+/// Texts that are read instead of files, by the paths under which the files are found.
+pub type Texts = BTreeMap<PathBuf, Arc<str>>;
 
 /// Receives the messages of scenes.
 type Listener = dyn FnMut(Stream, &str) + Send;
@@ -28,6 +32,7 @@ pub struct FolderHost {
     on_message: Option<Box<Listener>>,
     now: Option<f64>,
     pinned: Option<Pinned>,
+    texts: Texts,
 }
 
 impl std::fmt::Debug for FolderHost {
@@ -53,6 +58,7 @@ impl FolderHost {
             on_message: None,
             now: None,
             pinned: None,
+            texts: Texts::new(),
         }
     }
 
@@ -107,6 +113,13 @@ impl FolderHost {
         self
     }
 
+    /// Reads these texts instead of the files that are found under their paths.
+    #[must_use]
+    pub fn with_texts(mut self, texts: Texts) -> Self {
+        self.texts = texts;
+        self
+    }
+
     /// A pinned file, if files are pinned.
     fn find_pinned(
         &self,
@@ -158,6 +171,9 @@ impl FolderHost {
 
     fn read(&self, path: &Path) -> Result<Option<Source>, HostError> {
         let shown = path.display().to_string();
+        if let Some(text) = self.texts.get(path) {
+            return Ok(Some(Source::new(shown, &**text)));
+        }
         let io = |error: std::io::Error| HostError::Io {
             name: shown.clone(),
             message: error.to_string(),
@@ -265,6 +281,20 @@ pub fn present() -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn texts_are_read_instead_of_the_files_found_under_their_paths() {
+        let root = tempfile::tempdir().unwrap();
+        let at = |name: &str| root.path().join(name);
+        fs::write(at("a.inc"), "old").unwrap();
+        let from = at("scene.pov").display().to_string();
+        let texts = Texts::from([(at("a.inc"), "new".into()), (at("b.inc"), "no file".into())]);
+        let mut host = FolderHost::new([]).with_texts(texts);
+        let mut read = |name: &str| host.load(name, &from).unwrap().into_bytes().unwrap();
+        assert_eq!(read("a.inc"), b"new");
+        assert_eq!(read("b.inc"), b"no file");
+        assert!(host.load("c.inc", &from).is_err());
+    }
 
     #[test]
     fn pinned_files_are_the_only_ones() {

@@ -1,0 +1,94 @@
+//! The rays of a tree: those that wait, those that a hit sends, and those that were traced.
+
+use crate::hit::{Origin, RayClass};
+use crate::media::MediaStack;
+use crate::observer::{RayKind, Share};
+use strahl_math::{DVec3, Ray};
+use strahl_shade::{Color, SpectralPart};
+
+/// A ray still to be traced.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Branch {
+    pub(crate) ray: Ray,
+    pub(crate) origin: Option<Origin>,
+    pub(crate) kind: RayKind,
+    /// Its visibility class: transmitted rays see the same objects as the ray that sent them.
+    pub(crate) class: RayClass,
+    pub(crate) parent: u32,
+    pub(crate) depth: u32,
+    /// The part of the spectrum it stands for.
+    pub(crate) part: SpectralPart,
+    /// Whether it stands for a part of the spectrum while its parent stands for all of it.
+    pub(crate) divided: bool,
+    pub(crate) weight: f64,
+    pub(crate) share: Share,
+    pub(crate) media: MediaStack,
+}
+
+impl Branch {
+    /// The root of a tree, in the media the eye is in.
+    pub(super) fn primary(ray: &Ray, media: MediaStack) -> Self {
+        Self {
+            ray: *ray,
+            origin: None,
+            kind: RayKind::Primary,
+            class: RayClass::Camera,
+            parent: 0,
+            depth: 1,
+            part: SpectralPart::WHITE,
+            divided: false,
+            weight: 1.0,
+            share: Share::ALL,
+            media,
+        }
+    }
+}
+
+/// A branch: a ray sent by a hit.
+pub(super) struct Offshoot {
+    pub(super) kind: RayKind,
+    /// How much it contributes to the hit.
+    pub(super) share: Share,
+    /// The factor of the weight.
+    pub(super) coefficient: f64,
+    pub(super) direction: DVec3,
+    pub(super) part: SpectralPart,
+    /// Whether it stands for a part of the spectrum while the hit's ray stands for all of it.
+    pub(super) divided: bool,
+    /// Whether it stays on its side of the surface although it is no reflection ray: a part of the spectrum that is totally
+    /// reflected where the rest is refracted.
+    pub(super) returned: bool,
+}
+
+impl Offshoot {
+    #[inline]
+    pub(super) fn new(kind: RayKind, share: Share, direction: DVec3, part: SpectralPart) -> Self {
+        Self {
+            kind,
+            share,
+            coefficient: share.factor.max_component(),
+            direction,
+            part,
+            divided: false,
+            returned: false,
+        }
+    }
+}
+
+/// A ray that was traced and waits for its branches.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Node {
+    pub(super) parent: u32,
+    pub(super) kind: RayKind,
+    /// The hit's own contribution, or the background.
+    pub(super) local: Color,
+    /// How much it contributes to its parent.
+    pub(super) share: Share,
+    /// The contributions of its branches.
+    pub(super) reflected: Color,
+    pub(super) transmitted: Color,
+    /// The attenuation by the medium in front of the hit.
+    pub(super) attenuation: Color,
+    /// The light that fog and rainbows in front of the hit add.
+    pub(super) fog: Color,
+}
