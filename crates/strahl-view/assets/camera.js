@@ -48,3 +48,24 @@ export function dolly(camera, pivot, factor) {
   const center = middle(camera, pivot);
   return { ...camera, eye: plus(center, scaled(minus(camera.eye, center), factor)) };
 }
+
+// Where a camera sees a point: `u` and `v` in lengths of `right` and `up` from the middle, and `depth` in lengths of `direction`, 1 for an
+// orthographic camera. `ahead` is false for what lies behind the eye.
+export function seen({ eye, direction, right, up, orthographic }, point) {
+  const from = minus(point, eye);
+  // Solves from = a·direction + b·right + c·up.
+  const volume = inner(direction, cross(right, up));
+  const a = inner(from, cross(right, up)) / volume;
+  const b = inner(direction, cross(from, up)) / volume;
+  const c = inner(direction, cross(right, from)) / volume;
+  const depth = orthographic ? 1 : a;
+  return { u: b / depth, v: c / depth, depth, ahead: depth > 1e-6 };
+}
+
+// A point moved parallel to the picture, by lengths of `right` and `up` as they are seen.
+export function shifted(camera, point, du, dv) {
+  const { depth } = seen(camera, point);
+  // Behind the eye it moves as far as it would before it.
+  const by = Math.max(Math.abs(depth), 1e-3);
+  return plus(plus(point, camera.right, du * by), camera.up, dv * by);
+}

@@ -1,10 +1,11 @@
-// The text of the scene, with line numbers, coloured by strahl's lexer.
+// The text of the scene, with line numbers, coloured by strahl's lexer. Each file is a tab; changed texts are tried in this page.
 
+import { linesOf } from "./lines.js";
 import { el } from "./numbers.js";
 import { word } from "./words.js";
 
 export class Code {
-  // `actions`: source(file) -> promise, pieces(text) -> promise, pick(file, line), changed(text or null), save(file, text), open(file, line)
+  // `actions`: source(file) -> promise, pieces(text) -> promise, pick(file, line), changed(file, text or null), save(file, text), open(file, line)
   constructor(box, actions) {
     this.box = box;
     this.actions = actions;
@@ -13,14 +14,21 @@ export class Code {
     this.lines = el("div", { class: "lines", id: "lines", tabindex: "0" });
     box.append(this.tabs, this.tools, this.lines);
     this.files = [];
+    this.builtIn = new Set();
     this.said = [];
     this.file = null;
     this.text = null;
-    this.writing = false;
+    // The texts that are tried, by file.
+    this.tried = new Map();
     this.lines.addEventListener("click", (event) => {
       const line = event.target.closest?.(".text-line");
       if (line && !this.writing) this.actions.pick(this.file, Number(line.dataset.line));
     });
+  }
+
+  // Whether the text that is shown is being changed.
+  get writing() {
+    return this.tried.has(this.file);
   }
 
   setOptions(options) {
@@ -29,43 +37,51 @@ export class Code {
   }
 
   async setFiles(files, version) {
-    const gone = !files.includes(this.file);
-    this.files = files;
-    if (gone) this.file = files[0] ?? null;
+    const names = files.map((one) => one.name);
+    const gone = !names.includes(this.file);
+    this.files = names;
+    this.builtIn = new Set(files.filter((one) => one.built_in).map((one) => one.name));
+    if (gone) this.file = names[0] ?? null;
     this.showTabs();
     if (this.version !== version || gone) {
       this.version = version;
-      if (!this.writing) await this.load();
+      if (!this.area) await this.load();
     }
+  }
+
+  // Another scene has other texts.
+  forget() {
+    this.tried.clear();
+    this.area = null;
+    this.version = null;
   }
 
   showTabs() {
     this.tabs.replaceChildren(...this.files.map((file) => el("button", {
-      type: "button", class: "tab", role: "tab", title: file, "aria-selected": String(file === this.file), text: file.split(/[\\/]/).pop(),
-      onclick: () => this.choose(file),
+      type: "button", class: "tab", role: "tab", title: this.builtIn.has(file) ? `${file}: ${word("builtIn")}` : file, "aria-selected": String(file === this.file),
+      text: `${this.tried.has(file) ? "● " : ""}${file.split(/[\\/]/).pop()}`, onclick: () => this.choose(file),
     })));
   }
 
   async choose(file) {
-    if (file === this.file || this.writing) return;
+    if (file === this.file) return;
     this.file = file;
+    this.area = null;
     this.showTabs();
     await this.load();
   }
 
   showTools() {
-    const main = this.file === this.files[0];
     const tools = [];
-    if (this.text !== null && (main || this.options?.edit)) {
-      tools.push(el("button", { type: "button", class: "tool", id: "try", "aria-pressed": String(this.writing), text: this.writing ? word("stopEdit") : word("edit"), onclick: () => this.write(!this.writing) }));
+    const button = (text, action, more = {}) => el("button", { type: "button", class: "tool", text, onclick: action, ...more });
+    const builtIn = this.builtIn.has(this.file);
+    if (this.text !== null && !builtIn) {
+      tools.push(button(this.writing ? word("stopEdit") : word("edit"), () => this.write(!this.writing), { id: "try", "aria-pressed": String(this.writing) }));
     }
-    if (this.writing && this.options?.edit) {
-      tools.push(el("button", { type: "button", class: "tool", id: "save", text: word("save"), onclick: () => this.actions.save(this.file, this.area.value) }));
-    }
+    if (this.writing && this.options?.edit) tools.push(button(word("save"), () => this.actions.save(this.file, this.area.value), { id: "save" }));
     if (this.writing && !this.options?.edit) tools.push(el("span", { class: "dim", text: word("tryHint") }));
-    if (this.options?.editor && this.file) {
-      tools.push(el("button", { type: "button", class: "tool", text: word("openEditor"), onclick: () => this.actions.open(this.file, this.under ?? 1) }));
-    }
+    if (builtIn) tools.push(el("span", { class: "dim", text: word("builtIn") }));
+    if (this.options?.editor && this.file && !builtIn) tools.push(button(word("openEditor"), () => this.actions.open(this.file, this.under ?? 1)));
     this.tools.replaceChildren(...tools);
     this.tools.hidden = tools.length === 0;
   }
@@ -74,7 +90,8 @@ export class Code {
     const file = this.file;
     if (!file) return;
     try {
-      const { text, pieces } = await this.actions.source(file);
+      const tried = this.tried.get(file);
+      const { text, pieces } = tried === undefined ? await this.actions.source(file) : { text: tried, ...(await this.actions.pieces(tried)) };
       if (file !== this.file) return;
       this.text = text;
       this.render(text, pieces);
@@ -88,38 +105,13 @@ export class Code {
   }
 
   render(text, pieces) {
-    const rows = this.rows(text, pieces);
+    const rows = linesOf(text, pieces);
     if (!this.writing) {
       this.lines.replaceChildren(...rows);
       return;
     }
+    if (!this.area) this.open(text);
     this.writer.replaceChildren(...rows, this.area);
-  }
-
-  rows(text, pieces) {
-    const lines = [];
-    let line = el("span", { class: "line-text" });
-    const end = () => {
-      const count = lines.length + 1;
-      if (!line.childNodes.length) line.append("\u200b");
-      lines.push(el("div", { class: "text-line", "data-line": count }, el("span", { class: "line-number", text: String(count) }), line));
-      line = el("span", { class: "line-text" });
-    };
-    const piece = (part, kind) => {
-      part.split("\n").forEach((one, i) => {
-        if (i) end();
-        const clean = one.replace(/\r$/, "");
-        if (clean) line.append(kind ? el("span", { class: `k${kind}`, text: clean }) : clean);
-      });
-    };
-    let at = 0;
-    for (let i = 0; i + 1 < pieces.length; i += 2) {
-      piece(text.slice(at, at + pieces[i]), pieces[i + 1]);
-      at += pieces[i];
-    }
-    piece(text.slice(at), 0);
-    end();
-    return lines;
   }
 
   line(number) {
@@ -132,10 +124,7 @@ export class Code {
     this.lines.querySelector(".under")?.classList.remove("under");
     this.under = line;
     this.underFile = file;
-    if (file === this.file && line) {
-      const row = this.line(line);
-      row?.classList.add("under");
-    }
+    if (file === this.file && line) this.line(line)?.classList.add("under");
   }
 
   setMarked(file, line) {
@@ -146,6 +135,7 @@ export class Code {
   async show(file, line) {
     if (this.files.includes(file)) await this.choose(file);
     if (file !== this.file) return;
+    this.setUnder(null, null);
     this.setUnder(file, line);
     this.line(line)?.scrollIntoView({ block: "center", behavior: "smooth" });
   }
@@ -155,68 +145,89 @@ export class Code {
     this.showSaid();
   }
 
+  // Errors and warnings, in the margin and behind the line.
   showSaid() {
     for (const row of this.lines.querySelectorAll(".bad, .warned")) {
       row.classList.remove("bad", "warned");
       row.removeAttribute("title");
+      delete row.dataset.said;
     }
     for (const one of this.said) {
       if (one.file !== this.file || !one.line) continue;
       const row = this.line(one.line);
-      row?.classList.add(one.severity === "error" ? "bad" : "warned");
-      row?.setAttribute("title", one.message);
+      if (!row || row.classList.contains("bad")) continue;
+      row.classList.remove("warned");
+      row.classList.add(one.severity === "error" ? "bad" : "warned");
+      row.title = one.message;
+      row.dataset.said = one.message;
     }
   }
 
   // Begins or ends changing the text.
   write(on) {
-    this.writing = on;
-    if (!on) {
+    const file = this.file;
+    clearTimeout(this.timer);
+    if (on) {
+      const rows = [...this.lines.childNodes];
+      this.tried.set(file, this.text);
+      this.open(this.text);
+      this.writer.append(...rows, this.area);
+      this.area.focus({ preventScroll: true });
+    } else {
+      this.tried.delete(file);
       this.area = null;
-      this.actions.changed(null);
+      this.actions.changed(file, null);
       this.load();
-      return;
     }
+    this.showTabs();
+    this.showTools();
+  }
+
+  // A field over the coloured text.
+  open(text) {
     this.area = el("textarea", { spellcheck: "false", autocomplete: "off", "aria-label": word("scene"), id: "writer" });
-    this.area.value = this.text;
+    this.area.value = text;
     this.writer = el("div", { class: "writer" });
-    this.writer.append(...this.lines.childNodes, this.area);
     this.lines.replaceChildren(this.writer);
     this.area.addEventListener("input", () => this.typed());
     this.area.addEventListener("keydown", (event) => {
       event.stopPropagation();
-      if (event.key === "Tab") {
+      // Escape leaves the field, so that Tab may be a part of the text.
+      if (event.key === "Escape") this.tabs.querySelector('[aria-selected="true"]')?.focus();
+      if (event.key === "Tab" && !event.shiftKey) {
         event.preventDefault();
         this.area.setRangeText("  ", this.area.selectionStart, this.area.selectionEnd, "end");
         this.typed();
       }
     });
-    this.area.focus({ preventScroll: true });
-    this.showTools();
   }
 
   async typed() {
-    const text = this.area.value;
+    const { area, file } = this;
+    const text = area.value;
     this.text = text;
+    this.tried.set(file, text);
     clearTimeout(this.timer);
-    this.timer = setTimeout(() => this.actions.changed(text), 350);
+    this.timer = setTimeout(() => this.actions.changed(file, text), 350);
     if (this.coloring) return;
     this.coloring = true;
     try {
       const { pieces } = await this.actions.pieces(text);
-      if (this.writing && this.area.value === text) this.render(text, pieces);
-      else if (this.writing) this.render(this.area.value, []);
-    } finally {
+      if (this.area === area) this.render(area.value, area.value === text ? pieces : []);
+    } catch { /* the text is too long to be coloured */ } finally {
       this.coloring = false;
-      if (this.writing && this.area.value !== text) this.typed();
-      this.showSaid();
-      this.area?.focus({ preventScroll: true });
+      if (this.area === area) {
+        if (area.value !== text) this.typed();
+        this.showSaid();
+        area.focus({ preventScroll: true });
+      }
     }
   }
 
   saved() {
-    this.writing = false;
+    this.tried.delete(this.file);
     this.area = null;
+    this.showTabs();
     this.load();
   }
 }

@@ -4,7 +4,7 @@ import { el } from "./numbers.js";
 
 export class Film {
   constructor(id) {
-    this.canvas = el("canvas", { class: "film", id, width: 1, height: 1 });
+    this.canvas = el("canvas", { class: "film", id, role: "img", width: 1, height: 1 });
     this.context = this.canvas.getContext("2d", { alpha: false, willReadFrequently: true });
     this.number = 0;
     this.finished = false;

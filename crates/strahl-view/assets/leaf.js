@@ -6,5 +6,6 @@ import { setLanguage } from "./words.js";
 
 setLanguage(document.documentElement.lang);
 const leaf = document.getElementById("leaf");
-const pixelData = JSON.parse(document.getElementById("explanation").textContent);
-leaf.append(el("h1", { text: leaf.dataset.title }), showPixel(pixelData));
+const pixelData = JSON.parse(document.getElementById("data").textContent);
+if (leaf.dataset.title) leaf.append(el("h1", { text: leaf.dataset.title }));
+leaf.append(showPixel(pixelData));

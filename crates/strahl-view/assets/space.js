@@ -1,16 +1,20 @@
 // The scene from outside, rendered by strahl, with the rays of a pixel drawn over it; and the way of its ray through the accelerator.
 
-import { cross, dolly, inner, length, minus, pan, plus, scaled, turn, unit } from "./camera.js";
+import { cross, dolly, inner, length, minus, pan, plus, scaled, seen, turn, unit } from "./camera.js";
 import { el, number } from "./numbers.js";
 import { Film } from "./film.js";
+import { Gestures } from "./gestures.js";
 import { SvgPen } from "./svg.js";
+import { drawWay } from "./way.js";
 import { word } from "./words.js";
 
 const INK = { primary: "--primary", reflection: "--reflection", transparency: "--transparency", shadow: "--shadow" };
 
 export class Space {
-  constructor(link, actions) {
+  // `actions`: onRay(number), toast(text), table(), svg(text).
+  constructor(link, lights, actions) {
     this.link = link;
+    this.lights = lights;
     this.actions = actions;
     this.film = new Film("space");
     this.over = el("canvas", {});
@@ -23,10 +27,24 @@ export class Space {
     this.isOpen = false;
     this.accelerator = null;
     new ResizeObserver(() => { if (this.isOpen) this.render(); }).observe(this.box);
-    this.box.addEventListener("pointerdown", (event) => { this.box.setPointerCapture(event.pointerId); this.drag = event; });
-    this.box.addEventListener("pointerup", () => { this.drag = null; });
-    this.box.addEventListener("pointermove", (event) => this.moved(event));
-    this.box.addEventListener("contextmenu", (event) => event.preventDefault());
+    const near = (event) => {
+      const { left, top } = this.box.getBoundingClientRect();
+      return this.lights.at(event.clientX - left, event.clientY - top, (point) => this.project3(point), event.pointerType === "mouse" ? 14 : 26);
+    };
+    this.gestures = new Gestures(this.box, {
+      accepts: () => this.camera !== undefined && this.camera !== null,
+      start: (event) => {
+        this.button = event.button;
+        const light = this.lights.on && this.kind === "space" ? near(event) : null;
+        this.holds = light !== null;
+        if (light !== null) this.lights.choose(light);
+      },
+      drag: (event, dx, dy) => this.moved(event, dx, dy),
+      pinch: (factor, x, y, dx, dy) => {
+        const size = this.box.clientHeight;
+        this.go(dolly(pan(this.camera, this.middle, dx / size, dy / size, 1), this.middle, 1 / factor));
+      },
+    });
     this.box.addEventListener("wheel", (event) => {
       event.preventDefault();
       this.go(dolly(this.camera, this.middle, Math.exp(event.deltaY * 0.0012)));
@@ -97,9 +115,10 @@ export class Space {
       button("|◀", () => { this.at = 0; this.draw(); }), button("◀", () => this.step(-1)),
       button(this.timer ? `⏸ ${word("pause")}` : `▶ ${word("play")}`, () => this.play()), button("▶", () => this.step(1)), button(word("all"), () => { this.at = -1; this.draw(); }),
       button(orthographic ? word("perspective") : word("orthographic"), () => this.project()),
+      el("button", { type: "button", class: "tool small", id: "near", text: "◎", title: word("near"), "aria-label": word("near"), onclick: () => this.near() }),
       button("SVG", () => this.actions.svg(this.svg())));
     if (kind === "walk") {
-      const kinds = ["", ...(this.accelerators ?? ["bvh", "bvh2", "spheres", "grid", "grids", "octree", "list"])];
+      const kinds = ["", ...(this.accelerators ?? [])];
       const select = el("select", { id: "walk-accelerator", "aria-label": word("accelerator"), onchange: () => { this.accelerator = select.value || null; this.walk = null; this.at = -1; this.render(); } },
         ...kinds.map((one) => el("option", { value: one, text: one || word("own"), selected: (this.accelerator ?? "") === one })));
       tools.append(select, button(word("table"), () => this.actions.table()));
@@ -139,6 +158,32 @@ export class Space {
     this.camera = { eye, direction, right: scaled(right, 0.42), up: scaled(top, 0.42), orthographic: false };
   }
 
+  // Goes near what the step is about, without turning; without a step, to where everything is seen.
+  near() {
+    const target = this.target();
+    if (!target) {
+      this.build();
+      this.outside();
+      this.go(this.camera);
+      return;
+    }
+    const [center, size] = target;
+    const { direction, right, up, orthographic } = this.camera;
+    this.middle = center;
+    const grow = orthographic ? size / length(up) : 1;
+    const away = orthographic ? inner(minus(center, this.camera.eye), unit(direction)) : (size * length(direction)) / length(up);
+    this.go({ eye: plus(center, unit(direction), -away), direction, right: scaled(right, grow), up: scaled(up, grow), orthographic });
+  }
+
+  // The middle of what the step is about, and how far to see around it.
+  target() {
+    if (this.at < 0) return null;
+    if (this.kind === "space") return [this.steps[this.at].to, this.radius * 0.35];
+    const place = this.walk?.events.slice(0, this.at + 1).findLast((event) => event.place)?.place;
+    if (place?.min) return [scaled(plus(place.min, place.max), 0.5), length(minus(place.max, place.min)) * 1.3];
+    return place?.center ? [place.center, place.radius * 1.5] : null;
+  }
+
   project() {
     const away = inner(minus(this.middle, this.camera.eye), unit(this.camera.direction));
     const factor = this.camera.orthographic ? 1 / away : away;
@@ -148,13 +193,15 @@ export class Space {
     this.box.closest(".panel-body")?.replaceWith(this.panel(this.kind));
   }
 
-  moved(event) {
-    if (!this.drag) return;
+  moved(event, dx, dy) {
     const size = this.box.clientHeight;
-    const [dx, dy] = [event.clientX - this.drag.clientX, event.clientY - this.drag.clientY];
-    this.drag = event;
+    if (this.holds) {
+      this.lights.drag(this.camera, (2 * dx) / size, (-2 * dy) / size);
+      this.draw();
+      return;
+    }
     const camera = { ...this.camera, pole: this.picture.own_camera.up };
-    const shift = event.shiftKey || event.buttons === 2 || event.buttons === 4;
+    const shift = event.shiftKey || this.button === 2 || this.button === 1;
     this.go(shift ? pan(camera, this.middle, dx / size, dy / size, 1) : turn(camera, this.middle, (-dx / size) * 3, (-dy / size) * 3));
   }
 
@@ -254,17 +301,9 @@ export class Space {
 
   // A point of the scene on the canvas; null behind the eye.
   project3(point) {
-    const { eye, direction, right, up, orthographic } = this.camera;
-    const v = minus(point, eye);
-    // Solves v = a·direction + b·right + c·up.
-    const volume = inner(direction, cross(right, up));
-    const a = inner(v, cross(right, up)) / volume;
-    const b = inner(direction, cross(v, up)) / volume;
-    const c = inner(direction, cross(right, v)) / volume;
-    if (!orthographic && a <= 1e-6) return null;
-    const depth = orthographic ? 1 : a;
+    const { u, v, ahead } = seen(this.camera, point);
     const { clientWidth: w, clientHeight: h } = this.box;
-    return [w / 2 + (b / depth) * (h / 2), h / 2 - (c / depth) * (h / 2)];
+    return ahead ? [w / 2 + u * (h / 2), h / 2 - v * (h / 2)] : null;
   }
 
   draw() {
@@ -326,7 +365,8 @@ export class Space {
       pen.fillText(text, at[0] + 5, at[1] - 5);
     };
     this.drawEye(line, label);
-    if (this.kind === "walk") this.drawWalk(line);
+    if (this.kind === "space") this.lights.paint(pen, (point) => this.project3(point));
+    if (this.kind === "walk") this.drawWalk(pen, line, label);
     else {
       const last = this.at < 0 ? this.steps.length - 1 : this.at;
       this.steps.forEach((step, index) => {
@@ -404,53 +444,15 @@ export class Space {
     }
   }
 
-  drawWalk(line) {
+  drawWalk(pen, line, label) {
     const events = this.walk?.events ?? [];
-    const last = this.at < 0 ? events.length - 1 : Math.min(this.at, events.length - 1);
-    const from = this.walk?.ray.origin;
-    if (from) {
-      const direction = this.walk.ray.direction;
-      const t = this.walk.hit?.t ?? (this.radius * 2) / length(direction);
-      line(from, plus(from, direction, t), "#ffffff", 1.6);
-    }
-    const many = last > 60;
-    for (let index = 0; index <= last; index += 1) {
-      const event = events[index];
-      const now = index === last && this.at >= 0;
-      const leaf = /leaf|cell/.test(event.event);
-      const color = now ? "#ffb648" : leaf ? "#7fd1a3" : "#8fb4f4";
-      const width = now ? 2.4 : many ? 0.5 : 0.9;
-      if (event.place?.min) box(event.place.min, event.place.max).forEach(([a, b]) => line(a, b, color, width));
-      else if (event.place?.center) rings(event.place.center, event.place.radius).forEach(([a, b]) => line(a, b, color, width));
-    }
+    if (this.walk) drawWay({ pen, line, label, project: (point) => this.project3(point) }, this.walk, this.at, this.radius * 2);
     for (const button of this.events.querySelectorAll("[aria-current]")) button.removeAttribute("aria-current");
     if (this.at >= 0) {
       const button = this.events.children[this.at];
       button?.setAttribute("aria-current", "true");
       button?.scrollIntoView({ block: "nearest" });
     }
-    if (this.walk) this.say.replaceChildren(el("strong", { text: this.walk.accelerator }), el("div", { text: `${this.walk.steps} ${word("steps")}, ${this.walk.tests} ${word("tests")}${this.at >= 0 ? ` · ${word("stepOf")} ${this.at + 1} ${word("of")} ${events.length}` : ""}` }));
+    if (this.walk) this.say.replaceChildren(el("strong", { text: this.walk.accelerator }), el("div", { text: `${this.walk.steps} ${word(this.walk.steps === 1 ? "stepOf" : "stepCount")}, ${this.walk.tests} ${word(this.walk.tests === 1 ? "test" : "testCount")}${this.at >= 0 ? ` · ${word("stepOf")} ${this.at + 1} ${word("of")} ${events.length}` : ""}` }));
   }
-}
-
-function box(low, high) {
-  const corner = (i) => [0, 1, 2].map((axis) => ((i >> axis) & 1 ? high[axis] : low[axis]));
-  const edges = [];
-  for (let i = 0; i < 8; i += 1) for (const bit of [1, 2, 4]) if (!(i & bit)) edges.push([corner(i), corner(i | bit)]);
-  return edges;
-}
-
-function rings(center, radius) {
-  const edges = [];
-  for (let axis = 0; axis < 3; axis += 1) {
-    let last = null;
-    for (let i = 0; i <= 32; i += 1) {
-      const point = [...center];
-      point[(axis + 1) % 3] += radius * Math.cos((i * Math.PI) / 16);
-      point[(axis + 2) % 3] += radius * Math.sin((i * Math.PI) / 16);
-      if (last) edges.push([last, point]);
-      last = point;
-    }
-  }
-  return edges;
 }

@@ -1,19 +1,22 @@
-// The picture: move, zoom, pick pixels, turn the camera.
+// The picture: move, zoom, pick pixels, turn the camera, drag lights.
 
+import { dolly, pan, seen, turn } from "./camera.js";
 import { el, number } from "./numbers.js";
 import { Film } from "./film.js";
-import { dolly, pan, turn } from "./camera.js";
+import { Gestures } from "./gestures.js";
+import { word } from "./words.js";
 
 export class Stage {
-  // `actions`: pick(x, y), hover(x, y), leave(), camera(camera), values(region), toggled(), pivot(x, y) -> promise of a point or null.
-  constructor(box, actions) {
+  // `actions`: pick(x, y), hover(x, y), leave(), camera(camera), current() -> the camera, values(region), pivot(x, y) -> promise of a point or null.
+  constructor(box, lights, actions) {
     this.box = box;
+    this.lights = lights;
     this.actions = actions;
     this.film = new Film("picture");
     this.side = new Film("side");
     this.side.canvas.hidden = true;
     this.over = el("canvas", { id: "over" });
-    this.swipe = el("div", { id: "swipe", role: "slider", tabindex: "0", hidden: true });
+    this.swipe = el("div", { id: "swipe", role: "slider", tabindex: "0", "aria-valuemin": "0", "aria-valuemax": "100", hidden: true });
     this.progress = el("div", { id: "progress" });
     box.append(this.film.canvas, this.side.canvas, this.over, this.swipe, this.progress);
     this.scale = 1;
@@ -25,13 +28,19 @@ export class Stage {
     this.picked = null;
     this.marks = null;
     this.linear = null;
-    this.pointers = new Map();
     new ResizeObserver(() => { if (this.fitted) this.fit(); else this.place(); }).observe(box);
-    box.addEventListener("pointerdown", (event) => this.down(event));
-    box.addEventListener("pointermove", (event) => this.move(event));
-    box.addEventListener("pointerup", (event) => this.up(event));
-    box.addEventListener("pointercancel", (event) => this.pointers.delete(event.pointerId));
-    box.addEventListener("pointerleave", () => actions.leave());
+    this.gestures = new Gestures(box, {
+      accepts: (event) => this.isPicture(event),
+      start: (event) => this.start(event),
+      drag: (event, dx, dy) => this.drag(event, dx, dy),
+      pinch: (factor, x, y, dx, dy) => this.pinch(factor, x, y, dx, dy),
+      tap: (event) => this.tap(event),
+      hover: (event) => {
+        const at = this.isPicture(event) ? this.pixelAt(event) : null;
+        if (at) actions.hover(...at); else actions.leave();
+      },
+      leave: () => actions.leave(),
+    });
     box.addEventListener("wheel", (event) => this.wheel(event), { passive: false });
     this.swipe.addEventListener("pointerdown", (event) => { event.stopPropagation(); this.swipe.setPointerCapture(event.pointerId); this.swiping = true; });
     this.swipe.addEventListener("pointermove", (event) => { if (this.swiping) this.swipeTo(event.clientX); });
@@ -73,6 +82,8 @@ export class Stage {
     }
     const line = this.left + this.split * this.width * this.scale;
     this.swipe.style.left = `${line}px`;
+    this.swipe.setAttribute("aria-valuenow", Math.round(100 * this.split));
+    this.swipe.setAttribute("aria-label", word("swipe"));
     const cut = this.swipe.hidden ? 0 : this.split * this.side.canvas.width;
     this.side.canvas.style.clipPath = `inset(0 0 0 ${cut}px)`;
     this.film.canvas.style.clipPath = "";
@@ -118,80 +129,108 @@ export class Stage {
     return event.target === this.box || event.target.classList.contains("film");
   }
 
-  down(event) {
-    if (!this.isPicture(event) || event.button > 2) return;
-    this.box.setPointerCapture(event.pointerId);
-    this.pointers.set(event.pointerId, event);
-    this.moved = false;
-    this.start = { x: event.clientX, y: event.clientY };
+  start(event) {
     this.button = event.button;
-    if (this.turns(event)) {
+    this.pivot = null;
+    if (this.lights.on) {
+      const near = this.lights.at(...this.local(event), (point) => this.project(point), event.pointerType === "mouse" ? 16 : 28);
+      this.holds = near !== null;
+      if (near !== null) this.lights.choose(near);
+    } else if (this.turns(event)) {
       const at = this.pixelAt(event);
-      this.pivot = null;
       if (at) this.actions.pivot(...at).then((point) => { this.pivot = point; }, () => {});
     }
+  }
+
+  // A place of the window in the box.
+  local({ clientX, clientY }) {
+    const { left, top } = this.box.getBoundingClientRect();
+    return [clientX - left, clientY - top];
   }
 
   turns(event) {
     return this.turning !== event.altKey;
   }
 
-  move(event) {
-    if (this.pointers.size === 0) {
-      const at = this.isPicture(event) ? this.pixelAt(event) : null;
-      if (at) this.actions.hover(...at); else this.actions.leave();
-      return;
-    }
-    const last = this.pointers.get(event.pointerId);
-    if (!last) return;
-    const [dx, dy] = [event.clientX - last.clientX, event.clientY - last.clientY];
-    if (Math.hypot(event.clientX - this.start.x, event.clientY - this.start.y) > 3) this.moved = true;
-    if (this.pointers.size === 2) {
-      const other = [...this.pointers.values()].find((one) => one.pointerId !== event.pointerId);
-      const before = Math.hypot(last.clientX - other.clientX, last.clientY - other.clientY);
-      const now = Math.hypot(event.clientX - other.clientX, event.clientY - other.clientY);
-      const box = this.box.getBoundingClientRect();
-      if (before > 0) this.zoomTo((this.scale * now) / before, this.column(other.clientX), other.clientY - box.top);
-    } else if (this.moved) {
-      if (this.turns(event)) this.moveCamera(event, dx, dy);
-      else {
-        this.fitted = false;
-        this.left += dx;
-        this.top += dy;
-        this.place();
-      }
-    }
-    this.pointers.set(event.pointerId, event);
+  drag(event, dx, dy) {
+    if (this.lights.on && !event.altKey) {
+      const camera = this.camera();
+      if (camera) this.lights.drag(camera, ((2 * dx) / (this.width * this.scale)) * this.aspect, (-2 * dy) / (this.height * this.scale));
+    } else if (this.turns(event)) {
+      const shift = event.shiftKey || this.button === 2 || this.button === 1;
+      this.moveCamera((camera) => (shift ? this.panned(camera, dx, dy) : turn(camera, this.pivot, (-dx / this.size) * 3, (-dy / this.size) * 3)));
+    } else this.shift(dx, dy);
   }
 
-  moveCamera(event, dx, dy) {
+  // Two fingers: move and spread.
+  pinch(factor, x, y, dx, dy) {
+    if (this.lights.on) {
+      const camera = this.camera();
+      if (camera) this.lights.push(camera, factor);
+    } else if (this.turning) this.moveCamera((camera) => dolly(this.panned(camera, dx, dy), this.pivot, 1 / factor));
+    else {
+      this.shift(dx, dy);
+      const { top } = this.box.getBoundingClientRect();
+      this.zoomTo(this.scale * factor, this.column(x), y - top);
+    }
+  }
+
+  shift(dx, dy) {
+    this.fitted = false;
+    this.left += dx;
+    this.top += dy;
+    this.place();
+  }
+
+  tap(event) {
+    if (this.lights.on && this.holds) return;
+    const at = this.pixelAt(event);
+    if (!at) return;
+    // A finger doesn't hover.
+    if (event.pointerType !== "mouse") this.actions.hover(...at);
+    this.actions.pick(...at);
+  }
+
+  // The height of the picture on the screen.
+  get size() { return this.height * this.scale; }
+
+  panned(camera, dx, dy) {
+    return pan(camera, this.pivot, dx / this.size, dy / this.size, this.width / this.height);
+  }
+
+  moveCamera(change) {
     const camera = this.actions.current();
-    if (!camera) return;
-    const size = this.height * this.scale;
-    const shift = event.shiftKey || this.button === 2 || this.button === 1;
-    const aspect = this.width / this.height;
-    this.actions.camera(shift ? pan(camera, this.pivot, dx / size, dy / size, aspect) : turn(camera, this.pivot, (-dx / size) * 3, (-dy / size) * 3));
+    if (camera) this.actions.camera(change(camera));
   }
 
-  up(event) {
-    const had = this.pointers.delete(event.pointerId);
-    if (had && !this.moved && this.isPicture(event) && event.button === 0) {
-      const at = this.pixelAt(event);
-      if (at) this.actions.pick(...at);
-    }
+  // The camera, if it is one whose rays are straight lines to a plane.
+  camera() {
+    const camera = this.actions.current();
+    return camera && typeof camera.orthographic === "boolean" ? camera : null;
+  }
+
+  get aspect() { return this.film.message?.aspect ?? this.width / this.height; }
+
+  // Where a point of the scene is in the box; null if it is not to be seen.
+  project(point) {
+    const camera = this.camera();
+    if (!camera) return null;
+    const { u, v, ahead } = seen(camera, point);
+    return ahead ? [this.left + ((u / this.aspect + 1) / 2) * this.width * this.scale, this.top + ((1 - v) / 2) * this.size] : null;
   }
 
   wheel(event) {
     if (!this.isPicture(event)) return;
     event.preventDefault();
     const lines = event.deltaMode === 1 ? event.deltaY * 30 : event.deltaY;
-    if (this.turns(event)) {
-      const camera = this.actions.current();
-      if (camera) this.actions.camera(dolly(camera, this.pivot ?? this.actions.middle(), Math.exp(lines * 0.0012)));
-      return;
+    if (this.lights.on && !event.altKey) {
+      const camera = this.camera();
+      if (camera) this.lights.push(camera, Math.exp(-lines * 0.0012));
+    } else if (this.turns(event)) this.moveCamera((camera) => dolly(camera, this.pivot, Math.exp(lines * 0.0012)));
+    else {
+      const { top } = this.box.getBoundingClientRect();
+      this.zoomTo(this.scale * Math.exp(-lines * 0.0018), this.column(event.clientX), event.clientY - top);
     }
-    const box = this.box.getBoundingClientRect();
-    this.zoomTo(this.scale * Math.exp(-lines * 0.0018), this.column(event.clientX), event.clientY - box.top);
   }
 
   // Marks, the pixel that was picked, and the values of pixels that are large enough.
@@ -210,6 +249,7 @@ export class Stage {
       pen.drawImage(this.marks, this.left, this.top, this.width * this.scale, this.height * this.scale);
     }
     if (this.scale >= 64) this.drawValues(pen, clientWidth, clientHeight);
+    if (this.lights.on) this.lights.paint(pen, (point) => this.project(point));
     if (this.picked) {
       const [x, y] = this.picked;
       const size = Math.max(this.scale, 9);

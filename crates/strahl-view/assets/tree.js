@@ -104,11 +104,13 @@ function place(source, actions, inside = false) {
   if (!match) return el("span", { class: "place", text: source });
   const [, file, line] = match;
   const label = `${file.split(/[\\/]/).pop()}:${line}`;
-  if (!actions.onPlace) return el("span", { class: "place", text: label, title: source });
+  // Where there is no room, its beginning is left out, for which its box runs from right to left.
+  const text = el("bdi", { dir: "ltr", text: label });
+  if (!actions.onPlace) return el("span", { class: "place", title: source }, text);
   return el(inside ? "span" : "button", {
-    type: inside ? null : "button", class: "place way", title: source, text: label,
+    type: inside ? null : "button", class: "place way", title: source,
     onclick: (event) => { event.preventDefault(); event.stopPropagation(); actions.onPlace(file, Number(line)); },
-  });
+  }, text);
 }
 
 function showRay(ray, adds, most, byId, actions, sample) {
@@ -220,15 +222,18 @@ function modelLine(hit) {
   return box;
 }
 
+// A line of a formula: its sides, each a node of MathML or a list of nodes, between which a long line may be broken.
 function line(name, result, ...sides) {
-  return el("div", { class: "formula" }, swatch(result), el("span", { class: "name", text: name }), ...sides.map((side, i) => equation(i ? math("mrow", sign("="), side) : side)));
+  const parts = sides.flatMap((side, i) => [side].flat().map((part, j) => equation(i && !j ? math("mrow", sign("="), part) : part)));
+  return el("div", { class: "formula" }, swatch(result), el("span", { class: "name", text: name }), ...parts);
 }
 
 function obstacles(light) {
   const met = new Map();
   for (const shadow of light.shadow_rays) {
-    for (const one of shadow.met) {
-      const key = `${one.object}|${one.source}|${one.blocks}`;
+    // A ray meets a solid twice, and counts once.
+    const mine = new Map(shadow.met.map((one) => [`${one.object}|${one.source}|${one.blocks}`, one]).reverse());
+    for (const [key, one] of mine) {
       const known = met.get(key) ?? { ...one, count: 0 };
       known.count += 1;
       met.set(key, known);
@@ -292,6 +297,7 @@ function showLight(light, hit, actions) {
 }
 
 function appendTotal(body, ray, byId) {
+  // Each term is a part of its own, since there may be hundreds, behind a prism for instance.
   const terms = [math("mi", word("local"))];
   const values = [vector(ray.local)];
   const links = [];
@@ -299,8 +305,8 @@ function appendTotal(body, ray, byId) {
     const child = byId.get(id);
     if (!child) continue;
     const index = child.kind === "reflection" ? "r" : "t";
-    const symbols = product([symbol("k", index), symbol("X", index)]);
-    const numbers = product([vector(child.share), vector(child.total)]);
+    const symbols = math("mrow", sign("+"), product([symbol("k", index), symbol("X", index)]));
+    const numbers = math("mrow", sign("+"), product([vector(child.share), vector(child.total)]));
     for (const part of [symbols, numbers]) part.setAttribute("class", "link");
     links.push([symbols, id], [numbers, id]);
     terms.push(symbols);
@@ -308,17 +314,19 @@ function appendTotal(body, ray, byId) {
   }
   const plain = isGray(ray.attenuation) && ray.attenuation[0] === 1 && isBlack(ray.fog);
   if (ray.hit || ray.children.length) {
-    let names = sum(terms);
-    let numbers = sum(values);
     if (!plain) {
-      names = math("mrow", sign("("), names, sign(")"), sign("·"), math("mi", word("kept")));
-      numbers = math("mrow", sign("("), numbers, sign(")"), sign("·"), vector(ray.attenuation));
+      const around = (parts, factor) => {
+        parts[0] = math("mrow", sign("("), parts[0]);
+        parts.push(math("mrow", sign(")"), sign("·"), factor));
+      };
+      around(terms, math("mi", word("kept")));
+      around(values, vector(ray.attenuation));
       if (!isBlack(ray.fog)) {
-        names.append(sign("+"), math("mi", word("fog")));
-        numbers.append(sign("+"), vector(ray.fog));
+        terms.push(math("mrow", sign("+"), math("mi", word("fog"))));
+        values.push(math("mrow", sign("+"), vector(ray.fog)));
       }
     }
-    const shown = line(word("total"), ray.total, names, numbers, vector(ray.total, 5));
+    const shown = line(word("total"), ray.total, terms, values, vector(ray.total, 5));
     shown.classList.add("total");
     body.append(shown);
   }

@@ -1,12 +1,15 @@
 //! The files of the page, which are part of the program.
 
-use rust_embed::{Embed, EmbeddedFile};
+use rust_embed::Embed;
+#[cfg(feature = "server")]
+use rust_embed::EmbeddedFile;
 
 #[derive(Embed)]
 #[folder = "assets/"]
 struct Assets;
 
 /// A file of the page with its media type.
+#[cfg(feature = "server")]
 pub(crate) fn file(name: &str) -> Option<(&'static str, EmbeddedFile)> {
     let media_type = match name.rsplit_once('.')?.1 {
         "html" => "text/html; charset=utf-8",
@@ -24,7 +27,7 @@ pub(crate) fn text(name: &str) -> String {
     String::from_utf8(file.unwrap_or_default()).unwrap_or_default()
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "server"))]
 mod tests {
     use super::*;
 

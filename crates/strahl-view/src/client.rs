@@ -2,32 +2,36 @@
 
 mod files;
 mod messages;
+mod painting;
 mod questions;
 
 use crate::camera::camera_sdl;
-use crate::colors::{Look, srgb8};
+use crate::colors::Look;
 use crate::export::explanation_page;
-use crate::pictures::{End, Kind, News, Picture};
-use crate::protocol::{
-    Asked, COLORS, Channel, Curve, LINEAR, LONGEST_SIDE, LONGEST_TEXT, Settings, Slot, header,
-};
+use crate::lights::light_sdl;
+use crate::pictures::{News, Picture};
+use crate::protocol::{Asked, Channel, Curve, LONGEST_TEXT, Settings, Slot};
 use crate::scenes::Compiled;
 use crate::server::Hub;
 use crate::texts::pieces;
 use crate::walk::walk_json;
 use axum::extract::ws::{Message, WebSocket};
-use messages::{check, key_of, picture_message, scene_message, view_of};
+use messages::{accelerators, check, key_of, picture_message, scene_message, view_of};
 use questions::hover;
 use serde_json::{Value, json};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::Duration;
 use strahl::prelude::*;
+use strahl::sdl::Texts;
 use tokio::sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel};
 
-/// The most pixels whose linear values are sent at once.
-const MOST_LINEAR: u64 = 1 << 16;
+/// A page that takes no message for so long has gone, also if its connection is open.
+const PATIENCE: Duration = Duration::from_secs(60);
+/// The most bytes of texts that a page tries instead of files.
+const MOST_TEXT: usize = 4 * LONGEST_TEXT;
 
 /// A page.
 pub(crate) struct Client {
@@ -37,7 +41,8 @@ pub(crate) struct Client {
     path: PathBuf,
     /// The name of a scene that is built in.
     name: Option<String>,
-    text: Option<Arc<str>>,
+    /// The texts that the page tries instead of files.
+    texts: Texts,
     slots: HashMap<Slot, Shown>,
     news: UnboundedReceiver<(u64, u32, News)>,
     follower: UnboundedSender<(u64, u32, News)>,
@@ -88,7 +93,7 @@ impl Client {
             socket,
             path: scene,
             name,
-            text: None,
+            texts: Texts::new(),
             slots: HashMap::new(),
             news,
             follower,
@@ -121,7 +126,7 @@ impl Client {
                     Some(Ok(Message::Close(_)) | Err(_)) | None => return Ok(()),
                 },
                 Some((who, picture, news)) = self.news.recv() => self.tell(who, picture, news).await?,
-                Some(message) = self.answers.recv() => self.socket.send(message).await?,
+                Some(message) = self.answers.recv() => self.put(message).await?,
                 Ok(()) = changes.changed() => {
                     for slot in self.slots.keys().copied().collect::<Vec<_>>() {
                         self.show(slot).await?;
@@ -136,11 +141,13 @@ impl Client {
         self.number * 4 + slot as u64
     }
 
+    async fn put(&mut self, message: Message) -> Result<(), Gone> {
+        let sent = tokio::time::timeout(PATIENCE, self.socket.send(message)).await;
+        Ok(sent.map_err(|_| Gone)??)
+    }
+
     async fn send(&mut self, value: &Value) -> Result<(), Gone> {
-        Ok(self
-            .socket
-            .send(Message::Text(value.to_string().into()))
-            .await?)
+        self.put(Message::Text(value.to_string().into())).await
     }
 
     async fn complain(&mut self, message: &str) -> Result<(), Gone> {
@@ -150,7 +157,6 @@ impl Client {
 
     async fn hello(&mut self) -> Result<(), Gone> {
         let hub = &self.hub;
-        let accelerators = AcceleratorKind::ALL.iter().map(|kind| kind.name());
         let hello = json!({
             "type": "hello",
             "version": env!("CARGO_PKG_VERSION"),
@@ -158,7 +164,7 @@ impl Client {
             "edit": hub.edit,
             "editor": hub.editor.is_some(),
             "threads": hub.session.threads(),
-            "accelerators": accelerators.collect::<Vec<_>>(),
+            "accelerators": accelerators().collect::<Vec<_>>(),
             "shading": ShadingModel::ALL.map(|(name, _)| name),
         });
         self.send(&hello).await
@@ -179,16 +185,14 @@ impl Client {
                 let Some(path) = path else {
                     return self.complain(&format!("there is no scene `{scene}`")).await;
                 };
-                (self.path, self.name, self.text) = (path, Some(scene), None);
+                (self.path, self.name) = (path, Some(scene));
+                self.texts.clear();
                 self.show_all().await
             }
-            Asked::Text { text } => {
-                if text.as_ref().is_some_and(|text| text.len() > LONGEST_TEXT) {
-                    return self.complain("the text is too long").await;
-                }
-                self.text = text.map(Arc::from);
-                self.show_all().await
-            }
+            Asked::Text { file, text } => match self.try_text(file.as_deref(), text) {
+                Ok(()) => self.show_all().await,
+                Err(problem) => self.complain(&problem).await,
+            },
             Asked::Picture { slot, settings } => {
                 if let Err(problem) = check(&settings) {
                     let (kind, message) = ("error", problem);
@@ -196,8 +200,8 @@ impl Client {
                     return self.send(&message).await;
                 }
                 match self.slots.get_mut(&slot) {
-                    Some(shown) => shown.settings = settings,
-                    None => drop(self.slots.insert(slot, Shown::new(settings))),
+                    Some(shown) => shown.settings = *settings,
+                    None => drop(self.slots.insert(slot, Shown::new(*settings))),
                 }
                 self.show(slot).await
             }
@@ -242,6 +246,21 @@ impl Client {
                     serde_json::to_value(tree).map_err(|e| e.to_string())
                 })
             }
+            Asked::LightText { id, slot, light } => {
+                self.ask(id, slot, None, move |_, picture, _| {
+                    let light = picture.view.scene().lights().get(light);
+                    let light = light.ok_or("there is no such light")?;
+                    let none = "the light has no position";
+                    let text = light_sdl(light).ok_or(none)?;
+                    Ok(json!({ "text": text }))
+                })
+            }
+            Asked::ExportPicture {
+                id,
+                slot,
+                pixels,
+                language,
+            } => self.export_picture(id, slot, pixels, language),
             Asked::Export {
                 id,
                 slot,
@@ -273,6 +292,11 @@ impl Client {
         }
     }
 
+    /// The picture that a part of the page shows.
+    fn picture(&self, slot: Slot) -> Option<Arc<Picture>> {
+        self.slots.get(&slot)?.picture.clone()
+    }
+
     /// The name of the scene.
     fn title(&self) -> String {
         match &self.name {
@@ -295,7 +319,7 @@ impl Client {
             return Ok(());
         };
         let settings = &shown.settings;
-        let key = key_of(&self.path, self.text.as_ref(), settings, &self.hub.defaults);
+        let key = key_of(&self.path, &self.texts, settings, &self.hub.defaults);
         let (compiled, loading) = self.hub.scenes.want(&key);
         let told = (compiled.as_ref().map(|c| c.number), loading);
         let mut messages = vec![];
@@ -310,10 +334,20 @@ impl Client {
             .and_then(|c| Some((c.number, c.scene.as_ref()?, c.camera.as_ref()?)));
         let mut whole = None;
         if let Some((number, scene, camera)) = scene {
-            let view = view_of(scene, camera, settings, &self.hub);
+            let view = match view_of(scene, camera, settings, &self.hub) {
+                Ok(view) => view,
+                Err(problem) => {
+                    messages.push(json!({ "type": "error", "slot": slot, "message": problem }));
+                    for message in messages {
+                        self.send(&message).await?;
+                    }
+                    return Ok(());
+                }
+            };
             let kind = settings.channel.kind();
             let pictures = &self.hub.pictures;
-            let picture = pictures.follow(number, &view, kind, who, &self.follower);
+            let name = format!("{number} {:?}", settings.lights);
+            let picture = pictures.follow(&name, &view, kind, who, &self.follower);
             let is_new = shown
                 .picture
                 .as_ref()
@@ -353,140 +387,6 @@ impl Client {
             }
         }
         Ok(())
-    }
-
-    /// Passes news of a picture on to the page.
-    async fn tell(&mut self, who: u64, number: u32, news: News) -> Result<(), Gone> {
-        let shown = self
-            .slots
-            .iter_mut()
-            .find(|(slot, _)| self.number * 4 + **slot as u64 == who);
-        let Some((&slot, shown)) = shown else {
-            return Ok(());
-        };
-        let Some(picture) = shown.picture.clone().filter(|p| p.number == number) else {
-            return Ok(());
-        };
-        let channel = shown.look.channel;
-        // The scale of counts is known at the end.
-        let counts =
-            picture.kind == Kind::Costs || matches!(channel, Channel::Levels | Channel::Tests);
-        match news {
-            News::Part { .. } if counts => Ok(()),
-            News::Part { region, step } => {
-                let look = shown.look;
-                self.part(&picture, region, step, &look).await
-            }
-            News::End => {
-                if counts {
-                    self.scale(slot, &picture).await?;
-                }
-                let end = picture.canvas().end.clone();
-                let scale = self.slots.get(&slot).map(|shown| shown.look.scale);
-                let message = match end {
-                    Some(End::Finished {
-                        seconds,
-                        rays,
-                        sha256,
-                    }) => json!({
-                        "type": "done", "slot": slot, "picture": number, "seconds": seconds, "rays": rays, "sha256": sha256, "scale": scale,
-                    }),
-                    Some(End::Failed(message)) => {
-                        json!({ "type": "error", "slot": slot, "message": message })
-                    }
-                    None => return Ok(()),
-                };
-                self.send(&message).await
-            }
-        }
-    }
-
-    /// Finds the scale of counts, and sends the picture with it. A second picture of the same counts gets the same scale, so that equal colours
-    /// mean equal numbers.
-    async fn scale(&mut self, slot: Slot, picture: &Picture) -> Result<(), Gone> {
-        let partner = match slot {
-            Slot::Main => Some(Slot::Side),
-            Slot::Side => Some(Slot::Main),
-            Slot::Space => None,
-        };
-        let Some(channel) = self.slots.get(&slot).map(|shown| shown.look.channel) else {
-            return Ok(());
-        };
-        let mut scale = channel.scale(picture);
-        let other = partner.and_then(|partner| {
-            let shown = self.slots.get(&partner)?;
-            let other = shown.picture.clone()?;
-            let ended = matches!(other.canvas().end, Some(End::Finished { .. }));
-            let alike = shown.look.channel == channel && ended;
-            alike.then_some((partner, other, shown.look.scale))
-        });
-        if let Some((partner, other, known)) = other {
-            scale = scale.max(channel.scale(&other));
-            if known != scale
-                && let Some(shown) = self.slots.get_mut(&partner)
-            {
-                shown.look.scale = scale;
-                let look = shown.look;
-                self.part(&other, other.region(), 1, &look).await?;
-                self.send(&json!({ "type": "scale", "slot": partner, "scale": scale }))
-                    .await?;
-            }
-        }
-        if let Some(shown) = self.slots.get_mut(&slot) {
-            shown.look.scale = scale;
-            let look = shown.look;
-            self.part(picture, picture.region(), 1, &look).await?;
-        }
-        Ok(())
-    }
-
-    /// Sends the colours of a part of a picture.
-    async fn part(
-        &mut self,
-        picture: &Picture,
-        region: Region,
-        step: u32,
-        look: &Look,
-    ) -> Result<(), Gone> {
-        let mut message = header(COLORS, picture.number, region, step);
-        message.extend(srgb8(picture, region, step, look));
-        Ok(self.socket.send(Message::Binary(message.into())).await?)
-    }
-
-    async fn linear(&mut self, slot: Slot, [x, y, width, height]: [u32; 4]) -> Result<(), Gone> {
-        let picture = self
-            .slots
-            .get(&slot)
-            .and_then(|shown| shown.picture.clone());
-        let asked = Region {
-            x,
-            y,
-            width: width.min(LONGEST_SIDE),
-            height: height.min(LONGEST_SIDE),
-        };
-        let fits = x < LONGEST_SIDE && y < LONGEST_SIDE;
-        let region = picture
-            .as_ref()
-            .filter(|_| fits)
-            .and_then(|p| p.region().intersection(&asked));
-        let (Some(picture), Some(region)) = (picture, region) else {
-            return self.complain("there is no such part of the picture").await;
-        };
-        if region.pixels() > MOST_LINEAR {
-            return self.complain("the part of the picture is too large").await;
-        }
-        let mut message = header(LINEAR, picture.number, region, 1);
-        {
-            let canvas = picture.canvas();
-            for y in region.y..region.y + region.height {
-                let start = y as usize * picture.view.width as usize + region.x as usize;
-                let row = canvas.pixels.get(start..start + region.width as usize);
-                for value in row.unwrap_or_default().as_flattened() {
-                    message.extend(value.to_le_bytes());
-                }
-            }
-        }
-        Ok(self.socket.send(Message::Binary(message.into())).await?)
     }
 }
 

@@ -1,10 +1,11 @@
 //! Pictures that pages look at: rendered once for all of them.
 
 use std::ops::ControlFlow;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 use std::time::Instant;
-use strahl::formats::image::{self, ImageError, ImageFormat, Window, encode_picture};
+use strahl::formats::image::{self, ImageError, ImageFormat, encode_picture};
 use strahl::prelude::*;
 use strahl::tracing::{PixelCost, PixelInfo};
 use tokio::sync::mpsc::UnboundedSender;
@@ -39,7 +40,7 @@ pub(crate) struct Picture {
     pub(crate) view: View,
     pub(crate) kind: Kind,
     key: String,
-    stop: AtomicBool,
+    stop: Arc<AtomicBool>,
     canvas: Mutex<Canvas>,
 }
 
@@ -77,6 +78,10 @@ pub(crate) struct Pictures {
 /// How many finished pictures without a page are kept.
 const KEPT: usize = 4;
 
+/// What is said of a picture that could not be rendered because of a panic.
+const BUG: &str =
+    "strahl failed while it rendered this picture: this is an error of strahl, please report it";
+
 /// The clock of [`Kind::Costs`], in nanoseconds.
 fn clock() -> u64 {
     static START: OnceLock<Instant> = OnceLock::new();
@@ -103,32 +108,7 @@ impl Picture {
     /// [`ImageError`]: no memory, for instance.
     pub(crate) fn exr(&self) -> Result<Vec<u8>, ImageError> {
         let pixels = self.canvas().pixels.clone();
-        let (width, height) = (self.view.width, self.view.height);
-        let picture = image::Picture {
-            width,
-            height,
-            window: Window {
-                x: 0,
-                y: 0,
-                width,
-                height,
-            },
-            rgb: &pixels,
-            alpha: None,
-            layers: &[],
-            metadata: vec![(
-                "Software".into(),
-                concat!("strahl ", env!("CARGO_PKG_VERSION")).into(),
-            )],
-        };
-        let mut file = std::io::Cursor::new(vec![]);
-        encode_picture(
-            &mut file,
-            ImageFormat::Exr,
-            &picture,
-            &WriteOptions::default(),
-        )?;
-        Ok(file.into_inner())
+        encoded(ImageFormat::Exr, self.view.width, self.view.height, &pixels)
     }
 
     fn tell(&self, news: News) {
@@ -145,12 +125,11 @@ impl Picture {
             info: self.kind == Kind::Info,
             costs: self.kind == Kind::Costs,
             clock: (self.kind == Kind::Costs).then_some(clock),
+            // Within a tile: the picture that comes after this one shall not wait for a slow one.
+            stop: Some(Arc::clone(&self.stop)),
             ..Output::default()
         };
         let mut sink = |tile: &Tile<'_>| {
-            if self.stop.load(Ordering::Relaxed) {
-                return ControlFlow::Break(());
-            }
             let region = tile.film.region;
             {
                 let canvas = &mut *self.canvas();
@@ -169,8 +148,9 @@ impl Picture {
             }
             ControlFlow::Continue(())
         };
-        let end = match session.render(&self.view, &output, &mut sink) {
-            Ok(Outcome::Finished(rendered)) => {
+        let rendering = || session.render(&self.view, &output, &mut sink);
+        let end = match catch_unwind(AssertUnwindSafe(rendering)) {
+            Ok(Ok(Outcome::Finished(rendered))) => {
                 let sha256 = rendered.film.sha256();
                 let canvas = &mut *self.canvas();
                 canvas.costs = rendered.costs.unwrap_or_default();
@@ -180,12 +160,31 @@ impl Picture {
                     sha256,
                 }
             }
-            Ok(Outcome::Stopped(_)) => return,
-            Err(error) => End::Failed(error.to_string()),
+            Ok(Ok(Outcome::Stopped(_))) => return,
+            Ok(Err(error)) => End::Failed(error.to_string()),
+            Err(_) => End::Failed(BUG.into()),
         };
         self.canvas().end = Some(end);
         self.tell(News::End);
     }
+}
+
+/// A picture as a file in memory.
+///
+/// # Errors
+/// [`ImageError`]: no memory, for instance.
+pub(crate) fn encoded(
+    format: ImageFormat,
+    width: u32,
+    height: u32,
+    pixels: &[[f32; 3]],
+) -> Result<Vec<u8>, ImageError> {
+    let mut picture = image::Picture::new(width, height, pixels);
+    let software = concat!("strahl ", env!("CARGO_PKG_VERSION"));
+    picture.metadata = vec![("Software".into(), software.into())];
+    let mut file = std::io::Cursor::new(vec![]);
+    encode_picture(&mut file, format, &picture, &WriteOptions::default())?;
+    Ok(file.into_inner())
 }
 
 /// Writes the values of a region.
@@ -218,11 +217,11 @@ impl Pictures {
         })
     }
 
-    /// The picture of a view of the scene with this number. The follower `who` gets its news from now on; what there is of the picture
-    /// already it must look up.
+    /// The picture of a view of a scene, which no other scene has the name of. The follower `who` gets its news from now on; what there is of the
+    /// picture already it must look up.
     pub(crate) fn follow(
         &self,
-        scene: u64,
+        scene: &str,
         view: &View,
         kind: Kind,
         who: u64,
@@ -243,7 +242,7 @@ impl Pictures {
             view: view.clone(),
             kind,
             key,
-            stop: AtomicBool::new(false),
+            stop: Arc::default(),
             canvas: Mutex::new(Canvas {
                 pixels: vec![[0.0; 3]; pixels],
                 info: vec![NO_INFO; if kind == Kind::Info { pixels } else { 0 }],
@@ -302,15 +301,7 @@ mod tests {
     use tokio::sync::mpsc::{UnboundedReceiver, unbounded_channel};
 
     fn view(session: &Session, size: u32) -> View {
-        let scene = Scene::new()
-            .add(Sphere::new(DVec3::ZERO, 1.0))
-            .light(Light::point(DVec3::new(4.0, 8.0, 6.0), Color::WHITE))
-            .camera(Camera::perspective(
-                DVec3::Z * 7.0,
-                DVec3::ZERO,
-                DVec3::Y,
-                0.7,
-            ));
+        let scene = crate::testing::ball("ball");
         let (scene, _) = session.compile(&scene, &CompileOptions::default()).unwrap();
         scene.view(size, size)
     }
@@ -326,8 +317,8 @@ mod tests {
         let view = view(&session, 100);
         let (first, mut news) = unbounded_channel();
         let (second, mut more) = unbounded_channel();
-        let a = pictures.follow(1, &view, Kind::Color, 1, &first);
-        let b = pictures.follow(1, &view, Kind::Color, 2, &second);
+        let a = pictures.follow("1", &view, Kind::Color, 1, &first);
+        let b = pictures.follow("1", &view, Kind::Color, 2, &second);
         assert!(Arc::ptr_eq(&a, &b));
         wait(&mut news);
         wait(&mut more);
@@ -341,7 +332,7 @@ mod tests {
             let values = expected.film.pixels.iter().map(|p| p[channel]).collect();
             assert_eq!(file.channels[name], image::LayerData::F32(values));
         }
-        let c = pictures.follow(2, &view, Kind::Color, 1, &first);
+        let c = pictures.follow("2", &view, Kind::Color, 1, &first);
         assert!(!Arc::ptr_eq(&a, &c));
     }
 
@@ -349,15 +340,16 @@ mod tests {
     fn a_picture_that_nobody_looks_at_is_stopped() {
         let session = Session::new(Threads::Count(1)).unwrap();
         let pictures = Pictures::new(session.clone());
-        let view = view(&session, 3000).with_sampling(Sampling::Grid(16));
+        // A tile takes seconds.
+        let view = view(&session, 3000).with_sampling(Sampling::Grid(64));
         let (sender, _news) = unbounded_channel();
-        let picture = pictures.follow(1, &view, Kind::Color, 1, &sender);
+        let picture = pictures.follow("1", &view, Kind::Color, 1, &sender);
         pictures.leave(&picture, 1);
         assert_eq!(pictures.count(), 0);
         // The thread of the picture holds it until it has stopped.
         let start = Instant::now();
         while Arc::strong_count(&picture) > 1 {
-            assert!(start.elapsed().as_secs() < 60);
+            assert!(start.elapsed().as_secs() < 2, "it stops within a tile");
             std::thread::sleep(std::time::Duration::from_millis(10));
         }
         assert!(picture.canvas().end.is_none());
@@ -370,7 +362,7 @@ mod tests {
         let view = view(&session, 8);
         let (sender, mut news) = unbounded_channel();
         for scene in 0..10 {
-            let picture = pictures.follow(scene, &view, Kind::Info, 1, &sender);
+            let picture = pictures.follow(&scene.to_string(), &view, Kind::Info, 1, &sender);
             wait(&mut news);
             assert!(picture.canvas().info.iter().any(|info| info.object == 1));
             pictures.leave(&picture, 1);

@@ -26,6 +26,9 @@ pub(crate) const MOST_PIXELS: u64 = 1 << 24;
 /// The largest depth of ray trees.
 pub(crate) const DEEPEST: u32 = 1000;
 
+/// The most lights that a page is told of, and may move.
+pub(crate) const MOST_LIGHTS: usize = 100;
+
 /// The picture on the page that a message is about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -88,6 +91,15 @@ impl CameraData {
     }
 }
 
+/// A light at another position.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct MovedLight {
+    /// Its number among the scene's lights.
+    pub(crate) light: usize,
+    pub(crate) position: [f64; 3],
+}
+
 /// How a picture is shown. What is absent is as the scene and the command line say.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
@@ -100,6 +112,7 @@ pub(crate) struct Settings {
     pub(crate) accelerator: Option<String>,
     pub(crate) camera: Option<CameraData>,
     pub(crate) clock: Option<f64>,
+    pub(crate) lights: Vec<MovedLight>,
     /// Stops of exposure: 1 doubles the light.
     pub(crate) exposure: f64,
     pub(crate) curve: Curve,
@@ -156,13 +169,17 @@ pub(crate) enum Channel {
 pub(crate) enum Asked {
     /// Another one of the scenes that are built in.
     Open { scene: String },
-    /// Read this text instead of the scene's file; `None` reads the file again.
-    Text { text: Option<String> },
+    /// Read this text instead of a file of the scene (of the scene's own, if there is no name); without a text, read the file again, or
+    /// all of them.
+    Text {
+        file: Option<String>,
+        text: Option<String>,
+    },
     /// Show a picture.
     Picture {
         slot: Slot,
         #[serde(default)]
-        settings: Settings,
+        settings: Box<Settings>,
     },
     /// Show it no more.
     Close { slot: Slot },
@@ -185,6 +202,16 @@ pub(crate) enum Asked {
     Pieces { id: u64, text: String },
     /// The camera of a picture as text of the scene language.
     CameraText { id: u64, slot: Slot },
+    /// A light of a picture as text of the scene language.
+    LightText { id: u64, slot: Slot, light: usize },
+    /// A page with a picture, its objects and the ray trees of some pixels that needs no server.
+    ExportPicture {
+        id: u64,
+        slot: Slot,
+        /// Pixels whose trees shall be in it.
+        pixels: Vec<[u32; 2]>,
+        language: String,
+    },
     /// A page with a pixel's ray trees that needs no server.
     Export {
         id: u64,

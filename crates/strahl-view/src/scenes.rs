@@ -9,6 +9,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 use strahl::prelude::*;
+use strahl::scene::{FileId, SourceMap};
+use strahl::sdl::Texts;
 use strahl::{Inputs, Loaded};
 use tokio::sync::watch;
 
@@ -17,12 +19,19 @@ use tokio::sync::watch;
 pub struct Request {
     /// The scene's file.
     pub path: PathBuf,
-    /// The text to read instead of the file's.
-    pub text: Option<Arc<str>>,
+    /// Texts to read instead of files: of the scene's own under `path`, of included ones under the paths where they are found.
+    pub texts: Texts,
     /// The size of the picture, which a scene may ask for; `None` takes the usual one.
     pub size: Option<(u32, u32)>,
     /// The value of `clock`.
     pub clock: f64,
+}
+
+impl Request {
+    /// The text to read instead of that of the scene's own file.
+    pub fn text(&self) -> Option<&Arc<str>> {
+        self.texts.get(&self.path)
+    }
 }
 
 /// Reads a scene, and adds a camera and lights to a bare mesh.
@@ -64,7 +73,10 @@ pub(crate) struct Compiled {
 pub(crate) struct SceneFile {
     /// Its name in messages and places.
     pub(crate) name: String,
+    /// Its path from the root; empty for one that is built in.
     pub(crate) path: PathBuf,
+    /// The text of an include file that is built in.
+    pub(crate) built_in: Option<&'static str>,
 }
 
 impl SceneFile {
@@ -72,7 +84,28 @@ impl SceneFile {
         Self {
             name: name.display().to_string(),
             path: absolute(name),
+            built_in: None,
         }
+    }
+
+    /// An include file that is built in, by the name that messages give it.
+    fn built_in(name: &str) -> Option<Self> {
+        let text = strahl::sdl::built_in(name.strip_prefix("<built in>/")?)?;
+        Some(Self {
+            name: name.to_owned(),
+            path: PathBuf::new(),
+            built_in: Some(text),
+        })
+    }
+
+    /// Whether a page may show it as a text; pictures and fonts are none.
+    pub(crate) fn is_text(&self) -> bool {
+        const OTHERS: [&str; 20] = [
+            "bmp", "dcm", "df3", "exr", "gif", "gz", "hdr", "iff", "jpeg", "jpg", "otf", "pcx",
+            "pgm", "png", "ppm", "stl", "tga", "tif", "tiff", "ttf",
+        ];
+        let ending = self.path.extension().map(|e| e.to_ascii_lowercase());
+        !ending.is_some_and(|e| OTHERS.iter().any(|other| e == *other))
     }
 }
 
@@ -89,6 +122,9 @@ struct Entry {
 
 /// How many scenes are kept.
 const KEPT: usize = 4;
+/// How many scenes are loaded at the same time. A page that asks for a new one with every movement of a slider waits for its last one, not for
+/// all of them.
+const MOST_LOADING: usize = 2;
 
 /// The scenes.
 pub(crate) struct Scenes {
@@ -146,9 +182,11 @@ impl Scenes {
             });
             entries.len() - 1
         });
+        // Those that have to wait are asked for again when one is loaded.
+        let room = entries.iter().filter(|entry| entry.loading).count() < MOST_LOADING;
         let entry = &mut entries[index];
         entry.used = now;
-        if entry.stale && !entry.loading {
+        if entry.stale && !entry.loading && room {
             (entry.loading, entry.stale) = (true, false);
             let (this, key) = (Arc::clone(self), key.clone());
             let thread = std::thread::Builder::new().name("strahl load".into());
@@ -156,7 +194,7 @@ impl Scenes {
                 (entry.loading, entry.stale) = (false, true);
             }
         }
-        (entry.compiled.clone(), entry.loading)
+        (entry.compiled.clone(), entry.loading || entry.stale)
     }
 
     /// Files have changed: scenes made of them are to be loaded again. A scene with errors may wait for any new file.
@@ -208,7 +246,7 @@ impl Scenes {
             let before = entry.and_then(|entry| entry.compiled.clone());
             let alike = |other: &Key| {
                 let request = Request {
-                    text: key.request.text.clone(),
+                    texts: key.request.texts.clone(),
                     ..other.request.clone()
                 };
                 request == key.request && other.accelerator == key.accelerator
@@ -289,6 +327,16 @@ impl Scenes {
                 && texts.is_some_and(|(new, old)| only_camera(old, new))
         });
         let sources = scene.as_ref().map(|scene| scene.sources.clone());
+        let mut files = files(&key.request.path, inputs.as_ref());
+        match (&sources, before) {
+            (Some(sources), _) => files.extend(built_in(sources)),
+            // Those of a scene with errors are not known.
+            (None, Some(before)) => {
+                let known = before.files.iter().filter(|file| file.built_in.is_some());
+                files.extend(known.cloned());
+            }
+            (None, None) => {}
+        }
         let mut said: Vec<Said> = diagnostics
             .iter()
             .map(|diagnostic| Said::of(diagnostic, sources.as_ref()))
@@ -318,13 +366,13 @@ impl Scenes {
         }
         said.extend(warned.iter().cloned());
         said.truncate(200);
-        let files = files(&key.request.path, inputs.as_ref());
+        let clock = uses_clock(&key.request, text.as_deref(), &files);
         Some(Compiled {
             number: self.numbers.fetch_add(1, Ordering::Relaxed),
             scene: compiled,
             camera,
             said,
-            clock: uses_clock(text.as_deref(), &files),
+            clock,
             files,
             seconds: start.elapsed().as_secs_f64(),
             identity,
@@ -337,7 +385,7 @@ impl Scenes {
 
 /// The text of a scene's own file, if it is one that a page would show.
 fn text_of(request: &Request) -> Option<Arc<str>> {
-    if let Some(text) = &request.text {
+    if let Some(text) = request.text() {
         return Some(Arc::clone(text));
     }
     let size = std::fs::metadata(&request.path).ok()?.len();
@@ -347,8 +395,11 @@ fn text_of(request: &Request) -> Option<Arc<str>> {
 }
 
 /// Whether the scene's own text, or that of a file that it includes, has the word `clock`.
-fn uses_clock(text: Option<&str>, files: &[SceneFile]) -> bool {
+fn uses_clock(request: &Request, text: Option<&str>, files: &[SceneFile]) -> bool {
     let included = files.iter().skip(1).any(|file| {
+        if let Some(text) = request.texts.get(Path::new(&file.name)) {
+            return names_clock(text);
+        }
         let small = std::fs::metadata(&file.path).is_ok_and(|m| m.len() <= LONGEST_TEXT as u64);
         let ending = file.path.extension().map(|e| e.to_ascii_lowercase());
         small
@@ -374,6 +425,13 @@ fn files(scene: &Path, inputs: Option<&Inputs>) -> Vec<SceneFile> {
     files
 }
 
+/// The include files of a scene that are built in.
+fn built_in(sources: &SourceMap) -> impl Iterator<Item = SceneFile> {
+    (0..)
+        .map_while(|number| sources.name(FileId(number)))
+        .filter_map(SceneFile::built_in)
+}
+
 /// A path that begins at the root, as watchers report it.
 pub(crate) fn absolute(path: &Path) -> PathBuf {
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty());
@@ -394,7 +452,7 @@ mod tests {
             record: true,
             ..LoadOptions::default()
         };
-        let text = request.text.as_deref().unwrap_or_default();
+        let text = request.text().map(|text| &**text).unwrap_or_default();
         load_bytes(text.as_bytes().to_vec(), "a.pov", Format::Pov, options)
     }
 
@@ -402,7 +460,7 @@ mod tests {
         let key = Key {
             request: Request {
                 path: "a.pov".into(),
-                text: Some(text.into()),
+                texts: Texts::from([("a.pov".into(), text.into())]),
                 size: None,
                 clock: 0.0,
             },

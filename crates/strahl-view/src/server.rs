@@ -20,7 +20,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use strahl::prelude::*;
 use tokio::net::TcpListener;
-use tokio::sync::Notify;
+use tokio::sync::{Notify, Semaphore};
 
 /// The settings of pictures for which neither the page nor the scene has a value.
 #[derive(Clone, Debug)]
@@ -122,7 +122,12 @@ pub(crate) struct Hub {
     pub(crate) edit: bool,
     pub(crate) editor: Option<String>,
     pub(crate) pages: AtomicU64,
+    /// A place for each page that is open.
+    pub(crate) places: Arc<Semaphore>,
 }
+
+/// The most pages that are open at once.
+const MOST_PAGES: usize = 64;
 
 /// Serves until Ctrl-C, SIGTERM or [`Served::end`]. `ready` is called once, when the server listens.
 ///
@@ -150,6 +155,7 @@ pub fn serve(options: ViewOptions, ready: impl FnOnce(&Served)) -> Result<(), Se
         edit: options.edit,
         editor: options.editor,
         pages: AtomicU64::new(1),
+        places: Arc::new(Semaphore::new(MOST_PAGES)),
     });
     let runtime = tokio::runtime::Builder::new_current_thread()
         .enable_all()
@@ -178,32 +184,54 @@ pub fn serve(options: ViewOptions, ready: impl FnOnce(&Served)) -> Result<(), Se
             )
             .with_state(hub)
             .layer(from_fn_with_state(keeper, guard));
-        let end = ended(Arc::clone(&served.end));
+        let signals = Signals::catch()?;
+        let end = Arc::clone(&served.end);
         ready(&served);
         tokio::select! {
             outcome = async { axum::serve(listener, router).await } => outcome?,
-            outcome = end => outcome?,
+            () = signals.any() => {}
+            () = end.notified() => {}
         }
         Ok(())
     })
 }
 
-/// Waits for a signal to end.
-async fn ended(end: Arc<Notify>) -> std::io::Result<()> {
+/// The signals that end the server. They are caught as soon as this is made, so it is made before anybody is told that the server listens.
+struct Signals {
     #[cfg(unix)]
-    {
+    interrupt: tokio::signal::unix::Signal,
+    #[cfg(unix)]
+    terminate: tokio::signal::unix::Signal,
+    #[cfg(windows)]
+    interrupt: tokio::signal::windows::CtrlC,
+}
+
+impl Signals {
+    #[cfg(unix)]
+    fn catch() -> std::io::Result<Self> {
         use tokio::signal::unix::{SignalKind, signal};
-        let mut terminate = signal(SignalKind::terminate())?;
-        tokio::select! {
-            outcome = tokio::signal::ctrl_c() => outcome,
-            _ = terminate.recv() => Ok(()),
-            () = end.notified() => Ok(()),
-        }
+        Ok(Self {
+            interrupt: signal(SignalKind::interrupt())?,
+            terminate: signal(SignalKind::terminate())?,
+        })
     }
-    #[cfg(not(unix))]
-    tokio::select! {
-        outcome = tokio::signal::ctrl_c() => outcome,
-        () = end.notified() => Ok(()),
+
+    #[cfg(windows)]
+    fn catch() -> std::io::Result<Self> {
+        Ok(Self {
+            interrupt: tokio::signal::windows::ctrl_c()?,
+        })
+    }
+
+    /// Waits for the first of them.
+    async fn any(mut self) {
+        #[cfg(unix)]
+        tokio::select! {
+            _ = self.interrupt.recv() => {}
+            _ = self.terminate.recv() => {}
+        }
+        #[cfg(windows)]
+        self.interrupt.recv().await;
     }
 }
 
@@ -232,11 +260,16 @@ async fn exr(State(hub): State<Arc<Hub>>, Path(name): Path<String>) -> Response 
 }
 
 async fn page(State(hub): State<Arc<Hub>>, upgrade: WebSocketUpgrade) -> Response {
+    let Ok(place) = Arc::clone(&hub.places).try_acquire_owned() else {
+        let many = "too many pages are open: close some\n";
+        return (StatusCode::SERVICE_UNAVAILABLE, many).into_response();
+    };
     upgrade
         .max_message_size(LONGEST_MESSAGE)
         .max_frame_size(LONGEST_MESSAGE)
         .on_upgrade(async move |socket| {
             let number = hub.pages.fetch_add(1, Ordering::Relaxed);
             Client::new(hub, number, socket).run().await;
+            drop(place);
         })
 }

@@ -5,16 +5,18 @@ use serde::Serialize;
 use std::path::Path;
 use strahl::sdl::{Piece, highlight};
 
-/// A text with its pieces.
-#[derive(Debug, Serialize)]
-pub(crate) struct Text {
-    pub(crate) text: String,
+/// A text of a scene, cut into pieces for colouring.
+#[derive(Clone, Debug, Serialize)]
+pub struct Text {
+    /// The text.
+    pub text: String,
     /// Length (in UTF-16 units, as JavaScript counts) and kind of each piece, one after the other.
-    pub(crate) pieces: Vec<u32>,
+    pub pieces: Vec<u32>,
 }
 
 impl Text {
-    pub(crate) fn new(text: String, is_sdl: bool) -> Self {
+    /// A text; `is_sdl` says whether it is in the scene language.
+    pub fn new(text: String, is_sdl: bool) -> Self {
         let pieces = match is_sdl {
             true => pieces(&text),
             false => vec![],
@@ -23,7 +25,10 @@ impl Text {
     }
 
     /// Reads a text file.
-    pub(crate) fn read(path: &Path) -> Result<Self, String> {
+    ///
+    /// # Errors
+    /// There is no such file, it is no text, or it has more than 1 MiB.
+    pub fn read(path: &Path) -> Result<Self, String> {
         let size = std::fs::metadata(path).map_err(|e| e.to_string())?.len();
         if size > LONGEST_TEXT as u64 {
             return Err(format!(

@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 use std::sync::mpsc;
 use std::time::{Duration, Instant};
 use strahl::prelude::*;
-use strahl::{LoadOptions, load_bytes, load_path};
+use strahl::{LoadOptions, load_path};
 use strahl_view::{Defaults, Request, Served, ViewOptions, serve};
 use tungstenite::client::IntoClientRequest;
 use tungstenite::{Message, WebSocket, client};
@@ -36,30 +36,35 @@ impl Drop for Running {
 }
 
 fn load(request: &Request) -> strahl::Loaded {
-    let options = LoadOptions {
+    let mut options = LoadOptions {
         record: true,
+        texts: request.texts.clone(),
         ..LoadOptions::default()
     };
-    match &request.text {
-        Some(text) => load_bytes(
-            text.as_bytes().to_vec(),
-            &request.path.display().to_string(),
-            strahl::Format::Pov,
-            options,
-        ),
-        None => load_path(&request.path, options),
-    }
+    options.sdl.clock = request.clock;
+    load_path(&request.path, options)
 }
 
 fn start(text: &str, edit: bool) -> Running {
     let folder = tempfile::tempdir().unwrap();
-    std::fs::write(folder.path().join("scene.pov"), text).unwrap();
+    let scene = folder.path().join("scene.pov");
+    std::fs::write(&scene, text).unwrap();
+    serving(folder, &scene, Some((64, 48)), edit, None)
+}
+
+fn serving(
+    folder: tempfile::TempDir,
+    scene: &Path,
+    size: Option<(u32, u32)>,
+    edit: bool,
+    editor: Option<String>,
+) -> Running {
     let options = ViewOptions {
         port: 0,
-        scene: Some(folder.path().join("scene.pov")),
+        scene: Some(scene.to_owned()),
         load: Box::new(load),
         defaults: Defaults {
-            size: Some((64, 48)),
+            size,
             sampling: Sampling::ADAPTIVE,
             seed: 0,
             depth: None,
@@ -71,7 +76,7 @@ fn start(text: &str, edit: bool) -> Running {
         },
         session: Session::new(Threads::Count(2)).unwrap(),
         edit,
-        editor: None,
+        editor,
     };
     let (said, heard) = mpsc::channel();
     let thread = std::thread::spawn(move || {
@@ -253,6 +258,12 @@ fn only_those_who_know_the_token_get_anything() {
         running.status(&page, &[("Host", host), ("Origin", &own)]),
         200
     );
+    // Through a tunnel, the port is another one.
+    let tunnel = [
+        ("Host", "localhost:9999"),
+        ("Origin", "http://localhost:9999"),
+    ];
+    assert_eq!(running.status(&page, &tunnel), 200);
     for origin in [
         "http://example.org",
         "null",
@@ -423,6 +434,43 @@ fn a_changed_file_is_rendered_and_errors_keep_the_last_picture() {
     assert_eq!(page.picture((64, 48)), second);
 }
 
+#[cfg(unix)]
+#[test]
+fn the_authors_editor_gets_the_file_and_the_line() {
+    let folder = tempfile::tempdir().unwrap();
+    let (scene, seen) = (folder.path().join("scene.pov"), folder.path().join("at-3"));
+    std::fs::write(&scene, BALL).unwrap();
+    let editor = format!("cp {{file}} {}/at-{{line}}", folder.path().display());
+    let running = serving(folder, &scene, Some((64, 48)), false, Some(editor));
+    let mut page = running.page();
+    page.show(json!({}));
+    page.until("done");
+    let edit = |file: &str| json!({ "type": "edit", "file": file, "line": 3 });
+    assert!(page.ask(edit("/etc/passwd")).is_err());
+    page.ask(edit(&scene.display().to_string())).unwrap();
+    let start = Instant::now();
+    while std::fs::read_to_string(&seen).ok().as_deref() != Some(BALL) {
+        assert!(start.elapsed() < Duration::from_secs(30));
+        std::thread::sleep(Duration::from_millis(10));
+    }
+}
+
+#[test]
+fn a_changed_image_is_rendered() {
+    let folder = tempfile::tempdir().unwrap();
+    let (scene, image) = (folder.path().join("scene.pov"), folder.path().join("a.ppm"));
+    let text = "camera { location -3*z look_at 0 }\nbox { -1, 1 pigment { image_map { ppm \"a.ppm\" } translate -0.5 scale 2 } finish { ambient 1 diffuse 0 } }\n";
+    std::fs::write(&scene, text).unwrap();
+    std::fs::write(&image, "P3 1 1 255 255 0 0\n").unwrap();
+    let running = serving(folder, &scene, Some((64, 48)), false, None);
+    let mut page = running.page();
+    page.show(json!({}));
+    let middle = 3 * (24 * 64 + 32);
+    assert_eq!(page.picture((64, 48))[middle..middle + 3], [255, 0, 0]);
+    std::fs::write(&image, "P3 1 1 255 0 0 255\n").unwrap();
+    assert_eq!(page.picture((64, 48))[middle..middle + 3], [0, 0, 255]);
+}
+
 #[test]
 fn a_text_of_the_page_is_tried_and_not_written() {
     let running = start(BALL, false);
@@ -434,6 +482,213 @@ fn a_text_of_the_page_is_tried_and_not_written() {
     );
     assert_ne!(page.picture((64, 48)), first);
     assert_eq!(std::fs::read_to_string(running.scene()).unwrap(), BALL);
+}
+
+#[test]
+fn texts_of_included_files_are_tried_and_those_that_are_built_in_are_shown() {
+    let running = start(
+        "#include \"colors.inc\"\n#include \"ball.inc\"\ncamera { location <0, 1, -4> look_at 0 }\nlight_source { <3, 5, -4>, 1 }\nsphere { 0, Size pigment { Red } }\n",
+        true,
+    );
+    let include = running.folder.path().join("ball.inc");
+    std::fs::write(&include, "#declare Size = 1;\n").unwrap();
+    let mut page = running.page();
+    page.show(json!({}));
+    let scene = loop {
+        let scene = page.until("scene");
+        if scene["loading"] == false && !scene["stats"].is_null() {
+            break scene;
+        }
+    };
+    let first = page.picture((64, 48));
+    let files = scene["files"].as_array().unwrap();
+    let names: Vec<&str> = files.iter().map(|f| f["name"].as_str().unwrap()).collect();
+    let (own, ball) = (names[0].to_owned(), include.display().to_string());
+    assert!(names.contains(&&*ball), "{names:?}");
+    let colors = files.iter().find(|file| file["built_in"] == true).unwrap();
+    let colors = colors["name"].as_str().unwrap();
+    assert!(colors.ends_with("colors.inc"), "{names:?}");
+    let text = page
+        .ask(json!({ "type": "source", "file": colors }))
+        .unwrap();
+    assert!(text["text"].as_str().unwrap().contains("Red"));
+    for message in [
+        json!({ "type": "save", "file": colors, "text": "" }),
+        json!({ "type": "edit", "file": colors, "line": 1 }),
+    ] {
+        assert!(page.ask(message).is_err());
+    }
+    page.send(json!({ "type": "text", "file": colors, "text": "" }));
+    assert!(
+        page.until("error")["message"]
+            .as_str()
+            .unwrap()
+            .contains("part of strahl")
+    );
+    page.send(json!({ "type": "text", "file": "/etc/passwd", "text": "" }));
+    page.until("error");
+
+    page.send(json!({ "type": "text", "file": ball, "text": "#declare Size = 0.5;" }));
+    let small = page.picture((64, 48));
+    assert_ne!(small, first);
+    let text = page.ask(json!({ "type": "source", "file": ball })).unwrap();
+    assert_eq!(text["text"], "#declare Size = 0.5;");
+    assert_eq!(
+        std::fs::read_to_string(&include).unwrap(),
+        "#declare Size = 1;\n"
+    );
+    // Two texts at once, then only the other one.
+    let blue = std::fs::read_to_string(running.scene())
+        .unwrap()
+        .replace("Red", "Blue");
+    page.send(json!({ "type": "text", "file": own, "text": blue }));
+    let both = page.picture((64, 48));
+    assert!(both != small && both != first);
+    page.send(json!({ "type": "text", "file": ball, "text": null }));
+    let large = page.picture((64, 48));
+    assert!(large != both && large != first);
+    page.send(json!({ "type": "text" }));
+    assert_eq!(page.picture((64, 48)), first);
+    // A text that is written is tried no more.
+    page.send(json!({ "type": "text", "file": ball, "text": "#declare Size = 0.5;" }));
+    assert_eq!(page.picture((64, 48)), small);
+    page.send(
+        json!({ "type": "save", "file": ball, "text": "#declare Size = 0.5; // small", "id": 3 }),
+    );
+    page.until("reply");
+    assert_eq!(
+        std::fs::read_to_string(&include).unwrap(),
+        "#declare Size = 0.5; // small"
+    );
+    page.send(json!({ "type": "text", "file": own, "text": "x".repeat(2 << 20) }));
+    assert_eq!(page.until("error")["message"], "the text is too long");
+}
+
+#[test]
+fn lights_are_moved_and_written_as_text() {
+    let running = start(BALL, false);
+    let mut page = running.page();
+    page.show(json!({}));
+    let first = page.picture((64, 48));
+    let moved = json!([{ "light": 0, "position": [-3, 5, -4] }]);
+    page.show(json!({ "lights": moved }));
+    let second = page.picture((64, 48));
+    assert_ne!(first, second);
+    let changed = BALL.replace("<3, 5, -4>", "<-3, 5, -4>");
+    let text = page
+        .ask(json!({ "type": "light_text", "slot": "main", "light": 0 }))
+        .unwrap();
+    let text = text["text"].as_str().unwrap();
+    assert!(text.contains("<-3, 5, -4>"), "{text}");
+    // The picture is that of a scene with the light there, and the text is that of the light.
+    std::fs::write(running.scene(), &changed).unwrap();
+    assert_eq!(second, expected(&running.scene(), |view| view));
+    let written = BALL.replace("light_source { <3, 5, -4>, 1 }", text);
+    std::fs::write(running.scene(), &written).unwrap();
+    assert_eq!(second, expected(&running.scene(), |view| view));
+    assert!(
+        page.ask(json!({ "type": "light_text", "slot": "main", "light": 7 }))
+            .is_err()
+    );
+    // Lights that don't exist are passed over; too many are refused.
+    page.show(json!({ "lights": [{ "light": 70, "position": [0, 0, 0] }] }));
+    page.until("picture");
+    let many: Vec<Value> = (0..200)
+        .map(|n| json!({ "light": n, "position": [0, 0, 0] }))
+        .collect();
+    page.show(json!({ "lights": many }));
+    page.until("error");
+}
+
+#[test]
+fn a_whole_picture_is_exported() {
+    let running = start(BALL, false);
+    let mut page = running.page();
+    page.show(json!({}));
+    page.until("done");
+    let ask = json!({ "type": "export_picture", "slot": "main", "pixels": [[5, 6], [900, 0]], "language": "de" });
+    let html = page.ask(ask.clone()).unwrap();
+    let html = html["html"].as_str().unwrap();
+    assert!(html.contains("lang=\"de\"") && html.contains("data:image/png;base64,"));
+    assert!(html.contains("\"pixel\":[5,6]") && html.contains("pigment"));
+    // Not of a picture of normals, and not with thousands of chosen pixels.
+    page.show(json!({ "channel": "normal" }));
+    page.until("done");
+    assert!(page.ask(ask).is_err());
+    let many = vec![[0, 0]; 2000];
+    assert!(
+        page.ask(
+            json!({ "type": "export_picture", "slot": "main", "pixels": many, "language": "en" })
+        )
+        .is_err()
+    );
+}
+
+/// A slider asks for a scene with every movement; what counts is the last one.
+#[test]
+fn a_page_that_asks_for_many_scenes_gets_the_last_one() {
+    let running = start(&BALL.replace("sphere { 0, 1", "sphere { clock*x, 1"), false);
+    let mut page = running.page();
+    for step in 0..300 {
+        page.show(json!({ "clock": f64::from(step) / 299.0 }));
+    }
+    let start = Instant::now();
+    let moved = std::fs::read_to_string(running.scene())
+        .unwrap()
+        .replace("clock*x", "x");
+    std::fs::write(running.folder.path().join("moved.pov"), moved).unwrap();
+    let wanted = expected(&running.folder.path().join("moved.pov"), |view| view);
+    while page.picture((64, 48)) != wanted {
+        assert!(start.elapsed() < Duration::from_secs(60));
+    }
+}
+
+#[test]
+fn rays_without_a_direction_and_too_many_pages_are_refused() {
+    let running = start(BALL, false);
+    let mut page = running.page();
+    page.show(json!({}));
+    page.until("done");
+    for accelerator in ["grid", "octree", "bvh", "spheres"] {
+        page.show(json!({ "accelerator": accelerator }));
+        page.until("done");
+        for ray in [
+            [[0.0, 0.0, 0.0], [0.0, 0.0, 0.0]],
+            [[0.0, 1e300, 0.0], [1e300, 1e-300, 0.0]],
+            [[1e308, 0.0, 0.0], [0.0, 5e-324, 0.0]],
+        ] {
+            page.ask(json!({ "type": "walk", "slot": "main", "ray": ray }))
+                .unwrap();
+        }
+    }
+    let pages: Vec<Page> = (0..63).map(|_| running.page()).collect();
+    let host = running.host();
+    let upgrade = [
+        ("Host", host),
+        ("Upgrade", "websocket"),
+        ("Sec-WebSocket-Key", "dGhlIHNhbXBsZSBub25jZQ=="),
+        ("Sec-WebSocket-Version", "13"),
+    ];
+    let path = format!("/ws?token={}", running.token());
+    let status = |running: &Running| {
+        let mut stream = TcpStream::connect(running.host()).unwrap();
+        let mut text = format!("GET {path} HTTP/1.1\r\nConnection: Upgrade\r\n");
+        for (name, value) in upgrade {
+            text.push_str(&format!("{name}: {value}\r\n"));
+        }
+        stream.write_all(format!("{text}\r\n").as_bytes()).unwrap();
+        let mut start = [0; 12];
+        stream.read_exact(&mut start).unwrap();
+        String::from_utf8_lossy(&start[9..]).into_owned()
+    };
+    assert_eq!(status(&running), "503");
+    drop(pages);
+    // Their places are free again.
+    let start = Instant::now();
+    while status(&running) != "101" {
+        assert!(start.elapsed() < Duration::from_secs(30));
+        std::thread::sleep(Duration::from_millis(20));
+    }
 }
 
 #[test]
@@ -521,6 +776,46 @@ fn malformed_messages_and_pages_that_disappear_do_no_harm() {
     page.ask(json!({ "type": "hover", "slot": "main", "x": 1, "y": 1 }))
         .unwrap();
     assert!(start.elapsed() < Duration::from_secs(30));
+}
+
+#[test]
+fn a_page_that_reads_nothing_stops_nobody_else() {
+    let running = start(BALL, false);
+    let mut deaf = running.page();
+    for depth in 1..=20 {
+        deaf.show(json!({ "size": [4000, 4000], "depth": depth, "sampling": "center" }));
+    }
+    let mut page = running.page();
+    page.show(json!({}));
+    assert_eq!(
+        page.picture((64, 48)),
+        expected(&running.scene(), |view| view)
+    );
+}
+
+#[test]
+fn a_scene_may_not_ask_for_a_picture_of_any_size() {
+    let folder = tempfile::tempdir().unwrap();
+    let huge = "v\nfrom 0 0 -5\nat 0 0 0\nup 0 1 0\nangle 40\nhither 1\nresolution 60000 60000\ns 0 0 0 1\n";
+    let nff = folder.path().join("huge.nff");
+    std::fs::write(&nff, huge).unwrap();
+    let (scene, _) = load_path(&nff, LoadOptions::default())
+        .into_scene()
+        .unwrap();
+    assert_eq!(scene.settings.size, Some((60000, 60000)));
+    let running = serving(folder, &nff, None, false, None);
+    let mut page = running.page();
+    page.show(json!({}));
+    let message = page.until("error");
+    assert!(
+        message["message"]
+            .as_str()
+            .unwrap()
+            .contains("60000 x 60000"),
+        "{message}"
+    );
+    page.show(json!({ "size": [40, 30] }));
+    page.until("done");
 }
 
 #[test]

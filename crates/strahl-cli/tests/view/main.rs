@@ -5,6 +5,10 @@
     clippy::print_stderr,
     reason = "tests say what they skip"
 )]
+#![allow(
+    clippy::unwrap_used,
+    reason = "a test that unwraps fails as a test should"
+)]
 
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
@@ -15,6 +19,7 @@ const SCENE: &str = "\
 global_settings { assumed_gamma 1 }
 camera { location <0, 1.2, -5> look_at <0, 0.2, 0> angle 40 }
 light_source { <4, 6, -5>, 1 }
+#include \"colors.inc\"
 #include \"ball.inc\"
 sphere {
   <0, 0, 0>, 1
@@ -32,6 +37,23 @@ impl Drop for Running {
         let _ = self.0.kill();
         let _ = self.0.wait();
     }
+}
+
+/// A viewer with these arguments, and its address.
+fn viewer(folder: &Path, args: &[&str]) -> (Running, String) {
+    let mut view = Running(
+        Command::new(env!("CARGO_BIN_EXE_strahl"))
+            .arg("view")
+            .args(args)
+            .current_dir(folder)
+            .stdout(Stdio::piped())
+            .spawn()
+            .unwrap(),
+    );
+    let mut address = String::new();
+    let out = view.0.stdout.take().unwrap();
+    BufReader::new(out).read_line(&mut address).unwrap();
+    (view, address.trim().to_owned())
 }
 
 /// The folder with playwright-core and axe-core, and the browser; `None` if one of them or Node.js is missing.
@@ -83,21 +105,12 @@ fn the_viewer_works_in_a_browser() {
             .status();
         assert!(rendered.unwrap().success());
     }
-    let mut view = Running(
-        Command::new(strahl)
-            .args(["view", "scene.pov", "--size", "160x120", "--edit"])
-            .current_dir(folder.path())
-            .stdout(Stdio::piped())
-            .spawn()
-            .unwrap(),
-    );
-    let mut address = String::new();
-    let out = view.0.stdout.take().unwrap();
-    BufReader::new(out).read_line(&mut address).unwrap();
+    let (_own, address) = viewer(folder.path(), &["scene.pov", "--size", "160x120", "--edit"]);
+    let (_others, others) = viewer(folder.path(), &["--size", "64x48"]);
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/view/browser.mjs");
     let checked = Command::new("node")
         .arg(script)
-        .args([address.trim(), &folder.path().display().to_string()])
+        .args([&address, &folder.path().display().to_string(), &others])
         .env("STRAHL_PLAYWRIGHT", modules)
         .env("STRAHL_BROWSER", browser)
         .output()

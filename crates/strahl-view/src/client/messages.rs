@@ -1,13 +1,17 @@
 //! What a page's settings mean, and what it is told about scenes and pictures.
 
 use crate::pictures::{Kind, Picture};
-use crate::protocol::{CameraData, DEEPEST, LONGEST_SIDE, MOST_PIXELS, Settings, Slot};
+use crate::protocol::{
+    CameraData, DEEPEST, LONGEST_SIDE, MOST_LIGHTS, MOST_PIXELS, MovedLight, Settings, Slot,
+};
 use crate::scenes::{Compiled, Key, Request};
 use crate::server::{Defaults, Hub};
 use serde_json::{Value, json};
 use std::path::Path;
 use std::sync::Arc;
 use strahl::prelude::*;
+use strahl::sdl::Texts;
+use strahl::tracing::{light_kind, light_position};
 
 /// The size of pictures for which nobody has another.
 const USUAL_SIZE: (u32, u32) = (800, 600);
@@ -15,13 +19,7 @@ const USUAL_SIZE: (u32, u32) = (800, 600);
 /// Whether settings of a page make sense.
 pub(super) fn check(settings: &Settings) -> Result<(), String> {
     if let Some([width, height]) = settings.size {
-        let pixels = u64::from(width) * u64::from(height);
-        let sides = 1..=LONGEST_SIDE;
-        if !(sides.contains(&width) && sides.contains(&height) && pixels <= MOST_PIXELS) {
-            return Err(format!(
-                "pictures have at most {LONGEST_SIDE} pixels a side, and {MOST_PIXELS} in all"
-            ));
-        }
+        check_size(width, height)?;
     }
     if settings
         .depth
@@ -45,11 +43,13 @@ pub(super) fn check(settings: &Settings) -> Result<(), String> {
         shading.parse::<ShadingModel>().map_err(|e| e.to_string())?;
     }
     if let Some(accelerator) = &settings.accelerator {
-        // Without parameters: a page may not ask for a grid of any size.
-        let mut all = AcceleratorKind::ALL.iter();
-        if !all.any(|kind| kind.name() == accelerator) {
+        // Not with any parameters: a page may not ask for a grid of any size.
+        if !accelerators().any(|name| name == accelerator) {
             return Err(format!("there is no accelerator `{accelerator}`"));
         }
+    }
+    if settings.lights.len() > MOST_LIGHTS {
+        return Err(format!("at most {MOST_LIGHTS} lights are moved"));
     }
     if settings.clock.is_some_and(|clock| !clock.is_finite()) {
         return Err("the clock is a number".into());
@@ -57,19 +57,36 @@ pub(super) fn check(settings: &Settings) -> Result<(), String> {
     Ok(())
 }
 
+/// The accelerators that a page may ask for: all of them, and the octree with each of its ways through cells.
+pub(super) fn accelerators() -> impl Iterator<Item = &'static str> {
+    const WAYS: [&str; 3] = [
+        "octree:traversal=exit-face",
+        "octree:traversal=trial-plane",
+        "octree:traversal=neighbours",
+    ];
+    let all = AcceleratorKind::ALL.iter().map(|kind| kind.name());
+    all.chain(WAYS)
+}
+
+fn check_size(width: u32, height: u32) -> Result<(), String> {
+    let pixels = u64::from(width) * u64::from(height);
+    let sides = 1..=LONGEST_SIDE;
+    match sides.contains(&width) && sides.contains(&height) && pixels <= MOST_PIXELS {
+        true => Ok(()),
+        false => Err(format!(
+            "the viewer shows pictures of at most {LONGEST_SIDE} pixels a side and {MOST_PIXELS} in all, not {width} x {height}"
+        )),
+    }
+}
+
 /// The scene that settings ask for.
-pub(super) fn key_of(
-    path: &Path,
-    text: Option<&Arc<str>>,
-    settings: &Settings,
-    defaults: &Defaults,
-) -> Key {
+pub(super) fn key_of(path: &Path, texts: &Texts, settings: &Settings, defaults: &Defaults) -> Key {
     let named = settings.accelerator.as_ref();
     let accelerator = named.and_then(|name| name.parse().ok());
     Key {
         request: Request {
             path: path.to_owned(),
-            text: text.cloned(),
+            texts: texts.clone(),
             size: settings.size.map(Into::into).or(defaults.size),
             clock: settings.clock.unwrap_or(defaults.clock),
         },
@@ -78,16 +95,22 @@ pub(super) fn key_of(
 }
 
 /// The view that settings ask for. They have been checked.
+///
+/// # Errors
+/// The scene asks for a picture that is too large.
 pub(super) fn view_of(
     scene: &Arc<RenderScene>,
     camera: &Camera,
     settings: &Settings,
     hub: &Hub,
-) -> View {
+) -> Result<View, String> {
     let defaults = &hub.defaults;
     let size = settings.size.map(Into::into).or(defaults.size);
     let (width, height) = size.or(scene.settings().size).unwrap_or(USUAL_SIZE);
-    let mut view = scene.view(width, height).with_camera(camera.clone());
+    check_size(width, height)?;
+    let mut view = moved(scene, &settings.lights)
+        .view(width, height)
+        .with_camera(camera.clone());
     let sampling = settings.sampling.as_ref().and_then(|s| s.parse().ok());
     view.sampling = sampling.unwrap_or(defaults.sampling);
     if settings.channel.kind() != Kind::Color {
@@ -107,7 +130,37 @@ pub(super) fn view_of(
     if let Some(camera) = &settings.camera {
         view.camera = camera.apply(&view.camera);
     }
-    view
+    Ok(view)
+}
+
+/// The scene with lights at other positions. Lights that it doesn't have, because it has changed meanwhile, are passed over.
+pub(super) fn moved(scene: &Arc<RenderScene>, lights: &[MovedLight]) -> Arc<RenderScene> {
+    let mut scene = Arc::clone(scene);
+    for moved in lights {
+        if let Some(other) = scene.with_light_at(moved.light, moved.position.into()) {
+            scene = Arc::new(other);
+        }
+    }
+    scene
+}
+
+/// The first lights of a scene.
+fn lights(scene: &RenderScene) -> Vec<Value> {
+    let lights = scene.lights().iter().take(MOST_LIGHTS).enumerate();
+    let told = lights.map(|(number, one)| {
+        let ("at", position) = light_position(&one.light) else {
+            return Value::Null;
+        };
+        let place = scene.sources().locate(one.span);
+        json!({
+            "name": scene.light_name(number as u32),
+            "kind": light_kind(&one.light),
+            "position": position.to_array(),
+            "file": place.as_ref().map(|place| place.file),
+            "line": place.as_ref().map(|place| place.span.line),
+        })
+    });
+    told.collect()
 }
 
 pub(super) fn scene_message(
@@ -117,6 +170,7 @@ pub(super) fn scene_message(
     loading: bool,
 ) -> Value {
     let files = compiled.map_or(&[][..], |compiled| &compiled.files);
+    let shown = files.iter().filter(|file| file.is_text());
     let stats = compiled.and_then(|compiled| {
         let scene = compiled.scene.as_ref()?;
         let (stats, bounds) = (scene.stats(), scene.bounds());
@@ -127,6 +181,7 @@ pub(super) fn scene_message(
             "accelerator": scene.accelerator_name(),
             "low": bounds.min.to_array(),
             "high": bounds.max.to_array(),
+            "placed": lights(scene),
         }))
     });
     json!({
@@ -136,7 +191,7 @@ pub(super) fn scene_message(
         "number": compiled.map(|compiled| compiled.number),
         "loading": loading,
         "said": compiled.map(|compiled| &compiled.said),
-        "files": files.iter().map(|file| &file.name).collect::<Vec<_>>(),
+        "files": shown.map(|file| json!({ "name": file.name, "built_in": file.built_in.is_some() })).collect::<Vec<_>>(),
         "seconds": compiled.map(|compiled| compiled.seconds),
         "stats": stats,
         "clock": compiled.is_some_and(|compiled| compiled.clock),

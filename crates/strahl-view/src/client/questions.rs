@@ -1,8 +1,9 @@
 //! Questions of a page, each worked on in a thread of its own.
 
-use super::messages::key_of;
+use super::messages::{key_of, moved};
 use super::{Busy, Client, Gone};
-use crate::pictures::Picture;
+use crate::export::{PicturePage, USUAL_TREES, objects_of};
+use crate::pictures::{End, Kind, Picture};
 use crate::protocol::{MARKS, Slot, header};
 use crate::server::Hub;
 use axum::extract::ws::Message;
@@ -20,6 +21,8 @@ const MOST_WORK: usize = 8;
 const MOST_MEASURED: f64 = 65536.0;
 /// The most primitives for which the list is compared with the others.
 const MOST_LISTED: usize = 2000;
+/// The most pixels that are chosen for a page.
+const MOST_CHOSEN: usize = 1000;
 /// The longest answer in bytes.
 const LONGEST_ANSWER: usize = 64 << 20;
 
@@ -30,8 +33,13 @@ impl Client {
         id: u64,
         answer: Result<Value, String>,
     ) -> Result<(), Gone> {
-        let message = reply(id, answer);
-        Ok(self.socket.send(message).await?)
+        self.put(reply(id, answer)).await
+    }
+
+    /// Answers a question with a problem.
+    fn refuse(&self, id: u64, problem: &str) -> Result<(), Gone> {
+        let refusal = reply(id, Err(problem.into()));
+        self.answer.send(refusal).map_err(|_| Gone)
     }
 
     /// Works on a question about a pixel in a thread of its own.
@@ -42,18 +50,12 @@ impl Client {
         pixel: Option<(u32, u32)>,
         work: impl FnOnce(&Hub, &Picture, (u32, u32)) -> Result<Value, String> + Send + 'static,
     ) -> Result<(), Gone> {
-        let picture = self
-            .slots
-            .get(&slot)
-            .and_then(|shown| shown.picture.clone());
-        let Some(picture) = picture else {
-            let none = reply(id, Err("there is no picture".into()));
-            return self.answer.send(none).map_err(|_| Gone);
+        let Some(picture) = self.picture(slot) else {
+            return self.refuse(id, "there is no picture");
         };
         let at = pixel.unwrap_or_default();
         if at.0 >= picture.view.width || at.1 >= picture.view.height {
-            let none = reply(id, Err("there is no such pixel".into()));
-            return self.answer.send(none).map_err(|_| Gone);
+            return self.refuse(id, "there is no such pixel");
         }
         self.work(id, move |hub| {
             work(hub, &picture, at).map(|value| reply(id, Ok(value)))
@@ -68,8 +70,7 @@ impl Client {
     ) -> Result<(), Gone> {
         let busy = Busy(Arc::clone(&self.work));
         if self.work.fetch_add(1, Ordering::Relaxed) >= MOST_WORK {
-            let refused = reply(id, Err("too many questions at once".into()));
-            return self.answer.send(refused).map_err(|_| Gone);
+            return self.refuse(id, "too many questions at once");
         }
         let (hub, answer) = (Arc::clone(&self.hub), self.answer.clone());
         let thread = std::thread::Builder::new().name("strahl question".into());
@@ -82,23 +83,18 @@ impl Client {
         });
         match spawned {
             Ok(_) => Ok(()),
-            Err(error) => {
-                let failed = reply(id, Err(error.to_string()));
-                self.answer.send(failed).map_err(|_| Gone)
-            }
+            Err(error) => self.refuse(id, &error.to_string()),
         }
     }
 
     /// What the picture costs with each accelerator, one ray per pixel and at most [`MOST_MEASURED`] pixels.
     pub(super) fn table(&self, id: u64, slot: Slot) -> Result<(), Gone> {
-        let shown = self.slots.get(&slot);
-        let picture = shown.and_then(|shown| shown.picture.clone());
-        let (Some(shown), Some(picture)) = (shown, picture) else {
-            let none = reply(id, Err("there is no picture".into()));
-            return self.answer.send(none).map_err(|_| Gone);
+        let (Some(shown), Some(picture)) = (self.slots.get(&slot), self.picture(slot)) else {
+            return self.refuse(id, "there is no picture");
         };
-        let (path, text) = (&self.path, self.text.as_ref());
-        let key = key_of(path, text, &shown.settings, &self.hub.defaults);
+        let settings = &shown.settings;
+        let key = key_of(&self.path, &self.texts, settings, &self.hub.defaults);
+        let lights = settings.lights.clone();
         self.work(id, move |hub| {
             let description = hub.scenes.description(&key.request)?;
             let view = &picture.view;
@@ -118,7 +114,9 @@ impl Client {
                     .compile(&description, &CompileOptions { accelerator });
                 let (scene, _) = built.map_err(|problems| problems.to_string())?;
                 let built = start.elapsed().as_secs_f64();
-                let mut measured = scene.view(width, height).with_camera(view.camera.clone());
+                let mut measured = moved(&scene, &lights)
+                    .view(width, height)
+                    .with_camera(view.camera.clone());
                 (measured.seed, measured.trace) = (view.seed, view.trace);
                 let start = Instant::now();
                 let rendered = hub.session.picture(&measured, &Output::default());
@@ -140,13 +138,8 @@ impl Client {
 
     /// Marks the pixels of the objects that a line of the scene has made: those that begin on it, or on the last line before.
     pub(super) fn mark(&self, id: u64, slot: Slot, file: String, line: u32) -> Result<(), Gone> {
-        let picture = self
-            .slots
-            .get(&slot)
-            .and_then(|shown| shown.picture.clone());
-        let Some(picture) = picture else {
-            let none = reply(id, Err("there is no picture".into()));
-            return self.answer.send(none).map_err(|_| Gone);
+        let Some(picture) = self.picture(slot) else {
+            return self.refuse(id, "there is no picture");
         };
         self.work(id, move |hub| {
             let scene = picture.view.scene();
@@ -164,28 +157,48 @@ impl Client {
             for (number, object) in objects() {
                 made[number as usize + 1] = in_file(object.span) && object.span.line == first;
             }
-            let view = picture
-                .view
-                .clone()
-                .with_sampling(Sampling::Center)
-                .with_depth(1);
-            let output = Output {
-                info: true,
-                ..Output::default()
-            };
-            let film = hub
-                .session
-                .picture(&view, &output)
-                .map_err(|e| e.to_string())?
-                .film;
+            let seen = objects_of(&hub.session, &picture.view)?;
             let mut message = header(MARKS, picture.number, picture.region(), 1);
             message[28..32].copy_from_slice(&first.to_le_bytes());
-            let info = film.info.unwrap_or_default();
-            message.extend(
-                info.iter()
-                    .map(|info| u8::from(made.get(info.object as usize) == Some(&true))),
-            );
+            let is_made = |object: &u32| made.get(*object as usize) == Some(&true);
+            message.extend(seen.iter().map(|object| u8::from(is_made(object))));
             Ok(Message::Binary(message.into()))
+        })
+    }
+}
+
+impl Client {
+    /// A page with the picture of a slot, its objects and the trees of some of its pixels.
+    pub(super) fn export_picture(
+        &self,
+        id: u64,
+        slot: Slot,
+        chosen: Vec<[u32; 2]>,
+        language: String,
+    ) -> Result<(), Gone> {
+        if chosen.len() > MOST_CHOSEN {
+            return self.refuse(id, "there are too many chosen pixels");
+        }
+        let (title, texts) = (self.title(), self.scene_texts(slot));
+        self.ask(id, slot, None, move |hub, picture, _| {
+            let view = &picture.view;
+            let pixels = {
+                let canvas = picture.canvas();
+                let finished = matches!(canvas.end, Some(End::Finished { .. }));
+                if !finished || picture.kind != Kind::Color {
+                    return Err("there is no finished picture in colour yet".into());
+                }
+                canvas.pixels.clone()
+            };
+            let page = PicturePage {
+                title: &title,
+                language: &language,
+                texts: &texts,
+                chosen: &chosen,
+                trees: USUAL_TREES,
+            };
+            let html = page.write(&hub.session, view, &pixels)?;
+            Ok(json!({ "html": html }))
         })
     }
 }
