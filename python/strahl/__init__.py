@@ -8,6 +8,8 @@ degrees. Positions are in the units of the scene; y is up in cameras unless `up`
 """
 
 from strahl import _tree as tree
+from strahl._arrays import from_ase, from_trimesh, height_field, isosurface, mesh, spheres
+from strahl._costs import Comparison, HeatMap
 from strahl._errors import Diagnostic, InternalError, SceneError, SceneWarning
 from strahl._film import Film
 from strahl._lights import (
@@ -19,25 +21,21 @@ from strahl._lights import (
     point_light,
     spot_light,
 )
+from strahl._load import load, parse
 from strahl._looks import Background, Camera, Material
-from strahl._objects import (
+from strahl._objects import difference, intersection, merge, Object, union
+from strahl._progress import Progress
+from strahl._rays import Hits
+from strahl._scene import Scene
+from strahl._shapes import (
     bicubic_patch,
     blob,
     box,
     cone,
     cylinder,
-    difference,
     disc,
-    from_ase,
-    from_trimesh,
-    height_field,
-    intersection,
-    isosurface,
     lathe,
     lemon,
-    merge,
-    mesh,
-    Object,
     ovus,
     plane,
     polygon,
@@ -48,14 +46,10 @@ from strahl._objects import (
     sor,
     sphere,
     sphere_sweep,
-    spheres,
     superellipsoid,
     torus,
     triangle,
-    union,
 )
-from strahl._rays import Hits
-from strahl._scene import Comparison, load, parse, Progress, Scene
 from strahl._strahl import __version__, thread_count
 from strahl._tree import Explanation
 
@@ -66,6 +60,7 @@ __all__ = [
     "Diagnostic",
     "Explanation",
     "Film",
+    "HeatMap",
     "Hits",
     "InternalError",
     "Light",

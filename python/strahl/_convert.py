@@ -21,12 +21,12 @@ Place: TypeAlias = tuple[str, int] | None
 
 def vector(value: Vector, name: str) -> Triple:
     """Three finite numbers, or ValueError."""
-    numbers = real(value, name)
-    if numbers.shape != (3,):
-        raise ValueError(f"{name} must have 3 numbers, not the shape {numbers.shape}")
-    if not np.isfinite(numbers).all():
+    three = real(value, name)
+    if three.shape != (3,):
+        raise ValueError(f"{name} must have 3 numbers, not the shape {three.shape}")
+    if not np.isfinite(three).all():
         raise ValueError(f"{name} must be finite, not {value!r}")
-    return cast(Triple, tuple(numbers.tolist()))
+    return cast(Triple, tuple(three.tolist()))
 
 
 def number(value: float, name: str) -> float:
@@ -44,14 +44,14 @@ def color(value: ColorLike, name: str) -> Triple:
     """A linear colour, or an error."""
     if isinstance(value, str):
         return _srgb(value, name)
-    numbers = real(value, name)
-    if numbers.shape == ():
-        numbers = np.repeat(numbers, 3)
-    if numbers.shape != (3,):
-        raise ValueError(f"{name} must be 3 numbers or one, not the shape {numbers.shape}")
-    if not np.isfinite(numbers).all():
+    three = real(value, name)
+    if three.shape == ():
+        three = np.repeat(three, 3)
+    if three.shape != (3,):
+        raise ValueError(f"{name} must be 3 numbers or one, not the shape {three.shape}")
+    if not np.isfinite(three).all():
         raise ValueError(f"{name} must be finite, not {value!r}")
-    return cast(Triple, tuple(numbers.tolist()))
+    return cast(Triple, tuple(three.tolist()))
 
 
 def _srgb(text: str, name: str) -> Triple:
@@ -68,34 +68,44 @@ def _srgb(text: str, name: str) -> Triple:
     return cast(Triple, tuple(linear.tolist()))
 
 
-def real(value: Any, name: str) -> npt.NDArray[np.float64]:
-    """An array of real numbers as float64, which is not copied if it is one already."""
+def numbers(value: Any, name: str) -> npt.NDArray[Any]:
+    """An array of real numbers of any kind, or an error."""
     try:
         array = np.asarray(value)
     except ValueError:
         raise ValueError(f"{name} must be an array of numbers with rows of equal length") from None
     if array.dtype.kind not in "biuf":
         raise TypeError(f"{name} must be real numbers, not {array.dtype}")
-    return array.astype(np.float64, copy=False)
+    return array
 
 
-def rows(value: Any, name: str, columns: int) -> npt.NDArray[np.float64]:
-    """An array (n, columns), contiguous, or ValueError."""
-    array = real(value, name)
+def real(value: Any, name: str) -> npt.NDArray[np.float64]:
+    """An array of real numbers as float64, which is not copied if it is one already."""
+    return numbers(value, name).astype(np.float64, copy=False)
+
+
+def rows_of_floats(value: Any, name: str, columns: int) -> npt.NDArray[np.float32] | npt.NDArray[np.float64]:
+    """A contiguous array (n, columns) of finite numbers, or ValueError: float32 stays float32, all other kinds become float64.
+
+    Nothing is copied that has this layout already.
+    """
+    array = numbers(value, name)
+    if array.dtype != np.float32:
+        array = array.astype(np.float64, copy=False)
     if array.ndim != 2 or array.shape[1] != columns:
         if array.size == 0:
             return np.empty((0, columns))
         raise ValueError(f"{name} must have the shape (n, {columns}), not {array.shape}")
+    # The extremes of an array with a NaN are NaN; unlike np.isfinite they take no memory.
+    if array.size and not (np.isfinite(array.min()) and np.isfinite(array.max())):
+        row = int((~np.isfinite(array).all(axis=1)).argmax())
+        raise ValueError(f"{name}: row {row} is not finite: {array[row]}")
     return np.ascontiguousarray(array)
 
 
 def finite_rows(value: Any, name: str, columns: int) -> npt.NDArray[np.float64]:
-    """The same, and all numbers are finite."""
-    array = rows(value, name, columns)
-    bad = ~np.isfinite(array).all(axis=1)
-    if bad.any():
-        raise ValueError(f"{name}: row {int(bad.argmax())} is not finite: {array[bad.argmax()]}")
-    return array
+    """A contiguous array (n, columns) of finite numbers as float64, or ValueError."""
+    return rows_of_floats(value, name, columns).astype(np.float64, copy=False)
 
 
 def integer(value: Any, name: str, least: int) -> int:
@@ -116,4 +126,14 @@ def caller() -> Place:
     frame = sys._getframe(1)
     while frame.f_globals.get("__name__", "").startswith("strahl.") and frame.f_back is not None:
         frame = frame.f_back
-    return frame.f_code.co_filename, frame.f_lineno
+    name = frame.f_code.co_filename
+    return _cell(name) or name, frame.f_lineno
+
+
+def _cell(name: str) -> str | None:
+    """What a notebook calls the cell that it has compiled under a name: ``In[3]``."""
+    if "IPython" not in sys.modules:
+        return None
+    shell = getattr(sys.modules["IPython"], "get_ipython", lambda: None)()
+    label = getattr(getattr(shell, "compile", None), "format_code_name", lambda _: None)(name)
+    return label[1] if label else None

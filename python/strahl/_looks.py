@@ -121,7 +121,7 @@ class Material:
         What stands in front of the last statement, such as ``#include "woods.inc"``, is read first; put the object's statements on lines of
         their own, behind a line ``---``. Raises `SceneError` if the text is wrong.
         """
-        from strahl._scene import parse
+        from strahl._load import parse
 
         before, _, look = text.rpartition("\n---\n")
         scene = parse(f"{before}\nsphere {{ 0, 1 {look} }}", name="material")
@@ -165,6 +165,9 @@ class Camera:
         up: Vector,
         numbers: tuple[float, float],
         aspect: float | None,
+        *,
+        upright: bool = True,
+        moving: bool = False,
     ) -> Camera:
         return cls(
             _strahl.Camera(
@@ -174,6 +177,7 @@ class Camera:
                 vector(up, "up"),
                 numbers,
                 None if aspect is None else number(aspect, "aspect"),
+                (upright, moving),
             )
         )
 
@@ -220,6 +224,30 @@ class Camera:
         return cls._looking("fisheye", eye, look_at, up, (full, 0.0), aspect)
 
     @classmethod
+    def ultra_wide_angle(
+        cls,
+        eye: Vector,
+        look_at: Vector = (0, 0, 0),
+        *,
+        up: Vector = (0, 1, 0),
+        angle: float = 120.0,
+        aspect: float | None = None,
+    ) -> Camera:
+        """A fisheye that fills the picture; ``angle`` is that from the left to the right edge of a square picture, in degrees."""
+        full = radians(number(angle, "angle"))
+        return cls._looking("ultra_wide_angle", eye, look_at, up, (full, 0.0), aspect)
+
+    @classmethod
+    def omnimax(cls, eye: Vector, look_at: Vector = (0, 0, 0), *, up: Vector = (0, 1, 0), aspect: float | None = None) -> Camera:
+        """A fisheye of 180 degrees with the lens of Omnimax projectors: the view ends 45 degrees below the horizon."""
+        return cls._looking("omnimax", eye, look_at, up, (0.0, 0.0), aspect)
+
+    @classmethod
+    def panoramic(cls, eye: Vector, look_at: Vector = (0, 0, 0), *, up: Vector = (0, 1, 0), aspect: float | None = 1.0) -> Camera:
+        """Half of all directions: 180 degrees from edge to edge, both ways, with longitude and latitude as x and y."""
+        return cls._looking("panoramic", eye, look_at, up, (0.0, 0.0), aspect)
+
+    @classmethod
     def spherical(
         cls,
         eye: Vector,
@@ -241,16 +269,19 @@ class Camera:
         *,
         up: Vector = (0, 1, 0),
         angle: float = 180.0,
+        upright: bool = True,
+        moving: bool = False,
         aspect: float | None = None,
     ) -> Camera:
-        """A panorama on an upright cylinder; ``angle`` is that around the axis, in degrees."""
+        """A panorama on a cylinder; ``angle`` is that around the axis, in degrees. The axis is vertical, or horizontal unless ``upright``; with ``moving`` the eye moves
+        along it, and rays stand at right angles to it."""
         full = radians(number(angle, "angle"))
-        return cls._looking("cylinder", eye, look_at, up, (full, 0.0), aspect)
+        return cls._looking("cylinder", eye, look_at, up, (full, 0.0), aspect, upright=upright, moving=moving)
 
     @classmethod
     def pov(cls, text: str) -> Camera:
         """A camera in POV-Ray's language: ``camera { ... }``. All of POV-Ray's projections and lenses are there."""
-        from strahl._scene import parse
+        from strahl._load import parse
 
         scene = parse(text, name="camera")._core
         core = scene.camera()
@@ -323,7 +354,7 @@ class Background:
     @classmethod
     def pov(cls, text: str) -> Background:
         """A background in POV-Ray's language: ``background { ... }`` or ``sky_sphere { ... }``."""
-        from strahl._scene import parse
+        from strahl._load import parse
 
         core = parse(text, name="background")._core.background()
         if core is None:

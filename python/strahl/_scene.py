@@ -1,159 +1,25 @@
-"""Scenes: loading, building, rendering and asking."""
+"""Scenes: building, rendering and asking."""
 
 from __future__ import annotations
 
-import json
-import os
-import sys
 import time
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
-from pathlib import Path
-from typing import Any, cast, Literal
+from collections.abc import Callable, Iterable, Sequence
+from typing import Any, Literal
 
 import numpy as np
 import numpy.typing as npt
 
 from strahl import _strahl
 from strahl._convert import ColorLike, color, integer, number, real
+from strahl._costs import Comparison, HeatMap
 from strahl._film import Film
 from strahl._lights import Light
 from strahl._looks import Background, Camera, background_of
 from strahl._objects import Object
+from strahl._progress import Preview, Progress, shown
 from strahl._rays import Hits
-from strahl._tree import Explanation, read
-
-Declared = float | str | Sequence[float]
-
-
-@dataclass(frozen=True)
-class Progress:
-    """How far a render is: what a progress function gets, at most twenty times a second."""
-
-    step: int
-    """Number of the pass, from 0."""
-    steps: int
-    """Number of passes."""
-    done: int
-    """Parts of this pass that are done."""
-    of: int
-    """Parts of this pass."""
-
-    @property
-    def fraction(self) -> float:
-        """How much of this pass is done, from 0 to 1."""
-        return self.done / self.of if self.of else 0.0
-
-
-class Comparison(list[dict[str, Any]]):
-    """The rows of `Scene.compare`: a list of dictionaries, one for each accelerator."""
-
-    def to_dataframe(self) -> Any:
-        """A pandas.DataFrame with the accelerators as its index. It needs pandas."""
-        import pandas  # type: ignore[import-not-found,import-untyped,unused-ignore]
-
-        return pandas.DataFrame(self).set_index("accelerator")
-
-
-def _fonts() -> list[str]:
-    home = Path.home()
-    if sys.platform == "darwin":
-        return [str(home / "Library/Fonts"), "/Library/Fonts", "/System/Library/Fonts"]
-    if sys.platform == "win32":
-        return [os.path.join(os.environ.get("WINDIR", r"C:\Windows"), "Fonts")]
-    own = [str(home / ".local/share/fonts"), str(home / ".fonts")]
-    return [*own, "/usr/local/share/fonts", "/usr/share/fonts"]
-
-
-def _reading(
-    format: str | None,
-    declare: Mapping[str, Declared] | None,
-    clock: float | None,
-    size: tuple[int, int] | None,
-    library: Iterable[str | os.PathLike[str]],
-    version: float | None,
-    header: str | None,
-    limits: Mapping[str, int] | None,
-    studio: bool,
-    messages: Callable[[str], object] | None,
-) -> dict[str, Any]:
-    if isinstance(library, (str, os.PathLike)):
-        library = [library]
-    values: list[tuple[str, Any]] = []
-    for name, value in (declare or {}).items():
-        if isinstance(value, str) or np.ndim(value) == 0:
-            values.append((name, value))
-        else:
-            values.append((name, [float(part) for part in cast(Sequence[float], value)]))
-    return {
-        "format": format,
-        "declare": values,
-        "clock": None if clock is None else number(clock, "clock"),
-        "size": _size(size),
-        "library": [".", *(os.fspath(folder) for folder in library)],
-        "fonts": _fonts(),
-        "version": version,
-        "header": header,
-        "limits": list((limits or {}).items()),
-        "studio": studio,
-        "messages": messages,
-    }
-
-
-def _size(size: tuple[int, int] | None) -> tuple[int, int] | None:
-    if size is None:
-        return None
-    width, height = size
-    return integer(width, "width", 1), integer(height, "height", 1)
-
-
-def load(
-    path: str | os.PathLike[str],
-    *,
-    declare: Mapping[str, Declared] | None = None,
-    clock: float | None = None,
-    size: tuple[int, int] | None = None,
-    format: str | None = None,
-    library: Iterable[str | os.PathLike[str]] = (),
-    version: float | None = None,
-    header: str | None = None,
-    limits: Mapping[str, int] | None = None,
-    studio: bool = True,
-    messages: Callable[[str], object] | None = None,
-) -> Scene:
-    """Loads a scene file: POV-Ray's language, NFF, glTF, OBJ, PLY, STL; the name or ``format`` says which.
-
-    ``declare`` gives names and values (numbers, strings, vectors of 2 to 5 numbers) that are known before the scene begins, ``clock`` the time of an
-    animation. ``size`` is what the scene sees as image_width and image_height, and the size of pictures unless they have one. ``library`` are
-    folders for include files, ``header`` a file that is included first, ``version`` the version of the language, ``limits`` those of
-    ``strahl --limit``. Meshes get a ground, a camera and lights unless ``studio`` is false. ``messages`` is called with the output of #debug.
-    Files that a scene writes stay in memory.
-
-    Raises `SceneError` with all errors; warnings are issued as `SceneWarning`.
-    """
-    reading = _reading(format, declare, clock, size, library, version, header, limits, studio, messages)
-    return Scene._of(_strahl.load(os.fspath(path), reading))
-
-
-def parse(
-    text: str | bytes,
-    *,
-    name: str = "text",
-    declare: Mapping[str, Declared] | None = None,
-    clock: float | None = None,
-    size: tuple[int, int] | None = None,
-    format: str | None = None,
-    library: Iterable[str | os.PathLike[str]] = (),
-    version: float | None = None,
-    header: str | None = None,
-    limits: Mapping[str, int] | None = None,
-    studio: bool = True,
-    messages: Callable[[str], object] | None = None,
-) -> Scene:
-    """Reads a scene from a text, in POV-Ray's language unless ``format`` names another; ``name`` stands for the file in messages. See `load`."""
-    reading = _reading(format, declare, clock, size, library, version, header, limits, studio, messages)
-    data = text.encode() if isinstance(text, str) else bytes(text)
-    return Scene._of(_strahl.parse(data, name, reading))
+from strahl._reader import read
+from strahl._tree import Explanation
 
 
 class Scene:
@@ -303,37 +169,33 @@ class Scene:
         place of the scene's. ``region`` is x, y, width and height of the part to render. ``layers`` fills depth, normals and so on, ``alpha`` the
         alpha channel. ``shading`` overrides all shading models, also with ``"normals"``, ``"depth"``, ``"object-id"``, ``"uv"``.
 
-        ``progress`` is a function that gets a `Progress`, True for a line on the standard error, or False; by default there is a line on terminals and in
-        notebooks, for renders that take longer than a second. ``preview`` shows the picture in a notebook while it is made, from coarse to fine.
+        ``progress`` is a function that gets a `Progress`, True for a bar in the notebook or on the standard error, or False; by default there is a bar in notebooks and on
+        terminals, for renders that take longer than a second. ``preview`` shows the picture in a notebook while it is made, from coarse to fine.
 
         Other Python threads run meanwhile. Ctrl-C ends it with KeyboardInterrupt. Raises `SceneError` if the scene has errors, and ValueError for impossible
         settings or a picture that doesn't fit into memory.
         """
         view = self._view(width, height, sampling, depth, adc_bailout, shading, camera, seed, threads)
         output = _output(region=_region(region), layers=layers, alpha=alpha, coarse_first=preview)
-        tick, finish = _ticker(progress)
-        show = _Preview() if preview else None
+        line = shown(progress)
+        picture = Preview(view["size"] or self.size) if preview else None
 
         def step(number: int, steps: int, done: int, of: int) -> bool:
-            if tick is not None and of > 0:
-                tick(Progress(number, steps, done, of))
-            return show is not None and show.is_due()
+            if line is not None and of > 0:
+                line.tick(Progress(number, steps, done, of))
+            return picture is not None and picture.is_due()
 
         # Compiled here, so that the time of the picture is its own.
         self._core.stats(_threads(threads))
         start = time.perf_counter()
         try:
-            if show is None:
-                core = self._core.render(view, output, step)
-            else:
-                shown = show
-                picture_size = view["size"] or self.size
-                core = self._core.render(view, output, step, lambda pixels: shown.show(pixels, picture_size))
+            core = self._core.render(view, output, step, None if picture is None else picture.show)
         finally:
-            finish()
+            if line is not None:
+                line.finish()
         film = Film(core, time.perf_counter() - start)
-        if show is not None:
-            show.final(film)
+        if picture is not None:
+            picture.final(film)
         return film
 
     def explain(
@@ -356,7 +218,7 @@ class Scene:
         Raises ValueError if there is no such pixel.
         """
         view = self._view(width, height, sampling, depth, adc_bailout, shading, camera, seed, threads)
-        return read(json.loads(self._core.explain(integer(x, "x", 0), integer(y, "y", 0), view)))
+        return read(self._core.explain(integer(x, "x", 0), integer(y, "y", 0), view))
 
     def intersect(
         self,
@@ -415,16 +277,17 @@ class Scene:
         camera: Camera | None = None,
         accelerator: str | None = None,
         threads: int | None = None,
-    ) -> npt.NDArray[np.float64]:
-        """(h, w) float64: the cost of each pixel. ``metric`` is objects ``"tests"``, nodes or cells (``"steps"``), ``"rays"``, the ``"depth"`` of the tree or ``"time"`` in microseconds."""
-        column = "nanoseconds" if metric == "time" else metric
+    ) -> HeatMap:
+        """(h, w) float64: the cost of each pixel. ``metric`` is objects ``"tests"``, nodes or cells (``"steps"``), ``"rays"``, the ``"depth"`` of the tree or ``"time"``
+        in microseconds. `HeatMap.to_dataframe` makes a table for pandas."""
+        if metric not in _METRICS:
+            raise ValueError(f"there is no metric {metric!r}; the metrics are {', '.join(_METRICS)}")
         view = self._view(width, height, sampling, depth, None, None, camera, 0, threads, accelerator)
         core = self._core.render(view, _output(costs=True))
         costs = core.costs() or {}
-        if column not in costs:
-            raise ValueError(f"there is no metric {metric!r}; the metrics are tests, steps, rays, depth and time")
-        values = costs[column].astype(np.float64).reshape(core.region[3], core.region[2])
-        return values / 1000 if metric == "time" else values
+        columns: dict[str, npt.NDArray[Any]] = {name: costs[name] for name in _METRICS[:-1]}
+        columns["time"] = costs["nanoseconds"] / 1000
+        return HeatMap._of(metric, {name: values.reshape(core.region[3], core.region[2]) for name, values in columns.items()})
 
     def compare(
         self,
@@ -437,18 +300,23 @@ class Scene:
         camera: Camera | None = None,
         threads: int | None = None,
     ) -> Comparison:
-        """Renders with one accelerator after the other. Returns a row for each: accelerator, build_s, trace_s, rays, hits, steps_per_ray, tests_per_ray, bytes, nodes,
+        """Renders with one accelerator after the other. Returns a row for each: accelerator, build_s, trace_s, steps_per_ray, tests_per_ray, rays, hits, bytes, nodes,
         references and sha256, which are all the same. `Comparison.to_dataframe` makes a table for pandas."""
         table = Comparison()
         for name in accelerators:
             view = self._view(width, height, sampling, depth, None, None, camera, 0, threads, name)
             numbers, sha256 = self._core.measure(view)
-            table.append({"accelerator": name, **numbers, "sha256": sha256})
+            counts = {column: int(numbers[column]) for column in ("rays", "hits", "bytes", "nodes", "references")}
+            times = {column: numbers[column] for column in ("build_s", "trace_s", "steps_per_ray", "tests_per_ray")}
+            table.append({"accelerator": name, **times, **counts, "sha256": sha256})
         return table
 
     def __repr__(self) -> str:
         objects, lights = self._core.counts()
         return f"<strahl.Scene with {objects} objects and {lights} lights>"
+
+
+_METRICS = ("tests", "steps", "rays", "depth", "time")
 
 
 def _threads(threads: int | None) -> int | None:
@@ -504,81 +372,3 @@ def _rays(origins: Any, directions: Any) -> tuple[npt.NDArray[np.float64], npt.N
     first = np.ascontiguousarray(np.broadcast_to(first, shape)).reshape(-1, 3)
     second = np.ascontiguousarray(np.broadcast_to(second, shape)).reshape(-1, 3)
     return first, second, shape[:-1]
-
-
-class _Preview:
-    """Shows a picture in a notebook while it is made."""
-
-    def __init__(self) -> None:
-        try:
-            from IPython.display import DisplayHandle  # type: ignore[import-not-found,unused-ignore]
-        except ImportError:
-            raise ImportError("preview=True needs IPython") from None
-        self._handle: Any = DisplayHandle()  # type: ignore[no-untyped-call,unused-ignore]
-        self._shown = False
-        self._last = time.perf_counter()
-
-    def is_due(self) -> bool:
-        return time.perf_counter() - self._last > 0.5
-
-    def show(self, pixels: npt.NDArray[np.float32], size: tuple[int, int]) -> None:
-        from IPython.display import Image
-
-        width, height = size
-        data = _strahl.encode_png(np.ascontiguousarray(pixels).reshape(-1, 3), width, height)
-        self._put(Image(data=data, format="png"))  # type: ignore[no-untyped-call,unused-ignore]
-        self._last = time.perf_counter()
-
-    def final(self, film: Film) -> None:
-        self._put(film)
-
-    def _put(self, thing: Any) -> None:
-        if self._shown:
-            self._handle.update(thing)
-        else:
-            self._handle.display(thing)
-            self._shown = True
-
-
-def _ticker(
-    progress: bool | Callable[[Progress], object] | None,
-) -> tuple[Callable[[Progress], object] | None, Callable[[], None]]:
-    """What to call with the progress, and what to call in the end."""
-    if callable(progress):
-        return progress, lambda: None
-    if progress is False or (progress is None and not _is_watched()):
-        return None, lambda: None
-    line = _Line(0.0 if progress else 1.0)
-    return line.tick, line.finish
-
-
-def _is_watched() -> bool:
-    if "ipykernel" in sys.modules:
-        return True
-    stream = sys.stderr
-    return stream is not None and stream.isatty()
-
-
-class _Line:
-    """A line of progress on the standard error."""
-
-    WIDTH = 30
-
-    def __init__(self, quiet: float) -> None:
-        self._start = time.perf_counter()
-        self._quiet = quiet
-        self._length = 0
-
-    def tick(self, progress: Progress) -> None:
-        passed = time.perf_counter() - self._start
-        if passed < self._quiet:
-            return
-        full = int(progress.fraction * self.WIDTH)
-        bar = "#" * full + "." * (self.WIDTH - full)
-        text = f"pass {progress.step + 1}/{progress.steps} [{bar}] {progress.fraction:4.0%} {passed:.0f} s"
-        print("\r" + text.ljust(self._length), end="", file=sys.stderr, flush=True)
-        self._length = len(text)
-
-    def finish(self) -> None:
-        if self._length:
-            print("\r" + " " * self._length + "\r", end="", file=sys.stderr, flush=True)

@@ -7,24 +7,20 @@ Points, directions and colours are tuples of three numbers; colours are linear. 
 
 from __future__ import annotations
 
-import math
+import json
 from collections.abc import Iterator
 from dataclasses import dataclass, field, fields
-from typing import Any, get_args, get_type_hints
+from html import escape
+from typing import Any
+
+from strahl import _strahl
+from strahl._reader import Node
 
 Triple = tuple[float, float, float]
 
 
-class _Node:
-    """What all parts of a tree have."""
-
-    def to_dict(self) -> dict[str, Any]:
-        """The same as plain dictionaries and lists, as the JSON has them."""
-        return dict(self._json)  # type: ignore[attr-defined]
-
-
 @dataclass(frozen=True, kw_only=True)
-class Explanation(_Node):
+class Explanation(Node):
     """A pixel and all rays that were traced for it."""
     pixel: tuple[int, int]
     """Column and row."""
@@ -54,6 +50,19 @@ class Explanation(_Node):
         """The ray from the eye of the first sample."""
         return self.samples[0].root
 
+    def to_html(self, title: str = "", *, language: str = "en") -> str:
+        """A page with the ray trees: the one of ``strahl explain --format html``, which has everything in it. ``language`` is ``"en"`` or ``"de"``."""
+        return _strahl.explanation_page(json.dumps(self.to_dict()), self.pixel, title, language)
+
+    def _repr_html_(self) -> str:
+        # Names of objects come from scenes, so the page runs in a frame that cannot reach the notebook.
+        style = "width: 100%; height: 480px; border: 1px solid rgb(128 128 128 / 40%); resize: vertical; overflow: auto"
+        return f'<iframe sandbox="allow-scripts" style="{style}" srcdoc="{escape(self.to_html())}"></iframe>'
+
+    def __repr__(self) -> str:
+        rays = sum(len(sample.rays) for sample in self.samples)
+        return f"<strahl.Explanation of pixel {self.pixel} with {len(self.samples)} samples and {rays} rays, total {self.total}>"
+
     def to_networkx(self) -> Any:
         """A networkx.DiGraph of all rays: nodes (sample, ray) with the fields of `TreeRay`, edges from rays to those they sent. It needs networkx."""
         import networkx  # type: ignore[import-not-found,import-untyped,unused-ignore]
@@ -70,7 +79,7 @@ class Explanation(_Node):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Sample(_Node):
+class Sample(Node):
     """One primary ray and all that came of it."""
     sample: int
     """Its number, counted from 1."""
@@ -93,7 +102,7 @@ class Sample(_Node):
 
 
 @dataclass(frozen=True, kw_only=True)
-class TreeRay(_Node):
+class TreeRay(Node):
     """A ray of a tree."""
     id: int
     """Its number in the tree."""
@@ -143,7 +152,7 @@ class TreeRay(_Node):
 
     def walk(self) -> Iterator[TreeRay]:
         """This ray and all that came of it, depth first."""
-        waiting = [self]
+        waiting: list[TreeRay] = [self]
         while waiting:
             ray = waiting.pop()
             yield ray
@@ -151,7 +160,7 @@ class TreeRay(_Node):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Line(_Node):
+class Line(Node):
     """Origin and direction of a ray."""
     origin: Triple
     """Where it starts."""
@@ -161,7 +170,7 @@ class Line(_Node):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Ended(_Node):
+class Ended(Node):
     """A branch that was not traced."""
     kind: str
     """`reflection` or `transparency`."""
@@ -173,7 +182,7 @@ class Ended(_Node):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Hit(_Node):
+class Hit(Node):
     """The surface that a ray hit."""
     t: float
     """Ray parameter."""
@@ -233,7 +242,7 @@ class Hit(_Node):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Layer(_Node):
+class Layer(Node):
     """A layer of a POV-Ray texture."""
     pigment: Pigment
     """The colour."""
@@ -259,7 +268,7 @@ class Layer(_Node):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Pigment(_Node):
+class Pigment(Node):
     """A colour with `filter` and `transmit`."""
     rgb: Triple
     """The colour."""
@@ -271,7 +280,7 @@ class Pigment(_Node):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Finish(_Node):
+class Finish(Node):
     """A POV-Ray finish, with the words of its language."""
     ambient: Triple
     emission: Triple
@@ -291,7 +300,7 @@ class Finish(_Node):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Irid(_Node):
+class Irid(Node):
     """A thin film."""
     amount: float
     thickness: float
@@ -300,7 +309,7 @@ class Irid(_Node):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Reflection(_Node):
+class Reflection(Node):
     """The reflection of a finish."""
     min: Triple
     max: Triple
@@ -312,7 +321,7 @@ class Reflection(_Node):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Light(_Node):
+class Light(Node):
     """A light, as a hit sees it."""
     light: str
     """Number, counted from 1, and name."""
@@ -354,7 +363,7 @@ class Light(_Node):
 
 
 @dataclass(frozen=True, kw_only=True)
-class SurfaceTerm(_Node):
+class SurfaceTerm(Node):
     """What a surface, or a layer, makes of one light."""
     n_dot_l: float
     """n·l, at the layer's normal."""
@@ -394,7 +403,7 @@ class SurfaceTerm(_Node):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Shadow(_Node):
+class Shadow(Node):
     """A shadow ray."""
     origin: Triple
     """Where it starts."""
@@ -412,7 +421,7 @@ class Shadow(_Node):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Obstacle(_Node):
+class Obstacle(Node):
     """Something in the way of a shadow ray."""
     t: float
     """Ray parameter."""
@@ -431,51 +440,3 @@ class Obstacle(_Node):
     medium_before: Triple
     """What the medium in front of it keeps."""
     _json: dict[str, Any] = field(repr=False, compare=False)
-
-
-_HINTS: dict[type, dict[str, Any]] = {}
-
-
-def _hints(of: type) -> dict[str, Any]:
-    if of not in _HINTS:
-        _HINTS[of] = get_type_hints(of)
-    return _HINTS[of]
-
-
-def _value(hint: Any, value: Any) -> Any:
-    """A value of the JSON as its type wants it."""
-    if value is None:
-        # Infinities and NaN are null in JSON.
-        return math.nan if hint is float else None
-    options = [option for option in get_args(hint) if option is not type(None)]
-    if isinstance(value, dict):
-        of = hint if isinstance(hint, type) else next(o for o in options if isinstance(o, type))
-        return _object(of, value)
-    if isinstance(value, list):
-        parts = options
-        if getattr(hint, "__origin__", None) not in (list, tuple):
-            hint = parts[0]
-            parts = list(get_args(hint))
-        items = [_value(parts[0], item) for item in value]
-        return tuple(items) if getattr(hint, "__origin__", None) is tuple else items
-    return value
-
-
-def _object(of: type, data: dict[str, Any]) -> Any:
-    hints = _hints(of)
-    values = {}
-    for field_ in fields(of):
-        name = field_.name.rstrip("_")
-        if name in data:
-            values[field_.name] = _value(hints[field_.name], data[name])
-    return of(_json=data, **values)
-
-
-def read(data: dict[str, Any]) -> Explanation:
-    """An explanation from its JSON."""
-    explanation: Explanation = _object(Explanation, data)
-    for sample in explanation.samples:
-        by_number = {ray.id: ray for ray in sample.rays}
-        for ray in sample.rays:
-            object.__setattr__(ray, "_nodes", tuple(by_number[number] for number in ray.children))
-    return explanation

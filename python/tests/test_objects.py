@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import sys
 import time
+from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -115,10 +117,17 @@ def test_wrong_numbers_are_named() -> None:
         (lambda: strahl.plane(normal=(0, 0, 0)), "plane is degenerate"),
         (lambda: strahl.quadric([1, 2]), "10 coefficients"),
         (lambda: strahl.prism([[0, 0], [1, 0]], curve="round"), "no spline"),
-        (lambda: strahl.mesh([[0, 0, 0]], [[0, 1, 2]]), "between 0 and 0"),
+        (lambda: strahl.mesh([[0, 0, 0]], [[0, 0, 0], [0, 1, 2]]), "row 1 has the vertex 1"),
+        (lambda: strahl.mesh(np.zeros((3, 3), np.float32), [[0, -1, 2]]), "row 0 has the vertex -1"),
+        (lambda: strahl.mesh(np.zeros((3, 3)), np.array([[0, 2**64 - 1, 2]], np.uint64)), "row 0 has the vertex"),
         (lambda: strahl.mesh(np.zeros((3, 3)), np.empty((0, 3), int)), "no triangles"),
         (lambda: strahl.mesh(np.zeros((3, 2)), [[0, 1, 2]]), r"\(n, 3\)"),
-        (lambda: strahl.mesh([[nan, 0, 0]] * 3, [[0, 1, 2]]), "row 0 is not finite"),
+        (lambda: strahl.mesh([[0, 0, 0], [0, nan, 0], [1, 1, 1]], [[0, 1, 2]]), "vertices: row 1 is not finite"),
+        (lambda: strahl.mesh(np.array([[0, 0, 0], [np.inf, 0, 0]], np.float32), [[0, 1, 1]]), "vertices: row 1 is not finite"),
+        (lambda: strahl.mesh(np.eye(3), [[0, 1, 2]], normals=np.zeros((2, 3))), "as many rows as vertices"),
+        (lambda: strahl.mesh(np.eye(3), [[0, 1, 2]], solid=True), "not closed"),
+        (lambda: strahl.sphere().instances(np.zeros((2, 3))), r"\(n, 3, 4\)"),
+        (lambda: strahl.sphere().instances([np.eye(4), np.diag([1, 1, 0, 1])]), "number 1"),
         (lambda: strahl.spheres([[0, 0, 0]], [1, 2]), r"\(1,\)"),
         (lambda: strahl.spheres([[0, 0, 0]], [float("inf")]), "sphere 0"),
         (lambda: strahl.Material("blue"), "#rrggbb"),
@@ -140,7 +149,8 @@ def test_meshes_come_from_arrays() -> None:
     faces = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]
     meshes = [
         strahl.mesh(vertices, faces),
-        strahl.mesh(vertices.astype(np.float32), np.array(faces, np.uint8)),
+        *(strahl.mesh(vertices.astype(np.float32), np.array(faces, kind)) for kind in "bBhHiIlLqQ"),
+        strahl.mesh(vertices.astype(">f4"), np.asfortranarray(faces)[:, ::-1][:, ::-1]),
         strahl.mesh(np.asfortranarray(vertices), np.array(faces, np.int64)),
         strahl.from_trimesh(SimpleNamespace(vertices=vertices, faces=np.array(faces))),
     ]
@@ -151,6 +161,66 @@ def test_meshes_come_from_arrays() -> None:
     assert hit.hit and hit.normal == pytest.approx([3**-0.5] * 3)
     with pytest.raises(TypeError, match="no faces"):
         strahl.from_trimesh(SimpleNamespace(vertices=vertices))
+
+
+def test_closed_meshes_are_solids() -> None:
+    vertices = np.array([[0, 0, 0], [3, 0, 0], [0, 3, 0], [0, 0, 3]], np.float32)
+    faces = np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]], np.uint32)
+    drilled = strahl.mesh(vertices, faces, solid=True) - strahl.sphere((0.5, 0.5, 0.5), 0.3)
+    assert strahl.Scene(drilled).inside([[0.5, 0.5, 0.5], [0.1, 0.1, 0.1], [2, 2, 2]]).tolist() == [-1, 0, -1]
+
+
+def test_a_mesh_owns_its_numbers() -> None:
+    vertices = np.array([[-1, 0, -1], [1, 0, -1], [0, 0, 2]], np.float32)
+    faces = np.array([[0, 1, 2]], np.uint32)
+    scene = strahl.Scene(strahl.mesh(vertices, faces))
+    vertices[:], faces[:] = np.nan, 77
+    assert float(scene.intersect((0, 3, 0), (0, -1, 0)).t) == 3
+
+
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="reads /proc")
+def test_a_mesh_is_copied_once() -> None:
+    # Each array is larger than what allocators keep for later.
+    count = 4_000_000
+    vertices = np.zeros((count, 3), np.float32)
+    vertices[:, 0] = np.arange(count)
+    faces = np.stack([np.arange(count)] * 3, axis=1).astype(np.uint32)
+    size = vertices.nbytes + faces.nbytes
+    _peak_bytes()
+    before = _peak_bytes()
+    kept = strahl.mesh(vertices, faces)
+    assert 0.9 * size < _peak_bytes() - before < 1.2 * size
+    assert kept.kind == "mesh"
+
+
+def _peak_bytes() -> int:
+    """The most memory that this process has had since this function was called last."""
+    status = Path("/proc/self/status").read_text()
+    peak = int(next(line for line in status.splitlines() if line.startswith("VmHWM:")).split()[1])
+    try:
+        Path("/proc/self/clear_refs").write_text("5")
+    except OSError as error:
+        pytest.skip(f"the peak cannot be reset: {error}")
+    return peak * 1024
+
+
+def test_instances_share_an_object() -> None:
+    generator = np.random.default_rng(5)
+    places = np.tile(np.eye(4), (50, 1, 1))
+    places[:, :3, 3] = generator.uniform(-20, 20, (50, 3))
+    thing = strahl.sphere(radius=0.5) | strahl.box((1, 0, 0), (2, 1, 1))
+    copies = strahl.union(thing.transform(place) for place in places)
+    shared = thing.instances(places)
+    camera = strahl.Camera.perspective((0, 0, 60))
+    lights = strahl.directional_light((-1, -2, -3))
+    films = [strahl.Scene(objects, camera, lights).render(64, 48) for objects in (copies, shared)]
+    np.testing.assert_allclose(films[0].rgb, films[1].rgb, atol=1e-6)
+    assert films[0].rgb.max() > 0
+    scene = strahl.Scene(shared)
+    assert scene.stats()["primitives"] < strahl.Scene(copies).stats()["primitives"] and shared.parts == 50
+    # Twice in a scene, and moved as a whole.
+    twice = strahl.Scene(shared, shared.translate((100, 0, 0)), thing.instances(places[:1, :3]))
+    assert twice.intersect(places[:, :3, 3] + (100, 0, 30), (0, 0, -1)).hit.all()
 
 
 def test_a_million_spheres_take_less_than_a_second() -> None:
@@ -279,6 +349,11 @@ def test_lights_and_cameras_make_different_pictures() -> None:
         strahl.Camera.fisheye((0, 3, 8), (0, 1, 0)),
         strahl.Camera.spherical((0, 3, 8), (0, 1, 0)),
         strahl.Camera.cylinder((0, 3, 8), (0, 1, 0)),
+        strahl.Camera.cylinder((0, 3, 8), (0, 1, 0), moving=True),
+        strahl.Camera.cylinder((0, 3, 8), (0, 1, 0), upright=False),
+        strahl.Camera.ultra_wide_angle((0, 3, 8), (0, 1, 0)),
+        strahl.Camera.omnimax((0, 3, 8), (0, 1, 0)),
+        strahl.Camera.panoramic((0, 3, 8), (0, 1, 0)),
     ]
     scene = strahl.Scene(things, lights[0], background=strahl.Background.gradient(0, "#88f"))
     films = [scene.render(48, 36, camera=camera).sha256 for camera in cameras]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import json
 import os
 import signal
@@ -101,6 +102,40 @@ def test_progress_is_told_and_may_fail(slow: strahl.Scene) -> None:
     assert time.perf_counter() - start < 20
 
 
+class _Stream(io.StringIO):
+    encoding = "utf-8"
+
+    def __init__(self, tty: bool) -> None:
+        super().__init__()
+        self.tty = tty
+
+    def isatty(self) -> bool:
+        return self.tty
+
+
+def test_progress_is_a_line_on_terminals(monkeypatch: pytest.MonkeyPatch) -> None:
+    from strahl import _progress
+
+    stream = _Stream(tty=False)
+    monkeypatch.setattr(sys, "stderr", stream)
+    assert _progress.shown(None) is None and _progress.shown(False) is None
+    stream.tty = True
+    patient = _progress.shown(None)
+    assert patient is not None
+    patient.tick(strahl.Progress(0, 2, 3, 10))
+    patient.finish()
+    assert stream.getvalue() == "", "there is a line after a second only"
+    line = _progress.shown(True)
+    assert line is not None
+    line.tick(strahl.Progress(0, 2, 0, 0))
+    line.tick(strahl.Progress(1, 2, 3, 10))
+    line.finish()
+    first, second, blank, rest = stream.getvalue().split("\r")[1:]
+    assert first.startswith("pass 1/2   0%|") and first.endswith("| 0/0 [00:00<?]")
+    assert second.startswith("pass 2/2  30%|█████████   ") and second.rstrip().endswith("| 3/10 [00:00<00:00]")
+    assert blank.strip() == rest == "" and len(blank) >= len(second.rstrip())
+
+
 CHILD = """
 import strahl, sys, time
 scene = strahl.parse(sys.stdin.read())
@@ -147,19 +182,57 @@ def test_other_threads_run_meanwhile(ball: strahl.Scene, slow: strahl.Scene) -> 
     assert results == [reference] * 4
 
 
+def test_python_runs_while_a_picture_is_made(slow: strahl.Scene) -> None:
+    films: list[strahl.Film] = []
+    thread = threading.Thread(target=lambda: films.append(slow.render(24, 18, sampling="center")))
+    slow.stats()
+    thread.start()
+    turns = 0
+    while thread.is_alive():
+        time.sleep(0.001)
+        turns += 1
+    # A render that kept Python's lock would leave one turn.
+    assert films and turns > 5
+
+
+def _resident() -> int:
+    pages = int(Path("/proc/self/statm").read_text().split()[1])
+    return pages * os.sysconf("SC_PAGE_SIZE")
+
+
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="reads /proc")
 def test_a_thousand_renders_keep_memory_flat(ball: strahl.Scene) -> None:
-    def resident() -> int:
-        pages = int(Path("/proc/self/statm").read_text().split()[1])
-        return pages * os.sysconf("SC_PAGE_SIZE")
-
     for _ in range(100):
         ball.render(32, 24, sampling="center", layers=True)
-    before = resident()
+    before = _resident()
     for _ in range(1000):
         film = ball.render(32, 24, sampling="center", layers=True)
         assert film.depth.shape == (24, 32)
-    assert resident() - before < 8 << 20
+    assert _resident() - before < 8 << 20
+
+
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="reads /proc")
+def test_scenes_rays_and_trees_are_freed() -> None:
+    generator = np.random.default_rng(7)
+    centers = generator.uniform(-5, 5, (3000, 3))
+    corners = np.repeat(centers, 3, axis=0) + generator.normal(size=(9000, 3)) * 0.05
+    faces = np.arange(9000, dtype=np.uint32).reshape(-1, 3)
+
+    def once() -> None:
+        solid = strahl.spheres(centers, 0.05, np.abs(centers)) | strahl.mesh(corners, faces)
+        scene = strahl.Scene(solid, strahl.point_light((9, 9, 9)), strahl.Camera.perspective((0, 0, 20)))
+        assert scene.intersect(centers + 10, (-1, -1, -1)).normal.shape == (3000, 3)
+        assert scene.render(32, 24).sha256 and scene.explain(16, 12, 32, 24)._repr_html_()
+        with pytest.raises(strahl.SceneError):
+            strahl.parse("sphere { }")
+
+    for _ in range(20):
+        once()
+    before = _resident()
+    for _ in range(100):
+        once()
+    # What one round makes takes more than a megabyte.
+    assert _resident() - before < 16 << 20
 
 
 SCENES = [*sorted((ROOT / "scenes/gallery").rglob("*.pov")), ROOT / "scenes/demo.pov", ROOT / "scenes/spheres.nff"]

@@ -22,69 +22,16 @@ Points, directions and colours are tuples of three numbers; colours are linear. 
 
 from __future__ import annotations
 
-import math
+import json
 from collections.abc import Iterator
 from dataclasses import dataclass, field, fields
-from typing import Any, ClassVar, get_args, get_type_hints
+from html import escape
+from typing import Any
+
+from strahl import _strahl
+from strahl._reader import Node
 
 Triple = tuple[float, float, float]
-
-
-class _Node:
-    """What all parts of a tree have."""
-
-    def to_dict(self) -> dict[str, Any]:
-        """The same as plain dictionaries and lists, as the JSON has them."""
-        return dict(self._json)  # type: ignore[attr-defined]
-'''
-
-TAIL = '''
-_HINTS: dict[type, dict[str, Any]] = {}
-
-
-def _hints(of: type) -> dict[str, Any]:
-    if of not in _HINTS:
-        _HINTS[of] = get_type_hints(of)
-    return _HINTS[of]
-
-
-def _value(hint: Any, value: Any) -> Any:
-    """A value of the JSON as its type wants it."""
-    if value is None:
-        # Infinities and NaN are null in JSON.
-        return math.nan if hint is float else None
-    options = [option for option in get_args(hint) if option is not type(None)]
-    if isinstance(value, dict):
-        of = hint if isinstance(hint, type) else next(o for o in options if isinstance(o, type))
-        return _object(of, value)
-    if isinstance(value, list):
-        parts = options
-        if getattr(hint, "__origin__", None) not in (list, tuple):
-            hint = parts[0]
-            parts = list(get_args(hint))
-        items = [_value(parts[0], item) for item in value]
-        return tuple(items) if getattr(hint, "__origin__", None) is tuple else items
-    return value
-
-
-def _object(of: type, data: dict[str, Any]) -> Any:
-    hints = _hints(of)
-    values = {}
-    for field_ in fields(of):
-        name = field_.name.rstrip("_")
-        if name in data:
-            values[field_.name] = _value(hints[field_.name], data[name])
-    return of(_json=data, **values)
-
-
-def read(data: dict[str, Any]) -> Explanation:
-    """An explanation from its JSON."""
-    explanation: Explanation = _object(Explanation, data)
-    for sample in explanation.samples:
-        by_number = {ray.id: ray for ray in sample.rays}
-        for ray in sample.rays:
-            object.__setattr__(ray, "_nodes", tuple(by_number[number] for number in ray.children))
-    return explanation
 '''
 
 # What is more useful in Python than the bare data.
@@ -99,6 +46,19 @@ METHODS = {
     def root(self) -> TreeRay:
         """The ray from the eye of the first sample."""
         return self.samples[0].root
+
+    def to_html(self, title: str = "", *, language: str = "en") -> str:
+        """A page with the ray trees: the one of ``strahl explain --format html``, which has everything in it. ``language`` is ``"en"`` or ``"de"``."""
+        return _strahl.explanation_page(json.dumps(self.to_dict()), self.pixel, title, language)
+
+    def _repr_html_(self) -> str:
+        # Names of objects come from scenes, so the page runs in a frame that cannot reach the notebook.
+        style = "width: 100%; height: 480px; border: 1px solid rgb(128 128 128 / 40%); resize: vertical; overflow: auto"
+        return f'<iframe sandbox="allow-scripts" style="{style}" srcdoc="{escape(self.to_html())}"></iframe>'
+
+    def __repr__(self) -> str:
+        rays = sum(len(sample.rays) for sample in self.samples)
+        return f"<strahl.Explanation of pixel {self.pixel} with {len(self.samples)} samples and {rays} rays, total {self.total}>"
 
     def to_networkx(self) -> Any:
         """A networkx.DiGraph of all rays: nodes (sample, ray) with the fields of `TreeRay`, edges from rays to those they sent. It needs networkx."""
@@ -128,7 +88,7 @@ METHODS = {
 
     def walk(self) -> Iterator[TreeRay]:
         """This ray and all that came of it, depth first."""
-        waiting = [self]
+        waiting: list[TreeRay] = [self]
         while waiting:
             ray = waiting.pop()
             yield ray
@@ -181,7 +141,7 @@ def make() -> str:
     text = [HEAD]
     for doc, _, name, body in structs:
         title = " ".join(line.removeprefix("///").strip() for line in doc.strip().splitlines())
-        text.append(f'\n\n@dataclass(frozen=True, kw_only=True)\nclass {name}(_Node):\n    """{title}"""\n')
+        text.append(f'\n\n@dataclass(frozen=True, kw_only=True)\nclass {name}(Node):\n    """{title}"""\n')
         for field, rust, explained, flat in parts(body):
             if not flat:
                 text.append(line(field, python_type(rust), explained))
@@ -204,9 +164,7 @@ def make() -> str:
             text.append("    _nodes: tuple[TreeRay, ...] = field(default=(), repr=False, compare=False)\n")
         text.append("    _json: dict[str, Any] = field(repr=False, compare=False)\n")
         text.append(METHODS.get(name, ""))
-    text.append("\n")
-    text.append(TAIL)
-    return "".join(text).replace("Any, ClassVar, get_args", "Any, get_args")
+    return "".join(text)
 
 
 def line(name: str, kind: str, told: str, default: bool = False) -> str:

@@ -1,18 +1,17 @@
 //! What many rays have hit, as arrays.
 
+use crate::queries::Asked;
 use crate::{convert, work};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use std::sync::{Arc, OnceLock};
-use strahl::prelude::{Hit, Ray, RenderScene};
+use strahl::prelude::Hit;
 use strahl::tracing::{HitSurface, Session};
 
 /// The nearest hits of rays. What is beyond `t` is computed when it is first asked for.
 #[pyclass(frozen, module = "strahl._strahl")]
 pub(crate) struct Hits {
-    scene: Arc<RenderScene>,
-    session: Session,
-    rays: Arc<Vec<Ray>>,
+    asked: Asked,
     hits: Arc<Vec<Option<Hit>>>,
     t: Py<PyArray1<f64>>,
     surfaces: OnceLock<Surfaces>,
@@ -45,50 +44,42 @@ fn number(of: u32) -> i32 {
 }
 
 impl Columns {
-    fn new(surfaces: &[Option<HitSurface>], hits: &[Option<Hit>]) -> Self {
+    fn new(session: &Session, surfaces: &[Option<HitSurface>], hits: &[Option<Hit>]) -> Self {
         const NAN: [f64; 3] = [f64::NAN; 3];
-        fn list<T>(
-            surfaces: &[Option<HitSurface>],
-            none: T,
-            of: impl Fn(&HitSurface) -> T,
-        ) -> Vec<T>
-        where
-            T: Copy,
-        {
-            let each = surfaces.iter();
-            each.map(|s| s.as_ref().map_or(none, &of)).collect()
-        }
+        let list = Lists { session, surfaces };
+        let element = |hit: Hit| hit.id.cast_signed();
         Self {
-            object: list(surfaces, -1, |s| number(s.object)),
-            material: list(surfaces, -1, |s| number(s.material)),
-            element: hits
-                .iter()
-                .map(|hit| hit.map_or(-1, |hit| hit.id.cast_signed()))
-                .collect(),
-            position: list(surfaces, NAN, |s| s.position.to_array()),
-            normal: list(surfaces, NAN, |s| s.normal.to_array()),
-            shading_normal: list(surfaces, NAN, |s| s.shading_normal.to_array()),
-            uv: list(surfaces, [f64::NAN; 2], |s| s.uv.to_array()),
+            object: list.of(-1, |s| number(s.object)),
+            material: list.of(-1, |s| number(s.material)),
+            element: session.list(hits.len(), |i| hits[i].map_or(-1, element)),
+            position: list.of(NAN, |s| s.position.to_array()),
+            normal: list.of(NAN, |s| s.normal.to_array()),
+            shading_normal: list.of(NAN, |s| s.shading_normal.to_array()),
+            uv: list.of([f64::NAN; 2], |s| s.uv.to_array()),
         }
     }
 }
 
+/// Makes lists of what surfaces have.
+struct Lists<'a> {
+    session: &'a Session,
+    surfaces: &'a [Option<HitSurface>],
+}
+
+impl Lists<'_> {
+    fn of<T: Copy + Send + Sync>(&self, none: T, of: impl Fn(&HitSurface) -> T + Sync) -> Vec<T> {
+        let entry = |i: usize| self.surfaces[i].as_ref().map_or(none, &of);
+        self.session.list(self.surfaces.len(), entry)
+    }
+}
+
 impl Hits {
-    pub(crate) fn new(
-        py: Python<'_>,
-        scene: Arc<RenderScene>,
-        session: Session,
-        rays: Arc<Vec<Ray>>,
-        hits: Vec<Option<Hit>>,
-    ) -> Self {
-        let t = hits
-            .iter()
-            .map(|hit| hit.map_or(f64::INFINITY, |hit| hit.t));
+    pub(crate) fn new(py: Python<'_>, asked: Asked, hits: Vec<Option<Hit>>) -> Self {
+        let t = |i: usize| hits[i].map_or(f64::INFINITY, |hit: Hit| hit.t);
+        let t = py.detach(|| asked.session.list(hits.len(), t));
         Self {
-            t: convert::frozen(py, t.collect()),
-            scene,
-            session,
-            rays,
+            t: convert::frozen(py, t),
+            asked,
             hits: Arc::new(hits),
             surfaces: OnceLock::new(),
         }
@@ -98,12 +89,12 @@ impl Hits {
         if let Some(known) = self.surfaces.get() {
             return Ok(known);
         }
-        let (scene, session) = (Arc::clone(&self.scene), self.session.clone());
-        let (rays, hits) = (Arc::clone(&self.rays), Arc::clone(&self.hits));
+        let (scene, rays) = (Arc::clone(&self.asked.scene), Arc::clone(&self.asked.rays));
+        let (session, hits) = (self.asked.session.clone(), Arc::clone(&self.hits));
         let columns = work::run(py, move || {
-            let mut surfaces = vec![None; hits.len()];
+            let mut surfaces = session.list(hits.len(), |_| None);
             session.surfaces(&scene, &rays, &hits, &mut surfaces);
-            Columns::new(&surfaces, &hits)
+            Columns::new(&session, &surfaces, &hits)
         })?;
         // Another thread may have been faster.
         Ok(self.surfaces.get_or_init(|| Surfaces {

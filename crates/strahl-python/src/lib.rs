@@ -10,6 +10,7 @@ mod hits;
 mod load;
 mod looks;
 mod object;
+mod queries;
 mod scene;
 mod sessions;
 mod shapes;
@@ -29,10 +30,17 @@ fn _strahl(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<looks::Material>()?;
     module.add_class::<object::Object>()?;
     module.add_class::<scene::Scene>()?;
+    module.add_function(wrap_pyfunction!(explanation_page, module)?)?;
     module.add_function(wrap_pyfunction!(film::encode_png, module)?)?;
     module.add_function(wrap_pyfunction!(load::load, module)?)?;
     module.add_function(wrap_pyfunction!(load::parse, module)?)?;
     module.add_function(wrap_pyfunction!(work::panic_for_tests, module)?)?;
     module.add_function(wrap_pyfunction!(sessions::thread_count, module)?)?;
     shapes::register(module)
+}
+
+/// The page of a pixel, from the JSON of its explanation.
+#[pyfunction]
+fn explanation_page(json: &str, pixel: [u32; 2], title: &str, language: &str) -> String {
+    strahl_view::page_of_json(json, pixel, title, language)
 }

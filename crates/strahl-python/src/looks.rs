@@ -176,7 +176,7 @@ pub(crate) struct Camera(pub(crate) strahl::prelude::Camera);
 
 #[pymethods]
 impl Camera {
-    /// `numbers` are angles in radians, or the height of an orthographic view.
+    /// `numbers` are angles in radians, or the height of an orthographic view; a cylinder is upright or not, and the eye moves along it or not.
     #[new]
     fn new(
         projection: &str,
@@ -185,9 +185,11 @@ impl Camera {
         up: Triple,
         numbers: (f64, f64),
         aspect: Option<f64>,
+        cylinder: (bool, bool),
     ) -> PyResult<Self> {
         let (eye, look_at, up) = (vector(eye), vector(look_at), vector(up));
         let (first, second) = numbers;
+        let (upright, moving) = cylinder;
         let wide = |projection| {
             strahl::prelude::Camera::looking(eye, look_at - eye, up, 0.5, 0.5, projection)
         };
@@ -196,14 +198,15 @@ impl Camera {
             "orthographic" => strahl::prelude::Camera::orthographic(eye, look_at, up, first),
             "fisheye" => wide(Projection::Fisheye { angle: first }),
             "ultra_wide_angle" => wide(Projection::UltraWideAngle { angle: first }),
+            "omnimax" => wide(Projection::Omnimax),
             "panoramic" => wide(Projection::Panoramic),
             "spherical" => wide(Projection::Spherical {
                 horizontal: first,
                 vertical: second,
             }),
             "cylinder" => wide(Projection::Cylinder {
-                upright: true,
-                moving: false,
+                upright,
+                moving,
                 angle: first,
             }),
             other => return Err(errors::value(format!("there is no projection `{other}`"))),

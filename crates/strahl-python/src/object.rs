@@ -1,12 +1,12 @@
 //! Objects, which belong to no scene until they are added to one.
 
-use crate::convert::{Triple, vector};
+use crate::convert::{Triple, contiguous, vector};
 use crate::errors;
 use crate::looks::Material;
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 use std::sync::Arc;
-use strahl::math::{DMat3, Transform};
+use strahl::math::{DMat3, DVec3, SingularTransform, Transform};
 use strahl::prelude::{CsgOp, ObjectExt, Visibility};
 use strahl::scene::{
     self, Children, FileId, Group, GroupId, ObjectKind, SceneLight, SourceMap, Span,
@@ -22,6 +22,13 @@ pub(crate) struct Piece {
     pub(crate) plain: bool,
     /// How deep objects are nested.
     pub(crate) depth: u32,
+}
+
+/// The transformation by a matrix of three rows and four columns that multiplies columns.
+fn map(matrix: &[f64; 12]) -> Result<Transform, SingularTransform> {
+    let column = |c: usize| DVec3::new(matrix[c], matrix[4 + c], matrix[8 + c]);
+    let linear = DMat3::from_cols(column(0), column(1), column(2));
+    Transform::try_new(linear, column(3))
 }
 
 /// The deepest nesting of objects.
@@ -41,6 +48,26 @@ impl Piece {
             sources,
             plain: true,
             depth: 1,
+        }
+    }
+
+    /// An object with parts that was made at a line of a program.
+    fn of_parts(
+        mut object: scene::Object,
+        groups: Vec<Group>,
+        mut sources: SourceMap,
+        depth: u32,
+        place: Option<(String, u32)>,
+    ) -> Self {
+        if let Some((file, line)) = place {
+            object.span = Span::line(sources.add(&file), line);
+        }
+        Self {
+            object,
+            groups,
+            sources,
+            plain: false,
+            depth,
         }
     }
 
@@ -217,13 +244,34 @@ impl Object {
         Ok(self.transformed(&scale))
     }
 
-    /// By a matrix of three rows and four columns that multiplies columns.
-    fn mapped(&self, matrix: PyReadonlyArray2<'_, f64>) -> PyResult<Self> {
-        let at = |row: usize, column: usize| matrix.get([row, column]).copied().unwrap_or(f64::NAN);
-        let column = |c| strahl::prelude::DVec3::new(at(0, c), at(1, c), at(2, c));
-        let linear = DMat3::from_cols(column(0), column(1), column(2));
-        let map = Transform::try_new(linear, column(3)).map_err(errors::value)?;
-        Ok(self.transformed(&map))
+    /// By a matrix of three rows and four columns that multiplies columns: its 12 numbers row by row.
+    fn mapped(&self, matrix: [f64; 12]) -> PyResult<Self> {
+        Ok(self.transformed(&map(&matrix).map_err(errors::value)?))
+    }
+
+    /// Once for each row of matrices as `mapped` takes them. The places share the object, which is stored once.
+    fn instances(
+        &self,
+        matrices: PyReadonlyArray2<'_, f64>,
+        place: Option<(String, u32)>,
+    ) -> PyResult<Self> {
+        let (sources, mut groups) = (self.0.sources.clone(), self.0.groups.clone());
+        let shared = GroupId(groups.len() as u32);
+        groups.push(Group {
+            name: None,
+            objects: Children(vec![self.0.object.clone()]),
+        });
+        let (rows, _) = contiguous(&matrices)?.as_chunks::<12>();
+        let each = rows.iter().enumerate().map(|(number, row)| {
+            let map = map(row)
+                .map_err(|error| errors::value(format!("matrices: number {number}: {error}")))?;
+            Ok(scene::Object::instance(shared).transformed(&map))
+        });
+        let object = scene::Object::csg(CsgOp::Union, each.collect::<PyResult<_>>()?);
+        let depth = self.0.depth + 1;
+        Ok(Self(Arc::new(Piece::of_parts(
+            object, groups, sources, depth, place,
+        ))))
     }
 
     /// Combines objects; `operation` is that of POV-Ray's language.
@@ -254,17 +302,10 @@ impl Object {
             .iter()
             .map(|object| adopt(&object.get().0, &mut sources, &mut groups))
             .collect();
-        let mut object = scene::Object::csg(op, children);
-        if let Some((file, line)) = place {
-            object.span = Span::line(sources.add(&file), line);
-        }
-        Ok(Self(Arc::new(Piece {
-            object,
-            groups,
-            sources,
-            plain: false,
-            depth,
-        })))
+        let object = scene::Object::csg(op, children);
+        Ok(Self(Arc::new(Piece::of_parts(
+            object, groups, sources, depth, place,
+        ))))
     }
 
     /// The parts of a combination by this operation that has no attributes of its own; `None` for anything else.

@@ -5,6 +5,7 @@ use crate::film::Film;
 use crate::hits::Hits;
 use crate::looks::{Background, Camera, Light, Material};
 use crate::object::{Object, Renumbering, adopt};
+use crate::queries::Asked;
 use crate::{convert, errors, sessions, work};
 use numpy::{PyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
@@ -13,7 +14,7 @@ use std::ops::ControlFlow;
 use std::sync::{Arc, LazyLock, Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 use strahl::prelude::{
-    AcceleratorKind, CompileOptions, CsgOp, Interval, Outcome, Output, Ray, Region, RenderScene,
+    AcceleratorKind, CompileOptions, CsgOp, Interval, Outcome, Output, Region, RenderScene,
     Sampling, Tile, View,
 };
 use strahl::scene::{self, Children, Span};
@@ -206,6 +207,17 @@ impl Scene {
             }
             Err(problems) => Err(errors::scene_error(py, &problems, sources)),
         }
+    }
+
+    fn asked(
+        &self,
+        py: Python<'_>,
+        origins: &PyReadonlyArray2<'_, f64>,
+        directions: &PyReadonlyArray2<'_, f64>,
+        threads: Option<usize>,
+    ) -> PyResult<Asked> {
+        let scene = self.compiled(py, threads, None)?;
+        Asked::new(py, scene, sessions::session(threads)?, origins, directions)
     }
 
     fn view(&self, py: Python<'_>, numbers: &ViewNumbers) -> PyResult<View> {
@@ -531,25 +543,12 @@ impl Scene {
         range: (f64, f64),
         threads: Option<usize>,
     ) -> PyResult<Hits> {
-        let session = sessions::session(threads)?;
-        let scene = self.compiled(py, threads, None)?;
-        let rays = Arc::new(rays(&origins, &directions)?);
+        let asked = self.asked(py, &origins, &directions, threads)?;
         let range = Interval::new(range.0, range.1);
-        let (inner, asked, of) = (Arc::clone(&scene), Arc::clone(&rays), session.clone());
-        let hits = work::run_with(
-            py,
-            move |stop| {
-                let mut hits = vec![None; asked.len()];
-                for (rays, hits) in asked.chunks(CHUNK).zip(hits.chunks_mut(CHUNK)) {
-                    if !stop.is_set() {
-                        of.closest_hits(&inner, rays, range, hits);
-                    }
-                }
-                hits
-            },
-            |_| Ok(()),
-        )?;
-        Ok(Hits::new(py, scene, session, rays, hits))
+        let hits = asked.ask(py, None, move |session, scene, rays, hits| {
+            session.closest_hits(scene, rays, range, hits);
+        })?;
+        Ok(Hits::new(py, asked, hits))
     }
 
     /// Whether something opaque is on each ray.
@@ -561,24 +560,12 @@ impl Scene {
         range: (f64, f64),
         threads: Option<usize>,
     ) -> PyResult<Py<PyArray1<bool>>> {
-        let session = sessions::session(threads)?;
-        let scene = self.compiled(py, threads, None)?;
-        let rays = rays(&origins, &directions)?;
+        let asked = self.asked(py, &origins, &directions, threads)?;
         let range = Interval::new(range.0, range.1);
-        let answers = work::run_with(
-            py,
-            move |stop| {
-                let mut answers = vec![false; rays.len()];
-                for (rays, answers) in rays.chunks(CHUNK).zip(answers.chunks_mut(CHUNK)) {
-                    if !stop.is_set() {
-                        session.occluded(&scene, rays, range, answers);
-                    }
-                }
-                answers
-            },
-            |_| Ok(()),
-        )?;
-        Ok(PyArray1::from_vec(py, answers).unbind())
+        let answers = asked.ask(py, false, move |session, scene, rays, answers| {
+            session.occluded(scene, rays, range, answers);
+        })?;
+        Ok(convert::frozen(py, answers))
     }
 
     /// The number of the object around each point, or -1.
@@ -602,19 +589,4 @@ impl Scene {
         })?;
         Ok(convert::frozen(py, answers))
     }
-}
-
-/// Rays between looks at the signals.
-const CHUNK: usize = 1 << 18;
-
-fn rays(
-    origins: &PyReadonlyArray2<'_, f64>,
-    directions: &PyReadonlyArray2<'_, f64>,
-) -> PyResult<Vec<Ray>> {
-    let (origins, directions) = (vectors(origins)?, vectors(directions)?);
-    if origins.len() != directions.len() {
-        return Err(errors::value("there must be as many origins as directions"));
-    }
-    let both = origins.into_iter().zip(directions);
-    Ok(both.map(|(o, d)| Ray::new(o, d)).collect())
 }

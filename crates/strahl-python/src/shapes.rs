@@ -1,19 +1,20 @@
 //! Constructors of shapes: numbers are checked by the shapes themselves, kinds and shapes of arrays by the Python half.
 
 use crate::convert::{Triple, contiguous, list, vector, vectors, vectors_2};
-use crate::errors;
 use crate::object::{Object, Piece};
+use crate::{errors, work};
+use hashbrown::HashMap;
 use numpy::{PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3, PyUntypedArrayMethods};
 use pyo3::prelude::*;
-use std::collections::HashMap;
 use std::sync::Arc;
 use strahl::geometry::{
-    Blob, BlobComponent, GridIsosurface, GridOptions, HeightField, Lathe, Polynomial, Primitive,
-    Prism, PrismSweep, Shape, Sor, SphereSweep, Spline, Superellipsoid, SweepSpline,
+    Blob, BlobComponent, GeometryError, GridIsosurface, GridOptions, HeightField, Lathe,
+    Polynomial, Primitive, Prism, PrismSweep, Shape, Sor, SphereSweep, Spline, Superellipsoid,
+    SweepSpline,
 };
 use strahl::math::DVec3;
 use strahl::prelude::{
-    BicubicPatch, Color, Cone, CsgOp, Cuboid, Cylinder, Disc, Lemon, MeshData, Ovus, Plane,
+    BicubicPatch, Brep, Color, Cone, CsgOp, Cuboid, Cylinder, Disc, Lemon, MeshData, Ovus, Plane,
     Polygon, Quadric, Sphere, Torus, TriangleMesh,
 };
 use strahl::scene;
@@ -134,25 +135,94 @@ fn polygon(
     object(polygon, place)
 }
 
-/// Triangles. f32 vertices are kept as they are, f64 ones are rounded relative to an anchor.
+/// Vertices of a mesh, as NumPy has them.
+#[derive(FromPyObject)]
+enum Vertices<'py> {
+    Single(PyReadonlyArray2<'py, f32>),
+    Double(PyReadonlyArray2<'py, f64>),
+}
+
+/// Vertex numbers of a mesh, as NumPy has them.
+#[derive(FromPyObject)]
+enum Faces<'py> {
+    Unsigned(PyReadonlyArray2<'py, u32>),
+    Signed(PyReadonlyArray2<'py, i32>),
+    Long(PyReadonlyArray2<'py, i64>),
+}
+
+impl Faces<'_> {
+    /// The faces as meshes store them: read once, written once.
+    fn list(&self, vertices: usize) -> PyResult<Vec<[u32; 3]>> {
+        fn checked<T: Copy + Into<i64>>(faces: &[T], vertices: usize) -> PyResult<Vec<[u32; 3]>> {
+            let (rows, _) = faces.as_chunks::<3>();
+            let vertex = |row: usize, number: T| {
+                let number: i64 = number.into();
+                let known = usize::try_from(number).is_ok_and(|n| n < vertices);
+                let kept = u32::try_from(number).ok().filter(|_| known);
+                kept.ok_or_else(|| {
+                    errors::value(format!(
+                        "faces: row {row} has the vertex {number}; the {vertices} vertices are numbered from 0"
+                    ))
+                })
+            };
+            let mut list = Vec::with_capacity(rows.len());
+            for (row, &[a, b, c]) in rows.iter().enumerate() {
+                list.push([vertex(row, a)?, vertex(row, b)?, vertex(row, c)?]);
+            }
+            Ok(list)
+        }
+        match self {
+            Self::Unsigned(faces) => checked(contiguous(faces)?, vertices),
+            Self::Signed(faces) => checked(contiguous(faces)?, vertices),
+            Self::Long(faces) => checked(contiguous(faces)?, vertices),
+        }
+    }
+}
+
+/// Triangles, or the solid within them. f32 vertices are kept as they are, f64 ones are rounded relative to an anchor.
+///
+/// Every number is copied once, straight into the mesh: Python may change or free its arrays at any time, also while other threads render.
 #[pyfunction]
 fn mesh(
-    vertices: PyReadonlyArray2<'_, f64>,
-    faces: PyReadonlyArray2<'_, u32>,
+    py: Python<'_>,
+    vertices: Vertices<'_>,
+    faces: Faces<'_>,
     normals: Option<PyReadonlyArray2<'_, f32>>,
     uvs: Option<PyReadonlyArray2<'_, f32>>,
+    solid: bool,
     place: Place,
 ) -> PyResult<Object> {
-    let (indices, _) = contiguous(&faces)?.as_chunks::<3>();
-    let mut data = MeshData::from_f64(&vectors(&vertices)?, indices.to_vec());
+    let mut data = match &vertices {
+        Vertices::Single(vertices) => {
+            let positions = contiguous(vertices)?.as_chunks::<3>().0.to_vec();
+            MeshData {
+                indices: faces.list(positions.len())?,
+                positions,
+                ..MeshData::default()
+            }
+        }
+        Vertices::Double(vertices) => {
+            let (rows, _) = contiguous(vertices)?.as_chunks::<3>();
+            MeshData::from_f64(rows, faces.list(rows.len())?)
+        }
+    };
     if let Some(normals) = normals {
         data.normals = Some(contiguous(&normals)?.as_chunks::<3>().0.to_vec());
     }
     if let Some(uvs) = uvs {
         data.uvs = Some(contiguous(&uvs)?.as_chunks::<2>().0.to_vec());
     }
-    let mesh = TriangleMesh::try_new(data).map_err(errors::value)?;
-    object(Arc::new(mesh), place)
+    let shape = work::run(py, move || {
+        let mesh = TriangleMesh::try_new(data)?;
+        Ok(match solid {
+            true => Shape::from(Arc::new(Brep::try_new(mesh)?)),
+            false => Arc::new(mesh).into(),
+        })
+    })?;
+    object(
+        shape.map_err(|error: GeometryError| errors::value(error))?,
+        place,
+    )
 }
 
 /// Many spheres. Those of the same colour share a material, which is made by `material` from the colour.
