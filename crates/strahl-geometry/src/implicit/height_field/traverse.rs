@@ -68,61 +68,95 @@ impl<'a> Descent<'a> {
         mut visit: impl FnMut(&mut Interval, &Cell) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
         let top = self.grid.top();
-        if !self.meets(top, 0, 0, self.grid.full_range()) {
-            return ControlFlow::Continue(());
+        // The whole field, or more: a block may reach beyond the field's edge, which costs time only.
+        let (dx, dz) = self.step;
+        let (width, depth) = (f64::from(1u32 << top) * dx, f64::from(1u32 << top) * dz);
+        let along_x = self.slab(0, 0.0, width);
+        let along_z = self.slab(2, 0.0, depth);
+        let part = (later(along_x.0, along_z.0), earlier(along_x.1, along_z.1));
+        match self.over(part, self.grid.full_range()) {
+            Some(part) => self.descend(top, (0, 0), part, &mut visit),
+            None => ControlFlow::Continue(()),
         }
-        self.descend(top, 0, 0, &mut visit)
     }
 
-    /// The recursion is as deep as the pyramid, 31 levels at most.
+    /// Visits the cells of a block above which the ray is in `part` of its parameters. The recursion is as deep as the pyramid, 31
+    /// levels at most.
     fn descend(
         &mut self,
         level: usize,
-        i: u32,
-        j: u32,
+        (i, j): (u32, u32),
+        (enter, exit): (f64, f64),
         visit: &mut impl FnMut(&mut Interval, &Cell) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
         let Some(below) = level.checked_sub(1) else {
             return visit(&mut self.range, &self.grid.cell(i, j));
         };
         let (columns, rows) = self.grid.cells();
+        let middle = |k: u32, step: f64| f64::from((2 * k + 1) << below) * step;
+        let at_x = self.plane(0, middle(i, self.step.0));
+        let at_z = self.plane(2, middle(j, self.step.1));
+        // In the first half until the plane in the middle, in the second one from there.
+        let halves =
+            |(from, until): (f64, f64)| [(enter, earlier(exit, until)), (later(enter, from), exit)];
+        let (along_x, along_z) = (halves(at_x), halves(at_z));
         let (x, z) = self.first;
-        for (a, b) in [(x, z), (x ^ 1, z), (x, z ^ 1), (x ^ 1, z ^ 1)] {
-            let (i, j) = (2 * i + a, 2 * j + b);
+        for (a, b) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
+            let (i, j) = (2 * i + (x ^ a), 2 * j + (z ^ b));
             if i << below >= columns || j << below >= rows {
                 continue;
             }
-            if self.meets(below, i, j, self.grid.range(below, i, j)) {
-                self.descend(below, i, j, visit)?;
+            let (along_x, along_z) = (along_x[a as usize], along_z[b as usize]);
+            let part = (later(along_x.0, along_z.0), earlier(along_x.1, along_z.1));
+            if part.0 <= part.1
+                && let Some(part) = self.over(part, self.grid.range(below, i, j))
+            {
+                self.descend(below, (i, j), part, visit)?;
             }
         }
         ControlFlow::Continue(())
     }
 
-    /// Whether the ray meets the box of a block within the wanted range.
+    /// The parameters between which the ray meets a plane at right angles to an axis, with the pad on both sides of it.
     #[inline]
-    fn meets(&self, level: usize, i: u32, j: u32, [low, high]: [u16; 2]) -> bool {
+    fn plane(&self, axis: usize, at: f64) -> (f64, f64) {
+        let a = (at - self.lower[axis]) * self.inverse[axis];
+        let b = (at - self.upper[axis]) * self.inverse[axis];
+        if a < b { (a, b) } else { (b, a) }
+    }
+
+    /// The parameters between which the ray is between two such planes.
+    #[inline]
+    fn slab(&self, axis: usize, low: f64, high: f64) -> (f64, f64) {
+        let a = (low - self.lower[axis]) * self.inverse[axis];
+        let b = (high - self.upper[axis]) * self.inverse[axis];
+        if a < b { (a, b) } else { (b, a) }
+    }
+
+    /// The part of the parameters of a block in which the ray is between its lowest and its highest height and within the wanted range;
+    /// `None` if there is none.
+    #[inline]
+    fn over(&self, (enter, exit): (f64, f64), [low, high]: [u16; 2]) -> Option<(f64, f64)> {
         let (low, high) = (f64::from(low) / SCALE, f64::from(high) / SCALE);
         if high < self.floor {
-            return false;
+            return None;
         }
         let low = if low < self.floor { self.floor } else { low };
-        let from = |k: u32, step: f64| f64::from(k << level) * step;
-        // A block may reach beyond the field's edge; that costs time only.
-        let to = |k: u32, step: f64| f64::from((k + 1) << level) * step;
-        let (dx, dz) = self.step;
-        let lower = (DVec3::new(from(i, dx), low, from(j, dz)) - self.lower) * self.inverse;
-        let upper = (DVec3::new(to(i, dx), high, to(j, dz)) - self.upper) * self.inverse;
-        let (mut near, mut far) = (self.range.min, self.range.max);
-        for k in 0..3 {
-            let (a, b) = if lower[k] < upper[k] {
-                (lower[k], upper[k])
-            } else {
-                (upper[k], lower[k])
-            };
-            near = if a > near { a } else { near };
-            far = if b < far { b } else { far };
-        }
-        near <= far
+        let along_y = self.slab(1, low, high);
+        let enter = later(later(self.range.min, enter), along_y.0);
+        let exit = earlier(earlier(self.range.max, exit), along_y.1);
+        (enter <= exit).then_some((enter, exit))
     }
+}
+
+/// The larger of two parameters; the first one if the second is NaN.
+#[inline]
+fn later(a: f64, b: f64) -> f64 {
+    if b > a { b } else { a }
+}
+
+/// The smaller of two parameters; the first one if the second is NaN.
+#[inline]
+fn earlier(a: f64, b: f64) -> f64 {
+    if b < a { b } else { a }
 }
