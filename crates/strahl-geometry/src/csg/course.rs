@@ -207,8 +207,8 @@ impl Search<'_> {
         let Some(leaf) = csg.leaf(index) else {
             return Err(TooClose);
         };
-        if leaf.is_convex() {
-            return self.convex(leaf, from, parent, range);
+        if leaf.has_stays() {
+            return self.stay(leaf, from, parent, range);
         }
         let mut list = self.scratch.take();
         leaf.bare_crossings(self.ray, range, from, self.scratch, &mut list);
@@ -217,22 +217,24 @@ impl Search<'_> {
         course
     }
 
-    /// Adds the ends of a span to the timeline.
-    fn convex(
+    /// Adds the ends of a stay to the timeline.
+    fn stay(
         &mut self,
         leaf: &Leaf,
         from: Option<SurfaceId>,
         parent: u32,
         range: Interval,
     ) -> Result<Course, TooClose> {
-        let outside = Course::Constant(leaf.negative);
-        let Some(span) = leaf.span(self.ray, from).ok_or(TooClose)? else {
-            return Ok(outside);
+        let stay = leaf.stay(self.ray, from).ok_or(TooClose)?;
+        // Whether the leaf contributes what is outside of the span.
+        let outside = leaf.negative != stay.outside;
+        let Some(span) = stay.span else {
+            return Ok(Course::Constant(outside));
         };
         // Crossings just outside of the range may coincide with others in it.
         let near = self.fusing.widened(range);
         if span.exit.t < near.min || span.enter.t > near.max {
-            return Ok(outside);
+            return Ok(Course::Constant(outside));
         }
         let start = self.begin;
         let mut constant = true;
@@ -248,16 +250,16 @@ impl Search<'_> {
                     element: leaf.first_element,
                     facet: end.facet,
                 };
-                let enters = enters != leaf.negative;
+                let enters = enters != outside;
                 let timeline = &mut self.lists.timeline;
                 timeline.push(end.t, surface, parent, enters, leaf.visible);
             }
         }
-        let inside = (span.enter.t <= start && start < span.exit.t) != leaf.negative;
+        let inside = (span.enter.t <= start && start < span.exit.t) != outside;
         if constant {
             return Ok(Course::Constant(inside));
         }
-        let alive = if leaf.negative {
+        let alive = if outside {
             Interval::LINE
         } else {
             Interval::new(span.enter.t, span.exit.t)

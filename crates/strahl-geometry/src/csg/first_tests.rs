@@ -5,7 +5,7 @@ use super::first::{Answer, Lists, first_visible};
 use super::{Csg, CsgNode};
 use crate::conformance::Random;
 use crate::{
-    Cone, Crossings, Cuboid, Cylinder, Plane, PrimHit, Primitive, Scratch, Shape, Sphere,
+    Cone, Crossings, Cuboid, Cylinder, Plane, PrimHit, Primitive, Quadric, Scratch, Shape, Sphere,
     SurfaceId, Torus,
 };
 use std::sync::Arc;
@@ -28,7 +28,7 @@ fn leaf(random: &mut Random, lattice: bool, tag: u32) -> CsgNode {
     }
     let center = random.cube() * 2.0;
     let size = random.between(0.2, 1.0);
-    let shape: Shape = match random.below(8) {
+    let shape: Shape = match random.below(9) {
         0 => Cuboid::new(center - DVec3::splat(size), center + DVec3::splat(size)).into(),
         1 => Cylinder::new(center, center + random.direction(), 0.5 * size).into(),
         2 => Cone::new(center, size, center + random.direction(), 0.1).into(),
@@ -41,6 +41,7 @@ fn leaf(random: &mut Random, lattice: bool, tag: u32) -> CsgNode {
             ];
             Arc::new(Csg::try_new(CsgNode::merge(halves)).expect("valid")).into()
         }
+        6 => quadric(random, center, size),
         _ => Sphere::new(center, size).into(),
     };
     let node = CsgNode::leaf(shape, tag);
@@ -50,6 +51,26 @@ fn leaf(random: &mut Random, lattice: bool, tag: u32) -> CsgNode {
     // With a space of its own.
     let stretch = Transform::try_scale(DVec3::new(1.0, 0.7, 1.2)).expect("regular");
     node.transformed(Transform::rotate(random.direction(), random.unit() * 6.0).then(&stretch))
+}
+
+/// An ellipsoid, a hyperboloid of one or two sheets, a cone, a paraboloid or an endless cylinder.
+fn quadric(random: &mut Random, center: DVec3, size: f64) -> Shape {
+    let mut sign = || [1.0, 1.0, -1.0, 0.0][random.below(4) as usize] * random.between(0.5, 2.0);
+    let (a, b) = (sign(), sign());
+    let (i, j) = if random.below(4) == 0 {
+        (random.between(-1.0, 1.0), 0.0)
+    } else {
+        (0.0, -size * size * random.below(2) as f64)
+    };
+    let coefficients = [a, b, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, i, j];
+    let quadric = match Quadric::try_new(coefficients) {
+        Ok(quadric) => quadric,
+        // Only a point.
+        Err(_) => return Sphere::new(center, size).into(),
+    };
+    let place = Transform::rotate(random.direction(), random.unit() * 6.0)
+        .then(&Transform::translate(center));
+    quadric.baked(&place).unwrap_or_else(|| quadric.into())
 }
 
 fn tree(random: &mut Random, depth: u32, lattice: bool) -> CsgNode {

@@ -1,4 +1,4 @@
-//! The visible surfaces of a few convex shapes, some of them subtracted: lenses, capped pieces, drilled blocks.
+//! The visible surfaces of a few convex shapes and quadrics, some of them subtracted: lenses, capped pieces, drilled blocks.
 //!
 //! These trees are frequent and their rays cheap, so that the general search spends most of its time on its lists. Here the
 //! crossings are sorted in place. As in [`first`](super::first), crossings that could coincide are left to the general evaluation,
@@ -9,6 +9,7 @@ use super::leaf::Leaf;
 use super::solid::{Kind, Node};
 use super::sweep::{Fusing, Rule};
 use super::timeline::TooClose;
+use crate::primitives::convex::Span;
 use crate::{PrimHit, SurfaceId};
 use arrayvec::ArrayVec;
 use std::ops::ControlFlow;
@@ -17,7 +18,10 @@ use strahl_math::{Interval, Ray};
 /// The most operands.
 const MOST: usize = 6;
 
-/// An intersection of convex leaves and of complements of convex leaves.
+/// More planes are searched faster by [`HalfSpaces`](super::half_spaces).
+const MOST_PLANES: usize = 3;
+
+/// An intersection of leaves that a line crosses at most twice, and of complements of such leaves.
 #[derive(Clone, Debug)]
 pub(super) struct Flat {
     /// The numbers of the leaves, those that are not complements first.
@@ -37,9 +41,10 @@ impl Flat {
     /// The root of a tree, if it is such an intersection.
     pub(super) fn of(nodes: &[Node], operands: &[u32], leaves: &[Leaf]) -> Option<Self> {
         let root = nodes.first()?;
-        // Half-spaces and hierarchies have faster ways of their own.
+        // Many half-spaces and hierarchies have faster ways of their own.
+        let planes = root.half_spaces.as_ref().map_or(0, |planes| planes.len());
         if root.kind != Kind::Operation(Rule::Intersection)
-            || root.half_spaces.is_some()
+            || planes > MOST_PLANES
             || root.hierarchy.is_some()
         {
             return None;
@@ -55,7 +60,7 @@ impl Flat {
                 Kind::Operation(_) => return None,
             }
         }
-        if !numbers.iter().all(|n| leaves[*n as usize].is_convex()) {
+        if !numbers.iter().all(|n| leaves[*n as usize].has_stays()) {
             return None;
         }
         // Stable: quick ones stay in front.
@@ -125,12 +130,14 @@ impl Flat {
             let leaf = &leaves[*number as usize];
             let own = from.filter(|(other, _)| other == number);
             let own = own.map(|(_, surface)| surface);
-            let Some(span) = leaf.span(ray, own) else {
+            let Some(stay) = leaf.stay(ray, own) else {
                 return Err(TooClose);
             };
-            let span = span.filter(|s| s.exit.t >= alive.min && s.enter.t <= alive.max);
-            let Some(span) = span else {
-                if !leaf.negative {
+            // Whether the operand is what is outside of the span.
+            let outside = leaf.negative != stay.outside;
+            let reaches = |s: &Span| s.exit.t >= alive.min && s.enter.t <= alive.max;
+            let Some(span) = stay.span.filter(reaches) else {
+                if !outside {
                     return Ok(());
                 }
                 inside += 1;
@@ -152,7 +159,7 @@ impl Flat {
                     let event = Event {
                         t: end.t,
                         surface,
-                        enters: enters != leaf.negative,
+                        enters: enters != outside,
                         visible: leaf.visible,
                     };
                     // There are a few: the place among them is found by going back.
@@ -161,8 +168,8 @@ impl Flat {
                 }
             }
             let starts = span.enter.t <= begin && begin < span.exit.t;
-            inside += u32::from(starts != leaf.negative);
-            if !leaf.negative {
+            inside += u32::from(starts != outside);
+            if !outside {
                 let within = Interval::new(span.enter.t, span.exit.t);
                 alive = alive.intersection(fusing.widened(within));
                 if !(alive.min <= alive.max) {

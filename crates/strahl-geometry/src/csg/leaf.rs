@@ -1,5 +1,5 @@
 use super::sweep::Fusing;
-use crate::primitives::convex::Span;
+use crate::primitives::convex::Stay;
 use crate::{
     Crossing, Crossings, PrimHit, Primitive, Scratch, Shape, Side, Solid, SurfaceId, SurfacePoint,
 };
@@ -100,7 +100,12 @@ impl Leaf {
         (self.bounds.contains(point) && inside()) != self.negative
     }
 
-    /// Whether [`Leaf::span`] knows the shape.
+    /// Whether [`Leaf::stay`] knows the shape.
+    pub(super) fn has_stays(&self) -> bool {
+        self.is_convex() || matches!(self.shape, Shape::Quadric(_))
+    }
+
+    /// Whether it is a convex solid that is intersected in a few operations.
     pub(super) fn is_convex(&self) -> bool {
         match &self.shape {
             Shape::Sphere(_) | Shape::Cuboid(_) | Shape::Plane(_) => true,
@@ -132,9 +137,9 @@ impl Leaf {
             )
     }
 
-    /// The span in which the line is inside of a convex solid, if there is one; its ends are those that [`Leaf::crossings`]
-    /// lists. `None` for other shapes, and for rays along a plane.
-    pub(super) fn span(&self, ray: &Ray, from: Option<SurfaceId>) -> Option<Option<Span>> {
+    /// Where the line is inside of a convex solid or a quadric; the ends are those that [`Leaf::crossings`] lists. `None` for other
+    /// shapes, and for rays along a plane.
+    pub(super) fn stay(&self, ray: &Ray, from: Option<SurfaceId>) -> Option<Stay> {
         let placed;
         let ray = match &self.placement {
             None => ray,
@@ -143,14 +148,16 @@ impl Leaf {
                 &placed
             }
         };
-        match &self.shape {
-            Shape::Sphere(sphere) => Some(sphere.span(ray, from)),
-            Shape::Cuboid(cuboid) => Some(cuboid.span(ray, from)),
-            Shape::Cylinder(cylinder) => Some(cylinder.span(ray, from)),
-            Shape::Cone(cone) => Some(cone.span(ray, from)),
-            Shape::Plane(plane) => plane.span(ray, from).map(Some),
-            _ => None,
-        }
+        let span = match &self.shape {
+            Shape::Sphere(sphere) => sphere.span(ray, from),
+            Shape::Cuboid(cuboid) => cuboid.span(ray, from),
+            Shape::Cylinder(cylinder) => cylinder.span(ray, from),
+            Shape::Cone(cone) => cone.span(ray, from),
+            Shape::Plane(plane) => Some(plane.span(ray, from)?),
+            Shape::Quadric(quadric) => return Some(quadric.stay(ray, from)),
+            _ => return None,
+        };
+        Some(Stay::within(span))
     }
 
     /// Appends the crossings of a ray with this leaf's contribution, with the tree's element numbers.

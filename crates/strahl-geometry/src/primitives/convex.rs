@@ -85,6 +85,26 @@ impl Span {
     }
 }
 
+/// Where a line is inside of a solid that it crosses at most twice.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Stay {
+    /// A part of the line; `None` is no part.
+    pub(crate) span: Option<Span>,
+    /// Whether the line is outside on that part and inside everywhere else, and not the other way round.
+    pub(crate) outside: bool,
+}
+
+impl Stay {
+    /// Inside on the span only.
+    #[inline]
+    pub(crate) fn within(span: Option<Span>) -> Self {
+        Self {
+            span,
+            outside: false,
+        }
+    }
+}
+
 /// The beginning of a list of crossings: for a ray that starts on the surface, its start.
 pub(crate) fn start_of(range: Interval, from: Option<SurfaceId>) -> f64 {
     if from.is_some() && range.min < 0.0 {

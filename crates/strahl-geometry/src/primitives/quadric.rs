@@ -1,4 +1,4 @@
-use super::convex::{End, Span, start_of};
+use super::convex::{End, Span, Stay, start_of};
 use super::point_error;
 use crate::{
     Crossings, GeometryError, PrimHit, Primitive, Scratch, Shape, Solid, SurfaceId, SurfacePoint,
@@ -256,6 +256,31 @@ impl Quadric {
             },
             a < 0.0,
         )
+    }
+
+    /// Where the line is inside.
+    pub(crate) fn stay(&self, ray: &Ray, from: Option<SurfaceId>) -> Stay {
+        let (roots, inside_before) = self.roots(ray, from.is_some());
+        let [first, second] = roots.t.map(|t| End { t, facet: 0 });
+        let span = match roots.count {
+            0 => inside_before.then_some(Span::LINE),
+            1 if inside_before => Some(Span {
+                exit: first,
+                ..Span::LINE
+            }),
+            1 => Some(Span {
+                enter: first,
+                ..Span::LINE
+            }),
+            _ => Some(Span {
+                enter: first,
+                exit: second,
+            }),
+        };
+        Stay {
+            span,
+            outside: roots.count == 2 && inside_before,
+        }
     }
 
     /// The error of the parameter of a crossing: the error of the value divided by its slope along the ray; near a tangent the
