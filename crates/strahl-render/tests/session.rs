@@ -13,8 +13,8 @@ use strahl_render::{
     RenderScene, Sampling, Session, Sink, Threads, Tile, TileOrder, TraceSettings, View,
 };
 use strahl_scene::{
-    Background, Camera, CameraFace, Fog, FogKind, Lens, MeshCamera, MeshLayout, ObjectExt,
-    Projection, Scene, Span,
+    Background, Camera, CameraFace, CameraFront, Fog, FogKind, Lens, MeshCamera, MeshLayout,
+    ObjectExt, Projection, Scene, Span,
 };
 use strahl_shade::{Color, ColorFt, Material, ShadingModel};
 
@@ -497,16 +497,16 @@ fn cameras() -> Vec<Camera> {
             );
             CameraFace {
                 corners: [at, at + DVec3::X * 0.03, at + DVec3::Y * 0.03],
-                normal: DVec3::NEG_Z,
+                front: CameraFront::Clockwise,
                 normals: None,
                 uv: None,
             }
         })
-        .collect();
+        .collect::<Vec<_>>();
     let mut mesh = Camera::perspective(DVec3::Z, DVec3::ZERO, DVec3::Y, 1.0);
     mesh.projection = Projection::Mesh(Arc::new(MeshCamera {
         layout: MeshLayout::Each(1),
-        meshes: vec![faces],
+        meshes: vec![faces.into()],
         offset: 0.01,
         reversed: false,
         smooth: false,

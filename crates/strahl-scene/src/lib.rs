@@ -25,7 +25,9 @@ pub use diagnostic::{Diagnostic, Problems, Severity, SourceLine};
 pub use fog::{Fog, FogKind, FogTurbulence};
 pub use lens::{Bokeh, Lens};
 pub use object::{Children, CsgOp, Group, GroupId, Object, ObjectKind, Visibility};
-pub use projection::{CameraFace, MeshCamera, MeshLayout, Projection};
+pub use projection::{
+    CameraFace, CameraFront, CameraMesh, CameraPart, MeshCamera, MeshLayout, Projection,
+};
 pub use rainbow::Rainbow;
 pub use scene::{LightMask, Scene, SceneLight};
 pub use settings::Settings;

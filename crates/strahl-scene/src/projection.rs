@@ -1,5 +1,5 @@
 use std::sync::Arc;
-use strahl_math::{DVec2, DVec3};
+use strahl_math::{DVec2, DVec3, Transform};
 
 /// The projection of a camera. Angles are full angles in radians, from edge to edge of the picture.
 ///
@@ -83,8 +83,8 @@ impl Projection {
 pub struct MeshCamera {
     /// Which face belongs to a pixel.
     pub layout: MeshLayout,
-    /// The faces, mesh by mesh.
-    pub meshes: Vec<Vec<CameraFace>>,
+    /// The meshes.
+    pub meshes: Vec<CameraMesh>,
     /// Distance of a ray's origin in front of its face.
     pub offset: f64,
     /// Whether rays start at the back of the faces.
@@ -106,15 +106,110 @@ pub enum MeshLayout {
     ByUv,
 }
 
+/// A mesh that serves as camera: the faces of its parts, numbered consecutively.
+///
+/// Cameras that take many rays for a pixel consist of many copies of one mesh, moved a little each. Their parts share the faces.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct CameraMesh {
+    parts: Vec<CameraPart>,
+}
+
+/// Faces and the place where they are.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CameraPart {
+    /// The faces, in a space of their own.
+    pub faces: Arc<[CameraFace]>,
+    /// The map from that space to the world.
+    pub transform: Transform,
+}
+
+impl CameraPart {
+    /// A face in the world.
+    pub fn in_world(&self, face: &CameraFace) -> CameraFace {
+        let map = &self.transform;
+        let turned = |n: DVec3| map.normal_to_world(n).normalize_or_zero();
+        CameraFace {
+            corners: face.corners.map(|c| map.point_to_world(c)),
+            normals: face.normals.map(|n| n.map(turned)),
+            ..*face
+        }
+    }
+}
+
+impl CameraMesh {
+    /// Adds faces behind those there are.
+    pub fn push(&mut self, part: CameraPart) {
+        self.parts.push(part);
+    }
+
+    /// The parts, in the order of their faces.
+    pub fn parts(&self) -> &[CameraPart] {
+        &self.parts
+    }
+
+    /// The number of faces.
+    pub fn len(&self) -> usize {
+        self.parts.iter().map(|part| part.faces.len()).sum()
+    }
+
+    /// Whether there are no faces.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// A face in the world; `None` if there are fewer.
+    pub fn face(&self, mut index: usize) -> Option<CameraFace> {
+        for part in &self.parts {
+            match part.faces.get(index) {
+                Some(face) => return Some(part.in_world(face)),
+                None => index -= part.faces.len(),
+            }
+        }
+        None
+    }
+}
+
+impl From<Vec<CameraFace>> for CameraMesh {
+    /// Faces that are where they are in the world.
+    fn from(faces: Vec<CameraFace>) -> Self {
+        let part = CameraPart {
+            faces: faces.into(),
+            transform: Transform::IDENTITY,
+        };
+        Self { parts: vec![part] }
+    }
+}
+
 /// A face of a mesh that serves as camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CameraFace {
     /// The corners.
     pub corners: [DVec3; 3],
-    /// The unit normal of the plane.
-    pub normal: DVec3,
+    /// The side to which the normal of the plane points.
+    pub front: CameraFront,
     /// The unit normals at the corners.
     pub normals: Option<[DVec3; 3]>,
     /// The uv coordinates of the corners.
     pub uv: Option<[DVec2; 3]>,
+}
+
+/// The side of a face from which its corners run in this direction, in left-handed space.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CameraFront {
+    /// Clockwise.
+    Clockwise,
+    /// Counter-clockwise.
+    Counterclockwise,
+}
+
+impl CameraFace {
+    /// The unit normal of the plane; z if the corners are on a line.
+    pub fn normal(&self) -> DVec3 {
+        let [a, b, c] = self.corners;
+        let clockwise = (c - a).cross(b - a).normalize_or(DVec3::Z);
+        match self.front {
+            CameraFront::Clockwise => clockwise,
+            CameraFront::Counterclockwise => -clockwise,
+        }
+    }
 }

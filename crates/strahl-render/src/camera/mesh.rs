@@ -1,6 +1,6 @@
 use super::PrimaryRays;
 use strahl_math::{DVec2, DVec3, Ray};
-use strahl_scene::{CameraFace, MeshCamera, MeshLayout};
+use strahl_scene::{CameraFace, CameraMesh, MeshCamera, MeshLayout};
 use strahl_shade::Color;
 
 impl PrimaryRays {
@@ -26,13 +26,15 @@ impl PrimaryRays {
         match mesh.layout {
             MeshLayout::Each(rays) => {
                 for faces in mesh.meshes.iter().take(rays as usize) {
-                    add(faces.get(pixel).map(|face| mesh.ray_through_middle(face)));
+                    add(faces.face(pixel).map(|face| mesh.ray_through_middle(&face)));
                 }
             }
             MeshLayout::Joined(rays) => {
                 for number in 0..rays as usize {
                     let index = pixel + number * width * height;
-                    add(mesh.joined(index).map(|face| mesh.ray_through_middle(face)));
+                    add(mesh
+                        .joined(index)
+                        .map(|face| mesh.ray_through_middle(&face)));
                 }
             }
             MeshLayout::SideBySide => {
@@ -40,15 +42,17 @@ impl PrimaryRays {
                 let part = (width / count).max(1);
                 let which = (column / part).min(count - 1);
                 let index = row * part + (column - which * part).min(part - 1);
-                let face = mesh.meshes.get(which).and_then(|faces| faces.get(index));
-                add(face.map(|face| mesh.ray_through_middle(face)));
+                let face = mesh.meshes.get(which).and_then(|faces| faces.face(index));
+                add(face.map(|face| mesh.ray_through_middle(&face)));
             }
             MeshLayout::ByUv => {
                 let place = DVec2::new(x / self.width, 1.0 - y / self.height);
-                let faces = mesh.meshes.first().map_or(&[][..], Vec::as_slice);
-                let found = faces.iter().find_map(|face| {
-                    let weights = barycentric(face.uv?, place)?;
-                    Some(mesh.ray_through(face, weights))
+                let parts = mesh.meshes.first().map_or(&[][..], CameraMesh::parts);
+                let found = parts.iter().find_map(|part| {
+                    part.faces.iter().find_map(|face| {
+                        let weights = barycentric(face.uv?, place)?;
+                        Some(mesh.ray_through(&part.in_world(face), weights))
+                    })
                 });
                 add(found);
             }
@@ -63,7 +67,7 @@ impl PrimaryRays {
 
 /// How a mesh camera derives rays from its faces.
 trait FaceRays {
-    fn joined(&self, index: usize) -> Option<&CameraFace>;
+    fn joined(&self, index: usize) -> Option<CameraFace>;
     fn ray_through_middle(&self, face: &CameraFace) -> Ray;
     fn ray_through(&self, face: &CameraFace, weights: [f64; 3]) -> Ray;
     fn leaving(&self, point: DVec3, normal: DVec3) -> Ray;
@@ -71,10 +75,10 @@ trait FaceRays {
 
 impl FaceRays for MeshCamera {
     /// A face, with the faces of all meshes numbered consecutively.
-    fn joined(&self, mut index: usize) -> Option<&CameraFace> {
+    fn joined(&self, mut index: usize) -> Option<CameraFace> {
         for faces in &self.meshes {
             match index.checked_sub(faces.len()) {
-                None => return faces.get(index),
+                None => return faces.face(index),
                 Some(rest) => index = rest,
             }
         }
@@ -83,16 +87,16 @@ impl FaceRays for MeshCamera {
 
     fn ray_through_middle(&self, face: &CameraFace) -> Ray {
         let [a, b, c] = face.corners;
-        self.leaving((a + b + c) / 3.0, face.normal)
+        self.leaving((a + b + c) / 3.0, face.normal())
     }
 
     fn ray_through(&self, face: &CameraFace, [wa, wb, wc]: [f64; 3]) -> Ray {
         let [a, b, c] = face.corners;
         let normal = match face.normals {
             Some([na, nb, nc]) if self.smooth => {
-                (na * wa + nb * wb + nc * wc).normalize_or(face.normal)
+                (na * wa + nb * wb + nc * wc).normalize_or(face.normal())
             }
-            _ => face.normal,
+            _ => face.normal(),
         };
         self.leaving(a * wa + b * wb + c * wc, normal)
     }
@@ -120,24 +124,32 @@ fn barycentric([a, b, c]: [DVec2; 3], p: DVec2) -> Option<[f64; 3]> {
 mod tests {
     use super::*;
     use std::sync::Arc;
-    use strahl_scene::{Camera, Projection};
+    use strahl_math::Transform;
+    use strahl_scene::{Camera, CameraFront, CameraPart, Projection};
 
     fn face(x: f64) -> CameraFace {
         let corner = |dx: f64, dy: f64| DVec3::new(x + dx, dy, 0.0);
         let uv = |u: f64, v: f64| DVec2::new(u, v);
         CameraFace {
             corners: [corner(0.0, 0.0), corner(3.0, 0.0), corner(0.0, 3.0)],
-            normal: DVec3::Z,
+            front: CameraFront::Counterclockwise,
             normals: None,
             uv: Some([uv(0.0, 0.0), uv(1.0, 0.0), uv(0.0, 1.0)]),
         }
     }
 
     fn origins(layout: MeshLayout, place: (f64, f64)) -> Vec<DVec3> {
-        let meshes = vec![
-            (0..4).map(|n| face(10.0 * f64::from(n))).collect(),
-            (0..4).map(|n| face(100.0 + 10.0 * f64::from(n))).collect(),
-        ];
+        let faces: Vec<CameraFace> = (0..4).map(|n| face(10.0 * f64::from(n))).collect();
+        // The second mesh is the first one, moved, and its last two faces are a part of their own.
+        let part = |range: std::ops::Range<usize>| CameraPart {
+            faces: faces[range].into(),
+            transform: Transform::translate(DVec3::X * 100.0),
+        };
+        let mut moved = CameraMesh::default();
+        moved.push(part(0..2));
+        moved.push(part(2..4));
+        assert_eq!((moved.len(), moved.face(4)), (4, None));
+        let meshes = vec![CameraMesh::from(faces.clone()), moved];
         let mesh = MeshCamera {
             layout,
             meshes,

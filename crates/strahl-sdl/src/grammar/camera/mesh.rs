@@ -3,15 +3,19 @@
 use crate::grammar::objects::expanded;
 use crate::keywords::Word;
 use crate::parser::{PResult, Parser};
+use std::collections::HashMap;
+use std::sync::Arc;
 use strahl_geometry::{Shape, TriangleMesh};
-use strahl_math::{DVec3, Transform};
-use strahl_scene::{CameraFace, MeshCamera, MeshLayout, Object, ObjectKind};
+use strahl_math::Transform;
+use strahl_scene::{
+    CameraFace, CameraFront, CameraMesh, CameraPart, MeshCamera, MeshLayout, Object, ObjectKind,
+};
 
 /// A mesh camera being read; `location` and `direction` are outside of its braces.
 pub(super) struct MeshDraft {
     layout: MeshLayout,
     smooth: bool,
-    meshes: Vec<Vec<CameraFace>>,
+    meshes: Vec<CameraMesh>,
 }
 
 impl MeshDraft {
@@ -65,15 +69,16 @@ impl Parser<'_> {
                 }
             }
             let mut meshes = vec![];
+            let mut collector = Collector::default();
             while let Some(object) = p.object()? {
                 let object = expanded(&object, &p.state.shared);
-                let mut faces = vec![];
-                collect(&object, &Transform::IDENTITY, &mut faces);
-                p.spend_elements(faces.len() as u64)?;
-                meshes.push(faces);
+                let (mut mesh, before) = (CameraMesh::default(), collector.count);
+                collector.collect(&object, &Transform::IDENTITY, &mut mesh);
+                p.spend_elements(collector.count - before)?;
+                meshes.push(mesh);
                 p.comma()?;
             }
-            if meshes.iter().all(Vec::is_empty) {
+            if meshes.iter().all(CameraMesh::is_empty) {
                 return Err(p.fail_hint(
                     place,
                     "this mesh camera has no faces",
@@ -108,42 +113,58 @@ impl Parser<'_> {
     }
 }
 
-/// Collects the faces of all meshes in an object, in the space around `outer`. The parser limits the nesting of unions.
-fn collect(object: &Object, outer: &Transform, faces: &mut Vec<CameraFace>) {
-    let map = match object.transform.as_deref() {
-        Some(inner) => inner.then(outer),
-        None => *outer,
-    };
-    match &object.kind {
-        ObjectKind::Csg { children, .. } => {
-            for child in &children.0 {
-                collect(child, &map, faces);
+/// Collects the faces of meshes. Copies of a mesh share its faces.
+#[derive(Default)]
+struct Collector {
+    /// The faces of each mesh in its own space. The shape is kept so that no other mesh gets its address.
+    known: HashMap<*const TriangleMesh, (Shape, Arc<[CameraFace]>)>,
+    /// The number of these faces.
+    count: u64,
+}
+
+impl Collector {
+    /// Adds the faces of all meshes in an object. The parser limits the nesting of unions.
+    fn collect(&mut self, object: &Object, outer: &Transform, into: &mut CameraMesh) {
+        let transform = match object.transform.as_deref() {
+            Some(inner) => inner.then(outer),
+            None => *outer,
+        };
+        let (shape, mesh): (_, &TriangleMesh) = match &object.kind {
+            ObjectKind::Csg { children, .. } => {
+                for child in &children.0 {
+                    self.collect(child, &transform, into);
+                }
+                return;
             }
-        }
-        ObjectKind::Shape(Shape::TriangleMesh(mesh)) => add_faces(mesh, &map, faces),
-        ObjectKind::Shape(Shape::Brep(solid)) => add_faces(solid.mesh(), &map, faces),
-        _ => {}
+            ObjectKind::Shape(shape @ Shape::TriangleMesh(mesh)) => (shape, mesh),
+            ObjectKind::Shape(shape @ Shape::Brep(solid)) => (shape, solid.mesh()),
+            _ => return,
+        };
+        let (_, faces) = self.known.entry(mesh).or_insert_with(|| {
+            self.count += u64::from(mesh.triangle_count());
+            let faces = (0..mesh.triangle_count()).map(|n| face(mesh, n));
+            (shape.clone(), faces.collect())
+        });
+        into.push(CameraPart {
+            faces: Arc::clone(faces),
+            transform,
+        });
     }
 }
 
-fn add_faces(mesh: &TriangleMesh, map: &Transform, faces: &mut Vec<CameraFace>) {
-    for number in 0..mesh.triangle_count() {
-        let corners = mesh.corners(number).map(|c| map.point_to_world(c));
-        let [a, b, c] = corners;
-        let clockwise = (c - a).cross(b - a).normalize_or(DVec3::Z);
-        let turned = |n: DVec3| map.normal_to_world(n).normalize_or_zero();
-        let at = |u: f64, v: f64| mesh.surface_at_element(number, [u, v]).uv;
-        faces.push(CameraFace {
-            corners,
-            // The normal points to the side from which the corners, as they are written, are in clockwise order, in left-handed
-            // space (measured with POV-Ray 3.7).
-            normal: if mesh.is_exchanged(number) {
-                -clockwise
-            } else {
-                clockwise
-            },
-            normals: mesh.corner_normals(number).map(|n| n.map(turned)),
-            uv: Some([at(0.0, 0.0), at(1.0, 0.0), at(0.0, 1.0)]),
-        });
+/// A face in the space of its mesh.
+fn face(mesh: &TriangleMesh, number: u32) -> CameraFace {
+    let at = |u: f64, v: f64| mesh.surface_at_element(number, [u, v]).uv;
+    CameraFace {
+        corners: mesh.corners(number),
+        // The normal points to the side from which the corners, as they are written, are in clockwise order, in left-handed
+        // space (measured with POV-Ray 3.7).
+        front: if mesh.is_exchanged(number) {
+            CameraFront::Counterclockwise
+        } else {
+            CameraFront::Clockwise
+        },
+        normals: mesh.corner_normals(number),
+        uv: Some([at(0.0, 0.0), at(1.0, 0.0), at(0.0, 1.0)]),
     }
 }
