@@ -1,14 +1,14 @@
 //! Questions about single rays and points, many at once.
 
-use crate::hit::{Hit, RayClass};
+use crate::hit::Hit;
 use crate::prim::{Prim, PrimKind};
-use crate::query::Tracer;
 use crate::scene::RenderScene;
+use crate::searcher::Searcher;
 use crate::session::Session;
 use crate::trace::Filled;
 use rayon::prelude::*;
 use std::sync::Arc;
-use strahl_accel::{Accelerator, AnyAccelerator, PACKET, TraversalStats, Visitor};
+use strahl_accel::{Accelerator, AnyAccelerator, TraversalStats, Visitor};
 use strahl_math::{Aabb, DVec2, DVec3, Interval, Ray};
 use strahl_scene::Span;
 
@@ -119,20 +119,8 @@ impl Session {
         range: Interval,
         hits: &mut [Option<Hit>],
     ) {
-        let reach = NEAR * scene.diagonal();
-        self.each_batch(scene, rays, hits, |tracer, rays, hits| {
-            for (rays, hits) in rays.chunks(PACKET).zip(hits.chunks_mut(PACKET)) {
-                if are_alike(rays, reach) {
-                    let mut found = [None; PACKET];
-                    let (from, class) = ([None; PACKET], RayClass::Camera);
-                    tracer.closest_hits(rays, range, &from, class, &mut found);
-                    hits.copy_from_slice(&found[..hits.len()]);
-                } else {
-                    for (ray, hit) in rays.iter().zip(hits) {
-                        *hit = tracer.closest_hit(ray, range, None, RayClass::Camera);
-                    }
-                }
-            }
+        self.each_batch(scene, rays, hits, |searcher, rays, hits| {
+            searcher.closest_hits(rays, range, hits);
         });
     }
 
@@ -175,20 +163,8 @@ impl Session {
         range: Interval,
         answers: &mut [bool],
     ) {
-        let reach = NEAR * scene.diagonal();
-        self.each_batch(scene, rays, answers, |tracer, rays, answers| {
-            for (rays, answers) in rays.chunks(PACKET).zip(answers.chunks_mut(PACKET)) {
-                if are_alike(rays, reach) {
-                    let bits = tracer.any_opaques(rays, range, &[None; PACKET]);
-                    for (lane, answer) in answers.iter_mut().enumerate() {
-                        *answer = bits >> lane & 1 == 1;
-                    }
-                } else {
-                    for (ray, answer) in rays.iter().zip(answers) {
-                        *answer = tracer.any_opaque(ray, range, None);
-                    }
-                }
-            }
+        self.each_batch(scene, rays, answers, |searcher, rays, answers| {
+            searcher.occluded(rays, range, answers);
         });
     }
 
@@ -212,6 +188,12 @@ impl Session {
         });
     }
 
+    /// Calls a function whose parallel iterators (those of the crate rayon) then use the threads of the session: for questions whose answers do not
+    /// go into one list. [`RenderScene::searcher`] answers them.
+    pub fn install<R: Send>(&self, call: impl FnOnce() -> R + Send) -> R {
+        self.pool.install(call)
+    }
+
     /// A list whose entries are computed on all threads: the rays of a long list of questions, say, whose memory alone takes a thread longer
     /// than all threads need to answer easy ones.
     pub fn list<T: Send>(&self, count: usize, entry: impl Fn(usize) -> T + Sync) -> Vec<T> {
@@ -228,7 +210,7 @@ impl Session {
         scene: &RenderScene,
         questions: &[Q],
         answers: &mut [A],
-        ask: impl Fn(&mut Tracer<'_>, &[Q], &mut [A]) + Sync,
+        ask: impl Fn(&mut Searcher<'_>, &[Q], &mut [A]) + Sync,
     ) {
         assert_eq!(
             questions.len(),
@@ -236,40 +218,17 @@ impl Session {
             "one answer for each question"
         );
         if questions.len() <= BATCH {
-            return ask(&mut Tracer::new(scene), questions, answers);
+            return ask(&mut scene.searcher(), questions, answers);
         }
         self.pool.install(|| {
             let questions = questions.par_chunks(BATCH);
             let both = questions.zip(answers.par_chunks_mut(BATCH));
             both.for_each_init(
-                || Tracer::new(scene),
-                |tracer, (questions, answers)| ask(tracer, questions, answers),
+                || scene.searcher(),
+                |searcher, (questions, answers)| ask(searcher, questions, answers),
             );
         });
     }
-}
-
-/// How far apart the origins of rays that are alike may be, as a part of the scene's diagonal.
-const NEAR: f64 = 0.01;
-
-/// The smallest squared cosine between the directions of rays that are alike.
-// Measured on three scenes: rows of a camera's rays take 0.52 to 0.78 of the time of single rays, every sixteenth ray of a row 0.81 to 0.97.
-const STRAIGHT: f64 = 0.9;
-
-/// Whether rays start so close to each other, in such similar directions, that a packet pays.
-fn are_alike(rays: &[Ray], reach: f64) -> bool {
-    let Some((first, rest)) = rays.split_first() else {
-        return false;
-    };
-    let d = first.direction;
-    !rest.is_empty()
-        && rest.iter().all(|ray| {
-            let cos = d.dot(ray.direction);
-            let lengths = d.length_squared() * ray.direction.length_squared();
-            cos > 0.0
-                && cos * cos > STRAIGHT * lengths
-                && first.origin.distance_squared(ray.origin) <= reach * reach
-        })
 }
 
 /// The solids of a scene, with a structure that finds those around a point.
