@@ -24,11 +24,11 @@ from strahl._lights import (
 from strahl._load import load, parse
 from strahl._looks import Background, Camera, Material
 from strahl._objects import difference, intersection, merge, Object, union
+from strahl._patches import bicubic_patch, nurbs, NurbsCurve
 from strahl._progress import Progress
 from strahl._rays import Hits
 from strahl._scene import Scene
 from strahl._shapes import (
-    bicubic_patch,
     blob,
     box,
     cone,
@@ -65,6 +65,7 @@ __all__ = [
     "InternalError",
     "Light",
     "Material",
+    "NurbsCurve",
     "Object",
     "Progress",
     "Scene",
@@ -91,6 +92,7 @@ __all__ = [
     "load",
     "merge",
     "mesh",
+    "nurbs",
     "ovus",
     "parallel_light",
     "parse",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterable, Sequence
+from math import prod
 from typing import Any, Literal
 
 import numpy as np
@@ -178,7 +179,7 @@ class Scene:
         view = self._view(width, height, sampling, depth, adc_bailout, shading, camera, seed, threads)
         output = _output(region=_region(region), layers=layers, alpha=alpha, coarse_first=preview)
         line = shown(progress)
-        picture = Preview(view["size"] or self.size) if preview else None
+        picture = Preview(region[2:] if region else view["size"] or self.size) if preview else None
 
         def step(number: int, steps: int, done: int, of: int) -> bool:
             if line is not None and of > 0:
@@ -236,7 +237,7 @@ class Scene:
         order are read as they are.
         """
         first, second, shape = _rays(origins, directions)
-        core = self._core.intersect(first, second, _range(t_min, t_max), _threads(threads))
+        core = self._core.intersect(first, second, prod(shape), _range(t_min, t_max), _threads(threads))
         return Hits(core, shape)
 
     def occluded(
@@ -253,7 +254,7 @@ class Scene:
         For directions that reach from a point to a light, ``t_max=1`` asks whether the light is seen. Arguments are those of `intersect`.
         """
         first, second, shape = _rays(origins, directions)
-        return self._core.occluded(first, second, _range(t_min, t_max), _threads(threads)).reshape(shape)
+        return self._core.occluded(first, second, prod(shape), _range(t_min, t_max), _threads(threads)).reshape(shape)
 
     def inside(self, points: npt.ArrayLike, *, threads: int | None = None) -> npt.NDArray[np.int32]:
         """(...) int32: the number of the solid around each point (..., 3), of several the last one in the order of the scene; -1 is outside of all.
@@ -360,7 +361,7 @@ def _range(t_min: float, t_max: float) -> tuple[float, float]:
 
 
 def _rays(origins: Any, directions: Any) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64], tuple[int, ...]]:
-    """Contiguous rows (n, 3) of both, and the shape of the answers."""
+    """Contiguous rows (n, 3) of both, or (1, 3) where one row serves all rays, and the shape of the answers."""
     first, second = real(origins, "origins"), real(directions, "directions")
     for array, name in ((first, "origins"), (second, "directions")):
         if array.shape[-1:] != (3,):
@@ -369,6 +370,9 @@ def _rays(origins: Any, directions: Any) -> tuple[npt.NDArray[np.float64], npt.N
         shape = np.broadcast_shapes(first.shape, second.shape)
     except ValueError:
         raise ValueError(f"origins {first.shape} and directions {second.shape} do not fit together") from None
-    first = np.ascontiguousarray(np.broadcast_to(first, shape)).reshape(-1, 3)
-    second = np.ascontiguousarray(np.broadcast_to(second, shape)).reshape(-1, 3)
-    return first, second, shape[:-1]
+
+    def rows(array: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+        whole = array if array.size == 3 else np.broadcast_to(array, shape)
+        return np.ascontiguousarray(whole).reshape(-1, 3)
+
+    return rows(first), rows(second), shape[:-1]

@@ -8,7 +8,7 @@ import numpy.typing as npt
 
 from strahl import _strahl
 from strahl._arrays import each, mesh
-from strahl._convert import Vector, caller, finite_rows, integer, number, real, vector
+from strahl._convert import Vector, caller, finite_rows, integer, number, vector
 from strahl._objects import Look, Object, with_look
 
 
@@ -179,14 +179,6 @@ def sphere_sweep(
     """The volume that a sphere sweeps: centres (n, 3), radii (n,) or one number; ``curve`` is ``"linear"``, ``"bspline"`` or ``"cubic"``."""
     places = finite_rows(centers, "centers", 3)
     return with_look(_strahl.sphere_sweep(places, each(radii, "radii", len(places)), curve, caller()), material, name)
-
-
-def bicubic_patch(points: npt.ArrayLike, *, material: Look | None = None, name: str | None = None) -> Object:
-    """A bicubic Bézier patch with control points (4, 4, 3)."""
-    numbers = real(points, "points")
-    if numbers.shape != (4, 4, 3):
-        raise ValueError(f"points must have the shape (4, 4, 3), not {numbers.shape}")
-    return with_look(_strahl.bicubic_patch(finite_rows(numbers.reshape(16, 3), "points", 3), caller()), material, name)
 
 
 def pov(text: str, *, material: Look | None = None, name: str | None = None) -> Object:

@@ -6,6 +6,7 @@ import sys
 import time
 from pathlib import Path
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -56,6 +57,87 @@ def test_surfaces_are_hit() -> None:
         assert abs(hit.normal[1]) == pytest.approx(1)
     assert strahl.disc(hole=0.5).kind == "disc"
     assert not strahl.Scene(strahl.disc(hole=0.5)).intersect((0.1, 3, 0.2), (0, -1, 0)).hit
+
+
+def _ring() -> tuple[np.ndarray[Any, Any], np.ndarray[Any, Any], list[float]]:
+    """The circle of radius 1 in the plane of x and y: 9 control points, weights and knots of degree 2."""
+    angles = np.arange(9) * np.pi / 4
+    weights = np.where(np.arange(9) % 2, 0.5**0.5, 1.0)
+    points = np.stack([np.cos(angles), np.sin(angles)], axis=1) / weights[:, np.newaxis]
+    return points, weights, [0, 0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 4]
+
+
+def test_nurbs_are_exact_and_can_be_solids() -> None:
+    ring, ring_weights, ring_knots = _ring()
+    # A half circle from the south pole to the north pole, turned about z.
+    half = np.array([[0, -1], [1, -1], [1, 0], [1, 1], [0, 1]])
+    half_weights = np.array([1, 0.5**0.5, 1, 0.5**0.5, 1])
+    net = np.empty((5, 9, 3))
+    net[..., :2] = half[:, np.newaxis, :1] * ring
+    net[..., 2] = half[:, 1:]
+    weights = np.outer(half_weights, ring_weights)
+    knots = (ring_knots, [0, 0, 0, 1, 1, 2, 2, 2])
+    ball = strahl.nurbs(net, 2, weights=weights, knots=knots, name="ball")
+    scene = strahl.Scene(ball - strahl.box((0, 0, 0), (2, 2, 2)))
+    directions = np.random.default_rng(6).normal(size=(400, 3))
+    directions /= np.linalg.norm(directions, axis=1, keepdims=True)
+    cut = (directions > 0).all(axis=1)
+    hits = scene.intersect(directions * 5, -directions)
+    assert np.abs(hits.t[~cut] - 4).max() < 1e-12 and (hits.t[cut] > 4.4).all() and cut.sum() > 20
+    np.testing.assert_allclose(hits.normal[~cut], directions[~cut], atol=1e-9)
+    assert scene.inside([[-0.5, -0.5, -0.5], [0.3, 0.3, 0.3], [2, 0, 0]]).tolist() == [0, -1, -1]
+
+
+def test_nurbs_are_trimmed() -> None:
+    x, y = np.meshgrid(np.linspace(0, 3, 4), np.linspace(0, 6, 4))
+    net = np.stack([x, y, 0 * x], axis=-1)
+    square = [[0.25, 0.25], [0.75, 0.25], [0.75, 0.75], [0.25, 0.75]]
+    ring, ring_weights, ring_knots = _ring()
+    circle = strahl.NurbsCurve(0.5 + 0.2 * ring, 2, weights=ring_weights, knots=ring_knots)
+    corners = [strahl.NurbsCurve([a, b]) for a, b in zip(square, square[1:] + square[:1])]
+    u, v = np.random.default_rng(8).uniform(size=(2, 2000))
+    in_square = (abs(u - 0.5) < 0.25) & (abs(v - 0.5) < 0.25)
+    in_circle = (u - 0.5) ** 2 + (v - 0.5) ** 2 < 0.04
+    for surface, expected in (
+        (strahl.nurbs(net), np.full(2000, True)),
+        (strahl.nurbs(net, (3, 1), trim=[np.array(square)]), in_square),
+        (strahl.nurbs(net, holes=[corners]), ~in_square),
+        (strahl.nurbs(net, trim=[square], holes=[circle]), in_square & ~in_circle),
+        (strahl.nurbs(net, holes=[[circle]]), ~in_circle),
+    ):
+        # The rows of a surface of degree 1 along v have other knots: 0, 1, 2, 3.
+        scale = 3 if surface.kind == "nurbs" and expected is in_square else 1
+        origins = np.stack([3 * u, 6 * v / scale, 0 * u + 5], axis=1)
+        assert np.array_equal(strahl.Scene(surface).intersect(origins, (0, 0, -1)).hit, expected)
+    for wrong, message in (
+        (lambda: strahl.nurbs(net[:3]), "degree|control points"),
+        (lambda: strahl.nurbs(net, 10), "degree must be from 1 to 9"),
+        (lambda: strahl.nurbs(net, weights=np.ones((4, 3))), r"weights must have the shape \(4, 4\)"),
+        (lambda: strahl.nurbs(net, weights=np.zeros((4, 4))), "weight"),
+        (lambda: strahl.nurbs(net, knots=([0, 1], [0, 1])), "knots|control points"),
+        (lambda: strahl.nurbs(net, trim=[corners[:2]]), "closed"),
+        (lambda: strahl.nurbs(net, trim=[[]]), "corners"),
+    ):
+        with pytest.raises(ValueError, match=message):
+            wrong()
+
+
+def test_patches_can_be_rational() -> None:
+    # A quarter of a cylinder: the weights of a quarter circle of degree 2, raised to 3, times a line.
+    half = 0.5**0.5
+    arc = np.array([[1, 0], [1 + 2 * half, 2 * half], [2 * half, 1 + 2 * half], [0, 1]])
+    weights = np.array([1, (1 + 2 * half) / 3, (1 + 2 * half) / 3, 1])
+    arc[1:3] /= 1 + 2 * half
+    net = np.empty((4, 4, 3))
+    net[..., :2] = arc
+    net[..., 2] = np.arange(4)[:, np.newaxis]
+    angles = np.linspace(0.1, 1.4, 30)
+    around = np.stack([np.cos(angles), np.sin(angles), 0 * angles], axis=1)
+    scene = strahl.Scene(strahl.bicubic_patch(net, weights=np.tile(weights, (4, 1))))
+    hits = scene.intersect(3 * around + (0, 0, 1.5), -around)
+    np.testing.assert_allclose(hits.t, 2, atol=1e-12)
+    with pytest.raises(ValueError, match="weights must have the shape"):
+        strahl.bicubic_patch(net, weights=weights)
 
 
 def test_solids_combine() -> None:

@@ -182,6 +182,34 @@ def test_other_threads_run_meanwhile(ball: strahl.Scene, slow: strahl.Scene) -> 
     assert results == [reference] * 4
 
 
+def test_a_small_picture_does_not_wait_for_a_large_one(ball: strahl.Scene, slow: strahl.Scene) -> None:
+    enough = threading.Event()
+    ended: list[BaseException] = []
+
+    def tell(_: strahl.Progress) -> None:
+        if enough.is_set():
+            raise RuntimeError("enough")
+
+    def large() -> None:
+        try:
+            slow.render(2000, 2000, progress=tell)
+        except BaseException as error:
+            ended.append(error)
+
+    reference = ball.render(60, 40).sha256
+    slow.stats()
+    thread = threading.Thread(target=large)
+    thread.start()
+    time.sleep(0.3)
+    try:
+        assert ball.render(60, 40).sha256 == reference
+        assert thread.is_alive() and not ended
+    finally:
+        enough.set()
+        thread.join()
+    assert [str(error) for error in ended] == ["enough"]
+
+
 def test_python_runs_while_a_picture_is_made(slow: strahl.Scene) -> None:
     films: list[strahl.Film] = []
     thread = threading.Thread(target=lambda: films.append(slow.render(24, 18, sampling="center")))

@@ -2,6 +2,12 @@
 
 from __future__ import annotations
 
+import os
+import signal
+import subprocess
+import sys
+import time
+
 import numpy as np
 import pytest
 
@@ -56,6 +62,79 @@ def test_any_layout_and_type_gives_the_same(ball: strahl.Scene) -> None:
     wide[::2, ::2] = origins
     for same in (origins, origins.astype(np.int8), origins.astype(np.float32), origins.tolist(), wide[::2, ::2], np.asfortranarray(origins, dtype=float), origins.astype(">f8")):
         assert np.array_equal(ball.intersect(same, (1, 0, 0)).t, expected)
+
+
+def test_one_origin_or_direction_serves_all_rays(ball: strahl.Scene) -> None:
+    generator = np.random.default_rng(5)
+    points = generator.normal(size=(300, 3))
+    eye, down = np.array([0.5, 0.25, 6]), np.array([0.0, 0.1, -2])
+    for origins, directions in ((eye, points - eye), (points + (0, 0, 6), down), (eye, down), (eye[np.newaxis], down)):
+        full = np.broadcast_arrays(origins, directions)
+        hits, expected = ball.intersect(origins, directions), ball.intersect(*(np.ascontiguousarray(array) for array in full))
+        assert hits.shape == expected.shape and np.array_equal(hits.t, expected.t)
+        assert np.array_equal(hits.position, expected.position, equal_nan=True)
+        assert np.array_equal(ball.occluded(origins, directions), ball.occluded(*full))
+    assert ball.intersect(np.zeros((1, 1, 3)), down).t.shape == (1, 1)
+
+
+def test_hits_are_those_of_the_arrays_as_they_were(ball: strahl.Scene) -> None:
+    ball = ball.copy().add(strahl.torus(3, 0.5))
+    generator = np.random.default_rng(9)
+    origins = generator.normal(size=(5000, 3)) * 4
+    directions = -origins + generator.normal(size=origins.shape)
+    before = ball.intersect(origins.copy(), directions.copy())
+    expected = before.position.copy(), before.normal.copy(), before.uv.copy()
+    hits = ball.intersect(origins, directions)
+    origins += 1
+    directions[:] = 0
+    assert all(np.array_equal(a, b, equal_nan=True) for a, b in zip((hits.position, hits.normal, hits.uv), expected))
+
+
+def test_hits_keep_their_numbers_when_others_are_freed(ball: strahl.Scene) -> None:
+    # Memory of freed hits serves the next ones.
+    generator = np.random.default_rng(10)
+    for count in (70, 3000, 70, 2000, 5000, 64, 900):
+        directions = generator.normal(size=(count, 3)) * 0.3 - (0, 0, 1)
+        kept = ball.intersect((0, 0, 5), directions)
+        for _ in range(4):
+            ball.intersect((0, 0, 5), -directions)
+            ball.intersect((0.1, 0, 4), directions[::2])
+        hit = kept.hit
+        assert 0 < hit.sum() < count
+        along = kept.t[hit, np.newaxis] * directions[hit] + (0, 0, 5)
+        np.testing.assert_allclose(kept.position[hit], along, atol=1e-12)
+        assert np.isnan(kept.position[~hit]).all() and (kept.element[hit] == 0).all() and (kept.element[~hit] == -1).all()
+
+
+CHILD = """
+import numpy as np, strahl, sys
+scene = strahl.parse(sys.stdin.read())
+directions = np.random.default_rng(1).normal(size=(3_000_000, 3))
+scene.stats()
+print("go", flush=True)
+try:
+    scene.intersect(-3 * directions, directions)
+except KeyboardInterrupt:
+    print("stopped", flush=True)
+    print(bool(scene.intersect((0, 0, -5), (0, 0, 1)).hit), flush=True)
+"""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="there is no SIGINT for other processes")
+def test_ctrl_c_stops_questions_within_a_second() -> None:
+    scene = "#for (I, 1, 30) julia_fractal { <-0.08, 0, -0.83, -0.025> quaternion max_iteration 20 precision 500 rotate I * 7 } #end"
+    with subprocess.Popen([sys.executable, "-c", CHILD], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as child:
+        assert child.stdin is not None and child.stdout is not None
+        child.stdin.write(scene)
+        child.stdin.close()
+        assert child.stdout.readline() == "go\n"
+        time.sleep(0.7)
+        start = time.perf_counter()
+        os.kill(child.pid, signal.SIGINT)
+        assert child.stdout.readline() == "stopped\n"
+        assert time.perf_counter() - start < 1
+        assert child.stdout.readline() == "True\n"
+        assert child.wait(60) == 0
 
 
 def test_rays_that_are_none_hit_nothing(ball: strahl.Scene) -> None:

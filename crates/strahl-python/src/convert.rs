@@ -52,3 +52,8 @@ pub(crate) fn frozen<T: numpy::Element>(py: Python<'_>, list: Vec<T>) -> Py<PyAr
     array.readwrite().make_nonwriteable();
     array.unbind()
 }
+
+/// A number of an object or material as arrays have it.
+pub(crate) fn number(of: u32) -> i32 {
+    i32::try_from(of).unwrap_or(i32::MAX)
+}

@@ -65,10 +65,6 @@ fn from_zero(number: u32) -> i32 {
     i32::try_from(i64::from(number) - 1).unwrap_or(i32::MAX)
 }
 
-fn whole_number(number: u32) -> i32 {
-    i32::try_from(number).unwrap_or(i32::MAX)
-}
-
 #[pymethods]
 impl Film {
     /// Width and height of the whole picture.
@@ -122,11 +118,11 @@ impl Film {
     }
 
     fn tree_depth(&self, py: Python<'_>) -> Option<Py<PyArray1<i32>>> {
-        self.numbers(py, |info| whole_number(info.tree_depth))
+        self.numbers(py, |info| convert::number(info.tree_depth))
     }
 
     fn tests(&self, py: Python<'_>) -> Option<Py<PyArray1<i32>>> {
-        self.numbers(py, |info| whole_number(info.tests))
+        self.numbers(py, |info| convert::number(info.tests))
     }
 
     /// Costs of the pixels by name, if they were asked for.

@@ -1,19 +1,21 @@
 //! What many rays have hit, as arrays.
 
+use crate::convert::{self, number};
+use crate::found::Found;
 use crate::queries::Asked;
-use crate::{convert, work};
-use numpy::PyArray1;
+use numpy::{PyArray1, PyArrayMethods};
 use pyo3::prelude::*;
-use std::sync::{Arc, OnceLock};
-use strahl::prelude::Hit;
+use std::sync::OnceLock;
 use strahl::tracing::{HitSurface, Session};
 
 /// The nearest hits of rays. What is beyond `t` is computed when it is first asked for.
 #[pyclass(frozen, module = "strahl._strahl")]
 pub(crate) struct Hits {
     asked: Asked,
-    hits: Arc<Vec<Option<Hit>>>,
+    /// Infinite for a miss.
     t: Py<PyArray1<f64>>,
+    count: usize,
+    found: Found,
     surfaces: OnceLock<Surfaces>,
 }
 
@@ -39,19 +41,16 @@ struct Columns {
     uv: Vec<[f64; 2]>,
 }
 
-fn number(of: u32) -> i32 {
-    i32::try_from(of).unwrap_or(i32::MAX)
-}
-
 impl Columns {
-    fn new(session: &Session, surfaces: &[Option<HitSurface>], hits: &[Option<Hit>]) -> Self {
+    fn new(session: &Session, surfaces: &[Option<(u64, HitSurface)>]) -> Self {
         const NAN: [f64; 3] = [f64::NAN; 3];
         let list = Lists { session, surfaces };
-        let element = |hit: Hit| hit.id.cast_signed();
         Self {
             object: list.of(-1, |s| number(s.object)),
             material: list.of(-1, |s| number(s.material)),
-            element: session.list(hits.len(), |i| hits[i].map_or(-1, element)),
+            element: session.list(surfaces.len(), |i| {
+                surfaces[i].as_ref().map_or(-1, |(id, _)| id.cast_signed())
+            }),
             position: list.of(NAN, |s| s.position.to_array()),
             normal: list.of(NAN, |s| s.normal.to_array()),
             shading_normal: list.of(NAN, |s| s.shading_normal.to_array()),
@@ -63,24 +62,23 @@ impl Columns {
 /// Makes lists of what surfaces have.
 struct Lists<'a> {
     session: &'a Session,
-    surfaces: &'a [Option<HitSurface>],
+    surfaces: &'a [Option<(u64, HitSurface)>],
 }
 
 impl Lists<'_> {
     fn of<T: Copy + Send + Sync>(&self, none: T, of: impl Fn(&HitSurface) -> T + Sync) -> Vec<T> {
-        let entry = |i: usize| self.surfaces[i].as_ref().map_or(none, &of);
+        let entry = |i: usize| self.surfaces[i].as_ref().map_or(none, |(_, s)| of(s));
         self.session.list(self.surfaces.len(), entry)
     }
 }
 
 impl Hits {
-    pub(crate) fn new(py: Python<'_>, asked: Asked, hits: Vec<Option<Hit>>) -> Self {
-        let t = |i: usize| hits[i].map_or(f64::INFINITY, |hit: Hit| hit.t);
-        let t = py.detach(|| asked.session.list(hits.len(), t));
+    pub(crate) fn new(py: Python<'_>, asked: Asked, t: Vec<f64>, found: Found) -> Self {
         Self {
-            t: convert::frozen(py, t),
             asked,
-            hits: Arc::new(hits),
+            count: t.len(),
+            t: convert::frozen(py, t),
+            found,
             surfaces: OnceLock::new(),
         }
     }
@@ -89,12 +87,15 @@ impl Hits {
         if let Some(known) = self.surfaces.get() {
             return Ok(known);
         }
-        let (scene, rays) = (Arc::clone(&self.asked.scene), Arc::clone(&self.asked.rays));
-        let (session, hits) = (self.asked.session.clone(), Arc::clone(&self.hits));
-        let columns = work::run(py, move || {
-            let mut surfaces = session.list(hits.len(), |_| None);
-            session.surfaces(&scene, &rays, &hits, &mut surfaces);
-            Columns::new(&session, &surfaces, &hits)
+        let t = self.t.bind(py).readonly();
+        let (t, Asked { scene, session }) = (convert::list(&t)?, &self.asked);
+        let columns = self.asked.run(py, self.count, |stop| {
+            let surface = |i: usize| {
+                let (ray, hit) = self.found.get(i, t[i]);
+                let is_hit = hit.t.is_finite() && !stop.is_set();
+                is_hit.then(|| (hit.id, scene.surface(&ray, &hit)))
+            };
+            Columns::new(session, &session.list(self.count, surface))
         })?;
         // Another thread may have been faster.
         Ok(self.surfaces.get_or_init(|| Surfaces {
@@ -112,7 +113,7 @@ impl Hits {
 #[pymethods]
 impl Hits {
     fn __len__(&self) -> usize {
-        self.hits.len()
+        self.count
     }
 
     #[getter]

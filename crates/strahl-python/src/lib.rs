@@ -6,14 +6,18 @@
 mod convert;
 mod errors;
 mod film;
+mod found;
 mod hits;
 mod load;
 mod looks;
 mod object;
+mod patches;
 mod queries;
 mod scene;
 mod sessions;
+mod settings;
 mod shapes;
+mod shelf;
 mod work;
 
 use pyo3::prelude::*;
@@ -36,6 +40,7 @@ fn _strahl(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(load::parse, module)?)?;
     module.add_function(wrap_pyfunction!(work::panic_for_tests, module)?)?;
     module.add_function(wrap_pyfunction!(sessions::thread_count, module)?)?;
+    patches::register(module)?;
     shapes::register(module)
 }
 

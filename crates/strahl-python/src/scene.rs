@@ -1,27 +1,25 @@
 //! Scenes: a description that can grow, and what is compiled from it.
 
-use crate::convert::{Triple, color, vectors};
+use crate::convert::{Triple, color};
 use crate::film::Film;
 use crate::hits::Hits;
 use crate::looks::{Background, Camera, Light, Material};
 use crate::object::{Object, Renumbering, adopt};
-use crate::queries::Asked;
-use crate::{convert, errors, sessions, work};
+use crate::queries::{Asked, Rays};
+use crate::settings::{DEFAULT_SIZE, OutputNumbers, ViewNumbers};
+use crate::{errors, sessions, work};
 use numpy::{PyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
-use std::sync::{Arc, LazyLock, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 use strahl::prelude::{
-    AcceleratorKind, CompileOptions, CsgOp, Interval, Outcome, Output, Region, RenderScene,
-    Sampling, Tile, View,
+    AcceleratorKind, CompileOptions, CsgOp, Interval, Outcome, Output, Region, RenderScene, Tile,
+    View,
 };
 use strahl::scene::{self, Children, Span};
-use strahl::tracing::{Prepared, RenderError};
-
-/// The size of pictures of scenes that don't name one.
-const DEFAULT_SIZE: (u32, u32) = (800, 600);
+use strahl::tracing::{self, Prepared, RenderError};
 
 /// A description, and what was compiled from it last.
 #[derive(Clone, Debug, Default)]
@@ -50,70 +48,6 @@ fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// What pixels depend on: a dictionary that the Python half makes.
-#[derive(FromPyObject)]
-#[pyo3(from_item_all)]
-pub(crate) struct ViewNumbers {
-    size: Option<(u32, u32)>,
-    sampling: String,
-    seed: u64,
-    depth: Option<u32>,
-    adc_bailout: Option<f64>,
-    shading: Option<String>,
-    camera: Option<Py<Camera>>,
-    threads: Option<usize>,
-    accelerator: Option<String>,
-}
-
-/// What is handed over of a picture: a dictionary that the Python half makes.
-#[derive(FromPyObject)]
-#[pyo3(from_item_all)]
-pub(crate) struct OutputNumbers {
-    region: Option<(u32, u32, u32, u32)>,
-    layers: bool,
-    alpha: bool,
-    costs: bool,
-    coarse_first: bool,
-}
-
-impl ViewNumbers {
-    fn accelerator(&self) -> PyResult<Option<AcceleratorKind>> {
-        let name = self.accelerator.as_deref();
-        name.map(|name| name.parse().map_err(errors::value))
-            .transpose()
-    }
-
-    fn view(&self, scene: &Arc<RenderScene>, read_with: Option<(u32, u32)>) -> PyResult<View> {
-        let own = scene.settings().size;
-        let (width, height) = self.size.or(own).or(read_with).unwrap_or(DEFAULT_SIZE);
-        let sampling: Sampling = self.sampling.parse().map_err(errors::value)?;
-        let mut view = scene.view(width, height).with_sampling(sampling);
-        view.seed = self.seed;
-        if let Some(depth) = self.depth {
-            if depth == 0 {
-                return Err(errors::value("depth must be at least 1"));
-            }
-            view = view.with_depth(depth);
-        }
-        if let Some(weight) = self.adc_bailout {
-            view = view.with_cutoff(weight);
-        }
-        if let Some(name) = &self.shading {
-            view = view.with_shading(name.parse().map_err(errors::value)?);
-        }
-        if let Some(camera) = &self.camera {
-            view = view.with_camera(camera.get().0.clone());
-        }
-        Ok(view)
-    }
-}
-
-/// Nanoseconds since the first call, for the costs of pixels.
-fn clock() -> u64 {
-    static START: LazyLock<Instant> = LazyLock::new(Instant::now);
-    START.elapsed().as_nanos() as u64
-}
-
 fn render_error(error: RenderError) -> PyErr {
     errors::value(error)
 }
@@ -123,8 +57,19 @@ fn render_error(error: RenderError) -> PyErr {
 struct Seen {
     /// Number of the pass, from 0; of how many; parts done; of how many.
     at: (u32, u32, usize, usize),
-    /// The picture so far, if it is shown.
-    picture: Option<Vec<[f32; 3]>>,
+    /// What there is of the region that is rendered, if it is shown.
+    picture: Vec<[f32; 3]>,
+}
+
+/// Copies a part of a picture to its place among the pixels of a region, of which there are none before the first part.
+fn put(part: &tracing::Film, region: Region, pixels: &mut Vec<[f32; 3]>) {
+    pixels.resize(region.pixels() as usize, [0.0; 3]);
+    let width = part.region.width as usize;
+    let (left, top) = (part.region.x - region.x, part.region.y - region.y);
+    for (y, row) in (top as usize..).zip(part.pixels.chunks_exact(width)) {
+        let start = y * region.width as usize + left as usize;
+        pixels[start..start + width].copy_from_slice(row);
+    }
 }
 
 impl Scene {
@@ -209,15 +154,11 @@ impl Scene {
         }
     }
 
-    fn asked(
-        &self,
-        py: Python<'_>,
-        origins: &PyReadonlyArray2<'_, f64>,
-        directions: &PyReadonlyArray2<'_, f64>,
-        threads: Option<usize>,
-    ) -> PyResult<Asked> {
-        let scene = self.compiled(py, threads, None)?;
-        Asked::new(py, scene, sessions::session(threads)?, origins, directions)
+    fn asked(&self, py: Python<'_>, threads: Option<usize>) -> PyResult<Asked> {
+        Ok(Asked {
+            scene: self.compiled(py, threads, None)?,
+            session: sessions::session(threads)?,
+        })
     }
 
     fn view(&self, py: Python<'_>, numbers: &ViewNumbers) -> PyResult<View> {
@@ -421,41 +362,23 @@ impl Scene {
     ) -> PyResult<Film> {
         let session = sessions::session(view.threads)?;
         let view = self.view(py, &view)?;
-        let output = Output {
-            region: output.region.map(|(x, y, width, height)| Region {
-                x,
-                y,
-                width,
-                height,
-            }),
-            coarse_first: output.coarse_first,
-            info: output.layers,
-            alpha: output.alpha,
-            costs: output.costs,
-            clock: output.costs.then_some(clock as fn() -> u64),
-            ..Output::default()
-        };
         let seen = Arc::new(Mutex::new(Seen::default()));
-        if show.is_some() {
-            let pixels = u64::from(view.width) * u64::from(view.height);
-            let pixels = usize::try_from(pixels).map_err(errors::value)?;
-            lock(&seen).picture = Some(vec![[0.0; 3]; pixels]);
-        }
         let inner = Arc::clone(&seen);
+        let region = (output.region()).unwrap_or(Region::full(view.width, view.height));
+        let is_shown = show.is_some();
         let render = move |stop: &work::Stop| {
             let mut sink = |tile: &Tile<'_>| {
                 let mut seen = lock(&inner);
                 seen.at = (tile.pass.number, tile.pass.of, tile.done, tile.of);
-                if let Some(picture) = &mut seen.picture {
-                    // The buffer has the size of the picture.
-                    let _ = tile.film.write_to(picture);
+                if is_shown {
+                    put(tile.film, region, &mut seen.picture);
                 }
                 match stop.is_set() {
                     true => ControlFlow::Break(()),
                     false => ControlFlow::Continue(()),
                 }
             };
-            session.render(&view, &output, &mut sink)
+            session.render(&view, &output.output(stop), &mut sink)
         };
         let tell = |py: Python<'_>| {
             let Some(tick) = &tick else {
@@ -464,7 +387,7 @@ impl Scene {
             let at = lock(&seen).at;
             let wanted: bool = tick.call1(py, at)?.extract(py)?;
             if let (true, Some(show)) = (wanted, &show) {
-                let picture = lock(&seen).picture.clone().unwrap_or_default();
+                let picture = lock(&seen).picture.clone();
                 show.call1(py, (PyArray1::from_vec(py, picture.into_flattened()),))?;
             }
             Ok(())
@@ -534,38 +457,34 @@ impl Scene {
         Ok((numbers, rendered.film.sha256()))
     }
 
-    /// The nearest hits of rays.
+    /// The nearest hits of so many rays. The arrays have a row for each, or one for all.
     fn intersect(
         &self,
         py: Python<'_>,
         origins: PyReadonlyArray2<'_, f64>,
         directions: PyReadonlyArray2<'_, f64>,
+        count: usize,
         range: (f64, f64),
         threads: Option<usize>,
     ) -> PyResult<Hits> {
-        let asked = self.asked(py, &origins, &directions, threads)?;
+        let rays = Rays::new(&origins, &directions, count)?;
         let range = Interval::new(range.0, range.1);
-        let hits = asked.ask(py, None, move |session, scene, rays, hits| {
-            session.closest_hits(scene, rays, range, hits);
-        })?;
-        Ok(Hits::new(py, asked, hits))
+        self.asked(py, threads)?.intersect(py, &rays, range)
     }
 
-    /// Whether something opaque is on each ray.
+    /// Whether something opaque is on each of so many rays.
     fn occluded(
         &self,
         py: Python<'_>,
         origins: PyReadonlyArray2<'_, f64>,
         directions: PyReadonlyArray2<'_, f64>,
+        count: usize,
         range: (f64, f64),
         threads: Option<usize>,
     ) -> PyResult<Py<PyArray1<bool>>> {
-        let asked = self.asked(py, &origins, &directions, threads)?;
+        let rays = Rays::new(&origins, &directions, count)?;
         let range = Interval::new(range.0, range.1);
-        let answers = asked.ask(py, false, move |session, scene, rays, answers| {
-            session.occluded(scene, rays, range, answers);
-        })?;
-        Ok(convert::frozen(py, answers))
+        self.asked(py, threads)?.occluded(py, &rays, range)
     }
 
     /// The number of the object around each point, or -1.
@@ -575,18 +494,6 @@ impl Scene {
         points: PyReadonlyArray2<'_, f64>,
         threads: Option<usize>,
     ) -> PyResult<Py<PyArray1<i32>>> {
-        let session = sessions::session(threads)?;
-        let scene = self.compiled(py, threads, None)?;
-        let points = vectors(&points)?;
-        let answers = work::run(py, move || {
-            let mut answers = vec![None; points.len()];
-            session.inside(&scene, &points, &mut answers);
-            let number = |of: u32| i32::try_from(of).unwrap_or(i32::MAX);
-            answers
-                .into_iter()
-                .map(|object| object.map_or(-1, number))
-                .collect()
-        })?;
-        Ok(convert::frozen(py, answers))
+        self.asked(py, threads)?.inside(py, &points)
     }
 }

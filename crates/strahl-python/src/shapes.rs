@@ -14,16 +14,16 @@ use strahl::geometry::{
 };
 use strahl::math::DVec3;
 use strahl::prelude::{
-    BicubicPatch, Brep, Color, Cone, CsgOp, Cuboid, Cylinder, Disc, Lemon, MeshData, Ovus, Plane,
-    Polygon, Quadric, Sphere, Torus, TriangleMesh,
+    Brep, Color, Cone, CsgOp, Cuboid, Cylinder, Disc, Lemon, MeshData, Ovus, Plane, Polygon,
+    Quadric, Sphere, Torus, TriangleMesh,
 };
 use strahl::scene;
 
 /// The line of the program that makes an object.
-type Place = Option<(String, u32)>;
+pub(crate) type Place = Option<(String, u32)>;
 
 /// A checked shape as an object.
-fn object(shape: impl Into<Shape>, place: Place) -> PyResult<Object> {
+pub(crate) fn object(shape: impl Into<Shape>, place: Place) -> PyResult<Object> {
     let shape = shape.into();
     shape.validate().map_err(errors::value)?;
     Ok(Object::new(shape.into(), place))
@@ -35,7 +35,7 @@ pub(crate) fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
         ($($name:ident)+) => { $(module.add_function(wrap_pyfunction!($name, module)?)?;)+ };
     }
     add!(sphere plane cuboid disc cylinder cone torus ovus lemon quadric superellipsoid polygon mesh spheres);
-    add!(blob prism lathe sor sphere_sweep polynomial bicubic_patch height_field isosurface);
+    add!(blob prism lathe sor sphere_sweep polynomial height_field isosurface);
     Ok(())
 }
 
@@ -359,19 +359,6 @@ fn polynomial(terms: Vec<(u32, u32, u32, f64)>, place: Place) -> PyResult<Object
     let terms = terms.into_iter().map(|(i, j, k, c)| ([i, j, k], c));
     let polynomial = Polynomial::try_new(terms).map_err(errors::value)?;
     object(Arc::new(polynomial), place)
-}
-
-#[pyfunction]
-fn bicubic_patch(points: PyReadonlyArray2<'_, f64>, place: Place) -> PyResult<Object> {
-    let points = vectors(&points)?;
-    let (rows, []) = points.as_chunks::<4>() else {
-        return Err(errors::value("a patch has 4 x 4 points"));
-    };
-    let rows: [[DVec3; 4]; 4] = rows
-        .try_into()
-        .map_err(|_| errors::value("a patch has 4 x 4 points"))?;
-    let patch = BicubicPatch::try_new(rows).map_err(errors::value)?;
-    object(Arc::new(patch), place)
 }
 
 /// A height field on the unit square from heights in units of 1/65536; the first row lies at z = 1.

@@ -1,0 +1,86 @@
+//! Constructors of free-form surfaces.
+
+use crate::convert::{list, vectors, vectors_2};
+use crate::errors;
+use crate::object::Object;
+use crate::shapes::{Place, object};
+use numpy::{PyReadonlyArray1, PyReadonlyArray2};
+use pyo3::prelude::*;
+use std::sync::Arc;
+use strahl::geometry::{Nurbs, NurbsCurve, NurbsData, TrimLoop};
+use strahl::prelude::{BicubicPatch, DVec3};
+
+/// Adds all functions to the module.
+pub(crate) fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add_function(wrap_pyfunction!(bicubic_patch, module)?)?;
+    module.add_function(wrap_pyfunction!(nurbs, module)?)
+}
+
+/// 16 points row by row, and their weights.
+#[pyfunction]
+fn bicubic_patch(
+    points: PyReadonlyArray2<'_, f64>,
+    weights: Option<PyReadonlyArray1<'_, f64>>,
+    place: Place,
+) -> PyResult<Object> {
+    fn square<T: Copy>(all: &[T]) -> PyResult<[[T; 4]; 4]> {
+        let wrong = || errors::value("a patch has 4 x 4 points");
+        let (rows, []) = all.as_chunks::<4>() else {
+            return Err(wrong());
+        };
+        rows.try_into().map_err(|_| wrong())
+    }
+    let points: [[DVec3; 4]; 4] = square(&vectors(&points)?)?;
+    let patch = match &weights {
+        None => BicubicPatch::try_new(points),
+        Some(weights) => BicubicPatch::try_rational(points, square(list(weights)?)?),
+    };
+    object(Arc::new(patch.map_err(errors::value)?), place)
+}
+
+/// A curve in the plane of the parameters: a dictionary that the Python half makes.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+struct CurveNumbers<'py> {
+    degree: u32,
+    points: PyReadonlyArray2<'py, f64>,
+    weights: Vec<f64>,
+    knots: Option<Vec<f64>>,
+}
+
+impl CurveNumbers<'_> {
+    fn curve(self) -> PyResult<NurbsCurve> {
+        let mut curve = NurbsCurve::new(self.degree, vectors_2(&self.points)?);
+        curve.weights = self.weights;
+        if let Some(knots) = self.knots {
+            curve.knots = knots;
+        }
+        Ok(curve)
+    }
+}
+
+/// Control points in rows of `columns`; knots along both; loops with whether they are holes.
+#[pyfunction]
+#[expect(clippy::too_many_arguments, reason = "they are those of the surface")]
+fn nurbs(
+    degree: [u32; 2],
+    columns: usize,
+    points: PyReadonlyArray2<'_, f64>,
+    weights: Vec<f64>,
+    knots: Option<[Vec<f64>; 2]>,
+    loops: Vec<(Vec<CurveNumbers<'_>>, bool)>,
+    place: Place,
+) -> PyResult<Object> {
+    let mut data = NurbsData::new(degree, columns, vectors(&points)?);
+    data.weights = weights;
+    if let Some(knots) = knots {
+        data.knots = knots;
+    }
+    let trim = |(curves, is_hole): (Vec<CurveNumbers<'_>>, bool)| {
+        let curves: PyResult<_> = curves.into_iter().map(CurveNumbers::curve).collect();
+        curves.map(|curves| TrimLoop { curves, is_hole })
+    };
+    let loops = loops.into_iter().map(trim).collect::<PyResult<Vec<_>>>()?;
+    let surface = Nurbs::try_trimmed(&data, &loops).map_err(errors::value)?;
+    object(Arc::new(surface), place)
+}
