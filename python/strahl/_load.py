@@ -114,5 +114,7 @@ def parse(
 ) -> Scene:
     """Reads a scene from a text, in POV-Ray's language unless ``format`` names another; ``name`` stands for the file in messages. See `load`."""
     reading = _reading(format, declare, clock, size, library, version, header, limits, studio, messages)
+    if not isinstance(text, (str, bytes, bytearray, memoryview)):
+        raise TypeError(f"a scene is a str or bytes, not {type(text).__name__}")
     data = text.encode() if isinstance(text, str) else bytes(text)
     return Scene._of(_strahl.parse(data, name, reading))

@@ -67,7 +67,7 @@ def nurbs(
     ``trim`` and ``holes`` are loops in the plane of u and v, in the units of the knots: arrays (n, 2) of corners, or lists of `NurbsCurve`. The surface is there where
     an odd number of loops is around; with holes alone its border counts as one.
 
-    A surface that is not trimmed and is closed, such as a ball or a ring, is a solid. Raises ValueError if numbers do not fit together.
+    A surface that is not trimmed and is closed, such as a ball or a ring, is a solid: its opposite sides have the same points, to the last bit, or are collapsed. Raises ValueError if numbers do not fit together.
     """
     net = _net(points)
     rows, columns, _ = net.shape

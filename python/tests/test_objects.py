@@ -61,7 +61,8 @@ def test_surfaces_are_hit() -> None:
 
 def _ring() -> tuple[np.ndarray[Any, Any], np.ndarray[Any, Any], list[float]]:
     """The circle of radius 1 in the plane of x and y: 9 control points, weights and knots of degree 2."""
-    angles = np.arange(9) * np.pi / 4
+    # The last point is the first one, to the last bit.
+    angles = np.arange(9) % 8 * np.pi / 4
     weights = np.where(np.arange(9) % 2, 0.5**0.5, 1.0)
     points = np.stack([np.cos(angles), np.sin(angles)], axis=1) / weights[:, np.newaxis]
     return points, weights, [0, 0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 4]
