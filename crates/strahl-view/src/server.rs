@@ -134,6 +134,13 @@ const MOST_PAGES: usize = 64;
 /// # Errors
 /// [`ServeError`].
 pub fn serve(options: ViewOptions, ready: impl FnOnce(&Served)) -> Result<(), ServeError> {
+    let runtime = tokio::runtime::Builder::new_current_thread()
+        .enable_all()
+        .build()?;
+    let signals = {
+        let _inside = runtime.enter();
+        Signals::catch()?
+    };
     let builtin = match options.scene {
         Some(_) => None,
         None => Some(Builtin::unpack()?),
@@ -157,9 +164,6 @@ pub fn serve(options: ViewOptions, ready: impl FnOnce(&Served)) -> Result<(), Se
         pages: AtomicU64::new(1),
         places: Arc::new(Semaphore::new(MOST_PAGES)),
     });
-    let runtime = tokio::runtime::Builder::new_current_thread()
-        .enable_all()
-        .build()?;
     runtime.block_on(async {
         let address = SocketAddr::from((Ipv4Addr::LOCALHOST, options.port));
         let listener = TcpListener::bind(address)
@@ -184,7 +188,6 @@ pub fn serve(options: ViewOptions, ready: impl FnOnce(&Served)) -> Result<(), Se
             )
             .with_state(hub)
             .layer(from_fn_with_state(keeper, guard));
-        let signals = Signals::catch()?;
         let end = Arc::clone(&served.end);
         ready(&served);
         tokio::select! {
@@ -196,7 +199,8 @@ pub fn serve(options: ViewOptions, ready: impl FnOnce(&Served)) -> Result<(), Se
     })
 }
 
-/// The signals that end the server. They are caught as soon as this is made, so it is made before anybody is told that the server listens.
+/// The signals that end the server. They are caught as soon as this is made, so it is made before there are temporary files, and before
+/// anybody is told that the server listens.
 struct Signals {
     #[cfg(unix)]
     interrupt: tokio::signal::unix::Signal,

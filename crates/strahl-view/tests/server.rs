@@ -272,6 +272,15 @@ fn only_those_who_know_the_token_get_anything() {
     ] {
         let headers = [("Host", host), ("Origin", origin)];
         assert_eq!(running.status(&page, &headers), 403, "{origin}");
+        // Another page in the same browser could open a WebSocket, with the cookie.
+        let upgrade = [
+            ("Upgrade", "websocket"),
+            ("Sec-WebSocket-Key", "dGhlIHNhbXBsZSBub25jZQ=="),
+            ("Sec-WebSocket-Version", "13"),
+            ("Cookie", cookie.as_str()),
+        ];
+        let headers = [&headers[..], &upgrade].concat();
+        assert_eq!(running.status("/ws", &headers), 403, "{origin}");
     }
 }
 
@@ -723,6 +732,45 @@ fn malformed_messages_and_pages_that_disappear_do_no_harm() {
         json!({ "eye": [0, 0, 0], "direction": [0, 0, 0], "right": [0, 0, 0], "up": [0, 0, 0] });
     page.show(json!({ "camera": zero }));
     page.until("error");
+    // Good messages with mistakes: whatever is answered, the page goes on.
+    let good = [
+        json!({ "type": "picture", "slot": "main", "settings": { "depth": 3, "size": [64, 48], "sampling": "2x2", "lights": [{ "light": 0, "position": [1, 2, 3] }] } }),
+        json!({ "type": "explain", "slot": "main", "x": 32, "y": 24, "id": 1 }),
+        json!({ "type": "hover", "slot": "main", "x": 32, "y": 24, "id": 2 }),
+        json!({ "type": "mark", "slot": "main", "file": "scene.pov", "line": 4, "id": 3 }),
+        json!({ "type": "linear", "slot": "main", "region": [1, 2, 3, 4] }),
+        json!({ "type": "walk", "slot": "main", "ray": [[0, 1, -4], [0, 0, 1]], "id": 4 }),
+        json!({ "type": "export", "slot": "main", "x": 3, "y": 4, "language": "de", "id": 5 }),
+        json!({ "type": "text", "file": "scene.pov", "text": BALL }),
+        json!({ "type": "pieces", "text": BALL, "id": 6 }),
+    ];
+    let mut state = 11_u64;
+    let mut random = |below: usize| {
+        state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        (state >> 33) as usize % below
+    };
+    for round in 0..600 {
+        let mut text: Vec<char> = good[round % good.len()].to_string().chars().collect();
+        for _ in 0..=random(4) {
+            let at = random(text.len());
+            match random(4) {
+                0 => text[at] = char::from(b' ' + random(95) as u8),
+                1 => drop(text.remove(at)),
+                2 => text.insert(at, text[random(text.len())]),
+                _ => text.truncate(at.max(8)),
+            }
+        }
+        let text = String::from_iter(text);
+        page.0.send(Message::text(text)).unwrap();
+        let id = 1000 + round;
+        page.send(json!({ "type": "pieces", "text": "sphere", "id": id }));
+        while page.until("reply")["id"] != id {}
+    }
+    let mut page = running.page();
+    page.show(json!({}));
+    page.until("done");
     // Random messages, made of pieces of good ones.
     let pieces = [
         "{",
@@ -818,11 +866,21 @@ fn a_scene_may_not_ask_for_a_picture_of_any_size() {
     page.until("done");
 }
 
+/// Two pages that show the same scene have one picture between them, so it is read, built and rendered once. Another setting is another picture.
 #[test]
 fn two_pages_see_the_same_picture() {
     let running = start(BALL, false);
     let (mut first, mut second) = (running.page(), running.page());
     first.show(json!({}));
     second.show(json!({}));
+    let number = first.until("picture")["picture"].clone();
+    assert_eq!(second.until("picture")["picture"], number);
     assert_eq!(first.picture((64, 48)), second.picture((64, 48)));
+    // One that comes when the picture is finished gets it, too.
+    let mut third = running.page();
+    third.show(json!({}));
+    assert_eq!(third.until("picture")["picture"], number);
+    assert_eq!(third.until("done")["picture"], number);
+    third.show(json!({ "depth": 1 }));
+    assert_ne!(third.until("picture")["picture"], number);
 }

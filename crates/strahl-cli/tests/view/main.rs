@@ -13,6 +13,8 @@
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
+#[cfg(unix)]
+use std::time::{Duration, Instant};
 
 const SCENE: &str = "\
 #version 3.7;
@@ -105,7 +107,10 @@ fn the_viewer_works_in_a_browser() {
             .status();
         assert!(rendered.unwrap().success());
     }
-    let (_own, address) = viewer(folder.path(), &["scene.pov", "--size", "160x120", "--edit"]);
+    // An "editor" that leaves a file with the line in its name.
+    let editor = ["--edit", "--editor", "cp {file} edited-{line}"];
+    let own = [["scene.pov", "--size", "160x120"].as_slice(), &editor].concat();
+    let (_own, address) = viewer(folder.path(), &own);
     let (_others, others) = viewer(folder.path(), &["--size", "64x48"]);
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/view/browser.mjs");
     let checked = Command::new("node")
@@ -151,6 +156,30 @@ fn the_viewer_prints_one_line_and_ends_on_signals() {
             "nothing is left"
         );
     }
+}
+
+/// A signal that comes before the server listens ends it as well, and leaves nothing of the scenes that it has unpacked.
+#[cfg(unix)]
+#[test]
+fn a_signal_at_the_beginning_leaves_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut view = Running(
+        Command::new(env!("CARGO_BIN_EXE_strahl"))
+            .args(["view", "--port", "0"])
+            .env("TMPDIR", folder.path())
+            .stdout(Stdio::null())
+            .spawn()
+            .unwrap(),
+    );
+    let begun = Instant::now();
+    while std::fs::read_dir(folder.path()).unwrap().count() == 0 {
+        assert!(begun.elapsed() < Duration::from_secs(60));
+        std::thread::sleep(Duration::from_micros(200));
+    }
+    let kill = Command::new("kill").arg(view.0.id().to_string()).status();
+    assert!(kill.unwrap().success());
+    assert!(view.0.wait().unwrap().success());
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
 }
 
 #[test]
