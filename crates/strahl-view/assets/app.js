@@ -3,33 +3,31 @@
 import { showBar } from "./bar.js";
 import { length, minus } from "./camera.js";
 import { Code } from "./code.js";
-import { closeMenus, copy, download, find, toast } from "./controls.js";
+import { closeMenus, find, toast } from "./controls.js";
 import { help, showTable } from "./dialogs.js";
 import { listen, splits } from "./keys.js";
 import { Lights } from "./lights.js";
 import { Link } from "./link.js";
 import { el, number, triple } from "./numbers.js";
 import { showProblems, warningsButton } from "./problems.js";
+import { saving } from "./saving.js";
 import { Space } from "./space.js";
 import { Stage } from "./stage.js";
-import { COUNTS, forget, keep, plain, recall, settings, state } from "./state.js";
-import { treeSvg } from "./svg.js";
+import { COUNTS, forget, keep, keepNow, plain, recall, settings, state } from "./state.js";
 import { Timeline } from "./timeline.js";
 import { showPixel } from "./tree.js";
 import { getLanguage, setLanguage, word } from "./words.js";
 
-// What the parts of the page know of each other.
+// What the parts of the page know of each other. `looked` has the pixels whose trees were looked at, for a page with the picture.
 const page = {
-  hello: null, scene: null, current: null, explained: null, set, pick, toggle,
+  hello: null, scene: null, current: null, explained: null, looked: [], set, pick, toggle,
   actions: {
     open: openScene, camera: turnCamera, lights: showLights, reset, compare: () => set({ compare: state.compare ? null : { depth: 1 } }),
-    png: savePng, exr: saveExr, page: savePage, copyCamera, theme: toggleTheme, language: toggleLanguage, help,
+    theme: toggleTheme, language: toggleLanguage, help,
   },
 };
 // The camera as the scene has it.
 let own = null;
-// The pixels whose trees were looked at, for a page with the picture.
-let looked = [];
 
 const link = new Link({
   hello(message) { page.hello = message; start(); },
@@ -45,6 +43,7 @@ const link = new Link({
   },
   again() {
     if (code.tried.size) sessionStorage.setItem("tried", JSON.stringify([...code.tried]));
+    keepNow();
     location.reload();
   },
 });
@@ -52,7 +51,7 @@ const link = new Link({
 const lights = new Lights({
   change: (light, position) => move({ lights: { ...(mover.wanted?.lights ?? state.lights), [light]: position } }),
   reset: () => { mover.wanted = null; set({ lights: null }); lights.set(page.scene?.stats?.placed, null); stage.draw(); space.draw(); },
-  copy: copyLight,
+  copy: (light) => page.actions.copyLight(light),
   place: (file, line) => showPlace(file, line),
   draw: () => { stage.draw(); space.draw(); },
 });
@@ -67,6 +66,8 @@ const stage = new Stage(find("stage"), lights, {
   },
   pivot: async (x, y) => (await link.ask({ type: "hover", slot: "main", x, y })).seen?.position ?? null,
   values: (region) => link.send({ type: "linear", slot: "main", region }),
+  // Before there is a picture, the address is right.
+  shown: (values) => { if (page.current) { Object.assign(state, values); keep(); } },
 });
 
 const code = new Code(find("code"), {
@@ -86,12 +87,15 @@ const code = new Code(find("code"), {
 
 const timeline = new Timeline(find("timeline"), (clock) => { state.clock = clock; show(); });
 
-const space = new Space(link, lights, { onRay: markRay, toast, table: () => showTable(link), svg: (text) => text && saveSvg(text, "rays") });
+const space = new Space(link, lights, { onRay: markRay, toast, table: () => showTable(link), svg: (text) => text && page.actions.svg(text, "rays") });
 Object.assign(page, { stage, code, space, lights, timeline });
+Object.assign(page.actions, saving(page, link));
 stage.box.append(lights.panel);
 listen(page);
 splits();
 document.addEventListener("pointerdown", (event) => closeMenus(event.target));
+// Somebody has put another link into the address of this page.
+window.addEventListener("hashchange", () => location.reload());
 
 function start() {
   recall();
@@ -99,6 +103,8 @@ function start() {
   if (hello.scenes?.includes(state.scene)) link.send({ type: "open", scene: state.scene });
   code.setOptions(hello);
   space.accelerators = [...hello.accelerators];
+  if (state.panel !== "tree") space.kind = state.panel;
+  stage.split = state.split;
   label();
   showBar(page);
   showInspector();
@@ -110,6 +116,7 @@ function start() {
 function label() {
   const names = { code: "scene", stage: "picture", inspector: "inspector", picture: "picture", side: "otherPicture", space: "space" };
   for (const [id, key] of Object.entries(names)) (find(id) ?? space.film.canvas).setAttribute("aria-label", word(key));
+  for (const [id, key] of [["code", "scene"], ["inspector", "inspector"]]) find(`split-${id}`).setAttribute("aria-label", `${word("width")}: ${word(key)}`);
 }
 
 // The server says no. If that is so from the beginning, the address asks for something that doesn't exist, and the page begins without it.
@@ -182,10 +189,11 @@ function moved() {
 
 function openScene(name) {
   mover.wanted = null;
-  Object.assign(state, { scene: name, camera: null, lights: null, pixel: null });
+  Object.assign(state, { scene: name, camera: null, lights: null, pixel: null, zoom: null, outside: null });
+  space.rest();
   Object.assign(page, { explained: null, current: null });
   Object.assign(stage, { picked: null, fitted: true });
-  looked = [];
+  page.looked = [];
   code.forget();
   link.send({ type: "open", scene: name });
   showInspector();
@@ -250,7 +258,8 @@ function begin(message) {
   page.current = message;
   own = message.own_camera;
   const resized = stage.film.begin(message);
-  if (resized && (stage.fitted || !before)) stage.fit();
+  if (!before && state.zoom) stage.look(state.zoom);
+  else if (resized && (stage.fitted || !before)) stage.fit();
   stage.film.area = 0;
   stage.setMarks(null);
   stage.progress.style.opacity = "1";
@@ -345,9 +354,9 @@ async function hover(x, y) {
 function pick(x, y) {
   state.pixel = [x, y];
   stage.picked = [x, y];
-  looked = [...looked.filter(([a, b]) => a !== x || b !== y), [x, y]].slice(-100);
+  page.looked = [...page.looked.filter(([a, b]) => a !== x || b !== y), [x, y]].slice(-100);
   stage.draw();
-  keep();
+  space.rest();
   if (find("inspector").hidden) toggle("inspector");
   explain();
 }
@@ -387,8 +396,8 @@ function showInspector() {
       onPlace: showPlace,
       onRay: (ray) => space.light(ray.id),
       onSample: (index) => space.setSample(index),
-    }), el("p", {}, el("button", { type: "button", class: "tool", id: "export", text: word("export"), onclick: exportPixel }), " ",
-      el("button", { type: "button", class: "tool", id: "export-svg", text: word("treeSvg"), onclick: exportTree })));
+    }, space.sample), el("p", {}, el("button", { type: "button", class: "tool", id: "export", text: word("export"), onclick: page.actions.pixel }), " ",
+      el("button", { type: "button", class: "tool", id: "export-svg", text: word("treeSvg"), onclick: page.actions.tree })));
   } else body = space.panel(state.panel);
   box.replaceChildren(tabs, body);
   if (explained && state.panel !== "tree") space.opened();
@@ -412,66 +421,6 @@ function toggle(id) {
   box.hidden = !box.hidden;
   find(`split-${id}`).hidden = box.hidden;
   if (id === "inspector" && !box.hidden) showInspector();
-}
-
-// The name of the scene's file without its ending.
-function file() {
-  return (page.scene?.name ?? "picture").split(/[\\/]/).pop().replace(/\.[^.]*$/, "");
-}
-
-async function exportPixel() {
-  const [x, y] = state.pixel;
-  try {
-    const { html } = await link.ask({ type: "export", slot: "main", x, y, language: getLanguage() });
-    download(new Blob([html], { type: "text/html" }), `pixel-${x}-${y}.html`);
-  } catch (problem) { toast(problem.message); }
-}
-
-function exportTree() {
-  const { explained } = page;
-  const ink = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
-  const colors = { primary: ink("--primary"), reflection: ink("--reflection"), transparency: ink("--transparency") };
-  const [x, y] = explained.pixel;
-  saveSvg(treeSvg(explained.samples[space.sample] ?? explained.samples[0], `${page.scene.name.split(/[\\/]/).pop()}, ${word("pixel")} ${x}, ${y}`, colors), "tree");
-}
-
-function saveSvg(text, what) {
-  download(new Blob([text], { type: "image/svg+xml" }), `${what}-${page.explained.pixel.join("-")}.svg`);
-}
-
-function savePng() {
-  stage.film.canvas.toBlob((blob) => download(blob, `${file()}.png`));
-}
-
-async function saveExr() {
-  const answer = await fetch(`picture/${page.current.picture}.exr`);
-  if (answer.ok) download(await answer.blob(), `${file()}.exr`);
-  else toast(await answer.text());
-}
-
-// The picture with its objects, and the trees of the pixels that were looked at and of some more, as a page that needs no server.
-async function savePage() {
-  toast(word("exporting"));
-  try {
-    const { html } = await link.ask({ type: "export_picture", slot: "main", pixels: looked, language: getLanguage() });
-    download(new Blob([html], { type: "text/html" }), `${file()}.html`);
-  } catch (problem) { toast(problem.message); }
-}
-
-async function copyCamera() {
-  try {
-    const { text } = await link.ask({ type: "camera_text", slot: "main" });
-    await copy(text);
-    toast(`${word("copied")}: ${text.split("\n")[2].trim()}`);
-  } catch (problem) { toast(problem.message); }
-}
-
-async function copyLight(light) {
-  try {
-    const { text } = await link.ask({ type: "light_text", slot: "main", light });
-    await copy(text);
-    toast(`${word("copied")}: ${text.split("\n").slice(0, 2).join(" ")} …`);
-  } catch (problem) { toast(problem.message); }
 }
 
 function toggleTheme() {

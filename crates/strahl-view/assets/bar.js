@@ -32,7 +32,7 @@ export function showBar(page) {
     : el("span", { class: "file", title: name, text: name.split(/[\\/]/).pop() });
   const pressed = focused?.closest("#bar, #side-panel") ? focused.id : null;
   find("bar").replaceChildren(
-    el("span", { class: "brand", text: "strahl" }), scenes,
+    el("h1", { class: "brand", text: "strahl" }), scenes,
     choose("channel", word("channel"), channels(), state.channel, (value) => set({ channel: value })),
     choose("sampling", word("sampling"), samplings(), state.sampling ?? "", (value) => set({ sampling: value || null })),
     counted("depth", word("maxDepth"), state.depth, { min: 1, max: 1000, placeholder: current ? String(current.depth) : "" }, (value) => set({ depth: value })),

@@ -17,12 +17,16 @@ export class Code {
     this.builtIn = new Set();
     this.said = [];
     this.file = null;
+    // The line that was looked at last, which the author's editor opens.
+    this.at = 1;
     this.text = null;
     // The texts that are tried, by file.
     this.tried = new Map();
     this.lines.addEventListener("click", (event) => {
       const line = event.target.closest?.(".text-line");
-      if (line && !this.writing) this.actions.pick(this.file, Number(line.dataset.line));
+      if (!line || this.writing) return;
+      this.at = Number(line.dataset.line);
+      this.actions.pick(this.file, this.at);
     });
   }
 
@@ -66,6 +70,7 @@ export class Code {
   async choose(file) {
     if (file === this.file) return;
     this.file = file;
+    this.at = 1;
     this.area = null;
     this.showTabs();
     await this.load();
@@ -81,7 +86,7 @@ export class Code {
     if (this.writing && this.options?.edit) tools.push(button(word("save"), () => this.actions.save(this.file, this.area.value), { id: "save" }));
     if (this.writing && !this.options?.edit) tools.push(el("span", { class: "dim", text: word("tryHint") }));
     if (builtIn) tools.push(el("span", { class: "dim", text: word("builtIn") }));
-    if (this.options?.editor && this.file && !builtIn) tools.push(button(word("openEditor"), () => this.actions.open(this.file, this.under ?? 1)));
+    if (this.options?.editor && this.file && !builtIn) tools.push(button(word("openEditor"), () => this.actions.open(this.file, this.at), { id: "editor" }));
     this.tools.replaceChildren(...tools);
     this.tools.hidden = tools.length === 0;
   }
@@ -135,6 +140,7 @@ export class Code {
   async show(file, line) {
     if (this.files.includes(file)) await this.choose(file);
     if (file !== this.file) return;
+    this.at = line;
     this.setUnder(null, null);
     this.setUnder(file, line);
     this.line(line)?.scrollIntoView({ block: "center", behavior: "smooth" });

@@ -19,7 +19,7 @@ export function counted(name, title, value, attributes, change) {
 }
 
 export function tool(name, text, title, action, pressed = null) {
-  return el("button", { type: "button", class: "tool", id: name, title, "aria-label": /^\w+$/.test(text) && !title.includes(text) ? `${text}: ${title}` : title, "aria-pressed": pressed === null ? null : String(pressed), text, onclick: action });
+  return el("button", { type: "button", class: "tool", id: name, title, "aria-label": /\p{L}/u.test(text) && !title.includes(text) ? `${text}: ${title}` : title, "aria-pressed": pressed === null ? null : String(pressed), text, onclick: action });
 }
 
 // A part of the bar that opens on a click, and stays open when the bar is made again.

@@ -14,6 +14,13 @@ export function sign(text) {
   return math("mo", text);
 }
 
+// A sign between what stands before it and what comes, even if it begins a part of a formula that is broken into parts.
+export function infix(text) {
+  const between = sign(text);
+  for (const side of ["lspace", "rspace"]) between.setAttribute(side, "0.22em");
+  return between;
+}
+
 // A symbol with an index: `k_d`.
 export function symbol(name, index) {
   const base = math("mi", name);
@@ -43,6 +50,11 @@ export function power(base, exponent) {
 
 export function product(factors) {
   return math("mrow", ...factors.flatMap((factor, i) => (i ? [sign("·"), factor] : [factor])));
+}
+
+// The same as parts, between which a long product may be broken.
+export function factored(factors) {
+  return factors.map((factor, i) => (i ? math("mrow", infix("·"), factor) : factor));
 }
 
 export function sum(terms) {

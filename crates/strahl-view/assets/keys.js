@@ -53,7 +53,19 @@ function walk({ current, pick }, [dx, dy]) {
 export function splits() {
   for (const [id, side] of [["code", 1], ["inspector", -1]]) {
     const split = find(`split-${id}`);
-    const widen = (width) => { find(id).style.width = `${Math.max(140, Math.min(innerWidth * 0.6, width))}px`; };
+    const widen = (width) => {
+      const now = Math.max(140, Math.min(innerWidth * 0.6, width));
+      find(id).style.width = `${now}px`;
+      split.setAttribute("aria-valuenow", Math.round((100 * now) / innerWidth));
+    };
+    split.setAttribute("aria-valuenow", Math.round((100 * find(id).clientWidth) / innerWidth));
+    split.addEventListener("keydown", (event) => {
+      const by = { ArrowLeft: -20, ArrowRight: 20 }[event.key];
+      if (!by) return;
+      event.preventDefault();
+      event.stopPropagation();
+      widen(find(id).clientWidth + side * by);
+    });
     split.addEventListener("pointerdown", (event) => { split.setPointerCapture(event.pointerId); split.dataset.drag = "1"; });
     for (const name of ["pointerup", "pointercancel"]) split.addEventListener(name, () => delete split.dataset.drag);
     split.addEventListener("pointermove", (event) => {

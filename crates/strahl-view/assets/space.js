@@ -4,11 +4,15 @@ import { cross, dolly, inner, length, minus, pan, plus, scaled, seen, turn, unit
 import { el, number } from "./numbers.js";
 import { Film } from "./film.js";
 import { Gestures } from "./gestures.js";
+import { drawEye, drawRays, drawVectors, drawing, raysOf } from "./rays.js";
+import { keep, state } from "./state.js";
 import { SvgPen } from "./svg.js";
 import { drawWay } from "./way.js";
 import { word } from "./words.js";
 
-const INK = { primary: "--primary", reflection: "--reflection", transparency: "--transparency", shadow: "--shadow" };
+// The view from outside: half the height of what it sees at distance 1, and the part of that in which the rays are.
+const HALF = 0.42;
+const INNER = 0.7;
 
 export class Space {
   // `actions`: onRay(number), toast(text), table(), svg(text).
@@ -22,10 +26,7 @@ export class Space {
     this.say = el("div", { class: "space-say" });
     this.events = el("div", { class: "events" });
     this.kind = "space";
-    this.sample = 0;
-    this.at = -1;
     this.isOpen = false;
-    this.accelerator = null;
     new ResizeObserver(() => { if (this.isOpen) this.render(); }).observe(this.box);
     const near = (event) => {
       const { left, top } = this.box.getBoundingClientRect();
@@ -51,6 +52,24 @@ export class Space {
     }, { passive: false });
   }
 
+  // The sample, the step and the accelerator are part of the state, which the address keeps.
+  get sample() { return state.sample; }
+  set sample(index) { this.change({ sample: index }); }
+  get at() { return state.step; }
+  set at(step) { this.change({ step }); }
+  get accelerator() { return this.accelerators?.includes(state.walk) ? state.walk : null; }
+  set accelerator(name) { this.change({ walk: name }); }
+
+  change(values) {
+    Object.assign(state, values);
+    keep();
+  }
+
+  // Another pixel is looked at.
+  rest() {
+    this.change({ sample: 0, step: -1 });
+  }
+
   setScene(settings) {
     this.settings = settings;
     if (this.isOpen) this.render();
@@ -60,50 +79,35 @@ export class Space {
     const moved = this.picture?.own_camera && JSON.stringify(this.picture.own_camera) !== JSON.stringify(picture.own_camera);
     this.pixel = pixel;
     this.picture = picture;
-    this.sample = 0;
-    this.at = -1;
+    if (this.sample >= pixel.samples.length) this.rest();
     this.walk = null;
-    if (moved || !this.camera) this.camera = null;
+    if (moved) {
+      this.camera = null;
+      this.change({ outside: null });
+    }
     this.build();
+    if (this.kind === "space") this.limit();
     if (this.isOpen) this.opened();
   }
 
+  // After a change there may be fewer steps.
+  limit() {
+    if (this.at >= this.count()) this.at = this.count() - 1;
+  }
+
   setSample(index) {
+    if (index === this.sample) return;
     this.sample = index;
     this.at = -1;
     this.build();
     this.draw();
   }
 
-  // The rays of the sample as lines, in the order of tracing.
+  // The rays of the sample that is looked at.
   build() {
     const sample = this.pixel?.samples[this.sample];
     this.steps = [];
-    if (!sample) return;
-    const eye = this.picture.camera;
-    const ends = sample.rays.filter((ray) => ray.hit).map((ray) => ray.hit.position);
-    const points = [eye.eye, ...ends];
-    const low = points.reduce((a, b) => a.map((v, i) => Math.min(v, b[i])));
-    const high = points.reduce((a, b) => a.map((v, i) => Math.max(v, b[i])));
-    this.radius = Math.max(1e-9, length(minus(high, low)) / 2);
-    this.middle = scaled(plus(low, high), 0.5);
-    for (const ray of sample.rays) {
-      const direction = unit(ray.ray.direction);
-      const end = ray.hit ? ray.hit.position : plus(ray.ray.origin, direction, this.radius * 0.7);
-      const id = ray.id;
-      this.steps.push({ kind: ray.kind, from: ray.ray.origin, to: end, open: !ray.hit, id, ray, text: `${word(ray.kind)} #${id}: ${ray.hit ? `${ray.hit.object}, t = ${number(ray.hit.t, 4)}` : word("background")}` });
-      for (const light of ray.lights) {
-        // Of an area light one ray stands for all.
-        const shadows = light.shadow_rays.length > 8 ? light.shadow_rays.filter((_, i) => i % Math.ceil(light.shadow_rays.length / 8) === 0) : light.shadow_rays;
-        for (const shadow of shadows) {
-          const blocker = shadow.met.find((one) => one.blocks);
-          const far = light.position === null || light.position === undefined;
-          const t = blocker ? blocker.t : far ? (this.radius * 0.7) / (length(shadow.direction) || 1) : 1;
-          this.steps.push({ kind: "shadow", from: shadow.origin, to: plus(shadow.origin, shadow.direction, t), blocked: Boolean(blocker), open: !blocker && far, id, ray,
-            text: `${word("shadow")}: ${light.light}, ${blocker ? `${word("blocked")} ${blocker.object}` : word("visible")}` });
-        }
-      }
-    }
+    if (sample) Object.assign(this, raysOf(sample, this.picture.camera));
   }
 
   panel(kind) {
@@ -121,13 +125,16 @@ export class Space {
       const kinds = ["", ...(this.accelerators ?? [])];
       const select = el("select", { id: "walk-accelerator", "aria-label": word("accelerator"), onchange: () => { this.accelerator = select.value || null; this.walk = null; this.at = -1; this.render(); } },
         ...kinds.map((one) => el("option", { value: one, text: one || word("own"), selected: (this.accelerator ?? "") === one })));
-      tools.append(select, button(word("table"), () => this.actions.table()));
+      const table = button(word("table"), () => this.actions.table());
+      table.id = "show-table";
+      tools.append(select, table);
     }
     return el("div", { class: "panel-body canvas" }, this.box, tools, this.say, kind === "walk" ? this.events : "");
   }
 
   opened() {
     this.isOpen = true;
+    if (!this.camera && state.outside) this.camera = { ...state.outside, orthographic: Boolean(state.outside.orthographic) };
     if (!this.camera) this.outside();
     this.render();
     this.draw();
@@ -148,14 +155,18 @@ export class Space {
     const hand = Math.sign(inner(cross(own.right, own.up), scaled(own.direction, -1))) || 1;
     const side = unit(own.right);
     const from = unit(plus(plus(scaled(view, -0.35), side, 0.9), up, 0.55));
-    // In a box that is higher than wide, from further away.
-    const { clientWidth, clientHeight } = this.box;
-    const narrow = clientWidth > 0 && clientHeight > 0 ? Math.min(1, clientWidth / clientHeight) : 1;
-    const eye = plus(this.middle, from, (this.radius * 3.2) / narrow);
     const direction = scaled(from, -1);
     const right = scaled(unit(cross(direction, up)), hand);
     const top = unit(cross(scaled(right, hand), direction));
-    this.camera = { eye, direction, right: scaled(right, 0.42), up: scaled(top, 0.42), orthographic: false };
+    // As near as it can be with all points in the inner part of the box.
+    const { clientWidth, clientHeight } = this.box;
+    const aspect = clientWidth > 0 && clientHeight > 0 ? clientWidth / clientHeight : 1;
+    const away = this.points.map((point) => {
+      const beside = minus(point, this.middle);
+      return inner(beside, from) + Math.max(Math.abs(inner(beside, right)) / aspect, Math.abs(inner(beside, top))) / (HALF * INNER);
+    });
+    const eye = plus(this.middle, from, Math.max(this.radius * 1.5, ...away));
+    this.camera = { eye, direction, right: scaled(right, HALF), up: scaled(top, HALF), orthographic: false };
   }
 
   // Goes near what the step is about, without turning; without a step, to where everything is seen.
@@ -165,6 +176,7 @@ export class Space {
       this.build();
       this.outside();
       this.go(this.camera);
+      this.change({ outside: null });
       return;
     }
     const [center, size] = target;
@@ -188,8 +200,7 @@ export class Space {
     const away = inner(minus(this.middle, this.camera.eye), unit(this.camera.direction));
     const factor = this.camera.orthographic ? 1 / away : away;
     this.camera = { ...this.camera, right: scaled(this.camera.right, factor), up: scaled(this.camera.up, factor), orthographic: !this.camera.orthographic };
-    this.render();
-    this.draw();
+    this.go(this.camera);
     this.box.closest(".panel-body")?.replaceWith(this.panel(this.kind));
   }
 
@@ -207,6 +218,7 @@ export class Space {
 
   go({ eye, direction, right, up, orthographic }) {
     this.camera = { eye, direction, right, up, orthographic };
+    this.change({ outside: this.camera });
     this.draw();
     if (this.frame) return;
     this.frame = requestAnimationFrame(() => { this.frame = 0; this.render(); });
@@ -240,6 +252,7 @@ export class Space {
     try {
       const walk = await this.link.ask({ type: "walk", slot: "space", ray: [ray.origin, ray.direction] });
       this.walk = walk;
+      this.limit();
       this.showEvents();
       this.draw();
     } catch { /* the picture is not there yet */ }
@@ -327,132 +340,39 @@ export class Space {
   }
 
   paint(pen) {
-    const style = getComputedStyle(document.documentElement);
-    const ink = (name) => style.getPropertyValue(name).trim();
-    const line = (from, to, color, width, dash = []) => {
-      const [a, b] = this.clip(from, to);
-      if (!a || !b) return;
-      pen.setLineDash(dash);
-      for (const [paint, wide] of [["rgb(0 0 0 / 55%)", width + 2], [color, width]]) {
-        pen.strokeStyle = paint;
-        pen.lineWidth = wide;
-        pen.beginPath();
-        pen.moveTo(...a);
-        pen.lineTo(...b);
-        pen.stroke();
-      }
-      pen.setLineDash([]);
-    };
-    const arrow = (from, to, color, width) => {
-      line(from, to, color, width);
-      const [a, b] = this.clip(from, to);
-      if (!a || !b || Math.hypot(b[0] - a[0], b[1] - a[1]) < 8) return;
-      const angle = Math.atan2(b[1] - a[1], b[0] - a[0]);
-      pen.fillStyle = color;
-      pen.beginPath();
-      pen.moveTo(...b);
-      for (const side of [2.7, -2.7]) pen.lineTo(b[0] + 9 * Math.cos(angle + side), b[1] + 9 * Math.sin(angle + side));
-      pen.fill();
-    };
-    const label = (point, text, color) => {
-      const at = this.project3(point);
-      if (!at) return;
-      pen.font = "600 12px system-ui, sans-serif";
-      pen.lineWidth = 3;
-      pen.strokeStyle = "rgb(0 0 0 / 75%)";
-      pen.strokeText(text, at[0] + 5, at[1] - 5);
-      pen.fillStyle = color;
-      pen.fillText(text, at[0] + 5, at[1] - 5);
-    };
-    this.drawEye(line, label);
-    if (this.kind === "space") this.lights.paint(pen, (point) => this.project3(point));
-    if (this.kind === "walk") this.drawWalk(pen, line, label);
-    else {
-      const last = this.at < 0 ? this.steps.length - 1 : this.at;
-      this.steps.forEach((step, index) => {
-        if (index > last) return;
-        const now = index === this.at;
-        const color = step.kind === "shadow" ? (step.blocked ? "#ff6b5e" : "#ffe08a") : ink(INK[step.kind]);
-        const width = now || step.id === this.lit ? 3 : step.kind === "shadow" ? 1.2 : 2;
-        if (step.kind === "shadow") line(step.from, step.to, color, width, [5, 4]);
-        else if (step.open) arrow(step.from, step.to, color, width);
-        else line(step.from, step.to, color, width);
-      });
-      const step = this.steps[last];
-      const hit = (this.at < 0 ? this.steps[0] : step)?.ray.hit;
-      if (hit) this.drawVectors(this.at < 0 ? this.steps[0].ray : step.ray, arrow, label);
-      this.say.replaceChildren(el("strong", { text: this.at < 0 ? `${this.steps.length} ${word("rays")}` : `${word("stepOf")} ${this.at + 1} ${word("of")} ${this.steps.length}` }), el("div", { text: this.at < 0 ? "" : step.text }));
-      if (this.at >= 0) this.actions.onRay(step.id);
-    }
+    const tools = drawing(pen, (point) => this.project3(point));
+    drawEye(tools, this.picture, this.pixel.pixel, this.radius);
+    if (this.kind === "walk") this.paintWalk(tools);
+    else this.paintRays(tools);
   }
 
-  // The part of a line before the eye, on the canvas.
-  clip(from, to) {
-    let [a, b] = [this.project3(from), this.project3(to)];
-    if (a && b) return [a, b];
-    if (!a && !b) return [null, null];
-    let [near, far] = a ? [from, to] : [to, from];
-    for (let i = 0; i < 24; i += 1) {
-      const half = scaled(plus(near, far), 0.5);
-      if (this.project3(half)) near = half; else far = half;
-    }
-    if (a) b = this.project3(near); else a = this.project3(near);
-    return [a, b];
+  paintRays(tools) {
+    this.lights.paint(tools.pen, tools.project);
+    drawRays(tools, this.steps, this.at, this.lit);
+    const step = this.steps[Math.max(0, this.at)];
+    if (step?.ray.hit) drawVectors(tools, step.ray, this.radius * 0.22);
+    const all = this.at < 0;
+    this.say.replaceChildren(el("strong", { text: all ? `${this.steps.length} ${word("rays")}` : `${word("stepOf")} ${this.at + 1} ${word("of")} ${this.steps.length}` }),
+      all ? this.legend() : el("div", { text: step.text }));
+    if (!all) this.actions.onRay(step.id);
   }
 
-  // The eye, the image plane and the pixel.
-  drawEye(line, label) {
-    const { eye, direction, right, up, orthographic } = this.picture.camera;
-    if (orthographic === null || orthographic === undefined) return;
-    const aspect = this.picture.aspect ?? this.picture.width / this.picture.height;
-    const size = (this.radius * 0.28) / (orthographic ? 1 : length(direction));
-    const grow = orthographic ? 1 : size;
-    const corner = (x, y) => plus(plus(plus(eye, direction, size), right, x * aspect * grow), up, y * grow);
-    const corners = [corner(-1, 1), corner(1, 1), corner(1, -1), corner(-1, -1)];
-    corners.forEach((one, i) => {
-      line(one, corners[(i + 1) % 4], "#e8e8e8", 1);
-      if (!orthographic) line(eye, one, "rgb(232 232 232 / 55%)", 0.8);
-    });
-    const [x, y] = this.pixel.pixel;
-    const at = (dx, dy) => corner((2 * (x + dx)) / this.picture.width - 1, 1 - (2 * (y + dy)) / this.picture.height);
-    const spot = [at(-1, -1), at(2, -1), at(2, 2), at(-1, 2)];
-    spot.forEach((one, i) => line(one, spot[(i + 1) % 4], "#ffb648", 1.5));
-    label(orthographic ? corner(0, 0) : eye, orthographic ? "" : "eye", "#fff");
+  // The kinds of rays that are drawn, with their colours.
+  legend() {
+    const drawn = new Set(this.steps.map((step) => (step.blocked ? "blockedRay" : step.kind)));
+    const kinds = ["primary", "reflection", "transparency", "shadow", "blockedRay"].filter((kind) => drawn.has(kind));
+    return el("div", { class: "legend" }, ...kinds.map((kind) => el("span", { class: `ray-kind ${kind}`, text: word(kind) })));
   }
 
-  drawVectors(ray, arrow, label) {
-    const { position, shading_normal: n } = ray.hit;
-    const size = this.radius * 0.22;
-    const v = scaled(unit(ray.ray.direction), -1);
-    const show = (name, vector, color) => {
-      const end = plus(position, unit(vector), size);
-      arrow(position, end, color, 1.8);
-      label(end, name, color);
-    };
-    show("n", n, "#ffffff");
-    show("v", v, "#b7c8ff");
-    const light = ray.lights.find((one) => one.l && one.n_dot_l > 0);
-    if (light) {
-      show("l", light.l, "#ffe08a");
-      const half = plus(light.l, v);
-      if (length(half) > 1e-9) show("h", half, "#c6f0a8");
-      show("r", plus(scaled(n, 2 * inner(n, light.l)), light.l, -1), "#f2a65a");
-    }
-    if (ray.hit.cos_theta2 !== null && ray.hit.kt.some((c) => c > 0)) {
-      const ratio = ray.hit.n1 / ray.hit.n2;
-      show("t", plus(scaled(v, -ratio), n, ratio * ray.hit.cos_theta1 - ray.hit.cos_theta2), "#63d0bd");
-    }
-  }
-
-  drawWalk(pen, line, label) {
+  paintWalk(tools) {
     const events = this.walk?.events ?? [];
-    if (this.walk) drawWay({ pen, line, label, project: (point) => this.project3(point) }, this.walk, this.at, this.radius * 2);
+    if (this.walk) drawWay(tools, this.walk, this.at, this.radius * 2);
     for (const button of this.events.querySelectorAll("[aria-current]")) button.removeAttribute("aria-current");
     if (this.at >= 0) {
       const button = this.events.children[this.at];
       button?.setAttribute("aria-current", "true");
       button?.scrollIntoView({ block: "nearest" });
     }
-    if (this.walk) this.say.replaceChildren(el("strong", { text: this.walk.accelerator }), el("div", { text: `${this.walk.steps} ${word(this.walk.steps === 1 ? "stepOf" : "stepCount")}, ${this.walk.tests} ${word(this.walk.tests === 1 ? "test" : "testCount")}${this.at >= 0 ? ` · ${word("stepOf")} ${this.at + 1} ${word("of")} ${events.length}` : ""}` }));
+    if (this.walk) this.say.replaceChildren(el("strong", { text: this.walk.accelerator }), el("div", { text: `${this.walk.steps} ${word(this.walk.steps === 1 ? "stepOf" : "stepCount")}, ${this.walk.tests} ${word(this.walk.tests === 1 ? "test" : "testCount")}${this.at >= 0 ? ` · ${this.at + 1} / ${events.length}` : ""}` }));
   }
 }

@@ -7,7 +7,8 @@ import { Gestures } from "./gestures.js";
 import { word } from "./words.js";
 
 export class Stage {
-  // `actions`: pick(x, y), hover(x, y), leave(), camera(camera), current() -> the camera, values(region), pivot(x, y) -> promise of a point or null.
+  // `actions`: pick(x, y), hover(x, y), leave(), camera(camera), current() -> the camera, values(region), pivot(x, y) -> promise of a point or null,
+  // shown({ zoom, split }) after a change of them.
   constructor(box, lights, actions) {
     this.box = box;
     this.lights = lights;
@@ -25,10 +26,11 @@ export class Stage {
     this.fitted = true;
     this.split = 0.5;
     this.turning = false;
+    this.beside = false;
     this.picked = null;
     this.marks = null;
     this.linear = null;
-    new ResizeObserver(() => { if (this.fitted) this.fit(); else this.place(); }).observe(box);
+    new ResizeObserver(() => { if (this.fitted) this.fit(); else this.zoomed(); }).observe(box);
     this.gestures = new Gestures(box, {
       accepts: (event) => this.isPicture(event),
       start: (event) => this.start(event),
@@ -47,7 +49,7 @@ export class Stage {
     this.swipe.addEventListener("pointerup", () => { this.swiping = false; });
     this.swipe.addEventListener("keydown", (event) => {
       const by = { ArrowLeft: -0.02, ArrowRight: 0.02 }[event.key];
-      if (by) { event.preventDefault(); event.stopPropagation(); this.split = Math.min(1, Math.max(0, this.split + by)); this.place(); }
+      if (by) { event.preventDefault(); event.stopPropagation(); this.splitAt(this.split + by); }
     });
   }
 
@@ -61,6 +63,31 @@ export class Stage {
     this.scale = most > 1 ? Math.max(1, Math.floor(most * 4) / 4) : most;
     this.left = Math.round((clientWidth / (this.beside ? 2 : 1) - this.width * this.scale) / 2);
     this.top = Math.round((clientHeight - this.height * this.scale) / 2);
+    this.zoomed();
+  }
+
+  // Shows a part of the picture: the scale, and the column and row in the middle.
+  look([scale, x, y]) {
+    this.fitted = false;
+    this.scale = Math.min(256, Math.max(0.05, scale));
+    const [middleX, middleY] = this.middle;
+    this.left = middleX - x * this.scale;
+    this.top = middleY - y * this.scale;
+    this.zoomed();
+  }
+
+  // The middle of the place that the first picture has.
+  get middle() { return [this.box.clientWidth / (this.beside ? 4 : 2), this.box.clientHeight / 2]; }
+
+  // The part of the picture that is shown, for `look`.
+  get part() {
+    const [x, y] = this.middle;
+    return [this.scale, (x - this.left) / this.scale, (y - this.top) / this.scale];
+  }
+
+  // Another part of the picture is shown.
+  zoomed() {
+    this.actions.shown({ zoom: this.fitted ? null : this.part.map((one) => Number(one.toPrecision(5))) });
     this.place();
   }
 
@@ -70,7 +97,7 @@ export class Stage {
     this.left = x - ((x - this.left) * clamped) / this.scale;
     this.top = y - ((y - this.top) * clamped) / this.scale;
     this.scale = clamped;
-    this.place();
+    this.zoomed();
   }
 
   place() {
@@ -98,7 +125,13 @@ export class Stage {
 
   swipeTo(clientX) {
     const x = clientX - this.box.getBoundingClientRect().left;
-    this.split = Math.min(1, Math.max(0, (x - this.left) / (this.width * this.scale)));
+    this.splitAt((x - this.left) / (this.width * this.scale));
+  }
+
+  // Moves the line between two pictures, to a part of their width.
+  splitAt(part) {
+    this.split = Number(Math.min(1, Math.max(0, part)).toFixed(4));
+    this.actions.shown({ split: this.split });
     this.place();
   }
 
@@ -106,9 +139,12 @@ export class Stage {
   compare(on, beside) {
     this.swipe.hidden = !on || beside;
     this.side.canvas.hidden = !on;
+    const { part } = this;
     const changed = this.beside !== (on && beside);
     this.beside = on && beside;
-    if (changed && this.fitted) this.fit(); else this.place();
+    if (!changed) this.place();
+    else if (this.fitted) this.fit();
+    else this.look(part);
   }
 
   // A column of the box, counted from the left edge of the picture that is there.
@@ -179,7 +215,7 @@ export class Stage {
     this.fitted = false;
     this.left += dx;
     this.top += dy;
-    this.place();
+    this.zoomed();
   }
 
   tap(event) {
@@ -253,8 +289,10 @@ export class Stage {
     if (this.picked) {
       const [x, y] = this.picked;
       const size = Math.max(this.scale, 9);
-      for (const left of this.beside ? [this.left, this.left + clientWidth / 2] : [this.left]) {
-        const middle = [left + (x + 0.5) * this.scale, this.top + (y + 0.5) * this.scale];
+      const half = clientWidth / 2;
+      for (const from of this.beside ? [0, half] : [0]) {
+        const middle = [from + this.left + (x + 0.5) * this.scale, this.top + (y + 0.5) * this.scale];
+        if (this.beside && (middle[0] < from || middle[0] > from + half)) continue;
         for (const [color, width] of [["rgb(0 0 0 / 80%)", 3.5], ["#ffb648", 1.5]]) {
           pen.strokeStyle = color;
           pen.lineWidth = width;

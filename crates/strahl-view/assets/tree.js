@@ -1,7 +1,7 @@
 // The ray tree of a pixel: one node for each ray, with its numbers in place.
 
 import { brightness, css, el, isBlack, isGray, number, swatch, times, triple } from "./numbers.js";
-import { dot, equation, math, power, product, sign, sum, symbol, value, vector } from "./formula.js";
+import { dot, equation, factored, infix, math, power, product, sign, sum, symbol, value, vector } from "./formula.js";
 import { word } from "./words.js";
 
 // What each ray of a sample adds to it: a map from the number of the ray.
@@ -31,8 +31,8 @@ export function contributions(sample) {
   return adds;
 }
 
-// Shows a pixel. `actions` may have `onPlace(file, line)`, `onRay(ray, sample)`, `onSample(index)`.
-export function showPixel(pixel, actions = {}) {
+// Shows a pixel and the tree of one of its samples. `actions` may have `onPlace(file, line)`, `onRay(ray, sample)`, `onSample(index)`.
+export function showPixel(pixel, actions = {}, first = 0) {
   const box = el("section", { class: "pixel" });
   // What is cut off is reached with the keyboard, too.
   box.addEventListener("toggle", () => requestAnimationFrame(() => {
@@ -55,7 +55,7 @@ export function showPixel(pixel, actions = {}) {
     const list = el("div", { class: "samples", role: "group", "aria-label": word("samples") });
     pixel.samples.forEach((sample, index) => {
       const button = el("button", {
-        type: "button", class: "sample", "aria-pressed": index === 0 ? "true" : "false",
+        type: "button", class: "sample", "aria-pressed": String(index === first),
         title: `${word("sample")} ${sample.sample}: ${triple(sample.color)}`,
         onclick: () => {
           for (const other of list.children) other.setAttribute("aria-pressed", "false");
@@ -68,7 +68,7 @@ export function showPixel(pixel, actions = {}) {
     box.append(el("p", { class: "dim", text: `${pixel.samples.length} ${word("samples")} (${pixel.sampling})` }), list);
   }
   box.append(trees);
-  if (pixel.samples.length) show(0);
+  if (pixel.samples.length) show(first);
   return box;
 }
 
@@ -172,10 +172,11 @@ function rayBody(ray, byId, actions) {
     row(word("point"), triple(hit.position, 6)),
     row(word("normalIs"), triple(hit.shading_normal, 5)));
   const degrees = (cos) => `${number((Math.acos(Math.min(1, Math.max(-1, cos))) * 180) / Math.PI, 5)}°`;
-  let angles = `θ₁ = ${degrees(hit.cos_theta1)}`;
-  if (hit.cos_theta2 !== null) angles += `, θ₂ = ${degrees(hit.cos_theta2)}`;
-  if (hit.n1 !== hit.n2) angles += `, n₁ = ${number(hit.n1)}, n₂ = ${number(hit.n2)}`;
-  geometry.append(row("θ", angles));
+  const angles = [["θ₁", degrees(hit.cos_theta1)]];
+  if (hit.cos_theta2 !== null) angles.push(["θ₂", degrees(hit.cos_theta2)]);
+  if (hit.n1 !== hit.n2) angles.push(["n₁", number(hit.n1)], ["n₂", number(hit.n2)]);
+  // A name stays with its number when the line is broken.
+  geometry.append(row("θ", angles.map(([name, size]) => `${name}\u00a0=\u00a0${size}`).join(", ")));
   geometry.append(row(word("materialIs"), hit.material.replace(/^material /, "")));
   body.append(geometry);
   if (hit.total_reflection) {
@@ -184,7 +185,7 @@ function rayBody(ray, byId, actions) {
   }
   body.append(modelLine(hit));
   const formulas = el("div", { class: "formulas" });
-  if (hit.ka) formulas.append(line(word("ambient"), hit.ka_Ia, product([symbol("k", "a"), symbol("I", "a")]), product([vector(hit.ka), vector(hit.Ia)]), vector(hit.ka_Ia)));
+  if (hit.ka) formulas.append(line(word("ambient"), hit.ka_Ia, product([symbol("k", "a"), symbol("I", "a")]), factored([vector(hit.ka), vector(hit.Ia)]), vector(hit.ka_Ia)));
   if (!isBlack(hit.emission)) formulas.append(line(word("emission"), hit.emission, math("mtext", word("emission")), vector(hit.emission)));
   for (const light of ray.lights) formulas.append(showLight(light, hit, actions));
   body.append(formulas);
@@ -224,7 +225,7 @@ function modelLine(hit) {
 
 // A line of a formula: its sides, each a node of MathML or a list of nodes, between which a long line may be broken.
 function line(name, result, ...sides) {
-  const parts = sides.flatMap((side, i) => [side].flat().map((part, j) => equation(i && !j ? math("mrow", sign("="), part) : part)));
+  const parts = sides.flatMap((side, i) => [side].flat().map((part, j) => equation(i && !j ? math("mrow", infix("="), part) : part)));
   return el("div", { class: "formula" }, swatch(result), el("span", { class: "name", text: name }), ...parts);
 }
 
@@ -266,7 +267,7 @@ function showLight(light, hit, actions) {
   const body = el("div", { class: "light-body" }, place(light.source, actions));
   if (light.l) body.append(el("div", { class: "dim", text: `l = ${triple(light.l, 5)}, n·l = ${number(light.n_dot_l)}` }));
   if (light.mean_of_points) body.append(el("div", { class: "dim", text: word("meanOf").replace("%n", light.mean_of_points) }));
-  body.append(line("L", light.L, symbol("L"), product([vector(light.color_here), vector(light.visible)]), vector(light.L)));
+  body.append(line("L", light.L, symbol("L"), factored([vector(light.color_here), vector(light.visible)]), vector(light.L)));
   if (hit.layers) {
     light.terms.forEach((term, i) => {
       const layer = hit.layers[i] ?? hit.layers[0];
@@ -274,7 +275,7 @@ function showLight(light, hit, actions) {
       if (!isBlack(term.diffuse)) {
         const cosine = finish.brilliance === 1 ? dot("n", "l") : power(dot("n", "l"), math("mi", "brilliance"));
         body.append(line(word("diffuse"), term.diffuse, product([math("mi", "diffuse"), cosine, symbol("C"), symbol("L")]),
-          product([value(term.diffuse_factor), vector(layer.C), vector(light.L)]), vector(term.diffuse)));
+          factored([value(term.diffuse_factor), vector(layer.C), vector(light.L)]), vector(term.diffuse)));
       }
       if (!isBlack(term.highlight)) {
         const parts = [];
@@ -284,12 +285,12 @@ function showLight(light, hit, actions) {
       }
     });
   } else if (hit.kd) {
-    if (light.l) body.append(line(word("diffuse"), light.diffuse, product([symbol("k", "d"), symbol("L"), dot("n", "l")]), product([vector(hit.kd), vector(light.L), value(light.n_dot_l)]), vector(light.diffuse)));
+    if (light.l) body.append(line(word("diffuse"), light.diffuse, product([symbol("k", "d"), symbol("L"), dot("n", "l")]), factored([vector(hit.kd), vector(light.L), value(light.n_dot_l)]), vector(light.diffuse)));
     const term = light.terms[0];
     const [cosine, raised, a, b] = term && "r_dot_v" in term ? [term.r_dot_v, term.r_dot_v_p, "r", "v"] : term && "h_dot_n" in term ? [term.h_dot_n, term.h_dot_n_p, "h", "n"] : [];
     if (hit.ks && cosine !== undefined) {
       body.append(line(word("highlight"), light.highlight, product([symbol("k", "s"), symbol("L"), power(dot(a, b), math("mi", "p"))]),
-        cosine > 0 ? product([vector(hit.ks), vector(light.L), power(value(cosine), value(hit.p))]) : math("mrow", math("mtext", `${a}·${b} = `), value(cosine), sign("<"), math("mn", "0")), vector(light.highlight)));
+        cosine > 0 ? factored([vector(hit.ks), vector(light.L), power(value(cosine), value(hit.p))]) : math("mrow", math("mtext", `${a}·${b} = `), value(cosine), sign("<"), math("mn", "0")), vector(light.highlight)));
     }
   }
   box.append(body);
@@ -305,25 +306,28 @@ function appendTotal(body, ray, byId) {
     const child = byId.get(id);
     if (!child) continue;
     const index = child.kind === "reflection" ? "r" : "t";
-    const symbols = math("mrow", sign("+"), product([symbol("k", index), symbol("X", index)]));
-    const numbers = math("mrow", sign("+"), product([vector(child.share), vector(child.total)]));
-    for (const part of [symbols, numbers]) part.setAttribute("class", "link");
-    links.push([symbols, id], [numbers, id]);
-    terms.push(symbols);
-    values.push(numbers);
+    const symbols = [math("mrow", infix("+"), product([symbol("k", index), symbol("X", index)]))];
+    const [share, found] = factored([vector(child.share), vector(child.total)]);
+    const numbers = [math("mrow", infix("+"), share), found];
+    for (const part of [...symbols, ...numbers]) {
+      part.setAttribute("class", "link");
+      links.push([part, id]);
+    }
+    terms.push(...symbols);
+    values.push(...numbers);
   }
   const plain = isGray(ray.attenuation) && ray.attenuation[0] === 1 && isBlack(ray.fog);
   if (ray.hit || ray.children.length) {
     if (!plain) {
       const around = (parts, factor) => {
         parts[0] = math("mrow", sign("("), parts[0]);
-        parts.push(math("mrow", sign(")"), sign("·"), factor));
+        parts.push(math("mrow", parts.pop(), sign(")")), math("mrow", infix("·"), factor));
       };
       around(terms, math("mi", word("kept")));
       around(values, vector(ray.attenuation));
       if (!isBlack(ray.fog)) {
-        terms.push(math("mrow", sign("+"), math("mi", word("fog"))));
-        values.push(math("mrow", sign("+"), vector(ray.fog)));
+        terms.push(math("mrow", infix("+"), math("mi", word("fog"))));
+        values.push(math("mrow", infix("+"), vector(ray.fog)));
       }
     }
     const shown = line(word("total"), ray.total, terms, values, vector(ray.total, 5));
@@ -352,8 +356,9 @@ function whyDark(ray, actions) {
   for (const end of ray.ended) items.push(el("li", { text: `${word(end.kind)}: ${word("ended")}, ${end.reason}` }));
   if (ray.hit?.total_reflection) items.push(el("li", { text: `${word("totalReflection")} ${number((ray.hit.n1 / ray.hit.n2) * Math.sqrt(Math.max(0, 1 - ray.hit.cos_theta1 ** 2)))}.` }));
   if (!items.length) return null;
-  const open = brightness(ray.total) < 0.1;
   const box = el("details", { class: "why" }, el("summary", { text: word("why") }), el("ul", {}, ...items));
-  box.open = open;
+  // A shadow on a bright floor need not be dark.
+  const shadowed = ray.hit && ray.lights.some((light) => light.shadow_rays.some((shadow) => shadow.met.length));
+  box.open = shadowed || brightness(ray.total) < 0.1;
   return box;
 }

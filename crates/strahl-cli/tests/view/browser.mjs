@@ -24,7 +24,6 @@ try {
   await pictures.shared(viewer);
   const rays = await pixels.inSpace(viewer);
   await pixels.walked(viewer);
-  await viewer.click(80, 70);
   await people.german(viewer);
   await pixels.exported(viewer, rays);
   await people.english(viewer);

@@ -2,11 +2,11 @@
 
 import assert from "node:assert/strict";
 import { readFileSync, writeFileSync } from "node:fs";
-import { HEIGHT, Viewer, WIDTH, eventually, open, original, others, ppm, say, scene, watch } from "./bench.mjs";
+import { HEIGHT, Viewer, WIDTH, eventually, open, original, others, ppm, same, say, scene, watch } from "./bench.mjs";
 
 export async function first(viewer) {
   await viewer.finished();
-  assert.deepEqual(await viewer.codes(), ppm("whole.ppm"));
+  same(await viewer.codes(), ppm("whole.ppm"));
   assert.ok(viewer.page.steps.includes(8) && viewer.page.steps.includes(1), "coarse pixels come first");
   say("the picture comes coarse first, and has the bytes of strahl render when it is finished");
 }
@@ -80,7 +80,7 @@ export async function compared(viewer) {
     assert.ok(check(await scale()), `${await scale()}`);
   });
   await viewer.find("#side-accelerator").selectOption("octree");
-  await eventually(async () => assert.notDeepEqual(await viewer.codes(), await viewer.codes("side")));
+  await eventually(async () => assert.ok(!(await viewer.codes()).equals(await viewer.codes("side"))));
   await settled(/bvh/, (now) => now > 0);
   const together = await scale();
   await viewer.find("#compare").click();
@@ -108,7 +108,7 @@ export async function played(viewer) {
   await page.waitForSelector("#timeline:not([hidden])");
   await viewer.find("#clock-slider").fill("0.5");
   const half = await viewer.finished(last);
-  assert.match(page.url(), /clock=0.5/);
+  await viewer.address(/clock=0.5/);
   await viewer.find("#play-clock").click();
   await page.waitForFunction((known) => document.body.dataset.finished !== known && Number(document.getElementById("clock-slider").value) > 0.55, half);
   await viewer.find("#play-clock").click();
@@ -125,18 +125,17 @@ export async function moved(viewer) {
   const { page } = viewer;
   const whole = ppm("whole.ppm");
   const [x, y] = await viewer.at(WIDTH / 2, HEIGHT / 2);
-  const drag = async (dx, dy) => {
+  const drag = async (dx, dy, steps) => {
     await page.mouse.move(x, y);
     await page.mouse.down();
-    for (let i = 1; i <= 10; i += 1) await page.mouse.move(x + (dx * i) / 10, y + (dy * i) / 10);
+    await page.mouse.move(x + dx, y + dy, { steps });
     await page.mouse.up();
   };
   let before = await viewer.sha();
   await page.keyboard.press("c");
-  await drag(80, 20);
+  await drag(80, 20, 10);
   await viewer.finished(before);
-  await viewer.settled();
-  assert.match(decodeURIComponent(page.url()), /camera=/);
+  await viewer.address(/camera=/);
   await viewer.find("#save-menu > summary").click();
   await viewer.find("#copy").click();
   await page.waitForFunction(() => window.copiedText?.startsWith("camera {"));
@@ -149,10 +148,10 @@ export async function moved(viewer) {
   await page.keyboard.press("g");
   await page.waitForSelector("#lights-panel:not([hidden])");
   before = await viewer.sha();
-  await drag(-60, 0);
+  // In one step, so that one picture comes.
+  await drag(-60, 0, 1);
   await viewer.finished(before);
-  await viewer.settled();
-  assert.match(decodeURIComponent(page.url()), /lights=\{"0":\[/);
+  await viewer.address(/lights=\{"0":\[/);
   await viewer.find("#copy-light").click();
   await page.waitForFunction(() => window.copiedText?.startsWith("light_source {"));
   const text = await page.evaluate(() => window.copiedText);
@@ -176,34 +175,101 @@ export async function moved(viewer) {
   say("a light is dragged, and copied as text");
 }
 
-// A link shows the same in another window.
+// A link shows the same in another window: everything that somebody can set.
 export async function shared(viewer) {
   const { page } = viewer;
-  await viewer.field("depth", "1");
-  await viewer.shows(ppm("depth1.ppm"));
-  await viewer.click(70, 50);
-  await viewer.find("#tab-space").click();
+  const whole = ppm("whole.ppm");
+  writeFileSync(scene, original.replace("<0, 0, 0>, 1", "<clock, 0, 0>, 1"));
+  await page.waitForSelector("#timeline:not([hidden])");
+  await viewer.find("#clock-slider").fill("0.25");
+  await viewer.find("#sampling").selectOption("2x2");
+  await viewer.field("depth", "3");
+  await viewer.field("exposure", "0.5");
+  await viewer.find("#more > summary").click();
+  await viewer.find("#curve").selectOption("filmic");
+  await viewer.find("#shading").selectOption("lambert");
+  await viewer.find("#accelerator").selectOption("octree");
+  await viewer.field("cutoff", "0.01");
+  await page.keyboard.press("Escape");
+  await page.keyboard.press("g");
+  await viewer.field("light-y", "5");
+  await page.keyboard.press("Escape");
+  await page.keyboard.press("c");
+  const [x, y] = await viewer.at(80, 60);
+  await page.mouse.move(x, y);
+  await page.mouse.down();
+  await page.mouse.move(x + 20, y + 5);
+  await page.mouse.up();
+  await page.keyboard.press("c");
+  await viewer.click(85, 70);
+  await page.mouse.wheel(0, -300);
   await viewer.find("#compare").click();
-  await viewer.find("#side-accelerator").selectOption("octree");
+  await viewer.find("#side-accelerator").selectOption("grid");
+  await viewer.find("#side-view").selectOption("");
+  const line = await viewer.find("#swipe").boundingBox();
+  await page.mouse.move(line.x + line.width / 2, line.y + 40);
+  await page.mouse.down();
+  await page.mouse.move(line.x - 60, line.y + 40);
+  await page.mouse.up();
+  await viewer.find("#side-view").selectOption("beside");
+  await page.waitForSelector(".sample:nth-child(3)");
+  await viewer.find(".sample:nth-child(3)").click();
+  await viewer.find("#tab-space").click();
+  await page.keyboard.press(".");
+  await page.keyboard.press(".");
+  const box = await viewer.find(".space-box").boundingBox();
+  await page.mouse.move(box.x + 100, box.y + 100);
+  await page.mouse.wheel(0, 200);
+  await page.mouse.wheel(0, 100);
+  await viewer.find("#language").click();
+  const set = ["clock", "sampling", "depth", "exposure", "curve", "shading", "accelerator", "cutoff", "lights", "camera", "zoom", "compare", "split", "beside", "pixel", "sample", "panel", "step", "outside", "language"];
+  await viewer.address(...set.map((key) => new RegExp(`[#&]${key}=`)));
+  const state = await viewer.state();
+  // What a page asks the server for, by slot.
+  const asked = (one) => Object.fromEntries(["main", "side", "space"].map((slot) => [slot, one.page.sent.findLast((message) => message.type === "picture" && message.slot === slot)]));
   const other = new Viewer(await watch(await page.context().newPage()));
+  // The address may be written a moment after the last movement.
+  await eventually(async () => assert.deepEqual(JSON.parse(new URLSearchParams(new URL(page.url()).hash.slice(1)).get("outside")), state.outside));
   await other.page.goto(page.url());
   await other.finished();
-  await other.shows(ppm("depth1.ppm"));
-  assert.equal(await other.find("#depth").inputValue(), "1");
-  assert.equal(await other.find("#side-accelerator").inputValue(), "octree");
-  await other.page.waitForSelector(".space-box canvas");
-  assert.match(decodeURIComponent(other.page.url()), /pixel=\[70,50\]/);
-  // What somebody has spoilt in an address is passed over.
-  await other.page.goto("about:blank");
-  await other.page.goto(`${page.url().split("#")[0]}#depth=x&camera={&pixel=[-1]&lights=[1]&compare=3&channel=none&size=[0,0]`);
+  await other.page.waitForFunction(() => /Schritt 2 von/.test(document.querySelector(".space-say")?.textContent));
+  assert.deepEqual(await other.state(), state);
+  await eventually(async () => assert.deepEqual(asked(other), asked(viewer)));
+  await eventually(async () => same(await other.codes(), await viewer.codes()));
+  await eventually(async () => same(await other.codes("side"), await viewer.codes("side")));
+  const places = (one) => one.page.evaluate(() => ["picture", "side", "swipe"].map((id) => { const { x, y, width, height } = document.getElementById(id).getBoundingClientRect(); return [x, y, width, height].map(Math.round); }));
+  assert.deepEqual(await places(other), await places(viewer));
+  await other.find("#tab-tree").click();
+  assert.equal(await other.find(".sample:nth-child(3)").getAttribute("aria-pressed"), "true");
+  // A link in the address of a page that is open.
+  await viewer.find("#channel").selectOption("steps");
+  await viewer.address(/channel=steps/);
+  const again = other.page.waitForEvent("load");
+  await other.page.goto(page.url());
+  await again;
   await other.finished();
-  await other.shows(ppm("whole.ppm"));
+  assert.deepEqual(await other.state(), await viewer.state());
+  await other.find("#tab-walk").click();
+  await other.page.waitForSelector(".events button");
+  await other.find("#walk-accelerator").selectOption("spheres");
+  await other.address(/panel=walk/, /walk=spheres/);
+
+  // What somebody has spoilt in an address is passed over.
+  const spoilt = "#depth=x&camera={&pixel=[-1]&lights=[1]&compare=3&channel=none&size=[0,0]&zoom=[0,1,2]&split=7&sample=-1&step=x&outside=[]&walk=none";
+  writeFileSync(scene, original);
+  await page.waitForSelector("#timeline .figures");
+  const loaded = other.page.waitForEvent("load");
+  await other.page.goto(page.url().split("#")[0] + spoilt);
+  await loaded;
+  await other.finished();
+  await other.shows(whole);
   await other.page.close();
-  await viewer.find("#compare").click();
-  await viewer.find("#tab-tree").click();
-  await viewer.field("depth", "");
-  await viewer.shows(ppm("whole.ppm"));
-  say("the address keeps the state");
+  await page.goto(page.url().split("#")[0]);
+  await viewer.finished();
+  await viewer.find("#language").click();
+  await page.waitForFunction(() => !location.hash);
+  await viewer.shows(whole);
+  say("the address keeps everything that was set");
 }
 
 // Without a scene of its own, the viewer offers those that are built in.
@@ -215,7 +281,7 @@ export async function builtIn() {
   for (const folder of ["showcase/", "lecture/", "gallery/"]) assert.ok(names.filter((name) => name.startsWith(folder)).length > 5, folder);
   await viewer.find("#scene").selectOption("lecture/01_principle.pov");
   await viewer.finished(sha);
-  assert.match(viewer.page.url(), /scene=lecture/);
+  await viewer.address(/scene=lecture/);
   await viewer.oneLine("built-in scenes");
   await viewer.page.waitForFunction(() => document.querySelectorAll(".text-line").length > 5 && document.querySelector(".tab").title.includes("01_principle"));
   await viewer.page.context().close();

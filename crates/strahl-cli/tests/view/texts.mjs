@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
-import { ball, folder, original, ppm, say, scene } from "./bench.mjs";
+import { ball, eventually, folder, original, ppm, same, say, scene } from "./bench.mjs";
 
 export async function shown(viewer) {
   const { page } = viewer;
@@ -23,11 +23,14 @@ export async function shown(viewer) {
   await page.waitForSelector('.text-line.under[data-line="7"]');
   await viewer.find('.text-line[data-line="8"]').click();
   await page.waitForSelector('.text-line.marked[data-line="7"]');
+  // The author's editor opens the line.
+  await viewer.find("#editor").click();
+  await eventually(async () => assert.equal(readFileSync(join(folder, "edited-8"), "utf8"), original));
   await page.keyboard.press("Escape");
   await page.mouse.move(...await viewer.at(20, 110));
   await page.waitForSelector('.text-line.under[data-line="12"]');
   assert.match(await viewer.find("#mouse").innerText(), /plane · line 12/);
-  say("places lead to lines, lines mark their pixels, and the mouse marks the line under it");
+  say("places lead to lines, lines mark their pixels, and the mouse marks the line under it; the editor opens it");
 }
 
 export async function changed(viewer) {
@@ -37,7 +40,7 @@ export async function changed(viewer) {
   writeFileSync(join(folder, "ball.inc"), "#declare Ball = <0.1, 0.3, 1>;\n");
   sha = await viewer.finished(sha);
   const blue = await viewer.codes();
-  assert.notDeepEqual(blue, whole);
+  assert.ok(!blue.equals(whole));
   writeFileSync(scene, original.replace("<0, 0, 0>, 1", "<0, 0, 0>, 0.7"));
   await viewer.finished(sha);
   await viewer.showsOther(blue, whole);
@@ -47,7 +50,7 @@ export async function changed(viewer) {
 
   writeFileSync(scene, original.replace("pigment { rgb Ball }", "pigment { rgb Ball "));
   await page.waitForSelector("#problems:not([hidden]) .caret");
-  assert.deepEqual(await viewer.codes(), blue);
+  same(await viewer.codes(), blue);
   assert.ok(await viewer.find(".text-line.bad[data-said]").count() >= 1);
   await viewer.accessible("errors");
   writeFileSync(scene, original);
