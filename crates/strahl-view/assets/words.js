@@ -41,7 +41,7 @@ const WORDS = {
     rays: "Strahlen",
     color: "Farbe", normal: "Normalen", depth: "Tiefe", object: "Objekte", material: "Materialien", levels: "Stufen des Baums", tests: "Tests",
     steps: "Schritte", rayCount: "Strahlen", time: "Zeit",
-    channel: "Kanal", exposure: "Belichtung", sampling: "Kantenglättung", maxDepth: "Tiefe", cutoff: "Abbruch", shading: "Beleuchtung", size: "Größe",
+    channel: "Kanal", exposure: "Belichtung", sampling: "Glättung", maxDepth: "Tiefe", cutoff: "Abbruch", shading: "Beleuchtung", size: "Größe",
     materialIs: "Material", own: "wie Szene", camera: "Kamera", copyCamera: "Kamera kopieren", resetCamera: "Zurück", copied: "kopiert",
     compare: "Vergleichen", savePng: "PNG", help: "Hilfe", theme: "Hell oder dunkel", language: "English", export: "Exportieren",
     background: "Hintergrund", line: "Zeile", pixel: "Bildpunkt", of: "von", sample: "Abtastung", samples: "Abtastungen", noPixel: "Klicke auf einen Bildpunkt, um zu sehen, woher seine Farbe kommt.",

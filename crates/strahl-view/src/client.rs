@@ -11,7 +11,7 @@ use crate::export::explanation_page;
 use crate::lights::light_sdl;
 use crate::pictures::{News, Picture};
 use crate::protocol::{Asked, Channel, Curve, LONGEST_TEXT, Settings, Slot};
-use crate::scenes::Compiled;
+use crate::scenes::{Compiled, Place};
 use crate::server::Hub;
 use crate::texts::pieces;
 use crate::walk::walk_json;
@@ -57,6 +57,8 @@ struct Shown {
     /// What the page knows of the scene: the number of what was compiled, and whether it is being loaded again.
     told: Option<(Option<u64>, bool)>,
     compiled: Option<Arc<Compiled>>,
+    /// The place of the scene that is wanted.
+    place: Option<Place>,
     picture: Option<Arc<Picture>>,
     look: Look,
 }
@@ -320,7 +322,8 @@ impl Client {
         };
         let settings = &shown.settings;
         let key = key_of(&self.path, &self.texts, settings, &self.hub.defaults);
-        let (compiled, loading) = self.hub.scenes.want(&key);
+        let (compiled, loading, place) = self.hub.scenes.want(&key);
+        shown.place = Some(place);
         let told = (compiled.as_ref().map(|c| c.number), loading);
         let mut messages = vec![];
         if shown.told != Some(told) {
@@ -396,6 +399,7 @@ impl Shown {
             settings,
             told: None,
             compiled: None,
+            place: None,
             picture: None,
             look: Look {
                 channel: Channel::Color,

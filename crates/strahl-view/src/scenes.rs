@@ -118,9 +118,14 @@ struct Entry {
     /// Whether a file has changed since the loading began.
     stale: bool,
     used: u64,
+    /// Held by all who show it.
+    place: Place,
 }
 
-/// How many scenes are kept.
+/// Keeps a scene from being forgotten, as long as somebody holds it.
+pub(crate) type Place = Arc<()>;
+
+/// How many scenes are kept, if not more of them are shown.
 const KEPT: usize = 4;
 /// How many scenes are loaded at the same time. A page that asks for a new one with every movement of a slider waits for its last one, not for
 /// all of them.
@@ -160,18 +165,21 @@ impl Scenes {
         self.changes.send_modify(|count| *count += 1);
     }
 
-    /// The scene, if it is loaded, and whether it is being loaded. If it is neither, or a file has changed, the loading begins.
-    pub(crate) fn want(self: &Arc<Self>, key: &Key) -> (Option<Arc<Compiled>>, bool) {
+    /// The scene, if it is loaded, and whether it is being loaded. If it is neither, or a file has changed, the loading begins. Those who hold its
+    /// place find it again: scenes that are shown don't drive each other out.
+    pub(crate) fn want(self: &Arc<Self>, key: &Key) -> (Option<Arc<Compiled>>, bool, Place) {
         let mut entries = self.entries();
         let now = self.numbers.fetch_add(1, Ordering::Relaxed);
         let index = entries.iter().position(|entry| entry.key == *key);
         let index = index.unwrap_or_else(|| {
-            if entries.len() >= KEPT {
-                let idle = entries.iter().enumerate().filter(|(_, e)| !e.loading);
-                let oldest = idle.min_by_key(|(_, e)| e.used).map(|(index, _)| index);
-                if let Some(oldest) = oldest {
-                    entries.remove(oldest);
-                }
+            while entries.len() >= KEPT {
+                let is_idle =
+                    |entry: &Entry| !entry.loading && Arc::strong_count(&entry.place) == 1;
+                let idle = entries.iter().enumerate().filter(|(_, e)| is_idle(e));
+                let Some((oldest, _)) = idle.min_by_key(|(_, e)| e.used) else {
+                    break;
+                };
+                entries.remove(oldest);
             }
             entries.push(Entry {
                 key: key.clone(),
@@ -179,6 +187,7 @@ impl Scenes {
                 loading: false,
                 stale: true,
                 used: now,
+                place: Place::default(),
             });
             entries.len() - 1
         });
@@ -194,7 +203,11 @@ impl Scenes {
                 (entry.loading, entry.stale) = (false, true);
             }
         }
-        (entry.compiled.clone(), entry.loading || entry.stale)
+        (
+            entry.compiled.clone(),
+            entry.loading || entry.stale,
+            Arc::clone(&entry.place),
+        )
     }
 
     /// Files have changed: scenes made of them are to be loaded again. A scene with errors may wait for any new file.
@@ -468,7 +481,7 @@ mod tests {
         };
         let start = Instant::now();
         loop {
-            if let (Some(compiled), false) = scenes.want(&key) {
+            if let (Some(compiled), false, _) = scenes.want(&key) {
                 return compiled;
             }
             assert!(start.elapsed().as_secs() < 60);
@@ -508,6 +521,49 @@ mod tests {
         assert_ne!(found, bits(scene(&first).view(40, 30)));
         let other = compiled(&scenes, &text("<1, 1, -5>", "0.5"));
         assert!(!Arc::ptr_eq(&scene(&other), &scene(&moved)));
+    }
+
+    /// Each page shows up to three scenes, and asks for all of them whenever one is loaded. When more were shown than were kept, they drove each
+    /// other out and were loaded again without end.
+    #[test]
+    fn scenes_that_are_shown_stay_however_many_there_are() {
+        let count = Arc::new(AtomicU64::new(0));
+        let loads = Arc::clone(&count);
+        let counting = move |request: &Request| {
+            loads.fetch_add(1, Ordering::Relaxed);
+            load(request)
+        };
+        let session = Session::new(Threads::Count(1)).unwrap();
+        let scenes = Scenes::new(session, Box::new(counting));
+        let key = |clock: u32| Key {
+            request: Request {
+                path: "a.pov".into(),
+                texts: Texts::from([("a.pov".into(), "sphere { 4*z, 1 }".into())]),
+                size: None,
+                clock: f64::from(clock),
+            },
+            accelerator: AcceleratorKind::default(),
+        };
+        let shown = 3 * KEPT as u32;
+        let start = Instant::now();
+        let mut places: Vec<Place>;
+        loop {
+            let wanted: Vec<_> = (0..shown).map(|n| scenes.want(&key(n))).collect();
+            let ready = wanted.iter().all(|(_, loading, _)| !loading);
+            places = wanted.into_iter().map(|(_, _, place)| place).collect();
+            if ready {
+                break;
+            }
+            assert!(start.elapsed().as_secs() < 60);
+            std::thread::sleep(std::time::Duration::from_millis(2));
+        }
+        assert_eq!(count.load(Ordering::Relaxed), u64::from(shown));
+        assert_eq!(places.len(), scenes.entries().len());
+        // Those that nobody shows any more make room for the next one.
+        places.truncate(1);
+        let _ = scenes.want(&key(shown));
+        assert_eq!(scenes.entries().len(), KEPT);
+        assert!(scenes.entries().iter().any(|entry| entry.key == key(0)));
     }
 
     #[test]

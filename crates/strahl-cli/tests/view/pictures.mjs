@@ -282,7 +282,14 @@ export async function builtIn() {
   await viewer.find("#scene").selectOption("lecture/01_principle.pov");
   await viewer.finished(sha);
   await viewer.address(/scene=lecture/);
-  await viewer.oneLine("built-in scenes");
+  // With all that it can have.
+  await viewer.page.keyboard.press("g");
+  await viewer.field("light-x", "1");
+  await viewer.page.waitForSelector("#reset");
+  for (const language of ["English", "German"]) {
+    await viewer.oneLine(`built-in scenes, ${language}`);
+    await viewer.find("#language").click();
+  }
   await viewer.page.waitForFunction(() => document.querySelectorAll(".text-line").length > 5 && document.querySelector(".tab").title.includes("01_principle"));
   await viewer.page.context().close();
   say("the scenes that are built in are offered");
