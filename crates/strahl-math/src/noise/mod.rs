@@ -22,9 +22,11 @@
 
 mod bounds;
 mod kernel;
+mod plane;
 mod tables;
 
 pub use bounds::noise_bounds;
+pub use plane::{PlaneNoise, plane_noise, plane_noise_bounds};
 
 use crate::DVec3;
 use strahl_simd::{Isa, Simd, dispatch};
