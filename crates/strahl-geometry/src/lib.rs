@@ -23,7 +23,10 @@ pub mod swept;
 pub use algebraic::{Blob, BlobComponent, Polynomial, Superellipsoid};
 pub use bounded::Bounded;
 pub use csg::{Csg, CsgNode, Operands};
-pub use fractal::{HypercomplexFunction, Julia, JuliaAlgebra, JuliaOptions, QuaternionFunction};
+pub use fractal::{
+    HypercomplexFunction, Julia, JuliaAlgebra, JuliaOptions, Mandelbulb, Menger,
+    QuaternionFunction, Terrain, TerrainDetail, TerrainKind, TerrainOptions,
+};
 pub use implicit::{
     Container, GridIsosurface, GridOptions, HeightField, Isosurface, IsosurfaceOptions, Parametric,
     ParametricOptions,

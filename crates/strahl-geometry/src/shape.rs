@@ -1,5 +1,5 @@
 use crate::algebraic::{Blob, Polynomial, Superellipsoid};
-use crate::fractal::Julia;
+use crate::fractal::{Julia, Mandelbulb, Menger, Terrain};
 use crate::implicit::{GridIsosurface, HeightField, Isosurface, Parametric};
 use crate::mesh::{Brep, Polygon, SmoothTriangle, Triangle, TriangleMesh};
 use crate::patch::{BicubicPatch, Nurbs};
@@ -162,6 +162,12 @@ shapes! {
     Nurbs(Arc<Nurbs>),
     /// A slice of a Julia set in four dimensions.
     Julia(Arc<Julia>),
+    /// A Mandelbulb.
+    Mandelbulb(Arc<Mandelbulb>),
+    /// Menger's sponge.
+    Menger(Arc<Menger>),
+    /// A fractal terrain.
+    Terrain(Arc<Terrain>),
     /// A tree of solids, combined.
     Csg(Arc<Csg>),
     /// A closed mesh with an inside.
@@ -200,6 +206,9 @@ shared!(
     BicubicPatch,
     Nurbs,
     Julia,
+    Mandelbulb,
+    Menger,
+    Terrain,
     Polynomial,
     Blob,
     Csg,

@@ -1,7 +1,6 @@
-//! A ray on its way through the cells that may have a surface of a Julia set.
+//! A ray on its way through the cells that may have a surface of a set of orbits.
 
-use super::orbit::{Place, norm2};
-use super::{BALL, Event, Julia, SURFACE};
+use super::orbit_set::{BALL, Event, OrbitSet, Place, SURFACE};
 use crate::implicit::Visitor;
 use std::ops::ControlFlow;
 use strahl_math::roots::find_crossing;
@@ -12,11 +11,11 @@ use strahl_math::{Aabb, DVec3};
 const LONGEST: f64 = 1.0 / 16.0;
 
 /// The march along a ray: the point at `s` is `origin + s direction`.
-pub(super) struct March<'a, V> {
-    julia: &'a Julia,
+pub(super) struct March<'a, S, V> {
+    set: &'a S,
     origin: DVec3,
     direction: DVec3,
-    /// The distance between numbers per unit of `s`.
+    /// How far the set goes per unit of `s`, as it measures distances.
     speed: f64,
     /// The least and the longest step.
     steps: (f64, f64),
@@ -37,23 +36,22 @@ pub(super) struct March<'a, V> {
     pub(super) visit: &'a mut V,
 }
 
-impl<'a, V: FnMut(Event) -> ControlFlow<()>> March<'a, V> {
+impl<'a, S: OrbitSet, V: FnMut(Event) -> ControlFlow<()>> March<'a, S, V> {
     /// The march along a line that is in the ball from `start` on and leaves it at `length`.
     pub(super) fn new(
-        julia: &'a Julia,
+        set: &'a S,
         (origin, direction): (DVec3, DVec3),
         (start, length, needed): (f64, f64, f64),
         visit: &'a mut V,
     ) -> Self {
-        let fourth = julia.fourth.1.dot(direction);
         let fastest = direction.abs().max_element();
-        let longest = LONGEST * julia.radius / fastest;
-        let shortest = julia.shortest / fastest;
+        let longest = LONGEST * set.search().radius / fastest;
+        let shortest = set.search().shortest / fastest;
         let mut march = Self {
-            julia,
+            set,
             origin,
             direction,
-            speed: norm2([direction.x, direction.y, direction.z, fourth]).sqrt(),
+            speed: set.speed(direction),
             steps: (
                 shortest,
                 if longest > shortest {
@@ -87,13 +85,13 @@ impl<'a, V: FnMut(Event) -> ControlFlow<()>> March<'a, V> {
         };
     }
 
-    fn number(&self, s: f64) -> [f64; 4] {
-        self.julia.number(self.origin + self.direction * s)
+    fn at(&self, s: f64) -> DVec3 {
+        self.origin + self.direction * s
     }
 
     /// Goes to a place and looks how far it is clear.
     fn look(&mut self, s: f64) -> Place {
-        let place = self.julia.rule.place(self.number(s));
+        let place = self.set.place(self.at(s));
         let (shortest, longest) = self.steps;
         let reach = place.reach / self.speed;
         self.is_near = !(reach > shortest);
@@ -115,7 +113,7 @@ impl<'a, V: FnMut(Event) -> ControlFlow<()>> March<'a, V> {
         if (there.value < 0.0) == self.inside {
             return ControlFlow::Continue(());
         }
-        let at = |s| self.julia.rule.value(self.number(s));
+        let at = |s| self.set.value(self.at(s));
         let zero = find_crossing(s, to, value, there.value, at);
         self.inside = !self.inside;
         (self.visit)(Event::Crossing {
@@ -141,16 +139,15 @@ impl<'a, V: FnMut(Event) -> ControlFlow<()>> March<'a, V> {
     }
 }
 
-impl<V: FnMut(Event) -> ControlFlow<()>> Visitor for March<'_, V> {
+impl<S: OrbitSet, V: FnMut(Event) -> ControlFlow<()>> Visitor for March<'_, S, V> {
     fn line(&self) -> (DVec3, DVec3) {
         (self.origin, self.direction)
     }
 
     fn may_have_surface(&mut self, cell: &Aabb) -> bool {
-        let center = self.julia.number(cell.center());
-        // A little more than half of the diagonal, for the rounding of points on rays.
-        let radius = 0.5 * cell.size().length() * self.julia.tilt * (1.0 + 1e-9);
-        !self.julia.rule.is_decided(center, radius)
+        !self
+            .set
+            .is_decided(cell.center(), 0.5 * cell.size().length())
     }
 
     fn part(&mut self, enter: f64, exit: f64) -> ControlFlow<()> {

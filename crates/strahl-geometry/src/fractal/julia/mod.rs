@@ -1,23 +1,18 @@
 //! Julia sets in four dimensions.
 
 mod complex;
-mod march;
 mod orbit;
 mod power;
 #[cfg(test)]
 mod tests;
 
-use crate::implicit::{Octree, Passage};
+use super::orbit_set::{BALL, BallSearch, OrbitSet, Place};
 use crate::{
-    Container, Crossing, Crossings, GeometryError, PrimHit, Primitive, Scratch, Side, Solid,
-    Sphere, SurfaceId, SurfacePoint,
+    Crossings, GeometryError, PrimHit, Primitive, Scratch, Solid, SurfaceId, SurfacePoint,
 };
 pub use complex::HypercomplexFunction;
-use march::March;
 use orbit::{Four, Rule, norm2};
-use std::ops::ControlFlow;
-use std::sync::Arc;
-use strahl_math::error::{ROUNDOFF, gamma};
+use strahl_math::error::gamma;
 use strahl_math::{Aabb, DVec3, Interval, Ray};
 
 /// A function of quaternions.
@@ -79,39 +74,9 @@ pub struct Julia {
     rule: Rule,
     /// Offset and factors of the fourth component.
     fourth: (f64, DVec3),
-    around: Container,
-    radius: f64,
-    shortest: f64,
+    search: BallSearch,
     /// The largest growth of a distance in space that the slice causes.
     tilt: f64,
-    octree: Arc<Octree>,
-}
-
-/// The octree's cells are halved so often.
-const LEVELS: u32 = 6;
-
-/// The surface of the set.
-const SURFACE: SurfaceId = SurfaceId {
-    element: 0,
-    facet: 0,
-};
-
-/// The ball around the set, which clips it if orbits are too short; it is invisible.
-const BALL: SurfaceId = SurfaceId {
-    element: 0,
-    facet: 1,
-};
-
-/// The events along a ray.
-enum Event {
-    /// The ray starts in the ball around the set, inside of the set from there on or not.
-    Start { inside: bool },
-    /// It crosses the surface, or (unseen) the ball around the set within it.
-    Crossing {
-        t: f64,
-        surface: SurfaceId,
-        enters: bool,
-    },
 }
 
 impl Julia {
@@ -158,11 +123,6 @@ impl Julia {
             JuliaAlgebra::Hypercomplex(_) => 4.0,
         };
         let length = norm2(options.slice).sqrt();
-        let precision = if options.precision > 1.0 {
-            options.precision
-        } else {
-            1.0
-        };
         Ok(Self {
             rule: Rule {
                 algebra,
@@ -171,14 +131,8 @@ impl Julia {
                 exit,
             },
             fourth: (options.distance * length / nw, -DVec3::new(nx, ny, nz) / nw),
-            around: Container::Sphere(Sphere::new(DVec3::ZERO, exit)),
-            radius: exit,
-            shortest: exit / (50.0 * precision),
+            search: BallSearch::new(exit, options.precision),
             tilt: norm2([1.0, nx / nw, ny / nw, nz / nw]).sqrt(),
-            octree: Arc::new(Octree::new(
-                Aabb::new(DVec3::splat(-exit), DVec3::splat(exit)),
-                LEVELS,
-            )),
         })
     }
 
@@ -187,9 +141,25 @@ impl Julia {
         let (offset, factors) = self.fourth;
         [p.x, p.y, p.z, offset + factors.dot(p)]
     }
+}
+
+impl OrbitSet for Julia {
+    fn search(&self) -> &BallSearch {
+        &self.search
+    }
 
     fn value(&self, p: DVec3) -> f64 {
         self.rule.value(self.number(p))
+    }
+
+    fn place(&self, p: DVec3) -> Place {
+        self.rule.place(self.number(p))
+    }
+
+    fn is_decided(&self, center: DVec3, radius: f64) -> bool {
+        // A little more, for the rounding of points on rays.
+        let radius = radius * self.tilt * (1.0 + 1e-9);
+        self.rule.is_decided(self.number(center), radius)
     }
 
     /// The gradient of the value in space.
@@ -201,64 +171,14 @@ impl Julia {
     /// The rounding error of the value: the error of the first points, propagated, and those of all further ones.
     fn noise(&self, p: DVec3) -> f64 {
         gamma(16 * self.rule.points.min(1 << 16) + 16)
-            * (self.rule.slope(self.number(p)) * self.radius + 1.0)
+            * (self.rule.slope(self.number(p)) * self.search.radius + 1.0)
     }
 
-    /// Reports the events along a ray to the visitor until it stops. Those after the range may be left out.
-    fn walk(
-        &self,
-        ray: &Ray,
-        (range, from): (Interval, Option<SurfaceId>),
-        scratch: &mut Scratch,
-        mut visit: impl FnMut(Event) -> ControlFlow<()>,
-    ) -> ControlFlow<()> {
-        let Some(passage) = self.around.passage(ray, None, scratch) else {
-            return ControlFlow::Continue(());
-        };
-        let (mut start, end) = (passage.start(), passage.exit.hit.t);
-        if from.is_some() && start < 0.0 {
-            start = 0.0;
-        }
-        if !(start < end && end.is_finite() && start.is_finite()) {
-            return ControlFlow::Continue(());
-        }
-        let (length, origin) = (end - start, ray.at(start));
-        // An empty range has a side at its start, too.
-        let needed = range.max.max(range.min) - start;
-        let line = (origin, ray.direction);
-        let mut march = March::new(self, line, (start, length, needed), &mut visit);
-        if from.is_some() && march.value.abs() < self.noise(origin) {
-            // Where rounding hides the side, the direction of the ray decides.
-            let leaves = self.gradient(origin).dot(ray.direction) >= 0.0;
-            march.set_side(!leaves);
-        }
-        let inside = march.inside;
-        if started_within(&passage, start) {
-            (march.visit)(Event::Start { inside })?;
-        } else if inside {
-            (march.visit)(Event::Crossing {
-                t: start,
-                surface: BALL,
-                enters: true,
-            })?;
-        }
-        self.octree.walk(Interval::new(0.0, length), &mut march)?;
-        march.leave()
+    /// The distance between numbers.
+    fn speed(&self, direction: DVec3) -> f64 {
+        let fourth = self.fourth.1.dot(direction);
+        norm2([direction.x, direction.y, direction.z, fourth]).sqrt()
     }
-
-    fn t_error(&self, ray: &Ray, t: f64) -> f64 {
-        let p = ray.at(t);
-        let gradient = self.gradient(p);
-        let reach = (ray.origin.abs() + (ray.direction * t).abs()) * gamma(4);
-        let error = (self.noise(p) + gradient.abs().dot(reach)) / gradient.dot(ray.direction).abs();
-        let longest = self.shortest / ray.direction.abs().max_element();
-        gamma(4) * t.abs() + if error < longest { error } else { longest }
-    }
-}
-
-/// Whether the ray enters the ball before this.
-fn started_within(passage: &Passage, start: f64) -> bool {
-    passage.enter.is_none_or(|enter| enter.hit.t < start)
 }
 
 impl Primitive for Julia {
@@ -272,7 +192,7 @@ impl Primitive for Julia {
     }
 
     fn bounds(&self) -> Aabb {
-        self.around.bounds()
+        self.search.bounds()
     }
 
     fn closest_hit(
@@ -282,56 +202,22 @@ impl Primitive for Julia {
         from: Option<SurfaceId>,
         scratch: &mut Scratch,
     ) -> Option<PrimHit> {
-        let mut closest = None;
-        // The result only matters while visiting.
-        let _ = self.walk(ray, (range, from), scratch, |event| match event {
-            Event::Crossing { t, surface, .. } if surface == SURFACE && range.accepts(t) => {
-                closest = Some(PrimHit::simple(t, SURFACE.facet));
-                ControlFlow::Break(())
-            }
-            Event::Crossing { t, .. } if t > range.max => ControlFlow::Break(()),
-            _ => ControlFlow::Continue(()),
-        });
-        closest
+        self.first(ray, range, from, scratch)
     }
 
     fn surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
+        let point = self.settled(ray, hit);
         if hit.surface == BALL {
-            return self.around.surface_at(ray, &PrimHit::simple(hit.t, 0));
+            return point;
         }
-        let mut p = ray.at(hit.t);
-        let mut value = self.value(p);
-        let mut gradient = self.gradient(p);
-        for _ in 0..2 {
-            let step = gradient * (value / gradient.dot(gradient));
-            if !(step.length() < self.shortest) {
-                break;
-            }
-            let next = self.value(p - step);
-            if !(next.abs() < value.abs()) {
-                break;
-            }
-            p -= step;
-            value = next;
-            gradient = self.gradient(p);
-        }
-        let off = (self.noise(p) + value.abs()) / gradient.length();
-        let off = if off < self.shortest {
-            off
-        } else {
-            self.shortest
-        };
-        let normal = gradient
-            .try_normalize()
-            .or_else(|| (-ray.direction).try_normalize())
-            .unwrap_or(DVec3::Y);
-        let error = DVec3::splat(off + f64::MIN_POSITIVE) + p.abs() * (4.0 * ROUNDOFF);
         // POV-Ray's normal is that of the set with one point more, before it is cut (measured).
-        let [x, y, z, _] = self.rule.gradient(self.number(p), 1);
+        let [x, y, z, _] = self.rule.gradient(self.number(point.position), 1);
         let shading = DVec3::new(x, y, z).try_normalize();
         SurfacePoint {
-            n_shade: shading.filter(|n| n.dot(normal) > 0.0).unwrap_or(normal),
-            ..SurfacePoint::bare(p, error, normal)
+            n_shade: shading
+                .filter(|n| n.dot(point.n_geom) > 0.0)
+                .unwrap_or(point.n_geom),
+            ..point
         }
     }
 
@@ -349,30 +235,10 @@ impl Solid for Julia {
         scratch: &mut Scratch,
         out: &mut Crossings,
     ) {
-        let start = if from.is_some() && range.min < 0.0 {
-            0.0
-        } else {
-            range.min
-        };
-        let needed = Interval::new(start, range.max);
-        let _ = self.walk(ray, (needed, from), scratch, |event| {
-            match event {
-                Event::Start { inside } => out.inside_at_start = inside,
-                Event::Crossing { t, enters, .. } if t <= start => out.inside_at_start = enters,
-                Event::Crossing { t, surface, enters } if t <= range.max => {
-                    let side = if enters { Side::Enter } else { Side::Exit };
-                    let hit = PrimHit::simple(t, surface.facet);
-                    let mut crossing = Crossing::new(hit, self.t_error(ray, t), side);
-                    crossing.visible = surface == SURFACE;
-                    out.list.push(crossing);
-                }
-                Event::Crossing { .. } => return ControlFlow::Break(()),
-            }
-            ControlFlow::Continue(())
-        });
+        self.list(ray, range, from, scratch, out);
     }
 
     fn contains(&self, point: DVec3) -> bool {
-        self.around.contains(point) && self.value(point) <= 0.0
+        self.holds(point)
     }
 }

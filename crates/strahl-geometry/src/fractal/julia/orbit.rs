@@ -2,7 +2,7 @@
 
 use super::complex::{Complex, HypercomplexFunction};
 use super::power::{Degree, Powers};
-use super::{JuliaAlgebra, QuaternionFunction};
+use super::{JuliaAlgebra, Place, QuaternionFunction};
 
 /// A number with four components.
 pub(super) type Four = [f64; 4];
@@ -10,16 +10,6 @@ pub(super) type Four = [f64; 4];
 /// The square of the length.
 pub(super) fn norm2(h: Four) -> f64 {
     (h[0] * h[0] + h[1] * h[1]) + (h[2] * h[2] + h[3] * h[3])
-}
-
-/// How a point lies to the surface.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Place {
-    /// Half of the squared length of the orbit's end over that of the bail-out radius, less a half: negative inside of the set,
-    /// infinite if the end is not a number.
-    pub(super) value: f64,
-    /// There is no surface nearer than this, by an estimate.
-    pub(super) reach: f64,
 }
 
 /// The part of an estimated distance that is taken where the estimate may be too long.

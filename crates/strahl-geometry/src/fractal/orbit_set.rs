@@ -1,0 +1,252 @@
+//! Sets of points whose orbits stay near the origin, as solids: how rays find their surface, whatever is iterated.
+
+use super::march::March;
+use crate::implicit::{Octree, Passage};
+use crate::{
+    Container, Crossing, Crossings, PrimHit, Scratch, Side, Sphere, SurfaceId, SurfacePoint,
+};
+use std::ops::ControlFlow;
+use std::sync::Arc;
+use strahl_math::error::{ROUNDOFF, gamma};
+use strahl_math::{Aabb, DVec3, Interval, Ray};
+
+/// The octree's cells are halved so often.
+const LEVELS: u32 = 6;
+
+/// The surface of the set.
+pub(super) const SURFACE: SurfaceId = SurfaceId {
+    element: 0,
+    facet: 0,
+};
+
+/// The ball around the set, which clips it if orbits are too short; it is invisible.
+pub(super) const BALL: SurfaceId = SurfaceId {
+    element: 0,
+    facet: 1,
+};
+
+/// The events along a ray.
+pub(super) enum Event {
+    /// The ray starts in the ball around the set, inside of the set from there on or not.
+    Start { inside: bool },
+    /// It crosses the surface, or (unseen) the ball around the set within it.
+    Crossing {
+        t: f64,
+        surface: SurfaceId,
+        enters: bool,
+    },
+}
+
+/// How a point lies to the surface.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Place {
+    /// Half of the squared length of the orbit's end over that of the bail-out radius, less a half: negative inside of the set,
+    /// infinite if the end is not a number.
+    pub(super) value: f64,
+    /// There is no surface nearer than this, by an estimate or a proof.
+    pub(super) reach: f64,
+}
+
+/// What is the same for all sets: the ball that they are searched in, and what is known of it.
+#[derive(Clone, Debug)]
+pub(super) struct BallSearch {
+    around: Container,
+    pub(super) radius: f64,
+    /// The least step.
+    pub(super) shortest: f64,
+    octree: Arc<Octree>,
+}
+
+impl BallSearch {
+    /// In the ball around the origin; features smaller than a fiftieth of the reciprocal of `precision` may be missed.
+    pub(super) fn new(radius: f64, precision: f64) -> Self {
+        let precision = if precision > 1.0 { precision } else { 1.0 };
+        Self {
+            around: Container::Sphere(Sphere::new(DVec3::ZERO, radius)),
+            radius,
+            shortest: radius / (50.0 * precision),
+            octree: Arc::new(Octree::new(
+                Aabb::new(DVec3::splat(-radius), DVec3::splat(radius)),
+                LEVELS,
+            )),
+        }
+    }
+
+    pub(super) fn bounds(&self) -> Aabb {
+        self.around.bounds()
+    }
+}
+
+/// A set of points whose orbits stay near the origin.
+pub(super) trait OrbitSet: Sized {
+    /// The ball around the set.
+    fn search(&self) -> &BallSearch;
+    /// The [`Place::value`] of a point.
+    fn value(&self, p: DVec3) -> f64;
+    /// How a point lies to the surface.
+    fn place(&self, p: DVec3) -> Place;
+    /// Whether the points up to this distance from a point are all inside of the set or all outside.
+    fn is_decided(&self, center: DVec3, radius: f64) -> bool;
+    /// The gradient of the value.
+    fn gradient(&self, p: DVec3) -> DVec3;
+    /// A bound of the rounding error of the value.
+    fn noise(&self, p: DVec3) -> f64;
+    /// The length of a direction as [`Place::reach`] counts it.
+    fn speed(&self, direction: DVec3) -> f64 {
+        direction.length()
+    }
+
+    /// Reports the events along a ray to the visitor until it stops. Those after the range may be left out.
+    fn walk(
+        &self,
+        ray: &Ray,
+        (range, from): (Interval, Option<SurfaceId>),
+        scratch: &mut Scratch,
+        mut visit: impl FnMut(Event) -> ControlFlow<()>,
+    ) -> ControlFlow<()> {
+        let Some(passage) = self.search().around.passage(ray, None, scratch) else {
+            return ControlFlow::Continue(());
+        };
+        let (mut start, end) = (passage.start(), passage.exit.hit.t);
+        if from.is_some() && start < 0.0 {
+            start = 0.0;
+        }
+        if !(start < end && end.is_finite() && start.is_finite()) {
+            return ControlFlow::Continue(());
+        }
+        let (length, origin) = (end - start, ray.at(start));
+        // An empty range has a side at its start, too.
+        let needed = range.max.max(range.min) - start;
+        let line = (origin, ray.direction);
+        let mut march = March::new(self, line, (start, length, needed), &mut visit);
+        if from.is_some() && march.value.abs() < self.noise(origin) {
+            // Where rounding hides the side, the direction of the ray decides.
+            let leaves = self.gradient(origin).dot(ray.direction) >= 0.0;
+            march.set_side(!leaves);
+        }
+        let inside = march.inside;
+        if started_within(&passage, start) {
+            (march.visit)(Event::Start { inside })?;
+        } else if inside {
+            (march.visit)(Event::Crossing {
+                t: start,
+                surface: BALL,
+                enters: true,
+            })?;
+        }
+        self.search()
+            .octree
+            .walk(Interval::new(0.0, length), &mut march)?;
+        march.leave()
+    }
+
+    fn t_error(&self, ray: &Ray, t: f64) -> f64 {
+        let p = ray.at(t);
+        let gradient = self.gradient(p);
+        let reach = (ray.origin.abs() + (ray.direction * t).abs()) * gamma(4);
+        let error = (self.noise(p) + gradient.abs().dot(reach)) / gradient.dot(ray.direction).abs();
+        let longest = self.search().shortest / ray.direction.abs().max_element();
+        gamma(4) * t.abs() + if error < longest { error } else { longest }
+    }
+
+    /// The first hit in a range.
+    fn first(
+        &self,
+        ray: &Ray,
+        range: Interval,
+        from: Option<SurfaceId>,
+        scratch: &mut Scratch,
+    ) -> Option<PrimHit> {
+        let mut closest = None;
+        // The result only matters while visiting.
+        let _ = self.walk(ray, (range, from), scratch, |event| match event {
+            Event::Crossing { t, surface, .. } if surface == SURFACE && range.accepts(t) => {
+                closest = Some(PrimHit::simple(t, SURFACE.facet));
+                ControlFlow::Break(())
+            }
+            Event::Crossing { t, .. } if t > range.max => ControlFlow::Break(()),
+            _ => ControlFlow::Continue(()),
+        });
+        closest
+    }
+
+    /// The surface at a hit, moved onto it.
+    fn settled(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
+        if hit.surface == BALL {
+            return self
+                .search()
+                .around
+                .surface_at(ray, &PrimHit::simple(hit.t, 0));
+        }
+        let mut p = ray.at(hit.t);
+        let mut value = self.value(p);
+        let mut gradient = self.gradient(p);
+        for _ in 0..2 {
+            let step = gradient * (value / gradient.dot(gradient));
+            if !(step.length() < self.search().shortest) {
+                break;
+            }
+            let next = self.value(p - step);
+            if !(next.abs() < value.abs()) {
+                break;
+            }
+            p -= step;
+            value = next;
+            gradient = self.gradient(p);
+        }
+        let off = (self.noise(p) + value.abs()) / gradient.length();
+        let off = if off < self.search().shortest {
+            off
+        } else {
+            self.search().shortest
+        };
+        let normal = gradient
+            .try_normalize()
+            .or_else(|| (-ray.direction).try_normalize())
+            .unwrap_or(DVec3::Y);
+        let error = DVec3::splat(off + f64::MIN_POSITIVE) + p.abs() * (4.0 * ROUNDOFF);
+        SurfacePoint::bare(p, error, normal)
+    }
+
+    /// All crossings, as [`Solid::crossings`](crate::Solid::crossings) lists them.
+    fn list(
+        &self,
+        ray: &Ray,
+        range: Interval,
+        from: Option<SurfaceId>,
+        scratch: &mut Scratch,
+        out: &mut Crossings,
+    ) {
+        let start = if from.is_some() && range.min < 0.0 {
+            0.0
+        } else {
+            range.min
+        };
+        let needed = Interval::new(start, range.max);
+        let _ = self.walk(ray, (needed, from), scratch, |event| {
+            match event {
+                Event::Start { inside } => out.inside_at_start = inside,
+                Event::Crossing { t, enters, .. } if t <= start => out.inside_at_start = enters,
+                Event::Crossing { t, surface, enters } if t <= range.max => {
+                    let side = if enters { Side::Enter } else { Side::Exit };
+                    let hit = PrimHit::simple(t, surface.facet);
+                    let mut crossing = Crossing::new(hit, self.t_error(ray, t), side);
+                    crossing.visible = surface == SURFACE;
+                    out.list.push(crossing);
+                }
+                Event::Crossing { .. } => return ControlFlow::Break(()),
+            }
+            ControlFlow::Continue(())
+        });
+    }
+
+    /// Whether a point is in the set.
+    fn holds(&self, point: DVec3) -> bool {
+        self.search().around.contains(point) && self.value(point) <= 0.0
+    }
+}
+
+/// Whether the ray enters the ball before this.
+fn started_within(passage: &Passage, start: f64) -> bool {
+    passage.enter.is_none_or(|enter| enter.hit.t < start)
+}
