@@ -70,6 +70,8 @@ impl Word {
                 | Self::Global
                 | Self::Grey
                 | Self::Lemon
+                | Self::Mandelbulb
+                | Self::Menger
                 | Self::Mixed
                 | Self::Nurbs
                 | Self::Obj
@@ -79,6 +81,7 @@ impl Word {
                 | Self::Prefix
                 | Self::Suffix
                 | Self::Tau
+                | Self::Terrain
                 | Self::Unofficial
                 | Self::UserDefined
         )
@@ -345,6 +348,7 @@ words! {
     Magnet "magnet" Item,
     MajorRadius "major_radius" Item,
     Mandel "mandel" Item,
+    Mandelbulb "mandelbulb" Object,
     MapType "map_type" Item,
     Marble "marble" Item,
     Material "material" Thing,
@@ -362,6 +366,7 @@ words! {
     Media "media" Thing,
     MediaAttenuation "media_attenuation" Item,
     MediaInteraction "media_interaction" Item,
+    Menger "menger" Object,
     Merge "merge" Object,
     Mesh "mesh" Object,
     Mesh2 "mesh2" Object,
@@ -549,6 +554,7 @@ words! {
     Tanh "tanh" FloatFunction,
     Target "target" Item,
     Tau "tau" Constant,
+    Terrain "terrain" Object,
     Text "text" Object,
     Texture "texture" Thing,
     TextureList "texture_list" Item,
@@ -639,7 +645,7 @@ mod tests {
             assert_eq!((word.text(), word.kind()), (*text, *kind));
         }
         assert_eq!(Word::from_number(Word::ALL.len() as u64), None);
-        // 523 words of the language, 1 of an extension, and 9 names of frame and picture.
-        assert_eq!(Word::ALL.len(), 533);
+        // 523 words of the language, 4 of extensions, and 9 names of frame and picture.
+        assert_eq!(Word::ALL.len(), 536);
     }
 }

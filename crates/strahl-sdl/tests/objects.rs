@@ -404,6 +404,91 @@ fn mistakes_in_nurbs_are_explained() {
 }
 
 #[test]
+fn terrains_are_read_with_their_items_in_any_order() {
+    let plain = shape("terrain { }");
+    let spelled =
+        "terrain { gain 2, offset 1 octaves 8 lacunarity 2.1 h 0.9 ridged noise_generator 2 }";
+    assert_eq!(plain.bounds(), shape(spelled).bounds());
+    let Shape::Terrain(cut) = shape("terrain { hetero extent <3, 4>, <1, 2> octaves 4 }") else {
+        panic!("no terrain");
+    };
+    let bounds = cut.bounds();
+    assert_eq!(
+        (bounds.min.x, bounds.max.x, bounds.min.z, bounds.max.z),
+        (1.0, 3.0, 2.0, 4.0)
+    );
+    // The offset is that of the kind unless it is given.
+    let Shape::Terrain(offset) =
+        shape("terrain { offset 0.7 extent <3, 4>, <1, 2> octaves 4 hetero }")
+    else {
+        panic!("no terrain");
+    };
+    assert_eq!(offset.height(1.5, 2.5), cut.height(1.5, 2.5));
+    shape("terrain { fbm detail <0, 2, -5>, 0.1 octaves 20 pigment { rgb 1 } scale 3 }");
+    // The words are names elsewhere.
+    let text = "#declare h = 3; #declare terrain = sphere { 0, h } object { terrain } #declare menger = 1; #declare extent = h;";
+    assert_eq!(scene(text).0.objects.0.len(), 1);
+}
+
+#[test]
+fn fractals_of_extensions_are_read() {
+    let Shape::Menger(sponge) = shape("menger { <1, 1, 1>, -1, 20 pigment { rgb 1 } }") else {
+        panic!("no sponge");
+    };
+    assert_eq!(sponge.bounds().min, DVec3::NEG_ONE);
+    let Shape::Mandelbulb(bulb) = shape("mandelbulb { 8 precision 50 max_iteration 3 }") else {
+        panic!("no mandelbulb");
+    };
+    let Shape::Mandelbulb(julia) = shape("mandelbulb { 2, julia <2, 0, 0> }") else {
+        panic!("no mandelbulb");
+    };
+    assert!(bulb.bounds().max.x < 1.2 && julia.bounds().max.x == 3.0);
+}
+
+#[test]
+fn mistakes_in_fractals_are_explained() {
+    for (text, expected) in [
+        ("terrain { lacunarity 1 }", "from 1.1 to 16, found 1"),
+        ("terrain { octaves 0 }", "from 1 to 64, found 0"),
+        (
+            "terrain { noise_generator 4 }",
+            "there is no noise generator 4",
+        ),
+        (
+            "terrain { extent 1, 2 }",
+            "two components, x and z, found 1",
+        ),
+        (
+            "terrain { extent <1, 1>, <1, 2> }",
+            "its extent has no area",
+        ),
+        ("terrain { detail <0, 1, 0>, 0 }", "must be greater than 0"),
+        ("terrain { h -400 octaves 30 }", "its heights are too large"),
+        ("terrain { bumpy }", "bumpy"),
+        ("menger { 0, 1, 21 }", "from 0 to 20, found 21"),
+        ("menger { 0, 1, 2.5 }", "a whole number"),
+        ("menger { 0, <1, 0, 1>, 2 }", "its box is flat"),
+        ("mandelbulb { 1 }", "from 2 to 16, found 1"),
+        (
+            "mandelbulb { 8 max_iteration 0 }",
+            "from 1 to 1000, found 0",
+        ),
+        (
+            "mandelbulb { 8 julia <1e200 * 1e200, 0, 0> }",
+            "not a finite number",
+        ),
+    ] {
+        let text = format!("sphere {{ 0, 1 }} {text}");
+        let parsed = parse_with(&mut MemoryHost::new(), &text);
+        let messages: Vec<String> = parsed.diagnostics.iter().map(ToString::to_string).collect();
+        assert!(
+            messages.iter().any(|m| m.contains(expected)),
+            "{text}: {messages:?}"
+        );
+    }
+}
+
+#[test]
 fn mistakes_are_shown_with_their_place() {
     let cases = [
         (

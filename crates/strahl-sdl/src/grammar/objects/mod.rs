@@ -15,6 +15,8 @@ mod isosurface;
 mod julia_fractal;
 mod lathe;
 mod lemon;
+mod mandelbulb;
+mod menger;
 mod mesh;
 mod modifiers;
 mod named;
@@ -31,6 +33,7 @@ mod sor;
 mod sphere;
 mod sphere_sweep;
 mod superellipsoid;
+mod terrain;
 mod text;
 mod torus;
 mod triangle;
@@ -66,6 +69,8 @@ static OBJECTS: [Option<ObjectParser>; Word::ALL.len()] = by_word::<ObjectParser
     (Word::Disc, disc::disc),
     (Word::HeightField, height_field::height_field),
     (Word::Intersection, csg::intersection),
+    (Word::Mandelbulb, mandelbulb::mandelbulb),
+    (Word::Menger, menger::menger),
     (Word::Merge, csg::merge),
     (Word::Mesh, mesh::mesh),
     (Word::Mesh2, mesh::mesh2),
@@ -84,6 +89,7 @@ static OBJECTS: [Option<ObjectParser>; Word::ALL.len()] = by_word::<ObjectParser
     (Word::Sor, sor::sor),
     (Word::Sphere, sphere::sphere),
     (Word::SphereSweep, sphere_sweep::sphere_sweep),
+    (Word::Terrain, terrain::terrain),
     (Word::Text, text::text),
     (Word::Superellipsoid, superellipsoid::superellipsoid),
     (Word::Torus, torus::torus),
@@ -97,6 +103,16 @@ pub fn object_words() -> impl Iterator<Item = Word> {
 }
 
 impl Parser<'_> {
+    /// Which of an extension's words a token is: a keyword of the language, or a name that has its meaning only there.
+    fn own_word(&self, token: Token, words: &[&'static str]) -> Option<&'static str> {
+        let text = match token.word() {
+            Some(word) => word.text(),
+            None if token.kind == Kind::Name => self.symbols.text(token.symbol()?),
+            None => return None,
+        };
+        words.iter().find(|word| **word == text).copied()
+    }
+
     /// Reads an object, if one follows.
     ///
     /// # Errors

@@ -1,6 +1,6 @@
 use crate::grammar::Entity;
 use crate::parser::{PResult, Parser, Place};
-use crate::token::{Kind, Token};
+use crate::token::Kind;
 use crate::value::Vector;
 use strahl_geometry::{Nurbs, NurbsCurve, NurbsData, TrimLoop};
 use strahl_math::{DVec2, DVec3};
@@ -13,7 +13,7 @@ pub(super) fn nurbs(p: &mut Parser<'_>) -> PResult<Entity> {
         let mut items = Items::default();
         loop {
             let token = p.peek()?;
-            let Some(item) = p.nurbs_word(token, &ITEMS) else {
+            let Some(item) = p.own_word(token, &ITEMS) else {
                 break;
             };
             let place = p.place_of(token);
@@ -95,15 +95,6 @@ struct Items {
 }
 
 impl Parser<'_> {
-    /// Which of these words a token is.
-    fn nurbs_word(&self, token: Token, words: &[&'static str]) -> Option<&'static str> {
-        if token.kind != Kind::Name {
-            return None;
-        }
-        let text = self.symbols.text(token.symbol()?);
-        words.iter().find(|word| **word == text).copied()
-    }
-
     /// One degree, or those along u and v.
     fn degrees(&mut self) -> PResult<[u32; 2]> {
         let place = self.place();
@@ -194,7 +185,7 @@ impl Parser<'_> {
             let mut curves = vec![];
             loop {
                 let token = p.peek()?;
-                if p.nurbs_word(token, &["curve"]).is_none() {
+                if p.own_word(token, &["curve"]).is_none() {
                     break;
                 }
                 p.take(token)?;
@@ -223,7 +214,7 @@ impl Parser<'_> {
         let (mut degree, mut knots) = (1, None);
         loop {
             let token = self.peek()?;
-            let Some(item) = self.nurbs_word(token, &CURVE) else {
+            let Some(item) = self.own_word(token, &CURVE) else {
                 break;
             };
             self.take(token)?;
