@@ -17,6 +17,8 @@ mod sor;
 mod spans;
 mod sphere_sweep;
 mod turned;
+#[cfg(test)]
+mod zoom_tests;
 
 pub use curve::Spline;
 pub use glyph::Glyph;
