@@ -61,7 +61,6 @@ impl CurveNumbers<'_> {
 
 /// Control points in rows of `columns`; knots along both; loops with whether they are holes.
 #[pyfunction]
-#[expect(clippy::too_many_arguments, reason = "they are those of the surface")]
 fn nurbs(
     degree: [u32; 2],
     columns: usize,
