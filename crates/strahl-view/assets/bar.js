@@ -15,16 +15,23 @@ function channels() {
 
 const own = (values) => [["", word("own")], ...(values ?? []).map((one) => [one, one])];
 
+// The bar is made again when nobody is using it: not while a number has the focus, and not between the press and the release of a button.
+let waiting = null;
+let held = false;
+
+const whenFree = () => setTimeout(() => { if (waiting) showBar(waiting); });
+document.addEventListener("pointerdown", (event) => { held = Boolean(event.target.closest?.("#bar button, #bar summary, #side-panel button")); }, true);
+for (const name of ["pointerup", "pointercancel"]) document.addEventListener(name, () => { held = false; whenFree(); }, true);
+document.addEventListener("focusout", whenFree);
+
 // `page` has hello, scene, current, stage, lights, set(values), and the actions of its buttons.
 export function showBar(page) {
   document.documentElement.lang = getLanguage();
   page.timeline.show(page.scene?.clock || state.clock !== null, state.clock);
   const focused = document.activeElement;
-  if (focused?.dataset.edited && focused.closest("#bar, #side-panel")) {
-    // Nobody's number is taken away while it is being typed.
-    focused.addEventListener("blur", () => showBar(page), { once: true });
-    return;
-  }
+  const busy = held || (focused?.type === "number" && focused.closest("#bar, #side-panel"));
+  waiting = busy ? page : null;
+  if (busy) return;
   const { hello, scene, current, stage, lights, set, actions } = page;
   const name = scene?.name ?? "";
   const scenes = hello?.scenes

@@ -72,7 +72,12 @@ export async function compared(viewer) {
   say("two settings are compared, with a line to drag and side by side");
 
   // Alone each has its own scale; together they have the larger one, so that equal colours mean equal numbers.
-  await viewer.field("side-depth", "");
+  // A number that is typed and left by a click on a button counts, and so does the click.
+  await viewer.find("#side-depth").fill("");
+  await viewer.find("#lights").click();
+  await page.waitForSelector("#lights-panel:not([hidden])");
+  await viewer.find("#lights").click();
+  assert.equal((await viewer.state()).compare.depth, null);
   await viewer.find("#channel").selectOption("steps");
   const scale = async () => Number(/0 … ([\d.]+)/.exec(await viewer.find("#state").innerText())?.[1]);
   const settled = async (accelerator, check) => eventually(async () => {
