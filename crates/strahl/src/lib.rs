@@ -108,9 +108,9 @@ pub mod prelude {
     pub use strahl_accel::AcceleratorKind;
     pub use strahl_formats::image::WriteOptions;
     pub use strahl_geometry::{
-        BicubicPatch, Brep, Cone, Cuboid, Cylinder, Disc, Lemon, MeshData, Nurbs, NurbsCurve,
-        NurbsData, Ovus, Plane, Polygon, Quadric, Shape, Sphere, Torus, Triangle, TriangleMesh,
-        TrimLoop,
+        BicubicPatch, Brep, Cone, Cuboid, Cylinder, Disc, Lemon, Mandelbulb, Menger, MeshData,
+        Nurbs, NurbsCurve, NurbsData, Ovus, Plane, Polygon, Quadric, Shape, Sphere, Terrain,
+        TerrainDetail, TerrainKind, TerrainOptions, Torus, Triangle, TriangleMesh, TrimLoop,
     };
     pub use strahl_math::{Aabb, DVec2, DVec3, Interval, Ray, Transform};
     pub use strahl_render::{
