@@ -1,8 +1,9 @@
 //! A sphereflake whose generations are instances within instances, against the same one with a sphere for every ball.
 
+use strahl::prelude::Scene;
 use strahl::shade::srgb;
 use strahl::tracing::{CompileOptions, RenderOptions};
-use strahl::{Format, LoadOptions, Scene, load_bytes};
+use strahl::{Format, LoadOptions, load_bytes};
 
 /// The generations.
 const LAST: u32 = 4;
