@@ -20,7 +20,7 @@ use strahl_math::{Aabb, DVec2, DVec3, Interval, Ray};
 /// A face that is a patch, or three of them.
 #[derive(Debug)]
 pub(super) enum Leaf {
-    Quad(Bezier<4>),
+    Quad(Box<Bezier<4>>),
     Triangle(Box<[Bezier<5>; 3]>),
 }
 
@@ -28,7 +28,7 @@ pub(super) enum Leaf {
 #[derive(Debug)]
 pub(super) enum Node {
     Leaf(Leaf),
-    Split(Split),
+    Split(Box<Split>),
 }
 
 /// A divided face.
@@ -149,7 +149,7 @@ impl Leaf {
             SubdivisionScheme::CatmullClark => {
                 let net = quad::net(ring);
                 let half = |i: usize| divided[i].then(|| quad::halves(ring, &children, i));
-                Self::Quad(patch(net, std::array::from_fn(half)))
+                Self::Quad(Box::new(patch(net, std::array::from_fn(half))))
             }
             SubdivisionScheme::Loop => {
                 let mut nets = triangle::nets(ring);
@@ -343,7 +343,7 @@ impl Node {
                 }
             })
             .collect();
-        Self::Split(Split { ring, kids })
+        Self::Split(Box::new(Split { ring, kids }))
     }
 
     /// Calls `ask` with the patches along a line, the nearer ones first, as long as it leaves a range. It narrows the range.
@@ -414,7 +414,8 @@ impl Node {
             Self::Leaf(leaf) => leaf.bytes(),
             Self::Split(split) => {
                 let kids = split.kids.iter().filter_map(|kid| kid.node.get());
-                split.ring.bytes()
+                size_of::<Split>()
+                    + split.ring.bytes()
                     + size_of_val(split.kids.as_slice())
                     + kids.map(|kid| kid.bytes()).sum::<usize>()
             }

@@ -106,7 +106,7 @@ fn rays_in_a_plane_of_symmetry_are_no_exception() {
         from[axis] = coordinate;
         to[axis] = coordinate;
         let list = hits(&surface, &Ray::new(from, to - from));
-        assert!(list.len() % 2 == 0, "{from} {to} {list:?}");
+        assert!(list.len().is_multiple_of(2), "{from} {to} {list:?}");
         assert!(list.len() == 2 || to.length() > 0.5, "{from} {to} {list:?}");
     }
 }

@@ -13,7 +13,8 @@ fn refused(change: impl FnOnce(&mut SubdivisionData)) -> String {
 
 #[test]
 fn bad_meshes_are_refused_with_the_reason() {
-    let cases: [(&str, Box<dyn FnOnce(&mut SubdivisionData)>); 18] = [
+    type Change = Box<dyn FnOnce(&mut SubdivisionData)>;
+    let cases: [(&str, Change); 18] = [
         (
             "vertex of the subdivision surface 3 is not finite",
             Box::new(|d| d.points[3].y = f64::NAN),
