@@ -8,6 +8,9 @@
 #include "functions.inc"
 global_settings { assumed_gamma 1 max_trace_level 5 }
 
+// How many of the three balls there are.
+#ifndef (Balls) #declare Balls = 3; #end
+
 // The density of a ball: 1 within the inner radius, 0 beyond the outer one, a straight line of the squared distance between.
 #declare Inner = 0.55;
 #declare Outer = 1.25;
@@ -52,6 +55,7 @@ object {
   rotate 40 * y
   translate <-2.75, 1.2, 0.2>
 }
+#if (Balls > 1)
 object {
   Hyper(Fur, 0.32)
   texture {
@@ -69,6 +73,7 @@ object {
   interior { ior 1.4 }
   translate <2.75, 1.25, 0.2>
 }
+#end
 
 plane {
   y, -0.05

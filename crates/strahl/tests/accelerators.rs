@@ -48,9 +48,14 @@ fn size() -> (u32, u32) {
 fn compare(path: &Path) {
     // Scenes with many parts are rendered with fewer.
     let mut sdl = Options::default();
-    sdl.declare = ["Across", "Deep"]
-        .map(|name| (name.to_owned(), Value::Float(60.0)))
-        .to_vec();
+    sdl.declare = [
+        ("Across", 60.0),
+        ("Deep", 60.0),
+        ("Generations", 2.0),
+        ("Balls", 1.0),
+    ]
+    .map(|(name, value)| (name.to_owned(), Value::Float(value)))
+    .to_vec();
     let options = LoadOptions {
         sdl,
         fonts: vec!["/usr/share/fonts".into()],

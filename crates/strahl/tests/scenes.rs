@@ -58,7 +58,12 @@ const DIFFERENT: [(&str, &str); 12] = [
 ];
 
 /// Scenes of many parts that are rendered with fewer: the declarations of their numbers.
-const COARSE: [(&str, f64); 3] = [("Across", 40.0), ("Deep", 40.0), ("Generations", 2.0)];
+const COARSE: [(&str, f64); 4] = [
+    ("Across", 40.0),
+    ("Deep", 40.0),
+    ("Generations", 2.0),
+    ("Balls", 1.0),
+];
 
 /// Large enough to see whether something is missing.
 const SIZE: (u32, u32) = (32, 24);

@@ -63,14 +63,12 @@ fn quadric(random: &mut Random, center: DVec3, size: f64) -> Shape {
         (0.0, -size * size * random.below(2) as f64)
     };
     let coefficients = [a, b, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, i, j];
-    let quadric = match Quadric::try_new(coefficients) {
-        Ok(quadric) => quadric,
-        // Only a point.
-        Err(_) => return Sphere::new(center, size).into(),
-    };
+    let quadric = Quadric::new(coefficients);
     let place = Transform::rotate(random.direction(), random.unit() * 6.0)
         .then(&Transform::translate(center));
-    quadric.baked(&place).unwrap_or_else(|| quadric.into())
+    let placed = quadric.baked(&place).filter(|q| q.validate().is_ok());
+    // Not if it is only a point.
+    placed.unwrap_or_else(|| Sphere::new(center, size).into())
 }
 
 fn tree(random: &mut Random, depth: u32, lattice: bool) -> CsgNode {
