@@ -269,7 +269,6 @@ impl<'a> Input<'a> {
             now: self.now,
             pinned: self.pinned.clone(),
             texts: self.texts.clone(),
-            subdivide: self.pov.subdivide,
             on_message: (!quiet).then(|| Box::new(print_message) as _),
             ..LoadOptions::default()
         };

@@ -144,7 +144,6 @@ const OBJECTS: &[&str] = &[
     "terrain",
     "mandelbulb",
     "menger",
-    "subdivision",
     "ovus",
     "lemon",
     "julia_fractal",

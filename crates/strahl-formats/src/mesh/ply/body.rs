@@ -289,8 +289,7 @@ impl<'h, 'r> Body<'h, 'r> {
     }
 
     /// The mesh.
-    pub(super) fn finish(mut self) -> MeshData {
-        let face_continues = self.faces.marks();
+    pub(super) fn finish(self) -> MeshData {
         let indices = self.faces.triangles;
         let data = match self.positions {
             Positions::Single(positions) => MeshData {
@@ -303,7 +302,6 @@ impl<'h, 'r> Body<'h, 'r> {
         MeshData {
             normals: self.normals,
             uvs: self.uvs,
-            face_continues,
             ..data
         }
     }

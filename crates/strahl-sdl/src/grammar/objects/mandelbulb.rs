@@ -17,6 +17,7 @@ pub(super) fn mandelbulb(p: &mut Parser<'_>) -> PResult<Entity> {
             );
             return Err(p.fail(place, message));
         }
+        p.comma()?;
         let (mut iterations, mut precision, mut parameter) = (8, 20.0, None);
         loop {
             if p.accept_word(Word::MaxIteration)? {
