@@ -179,7 +179,13 @@ fn silhouettes_have_one_border() {
                 .collect();
             let changes = fan.windows(2).filter(|pair| pair[0] != pair[1]).count();
             borders += usize::from(changes == 1);
-            assert!(changes <= 1, "{name}: {along} at {surface:?}: {fan:?}");
+            // Where the surface is nearly flat, the deepest rays are within the shape for the whole range, and meet nothing again.
+            let deepest = surface.position - normal * (f64::from(SIDE) * PIXEL);
+            let dives = changes == 2 && !fan[0] && shape.contains(deepest);
+            assert!(
+                changes <= 1 || dives,
+                "{name}: {along} at {surface:?}: {fan:?}"
+            );
         }
         // Along flat walls no ray is near for long.
         assert!(borders > 20, "{name}: {borders}");
