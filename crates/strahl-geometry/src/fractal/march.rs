@@ -10,6 +10,12 @@ use strahl_math::{Aabb, DVec3};
 /// are passed at once anyway.
 const LONGEST: f64 = 1.0 / 16.0;
 
+/// Steps are expected to change by factors in this range, from one to the next.
+const TREND: (f64, f64) = (0.25, 2.0);
+
+/// The part of the next step that is expected to reach back; what is left is for expectations that are too high.
+const OVERLAP: f64 = 0.75;
+
 /// The march along a ray: the point at `s` is `origin + s direction`.
 pub(super) struct March<'a, S, V> {
     set: &'a S,
@@ -31,6 +37,8 @@ pub(super) struct March<'a, S, V> {
     clear: f64,
     /// Whether it is the latter.
     is_near: bool,
+    /// The last step over the one before.
+    trend: f64,
     /// Whether the ray is inside of the set.
     pub(super) inside: bool,
     pub(super) visit: &'a mut V,
@@ -67,11 +75,13 @@ impl<'a, S: OrbitSet, V: FnMut(Event) -> ControlFlow<()>> March<'a, S, V> {
             value: 0.0,
             clear: 0.0,
             is_near: true,
+            trend: 1.0,
             inside: false,
             visit,
         };
-        let here = march.look(0.0);
-        march.inside = here.value < 0.0;
+        march.look(0.0, set.place(origin));
+        march.trend = 1.0;
+        march.inside = march.value < 0.0;
         march
     }
 
@@ -89,27 +99,32 @@ impl<'a, S: OrbitSet, V: FnMut(Event) -> ControlFlow<()>> March<'a, S, V> {
         self.origin + self.direction * s
     }
 
-    /// Goes to a place and looks how far it is clear.
-    fn look(&mut self, s: f64) -> Place {
-        let place = self.set.place(self.at(s));
+    /// The step that a reach allows, and whether the surface is nearer than the least one.
+    fn step(&self, reach: f64) -> (f64, bool) {
         let (shortest, longest) = self.steps;
-        let reach = place.reach / self.speed;
-        self.is_near = !(reach > shortest);
-        let step = if self.is_near {
+        let reach = reach / self.speed;
+        let is_near = !(reach > shortest);
+        let step = if is_near {
             shortest
         } else if reach < longest {
             reach
         } else {
             longest
         };
-        (self.s, self.value, self.clear) = (s, place.value, s + step);
-        place
+        (step, is_near)
+    }
+
+    /// Remembers how a place lies.
+    fn look(&mut self, s: f64, place: Place) {
+        let (step, is_near) = self.step(place.reach);
+        self.trend = step / (self.clear - self.s);
+        (self.s, self.value, self.clear, self.is_near) = (s, place.value, s + step, is_near);
     }
 
     /// Goes to a place and reports the crossing on the way, if there is one.
-    fn go(&mut self, to: f64) -> ControlFlow<()> {
+    fn go(&mut self, to: f64, there: Place) -> ControlFlow<()> {
         let (s, value) = (self.s, self.value);
-        let there = self.look(to);
+        self.look(to, there);
         if (there.value < 0.0) == self.inside {
             return ControlFlow::Continue(());
         }
@@ -123,10 +138,54 @@ impl<'a, S: OrbitSet, V: FnMut(Event) -> ControlFlow<()>> March<'a, S, V> {
         })
     }
 
+    /// Goes to a place, and on from there as far as places that are looked at together show that the line is clear.
+    fn advance(&mut self, to: f64) -> ControlFlow<()> {
+        let ahead = self.ahead(to);
+        let Some(places) = self.set.places(ahead.map(|s| self.at(s))) else {
+            return self.go(to, self.set.place(self.at(to)));
+        };
+        self.go(to, places[0])?;
+        for (s, place) in ahead.into_iter().zip(places).skip(1) {
+            let (step, is_near) = self.step(place.reach);
+            // What is clear around both places has to touch.
+            let back = if is_near { 0.0 } else { step };
+            if !(s - back <= self.clear && s <= self.length) {
+                break;
+            }
+            self.go(s, place)?;
+        }
+        ControlFlow::Continue(())
+    }
+
+    /// A place and three more, as far from each other as they will be clear if steps go on to grow or shrink as the last one did.
+    fn ahead(&self, s: f64) -> [f64; 4] {
+        let (shortest, longest) = self.steps;
+        let trend = self.trend.clamp(TREND.0, TREND.1);
+        let mut step = (self.clear - self.s) * trend;
+        let mut places = [s; 4];
+        for k in 1..4 {
+            if step < shortest {
+                step = shortest;
+            }
+            if step > longest {
+                step = longest;
+            }
+            let next = step * trend;
+            let overlap = if next > shortest {
+                OVERLAP * next.min(longest)
+            } else {
+                0.0
+            };
+            places[k] = places[k - 1] + step + overlap;
+            step = next;
+        }
+        places
+    }
+
     /// Leaves the ball around the set.
     pub(super) fn leave(&mut self) -> ControlFlow<()> {
         if self.inside && self.s < self.length {
-            self.go(self.length)?;
+            self.go(self.length, self.set.place(self.at(self.length)))?;
         }
         if self.inside {
             (self.visit)(Event::Crossing {
@@ -171,7 +230,7 @@ impl<S: OrbitSet, V: FnMut(Event) -> ControlFlow<()>> Visitor for March<'_, S, V
             if !(next > self.s && (next < exit || next == exit && self.is_near)) {
                 return ControlFlow::Continue(());
             }
-            self.go(next)?;
+            self.advance(next)?;
         }
     }
 }

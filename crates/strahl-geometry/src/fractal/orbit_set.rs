@@ -85,6 +85,10 @@ pub(super) trait OrbitSet: Sized {
     fn value(&self, p: DVec3) -> f64;
     /// How a point lies to the surface.
     fn place(&self, p: DVec3) -> Place;
+    /// How four points lie to the surface, if that takes little more time than one; else nothing.
+    fn places(&self, _points: [DVec3; 4]) -> Option<[Place; 4]> {
+        None
+    }
     /// Whether the points up to this distance from a point are all inside of the set or all outside.
     fn is_decided(&self, center: DVec3, radius: f64) -> bool;
     /// The gradient of the value.

@@ -1,34 +1,41 @@
 //! Complex functions with their derivatives, by the deterministic functions of real numbers.
 
+use super::real::Real;
 use std::ops::{Add, Mul, Neg, Sub};
 use strahl_math::det;
 
 /// A complex number.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Complex {
-    pub(super) re: f64,
-    pub(super) im: f64,
+pub(super) struct Complex<R = f64> {
+    pub(super) re: R,
+    pub(super) im: R,
 }
 
 /// 1
 const ONE: Complex = Complex::new(1.0, 0.0);
 
-impl Complex {
-    pub(super) const fn new(re: f64, im: f64) -> Self {
+impl<R> Complex<R> {
+    pub(super) const fn new(re: R, im: R) -> Self {
         Self { re, im }
     }
+}
 
+impl<R: Real> Complex<R> {
+    #[inline(always)]
     pub(super) fn square(self) -> Self {
         Self::new(
             (self.re - self.im) * (self.re + self.im),
-            2.0 * self.re * self.im,
+            self.re.like(2.0) * self.re * self.im,
         )
     }
 
-    pub(super) fn norm2(self) -> f64 {
+    #[inline(always)]
+    pub(super) fn norm2(self) -> R {
         self.re * self.re + self.im * self.im
     }
+}
 
+impl Complex {
     pub(super) fn scaled(self, factor: f64) -> Self {
         Self::new(self.re * factor, self.im * factor)
     }
@@ -134,8 +141,9 @@ impl Complex {
     }
 }
 
-impl Add for Complex {
+impl<R: Real> Add for Complex<R> {
     type Output = Self;
+    #[inline(always)]
     fn add(self, other: Self) -> Self {
         Self::new(self.re + other.re, self.im + other.im)
     }
@@ -148,8 +156,9 @@ impl Sub for Complex {
     }
 }
 
-impl Mul for Complex {
+impl<R: Real> Mul for Complex<R> {
     type Output = Self;
+    #[inline(always)]
     fn mul(self, other: Self) -> Self {
         Self::new(
             self.re * other.re - self.im * other.im,

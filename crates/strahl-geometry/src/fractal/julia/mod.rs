@@ -3,6 +3,7 @@
 mod complex;
 mod orbit;
 mod power;
+mod real;
 #[cfg(test)]
 mod tests;
 
@@ -154,6 +155,10 @@ impl OrbitSet for Julia {
 
     fn place(&self, p: DVec3) -> Place {
         self.rule.place(self.number(p))
+    }
+
+    fn places(&self, points: [DVec3; 4]) -> Option<[Place; 4]> {
+        self.rule.places(points.map(|p| self.number(p)))
     }
 
     fn is_decided(&self, center: DVec3, radius: f64) -> bool {

@@ -6,7 +6,7 @@
 //! set; if one of them is beyond it, the first one is outside.
 
 use super::complex::Complex;
-use super::orbit::{CAUTION, Four, norm2};
+use super::real::Real;
 
 /// Orbits are followed up to so many bail-out radii, where it is easier to see how far away the surface is.
 const FAR: f64 = 4.0;
@@ -20,33 +20,40 @@ pub(super) enum Degree {
 
 /// A number of an algebra: one quaternion, or the two complex numbers that a hypercomplex number is.
 pub(super) trait Number: Copy {
-    /// The squared lengths of the parts; the second one is 0 for a quaternion.
-    fn squares(self) -> [f64; 2];
-    /// The length of a number with parts of these squared lengths, squared.
-    fn joint(squares: [f64; 2]) -> f64;
+    /// What it consists of.
+    type Real: Real;
+    /// How many parts it has: numbers that are multiplied on their own.
+    const PARTS: usize;
     /// By how much a part changes at most if the number changes by 1.
     const PART: f64;
+    /// The squared lengths of the parts; the second one is 0 for a quaternion.
+    fn squares(self) -> [Self::Real; 2];
+    /// The length of a number with parts of these squared lengths, squared.
+    fn joint(squares: [Self::Real; 2]) -> Self::Real;
     fn square(self) -> Self;
     fn cube(self) -> Self;
     fn plus(self, other: Self) -> Self;
 }
 
-impl Number for Four {
+impl<R: Real> Number for [R; 4] {
+    type Real = R;
+    const PARTS: usize = 1;
     const PART: f64 = 1.0;
 
     #[inline(always)]
-    fn squares(self) -> [f64; 2] {
-        [norm2(self), 0.0]
+    fn squares(self) -> [R; 2] {
+        let [a, b, c, d] = self;
+        [(a * a + b * b) + (c * c + d * d), a.like(0.0)]
     }
     #[inline(always)]
-    fn joint([a, _]: [f64; 2]) -> f64 {
+    fn joint([a, _]: [R; 2]) -> R {
         a
     }
     /// Of a real part `a` and a vector `v`: `a² - v²` and `2 a v`.
     #[inline(always)]
     fn square(self) -> Self {
         let [a, b, c, d] = self;
-        let factor = 2.0 * a;
+        let factor = a.like(2.0) * a;
         let v2 = (b * b + c * c) + d * d;
         [a * a - v2, factor * b, factor * c, factor * d]
     }
@@ -54,9 +61,10 @@ impl Number for Four {
     #[inline(always)]
     fn cube(self) -> Self {
         let [a, b, c, d] = self;
+        let three = a.like(3.0);
         let v2 = (b * b + c * c) + d * d;
-        let factor = 3.0 * a * a - v2;
-        [a * (a * a - 3.0 * v2), factor * b, factor * c, factor * d]
+        let factor = three * a * a - v2;
+        [a * (a * a - three * v2), factor * b, factor * c, factor * d]
     }
     #[inline(always)]
     fn plus(self, [p, q, r, s]: Self) -> Self {
@@ -65,16 +73,18 @@ impl Number for Four {
     }
 }
 
-impl Number for [Complex; 2] {
+impl<R: Real> Number for [Complex<R>; 2] {
+    type Real = R;
+    const PARTS: usize = 2;
     const PART: f64 = std::f64::consts::SQRT_2;
 
     #[inline(always)]
-    fn squares(self) -> [f64; 2] {
+    fn squares(self) -> [R; 2] {
         [self[0].norm2(), self[1].norm2()]
     }
     #[inline(always)]
-    fn joint([a, b]: [f64; 2]) -> f64 {
-        0.5 * (a + b)
+    fn joint([a, b]: [R; 2]) -> R {
+        a.like(0.5) * (a + b)
     }
     #[inline(always)]
     fn square(self) -> Self {
@@ -101,6 +111,19 @@ pub(super) struct Powers<N> {
     pub(super) exit: f64,
 }
 
+impl<N> Powers<N> {
+    /// The same iteration with a parameter of another kind of number.
+    #[inline(always)]
+    pub(super) fn of<M>(&self, parameter: M) -> Powers<M> {
+        Powers {
+            degree: self.degree,
+            parameter,
+            points: self.points,
+            exit: self.exit,
+        }
+    }
+}
+
 impl<N: Number> Powers<N> {
     #[inline(always)]
     fn next(&self, h: N) -> N {
@@ -111,6 +134,49 @@ impl<N: Number> Powers<N> {
         power.plus(self.parameter)
     }
 
+    /// The squared length of the first point beyond the bail-out radius, or of the last one; and an estimate of the distance from the
+    /// surface: how far the last point that is followed is from the bail-out radius, over a bound of its derivative by the start.
+    /// The estimate is negative inside of the set.
+    #[inline(always)]
+    pub(super) fn estimate(&self, start: N) -> (N::Real, N::Real) {
+        let mut h = start;
+        let mut squares = h.squares();
+        let mut r2 = N::joint(squares);
+        let one = r2.like(1.0);
+        let exit = r2.like(self.exit);
+        let limit = exit * exit;
+        let far = r2.like(FAR * FAR) * limit;
+        let (four, nine) = (r2.like(4.0), r2.like(9.0));
+        let mut slopes = [one, one];
+        let mut end = r2;
+        for _ in 1..self.points {
+            if !r2.any_le(far) {
+                break;
+            }
+            // An index, because iterators and closures are not always inlined into code for a level of instructions.
+            for k in 0..N::PARTS {
+                let growth = match self.degree {
+                    Degree::Two => four * squares[k],
+                    Degree::Three => nine * (squares[k] * squares[k]),
+                };
+                slopes[k] = r2.choose_le(far, slopes[k] * growth, slopes[k]);
+            }
+            h = self.next(h);
+            squares = h.squares();
+            // The lanes whose orbit has ended keep its end.
+            r2 = r2.choose_le(far, N::joint(squares), r2);
+            end = end.choose_le(limit, r2, end);
+        }
+        let slope = if N::PARTS == 1 {
+            slopes[0]
+        } else {
+            slopes[0].larger(slopes[1])
+        };
+        (end, (r2.sqrt() - exit).over(slope.sqrt()))
+    }
+}
+
+impl<N: Number<Real = f64>> Powers<N> {
     /// The squared length of the first point beyond the bail-out radius, or of the last one.
     #[inline(always)]
     pub(super) fn end(&self, start: N) -> f64 {
@@ -126,48 +192,6 @@ impl<N: Number> Powers<N> {
             r2 = N::joint(h.squares());
         }
         r2
-    }
-
-    /// The same, and an estimate of the distance from the surface: how far the last point that is followed is from the bail-out radius,
-    /// over a bound of its derivative by the start. Inside of the set, where lengths grow ever faster, half of it.
-    #[inline(always)]
-    pub(super) fn estimate(&self, start: N) -> (f64, f64) {
-        let limit = self.exit * self.exit;
-        let mut h = start;
-        let mut squares = h.squares();
-        let mut r2 = N::joint(squares);
-        let mut slopes = [1.0, 1.0];
-        let mut end = r2;
-        for _ in 1..self.points {
-            if !(r2 <= FAR * FAR * limit) {
-                break;
-            }
-            for (slope, r2) in slopes.iter_mut().zip(squares) {
-                *slope *= match self.degree {
-                    Degree::Two => 4.0 * r2,
-                    Degree::Three => 9.0 * (r2 * r2),
-                };
-            }
-            h = self.next(h);
-            squares = h.squares();
-            r2 = N::joint(squares);
-            if end <= limit {
-                end = r2;
-            }
-        }
-        let slope = if slopes[0] > slopes[1] {
-            slopes[0]
-        } else {
-            slopes[1]
-        };
-        let distance = (r2.sqrt() - self.exit) / slope.sqrt();
-        // Towards the surface the length shrinks ever more slowly, so from outside this is rather too short.
-        let reach = if distance > 0.0 {
-            distance
-        } else {
-            -CAUTION * distance
-        };
-        (end, reach)
     }
 
     /// Whether the numbers up to this distance from a number are certainly all inside of the set, or all outside.

@@ -1,0 +1,127 @@
+//! Real numbers one by one, or four side by side: the same operations, so the same bits.
+
+use std::ops::{Add, Mul, Sub};
+use strahl_simd::Isa;
+
+/// A real number, or several that are computed together.
+pub(super) trait Real:
+    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self>
+{
+    /// This number in every lane of the same kind of number as `self`.
+    fn like(self, x: f64) -> Self;
+    fn sqrt(self) -> Self;
+    fn over(self, other: Self) -> Self;
+    /// The larger one; of a NaN and a number the second.
+    fn larger(self, other: Self) -> Self;
+    /// `yes` where this is at most the limit, else (also for NaN) `no`.
+    fn choose_le(self, limit: Self, yes: Self, no: Self) -> Self;
+    /// Whether this is at most the limit in some lane.
+    fn any_le(self, limit: Self) -> bool;
+}
+
+impl Real for f64 {
+    #[inline(always)]
+    fn like(self, x: f64) -> Self {
+        x
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        Self::sqrt(self)
+    }
+    #[inline(always)]
+    fn over(self, other: Self) -> Self {
+        self / other
+    }
+    #[inline(always)]
+    fn larger(self, other: Self) -> Self {
+        if self > other { self } else { other }
+    }
+    #[inline(always)]
+    fn choose_le(self, limit: Self, yes: Self, no: Self) -> Self {
+        if self <= limit { yes } else { no }
+    }
+    #[inline(always)]
+    fn any_le(self, limit: Self) -> bool {
+        self <= limit
+    }
+}
+
+/// Four numbers in the lanes of a vector.
+#[derive(Clone, Copy)]
+pub(super) struct Lanes<I: Isa> {
+    isa: I,
+    vector: I::F64x4,
+}
+
+impl<I: Isa> Lanes<I> {
+    /// The four components of four numbers.
+    #[inline(always)]
+    pub(super) fn all(isa: I, [a, b, c, d]: &[[f64; 4]; 4]) -> [Self; 4] {
+        let (a, b, c, d) = (isa.load(a), isa.load(b), isa.load(c), isa.load(d));
+        let (a, b) = (Self { isa, vector: a }, Self { isa, vector: b });
+        let (c, d) = (Self { isa, vector: c }, Self { isa, vector: d });
+        [a, b, c, d]
+    }
+
+    #[inline(always)]
+    pub(super) fn numbers(self) -> [f64; 4] {
+        self.isa.store(self.vector)
+    }
+
+    #[inline(always)]
+    fn with(self, vector: I::F64x4) -> Self {
+        Self { vector, ..self }
+    }
+}
+
+impl<I: Isa> Add for Lanes<I> {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        self.with(self.isa.add(self.vector, other.vector))
+    }
+}
+
+impl<I: Isa> Sub for Lanes<I> {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        self.with(self.isa.sub(self.vector, other.vector))
+    }
+}
+
+impl<I: Isa> Mul for Lanes<I> {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        self.with(self.isa.mul(self.vector, other.vector))
+    }
+}
+
+impl<I: Isa> Real for Lanes<I> {
+    #[inline(always)]
+    fn like(self, x: f64) -> Self {
+        self.with(self.isa.splat(x))
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        self.with(self.isa.sqrt(self.vector))
+    }
+    #[inline(always)]
+    fn over(self, other: Self) -> Self {
+        self.with(self.isa.div(self.vector, other.vector))
+    }
+    #[inline(always)]
+    fn larger(self, other: Self) -> Self {
+        self.with(self.isa.max(self.vector, other.vector))
+    }
+    #[inline(always)]
+    fn choose_le(self, limit: Self, yes: Self, no: Self) -> Self {
+        let (limit, yes, no) = (limit.vector, yes.vector, no.vector);
+        self.with(self.isa.choose_le(self.vector, limit, yes, no))
+    }
+    #[inline(always)]
+    fn any_le(self, limit: Self) -> bool {
+        self.isa.le(self.vector, limit.vector) != 0
+    }
+}
