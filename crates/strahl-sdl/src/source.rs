@@ -205,6 +205,11 @@ pub trait Host: Send {
     /// Receives a message of the scene.
     fn message(&mut self, stream: Stream, text: &str);
 
+    /// Whether nobody wants the scene any more. It is asked every few milliseconds, and ends the reading with an error.
+    fn stops(&self) -> bool {
+        false
+    }
+
     /// The value of `now`: days since the beginning of 2000 in UTC. A fixed value makes scenes reproducible.
     fn now(&mut self) -> f64;
 }

@@ -3,7 +3,10 @@
 mod common;
 
 use common::{errors, parse_with};
-use strahl_sdl::{MemoryHost, Options, Source, parse};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+use strahl_sdl::{FolderHost, MemoryHost, Options, Source, parse};
 
 fn limited(text: &str, limit: impl FnOnce(&mut Options)) -> String {
     let mut options = Options::default();
@@ -72,6 +75,28 @@ fn a_loop_that_makes_nothing_ends_long_before_one_that_does() {
     let text = "#for (I, 1, 2000) #declare A = I * 2; sphere { A, 1 } #end";
     let parsed = parse(Source::new("x", text), &options, &mut MemoryHost::new());
     assert_eq!(parsed.scene.expect("no errors").objects.0.len(), 2000);
+}
+
+#[test]
+fn a_scene_that_nobody_wants_any_more_is_read_no_further() {
+    let mut options = Options::default();
+    (options.limits.steps, options.limits.idle_steps) = (u64::MAX, u64::MAX);
+    for text in [
+        "#while (1) #end",
+        "#declare F = function(x) { sin(x) } #while (1) #declare A = F(F(1)); #end",
+    ] {
+        let stop = Arc::new(AtomicBool::new(false));
+        let timer = Arc::clone(&stop);
+        let thread = std::thread::spawn(move || {
+            std::thread::sleep(Duration::from_millis(50));
+            timer.store(true, Ordering::Relaxed);
+        });
+        let mut host = FolderHost::new([]).stopped_by(stop);
+        let parsed = parse(Source::new("x", text), &options, &mut host);
+        assert!(parsed.scene.is_none());
+        assert!(parsed.diagnostics[0].message.contains("stopped"), "{text}");
+        thread.join().expect("it only sleeps");
+    }
 }
 
 #[test]

@@ -2,6 +2,8 @@ use crate::inputs::{Inputs, digest};
 use std::fmt;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 use strahl_formats::scene::{self, SceneFormat, read_decompressed};
 use strahl_scene::{Diagnostic, Problems, Scene};
 use strahl_sdl::{FolderHost, Pinned, Recorder, Source, Stream, Texts, Writing, parse};
@@ -142,6 +144,8 @@ pub struct LoadOptions {
     pub record: bool,
     /// Receives the output of `#debug` and the like.
     pub on_message: Option<Listener>,
+    /// Ends the reading of a scene in POV-Ray's language with an error as soon as this is true.
+    pub stop: Option<Arc<AtomicBool>>,
 }
 
 impl fmt::Debug for LoadOptions {
@@ -174,6 +178,9 @@ impl LoadOptions {
         }
         if let Some(days) = self.now {
             host = host.at_time(days);
+        }
+        if let Some(stop) = self.stop {
+            host = host.stopped_by(stop);
         }
         if !self.record {
             let parsed = parse(source, &self.sdl, &mut host);

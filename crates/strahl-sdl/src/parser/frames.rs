@@ -80,6 +80,7 @@ impl<'h> Parser<'h> {
             between: true,
             steps: 0,
             last_step: options.limits.steps.min(options.limits.idle_steps),
+            next_check: 0,
             function_operations: 0,
             nesting: 0,
             read_bytes,
@@ -134,9 +135,7 @@ impl<'h> Parser<'h> {
     fn run_on(&mut self) -> PResult<Token> {
         loop {
             self.steps += 1;
-            if self.steps > self.last_step {
-                return Err(self.out_of_steps());
-            }
+            self.check_steps()?;
             let token = self.raw();
             match token.kind {
                 Kind::Name => {

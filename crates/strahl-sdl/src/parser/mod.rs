@@ -100,6 +100,8 @@ pub struct Parser<'h> {
     steps: u64,
     /// The step at which an idle loop is stopped.
     last_step: u64,
+    /// The step at which the budget is looked at again; not later than `last_step`.
+    next_check: u64,
     /// Operations of all functions so far.
     function_operations: u64,
     nesting: usize,
@@ -157,10 +159,7 @@ impl Parser<'_> {
             self.position += 1;
         }
         self.steps += 1;
-        if self.steps > self.last_step {
-            return Err(self.out_of_steps());
-        }
-        Ok(())
+        self.check_steps()
     }
 
     /// Counts operations of functions as steps.
@@ -171,9 +170,34 @@ impl Parser<'_> {
         /// This many operations take as long as a token.
         const OPERATIONS: u64 = 4;
         self.steps = self.steps.saturating_add(operations / OPERATIONS);
+        self.check_steps()
+    }
+
+    /// Sees to it now and then that the budget of steps is not used up, and that the scene is still wanted.
+    ///
+    /// # Errors
+    /// If one of the two is not so.
+    #[inline]
+    pub(crate) fn check_steps(&mut self) -> PResult<()> {
+        match self.steps > self.next_check {
+            true => self.check_budget(),
+            false => Ok(()),
+        }
+    }
+
+    #[cold]
+    fn check_budget(&mut self) -> PResult<()> {
+        /// So many steps take some milliseconds.
+        const PAUSE: u64 = 1 << 20;
         if self.steps > self.last_step {
             return Err(self.out_of_steps());
         }
+        if self.host.stops() {
+            let stopped = self.fail(self.place, "the reading of the scene was stopped");
+            self.fatal = true;
+            return Err(stopped);
+        }
+        self.next_check = self.last_step.min(self.steps.saturating_add(PAUSE));
         Ok(())
     }
 

@@ -6,6 +6,7 @@ use std::fs;
 use std::io::{ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::SystemTime;
 
 /// The only files that a scene may read: the path for each way of asking, name in the scene, and name of the file with the name in it
@@ -33,6 +34,7 @@ pub struct FolderHost {
     now: Option<f64>,
     pinned: Option<Pinned>,
     texts: Texts,
+    stop: Option<Arc<AtomicBool>>,
 }
 
 impl std::fmt::Debug for FolderHost {
@@ -59,6 +61,7 @@ impl FolderHost {
             now: None,
             pinned: None,
             texts: Texts::new(),
+            stop: None,
         }
     }
 
@@ -117,6 +120,13 @@ impl FolderHost {
     #[must_use]
     pub fn with_texts(mut self, texts: Texts) -> Self {
         self.texts = texts;
+        self
+    }
+
+    /// Ends the reading of a scene with an error as soon as this is true.
+    #[must_use]
+    pub fn stopped_by(mut self, stop: Arc<AtomicBool>) -> Self {
+        self.stop = Some(stop);
         self
     }
 
@@ -263,6 +273,11 @@ impl Host for FolderHost {
         if let Some(f) = &mut self.on_message {
             f(stream, text);
         }
+    }
+
+    fn stops(&self) -> bool {
+        let stop = self.stop.as_ref();
+        stop.is_some_and(|stop| stop.load(Ordering::Relaxed))
     }
 
     fn now(&mut self) -> f64 {

@@ -145,6 +145,10 @@ impl Host for Recorder<'_> {
         self.host.message(stream, text);
     }
 
+    fn stops(&self) -> bool {
+        self.host.stops()
+    }
+
     fn now(&mut self) -> f64 {
         self.record.time = true;
         self.host.now()
