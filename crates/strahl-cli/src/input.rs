@@ -6,6 +6,8 @@ use std::cell::{Cell, RefCell};
 use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 use strahl::formats::scene::SceneFormat;
 use strahl::math::DVec3;
@@ -59,6 +61,8 @@ pub(crate) struct Input<'a> {
     pinned: Option<Pinned>,
     /// Texts that are read instead of files.
     texts: Texts,
+    /// Ends the reading when it becomes true.
+    stop: Option<Arc<AtomicBool>>,
     inputs: RefCell<Option<Inputs>>,
 }
 
@@ -124,6 +128,7 @@ impl<'a> Input<'a> {
             now: None,
             pinned: None,
             texts: Texts::new(),
+            stop: None,
             inputs: RefCell::new(None),
         })
     }
@@ -131,6 +136,12 @@ impl<'a> Input<'a> {
     /// Texts to read instead of files.
     pub(crate) fn with_texts(self, texts: Texts) -> Self {
         Self { texts, ..self }
+    }
+
+    /// Ends the reading with an error as soon as this is true.
+    pub(crate) fn stopped_by(self, stop: Arc<AtomicBool>) -> Self {
+        let stop = Some(stop);
+        Self { stop, ..self }
     }
 
     /// Lets the scene write files: into the folder of `--allow-write`, or else into SCENE.out beside the scene.
@@ -269,6 +280,7 @@ impl<'a> Input<'a> {
             now: self.now,
             pinned: self.pinned.clone(),
             texts: self.texts.clone(),
+            stop: self.stop.clone(),
             on_message: (!quiet).then(|| Box::new(print_message) as _),
             ..LoadOptions::default()
         };

@@ -2,7 +2,7 @@
 
 use rust_embed::Embed;
 use std::io;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use tempfile::TempDir;
 
 #[derive(Embed)]
@@ -11,7 +11,7 @@ struct Scenes;
 
 /// The scenes that are part of the program, as files in a temporary folder, which is removed with it.
 #[derive(Debug)]
-pub struct Builtin {
+pub(crate) struct Builtin {
     folder: TempDir,
     names: Vec<String>,
 }
@@ -21,7 +21,7 @@ impl Builtin {
     ///
     /// # Errors
     /// Those of writing files.
-    pub fn unpack() -> io::Result<Self> {
+    pub(crate) fn unpack() -> io::Result<Self> {
         let folder = tempfile::Builder::new().prefix("strahl-scenes").tempdir()?;
         let mut names = vec![];
         for name in Scenes::iter() {
@@ -42,20 +42,32 @@ impl Builtin {
         Ok(Self { folder, names })
     }
 
+    /// The scenes that pages may ask for. It doesn't keep their files.
+    pub(crate) fn offered(&self) -> Offered {
+        Offered {
+            folder: self.folder.path().to_owned(),
+            names: self.names.clone(),
+        }
+    }
+}
+
+/// Scenes that pages may ask for.
+#[derive(Clone, Debug)]
+pub(crate) struct Offered {
+    folder: PathBuf,
+    names: Vec<String>,
+}
+
+impl Offered {
     /// The names of the scenes: `lecture/01_principle.pov`.
-    pub fn names(&self) -> &[String] {
+    pub(crate) fn names(&self) -> &[String] {
         &self.names
     }
 
     /// The file of a scene.
-    pub fn path(&self, name: &str) -> Option<PathBuf> {
+    pub(crate) fn path(&self, name: &str) -> Option<PathBuf> {
         let known = self.names.iter().any(|n| n == name);
-        known.then(|| self.folder.path().join(name))
-    }
-
-    /// The folder.
-    pub fn folder(&self) -> &Path {
-        self.folder.path()
+        known.then(|| self.folder.join(name))
     }
 }
 
@@ -66,17 +78,15 @@ mod tests {
     #[test]
     fn scenes_are_found_by_their_names_and_nothing_else_is() {
         let scenes = Builtin::unpack().unwrap();
-        assert!(scenes.names().len() > 100);
-        assert!(
-            scenes
-                .path("lecture/01_principle.pov")
-                .is_some_and(|p| p.is_file())
-        );
+        let offered = scenes.offered();
+        assert!(offered.names().len() > 100);
+        let first = offered.path("lecture/01_principle.pov").unwrap();
+        assert!(first.is_file());
         for bad in ["../secret.pov", "/etc/passwd", "lecture", ""] {
-            assert!(scenes.path(bad).is_none(), "{bad}");
+            assert!(offered.path(bad).is_none(), "{bad}");
         }
-        let folder = scenes.folder().to_owned();
+        // Who knows of the scenes doesn't keep them.
         drop(scenes);
-        assert!(!folder.exists());
+        assert!(!first.exists());
     }
 }

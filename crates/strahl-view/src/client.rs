@@ -86,7 +86,7 @@ impl Client {
         let (follower, news) = unbounded_channel();
         let (answer, answers) = unbounded_channel();
         let scene = hub.scene.clone();
-        let names = hub.builtin.as_ref().map(|scenes| scenes.names());
+        let names = hub.offered.as_ref().map(|scenes| scenes.names());
         let own = |name: &&String| scene.ends_with(Path::new(name.as_str()));
         let name = names.and_then(|names| names.iter().find(own)).cloned();
         Self {
@@ -109,11 +109,17 @@ impl Client {
     pub(crate) async fn run(mut self) {
         // A page that has gone is no error.
         let _ = self.talk().await;
-        for (slot, shown) in std::mem::take(&mut self.slots) {
-            if let Some(picture) = &shown.picture {
-                self.hub.pictures.leave(picture, self.who(slot));
-            }
+        for slot in self.slots.keys().copied().collect::<Vec<_>>() {
+            self.close(slot);
         }
+    }
+
+    /// Shows nothing in a slot any more.
+    fn close(&mut self, slot: Slot) {
+        if let Some(picture) = self.slots.remove(&slot).and_then(|shown| shown.picture) {
+            self.hub.pictures.leave(&picture, self.who(slot));
+        }
+        self.hub.scenes.left();
     }
 
     async fn talk(&mut self) -> Result<(), Gone> {
@@ -162,7 +168,7 @@ impl Client {
         let hello = json!({
             "type": "hello",
             "version": env!("CARGO_PKG_VERSION"),
-            "scenes": hub.builtin.as_ref().map(|scenes| scenes.names()),
+            "scenes": hub.offered.as_ref().map(|scenes| scenes.names()),
             "edit": hub.edit,
             "editor": hub.editor.is_some(),
             "threads": hub.session.threads(),
@@ -181,7 +187,7 @@ impl Client {
             Asked::Open { scene } => {
                 let path = self
                     .hub
-                    .builtin
+                    .offered
                     .as_ref()
                     .and_then(|scenes| scenes.path(&scene));
                 let Some(path) = path else {
@@ -208,9 +214,7 @@ impl Client {
                 self.show(slot).await
             }
             Asked::Close { slot } => {
-                if let Some(picture) = self.slots.remove(&slot).and_then(|shown| shown.picture) {
-                    self.hub.pictures.leave(&picture, self.who(slot));
-                }
+                self.close(slot);
                 Ok(())
             }
             Asked::Linear { slot, region } => self.linear(slot, region).await,
@@ -316,16 +320,30 @@ impl Client {
 
     /// Brings a slot up to date: its scene, then its picture.
     async fn show(&mut self, slot: Slot) -> Result<(), Gone> {
+        let mut messages = vec![];
+        let looks_new = self.update(slot, &mut messages);
+        for message in messages {
+            self.send(&message).await?;
+        }
+        match looks_new {
+            true => self.whole(slot).await,
+            false => Ok(()),
+        }
+    }
+
+    /// Takes the scene and the picture that a slot asks for. Returns whether the page needs all that there is of the picture.
+    fn update(&mut self, slot: Slot, messages: &mut Vec<Value>) -> bool {
         let (who, title) = (self.who(slot), self.title());
         let Some(shown) = self.slots.get_mut(&slot) else {
-            return Ok(());
+            return false;
         };
         let settings = &shown.settings;
         let key = key_of(&self.path, &self.texts, settings, &self.hub.defaults);
+        // Given up first, so that a scene that is wanted no more need not be read to its end.
+        shown.place = None;
         let (compiled, loading, place) = self.hub.scenes.want(&key);
         shown.place = Some(place);
         let told = (compiled.as_ref().map(|c| c.number), loading);
-        let mut messages = vec![];
         if shown.told != Some(told) {
             shown.told = Some(told);
             messages.push(scene_message(slot, &title, compiled.as_deref(), loading));
@@ -335,59 +353,58 @@ impl Client {
             .compiled
             .as_ref()
             .and_then(|c| Some((c.number, c.scene.as_ref()?, c.camera.as_ref()?)));
-        let mut whole = None;
-        if let Some((number, scene, camera)) = scene {
-            let view = match view_of(scene, camera, settings, &self.hub) {
-                Ok(view) => view,
-                Err(problem) => {
-                    messages.push(json!({ "type": "error", "slot": slot, "message": problem }));
-                    for message in messages {
-                        self.send(&message).await?;
-                    }
-                    return Ok(());
-                }
-            };
-            let kind = settings.channel.kind();
-            let pictures = &self.hub.pictures;
-            let name = format!("{number} {:?}", settings.lights);
-            let picture = pictures.follow(&name, &view, kind, who, &self.follower);
-            let is_new = shown
-                .picture
-                .as_ref()
-                .is_none_or(|old| !Arc::ptr_eq(old, &picture));
-            if let Some(old) = shown.picture.replace(Arc::clone(&picture)) {
-                pictures.leave(&old, who);
+        let Some((number, scene, camera)) = scene else {
+            return false;
+        };
+        let view = match view_of(scene, camera, settings, &self.hub) {
+            Ok(view) => view,
+            Err(problem) => {
+                messages.push(json!({ "type": "error", "slot": slot, "message": problem }));
+                return false;
             }
-            let look = Look {
-                channel: settings.channel,
-                gain: settings.exposure.exp2(),
-                curve: settings.curve,
-                diagonal: scene.diagonal(),
-                scale: 0.0,
-            };
-            if is_new {
-                messages.push(picture_message(slot, &picture, camera));
-            }
-            let changed = (shown.look.channel, shown.look.gain, shown.look.curve)
-                != (look.channel, look.gain, look.curve);
-            if is_new || changed {
-                shown.look = look;
-                let canvas = picture.canvas();
-                let (begun, end) = (canvas.begun, canvas.end.is_some());
-                drop(canvas);
-                whole = (begun || end).then_some((Arc::clone(&picture), end));
-            }
+        };
+        let kind = settings.channel.kind();
+        let pictures = &self.hub.pictures;
+        let name = format!("{number} {:?}", settings.lights);
+        let picture = pictures.follow(&name, &view, kind, who, &self.follower);
+        let old = shown.picture.replace(Arc::clone(&picture));
+        let is_new = old.as_ref().is_none_or(|old| !Arc::ptr_eq(old, &picture));
+        if let Some(old) = old {
+            pictures.leave(&old, who);
         }
-        for message in messages {
-            self.send(&message).await?;
+        if is_new {
+            messages.push(picture_message(slot, &picture, camera));
         }
-        if let Some((picture, end)) = whole {
-            let (number, region) = (picture.number, picture.region());
+        let look = Look {
+            channel: settings.channel,
+            gain: settings.exposure.exp2(),
+            curve: settings.curve,
+            diagonal: scene.diagonal(),
+            scale: 0.0,
+        };
+        let looks_new = is_new || !look.shows_the_same(&shown.look);
+        if looks_new {
+            shown.look = look;
+        }
+        looks_new
+    }
+
+    /// Sends all that there is of a slot's picture.
+    async fn whole(&mut self, slot: Slot) -> Result<(), Gone> {
+        let Some(picture) = self.picture(slot) else {
+            return Ok(());
+        };
+        let (begun, end) = {
+            let canvas = picture.canvas();
+            (canvas.begun, canvas.end.is_some())
+        };
+        let (who, number, region) = (self.who(slot), picture.number, picture.region());
+        if begun || end {
             self.tell(who, number, News::Part { region, step: 1 })
                 .await?;
-            if end {
-                self.tell(who, number, News::End).await?;
-            }
+        }
+        if end {
+            self.tell(who, number, News::End).await?;
         }
         Ok(())
     }

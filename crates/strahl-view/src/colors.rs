@@ -67,6 +67,13 @@ pub(crate) struct Look {
     pub(crate) scale: f64,
 }
 
+impl Look {
+    /// Whether pixels get the same colours, but for the scale of counts, which is known at the end.
+    pub(crate) fn shows_the_same(&self, other: &Self) -> bool {
+        (self.channel, self.gain, self.curve) == (other.channel, other.gain, other.curve)
+    }
+}
+
 /// The sRGB codes of the blocks of a region, row by row.
 pub(crate) fn srgb8(picture: &Picture, region: Region, step: u32, look: &Look) -> Vec<u8> {
     let canvas = picture.canvas();

@@ -47,8 +47,6 @@ mod watch;
 pub use export::{explanation_page, page_of_json};
 
 #[cfg(feature = "server")]
-pub use builtin::Builtin;
-#[cfg(feature = "server")]
 pub use camera::camera_sdl;
 #[cfg(feature = "server")]
 pub use export::{PicturePage, USUAL_TREES};

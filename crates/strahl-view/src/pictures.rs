@@ -1,5 +1,6 @@
 //! Pictures that pages look at: rendered once for all of them.
 
+use crate::export::objects_of;
 use std::ops::ControlFlow;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
@@ -42,6 +43,7 @@ pub(crate) struct Picture {
     key: String,
     stop: Arc<AtomicBool>,
     canvas: Mutex<Canvas>,
+    objects: OnceLock<Vec<u32>>,
 }
 
 /// What there is of a picture.
@@ -109,6 +111,18 @@ impl Picture {
     pub(crate) fn exr(&self) -> Result<Vec<u8>, ImageError> {
         let pixels = self.canvas().pixels.clone();
         encoded(ImageFormat::Exr, self.view.width, self.view.height, &pixels)
+    }
+
+    /// What its pixels show, as [`objects_of`] says. It is found out once.
+    ///
+    /// # Errors
+    /// Those of rendering.
+    pub(crate) fn objects(&self, session: &Session) -> Result<&[u32], String> {
+        if let Some(known) = self.objects.get() {
+            return Ok(known);
+        }
+        let found = objects_of(session, &self.view)?;
+        Ok(self.objects.get_or_init(|| found))
     }
 
     fn tell(&self, news: News) {
@@ -249,6 +263,7 @@ impl Pictures {
                 followers: vec![(who, follower.clone())],
                 ..Canvas::default()
             }),
+            objects: OnceLock::new(),
         });
         let (session, rendered) = (self.session.clone(), Arc::clone(&picture));
         let thread = std::thread::Builder::new().name("strahl picture".into());

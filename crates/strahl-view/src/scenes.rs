@@ -5,7 +5,7 @@ use crate::protocol::{LONGEST_TEXT, Said};
 use crate::texts::{is_sdl, names_clock};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 use strahl::prelude::*;
@@ -34,8 +34,8 @@ impl Request {
     }
 }
 
-/// Reads a scene, and adds a camera and lights to a bare mesh.
-pub type LoadScene = Box<dyn Fn(&Request) -> Loaded + Send + Sync>;
+/// Reads a scene, and adds a camera and lights to a bare mesh. It may end with an error when the flag becomes true: nobody wants the scene then.
+pub type LoadScene = Box<dyn Fn(&Request, &Arc<AtomicBool>) -> Loaded + Send + Sync>;
 
 /// A request with the accelerator to build.
 #[derive(Clone, Debug, PartialEq)]
@@ -98,6 +98,13 @@ impl SceneFile {
         })
     }
 
+    /// Where changes of it are seen: its path, and what it leads to if it is a link.
+    fn places(&self) -> impl Iterator<Item = PathBuf> {
+        let target = self.path.canonicalize().ok();
+        let target = target.filter(|target| *target != self.path);
+        std::iter::once(self.path.clone()).chain(target)
+    }
+
     /// Whether a page may show it as a text; pictures and fonts are none.
     pub(crate) fn is_text(&self) -> bool {
         const OTHERS: [&str; 20] = [
@@ -117,9 +124,44 @@ struct Entry {
     loading: bool,
     /// Whether a file has changed since the loading began.
     stale: bool,
+    /// When the last loading began, and what ends the reading.
+    since: Instant,
+    stop: Arc<AtomicBool>,
     used: u64,
     /// Held by all who show it.
     place: Place,
+}
+
+impl Entry {
+    /// Whether somebody shows it.
+    fn is_held(&self) -> bool {
+        Arc::strong_count(&self.place) > 1
+    }
+
+    /// Whether one of these files is one of the scene's, as far as they are known.
+    fn consists_of(&self, changed: &[PathBuf]) -> bool {
+        match &self.compiled {
+            Some(compiled) => {
+                let mut files = compiled.files.iter();
+                files.any(|file| file.places().any(|place| changed.contains(&place)))
+            }
+            None => changed.contains(&absolute(&self.key.request.path)),
+        }
+    }
+
+    /// Whether it is being read for much longer than it took the last time, as a loop that doesn't end is. (A scene that changes more often than
+    /// it can be read is shown now and then.)
+    fn is_overdue(&self) -> bool {
+        let last = self.compiled.as_ref().map_or(0.0, |c| c.seconds);
+        self.loading && self.since.elapsed().as_secs_f64() > last + OVERDUE
+    }
+
+    /// Ends the reading of a scene that nobody shows any more.
+    fn stop_unwanted(&self) {
+        if self.loading && !self.is_held() {
+            self.stop.store(true, Ordering::Relaxed);
+        }
+    }
 }
 
 /// Keeps a scene from being forgotten, as long as somebody holds it.
@@ -127,6 +169,8 @@ pub(crate) type Place = Arc<()>;
 
 /// How many scenes are kept, if not more of them are shown.
 const KEPT: usize = 4;
+/// By so many seconds a scene may be read longer than the last time, before a changed file makes it begin again.
+const OVERDUE: f64 = 1.0;
 /// How many scenes are loaded at the same time. A page that asks for a new one with every movement of a slider waits for its last one, not for
 /// all of them.
 const MOST_LOADING: usize = 2;
@@ -173,8 +217,7 @@ impl Scenes {
         let index = entries.iter().position(|entry| entry.key == *key);
         let index = index.unwrap_or_else(|| {
             while entries.len() >= KEPT {
-                let is_idle =
-                    |entry: &Entry| !entry.loading && Arc::strong_count(&entry.place) == 1;
+                let is_idle = |entry: &Entry| !entry.loading && !entry.is_held();
                 let idle = entries.iter().enumerate().filter(|(_, e)| is_idle(e));
                 let Some((oldest, _)) = idle.min_by_key(|(_, e)| e.used) else {
                     break;
@@ -186,17 +229,22 @@ impl Scenes {
                 compiled: None,
                 loading: false,
                 stale: true,
+                since: Instant::now(),
+                stop: Arc::default(),
                 used: now,
                 place: Place::default(),
             });
             entries.len() - 1
         });
+        let others = entries.iter().enumerate().filter(|(n, _)| *n != index);
+        others.for_each(|(_, entry)| entry.stop_unwanted());
         // Those that have to wait are asked for again when one is loaded.
         let room = entries.iter().filter(|entry| entry.loading).count() < MOST_LOADING;
         let entry = &mut entries[index];
         entry.used = now;
         if entry.stale && !entry.loading && room {
             (entry.loading, entry.stale) = (true, false);
+            (entry.since, entry.stop) = (Instant::now(), Arc::default());
             let (this, key) = (Arc::clone(self), key.clone());
             let thread = std::thread::Builder::new().name("strahl load".into());
             if thread.spawn(move || this.load(&key)).is_err() {
@@ -210,19 +258,23 @@ impl Scenes {
         )
     }
 
+    /// Somebody shows a scene no more.
+    pub(crate) fn left(&self) {
+        self.entries().iter().for_each(Entry::stop_unwanted);
+    }
+
     /// Files have changed: scenes made of them are to be loaded again. A scene with errors may wait for any new file.
     pub(crate) fn files_changed(&self, changed: &[PathBuf]) {
         let mut any = false;
         for entry in self.entries().iter_mut() {
-            let hit = entry.compiled.as_ref().is_none_or(|compiled| {
-                compiled.scene.is_none()
-                    || compiled
-                        .files
-                        .iter()
-                        .any(|file| changed.contains(&file.path))
-            });
-            entry.stale |= hit;
-            any |= hit;
+            let known = entry.compiled.as_ref();
+            let waits = known.is_none_or(|compiled| compiled.scene.is_none());
+            let is_own = entry.consists_of(changed);
+            if is_own && entry.is_overdue() {
+                entry.stop.store(true, Ordering::Relaxed);
+            }
+            entry.stale |= waits || is_own;
+            any |= waits || is_own;
         }
         if any {
             self.changed();
@@ -234,18 +286,18 @@ impl Scenes {
     /// # Errors
     /// The first error of the scene.
     pub(crate) fn description(&self, request: &Request) -> Result<Scene, String> {
-        let loaded = (self.load)(request);
+        let loaded = (self.load)(request, &Arc::default());
         let first = || loaded.diagnostics.first().map(|d| d.message.clone());
         let problem = first().unwrap_or_else(|| "the scene cannot be read".into());
         loaded.scene.ok_or(problem)
     }
 
-    /// The files of all scenes.
+    /// The files of all scenes, and what those that are links lead to.
     pub(crate) fn files(&self) -> Vec<PathBuf> {
         let entries = self.entries();
         let compiled = entries.iter().filter_map(|entry| entry.compiled.as_ref());
         let mut all: Vec<PathBuf> = compiled
-            .flat_map(|c| c.files.iter().map(|file| file.path.clone()))
+            .flat_map(|c| c.files.iter().flat_map(SceneFile::places))
             .collect();
         all.sort();
         all.dedup();
@@ -253,56 +305,77 @@ impl Scenes {
     }
 
     fn load(&self, key: &Key) {
-        let (before, similar) = {
-            let entries = self.entries();
-            let entry = entries.iter().find(|entry| entry.key == *key);
-            let before = entry.and_then(|entry| entry.compiled.clone());
-            let alike = |other: &Key| {
-                let request = Request {
-                    texts: key.request.texts.clone(),
-                    ..other.request.clone()
-                };
-                request == key.request && other.accelerator == key.accelerator
-            };
-            // The newest one that differs in nothing but its text.
-            let similar = entries
-                .iter()
-                .filter(|entry| alike(&entry.key))
-                .filter_map(|entry| entry.compiled.clone())
-                .filter(|compiled| compiled.scene.is_some())
-                .max_by_key(|compiled| compiled.number);
-            (before, similar)
-        };
+        let (before, similar, stop) = self.known(key);
         let outcome = catch_unwind(AssertUnwindSafe(|| {
-            self.compile(key, before.as_deref(), similar.as_deref())
+            self.compile(key, before.as_deref(), similar.as_deref(), &stop)
         }));
+        let mut stopped = false;
         let compiled = match outcome {
+            // What was stopped tells nothing about the scene. It is loaded again if somebody wants it.
+            Ok(Some(compiled)) if compiled.scene.is_none() && stop.load(Ordering::Relaxed) => {
+                stopped = true;
+                before
+            }
             Ok(Some(compiled)) => Some(Arc::new(compiled)),
             // Nothing has changed.
             Ok(None) => before,
-            Err(_) => Some(Arc::new(Compiled {
-                number: self.numbers.fetch_add(1, Ordering::Relaxed),
-                scene: None,
-                camera: None,
-                clock: false,
-                said: vec![Said::of(
-                    &Diagnostic::error("strahl failed while it read this scene")
-                        .hint("this is an error of strahl, not of the scene: please report it"),
-                    None,
-                )],
-                files: vec![SceneFile::new(&key.request.path)],
-                seconds: 0.0,
-                identity: None,
-                others: None,
-                text: None,
-                warned: vec![],
-            })),
+            Err(_) => Some(Arc::new(self.failed(&key.request.path))),
         };
         if let Some(entry) = self.entries().iter_mut().find(|entry| entry.key == *key) {
             entry.compiled = compiled;
             entry.loading = false;
+            entry.stale |= stopped;
         }
         self.changed();
+    }
+
+    /// What is known before a scene is loaded: what came of it the last time, the newest scene that differs from it in nothing but its texts, and
+    /// what stops the reading.
+    fn known(
+        &self,
+        key: &Key,
+    ) -> (
+        Option<Arc<Compiled>>,
+        Option<Arc<Compiled>>,
+        Arc<AtomicBool>,
+    ) {
+        let entries = self.entries();
+        let entry = entries.iter().find(|entry| entry.key == *key);
+        let before = entry.and_then(|entry| entry.compiled.clone());
+        let stop = entry.map(|entry| Arc::clone(&entry.stop));
+        let alike = |other: &Key| {
+            let request = Request {
+                texts: key.request.texts.clone(),
+                ..other.request.clone()
+            };
+            request == key.request && other.accelerator == key.accelerator
+        };
+        let similar = entries
+            .iter()
+            .filter(|entry| alike(&entry.key))
+            .filter_map(|entry| entry.compiled.clone())
+            .filter(|compiled| compiled.scene.is_some())
+            .max_by_key(|compiled| compiled.number);
+        (before, similar, stop.unwrap_or_default())
+    }
+
+    /// What came of a scene during whose reading strahl has panicked.
+    fn failed(&self, path: &Path) -> Compiled {
+        let message = Diagnostic::error("strahl failed while it read this scene")
+            .hint("this is an error of strahl, not of the scene: please report it");
+        Compiled {
+            number: self.numbers.fetch_add(1, Ordering::Relaxed),
+            scene: None,
+            camera: None,
+            clock: false,
+            said: vec![Said::of(&message, None)],
+            files: vec![SceneFile::new(path)],
+            seconds: 0.0,
+            identity: None,
+            others: None,
+            text: None,
+            warned: vec![],
+        }
     }
 
     /// Loads and compiles; `None` if the scene consists of the same as `before`. Nothing is built if the scene differs from `similar` in
@@ -312,6 +385,7 @@ impl Scenes {
         key: &Key,
         before: Option<&Compiled>,
         similar: Option<&Compiled>,
+        stop: &Arc<AtomicBool>,
     ) -> Option<Compiled> {
         let start = Instant::now();
         let text = text_of(&key.request);
@@ -319,7 +393,7 @@ impl Scenes {
             scene,
             diagnostics,
             inputs,
-        } = (self.load)(&key.request);
+        } = (self.load)(&key.request, stop);
         let identity = inputs.as_ref().map(Inputs::identity);
         let same =
             before.is_some_and(|before| before.scene.is_some() && before.identity == identity);
@@ -350,39 +424,21 @@ impl Scenes {
             }
             (None, None) => {}
         }
-        let mut said: Vec<Said> = diagnostics
-            .iter()
-            .map(|diagnostic| Said::of(diagnostic, sources.as_ref()))
-            .collect();
-        let mut compiled = None;
-        let mut camera = None;
-        let mut warned = vec![];
-        let known = scene.as_ref().and_then(|scene| scene.camera.clone());
-        let known = known.filter(|camera| camera.problem().is_none());
-        if let (Some(kept), Some(known)) = (kept, known) {
-            compiled = kept.scene.clone();
-            camera = Some(known);
-            warned = kept.warned.clone();
-        } else if let Some(scene) = scene {
-            let options = CompileOptions {
-                accelerator: key.accelerator,
-            };
-            let more = match self.session.compile(&scene, &options) {
-                Ok((scene, warnings)) => {
-                    camera = Some(scene.camera().clone());
-                    compiled = Some(scene);
-                    warnings
-                }
-                Err(problems) => problems.0,
-            };
-            warned = more.iter().map(|d| Said::of(d, sources.as_ref())).collect();
-        }
+        let Built {
+            scene,
+            camera,
+            warned,
+        } = scene.map_or_else(Built::default, |scene| {
+            self.build(scene, key.accelerator, kept)
+        });
+        let told = diagnostics.iter();
+        let mut said: Vec<Said> = told.map(|d| Said::of(d, sources.as_ref())).collect();
         said.extend(warned.iter().cloned());
         said.truncate(200);
         let clock = uses_clock(&key.request, text.as_deref(), &files);
         Some(Compiled {
             number: self.numbers.fetch_add(1, Ordering::Relaxed),
-            scene: compiled,
+            scene,
             camera,
             said,
             clock,
@@ -394,6 +450,45 @@ impl Scenes {
             warned,
         })
     }
+
+    /// Builds a description, or takes what is `kept` of one that differs from it in nothing but the camera.
+    fn build(&self, scene: Scene, accelerator: AcceleratorKind, kept: Option<&Compiled>) -> Built {
+        let camera = scene.camera.as_ref();
+        let camera = camera.filter(|camera| camera.problem().is_none());
+        if let (Some(kept), Some(camera)) = (kept, camera) {
+            return Built {
+                scene: kept.scene.clone(),
+                camera: Some(camera.clone()),
+                warned: kept.warned.clone(),
+            };
+        }
+        let told = |all: &[Diagnostic]| {
+            let all = all.iter().map(|d| Said::of(d, Some(&scene.sources)));
+            all.collect()
+        };
+        match self
+            .session
+            .compile(&scene, &CompileOptions { accelerator })
+        {
+            Ok((built, warnings)) => Built {
+                camera: Some(built.camera().clone()),
+                scene: Some(built),
+                warned: told(&warnings),
+            },
+            Err(problems) => Built {
+                warned: told(&problems.0),
+                ..Built::default()
+            },
+        }
+    }
+}
+
+/// A scene that is built, its camera, and what was said meanwhile.
+#[derive(Default)]
+struct Built {
+    scene: Option<Arc<RenderScene>>,
+    camera: Option<Camera>,
+    warned: Vec<Said>,
 }
 
 /// The text of a scene's own file, if it is one that a page would show.
@@ -460,9 +555,10 @@ mod tests {
     use super::*;
     use strahl::{Format, LoadOptions, load_bytes};
 
-    fn load(request: &Request) -> Loaded {
+    fn load(request: &Request, stop: &Arc<AtomicBool>) -> Loaded {
         let options = LoadOptions {
             record: true,
+            stop: Some(Arc::clone(stop)),
             ..LoadOptions::default()
         };
         let text = request.text().map(|text| &**text).unwrap_or_default();
@@ -529,9 +625,9 @@ mod tests {
     fn scenes_that_are_shown_stay_however_many_there_are() {
         let count = Arc::new(AtomicU64::new(0));
         let loads = Arc::clone(&count);
-        let counting = move |request: &Request| {
+        let counting = move |request: &Request, stop: &Arc<AtomicBool>| {
             loads.fetch_add(1, Ordering::Relaxed);
-            load(request)
+            load(request, stop)
         };
         let session = Session::new(Threads::Count(1)).unwrap();
         let scenes = Scenes::new(session, Box::new(counting));
@@ -564,6 +660,72 @@ mod tests {
         let _ = scenes.want(&key(shown));
         assert_eq!(scenes.entries().len(), KEPT);
         assert!(scenes.entries().iter().any(|entry| entry.key == key(0)));
+    }
+
+    /// Whoever writes a loop types its condition before the line that ends it.
+    #[test]
+    fn a_loop_without_end_stops_when_nobody_wants_it_any_more() {
+        let scenes = Scenes::new(
+            Session::new(Threads::Count(1)).unwrap(),
+            Box::new(move |request: &Request, stop: &Arc<AtomicBool>| {
+                let mut options = LoadOptions {
+                    record: true,
+                    stop: Some(Arc::clone(stop)),
+                    ..LoadOptions::default()
+                };
+                // Only the flag ends it.
+                options.sdl.limits.set("steps", u64::MAX);
+                options.sdl.limits.set("idle_steps", u64::MAX);
+                let text = request.text().unwrap().as_bytes().to_vec();
+                load_bytes(text, "a.pov", Format::Pov, options)
+            }),
+        );
+        let key = |text: &str| Key {
+            request: Request {
+                path: "a.pov".into(),
+                texts: Texts::from([("a.pov".into(), text.into())]),
+                size: None,
+                clock: 0.0,
+            },
+            accelerator: AcceleratorKind::default(),
+        };
+        // As many as are loaded at the same time.
+        for n in 0..MOST_LOADING {
+            let (_, loading, place) = scenes.want(&key(&format!("#while (1) #end // {n}")));
+            assert!(loading);
+            drop(place);
+        }
+        let good = key("sphere { 4*z, 1 }");
+        let start = Instant::now();
+        let _place = loop {
+            if let (Some(compiled), false, place) = scenes.want(&good) {
+                assert!(compiled.scene.is_some());
+                break place;
+            }
+            assert!(start.elapsed().as_secs() < 30, "they are read on");
+            std::thread::sleep(std::time::Duration::from_millis(2));
+        };
+        assert!(scenes.entries().iter().all(|entry| !entry.loading));
+        // One that is in a file, until the file changes.
+        let endless = key("#while (1) #end");
+        let (_, _, _place) = scenes.want(&endless);
+        let is_loading = || {
+            let entries = scenes.entries();
+            entries
+                .iter()
+                .any(|entry| entry.key == endless && entry.loading)
+        };
+        scenes.files_changed(&[absolute(Path::new("a.pov"))]);
+        assert!(is_loading(), "it has not been read for long");
+        std::thread::sleep(std::time::Duration::from_secs_f64(OVERDUE + 0.1));
+        scenes.files_changed(&[absolute(Path::new("b.pov"))]);
+        assert!(is_loading(), "another file");
+        scenes.files_changed(&[absolute(Path::new("a.pov"))]);
+        let start = Instant::now();
+        while is_loading() {
+            assert!(start.elapsed().as_secs() < 30, "it is read on");
+            std::thread::sleep(std::time::Duration::from_millis(2));
+        }
     }
 
     #[test]

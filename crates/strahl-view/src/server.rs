@@ -1,11 +1,12 @@
 //! The server: one page, its files, and a WebSocket for each page that is open.
 
+use crate::builtin::{Builtin, Offered};
 use crate::client::Client;
 use crate::guard::{Guard, guard};
 use crate::pictures::Pictures;
 use crate::protocol::LONGEST_MESSAGE;
 use crate::scenes::{LoadScene, Scenes};
-use crate::{Builtin, assets, watch};
+use crate::{assets, watch};
 use axum::Router;
 use axum::extract::ws::WebSocketUpgrade;
 use axum::extract::{Path, State};
@@ -116,7 +117,7 @@ pub(crate) struct Hub {
     pub(crate) scenes: Arc<Scenes>,
     pub(crate) pictures: Arc<Pictures>,
     pub(crate) session: Session,
-    pub(crate) builtin: Option<Builtin>,
+    pub(crate) offered: Option<Offered>,
     pub(crate) scene: PathBuf,
     pub(crate) defaults: Defaults,
     pub(crate) edit: bool,
@@ -141,13 +142,14 @@ pub fn serve(options: ViewOptions, ready: impl FnOnce(&Served)) -> Result<(), Se
         let _inside = runtime.enter();
         Signals::catch()?
     };
+    // They live here, so that their files are removed at the end, whatever a page is still asking for.
     let builtin = match options.scene {
         Some(_) => None,
         None => Some(Builtin::unpack()?),
     };
-    let first = |scenes: &Builtin| scenes.path("showcase/whitted.pov");
-    let scene = match &builtin {
-        Some(scenes) => first(scenes).unwrap_or_default(),
+    let offered = builtin.as_ref().map(Builtin::offered);
+    let scene = match &offered {
+        Some(scenes) => scenes.path("showcase/whitted.pov").unwrap_or_default(),
         None => options.scene.unwrap_or_default(),
     };
     let scenes = Scenes::new(options.session.clone(), options.load);
@@ -156,7 +158,7 @@ pub fn serve(options: ViewOptions, ready: impl FnOnce(&Served)) -> Result<(), Se
         scenes,
         pictures: Pictures::new(options.session.clone()),
         session: options.session,
-        builtin,
+        offered,
         scene,
         defaults: options.defaults,
         edit: options.edit,

@@ -13,7 +13,8 @@
 use serde_json::{Value, json};
 use std::net::TcpStream;
 use std::path::Path;
-use std::sync::mpsc;
+use std::sync::atomic::AtomicBool;
+use std::sync::{Arc, mpsc};
 use std::time::{Duration, Instant};
 use strahl::prelude::*;
 use strahl::{LoadOptions, load_path};
@@ -22,7 +23,7 @@ use tungstenite::client::IntoClientRequest;
 use tungstenite::{Message, WebSocket, client};
 
 fn start(scene: &Path) -> (Served, std::thread::JoinHandle<()>) {
-    let load = |request: &Request| {
+    let load = |request: &Request, _: &Arc<AtomicBool>| {
         let options = LoadOptions {
             record: true,
             ..LoadOptions::default()

@@ -9,7 +9,8 @@ use serde_json::{Value, json};
 use std::io::{Read, Write};
 use std::net::TcpStream;
 use std::path::{Path, PathBuf};
-use std::sync::mpsc;
+use std::sync::atomic::AtomicBool;
+use std::sync::{Arc, mpsc};
 use std::time::{Duration, Instant};
 use strahl::prelude::*;
 use strahl::{LoadOptions, load_path};
@@ -35,10 +36,11 @@ impl Drop for Running {
     }
 }
 
-fn load(request: &Request) -> strahl::Loaded {
+fn load(request: &Request, stop: &Arc<AtomicBool>) -> strahl::Loaded {
     let mut options = LoadOptions {
         record: true,
         texts: request.texts.clone(),
+        stop: Some(Arc::clone(stop)),
         ..LoadOptions::default()
     };
     options.sdl.clock = request.clock;
@@ -571,6 +573,31 @@ fn texts_of_included_files_are_tried_and_those_that_are_built_in_are_shown() {
     );
     page.send(json!({ "type": "text", "file": own, "text": "x".repeat(2 << 20) }));
     assert_eq!(page.until("error")["message"], "the text is too long");
+}
+
+/// People keep their files in one folder and link to them from another.
+#[cfg(unix)]
+#[test]
+fn links_are_followed() {
+    let folder = tempfile::tempdir().unwrap();
+    let kept = folder.path().join("kept");
+    std::fs::create_dir(&kept).unwrap();
+    let target = kept.join("real.pov");
+    std::fs::write(&target, BALL).unwrap();
+    let scene = folder.path().join("scene.pov");
+    std::os::unix::fs::symlink(&target, &scene).unwrap();
+    let running = serving(folder, &scene, Some((64, 48)), true, None);
+    let mut page = running.page();
+    page.show(json!({}));
+    let first = page.picture((64, 48));
+    std::fs::write(&target, BALL.replace("0, 1\n", "0, 0.5\n")).unwrap();
+    let small = page.picture((64, 48));
+    assert_ne!(small, first);
+    let file = scene.display().to_string();
+    page.send(json!({ "type": "save", "file": file, "text": BALL, "id": 1 }));
+    assert_eq!(page.picture((64, 48)), first);
+    assert!(scene.is_symlink(), "it is a link still");
+    assert_eq!(std::fs::read_to_string(target).unwrap(), BALL);
 }
 
 #[test]

@@ -3,6 +3,8 @@ use crate::input::{Input, Moment, threads};
 use crate::output::say;
 use crate::report::{Failure, Reporter};
 use std::process::{Command, Stdio};
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 use strahl::Loaded;
 use strahl::prelude::*;
 use strahl_view::{Defaults, Request, ViewOptions, serve};
@@ -33,9 +35,12 @@ pub(crate) fn view(args: &ViewArgs) -> Result<(), Failure> {
         clock: args.pov.clock.unwrap_or(0.0),
     };
     let (format, pov) = (args.format, args.pov.clone());
-    let load = move |request: &Request| {
+    let load = move |request: &Request, stop: &Arc<AtomicBool>| {
         let input = match Input::new(Some(&request.path), format, &pov, request.size) {
-            Ok(input) => input.recording(true).with_texts(request.texts.clone()),
+            Ok(input) => input
+                .recording(true)
+                .with_texts(request.texts.clone())
+                .stopped_by(Arc::clone(stop)),
             Err(failure) => return failed(&failure),
         };
         let still = input.still();

@@ -86,6 +86,8 @@ impl Client {
             return Err("the text is too long".into());
         }
         let path = self.path_of(name)?;
+        // A link stays one: what it leads to is written.
+        let path = path.canonicalize().unwrap_or(path);
         let folder = path.parent().unwrap_or(Path::new("."));
         // Never half a file; and the file's permissions stay.
         let write = || -> std::io::Result<()> {

@@ -2,7 +2,7 @@
 
 use super::messages::{key_of, moved};
 use super::{Busy, Client, Gone};
-use crate::export::{PicturePage, USUAL_TREES, objects_of};
+use crate::export::{PicturePage, USUAL_TREES};
 use crate::pictures::{End, Kind, Picture};
 use crate::protocol::{MARKS, Slot, header};
 use crate::server::Hub;
@@ -95,6 +95,7 @@ impl Client {
         let settings = &shown.settings;
         let key = key_of(&self.path, &self.texts, settings, &self.hub.defaults);
         let lights = settings.lights.clone();
+        let page = self.answer.clone();
         self.work(id, move |hub| {
             let description = hub.scenes.description(&key.request)?;
             let view = &picture.view;
@@ -107,6 +108,9 @@ impl Client {
             for &accelerator in AcceleratorKind::ALL {
                 if accelerator.name() == "list" && !few {
                     continue;
+                }
+                if page.is_closed() {
+                    return Err("the page has gone".into());
                 }
                 let start = Instant::now();
                 let built = hub
@@ -157,7 +161,7 @@ impl Client {
             for (number, object) in objects() {
                 made[number as usize + 1] = in_file(object.span) && object.span.line == first;
             }
-            let seen = objects_of(&hub.session, &picture.view)?;
+            let seen = picture.objects(&hub.session)?;
             let mut message = header(MARKS, picture.number, picture.region(), 1);
             message[28..32].copy_from_slice(&first.to_le_bytes());
             let is_made = |object: &u32| made.get(*object as usize) == Some(&true);
