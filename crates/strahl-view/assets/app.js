@@ -22,8 +22,8 @@ import { getLanguage, setLanguage, word } from "./words.js";
 const page = {
   hello: null, scene: null, current: null, explained: null, looked: [], set, pick, toggle,
   actions: {
-    open: openScene, camera: turnCamera, lights: showLights, reset, compare: () => set({ compare: state.compare ? null : { depth: 1 } }),
-    theme: toggleTheme, language: toggleLanguage, help,
+    open: openScene, camera: turnCamera, lights: showLights, reset, compare: toggleCompare,
+    theme: toggleTheme, language: toggleLanguage, help, unmark,
   },
 };
 // The camera as the scene has it.
@@ -58,7 +58,7 @@ const lights = new Lights({
 
 const stage = new Stage(find("stage"), lights, {
   pick, hover,
-  leave: () => { hover.next = null; status(null); code.setUnder(null, null); },
+  leave: () => { hover.next = null; status(null); code.setUnder(...placeOfPixel()); },
   camera: (camera) => move({ camera: plain(camera) }),
   current: () => {
     const camera = mover.wanted?.camera ?? state.camera ?? page.current?.camera;
@@ -207,6 +207,13 @@ function reset() {
   set({ camera: null, lights: null });
 }
 
+// The second picture has something else of what is looked at: where counts are shown, those of another accelerator beside them.
+function toggleCompare() {
+  if (state.compare) set({ compare: null });
+  else if (COUNTS.includes(state.channel)) set({ compare: { accelerator: page.scene?.stats?.accelerator === "grid" ? "bvh" : "grid" }, beside: true });
+  else set({ compare: { depth: 1 } });
+}
+
 function turnCamera() {
   if (lights.on) lights.toggle();
   stage.turning = !stage.turning;
@@ -278,7 +285,7 @@ function receive(head, bytes) {
     if (films.includes(space.film)) space.draw();
   } else if (head.kind === 2 && head.picture === stage.film.number) {
     stage.setLinear([head.x, head.y, head.width, head.height], new Float32Array(bytes));
-  } else if (head.kind === 3 && head.picture === stage.film.number) {
+  } else if (head.kind === 3 && head.picture === stage.film.number && markLine.file) {
     stage.setMarks(bytes, head.width, head.height);
     code.setMarked(markLine.file, head.extra);
   }
@@ -328,8 +335,20 @@ function status(seen) {
     right.textContent = `${current.width} × ${current.height} · ${rays.toLocaleString(getLanguage())} ${word("rays")} · ${number(seconds, 3)} s`;
     if (COUNTS.includes(state.channel)) right.textContent += ` · 0 … ${number(scale, 4)}${state.channel === "time" ? " µs" : ""}`;
   } else right.textContent = `${current.width} × ${current.height} · ${word("rendering")} …`;
+  showHeat(film.finished ? film.done?.scale : null);
   const stats = scene?.stats ? el("span", { class: "stats", text: `${counted(scene.stats.primitives, "oneObject", "objects")} · ${counted(scene.stats.lights, "oneLight", "lightCount")} · ${scene.stats.accelerator}` }) : "";
   find("status").replaceChildren(left, el("span", { class: "gap" }), warningsButton(scene?.said ?? [], () => { problems(); status(null); }), stats, right);
+}
+
+// What the colours of counts mean, once their scale is known.
+function showHeat(scale) {
+  const box = find("heat") ?? stage.box.appendChild(el("div", { id: "heat", hidden: true }));
+  const counts = COUNTS.includes(state.channel);
+  if (!counts) box.hidden = true;
+  if (!counts || scale === null || scale === undefined) return;
+  box.hidden = false;
+  const unit = state.channel === "time" ? "µs" : word(state.channel === "rays" ? "rayCount" : state.channel);
+  box.replaceChildren("0", el("span", { class: "scale", "aria-hidden": "true" }), `${number(scale, 4)} ${unit}`);
 }
 
 // One question at a time; the last place of the mouse counts.
@@ -344,6 +363,7 @@ async function hover(x, y) {
       if (hover.next) {
         status(seen);
         code.setUnder(seen.seen?.file ?? null, seen.seen?.line ?? null);
+        code.rest();
       }
     } catch { /* the picture has changed meanwhile */ }
     if (hover.next && hover.next[0] === ax && hover.next[1] === ay) break;
@@ -373,12 +393,21 @@ async function explain() {
   try {
     const pixel = await link.ask({ type: "explain", slot: "main", x, y });
     if (asked !== explain.count) return;
+    const moved = page.explained?.pixel.join() !== pixel.pixel.join();
     page.explained = pixel;
     space.setPixel(pixel, current);
     showInspector();
+    // The text goes there, unless somebody is writing.
+    if (moved && !code.writing) code.show(...placeOfPixel());
   } catch (problem) {
     if (asked === explain.count) toast(problem.message);
   }
+}
+
+// File and line of what the picked pixel shows.
+function placeOfPixel() {
+  const match = /^(.*?):(\d+)(?::\d+)?$/.exec(page.explained?.samples[0]?.rays[0].hit?.source ?? "");
+  return match ? [match[1], Number(match[2])] : [null, null];
 }
 
 function showInspector() {
@@ -394,12 +423,13 @@ function showInspector() {
   else if (state.panel === "tree") {
     body = el("div", { class: "panel-body" }, showPixel(explained, {
       onPlace: showPlace,
-      onRay: (ray) => space.light(ray.id),
+      onRay: (ray) => stage.showRay(ray),
       onSample: (index) => space.setSample(index),
     }, space.sample), el("p", {}, el("button", { type: "button", class: "tool", id: "export", text: word("export"), onclick: page.actions.pixel }), " ",
       el("button", { type: "button", class: "tool", id: "export-svg", text: word("treeSvg"), onclick: page.actions.tree })));
   } else body = space.panel(state.panel);
   box.replaceChildren(tabs, body);
+  stage.showRay(null);
   if (explained && state.panel !== "tree") space.opened();
   else space.closed();
 }
@@ -407,6 +437,12 @@ function showInspector() {
 function markRay(id) {
   for (const one of document.querySelectorAll("#inspector .marked")) one.classList.remove("marked");
   document.querySelector(`#inspector [data-node="${id}"] > details > summary`)?.classList.add("marked");
+}
+
+function unmark() {
+  markLine.file = null;
+  stage.setMarks(null);
+  code.setMarked(null, null);
 }
 
 async function markLine(file, line) {

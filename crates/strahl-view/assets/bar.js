@@ -73,13 +73,14 @@ function showSide({ hello, stage, set }) {
   box.hidden = !state.compare;
   if (!state.compare) return;
   const side = state.compare;
+  // It may be folded up, to see what is under it.
+  const open = box.firstChild?.open ?? true;
   const change = (values) => set({ compare: { ...state.compare, ...values } });
-  box.replaceChildren(
-    el("strong", { text: word("settingsOf") }),
+  box.replaceChildren(el("details", { open }, el("summary", { text: word("settingsOf") }), el("div", { class: "card-body" },
     choose("side-view", word("view"), [["", word("swipe")], ["beside", word("beside")]], state.beside ? "beside" : "", (value) => set({ beside: value ? true : null })),
     choose("side-channel", word("channel"), channels(), side.channel ?? state.channel, (value) => change({ channel: value })),
     choose("side-accelerator", word("accelerator"), own(hello.accelerators), side.accelerator ?? "", (value) => change({ accelerator: value || null })),
     choose("side-shading", word("shading"), own(hello.shading), side.shading ?? "", (value) => change({ shading: value || null })),
     choose("side-sampling", word("sampling"), samplings(), side.sampling ?? "", (value) => change({ sampling: value || null })),
-    counted("side-depth", word("maxDepth"), side.depth, { min: 1, max: 1000 }, (value) => change({ depth: value })));
+    counted("side-depth", word("maxDepth"), side.depth, { min: 1, max: 1000 }, (value) => change({ depth: value })))));
 }

@@ -132,6 +132,14 @@ export class Code {
     if (file === this.file && line) this.line(line)?.classList.add("under");
   }
 
+  // The mouse rests on an object: its line comes into view, unless somebody is writing.
+  rest() {
+    clearTimeout(this.resting);
+    this.resting = setTimeout(() => {
+      if (this.underFile === this.file && this.under && !this.writing) this.line(this.under)?.scrollIntoView({ block: "nearest" });
+    }, 300);
+  }
+
   setMarked(file, line) {
     this.lines.querySelector(".marked")?.classList.remove("marked");
     if (file === this.file && line) this.line(line)?.classList.add("marked");

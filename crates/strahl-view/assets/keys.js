@@ -27,7 +27,7 @@ export function listen(page) {
       "+": () => set({ exposure: state.exposure + 0.5 }), "-": () => set({ exposure: state.exposure - 0.5 }),
       s: () => page.toggle("code"), i: () => page.toggle("inspector"), t: actions.theme, l: actions.language, "?": actions.help,
       ",": () => space.step(-1), ".": () => space.step(1),
-      Escape: () => { closeMenus(); stage.setMarks(null); page.code.setMarked(null, null); },
+      Escape: () => { closeMenus(); actions.unmark(); },
     }[event.key.length === 1 ? event.key.toLowerCase() : event.key];
     if (event.key === " " && !/^(BUTTON|SUMMARY)$/.test(event.target.tagName)) {
       event.preventDefault();

@@ -26,7 +26,7 @@ if (width < 320) {
 const over = el("canvas", { width, height });
 const said = el("output", {});
 const texts = el("div", { class: "texts", tabindex: "0", role: "region", "aria-label": word("texts") },
-  ...picture.files.flatMap(({ name, text }) => [el("h2", { text: name }), el("div", { "data-file": name }, ...linesOf(text.text, text.pieces))]));
+  ...picture.files.flatMap(({ name, text }) => [el("h2", { title: name, text: name.split(/[\\/]/).pop() }), el("div", { "data-file": name }, ...linesOf(text.text, text.pieces))]));
 const known = el("div", { class: "known", tabindex: "0", role: "region", "aria-label": word("tree") });
 const main = document.getElementById("leaf");
 main.append(el("h1", { text: main.dataset.title }), el("div", { class: "seen" }, el("div", { class: "frame" }, image, over), said, texts), known);

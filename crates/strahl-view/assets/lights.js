@@ -3,7 +3,7 @@
 import { shifted } from "./camera.js";
 import { counted, find } from "./controls.js";
 import { el } from "./numbers.js";
-import { word } from "./words.js";
+import { lightName, word } from "./words.js";
 
 export class Lights {
   // `actions`: change(number, position), reset(), copy(number), place(file, line), draw().
@@ -94,7 +94,7 @@ export class Lights {
     }
     const light = this.placed[this.chosen];
     const select = el("select", { id: "light", "aria-label": word("lights"), onchange: () => this.choose(Number(select.value)) },
-      ...numbers.map((one) => el("option", { value: one, text: `${this.placed[one].name}, ${this.placed[one].kind}`, selected: one === this.chosen })));
+      ...numbers.map((one) => el("option", { value: one, text: `${lightName(this.placed[one].name)}, ${word(this.placed[one].kind)}`, selected: one === this.chosen })));
     const axis = (name, index) => counted(`light-${name}`, name, null, { step: "any" }, (value) => {
       const position = [...this.position(this.chosen)];
       if (value !== null) position[index] = value;
@@ -102,7 +102,7 @@ export class Lights {
     });
     const button = (id, text, action) => el("button", { type: "button", class: "tool", id, text, onclick: action });
     this.panel.replaceChildren(el("strong", { text: word("lights") }), select,
-      el("div", { class: "axes" }, axis("x", 0), axis("y", 1), axis("z", 2)),
+      el("div", { class: "axes numbers" }, axis("x", 0), axis("y", 1), axis("z", 2)),
       el("div", { class: "axes" },
         button("copy-light", word("copyLight"), () => this.actions.copy(this.chosen)),
         button("reset-lights", word("resetCamera"), () => this.actions.reset()),

@@ -2,7 +2,7 @@
 
 import { inner, length, minus, plus, scaled, unit } from "./camera.js";
 import { number } from "./numbers.js";
-import { word } from "./words.js";
+import { lightName, word } from "./words.js";
 
 // How many times as far from the eye as the first hit a point is shown from the beginning.
 const FAR = 2.5;
@@ -37,11 +37,12 @@ function shadowsOf(ray, light, open) {
   const every = Math.ceil(all.length / MOST_SHADOWS);
   return all.filter((_, i) => i % every === 0).map(({ origin, direction, met }) => {
     const blocker = met.find((one) => one.blocks);
+    const what = blocker ? `${word("blocked")} ${blocker.object}` : met.length ? `${word("weakened")} ${met[0].object}` : word("visible");
     const endless = light.position === null || light.position === undefined;
     const t = blocker ? blocker.t : endless ? open / (length(direction) || 1) : 1;
     return {
       kind: "shadow", from: origin, to: plus(origin, direction, t), blocked: Boolean(blocker), open: !blocker && endless, id: ray.id, ray,
-      text: `${word("shadow")}: ${light.light}, ${blocker ? `${word("blocked")} ${blocker.object}` : word("visible")}`,
+      text: `${word("shadow")}: ${lightName(light.light)}, ${what}`,
     };
   });
 }
@@ -99,13 +100,17 @@ function clip(from, to, project) {
   return a ? [a, project(near)] : [project(near), b];
 }
 
-// The rays up to a step, or all of them (-1); the ray with the number `lit` is wider.
-export function drawRays({ line, arrow }, steps, at, lit) {
-  const style = getComputedStyle(document.documentElement);
+// The colour of a kind of rays, for lines over pictures, whatever the theme.
+export function rayColor(kind) {
+  return { primary: "#8fb4f4", reflection: "#f0a53a", transparency: "#63d0bd" }[kind];
+}
+
+// The rays up to a step, or all of them (-1).
+export function drawRays({ line, arrow }, steps, at) {
   for (const [index, step] of steps.slice(0, at < 0 ? steps.length : at + 1).entries()) {
     const isShadow = step.kind === "shadow";
-    const color = isShadow ? (step.blocked ? "#ff6b5e" : "#ffe08a") : style.getPropertyValue(`--${step.kind}`).trim();
-    const width = index === at || step.id === lit ? 3 : isShadow ? 1.2 : 2;
+    const color = isShadow ? (step.blocked ? "#ff6b5e" : "#ffe08a") : rayColor(step.kind);
+    const width = index === at ? 3 : isShadow ? 1.2 : 2;
     if (isShadow) line(step.from, step.to, color, width, [5, 4]);
     else if (step.open) arrow(step.from, step.to, color, width);
     else line(step.from, step.to, color, width);

@@ -307,11 +307,6 @@ export class Space {
     this.box.closest(".panel-body")?.replaceWith(this.panel(this.kind));
   }
 
-  light(id) {
-    this.lit = id;
-    this.draw();
-  }
-
   // A point of the scene on the canvas; null behind the eye.
   project3(point) {
     const { u, v, ahead } = seen(this.camera, point);
@@ -348,7 +343,7 @@ export class Space {
 
   paintRays(tools) {
     this.lights.paint(tools.pen, tools.project);
-    drawRays(tools, this.steps, this.at, this.lit);
+    drawRays(tools, this.steps, this.at);
     const step = this.steps[Math.max(0, this.at)];
     if (step?.ray.hit) drawVectors(tools, step.ray, this.radius * 0.22);
     const all = this.at < 0;

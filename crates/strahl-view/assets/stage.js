@@ -1,9 +1,10 @@
 // The picture: move, zoom, pick pixels, turn the camera, drag lights.
 
-import { dolly, pan, seen, turn } from "./camera.js";
+import { dolly, length, pan, plus, seen, turn } from "./camera.js";
 import { el, number } from "./numbers.js";
 import { Film } from "./film.js";
 import { Gestures } from "./gestures.js";
+import { drawing, rayColor } from "./rays.js";
 import { word } from "./words.js";
 
 export class Stage {
@@ -29,6 +30,7 @@ export class Stage {
     this.beside = false;
     this.picked = null;
     this.marks = null;
+    this.ray = null;
     this.linear = null;
     new ResizeObserver(() => { if (this.fitted) this.fit(); else this.zoomed(); }).observe(box);
     this.gestures = new Gestures(box, {
@@ -285,6 +287,7 @@ export class Stage {
       pen.drawImage(this.marks, this.left, this.top, this.width * this.scale, this.height * this.scale);
     }
     if (this.scale >= 64) this.drawValues(pen, clientWidth, clientHeight);
+    if (this.ray) this.drawRay(pen);
     if (this.lights.on) this.lights.paint(pen, (point) => this.project(point));
     if (this.picked) {
       const [x, y] = this.picked;
@@ -302,12 +305,17 @@ export class Stage {
     }
   }
 
+  // What the values of a region are known by.
+  keyOf(region) {
+    return `${this.film.number}:${this.film.finished}:${region}`;
+  }
+
   drawValues(pen, width, height) {
     const low = [Math.max(0, Math.floor(-this.left / this.scale)), Math.max(0, Math.floor(-this.top / this.scale))];
     const high = [Math.min(this.width, Math.ceil((width - this.left) / this.scale)), Math.min(this.height, Math.ceil((height - this.top) / this.scale))];
     const region = [low[0], low[1], high[0] - low[0], high[1] - low[1]];
     if (region[2] <= 0 || region[3] <= 0) return;
-    const key = `${this.film.number}:${this.film.finished}:${region}`;
+    const key = this.keyOf(region);
     if (this.linear?.key !== key) {
       if (this.asked !== key) {
         this.asked = key;
@@ -331,8 +339,25 @@ export class Stage {
   }
 
   setLinear(region, values) {
-    this.linear = { key: this.asked, values };
+    this.linear = { key: this.keyOf(region), values };
     this.draw();
+  }
+
+  // Draws a ray of the pixel over the picture; null draws none.
+  showRay(ray) {
+    if (this.ray === ray) return;
+    this.ray = ray;
+    this.draw();
+  }
+
+  drawRay(pen) {
+    if (!this.camera()) return;
+    const { line, label } = drawing(pen, (point) => this.project(point));
+    const { kind, hit, ray: { origin, direction } } = this.ray;
+    const color = rayColor(kind);
+    const end = hit?.position ?? plus(origin, direction, 1e4 / length(direction));
+    if (kind !== "primary") line(origin, end, color, 2);
+    if (hit) label(end, hit.object, color);
   }
 
   setMarks(bytes, width, height) {

@@ -2,7 +2,7 @@
 
 import { brightness, css, el, isBlack, isGray, number, swatch, times, triple } from "./numbers.js";
 import { dot, equation, factored, infix, math, power, product, sign, sum, symbol, value, vector } from "./formula.js";
-import { word } from "./words.js";
+import { lightName, word } from "./words.js";
 
 // What each ray of a sample adds to it: a map from the number of the ray.
 export function contributions(sample) {
@@ -31,7 +31,8 @@ export function contributions(sample) {
   return adds;
 }
 
-// Shows a pixel and the tree of one of its samples. `actions` may have `onPlace(file, line)`, `onRay(ray, sample)`, `onSample(index)`.
+// Shows a pixel and the tree of one of its samples. `actions` may have `onPlace(file, line)`, `onRay(ray or null)` for the ray under the mouse,
+// `onSample(index)`.
 export function showPixel(pixel, actions = {}, first = 0) {
   const box = el("section", { class: "pixel" });
   // What is cut off is reached with the keyboard, too.
@@ -78,11 +79,11 @@ function showSample(sample, actions) {
   const byId = new Map(sample.rays.map((ray) => [ray.id, ray]));
   const box = el("div", { class: "tree-box" });
   const primary = sample.rays[0];
-  const reasons = whyDark(primary, actions);
+  const reasons = whyDark(sample, actions);
   if (reasons) box.append(reasons);
   const root = el("ul", { class: "tree", role: "tree" });
   const grow = (ray, parent) => {
-    const node = showRay(ray, adds.get(ray.id), most, byId, actions, sample);
+    const node = showRay(ray, adds.get(ray.id), most, byId, actions);
     parent.append(node);
     if (ray.children.length) {
       const list = el("ul", { role: "group" });
@@ -93,6 +94,7 @@ function showSample(sample, actions) {
   grow(primary, root);
   const total = [...adds.values()].reduce((a, b) => a.map((c, i) => c + b[i]), [0, 0, 0]);
   box.append(root, el("p", { class: "sum dim" }, `${word("sum")} `, el("span", { class: "figures", "data-sum": JSON.stringify(total), text: triple(total, 5) })));
+  root.addEventListener("mouseleave", () => actions.onRay?.(null));
   root.querySelector("details").open = true;
   return box;
 }
@@ -113,7 +115,7 @@ function place(source, actions, inside = false) {
   }, text);
 }
 
-function showRay(ray, adds, most, byId, actions, sample) {
+function showRay(ray, adds, most, byId, actions) {
   const bar = el("span", { class: "bar", "aria-hidden": "true" });
   const fill = el("span", {});
   fill.style.width = `${Math.min(100, (100 * brightness(adds.map(Math.abs))) / most).toFixed(1)}%`;
@@ -137,7 +139,7 @@ function showRay(ray, adds, most, byId, actions, sample) {
     }
   });
   const node = el("li", { role: "treeitem", "data-node": ray.id }, details);
-  node.addEventListener("mouseover", (event) => { event.stopPropagation(); actions.onRay?.(ray, sample); });
+  node.addEventListener("mouseover", (event) => { event.stopPropagation(); actions.onRay?.(ray); });
   return node;
 }
 
@@ -164,7 +166,7 @@ function rayBody(ray, byId, actions) {
   if (!hit) {
     body.append(geometry);
     if (ray.background) body.append(el("p", {}, `${word("noHit")} `, swatch(ray.background), triple(ray.background, 5)));
-    appendTotal(body, ray, byId);
+    appendTotal(body, ray, byId, actions);
     return body;
   }
   geometry.append(
@@ -180,8 +182,7 @@ function rayBody(ray, byId, actions) {
   geometry.append(row(word("materialIs"), hit.material.replace(/^material /, "")));
   body.append(geometry);
   if (hit.total_reflection) {
-    const sine = (hit.n1 / hit.n2) * Math.sqrt(Math.max(0, 1 - hit.cos_theta1 ** 2));
-    body.append(el("p", { class: "note", text: `${word("totalReflection")} ${number(sine)}.` }));
+    body.append(el("p", { class: "note", text: totalReflection(hit) }));
   }
   body.append(modelLine(hit));
   const formulas = el("div", { class: "formulas" });
@@ -190,9 +191,9 @@ function rayBody(ray, byId, actions) {
   for (const light of ray.lights) formulas.append(showLight(light, hit, actions));
   body.append(formulas);
   for (const end of ray.ended) {
-    body.append(el("p", { class: "note", text: `${word(end.kind)}: ${word("ended")}, ${end.reason} (${word("weight")} ${number(end.weight)})` }));
+    body.append(el("p", { class: "note", text: `${endText(end)} (${word("weight")} ${number(end.weight)})` }));
   }
-  appendTotal(body, ray, byId);
+  appendTotal(body, ray, byId, actions);
   return body;
 }
 
@@ -262,7 +263,7 @@ function showLight(light, hit, actions) {
   const why = reason(light, actions, true);
   const state = isBlack(result) ? "off" : "on";
   const box = el("details", { class: `light ${state}` },
-    el("summary", {}, swatch(result), el("span", { class: "name", text: `${light.light}${light.kind ? `, ${light.kind}` : ""}` }), place(light.source, actions, true),
+    el("summary", {}, swatch(result), el("span", { class: "name", text: lightText(light) }), place(light.source, actions, true),
       why ? el("span", { class: "reason" }, ...why) : el("span", { class: "reason good", text: word("visible") })));
   const body = el("div", { class: "light-body" }, place(light.source, actions));
   if (light.l) body.append(el("div", { class: "dim", text: `l = ${triple(light.l, 5)}, n·l = ${number(light.n_dot_l)}` }));
@@ -297,7 +298,7 @@ function showLight(light, hit, actions) {
   return box;
 }
 
-function appendTotal(body, ray, byId) {
+function appendTotal(body, ray, byId, actions) {
   // Each term is a part of its own, since there may be hundreds, behind a prism for instance.
   const terms = [math("mi", word("local"))];
   const values = [vector(ray.local)];
@@ -334,31 +335,74 @@ function appendTotal(body, ray, byId) {
     shown.classList.add("total");
     body.append(shown);
   }
-  // Hovering a term marks the ray it comes from.
-  for (const [element, id] of links) {
-    element.addEventListener("mouseenter", () => mark(element, id, true));
-    element.addEventListener("mouseleave", () => mark(element, id, false));
-  }
+  for (const [element, id] of links) leads(element, byId.get(id), actions);
 }
 
-function mark(from, id, on) {
-  const box = from.closest(".tree-box");
-  box?.querySelector(`[data-node="${id}"] > details > summary`)?.classList.toggle("marked", on);
+// Lets an element mark the ray that it is about, and lead to it.
+function leads(element, ray, actions) {
+  const details = () => element.closest(".tree-box")?.querySelector(`[data-node="${ray.id}"] > details`);
+  const mark = (on) => {
+    details()?.firstChild.classList.toggle("marked", on);
+    actions.onRay?.(on ? ray : null);
+  };
+  element.addEventListener("mouseenter", () => mark(true));
+  element.addEventListener("mouseleave", () => mark(false));
+  // The node of the term would mark its own ray.
+  element.addEventListener("mouseover", (event) => event.stopPropagation());
+  element.addEventListener("click", () => {
+    const node = details();
+    if (!node) return;
+    node.open = true;
+    node.scrollIntoView({ block: "nearest", behavior: "smooth" });
+  });
 }
 
-// The reasons why a point is darker than its lights would make it.
-function whyDark(ray, actions) {
-  const items = [];
-  for (const light of ray.hit ? ray.lights : []) {
-    const why = reason(light, actions);
-    if (why) items.push(el("li", {}, swatch(light.diffuse), `${light.light}: `, ...why));
+function endText(end) {
+  return `${word(end.kind)}: ${word("ended")}, ${word(end.reason)}`;
+}
+
+function lightText(light) {
+  return `${lightName(light.light)}${light.kind ? `, ${word(light.kind)}` : ""}`;
+}
+
+// The most reasons that are listed, and the least weight of what they take away, as a part of the pixel.
+const MOST_REASONS = 8;
+const LEAST_WEIGHT = 0.1;
+
+// The reasons why a pixel is darker than its lights would make it: those of its primary ray, then those of the rays that count most.
+function whyDark(sample, actions) {
+  const [primary] = sample.rays;
+  const reasons = [];
+  const add = (ray, weight, ...content) => {
+    if (ray !== primary && weight < LEAST_WEIGHT) return;
+    const where = ray === primary ? null : el("button", { type: "button", class: "place way", text: `${word(ray.kind)} #${ray.id}` });
+    if (where) leads(where, ray, actions);
+    reasons.push({ first: ray === primary, weight, item: el("li", {}, where, where && " ", ...content) });
+  };
+  for (const ray of sample.rays) {
+    for (const light of ray.hit ? ray.lights : []) {
+      // Deeper in the tree, what lies behind a surface is left to the nodes themselves.
+      const why = ray === primary || isShadowed(light) ? reason(light, actions) : null;
+      if (why) add(ray, ray.weight, swatch(light.diffuse), `${lightName(light.light)}: `, ...why);
+    }
+    for (const end of ray.ended) if (ray === primary || end.reason !== TOTAL) add(ray, end.weight, endText(end));
+    if (ray === primary && ray.hit?.total_reflection) add(ray, 1, totalReflection(ray.hit));
   }
-  for (const end of ray.ended) items.push(el("li", { text: `${word(end.kind)}: ${word("ended")}, ${end.reason}` }));
-  if (ray.hit?.total_reflection) items.push(el("li", { text: `${word("totalReflection")} ${number((ray.hit.n1 / ray.hit.n2) * Math.sqrt(Math.max(0, 1 - ray.hit.cos_theta1 ** 2)))}.` }));
-  if (!items.length) return null;
-  const box = el("details", { class: "why" }, el("summary", { text: word("why") }), el("ul", {}, ...items));
+  if (!reasons.length) return null;
+  reasons.sort((a, b) => b.first - a.first || b.weight - a.weight);
+  const box = el("details", { class: "why" }, el("summary", { text: word("why") }), el("ul", {}, ...reasons.slice(0, MOST_REASONS).map((one) => one.item)));
   // A shadow on a bright floor need not be dark.
-  const shadowed = ray.hit && ray.lights.some((light) => light.shadow_rays.some((shadow) => shadow.met.length));
-  box.open = shadowed || brightness(ray.total) < 0.1;
+  box.open = (primary.hit && primary.lights.some(isShadowed)) || brightness(primary.total) < 0.1;
   return box;
+}
+
+// The reason of branches behind a surface that reflects everything, as the server says it.
+const TOTAL = "total internal reflection";
+
+function isShadowed(light) {
+  return light.shadow_rays.some((shadow) => shadow.met.length);
+}
+
+function totalReflection(hit) {
+  return `${word("totalReflection")} ${number((hit.n1 / hit.n2) * Math.sqrt(Math.max(0, 1 - hit.cos_theta1 ** 2)))}.`;
 }

@@ -36,6 +36,9 @@ const WORDS = {
     ],
   },
   de: {
+    // What the server says in English.
+    "depth limit": "Tiefengrenze", "weight below the cutoff": "Gewicht unter der Abbruchgrenze", "total internal reflection": "Totalreflexion", "limit of rays per sample": "zu viele Strahlen",
+    "point light": "Punktlicht", "area light": "Flächenlicht", "spot light": "Scheinwerfer", "parallel light": "paralleles Licht", "cylindrical light": "zylindrisches Licht", light: "Licht",
     scene: "Szene", picture: "Bild", otherPicture: "Das Bild, mit dem es verglichen wird", tree: "Strahlen", space: "Im Raum", accelerator: "Beschleunigung", inspector: "Bildpunkt",
     waiting: "verbinde …", lost: "Die Verbindung zu strahl ist weg. Die Seite versucht es weiter; ist strahl beendet, starte `strahl view` neu.", loading: "liest die Szene …", rendering: "rechnet",
     rays: "Strahlen",
@@ -79,6 +82,11 @@ export function setLanguage(name) {
 
 export function getLanguage() {
   return language;
+}
+
+// The name of a light: those without one are numbered.
+export function lightName(name) {
+  return name.replace(/^light(?= \d)/, word("oneLight"));
 }
 
 export function word(key) {

@@ -182,6 +182,68 @@ fn a_signal_at_the_beginning_leaves_nothing() {
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
 }
 
+/// A large picture, a loop without end, a question of a page: none of them is waited for, and nothing is left.
+#[cfg(unix)]
+#[test]
+fn a_signal_ends_the_viewer_whatever_it_is_doing() {
+    let folder = tempfile::tempdir().unwrap();
+    let temporary = folder.path().join("temporary");
+    std::fs::create_dir(&temporary).unwrap();
+    std::fs::write(folder.path().join("loop.pov"), "#while (1) #end\n").unwrap();
+    let large = r#"{ "type": "picture", "slot": "main", "settings": { "size": [4000, 4000] } }"#;
+    let usual = r#"{ "type": "picture", "slot": "main" }"#;
+    let table = r#"{ "type": "table", "slot": "main", "id": 1 }"#;
+    for (scene, picture, question, signal) in [
+        (None, large, None, "-INT"),
+        (Some("loop.pov"), usual, None, "-TERM"),
+        (None, usual, Some(table), "-TERM"),
+        (None, usual, Some(table), "-INT"),
+    ] {
+        let mut view = Running(
+            Command::new(env!("CARGO_BIN_EXE_strahl"))
+                .args(["view", "--port", "0"])
+                .args(scene)
+                .current_dir(folder.path())
+                .env("TMPDIR", &temporary)
+                .stdout(Stdio::piped())
+                .spawn()
+                .unwrap(),
+        );
+        let mut address = String::new();
+        let out = view.0.stdout.take().unwrap();
+        BufReader::new(out).read_line(&mut address).unwrap();
+        let socket = address.trim().replace("http:", "ws:").replace("/?", "/ws?");
+        let (mut page, _) = tungstenite::connect(socket).unwrap();
+        page.send(picture.into()).unwrap();
+        let wanted = match scene {
+            Some(_) => r#""loading":true"#,
+            None => r#""type":"picture""#,
+        };
+        while !page
+            .read()
+            .unwrap()
+            .to_text()
+            .is_ok_and(|text| text.contains(wanted))
+        {}
+        if let Some(question) = question {
+            page.send(question.into()).unwrap();
+        }
+        // It is in the middle of it.
+        std::thread::sleep(Duration::from_millis(300));
+        let begun = Instant::now();
+        let kill = Command::new("kill")
+            .args([signal, &view.0.id().to_string()])
+            .status();
+        assert!(kill.unwrap().success());
+        assert!(view.0.wait().unwrap().success());
+        assert!(
+            begun.elapsed() < Duration::from_secs(3),
+            "{picture} {signal}"
+        );
+        assert_eq!(std::fs::read_dir(&temporary).unwrap().count(), 0);
+    }
+}
+
 #[test]
 fn a_missing_scene_is_an_error() {
     let out = Command::new(env!("CARGO_BIN_EXE_strahl"))

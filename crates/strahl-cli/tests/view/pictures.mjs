@@ -100,8 +100,21 @@ export async function compared(viewer) {
   await settled(/octree/, (now) => now === together);
   await viewer.find("#accelerator").selectOption("");
   await page.keyboard.press("Escape");
+  // Where counts are shown, a comparison begins with another accelerator, side by side, and a scale of the colours.
+  await settled(/bvh/, (now) => now < together);
+  assert.match(await viewer.find("#heat").innerText(), /0\s+[\d.]+ Steps/);
+  await page.keyboard.press("x");
+  const { compare, beside } = await viewer.state();
+  assert.deepEqual([compare, beside], [{ accelerator: "grid" }, true]);
+  await eventually(async () => assert.ok(!(await viewer.codes()).equals(await viewer.codes("side"))));
+  await page.keyboard.press("x");
+  await page.waitForSelector("#side-panel", { state: "hidden" });
   await viewer.find("#channel").selectOption("color");
   await viewer.shows(ppm("whole.ppm"));
+  assert.ok(await viewer.find("#heat").isHidden());
+  await viewer.find("#compare").click();
+  await viewer.find("#side-view").selectOption("");
+  await viewer.find("#compare").click();
   say("two pictures of counts have one scale");
 }
 

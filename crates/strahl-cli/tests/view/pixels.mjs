@@ -13,9 +13,18 @@ export async function explained(viewer) {
   assert.equal((await viewer.sum()).map(code).join(" "), film);
   assert.ok(await viewer.find(".tree .reflection").count() >= 1, "the ball reflects");
   assert.ok(await viewer.find(".ray-body math").count() >= 2, "formulas");
-  // Pointing at a term marks the ray that it comes from.
+  // Pointing at a term marks the ray that it comes from, and draws it over the picture; a click leads to it.
+  const over = () => page.evaluate(() => document.getElementById("over").toDataURL());
+  const without = await over();
   await viewer.find(".total .link").first().hover();
   await page.waitForSelector(".tree .reflection.marked");
+  assert.notEqual(await over(), without);
+  await viewer.find(".total .link").first().click();
+  await page.waitForSelector(".tree details[open] > .reflection");
+  await page.mouse.move(640, 700);
+  await eventually(async () => assert.equal(await over(), without));
+  // The line of the pixel that was picked stays marked while the mouse is elsewhere.
+  await page.waitForSelector('.text-line.under[data-line="7"]');
   await page.keyboard.press("ArrowRight");
   await page.waitForFunction(() => document.querySelector(".pixel-head h2").textContent.includes("81, 70"));
   say("the tree of a pixel adds up to the pixel");
@@ -23,7 +32,14 @@ export async function explained(viewer) {
   // In the shadow of the ball.
   await viewer.click(25, 98);
   assert.match(await viewer.find(".why").innerText(), /light 1: blocked by sphere/);
-  say("a dark pixel says what blocks its light");
+  // In the mirror image of that shadow.
+  await viewer.click(46, 92);
+  const why = viewer.find(".why");
+  assert.match(await why.evaluate((box) => box.textContent), /reflection ray #1 light 1: blocked by sphere/);
+  await why.evaluate((box) => { box.open = true; });
+  await why.locator("button", { hasText: "#1" }).click();
+  await page.waitForSelector('[data-node="1"] > details[open]');
+  say("a dark pixel says what blocks its light, in a mirror too");
 
   let sha = await viewer.sha();
   await viewer.find("#sampling").selectOption("3x3");
