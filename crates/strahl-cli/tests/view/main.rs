@@ -244,6 +244,53 @@ fn a_signal_ends_the_viewer_whatever_it_is_doing() {
     }
 }
 
+/// The program that opens pages gets the address that is printed.
+#[cfg(target_os = "linux")]
+#[test]
+fn the_page_is_opened_in_the_browser() {
+    use std::os::unix::fs::PermissionsExt;
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    std::fs::write(at("scene.pov"), SCENE).unwrap();
+    // Renamed when it is complete.
+    let script = "#!/bin/sh\nprintf %s \"$1\" > part && mv part opened\n";
+    std::fs::write(at("xdg-open"), script).unwrap();
+    std::fs::set_permissions(at("xdg-open"), PermissionsExt::from_mode(0o755)).unwrap();
+    let mut paths = vec![folder.path().to_owned()];
+    paths.extend(std::env::split_paths(&std::env::var_os("PATH").unwrap()));
+    let mut view = Running(
+        Command::new(env!("CARGO_BIN_EXE_strahl"))
+            .args(["view", "scene.pov", "--open"])
+            .current_dir(folder.path())
+            .env("PATH", std::env::join_paths(paths).unwrap())
+            .stdout(Stdio::piped())
+            .spawn()
+            .unwrap(),
+    );
+    let mut address = String::new();
+    let out = view.0.stdout.take().unwrap();
+    BufReader::new(out).read_line(&mut address).unwrap();
+    let begun = Instant::now();
+    while !at("opened").exists() {
+        assert!(begun.elapsed() < Duration::from_secs(60));
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    let opened = std::fs::read_to_string(at("opened")).unwrap();
+    assert_eq!(opened, address.trim());
+}
+
+#[test]
+fn a_port_that_is_taken_is_an_error() {
+    let taken = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
+    let port = taken.local_addr().unwrap().port().to_string();
+    let out = Command::new(env!("CARGO_BIN_EXE_strahl"))
+        .args(["view", "--port", &port])
+        .output()
+        .unwrap();
+    assert!(!out.status.success() && out.stdout.is_empty());
+    assert!(String::from_utf8_lossy(&out.stderr).contains(&format!("127.0.0.1:{port}")));
+}
+
 #[test]
 fn a_missing_scene_is_an_error() {
     let out = Command::new(env!("CARGO_BIN_EXE_strahl"))

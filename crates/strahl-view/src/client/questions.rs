@@ -104,36 +104,22 @@ impl Client {
             let side = |length: u32| ((f64::from(length) * factor) as u32).max(1);
             let (width, height) = (side(view.width), side(view.height));
             let few = view.scene().stats().primitives <= MOST_LISTED;
+            let all = AcceleratorKind::ALL.iter();
             let mut rows = vec![];
-            for &accelerator in AcceleratorKind::ALL {
-                if accelerator.name() == "list" && !few {
-                    continue;
-                }
+            for &accelerator in all.filter(|one| few || one.name() != "list") {
                 if page.is_closed() {
                     return Err("the page has gone".into());
                 }
+                let options = CompileOptions { accelerator };
                 let start = Instant::now();
-                let built = hub
-                    .session
-                    .compile(&description, &CompileOptions { accelerator });
+                let built = hub.session.compile(&description, &options);
                 let (scene, _) = built.map_err(|problems| problems.to_string())?;
                 let built = start.elapsed().as_secs_f64();
                 let mut measured = moved(&scene, &lights)
                     .view(width, height)
                     .with_camera(view.camera.clone());
                 (measured.seed, measured.trace) = (view.seed, view.trace);
-                let start = Instant::now();
-                let rendered = hub.session.picture(&measured, &Output::default());
-                let rendered = rendered.map_err(|e| e.to_string())?;
-                rows.push(json!({
-                    "name": accelerator.name(),
-                    "build": built,
-                    "seconds": start.elapsed().as_secs_f64(),
-                    "rays": rendered.rays.total(),
-                    "steps": rendered.traversal.node_visits,
-                    "tests": rendered.traversal.primitive_tests,
-                    "sha256": rendered.film.sha256(),
-                }));
+                rows.push(row(&hub.session, accelerator, built, &measured)?);
             }
             let answer = json!({ "width": width, "height": height, "rows": rows });
             Ok(reply(id, Ok(answer)))
@@ -169,9 +155,7 @@ impl Client {
             Ok(Message::Binary(message.into()))
         })
     }
-}
 
-impl Client {
     /// A page with the picture of a slot, its objects and the trees of some of its pixels.
     pub(super) fn export_picture(
         &self,
@@ -205,6 +189,27 @@ impl Client {
             Ok(json!({ "html": html }))
         })
     }
+}
+
+/// What a view costs with an accelerator that was built in so many seconds.
+fn row(
+    session: &Session,
+    accelerator: AcceleratorKind,
+    built: f64,
+    view: &View,
+) -> Result<Value, String> {
+    let start = Instant::now();
+    let rendered = session.picture(view, &Output::default());
+    let rendered = rendered.map_err(|e| e.to_string())?;
+    Ok(json!({
+        "name": accelerator.name(),
+        "build": built,
+        "seconds": start.elapsed().as_secs_f64(),
+        "rays": rendered.rays.total(),
+        "steps": rendered.traversal.node_visits,
+        "tests": rendered.traversal.primitive_tests,
+        "sha256": rendered.film.sha256(),
+    }))
 }
 
 fn reply(id: u64, answer: Result<Value, String>) -> Message {

@@ -49,53 +49,14 @@ impl PicturePage<'_> {
         }
         let seen = objects_of(session, view)?;
         let middles = middles(&seen, width);
-        let mut places = vec![];
-        let mut known = BTreeSet::new();
-        let inside = |[x, y]: &[u32; 2]| *x < width && *y < height;
-        for at in self.chosen.iter().copied().filter(inside) {
-            if known.insert(at) {
-                places.push(at);
-            }
-        }
-        let most = places.len() + self.trees;
-        let half = self.trees.div_ceil(2);
-        let of_objects = middles.iter().map(|(_, at)| *at).take(half);
-        for at in of_objects.chain(grid(width, height, self.trees)) {
-            if places.len() < most && known.insert(at) {
-                places.push(at);
-            }
-        }
-        let mut left = MOST_BYTES;
-        let mut trees = vec![];
-        for [x, y] in places {
-            let tree = session.explain(view, x, y).map_err(|e| e.to_string())?;
-            let tree = serde_json::to_string(&tree).map_err(|e| e.to_string())?;
-            if tree.len() <= left {
-                left -= tree.len();
-                trees.push(tree);
-            }
-        }
-        let scene = view.scene();
-        let objects: serde_json::Map<String, Value> = middles
-            .iter()
-            .map(|&(object, _)| {
-                let info = scene.objects().get(object);
-                let place = info.and_then(|info| scene.sources().locate(info.span));
-                let told = json!({
-                    "name": scene.object_name(object),
-                    "file": place.as_ref().map(|place| place.file),
-                    "line": place.as_ref().map(|place| place.span.line),
-                });
-                (object.to_string(), told)
-            })
-            .collect();
+        let trees = trees(session, view, &self.places(&middles, width, height))?;
         let texts = self.texts.iter();
         let files = texts.map(|(name, text)| json!({ "name": name, "text": text }));
         let head = json!({
             "width": width,
             "height": height,
             "png": format!("data:image/png;base64,{}", BASE64_STANDARD.encode(&png)),
-            "objects": objects,
+            "objects": objects(view.scene(), &middles),
             "runs": runs(&seen),
             "files": files.collect::<Vec<_>>(),
         });
@@ -120,6 +81,56 @@ impl PicturePage<'_> {
             data: &data,
         }))
     }
+    /// The pixels whose trees are in the page: the chosen ones, those in the middles of objects, and a grid.
+    fn places(&self, middles: &[(u32, [u32; 2])], width: u32, height: u32) -> Vec<[u32; 2]> {
+        let mut places = vec![];
+        let mut known = BTreeSet::new();
+        let inside = |[x, y]: &[u32; 2]| *x < width && *y < height;
+        for at in self.chosen.iter().copied().filter(inside) {
+            if known.insert(at) {
+                places.push(at);
+            }
+        }
+        let most = places.len() + self.trees;
+        let of_objects = middles.iter().map(|(_, at)| *at);
+        let some = of_objects.take(self.trees.div_ceil(2));
+        for at in some.chain(grid(width, height, self.trees)) {
+            if places.len() < most && known.insert(at) {
+                places.push(at);
+            }
+        }
+        places
+    }
+}
+
+/// The trees of pixels as JSON, without those that don't fit any more.
+fn trees(session: &Session, view: &View, places: &[[u32; 2]]) -> Result<Vec<String>, String> {
+    let mut left = MOST_BYTES;
+    let mut trees = vec![];
+    for &[x, y] in places {
+        let tree = session.explain(view, x, y).map_err(|e| e.to_string())?;
+        let tree = serde_json::to_string(&tree).map_err(|e| e.to_string())?;
+        if tree.len() <= left {
+            left -= tree.len();
+            trees.push(tree);
+        }
+    }
+    Ok(trees)
+}
+
+/// The names and places of the objects that are seen, by their numbers.
+fn objects(scene: &RenderScene, middles: &[(u32, [u32; 2])]) -> serde_json::Map<String, Value> {
+    let told = middles.iter().map(|&(object, _)| {
+        let info = scene.objects().get(object);
+        let place = info.and_then(|info| scene.sources().locate(info.span));
+        let told = json!({
+            "name": scene.object_name(object),
+            "file": place.as_ref().map(|place| place.file),
+            "line": place.as_ref().map(|place| place.span.line),
+        });
+        (object.to_string(), told)
+    });
+    told.collect()
 }
 
 /// What the pixels of a view show: the number of the object plus one, 0 for the background.
