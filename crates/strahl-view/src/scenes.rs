@@ -138,14 +138,11 @@ impl Entry {
         Arc::strong_count(&self.place) > 1
     }
 
-    /// Whether one of these files is one of the scene's, as far as they are known.
-    fn consists_of(&self, changed: &[PathBuf]) -> bool {
+    /// Where changes of the scene's files are seen, as far as they are known.
+    fn places(&self) -> Vec<PathBuf> {
         match &self.compiled {
-            Some(compiled) => {
-                let mut files = compiled.files.iter();
-                files.any(|file| file.places().any(|place| changed.contains(&place)))
-            }
-            None => changed.contains(&absolute(&self.key.request.path)),
+            Some(compiled) => compiled.files.iter().flat_map(SceneFile::places).collect(),
+            None => SceneFile::new(&self.key.request.path).places().collect(),
         }
     }
 
@@ -214,6 +211,8 @@ impl Scenes {
     pub(crate) fn want(self: &Arc<Self>, key: &Key) -> (Option<Arc<Compiled>>, bool, Place) {
         let mut entries = self.entries();
         let now = self.numbers.fetch_add(1, Ordering::Relaxed);
+        let mut others = entries.iter().map(|entry| &entry.key.request.path);
+        let is_new_file = !others.any(|path| *path == key.request.path);
         let index = entries.iter().position(|entry| entry.key == *key);
         let index = index.unwrap_or_else(|| {
             while entries.len() >= KEPT {
@@ -251,11 +250,17 @@ impl Scenes {
                 (entry.loading, entry.stale) = (false, true);
             }
         }
-        (
+        let wanted = (
             entry.compiled.clone(),
             entry.loading || entry.stale,
             Arc::clone(&entry.place),
-        )
+        );
+        drop(entries);
+        if is_new_file {
+            // It is watched while it is read for the first time.
+            self.changed();
+        }
+        wanted
     }
 
     /// Somebody shows a scene no more.
@@ -269,7 +274,7 @@ impl Scenes {
         for entry in self.entries().iter_mut() {
             let known = entry.compiled.as_ref();
             let waits = known.is_none_or(|compiled| compiled.scene.is_none());
-            let is_own = entry.consists_of(changed);
+            let is_own = entry.places().iter().any(|place| changed.contains(place));
             if is_own && entry.is_overdue() {
                 entry.stop.store(true, Ordering::Relaxed);
             }
@@ -295,10 +300,7 @@ impl Scenes {
     /// The files of all scenes, and what those that are links lead to.
     pub(crate) fn files(&self) -> Vec<PathBuf> {
         let entries = self.entries();
-        let compiled = entries.iter().filter_map(|entry| entry.compiled.as_ref());
-        let mut all: Vec<PathBuf> = compiled
-            .flat_map(|c| c.files.iter().flat_map(SceneFile::places))
-            .collect();
+        let mut all: Vec<PathBuf> = entries.iter().flat_map(Entry::places).collect();
         all.sort();
         all.dedup();
         all

@@ -575,6 +575,25 @@ fn texts_of_included_files_are_tried_and_those_that_are_built_in_are_shown() {
     assert_eq!(page.until("error")["message"], "the text is too long");
 }
 
+/// A loop without end in a scene that was never read before: correcting it shows the scene, without an error in between.
+#[test]
+fn a_scene_that_changes_while_it_is_read_for_the_first_time_is_read_again() {
+    let running = start("#while (1) #end", false);
+    let mut page = running.page();
+    page.show(json!({}));
+    assert_eq!(page.until("scene")["loading"], true);
+    std::thread::sleep(Duration::from_millis(1500));
+    std::fs::write(running.scene(), BALL).unwrap();
+    loop {
+        let scene = page.until("scene");
+        if !scene["stats"].is_null() {
+            break;
+        }
+        assert!(scene["said"].is_null(), "{scene}");
+    }
+    page.until("done");
+}
+
 /// People keep their files in one folder and link to them from another.
 #[cfg(unix)]
 #[test]
