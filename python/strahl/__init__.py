@@ -8,10 +8,13 @@ degrees. Positions are in the units of the scene; y is up in cameras unless `up`
 """
 
 from strahl import _tree as tree
+from strahl._air import Fog, Rainbow
 from strahl._arrays import from_ase, from_trimesh, height_field, isosurface, mesh, spheres
+from strahl._cameras import Camera
 from strahl._costs import Comparison, HeatMap
 from strahl._errors import Diagnostic, InternalError, SceneError, SceneWarning
 from strahl._film import Film
+from strahl._fractals import implicit, julia, mandelbulb, menger, parametric, terrain, text
 from strahl._lights import (
     area_light,
     beam_light,
@@ -22,9 +25,10 @@ from strahl._lights import (
     spot_light,
 )
 from strahl._load import load, parse
-from strahl._looks import Background, Camera, Material
-from strahl._objects import difference, intersection, merge, Object, union
+from strahl._looks import Background, Material
+from strahl._objects import difference, intersection, light_group, merge, Object, union
 from strahl._patches import bicubic_patch, nurbs, NurbsCurve
+from strahl._patterns import Pattern
 from strahl._progress import Progress
 from strahl._rays import Hits
 from strahl._scene import Scene
@@ -51,6 +55,7 @@ from strahl._shapes import (
     triangle,
 )
 from strahl._strahl import __version__, thread_count
+from strahl._textures import Finish, Interior, Normal, Pigment, Texture
 from strahl._tree import Explanation
 
 __all__ = [
@@ -60,17 +65,25 @@ __all__ = [
     "Diagnostic",
     "Explanation",
     "Film",
+    "Finish",
+    "Fog",
     "HeatMap",
     "Hits",
+    "Interior",
     "InternalError",
     "Light",
     "Material",
+    "Normal",
     "NurbsCurve",
     "Object",
+    "Pattern",
+    "Pigment",
     "Progress",
+    "Rainbow",
     "Scene",
     "SceneError",
     "SceneWarning",
+    "Texture",
     "__version__",
     "area_light",
     "beam_light",
@@ -85,16 +98,22 @@ __all__ = [
     "from_ase",
     "from_trimesh",
     "height_field",
+    "implicit",
     "intersection",
     "isosurface",
+    "julia",
     "lathe",
     "lemon",
+    "light_group",
     "load",
+    "mandelbulb",
+    "menger",
     "merge",
     "mesh",
     "nurbs",
     "ovus",
     "parallel_light",
+    "parametric",
     "parse",
     "plane",
     "point_light",
@@ -109,6 +128,8 @@ __all__ = [
     "spheres",
     "spot_light",
     "superellipsoid",
+    "terrain",
+    "text",
     "thread_count",
     "torus",
     "tree",

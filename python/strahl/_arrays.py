@@ -8,8 +8,9 @@ import numpy as np
 import numpy.typing as npt
 
 from strahl import _strahl
-from strahl._convert import Vector, caller, finite_rows, number, real, rows_of_floats, vector
-from strahl._objects import Look, Object, with_look
+from strahl._convert import Vector, caller, faces_of, finite_rows, number, real, rows_of_floats
+from strahl._looks import Look
+from strahl._objects import Object, with_look
 
 
 def each(values: npt.ArrayLike, name: str, count: int) -> npt.NDArray[np.float64]:
@@ -47,18 +48,6 @@ def spheres(
     return with_look(core, material, name)
 
 
-def _faces(faces: npt.ArrayLike) -> npt.NDArray[Any]:
-    """A contiguous array of uint32, int32 or int64, which is not copied if it is one already."""
-    array = np.asarray(faces)
-    if array.ndim != 2 or array.shape[1] != 3:
-        raise ValueError(f"faces must have the shape (m, 3), not {array.shape}")
-    if array.dtype.kind not in "iu":
-        raise TypeError(f"faces must be whole numbers, not {array.dtype}")
-    if array.dtype not in (np.uint32, np.int32, np.int64):
-        array = array.astype(np.int64)
-    return np.ascontiguousarray(array)
-
-
 def _per_vertex(values: npt.ArrayLike | None, name: str, columns: int, count: int) -> npt.NDArray[np.float32] | None:
     if values is None:
         return None
@@ -88,7 +77,7 @@ def mesh(
 
     Raises ValueError for other shapes, numbers that are not finite, faces without vertices, no faces, and a solid that is not closed.
     """
-    points, corners = rows_of_floats(vertices, "vertices", 3), _faces(faces)
+    points, corners = rows_of_floats(vertices, "vertices", 3), faces_of(faces)
     bends, places = _per_vertex(normals, "normals", 3, len(points)), _per_vertex(uv, "uv", 2, len(points))
     return with_look(_strahl.mesh(points, corners, bends, places, solid, caller()), material, name)
 
@@ -120,8 +109,8 @@ def height_field(
         raise ValueError("x and z must be ranges")
     rows_, columns = numbers.shape
     core = _strahl.height_field(np.ascontiguousarray(steps), columns, rows_, 0.0, smooth, caller())
-    scaled = core.scaled((right - left, span * 65536 / 65535, back - front))
-    return with_look(scaled.translated((left, low, front)), material, name)
+    field = with_look(core, material, name)
+    return field.scale((right - left, span * 65536 / 65535, back - front)).translate((left, low, front))
 
 
 def isosurface(
@@ -156,8 +145,7 @@ def isosurface(
         raise ValueError(f"spacing must be positive, not {spacing!r}")
     stored = np.ascontiguousarray(numbers, np.float32)
     core = _strahl.isosurface(stored, number(level, "level"), inside == "below", open, smooth, caller())
-    scaled = core.scaled(vector(steps, "spacing"))
-    return with_look(scaled.translated(vector(origin, "origin")), material, name)
+    return with_look(core, material, name).scale(steps).translate(origin)
 
 
 def from_trimesh(thing: Any, *, smooth: bool = False, material: Look | None = None, name: str | None = None) -> Object:
@@ -172,7 +160,7 @@ def from_trimesh(thing: Any, *, smooth: bool = False, material: Look | None = No
 def from_ase(atoms: Any, *, scale: float = 0.5, radii: npt.ArrayLike | None = None, colors: npt.ArrayLike | None = None, name: str | None = None) -> Object:
     """Atoms as spheres, from an object with ``positions`` (n, 3) and ``numbers`` (n,), such as ase.Atoms.
 
-    Radii are the covalent ones times ``scale`` and colours those of Jmol if ASE is installed, unless they are given, one for each atom.
+    Radii (n,) are the covalent ones times ``scale`` and colours (n, 3) those of Jmol if ASE is installed, unless they are given.
     """
     numbers = np.asarray(atoms.numbers)
     if radii is None or colors is None:

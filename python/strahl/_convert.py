@@ -40,6 +40,22 @@ def number(value: float, name: str) -> float:
     return result
 
 
+def positive(value: float, name: str) -> float:
+    """One positive number, or an error."""
+    result = number(value, name)
+    if result <= 0:
+        raise ValueError(f"{name} must be positive, not {value!r}")
+    return result
+
+
+def not_negative(value: float, name: str) -> float:
+    """One number of 0 or more, or an error."""
+    result = number(value, name)
+    if result < 0:
+        raise ValueError(f"{name} must not be negative, not {value!r}")
+    return result
+
+
 def color(value: ColorLike, name: str) -> Triple:
     """A linear colour, or an error."""
     if isinstance(value, str):
@@ -52,6 +68,16 @@ def color(value: ColorLike, name: str) -> Triple:
     if not np.isfinite(three).all():
         raise ValueError(f"{name} must be finite, not {value!r}")
     return cast(Triple, tuple(three.tolist()))
+
+
+def color_ft(value: ColorLike, name: str) -> tuple[float, float, float, float, float]:
+    """A colour that may let light through: red, green, blue, and after them filter and transmit if there are 5 numbers."""
+    if not isinstance(value, str) and np.shape(value) == (5,):
+        five = real(value, name)
+        if not np.isfinite(five).all():
+            raise ValueError(f"{name} must be finite, not {value!r}")
+        return cast(tuple[float, float, float, float, float], tuple(five.tolist()))
+    return (*color(value, name), 0.0, 0.0)
 
 
 def _srgb(text: str, name: str) -> Triple:
@@ -106,6 +132,18 @@ def rows_of_floats(value: Any, name: str, columns: int) -> npt.NDArray[np.float3
 def finite_rows(value: Any, name: str, columns: int) -> npt.NDArray[np.float64]:
     """A contiguous array (n, columns) of finite numbers as float64, or ValueError."""
     return rows_of_floats(value, name, columns).astype(np.float64, copy=False)
+
+
+def faces_of(faces: npt.ArrayLike) -> npt.NDArray[Any]:
+    """A contiguous array of uint32, int32 or int64, which is not copied if it is one already."""
+    array = np.asarray(faces)
+    if array.ndim != 2 or array.shape[1] != 3:
+        raise ValueError(f"faces must have the shape (m, 3), not {array.shape}")
+    if array.dtype.kind not in "iu":
+        raise TypeError(f"faces must be whole numbers, not {array.dtype}")
+    if array.dtype not in (np.uint32, np.int32, np.int64):
+        array = array.astype(np.int64)
+    return np.ascontiguousarray(array)
 
 
 def integer(value: Any, name: str, least: int) -> int:

@@ -2,25 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
-from math import radians
-from typing import TypeAlias
+from collections.abc import Iterable, Iterator, Sequence
+from typing import TYPE_CHECKING, Any
 
-import numpy as np
 import numpy.typing as npt
 
 from strahl import _strahl
-from strahl._convert import ColorLike, Vector, caller, number, real, vector
-from strahl._looks import Material, material_of
+from strahl._convert import Place, caller, real
+from strahl._looks import Look, material_of
+from strahl._maps import Movable
+from strahl._maps import matrices as rows_of
 
-Look: TypeAlias = Material | ColorLike
+if TYPE_CHECKING:
+    from strahl._lights import Light
 
 
-class Object:
+class Object(Movable):
     """A surface or solid, or several of them. It belongs to no scene until it is added to one, and never changes: methods return new objects.
 
     Solids combine: ``a - b`` is a without b, ``a & b`` what is in both, ``a | b`` both together, ``-a`` what is outside of a. Parts keep their materials; the
-    material of a combination is that of the parts that have none. Transformations come after those that the object has already.
+    material of a combination is that of the parts that have none.
     """
 
     __slots__ = ("_core",)
@@ -66,56 +67,48 @@ class Object:
         """Whether fog also fills its inside."""
         return Object(self._core.hollow(hollow))
 
-    def translate(self, offset: Vector) -> Object:
-        """Moved by a vector."""
-        return Object(self._core.translated(vector(offset, "offset")))
+    def double_illuminated(self) -> Object:
+        """Light on its back shows on its front, too, as on a lampshade."""
+        return Object(self._core.double_illuminated())
 
-    def rotate(self, axis: Vector, degrees: float) -> Object:
-        """Turned about an axis through the origin, counter-clockwise as seen from the tip of the axis with right-handed coordinates."""
-        direction = vector(axis, "axis")
-        if direction == (0, 0, 0):
-            raise ValueError("axis must not be zero")
-        return Object(self._core.rotated(direction, radians(number(degrees, "degrees"))))
+    def uv_mapped(self) -> Object:
+        """Its textures and those of its parts lie on the texture coordinates of the surfaces."""
+        return Object(self._core.uv_mapped())
 
-    def scale(self, factors: float | Vector) -> Object:
-        """Scaled about the origin, by one factor or by three; none may be zero."""
-        if np.ndim(factors) == 0:
-            factor = number(factors, "factors")  # type: ignore[arg-type]
-            return Object(self._core.scaled((factor, factor, factor)))
-        return Object(self._core.scaled(vector(factors, "factors")))  # type: ignore[arg-type]
-
-    def transform(self, matrix: npt.ArrayLike) -> Object:
-        """Mapped by a matrix (3, 4) or (4, 4) that multiplies column vectors (x, y, z, 1); its last row must be 0 0 0 1."""
-        (row,) = _matrices(real(matrix, "matrix")[np.newaxis], "matrix", "")
-        return Object(self._core.mapped(row.tolist()))
+    def _moved(self, by: _strahl.Map) -> Object:
+        return Object(self._core.transformed(by))
 
     def instances(self, matrices: npt.ArrayLike) -> Object:
         """The object once for each matrix (n, 3, 4) or (n, 4, 4), as `transform` takes them: a union of places that share the object, so that each takes
         little memory, however large the object is. They cannot be parts of intersections and differences."""
-        return Object(self._core.instances(_matrices(real(matrices, "matrices"), "matrices", "n, "), caller()))
+        return Object(self._core.instances(rows_of(real(matrices, "matrices"), "matrices", "n, "), caller()))
 
     def clipped_by(self, *solids: Object) -> Object:
         """The part of its surface that is inside of all solids; the cut is open."""
         return _combined("clip", [self, *solids])
 
-    def _flat(self, operation: str) -> list[Object]:
+    def bounded_by(self, *objects: Object) -> Object:
+        """Seen only by rays that meet each of these objects somewhere: what POV-Ray's ``bounded_by`` does to those objects that keep their bounds. It makes nothing faster."""
+        return _combined("bound", [self, *objects])
+
+    def _loose(self, operation: str) -> list[Object]:
         parts = self._core.loose_parts(operation)
         return [self] if parts is None else [Object(part) for part in parts]
 
     def __or__(self, other: Object) -> Object:
         if not isinstance(other, Object):
             return NotImplemented
-        return _combined("union", [*self._flat("union"), other])
+        return _combined("union", [*self._loose("union"), other])
 
     def __and__(self, other: Object) -> Object:
         if not isinstance(other, Object):
             return NotImplemented
-        return _combined("intersection", [*self._flat("intersection"), other])
+        return _combined("intersection", [*self._loose("intersection"), other])
 
     def __sub__(self, other: Object) -> Object:
         if not isinstance(other, Object):
             return NotImplemented
-        return _combined("difference", [*self._flat("difference"), other])
+        return _combined("difference", [*self._loose("difference"), other])
 
     def __neg__(self) -> Object:
         return _combined("inverse", [self])
@@ -123,18 +116,6 @@ class Object:
     def __repr__(self) -> str:
         name = f" {self.name!r}" if self.name else ""
         return f"<strahl.Object {self.kind}{name}>"
-
-
-def _matrices(array: npt.NDArray[np.float64], name: str, more: str) -> npt.NDArray[np.float64]:
-    """Rows of the 12 numbers of each matrix."""
-    if array.shape[1:] == (4, 4):
-        if (array[:, 3] != (0, 0, 0, 1)).any():
-            raise ValueError(f"the last row of {name} must be 0 0 0 1: projections are no transformations")
-        array = array[:, :3]
-    if array.shape[1:] != (3, 4):
-        shape = array.shape if more else array.shape[1:]
-        raise ValueError(f"{name} must have the shape ({more}3, 4) or ({more}4, 4), not {shape}")
-    return np.ascontiguousarray(array).reshape(-1, 12)
 
 
 def _combined(operation: str, objects: Sequence[Object]) -> Object:
@@ -145,14 +126,28 @@ def _combined(operation: str, objects: Sequence[Object]) -> Object:
     return Object(_strahl.Object.combined(operation, cores, caller()))
 
 
-def _all(objects: tuple[Object | Iterable[Object], ...]) -> list[Object]:
-    flat: list[Object] = []
-    for thing in objects:
-        if isinstance(thing, Object):
-            flat.append(thing)
+def light_group(*things: Object | Light | Iterable[Object | Light], global_lights: bool = False, name: str | None = None) -> Object:
+    """Objects with lights that shine on them alone; with ``global_lights`` those of the scene do, too. All objects cast shadows."""
+    from strahl._lights import Light
+
+    parts: list[_strahl.Object | tuple[_strahl.Light, Place]] = []
+    for thing in _flat(things):
+        if isinstance(thing, Light):
+            parts.append((thing._core, thing._place))
+        elif isinstance(thing, Object):
+            parts.append(thing._core)
         else:
-            flat.extend(thing)
-    return flat
+            raise TypeError(f"a light group consists of objects and lights, not {type(thing).__name__}")
+    operation = "light group with global lights" if global_lights else "light group"
+    return with_look(_strahl.Object.combined(operation, parts, caller()), None, name)
+
+
+def _flat(things: Iterable[Any]) -> Iterator[Any]:
+    for thing in things:
+        if isinstance(thing, Iterable) and not isinstance(thing, (str, bytes)):
+            yield from thing
+        else:
+            yield thing
 
 
 def with_look(core: _strahl.Object, material: Look | None, name: str | None) -> Object:
@@ -166,19 +161,19 @@ def with_look(core: _strahl.Object, material: Look | None, name: str | None) -> 
 
 def union(*objects: Object | Iterable[Object], material: Look | None = None, name: str | None = None) -> Object:
     """All objects together; surfaces inside of other objects are kept."""
-    return with_look(_combined("union", _all(objects))._core, material, name)
+    return with_look(_combined("union", list(_flat(objects)))._core, material, name)
 
 
 def merge(*objects: Object | Iterable[Object], material: Look | None = None, name: str | None = None) -> Object:
     """All solids together as one, without surfaces inside: for glass."""
-    return with_look(_combined("merge", _all(objects))._core, material, name)
+    return with_look(_combined("merge", list(_flat(objects)))._core, material, name)
 
 
 def intersection(*objects: Object | Iterable[Object], material: Look | None = None, name: str | None = None) -> Object:
     """What is inside of all solids."""
-    return with_look(_combined("intersection", _all(objects))._core, material, name)
+    return with_look(_combined("intersection", list(_flat(objects)))._core, material, name)
 
 
 def difference(*objects: Object | Iterable[Object], material: Look | None = None, name: str | None = None) -> Object:
     """The first solid without the others."""
-    return with_look(_combined("difference", _all(objects))._core, material, name)
+    return with_look(_combined("difference", list(_flat(objects)))._core, material, name)

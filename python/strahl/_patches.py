@@ -10,7 +10,8 @@ import numpy.typing as npt
 
 from strahl import _strahl
 from strahl._convert import caller, finite_rows, integer, real
-from strahl._objects import Look, Object, with_look
+from strahl._looks import Look
+from strahl._objects import Object, with_look
 
 
 def bicubic_patch(

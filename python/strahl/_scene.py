@@ -5,17 +5,19 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterable, Sequence
 from math import prod
-from typing import Any, Literal
+from typing import Any, Literal, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
 from strahl import _strahl
+from strahl._air import Fog, Rainbow
+from strahl._cameras import Camera
 from strahl._convert import ColorLike, color, integer, number, real
 from strahl._costs import Comparison, HeatMap
 from strahl._film import Film
 from strahl._lights import Light
-from strahl._looks import Background, Camera, background_of
+from strahl._looks import Background, background_of
 from strahl._objects import Object
 from strahl._progress import Preview, Progress, shown
 from strahl._rays import Hits
@@ -24,7 +26,7 @@ from strahl._tree import Explanation
 
 
 class Scene:
-    """Objects, lights, a camera and a background. It grows by `add`; pictures and answers are always those of the scene as it is.
+    """Objects, lights, fogs, rainbows, a camera and a background. It grows by `add`; pictures and answers are always those of the scene as it is.
 
     The first picture or question compiles the scene, which later ones use again until something is added. A scene may be used from several Python
     threads at once. Every method takes ``threads``, the number of threads to compute with (one per processor unless given, and at most that).
@@ -32,7 +34,7 @@ class Scene:
 
     def __init__(
         self,
-        *things: Object | Light | Camera | Background | Scene | Iterable[Any],
+        *things: Thing | Iterable[Any],
         background: Background | ColorLike | None = None,
         ambient: ColorLike | None = None,
     ) -> None:
@@ -49,8 +51,8 @@ class Scene:
         self._core = core
         return self
 
-    def add(self, *things: Object | Light | Camera | Background | Scene | Iterable[Any]) -> Scene:
-        """Adds objects and lights; a camera or background takes the place of the one before. Returns the scene itself.
+    def add(self, *things: Thing | Iterable[Any]) -> Scene:
+        """Adds objects, lights, fogs and rainbows; a camera or background takes the place of the one before. Returns the scene itself.
 
         Of another scene everything is added, but its camera, background and ambient light only where this scene has none.
         """
@@ -59,6 +61,10 @@ class Scene:
                 self._core.add_object(thing._core)
             elif isinstance(thing, Light):
                 self._core.add_light(thing._core, thing._place)
+            elif isinstance(thing, Fog):
+                self._core.add_fog(thing._core)
+            elif isinstance(thing, Rainbow):
+                self._core.add_rainbow(thing._core)
             elif isinstance(thing, Camera):
                 self._core.set_camera(thing._core)
             elif isinstance(thing, Background):
@@ -68,7 +74,7 @@ class Scene:
             elif isinstance(thing, Iterable) and not isinstance(thing, (str, bytes)):
                 self.add(*thing)
             else:
-                raise TypeError(f"a scene consists of objects, lights, a camera and a background, not {type(thing).__name__}")
+                raise TypeError(f"a scene consists of objects, lights, fogs, rainbows, a camera and a background, not {type(thing).__name__}")
         return self
 
     def copy(self) -> Scene:
@@ -316,6 +322,9 @@ class Scene:
         objects, lights = self._core.counts()
         return f"<strahl.Scene with {objects} objects and {lights} lights>"
 
+
+Thing: TypeAlias = Object | Light | Fog | Rainbow | Camera | Background | Scene
+"""What a scene consists of."""
 
 _METRICS = ("tests", "steps", "rays", "depth", "time")
 

@@ -9,11 +9,12 @@ import numpy.typing as npt
 from strahl import _strahl
 from strahl._arrays import each, mesh
 from strahl._convert import Vector, caller, finite_rows, integer, number, vector
-from strahl._objects import Look, Object, with_look
+from strahl._looks import Look
+from strahl._objects import Object, with_look
 
 
 def sphere(center: Vector = (0, 0, 0), radius: float = 1.0, *, material: Look | None = None, name: str | None = None) -> Object:
-    """A sphere."""
+    """A sphere about a centre."""
     core = _strahl.sphere(vector(center, "center"), number(radius, "radius"), caller())
     return with_look(core, material, name)
 

@@ -118,6 +118,29 @@ MAKERS: dict[str, tuple[tuple[int, ...], Callable[[Any], Any]]] = {
     "eye": ((3,), strahl.Camera.perspective),
     "angle": ((3,), lambda a: strahl.Camera.fisheye((0, 0, 9), angle=a)),
     "background": ((3,), strahl.Background.solid),
+    "sky": ((3,), strahl.Background.sky),
+    "pixels": ((4, 5), lambda a: strahl.Pigment(strahl.Pattern.image(a))),
+    "relief": ((4, 5, 3), lambda a: strahl.Texture(1, normal=strahl.Normal(strahl.Pattern.image(a)))),
+    "pigment": ((5,), strahl.Pigment),
+    "entries": ((2, 2), lambda a: strahl.Pigment.map("bozo", a)),
+    "weights": ((2,), lambda a: strahl.Pigment.average(0, 1, weights=a)),
+    "turbulence": ((3,), lambda a: strahl.Pigment.map(strahl.Pattern("marble").turbulence(a), {0: 0, 1: 1})),
+    "brick": ((3,), lambda a: strahl.Pigment.blocks(strahl.Pattern.brick(a), [0, 1])),
+    "warp": ((3,), lambda a: strahl.Pigment.map(strahl.Pattern("bozo").black_hole(a, 1).repeat("x", 1, offset=a).flatten(a), {0: 0, 1: 1})),
+    "moved pattern": ((4, 4), lambda a: strahl.Pigment.map(strahl.Pattern("granite").transform(a), {0: 0, 1: 1})),
+    "finish": ((3,), lambda a: strahl.Texture(1, finish=strahl.Finish(ambient=a, reflection=a, irid=a))),
+    "interior": ((3,), lambda a: strahl.Material.glass().with_interior(strahl.Interior(fade_color=a, fade_power=2, fade_distance=1))),
+    "fog": ((3,), lambda a: strahl.Fog(a, 1, turbulence=a)),
+    "ground fog": ((3,), lambda a: strahl.Fog(1, 1, altitude=1, up=a)),
+    "rainbow": ((3,), lambda a: strahl.Rainbow(a, {0: 0, 1: a})),
+    "mesh camera": ((4, 3), lambda a: strahl.Camera.mesh(a, FACES, uv=NET[0, :, :2])),
+    "bokeh": ((3, 3), lambda a: strahl.Camera.perspective((0, 0, 5)).focused(1, (0, 0, 0), bokeh=a, samples=4)),
+    "julia": ((4,), lambda a: strahl.julia(a, max_iteration=3)),
+    "terrain": ((2,), lambda a: strahl.terrain(x=a, z=a, octaves=2)),
+    "sponge": ((3,), lambda a: strahl.menger(a, (2, 2, 2), 2)),
+    "formula": ((3,), lambda a: strahl.implicit("x*x + y*y + z - A", declare={"A": a})),
+    "container": ((3,), lambda a: strahl.implicit("x*x + y*y + z", a)),
+    "moved light": ((3,), lambda a: strahl.point_light((4, 8, 6)).translate(a)),
     "origins": ((6, 3), lambda a: SCENE.intersect(a, (0, 0, 1)).normal),
     "directions": ((6, 3), lambda a: SCENE.intersect((0, 0, 9), a).position),
     "both": ((6, 3), lambda a: SCENE.occluded(a, a)),
@@ -147,7 +170,9 @@ def test_anything_is_answered_or_refused(name: str) -> None:
                 scene.render(4, 3, sampling="center")
             elif isinstance(made, (strahl.Light, strahl.Camera, strahl.Background)):
                 strahl.Scene(BALL, made).render(4, 3, sampling="center")
-            elif isinstance(made, strahl.Material):
+            elif isinstance(made, (strahl.Fog, strahl.Rainbow)):
+                SCENE.copy().add(made).render(4, 3, sampling="center")
+            elif isinstance(made, (strahl.Material, strahl.Texture, strahl.Pigment)):
                 strahl.Scene(BALL.material(made)).render(4, 3, sampling="center")
         except (*KNOWN, strahl.SceneError) as error:
             assert str(error), f"an error without a text for {value!r}"

@@ -3,7 +3,7 @@
 use crate::errors;
 use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
-use strahl::prelude::{Color, DVec2, DVec3};
+use strahl::prelude::{Color, ColorFt, DVec2, DVec3};
 
 /// A point, direction or colour.
 pub(crate) type Triple = (f64, f64, f64);
@@ -16,6 +16,20 @@ pub(crate) fn vector((x, y, z): Triple) -> DVec3 {
 /// As a colour.
 pub(crate) fn color((r, g, b): Triple) -> Color {
     Color::new(r, g, b)
+}
+
+/// Red, green, blue, filter and transmit.
+#[derive(Clone, Copy, FromPyObject)]
+pub(crate) struct ColorNumbers(f64, f64, f64, f64, f64);
+
+impl From<ColorNumbers> for ColorFt {
+    fn from(ColorNumbers(r, g, b, filter, transmit): ColorNumbers) -> Self {
+        Self {
+            rgb: Color::new(r, g, b),
+            filter,
+            transmit,
+        }
+    }
 }
 
 /// Rows of three numbers.

@@ -1,12 +1,13 @@
 //! Objects, which belong to no scene until they are added to one.
 
-use crate::convert::{Triple, contiguous, vector};
+use crate::convert::contiguous;
 use crate::errors;
+use crate::lights::Light;
 use crate::looks::Material;
+use crate::maps::{self, Map};
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 use std::sync::Arc;
-use strahl::math::{DMat3, DVec3, SingularTransform, Transform};
 use strahl::prelude::{CsgOp, ObjectExt, Visibility};
 use strahl::scene::{
     self, Children, FileId, Group, GroupId, ObjectKind, SceneLight, SourceMap, Span,
@@ -22,13 +23,6 @@ pub(crate) struct Piece {
     pub(crate) plain: bool,
     /// How deep objects are nested.
     pub(crate) depth: u32,
-}
-
-/// The transformation by a matrix of three rows and four columns that multiplies columns.
-fn map(matrix: &[f64; 12]) -> Result<Transform, SingularTransform> {
-    let column = |c: usize| DVec3::new(matrix[c], matrix[4 + c], matrix[8 + c]);
-    let linear = DMat3::from_cols(column(0), column(1), column(2));
-    Transform::try_new(linear, column(3))
 }
 
 /// The deepest nesting of objects.
@@ -164,9 +158,32 @@ impl Object {
     pub(crate) fn new(object: scene::Object, place: Option<(String, u32)>) -> Self {
         Self(Arc::new(Piece::new(object, place.as_ref())))
     }
+}
 
-    fn transformed(&self, transform: &Transform) -> Self {
-        self.0.with(|object| object.transformed(transform))
+/// A part of a combination.
+#[derive(FromPyObject)]
+enum Part {
+    Object(Py<Object>),
+    /// With the line of the program that made it.
+    Light(Py<Light>, Option<(String, u32)>),
+}
+
+impl Part {
+    fn depth(&self) -> u32 {
+        match self {
+            Self::Object(object) => object.get().0.depth,
+            Self::Light(..) => 1,
+        }
+    }
+
+    fn adopted(&self, sources: &mut SourceMap, groups: &mut Vec<Group>) -> scene::Object {
+        match self {
+            Self::Object(object) => adopt(&object.get().0, sources, groups),
+            Self::Light(light, place) => {
+                let light = light.get().adopted(place.clone(), sources, groups);
+                scene::Object::light(light)
+            }
+        }
     }
 }
 
@@ -205,6 +222,15 @@ impl Object {
         Some(place.to_string())
     }
 
+    /// As made at a line of a program.
+    fn made_at(&self, place: Option<(String, u32)>) -> Self {
+        let mut piece = (*self.0).clone();
+        if let Some((file, line)) = place {
+            piece.object.span = Span::line(piece.sources.add(&file), line);
+        }
+        Self(Arc::new(piece))
+    }
+
     fn named(&self, name: &str) -> Self {
         self.0.with(|object| object.named(name))
     }
@@ -231,25 +257,38 @@ impl Object {
         })
     }
 
-    fn translated(&self, offset: Triple) -> Self {
-        self.transformed(&Transform::translate(vector(offset)))
+    #[pyo3(name = "transformed")]
+    pub(crate) fn moved(&self, map: &Map) -> Self {
+        self.0.with(|object| object.transformed(&map.0))
     }
 
-    fn rotated(&self, axis: Triple, radians: f64) -> Self {
-        self.transformed(&Transform::rotate(vector(axis), radians))
+    fn double_illuminated(&self) -> Self {
+        self.0.with(|object| scene::Object {
+            double_illuminated: true,
+            ..object
+        })
     }
 
-    fn scaled(&self, factors: Triple) -> PyResult<Self> {
-        let scale = Transform::try_scale(vector(factors)).map_err(errors::value)?;
-        Ok(self.transformed(&scale))
+    fn uv_mapped(&self) -> Self {
+        self.0.with(|object| scene::Object {
+            uv_mapped: true,
+            ..object
+        })
     }
 
-    /// By a matrix of three rows and four columns that multiplies columns: its 12 numbers row by row.
-    fn mapped(&self, matrix: [f64; 12]) -> PyResult<Self> {
-        Ok(self.transformed(&map(&matrix).map_err(errors::value)?))
+    /// As the body of a light, which casts no shadow.
+    fn lamp(&self) -> Self {
+        self.0.with(|object| scene::Object {
+            is_lamp: true,
+            visibility: Visibility {
+                shadow: false,
+                ..object.visibility
+            },
+            ..object
+        })
     }
 
-    /// Once for each row of matrices as `mapped` takes them. The places share the object, which is stored once.
+    /// Once for each row of matrices as `Map.matrix` takes them. The places share the object, which is stored once.
     fn instances(
         &self,
         matrices: PyReadonlyArray2<'_, f64>,
@@ -263,7 +302,7 @@ impl Object {
         });
         let (rows, _) = contiguous(&matrices)?.as_chunks::<12>();
         let each = rows.iter().enumerate().map(|(number, row)| {
-            let map = map(row)
+            let map = maps::of_matrix(row)
                 .map_err(|error| errors::value(format!("matrices: number {number}: {error}")))?;
             Ok(scene::Object::instance(shared).transformed(&map))
         });
@@ -274,11 +313,11 @@ impl Object {
         ))))
     }
 
-    /// Combines objects; `operation` is that of POV-Ray's language.
+    /// Combines objects, and lights that belong to them; `operation` is that of POV-Ray's language.
     #[staticmethod]
     fn combined(
         operation: &str,
-        objects: Vec<Py<Self>>,
+        objects: Vec<Part>,
         place: Option<(String, u32)>,
     ) -> PyResult<Self> {
         let op = match operation {
@@ -289,9 +328,12 @@ impl Object {
             "inverse" => CsgOp::Inverse,
             "clip" => CsgOp::Clip,
             "bound" => CsgOp::Bound,
+            "light group" | "light group with global lights" => CsgOp::LightGroup {
+                global_lights: operation != "light group",
+            },
             other => return Err(errors::value(format!("there is no operation `{other}`"))),
         };
-        let depth = objects.iter().map(|o| o.get().0.depth).max().unwrap_or(0) + 1;
+        let depth = objects.iter().map(Part::depth).max().unwrap_or(0) + 1;
         if depth > DEEPEST {
             return Err(errors::value(format!(
                 "objects are nested more than {DEEPEST} deep: combine lists of them by strahl.union and the like"
@@ -300,7 +342,7 @@ impl Object {
         let (mut sources, mut groups) = (SourceMap::default(), vec![]);
         let children = objects
             .iter()
-            .map(|object| adopt(&object.get().0, &mut sources, &mut groups))
+            .map(|part| part.adopted(&mut sources, &mut groups))
             .collect();
         let object = scene::Object::csg(op, children);
         Ok(Self(Arc::new(Piece::of_parts(
@@ -319,6 +361,7 @@ impl Object {
             && object.material.is_none()
             && object.transform.is_none()
             && object.hollow.is_none()
+            && !(object.double_illuminated || object.uv_mapped || object.is_lamp)
             && object.visibility == Visibility::default()
             && !self.0.plain;
         bare.then(|| {

@@ -1,12 +1,16 @@
 //! Scenes: a description that can grow, and what is compiled from it.
 
+use crate::air::{Fog, Rainbow};
+use crate::cameras::Camera;
 use crate::convert::{Triple, color};
 use crate::film::Film;
 use crate::hits::Hits;
-use crate::looks::{Background, Camera, Light, Material};
+use crate::lights::Light;
+use crate::looks::{Background, Material};
 use crate::object::{Object, Renumbering, adopt};
 use crate::queries::{Asked, Rays};
 use crate::settings::{DEFAULT_SIZE, OutputNumbers, ViewNumbers};
+use crate::textures::Pattern;
 use crate::{errors, sessions, work};
 use numpy::{PyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
@@ -15,10 +19,10 @@ use std::ops::ControlFlow;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 use strahl::prelude::{
-    AcceleratorKind, CompileOptions, CsgOp, Interval, Outcome, Output, Region, RenderScene, Tile,
-    View,
+    AcceleratorKind, CompileOptions, CsgOp, Interval, Outcome, Output, Pigment, PlainTexture,
+    Region, RenderScene, Texture, Tile, View,
 };
-use strahl::scene::{self, Children, Span};
+use strahl::scene::{self, Children};
 use strahl::tracing::{self, Prepared, RenderError};
 
 /// A description, and what was compiled from it last.
@@ -190,12 +194,17 @@ impl Scene {
 
     fn add_light(&self, light: &Light, place: Option<(String, u32)>) {
         self.change(|scene| {
-            let mut light = light.0.clone();
-            if let Some((file, line)) = place {
-                light.span = Span::line(scene.sources.add(&file), line);
-            }
+            let light = light.adopted(place, &mut scene.sources, &mut scene.groups);
             scene.lights.push(light);
         });
+    }
+
+    fn add_fog(&self, fog: &Fog) {
+        self.change(|scene| scene.fogs.push(fog.0));
+    }
+
+    fn add_rainbow(&self, rainbow: &Rainbow) {
+        self.change(|scene| scene.rainbows.push(rainbow.0.clone()));
     }
 
     /// Adds everything of another scene; its camera, background and ambient light only where this scene has none.
@@ -296,6 +305,19 @@ impl Scene {
         match objects.first().and_then(|object| object.material.clone()) {
             Some(material) => Ok(Material(material)),
             None => Err(errors::value("the text has no texture")),
+        }
+    }
+
+    /// The pattern of the pigment of the scene's only object.
+    fn pattern(&self) -> PyResult<Pattern> {
+        let material = self.material()?.0;
+        let texture = material.texture.as_ref().map(|shared| &*shared.0);
+        match texture {
+            Some(Texture::Plain(PlainTexture {
+                pigment: Pigment::ColorMap(field, _),
+                ..
+            })) => Ok(Pattern((**field).clone())),
+            _ => Err(errors::value("the text has no pattern")),
         }
     }
 

@@ -1,7 +1,7 @@
 //! Settings of pictures, as the Python half hands them over.
 
+use crate::cameras::Camera;
 use crate::errors;
-use crate::looks::Camera;
 use crate::work::Stop;
 use pyo3::prelude::*;
 use std::sync::{Arc, LazyLock};

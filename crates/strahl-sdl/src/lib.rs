@@ -52,7 +52,7 @@ mod value;
 
 pub use expr::{Array, Dictionary, PigmentFunction, Spline, SplineKind};
 pub use grammar::{
-    Declared, Entity, GlobalSettings, State, Texture, Thing, object_words, pattern_words,
+    Declared, Entity, GlobalSettings, State, Texture, Thing, inside, object_words, pattern_words,
 };
 pub use highlight::{Piece, highlight};
 pub use include::built_in;

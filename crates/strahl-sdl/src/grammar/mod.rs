@@ -28,7 +28,7 @@ pub use entity::{Declared, Entity};
 pub use global_settings::GlobalSettings;
 pub(crate) use global_settings::UNVERSIONED;
 pub use objects::object_words;
-pub use texture::{Texture, pattern_words};
+pub use texture::{Texture, inside, pattern_words};
 pub use thing::Thing;
 
 use crate::keywords::{Word, WordKind};

@@ -28,6 +28,7 @@ mod weight;
 pub(super) use bitmap::KnownPicture;
 pub(super) use material::{KnownMaterials, fill_parts, is_bare};
 
+pub use inside::inside;
 pub use pattern::pattern_words;
 
 use crate::keywords::Word;

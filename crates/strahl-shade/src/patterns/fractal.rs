@@ -33,6 +33,22 @@ pub enum Exterior {
     Absolute(f64),
 }
 
+impl Exterior {
+    /// The value with POV-Ray's number 0 to 6.
+    pub const fn from_number(number: u32, factor: f64) -> Option<Self> {
+        Some(match number {
+            0 => Self::Constant(factor),
+            1 => Self::Steps,
+            2 => Self::Real(factor),
+            3 => Self::Imaginary(factor),
+            4 => Self::RealSquared(factor),
+            5 => Self::ImaginarySquared(factor),
+            6 => Self::Absolute(factor),
+            _ => return None,
+        })
+    }
+}
+
 /// The value of a point of the set, whose orbit ends at `z`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Interior {
@@ -50,6 +66,22 @@ pub enum Interior {
     ImaginarySquared(f64),
     /// 6: the absolute value. (POV-Ray gives another number here, which is not that of its manual.)
     Absolute(f64),
+}
+
+impl Interior {
+    /// The value with POV-Ray's number 0 to 6.
+    pub const fn from_number(number: u32, factor: f64) -> Option<Self> {
+        Some(match number {
+            0 => Self::Constant(factor),
+            1 => Self::Smallest(factor),
+            2 => Self::Real(factor),
+            3 => Self::Imaginary(factor),
+            4 => Self::RealSquared(factor),
+            5 => Self::ImaginarySquared(factor),
+            6 => Self::Absolute(factor),
+            _ => return None,
+        })
+    }
 }
 
 /// A fractal of the complex plane as a pattern; x is real, y imaginary.

@@ -30,7 +30,7 @@ pub(crate) struct Query {
 
 impl Query {
     /// `None` if the object is empty or a shape is invalid.
-    fn new(object: &Object) -> Option<Self> {
+    pub(super) fn new(object: &Object) -> Option<Self> {
         let csg = Csg::try_new(node(object)?).ok()?;
         let bounds = unclipped(object).unwrap_or_else(|| csg.bounds());
         let (cost, functions) = cost(object);

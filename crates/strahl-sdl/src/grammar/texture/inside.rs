@@ -2,7 +2,13 @@ use crate::grammar::query::Query;
 use std::sync::Arc;
 use strahl_function::Cost;
 use strahl_math::DVec3;
+use strahl_scene::Object;
 use strahl_shade::patterns::Inside;
+
+/// The inside of an object, for the object pattern. Empty objects, and instances of groups, have none.
+pub fn inside(object: &Object) -> Arc<dyn Inside> {
+    Arc::new(ObjectInside(Query::new(object).map(Arc::new)))
+}
 
 /// An object for the object pattern; an empty one has no inside.
 #[derive(Debug)]

@@ -337,40 +337,22 @@ impl Parser<'_> {
     fn exterior(&mut self, before: Exterior) -> PResult<Exterior> {
         let place = self.place();
         let (number, factor) = self.coloring()?;
-        Ok(match number {
-            0 => Exterior::Constant(factor),
-            1 => Exterior::Steps,
-            2 => Exterior::Real(factor),
-            3 => Exterior::Imaginary(factor),
-            4 => Exterior::RealSquared(factor),
-            5 => Exterior::ImaginarySquared(factor),
-            6 => Exterior::Absolute(factor),
-            _ => {
-                self.warn_hint(
-                    place,
-                    format!("exterior {number} is not supported yet and is left out"),
-                    "the outside of the fractal will have other colours",
-                );
-                before
-            }
-        })
+        Ok(Exterior::from_number(number, factor).unwrap_or_else(|| {
+            self.warn_hint(
+                place,
+                format!("exterior {number} is not supported yet and is left out"),
+                "the outside of the fractal will have other colours",
+            );
+            before
+        }))
     }
 
     fn fractal_interior(&mut self) -> PResult<FractalInterior> {
         let place = self.place();
         let (number, factor) = self.coloring()?;
-        Ok(match number {
-            0 => FractalInterior::Constant(factor),
-            1 => FractalInterior::Smallest(factor),
-            2 => FractalInterior::Real(factor),
-            3 => FractalInterior::Imaginary(factor),
-            4 => FractalInterior::RealSquared(factor),
-            5 => FractalInterior::ImaginarySquared(factor),
-            6 => FractalInterior::Absolute(factor),
-            _ => {
-                let message = format!("expected a number from 0 to 6, found {number}");
-                return Err(self.fail(place, message));
-            }
+        FractalInterior::from_number(number, factor).ok_or_else(|| {
+            let message = format!("expected a number from 0 to 6, found {number}");
+            self.fail(place, message)
         })
     }
 
