@@ -14,6 +14,9 @@ from strahl._objects import Object
 Falloff: TypeAlias = Literal["inverse-square"] | tuple[float, float] | None
 """How light gets weaker with distance: see `Light`."""
 
+MOST = 1024
+"""Most points along an edge of an area light."""
+
 
 class Light(Movable):
     """A light source, made by `point_light`, `spot_light` and the like. It never changes; methods return new lights.
@@ -49,12 +52,14 @@ class Light(Movable):
         ``orient`` turns the light towards each point. Each point also gives light of its own direction with ``illumination``. ``reach`` is the distance at which the points of parallel
         light are as far apart as the axes say.
         """
-        across, along = size
+        across, along = (integer(count, "size", 1) for count in size)
+        if max(across, along) > MOST:
+            raise ValueError(f"size must be from 1 to {MOST} points along an edge, not {max(across, along)}")
         core = self._core.area(
             {
                 "axis_1": vector(axis_1, "axis_1"),
                 "axis_2": vector(axis_2, "axis_2"),
-                "size": (integer(across, "size", 1), integer(along, "size", 1)),
+                "size": (across, along),
                 "jitter": bool(jitter),
                 "circular": bool(circular),
                 "orient": bool(orient),

@@ -7,6 +7,7 @@ from typing import Any, TypeAlias
 from strahl import _strahl
 from strahl._convert import ColorLike, Vector, not_negative, positive, vector
 from strahl._convert import color as linear
+from strahl._maps import Movable
 from strahl._textures import Interior, Pigment, Texture, pigment_of
 
 
@@ -154,7 +155,9 @@ def material_of(value: Look) -> Material:
         return value
     if isinstance(value, (Texture, Pigment)):
         return Material.textured(value)
-    return Material.matte(value)
+    if isinstance(value, Movable):
+        raise TypeError(f"material must be a material, a texture, a pigment or a colour, not a {type(value).__name__}")
+    return Material.matte(linear(value, "material"))
 
 
 class Background:

@@ -49,6 +49,9 @@ class Movable:
         moved: _T = self._moved(_strahl.Map.matrix(row.tolist()))
         return moved
 
+    def __repr__(self) -> str:
+        return f"<strahl.{type(self).__name__}>"
+
 
 def matrices(array: npt.NDArray[np.float64], name: str, more: str) -> npt.NDArray[np.float64]:
     """Rows of the 12 numbers of each matrix."""

@@ -121,7 +121,7 @@ class Object(Movable):
 def _combined(operation: str, objects: Sequence[Object]) -> Object:
     for thing in objects:
         if not isinstance(thing, Object):
-            raise TypeError(f"only objects can be combined, not {type(thing).__name__}")
+            raise TypeError(f"only objects can be combined, not {type(thing).__name__}; lights have light_group and Light.with_body")
     cores = [thing._core for thing in objects]
     return Object(_strahl.Object.combined(operation, cores, caller()))
 

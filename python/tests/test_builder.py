@@ -414,6 +414,14 @@ def test_wrong_looks_are_refused() -> None:
             make()
     with pytest.raises(TypeError, match="expected a Normal"):
         Texture(1, normal=Pattern("bozo"))  # type: ignore[arg-type]
+    with pytest.raises(TypeError, match="not a Normal"):
+        strahl.sphere(material=Normal("bumps"))  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match="material: 'redd' is no colour"):
+        strahl.sphere(material="redd")
+    with pytest.raises(ValueError, match="size must be from 1 to 1024"):
+        strahl.area_light((0, 9, 0), (1, 0, 0), (0, 0, 1), size=(2, 1025))
+    with pytest.raises(TypeError, match="light_group"):
+        strahl.union(strahl.sphere(), strahl.point_light((0, 9, 0)))  # type: ignore[arg-type]
     with pytest.raises(TypeError, match="light group consists"):
         strahl.light_group(strahl.Camera.perspective((0, 0, 1)))  # type: ignore[arg-type]
 
