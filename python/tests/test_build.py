@@ -1,4 +1,4 @@
-"""The build of the package looks for Rust."""
+"""The build of the package: it looks for Rust, and has the licences."""
 
 from __future__ import annotations
 
@@ -35,3 +35,8 @@ def test_rust_is_found_where_rustup_puts_it(backend: dict[str, Any], tmp_path: P
     program.chmod(0o755)
     assert backend["get_requires_for_build_wheel"]() == []
     assert os.environ["PATH"].split(os.pathsep)[0] == str(folder)
+
+
+@pytest.mark.parametrize("name", ["LICENSE-APACHE", "LICENSE-MIT"])
+def test_the_package_has_the_licences_of_the_project(name: str) -> None:
+    assert (ROOT / "python" / name).read_bytes() == (ROOT / name).read_bytes()
