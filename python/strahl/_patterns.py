@@ -165,7 +165,7 @@ class Pattern(Movable):
 
     @classmethod
     def object(cls, solid: Object) -> Pattern:
-        """Block 0 is outside of a solid, block 1 is inside."""
+        """Block 0 is outside of a solid, block 1 is inside. `Object.instances` have no inside."""
         return cls._of(_strahl.Pattern.object(solid._core), "object")
 
     @classmethod
