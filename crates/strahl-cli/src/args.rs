@@ -7,6 +7,7 @@ use std::path::PathBuf;
 use strahl::Format;
 use strahl::accel::{AcceleratorKind, Bvh8Parameters, Level, Parameters, UnknownLevel};
 use strahl::formats::image::{BitDepth, ImageFormat};
+use strahl::geometry::SubdivisionScheme;
 use strahl::sdl::{Limits, Word};
 use strahl::shade::ShadingModel;
 use strahl::tracing::{Region, Sampling, TileOrder};
@@ -118,6 +119,9 @@ pub(crate) struct PovArgs {
     /// times
     #[arg(long, value_name = "NAME=N", value_parser = parse_limit)]
     pub(crate) limit: Vec<(String, u64)>,
+    /// Show the subdivision surfaces that the meshes of an OBJ, PLY, STL or glTF file control, met at their limit
+    #[arg(long, value_name = "SCHEME", value_parser = parse_scheme, help_heading = "Meshes")]
+    pub(crate) subdivide: Option<SubdivisionScheme>,
     /// Language version of scenes without `#version`, such as 3.7
     #[arg(long, value_name = "VERSION", value_parser = parse_version)]
     pub(crate) language_version: Option<f64>,
@@ -601,6 +605,14 @@ fn parse_declaration(s: &str) -> Result<(String, f64), String> {
     number.map(|v| (name.to_owned(), v)).ok_or_else(|| {
         format!("`{value}` is not a number: only numbers can be declared here, such as {name}=2.5")
     })
+}
+
+fn parse_scheme(s: &str) -> Result<SubdivisionScheme, String> {
+    match s {
+        "catmull-clark" => Ok(SubdivisionScheme::CatmullClark),
+        "loop" => Ok(SubdivisionScheme::Loop),
+        _ => Err("the schemes are `catmull-clark` and `loop`".to_owned()),
+    }
 }
 
 fn parse_limit(s: &str) -> Result<(String, u64), String> {

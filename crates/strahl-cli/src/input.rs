@@ -281,6 +281,7 @@ impl<'a> Input<'a> {
             pinned: self.pinned.clone(),
             texts: self.texts.clone(),
             stop: self.stop.clone(),
+            subdivide: self.pov.subdivide,
             on_message: (!quiet).then(|| Box::new(print_message) as _),
             ..LoadOptions::default()
         };

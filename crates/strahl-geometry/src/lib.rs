@@ -34,7 +34,10 @@ pub use implicit::{
 pub use mesh::{
     Brep, MeshData, PlaneHit, Polygon, RayShear, SmoothTriangle, Triangle, TriangleMesh,
 };
-pub use patch::{BicubicPatch, Nurbs, NurbsCurve, NurbsData, TrimLoop};
+pub use patch::{
+    BicubicPatch, Nurbs, NurbsCurve, NurbsData, Subdivision, SubdivisionData, SubdivisionScheme,
+    TrimLoop,
+};
 pub use primitive::{GeometryError, PrimHit, Primitive, Scratch, Solid, SurfaceId, SurfacePoint};
 pub use primitives::{Cone, Cuboid, Cylinder, Disc, Lemon, Ovus, Plane, Quadric, Sphere, Torus};
 pub use shape::Shape;

@@ -404,6 +404,14 @@ pub enum GeometryError {
         /// The length it has.
         found: u64,
     },
+    /// The faces of a mesh don't fit together as a surface.
+    #[error("{what} is not a surface: {why}")]
+    NotASurface {
+        /// The object.
+        what: &'static str,
+        /// The reason, in words.
+        why: String,
+    },
     /// A mesh or tree that should enclose a volume doesn't.
     #[error("{what} is not closed: {why}")]
     NotClosed {

@@ -2,7 +2,7 @@ use crate::algebraic::{Blob, Polynomial, Superellipsoid};
 use crate::fractal::{Julia, Mandelbulb, Menger, Terrain};
 use crate::implicit::{GridIsosurface, HeightField, Isosurface, Parametric};
 use crate::mesh::{Brep, Polygon, SmoothTriangle, Triangle, TriangleMesh};
-use crate::patch::{BicubicPatch, Nurbs};
+use crate::patch::{BicubicPatch, Nurbs, Subdivision};
 use crate::primitives::{Cone, Cuboid, Cylinder, Disc, Lemon, Ovus, Plane, Quadric, Sphere, Torus};
 use crate::swept::{Glyph, Lathe, Prism, Sor, SphereSweep};
 use crate::{
@@ -160,6 +160,8 @@ shapes! {
     BicubicPatch(Arc<BicubicPatch>),
     /// A NURBS surface, trimmed or whole.
     Nurbs(Arc<Nurbs>),
+    /// A subdivision surface.
+    Subdivision(Arc<Subdivision>),
     /// A slice of a Julia set in four dimensions.
     Julia(Arc<Julia>),
     /// A Mandelbulb.
@@ -205,6 +207,7 @@ shared!(
     Parametric,
     BicubicPatch,
     Nurbs,
+    Subdivision,
     Julia,
     Mandelbulb,
     Menger,

@@ -74,6 +74,7 @@ impl Word {
                 | Self::Menger
                 | Self::Mixed
                 | Self::Nurbs
+                | Self::Subdivision
                 | Self::Obj
                 | Self::Optional
                 | Self::Polarity
@@ -542,6 +543,7 @@ words! {
     Strlwr "strlwr" StringFunction,
     Strupr "strupr" StringFunction,
     Sturm "sturm" Item,
+    Subdivision "subdivision" Object,
     Substr "substr" StringFunction,
     Subsurface "subsurface" Item,
     Suffix "suffix" Item,

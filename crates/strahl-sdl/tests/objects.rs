@@ -3,8 +3,8 @@
 mod common;
 
 use common::{debug, errors, parse_with};
-use strahl_geometry::{Primitive, Scratch, Shape};
-use strahl_math::{DVec3, Interval, Ray};
+use strahl_geometry::{Primitive, Scratch, Shape, SubdivisionScheme};
+use strahl_math::{DVec2, DVec3, Interval, Ray};
 use strahl_scene::{CsgOp, Object, ObjectKind, Scene};
 use strahl_sdl::MemoryHost;
 use strahl_shade::Color;
@@ -394,6 +394,124 @@ fn mistakes_in_nurbs_are_explained() {
         ),
     ] {
         let text = format!("sphere {{ 0, 1 }} nurbs {{ {text} }}");
+        let parsed = parse_with(&mut MemoryHost::new(), &text);
+        let messages: Vec<String> = parsed.diagnostics.iter().map(ToString::to_string).collect();
+        assert!(
+            messages.iter().any(|m| m.contains(expected)),
+            "{text}: {messages:?}"
+        );
+    }
+}
+
+/// A tetrahedron.
+const CAGE: &str =
+    "points { 0, x, y, z } face { 0, 2, 1 } face { 0, 1, 3 } face { 1, 2, 3 } face { 0, 3, 2 }";
+
+#[test]
+fn the_items_of_subdivision_surfaces_are_read() {
+    let data = |text: &str| {
+        let Shape::Subdivision(surface) = shape(&format!("subdivision {{ {text} }}")) else {
+            panic!("no subdivision surface");
+        };
+        surface.data().clone()
+    };
+    let plain = data(CAGE);
+    assert_eq!(plain.scheme, SubdivisionScheme::CatmullClark);
+    assert_eq!(plain.sizes, [3; 4]);
+    assert_eq!(plain.indices, [0, 2, 1, 0, 1, 3, 1, 2, 3, 0, 3, 2]);
+    for text in [
+        format!("catmull_clark {CAGE}"),
+        "points { 0 x } points { y z }, face { 0 2 1 }, face { 0 1, 3 } face { 1, 2, 3, } face { 0, 3, 2 }"
+            .to_owned(),
+        // The words are names as elsewhere, and directives work.
+        format!("#declare face = 3; #declare points = 2; {CAGE} #declare uv = 1;"),
+        format!("{CAGE} rotate 0 pigment {{ rgb 1 }}"),
+    ] {
+        assert_eq!(data(&text), plain, "{text}");
+    }
+    let sharp = data(&format!(
+        "loop {CAGE} crease {{ 0, 1, 2 }} crease {{ sharpness 1.5, 2, 3 }} corner {{ sharpness 2 3 }} corner {{ 0 }}"
+    ));
+    assert_eq!(sharp.scheme, SubdivisionScheme::Loop);
+    let forever = f64::INFINITY;
+    assert_eq!(
+        sharp.creases,
+        [([0, 1], forever), ([1, 2], forever), ([2, 3], 1.5)]
+    );
+    assert_eq!(sharp.corners, [(3, 2.0), (0, forever)]);
+    let textured =
+        data("points { 0, x, x + y, y } face { 0, 1, 2, 3 uv { <0, 0>, <1, 0>, <1, 2>, <0, 2> } }");
+    assert_eq!(textured.uvs.len(), 4);
+    assert_eq!(textured.uvs[2], DVec2::new(1.0, 2.0));
+    // Scenes may use the word as a name.
+    let (read, _) = scene("#declare subdivision = sphere { 0, 1 } object { subdivision }");
+    assert_eq!(read.objects.0.len(), 1);
+}
+
+#[test]
+fn mistakes_in_subdivision_surfaces_are_explained() {
+    for (text, expected) in [
+        ("", "`points`, `face`, `crease`"),
+        ("points { 0, x, y }", "`points`, `face`, `crease`"),
+        (
+            "points { 0, x, y } face { 0, 1, 3 }",
+            "there is no point 3: 3 points came before",
+        ),
+        (
+            "points { 0, x, y } face { 0, 1, 1.5 }",
+            "there is no point 1.5",
+        ),
+        (
+            "points { 0, x, y } face { 0, 1, -1 }",
+            "there is no point -1",
+        ),
+        (
+            "face { 0, 1, 2 } points { 0, x, y }",
+            "there is no point 0: 0 points came before",
+        ),
+        (
+            "points { 0, x, y } face { 0, 1 }",
+            "from 3 to 1000, found 2",
+        ),
+        (
+            "points { 0, x, y } face { 0, 1, 1 }",
+            "face 0 has vertex 1 twice",
+        ),
+        (
+            "loop points { 0, x, y, x + y } face { 0, 1, 3, 2 }",
+            "3 for Loop's scheme, found 4",
+        ),
+        (
+            "points { 0, x, y, z, -z } face { 0, 1, 2 } face { 0, 1, 3 } face { 1, 0, 4 }",
+            "3 faces meet at the edge between the vertices 0 and 1",
+        ),
+        (
+            "points { 0, x, y, z } face { 0, 1, 2 } face { 0, 1, 3 }",
+            "turn different sides to the front",
+        ),
+        (
+            "points { 0, x, y } face { 0, 1, 2 } crease { sharpness -1 0, 1 }",
+            "a sharpness is 0",
+        ),
+        (
+            "points { 0, x, y, z } face { 0, 1, 2 } crease { 0, 3 }",
+            "is not an edge of a face",
+        ),
+        (
+            "points { 0, x, y } face { 0, 1, 2 uv { 0, u } }",
+            "this face has 3 corners, but 2 `uv`",
+        ),
+        (
+            "points { 0, x, y, z } face { 0, 1, 2 uv { 0, u, v } } face { 0, 2, 3 }",
+            "either all faces have `uv` or none",
+        ),
+        (
+            "points { 0, x, <0, 1e200 * 1e200, 0> } face { 0, 1, 2 }",
+            "is not finite",
+        ),
+        ("points { 0, x, 2 * x } face { 0, 1, 2 }", "lie on a line"),
+    ] {
+        let text = format!("sphere {{ 0, 1 }} subdivision {{ {text} }}");
         let parsed = parse_with(&mut MemoryHost::new(), &text);
         let messages: Vec<String> = parsed.diagnostics.iter().map(ToString::to_string).collect();
         assert!(

@@ -144,6 +144,7 @@ const OBJECTS: &[&str] = &[
     "terrain",
     "mandelbulb",
     "menger",
+    "subdivision",
     "ovus",
     "lemon",
     "julia_fractal",

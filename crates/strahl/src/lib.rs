@@ -75,6 +75,7 @@ mod inputs;
 mod load;
 mod picture;
 mod studio;
+mod subdivide;
 
 pub use inputs::Inputs;
 pub use load::{
@@ -94,6 +95,7 @@ pub use strahl_sdl as sdl;
 pub use strahl_shade as shade;
 pub use strahl_simd::memory;
 pub use studio::studio;
+pub use subdivide::subdivide;
 
 #[cfg(doctest)]
 #[doc = include_str!("../../../docs/src/rust.md")]
@@ -109,8 +111,9 @@ pub mod prelude {
     pub use strahl_formats::image::WriteOptions;
     pub use strahl_geometry::{
         BicubicPatch, Brep, Cone, Cuboid, Cylinder, Disc, Lemon, Mandelbulb, Menger, MeshData,
-        Nurbs, NurbsCurve, NurbsData, Ovus, Plane, Polygon, Quadric, Shape, Sphere, Terrain,
-        TerrainDetail, TerrainKind, TerrainOptions, Torus, Triangle, TriangleMesh, TrimLoop,
+        Nurbs, NurbsCurve, NurbsData, Ovus, Plane, Polygon, Quadric, Shape, Sphere, Subdivision,
+        SubdivisionData, SubdivisionScheme, Terrain, TerrainDetail, TerrainKind, TerrainOptions,
+        Torus, Triangle, TriangleMesh, TrimLoop,
     };
     pub use strahl_math::{Aabb, DVec2, DVec3, Interval, Ray, Transform};
     pub use strahl_render::{

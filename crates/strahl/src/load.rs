@@ -1,10 +1,12 @@
 use crate::inputs::{Inputs, digest};
+use crate::subdivide::subdivide;
 use std::fmt;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use strahl_formats::scene::{self, SceneFormat, read_decompressed};
+use strahl_geometry::SubdivisionScheme;
 use strahl_scene::{Diagnostic, Problems, Scene};
 use strahl_sdl::{FolderHost, Pinned, Recorder, Source, Stream, Texts, Writing, parse};
 
@@ -109,8 +111,15 @@ impl Loaded {
         }
     }
 
-    /// What a reader of [`strahl_formats`] has loaded.
-    fn of_format(loaded: scene::Loaded) -> Self {
+    /// What a reader of [`strahl_formats`] has loaded, its meshes replaced by subdivision surfaces if that is asked for.
+    fn of_format(mut loaded: scene::Loaded, scheme: Option<SubdivisionScheme>) -> Self {
+        if let Some(scheme) = scheme
+            && let Some(mut scene) = loaded.scene.take()
+        {
+            let problems = subdivide(&mut scene, scheme);
+            loaded.scene = problems.is_empty().then_some(scene);
+            loaded.diagnostics.extend(problems);
+        }
         Self {
             scene: loaded.scene,
             diagnostics: loaded.diagnostics,
@@ -119,7 +128,7 @@ impl Loaded {
     }
 }
 
-/// How a scene is loaded. All fields but `format` and `record` matter only to POV-Ray's language.
+/// How a scene is loaded. All fields but `format`, `subdivide` and `record` matter only to POV-Ray's language.
 #[derive(Default)]
 pub struct LoadOptions {
     /// The format; `None` detects it from the file's name and content.
@@ -140,6 +149,8 @@ pub struct LoadOptions {
     pub texts: Texts,
     /// The value of `now`, in days since the beginning of 2000; `None` is the time of loading.
     pub now: Option<f64>,
+    /// Replaces the meshes of a file that is not in POV-Ray's language by the subdivision surfaces that they control.
+    pub subdivide: Option<SubdivisionScheme>,
     /// Whether to return [`Loaded::inputs`], which takes time to compute.
     pub record: bool,
     /// Receives the output of `#debug` and the like.
@@ -163,6 +174,15 @@ impl fmt::Debug for LoadOptions {
 
 impl LoadOptions {
     fn parse(self, source: Source) -> Loaded {
+        if self.subdivide.is_some() {
+            return Loaded::failed(
+                Diagnostic::error(format!(
+                    "`{}` is in POV-Ray's language, and only meshes of OBJ, PLY, STL and glTF files are subdivided",
+                    source.name
+                ))
+                .hint("write a `subdivision { }` object in the scene"),
+            );
+        }
         let mut host = FolderHost::new(self.library)
             .with_fonts(self.fonts)
             .with_installed(self.installed)
@@ -261,11 +281,11 @@ pub fn load_path(path: &Path, options: LoadOptions) -> Loaded {
             Err(problem) => failed(*problem),
         },
         Some(Format::File(format)) => {
-            with_inputs(scene::load_path(path, Some(format)), path, options.record)
+            with_inputs(scene::load_path(path, Some(format)), path, &options)
         }
         None => {
             let loaded = scene::load_path(path, None);
-            let mut loaded = with_inputs(loaded, path, options.record);
+            let mut loaded = with_inputs(loaded, path, &options);
             // The list of file formats does not include POV-Ray's.
             let of_files: Vec<&str> = scene::formats().iter().map(|info| info.name).collect();
             let hints = loaded.diagnostics.iter_mut().flat_map(|d| &mut d.hints);
@@ -278,14 +298,14 @@ pub fn load_path(path: &Path, options: LoadOptions) -> Loaded {
 }
 
 /// Adds what a scene of another format than POV-Ray's consists of, if that is asked for: its file, and those beside it.
-fn with_inputs(loaded: scene::Loaded, path: &Path, record: bool) -> Loaded {
-    let inputs = match record {
+fn with_inputs(loaded: scene::Loaded, path: &Path, options: &LoadOptions) -> Loaded {
+    let inputs = match options.record {
         true => Inputs::of_files(path, &loaded.files).ok(),
         false => None,
     };
     Loaded {
         inputs,
-        ..Loaded::of_format(loaded)
+        ..Loaded::of_format(loaded, options.subdivide)
     }
 }
 
@@ -313,7 +333,10 @@ pub fn load_bytes(bytes: Vec<u8>, name: &str, format: Format, options: LoadOptio
             });
             Loaded {
                 inputs,
-                ..Loaded::of_format(scene::load_bytes(bytes, name, format, None))
+                ..Loaded::of_format(
+                    scene::load_bytes(bytes, name, format, None),
+                    options.subdivide,
+                )
             }
         }
     }

@@ -24,6 +24,8 @@ pub struct MeshData {
     pub face_materials: Option<Vec<u16>>,
     /// Line of the source file per face.
     pub face_lines: Option<Vec<u32>>,
+    /// Whether a face continues the polygon of the one before, which was cut into triangles.
+    pub face_continues: Option<Vec<bool>>,
 }
 
 impl MeshData {
@@ -72,6 +74,7 @@ pub struct TriangleMesh {
     uvs: Option<Box<[[f32; 2]]>>,
     face_materials: Option<Box<[u16]>>,
     face_lines: Option<Box<[u32]>>,
+    face_continues: Option<Box<[bool]>>,
     bounds: Aabb,
     /// Whether fronts are clockwise, as after a mirroring transform, which keeps the order of the vertices (and with it the
     /// barycentric coordinates).
@@ -133,6 +136,11 @@ impl TriangleMesh {
             faces,
         )?;
         length("face lines", data.face_lines.as_ref().map(Vec::len), faces)?;
+        length(
+            "marks of faces that continue polygons",
+            data.face_continues.as_ref().map(Vec::len),
+            faces,
+        )?;
         if !data.anchor.is_finite() {
             return Err(GeometryError::NotFinite {
                 what: "anchor of the mesh",
@@ -162,6 +170,7 @@ impl TriangleMesh {
             uvs: data.uvs.map(Into::into),
             face_materials: data.face_materials.map(Into::into),
             face_lines: data.face_lines.map(Into::into),
+            face_continues: data.face_continues.map(Into::into),
             flipped: false,
             exchanged: None,
         })
@@ -205,6 +214,23 @@ impl TriangleMesh {
         self.face_lines.as_ref()?.get(triangle as usize).copied()
     }
 
+    /// Whether a triangle belongs to the same polygon of its file as the one before: if the mesh knows, or if both are of the
+    /// same line.
+    pub fn continues_polygon(&self, triangle: u32) -> bool {
+        let index = triangle as usize;
+        match (&self.face_continues, &self.face_lines) {
+            (Some(marks), _) => marks.get(index) == Some(&true),
+            (None, Some(lines)) => index > 0 && lines.get(index - 1) == lines.get(index),
+            (None, None) => false,
+        }
+    }
+
+    /// The texture coordinates of a vertex, if the mesh has any.
+    pub fn uv(&self, vertex: u32) -> Option<DVec2> {
+        let [u, v] = *self.uvs.as_ref()?.get(vertex as usize)?;
+        Some(DVec2::new(f64::from(u), f64::from(v)))
+    }
+
     /// The normals given for the corners of a triangle, if the mesh has normals.
     pub fn corner_normals(&self, triangle: u32) -> Option<[DVec3; 3]> {
         let normals = self.normals.as_ref()?;
@@ -225,6 +251,7 @@ impl TriangleMesh {
             + of(self.uvs.as_deref())
             + of(self.face_materials.as_deref())
             + of(self.face_lines.as_deref())
+            + of(self.face_continues.as_deref())
     }
 
     /// How many triangles have no area (loaders warn of them).

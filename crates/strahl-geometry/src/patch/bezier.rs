@@ -1,5 +1,6 @@
 //! A Bezier patch of any degree, polynomial or rational: what all free-form surfaces are made of.
 
+use super::border::Border;
 use super::net::Net;
 use super::search::{Aim, Candidate, Frame, Keep, Search};
 use super::settle;
@@ -25,6 +26,10 @@ pub(super) struct Bezier<const K: usize> {
     /// Control points times their weights, and the weights.
     pub(super) net: Net<4, K>,
     is_rational: bool,
+    /// What the border is for its neighbours, if they have smaller patches.
+    border: Border<K>,
+    /// How far the net may be from what neighbours know of it.
+    seam: f64,
     pub(super) bounds: Aabb,
     /// The pieces, when the first ray comes.
     tree: OnceLock<Tree>,
@@ -36,13 +41,41 @@ impl<const K: usize> Bezier<K> {
             is_rational: net.points().any(|p| p[3] != 1.0),
             bounds: tree::bounds(&net),
             net,
+            border: Border::default(),
+            seam: 0.0,
             tree: OnceLock::new(),
         }
+    }
+
+    /// A polynomial patch, some sides of which belong to the two halves of patches beyond. The curves of these halves follow from
+    /// the same points as the side itself, up to rounding.
+    pub(super) fn with_border(net: Net<4, K>, border: Border<K>) -> Self {
+        let patch = Self::new(net);
+        Self {
+            border,
+            seam: gamma(64) * patch.bounds.max_abs(),
+            ..patch
+        }
+    }
+
+    /// The bytes that it takes, so far.
+    pub(super) fn bytes(&self) -> usize {
+        let pieces = self.tree.get().map_or(0, |tree| tree.bytes());
+        size_of::<Self>() + self.border.bytes() + pieces
     }
 
     fn tree(&self) -> &Tree {
         self.tree
             .get_or_init(|| Tree::build(&self.net, self.is_rational))
+    }
+
+    fn search<'a>(&'a self, frame: &'a Frame, keep: Keep<'a>, aim: Aim) -> Search<'a, K> {
+        Search::new(&self.net, self.tree(), frame, keep, aim).with_seam(self.seam)
+    }
+
+    /// How often the border winds around a ray.
+    pub(super) fn winding(&self, frame: &Frame) -> i32 {
+        self.border.winding(&self.net, |p| frame.see(p))
     }
 
     /// The nearest hit in a range.
@@ -57,7 +90,7 @@ impl<const K: usize> Bezier<K> {
             nearest: None,
             is_doubtful: false,
         };
-        let mut search = Search::new(&self.net, self.tree(), frame, keep, aim);
+        let mut search = self.search(frame, keep, aim);
         search.run();
         match search.aim {
             Aim::Nearest {
@@ -80,7 +113,7 @@ impl<const K: usize> Bezier<K> {
             found: false,
             is_doubtful: false,
         };
-        let mut search = Search::new(&self.net, self.tree(), frame, keep, aim);
+        let mut search = self.search(frame, keep, aim);
         search.run();
         match search.aim {
             Aim::Any { found: true, .. } => true,
@@ -93,10 +126,10 @@ impl<const K: usize> Bezier<K> {
 
     /// All hits of the line, in no order.
     pub(super) fn all(&self, frame: &Frame, keep: Keep<'_>) -> Vec<Candidate> {
-        let mut search = Search::new(&self.net, self.tree(), frame, keep, Aim::All(vec![]));
+        let mut search = self.search(frame, keep, Aim::All(vec![]));
         search.run();
         let mut found = match search.aim {
-            Aim::All(found) => settle::settle(found, &self.net, frame),
+            Aim::All(found) => settle::settle(found, || self.winding(frame)),
             Aim::Nearest { .. } | Aim::Any { .. } => vec![],
         };
         // Cut only now: what is cut away counts in the sum of the hits, too.

@@ -35,17 +35,50 @@ fn crossings<const K: usize>(curve: &Curve<2, K>, depth: u32) -> i32 {
     }
 }
 
-/// How often the border of a net, counter-clockwise in its parameters, winds around the origin.
-///
-/// This is the number of points that lie over the origin, those at which the image is mirrored counted as -1 (the degree of
-/// a map).
-/// Of two patches with a common border curve, the curve counts in one as much as it is taken off in the other, to the
-/// last bit. So a ray through the border of a closed surface of patches meets exactly one of the two.
-pub(super) fn winding<const K: usize>(net: &Net<2, K>) -> i32 {
-    let count = |curve: &Curve<2, K>| crossings(curve, DEPTH);
-    let [bottom, top] = [&net.rows[0], &net.rows[K - 1]];
-    let [left, right] = [net.column(0), net.column(K - 1)];
-    count(bottom) + count(&right) - count(top) - count(&left)
+/// The border of a patch beside smaller ones: for each side, counter-clockwise from `v = 0` on, the two curves of which the
+/// neighbours make it, in this direction; `None` where it is that of the net.
+#[derive(Debug)]
+pub(super) struct Border<const K: usize>(pub(super) Option<Box<Sides<K>>>);
+
+/// The two halves of each side, where there are any.
+pub(super) type Sides<const K: usize> = [Option<[Curve<4, K>; 2]>; 4];
+
+impl<const K: usize> Default for Border<K> {
+    fn default() -> Self {
+        Self(None)
+    }
+}
+
+impl<const K: usize> Border<K> {
+    /// The bytes that it takes beside itself.
+    pub(super) fn bytes(&self) -> usize {
+        self.0.as_ref().map_or(0, |_| size_of::<Sides<K>>())
+    }
+
+    /// How often the border of a net, counter-clockwise in its parameters, winds around the ray along which `see` sees its
+    /// points.
+    ///
+    /// This is the number of points that lie over the ray, those at which the image is mirrored counted as -1 (the degree of
+    /// a map).
+    /// Of two patches with a common border curve, the curve counts in one as much as it is taken off in the other, to the
+    /// last bit. So a ray through the border of a closed surface of patches meets exactly one of the two.
+    pub(super) fn winding(&self, net: &Net<4, K>, see: impl Fn(&[f64; 4]) -> [f64; 2]) -> i32 {
+        let count = |curve: &Curve<4, K>| {
+            let seen: Curve<2, K> = std::array::from_fn(|i| see(&curve[i]));
+            crossings(&seen, DEPTH)
+        };
+        let own = |side: usize| match side {
+            0 => count(&net.rows[0]),
+            1 => count(&net.column(K - 1)),
+            2 => -count(&net.rows[K - 1]),
+            _ => -count(&net.column(0)),
+        };
+        let side = |side: usize| match self.0.as_ref().and_then(|sides| sides[side].as_ref()) {
+            Some([a, b]) => count(a) + count(b),
+            None => own(side),
+        };
+        (0..4).map(side).sum()
+    }
 }
 
 #[cfg(test)]
@@ -102,7 +135,9 @@ mod tests {
             }
             if !near {
                 let expected = (turn / std::f64::consts::TAU).round() as i32;
-                assert_eq!(winding(&net), expected);
+                let solid = net.map(|[x, y]| [*x, *y, 0.0, 1.0]);
+                let found = Border::default().winding(&solid, |p| [p[0], p[1]]);
+                assert_eq!(found, expected);
                 seen[expected.unsigned_abs().min(2) as usize] += 1;
             }
         }

@@ -9,9 +9,12 @@ mod net;
 mod nurbs;
 mod search;
 mod settle;
+mod subdivision;
 #[cfg(test)]
 mod tests;
 mod tree;
+mod winding;
 
 pub use bicubic::BicubicPatch;
 pub use nurbs::{Nurbs, NurbsCurve, NurbsData, TrimLoop};
+pub use subdivision::{Subdivision, SubdivisionData, SubdivisionScheme};

@@ -63,7 +63,12 @@ impl Frame {
     /// The patch seen along the ray; for rational ones the numerator, which is zero at the same parameters. It depends on the
     /// ray and each control point alone, so that the common border of two patches is the same in both.
     pub(super) fn view<const K: usize>(&self, net: &Net<4, K>) -> Net<2, K> {
-        net.map(|p| self.seen(self.to(p)))
+        net.map(|p| self.see(p))
+    }
+
+    /// A control point seen along the ray.
+    pub(super) fn see(&self, point: &[f64; 4]) -> [f64; 2] {
+        self.seen(self.to(point))
     }
 
     /// The way from the origin to a control point, times its weight. Its rounding error is that of the way, not of the places.
@@ -117,6 +122,8 @@ pub(super) struct Search<'a, const K: usize> {
     frame: &'a Frame,
     /// The patch seen along the ray, and a bound of its rounding error, when they are needed.
     view: Option<(Net<2, K>, f64)>,
+    /// How far the net may be from what neighbours know of it.
+    seam: f64,
     halvings: u32,
     keep: Keep<'a>,
     /// What the search is for.
@@ -157,10 +164,17 @@ impl<'a, const K: usize> Search<'a, K> {
             tree,
             frame,
             view: None,
+            seam: 0.0,
             halvings: HALVINGS,
             keep,
             aim,
         }
+    }
+
+    /// Adds to the rounding error how far the net may be from what neighbours know of it.
+    pub(super) fn with_seam(mut self, seam: f64) -> Self {
+        self.seam = seam;
+        self
     }
 
     /// The range in which hits are still wanted; `None` if the search is over.
@@ -210,7 +224,7 @@ impl<'a, const K: usize> Search<'a, K> {
             }
             (near <= far).then_some(near)
         };
-        let blur = tree.blur + pad.length();
+        let blur = tree.blur + pad.length() + self.seam;
         // Three of four quarters wait on each level.
         let mut stack = [(0_u32, 0.0); 3 * LEVELS as usize + 1];
         let mut height = 0;
@@ -303,13 +317,13 @@ impl<'a, const K: usize> Search<'a, K> {
     }
 
     fn view(&mut self) -> (Net<2, K>, f64) {
-        let (net, frame) = (self.net, self.frame);
+        let (net, frame, seam) = (self.net, self.frame, self.seam);
         *self.view.get_or_insert_with(|| {
             let reach = net.points().fold(0.0, |most: f64, p| {
                 let size = frame.to(p).abs().max_element();
                 if size > most { size } else { most }
             });
-            (frame.view(net), reach * gamma(4 * K as u32))
+            (frame.view(net), reach * gamma(4 * K as u32) + seam)
         })
     }
 
@@ -338,7 +352,10 @@ impl<'a, const K: usize> Search<'a, K> {
             return;
         };
         let is_point = extent.iter().all(|e| *e <= POINT * noise);
-        if is_point {
+        // The ray lies in the surface, or the surface is a line.
+        let is_over = thickness <= 4.0 * noise || depth == 0 || self.halvings == 0;
+        // What neighbours know of a border decides about slivers, too.
+        if is_point || is_over && self.seam > 0.0 {
             let [u, v] = std::array::from_fn(|k| rectangle.from[k] + 0.5 * rectangle.size[k]);
             self.add(Candidate {
                 t: self.frame.t(project(self.net.at(u, v))),
@@ -350,8 +367,7 @@ impl<'a, const K: usize> Search<'a, K> {
             });
             return;
         }
-        // The ray lies in the surface, or the surface is a line.
-        if thickness <= 4.0 * noise || depth == 0 || self.halvings == 0 {
+        if is_over {
             return;
         }
         self.halvings -= 1;

@@ -1,19 +1,13 @@
 //! Which candidates of a search are hits, where they are doubtful.
 
-use super::border::winding;
-use super::net::Net;
-use super::search::{Candidate, Frame};
+use super::search::Candidate;
 
-/// The hits among all candidates of a line.
+/// The hits among all candidates of a line; `winding` is how often the border of the patch winds around it.
 ///
 /// Twins from neighbouring pieces are made one. Then the hits, with their signs, must add up to the number of times that
 /// the border of the patch winds around the ray, which is known exactly and agrees with that of the neighbours: if they
 /// don't, the decisions nearest to the border are turned around.
-pub(super) fn settle<const K: usize>(
-    mut found: Vec<Candidate>,
-    net: &Net<4, K>,
-    frame: &Frame,
-) -> Vec<Candidate> {
+pub(super) fn settle(mut found: Vec<Candidate>, winding: impl FnOnce() -> i32) -> Vec<Candidate> {
     // The order of parameters, so that nothing depends on the order of the search.
     found.sort_by(|a, b| {
         a.t.total_cmp(&b.t)
@@ -41,7 +35,7 @@ pub(super) fn settle<const K: usize>(
     if at_border.is_empty() && unsure.is_empty() {
         return hits;
     }
-    let mut missing = winding(&frame.view(net));
+    let mut missing = winding();
     for hit in &hits {
         missing -= hit.sign;
     }

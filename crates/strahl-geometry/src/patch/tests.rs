@@ -1,4 +1,3 @@
-use super::border;
 use super::search::Frame;
 use super::*;
 use crate::conformance::Random;
@@ -196,7 +195,7 @@ fn hits_add_up_to_the_winding_number() {
             };
             let all = subject.bezier.all(&frame, None);
             let sum: i32 = all.iter().map(|c| c.sign).sum();
-            let expected = border::winding(&frame.view(&subject.bezier.net));
+            let expected = subject.bezier.winding(&frame);
             let unsure = all.iter().filter(|c| c.sign == 0).count() as i32;
             assert!(
                 (sum - expected).abs() <= unsure,

@@ -55,7 +55,7 @@ pub(super) fn project([x, y, z, w]: [f64; 4]) -> DVec3 {
 }
 
 /// The box around the control points, widened by what lies beyond the ends of the parameters and by rounding errors.
-fn hull<const K: usize>(net: &Net<4, K>) -> Aabb {
+pub(super) fn hull<const K: usize>(net: &Net<4, K>) -> Aabb {
     let tight = Aabb::from_points(points(net));
     let noise = tight.min.abs().max(tight.max.abs()) * gamma(16 * K as u32);
     tight.padded(tight.size() * (K as f64 * OVERLAP) + noise)
@@ -90,6 +90,11 @@ fn middle(vectors: impl Iterator<Item = [f64; 4]> + Clone, is_rational: bool) ->
 }
 
 impl Tree {
+    /// The bytes that its pieces take.
+    pub(super) fn bytes(&self) -> usize {
+        size_of_val(self.pieces.as_slice())
+    }
+
     pub(super) fn build<const K: usize>(net: &Net<4, K>, is_rational: bool) -> Self {
         let anchor = bounds(net).min;
         let size = hull(net).size().length();

@@ -289,7 +289,8 @@ impl<'h, 'r> Body<'h, 'r> {
     }
 
     /// The mesh.
-    pub(super) fn finish(self) -> MeshData {
+    pub(super) fn finish(mut self) -> MeshData {
+        let face_continues = self.faces.marks();
         let indices = self.faces.triangles;
         let data = match self.positions {
             Positions::Single(positions) => MeshData {
@@ -302,6 +303,7 @@ impl<'h, 'r> Body<'h, 'r> {
         MeshData {
             normals: self.normals,
             uvs: self.uvs,
+            face_continues,
             ..data
         }
     }

@@ -10,6 +10,8 @@ use strahl_scene::Diagnostic;
 #[derive(Default)]
 pub(super) struct Faces {
     pub(super) triangles: Vec<[u32; 3]>,
+    /// The triangles that continue the polygon of the one before; the others are false or missing at the end.
+    continued: Vec<bool>,
     /// The list just read.
     list: Vec<i64>,
     corners: Vec<DVec3>,
@@ -74,11 +76,22 @@ impl Faces {
             Ok(()) => {
                 // All indices have been checked.
                 let at = |corner: u32| self.list[corner as usize] as u32;
+                self.continued.resize(self.triangles.len() + 1, false);
                 self.triangles.extend(self.cut.iter().map(|t| t.map(at)));
+                self.continued.resize(self.triangles.len(), true);
             }
             Err(why) => skipped(report, why),
         }
         Ok(())
+    }
+
+    /// Whether each triangle continues the polygon of the one before, if any does.
+    pub(super) fn marks(&mut self) -> Option<Vec<bool>> {
+        if self.continued.is_empty() {
+            return None;
+        }
+        self.continued.resize(self.triangles.len(), false);
+        Some(std::mem::take(&mut self.continued))
     }
 
     /// Adds the list as strips with -1 between them. Triangles without area are how strips turn, so they are no news.

@@ -10,6 +10,7 @@ mod trim;
 
 use super::bicubic::LARGEST;
 use super::search::{Candidate, Frame, Keep};
+use super::winding::Winding;
 use crate::primitives::point_error;
 use crate::{GeometryError, PrimHit, Primitive, Scratch, Shape, Solid, SurfaceId, SurfacePoint};
 use part::Part;
@@ -120,7 +121,8 @@ impl Nurbs {
             is_closed,
             is_inside_out: false,
         };
-        surface.is_inside_out = is_closed && surface.is_inside_out();
+        let aims = surface.parts.iter().map(|part| part.patch.jet(0.5, 0.5)[0]);
+        surface.is_inside_out = is_closed && surface.finds_inside_out(aims);
         surface
     }
 

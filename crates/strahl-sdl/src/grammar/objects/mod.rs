@@ -32,6 +32,7 @@ mod reuse;
 mod sor;
 mod sphere;
 mod sphere_sweep;
+mod subdivision;
 mod superellipsoid;
 mod terrain;
 mod text;
@@ -90,6 +91,7 @@ static OBJECTS: [Option<ObjectParser>; Word::ALL.len()] = by_word::<ObjectParser
     (Word::Sphere, sphere::sphere),
     (Word::SphereSweep, sphere_sweep::sphere_sweep),
     (Word::Terrain, terrain::terrain),
+    (Word::Subdivision, subdivision::subdivision),
     (Word::Text, text::text),
     (Word::Superellipsoid, superellipsoid::superellipsoid),
     (Word::Torus, torus::torus),

@@ -1,0 +1,206 @@
+//! A checked control mesh, and the rings of its faces.
+
+use super::SubdivisionScheme;
+use super::data::{Sides, SubdivisionData, corner_sharpness};
+use super::ring::Ring;
+use super::rules::{Facet, Fan, Spoke, mean};
+use crate::GeometryError;
+use std::collections::HashMap;
+use strahl_math::{DVec2, DVec3, Transform};
+
+/// A control mesh. Its elements are its faces; in Catmull and Clark's scheme a face that has not four corners has one for
+/// each corner.
+#[derive(Debug)]
+pub(super) struct Cage {
+    pub(super) data: SubdivisionData,
+    sides: Sides,
+    corners: HashMap<u32, f64>,
+    /// The mean of the corners of each face.
+    centers: Vec<DVec3>,
+    /// The [`Fan::depth`] of the vertices.
+    depths: Vec<u8>,
+    /// The first element of each face, if there are not as many as faces; at the end their number.
+    elements: Vec<u32>,
+}
+
+impl Cage {
+    pub(super) fn try_new(data: &SubdivisionData) -> Result<Self, GeometryError> {
+        data.check()?;
+        let sides = Sides::try_new(data)?;
+        let mut cage = Self {
+            sides,
+            corners: corner_sharpness(data),
+            centers: vec![],
+            depths: vec![0; data.points.len()],
+            elements: vec![],
+            data: data.clone(),
+        };
+        cage.find_centers();
+        let is_whole = |size: &u32| *size == 4 || data.scheme == SubdivisionScheme::Loop;
+        if !data.sizes.iter().all(is_whole) {
+            let mut total = 0;
+            for size in &data.sizes {
+                cage.elements.push(total);
+                total += if is_whole(size) { 1 } else { *size };
+            }
+            cage.elements.push(total);
+        }
+        for h in 0..cage.data.indices.len() as u32 {
+            let vertex = cage.data.indices[h as usize] as usize;
+            let around = cage.sides.around(h)?;
+            let first = around.iter().flatten().min();
+            // Once for each vertex, unless separate parts of the mesh touch there.
+            if first == Some(&h) {
+                let depth = cage.fan(h, &around).finished(data.scheme).depth as u8;
+                cage.depths[vertex] = cage.depths[vertex].max(depth);
+            }
+        }
+        Ok(cage)
+    }
+
+    fn find_centers(&mut self) {
+        let faces = 0..self.data.sizes.len();
+        self.centers = faces
+            .map(|face| {
+                let corners: Vec<DVec3> = self
+                    .corners_of(face)
+                    .map(|h| self.data.points[self.data.indices[h] as usize])
+                    .collect();
+                mean(&corners)
+            })
+            .collect();
+    }
+
+    /// The half-edges of a face.
+    fn corners_of(&self, face: usize) -> std::ops::Range<usize> {
+        self.sides.starts[face] as usize..self.sides.starts[face + 1] as usize
+    }
+
+    fn fan(&self, h: u32, around: &[Option<u32>]) -> Fan {
+        let vertex = |h: u32| self.data.indices[h as usize];
+        let spoke = |vertex: u32, edge: u32| Spoke {
+            point: self.data.points[vertex as usize],
+            sharpness: self.sides.sharpness(edge),
+            depth: u32::from(self.depths[vertex as usize]),
+        };
+        let (mut spokes, mut facets) = (vec![], vec![]);
+        let mut before: Option<u32> = None;
+        for side in around {
+            match (*side, before) {
+                (Some(side), _) => {
+                    spokes.push(spoke(vertex(self.sides.next(side)), side));
+                    let face = self.sides.face[side as usize] as usize;
+                    facets.push(Facet {
+                        center: self.centers[face],
+                        sides: self.data.sizes[face],
+                    });
+                }
+                (None, Some(before)) => {
+                    let edge = self.sides.previous(before);
+                    spokes.push(spoke(vertex(edge), edge));
+                    facets.push(Facet::GAP);
+                }
+                (None, None) => {}
+            }
+            before = *side;
+        }
+        let own = vertex(h);
+        Fan {
+            point: self.data.points[own as usize],
+            limit: None,
+            sharpness: self.corners.get(&own).copied().unwrap_or(0.0),
+            depth: 0,
+            spokes,
+            facets,
+        }
+    }
+
+    fn whole(&self, face: usize) -> Ring {
+        let corners = self
+            .corners_of(face)
+            .map(|h| {
+                let h = h as u32;
+                // The mesh has been checked.
+                let around = self.sides.around(h).unwrap_or_else(|_| vec![Some(h)]);
+                let mut fan = self.fan(h, &around).finished(self.data.scheme);
+                fan.depth = u32::from(self.depths[self.data.indices[h as usize] as usize]);
+                fan
+            })
+            .collect();
+        Ring {
+            scheme: self.data.scheme,
+            level: 0,
+            corners,
+        }
+    }
+
+    pub(super) fn elements(&self) -> usize {
+        match self.elements.last() {
+            Some(count) => *count as usize,
+            None => self.data.sizes.len(),
+        }
+    }
+
+    /// The face of an element, and which part of it the element is, if it is not all.
+    fn face(&self, element: usize) -> (usize, Option<usize>) {
+        if self.elements.is_empty() {
+            return (element, None);
+        }
+        let face = self.elements.partition_point(|e| *e as usize <= element) - 1;
+        let part = element - self.elements[face] as usize;
+        let is_part = self.data.sizes[face] != 4;
+        (face, is_part.then_some(part))
+    }
+
+    pub(super) fn ring(&self, element: usize) -> Ring {
+        let (face, part) = self.face(element);
+        let ring = self.whole(face);
+        match part {
+            Some(part) => ring.children().swap_remove(part),
+            None => ring,
+        }
+    }
+
+    /// The texture coordinates of the corners of an element, if there are any.
+    pub(super) fn uvs(&self, element: usize) -> Option<[DVec2; 4]> {
+        if self.data.uvs.is_empty() {
+            return None;
+        }
+        let (face, part) = self.face(element);
+        let all = &self.data.uvs[self.corners_of(face)];
+        let at = |i: usize| all[i % all.len()];
+        let Some(i) = part else {
+            return Some([at(0), at(1), at(2), at(3)]);
+        };
+        let middle = all.iter().fold(DVec2::ZERO, |sum, p| sum + *p) / all.len() as f64;
+        let half = |a: DVec2, b: DVec2| (a + b) * 0.5;
+        let before = at(i + all.len() - 1);
+        Some([at(i), half(at(i), at(i + 1)), middle, half(before, at(i))])
+    }
+
+    pub(super) fn is_closed(&self) -> bool {
+        self.sides.is_closed()
+    }
+
+    pub(super) fn scheme(&self) -> SubdivisionScheme {
+        self.data.scheme
+    }
+
+    /// The same mesh with moved vertices.
+    pub(super) fn mapped(&self, map: &Transform) -> Option<SubdivisionData> {
+        let mut data = self.data.clone();
+        for point in &mut data.points {
+            *point = map.point_to_world(*point);
+        }
+        data.check().is_ok().then_some(data)
+    }
+
+    pub(super) fn bytes(&self) -> usize {
+        self.sides.bytes()
+            + size_of_val(self.data.points.as_slice())
+            + size_of_val(self.centers.as_slice())
+            + self.depths.len()
+            + 4 * (self.data.indices.len() + self.data.sizes.len() + self.elements.len())
+            + size_of_val(self.data.uvs.as_slice())
+    }
+}

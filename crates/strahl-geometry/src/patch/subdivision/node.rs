@@ -1,0 +1,469 @@
+//! The tree of patches of one face, which grows where rays come.
+//!
+//! Faces whose corners are regular are patches. Others are divided, and so on: rings of ever smaller patches surround an irregular
+//! vertex (M. Niessner, C. Loop, M. Meyer, T. DeRose, "Feature-adaptive GPU rendering of Catmull-Clark subdivision surfaces", ACM
+//! Transactions on Graphics 31(1), 2012). Neighbours differ by one level at most, and the larger patch takes the border of
+//! the smaller ones as its own.
+
+use super::SubdivisionScheme;
+use super::ring::Ring;
+use super::{quad, triangle};
+use crate::patch::bezier::Bezier;
+use crate::patch::border::Border;
+use crate::patch::net::Net;
+use crate::patch::search::{Candidate, Frame};
+use crate::patch::tree;
+use std::sync::OnceLock;
+use strahl_math::error::gamma;
+use strahl_math::{Aabb, DVec2, DVec3, Interval, Ray};
+
+/// A face that is a patch, or three of them.
+#[derive(Debug)]
+pub(super) enum Leaf {
+    Quad(Box<Bezier<4>>),
+    Triangle(Box<[Bezier<5>; 3]>),
+}
+
+/// A face: one that is as it is, or one that is divided.
+#[derive(Debug)]
+pub(super) enum Node {
+    Leaf(Leaf),
+    Split(Box<Split>),
+}
+
+/// A divided face.
+#[derive(Debug)]
+pub(super) struct Split {
+    ring: Ring,
+    kids: Vec<Kid>,
+}
+
+/// A part of a divided face.
+#[derive(Debug)]
+struct Kid {
+    bounds: Aabb,
+    /// When a ray comes.
+    node: OnceLock<Box<Node>>,
+}
+
+/// The line of a ray, for all that is asked along it.
+pub(super) struct Line<'a> {
+    pub(super) ray: &'a Ray,
+    pub(super) frame: Frame,
+    inverse: DVec3,
+}
+
+impl<'a> Line<'a> {
+    pub(super) fn new(ray: &'a Ray) -> Option<Self> {
+        Some(Self {
+            ray,
+            frame: Frame::new(ray)?,
+            inverse: DVec3::ONE / ray.direction,
+        })
+    }
+
+    /// Where the line enters a box within a range.
+    fn enter(&self, bounds: &Aabb, range: Interval) -> Option<f64> {
+        let origin = self.ray.origin;
+        let magnitude = origin.abs().max_element() + bounds.max_abs();
+        let pad = magnitude * gamma(64);
+        let (mut near, mut far) = (range.min, range.max);
+        for k in 0..3 {
+            let low = (bounds.min[k] - pad - origin[k]) * self.inverse[k];
+            let high = (bounds.max[k] + pad - origin[k]) * self.inverse[k];
+            let (a, b) = if low < high { (low, high) } else { (high, low) };
+            // Comparisons with NaN, when the ray runs within a side, change nothing.
+            if a > near {
+                near = a;
+            }
+            if b < far {
+                far = b;
+            }
+        }
+        (near <= far).then_some(near)
+    }
+}
+
+/// Where the parameters of a part are in those of the whole face: `from + size * (u, v)`.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Place {
+    from: [f64; 2],
+    size: f64,
+}
+
+impl Place {
+    pub(super) const WHOLE: Self = Self {
+        from: [0.0; 2],
+        size: 1.0,
+    };
+
+    /// Parameters of the whole face.
+    pub(super) fn outer(&self, [u, v]: [f64; 2]) -> [f64; 2] {
+        [self.from[0] + self.size * u, self.from[1] + self.size * v]
+    }
+
+    fn part(&self, part: Self) -> Self {
+        Self {
+            from: self.outer(part.from),
+            size: self.size * part.size,
+        }
+    }
+}
+
+/// The places of the children of a face.
+const QUARTERS: [Place; 4] = [
+    half([0.0, 0.0], 0.5),
+    half([0.5, 0.0], 0.5),
+    half([0.5, 0.5], 0.5),
+    half([0.0, 0.5], 0.5),
+];
+/// Of a triangle with the parameters `u` and `v` as the weights of its second and third corner; the last one is turned.
+const TRIANGLES: [Place; 4] = [
+    half([0.0, 0.0], 0.5),
+    half([0.5, 0.0], 0.5),
+    half([0.0, 0.5], 0.5),
+    half([0.5, 0.5], -0.5),
+];
+
+const fn half(from: [f64; 2], size: f64) -> Place {
+    Place { from, size }
+}
+
+/// A patch of a leaf, and a hit of it.
+pub(super) struct Found {
+    pub(super) candidate: Candidate,
+    /// Its parameters in the leaf.
+    pub(super) uv: [f64; 2],
+}
+
+impl Leaf {
+    pub(super) fn new(ring: &Ring) -> Self {
+        let count = ring.corners.len();
+        let divided: Vec<bool> = (0..count).map(|i| ring.is_neighbor_divided(i)).collect();
+        let children = if divided.contains(&true) {
+            ring.children()
+        } else {
+            vec![]
+        };
+        match ring.scheme {
+            SubdivisionScheme::CatmullClark => {
+                let net = quad::net(ring);
+                let half = |i: usize| divided[i].then(|| quad::halves(ring, &children, i));
+                Self::Quad(Box::new(patch(net, std::array::from_fn(half))))
+            }
+            SubdivisionScheme::Loop => {
+                let mut nets = triangle::nets(ring);
+                for i in (0..3).filter(|i| divided[*i]) {
+                    // Two of the parts meet in a corner of the faces beyond.
+                    let [_, half] = triangle::halves(&children, i, 0);
+                    nets[i].rows[0][4] = half[4];
+                    nets[(i + 1) % 3].rows[4][0] = half[4];
+                }
+                Self::Triangle(Box::new(std::array::from_fn(|i| {
+                    let before = (i + 2) % 3;
+                    let mut sides = [const { None }; 4];
+                    sides[0] = divided[i].then(|| triangle::halves(&children, i, 0));
+                    sides[3] = divided[before].then(|| triangle::halves(&children, before, 1));
+                    patch(nets[i], sides)
+                })))
+            }
+        }
+    }
+
+    fn bounds(&self) -> Aabb {
+        match self {
+            Self::Quad(patch) => patch.bounds,
+            Self::Triangle(parts) => parts
+                .iter()
+                .fold(Aabb::EMPTY, |all, part| all.union(&part.bounds)),
+        }
+    }
+
+    /// The nearest hit in a range.
+    pub(super) fn nearest(&self, line: &Line<'_>, range: Interval) -> Option<Found> {
+        match self {
+            Self::Quad(patch) => patch.nearest(&line.frame, range, None).map(Found::in_quad),
+            Self::Triangle(parts) => {
+                let mut best: Option<Found> = None;
+                for (i, part) in parts.iter().enumerate() {
+                    if line.enter(&part.bounds, range).is_none() {
+                        continue;
+                    }
+                    let Some(found) = part.nearest(&line.frame, range, None) else {
+                        continue;
+                    };
+                    if best.as_ref().is_none_or(|b| found.t < b.candidate.t) {
+                        best = Some(Found::in_triangle(found, i));
+                    }
+                }
+                best
+            }
+        }
+    }
+
+    /// Whether there is a hit in a range.
+    pub(super) fn any(&self, line: &Line<'_>, range: Interval) -> bool {
+        match self {
+            Self::Quad(patch) => patch.any(&line.frame, range, None),
+            Self::Triangle(parts) => parts.iter().any(|part| {
+                line.enter(&part.bounds, range).is_some() && part.any(&line.frame, range, None)
+            }),
+        }
+    }
+
+    /// All hits of the line.
+    pub(super) fn all(&self, line: &Line<'_>) -> Vec<Found> {
+        match self {
+            Self::Quad(patch) => {
+                let all = patch.all(&line.frame, None);
+                all.into_iter().map(Found::in_quad).collect()
+            }
+            Self::Triangle(parts) => (0..3)
+                .zip(parts.iter())
+                .flat_map(|(i, part)| {
+                    let all = part.all(&line.frame, None).into_iter();
+                    all.map(move |c| Found::in_triangle(c, i))
+                })
+                .collect(),
+        }
+    }
+
+    /// The point, its derivatives, and the direction of `dS/dv x dS/du`, if there is one.
+    fn jet(&self, [u, v]: [f64; 2]) -> ([DVec3; 3], Option<DVec3>) {
+        match self {
+            Self::Quad(patch) => {
+                let jet = patch.jet(u, v);
+                (jet, patch.normal(DVec2::new(u, v), jet))
+            }
+            Self::Triangle(parts) => {
+                let (i, place) = into_part([u, v]);
+                let jet = parts[i].jet(place[0], place[1]);
+                let normal = parts[i].normal(DVec2::from_array(place), jet);
+                let [point, by_s, by_t] = jet;
+                // The derivatives of u and v by the parameters of the part.
+                let [[us, vs], [ut, vt]] = slopes(i, place);
+                let per = 1.0 / (us * vt - ut * vs);
+                let by_u = (by_s * vt - by_t * vs) * per;
+                let by_v = (by_t * us - by_s * ut) * per;
+                ([point, by_u, by_v], normal)
+            }
+        }
+    }
+
+    /// The bytes that it takes.
+    pub(super) fn bytes(&self) -> usize {
+        match self {
+            Self::Quad(patch) => patch.bytes(),
+            Self::Triangle(parts) => parts.iter().map(Bezier::bytes).sum(),
+        }
+    }
+}
+
+fn patch<const K: usize>(net: Net<4, K>, sides: [Option<[[[f64; 4]; K]; 2]>; 4]) -> Bezier<K> {
+    if sides.iter().all(Option::is_none) {
+        return Bezier::with_border(net, Border::default());
+    }
+    Bezier::with_border(net, Border(Some(Box::new(sides))))
+}
+
+impl Found {
+    fn in_quad(candidate: Candidate) -> Self {
+        Self {
+            candidate,
+            uv: candidate.place(),
+        }
+    }
+
+    fn in_triangle(candidate: Candidate, part: usize) -> Self {
+        let uv = out_of_part(part, candidate.place());
+        Self { candidate, uv }
+    }
+}
+
+/// The weights of the three corners, of which the part's own one is the first, at parameters of a part of a triangle.
+fn weights([s, t]: [f64; 2]) -> [f64; 3] {
+    let both = s * t / 6.0;
+    let (after, before) = (0.5 * s - both, 0.5 * t - both);
+    [(1.0 - after) - before, after, before]
+}
+
+/// The parameters in a triangle of those in its part `i`.
+fn out_of_part(i: usize, place: [f64; 2]) -> [f64; 2] {
+    let weights = weights(place);
+    [weights[(4 - i) % 3], weights[(5 - i) % 3]]
+}
+
+/// The derivatives of the parameters of a triangle by both parameters of its part `i`.
+fn slopes(i: usize, [s, t]: [f64; 2]) -> [[f64; 2]; 2] {
+    let (s6, t6) = (s / 6.0, t / 6.0);
+    let by_s = [-0.5 + t6 * 2.0, 0.5 - t6, -t6];
+    let by_t = [-0.5 + s6 * 2.0, -s6, 0.5 - s6];
+    [by_s, by_t].map(|by| [by[(4 - i) % 3], by[(5 - i) % 3]])
+}
+
+/// The part of a triangle in which parameters are, and their place there.
+fn into_part([u, v]: [f64; 2]) -> (usize, [f64; 2]) {
+    let all = [(1.0 - u) - v, u, v];
+    let i = if all[0] >= u && all[0] >= v {
+        0
+    } else if u >= v {
+        1
+    } else {
+        2
+    };
+    // after = s / 2 - s t / 6, before = t / 2 - s t / 6
+    let (after, before) = (all[(i + 1) % 3], all[(i + 2) % 3]);
+    let off = 2.0 * (after - before);
+    let half = 3.0 + off;
+    let square = half * half - 24.0 * after;
+    let s = 12.0 * after / (half + square.max(0.0).sqrt());
+    let clamp = |x: f64| x.clamp(0.0, 1.0);
+    (i, [clamp(s), clamp(s - off)])
+}
+
+impl Node {
+    pub(super) fn new(ring: Ring) -> Self {
+        if ring.is_leaf() {
+            return Self::Leaf(Leaf::new(&ring));
+        }
+        let kids = ring
+            .children()
+            .iter()
+            .map(|child| {
+                if child.is_leaf() {
+                    let leaf = Leaf::new(child);
+                    return Kid {
+                        bounds: leaf.bounds(),
+                        node: OnceLock::from(Box::new(Self::Leaf(leaf))),
+                    };
+                }
+                Kid {
+                    bounds: padded(child.hull()),
+                    node: OnceLock::new(),
+                }
+            })
+            .collect();
+        Self::Split(Box::new(Split { ring, kids }))
+    }
+
+    /// Calls `ask` with the patches along a line, the nearer ones first, as long as it leaves a range. It narrows the range.
+    pub(super) fn walk(
+        &self,
+        line: &Line<'_>,
+        range: Interval,
+        place: Place,
+        ask: &mut impl FnMut(&Leaf, Place, Interval) -> Interval,
+    ) -> Interval {
+        let split = match self {
+            Self::Leaf(leaf) => return ask(leaf, place, range),
+            Self::Split(split) => split,
+        };
+        // The four parts in the order in which the line enters their boxes.
+        let mut order = [(0.0, 0); 4];
+        let mut count = 0;
+        for (i, kid) in split.kids.iter().enumerate().take(4) {
+            let Some(near) = line.enter(&kid.bounds, range) else {
+                continue;
+            };
+            let mut at = count;
+            while at > 0 && order[at - 1].0 > near {
+                order[at] = order[at - 1];
+                at -= 1;
+            }
+            order[at] = (near, i);
+            count += 1;
+        }
+        let mut left = range;
+        for &(near, i) in &order[..count] {
+            if near <= left.max {
+                let part = place.part(split.place(i));
+                left = split.kid(i).walk(line, left, part, ask);
+            }
+        }
+        left
+    }
+
+    /// The point at parameters of the face, its derivatives, and the direction of `dS/dv x dS/du`, if there is one.
+    pub(super) fn jet(&self, uv: [f64; 2]) -> ([DVec3; 3], Option<DVec3>) {
+        let split = match self {
+            Self::Leaf(leaf) => return leaf.jet(uv),
+            Self::Split(split) => split,
+        };
+        let [u, v] = uv;
+        let i = match split.ring.scheme {
+            SubdivisionScheme::CatmullClark => match (u >= 0.5, v >= 0.5) {
+                (false, false) => 0,
+                (true, false) => 1,
+                (true, true) => 2,
+                (false, true) => 3,
+            },
+            SubdivisionScheme::Loop if u > 0.5 => 1,
+            SubdivisionScheme::Loop if v > 0.5 => 2,
+            SubdivisionScheme::Loop if (1.0 - u) - v > 0.5 => 0,
+            SubdivisionScheme::Loop => 3,
+        };
+        let Place { from, size } = split.place(i);
+        let inner = std::array::from_fn(|k| (uv[k] - from[k]) / size);
+        let ([point, by_u, by_v], normal) = split.kid(i).jet(inner);
+        ([point, by_u / size, by_v / size], normal)
+    }
+
+    /// The bytes that it takes.
+    pub(super) fn bytes(&self) -> usize {
+        let inner = match self {
+            Self::Leaf(leaf) => leaf.bytes(),
+            Self::Split(split) => {
+                let kids = split.kids.iter().filter_map(|kid| kid.node.get());
+                size_of::<Split>()
+                    + split.ring.bytes()
+                    + size_of_val(split.kids.as_slice())
+                    + kids.map(|kid| kid.bytes()).sum::<usize>()
+            }
+        };
+        size_of::<Self>() + inner
+    }
+}
+
+impl Split {
+    fn place(&self, i: usize) -> Place {
+        match self.ring.scheme {
+            SubdivisionScheme::CatmullClark => QUARTERS[i],
+            SubdivisionScheme::Loop => TRIANGLES[i],
+        }
+    }
+
+    fn kid(&self, i: usize) -> &Node {
+        self.kids[i].node.get_or_init(|| {
+            let child = self.ring.children().swap_remove(i);
+            Box::new(Node::new(child))
+        })
+    }
+}
+
+/// A box around a surface, before anything is known about it.
+pub(super) fn bounds(ring: &Ring) -> Aabb {
+    let of = |ring: &Ring| {
+        if !ring.is_leaf() {
+            return padded(ring.hull());
+        }
+        match ring.scheme {
+            SubdivisionScheme::CatmullClark => tree::bounds(&quad::net(ring)),
+            SubdivisionScheme::Loop => triangle::nets(ring)
+                .iter()
+                .fold(Aabb::EMPTY, |all, net| all.union(&tree::hull(net))),
+        }
+    };
+    if ring.is_leaf() {
+        return of(ring);
+    }
+    let children = ring.children();
+    children
+        .iter()
+        .fold(Aabb::EMPTY, |all, child| all.union(&of(child)))
+}
+
+/// A box, widened by rounding errors.
+fn padded(tight: Aabb) -> Aabb {
+    let noise = tight.min.abs().max(tight.max.abs()) * gamma(256);
+    tight.padded(noise + tight.size() * (8.0 * tree::OVERLAP))
+}

@@ -1,0 +1,417 @@
+//! The rules of subdivision about one vertex: where it moves, where it ends, and how sharp it is.
+//!
+//! Faces that share a vertex compute its rules from their own copies of what is around it, beginning at different places. So all
+//! sums are taken in an order that depends on the numbers alone, and neighbours agree to the last bit.
+
+use super::SubdivisionScheme;
+use strahl_math::{DVec3, det};
+
+/// Edges and vertices that are at least so sharp stay sharp for ever, as in OpenSubdiv.
+pub(super) const SHARPEST: f64 = 10.0;
+/// What remains around an irregular vertex is replaced by one patch when it has shrunk by so many powers of two.
+const SHRUNK: f64 = 30.0;
+
+/// What is around the end of a crease shrinks by 2/3 in each round at least, and has no size after so many.
+const ROUNDS: u32 = 100;
+
+/// An edge at a vertex.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Spoke {
+    /// Its other end.
+    pub(super) point: DVec3,
+    /// 0 for a smooth edge, infinite for a border or a crease for ever.
+    pub(super) sharpness: f64,
+    /// The [`Fan::depth`] of the other end.
+    pub(super) depth: u32,
+}
+
+/// A face at a vertex.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Facet {
+    /// The mean of its corners; unused by Loop's scheme.
+    pub(super) center: DVec3,
+    /// Its number of corners; 0 for the gap at a vertex of the border.
+    pub(super) sides: u32,
+}
+
+impl Facet {
+    pub(super) const GAP: Self = Self {
+        center: DVec3::ZERO,
+        sides: 0,
+    };
+}
+
+/// A vertex with all that is around it, counter-clockwise: facet `j` is between the spokes `j` and `j + 1`.
+#[derive(Clone, Debug)]
+pub(super) struct Fan {
+    pub(super) point: DVec3,
+    /// Where the vertex ends on the limit surface, since its rule has not changed any more.
+    pub(super) limit: Option<DVec3>,
+    /// The sharpness of the vertex itself.
+    pub(super) sharpness: f64,
+    /// 0 for a vertex about which the surface is made of regular patches; otherwise the level at which its faces are no
+    /// longer divided.
+    pub(super) depth: u32,
+    pub(super) spokes: Vec<Spoke>,
+    pub(super) facets: Vec<Facet>,
+}
+
+/// How a vertex moves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Rule {
+    Smooth,
+    /// Along a curve through two neighbours.
+    Crease(usize, usize),
+    /// Not at all.
+    Corner,
+}
+
+/// The sum of vectors in the order of their coordinates.
+pub(super) fn sum(points: impl Iterator<Item = DVec3>) -> DVec3 {
+    let mut all: Vec<DVec3> = points.collect();
+    all.sort_by(|a, b| {
+        a.x.total_cmp(&b.x)
+            .then(a.y.total_cmp(&b.y))
+            .then(a.z.total_cmp(&b.z))
+    });
+    all.into_iter().fold(DVec3::ZERO, |sum, p| sum + p)
+}
+
+/// The mean of the corners of a face with four corners, in their order.
+pub(super) fn mean4(a: DVec3, b: DVec3, c: DVec3, d: DVec3) -> DVec3 {
+    ((a + c) + (b + d)) * 0.25
+}
+
+/// The mean of the corners of a face.
+pub(super) fn mean(corners: &[DVec3]) -> DVec3 {
+    if let [a, b, c, d] = *corners {
+        return mean4(a, b, c, d);
+    }
+    sum(corners.iter().copied()) / corners.len() as f64
+}
+
+/// The sharpness on the next level.
+pub(super) fn duller(sharpness: f64) -> f64 {
+    if sharpness > 1.0 {
+        sharpness - 1.0
+    } else {
+        0.0
+    }
+}
+
+fn is_settled(sharpness: f64) -> bool {
+    sharpness == 0.0 || sharpness == f64::INFINITY
+}
+
+/// The level at which the faces around an irregular vertex of this valence are small enough.
+///
+/// They shrink by the eigenvalue of the subdivision that comes after 1 (J. Stam, "Exact evaluation of Catmull-Clark subdivision
+/// surfaces at arbitrary parameter values", SIGGRAPH 1998, section 4; C. Loop, "Smooth subdivision surfaces based on
+/// triangles", 1987).
+pub(super) fn depth(scheme: SubdivisionScheme, valence: u32) -> u32 {
+    let c = det::cos(std::f64::consts::TAU / f64::from(valence));
+    let shrinks = match scheme {
+        SubdivisionScheme::CatmullClark => {
+            (5.0 + c + ((c + 9.0) * (c + 1.0).max(0.0)).sqrt()) / 16.0
+        }
+        SubdivisionScheme::Loop => 0.375 + 0.25 * c,
+    };
+    let shrinks = shrinks.max(0.25);
+    (SHRUNK * std::f64::consts::LN_2 / -det::ln(shrinks)).ceil() as u32
+}
+
+impl Fan {
+    /// The index of the spoke so many places after another one.
+    pub(super) fn turn(&self, j: usize, places: usize) -> usize {
+        (j + places) % self.spokes.len()
+    }
+
+    /// The index of the spoke before.
+    pub(super) fn before(&self, j: usize) -> usize {
+        self.turn(j, self.spokes.len() - 1)
+    }
+
+    fn rule(&self, is_next: bool) -> Rule {
+        let sharp = |s: f64| (if is_next { duller(s) } else { s }) > 0.0;
+        if sharp(self.sharpness) {
+            return Rule::Corner;
+        }
+        let mut edges = (0..self.spokes.len()).filter(|j| sharp(self.spokes[*j].sharpness));
+        match (edges.next(), edges.next(), edges.next()) {
+            (Some(a), Some(b), None) => Rule::Crease(a, b),
+            (_, _, None) => Rule::Smooth,
+            _ => Rule::Corner,
+        }
+    }
+
+    /// Whether nothing about the rules changes on later levels.
+    fn is_final(&self) -> bool {
+        is_settled(self.sharpness) && self.spokes.iter().all(|s| is_settled(s.sharpness))
+    }
+
+    fn moved_by(&self, scheme: SubdivisionScheme, rule: Rule) -> DVec3 {
+        let v = self.point;
+        match rule {
+            Rule::Corner => v,
+            Rule::Crease(a, b) => (v * 6.0 + (self.spokes[a].point + self.spokes[b].point)) * 0.125,
+            Rule::Smooth => {
+                let n = self.spokes.len() as f64;
+                let spokes = sum(self.spokes.iter().map(|s| s.point));
+                match scheme {
+                    SubdivisionScheme::CatmullClark => {
+                        let facets = sum(self.facets.iter().map(|f| f.center));
+                        ((spokes + facets) + v * (n * (n - 2.0))) / (n * n)
+                    }
+                    SubdivisionScheme::Loop => {
+                        let weight = loop_weight(self.spokes.len());
+                        v * (1.0 - n * weight) + spokes * weight
+                    }
+                }
+            }
+        }
+    }
+
+    /// The vertex on the next level.
+    ///
+    /// Where sharpness ends between two levels, the rules of both are blended (T. DeRose, M. Kass, T. Truong, "Subdivision surfaces
+    /// in character animation", SIGGRAPH 1998, section 3).
+    pub(super) fn moved(&self, scheme: SubdivisionScheme) -> DVec3 {
+        let (now, next) = (self.rule(false), self.rule(true));
+        let place = self.moved_by(scheme, now);
+        if now == next {
+            return place;
+        }
+        let all = self.spokes.iter().map(|s| s.sharpness);
+        let ends = |s: &f64| *s > 0.0 && duller(*s) == 0.0;
+        let mut ending: Vec<f64> = all.chain([self.sharpness]).filter(ends).collect();
+        ending.sort_by(f64::total_cmp);
+        let part = ending.iter().sum::<f64>() / ending.len() as f64;
+        place * part + self.moved_by(scheme, next) * (1.0 - part)
+    }
+
+    /// The new vertex on spoke `j`.
+    pub(super) fn edge_point(&self, scheme: SubdivisionScheme, j: usize) -> DVec3 {
+        let Spoke {
+            point, sharpness, ..
+        } = self.spokes[j];
+        let middle = (self.point + point) * 0.5;
+        if sharpness >= 1.0 {
+            return middle;
+        }
+        let (before, after) = (self.before(j), self.turn(j, 1));
+        let smooth = match scheme {
+            SubdivisionScheme::CatmullClark => {
+                let sides = self.facets[before].center + self.facets[j].center;
+                ((self.point + point) + sides) * 0.25
+            }
+            SubdivisionScheme::Loop => {
+                let sides = self.spokes[before].point + self.spokes[after].point;
+                ((self.point + point) * 3.0 + sides) * 0.125
+            }
+        };
+        if sharpness == 0.0 {
+            smooth
+        } else {
+            smooth * (1.0 - sharpness) + middle * sharpness
+        }
+    }
+
+    /// The limit of the vertex if all rules stay as they are.
+    fn end(&self, scheme: SubdivisionScheme) -> DVec3 {
+        let v = self.point;
+        match self.rule(false) {
+            Rule::Corner => v,
+            Rule::Crease(a, b) => (v * 4.0 + (self.spokes[a].point + self.spokes[b].point)) / 6.0,
+            Rule::Smooth if self.spokes.iter().any(|s| s.sharpness > 0.0) => {
+                // The end of a crease has no simple formula; what is around it shrinks to its limit.
+                let mut fan = self.clone();
+                for _ in 0..ROUNDS {
+                    fan = fan.divided(scheme);
+                }
+                fan.point
+            }
+            Rule::Smooth => {
+                let n = self.spokes.len() as f64;
+                let spokes = sum(self.spokes.iter().map(|s| s.point));
+                match scheme {
+                    SubdivisionScheme::CatmullClark => {
+                        let facets = sum(self.facets.iter().map(|f| f.center));
+                        ((spokes * 2.0 + facets * 4.0) + v * (n * (n - 1.0))) / (n * (n + 5.0))
+                    }
+                    SubdivisionScheme::Loop => {
+                        let own = 0.375 / loop_weight(self.spokes.len());
+                        (v * own + spokes) / (own + n)
+                    }
+                }
+            }
+        }
+    }
+
+    /// The spoke `j + 1` or `j - 1` and the one behind it, as seen from the smooth spoke `j`; behind a sharp one the surface
+    /// is continued so that it ends there just as it does.
+    pub(super) fn aside(&self, j: usize, is_after: bool) -> [DVec3; 2] {
+        let step = |j: usize| {
+            if is_after {
+                self.turn(j, 1)
+            } else {
+                self.before(j)
+            }
+        };
+        let side = self.spokes[step(j)];
+        let behind = if side.sharpness > 0.0 {
+            (side.point + self.point) - self.spokes[j].point
+        } else {
+            self.spokes[step(step(j))].point
+        };
+        [side.point, behind]
+    }
+
+    /// Whether all faces around the vertex can be regular patches, and if not, when they are small enough.
+    fn own_depth(&self, scheme: SubdivisionScheme) -> u32 {
+        let (sides, around) = match scheme {
+            SubdivisionScheme::CatmullClark => (4, 4),
+            SubdivisionScheme::Loop => (3, 6),
+        };
+        let faces = self.facets.iter().filter(|f| f.sides != 0).count();
+        // The largest number of faces between sharp edges.
+        let mut sectors: Vec<usize> = vec![];
+        let sharp = (0..self.spokes.len()).filter(|j| self.spokes[*j].sharpness > 0.0);
+        let sharp: Vec<usize> = sharp.collect();
+        for (k, from) in sharp.iter().enumerate() {
+            let to = sharp[(k + 1) % sharp.len()];
+            let count = (to + self.spokes.len() - from - 1) % self.spokes.len() + 1;
+            if self.facets[*from].sides != 0 {
+                sectors.push(count);
+            }
+        }
+        let are = |count: usize| sectors.iter().all(|s| *s == count);
+        let is_regular = self.is_final()
+            && self.facets.iter().all(|f| f.sides == sides || f.sides == 0)
+            && match self.rule(false) {
+                Rule::Smooth => sharp.is_empty() && faces == around,
+                Rule::Crease(..) => are(around / 2),
+                Rule::Corner => !sectors.is_empty() && are(1),
+            };
+        if is_regular {
+            return 0;
+        }
+        let most = sectors.iter().copied().max().unwrap_or(0);
+        let valence = if sharp.len() < 2 {
+            faces.max(around)
+        } else {
+            (2 * most).max(around)
+        };
+        let valence = if self.is_final() && sharp.is_empty() {
+            faces
+        } else {
+            valence
+        };
+        if self.rule(false) == Rule::Corner && sharp.len() < 2 {
+            // The tip of a cone shrinks along its axis as if there were faces without number.
+            return depth(scheme, u32::MAX);
+        }
+        depth(scheme, valence as u32)
+    }
+
+    /// Sets what follows from the rest.
+    pub(super) fn finished(mut self, scheme: SubdivisionScheme) -> Self {
+        if self.limit.is_none() && self.is_final() {
+            self.limit = Some(self.end(scheme));
+        }
+        self.depth = self.own_depth(scheme);
+        self
+    }
+
+    /// Where the vertex ends.
+    pub(super) fn place(&self, scheme: SubdivisionScheme) -> DVec3 {
+        self.limit.unwrap_or_else(|| self.end(scheme))
+    }
+
+    /// The vertex on the next level, with the new vertices on its edges and the new faces at it.
+    pub(super) fn refined(&self, scheme: SubdivisionScheme) -> Self {
+        self.divided(scheme).finished(scheme)
+    }
+
+    /// The same, without what follows from the rest.
+    fn divided(&self, scheme: SubdivisionScheme) -> Self {
+        let count = self.spokes.len();
+        let point = self.moved(scheme);
+        let spokes: Vec<Spoke> = (0..count)
+            .map(|j| {
+                let sharpness = duller(self.spokes[j].sharpness);
+                Spoke {
+                    point: self.edge_point(scheme, j),
+                    sharpness,
+                    depth: edge_depth(scheme, sharpness),
+                }
+            })
+            .collect();
+        let facets = (0..count)
+            .map(|j| match (self.facets[j].sides, scheme) {
+                (0, _) => Facet::GAP,
+                (_, SubdivisionScheme::Loop) => self.facets[j],
+                _ => Facet {
+                    center: mean4(
+                        point,
+                        spokes[j].point,
+                        self.facets[j].center,
+                        spokes[self.turn(j, 1)].point,
+                    ),
+                    sides: 4,
+                },
+            })
+            .collect();
+        Self {
+            point,
+            limit: self.limit,
+            sharpness: duller(self.sharpness),
+            depth: 0,
+            spokes,
+            facets,
+        }
+    }
+
+    /// The same vertex, seen from the face that is so many places earlier.
+    pub(super) fn rotated(&self, places: usize) -> Self {
+        let mut fan = self.clone();
+        let places = places % fan.spokes.len();
+        fan.spokes.rotate_right(places);
+        fan.facets.rotate_right(places);
+        fan
+    }
+
+    /// All points from which those of later levels are made.
+    pub(super) fn points(&self, scheme: SubdivisionScheme) -> impl Iterator<Item = DVec3> + '_ {
+        let has_centers = scheme == SubdivisionScheme::CatmullClark;
+        let facets = self
+            .facets
+            .iter()
+            .filter(move |f| has_centers && f.sides != 0)
+            .map(|f| f.center);
+        let spokes = self.spokes.iter().map(|s| s.point);
+        std::iter::once(self.point).chain(spokes).chain(facets)
+    }
+}
+
+/// The depth of a new vertex on an edge that has this sharpness from now on.
+fn edge_depth(scheme: SubdivisionScheme, sharpness: f64) -> u32 {
+    if is_settled(sharpness) {
+        return 0;
+    }
+    match scheme {
+        SubdivisionScheme::CatmullClark => depth(scheme, 4),
+        SubdivisionScheme::Loop => depth(scheme, 6),
+    }
+}
+
+/// The depth of a new vertex in a face of so many sides.
+pub(super) fn face_depth(scheme: SubdivisionScheme, sides: u32) -> u32 {
+    if sides == 4 { 0 } else { depth(scheme, sides) }
+}
+
+/// The weight of a neighbour in Loop's rule.
+fn loop_weight(valence: usize) -> f64 {
+    let n = valence as f64;
+    let c = 0.375 + 0.25 * det::cos(std::f64::consts::TAU / n);
+    (0.625 - c * c) / n
+}
