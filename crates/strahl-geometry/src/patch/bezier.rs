@@ -1,6 +1,7 @@
 //! A Bezier patch of any degree, polynomial or rational: what all free-form surfaces are made of.
 
 use super::border::Border;
+use super::degree;
 use super::net::Net;
 use super::search::{Aim, Candidate, Frame, Keep, Search};
 use super::settle;
@@ -30,6 +31,8 @@ pub(super) struct Bezier<const K: usize> {
     border: Border<K>,
     /// How far the net may be from what neighbours know of it.
     seam: f64,
+    /// Whether it is so thin that only its border tells whether a ray meets it.
+    is_thin: bool,
     pub(super) bounds: Aabb,
     /// The pieces, when the first ray comes.
     tree: OnceLock<Tree>,
@@ -43,16 +46,21 @@ impl<const K: usize> Bezier<K> {
             net,
             border: Border::default(),
             seam: 0.0,
+            is_thin: false,
             tree: OnceLock::new(),
         }
     }
 
     /// A polynomial patch, some sides of which belong to the two halves of patches beyond. The curves of these halves follow from
     /// the same points as the side itself, up to rounding.
-    pub(super) fn with_border(net: Net<4, K>, border: Border<K>) -> Self {
+    ///
+    /// A thin patch is hardly larger than the rounding errors of its points: rays meet it as often as its border winds around
+    /// them, and no more.
+    pub(super) fn with_border(net: Net<4, K>, border: Border<K>, is_thin: bool) -> Self {
         let patch = Self::new(net);
         Self {
             border,
+            is_thin,
             seam: gamma(64) * patch.bounds.max_abs(),
             ..patch
         }
@@ -88,7 +96,7 @@ impl<const K: usize> Bezier<K> {
         let aim = Aim::Nearest {
             range,
             nearest: None,
-            is_doubtful: false,
+            is_doubtful: self.is_thin,
         };
         let mut search = self.search(frame, keep, aim);
         search.run();
@@ -111,7 +119,7 @@ impl<const K: usize> Bezier<K> {
         let aim = Aim::Any {
             range,
             found: false,
-            is_doubtful: false,
+            is_doubtful: self.is_thin,
         };
         let mut search = self.search(frame, keep, aim);
         search.run();
@@ -126,11 +134,17 @@ impl<const K: usize> Bezier<K> {
 
     /// All hits of the line, in no order.
     pub(super) fn all(&self, frame: &Frame, keep: Keep<'_>) -> Vec<Candidate> {
-        let mut search = self.search(frame, keep, Aim::All(vec![]));
-        search.run();
-        let mut found = match search.aim {
-            Aim::All(found) => settle::settle(found, || self.winding(frame)),
-            Aim::Nearest { .. } | Aim::Any { .. } => vec![],
+        let winding = || self.winding(frame);
+        let lost = |hits: &[Candidate], sign| degree::lost(&self.net, frame, hits, sign);
+        let mut found = if self.is_thin {
+            settle::add_lost(vec![], winding(), lost)
+        } else {
+            let mut search = self.search(frame, keep, Aim::All(vec![]));
+            search.run();
+            match search.aim {
+                Aim::All(found) => settle::settle(found, winding, lost),
+                Aim::Nearest { .. } | Aim::Any { .. } => vec![],
+            }
         };
         // Cut only now: what is cut away counts in the sum of the hits, too.
         if let Some(keep) = keep {

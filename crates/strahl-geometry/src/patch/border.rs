@@ -35,6 +35,21 @@ fn crossings<const K: usize>(curve: &Curve<2, K>, depth: u32) -> i32 {
     }
 }
 
+/// How often the border of a map to the plane, counter-clockwise in its parameters, winds around the origin.
+pub(super) fn winding<const K: usize>(view: &Net<2, K>) -> i32 {
+    (0..4).map(|side| side_of(view, side)).sum()
+}
+
+/// How often side `side` of a map crosses the axis, counter-clockwise in its parameters.
+fn side_of<const K: usize>(view: &Net<2, K>, side: usize) -> i32 {
+    match side {
+        0 => crossings(&view.rows[0], DEPTH),
+        1 => crossings(&view.column(K - 1), DEPTH),
+        2 => -crossings(&view.rows[K - 1], DEPTH),
+        _ => -crossings(&view.column(0), DEPTH),
+    }
+}
+
 /// The border of a patch beside smaller ones: for each side, counter-clockwise from `v = 0` on, the two curves of which the
 /// neighbours make it, in this direction; `None` where it is that of the net.
 #[derive(Debug)]
@@ -63,19 +78,15 @@ impl<const K: usize> Border<K> {
     /// Of two patches with a common border curve, the curve counts in one as much as it is taken off in the other, to the
     /// last bit. So a ray through the border of a closed surface of patches meets exactly one of the two.
     pub(super) fn winding(&self, net: &Net<4, K>, see: impl Fn(&[f64; 4]) -> [f64; 2]) -> i32 {
-        let count = |curve: &Curve<4, K>| {
-            let seen: Curve<2, K> = std::array::from_fn(|i| see(&curve[i]));
-            crossings(&seen, DEPTH)
+        let view = net.map(&see);
+        let Some(sides) = &self.0 else {
+            return winding(&view);
         };
-        let own = |side: usize| match side {
-            0 => count(&net.rows[0]),
-            1 => count(&net.column(K - 1)),
-            2 => -count(&net.rows[K - 1]),
-            _ => -count(&net.column(0)),
-        };
-        let side = |side: usize| match self.0.as_ref().and_then(|sides| sides[side].as_ref()) {
-            Some([a, b]) => count(a) + count(b),
-            None => own(side),
+        let half =
+            |curve: &Curve<4, K>| crossings::<K>(&std::array::from_fn(|i| see(&curve[i])), DEPTH);
+        let side = |side: usize| match &sides[side] {
+            Some([a, b]) => half(a) + half(b),
+            None => side_of(&view, side),
         };
         (0..4).map(side).sum()
     }

@@ -5,6 +5,7 @@ mod bicubic;
 mod border;
 #[cfg(test)]
 mod border_tests;
+mod degree;
 mod net;
 mod nurbs;
 mod search;

@@ -51,7 +51,7 @@ impl Frame {
     }
 
     /// The ray's parameter of a point.
-    fn t(&self, point: DVec3) -> f64 {
+    pub(super) fn t(&self, point: DVec3) -> f64 {
         (point - self.origin).dot(self.along) / self.length
     }
 
@@ -356,15 +356,7 @@ impl<'a, const K: usize> Search<'a, K> {
         let is_over = thickness <= 4.0 * noise || depth == 0 || self.halvings == 0;
         // What neighbours know of a border decides about slivers, too.
         if is_point || is_over && self.seam > 0.0 {
-            let [u, v] = std::array::from_fn(|k| rectangle.from[k] + 0.5 * rectangle.size[k]);
-            self.add(Candidate {
-                t: self.frame.t(project(self.net.at(u, v))),
-                u,
-                v,
-                sign: 0,
-                zone: rectangle.size,
-                is_doubtful: true,
-            });
+            self.give_up(rectangle);
             return;
         }
         if is_over {
@@ -388,6 +380,19 @@ impl<'a, const K: usize> Search<'a, K> {
             self.divide(part, &half, depth - 1);
             half.from[axis] += half.size[axis];
         }
+    }
+
+    /// Leaves it to the border of the patch whether there is a hit in a rectangle.
+    fn give_up(&mut self, rectangle: &Rectangle) {
+        let [u, v] = std::array::from_fn(|k| rectangle.from[k] + 0.5 * rectangle.size[k]);
+        self.add(Candidate {
+            t: self.frame.t(project(self.net.at(u, v))),
+            u,
+            v,
+            sign: 0,
+            zone: rectangle.size,
+            is_doubtful: true,
+        });
     }
 
     /// Newton's method for the parameters at which the ray meets the patch, within (nearly) a rectangle.
@@ -414,6 +419,7 @@ impl<'a, const K: usize> Search<'a, K> {
                 (value[1] * by_u[0] - value[0] * by_u[1]) / determinant,
             ];
             if !(step[0].is_finite() && step[1].is_finite()) {
+                self.give_up(rectangle);
                 return;
             }
             let is_last =
@@ -428,6 +434,10 @@ impl<'a, const K: usize> Search<'a, K> {
             });
             if !(is_last || round + 1 == ROUNDS) {
                 continue;
+            }
+            if !is_last && self.seam > 0.0 {
+                self.give_up(rectangle);
+                return;
             }
             let length = |v: [f64; 2]| (v[0] * v[0] + v[1] * v[1]).sqrt();
             let error = 16.0 * noise / determinant.abs();

@@ -6,8 +6,13 @@ use super::search::Candidate;
 ///
 /// Twins from neighbouring pieces are made one. Then the hits, with their signs, must add up to the number of times that
 /// the border of the patch winds around the ray, which is known exactly and agrees with that of the neighbours: if they
-/// don't, the decisions nearest to the border are turned around.
-pub(super) fn settle(mut found: Vec<Candidate>, winding: impl FnOnce() -> i32) -> Vec<Candidate> {
+/// don't, the decisions nearest to the border are turned around. What is still missing the search has lost, where the
+/// patch is folded, collapsed or seen from its edge: `lost` finds a hit of a sign that these hits lack.
+pub(super) fn settle(
+    mut found: Vec<Candidate>,
+    winding: impl FnOnce() -> i32,
+    lost: impl Fn(&[Candidate], i32) -> Candidate,
+) -> Vec<Candidate> {
     // The order of parameters, so that nothing depends on the order of the search.
     found.sort_by(|a, b| {
         a.t.total_cmp(&b.t)
@@ -15,10 +20,11 @@ pub(super) fn settle(mut found: Vec<Candidate>, winding: impl FnOnce() -> i32) -
             .then(a.v.total_cmp(&b.v))
     });
     let mut single: Vec<Candidate> = Vec::with_capacity(found.len());
-    let mut unsure: Vec<Candidate> = vec![];
+    let mut is_doubtful = false;
     for candidate in found {
         if candidate.sign == 0 {
-            unsure.push(candidate);
+            // The search gave up: only the border knows.
+            is_doubtful = true;
             continue;
         }
         let is_twin = |other: &Candidate| {
@@ -32,7 +38,7 @@ pub(super) fn settle(mut found: Vec<Candidate>, winding: impl FnOnce() -> i32) -
     }
     let is_at_border = |c: &Candidate| c.margin().abs() <= 1.0;
     let (at_border, mut hits): (Vec<_>, Vec<_>) = single.into_iter().partition(is_at_border);
-    if at_border.is_empty() && unsure.is_empty() {
+    if at_border.is_empty() && !is_doubtful {
         return hits;
     }
     let mut missing = winding();
@@ -65,12 +71,17 @@ pub(super) fn settle(mut found: Vec<Candidate>, winding: impl FnOnce() -> i32) -
             .filter(|(_, inside)| *inside)
             .map(|(c, _)| c),
     );
-    // Places where the search gave up are hits if the border demands it: the tip of a collapsed edge.
-    if missing != 0 {
-        hits.extend(unsure.first().map(|first| Candidate {
-            sign: missing.signum(),
-            ..*first
-        }));
+    add_lost(hits, missing, lost)
+}
+
+/// The hits, with so many more of the sign of `missing`.
+pub(super) fn add_lost(
+    mut hits: Vec<Candidate>,
+    missing: i32,
+    lost: impl Fn(&[Candidate], i32) -> Candidate,
+) -> Vec<Candidate> {
+    for _ in 0..missing.abs() {
+        hits.push(lost(&hits, missing.signum()));
     }
     hits
 }

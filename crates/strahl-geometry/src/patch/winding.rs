@@ -16,6 +16,9 @@ pub(super) struct Pass {
 
 /// A closed surface: every line leaves it as often as it enters.
 pub(super) trait Winding: Primitive {
+    /// So many roundings are on the way to a point.
+    const ROUNDINGS: u32;
+
     /// All passes of a line, in no order.
     fn passes(&self, ray: &Ray) -> Vec<Pass>;
 
@@ -61,7 +64,7 @@ pub(super) trait Winding: Primitive {
         let length = ray.direction.length();
         let bounds = self.bounds();
         let reach = bounds.max_abs() + ray.origin.abs().max_element();
-        let (error, size) = (gamma(128) * reach, bounds.size().length());
+        let (error, size) = (gamma(Self::ROUNDINGS) * reach, bounds.size().length());
         let normal = self.bare_surface_at(ray, hit).n_geom;
         let along = error / (normal.dot(ray.direction) / length).abs();
         // A ray along the surface is near it as far as it is there.

@@ -63,6 +63,8 @@ impl Visitor for All<'_> {
 }
 
 impl Winding for Nurbs {
+    const ROUNDINGS: u32 = 128;
+
     fn passes(&self, ray: &Ray) -> Vec<Pass> {
         let Some(frame) = Frame::new(ray) else {
             return vec![];

@@ -108,6 +108,8 @@ impl Cage {
         Fan {
             point: self.data.points[own as usize],
             limit: None,
+            origin: None,
+            age: 0,
             sharpness: self.corners.get(&own).copied().unwrap_or(0.0),
             depth: 0,
             spokes,

@@ -3,6 +3,7 @@
 mod cage;
 mod data;
 mod node;
+mod place;
 mod quad;
 mod ring;
 mod rules;
@@ -10,14 +11,14 @@ mod rules;
 mod tests;
 mod triangle;
 
-use super::search::Candidate;
 use super::winding::{Pass, Winding};
 use crate::primitives::point_error;
 use crate::{
     Crossings, GeometryError, PrimHit, Primitive, Scratch, Shape, Solid, SurfaceId, SurfacePoint,
 };
 use cage::Cage;
-use node::{Leaf, Line, Node, Place};
+use node::{Found, Leaf, Line, Node};
+use place::{Place, Spot};
 use std::sync::OnceLock;
 use strahl_accel::{Accelerator, Bvh2, TraversalStats, Visitor};
 use strahl_math::{Aabb, DVec2, DVec3, Interval, Ray, Transform};
@@ -90,7 +91,7 @@ impl Subdivision {
         };
         let middle = surface.middle();
         let aims = (0..surface.nodes.len())
-            .filter_map(|element| Some(surface.node(element as u32)?.jet(middle).0[0]));
+            .filter_map(|element| Some(surface.at(element as u32, middle)?[0]));
         surface.is_inside_out = surface.is_closed && surface.finds_inside_out(aims);
         surface
     }
@@ -106,7 +107,8 @@ impl Subdivision {
     /// at most 1.
     pub fn at(&self, element: u32, uv: DVec2) -> Option<[DVec3; 3]> {
         let within = uv.clamp(DVec2::ZERO, DVec2::ONE).to_array();
-        self.node(element).map(|node| node.jet(within).0)
+        let spot = Spot::at(self.cage.scheme(), within);
+        self.node(element).map(|node| node.jet(spot).0)
     }
 
     /// The bytes that the surface takes in memory. They grow as rays come.
@@ -121,16 +123,26 @@ impl Subdivision {
     }
 
     /// Parameters in the middle of an element.
-    fn middle(&self) -> [f64; 2] {
-        match self.cage.scheme() {
-            SubdivisionScheme::CatmullClark => [0.5; 2],
-            SubdivisionScheme::Loop => [1.0 / 3.0; 2],
-        }
+    fn middle(&self) -> DVec2 {
+        DVec2::splat(match self.cage.scheme() {
+            SubdivisionScheme::CatmullClark => 0.5,
+            SubdivisionScheme::Loop => 1.0 / 3.0,
+        })
     }
 
     fn node(&self, element: u32) -> Option<&Node> {
         let slot = self.nodes.get(element as usize)?;
         Some(slot.get_or_init(|| Box::new(Node::new(self.cage.ring(element as usize)))))
+    }
+
+    /// The hit that was found in a part of an element.
+    fn hit(&self, element: u32, place: Place, found: &Found) -> PrimHit {
+        let (facet, uv) = place.outer(found.spot).told(self.cage.scheme());
+        PrimHit {
+            t: found.candidate.t,
+            surface: SurfaceId { element, facet },
+            uv,
+        }
     }
 
     /// Shows the elements along a ray to the visitor.
@@ -165,15 +177,6 @@ impl Subdivision {
     }
 }
 
-/// The hit of a candidate on an element, at parameters of the element.
-fn hit(element: u32, candidate: &Candidate, uv: [f64; 2]) -> PrimHit {
-    PrimHit {
-        t: candidate.t,
-        surface: SurfaceId { element, facet: 0 },
-        uv,
-    }
-}
-
 /// Looks for the nearest hit.
 struct Nearest<'a> {
     surface: &'a Subdivision,
@@ -187,13 +190,13 @@ impl Visitor for Nearest<'_> {
         let Some(node) = self.surface.node(id) else {
             return t_max;
         };
-        let (line, best) = (&self.line, &mut self.best);
+        let (surface, line, best) = (self.surface, &self.line, &mut self.best);
         let range = best.map_or(self.range, |best| self.range.with_max(best.t));
         let mut ask = |leaf: &Leaf, place: Place, range: Interval| {
             let Some(found) = leaf.nearest(line, range) else {
                 return range;
             };
-            let found = hit(id, &found.candidate, place.outer(found.uv));
+            let found = surface.hit(id, place, &found);
             let key = |hit: &PrimHit| (hit.t, hit.surface.element);
             if best.is_none_or(|best| key(&found) < key(&best)) {
                 *best = Some(found);
@@ -238,11 +241,11 @@ struct All<'a> {
 
 impl Visitor for All<'_> {
     fn visit(&mut self, id: u32, t_max: f64) -> f64 {
-        let (line, passes) = (&self.line, &mut self.passes);
+        let (surface, line, passes) = (self.surface, &self.line, &mut self.passes);
         if let Some(node) = self.surface.node(id) {
             let mut ask = |leaf: &Leaf, place: Place, range: Interval| {
                 passes.extend(leaf.all(line).into_iter().map(|found| Pass {
-                    hit: hit(id, &found.candidate, place.outer(found.uv)),
+                    hit: surface.hit(id, place, &found),
                     sign: found.candidate.sign,
                 }));
                 range
@@ -314,16 +317,18 @@ impl Primitive for Subdivision {
         let Some(node) = self.node(element) else {
             return SurfacePoint::bare(ray.at(hit.t), DVec3::ZERO, toward());
         };
-        let ([position, by_u, by_v], back) = node.jet(hit.uv);
+        let scheme = self.cage.scheme();
+        let spot = Spot::of(scheme, hit.surface.facet, hit.uv);
+        let ([position, by_u, by_v], front) = node.jet(spot);
         let is_turned = if self.is_closed {
             self.is_inside_out
         } else {
             self.is_flipped
         };
-        let turned = |back: DVec3| if is_turned { back } else { -back };
-        let normal = back.map_or_else(toward, turned);
-        let (uv, [dpdu, dpdv]) = self.textured(element, hit.uv, [by_u, by_v]);
-        let error = point_error(position, self.bounds.max_abs(), 128);
+        let turned = |front: DVec3| if is_turned { -front } else { front };
+        let normal = front.map_or_else(toward, turned);
+        let (uv, [dpdu, dpdv]) = self.textured(element, spot.uv(scheme), [by_u, by_v]);
+        let error = point_error(position, self.bounds.max_abs(), Self::ROUNDINGS);
         let is_usable = dpdu.is_finite() && dpdv.is_finite();
         SurfacePoint {
             uv,
@@ -351,6 +356,9 @@ impl Primitive for Subdivision {
 }
 
 impl Winding for Subdivision {
+    /// A few for each level, of which there are up to 50, and those of a patch.
+    const ROUNDINGS: u32 = 512;
+
     fn passes(&self, ray: &Ray) -> Vec<Pass> {
         let Some(line) = Line::new(ray) else {
             return vec![];

@@ -6,10 +6,12 @@
 //! the smaller ones as its own.
 
 use super::SubdivisionScheme;
+use super::place::{Place, Spot};
 use super::ring::Ring;
+use super::rules::Tip;
 use super::{quad, triangle};
 use crate::patch::bezier::Bezier;
-use crate::patch::border::Border;
+use crate::patch::border::{Border, Sides};
 use crate::patch::net::Net;
 use crate::patch::search::{Candidate, Frame};
 use crate::patch::tree;
@@ -17,9 +19,20 @@ use std::sync::OnceLock;
 use strahl_math::error::gamma;
 use strahl_math::{Aabb, DVec2, DVec3, Interval, Ray};
 
+/// Around an irregular vertex, faces narrower than this part of their coordinates are thin: those at borders and ends of creases become
+/// so long before they are short.
+const THIN: f64 = 1.0 / (1_u64 << 32) as f64;
+
 /// A face that is a patch, or three of them.
 #[derive(Debug)]
-pub(super) enum Leaf {
+pub(super) struct Leaf {
+    patches: Patches,
+    /// The normal at the irregular vertex nearby, where the patches are too thin for one of their own.
+    normal: Option<DVec3>,
+}
+
+#[derive(Debug)]
+enum Patches {
     Quad(Box<Bezier<4>>),
     Triangle(Box<[Bezier<5>; 3]>),
 }
@@ -84,60 +97,18 @@ impl<'a> Line<'a> {
     }
 }
 
-/// Where the parameters of a part are in those of the whole face: `from + size * (u, v)`.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Place {
-    from: [f64; 2],
-    size: f64,
-}
-
-impl Place {
-    pub(super) const WHOLE: Self = Self {
-        from: [0.0; 2],
-        size: 1.0,
-    };
-
-    /// Parameters of the whole face.
-    pub(super) fn outer(&self, [u, v]: [f64; 2]) -> [f64; 2] {
-        [self.from[0] + self.size * u, self.from[1] + self.size * v]
-    }
-
-    fn part(&self, part: Self) -> Self {
-        Self {
-            from: self.outer(part.from),
-            size: self.size * part.size,
-        }
-    }
-}
-
-/// The places of the children of a face.
-const QUARTERS: [Place; 4] = [
-    half([0.0, 0.0], 0.5),
-    half([0.5, 0.0], 0.5),
-    half([0.5, 0.5], 0.5),
-    half([0.0, 0.5], 0.5),
-];
-/// Of a triangle with the parameters `u` and `v` as the weights of its second and third corner; the last one is turned.
-const TRIANGLES: [Place; 4] = [
-    half([0.0, 0.0], 0.5),
-    half([0.5, 0.0], 0.5),
-    half([0.0, 0.5], 0.5),
-    half([0.5, 0.5], -0.5),
-];
-
-const fn half(from: [f64; 2], size: f64) -> Place {
-    Place { from, size }
-}
-
 /// A patch of a leaf, and a hit of it.
 pub(super) struct Found {
     pub(super) candidate: Candidate,
-    /// Its parameters in the leaf.
-    pub(super) uv: [f64; 2],
+    /// Its place in the leaf.
+    pub(super) spot: Spot,
 }
 
 impl Leaf {
-    pub(super) fn new(ring: &Ring) -> Self {
+    /// The patches of a face; `rest` if it is so near to an irregular vertex that they are thin.
+    pub(super) fn new(ring: &Ring, rest: Option<Tip>) -> Self {
+        let rest = rest.or_else(|| ring.tip());
+        let is_thin = rest.is_some();
         let count = ring.corners.len();
         let divided: Vec<bool> = (0..count).map(|i| ring.is_neighbor_divided(i)).collect();
         let children = if divided.contains(&true) {
@@ -145,11 +116,11 @@ impl Leaf {
         } else {
             vec![]
         };
-        match ring.scheme {
+        let patches = match ring.scheme {
             SubdivisionScheme::CatmullClark => {
                 let net = quad::net(ring);
                 let half = |i: usize| divided[i].then(|| quad::halves(ring, &children, i));
-                Self::Quad(Box::new(patch(net, std::array::from_fn(half))))
+                Patches::Quad(Box::new(patch(net, std::array::from_fn(half), is_thin)))
             }
             SubdivisionScheme::Loop => {
                 let mut nets = triangle::nets(ring);
@@ -159,21 +130,25 @@ impl Leaf {
                     nets[i].rows[0][4] = half[4];
                     nets[(i + 1) % 3].rows[4][0] = half[4];
                 }
-                Self::Triangle(Box::new(std::array::from_fn(|i| {
+                Patches::Triangle(Box::new(std::array::from_fn(|i| {
                     let before = (i + 2) % 3;
                     let mut sides = [const { None }; 4];
                     sides[0] = divided[i].then(|| triangle::halves(&children, i, 0));
                     sides[3] = divided[before].then(|| triangle::halves(&children, before, 1));
-                    patch(nets[i], sides)
+                    patch(nets[i], sides, is_thin)
                 })))
             }
+        };
+        Self {
+            patches,
+            normal: rest.and_then(|tip| tip.normal),
         }
     }
 
     fn bounds(&self) -> Aabb {
-        match self {
-            Self::Quad(patch) => patch.bounds,
-            Self::Triangle(parts) => parts
+        match &self.patches {
+            Patches::Quad(patch) => patch.bounds,
+            Patches::Triangle(parts) => parts
                 .iter()
                 .fold(Aabb::EMPTY, |all, part| all.union(&part.bounds)),
         }
@@ -181,9 +156,9 @@ impl Leaf {
 
     /// The nearest hit in a range.
     pub(super) fn nearest(&self, line: &Line<'_>, range: Interval) -> Option<Found> {
-        match self {
-            Self::Quad(patch) => patch.nearest(&line.frame, range, None).map(Found::in_quad),
-            Self::Triangle(parts) => {
+        match &self.patches {
+            Patches::Quad(patch) => patch.nearest(&line.frame, range, None).map(Found::in_quad),
+            Patches::Triangle(parts) => {
                 let mut best: Option<Found> = None;
                 for (i, part) in parts.iter().enumerate() {
                     if line.enter(&part.bounds, range).is_none() {
@@ -203,9 +178,9 @@ impl Leaf {
 
     /// Whether there is a hit in a range.
     pub(super) fn any(&self, line: &Line<'_>, range: Interval) -> bool {
-        match self {
-            Self::Quad(patch) => patch.any(&line.frame, range, None),
-            Self::Triangle(parts) => parts.iter().any(|part| {
+        match &self.patches {
+            Patches::Quad(patch) => patch.any(&line.frame, range, None),
+            Patches::Triangle(parts) => parts.iter().any(|part| {
                 line.enter(&part.bounds, range).is_some() && part.any(&line.frame, range, None)
             }),
         }
@@ -213,12 +188,12 @@ impl Leaf {
 
     /// All hits of the line.
     pub(super) fn all(&self, line: &Line<'_>) -> Vec<Found> {
-        match self {
-            Self::Quad(patch) => {
+        match &self.patches {
+            Patches::Quad(patch) => {
                 let all = patch.all(&line.frame, None);
                 all.into_iter().map(Found::in_quad).collect()
             }
-            Self::Triangle(parts) => (0..3)
+            Patches::Triangle(parts) => (0..3)
                 .zip(parts.iter())
                 .flat_map(|(i, part)| {
                     let all = part.all(&line.frame, None).into_iter();
@@ -228,55 +203,56 @@ impl Leaf {
         }
     }
 
-    /// The point, its derivatives, and the direction of `dS/dv x dS/du`, if there is one.
-    fn jet(&self, [u, v]: [f64; 2]) -> ([DVec3; 3], Option<DVec3>) {
-        match self {
-            Self::Quad(patch) => {
+    /// The point, its derivatives, and the direction of `dS/du x dS/dv`, if there is one.
+    fn jet(&self, spot: Spot) -> ([DVec3; 3], Option<DVec3>) {
+        let (jet, back) = match &self.patches {
+            Patches::Quad(patch) => {
+                let [u, _, v, _] = spot.0;
                 let jet = patch.jet(u, v);
                 (jet, patch.normal(DVec2::new(u, v), jet))
             }
-            Self::Triangle(parts) => {
-                let (i, place) = into_part([u, v]);
+            Patches::Triangle(parts) => {
+                let (i, place) = into_part(spot);
                 let jet = parts[i].jet(place[0], place[1]);
-                let normal = parts[i].normal(DVec2::from_array(place), jet);
+                let back = parts[i].normal(DVec2::from_array(place), jet);
                 let [point, by_s, by_t] = jet;
                 // The derivatives of u and v by the parameters of the part.
                 let [[us, vs], [ut, vt]] = slopes(i, place);
                 let per = 1.0 / (us * vt - ut * vs);
                 let by_u = (by_s * vt - by_t * vs) * per;
                 let by_v = (by_t * us - by_s * ut) * per;
-                ([point, by_u, by_v], normal)
+                ([point, by_u, by_v], back)
             }
-        }
+        };
+        (jet, self.normal.or_else(|| back.map(|back| -back)))
     }
 
     /// The bytes that it takes.
     pub(super) fn bytes(&self) -> usize {
-        match self {
-            Self::Quad(patch) => patch.bytes(),
-            Self::Triangle(parts) => parts.iter().map(Bezier::bytes).sum(),
+        match &self.patches {
+            Patches::Quad(patch) => patch.bytes(),
+            Patches::Triangle(parts) => parts.iter().map(Bezier::bytes).sum(),
         }
     }
 }
 
-fn patch<const K: usize>(net: Net<4, K>, sides: [Option<[[[f64; 4]; K]; 2]>; 4]) -> Bezier<K> {
-    if sides.iter().all(Option::is_none) {
-        return Bezier::with_border(net, Border::default());
-    }
-    Bezier::with_border(net, Border(Some(Box::new(sides))))
+fn patch<const K: usize>(net: Net<4, K>, sides: Sides<K>, is_thin: bool) -> Bezier<K> {
+    let is_whole = sides.iter().all(Option::is_none);
+    let border = Border((!is_whole).then(|| Box::new(sides)));
+    Bezier::with_border(net, border, is_thin)
 }
 
 impl Found {
     fn in_quad(candidate: Candidate) -> Self {
         Self {
             candidate,
-            uv: candidate.place(),
+            spot: Spot::on_quad(candidate.place()),
         }
     }
 
     fn in_triangle(candidate: Candidate, part: usize) -> Self {
-        let uv = out_of_part(part, candidate.place());
-        Self { candidate, uv }
+        let spot = out_of_part(part, candidate.place());
+        Self { candidate, spot }
     }
 }
 
@@ -287,10 +263,12 @@ fn weights([s, t]: [f64; 2]) -> [f64; 3] {
     [(1.0 - after) - before, after, before]
 }
 
-/// The parameters in a triangle of those in its part `i`.
-fn out_of_part(i: usize, place: [f64; 2]) -> [f64; 2] {
-    let weights = weights(place);
-    [weights[(4 - i) % 3], weights[(5 - i) % 3]]
+/// The place in a triangle of parameters in its part `i`.
+fn out_of_part(i: usize, place: [f64; 2]) -> Spot {
+    let [own, after, before] = weights(place);
+    let mut all = [own, after, before, 0.0];
+    all[..3].rotate_right(i);
+    Spot(all)
 }
 
 /// The derivatives of the parameters of a triangle by both parameters of its part `i`.
@@ -302,8 +280,8 @@ fn slopes(i: usize, [s, t]: [f64; 2]) -> [[f64; 2]; 2] {
 }
 
 /// The part of a triangle in which parameters are, and their place there.
-fn into_part([u, v]: [f64; 2]) -> (usize, [f64; 2]) {
-    let all = [(1.0 - u) - v, u, v];
+fn into_part(Spot([w, u, v, _]): Spot) -> (usize, [f64; 2]) {
+    let all = [w, u, v];
     let i = if all[0] >= u && all[0] >= v {
         0
     } else if u >= v {
@@ -324,14 +302,17 @@ fn into_part([u, v]: [f64; 2]) -> (usize, [f64; 2]) {
 impl Node {
     pub(super) fn new(ring: Ring) -> Self {
         if ring.is_leaf() {
-            return Self::Leaf(Leaf::new(&ring));
+            return Self::Leaf(Leaf::new(&ring, None));
         }
+        let thin = ring
+            .tip()
+            .filter(|tip| tip.width < THIN * ring.hull().max_abs());
         let kids = ring
             .children()
             .iter()
             .map(|child| {
                 if child.is_leaf() {
-                    let leaf = Leaf::new(child);
+                    let leaf = Leaf::new(child, thin);
                     return Kid {
                         bounds: leaf.bounds(),
                         node: OnceLock::from(Box::new(Self::Leaf(leaf))),
@@ -376,35 +357,34 @@ impl Node {
         let mut left = range;
         for &(near, i) in &order[..count] {
             if near <= left.max {
-                let part = place.part(split.place(i));
+                let part = place.part(Place::of_child(split.ring.scheme, i));
                 left = split.kid(i).walk(line, left, part, ask);
             }
         }
         left
     }
 
-    /// The point at parameters of the face, its derivatives, and the direction of `dS/dv x dS/du`, if there is one.
-    pub(super) fn jet(&self, uv: [f64; 2]) -> ([DVec3; 3], Option<DVec3>) {
+    /// The point at a place of the face, its derivatives by the parameters, and the direction of `dS/du x dS/dv`, if there is
+    /// one.
+    pub(super) fn jet(&self, spot: Spot) -> ([DVec3; 3], Option<DVec3>) {
         let split = match self {
-            Self::Leaf(leaf) => return leaf.jet(uv),
+            Self::Leaf(leaf) => return leaf.jet(spot),
             Self::Split(split) => split,
         };
-        let [u, v] = uv;
-        let i = match split.ring.scheme {
-            SubdivisionScheme::CatmullClark => match (u >= 0.5, v >= 0.5) {
+        let scheme = split.ring.scheme;
+        let Spot([a, b, c, _]) = spot;
+        let i = match scheme {
+            SubdivisionScheme::CatmullClark => match (a >= 0.5, c >= 0.5) {
                 (false, false) => 0,
                 (true, false) => 1,
                 (true, true) => 2,
                 (false, true) => 3,
             },
-            SubdivisionScheme::Loop if u > 0.5 => 1,
-            SubdivisionScheme::Loop if v > 0.5 => 2,
-            SubdivisionScheme::Loop if (1.0 - u) - v > 0.5 => 0,
-            SubdivisionScheme::Loop => 3,
+            SubdivisionScheme::Loop => [a, b, c].iter().position(|w| *w > 0.5).unwrap_or(3),
         };
-        let Place { from, size } = split.place(i);
-        let inner = std::array::from_fn(|k| (uv[k] - from[k]) / size);
-        let ([point, by_u, by_v], normal) = split.kid(i).jet(inner);
+        let place = Place::of_child(scheme, i);
+        let ([point, by_u, by_v], normal) = split.kid(i).jet(place.inner(scheme, spot));
+        let size = place.size();
         ([point, by_u / size, by_v / size], normal)
     }
 
@@ -425,13 +405,6 @@ impl Node {
 }
 
 impl Split {
-    fn place(&self, i: usize) -> Place {
-        match self.ring.scheme {
-            SubdivisionScheme::CatmullClark => QUARTERS[i],
-            SubdivisionScheme::Loop => TRIANGLES[i],
-        }
-    }
-
     fn kid(&self, i: usize) -> &Node {
         self.kids[i].node.get_or_init(|| {
             let child = self.ring.children().swap_remove(i);

@@ -1,7 +1,7 @@
 //! A face with all that its part of the limit surface depends on, and its division into smaller ones.
 
 use super::SubdivisionScheme;
-use super::rules::{Facet, Fan, Spoke, duller, face_depth, mean4};
+use super::rules::{Facet, Fan, Spoke, Tip, duller, face_depth, mean4};
 use strahl_math::{Aabb, DVec3};
 
 /// A face: its corners, counter-clockwise, each with what is around it, beginning with this face and the next corner.
@@ -23,6 +23,12 @@ impl Ring {
         self.corners.iter().all(|c| c.depth <= self.level)
     }
 
+    /// The surface about its irregular corner, if there is one whose rules don't change any more.
+    pub(super) fn tip(&self) -> Option<Tip> {
+        let mut irregular = self.corners.iter().filter(|c| c.depth > 0);
+        irregular.find_map(|c| c.tip(self.scheme))
+    }
+
     /// Whether the face beyond edge `i` of a patch is divided further.
     pub(super) fn is_neighbor_divided(&self, i: usize) -> bool {
         let (a, b) = (self.corner(i), self.corner(i + 1));
@@ -41,7 +47,11 @@ impl Ring {
                 + size_of_val(fan.spokes.as_slice())
                 + size_of_val(fan.facets.as_slice())
         };
-        self.corners.iter().map(fan).sum()
+        let corners = self.corners.iter();
+        corners
+            .flat_map(|corner| std::iter::once(corner).chain(corner.origin.as_deref()))
+            .map(fan)
+            .sum()
     }
 
     /// A box around the face on all later levels: new vertices are means of old ones with positive weights.
@@ -170,6 +180,8 @@ impl Ring {
         Fan {
             point,
             limit: None,
+            origin: None,
+            age: 0,
             sharpness: 0.0,
             depth: 0,
             spokes,
@@ -202,6 +214,8 @@ impl Ring {
         Fan {
             point: facet.center,
             limit: None,
+            origin: None,
+            age: 0,
             sharpness: 0.0,
             depth: 0,
             spokes: spokes.collect(),

@@ -4,6 +4,7 @@
 //! sums are taken in an order that depends on the numbers alone, and neighbours agree to the last bit.
 
 use super::SubdivisionScheme;
+use std::sync::Arc;
 use strahl_math::{DVec3, det};
 
 /// Edges and vertices that are at least so sharp stay sharp for ever, as in OpenSubdiv.
@@ -47,6 +48,9 @@ pub(super) struct Fan {
     pub(super) point: DVec3,
     /// Where the vertex ends on the limit surface, since its rule has not changed any more.
     pub(super) limit: Option<DVec3>,
+    /// An irregular vertex as it was when its rules became final, relative to itself, and how many levels ago that was.
+    pub(super) origin: Option<Arc<Fan>>,
+    pub(super) age: u32,
     /// The sharpness of the vertex itself.
     pub(super) sharpness: f64,
     /// 0 for a vertex about which the surface is made of regular patches; otherwise the level at which its faces are no
@@ -54,6 +58,15 @@ pub(super) struct Fan {
     pub(super) depth: u32,
     pub(super) spokes: Vec<Spoke>,
     pub(super) facets: Vec<Facet>,
+}
+
+/// The surface about an irregular vertex.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Tip {
+    /// The normal, on the side of its first face.
+    pub(super) normal: Option<DVec3>,
+    /// How wide the first face is across its longer side.
+    pub(super) width: f64,
 }
 
 /// How a vertex moves.
@@ -223,12 +236,15 @@ impl Fan {
             Rule::Corner => v,
             Rule::Crease(a, b) => (v * 4.0 + (self.spokes[a].point + self.spokes[b].point)) / 6.0,
             Rule::Smooth if self.spokes.iter().any(|s| s.sharpness > 0.0) => {
-                // The end of a crease has no simple formula; what is around it shrinks to its limit.
-                let mut fan = self.clone();
+                // The end of a crease has no simple formula; what is around it shrinks to its limit. The steps are computed
+                // relative to the vertex, so that their errors shrink, too.
+                let (mut fan, mut way) = (self.relative(), DVec3::ZERO);
                 for _ in 0..ROUNDS {
                     fan = fan.divided(scheme);
+                    way += fan.point;
+                    fan = fan.relative();
                 }
-                fan.point
+                v + way
             }
             Rule::Smooth => {
                 let n = self.spokes.len() as f64;
@@ -319,7 +335,71 @@ impl Fan {
             self.limit = Some(self.end(scheme));
         }
         self.depth = self.own_depth(scheme);
+        if self.origin.is_none() && self.depth > 0 && self.is_final() {
+            self.origin = Some(Arc::new(self.relative()));
+        }
         self
+    }
+
+    /// The same, relative to the vertex.
+    fn relative(&self) -> Self {
+        let mut fan = self.clone();
+        for spoke in &mut fan.spokes {
+            spoke.point -= self.point;
+        }
+        for facet in fan.facets.iter_mut().filter(|f| f.sides != 0) {
+            facet.center -= self.point;
+        }
+        Self {
+            point: DVec3::ZERO,
+            ..fan
+        }
+    }
+
+    /// What is known of the surface about an irregular vertex, from what is around it on this level; `None` if the vertex is regular,
+    /// or its rules still change.
+    ///
+    /// The spokes are computed relative to the vertex from the level on from which the rules don't change, and doubled on each
+    /// level: nothing is lost to cancellation, however near to the vertex they are.
+    pub(super) fn tip(&self, scheme: SubdivisionScheme) -> Option<Tip> {
+        let mut fan = Self::clone(self.origin.as_ref()?);
+        for _ in 0..self.age {
+            fan = fan.divided(scheme).relative();
+            fan.spokes.iter_mut().for_each(|s| s.point *= 2.0);
+            fan.facets.iter_mut().for_each(|f| f.center *= 2.0);
+        }
+        let size = fan.spokes.iter().fold(0.0, |most: f64, s| {
+            let far = s.point.abs().max_element();
+            if far > most { far } else { most }
+        });
+        let cross = |j: usize| {
+            let [a, b] = [j, fan.turn(j, 1)].map(|j| fan.spokes[j].point / size);
+            a.cross(b)
+        };
+        let is_sharp = |j: usize| fan.spokes[j].sharpness > 0.0;
+        let sum = match fan.rule(false) {
+            Rule::Smooth => (0..fan.facets.len()).map(cross).sum(),
+            Rule::Crease(..) => {
+                // The faces on this side of the crease.
+                let (mut from, mut to) = (0, fan.turn(0, 1));
+                while !is_sharp(from) {
+                    from = fan.before(from);
+                }
+                while !is_sharp(to) {
+                    to = fan.turn(to, 1);
+                }
+                let count = (to + fan.spokes.len() - from) % fan.spokes.len();
+                (0..count).map(|k| cross(fan.turn(from, k))).sum()
+            }
+            Rule::Corner if (0..fan.spokes.len()).any(is_sharp) => cross(0),
+            // About the tip of a cone normals point in all directions.
+            Rule::Corner => DVec3::ZERO,
+        };
+        let doubled = 2.0_f64.powi(self.age as i32);
+        Some(Tip {
+            normal: sum.try_normalize(),
+            width: cross(0).length() * size / doubled,
+        })
     }
 
     /// Where the vertex ends.
@@ -364,6 +444,8 @@ impl Fan {
         Self {
             point,
             limit: self.limit,
+            origin: self.origin.clone(),
+            age: self.age + 1,
             sharpness: duller(self.sharpness),
             depth: 0,
             spokes,
@@ -377,6 +459,7 @@ impl Fan {
         let places = places % fan.spokes.len();
         fan.spokes.rotate_right(places);
         fan.facets.rotate_right(places);
+        fan.origin = fan.origin.map(|origin| Arc::new(origin.rotated(places)));
         fan
     }
 

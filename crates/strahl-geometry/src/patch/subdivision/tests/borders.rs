@@ -37,35 +37,63 @@ fn subjects() -> Vec<Subdivision> {
     for around in [3, 4, 5, 6, 7, 8, 50] {
         all.extend([CatmullClark, Loop].map(|scheme| ball(scheme, around, 2, 4)));
     }
+    all.extend(creases::ends().into_iter().map(|(data, _)| data));
     all.iter().map(surface).collect()
 }
 
-/// Rays from within and through closed surfaces: those that miss the border, those that meet it twice or leave the surface
-/// an even number of times, and those of which the line meets it an odd number of times. With the number of the surface, and
-/// the parameters of the last one.
-fn shoot(rays: usize, seed: u64) -> Vec<(usize, [usize; 3], [f64; 2])> {
-    let mut random = Random::new(seed);
+/// What goes wrong at one surface: rays that miss the border, those that don't leave the solid once more than they enter it (or
+/// of which the nearest hit is not the first pass), and those of which the line does not leave as often as it enters; with the
+/// parameters of the last one.
+type Wrong = ([usize; 3], [f64; 2]);
+
+/// Rays from within and through closed surfaces, in 16 parts for as many threads; those that go wrong, by the number of the surface.
+fn shoot(rays: usize, seed: u64) -> Vec<(usize, Wrong)> {
     let subjects = subjects();
+    let parts: Vec<Vec<Wrong>> = std::thread::scope(|scope| {
+        let start = |part: u64| {
+            let subjects = &subjects;
+            scope.spawn(move || shoot_part(subjects, rays / 16, seed * 16 + part))
+        };
+        let threads: Vec<_> = (0..16).map(start).collect();
+        let ends = threads.into_iter().map(|thread| thread.join());
+        ends.map(|end| end.expect("no panic")).collect()
+    });
+    let wrong = (0..subjects.len()).flat_map(|number| {
+        let all = parts.iter().map(move |part| (number, part[number]));
+        all.filter(|(_, (counts, _))| *counts != [0; 3])
+    });
+    wrong.collect()
+}
+
+fn shoot_part(subjects: &[Subdivision], rays: usize, seed: u64) -> Vec<Wrong> {
+    let mut random = Random::new(seed);
     let mut all = vec![([0; 3], [0.0; 2]); subjects.len()];
     for _ in 0..rays {
         let number = random.below(subjects.len() as u64) as usize;
         let surface = &subjects[number];
         let element = random.below(u64::from(surface.elements())) as u32;
         let uv = place(surface.cage.scheme(), &mut random);
-        let ([target, ..], _) = surface.node(element).expect("one").jet(uv);
+        let ([target, ..], _) = jet(surface, element, uv);
         let origin = match random.below(3) {
             0 => DVec3::ZERO,
             _ => random.cube() * 0.05,
         };
         let ray = Ray::new(origin, (target - origin) * random.between(0.1, 10.0));
-        let list = hits(surface, &ray);
-        let forward = list.iter().filter(|hit| hit.t > 0.0).count();
-        let is_near = |hit: &&PrimHit| (ray.at(hit.t) - target).length() < 1e-7;
-        let near = list.iter().filter(is_near).count();
+        let passes = surface.passes_in_order(&ray);
+        let sum = |from: f64, to: f64| -> i32 {
+            let within = passes.iter().filter(|p| p.hit.t > from && p.hit.t <= to);
+            within.map(|pass| pass.sign).sum()
+        };
+        let first = surface.closest_hit(&ray, Interval::FORWARD, None, &mut Scratch::default());
+        let expected = passes.iter().map(|p| p.hit.t).find(|t| *t > 0.0);
+        let is_near = |pass: &&Pass| (ray.at(pass.hit.t) - target).length() < 1e-7;
+        let near = passes.iter().filter(is_near).count();
+        // Corner 6 of the cube has no creases: it is the tip of a cone that becomes ever thinner, and rays there are beside it.
+        let is_tip = number < 2 && (target - surface.data().points[6]).length() < 1e-6;
         let wrong = [
-            near == 0,
-            near > 1 && near % 2 == 0 || forward % 2 == 0,
-            list.len() % 2 == 1,
+            near == 0 && !is_tip,
+            sum(0.0, f64::INFINITY).abs() != 1 || first.map(|hit| hit.t) != expected,
+            sum(f64::NEG_INFINITY, f64::INFINITY) != 0,
         ];
         let (counts, place) = &mut all[number];
         for (count, is_wrong) in counts.iter_mut().zip(wrong) {
@@ -75,19 +103,15 @@ fn shoot(rays: usize, seed: u64) -> Vec<(usize, [usize; 3], [f64; 2])> {
             *place = uv;
         }
     }
-    let numbered = all.into_iter().enumerate();
-    numbered
-        .map(|(number, (counts, place))| (number, counts, place))
-        .filter(|(_, counts, _)| *counts != [0; 3])
-        .collect()
+    all
 }
 
 #[test]
 fn no_ray_slips_through_a_border_or_meets_two_patches() {
-    assert_eq!(shoot(100_000, 1), []);
+    assert_eq!(shoot(48_000, 1), []);
 }
 
-/// The long version, for releases: 10^7 rays, some minutes.
+/// The long version, for releases: 10^7 rays on all processors.
 #[test]
 #[ignore = "takes minutes; run it with --ignored"]
 fn no_ray_of_ten_millions_slips_through_a_border() {

@@ -1,6 +1,7 @@
 //! Tests of subdivision surfaces, and the meshes they use.
 
 mod borders;
+mod creases;
 mod hostile;
 mod limits;
 mod oracle;
@@ -145,6 +146,16 @@ fn boxed() -> SubdivisionData {
     let edges = (0..8_u32).flat_map(|a| [1, 2, 4].map(|bit| [a, a ^ bit]));
     data.creases = edges.filter(|[a, b]| a < b).map(|e| (e, 10.0)).collect();
     data
+}
+
+/// The point at parameters of an element, its derivatives, and the normal.
+pub(super) fn jet(
+    surface: &Subdivision,
+    element: u32,
+    uv: [f64; 2],
+) -> ([DVec3; 3], Option<DVec3>) {
+    let spot = Spot::at(surface.cage.scheme(), uv);
+    surface.node(element).expect("an element").jet(spot)
 }
 
 /// All hits of a line, one after the other.

@@ -1,0 +1,110 @@
+//! Hits that the search has lost, found from the border of the patch alone: the last resort.
+//!
+//! How often the border winds around the ray is the sum of the signs of the hits (the degree of a map). So if hits are missing, one of
+//! two halves of the patch lacks some, too, and the half's border shows which: halving leads to a hit, however the patch is folded
+//! or collapsed there (F. Stenger, "Computing the topological degree of a mapping in R^n", Numerische Mathematik 25, 1975).
+
+use super::border::winding;
+use super::net::Net;
+use super::search::{Candidate, Frame};
+use super::tree::{OVERLAP, points, project};
+use strahl_math::error::gamma;
+
+/// After so many halvings in turn, parameters are neighbouring numbers. Mostly points are so much earlier.
+const HALVINGS: usize = 2 * 53;
+
+/// A part of a patch, seen along the ray.
+struct Part<const K: usize> {
+    view: Net<2, K>,
+    from: [f64; 2],
+    size: [f64; 2],
+}
+
+impl<const K: usize> Part<K> {
+    fn halves(&self, axis: usize) -> [Self; 2] {
+        let views = match axis {
+            0 => self.view.halves_u(),
+            _ => self.view.halves_v(),
+        };
+        let (mut from, mut size) = (self.from, self.size);
+        size[axis] *= 0.5;
+        views.map(|view| {
+            let part = Self { view, from, size };
+            from[axis] += size[axis];
+            part
+        })
+    }
+
+    /// How many more hits of this sign its border asks for than there are.
+    fn missing(&self, hits: &[Candidate], sign: i32) -> i32 {
+        let is_within = |hit: &&Candidate| {
+            let place = hit.place();
+            (0..2).all(|k| {
+                let end = self.from[k] + self.size[k];
+                place[k] >= self.from[k] && (place[k] < end || end == 1.0)
+            })
+        };
+        let found: i32 = hits.iter().filter(is_within).map(|hit| hit.sign).sum();
+        sign * (winding(&self.view) - found)
+    }
+
+    /// The longer side of the box around the control points.
+    fn extent(&self) -> f64 {
+        let (low, high) = self.view.extents();
+        (high[0] - low[0]).max(high[1] - low[1])
+    }
+
+    /// How far the box around the control points is from the ray.
+    fn distance(&self) -> f64 {
+        let (low, high) = self.view.extents();
+        let aside = |k: usize| {
+            if low[k] > 0.0 {
+                low[k]
+            } else {
+                (-high[k]).max(0.0)
+            }
+        };
+        aside(0).max(aside(1))
+    }
+}
+
+/// A hit of this sign that `hits` lack.
+pub(super) fn lost<const K: usize>(
+    net: &Net<4, K>,
+    frame: &Frame,
+    hits: &[Candidate],
+    sign: i32,
+) -> Candidate {
+    let mut part = Part {
+        view: frame.view(net),
+        from: [0.0; 2],
+        size: [1.0; 2],
+    };
+    let reach = points(net).fold(0.0, |most: f64, p| {
+        let way = (p - frame.origin).abs().max_element();
+        if way > most { way } else { most }
+    });
+    for step in 0..HALVINGS {
+        if part.extent() <= gamma(2) * reach {
+            break;
+        }
+        let [a, b] = part.halves(step % 2);
+        let (in_a, in_b) = (a.missing(hits, sign), b.missing(hits, sign));
+        // Where the numbers are too coarse to tell, what is nearer to the ray.
+        part = match (in_a > 0, in_b > 0) {
+            (true, false) => a,
+            (false, true) => b,
+            _ if a.distance() <= b.distance() => a,
+            _ => b,
+        };
+    }
+    let [u, v] = std::array::from_fn(|k| part.from[k] + 0.5 * part.size[k]);
+    Candidate {
+        t: frame.t(project(net.at(u, v))),
+        u,
+        v,
+        sign,
+        zone: [OVERLAP; 2],
+        is_doubtful: true,
+    }
+}
