@@ -2,6 +2,8 @@
 // factor with every turn; single points are pulled out as thorns. At the mouth the rings turn inwards and lead back into the dark. The
 // surface is met at its limit, so the thorns are round at any size of the picture. The stripes follow the cage: texture coordinates
 // are given for each corner.
+//
+//     strahl render scenes/showcase/shell.pov +W1280 +H720 +A0.3
 #version 3.7;
 global_settings { assumed_gamma 1 max_trace_level 4 }
 
