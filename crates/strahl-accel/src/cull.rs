@@ -37,6 +37,18 @@ impl CullBounds {
         }
     }
 
+    /// The constants of a structure around the origin that reaches this far along every axis, from 2⁻⁶⁴ to 2⁶⁴; origins up to `near`
+    /// count as near.
+    #[inline(always)]
+    pub(crate) fn of_unit(reach: f64, near: f32) -> Self {
+        Self {
+            bounds: Aabb::new(DVec3::splat(-reach), DVec3::splat(reach)),
+            max_abs: reach,
+            near,
+            margin: (QUICK_SLACK * reach) as f32,
+        }
+    }
+
     /// The box around all bounded primitives.
     pub(crate) fn bounds(&self) -> &Aabb {
         &self.bounds

@@ -73,8 +73,7 @@ impl<const K: usize> Bezier<K> {
     }
 
     fn tree(&self) -> &Tree {
-        self.tree
-            .get_or_init(|| Tree::build(&self.net, self.is_rational))
+        self.tree.get_or_init(|| Tree::build(&self.net, self.seam))
     }
 
     fn search<'a>(&'a self, frame: &'a Frame, keep: Keep<'a>, aim: Aim) -> Search<'a, K> {

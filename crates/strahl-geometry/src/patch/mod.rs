@@ -6,6 +6,7 @@ mod border;
 #[cfg(test)]
 mod border_tests;
 mod degree;
+mod graze;
 mod net;
 mod nurbs;
 mod search;

@@ -40,7 +40,7 @@ fn weighted<const N: usize, const K: usize>(c: &Curve<N, K>, w: &[f64; K]) -> [f
 
 /// The Bernstein polynomials of degree `K - 1` and their derivatives.
 #[inline(always)]
-fn bernstein<const K: usize>(t: f64) -> ([f64; K], [f64; K]) {
+pub(super) fn bernstein<const K: usize>(t: f64) -> ([f64; K], [f64; K]) {
     let s = 1.0 - t;
     let (mut value, mut slope) = ([0.0; K], [0.0; K]);
     if K == 4 {
@@ -52,8 +52,10 @@ fn bernstein<const K: usize>(t: f64) -> ([f64; K], [f64; K]) {
             3.0 * (2.0 * st - tt),
             3.0 * tt,
         ];
-        value.copy_from_slice(&values);
-        slope.copy_from_slice(&slopes);
+        // One by one: copying slices would be a call.
+        for i in 0..K {
+            (value[i], slope[i]) = (values[i], slopes[i]);
+        }
         return (value, slope);
     }
     // Each degree from the one below: B(i, n) = s B(i, n - 1) + t B(i - 1, n - 1).

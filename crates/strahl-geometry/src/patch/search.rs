@@ -2,17 +2,18 @@
 //!
 //! Seen along the ray, the patch is a map from two parameters to the plane, and its hits are the parameters that are mapped
 //! to the origin. On a piece where the map is nearly linear, so that Newton's method certainly finds its only hit or
-//! there is none (the condition of Kantorovich, here from bounds of the derivatives), it is used; other pieces are halved
+//! there is none (the condition of Kantorovich, here from bounds of the derivatives), it is used. Pieces that are seen at a low angle
+//! are searched through smaller and smaller windows ([`graze`]); where that takes too long, they are halved
 //! (Nishita, Sederberg, Kakimoto, "Ray tracing trimmed rational surface patches", SIGGRAPH 1990; Martin, Cohen, Fish, Shirley,
 //! "Practical ray tracing of trimmed NURBS surfaces", Journal of Graphics Tools 5(1), 2000).
 
-use super::net::{Jet, Net};
-use super::tree::{LEVELS, OVERLAP, Piece, Tree, project};
+use super::graze;
+use super::net::{Jet, Net, bernstein};
+use super::tree::{Curving, NEARLY_LINEAR, OVERLAP, Square, Tree, Visitor, project};
 use strahl_math::error::gamma;
 use strahl_math::{DVec3, Interval, Ray};
+use strahl_simd::{Isa, Simd, dispatch};
 
-/// The map of a piece may differ from a linear one by this part at most for Newton's method to be certain.
-const NEARLY_LINEAR: f64 = 0.35;
 /// Newton's method doubles the digits in each round, from one or two.
 const ROUNDS: u32 = 16;
 /// A step by this part of the piece is the last one: after it the error is its square.
@@ -28,10 +29,11 @@ const DEPTH: u32 = 90;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Frame {
     pub(super) origin: DVec3,
-    along: DVec3,
+    /// Its direction, of length 1.
+    pub(super) along: DVec3,
     across: [DVec3; 2],
     /// The length of its direction.
-    length: f64,
+    pub(super) length: f64,
 }
 
 impl Frame {
@@ -56,8 +58,18 @@ impl Frame {
     }
 
     /// A vector seen along the ray.
-    fn seen(&self, v: DVec3) -> [f64; 2] {
-        self.across.map(|axis| axis.dot(v))
+    #[inline(always)]
+    pub(super) fn seen(&self, v: DVec3) -> [f64; 2] {
+        [self.across[0].dot(v), self.across[1].dot(v)]
+    }
+
+    /// The ray's parameter of a point on a patch that is seen from its origin, less the last `step` of both parameters: so small that
+    /// the derivatives are enough.
+    #[inline(always)]
+    fn t_of(&self, jet: &Jet<4>, step: [f64; 2]) -> f64 {
+        let moved = |k: usize| jet.value[k] - (jet.by_u[k] * step[0] + jet.by_v[k] * step[1]);
+        let way = DVec3::new(moved(0), moved(1), moved(2));
+        way.dot(self.along) / (moved(3) * self.length)
     }
 
     /// The patch seen along the ray; for rational ones the numerator, which is zero at the same parameters. It depends on the
@@ -100,6 +112,13 @@ impl Candidate {
         [self.u.clamp(0.0, 1.0), self.v.clamp(0.0, 1.0)]
     }
 
+    /// Whether it is the same place as another one, found from a neighbouring piece.
+    pub(super) fn is_twin(&self, other: &Self) -> bool {
+        other.sign == self.sign
+            && (other.u - self.u).abs() <= other.zone[0] + self.zone[0]
+            && (other.v - self.v).abs() <= other.zone[1] + self.zone[1]
+    }
+
     /// How far within the border it lies, in units of its zone; negative outside.
     pub(super) fn margin(&self) -> f64 {
         let side = |x: f64, zone: f64| if x < 0.5 { x / zone } else { (1.0 - x) / zone };
@@ -110,9 +129,19 @@ impl Candidate {
 
 /// A rectangle of parameters.
 #[derive(Clone, Copy, Debug)]
-struct Rectangle {
-    from: [f64; 2],
-    size: [f64; 2],
+pub(super) struct Rectangle {
+    pub(super) from: [f64; 2],
+    pub(super) size: [f64; 2],
+}
+
+impl Rectangle {
+    fn of(Square { level, i, j }: Square) -> Self {
+        let side = 1.0 / f64::from(1_u32 << level);
+        Self {
+            from: [f64::from(i) * side, f64::from(j) * side],
+            size: [side; 2],
+        }
+    }
 }
 
 /// A search with what it has found.
@@ -120,8 +149,6 @@ pub(super) struct Search<'a, const K: usize> {
     net: &'a Net<4, K>,
     tree: &'a Tree,
     frame: &'a Frame,
-    /// The patch seen along the ray, and a bound of its rounding error, when they are needed.
-    view: Option<(Net<2, K>, f64)>,
     /// How far the net may be from what neighbours know of it.
     seam: f64,
     halvings: u32,
@@ -163,7 +190,6 @@ impl<'a, const K: usize> Search<'a, K> {
             net,
             tree,
             frame,
-            view: None,
             seam: 0.0,
             halvings: HALVINGS,
             keep,
@@ -177,159 +203,15 @@ impl<'a, const K: usize> Search<'a, K> {
         self
     }
 
-    /// The range in which hits are still wanted; `None` if the search is over.
-    fn range(&self) -> Option<Interval> {
-        match &self.aim {
-            Aim::All(_) => Some(Interval::LINE),
-            Aim::Nearest {
-                is_doubtful: true, ..
-            } => None,
-            Aim::Any {
-                range,
-                found: false,
-                is_doubtful: false,
-            } => Some(*range),
-            Aim::Any { .. } => None,
-            Aim::Nearest { range, nearest, .. } => {
-                Some(nearest.map_or(*range, |n| range.with_max(n.t)))
-            }
-        }
-    }
-
-    /// Visits the pieces along the ray, the nearer ones of four first.
+    /// Visits the pieces along the ray.
     pub(super) fn run(&mut self) {
         let (tree, frame) = (self.tree, self.frame);
-        let origin = frame.origin - tree.anchor;
-        let inverse = DVec3::ONE / frame.along;
-        // What is seen from the side mixes the rounding errors of all axes.
-        let magnitude = frame.origin.abs() + tree.anchor.abs() + DVec3::splat(tree.size);
-        let pad = DVec3::splat(magnitude.max_element() * gamma(64));
-        let enter = |piece: &Piece, range: Interval| {
-            let (mut near, mut far) = (range.min * frame.length, range.max * frame.length);
-            for k in 0..3 {
-                let low = (f64::from(piece.low[k]) - pad[k] - origin[k]) * inverse[k];
-                let high = (f64::from(piece.high[k]) + pad[k] - origin[k]) * inverse[k];
-                let (a, b) = if inverse[k] < 0.0 {
-                    (high, low)
-                } else {
-                    (low, high)
-                };
-                // Comparisons with NaN, when the ray runs within a side, change nothing.
-                if a > near {
-                    near = a;
-                }
-                if b < far {
-                    far = b;
-                }
-            }
-            (near <= far).then_some(near)
-        };
-        let blur = tree.blur + pad.length() + self.seam;
-        // Three of four quarters wait on each level.
-        let mut stack = [(0_u32, 0.0); 3 * LEVELS as usize + 1];
-        let mut height = 0;
-        let Some(root) = tree.pieces.first() else {
-            return;
-        };
-        if let Some(near) = self.range().and_then(|range| enter(root, range)) {
-            stack[0] = (0, near);
-            height = 1;
-        }
-        while height > 0 {
-            height -= 1;
-            let (index, near) = stack[height];
-            let Some(range) = self.range() else { return };
-            let Some(piece) = tree.pieces.get(index as usize) else {
-                continue;
-            };
-            if near > range.max * frame.length {
-                continue;
-            }
-            if piece.first == 0 {
-                self.piece(piece, blur);
-                continue;
-            }
-            let base = height;
-            for index in piece.first..piece.first + 4 {
-                let Some(near) = tree
-                    .pieces
-                    .get(index as usize)
-                    .and_then(|p| enter(p, range))
-                else {
-                    continue;
-                };
-                // The nearest one on top.
-                let mut at = height;
-                while at > base && stack[at - 1].1 < near {
-                    stack[at] = stack[at - 1];
-                    at -= 1;
-                }
-                stack[at] = (index, near);
-                height += 1;
-            }
-        }
+        tree.walk(frame, self);
     }
 
-    /// Searches a piece of the tree.
-    fn piece(&mut self, piece: &Piece, blur: f64) {
-        let frame = self.frame;
-        let vector = |v: [f32; 3]| DVec3::from_array(v.map(f64::from));
-        let side = 1.0 / f64::from(1_u32 << piece.level);
-        let rectangle = Rectangle {
-            from: [piece.i, piece.j].map(|k| f64::from(k) * side),
-            size: [side; 2],
-        };
-        let (a, b) = (
-            frame.seen(vector(piece.by_u)),
-            frame.seen(vector(piece.by_v)),
-        );
-        let determinant = a[0] * b[1] - a[1] * b[0];
-        let per = 1.0 / determinant;
-        let row_u = (b[0] * b[0] + b[1] * b[1]).sqrt() * per.abs();
-        let row_v = (a[0] * a[0] + a[1] * a[1]).sqrt() * per.abs();
-        let spread = |spread: f32| f64::from(spread) + self.tree.size * gamma(16);
-        let bend = spread(piece.spread_u) * row_u + spread(piece.spread_v) * row_v;
-        if bend < NEARLY_LINEAR {
-            let f = frame.seen(vector(piece.middle) + (self.tree.anchor - frame.origin));
-            let step = [
-                (f[0] * b[1] - f[1] * b[0]) * per,
-                (f[1] * a[0] - f[0] * a[1]) * per,
-            ];
-            // The hit is no further from here than this part of the piece, or there is none.
-            let reach = 0.5 * bend;
-            let slack = 4.0 * OVERLAP;
-            let is_near = |step: f64, own: f64, other: f64| {
-                let ratio = own / other;
-                let ratio = if ratio > 1.0 { ratio } else { 1.0 };
-                step.abs() <= 0.5 + reach * ratio + slack + blur * own
-            };
-            if is_near(step[0], row_u, row_v) && is_near(step[1], row_v, row_u) {
-                self.approach(&rectangle, step.map(|x| 0.5 - x));
-            }
-            return;
-        }
-        let part = self.view().0.part(
-            u32::from(piece.level),
-            u32::from(piece.i),
-            u32::from(piece.j),
-        );
-        self.divide(&part, &rectangle, DEPTH);
-    }
-
-    fn view(&mut self) -> (Net<2, K>, f64) {
-        let (net, frame, seam) = (self.net, self.frame, self.seam);
-        *self.view.get_or_insert_with(|| {
-            let reach = net.points().fold(0.0, |most: f64, p| {
-                let size = frame.to(p).abs().max_element();
-                if size > most { size } else { most }
-            });
-            (frame.view(net), reach * gamma(4 * K as u32) + seam)
-        })
-    }
-
-    /// Searches a piece that is seen as `part`, and halves it as long as nothing is certain about it.
-    fn divide(&mut self, part: &Net<2, K>, rectangle: &Rectangle, depth: u32) {
-        let (_, noise) = self.view();
+    /// Searches a piece that is seen as `part`, and halves it as long as nothing is certain about it; `noise` is a bound of the rounding
+    /// error of what is seen.
+    fn divide(&mut self, part: &Net<2, K>, noise: f64, rectangle: &Rectangle, depth: u32) {
         let (low, high) = part.extents();
         let extent: [f64; 2] = std::array::from_fn(|k| high[k] - low[k]);
         for k in 0..2 {
@@ -377,7 +259,7 @@ impl<'a, const K: usize> Search<'a, K> {
         let mut half = *rectangle;
         half.size[axis] *= 0.5;
         for part in &halves {
-            self.divide(part, &half, depth - 1);
+            self.divide(part, noise, &half, depth - 1);
             half.from[axis] += half.size[axis];
         }
     }
@@ -395,76 +277,21 @@ impl<'a, const K: usize> Search<'a, K> {
         });
     }
 
-    /// Newton's method for the parameters at which the ray meets the patch, within (nearly) a rectangle.
+    /// Looks for the parameters at which the ray meets the patch, within (nearly) a rectangle.
     fn approach(&mut self, rectangle: &Rectangle, start: [f64; 2]) {
-        let (view, noise) = self.view();
-        let Rectangle { from, size } = *rectangle;
-        let within = |x: f64, slack: f64, k: usize| {
-            let (low, high) = (from[k] - slack, from[k] + size[k] + slack);
-            if x < low {
-                low
-            } else if x > high {
-                high
-            } else {
-                x
-            }
-        };
-        let mut at: [f64; 2] =
-            std::array::from_fn(|k| within(from[k] + start[k] * size[k], 0.0, k));
-        for round in 0..ROUNDS {
-            let Jet { value, by_u, by_v } = view.jet(at[0], at[1]);
-            let determinant = by_u[0] * by_v[1] - by_u[1] * by_v[0];
-            let step = [
-                (value[0] * by_v[1] - value[1] * by_v[0]) / determinant,
-                (value[1] * by_u[0] - value[0] * by_u[1]) / determinant,
-            ];
-            if !(step[0].is_finite() && step[1].is_finite()) {
-                self.give_up(rectangle);
-                return;
-            }
-            let is_last =
-                step[0].abs() < LAST_STEP * size[0] && step[1].abs() < LAST_STEP * size[1];
-            at = std::array::from_fn(|k| {
-                let next = at[k] - step[k];
-                if is_last {
-                    next
-                } else {
-                    within(next, 0.25 * size[k], k)
-                }
-            });
-            if !(is_last || round + 1 == ROUNDS) {
-                continue;
-            }
-            if !is_last && self.seam > 0.0 {
-                self.give_up(rectangle);
-                return;
-            }
-            let length = |v: [f64; 2]| (v[0] * v[0] + v[1] * v[1]).sqrt();
-            let error = 16.0 * noise / determinant.abs();
-            let zone = [
-                OVERLAP * size[0] + error * length(by_v),
-                OVERLAP * size[1] + error * length(by_u),
-            ];
-            let mut is_doubtful = !is_last;
-            for k in 0..2 {
-                let (before, after) = (at[k] - from[k], from[k] + size[k] - at[k]);
-                if before < -zone[k] || after < -zone[k] {
-                    return;
-                }
-                is_doubtful |= before <= zone[k] || after <= zone[k];
-            }
-            let clamp = |x: f64| x.clamp(0.0, 1.0);
-            self.add(Candidate {
-                t: self
-                    .frame
-                    .t(project(self.net.at(clamp(at[0]), clamp(at[1])))),
-                u: at[0],
-                v: at[1],
-                sign: if determinant > 0.0 { 1 } else { -1 },
-                zone,
-                is_doubtful,
-            });
-            return;
+        let (net, frame, seam) = (self.net, self.frame, self.seam);
+        let Rectangle { from, size } = rectangle;
+        let start = [from[0] + start[0] * size[0], from[1] + start[1] * size[1]];
+        let found = dispatch!(Simd::best(), isa => {
+            let (ways, noise) = ways(isa, net, frame);
+            newton(isa, (&ways, noise + seam), frame, (rectangle, rectangle), start)
+        });
+        match found {
+            Found::Nothing => {}
+            Found::Lost => self.give_up(rectangle),
+            // What neighbours know of a border decides about slivers.
+            Found::Near(_) if seam > 0.0 => self.give_up(rectangle),
+            Found::Near(candidate) | Found::Hit(candidate) => self.add(candidate),
         }
     }
 
@@ -497,6 +324,226 @@ impl<'a, const K: usize> Search<'a, K> {
             }
         }
     }
+}
+
+impl<const K: usize> Visitor for Search<'_, K> {
+    fn range(&self) -> Option<Interval> {
+        match &self.aim {
+            Aim::All(_) => Some(Interval::LINE),
+            Aim::Nearest {
+                is_doubtful: true, ..
+            } => None,
+            Aim::Any {
+                range,
+                found: false,
+                is_doubtful: false,
+            } => Some(*range),
+            Aim::Any { .. } => None,
+            Aim::Nearest { range, nearest, .. } => {
+                Some(nearest.map_or(*range, |n| range.with_max(n.t)))
+            }
+        }
+    }
+
+    fn certain(&mut self, square: Square, start: [f64; 2]) {
+        self.approach(&Rectangle::of(square), start);
+    }
+
+    fn uncertain(&mut self, square: Square, curving: &Curving) {
+        let (net, frame, seam) = (self.net, self.frame, self.seam);
+        let piece = Rectangle::of(square);
+        let found = dispatch!(Simd::best(), isa => {
+            let (ways, noise) = ways(isa, net, frame);
+            graze::search(isa, (&ways, noise + seam), frame, &piece, curving)
+        });
+        if let Some(found) = found {
+            for candidate in found {
+                self.add(candidate);
+            }
+            return;
+        }
+        let reach = net.points().fold(0.0, |most: f64, p| {
+            let size = frame.to(p).abs().max_element();
+            if size > most { size } else { most }
+        });
+        let Square { level, i, j } = square;
+        let part = frame
+            .view(net)
+            .part(u32::from(level), u32::from(i), u32::from(j));
+        let noise = reach * gamma(4 * K as u32) + seam;
+        self.divide(&part, noise, &piece, DEPTH);
+    }
+}
+
+/// The control points of a patch as the way from the origin of a ray to them, times their weights, and the weights.
+pub(super) type Ways<I, const K: usize> = [[<I as Isa>::F64x4; K]; K];
+
+/// The ways to all control points, and a bound of the rounding error of what is computed from them.
+#[inline(always)]
+fn ways<I: Isa, const K: usize>(isa: I, net: &Net<4, K>, frame: &Frame) -> (Ways<I, K>, f64) {
+    let zero = isa.splat(0.0);
+    let (mut ways, mut largest) = ([[zero; K]; K], zero);
+    let o = frame.origin;
+    let origin = isa.load(&[o.x, o.y, o.z, 0.0]);
+    for (row, own) in net.rows.iter().zip(&mut ways) {
+        for (p, way) in row.iter().zip(own) {
+            *way = if p[3] == 1.0 {
+                isa.sub(isa.load(p), origin)
+            } else {
+                let DVec3 { x, y, z } = frame.to(p);
+                isa.load(&[x, y, z, p[3]])
+            };
+            largest = isa.max(largest, isa.abs(*way));
+        }
+    }
+    let [x, y, z, _] = isa.store(largest);
+    let largest = if x > y { x } else { y };
+    let largest = if z > largest { z } else { largest };
+    (ways, largest * gamma(4 * K as u32))
+}
+
+/// The sum of coefficients times weights.
+#[inline(always)]
+fn weighted<I: Isa, const K: usize>(isa: I, c: &[I::F64x4; K], w: &[f64; K]) -> I::F64x4 {
+    let mut sum = isa.mul(c[0], isa.splat(w[0]));
+    for i in 1..K {
+        sum = isa.add(sum, isa.mul(c[i], isa.splat(w[i])));
+    }
+    sum
+}
+
+/// The value and both derivatives, as [`Net::jet`].
+#[inline(always)]
+pub(super) fn jet<I: Isa, const K: usize>(isa: I, ways: &Ways<I, K>, [u, v]: [f64; 2]) -> Jet<4> {
+    let ((bu, su), (bv, sv)) = (bernstein::<K>(u), bernstein::<K>(v));
+    let zero = isa.splat(0.0);
+    let (mut values, mut slopes) = ([zero; K], [zero; K]);
+    for j in 0..K {
+        values[j] = weighted(isa, &ways[j], &bu);
+        slopes[j] = weighted(isa, &ways[j], &su);
+    }
+    Jet {
+        value: isa.store(weighted(isa, &values, &bv)),
+        by_u: isa.store(weighted(isa, &slopes, &bv)),
+        by_v: isa.store(weighted(isa, &values, &sv)),
+    }
+}
+
+/// A number, or the nearer end of a range if it is outside.
+#[inline(always)]
+fn clamped(x: f64, low: f64, high: f64) -> f64 {
+    if x < low {
+        low
+    } else if x > high {
+        high
+    } else {
+        x
+    }
+}
+
+/// What Newton's method has found.
+pub(super) enum Found {
+    /// There is no hit of the piece within (nearly) the window.
+    Nothing,
+    /// The surface is folded or collapsed there: nothing is known.
+    Lost,
+    /// It has not come to rest, but it ended in the window: there may be a hit there.
+    Near(Candidate),
+    /// A hit to the last digits.
+    Hit(Candidate),
+}
+
+/// Newton's method for the parameters at which a ray meets a patch: those of a hit of the piece, if it has one within (nearly) the
+/// window.
+#[inline(always)]
+pub(super) fn newton<I: Isa, const K: usize>(
+    isa: I,
+    (ways, noise): (&Ways<I, K>, f64),
+    frame: &Frame,
+    (window, piece): (&Rectangle, &Rectangle),
+    start: [f64; 2],
+) -> Found {
+    let low = [
+        window.from[0] - 0.25 * window.size[0],
+        window.from[1] - 0.25 * window.size[1],
+    ];
+    let high = [
+        window.from[0] + 1.25 * window.size[0],
+        window.from[1] + 1.25 * window.size[1],
+    ];
+    let Rectangle { from, size } = *piece;
+    let to = [from[0] + size[0], from[1] + size[1]];
+    let mut at = [
+        clamped(start[0], window.from[0], window.from[0] + window.size[0]),
+        clamped(start[1], window.from[1], window.from[1] + window.size[1]),
+    ];
+    let seen = |v: &[f64; 4]| frame.seen(DVec3::new(v[0], v[1], v[2]));
+    for round in 0..ROUNDS {
+        let mut jet_here = jet(isa, ways, at);
+        let Jet { value, by_u, by_v } = jet_here;
+        let (f, a, b) = (seen(&value), seen(&by_u), seen(&by_v));
+        let determinant = a[0] * b[1] - a[1] * b[0];
+        let mut step = [
+            (f[0] * b[1] - f[1] * b[0]) / determinant,
+            (f[1] * a[0] - f[0] * a[1]) / determinant,
+        ];
+        if !(step[0].is_finite() && step[1].is_finite()) {
+            return Found::Lost;
+        }
+        let is_last = step[0].abs() < LAST_STEP * size[0] && step[1].abs() < LAST_STEP * size[1];
+        if !is_last {
+            // Not far beyond the piece.
+            let before = at;
+            for k in 0..2 {
+                at[k] = clamped(at[k] - step[k], low[k], high[k]);
+            }
+            // Without a hit in the window it stays where it is held back.
+            if round + 1 < ROUNDS && at != before {
+                continue;
+            }
+            (jet_here, step) = (jet(isa, ways, at), [0.0; 2]);
+        } else {
+            at = [at[0] - step[0], at[1] - step[1]];
+        }
+        let length = |v: [f64; 2]| (v[0] * v[0] + v[1] * v[1]).sqrt();
+        let error = 16.0 * noise / determinant.abs();
+        let zone = [
+            OVERLAP * size[0] + error * length(b),
+            OVERLAP * size[1] + error * length(a),
+        ];
+        let mut is_doubtful = !is_last;
+        for k in 0..2 {
+            let (before, after) = (at[k] - from[k], to[k] - at[k]);
+            if before < -zone[k] || after < -zone[k] {
+                return Found::Nothing;
+            }
+            // What does not come to rest has no hit in the window, if it gets out of it.
+            let rim = zone[k] - OVERLAP * (size[k] - window.size[k]);
+            let (before, after) = (
+                at[k] - window.from[k],
+                window.from[k] + window.size[k] - at[k],
+            );
+            if !is_last && (before < -rim || after < -rim) {
+                return Found::Nothing;
+            }
+            let (before, after) = (at[k] - from[k], to[k] - at[k]);
+            is_doubtful |= before <= zone[k] || after <= zone[k];
+        }
+        let candidate = Candidate {
+            t: frame.t_of(&jet_here, step),
+            u: at[0],
+            v: at[1],
+            sign: if determinant > 0.0 { 1 } else { -1 },
+            zone,
+            is_doubtful,
+        };
+        return if is_last {
+            Found::Hit(candidate)
+        } else {
+            Found::Near(candidate)
+        };
+    }
+    Found::Nothing
 }
 
 /// If a part of a map is nearly linear: where its only zero is, nearly, if it has one, and how far it is from linear.

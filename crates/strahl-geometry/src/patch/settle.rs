@@ -27,12 +27,7 @@ pub(super) fn settle(
             is_doubtful = true;
             continue;
         }
-        let is_twin = |other: &Candidate| {
-            other.sign == candidate.sign
-                && (other.u - candidate.u).abs() <= other.zone[0] + candidate.zone[0]
-                && (other.v - candidate.v).abs() <= other.zone[1] + candidate.zone[1]
-        };
-        if !single.iter().any(is_twin) {
+        if !single.iter().any(|other| other.is_twin(&candidate)) {
             single.push(candidate);
         }
     }

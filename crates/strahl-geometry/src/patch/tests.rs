@@ -209,6 +209,40 @@ fn hits_add_up_to_the_winding_number() {
     assert!(counts[..5].iter().all(|c| *c > 20), "{counts:?}");
 }
 
+/// Rays beside a tangent of the sphere, however near: with two hits that are nearly one, or none.
+#[test]
+fn rays_beside_a_tangent_meet_a_sphere_twice_or_never() {
+    let octant = octant();
+    let mut random = Random::new(12);
+    let mut counts = [0; 2];
+    for _ in 0..20_000 {
+        let p = random.cube().abs() + DVec3::splat(0.3);
+        let p = p.normalize();
+        let along = p.cross(random.direction()).normalize();
+        // Well above the rounding errors of the points.
+        let off = random.magnitude(-11.0, -3.0);
+        let side = if random.below(2) == 0 { 1.0 } else { -1.0 };
+        let start = random.between(0.5, 4.0);
+        let ray = Ray::new(p * (1.0 + side * off) - along * start, along);
+        let list = hits(&octant, &ray);
+        if side > 0.0 {
+            assert_eq!(list, [], "{ray:?} {off}");
+            counts[0] += 1;
+            continue;
+        }
+        assert_eq!(list.len(), 2, "{ray:?} {off}: {list:?}");
+        let half = (off * (2.0 - off)).sqrt();
+        for (hit, t) in list.iter().zip([start - half, start + half]) {
+            assert!(
+                (hit.t - t).abs() < 1e-14 / half,
+                "{ray:?} {off} {hit:?} {t}"
+            );
+        }
+        counts[1] += 1;
+    }
+    assert!(counts.iter().all(|c| *c > 5000), "{counts:?}");
+}
+
 #[test]
 fn the_normal_of_a_collapsed_edge_is_that_of_the_surface_beside_it() {
     let (octant, scratch) = (octant(), &mut Scratch::default());

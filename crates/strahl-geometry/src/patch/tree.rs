@@ -1,47 +1,136 @@
-//! The pieces of a patch: a quadtree over its parameters with boxes in space.
+//! The pieces of a patch: a tree over its parameters, sixteen pieces in each node.
+//!
+//! The pieces of a node have boxes along the axes. A leaf has a frame of its own as well, in which it is nearly the unit square: a
+//! thin slab, whatever way it lies in space. So few rays get to leaves that they miss, and for nearly all others the frame tells at once
+//! that the piece is nearly linear as the ray sees it, and where its hit is, nearly (slabs along the geometry instead of the axes:
+//! Woop, Benthin, Wald, Johnson, Tabellion, "Exploiting Local Orientation Similarity for Efficient Ray Traversal of Hair and
+//! Fur", High Performance Graphics 2014).
 
 use super::net::Net;
-use strahl_math::error::{gamma, round_down_f32, round_up_f32};
-use strahl_math::{Aabb, DVec3};
+use super::search::Frame;
+use std::collections::VecDeque;
+use strahl_accel::{SixteenBoxes, SixteenSlabs};
+use strahl_math::error::{gamma, round_up_f32};
+use strahl_math::{Aabb, DMat3, DVec3, Interval, Ray};
+use strahl_simd::{Isa, Simd, dispatch};
 
 /// How far beyond its piece, in parts of it, a point may be found: neighbours overlap, so that no ray slips through between
 /// them.
 pub(super) const OVERLAP: f64 = 1.0 / (1u64 << 20) as f64;
-/// Pieces are quartered so often at most; a ray that needs smaller ones makes them for itself.
-pub(super) const LEVELS: u8 = 4;
-/// A piece is flat if its derivatives differ from their middle by this part of it at most.
+/// So many nodes lie below each other at most; a ray that needs smaller pieces makes them for itself.
+const NODES: u8 = 2;
+/// A piece is a leaf if its derivatives differ from their mean by this part of it at most.
 const FLAT: f64 = 0.1;
+/// Of a piece whose weights differ more from the one in its middle it isn't known how nearly linear it is.
+const UNEVEN: f64 = 0.25;
+/// The map of a piece may differ from a linear one by this part at most for Newton's method to be certain.
+pub(super) const NEARLY_LINEAR: f64 = 0.35;
+/// Pieces whose frame would stretch them more than this are put into a box along the axes.
+const MOST_STRETCHED: f64 = 1e6;
 
-/// A piece of a patch over a square of its parameters. All vectors are relative to the anchor of the tree.
+/// A square of the parameters: number `(i, j)` of `2^level` by `2^level`.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Piece {
-    pub(super) low: [f32; 3],
-    pub(super) high: [f32; 3],
-    /// The first of its four quarters; 0 if there are none.
-    pub(super) first: u32,
-    /// It is the square number `(i, j)` of `2^level` by `2^level`.
+pub(super) struct Square {
     pub(super) level: u8,
     pub(super) i: u8,
     pub(super) j: u8,
-    /// The point in its middle.
-    pub(super) middle: [f32; 3],
-    /// The middle of all its derivatives, by parameters that run from 0 to 1 within the piece.
-    pub(super) by_u: [f32; 3],
-    pub(super) by_v: [f32; 3],
-    /// The largest differences of derivatives from these; infinite if they are not known.
-    pub(super) spread_u: f32,
-    pub(super) spread_v: f32,
 }
 
-/// The tree: the root is piece 0, the quarters of a piece follow each other.
+impl Square {
+    const WHOLE: Self = Self {
+        level: 0,
+        i: 0,
+        j: 0,
+    };
+
+    /// Part number `place` of 4 by 4.
+    fn sixteenth(self, place: usize) -> Self {
+        Self {
+            level: self.level + 2,
+            i: self.i << 2 | place as u8 & 3,
+            j: self.j << 2 | place as u8 >> 2,
+        }
+    }
+}
+
+/// A piece over a square that is not divided any more: a frame in which it is near the square `-0.5..0.5` by `-0.5..0.5` of the plane
+/// `w = 0`.
+///
+/// The first three lanes of the four vectors are a matrix, column by column, and a vector: `p` is at `columns p + offset` in the
+/// frame. The fourth lanes are bounds of the piece in it.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(64))]
+struct Leaf([[f32; 4]; 4]);
+
+const _: () = assert!(size_of::<Leaf>() == 64);
+
+/// What is known of a piece in the frame of its leaf.
+#[derive(Clone, Copy, Debug)]
+struct Bounds {
+    /// The largest coordinates u and v of its points.
+    side: f64,
+    /// The largest w of its points.
+    height: f64,
+    /// How much the derivatives by both parameters together differ from the unit vectors within the plane, at most; infinite if
+    /// that is not known.
+    bend: f64,
+    /// How much they differ from it across the plane.
+    tilt: f64,
+}
+
+/// Bounds of the lengths of the second derivatives of points, by the parameters of the patch.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Curving<T = f64> {
+    pub(super) uu: T,
+    pub(super) uv: T,
+    pub(super) vv: T,
+}
+
+/// Sixteen pieces: the parts of a larger one.
+#[derive(Clone, Debug)]
+struct Node {
+    boxes: SixteenBoxes,
+    square: Square,
+    /// In the coordinates of the tree.
+    curving: Curving<f32>,
+    /// The places with leaves, as bits; at others there are nodes.
+    leaves: u16,
+    /// Those of a node follow each other.
+    first_leaf: u32,
+    first_node: u32,
+}
+
+/// The tree of a patch. It is kept in coordinates `(p - anchor) scale`, in which the patch is nearly as large as 1.
 #[derive(Debug)]
 pub(super) struct Tree {
-    pub(super) anchor: DVec3,
-    /// The diagonal of the box around the control points.
-    pub(super) size: f64,
-    /// A bound of the rounding error of `middle`.
-    pub(super) blur: f64,
-    pub(super) pieces: Vec<Piece>,
+    anchor: DVec3,
+    /// A power of two.
+    scale: f64,
+    /// How far the patch may be from what neighbours know of it.
+    seam: f64,
+    /// The root is node 0. If there is none, the whole patch is leaf 0.
+    nodes: Vec<Node>,
+    leaves: Vec<Leaf>,
+    /// If the patch is one leaf.
+    curving: Curving<f32>,
+}
+
+/// Who is shown the pieces along a ray.
+pub(super) trait Visitor {
+    /// The range in which hits are still wanted; `None` if the search is over.
+    fn range(&self) -> Option<Interval>;
+    /// A piece that is nearly linear as the ray sees it: its hit is near this place, in parts of the piece, or there is none.
+    fn certain(&mut self, square: Square, start: [f64; 2]);
+    /// A piece about which nothing is certain.
+    fn uncertain(&mut self, square: Square, curving: &Curving);
+}
+
+/// What a ray means for a leaf.
+enum Verdict {
+    Missed,
+    /// As [`Visitor::certain`].
+    Certain([f64; 2]),
+    Uncertain,
 }
 
 /// The control points of a net of points times their weights, and the weights.
@@ -51,7 +140,9 @@ pub(super) fn points<const K: usize>(net: &Net<4, K>) -> impl Iterator<Item = DV
 
 /// A point from the point times its weight, and its weight.
 pub(super) fn project([x, y, z, w]: [f64; 4]) -> DVec3 {
-    DVec3::new(x, y, z) / w
+    let point = DVec3::new(x, y, z);
+    // The same, without the time of a division.
+    if w == 1.0 { point } else { point / w }
 }
 
 /// The box around the control points, widened by what lies beyond the ends of the parameters and by rounding errors.
@@ -61,102 +152,548 @@ pub(super) fn hull<const K: usize>(net: &Net<4, K>) -> Aabb {
     tight.padded(tight.size() * (K as f64 * OVERLAP) + noise)
 }
 
-/// A box around a patch, closer than that around its control points.
-pub(super) fn bounds<const K: usize>(net: &Net<4, K>) -> Aabb {
-    let quarters = |net: &Net<4, K>| {
-        let halves = net.halves_u();
-        halves.map(|half| half.halves_v())
+/// The sixteen parts of a net, row after row.
+fn sixteenths<const K: usize>(net: &Net<4, K>) -> [[Net<4, K>; 4]; 4] {
+    let quarters_v = |net: Net<4, K>| {
+        let [a, b] = net.halves_v();
+        let ([a, b], [c, d]) = (a.halves_v(), b.halves_v());
+        [a, b, c, d]
     };
-    let mut all = Aabb::EMPTY;
-    for quarter in quarters(net).as_flattened() {
-        for part in quarters(quarter).as_flattened() {
-            all = all.union(&hull(part));
-        }
-    }
-    all
+    let [a, b] = net.halves_u();
+    let ([a, b], [c, d]) = (a.halves_u(), b.halves_u());
+    let columns = [a, b, c, d].map(quarters_v);
+    std::array::from_fn(|j| std::array::from_fn(|i| columns[i][j]))
 }
 
-/// The middle of vectors, and how far they are from it at most.
-fn middle(vectors: impl Iterator<Item = [f64; 4]> + Clone, is_rational: bool) -> ([f32; 3], f32) {
-    if is_rational {
-        return ([0.0; 3], f32::INFINITY);
+/// A box around a patch, closer than that around its control points.
+pub(super) fn bounds<const K: usize>(net: &Net<4, K>) -> Aabb {
+    let parts = sixteenths(net);
+    let hulls = parts.as_flattened().iter().map(hull);
+    hulls.fold(Aabb::EMPTY, |all, hull| all.union(&hull))
+}
+
+impl Bounds {
+    /// Whether no smaller pieces are needed.
+    fn is_flat(&self) -> bool {
+        self.bend + self.tilt <= FLAT
     }
-    let all = vectors.map(|[x, y, z, _]| DVec3::new(x, y, z));
-    let middle = Aabb::from_points(all.clone()).center().as_vec3();
-    let spread = all.fold(0.0, |most: f64, v| {
-        most.max((v - middle.as_dvec3()).length())
-    });
-    (middle.to_array(), round_up_f32(spread * (1.0 + gamma(16))))
+}
+
+impl Leaf {
+    fn new(columns: [DVec3; 3], offset: DVec3) -> Self {
+        let lanes = |v: DVec3| [v.x as f32, v.y as f32, v.z as f32, 0.0];
+        let [x, y, z] = columns;
+        Self([lanes(x), lanes(y), lanes(z), lanes(offset)])
+    }
+
+    /// The matrix and the offset, as they are stored.
+    fn map(&self) -> (DMat3, DVec3) {
+        let [x, y, z, offset] = self
+            .0
+            .map(|[x, y, z, _]| DVec3::new(x.into(), y.into(), z.into()));
+        (DMat3::from_cols(x, y, z), offset)
+    }
+
+    fn set_bounds(&mut self, bounds: &Bounds) {
+        let all = [bounds.side, bounds.bend, bounds.tilt, bounds.height];
+        for (lanes, bound) in self.0.iter_mut().zip(all) {
+            lanes[3] = round_up_f32(bound);
+        }
+    }
+
+    /// What a ray means for the piece, and where it enters the slab is within a range.
+    #[inline(always)]
+    fn meet<I: Isa>(&self, isa: I, ray: &LocalRay<I>, range: Interval) -> Verdict {
+        let [x, y, z, offset] = &self.0;
+        let (side, bend) = (f64::from(x[3]), f64::from(y[3]));
+        let (tilt, height) = (f64::from(z[3]), f64::from(offset[3]));
+        let columns = [isa.load_wide(x), isa.load_wide(y), isa.load_wide(z)];
+        let offset = isa.load_wide(offset);
+        let origin = isa.add(product(isa, &columns, &ray.origin), offset);
+        let direction = product(isa, &columns, &ray.direction);
+        let largest = isa.add(
+            isa.add(isa.abs(columns[0]), isa.abs(columns[1])),
+            isa.add(isa.abs(columns[2]), isa.abs(offset)),
+        );
+        let pad = isa.mul(largest, ray.noise);
+        // Where the ray enters and leaves the slabs of the three axes.
+        let reach = isa.add(isa.load(&[side, side, height, f64::INFINITY]), pad);
+        let minus_reach = isa.sub(isa.splat(0.0), reach);
+        let per = isa.div(isa.splat(1.0), direction);
+        let a = isa.mul(isa.sub(minus_reach, origin), per);
+        let b = isa.mul(isa.sub(reach, origin), per);
+        let (enter, leave) = (isa.store(isa.min(a, b)), isa.store(isa.max(a, b)));
+        let (mut near, mut far) = (range.min, range.max);
+        for k in 0..3 {
+            // Comparisons with NaN, when the ray runs within a side, change nothing.
+            if enter[k] > near {
+                near = enter[k];
+            }
+            if leave[k] < far {
+                far = leave[k];
+            }
+        }
+        // The ends are a quotient of rounded numbers.
+        if near - near.abs() * gamma(8) > far + far.abs() * gamma(8) {
+            return Verdict::Missed;
+        }
+        let (o, d) = (isa.store(origin), isa.store(direction));
+        let slope = [d[0] / d[2], d[1] / d[2]];
+        let [u, v] = [slope[0].abs(), slope[1].abs()];
+        let steepest = if u > v { u } else { v };
+        if bend + steepest * tilt < NEARLY_LINEAR {
+            return Verdict::Certain([0.5 + o[0] - o[2] * slope[0], 0.5 + o[1] - o[2] * slope[1]]);
+        }
+        Verdict::Uncertain
+    }
+}
+
+/// A matrix, given by its columns, times a vector with each coordinate in all lanes.
+#[inline(always)]
+fn product<I: Isa>(isa: I, columns: &[I::F64x4; 3], v: &[I::F64x4; 3]) -> I::F64x4 {
+    isa.add(
+        isa.add(isa.mul(columns[0], v[0]), isa.mul(columns[1], v[1])),
+        isa.mul(columns[2], v[2]),
+    )
+}
+
+/// A ray in the coordinates of a tree, each of them in all lanes of a vector.
+struct LocalRay<I: Isa> {
+    origin: [I::F64x4; 3],
+    direction: [I::F64x4; 3],
+    /// A bound of rounding errors, per coordinate of a frame.
+    noise: I::F64x4,
 }
 
 impl Tree {
     /// The bytes that its pieces take.
     pub(super) fn bytes(&self) -> usize {
-        size_of_val(self.pieces.as_slice())
+        size_of_val(self.nodes.as_slice()) + size_of_val(self.leaves.as_slice())
     }
 
-    pub(super) fn build<const K: usize>(net: &Net<4, K>, is_rational: bool) -> Self {
-        let anchor = bounds(net).min;
-        let size = hull(net).size().length();
+    /// The pieces of a net that may be this far from what neighbours know of it.
+    pub(super) fn build<const K: usize>(net: &Net<4, K>, seam: f64) -> Self {
+        let hull = hull(net);
         let mut tree = Self {
-            anchor,
-            size,
-            blur: size * f64::from(f32::EPSILON),
-            pieces: vec![],
+            anchor: hull.min,
+            scale: scale(hull.size().max_element()),
+            seam,
+            nodes: vec![],
+            leaves: vec![],
+            curving: Curving::NONE,
         };
-        let root = tree.piece(net, is_rational, (0, 0, 0));
-        tree.pieces.push(root);
-        tree.divide(0, net, is_rational);
+        tree.curving = tree.curving(net, Square::WHOLE);
+        let (leaf, bounds) = tree.leaf(net);
+        if bounds.is_flat() {
+            tree.leaves.push(leaf);
+            return tree;
+        }
+        // Nodes in the order of their numbers, which are given when they come into the queue.
+        let mut queue = VecDeque::from([(*net, Square::WHOLE, 1)]);
+        while let Some((net, square, depth)) = queue.pop_front() {
+            let mut node = Node {
+                boxes: SixteenBoxes::EMPTY,
+                square,
+                curving: tree.curving(&net, square),
+                leaves: 0,
+                first_leaf: tree.leaves.len() as u32,
+                first_node: (tree.nodes.len() + 1 + queue.len()) as u32,
+            };
+            for (place, part) in sixteenths(&net).as_flattened().iter().enumerate() {
+                node.boxes.set(place, &tree.local(part));
+                let (leaf, bounds) = tree.leaf(part);
+                if depth == NODES || bounds.is_flat() {
+                    node.leaves |= 1 << place;
+                    tree.leaves.push(leaf);
+                } else {
+                    queue.push_back((*part, square.sixteenth(place), depth + 1));
+                }
+            }
+            tree.nodes.push(node);
+        }
+        tree.nodes.shrink_to_fit();
+        tree.leaves.shrink_to_fit();
         tree
     }
 
-    fn piece<const K: usize>(
-        &self,
-        net: &Net<4, K>,
-        is_rational: bool,
-        (level, i, j): (u8, u8, u8),
-    ) -> Piece {
-        let hull = hull(net);
-        let (by_u, spread_u) = middle(net.slopes_u(), is_rational);
-        let (by_v, spread_v) = middle(net.slopes_v(), is_rational);
-        let center = project(net.at(0.5, 0.5)) - self.anchor;
-        Piece {
-            low: (hull.min - self.anchor).to_array().map(round_down_f32),
-            high: (hull.max - self.anchor).to_array().map(round_up_f32),
-            first: 0,
-            level,
-            i,
-            j,
-            middle: center.as_vec3().to_array(),
-            by_u,
-            by_v,
-            spread_u,
-            spread_v,
-        }
+    /// The box around a piece, in the coordinates of the tree.
+    fn local<const K: usize>(&self, part: &Net<4, K>) -> Aabb {
+        let Aabb { min, max } = hull(part).padded(DVec3::splat(self.seam));
+        let local = |p: DVec3| (p - self.anchor) * self.scale;
+        Aabb::new(local(min), local(max))
     }
 
-    fn divide<const K: usize>(&mut self, index: usize, net: &Net<4, K>, is_rational: bool) {
-        let first = self.pieces.len();
-        let Some(piece) = self.pieces.get_mut(index) else {
+    /// How curved a piece is, in the coordinates of the tree.
+    fn curving<const K: usize>(&self, part: &Net<4, K>, square: Square) -> Curving<f32> {
+        let per_side = f64::from(1_u32 << square.level);
+        let own = Piece::new(part, self).curving();
+        own.times(per_side * per_side)
+    }
+
+    /// A piece as a leaf.
+    fn leaf<const K: usize>(&self, part: &Net<4, K>) -> (Leaf, Bounds) {
+        let piece = Piece::new(part, self);
+        let columns = piece.columns();
+        // As they are stored, and so the frame is exact.
+        let mut leaf = Leaf::new(columns, DVec3::ZERO);
+        let (low, high) = extent(&piece.framed(&leaf));
+        leaf = Leaf::new(columns, -0.5 * (low + high));
+        let bounds = piece.bounds(&leaf);
+        leaf.set_bounds(&bounds);
+        (leaf, bounds)
+    }
+
+    /// Shows the pieces along a ray to the visitor, nearly in the order in which the ray enters them.
+    pub(super) fn walk(&self, frame: &Frame, visitor: &mut dyn Visitor) {
+        dispatch!(Simd::best(), isa => self.walk_with(isa, frame, visitor));
+    }
+
+    #[inline(always)]
+    fn walk_with<I: Isa>(&self, isa: I, frame: &Frame, visitor: &mut dyn Visitor) {
+        let per = frame.length * self.scale;
+        let is_usable = per > 0.0 && per < f64::INFINITY;
+        let local = |range: Interval| {
+            if is_usable {
+                Interval::new(range.min * per, range.max * per)
+            } else {
+                Interval::LINE
+            }
+        };
+        let Some(mut range) = visitor.range().map(local) else {
             return;
         };
-        let length = |v: [f32; 3]| DVec3::from_array(v.map(f64::from)).length();
-        let (u, v) = (length(piece.by_u), length(piece.by_v));
-        let is_flat = f64::from(piece.spread_u) * v + f64::from(piece.spread_v) * u <= FLAT * u * v;
-        if piece.level == LEVELS || is_flat {
+        let origin = (frame.origin - self.anchor) * self.scale;
+        let straight = Ray::new(origin, frame.along);
+        let splat = |v: DVec3| [isa.splat(v.x), isa.splat(v.y), isa.splat(v.z)];
+        let ray = LocalRay::<I> {
+            origin: splat(origin),
+            direction: splat(frame.along),
+            noise: isa.splat((1.0 + origin.abs().max_element()) * gamma(512)),
+        };
+        if self.nodes.is_empty() {
+            if let Some(leaf) = self.leaves.first() {
+                let verdict = leaf.meet(isa, &ray, range);
+                show(verdict, Square::WHOLE, &self.curving, self.scale, visitor);
+            }
             return;
         }
-        piece.first = first as u32;
-        let (level, i, j) = (piece.level + 1, 2 * piece.i, 2 * piece.j);
-        let [left, right] = net.halves_u();
-        let ([a, c], [b, d]) = (left.halves_v(), right.halves_v());
-        let quarters = [(a, 0, 0), (b, 1, 0), (c, 0, 1), (d, 1, 1)];
-        for (net, x, y) in &quarters {
-            let piece = self.piece(net, is_rational, (level, i + x, j + y));
-            self.pieces.push(piece);
-        }
-        for (k, (net, ..)) in quarters.iter().enumerate() {
-            self.divide(first + k, net, is_rational);
+        let Some(slabs) = SixteenSlabs::new(isa, &straight, range) else {
+            return;
+        };
+        let mut t_max = slabs.t_max(range.max);
+        // A place of a node, and where the ray enters its box.
+        let mut stack = [(0_u32, 0.0_f32); 16 * NODES as usize];
+        let (mut height, mut number) = (0, 0);
+        loop {
+            let Some(node) = self.nodes.get(number as usize) else {
+                return;
+            };
+            let (near, mut hit) = slabs.enter(isa, &node.boxes, t_max);
+            let near = isa.store_f32x16(near).0;
+            let base = height;
+            while hit != 0 {
+                let place = hit.trailing_zeros();
+                hit &= hit - 1;
+                let near = near[place as usize & 15];
+                // The nearest one on top.
+                let mut at = height;
+                while at > base && stack[at - 1].1 < near {
+                    stack[at] = stack[at - 1];
+                    at -= 1;
+                }
+                stack[at] = (number << 4 | place, near);
+                height += 1;
+            }
+            // Leaves, until there is a node.
+            number = loop {
+                if height == 0 {
+                    return;
+                }
+                height -= 1;
+                let (index, near) = stack[height];
+                if near > t_max {
+                    continue;
+                }
+                let Some(parent) = self.nodes.get(index as usize >> 4) else {
+                    return;
+                };
+                let place = index & 15;
+                let before = u32::from(parent.leaves) & ((1 << place) - 1);
+                if parent.leaves >> place & 1 == 0 {
+                    break parent.first_node + place - before.count_ones();
+                }
+                let number = parent.first_leaf + before.count_ones();
+                let Some(leaf) = self.leaves.get(number as usize) else {
+                    return;
+                };
+                let square = parent.square.sixteenth(place as usize);
+                let verdict = leaf.meet(isa, &ray, range);
+                if show(verdict, square, &parent.curving, self.scale, visitor) {
+                    let Some(wanted) = visitor.range() else {
+                        return;
+                    };
+                    range = local(wanted);
+                    t_max = slabs.t_max(range.max);
+                }
+            };
         }
     }
+}
+
+/// Shows a leaf to the visitor, unless the ray misses it.
+#[inline(always)]
+fn show(
+    verdict: Verdict,
+    square: Square,
+    curving: &Curving<f32>,
+    scale: f64,
+    visitor: &mut dyn Visitor,
+) -> bool {
+    match verdict {
+        Verdict::Missed => return false,
+        Verdict::Certain(start) => visitor.certain(square, start),
+        Verdict::Uncertain => {
+            let unscaled = |length: f32| f64::from(length) / scale;
+            let Curving { uu, uv, vv } = curving;
+            let (uu, uv, vv) = (unscaled(*uu), unscaled(*uv), unscaled(*vv));
+            visitor.uncertain(square, &Curving { uu, uv, vv });
+        }
+    }
+    true
+}
+
+impl Curving<f32> {
+    const NONE: Self = Self {
+        uu: 0.0,
+        uv: 0.0,
+        vv: 0.0,
+    };
+}
+
+impl Curving {
+    /// Scaled and rounded up; also a little, so that it holds beyond the ends of the parameters.
+    fn times(self, factor: f64) -> Curving<f32> {
+        let up = |x: f64| round_up_f32(x * factor * (1.0 + 1.0 / 1024.0));
+        Curving {
+            uu: up(self.uu),
+            uv: up(self.uv),
+            vv: up(self.vv),
+        }
+    }
+}
+
+/// The power of two that makes a length nearly 1.
+fn scale(length: f64) -> f64 {
+    let exponent = (length.to_bits() >> 52) as i64 - 1023;
+    f64::from_bits(((1023 - exponent.clamp(-1000, 1000)) as u64) << 52)
+}
+
+/// A piece in the coordinates of a tree.
+struct Piece<const K: usize> {
+    points: [[DVec3; K]; K],
+    /// In parts of that of the middle.
+    weights: [[f64; K]; K],
+    /// A bound of the rounding errors of points.
+    noise: f64,
+}
+
+impl<const K: usize> Piece<K> {
+    fn new(part: &Net<4, K>, tree: &Tree) -> Self {
+        let (anchor, scale) = (tree.anchor, tree.scale);
+        let middle = part.at(0.5, 0.5)[3];
+        let mut piece = Self {
+            points: [[DVec3::ZERO; K]; K],
+            weights: [[1.0; K]; K],
+            noise: 0.0,
+        };
+        let mut largest: f64 = 0.0;
+        for (j, row) in part.rows.iter().enumerate() {
+            for (i, p) in row.iter().enumerate() {
+                let point = project(*p);
+                largest = largest.max(point.abs().max_element());
+                piece.points[j][i] = (point - anchor) * scale;
+                piece.weights[j][i] = p[3] / middle;
+            }
+        }
+        piece.noise = (largest * gamma(16 * K as u32) + tree.seam) * scale;
+        piece
+    }
+
+    /// The matrix that maps the mean derivatives to the unit vectors of the plane, and the normal of both, as long as they are, to the
+    /// third one; column by column.
+    fn columns(&self) -> [DVec3; 3] {
+        let last = K - 1;
+        let (mut by_u, mut by_v) = (DVec3::ZERO, DVec3::ZERO);
+        for k in 0..K {
+            by_u += self.points[k][last] - self.points[k][0];
+            by_v += self.points[last][k] - self.points[0][k];
+        }
+        let (by_u, by_v) = (by_u / K as f64, by_v / K as f64);
+        let normal = by_u.cross(by_v);
+        let size = normal.length().sqrt();
+        let normal = normal / size;
+        let inverse = DMat3::from_cols(by_u, by_v, normal).inverse();
+        let columns = [inverse.x_axis, inverse.y_axis, inverse.z_axis];
+        let size = by_u.length().max(by_v.length());
+        if columns.iter().all(|c| c.length() * size < MOST_STRETCHED) {
+            return columns;
+        }
+        // Nearly a line or a point: along the axes, of the size of the piece.
+        let all = Aabb::from_points(self.points.as_flattened().iter().copied());
+        let size = all.size().max_element();
+        let per = if size > self.noise { 1.0 / size } else { 1.0 };
+        DVec3::AXES.map(|axis| axis * per)
+    }
+
+    /// The points in the frame of a leaf.
+    fn framed(&self, leaf: &Leaf) -> [[DVec3; K]; K] {
+        let (matrix, offset) = leaf.map();
+        let mut framed = self.points;
+        for p in framed.as_flattened_mut() {
+            *p = matrix * *p + offset;
+        }
+        framed
+    }
+
+    fn bounds(&self, leaf: &Leaf) -> Bounds {
+        let (matrix, offset) = leaf.map();
+        let mut framed = self.framed(leaf);
+        let (low, high) = extent(&framed);
+        let sums = matrix.x_axis.abs() + matrix.y_axis.abs() + matrix.z_axis.abs();
+        let noise = (sums + offset.abs()) * (self.noise + gamma(16));
+        let beyond = (high - low) * (K as f64 * OVERLAP) + noise;
+        let reach = low.abs().max(high.abs()) + beyond;
+        let side = reach.x.max(reach.y);
+        let mut bounds = Bounds {
+            side,
+            height: reach.z,
+            bend: f64::INFINITY,
+            tilt: f64::INFINITY,
+        };
+        let uneven = self.uneven();
+        if !(side < 1.0 && uneven.weight < UNEVEN) {
+            return bounds;
+        }
+        // The derivatives of the numerators, which are points times weights in the frame.
+        let (mut off_u, mut off_v) = (DVec3::ZERO, DVec3::ZERO);
+        let degree = (K - 1) as f64;
+        let weights = self.weights.as_flattened();
+        for (p, w) in framed.as_flattened_mut().iter_mut().zip(weights) {
+            *p *= *w;
+        }
+        let at = |j: usize, i: usize| framed[j][i];
+        for a in 0..K {
+            for b in 1..K {
+                off_u = off_u.max(((at(a, b) - at(a, b - 1)) * degree - DVec3::X).abs());
+                off_v = off_v.max(((at(b, a) - at(b - 1, a)) * degree - DVec3::Y).abs());
+            }
+        }
+        // Those of the points differ from these by what the weights differ from 1 and change, as points are within the unit square.
+        let off = off_u + off_v + noise;
+        let least = 1.0 - uneven.weight;
+        let along = off.x.max(off.y) + uneven.weight + uneven.slope;
+        bounds.bend = along / least;
+        bounds.tilt = (off.z + reach.z * uneven.slope) / least;
+        bounds
+    }
+
+    /// How much weights differ from that in the middle, and the sum of how fast they change by both parameters.
+    fn uneven(&self) -> Uneven {
+        let all = self.weights.as_flattened().iter();
+        if all.clone().all(|w| *w == 1.0) {
+            return Uneven {
+                weight: 0.0,
+                slope: 0.0,
+            };
+        }
+        let weight = all.fold(0.0, |most: f64, w| most.max((w - 1.0).abs()));
+        let rates = Rates::of(&self.weights, |w| w.abs());
+        let slope = rates.u + rates.v;
+        Uneven { weight, slope }
+    }
+
+    /// How curved the piece is, by its own parameters.
+    fn curving(&self) -> Curving {
+        let all = self.points.as_flattened().iter().copied();
+        let center = Aabb::from_points(all).center();
+        let (mut points, mut reach, mut least) = (self.points, 0.0_f64, f64::INFINITY);
+        for (p, w) in points
+            .as_flattened_mut()
+            .iter_mut()
+            .zip(self.weights.as_flattened())
+        {
+            *p -= center;
+            reach = reach.max(p.length());
+            least = least.min(*w);
+            *p *= *w;
+        }
+        let p = Rates::of(&points, |p| p.length());
+        let w = Rates::of(&self.weights, |w| w.abs());
+        // Of a quotient, from the derivatives of its numerator and of the weight.
+        let (u, v) = ((p.u + reach * w.u) / least, (p.v + reach * w.v) / least);
+        let noise = self.noise * (4 * K * K) as f64;
+        Curving {
+            uu: (p.uu + 2.0 * u * w.u + reach * w.uu + noise) / least,
+            uv: (p.uv + u * w.v + v * w.u + reach * w.uv + noise) / least,
+            vv: (p.vv + 2.0 * v * w.v + reach * w.vv + noise) / least,
+        }
+    }
+}
+
+/// The largest derivatives, of the first and the second order, that a polynomial may have.
+struct Rates {
+    u: f64,
+    v: f64,
+    uu: f64,
+    uv: f64,
+    vv: f64,
+}
+
+impl Rates {
+    fn of<T, const K: usize>(c: &[[T; K]; K], size: impl Fn(T) -> f64) -> Self
+    where
+        T: Copy + std::ops::Sub<Output = T>,
+    {
+        let (once, twice) = ((K - 1) as f64, ((K - 1) * (K - 2)) as f64);
+        let mut most = Self {
+            u: 0.0,
+            v: 0.0,
+            uu: 0.0,
+            uv: 0.0,
+            vv: 0.0,
+        };
+        let step_u = |j: usize, i: usize| c[j][i] - c[j][i - 1];
+        let step_v = |j: usize, i: usize| c[j][i] - c[j - 1][i];
+        for a in 0..K {
+            for b in 1..K {
+                most.u = most.u.max(once * size(step_u(a, b)));
+                most.v = most.v.max(once * size(step_v(b, a)));
+                if b > 1 {
+                    let (uu, vv) = (
+                        step_u(a, b) - step_u(a, b - 1),
+                        step_v(b, a) - step_v(b - 1, a),
+                    );
+                    most.uu = most.uu.max(twice * size(uu));
+                    most.vv = most.vv.max(twice * size(vv));
+                }
+                if a > 0 {
+                    let uv = step_u(a, b) - step_u(a - 1, b);
+                    most.uv = most.uv.max(once * once * size(uv));
+                }
+            }
+        }
+        most
+    }
+}
+
+/// The least and the greatest coordinates of points.
+fn extent<const K: usize>(points: &[[DVec3; K]; K]) -> (DVec3, DVec3) {
+    let Aabb { min, max } = Aabb::from_points(points.as_flattened().iter().copied());
+    (min, max)
+}
+
+/// See [`Piece::uneven`].
+struct Uneven {
+    weight: f64,
+    slope: f64,
 }
