@@ -12,7 +12,7 @@ use std::process::Command;
 use strahl::sdl::{Word, object_words, pattern_words};
 
 /// The largest size of all pictures together, in bytes.
-const MOST_BYTES: u64 = 3 << 20;
+const MOST_BYTES: u64 = 4 << 20;
 
 /// A page of the manual about the scenes of a folder.
 struct Page {
