@@ -27,7 +27,7 @@ from strahl._lights import (
 from strahl._load import load, parse
 from strahl._looks import Background, Material
 from strahl._objects import difference, intersection, light_group, merge, Object, union
-from strahl._patches import bicubic_patch, nurbs, NurbsCurve
+from strahl._patches import bicubic_patch, nurbs, NurbsCurve, subdivision
 from strahl._patterns import Pattern
 from strahl._progress import Progress
 from strahl._rays import Hits
@@ -127,6 +127,7 @@ __all__ = [
     "sphere_sweep",
     "spheres",
     "spot_light",
+    "subdivision",
     "superellipsoid",
     "terrain",
     "text",

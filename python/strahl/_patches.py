@@ -94,6 +94,44 @@ def nurbs(
     return with_look(core, material, name)
 
 
+def subdivision(
+    points: npt.ArrayLike,
+    faces: npt.ArrayLike | Sequence[Sequence[int]],
+    scheme: str = "catmull-clark",
+    *,
+    creases: Iterable[tuple[Sequence[int], float]] = (),
+    corners: Iterable[tuple[int, float]] = (),
+    uv: npt.ArrayLike | None = None,
+    material: Look | None = None,
+    name: str | None = None,
+) -> Object:
+    """The limit of a mesh that is divided and smoothed without end, by the ``scheme`` "catmull-clark" or "loop". Rays meet the limit itself, without triangles.
+
+    ``points`` are (n, 3). ``faces`` are rows of numbers of points, counter-clockwise seen from the front: an array (m, k), or a list of faces of 3 to 1000 corners; with "loop"
+    all of them are triangles. ``creases`` are pairs of a line of points along edges and its sharpness, ``corners`` pairs of a point and its sharpness: so many levels of
+    division treat them as sharp, 10 and more for ever. ``uv`` are texture coordinates (number of all corners, 2), those of the faces' corners one after the other.
+
+    A mesh without a border is a solid. Raises ValueError if more than two faces meet at an edge, or if numbers do not fit together.
+    """
+    rows = [[integer(corner, "a corner of faces", 0) for corner in face] for face in np.asarray(faces, dtype=object)]
+    edges = []
+    for line, sharpness in creases:
+        ends = [integer(point, "a point of creases", 0) for point in line]
+        if len(ends) < 2:
+            raise ValueError("a crease has two points at least")
+        edges += [((a, b), float(sharpness)) for a, b in zip(ends, ends[1:])]
+    numbers = {
+        "scheme": scheme,
+        "points": finite_rows(points, "points", 3),
+        "sizes": [len(row) for row in rows],
+        "indices": [corner for row in rows for corner in row],
+        "creases": edges,
+        "corners": [(integer(point, "a point of corners", 0), float(sharpness)) for point, sharpness in corners],
+        "uv": None if uv is None else finite_rows(uv, "uv", 2),
+    }
+    return with_look(_strahl.subdivision(numbers, caller()), material, name)
+
+
 def _degree(degree: int) -> int:
     result = integer(degree, "degree", 1)
     if result > 9:

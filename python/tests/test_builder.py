@@ -245,6 +245,19 @@ def test_air_and_skies_are_those_of_the_language(text: str) -> None:
     _same(_scene(AIR[text](), more=more), more + text)
 
 
+CUBE = [(x, y, z) for z in (-1, 1) for y in (-1, 1) for x in (-1, 1)]
+SIDES = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]]
+OCTAHEDRON = [(1, 0, 0), (0, 1, 0), (0, -1, 0), (-1, 0, 0), (0, 0, 1), (0, 0, -1)]
+EIGHTHS = [[0, 1, 4], [1, 3, 4], [3, 2, 4], [2, 0, 4], [1, 0, 5], [3, 1, 5], [2, 3, 5], [0, 2, 5]]
+
+
+def _cage(scheme: str, points: list[tuple[int, int, int]], faces: list[list[int]]) -> str:
+    """A subdivision surface with a crease along the points 0, 1, 3, 2, and with the last point as a corner."""
+    places = ", ".join(f"<{x}, {y}, {z}>" for x, y, z in points)
+    sides = " ".join(f"face {{ {', '.join(map(str, face))} }}" for face in faces)
+    return f"subdivision {{ {scheme} points {{ {places} }} {sides} crease {{ sharpness 2.5 0, 1, 3, 2, 0 }} corner {{ sharpness 10 {len(points) - 1} }} }}"
+
+
 SHAPES: dict[str, Callable[[], Object]] = {
     "julia_fractal { <-0.083, 0, -0.83, -0.025> quaternion sqr max_iteration 8 precision 15 }": lambda: strahl.julia(
         (-0.083, 0, -0.83, -0.025), max_iteration=8, precision=15
@@ -253,6 +266,10 @@ SHAPES: dict[str, Callable[[], Object]] = {
         (-0.2, 0.3, 0.1, 0.5), "pwr", algebra="hypercomplex", exponent=2.5 + 0.3j, max_iteration=6, slice=(0.2, 0, 0, 1), distance=0.1
     ),
     "mandelbulb { 8 max_iteration 5 precision 15 }": lambda: strahl.mandelbulb(8, max_iteration=5, precision=15),
+    _cage("catmull_clark", CUBE, SIDES): lambda: strahl.subdivision(CUBE, SIDES, creases=[([0, 1, 3, 2, 0], 2.5)], corners=[(7, 10)]),
+    _cage("loop", OCTAHEDRON, EIGHTHS): lambda: strahl.subdivision(
+        OCTAHEDRON, np.array(EIGHTHS), "loop", creases=[((0, 1), 2.5), ((1, 3), 2.5), ((3, 2), 2.5), ((2, 0), 2.5)], corners=[(5, 10)]
+    ),
     "menger { -1, 1 3 }": lambda: strahl.menger((-1, -1, -1), (1, 1, 1), 3),
     "terrain { fbm h 1.1 octaves 4 extent <-2, -2>, <2, 2> offset -0.5 }": lambda: strahl.terrain(
         "fbm", h=1.1, octaves=4, x=(-2, 2), z=(-2, 2), offset=-0.5
@@ -406,6 +423,11 @@ def test_wrong_looks_are_refused() -> None:
         (lambda: strahl.terrain(x=(0, 0), z=(0, 1)), "extent"),
         (lambda: strahl.mandelbulb(99), "from 2 to 16"),
         (lambda: strahl.menger(level=21), "from 0 to 20"),
+        (lambda: strahl.subdivision(CUBE, SIDES, "butterfly"), "no scheme `butterfly`"),
+        (lambda: strahl.subdivision(CUBE, [[0, 1, 9]]), "9"),
+        (lambda: strahl.subdivision(CUBE, SIDES, creases=[([0], 1)]), "two points"),
+        (lambda: strahl.subdivision(CUBE, SIDES, creases=[([0, 7], 1)]), "edge"),
+        (lambda: strahl.subdivision(CUBE, SIDES, uv=[(0, 0)]), "texture coordinates"),
         (lambda: strahl.julia((0, 0, 0)), "4 numbers"),
         (lambda: strahl.julia((0, 0, 0, 0), "ln"), "no function `ln`"),
     ]
@@ -451,7 +473,7 @@ SAME: dict[tuple[str, str], dict[str, Any]] = {
         "Torus": strahl.torus, "Ovus": strahl.ovus, "Lemon": strahl.lemon, "Quadric": strahl.quadric, "Prism": strahl.prism, "Glyph": strahl.text,
         "Lathe": strahl.lathe, "Sor": strahl.sor, "SphereSweep": strahl.sphere_sweep, "Polynomial": strahl.polynomial, "Blob": strahl.blob,
         "Superellipsoid": strahl.superellipsoid, "Isosurface": strahl.implicit, "GridIsosurface": strahl.isosurface, "HeightField": strahl.height_field,
-        "Parametric": strahl.parametric, "BicubicPatch": strahl.bicubic_patch, "Nurbs": strahl.nurbs, "Julia": strahl.julia,
+        "Parametric": strahl.parametric, "BicubicPatch": strahl.bicubic_patch, "Nurbs": strahl.nurbs, "Subdivision": strahl.subdivision, "Julia": strahl.julia,
         "Mandelbulb": strahl.mandelbulb, "Menger": strahl.menger, "Terrain": strahl.terrain, "Triangle": strahl.triangle, "SmoothTriangle": strahl.mesh,
         "Polygon": strahl.polygon, "TriangleMesh": strahl.mesh, "Brep": strahl.mesh, "Csg": strahl.difference, "Bounded": Object.bounded_by,
         "Custom": None,  # a shape of a Rust program

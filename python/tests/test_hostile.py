@@ -137,6 +137,8 @@ MAKERS: dict[str, tuple[tuple[int, ...], Callable[[Any], Any]]] = {
     "bokeh": ((3, 3), lambda a: strahl.Camera.perspective((0, 0, 5)).focused(1, (0, 0, 0), bokeh=a, samples=4)),
     "julia": ((4,), lambda a: strahl.julia(a, max_iteration=3)),
     "terrain": ((2,), lambda a: strahl.terrain(x=a, z=a, octaves=2)),
+    "cage": ((4, 3), lambda a: strahl.subdivision(a, [[0, 1, 2], [0, 2, 3], [0, 3, 1], [1, 3, 2]])),
+    "corners of a cage": ((12, 2), lambda a: strahl.subdivision(NET[0, :, :3], [[0, 1, 2], [0, 2, 3], [0, 3, 1], [1, 3, 2]], uv=a)),
     "sponge": ((3,), lambda a: strahl.menger(a, (2, 2, 2), 2)),
     "formula": ((3,), lambda a: strahl.implicit("x*x + y*y + z - A", declare={"A": a})),
     "container": ((3,), lambda a: strahl.implicit("x*x + y*y + z", a)),

@@ -7,13 +7,16 @@ use crate::shapes::{Place, object};
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use std::sync::Arc;
-use strahl::geometry::{Nurbs, NurbsCurve, NurbsData, TrimLoop};
+use strahl::geometry::{
+    Nurbs, NurbsCurve, NurbsData, Subdivision, SubdivisionData, SubdivisionScheme, TrimLoop,
+};
 use strahl::prelude::{BicubicPatch, DVec3};
 
 /// Adds all functions to the module.
 pub(crate) fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(bicubic_patch, module)?)?;
-    module.add_function(wrap_pyfunction!(nurbs, module)?)
+    module.add_function(wrap_pyfunction!(nurbs, module)?)?;
+    module.add_function(wrap_pyfunction!(subdivision, module)?)
 }
 
 /// 16 points row by row, and their weights.
@@ -81,5 +84,47 @@ fn nurbs(
     };
     let loops = loops.into_iter().map(trim).collect::<PyResult<Vec<_>>>()?;
     let surface = Nurbs::try_trimmed(&data, &loops).map_err(errors::value)?;
+    object(Arc::new(surface), place)
+}
+
+/// The control mesh of a subdivision surface: a dictionary that the Python half makes.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+struct SubdivisionNumbers<'py> {
+    scheme: String,
+    points: PyReadonlyArray2<'py, f64>,
+    /// The number of corners of each face.
+    sizes: Vec<u32>,
+    /// The corners of all faces, one face after the other.
+    indices: Vec<u32>,
+    /// The ends and the sharpness of each edge.
+    creases: Vec<([u32; 2], f64)>,
+    corners: Vec<(u32, f64)>,
+    /// For each corner of all faces.
+    uv: Option<PyReadonlyArray2<'py, f64>>,
+}
+
+#[pyfunction]
+fn subdivision(numbers: SubdivisionNumbers<'_>, place: Place) -> PyResult<Object> {
+    let n = numbers;
+    let scheme = match n.scheme.as_str() {
+        "catmull-clark" => SubdivisionScheme::CatmullClark,
+        "loop" => SubdivisionScheme::Loop,
+        other => {
+            return Err(errors::value(format!(
+                "there is no scheme `{other}`; the schemes are catmull-clark and loop"
+            )));
+        }
+    };
+    let data = SubdivisionData {
+        scheme,
+        points: vectors(&n.points)?,
+        sizes: n.sizes,
+        indices: n.indices,
+        creases: n.creases,
+        corners: n.corners,
+        uvs: n.uv.as_ref().map_or(Ok(vec![]), vectors_2)?,
+    };
+    let surface = Subdivision::try_new(&data).map_err(errors::value)?;
     object(Arc::new(surface), place)
 }

@@ -17,9 +17,14 @@ pub(super) struct Jet<const N: usize> {
     pub(super) by_v: [f64; N],
 }
 
+/// `array::from_fn`, which is not always inlined; nor is `array::map`. Copying coefficients took half of the time of dividing a net.
 #[inline(always)]
 fn each<const N: usize>(f: impl Fn(usize) -> f64) -> [f64; N] {
-    std::array::from_fn(f)
+    let mut all = [0.0; N];
+    for (k, x) in all.iter_mut().enumerate() {
+        *x = f(k);
+    }
+    all
 }
 
 #[inline(always)]
@@ -130,25 +135,34 @@ impl<const N: usize, const K: usize> Net<N, K> {
     /// Both halves along the first parameter.
     #[inline]
     pub(super) fn halves_u(&self) -> [Self; 2] {
-        let both: [_; K] = std::array::from_fn(|j| halves(&self.rows[j]));
-        [0, 1].map(|side| Self {
-            rows: std::array::from_fn(|j| both[j][side]),
-        })
+        let (mut left, mut right) = (*self, *self);
+        for j in 0..K {
+            [left.rows[j], right.rows[j]] = halves(&self.rows[j]);
+        }
+        [left, right]
     }
 
     /// Both halves along the second parameter.
     #[inline]
     pub(super) fn halves_v(&self) -> [Self; 2] {
-        let both: [_; K] = std::array::from_fn(|i| halves(&self.column(i)));
-        [0, 1].map(|side| Self {
-            rows: std::array::from_fn(|j| std::array::from_fn(|i| both[i][side][j])),
-        })
+        let (mut left, mut right) = (*self, *self);
+        for i in 0..K {
+            let [below, above] = halves(&self.column(i));
+            for j in 0..K {
+                (left.rows[j][i], right.rows[j][i]) = (below[j], above[j]);
+            }
+        }
+        [left, right]
     }
 
     /// The coefficients of column `i`, along the second parameter.
     #[inline(always)]
     pub(super) fn column(&self, i: usize) -> Curve<N, K> {
-        std::array::from_fn(|j| self.rows[j][i])
+        let mut column = self.rows[0];
+        for (own, row) in column.iter_mut().zip(&self.rows) {
+            *own = row[i];
+        }
+        column
     }
 
     /// The part over the square number `(i, j)` of `2^level` by `2^level`.

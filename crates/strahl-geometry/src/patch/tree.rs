@@ -147,22 +147,27 @@ pub(super) fn project([x, y, z, w]: [f64; 4]) -> DVec3 {
 
 /// The box around the control points, widened by what lies beyond the ends of the parameters and by rounding errors.
 pub(super) fn hull<const K: usize>(net: &Net<4, K>) -> Aabb {
-    let tight = Aabb::from_points(points(net));
+    let mut tight = Aabb::EMPTY;
+    for p in net.rows.as_flattened() {
+        let p = project(*p);
+        tight = Aabb::new(tight.min.min(p), tight.max.max(p));
+    }
     let noise = tight.min.abs().max(tight.max.abs()) * gamma(16 * K as u32);
     tight.padded(tight.size() * (K as f64 * OVERLAP) + noise)
 }
 
 /// The sixteen parts of a net, row after row.
 fn sixteenths<const K: usize>(net: &Net<4, K>) -> [[Net<4, K>; 4]; 4] {
-    let quarters_v = |net: Net<4, K>| {
-        let [a, b] = net.halves_v();
-        let ([a, b], [c, d]) = (a.halves_v(), b.halves_v());
-        [a, b, c, d]
-    };
-    let [a, b] = net.halves_u();
-    let ([a, b], [c, d]) = (a.halves_u(), b.halves_u());
-    let columns = [a, b, c, d].map(quarters_v);
-    std::array::from_fn(|j| std::array::from_fn(|i| columns[i][j]))
+    let [left, right] = net.halves_u();
+    let ([a, b], [c, d]) = (left.halves_u(), right.halves_u());
+    let columns = [a, b, c, d];
+    let mut parts = [columns; 4];
+    for (i, column) in columns.iter().enumerate() {
+        let [below, above] = column.halves_v();
+        [parts[0][i], parts[1][i]] = below.halves_v();
+        [parts[2][i], parts[3][i]] = above.halves_v();
+    }
+    parts
 }
 
 /// A box around a patch, closer than that around its control points.
@@ -188,10 +193,10 @@ impl Leaf {
 
     /// The matrix and the offset, as they are stored.
     fn map(&self) -> (DMat3, DVec3) {
-        let [x, y, z, offset] = self
-            .0
-            .map(|[x, y, z, _]| DVec3::new(x.into(), y.into(), z.into()));
-        (DMat3::from_cols(x, y, z), offset)
+        let vector = |[x, y, z, _]: [f32; 4]| DVec3::new(x.into(), y.into(), z.into());
+        let [x, y, z, offset] = self.0;
+        let matrix = DMat3::from_cols(vector(x), vector(y), vector(z));
+        (matrix, vector(offset))
     }
 
     fn set_bounds(&mut self, bounds: &Bounds) {
@@ -688,8 +693,12 @@ impl Rates {
 
 /// The least and the greatest coordinates of points.
 fn extent<const K: usize>(points: &[[DVec3; K]; K]) -> (DVec3, DVec3) {
-    let Aabb { min, max } = Aabb::from_points(points.as_flattened().iter().copied());
-    (min, max)
+    let Aabb { min, max } = Aabb::EMPTY;
+    let (mut low, mut high) = (min, max);
+    for p in points.as_flattened() {
+        (low, high) = (low.min(*p), high.max(*p));
+    }
+    (low, high)
 }
 
 /// See [`Piece::uneven`].
