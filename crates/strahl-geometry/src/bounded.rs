@@ -28,6 +28,32 @@ impl Bounded {
         &self.shape
     }
 
+    /// The bounds of a solid, if they are in the space that `to_outer` leads to from that of the shape.
+    pub(crate) fn bounds_in(&self, to_outer: Option<&Transform>) -> Option<&[Arc<Csg>]> {
+        let here = match (&self.map, to_outer) {
+            (None, None) => true,
+            (Some(map), Some(to_outer)) => *map == to_outer.inverted(),
+            _ => false,
+        };
+        (here && self.shape.as_solid().is_some()).then_some(&self.bounds)
+    }
+
+    /// Whether the shape takes longer than bounds usually do, so that the bounds should be asked first.
+    fn bounds_first(&self) -> bool {
+        !matches!(
+            self.shape,
+            Shape::Sphere(_)
+                | Shape::Cuboid(_)
+                | Shape::Plane(_)
+                | Shape::Cylinder(_)
+                | Shape::Cone(_)
+                | Shape::Disc(_)
+                | Shape::Triangle(_)
+                | Shape::Polygon(_)
+                | Shape::Quadric(_)
+        )
+    }
+
     /// Whether the ray meets all bounds.
     fn is_seen(&self, ray: &Ray, scratch: &mut Scratch) -> bool {
         let ray = &self.map.map_or(*ray, |map| map.ray_to_object(ray));
@@ -61,6 +87,11 @@ impl Primitive for Bounded {
         from: Option<SurfaceId>,
         scratch: &mut Scratch,
     ) -> Option<PrimHit> {
+        if self.bounds_first() {
+            return self
+                .is_seen(ray, scratch)
+                .then(|| self.shape.closest_hit(ray, range, from, scratch))?;
+        }
         let hit = self.shape.closest_hit(ray, range, from, scratch)?;
         self.is_seen(ray, scratch).then_some(hit)
     }
@@ -72,6 +103,9 @@ impl Primitive for Bounded {
         from: Option<SurfaceId>,
         scratch: &mut Scratch,
     ) -> bool {
+        if self.bounds_first() {
+            return self.is_seen(ray, scratch) && self.shape.any_hit(ray, range, from, scratch);
+        }
         self.shape.any_hit(ray, range, from, scratch) && self.is_seen(ray, scratch)
     }
 
@@ -126,7 +160,7 @@ impl Solid for Bounded {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{CsgNode, Cuboid, Cylinder, Disc, Sphere, primitive_tests};
+    use crate::{CsgNode, Cuboid, Cylinder, Disc, Plane, Sphere, Torus, primitive_tests};
 
     fn bound(shape: impl Into<Shape>) -> Vec<Arc<Csg>> {
         vec![Arc::new(
@@ -182,5 +216,100 @@ mod tests {
         let bounded = Bounded::new(cylinder(), bound(sheet), moved);
         assert!(sees(&bounded, [0.8, 0.0, -9.0]) && !sees(&bounded, [-0.2, 0.0, -9.0]));
         assert!(!sees(&bounded, [0.8, 0.0, -1.0]));
+    }
+
+    /// A bounded leaf of a tree, whose bounds are in the tree's space, as scenes have it.
+    fn leaf(shape: impl Into<Shape>, bounds: &[Arc<Csg>], place: Option<Transform>) -> CsgNode {
+        let shape = shape.into();
+        let bounded = Bounded::new(shape, bounds.to_vec(), place.map(|map| map.inverted()));
+        CsgNode::Leaf {
+            shape: bounded.into(),
+            transform: place.map(Box::new),
+            tag: 0,
+        }
+    }
+
+    /// The planes of a cube, each turned and moved from the plane z = 0.
+    fn cube(leaf: &dyn Fn(Shape, Option<Transform>) -> CsgNode) -> Vec<CsgNode> {
+        let plane = || Plane::new(DVec3::ZERO, DVec3::Z).into();
+        let lift = Transform::translate(DVec3::Z * 0.7);
+        let quarter = std::f64::consts::FRAC_PI_2;
+        let turns = [0.0, 1.0, 2.0, 3.0].map(|k| Transform::rotate(DVec3::X, k * quarter));
+        let sides = [1.0, -1.0].map(|k| Transform::rotate(DVec3::Y, k * quarter));
+        let turns = turns.into_iter().chain(sides);
+        turns
+            .map(|turn| leaf(plane(), Some(lift.then(&turn))))
+            .collect()
+    }
+
+    #[test]
+    fn a_tree_of_bounded_shapes_is_the_tree_where_rays_meet_the_bounds() {
+        let bounds = bound(Sphere::new(DVec3::new(0.2, 0.1, -0.4), 0.6));
+        let plain = |shape: Shape, place: Option<Transform>| CsgNode::Leaf {
+            shape,
+            transform: place.map(Box::new),
+            tag: 0,
+        };
+        let seen = |shape: Shape, place| leaf(shape, &bounds, place);
+        let hole = || Shape::from(Cylinder::new(-DVec3::Y, DVec3::Y, 0.4));
+        let trees = |leaf: &dyn Fn(Shape, Option<Transform>) -> CsgNode| {
+            let cut = CsgNode::difference([CsgNode::intersection(cube(leaf)), leaf(hole(), None)]);
+            let both = CsgNode::union([CsgNode::merge(cube(leaf)), leaf(hole(), None)]);
+            let lens = [0.3, -0.3].map(|x| leaf(Sphere::new(DVec3::X * x, 0.6).into(), None));
+            [
+                CsgNode::intersection(cube(leaf)),
+                cut,
+                both,
+                CsgNode::intersection(lens),
+            ]
+        };
+        let scratch = &mut Scratch::default();
+        let (mut met, mut hidden) = (0, 0);
+        for (bounded, plain) in trees(&seen).into_iter().zip(trees(&plain)) {
+            let compiled = |node| Csg::try_new(node).expect("a tree");
+            let (bounded, plain) = (compiled(bounded), compiled(plain));
+            for i in 0..400 {
+                let angle = f64::from(i) * 0.377;
+                let origin = DVec3::new(
+                    3.0 * angle.cos(),
+                    f64::from(i % 21) * 0.1 - 1.0,
+                    3.0 * angle.sin(),
+                );
+                let target = DVec3::new(
+                    f64::from(i % 7) * 0.2 - 0.6,
+                    0.05,
+                    f64::from(i % 11) * 0.1 - 0.5,
+                );
+                let ray = &Ray::new(origin, target - origin);
+                let meets = bounds[0].any_hit(ray, Interval::FORWARD, None, scratch);
+                let expected = plain.closest_hit(ray, Interval::FORWARD, None, scratch);
+                let found = bounded.closest_hit(ray, Interval::FORWARD, None, scratch);
+                assert_eq!(found, expected.filter(|_| meets), "{i}");
+                let (mut all, mut expected) = (vec![], vec![]);
+                bounded.all_hits(ray, Interval::FORWARD, None, scratch, &mut all);
+                plain.all_hits(ray, Interval::FORWARD, None, scratch, &mut expected);
+                expected.retain(|_| meets);
+                assert_eq!(all, expected, "{i}");
+                let mut list = Crossings::default();
+                bounded.crossings(ray, Interval::FORWARD, None, scratch, &mut list);
+                let visible = list.list.iter().find(|c| c.visible);
+                assert_eq!(visible.map(|c| c.hit), found, "{i}");
+                met += u32::from(found.is_some());
+                hidden += u32::from(!meets && !list.list.is_empty());
+            }
+        }
+        assert!(met > 200 && hidden > 200, "{met} {hidden}");
+    }
+
+    #[test]
+    fn a_slow_shape_is_seen_as_a_fast_one() {
+        let bounds = || bound(Sphere::new(DVec3::new(0.5, 0.2, 1.0), 0.7));
+        let torus = Torus::try_new(DVec3::ZERO, DVec3::Y, 1.0, 0.4).expect("a torus");
+        let bounded = Bounded::new(torus.into(), bounds(), None);
+        assert!(sees(&bounded, [1.0, 0.2, -9.0]));
+        assert!(!sees(&bounded, [-0.5, 0.2, -9.0]));
+        let torus = bounded.shape();
+        let ray = &Ray::new(DVec3::new(-0.5, 0.2, -9.0), DVec3::Z);
+        assert!(torus.any_hit(ray, Interval::FORWARD, None, &mut Scratch::default()));
     }
 }

@@ -1,12 +1,13 @@
 use super::half_spaces::{HalfSpace, HalfSpaces};
 use super::leaf::{Leaf, Next, Placement};
-use super::solid::{Kind, NO_PARENT, Node};
+use super::solid::{Bounds, Kind, NO_PARENT, Node};
 use super::sweep::Rule;
 use super::tighten::{Form, tightened};
 use super::tree::CsgNode;
 use super::{Csg, Operands};
 use crate::{GeometryError, Primitive, Shape};
 use std::cmp::Ordering;
+use std::sync::Arc;
 use strahl_accel::Bvh2;
 use strahl_math::{Aabb, Transform};
 
@@ -78,6 +79,8 @@ pub(super) struct Compiler {
     /// Parents come before their operands.
     nodes: Vec<Proto>,
     leaves: Vec<Leaf>,
+    /// The different bounds of leaves.
+    bounds: Vec<Bounds>,
     elements: u32,
 }
 
@@ -204,6 +207,7 @@ impl Compiler {
 
     fn add_leaf(&mut self, shape: Shape, tag: u32, context: Context) -> Result<(), GeometryError> {
         shape.validate()?;
+        let (shape, seen_through) = self.without_bounds(shape, context.map.as_ref());
         let leaf = count(self.leaves.len(), "number of leaves of the CSG tree")?;
         self.add_node(Kind::Leaf(leaf), context.parent)?;
         let baked = context.map.and_then(|map| shape.baked(&map));
@@ -229,11 +233,33 @@ impl Compiler {
             first_element,
             negative,
             visible: context.visible,
+            seen_through,
             bounds,
             if_inside: Next::Answer(!negative),
             if_outside: Next::Answer(negative),
         });
         Ok(())
+    }
+
+    /// A leaf's shape without its bounds, and their number in the tree: so that the shape is searched as fast as without bounds. `map` is from
+    /// the shape's space to the tree's.
+    fn without_bounds(&mut self, shape: Shape, map: Option<&Transform>) -> (Shape, Option<u32>) {
+        let Shape::Bounded(bounded) = &shape else {
+            return (shape, None);
+        };
+        // Otherwise the shape goes on asking by itself.
+        let Some(bounds) = bounded.bounds_in(map) else {
+            return (shape, None);
+        };
+        let same = |known: &Bounds| {
+            let mut pairs = known.iter().zip(bounds);
+            known.len() == bounds.len() && pairs.all(|(a, b)| Arc::ptr_eq(a, b))
+        };
+        let number = self.bounds.iter().position(same).unwrap_or_else(|| {
+            self.bounds.push(bounds.into());
+            self.bounds.len() - 1
+        });
+        (bounded.shape().clone(), Some(number as u32))
     }
 
     /// The other passes.
@@ -286,7 +312,13 @@ impl Compiler {
             });
         }
         let closed = self.leaves.iter().all(|leaf| leaf.solid().is_some());
-        Csg::from_parts(nodes, operands, self.leaves, self.elements, closed)
+        Csg::from_parts(
+            nodes,
+            operands,
+            (self.leaves, self.bounds),
+            self.elements,
+            closed,
+        )
     }
 
     /// The node as a half-space, if it is one.

@@ -129,6 +129,7 @@ impl<'a> Evaluation<'a> {
                 let (range, fusing) = (frame.range, &self.fusing);
                 if half_spaces.crossings(self.ray, range, from, leaving, fusing, &mut list) {
                     frame.next = node.core;
+                    self.csg.hide_unseen(&mut list, self.ray, scratch);
                     self.absorb(&list, work, scratch);
                     scratch.give(list);
                     continue;
@@ -186,6 +187,7 @@ impl<'a> Evaluation<'a> {
                 };
                 if let Some(leaf) = self.csg.leaf(leaf) {
                     leaf.crossings(&query, scratch, out);
+                    self.csg.hide_unseen(out, self.ray, scratch);
                 }
                 true
             }

@@ -125,7 +125,9 @@ impl Search<'_> {
             }
             let timeline = &mut self.lists.timeline;
             timeline.set_state(0, sum.state);
-            let found = timeline.first_seen(csg, self.range, &self.fusing)?;
+            let (ray, scratch) = (self.ray, &mut *self.scratch);
+            let sees = |element| csg.is_seen(element, ray, scratch);
+            let found = timeline.first_seen(csg, self.range, &self.fusing, sees)?;
             let known = found.map_or(f64::INFINITY, |hit| hit.t + self.fusing.gap(hit.t, hit.t));
             if known <= window.max || alive.max <= window.max {
                 return Ok(found);

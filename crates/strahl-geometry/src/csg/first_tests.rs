@@ -155,7 +155,7 @@ fn compare(
     }
     if let Some(flat) = csg.flat() {
         let from = from.map(|surface| csg.leaf_surface(surface));
-        match flat.first_visible(csg.all_leaves(), ray, range, from) {
+        match flat.first_visible(csg.all_leaves(), ray, range, from, |_| true) {
             Answer::Certain(found) => {
                 assert_eq!(found, expected, "{ray:?} {range:?} {from:?}\n{csg:?}");
                 tally.flat += 1;

@@ -71,16 +71,20 @@ impl Flat {
     }
 
     /// Searches the first visible surface with `range.min < t <= range.max`; `from` is the leaf that the ray starts on, and its
-    /// surface there.
+    /// surface there; `sees` says whether the ray meets the bounds of a hit's leaf.
     pub(super) fn first_visible(
         &self,
         leaves: &[Leaf],
         ray: &Ray,
         range: Interval,
         from: Option<(u32, SurfaceId)>,
+        mut sees: impl FnMut(&PrimHit) -> bool,
     ) -> Answer {
         let mut first = None;
         let sure = self.walk(leaves, ray, range, from, |hit| {
+            if !sees(&hit) {
+                return ControlFlow::Continue(());
+            }
             first = Some(hit);
             ControlFlow::Break(())
         });
@@ -97,10 +101,13 @@ impl Flat {
         ray: &Ray,
         range: Interval,
         from: Option<(u32, SurfaceId)>,
+        mut sees: impl FnMut(&PrimHit) -> bool,
         out: &mut Vec<PrimHit>,
     ) -> bool {
         let sure = self.walk(leaves, ray, range, from, |hit| {
-            out.push(hit);
+            if sees(&hit) {
+                out.push(hit);
+            }
             ControlFlow::Continue(())
         });
         sure.is_ok()

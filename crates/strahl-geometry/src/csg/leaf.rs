@@ -18,6 +18,8 @@ pub(super) struct Leaf {
     pub(super) negative: bool,
     /// False for shapes that only clip.
     pub(super) visible: bool,
+    /// The number of the bounds that rays must meet to see the leaf; `None` if all rays see it.
+    pub(super) seen_through: Option<u32>,
     /// The box around the shape's inside, in the tree's space.
     pub(super) bounds: Aabb,
     /// The leaf that decides next whether a point is inside of the tree, if this one contains it ...

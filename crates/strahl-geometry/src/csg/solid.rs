@@ -10,6 +10,7 @@ use crate::primitive::one_by_one;
 use crate::{
     Crossings, GeometryError, PrimHit, Primitive, Scratch, Shape, Solid, SurfaceId, SurfacePoint,
 };
+use std::sync::Arc;
 use strahl_accel::Bvh2;
 use strahl_math::{Aabb, DVec2, DVec3, Interval, Ray};
 
@@ -35,6 +36,8 @@ pub struct Csg {
     /// The operands of all nodes.
     operands: Vec<u32>,
     leaves: Vec<Leaf>,
+    /// The different bounds that leaves are seen through.
+    bounds: Vec<Bounds>,
     elements: u32,
     /// Whether all leaves are solids.
     closed: bool,
@@ -43,6 +46,9 @@ pub struct Csg {
     /// The tree as a few convex shapes, if it is that.
     flat: Option<Flat>,
 }
+
+/// Bounds of leaves (`bounded_by`), in the space of the tree: a ray sees the leaves if it meets all of them ([`crate::Bounded`]).
+pub(super) type Bounds = Box<[Arc<Csg>]>;
 
 /// The kind of a compiled node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -96,7 +102,7 @@ impl Csg {
     pub(super) fn from_parts(
         nodes: Vec<Node>,
         operands: Vec<u32>,
-        leaves: Vec<Leaf>,
+        (leaves, bounds): (Vec<Leaf>, Vec<Bounds>),
         elements: u32,
         closed: bool,
     ) -> Self {
@@ -114,6 +120,7 @@ impl Csg {
             nodes,
             operands,
             leaves,
+            bounds,
             elements,
             closed,
             shallow,
@@ -192,6 +199,34 @@ impl Csg {
         self.leaves.get(index as usize)
     }
 
+    /// Whether a ray meets all bounds that the leaf of an element is seen through.
+    #[inline]
+    pub(super) fn is_seen(&self, element: u32, ray: &Ray, scratch: &mut Scratch) -> bool {
+        self.bounds.is_empty() || self.meets_bounds(element, ray, scratch)
+    }
+
+    fn meets_bounds(&self, element: u32, ray: &Ray, scratch: &mut Scratch) -> bool {
+        let (leaf, _) = self.leaf_of(element);
+        let number = self.leaves.get(leaf).and_then(|leaf| leaf.seen_through);
+        let bounds = number.and_then(|number| self.bounds.get(number as usize));
+        bounds.is_none_or(|bounds| {
+            bounds
+                .iter()
+                .all(|bound| bound.any_hit(ray, Interval::FORWARD, None, scratch))
+        })
+    }
+
+    /// Makes those crossings of a ray invisible whose leaves it does not see.
+    pub(super) fn hide_unseen(&self, list: &mut Crossings, ray: &Ray, scratch: &mut Scratch) {
+        if self.bounds.is_empty() {
+            return;
+        }
+        for crossing in &mut list.list {
+            let element = crossing.hit.surface.element;
+            crossing.visible &= self.meets_bounds(element, ray, scratch);
+        }
+    }
+
     fn surface(&self, ray: &Ray, hit: &PrimHit, bare: bool) -> SurfacePoint {
         let (leaf, _) = self.leaf_of(hit.surface.element);
         match self.leaves.get(leaf) {
@@ -255,7 +290,8 @@ impl Primitive for Csg {
     ) -> Option<PrimHit> {
         if let Some(flat) = &self.flat {
             let from = from.map(|surface| self.leaf_surface(surface));
-            if let Answer::Certain(hit) = flat.first_visible(&self.leaves, ray, range, from) {
+            let sees = |hit: &PrimHit| self.is_seen(hit.surface.element, ray, scratch);
+            if let Answer::Certain(hit) = flat.first_visible(&self.leaves, ray, range, from, sees) {
                 return hit;
             }
         } else if self.shallow {
@@ -286,7 +322,8 @@ impl Primitive for Csg {
         let before = out.len();
         if let Some(flat) = &self.flat {
             let from = from.map(|surface| self.leaf_surface(surface));
-            if flat.all_visible(&self.leaves, ray, range, from, out) {
+            let sees = |hit: &PrimHit| self.is_seen(hit.surface.element, ray, scratch);
+            if flat.all_visible(&self.leaves, ray, range, from, sees, out) {
                 return;
             }
             out.truncate(before);

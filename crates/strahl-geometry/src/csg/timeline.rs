@@ -113,12 +113,14 @@ impl Timeline {
         }
     }
 
-    /// Goes along the ray to the first crossing in the range that is visible from outside of the tree.
+    /// Goes along the ray to the first crossing in the range that is visible from outside of the tree; `sees` says whether the ray meets the
+    /// bounds of the leaf that an element belongs to.
     pub(super) fn first_seen(
         &mut self,
         csg: &Csg,
         range: Interval,
         fusing: &Fusing,
+        mut sees: impl FnMut(u32) -> bool,
     ) -> Result<Option<PrimHit>, TooClose> {
         self.events.sort_unstable_by(|a, b| a.t.total_cmp(&b.t));
         let Self {
@@ -141,7 +143,8 @@ impl Timeline {
             if !(next - event.t > fusing.gap(event.t, next)) && next != f64::INFINITY {
                 return Err(TooClose);
             }
-            if event.is_seen(csg, states) && event.t > range.min {
+            let seen = event.is_seen(csg, states) && event.t > range.min;
+            if seen && sees(event.surface.element) {
                 let uv = uvs.get((event.uv as usize).wrapping_sub(1));
                 return Ok(Some(PrimHit {
                     t: event.t,
