@@ -90,6 +90,48 @@ fn cycles_are_left_out_exactly() {
     assert!(cycles > 50, "{cycles}");
 }
 
+/// The orbits of powers are looked at now and then only, where they can't come back; the values are those of all their steps.
+#[test]
+fn orbits_end_where_they_leave_the_circle() {
+    for (exponent, julia) in [
+        (2, None),
+        (2, Some(DVec2::new(-0.75, 0.11))),
+        (2, Some(DVec2::new(1.9, 0.5))),
+        (2, Some(DVec2::new(-2.0, 0.3))),
+        (3, None),
+        (5, Some(DVec2::new(0.6, -0.4))),
+    ] {
+        for iterations in [1, 7, 8, 9, 64, 301] {
+            let fractal = Fractal {
+                kind: FractalKind::Power { exponent },
+                julia,
+                interior: FractalInterior::Real(1.0),
+                exterior: Exterior::Real(1.0),
+                ..Fractal::mandelbrot(iterations)
+            };
+            for i in 0..40 {
+                for j in 0..20 {
+                    let point = DVec2::new(f64::from(i) / 8.0 - 2.5, f64::from(j) / 8.0 - 1.1);
+                    let c = julia.unwrap_or(point);
+                    let mut z = point;
+                    for _ in 0..iterations {
+                        let mut power = z;
+                        for _ in 1..exponent {
+                            let (a, b) = (power, z);
+                            power = DVec2::new(a.x * b.x - a.y * b.y, a.x * b.y + a.y * b.x);
+                        }
+                        z = power + c;
+                        if !(z.length_squared() <= 4.0) {
+                            break;
+                        }
+                    }
+                    assert_eq!(fractal.value(point), z.x, "{fractal:?} {point}");
+                }
+            }
+        }
+    }
+}
+
 /// Points that are known to be in the set without their orbit have none that escapes.
 #[test]
 fn the_largest_parts_of_the_mandelbrot_set_are_inside() {
