@@ -176,7 +176,23 @@ impl Bounds {
         }
     }
 
+    #[inline]
     pub(crate) fn add(self, other: Self) -> Self {
+        // The usual case. The ends of an empty interval are infinite, and so are their sums, or NaN.
+        let sums = (self.min + other.min, self.max + other.max);
+        if sums.0.abs() < f64::INFINITY && sums.1.abs() < f64::INFINITY {
+            return Self {
+                min: add_down(self.min, other.min),
+                max: add_up(self.max, other.max),
+                nan: self.nan || other.nan,
+            };
+        }
+        self.add_infinite(other)
+    }
+
+    /// [`Bounds::add`] where a sum is not finite.
+    #[cold]
+    fn add_infinite(self, other: Self) -> Self {
         if self.is_empty() || other.is_empty() {
             return Self::NAN;
         }
