@@ -163,6 +163,8 @@ pub trait Isa: Copy + Send + Sync + 'static {
     fn le(self, a: Self::F64x4, b: Self::F64x4) -> u32;
     /// The lanes where `a < b`; false for NaN.
     fn lt(self, a: Self::F64x4, b: Self::F64x4) -> u32;
+    /// The columns of a matrix that is given by its rows.
+    fn transpose(self, rows: [Self::F64x4; 4]) -> [Self::F64x4; 4];
 }
 
 /// Evaluates an expression with the proof of a level, inside of [`Isa::call`].

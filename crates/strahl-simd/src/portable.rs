@@ -292,6 +292,11 @@ macro_rules! lane_by_lane {
         fn lt(self, a: [f64; 4], b: [f64; 4]) -> u32 {
             (0..4).fold(0, |mask, i| mask | u32::from(a[i] < b[i]) << i)
         }
+
+        #[inline(always)]
+        fn transpose(self, rows: [[f64; 4]; 4]) -> [[f64; 4]; 4] {
+            std::array::from_fn(|i| std::array::from_fn(|k| rows[k][i]))
+        }
     };
 }
 #[cfg(target_arch = "x86_64")]

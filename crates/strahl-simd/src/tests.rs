@@ -127,6 +127,19 @@ fn every_level_computes_the_same() {
 }
 
 #[test]
+fn rows_become_columns() {
+    let rows: [[f64; 4]; 4] = std::array::from_fn(|i| std::array::from_fn(|k| (10 * i + k) as f64));
+    for simd in Simd::available() {
+        let columns = dispatch!(simd, isa => {
+            isa.transpose(rows.map(|row| isa.load(&row))).map(|column| isa.store(column))
+        });
+        for (i, column) in columns.into_iter().enumerate() {
+            assert_eq!(column, rows.map(|row| row[i]), "{}", simd.level());
+        }
+    }
+}
+
+#[test]
 fn levels_have_names() {
     for level in Level::ALL {
         assert_eq!(level.name().parse(), Ok(*level));

@@ -288,6 +288,21 @@ macro_rules! avx {
             // SAFETY: `self` proves AVX.
             unsafe { _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_LT_OQ>(a, b)) as u32 }
         }
+
+        #[inline(always)]
+        fn transpose(self, [a, b, c, d]: [__m256d; 4]) -> [__m256d; 4] {
+            // SAFETY: `self` proves AVX.
+            unsafe {
+                let (p, q) = (_mm256_unpacklo_pd(a, b), _mm256_unpackhi_pd(a, b));
+                let (r, s) = (_mm256_unpacklo_pd(c, d), _mm256_unpackhi_pd(c, d));
+                [
+                    _mm256_permute2f128_pd::<0x20>(p, r),
+                    _mm256_permute2f128_pd::<0x20>(q, s),
+                    _mm256_permute2f128_pd::<0x31>(p, r),
+                    _mm256_permute2f128_pd::<0x31>(q, s),
+                ]
+            }
+        }
     };
 }
 

@@ -205,8 +205,8 @@ impl<'a, const K: usize> Search<'a, K> {
 
     /// Visits the pieces along the ray.
     pub(super) fn run(&mut self) {
-        let (tree, frame) = (self.tree, self.frame);
-        tree.walk(frame, self);
+        let (net, tree, frame) = (self.net, self.tree, self.frame);
+        tree.walk(net, frame, self);
     }
 
     /// Searches a piece that is seen as `part`, and halves it as long as nothing is certain about it; `noise` is a bound of the rounding

@@ -9,6 +9,7 @@
 use super::net::Net;
 use super::search::Frame;
 use std::collections::VecDeque;
+use std::sync::OnceLock;
 use strahl_accel::{SixteenBoxes, SixteenSlabs};
 use strahl_math::error::{gamma, round_up_f32};
 use strahl_math::{Aabb, DMat3, DVec3, Interval, Ray};
@@ -108,11 +109,31 @@ pub(super) struct Tree {
     scale: f64,
     /// How far the patch may be from what neighbours know of it.
     seam: f64,
-    /// The root is node 0. If there is none, the whole patch is leaf 0.
+    /// The whole patch as a piece.
+    whole: Leaf,
+    curving: Curving<f32>,
+    kind: Kind,
+    /// The parts, when the first ray comes that needs them.
+    pieces: OnceLock<Pieces>,
+}
+
+/// What the whole patch tells as a piece.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    /// It is never divided.
+    Flat,
+    /// Of many rays it tells the hit; the parts are made for the others.
+    Gentle,
+    /// Only the parts are of use.
+    Curved,
+}
+
+/// Smaller and smaller parts of a patch.
+#[derive(Debug, Default)]
+struct Pieces {
+    /// The root is node 0.
     nodes: Vec<Node>,
     leaves: Vec<Leaf>,
-    /// If the patch is one leaf.
-    curving: Curving<f32>,
 }
 
 /// Who is shown the pieces along a ray.
@@ -273,52 +294,68 @@ struct LocalRay<I: Isa> {
 impl Tree {
     /// The bytes that its pieces take.
     pub(super) fn bytes(&self) -> usize {
-        size_of_val(self.nodes.as_slice()) + size_of_val(self.leaves.as_slice())
+        self.pieces.get().map_or(0, |pieces| {
+            size_of_val(pieces.nodes.as_slice()) + size_of_val(pieces.leaves.as_slice())
+        })
     }
 
-    /// The pieces of a net that may be this far from what neighbours know of it.
+    /// The tree of a net that may be this far from what neighbours know of it.
     pub(super) fn build<const K: usize>(net: &Net<4, K>, seam: f64) -> Self {
         let hull = hull(net);
         let mut tree = Self {
             anchor: hull.min,
             scale: scale(hull.size().max_element()),
             seam,
-            nodes: vec![],
-            leaves: vec![],
+            whole: Leaf::new([DVec3::ZERO; 3], DVec3::ZERO),
             curving: Curving::NONE,
+            kind: Kind::Flat,
+            pieces: OnceLock::new(),
         };
-        tree.curving = tree.curving(net, Square::WHOLE);
-        let (leaf, bounds) = tree.leaf(net);
-        if bounds.is_flat() {
-            tree.leaves.push(leaf);
-            return tree;
+        let piece = Piece::new(net, &tree);
+        let (whole, bounds) = piece.leaf();
+        tree.curving = piece.curving_of(Square::WHOLE);
+        tree.whole = whole;
+        if !bounds.is_flat() {
+            tree.kind = if bounds.bend < NEARLY_LINEAR {
+                Kind::Gentle
+            } else {
+                Kind::Curved
+            };
         }
+        tree
+    }
+
+    /// The parts of the net.
+    fn divide<const K: usize>(&self, net: &Net<4, K>) -> Pieces {
+        let mut pieces = Pieces::default();
         // Nodes in the order of their numbers, which are given when they come into the queue.
-        let mut queue = VecDeque::from([(*net, Square::WHOLE, 1)]);
-        while let Some((net, square, depth)) = queue.pop_front() {
+        let mut queue = VecDeque::from([(*net, Square::WHOLE, self.curving, 1)]);
+        while let Some((net, square, curving, depth)) = queue.pop_front() {
             let mut node = Node {
                 boxes: SixteenBoxes::EMPTY,
                 square,
-                curving: tree.curving(&net, square),
+                curving,
                 leaves: 0,
-                first_leaf: tree.leaves.len() as u32,
-                first_node: (tree.nodes.len() + 1 + queue.len()) as u32,
+                first_leaf: pieces.leaves.len() as u32,
+                first_node: (pieces.nodes.len() + 1 + queue.len()) as u32,
             };
             for (place, part) in sixteenths(&net).as_flattened().iter().enumerate() {
-                node.boxes.set(place, &tree.local(part));
-                let (leaf, bounds) = tree.leaf(part);
+                node.boxes.set(place, &self.local(part));
+                let piece = Piece::new(part, self);
+                let (leaf, bounds) = piece.leaf();
                 if depth == NODES || bounds.is_flat() {
                     node.leaves |= 1 << place;
-                    tree.leaves.push(leaf);
+                    pieces.leaves.push(leaf);
                 } else {
-                    queue.push_back((*part, square.sixteenth(place), depth + 1));
+                    let square = square.sixteenth(place);
+                    queue.push_back((*part, square, piece.curving_of(square), depth + 1));
                 }
             }
-            tree.nodes.push(node);
+            pieces.nodes.push(node);
         }
-        tree.nodes.shrink_to_fit();
-        tree.leaves.shrink_to_fit();
-        tree
+        pieces.nodes.shrink_to_fit();
+        pieces.leaves.shrink_to_fit();
+        pieces
     }
 
     /// The box around a piece, in the coordinates of the tree.
@@ -328,33 +365,25 @@ impl Tree {
         Aabb::new(local(min), local(max))
     }
 
-    /// How curved a piece is, in the coordinates of the tree.
-    fn curving<const K: usize>(&self, part: &Net<4, K>, square: Square) -> Curving<f32> {
-        let per_side = f64::from(1_u32 << square.level);
-        let own = Piece::new(part, self).curving();
-        own.times(per_side * per_side)
-    }
-
-    /// A piece as a leaf.
-    fn leaf<const K: usize>(&self, part: &Net<4, K>) -> (Leaf, Bounds) {
-        let piece = Piece::new(part, self);
-        let columns = piece.columns();
-        // As they are stored, and so the frame is exact.
-        let mut leaf = Leaf::new(columns, DVec3::ZERO);
-        let (low, high) = extent(&piece.framed(&leaf));
-        leaf = Leaf::new(columns, -0.5 * (low + high));
-        let bounds = piece.bounds(&leaf);
-        leaf.set_bounds(&bounds);
-        (leaf, bounds)
-    }
-
     /// Shows the pieces along a ray to the visitor, nearly in the order in which the ray enters them.
-    pub(super) fn walk(&self, frame: &Frame, visitor: &mut dyn Visitor) {
-        dispatch!(Simd::best(), isa => self.walk_with(isa, frame, visitor));
+    pub(super) fn walk<const K: usize>(
+        &self,
+        net: &Net<4, K>,
+        frame: &Frame,
+        visitor: &mut dyn Visitor,
+    ) {
+        let divide = || self.divide(net);
+        dispatch!(Simd::best(), isa => self.walk_with(isa, frame, &divide, visitor));
     }
 
     #[inline(always)]
-    fn walk_with<I: Isa>(&self, isa: I, frame: &Frame, visitor: &mut dyn Visitor) {
+    fn walk_with<I: Isa>(
+        &self,
+        isa: I,
+        frame: &Frame,
+        divide: &dyn Fn() -> Pieces,
+        visitor: &mut dyn Visitor,
+    ) {
         let per = frame.length * self.scale;
         let is_usable = per > 0.0 && per < f64::INFINITY;
         let local = |range: Interval| {
@@ -375,13 +404,14 @@ impl Tree {
             direction: splat(frame.along),
             noise: isa.splat((1.0 + origin.abs().max_element()) * gamma(512)),
         };
-        if self.nodes.is_empty() {
-            if let Some(leaf) = self.leaves.first() {
-                let verdict = leaf.meet(isa, &ray, range);
+        if self.kind != Kind::Curved {
+            let verdict = self.whole.meet(isa, &ray, range);
+            if self.kind == Kind::Flat || !matches!(verdict, Verdict::Uncertain) {
                 show(verdict, Square::WHOLE, &self.curving, self.scale, visitor);
+                return;
             }
-            return;
         }
+        let pieces = self.pieces.get_or_init(divide);
         let Some(slabs) = SixteenSlabs::new(isa, &straight, range) else {
             return;
         };
@@ -390,7 +420,7 @@ impl Tree {
         let mut stack = [(0_u32, 0.0_f32); 16 * NODES as usize];
         let (mut height, mut number) = (0, 0);
         loop {
-            let Some(node) = self.nodes.get(number as usize) else {
+            let Some(node) = pieces.nodes.get(number as usize) else {
                 return;
             };
             let (near, mut hit) = slabs.enter(isa, &node.boxes, t_max);
@@ -419,7 +449,7 @@ impl Tree {
                 if near > t_max {
                     continue;
                 }
-                let Some(parent) = self.nodes.get(index as usize >> 4) else {
+                let Some(parent) = pieces.nodes.get(index as usize >> 4) else {
                     return;
                 };
                 let place = index & 15;
@@ -428,7 +458,7 @@ impl Tree {
                     break parent.first_node + place - before.count_ones();
                 }
                 let number = parent.first_leaf + before.count_ones();
-                let Some(leaf) = self.leaves.get(number as usize) else {
+                let Some(leaf) = pieces.leaves.get(number as usize) else {
                     return;
                 };
                 let square = parent.square.sixteenth(place as usize);
@@ -550,19 +580,30 @@ impl<const K: usize> Piece<K> {
         DVec3::AXES.map(|axis| axis * per)
     }
 
-    /// The points in the frame of a leaf.
-    fn framed(&self, leaf: &Leaf) -> [[DVec3; K]; K] {
-        let (matrix, offset) = leaf.map();
+    /// The piece as a leaf.
+    fn leaf(&self) -> (Leaf, Bounds) {
+        let columns = self.columns();
+        // As they are stored, and so the frame is exact.
+        let mut leaf = Leaf::new(columns, DVec3::ZERO);
+        let (matrix, _) = leaf.map();
         let mut framed = self.points;
         for p in framed.as_flattened_mut() {
-            *p = matrix * *p + offset;
+            *p = matrix * *p;
         }
-        framed
+        let (low, high) = extent(&framed);
+        leaf = Leaf::new(columns, -0.5 * (low + high));
+        let (_, offset) = leaf.map();
+        for p in framed.as_flattened_mut() {
+            *p += offset;
+        }
+        let bounds = self.bounds(&leaf, framed);
+        leaf.set_bounds(&bounds);
+        (leaf, bounds)
     }
 
-    fn bounds(&self, leaf: &Leaf) -> Bounds {
+    /// What is known of the piece in the frame of a leaf, where its points are these.
+    fn bounds(&self, leaf: &Leaf, mut framed: [[DVec3; K]; K]) -> Bounds {
         let (matrix, offset) = leaf.map();
-        let mut framed = self.framed(leaf);
         let (low, high) = extent(&framed);
         let sums = matrix.x_axis.abs() + matrix.y_axis.abs() + matrix.z_axis.abs();
         let noise = (sums + offset.abs()) * (self.noise + gamma(16));
@@ -615,6 +656,12 @@ impl<const K: usize> Piece<K> {
         let rates = Rates::of(&self.weights, |w| w.abs());
         let slope = rates.u + rates.v;
         Uneven { weight, slope }
+    }
+
+    /// How curved the piece is, which is over a square, by the parameters of the patch.
+    fn curving_of(&self, square: Square) -> Curving<f32> {
+        let per_side = f64::from(1_u32 << square.level);
+        self.curving().times(per_side * per_side)
     }
 
     /// How curved the piece is, by its own parameters.

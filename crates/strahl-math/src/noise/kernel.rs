@@ -25,19 +25,31 @@ fn overflowed(x: f64) -> (u32, f64) {
 /// infinite one.
 #[inline(always)]
 fn place<I: Isa>(x: f64) -> (u32, f64) {
-    // The sum with a number below 2^51 has no bits for a fraction; its lowest bits are those of the integer.
-    const ROUND: f64 = 3.0 * LARGE;
     if x.abs() >= OVERFLOW {
         return overflowed(x);
     }
-    let floor = if I::LEVEL >= Level::Sse4 {
-        x.floor()
-    } else {
-        // Without an instruction for it.
-        let nearest = (x + ROUND) - ROUND;
-        nearest - if nearest > x { 1.0 } else { 0.0 }
-    };
-    ((floor + ROUND).to_bits() as u32, x - floor)
+    let floor = floor::<I>(x);
+    // The lowest bits of the sum are those of the integer.
+    ((floor + 3.0 * LARGE).to_bits() as u32, x - floor)
+}
+
+/// The greatest integer that is not above a number below [`OVERFLOW`].
+#[inline(always)]
+pub(super) fn floor<I: Isa>(x: f64) -> f64 {
+    // The sum with a number below 2^51 has no bits for a fraction.
+    if I::LEVEL >= Level::Sse4 {
+        return x.floor();
+    }
+    // Without an instruction for it.
+    let nearest = (x + 3.0 * LARGE) - 3.0 * LARGE;
+    nearest - if nearest > x { 1.0 } else { 0.0 }
+}
+
+/// A whole number within the range of 32-bit integers, modulo 2^20: more than the lattices have until they repeat.
+#[inline(always)]
+pub(super) fn whole(x: f64) -> usize {
+    // The sum with a number below 2^52 ends in the bits of the integer.
+    (x + 3.0 * LARGE).to_bits() as usize & 0xf_ffff
 }
 
 /// The numbers of a cell and the next one in the lattice of the value-gradient noise.

@@ -26,7 +26,7 @@ mod plane;
 mod tables;
 
 pub use bounds::noise_bounds;
-pub use plane::{PlaneNoise, plane_noise, plane_noise_bounds};
+pub use plane::{PlaneBounds, PlaneNoise, plane_noise, plane_noise_bounds};
 
 use crate::DVec3;
 use strahl_simd::{Isa, Simd, dispatch};

@@ -1,11 +1,13 @@
 //! Noise on the plane `y = 0` with its slopes, and what both can be over a rectangle: for terrains.
 //!
 //! A corner of a cell of the plane carries a linear function of two variables: that of the lattice's corner, or what the blend along
-//! y makes of two of them. So a terrain needs four corners where the noise in space has eight.
+//! y makes of two of them. So a terrain needs four corners where the noise in space has eight. Four octaves are computed at once,
+//! one in each lane.
 
-use super::kernel::{CELL_SHIFT, OVERFLOW};
-use super::tables::{GRADIENTS, VALUES, hash};
+use super::kernel::{CELL_SHIFT, OVERFLOW, floor, whole};
+use super::tables::{CORNERS, GRADIENTS, hash};
 use super::{NoiseGenerator, SHIFT, perlin_row, smooth};
+use strahl_simd::Isa;
 
 /// More than the rounding errors of noise and its slopes, whose terms are of the size of 1.
 const ROUNDING: f64 = 1e-12;
@@ -13,10 +15,10 @@ const ROUNDING: f64 = 1e-12;
 /// A bound of the slopes along x and z: corners differ by at most 5, the blend has a slope of at most 1.5, a corner one of at most 1.
 const STEEPEST: f64 = 8.5;
 
-/// Two numbers, the lower one first.
-type Range = (f64, f64);
+/// Two numbers, the lower one first; vectors of them in kernels.
+type Range<T = f64> = (T, T);
 
-/// Noise and its slopes along x and z, or what they are within.
+/// Noise and its slopes along x and z.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlaneNoise<T> {
     /// The noise, `0..=1`.
@@ -25,40 +27,70 @@ pub struct PlaneNoise<T> {
     pub slopes: [T; 2],
 }
 
-/// What a corner carries: `value + x dx + z dz`.
-type Corner = [f64; 3];
+/// What noise and its slopes along x and z are within over a rectangle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PlaneBounds {
+    /// The range of the noise, within `0..=1`.
+    pub value: Range,
+    /// The ranges of its derivatives by x and by z.
+    pub slopes: [Range; 2],
+    /// The noise in the middle of the rectangle, if that is known.
+    pub middle: f64,
+}
 
-/// The four corners of a cell; corner `2 i + k` is the lower (0) or upper (1) one along x and along z.
+/// What a corner carries: `value + x dx + z dz`.
+type Corner<T> = [T; 3];
+
+/// The four corners of a cell; corner `2 i + k` is the lower (0) or upper (1) one along x and along z. The third lanes mean nothing.
 #[inline(always)]
-fn corners(cell: [f64; 2], generator: NoiseGenerator) -> [Corner; 4] {
-    // The casts are exact: cells are whole and within the range of 32-bit integers.
-    let [i, k] = [cell[0] as i64, cell[1] as i64];
-    let mut all = [[0.0; 3]; 4];
+fn corners<I: Isa>(isa: I, cell: [f64; 2], generator: NoiseGenerator) -> [I::F64x4; 4] {
+    let [i, k] = [whole(cell[0]), whole(cell[1])];
+    let mut all = [isa.splat(0.0); 4];
     if generator == NoiseGenerator::Perlin {
         let (j, y) = (WHOLE as usize & 2047, SHIFT - WHOLE);
         let upper = smooth(y);
-        let (i, k) = (i + WHOLE as i64, k + WHOLE as i64);
         for (n, corner) in all.iter_mut().enumerate() {
-            let i = (i + (n >> 1) as i64) as usize & 2047;
-            let k = (k + (n & 1) as i64) as usize & 2047;
+            let (i, k) = ((i + j + (n >> 1)) & 2047, (k + j + (n & 1)) & 2047);
             let low = GRADIENTS[(perlin_row(i, j) + k) & 2047];
             let high = GRADIENTS[(perlin_row(i, (j + 1) & 2047) + k) & 2047];
-            let mix = |a: f64, b: f64| (1.0 - upper) * a + upper * b;
-            *corner = [
-                mix(low.y * y, high.y * (y - 1.0)),
-                mix(low.x, high.x),
-                mix(low.z, high.z),
-            ];
+            let low = isa.load(&[low.y * y, low.x, 0.0, low.z]);
+            let high = isa.load(&[high.y * (y - 1.0), high.x, 0.0, high.z]);
+            *corner = isa.add(
+                isa.mul(isa.splat(1.0 - upper), low),
+                isa.mul(isa.splat(upper), high),
+            );
         }
         return all;
     }
-    let shifted = |c: i64| (c + i64::from(CELL_SHIFT)) as usize & 4095;
     let j = CELL_SHIFT as usize & 4095;
-    for (n, corner) in all.iter_mut().enumerate() {
-        let row = usize::from(hash(shifted(i + (n >> 1) as i64)));
+    for a in 0..2 {
+        let row = usize::from(hash((i + j + a) & 4095));
         let column = usize::from(hash(row ^ j));
-        let h = usize::from(hash(column ^ shifted(k + (n & 1) as i64)) & 255);
-        *corner = [VALUES[0][h], VALUES[1][h], VALUES[3][h]];
+        for b in 0..2 {
+            let h = usize::from(hash(column ^ (k + j + b) & 4095) & 255);
+            all[2 * a + b] = isa.load(&CORNERS[h]);
+        }
+    }
+    all
+}
+
+/// The corners of four cells.
+#[inline(always)]
+fn corners_of_four<I: Isa>(
+    isa: I,
+    [x, z]: [&[f64; 4]; 2],
+    generator: NoiseGenerator,
+) -> [Corner<I::F64x4>; 4] {
+    let zero = isa.splat(0.0);
+    let mut cells = [[zero; 4]; 4];
+    for lane in 0..4 {
+        cells[lane] = corners(isa, [x[lane], z[lane]], generator);
+    }
+    let [a, b, c, d] = cells;
+    let mut all = [[zero; 3]; 4];
+    for n in 0..4 {
+        let [value, by_x, _, by_z] = isa.transpose([a[n], b[n], c[n], d[n]]);
+        all[n] = [value, by_x, by_z];
     }
     all
 }
@@ -84,129 +116,271 @@ fn shift(generator: NoiseGenerator) -> f64 {
 /// The whole part of the shift of the gradient noise.
 const WHOLE: f64 = 10_000_000.0;
 
-/// The derivative of the blend.
+/// [`floor`] of four numbers.
 #[inline(always)]
-fn smooth_slope(t: f64) -> f64 {
-    6.0 * t * (1.0 - t)
+fn floors<I: Isa>(x: &[f64; 4]) -> [f64; 4] {
+    let mut all = [0.0; 4];
+    for lane in 0..4 {
+        all[lane] = floor::<I>(x[lane]);
+    }
+    all
 }
 
-/// The noise [`noise`](super::noise) at `(x, 0, z)` up to rounding (of coordinates, which the gradient noise rounds to 2⁻²⁹ there, and not
-/// here), and its slopes; where a coordinate is beyond 2³¹, or no number, it
-/// is 1/2.
-pub fn plane_noise(x: f64, z: f64, generator: NoiseGenerator) -> PlaneNoise<f64> {
-    let (x, z) = (x + shift(generator), z + shift(generator));
-    if !(x.abs() < OVERFLOW && z.abs() < OVERFLOW) {
-        return PlaneNoise {
-            value: 0.5,
-            slopes: [0.0; 2],
-        };
+/// `3 t² - 2 t³`.
+#[inline(always)]
+fn smooth_of_four<I: Isa>(isa: I, t: I::F64x4) -> I::F64x4 {
+    let square = isa.mul(t, t);
+    isa.mul(square, isa.sub(isa.splat(3.0), isa.mul(isa.splat(2.0), t)))
+}
+
+/// Its derivative.
+#[inline(always)]
+fn smooth_slope<I: Isa>(isa: I, t: I::F64x4) -> I::F64x4 {
+    let rest = isa.sub(isa.splat(1.0), t);
+    isa.mul(isa.mul(isa.splat(6.0), t), rest)
+}
+
+/// `a (1 - share) + b share`.
+#[inline(always)]
+fn mix<I: Isa>(isa: I, a: I::F64x4, b: I::F64x4, share: I::F64x4) -> I::F64x4 {
+    let rest = isa.sub(isa.splat(1.0), share);
+    isa.add(isa.mul(a, rest), isa.mul(b, share))
+}
+
+/// The way from corner `n` of a cell to a place in it, along x and z.
+#[inline(always)]
+fn way<I: Isa>(isa: I, n: usize, place: [I::F64x4; 2]) -> [I::F64x4; 2] {
+    let one = isa.splat(1.0);
+    [
+        if n >> 1 == 0 {
+            place[0]
+        } else {
+            isa.sub(place[0], one)
+        },
+        if n & 1 == 0 {
+            place[1]
+        } else {
+            isa.sub(place[1], one)
+        },
+    ]
+}
+
+/// What a corner carries to a place that is this way from it.
+#[inline(always)]
+fn carried<I: Isa>(isa: I, corner: &Corner<I::F64x4>, way: [I::F64x4; 2]) -> I::F64x4 {
+    let [value, a, b] = *corner;
+    isa.add(value, isa.add(isa.mul(a, way[0]), isa.mul(b, way[1])))
+}
+
+/// At four places `(x, 0, z)`, the noise [`noise`](super::noise) up to rounding (of coordinates, which the gradient noise rounds to
+/// 2⁻²⁹ there, and not here), and its slopes; where a coordinate is beyond 2³¹, or no number, it is 1/2.
+#[inline(always)]
+pub fn plane_noise<I: Isa>(
+    isa: I,
+    x: &[f64; 4],
+    z: &[f64; 4],
+    generator: NoiseGenerator,
+) -> PlaneNoise<I::F64x4> {
+    let by = shift(generator);
+    let (mut x, mut z, mut unknown) = (*x, *z, [0.0; 4]);
+    for lane in 0..4 {
+        (x[lane], z[lane]) = (x[lane] + by, z[lane] + by);
+        if !(x[lane].abs() < OVERFLOW && z[lane].abs() < OVERFLOW) {
+            (x[lane], z[lane], unknown[lane]) = (0.0, 0.0, 1.0);
+        }
     }
-    let cell = [x.floor(), z.floor()];
-    let (u, v) = (x - cell[0], z - cell[1]);
-    let (s, t) = (smooth(u), smooth(v));
-    let all = corners(cell, generator);
-    let at = |n: usize, u: f64, v: f64| {
-        let [value, a, b] = all[n];
-        value + (a * u + b * v)
-    };
-    let (a, b) = (at(0, u, v), at(1, u, v - 1.0));
-    let (c, d) = (at(2, u - 1.0, v), at(3, u - 1.0, v - 1.0));
-    let mix = |a: f64, b: f64, share: f64| a * (1.0 - share) + b * share;
-    let (low, high) = (mix(a, b, t), mix(c, d, t));
-    let blend = |k: usize| {
-        mix(
-            mix(all[0][k], all[1][k], t),
-            mix(all[2][k], all[3][k], t),
-            s,
-        )
-    };
-    let dx = smooth_slope(u) * (high - low) + blend(1);
-    let dz = smooth_slope(v) * mix(b - a, d - c, s) + blend(2);
+    let (i, k) = (floors::<I>(&x), floors::<I>(&z));
+    let all = corners_of_four(isa, [&i, &k], generator);
+    let u = isa.sub(isa.load(&x), isa.load(&i));
+    let v = isa.sub(isa.load(&z), isa.load(&k));
+    let (s, t) = (smooth_of_four(isa, u), smooth_of_four(isa, v));
+    let mut at = [u; 4];
+    for n in 0..4 {
+        at[n] = carried(isa, &all[n], way(isa, n, [u, v]));
+    }
+    let [a, b, c, d] = at;
+    let (low, high) = (mix(isa, a, b, t), mix(isa, c, d, t));
+    let mut slopes = [
+        isa.mul(smooth_slope(isa, u), isa.sub(high, low)),
+        isa.mul(
+            smooth_slope(isa, v),
+            mix(isa, isa.sub(b, a), isa.sub(d, c), s),
+        ),
+    ];
     let (add, factor) = scale(generator);
-    let value = (mix(low, high, s) + add) * factor;
-    if value > 0.0 && value < 1.0 {
-        PlaneNoise {
-            value,
-            slopes: [dx * factor, dz * factor],
-        }
-    } else {
-        PlaneNoise {
-            value: if value > 0.5 { 1.0 } else { 0.0 },
-            slopes: [0.0; 2],
-        }
+    let (add, factor) = (isa.splat(add), isa.splat(factor));
+    let value = isa.mul(isa.add(mix(isa, low, high, s), add), factor);
+    let (zero, one, half) = (isa.splat(0.0), isa.splat(1.0), isa.splat(0.5));
+    let unknown = isa.load(&unknown);
+    for k in 0..2 {
+        let blend = mix(
+            isa,
+            mix(isa, all[0][k + 1], all[1][k + 1], t),
+            mix(isa, all[2][k + 1], all[3][k + 1], t),
+            s,
+        );
+        let slope = isa.mul(isa.add(slopes[k], blend), factor);
+        // Where it is cut off, noise is flat.
+        let slope = isa.choose_le(value, zero, zero, slope);
+        let slope = isa.choose_le(one, value, zero, slope);
+        slopes[k] = isa.choose_le(one, unknown, zero, slope);
+    }
+    let value = isa.min(isa.max(value, zero), one);
+    PlaneNoise {
+        value: isa.choose_le(one, unknown, half, value),
+        slopes,
     }
 }
 
-/// Bounds of [`plane_noise`] over the rectangle of these ranges of x and z: exact for points, the full range for rectangles that
-/// reach over more than two cells of the lattice.
-pub fn plane_noise_bounds(x: Range, z: Range, generator: NoiseGenerator) -> PlaneNoise<Range> {
-    let full = PlaneNoise {
-        value: (0.0, 1.0),
-        slopes: [(-STEEPEST, STEEPEST); 2],
+/// So many octaves may be bounded at once.
+const AT_ONCE: usize = 8;
+
+/// Bounds of [`plane_noise`] over a rectangle, given by its ranges of x and z, times each of some frequencies, which are positive: exact for points, the full range
+/// for rectangles that reach over more than two cells of the lattice.
+///
+/// # Panics
+/// There are more than eight frequencies.
+#[inline(always)]
+pub fn plane_noise_bounds<I: Isa>(
+    isa: I,
+    x: Range,
+    z: Range,
+    frequencies: &[f64],
+    generator: NoiseGenerator,
+    out: &mut [PlaneBounds; AT_ONCE],
+) {
+    let mut parts = Parts {
+        isa,
+        generator,
+        cells: [[0.0; 4]; 2],
+        places: [[0.0; 4]; 4],
+        octaves: [0; 4],
+        count: 0,
     };
     let by = shift(generator);
-    let (x, z) = ((x.0 + by, x.1 + by), (z.0 + by, z.1 + by));
-    let is_known = |(a, b): Range| a > -OVERFLOW && b < OVERFLOW && a <= b;
-    if !(is_known(x) && is_known(z)) {
-        return full;
-    }
-    let (first, last) = ([x.0.floor(), z.0.floor()], [x.1.floor(), z.1.floor()]);
-    if last[0] - first[0] > 1.0 || last[1] - first[1] > 1.0 {
-        return full;
-    }
-    let mut hull: Option<PlaneNoise<Range>> = None;
-    let mut i = first[0];
-    while i <= last[0] {
-        let mut k = first[1];
-        while k <= last[1] {
-            let part = |(a, b): Range, cell: f64| {
-                let (a, b) = (a - cell, b - cell);
-                (if a > 0.0 { a } else { 0.0 }, if b < 1.0 { b } else { 1.0 })
-            };
-            let one = in_cell([i, k], part(x, i), part(z, k), generator);
-            hull = Some(match hull {
-                None => one,
-                Some(other) => PlaneNoise {
-                    value: join(one.value, other.value),
-                    slopes: [
-                        join(one.slopes[0], other.slopes[0]),
-                        join(one.slopes[1], other.slopes[1]),
-                    ],
-                },
-            });
-            k += 1.0;
+    for n in 0..frequencies.len() {
+        let f = frequencies[n];
+        // Rounded products are monotone, so no point of the rectangle is mapped out of this one.
+        let (x, z) = ((x.0 * f + by, x.1 * f + by), (z.0 * f + by, z.1 * f + by));
+        let is_known = is_known(x) && is_known(z);
+        let first = [floor::<I>(x.0), floor::<I>(z.0)];
+        let last = [floor::<I>(x.1), floor::<I>(z.1)];
+        if !(is_known && last[0] - first[0] <= 1.0 && last[1] - first[1] <= 1.0) {
+            out[n] = FULL;
+            continue;
         }
-        i += 1.0;
+        out[n] = NONE;
+        let mut i = first[0];
+        while i <= last[0] {
+            let mut k = first[1];
+            while k <= last[1] {
+                parts.add(n, [i, k], [x.0, x.1, z.0, z.1], out);
+                k += 1.0;
+            }
+            i += 1.0;
+        }
     }
-    hull.map_or(full, |found| finished(found, generator))
+    parts.bound(out);
 }
 
-/// From the sum over the corners to the noise, widened for rounding and cut off at 0 and 1.
-fn finished(raw: PlaneNoise<Range>, generator: NoiseGenerator) -> PlaneNoise<Range> {
-    let (add, factor) = scale(generator);
-    let low = (raw.value.0 + add) * factor - ROUNDING;
-    let high = (raw.value.1 + add) * factor + ROUNDING;
-    let is_cut = low <= 0.0 || high >= 1.0;
-    let slope = |(a, b): Range| {
-        let (a, b) = (a * factor - ROUNDING, b * factor + ROUNDING);
-        // Where it is cut off, noise is flat.
-        if is_cut {
-            join((a, b), (0.0, 0.0))
-        } else {
-            (a, b)
+/// Anything.
+const FULL: PlaneBounds = PlaneBounds {
+    value: (0.0, 1.0),
+    slopes: [(-STEEPEST, STEEPEST); 2],
+    middle: f64::NAN,
+};
+
+/// The bounds of nothing.
+const NONE: PlaneBounds = PlaneBounds {
+    value: (f64::INFINITY, f64::NEG_INFINITY),
+    slopes: [(f64::INFINITY, f64::NEG_INFINITY); 2],
+    middle: f64::NAN,
+};
+
+/// Bounds over four rectangles.
+struct FourBounds<I: Isa> {
+    value: Range<I::F64x4>,
+    slopes: [Range<I::F64x4>; 2],
+    /// In the middle of the rectangle, if that is in the cell.
+    middle: I::F64x4,
+}
+
+/// Whether lattices have cells for a range.
+#[inline(always)]
+fn is_known((a, b): Range) -> bool {
+    a > -OVERFLOW && b < OVERFLOW && a <= b
+}
+
+/// Parts of rectangles, each in one cell of its octave, until there are four of them.
+struct Parts<I: Isa> {
+    isa: I,
+    generator: NoiseGenerator,
+    /// The cells, along x and z.
+    cells: [[f64; 4]; 2],
+    /// The ends of the rectangles along x and z.
+    places: [[f64; 4]; 4],
+    octaves: [usize; 4],
+    count: usize,
+}
+
+impl<I: Isa> Parts<I> {
+    #[inline(always)]
+    fn add(
+        &mut self,
+        octave: usize,
+        cell: [f64; 2],
+        place: [f64; 4],
+        out: &mut [PlaneBounds; AT_ONCE],
+    ) {
+        if self.count == 4 {
+            self.bound(out);
         }
-    };
-    let cut = |x: f64| {
-        if x > 0.0 {
-            if x < 1.0 { x } else { 1.0 }
-        } else {
-            0.0
-        }
-    };
-    PlaneNoise {
-        value: (cut(low), cut(high)),
-        slopes: [slope(raw.slopes[0]), slope(raw.slopes[1])],
+        let lane = self.count;
+        (self.cells[0][lane], self.cells[1][lane]) = (cell[0], cell[1]);
+        (self.places[0][lane], self.places[1][lane]) = (place[0], place[1]);
+        (self.places[2][lane], self.places[3][lane]) = (place[2], place[3]);
+        self.octaves[lane] = octave;
+        self.count += 1;
     }
+
+    /// Joins the bounds over the parts to those of their octaves.
+    #[inline(always)]
+    fn bound(&mut self, out: &mut [PlaneBounds; AT_ONCE]) {
+        let isa = self.isa;
+        let [x0, x1, z0, z1] = &self.places;
+        let x = (isa.load(x0), isa.load(x1));
+        let z = (isa.load(z0), isa.load(z1));
+        let [i, k] = &self.cells;
+        let found = finished(
+            isa,
+            over_cells(isa, [i, k], x, z, self.generator),
+            self.generator,
+        );
+        let value = stored(isa, found.value);
+        let slopes = [stored(isa, found.slopes[0]), stored(isa, found.slopes[1])];
+        let middles = isa.store(found.middle);
+        for lane in 0..self.count {
+            let own = &mut out[self.octaves[lane]];
+            let is_within = |axis: usize| {
+                let [low, high] = [&self.places[2 * axis], &self.places[2 * axis + 1]];
+                let from = 0.5 * (low[lane] + high[lane]) - self.cells[axis][lane];
+                (0.0..=1.0).contains(&from)
+            };
+            if is_within(0) && is_within(1) {
+                own.middle = middles[lane];
+            }
+            own.value = join(own.value, (value.0[lane], value.1[lane]));
+            let [by_x, by_z] = &slopes;
+            own.slopes[0] = join(own.slopes[0], (by_x.0[lane], by_x.1[lane]));
+            own.slopes[1] = join(own.slopes[1], (by_z.0[lane], by_z.1[lane]));
+        }
+        self.count = 0;
+    }
+}
+
+#[inline(always)]
+fn stored<I: Isa>(isa: I, range: Range<I::F64x4>) -> Range<[f64; 4]> {
+    (isa.store(range.0), isa.store(range.1))
 }
 
 #[inline(always)]
@@ -217,100 +391,247 @@ fn join(a: Range, b: Range) -> Range {
     )
 }
 
+/// From the sum over the corners to the noise, widened for rounding and cut off at 0 and 1.
+#[inline(always)]
+fn finished<I: Isa>(isa: I, raw: FourBounds<I>, generator: NoiseGenerator) -> FourBounds<I> {
+    let (add, factor) = scale(generator);
+    let (add, factor, pad) = (isa.splat(add), isa.splat(factor), isa.splat(ROUNDING));
+    let (zero, one) = (isa.splat(0.0), isa.splat(1.0));
+    let low = isa.sub(isa.mul(isa.add(raw.value.0, add), factor), pad);
+    let high = isa.add(isa.mul(isa.add(raw.value.1, add), factor), pad);
+    let mut slopes = raw.slopes;
+    for (a, b) in &mut slopes {
+        (*a, *b) = (
+            isa.sub(isa.mul(*a, factor), pad),
+            isa.add(isa.mul(*b, factor), pad),
+        );
+        // Where it is cut off, noise is flat.
+        let cut = (isa.min(*a, zero), isa.max(*b, zero));
+        *a = isa.choose_le(low, zero, cut.0, isa.choose_le(one, high, cut.0, *a));
+        *b = isa.choose_le(low, zero, cut.1, isa.choose_le(one, high, cut.1, *b));
+    }
+    FourBounds {
+        value: (
+            isa.min(isa.max(low, zero), one),
+            isa.min(isa.max(high, zero), one),
+        ),
+        slopes,
+        middle: isa.min(
+            isa.max(isa.mul(isa.add(raw.middle, add), factor), zero),
+            one,
+        ),
+    }
+}
+
+#[inline(always)]
+fn sum<I: Isa>(isa: I, a: Range<I::F64x4>, b: Range<I::F64x4>) -> Range<I::F64x4> {
+    (isa.add(a.0, b.0), isa.add(a.1, b.1))
+}
+
 /// Bounds of `a + s (b - a)` for a share in a range: it is linear in the share, so an end is extreme.
 #[inline(always)]
-fn blend(a: Range, b: Range, s: Range) -> Range {
-    let mix = |a: f64, b: f64, s: f64| a * (1.0 - s) + b * s;
-    let low = (mix(a.0, b.0, s.0), mix(a.0, b.0, s.1));
-    let high = (mix(a.1, b.1, s.0), mix(a.1, b.1, s.1));
+fn blend<I: Isa>(
+    isa: I,
+    a: Range<I::F64x4>,
+    b: Range<I::F64x4>,
+    s: Range<I::F64x4>,
+) -> Range<I::F64x4> {
     (
-        if low.0 < low.1 { low.0 } else { low.1 },
-        if high.0 > high.1 { high.0 } else { high.1 },
+        isa.min(mix(isa, a.0, b.0, s.0), mix(isa, a.0, b.0, s.1)),
+        isa.max(mix(isa, a.1, b.1, s.0), mix(isa, a.1, b.1, s.1)),
     )
 }
 
 /// The product of a range and one that is not negative.
 #[inline(always)]
-fn product((a, b): Range, (low, high): Range) -> Range {
+fn product<I: Isa>(
+    isa: I,
+    (a, b): Range<I::F64x4>,
+    (low, high): Range<I::F64x4>,
+) -> Range<I::F64x4> {
+    let zero = isa.splat(0.0);
     (
-        if a < 0.0 { a * high } else { a * low },
-        if b > 0.0 { b * high } else { b * low },
+        isa.choose_le(zero, a, isa.mul(a, low), isa.mul(a, high)),
+        isa.choose_le(b, zero, isa.mul(b, low), isa.mul(b, high)),
     )
 }
 
 /// The range of the slope of the blend between two positions in a cell.
 #[inline(always)]
-fn slope_range((a, b): Range) -> Range {
-    let (at_a, at_b) = (smooth_slope(a), smooth_slope(b));
-    let low = if at_a < at_b { at_a } else { at_b };
-    let high = if at_a > at_b { at_a } else { at_b };
+fn slope_range<I: Isa>(isa: I, (a, b): Range<I::F64x4>) -> Range<I::F64x4> {
+    let (at_a, at_b) = (smooth_slope(isa, a), smooth_slope(isa, b));
+    let (low, high) = (isa.min(at_a, at_b), isa.max(at_a, at_b));
     // The greatest slope is in the middle.
-    let high = if a < 0.5 && b > 0.5 { 1.5 } else { high };
-    (if low > 0.0 { low } else { 0.0 }, high)
+    let (half, most) = (isa.splat(0.5), isa.splat(1.5));
+    let high = isa.choose_le(half, a, high, isa.choose_le(b, half, high, most));
+    (isa.max(low, isa.splat(0.0)), high)
 }
 
-/// Bounds of the sum over the corners in a part of one cell, both ranges in `0..=1`.
+/// Bounds of the sum over the corners in the parts of rectangles that are in these cells.
 #[inline(always)]
-fn in_cell(cell: [f64; 2], u: Range, v: Range, generator: NoiseGenerator) -> PlaneNoise<Range> {
-    let all = corners(cell, generator);
-    let middle = [0.5 * (u.0 + u.1), 0.5 * (v.0 + v.1)];
-    let reach = [0.5 * (u.1 - u.0), 0.5 * (v.1 - v.0)];
-    let at = |n: usize| {
-        let [value, a, b] = all[n];
-        let away = [(n >> 1) as f64, (n & 1) as f64];
-        let middle = value + (a * (middle[0] - away[0]) + b * (middle[1] - away[1]));
-        let reach = a.abs() * reach[0] + b.abs() * reach[1];
-        (middle - reach, middle + reach)
-    };
-    // How much larger corner `n` is than corner `m`, less the part that is linear in both.
-    let rise = |m: usize, n: usize| {
-        let away = |n: usize| [(n >> 1) as f64, (n & 1) as f64];
-        let corner = |n: usize| {
-            let [value, a, b] = all[n];
-            value + (a * (middle[0] - away(n)[0]) + b * (middle[1] - away(n)[1]))
-        };
-        let difference = corner(n) - corner(m);
-        let reach =
-            (all[n][1] - all[m][1]).abs() * reach[0] + (all[n][2] - all[m][2]).abs() * reach[1];
-        (difference - reach, difference + reach)
-    };
-    let (s, t) = ((smooth(u.0), smooth(u.1)), (smooth(v.0), smooth(v.1)));
-    let (low, high) = (blend(at(0), at(1), t), blend(at(2), at(3), t));
-    let gradient = |k: usize| {
-        let point = |n: usize| (all[n][k], all[n][k]);
-        blend(
-            blend(point(0), point(1), t),
-            blend(point(2), point(3), t),
-            s,
-        )
-    };
-    let sum = |a: Range, b: Range| (a.0 + b.0, a.1 + b.1);
-    PlaneNoise {
-        value: blend(low, high, s),
-        slopes: [
-            sum(
-                product(blend(rise(0, 2), rise(1, 3), t), slope_range(u)),
-                gradient(1),
-            ),
-            sum(
-                product(blend(rise(0, 1), rise(2, 3), s), slope_range(v)),
-                gradient(2),
-            ),
-        ],
+fn over_cells<I: Isa>(
+    isa: I,
+    [i, k]: [&[f64; 4]; 2],
+    x: Range<I::F64x4>,
+    z: Range<I::F64x4>,
+    generator: NoiseGenerator,
+) -> FourBounds<I> {
+    let all = corners_of_four(isa, [i, k], generator);
+    let (zero, one, half) = (isa.splat(0.0), isa.splat(1.0), isa.splat(0.5));
+    let (i, k) = (isa.load(i), isa.load(k));
+    let u = (
+        isa.max(isa.sub(x.0, i), zero),
+        isa.min(isa.sub(x.1, i), one),
+    );
+    let v = (
+        isa.max(isa.sub(z.0, k), zero),
+        isa.min(isa.sub(z.1, k), one),
+    );
+    let middle = [
+        isa.mul(half, isa.add(u.0, u.1)),
+        isa.mul(half, isa.add(v.0, v.1)),
+    ];
+    let reach = [
+        isa.mul(half, isa.sub(u.1, u.0)),
+        isa.mul(half, isa.sub(v.1, v.0)),
+    ];
+    // What the corners carry: in the middle, and around it.
+    let mut carry = [zero; 4];
+    let mut at = [(zero, zero); 4];
+    for n in 0..4 {
+        carry[n] = carried(isa, &all[n], way(isa, n, middle));
+        let off = around(isa, all[n][1], all[n][2], reach);
+        at[n] = (isa.sub(carry[n], off), isa.add(carry[n], off));
     }
+    // How much larger a corner is than one before it, along x and along z.
+    let mut rises = [[(zero, zero); 2]; 2];
+    let pairs = [[(0, 2), (1, 3)], [(0, 1), (2, 3)]];
+    for axis in 0..2 {
+        for pair in 0..2 {
+            let (m, n) = pairs[axis][pair];
+            let difference = isa.sub(carry[n], carry[m]);
+            let slopes = [isa.sub(all[n][1], all[m][1]), isa.sub(all[n][2], all[m][2])];
+            let off = around(isa, slopes[0], slopes[1], reach);
+            rises[axis][pair] = (isa.sub(difference, off), isa.add(difference, off));
+        }
+    }
+    let s = (smooth_of_four(isa, u.0), smooth_of_four(isa, u.1));
+    let t = (smooth_of_four(isa, v.0), smooth_of_four(isa, v.1));
+    let low = blend(isa, at[0], at[1], t);
+    let high = blend(isa, at[2], at[3], t);
+    let mut slopes = [
+        product(
+            isa,
+            blend(isa, rises[0][0], rises[0][1], t),
+            slope_range(isa, u),
+        ),
+        product(
+            isa,
+            blend(isa, rises[1][0], rises[1][1], s),
+            slope_range(isa, v),
+        ),
+    ];
+    for k in 0..2 {
+        let low = blend_of_points(isa, all[0][k + 1], all[1][k + 1], t);
+        let high = blend_of_points(isa, all[2][k + 1], all[3][k + 1], t);
+        slopes[k] = sum(isa, slopes[k], blend(isa, low, high, s));
+    }
+    // The place in the cell that is nearest to the middle of the rectangle.
+    let place = [center(isa, x, i), center(isa, z, k)];
+    let mut at = [zero; 4];
+    for n in 0..4 {
+        at[n] = carried(isa, &all[n], way(isa, n, place));
+    }
+    let share = smooth_of_four(isa, place[1]);
+    let middle = mix(
+        isa,
+        mix(isa, at[0], at[1], share),
+        mix(isa, at[2], at[3], share),
+        smooth_of_four(isa, place[0]),
+    );
+    FourBounds {
+        value: blend(isa, low, high, s),
+        slopes,
+        middle,
+    }
+}
+
+/// The middle of a range, from a cell, or the end of the cell that is nearest to it.
+#[inline(always)]
+fn center<I: Isa>(isa: I, (a, b): Range<I::F64x4>, cell: I::F64x4) -> I::F64x4 {
+    let middle = isa.sub(isa.mul(isa.splat(0.5), isa.add(a, b)), cell);
+    isa.min(isa.max(middle, isa.splat(0.0)), isa.splat(1.0))
+}
+
+/// How much `a x + b z` changes at most within this reach.
+#[inline(always)]
+fn around<I: Isa>(isa: I, a: I::F64x4, b: I::F64x4, reach: [I::F64x4; 2]) -> I::F64x4 {
+    isa.add(isa.mul(isa.abs(a), reach[0]), isa.mul(isa.abs(b), reach[1]))
+}
+
+/// [`blend`] of two numbers.
+#[inline(always)]
+fn blend_of_points<I: Isa>(
+    isa: I,
+    a: I::F64x4,
+    b: I::F64x4,
+    s: Range<I::F64x4>,
+) -> Range<I::F64x4> {
+    let (low, high) = (mix(isa, a, b, s.0), mix(isa, a, b, s.1));
+    (isa.min(low, high), isa.max(low, high))
 }
 
 #[cfg(test)]
 mod tests {
     use super::super::noise;
-    use super::*;
+    use super::{NoiseGenerator, PlaneBounds, PlaneNoise, Range};
     use crate::DVec3;
+    use strahl_simd::{Isa, Simd, dispatch};
 
     const GENERATORS: [NoiseGenerator; 3] = [
         NoiseGenerator::Original,
         NoiseGenerator::RangeCorrected,
         NoiseGenerator::Perlin,
     ];
+
+    /// Noise at a place, in one of the lanes; the others have places around it.
+    fn plane_noise(x: f64, z: f64, generator: NoiseGenerator) -> PlaneNoise<f64> {
+        let lane = (x.to_bits() >> 20) as usize & 3;
+        let beside: [f64; 4] = std::array::from_fn(|n| (n as f64 - lane as f64) * 0.7);
+        let (x, z) = (beside.map(|by| x + by), beside.map(|by| z - by));
+        agreed(|simd| {
+            dispatch!(simd, isa => {
+                let found = super::plane_noise(isa, &x, &z, generator);
+                PlaneNoise {
+                    value: isa.store(found.value)[lane],
+                    slopes: found.slopes.map(|slope| isa.store(slope)[lane]),
+                }
+            })
+        })
+    }
+
+    /// Bounds over a rectangle, which is one octave of many.
+    fn plane_noise_bounds(x: Range, z: Range, generator: NoiseGenerator) -> PlaneBounds {
+        let octave = (x.0.to_bits() >> 20) as usize & 7;
+        let mut frequencies: [f64; 8] = std::array::from_fn(|n| 0.3 + n as f64);
+        frequencies[octave] = 1.0;
+        agreed(|simd| {
+            dispatch!(simd, isa => {
+                let mut found = [super::NONE; 8];
+                super::plane_noise_bounds(isa, x, z, &frequencies, generator, &mut found);
+                found[octave]
+            })
+        })
+    }
+
+    /// What all levels say.
+    fn agreed<T: PartialEq + std::fmt::Debug>(result: impl Fn(Simd) -> T) -> T {
+        let best = result(Simd::best());
+        for simd in Simd::available() {
+            assert_eq!(result(simd), best, "{simd:?}");
+        }
+        best
+    }
 
     fn random() -> impl FnMut() -> f64 {
         let mut seed = 1_u64;

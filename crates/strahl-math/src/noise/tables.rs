@@ -49,6 +49,17 @@ pub(super) static VALUES: [[f64; 256]; 4] = {
     table
 };
 
+/// Half the values of 256 corners, and their gradients along x, y and z: [`VALUES`], corner by corner.
+pub(super) static CORNERS: [[f64; 4]; 256] = {
+    let mut table = [[0.0; 4]; 256];
+    let mut h = 0;
+    while h < 256 {
+        table[h] = [0.5 * R[h], R[h + 1], R[h + 2], R[h + 3]];
+        h += 1;
+    }
+    table
+};
+
 /// For vector noise: what its three components have at a corner. Entry `h` has the values of corner `h`, the next three entries the
 /// gradients along x, y and z.
 pub(super) static SPREAD: [[f64; 4]; R_LEN - 8] = {

@@ -12,7 +12,7 @@ use crate::{
     Crossing, Crossings, GeometryError, PrimHit, Primitive, Scratch, Side, Solid, SurfaceId,
     SurfacePoint,
 };
-use number::{Range, Rectangle};
+use number::{Range, Rectangle, lower, upper};
 use relief::Relief;
 use search::{Course, Event, Part, Place, least_value};
 use std::ops::ControlFlow;
@@ -90,9 +90,9 @@ impl Default for TerrainOptions {
 /// A fractal terrain: the surface `y = height(x, z)` over a rectangle, solid below.
 ///
 /// Nothing is tessellated. A quadtree, whose cells are examined when a ray first meets them, holds the ranges of heights over
-/// rectangles; they are proven by interval arithmetic of the noise and its slopes. Within its small cells a part of a ray is
-/// divided until the bounds prove that the ray is clear of the surface there, or that it only rises or only falls relative to it;
-/// then there is one crossing or none, and it is found to the last digit. So no peak is missed, however thin. Normals are
+/// rectangles; they are proven by affine arithmetic: octaves longer than the rectangle are linear there, nearly, and the
+/// others are within a range. Within its small cells a part of a ray shrinks, or is halved, until bounds prove that the ray is clear
+/// of the surface there, or that it only rises or only falls relative to it; then there is one crossing or none, and it is found to the last digit. So no peak is missed, however thin. Normals are
 /// the exact gradients; on the creases of ridges they are those of one side.
 ///
 /// With [`TerrainDetail`] the number of octaves depends on the distance from a place of the scene, not on the ray: shadows and
@@ -199,7 +199,8 @@ impl Terrain {
         }
         let rectangle = [(low.x, high.x), (low.y, high.y)];
         let relief = Relief::new(options);
-        let heights = relief.range(rectangle);
+        let (near, (low_y, high_y)) = (relief.range(rectangle), relief.bounds(rectangle).0.value);
+        let heights = (upper(near.0, low_y), lower(near.1, high_y));
         if !(heights.0.is_finite() && heights.1.is_finite()) {
             return Err(GeometryError::Degenerate {
                 what: "terrain",

@@ -1,6 +1,7 @@
 //! The numbers that a height is computed with: plain ones, ones with slopes, and ranges of both. A formula is written once for all.
 
-use strahl_math::noise::{NoiseGenerator, plane_noise, plane_noise_bounds};
+use strahl_math::noise::{NoiseGenerator, PlaneBounds, plane_noise, plane_noise_bounds};
+use strahl_simd::Isa;
 
 /// Two numbers, the lower one first.
 pub(super) type Range = (f64, f64);
@@ -12,23 +13,72 @@ pub(super) trait Number: Copy {
 
     /// A number that does not depend on the place.
     fn constant(x: f64) -> Self;
-    /// Noise from -1 to 1 at the place times a frequency.
-    fn noise(place: Self::Place, frequency: f64, generator: NoiseGenerator) -> Self;
+    /// Noise from -1 to 1 at the place times frequencies, at most so many.
+    fn noises<I: Isa>(
+        isa: I,
+        place: Self::Place,
+        frequencies: &[f64],
+        generator: NoiseGenerator,
+        out: &mut [Self; AT_ONCE],
+    );
     /// The logarithm of the distance from a point of the plane, `0.5 ln(max(dx² + dz² + height², least²))`.
     fn log_distance(place: Self::Place, viewpoint: &Viewpoint) -> Self;
-    fn plus(self, other: Self) -> Self;
-    fn times(self, other: Self) -> Self;
-    fn square(self) -> Self {
-        self.times(self)
+    fn plus<I: Isa>(self, isa: I, other: Self) -> Self;
+    fn times<I: Isa>(self, isa: I, other: Self) -> Self;
+    #[inline(always)]
+    fn square<I: Isa>(self, isa: I) -> Self {
+        self.times(isa, self)
     }
-    fn scaled(self, factor: f64) -> Self;
-    fn abs(self) -> Self;
+    fn scaled<I: Isa>(self, isa: I, factor: f64) -> Self;
+    fn abs<I: Isa>(self, isa: I) -> Self;
     /// Cut off at 0 and 1.
-    fn share(self) -> Self;
+    fn share<I: Isa>(self, isa: I) -> Self;
     /// `3 x² - 2 x³`, of a number from 0 to 1.
-    fn smooth(self) -> Self;
+    fn smooth<I: Isa>(self, isa: I) -> Self;
+    /// The greatest it may be.
+    fn most(self) -> f64;
     /// Whether it is certainly not greater than zero.
-    fn is_nothing(self) -> bool;
+    fn is_nothing(self) -> bool {
+        self.most() <= 0.0
+    }
+}
+
+/// A place times four frequencies, which are positive.
+#[inline(always)]
+fn octaves<I: Isa>(isa: I, [x, z]: [f64; 2], frequencies: &[f64; 4]) -> [[f64; 4]; 2] {
+    let frequencies = isa.load(frequencies);
+    [
+        isa.store(isa.mul(isa.splat(x), frequencies)),
+        isa.store(isa.mul(isa.splat(z), frequencies)),
+    ]
+}
+
+/// From noise between 0 and 1 to noise between -1 and 1.
+#[inline(always)]
+fn signed<I: Isa>(isa: I, noise: I::F64x4) -> I::F64x4 {
+    isa.sub(isa.mul(isa.splat(2.0), noise), isa.splat(1.0))
+}
+
+/// So many octaves of noise are computed at once.
+pub(super) const AT_ONCE: usize = 8;
+
+/// Any noise.
+const UNIT_NOISE: PlaneBounds = PlaneBounds {
+    value: (0.0, 1.0),
+    slopes: [(0.0, 0.0); 2],
+    middle: f64::NAN,
+};
+
+/// Four of some numbers; the last one again where there are not so many.
+#[inline(always)]
+fn four(all: &[f64], first: usize) -> [f64; 4] {
+    let mut four = [all[all.len() - 1]; 4];
+    for n in 0..4 {
+        if first + n < all.len() {
+            four[n] = all[first + n];
+        }
+    }
+    four
 }
 
 /// Where the eye is, for heights that have more detail near it.
@@ -53,37 +103,58 @@ impl Viewpoint {
 impl Number for f64 {
     type Place = [f64; 2];
 
+    #[inline(always)]
     fn constant(x: f64) -> Self {
         x
     }
 
     #[inline(always)]
-    fn noise([x, z]: [f64; 2], frequency: f64, generator: NoiseGenerator) -> Self {
-        2.0 * plane_noise(x * frequency, z * frequency, generator).value - 1.0
+    fn noises<I: Isa>(
+        isa: I,
+        place: [f64; 2],
+        frequencies: &[f64],
+        generator: NoiseGenerator,
+        out: &mut [Self; AT_ONCE],
+    ) {
+        let mut first = 0;
+        while first < frequencies.len() {
+            let four = four(frequencies, first);
+            let [x, z] = octaves(isa, place, &four);
+            let found = plane_noise(isa, &x, &z, generator);
+            let values = isa.store(signed(isa, found.value));
+            out[first..first + 4].copy_from_slice(&values);
+            first += 4;
+        }
     }
 
+    #[inline(always)]
     fn log_distance([x, z]: [f64; 2], viewpoint: &Viewpoint) -> Self {
         let (dx, dz) = (x - viewpoint.x, z - viewpoint.z);
         viewpoint.log(dx * dx, dz * dz)
     }
 
-    fn plus(self, other: Self) -> Self {
+    #[inline(always)]
+    fn plus<I: Isa>(self, _isa: I, other: Self) -> Self {
         self + other
     }
 
-    fn times(self, other: Self) -> Self {
+    #[inline(always)]
+    fn times<I: Isa>(self, _isa: I, other: Self) -> Self {
         self * other
     }
 
-    fn scaled(self, factor: f64) -> Self {
+    #[inline(always)]
+    fn scaled<I: Isa>(self, _isa: I, factor: f64) -> Self {
         self * factor
     }
 
-    fn abs(self) -> Self {
+    #[inline(always)]
+    fn abs<I: Isa>(self, _isa: I) -> Self {
         self.abs()
     }
 
-    fn share(self) -> Self {
+    #[inline(always)]
+    fn share<I: Isa>(self, _isa: I) -> Self {
         if self > 0.0 {
             if self < 1.0 { self } else { 1.0 }
         } else {
@@ -91,12 +162,14 @@ impl Number for f64 {
         }
     }
 
-    fn smooth(self) -> Self {
+    #[inline(always)]
+    fn smooth<I: Isa>(self, _isa: I) -> Self {
         self * self * (3.0 - 2.0 * self)
     }
 
-    fn is_nothing(self) -> bool {
-        self <= 0.0
+    #[inline(always)]
+    fn most(self) -> f64 {
+        self
     }
 }
 
@@ -108,6 +181,7 @@ pub(super) struct Sloped {
 }
 
 impl Sloped {
+    #[inline(always)]
     fn with(self, value: f64, factor: f64) -> Self {
         let [a, b] = self.slopes;
         Self {
@@ -120,22 +194,40 @@ impl Sloped {
 impl Number for Sloped {
     type Place = [f64; 2];
 
+    #[inline(always)]
     fn constant(value: f64) -> Self {
         let slopes = [0.0; 2];
         Self { value, slopes }
     }
 
     #[inline(always)]
-    fn noise([x, z]: [f64; 2], frequency: f64, generator: NoiseGenerator) -> Self {
-        let found = plane_noise(x * frequency, z * frequency, generator);
-        let [a, b] = found.slopes;
-        let factor = 2.0 * frequency;
-        Self {
-            value: 2.0 * found.value - 1.0,
-            slopes: [a * factor, b * factor],
+    fn noises<I: Isa>(
+        isa: I,
+        place: [f64; 2],
+        frequencies: &[f64],
+        generator: NoiseGenerator,
+        out: &mut [Self; AT_ONCE],
+    ) {
+        let mut first = 0;
+        while first < frequencies.len() {
+            let four = four(frequencies, first);
+            let [x, z] = octaves(isa, place, &four);
+            let found = plane_noise(isa, &x, &z, generator);
+            let values = isa.store(signed(isa, found.value));
+            let factors = isa.mul(isa.splat(2.0), isa.load(&four));
+            let a = isa.store(isa.mul(found.slopes[0], factors));
+            let b = isa.store(isa.mul(found.slopes[1], factors));
+            for n in 0..4 {
+                out[first + n] = Self {
+                    value: values[n],
+                    slopes: [a[n], b[n]],
+                };
+            }
+            first += 4;
         }
     }
 
+    #[inline(always)]
     fn log_distance([x, z]: [f64; 2], viewpoint: &Viewpoint) -> Self {
         let (dx, dz) = (x - viewpoint.x, z - viewpoint.z);
         let value = viewpoint.log(dx * dx, dz * dz);
@@ -145,7 +237,8 @@ impl Number for Sloped {
         Self { value, slopes }
     }
 
-    fn plus(self, other: Self) -> Self {
+    #[inline(always)]
+    fn plus<I: Isa>(self, _isa: I, other: Self) -> Self {
         let ([a, b], [c, d]) = (self.slopes, other.slopes);
         Self {
             value: self.value + other.value,
@@ -153,7 +246,8 @@ impl Number for Sloped {
         }
     }
 
-    fn times(self, other: Self) -> Self {
+    #[inline(always)]
+    fn times<I: Isa>(self, _isa: I, other: Self) -> Self {
         let ([a, b], [c, d]) = (self.slopes, other.slopes);
         let (p, q) = (self.value, other.value);
         Self {
@@ -162,28 +256,33 @@ impl Number for Sloped {
         }
     }
 
-    fn scaled(self, factor: f64) -> Self {
+    #[inline(always)]
+    fn scaled<I: Isa>(self, _isa: I, factor: f64) -> Self {
         self.with(self.value * factor, factor)
     }
 
-    fn abs(self) -> Self {
+    #[inline(always)]
+    fn abs<I: Isa>(self, _isa: I) -> Self {
         let sign = if self.value < 0.0 { -1.0 } else { 1.0 };
         self.with(self.value.abs(), sign)
     }
 
-    fn share(self) -> Self {
-        let value = self.value.share();
+    #[inline(always)]
+    fn share<I: Isa>(self, isa: I) -> Self {
+        let value = self.value.share(isa);
         let inside = if value == self.value { 1.0 } else { 0.0 };
         self.with(value, inside)
     }
 
-    fn smooth(self) -> Self {
+    #[inline(always)]
+    fn smooth<I: Isa>(self, isa: I) -> Self {
         let x = self.value;
-        self.with(x.smooth(), 6.0 * x * (1.0 - x))
+        self.with(x.smooth(isa), 6.0 * x * (1.0 - x))
     }
 
-    fn is_nothing(self) -> bool {
-        self.value <= 0.0
+    #[inline(always)]
+    fn most(self) -> f64 {
+        self.value
     }
 }
 
@@ -191,7 +290,8 @@ impl Number for Sloped {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Ranged {
     pub(super) value: Range,
-    pub(super) slopes: [Range; 2],
+    /// The ends of the ranges of both derivatives, one after the other.
+    pub(super) slopes: [f64; 4],
 }
 
 /// A rectangle: the ranges of x and z.
@@ -227,6 +327,13 @@ pub(super) fn product(a: Range, b: Range) -> Range {
 }
 
 #[inline(always)]
+fn square((a, b): Range) -> Range {
+    let (p, q) = (a * a, b * b);
+    let least = if a < 0.0 && b > 0.0 { 0.0 } else { lower(p, q) };
+    (least, upper(p, q))
+}
+
+#[inline(always)]
 pub(super) fn times((a, b): Range, factor: f64) -> Range {
     if factor < 0.0 {
         (b * factor, a * factor)
@@ -235,13 +342,39 @@ pub(super) fn times((a, b): Range, factor: f64) -> Range {
     }
 }
 
+/// The products of two ranges and a third one.
+#[inline(always)]
+fn products<I: Isa>(isa: I, [a, b, c, d]: [f64; 4], factor: Range) -> [f64; 4] {
+    let (low, high) = factor;
+    if low >= 0.0 {
+        // An end of a product is made of the same end, times what moves it farther out.
+        let ends = isa.load(&[a, b, c, d]);
+        let near = isa.mul(ends, isa.load(&[low, high, low, high]));
+        let far = isa.mul(ends, isa.load(&[high, low, high, low]));
+        return isa.store(isa.choose_le(isa.splat(0.0), ends, near, far));
+    }
+    let (p, q) = (product((a, b), factor), product((c, d), factor));
+    [p.0, p.1, q.0, q.1]
+}
+
 impl Ranged {
+    /// Noise from -1 to 1, from bounds of the noise and its slopes.
+    #[inline(always)]
+    fn noise(bounds: &PlaneBounds, frequency: f64) -> Self {
+        let (value, [a, b]) = (bounds.value, bounds.slopes);
+        let factor = 2.0 * frequency;
+        Self {
+            value: (2.0 * value.0 - 1.0, 2.0 * value.1 - 1.0),
+            slopes: [a.0 * factor, a.1 * factor, b.0 * factor, b.1 * factor],
+        }
+    }
+
     /// With another value, and slopes times a range.
-    fn with(self, value: Range, factor: Range) -> Self {
-        let [a, b] = self.slopes;
+    #[inline(always)]
+    fn with<I: Isa>(self, isa: I, value: Range, factor: Range) -> Self {
         Self {
             value,
-            slopes: [product(a, factor), product(b, factor)],
+            slopes: products(isa, self.slopes, factor),
         }
     }
 }
@@ -249,37 +382,32 @@ impl Ranged {
 impl Number for Ranged {
     type Place = Rectangle;
 
+    #[inline(always)]
     fn constant(x: f64) -> Self {
         Self {
             value: (x, x),
-            slopes: [(0.0, 0.0); 2],
+            slopes: [0.0; 4],
         }
     }
 
     #[inline(always)]
-    fn noise([x, z]: Rectangle, frequency: f64, generator: NoiseGenerator) -> Self {
-        // Rounded products are monotone, so no point of the rectangle is mapped out of this one.
-        let found = plane_noise_bounds(times(x, frequency), times(z, frequency), generator);
-        let (low, high) = found.value;
-        let [a, b] = found.slopes;
-        let factor = 2.0 * frequency;
-        Self {
-            value: (2.0 * low - 1.0, 2.0 * high - 1.0),
-            slopes: [times(a, factor), times(b, factor)],
+    fn noises<I: Isa>(
+        isa: I,
+        [x, z]: Rectangle,
+        frequencies: &[f64],
+        generator: NoiseGenerator,
+        out: &mut [Self; AT_ONCE],
+    ) {
+        let mut found = [UNIT_NOISE; AT_ONCE];
+        plane_noise_bounds(isa, x, z, frequencies, generator, &mut found);
+        for n in 0..frequencies.len() {
+            out[n] = Self::noise(&found[n], frequencies[n]);
         }
     }
 
+    #[inline(always)]
     fn log_distance([x, z]: Rectangle, viewpoint: &Viewpoint) -> Self {
         let away = |(a, b): Range, v: f64| (a - v, b - v);
-        let square = |(a, b): Range| {
-            let (p, q) = (a * a, b * b);
-            let low = if a <= 0.0 && b >= 0.0 {
-                0.0
-            } else {
-                lower(p, q)
-            };
-            (low, upper(p, q))
-        };
         let (dx, dz) = (away(x, viewpoint.x), away(z, viewpoint.z));
         let (x2, z2) = (square(dx), square(dz));
         let (near, far) = (viewpoint.log(x2.0, z2.0), viewpoint.log(x2.1, z2.1));
@@ -302,81 +430,358 @@ impl Number for Ranged {
         let pad = 1e-14 * (1.0 + upper(near.abs(), far.abs()));
         Self {
             value: (near - pad, far + pad),
-            slopes: [slope(dx), slope(dz)],
+            slopes: {
+                let (a, b) = (slope(dx), slope(dz));
+                [a.0, a.1, b.0, b.1]
+            },
         }
     }
 
     #[inline(always)]
-    fn plus(self, other: Self) -> Self {
+    fn plus<I: Isa>(self, isa: I, other: Self) -> Self {
+        let slopes = isa.add(isa.load(&self.slopes), isa.load(&other.slopes));
         Self {
             value: sum(self.value, other.value),
-            slopes: [
-                sum(self.slopes[0], other.slopes[0]),
-                sum(self.slopes[1], other.slopes[1]),
-            ],
+            slopes: isa.store(slopes),
         }
     }
 
     #[inline(always)]
-    fn times(self, other: Self) -> Self {
-        let slope = |k: usize| {
-            sum(
-                product(self.slopes[k], other.value),
-                product(self.value, other.slopes[k]),
-            )
-        };
+    fn times<I: Isa>(self, isa: I, other: Self) -> Self {
+        let one = products(isa, self.slopes, other.value);
+        let two = products(isa, other.slopes, self.value);
         Self {
             value: product(self.value, other.value),
-            slopes: [slope(0), slope(1)],
+            slopes: isa.store(isa.add(isa.load(&one), isa.load(&two))),
         }
-    }
-
-    fn square(self) -> Self {
-        let (a, b) = self.value;
-        let (p, q) = (a * a, b * b);
-        let least = if a < 0.0 && b > 0.0 { 0.0 } else { lower(p, q) };
-        self.with((least, upper(p, q)), (2.0 * a, 2.0 * b))
     }
 
     #[inline(always)]
-    fn scaled(self, factor: f64) -> Self {
+    fn square<I: Isa>(self, isa: I) -> Self {
+        let (a, b) = self.value;
+        self.with(isa, square(self.value), (2.0 * a, 2.0 * b))
+    }
+
+    #[inline(always)]
+    fn scaled<I: Isa>(self, isa: I, factor: f64) -> Self {
+        let [a, b, c, d] = self.slopes;
+        let ends = if factor < 0.0 {
+            [b, a, d, c]
+        } else {
+            [a, b, c, d]
+        };
         Self {
             value: times(self.value, factor),
-            slopes: [times(self.slopes[0], factor), times(self.slopes[1], factor)],
+            slopes: isa.store(isa.mul(isa.load(&ends), isa.splat(factor))),
         }
     }
 
-    fn abs(self) -> Self {
+    #[inline(always)]
+    fn abs<I: Isa>(self, isa: I) -> Self {
         let (a, b) = self.value;
         if a >= 0.0 {
             self
         } else if b <= 0.0 {
-            self.scaled(-1.0)
+            self.scaled(isa, -1.0)
         } else {
-            self.with((0.0, upper(-a, b)), (-1.0, 1.0))
+            self.with(isa, (0.0, upper(-a, b)), (-1.0, 1.0))
         }
     }
 
-    fn share(self) -> Self {
+    #[inline(always)]
+    fn share<I: Isa>(self, isa: I) -> Self {
         let (a, b) = self.value;
         if a >= 0.0 && b <= 1.0 {
             self
         } else if b <= 0.0 || a >= 1.0 {
-            Self::constant(a.share())
+            Self::constant(a.share(isa))
         } else {
-            self.with((a.share(), b.share()), (0.0, 1.0))
+            self.with(isa, (a.share(isa), b.share(isa)), (0.0, 1.0))
         }
     }
 
-    fn smooth(self) -> Self {
+    #[inline(always)]
+    fn smooth<I: Isa>(self, isa: I) -> Self {
         let (a, b) = self.value;
         let slope = |x: f64| 6.0 * x * (1.0 - x);
         let (p, q) = (slope(a), slope(b));
         let most = if a < 0.5 && b > 0.5 { 1.5 } else { upper(p, q) };
-        self.with((a.smooth(), b.smooth()), (lower(p, q), most))
+        self.with(isa, (a.smooth(isa), b.smooth(isa)), (lower(p, q), most))
     }
 
-    fn is_nothing(self) -> bool {
-        self.value.1 <= 0.0
+    #[inline(always)]
+    fn most(self) -> f64 {
+        self.value.1
+    }
+}
+
+/// A number over a rectangle, nearly linear: `middle + slopes . (x, z)` with x and z from -1 to 1 over the rectangle, off by at most `off`
+/// (affine arithmetic: L. H. de Figueiredo, J. Stolfi, "Affine arithmetic: concepts and applications", Numerical Algorithms 37, 2004).
+///
+/// Octaves that are longer than the rectangle add their slopes, of either sign, where ranges would add only what they reach over.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Affine {
+    pub(super) middle: f64,
+    pub(super) slopes: [f64; 2],
+    pub(super) off: f64,
+}
+
+/// More than the roundings of a place, of a point between two, and of the place times a frequency.
+const BLUR: f64 = 8.0 * f64::EPSILON;
+
+impl Affine {
+    #[inline(always)]
+    fn within((low, high): Range) -> Self {
+        Self {
+            middle: 0.5 * (low + high),
+            slopes: [0.0; 2],
+            off: 0.5 * (high - low),
+        }
+    }
+
+    /// Noise from -1 to 1 at a rectangle times a frequency, from bounds of the noise there.
+    #[inline(always)]
+    fn noise(bounds: &PlaneBounds, rectangle: &Rectangle, frequency: f64) -> Self {
+        let (value, slopes) = (bounds.value, bounds.slopes);
+        let mut near = Self {
+            middle: 2.0 * bounds.middle - 1.0,
+            slopes: [0.0; 2],
+            off: 0.0,
+        };
+        for k in 0..2 {
+            let ((low, high), (a, b)) = (rectangle[k], slopes[k]);
+            let half = 0.5 * (high - low) * frequency;
+            let blur = BLUR * upper(low.abs(), high.abs()) * frequency;
+            near.slopes[k] = (a + b) * half;
+            near.off += (b - a) * half + 2.0 * upper(a.abs(), b.abs()) * blur;
+        }
+        // A middle that is not known is NaN.
+        if near.off < value.1 - value.0 && !near.middle.is_nan() {
+            near
+        } else {
+            Self::within((2.0 * value.0 - 1.0, 2.0 * value.1 - 1.0))
+        }
+    }
+
+    /// What half a diagonal of the rectangle adds that runs upwards or downwards along x and z.
+    pub(super) fn along(self, x: bool, z: bool) -> f64 {
+        let [a, b] = self.slopes;
+        (if x { a } else { -a }) + if z { b } else { -b }
+    }
+
+    /// How far it is from the middle, at most.
+    #[inline(always)]
+    fn reach(self) -> f64 {
+        self.slopes[0].abs() + self.slopes[1].abs() + self.off
+    }
+
+    #[inline(always)]
+    pub(super) fn range(self) -> Range {
+        (self.middle - self.reach(), self.middle + self.reach())
+    }
+
+    /// The tighter one of two descriptions.
+    #[inline(always)]
+    fn or(self, other: Self) -> Self {
+        if other.reach() < self.reach() {
+            other
+        } else {
+            self
+        }
+    }
+}
+
+impl Number for Affine {
+    type Place = Rectangle;
+
+    #[inline(always)]
+    fn constant(x: f64) -> Self {
+        Self {
+            middle: x,
+            slopes: [0.0; 2],
+            off: 0.0,
+        }
+    }
+
+    #[inline(always)]
+    fn noises<I: Isa>(
+        isa: I,
+        place: Rectangle,
+        frequencies: &[f64],
+        generator: NoiseGenerator,
+        out: &mut [Self; AT_ONCE],
+    ) {
+        let mut all = [(Ranged::constant(0.0), Self::constant(0.0)); AT_ONCE];
+        <(Ranged, Self)>::noises(isa, place, frequencies, generator, &mut all);
+        for n in 0..frequencies.len() {
+            out[n] = all[n].1;
+        }
+    }
+
+    #[inline(always)]
+    fn log_distance(place: Rectangle, viewpoint: &Viewpoint) -> Self {
+        Self::within(Ranged::log_distance(place, viewpoint).value)
+    }
+
+    #[inline(always)]
+    fn plus<I: Isa>(self, _isa: I, other: Self) -> Self {
+        let ([a, b], [c, d]) = (self.slopes, other.slopes);
+        Self {
+            middle: self.middle + other.middle,
+            slopes: [a + c, b + d],
+            off: self.off + other.off,
+        }
+    }
+
+    #[inline(always)]
+    fn times<I: Isa>(self, _isa: I, other: Self) -> Self {
+        let ([a, b], [c, d]) = (self.slopes, other.slopes);
+        let (p, q) = (self.middle, other.middle);
+        Self {
+            middle: p * q,
+            slopes: [a * q + p * c, b * q + p * d],
+            off: (p.abs() * other.off + q.abs() * self.off) + self.reach() * other.reach(),
+        }
+    }
+
+    #[inline(always)]
+    fn square<I: Isa>(self, _isa: I) -> Self {
+        let twice = 2.0 * self.middle;
+        let [a, b] = self.slopes;
+        // The square of what it is off lies between 0 and this.
+        let most = self.reach() * self.reach();
+        Self {
+            middle: self.middle * self.middle + 0.5 * most,
+            slopes: [a * twice, b * twice],
+            off: twice.abs() * self.off + 0.5 * most,
+        }
+    }
+
+    #[inline(always)]
+    fn scaled<I: Isa>(self, _isa: I, factor: f64) -> Self {
+        let [a, b] = self.slopes;
+        Self {
+            middle: self.middle * factor,
+            slopes: [a * factor, b * factor],
+            off: self.off * factor.abs(),
+        }
+    }
+
+    #[inline(always)]
+    fn abs<I: Isa>(self, isa: I) -> Self {
+        let (low, high) = self.range();
+        if low >= 0.0 {
+            return self;
+        }
+        if high <= 0.0 {
+            return self.scaled(isa, -1.0);
+        }
+        // Below the chord between the ends, by at most as much as at zero.
+        let slope = self.middle / self.reach();
+        let below = -2.0 * high * low / (high - low);
+        let mut chord = self.scaled(isa, slope);
+        chord.middle += 0.5 * below;
+        chord.off += 0.5 * below;
+        chord.or(Self::within((0.0, upper(-low, high))))
+    }
+
+    #[inline(always)]
+    fn share<I: Isa>(self, isa: I) -> Self {
+        let (low, high) = self.range();
+        if low >= 0.0 && high <= 1.0 {
+            return self;
+        }
+        // What is cut off below and above.
+        let (below, above) = (upper(-low, 0.0), upper(high - 1.0, 0.0));
+        let mut cut = self;
+        cut.middle += 0.5 * (below - above);
+        cut.off += 0.5 * (below + above);
+        cut.or(Self::within((low.share(isa), high.share(isa))))
+    }
+
+    #[inline(always)]
+    fn smooth<I: Isa>(self, isa: I) -> Self {
+        let (low, high) = self.range();
+        Self::within((low.share(isa).smooth(isa), high.share(isa).smooth(isa)))
+    }
+
+    #[inline(always)]
+    fn most(self) -> f64 {
+        self.middle + self.reach()
+    }
+}
+
+/// Both at once.
+impl Number for (Ranged, Affine) {
+    type Place = Rectangle;
+
+    #[inline(always)]
+    fn constant(x: f64) -> Self {
+        (Ranged::constant(x), Affine::constant(x))
+    }
+
+    #[inline(always)]
+    fn noises<I: Isa>(
+        isa: I,
+        [x, z]: Rectangle,
+        frequencies: &[f64],
+        generator: NoiseGenerator,
+        out: &mut [Self; AT_ONCE],
+    ) {
+        let mut found = [UNIT_NOISE; AT_ONCE];
+        plane_noise_bounds(isa, x, z, frequencies, generator, &mut found);
+        for n in 0..frequencies.len() {
+            let frequency = frequencies[n];
+            out[n] = (
+                Ranged::noise(&found[n], frequency),
+                Affine::noise(&found[n], &[x, z], frequency),
+            );
+        }
+    }
+
+    #[inline(always)]
+    fn log_distance(place: Rectangle, viewpoint: &Viewpoint) -> Self {
+        let found = Ranged::log_distance(place, viewpoint);
+        (found, Affine::within(found.value))
+    }
+
+    #[inline(always)]
+    fn plus<I: Isa>(self, isa: I, other: Self) -> Self {
+        (self.0.plus(isa, other.0), self.1.plus(isa, other.1))
+    }
+
+    #[inline(always)]
+    fn times<I: Isa>(self, isa: I, other: Self) -> Self {
+        (self.0.times(isa, other.0), self.1.times(isa, other.1))
+    }
+
+    #[inline(always)]
+    fn square<I: Isa>(self, isa: I) -> Self {
+        (self.0.square(isa), self.1.square(isa))
+    }
+
+    #[inline(always)]
+    fn scaled<I: Isa>(self, isa: I, factor: f64) -> Self {
+        (self.0.scaled(isa, factor), self.1.scaled(isa, factor))
+    }
+
+    #[inline(always)]
+    fn abs<I: Isa>(self, isa: I) -> Self {
+        (self.0.abs(isa), self.1.abs(isa))
+    }
+
+    #[inline(always)]
+    fn share<I: Isa>(self, isa: I) -> Self {
+        (self.0.share(isa), self.1.share(isa))
+    }
+
+    #[inline(always)]
+    fn smooth<I: Isa>(self, isa: I) -> Self {
+        (self.0.smooth(isa), self.1.smooth(isa))
+    }
+
+    #[inline(always)]
+    fn most(self) -> f64 {
+        self.0.most()
     }
 }

@@ -1,9 +1,10 @@
 //! The heights of a terrain: sums over octaves of noise.
 
-use super::number::{Number, Range, Ranged, Rectangle, Sloped, Viewpoint, join, product, sum};
+use super::number::{AT_ONCE, Affine, Number, Range, Ranged, Rectangle, Sloped, Viewpoint};
 use super::{TerrainDetail, TerrainKind, TerrainOptions};
 use strahl_math::det;
 use strahl_math::noise::NoiseGenerator;
+use strahl_simd::{Isa, Simd, dispatch};
 
 /// Heights are known up to this part of the largest sum they are made of: about two thousand roundings.
 const ROUNDING: f64 = 1.0 / (1_u64 << 42) as f64;
@@ -17,8 +18,10 @@ pub(super) struct Relief {
     generator: NoiseGenerator,
     /// The number of octaves, in part for the last one.
     octaves: f64,
-    /// The frequency and the amplitude of each octave.
-    scales: Box<[(f64, f64)]>,
+    /// The frequency of each octave.
+    frequencies: Box<[f64]>,
+    /// The amplitude of each octave.
+    amplitudes: Box<[f64]>,
     detail: Option<Detail>,
     /// A bound of the rounding error of a height.
     pub(super) noise: f64,
@@ -39,31 +42,52 @@ enum Count<N> {
     Varying(N),
 }
 
+/// How much of an octave there is.
+#[derive(Clone, Copy)]
+enum Share<N> {
+    Nothing,
+    Whole,
+    Part(f64),
+    Varying(N),
+}
+
 impl<N: Number> Count<N> {
-    /// A term times the share of octave number `n`; `None` from the first octave on that has none.
+    /// The share of octave number `n`.
     #[inline(always)]
-    fn share(self, n: usize, term: impl FnOnce() -> N) -> Option<N> {
+    fn share<I: Isa>(self, isa: I, n: usize) -> Share<N> {
         // The octaves are few, so the number is exact.
         let before = n as f64;
         match self {
             Self::Fixed(count) => {
-                let share = (count - before).share().smooth();
+                let share = (count - before).share(isa).smooth(isa);
                 if share <= 0.0 {
-                    None
+                    Share::Nothing
                 } else if share >= 1.0 {
-                    Some(term())
+                    Share::Whole
                 } else {
-                    Some(term().scaled(share))
+                    Share::Part(share)
                 }
             }
             Self::Varying(count) => {
-                let share = count.plus(N::constant(-before)).share();
+                let share = count.plus(isa, N::constant(-before)).share(isa);
                 if share.is_nothing() {
-                    None
+                    Share::Nothing
                 } else {
-                    Some(term().times(share.smooth()))
+                    Share::Varying(share.smooth(isa))
                 }
             }
+        }
+    }
+}
+
+impl<N: Number> Share<N> {
+    #[inline(always)]
+    fn of<I: Isa>(self, isa: I, term: N) -> N {
+        match self {
+            Self::Nothing => N::constant(0.0),
+            Self::Whole => term,
+            Self::Part(share) => term.scaled(isa, share),
+            Self::Varying(share) => term.times(isa, share),
         }
     }
 }
@@ -71,7 +95,7 @@ impl<N: Number> Count<N> {
 impl Relief {
     /// The options have been checked.
     pub(super) fn new(options: &TerrainOptions) -> Self {
-        let (mut frequency, mut scales) = (1.0, vec![]);
+        let (mut frequency, mut frequencies, mut amplitudes) = (1.0, vec![], vec![]);
         let mut octave = 0.0;
         while octave < options.octaves {
             let amplitude = if octave == 0.0 {
@@ -79,7 +103,8 @@ impl Relief {
             } else {
                 det::pow(frequency, -options.h)
             };
-            scales.push((frequency, amplitude));
+            frequencies.push(frequency);
+            amplitudes.push(amplitude);
             frequency *= options.lacunarity;
             octave += 1.0;
         }
@@ -89,7 +114,8 @@ impl Relief {
             gain: options.gain,
             generator: options.generator,
             octaves: options.octaves,
-            scales: scales.into(),
+            frequencies: frequencies.into(),
+            amplitudes: amplitudes.into(),
             detail: None,
             noise: 0.0,
         };
@@ -125,7 +151,7 @@ impl Relief {
     fn largest(&self) -> f64 {
         let term = 1.0 + self.offset.abs();
         let mut total = 0.0;
-        for (n, &(_, amplitude)) in self.scales.iter().enumerate() {
+        for (n, &amplitude) in self.amplitudes.iter().enumerate() {
             total += match self.kind {
                 TerrainKind::Fbm if n > 0 => amplitude,
                 TerrainKind::Fbm => term,
@@ -139,71 +165,85 @@ impl Relief {
 
     /// How many octaves there are at most in a rectangle, and the frequency of the last one.
     pub(super) fn finest(&self, rectangle: Rectangle) -> f64 {
-        let count = match self.count::<Ranged>(rectangle) {
+        let count = dispatch!(Simd::best(), isa => self.count::<Ranged, _>(isa, rectangle));
+        self.frequencies[self.octaves_of(count) - 1]
+    }
+
+    /// How many octaves there are at most.
+    #[inline(always)]
+    fn octaves_of<N: Number>(&self, count: Count<N>) -> usize {
+        let count = match count {
             Count::Fixed(count) => count,
-            Count::Varying(count) => count.value.1,
+            Count::Varying(count) => count.most(),
         };
-        let whole = count.ceil().clamp(1.0, self.scales.len() as f64) as usize;
-        self.scales.get(whole - 1).map_or(1.0, |scale| scale.0)
+        count.ceil().clamp(1.0, self.amplitudes.len() as f64) as usize
     }
 
     #[inline(always)]
-    fn count<N: Number>(&self, place: N::Place) -> Count<N> {
+    fn count<N: Number, I: Isa>(&self, isa: I, place: N::Place) -> Count<N> {
         match &self.detail {
             None => Count::Fixed(self.octaves),
             Some(detail) => {
                 let log = N::log_distance(place, &detail.viewpoint);
-                Count::Varying(log.scaled(-detail.per_log).plus(N::constant(detail.full)))
+                Count::Varying(
+                    log.scaled(isa, -detail.per_log)
+                        .plus(isa, N::constant(detail.full)),
+                )
             }
         }
     }
 
     /// The height at a place.
-    #[inline(always)]
     fn evaluate<N: Number>(&self, place: N::Place) -> N {
-        let count = self.count::<N>(place);
+        dispatch!(Simd::best(), isa => self.evaluate_with(isa, place))
+    }
+
+    #[inline(always)]
+    fn evaluate_with<N: Number, I: Isa>(&self, isa: I, place: N::Place) -> N {
+        let count = self.count::<N, I>(isa, place);
+        let octaves = self.octaves_of(count);
         let offset = N::constant(self.offset);
-        let noise = |frequency| N::noise(place, frequency, self.generator);
-        match self.kind {
-            TerrainKind::Fbm => {
-                let mut height = noise(1.0).plus(offset);
-                for (n, &(frequency, amplitude)) in self.scales.iter().enumerate().skip(1) {
-                    let Some(term) = count.share(n, || noise(frequency).scaled(amplitude)) else {
-                        break;
-                    };
-                    height = height.plus(term);
-                }
-                height
+        let mut noises = [offset; AT_ONCE];
+        let (mut height, mut signal) = (offset, offset);
+        for n in 0..octaves {
+            let share = if n == 0 {
+                Share::Whole
+            } else {
+                count.share(isa, n)
+            };
+            if matches!(share, Share::Nothing) {
+                break;
             }
-            TerrainKind::Hetero => {
-                let mut height = noise(1.0).plus(offset);
-                for (n, &(frequency, amplitude)) in self.scales.iter().enumerate().skip(1) {
-                    let increment = || noise(frequency).plus(offset).scaled(amplitude);
-                    let Some(term) = count.share(n, increment) else {
-                        break;
-                    };
-                    height = height.plus(term.times(height));
-                }
-                height
+            if n % AT_ONCE == 0 {
+                let some = &self.frequencies[n..octaves.min(n + AT_ONCE)];
+                N::noises(isa, place, some, self.generator, &mut noises);
             }
-            TerrainKind::Ridged => {
-                let ridge = |frequency| noise(frequency).abs().scaled(-1.0).plus(offset).square();
-                let mut signal = ridge(1.0);
-                let mut height = signal;
-                for (n, &(frequency, amplitude)) in self.scales.iter().enumerate().skip(1) {
-                    let weight = signal.scaled(self.gain).share();
-                    let mut raw = signal;
-                    let term = count.share(n, || {
-                        raw = ridge(frequency).times(weight);
-                        raw.scaled(amplitude)
-                    });
-                    let Some(term) = term else { break };
-                    signal = raw;
-                    height = height.plus(term);
+            let (noise, amplitude) = (noises[n % AT_ONCE], self.amplitudes[n]);
+            height = match self.kind {
+                TerrainKind::Fbm | TerrainKind::Hetero if n == 0 => noise.plus(isa, offset),
+                TerrainKind::Fbm => {
+                    let term = share.of(isa, noise.scaled(isa, amplitude));
+                    height.plus(isa, term)
                 }
-                height
-            }
+                TerrainKind::Hetero => {
+                    let increment = noise.plus(isa, offset).scaled(isa, amplitude);
+                    height.plus(isa, share.of(isa, increment).times(isa, height))
+                }
+                TerrainKind::Ridged => {
+                    let crest = noise.abs(isa).scaled(isa, -1.0).plus(isa, offset);
+                    let ridge = crest.square(isa);
+                    if n == 0 {
+                        signal = ridge;
+                        ridge
+                    } else {
+                        let weight = signal.scaled(isa, self.gain).share(isa);
+                        signal = ridge.times(isa, weight);
+                        height.plus(isa, share.of(isa, signal.scaled(isa, amplitude)))
+                    }
+                }
+            };
         }
+        height
     }
 
     /// Which smooth piece of the surface a place is on: ridges have creases where the noise of an octave is zero, so there is a bit for the
@@ -212,11 +252,18 @@ impl Relief {
         if self.kind != TerrainKind::Ridged {
             return 0;
         }
-        let negative = |frequency| f64::noise(place, frequency, self.generator) < 0.0;
-        let bits = self.scales.iter().take(32).enumerate();
-        bits.fold(0, |bits, (n, scale)| {
-            bits | u32::from(negative(scale.0)) << n
-        })
+        let mut bits = 0;
+        let signs = self.frequencies.len().min(32);
+        for (n, some) in self.frequencies[..signs].chunks(AT_ONCE).enumerate() {
+            let mut noises = [0.0; AT_ONCE];
+            dispatch!(Simd::best(), isa => {
+                f64::noises(isa, place, some, self.generator, &mut noises);
+            });
+            for (k, noise) in noises.iter().enumerate().take(some.len()) {
+                bits |= u32::from(*noise < 0.0) << (AT_ONCE * n + k);
+            }
+        }
+        bits
     }
 
     /// The height at `[x, z]`.
@@ -229,29 +276,16 @@ impl Relief {
         self.evaluate::<Sloped>(place)
     }
 
-    /// Ranges of the height and of its slopes over a rectangle.
-    pub(super) fn ranged(&self, rectangle: Rectangle) -> Ranged {
-        let mut found = self.evaluate::<Ranged>(rectangle);
+    /// Ranges of the height and of its slopes over a rectangle, and how it is nearly linear.
+    pub(super) fn bounds(&self, rectangle: Rectangle) -> (Ranged, Affine) {
+        let (mut found, linear) = self.evaluate::<(Ranged, Affine)>(rectangle);
         found.value = (found.value.0 - self.noise, found.value.1 + self.noise);
-        found
+        (found, linear)
     }
 
-    /// The range of the height over a rectangle, closed in by its slopes.
+    /// The range of the height over a rectangle.
     pub(super) fn range(&self, rectangle: Rectangle) -> Range {
-        let found = self.ranged(rectangle);
-        let [(x0, x1), (z0, z1)] = rectangle;
-        let middle = self.height([0.5 * (x0 + x1), 0.5 * (z0 + z1)]);
-        let half = |(a, b): Range| (0.5 * (a - b), 0.5 * (b - a));
-        let rise = sum(
-            product(found.slopes[0], half(rectangle[0])),
-            product(found.slopes[1], half(rectangle[1])),
-        );
-        let pad = 2.0 * self.noise + 1e-15 * join(rise, (0.0, 0.0)).1;
-        let mean = (middle + rise.0 - pad, middle + rise.1 + pad);
-        let (low, high) = found.value;
-        (
-            if mean.0 > low { mean.0 } else { low },
-            if mean.1 < high { mean.1 } else { high },
-        )
+        let (low, high) = self.evaluate::<Affine>(rectangle).range();
+        (low - self.noise, high + self.noise)
     }
 }

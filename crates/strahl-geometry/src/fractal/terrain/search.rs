@@ -62,8 +62,12 @@ enum Verdict {
     Empty,
     /// The ray only rises, or only falls, relative to the terrain.
     Monotone,
-    /// At most so fast, in either direction.
-    Unknown(f64),
+    Unknown {
+        /// Its height above the terrain changes at a rate within these, of which one is negative and one positive.
+        rates: Range,
+        /// Where the surface may be.
+        within: Range,
+    },
 }
 
 /// The smallest value on one side of the surface.
@@ -99,46 +103,84 @@ impl<V: FnMut(Event) -> ControlFlow<()>> Course<'_, V> {
         // Rounded products and sums are monotone, so these are the ends of the coordinates too.
         let (a, b) = (self.at(from), self.at(to));
         let range = |a: f64, b: f64| (lower(a, b), upper(a, b));
-        let found = self.relief.ranged([range(a.x, b.x), range(a.z, b.z)]);
+        let (found, linear) = self.relief.bounds([range(a.x, b.x), range(a.z, b.z)]);
         let y = range(a.y, b.y);
         if y.0 > found.value.1 || y.1 < found.value.0 {
             return Verdict::Empty;
         }
+        // Along the ray what is linear over the rectangle depends on one parameter from -1 to 1.
         let d = self.direction;
-        let [x, z] = found.slopes;
-        let (fall, rise) = sum(times(x, d.x), times(z, d.z));
+        let half = 0.5 * (b.y - a.y) - linear.along(d.x >= 0.0, d.z >= 0.0);
+        let above = 0.5 * (a.y + b.y) - linear.middle;
+        let off = linear.off + 4.0 * self.relief.noise;
+        let per = 1.0 / half;
+        let (p, q) = ((-off - above) * per, (off - above) * per);
+        let (near, far) = (lower(p, q) - SPARE, upper(p, q) + SPARE);
+        // Comparisons with NaN, where nothing changes along the ray, change nothing.
+        if near > 1.0 || far < -1.0 {
+            return Verdict::Empty;
+        }
+        let at = |x: f64| from + 0.5 * (x + 1.0) * (to - from);
+        let within = (
+            if near > -1.0 { at(near) } else { from },
+            if far < 1.0 { at(far) } else { to },
+        );
+        let [a0, a1, b0, b1] = found.slopes;
+        let (fall, rise) = sum(times((a0, a1), d.x), times((b0, b1), d.z));
         let (least, most) = (d.y - rise, d.y - fall);
         if least > 0.0 || most < 0.0 {
             return Verdict::Monotone;
         }
-        Verdict::Unknown(upper(-least, most))
+        let rates = (least, most);
+        Verdict::Unknown { rates, within }
     }
 
-    /// Reports the changes of sign between two places, ascending.
-    fn run(&mut self, from: Place, to: Place, verdict: Verdict) -> ControlFlow<()> {
+    /// Reports the changes of sign between two places, ascending, where the rates are within a range.
+    fn run(&mut self, from: Place, to: Place, (fall, rise): Range) -> ControlFlow<()> {
         let changes = from.is_inside() != to.is_inside();
-        let length = to.s - from.s;
-        let speed = match verdict {
-            Verdict::Empty | Verdict::Monotone if !changes => return ControlFlow::Continue(()),
-            Verdict::Empty | Verdict::Monotone => return self.cross(from, to),
-            Verdict::Unknown(speed) => speed,
+        // How far from a place there is no crossing for sure.
+        let clear = |place: Place, speed: f64| {
+            let way = (place.value.abs() - 2.0 * self.relief.noise) / speed - self.shortest;
+            if way > 0.0 { way } else { 0.0 }
         };
-        if !(length > self.shortest) {
+        let ahead = clear(from, if from.is_inside() { rise } else { -fall });
+        let behind = clear(to, if to.is_inside() { -fall } else { rise });
+        let (low, high) = (from.s + ahead, to.s - behind);
+        if !(high - low > self.shortest) {
             return if changes {
                 self.cross(from, to)
             } else {
                 ControlFlow::Continue(())
             };
         }
-        let middle = self.place(from.s + 0.5 * length);
-        let reach = 0.5 * length * speed + 2.0 * self.relief.noise;
-        if !changes && middle.value.abs() > reach {
-            return ControlFlow::Continue(());
+        match self.judge(low, high) {
+            Verdict::Empty | Verdict::Monotone if !changes => ControlFlow::Continue(()),
+            Verdict::Empty | Verdict::Monotone => self.cross(from, to),
+            Verdict::Unknown { rates, within } => self.split(from, to, rates, within),
         }
-        let verdict = self.judge(from.s, middle.s);
-        self.run(from, middle, verdict)?;
-        let verdict = self.judge(middle.s, to.s);
-        self.run(middle, to, verdict)
+    }
+
+    /// The same, where the surface is within a part in which the rates are known.
+    fn split(&mut self, from: Place, to: Place, rates: Range, part: Range) -> ControlFlow<()> {
+        let (low, high) = (self.beside(part.0, from), self.beside(part.1, to));
+        if high.s - low.s < SHRUNK * (to.s - from.s) {
+            return self.run(low, high, rates);
+        }
+        let middle = self.place(0.5 * (low.s + high.s));
+        self.run(low, middle, rates)?;
+        self.run(middle, high, rates)
+    }
+
+    /// A place on the same side of the surface as another one, as is known, whatever rounding says.
+    fn beside(&self, s: f64, other: Place) -> Place {
+        if s == other.s {
+            return other;
+        }
+        let mut place = self.place(s);
+        if place.is_inside() != other.is_inside() {
+            place.value = least_value(other.is_inside());
+        }
+        place
     }
 
     /// Reports the crossing between two places on different sides.
@@ -195,9 +237,22 @@ impl<V: FnMut(Event) -> ControlFlow<()>> Visitor for Course<'_, V> {
             first.value = least_value(self.inside);
         }
         self.last = self.place(exit);
-        self.run(first, self.last, verdict)
+        let last = self.last;
+        match verdict {
+            Verdict::Empty | Verdict::Monotone if first.is_inside() == last.is_inside() => {
+                ControlFlow::Continue(())
+            }
+            Verdict::Empty | Verdict::Monotone => self.cross(first, last),
+            Verdict::Unknown { rates, within } => self.split(first, last, rates, within),
+        }
     }
 }
 
+/// A part of a ray that shrinks to less than this is not halved yet.
+const SHRUNK: f64 = 0.7;
+
+/// More than the rounding errors of a place in a part of a ray whose ends are -1 and 1.
+const SPARE: f64 = 1.0 / (1_u64 << 30) as f64;
+
 /// Cells of the tree are searched if they are at most so many wavelengths of the last octave large.
-const SMALL: f64 = 0.5;
+const SMALL: f64 = 1.0;

@@ -108,7 +108,8 @@ fn bounds_hold_and_slopes_are_differences() {
                     (corner.x, corner.x + size * random.unit()),
                     (corner.z, corner.z + size * random.unit()),
                 ];
-                let (ranged, range) = (relief.ranged(rectangle), relief.range(rectangle));
+                let (ranged, linear) = relief.bounds(rectangle);
+                let range = relief.range(rectangle);
                 for _ in 0..20 {
                     let [x, z] = rectangle.map(|(a, b)| a + (b - a) * random.unit());
                     let found = relief.sloped([x, z]);
@@ -117,7 +118,23 @@ fn bounds_hold_and_slopes_are_differences() {
                         let holds = low <= found.value && found.value <= high;
                         assert!(holds, "{options:?} {low} {high} {found:?}");
                     }
-                    for (k, (low, high)) in ranged.slopes.into_iter().enumerate() {
+                    let place = |k: usize, x: f64| {
+                        let (a, b) = rectangle[k];
+                        if b > a {
+                            2.0 * (x - a) / (b - a) - 1.0
+                        } else {
+                            0.0
+                        }
+                    };
+                    let near = linear.middle
+                        + (linear.slopes[0] * place(0, x) + linear.slopes[1] * place(1, z));
+                    let off = (found.value - near).abs();
+                    assert!(
+                        off <= linear.off + relief.noise,
+                        "{options:?} {off} {linear:?}"
+                    );
+                    let [a0, a1, b0, b1] = ranged.slopes;
+                    for (k, (low, high)) in [(a0, a1), (b0, b1)].into_iter().enumerate() {
                         let slope = found.slopes[k];
                         assert!(
                             low <= slope && slope <= high,
