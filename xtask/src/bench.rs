@@ -1,6 +1,7 @@
 //! Speed against other programs: interleaved runs, medians, ratios.
 
 use crate::arguments::Arguments;
+use crate::compare_pov::picture;
 use crate::convert;
 use anyhow::{Context, Result, bail};
 use serde_json::Value;
@@ -114,6 +115,21 @@ fn one_scene(scene: &Path, runs: usize, threads: u32) -> Result<Faster> {
 pub(crate) fn median(values: &mut [f64]) -> f64 {
     values.sort_by(f64::total_cmp);
     values[values.len() / 2]
+}
+
+/// The mean difference of two pictures of a scene in 8-bit codes; an error if it is larger than `most`.
+pub(crate) fn difference(scene: &str, pictures: [&Path; 2], most: f64) -> Result<f64> {
+    let [ours, theirs] = [picture::read(pictures[0])?, picture::read(pictures[1])?];
+    let (difference, _) =
+        picture::compare(&ours, &theirs).context("the pictures have different sizes")?;
+    if difference > most {
+        bail!(
+            "{scene}: the pictures differ by {difference:.2} in the mean, more than {most}; look at {} and {}",
+            pictures[0].display(),
+            pictures[1].display()
+        );
+    }
+    Ok(difference)
 }
 
 /// Builds the release binary.

@@ -9,11 +9,13 @@ mod arguments;
 mod bench;
 mod bench_csg;
 mod bench_load;
+mod bench_objects;
 mod bench_parse;
 mod bench_scenes;
 mod compare_pov;
 mod convert;
 mod differ;
+mod facets;
 mod gallery;
 mod lab;
 mod looks;
@@ -30,6 +32,9 @@ const USAGE: &str = "usage: cargo xtask COMMAND
                                   trace times of the SPD scenes (*.nff.gz) in FOLDER against POV-Ray and Tachyon
   bench csg [--runs N] [--threads N] [--only PART]
                                   trace times of generated CSG scenes against POV-Ray
+  bench objects [--runs N] [--size 640x480] [--only PART]
+                                  processor time of each kind of object against POV-Ray; time and memory of
+                                  free-form surfaces against triangles of the size of a pixel
   bench parse [--runs N] [--megabytes N]
                                   time to parse a million spheres made by loops, and an exported scene, against POV-Ray
   bench load [--runs N] [--side N]
@@ -43,6 +48,7 @@ const USAGE: &str = "usage: cargo xtask COMMAND
                                   renders POV-Ray's example scenes with both programs and compares the pictures
   differ [--seed N] [--count M] [--first N] [--jobs 8] [--out DIR] [--strahl BINARY] [--print]
                                   renders random scenes with both programs; those that differ are reduced
+  facets                          renders the pictures of patches in the manual with both programs
   gallery [--only PART] [--check]
                                   writes the manual's pages and pictures of scenes/{gallery,lecture,showcase};
                                   --check only lists missing or outdated pages
@@ -62,12 +68,14 @@ fn main() -> Result<()> {
     match words.as_slice() {
         ["bench", "spd", rest @ ..] => bench::spd(rest),
         ["bench", "csg", rest @ ..] => bench_csg::run(rest),
+        ["bench", "objects", rest @ ..] => bench_objects::run(rest),
         ["bench", "load", rest @ ..] => bench_load::run(rest),
         ["bench", "parse", rest @ ..] => bench_parse::parse(rest),
         ["bench", "scenes", rest @ ..] => bench_scenes::run(rest),
         ["bench", "peers", rest @ ..] => peers::run(rest),
         ["compare-pov", rest @ ..] => compare_pov::run(rest),
         ["differ", rest @ ..] => differ::run(rest),
+        ["facets"] => facets::run(),
         ["gallery", rest @ ..] => gallery::run(rest),
         ["generate", what, size, output] => {
             Ok(std::fs::write(output, lab::generate(what, Some(size))?)?)

@@ -4,7 +4,6 @@ mod scenes;
 
 use crate::arguments::Arguments;
 use crate::bench::{build_strahl, geometric_mean, median, run_povray, run_strahl, strahl_binary};
-use crate::compare_pov::picture;
 use anyhow::{Context, Result, bail};
 use scenes::Scene;
 use std::fmt::Write as _;
@@ -74,16 +73,7 @@ fn one_scene(
         rays = count;
         povray.push(run_povray(&file, &theirs, threads)?);
     }
-    let (difference, _) = picture::compare(&picture::read(&ours)?, &picture::read(&theirs)?)
-        .context("the pictures have different sizes")?;
-    if difference > BOUND {
-        bail!(
-            "{}: the pictures differ by {difference:.2} in the mean, more than {BOUND}; look at {} and {}",
-            scene.name,
-            ours.display(),
-            theirs.display()
-        );
-    }
+    let difference = crate::bench::difference(scene.name, [&ours, &theirs], BOUND)?;
     let mut ratios: Vec<f64> = strahl.iter().zip(&povray).map(|(a, b)| b / a).collect();
     let (ratio, time) = (median(&mut ratios), median(&mut strahl));
     all.push(ratio);

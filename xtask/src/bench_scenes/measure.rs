@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 
 /// One of the two programs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Program {
+pub(crate) enum Program {
     /// POV-Ray 3.7.
     PovRay,
     /// The release build of strahl.
@@ -17,7 +17,7 @@ pub(super) enum Program {
 }
 
 /// The outcome of a run.
-pub(super) enum Timed {
+pub(crate) enum Timed {
     /// Processor seconds, user and system.
     Seconds(f64),
     /// No picture was written, for this reason.
@@ -25,14 +25,14 @@ pub(super) enum Timed {
 }
 
 impl Program {
-    pub(super) fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> &'static str {
         match self {
             Self::PovRay => "POV-Ray",
             Self::Strahl => "strahl",
         }
     }
 
-    pub(super) fn picture(self) -> &'static str {
+    pub(crate) fn picture(self) -> &'static str {
         match self {
             Self::PovRay => "povray.png",
             Self::Strahl => "strahl.png",
@@ -40,7 +40,7 @@ impl Program {
     }
 
     /// Options for one ray per pixel.
-    pub(super) fn plain(self) -> &'static [&'static str] {
+    pub(crate) fn plain(self) -> &'static [&'static str] {
         match self {
             Self::PovRay => &["-A"],
             Self::Strahl => &["--sampling", "center"],
@@ -48,7 +48,7 @@ impl Program {
     }
 
     /// Options for the usual antialiasing.
-    pub(super) fn antialiased(self) -> &'static [&'static str] {
+    pub(crate) fn antialiased(self) -> &'static [&'static str] {
         match self {
             Self::PovRay => &["+A0.3"],
             Self::Strahl => &["+A0.3"],
@@ -56,7 +56,7 @@ impl Program {
     }
 
     /// Options for the largest number of rays per pixel that POV-Ray allows.
-    pub(super) fn converged(self) -> &'static [&'static str] {
+    pub(crate) fn converged(self) -> &'static [&'static str] {
         match self {
             Self::PovRay => &["+A0.0", "+R9"],
             Self::Strahl => &["+A0.0", "+R9"],
@@ -65,7 +65,7 @@ impl Program {
 }
 
 /// Renders a scene with one thread; stops the program after `most` seconds of wall time.
-pub(super) fn render(
+pub(crate) fn render(
     program: Program,
     scene: &Path,
     picture: &Path,

@@ -1,7 +1,7 @@
 //! Processor time of both programs on real scenes, in turns. Only scenes count of which both make the same picture.
 
 mod antialiasing;
-mod measure;
+pub(crate) mod measure;
 mod report;
 
 use crate::arguments::Arguments;

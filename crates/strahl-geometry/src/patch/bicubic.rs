@@ -1,4 +1,5 @@
 use super::bezier::{Bezier, is_on_a_line};
+use super::elements;
 use super::net::Net;
 use super::search::{Candidate, Frame};
 use super::tree::{points, project};
@@ -134,21 +135,10 @@ impl BicubicPatch {
     }
 
     /// Texture coordinates with the derivatives of the point by them.
-    fn textured(&self, uv: DVec2, by_u: DVec3, by_v: DVec3) -> (DVec2, DVec3, DVec3) {
-        let Some([a, b, c, d]) = self.corners else {
-            return (uv, by_u, by_v);
-        };
-        let (lower, upper) = (a + (b - a) * uv.x, d + (c - d) * uv.x);
-        let place = lower + (upper - lower) * uv.y;
-        let along_u = (b - a) * (1.0 - uv.y) + (c - d) * uv.y;
-        let along_v = upper - lower;
-        let determinant = along_u.x * along_v.y - along_u.y * along_v.x;
-        let by_x = (by_u * along_v.y - by_v * along_u.y) / determinant;
-        let by_y = (by_v * along_u.x - by_u * along_v.x) / determinant;
-        if by_x.is_finite() && by_y.is_finite() {
-            (place, by_x, by_y)
-        } else {
-            (place, DVec3::ZERO, DVec3::ZERO)
+    fn textured(&self, uv: DVec2, by: [DVec3; 2]) -> (DVec2, [DVec3; 2]) {
+        match self.corners {
+            Some(corners) => elements::bilinear(corners, uv.to_array(), by),
+            None => (uv, by),
         }
     }
 }
@@ -212,11 +202,11 @@ impl Primitive for BicubicPatch {
         let uv = DVec2::from_array(hit.uv);
         let jet = self.bezier.jet(uv.x, uv.y);
         let normal = self.bezier.normal(uv, jet).map_or_else(
-            || (-ray.direction).try_normalize().unwrap_or(DVec3::Y),
+            || elements::against(ray),
             |front| if self.is_flipped { -front } else { front },
         );
         let [position, by_u, by_v] = jet;
-        let (uv, dpdu, dpdv) = self.textured(uv, by_u, by_v);
+        let (uv, [dpdu, dpdv]) = self.textured(uv, [by_u, by_v]);
         let error = point_error(position, self.bezier.bounds.max_abs(), 64);
         SurfacePoint {
             uv,
@@ -234,9 +224,7 @@ impl Primitive for BicubicPatch {
         let points = self.points().map(|row| row.map(|p| map.point_to_world(p)));
         let mut mapped = Self::new(points, self.weights());
         // Far away from the origin the coordinates would lose its shape.
-        let is_far = mapped.bounds().size().max_element()
-            < mapped.bounds().max_abs() * f64::from(f32::EPSILON);
-        if is_far || mapped.validate().is_err() {
+        if !elements::keeps_its_shape(&mapped.bounds()) || mapped.validate().is_err() {
             return None;
         }
         mapped.corners = self.corners;

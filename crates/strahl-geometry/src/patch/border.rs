@@ -41,7 +41,7 @@ pub(super) fn winding<const K: usize>(view: &Net<2, K>) -> i32 {
 }
 
 /// How often side `side` of a map crosses the axis, counter-clockwise in its parameters.
-fn side_of<const K: usize>(view: &Net<2, K>, side: usize) -> i32 {
+fn side_of<const K: usize>(view: &Net<2, K>, side: u8) -> i32 {
     match side {
         0 => crossings(&view.rows[0], DEPTH),
         1 => crossings(&view.column(K - 1), DEPTH),
@@ -50,24 +50,41 @@ fn side_of<const K: usize>(view: &Net<2, K>, side: usize) -> i32 {
     }
 }
 
-/// The border of a patch beside smaller ones: for each side, counter-clockwise from `v = 0` on, the two curves of which the
-/// neighbours make it, in this direction; `None` where it is that of the net.
+/// The border of a polynomial patch beside smaller ones: the sides that are not those of its net.
 #[derive(Debug)]
-pub(super) struct Border<const K: usize>(pub(super) Option<Box<Sides<K>>>);
+pub(super) struct Border<const K: usize>(Box<[Side<K>]>);
+
+/// A side of which the neighbours make two curves, in the direction counter-clockwise from `v = 0` on.
+#[derive(Debug)]
+struct Side<const K: usize> {
+    number: u8,
+    halves: [Curve<3, K>; 2],
+}
 
 /// The two halves of each side, where there are any.
 pub(super) type Sides<const K: usize> = [Option<[Curve<4, K>; 2]>; 4];
 
 impl<const K: usize> Default for Border<K> {
     fn default() -> Self {
-        Self(None)
+        Self([].into())
     }
 }
 
 impl<const K: usize> Border<K> {
+    /// The border with the halves of some sides, whose weights are 1.
+    pub(super) fn new(sides: &Sides<K>) -> Self {
+        let own = |halves: &[Curve<4, K>; 2]| halves.map(|half| half.map(|[x, y, z, _]| [x, y, z]));
+        let numbered = (0_u8..).zip(sides);
+        let all = numbered.filter_map(|(number, halves)| {
+            let halves = own(halves.as_ref()?);
+            Some(Side { number, halves })
+        });
+        Self(all.collect())
+    }
+
     /// The bytes that it takes beside itself.
     pub(super) fn bytes(&self) -> usize {
-        self.0.as_ref().map_or(0, |_| size_of::<Sides<K>>())
+        size_of_val(&*self.0)
     }
 
     /// How often the border of a net, counter-clockwise in its parameters, winds around the ray along which `see` sees its
@@ -79,14 +96,13 @@ impl<const K: usize> Border<K> {
     /// last bit. So a ray through the border of a closed surface of patches meets exactly one of the two.
     pub(super) fn winding(&self, net: &Net<4, K>, see: impl Fn(&[f64; 4]) -> [f64; 2]) -> i32 {
         let view = net.map(&see);
-        let Some(sides) = &self.0 else {
-            return winding(&view);
+        let half = |curve: &Curve<3, K>| {
+            let seen = curve.map(|[x, y, z]| see(&[x, y, z, 1.0]));
+            crossings(&seen, DEPTH)
         };
-        let half =
-            |curve: &Curve<4, K>| crossings::<K>(&std::array::from_fn(|i| see(&curve[i])), DEPTH);
-        let side = |side: usize| match &sides[side] {
-            Some([a, b]) => half(a) + half(b),
-            None => side_of(&view, side),
+        let side = |number: u8| match self.0.iter().find(|side| side.number == number) {
+            Some(side) => half(&side.halves[0]) + half(&side.halves[1]),
+            None => side_of(&view, number),
         };
         (0..4).map(side).sum()
     }

@@ -6,6 +6,7 @@ mod border;
 #[cfg(test)]
 mod border_tests;
 mod degree;
+mod elements;
 mod graze;
 mod net;
 mod nurbs;

@@ -1,6 +1,6 @@
 //! Closed surfaces of patches as solids: a point is inside if the surface winds around it.
 
-use crate::{Crossing, Crossings, PrimHit, Primitive, Side, SurfaceId};
+use crate::{Crossing, Crossings, PrimHit, Primitive, Scratch, Side, Solid, SurfaceId};
 use strahl_math::error::gamma;
 use strahl_math::{DVec3, Interval, Ray};
 
@@ -71,13 +71,15 @@ pub(super) trait Winding: Primitive {
         let most = if along < size { along } else { size };
         most / length + gamma(8) * hit.t.abs()
     }
+}
 
-    /// As [`crate::Solid::crossings`].
-    fn crossings_by_winding(
+impl<S: Winding> Solid for S {
+    fn crossings(
         &self,
         ray: &Ray,
         range: Interval,
         from: Option<SurfaceId>,
+        _scratch: &mut Scratch,
         out: &mut Crossings,
     ) {
         let range = if from.is_some() && range.min < 0.0 {
@@ -107,8 +109,7 @@ pub(super) trait Winding: Primitive {
         }
     }
 
-    /// As [`crate::Solid::contains`].
-    fn contains_by_winding(&self, point: DVec3) -> bool {
+    fn contains(&self, point: DVec3) -> bool {
         let bounds = self.bounds();
         if !bounds.contains(point) {
             return false;

@@ -1,21 +1,21 @@
 //! NURBS surfaces, trimmed or whole.
 
+mod closed;
 mod data;
 mod part;
-mod solid;
 mod spline;
 #[cfg(test)]
 mod tests;
 mod trim;
 
 use super::bicubic::LARGEST;
+use super::elements::{self, ElementTree, Elements, Front};
 use super::search::{Candidate, Frame, Keep};
-use super::winding::Winding;
+use super::winding::{Pass, Winding};
 use crate::primitives::point_error;
 use crate::{GeometryError, PrimHit, Primitive, Scratch, Shape, Solid, SurfaceId, SurfacePoint};
 use part::Part;
 use std::sync::Arc;
-use strahl_accel::{Accelerator, Bvh2, TraversalStats, Visitor};
 use strahl_math::{Aabb, DVec2, DVec3, Interval, Ray, Transform};
 use trim::Region;
 
@@ -44,16 +44,10 @@ pub use trim::{NurbsCurve, TrimLoop};
 #[derive(Debug)]
 pub struct Nurbs {
     parts: Vec<Part>,
-    /// Over the parts, relative to the anchor.
-    tree: Bvh2,
-    anchor: DVec3,
-    bounds: Aabb,
+    /// Over the parts.
+    tree: ElementTree,
     trimming: Option<Arc<Region>>,
-    /// Whether the front is the other side, after a mirroring transform.
-    is_flipped: bool,
-    is_closed: bool,
-    /// Whether the normals of a closed surface have to be turned outwards.
-    is_inside_out: bool,
+    front: Front,
 }
 
 /// The largest weight is at most so many times the least.
@@ -90,7 +84,7 @@ impl Nurbs {
                 why: "its trimming curves leave nothing of it",
             });
         }
-        let is_closed = loops.is_empty() && solid::is_closed(&patches);
+        let is_closed = loops.is_empty() && closed::is_closed(&patches);
         Ok(Self::of(patches.parts, trimming, false, is_closed))
     }
 
@@ -100,37 +94,20 @@ impl Nurbs {
         is_flipped: bool,
         is_closed: bool,
     ) -> Self {
-        let bounds = parts
-            .iter()
-            .fold(Aabb::EMPTY, |all, part| all.union(&part.patch.bounds()));
-        let anchor = bounds.min;
-        let boxes: Vec<_> = parts
-            .iter()
-            .map(|part| {
-                let own = part.patch.bounds();
-                Aabb::new(own.min - anchor, own.max - anchor)
-            })
-            .collect();
+        let boxes: Vec<_> = parts.iter().map(|part| part.patch.bounds()).collect();
         let mut surface = Self {
             parts,
-            tree: Bvh2::build(&boxes),
-            anchor,
-            bounds,
+            tree: ElementTree::new(&boxes),
             trimming,
-            is_flipped,
-            is_closed,
-            is_inside_out: false,
+            front: Front {
+                is_flipped,
+                is_closed,
+                is_inside_out: false,
+            },
         };
         let aims = surface.parts.iter().map(|part| part.patch.jet(0.5, 0.5)[0]);
-        surface.is_inside_out = is_closed && surface.finds_inside_out(aims);
+        surface.front.is_inside_out = is_closed && surface.finds_inside_out(aims);
         surface
-    }
-
-    /// Shows the parts along a ray to the visitor.
-    fn walk<V: Visitor>(&self, ray: &Ray, range: Interval, visitor: &mut V) {
-        let local = Ray::new(ray.origin - self.anchor, ray.direction);
-        self.tree
-            .traverse(&local, range, visitor, &mut TraversalStats::default());
     }
 
     /// Calls `ask` with a part and what is there of it.
@@ -252,55 +229,44 @@ fn hit(id: u32, candidate: &Candidate) -> PrimHit {
     }
 }
 
-/// Looks for the nearest hit.
-struct Nearest<'a> {
-    nurbs: &'a Nurbs,
-    frame: Frame,
-    range: Interval,
-    best: Option<PrimHit>,
-}
+impl Elements for Nurbs {
+    type Line<'a> = Frame;
 
-impl Visitor for Nearest<'_> {
-    fn visit(&mut self, id: u32, t_max: f64) -> f64 {
-        let range = self
-            .best
-            .map_or(self.range, |best| self.range.with_max(best.t));
-        let found = self.nurbs.with_part(id, |part, keep| {
-            part.patch.nearest(&self.frame, range, keep)
-        });
-        let Some(found) = found.flatten() else {
-            return t_max;
-        };
-        let found = hit(id, &found);
-        let key = |hit: &PrimHit| (hit.t, hit.surface.element);
-        if self.best.is_none_or(|best| key(&found) < key(&best)) {
-            self.best = Some(found);
-            return found.t;
-        }
-        t_max
+    fn line(&self, ray: &Ray) -> Option<Frame> {
+        Frame::new(ray)
+    }
+
+    fn tree(&self) -> &ElementTree {
+        &self.tree
+    }
+
+    fn nearest(&self, id: u32, frame: &Frame, range: Interval) -> Option<PrimHit> {
+        let found = self.with_part(id, |part, keep| part.patch.nearest(frame, range, keep));
+        found.flatten().map(|candidate| hit(id, &candidate))
+    }
+
+    fn any(&self, id: u32, frame: &Frame, range: Interval) -> bool {
+        self.with_part(id, |part, keep| part.patch.any(frame, range, keep)) == Some(true)
+    }
+
+    fn all(&self, id: u32, frame: &Frame, passes: &mut Vec<Pass>) {
+        let found = self.with_part(id, |part, keep| part.patch.all(frame, keep));
+        passes.extend(found.into_iter().flatten().map(|candidate| Pass {
+            hit: hit(id, &candidate),
+            sign: candidate.sign,
+        }));
     }
 }
 
-/// Looks for any hit.
-struct Any<'a> {
-    nurbs: &'a Nurbs,
-    frame: Frame,
-    range: Interval,
-    found: bool,
-}
+impl Winding for Nurbs {
+    const ROUNDINGS: u32 = 128;
 
-impl Visitor for Any<'_> {
-    const ANY: bool = true;
+    fn passes(&self, ray: &Ray) -> Vec<Pass> {
+        elements::passes(self, ray)
+    }
 
-    fn visit(&mut self, id: u32, t_max: f64) -> f64 {
-        let found = self.nurbs.with_part(id, |part, keep| {
-            part.patch.any(&self.frame, self.range, keep)
-        });
-        if found == Some(true) {
-            self.found = true;
-            return f64::NEG_INFINITY;
-        }
-        t_max
+    fn is_inside_out(&self) -> bool {
+        self.front.is_inside_out
     }
 }
 
@@ -315,11 +281,11 @@ impl Primitive for Nurbs {
     }
 
     fn bounds(&self) -> Aabb {
-        self.bounds
+        self.tree.bounds()
     }
 
     fn elements(&self) -> u32 {
-        self.parts.len() as u32
+        self.tree.count()
     }
 
     fn closest_hit(
@@ -329,14 +295,7 @@ impl Primitive for Nurbs {
         _from: Option<SurfaceId>,
         _scratch: &mut Scratch,
     ) -> Option<PrimHit> {
-        let mut visitor = Nearest {
-            nurbs: self,
-            frame: Frame::new(ray)?,
-            range,
-            best: None,
-        };
-        self.walk(ray, range, &mut visitor);
-        visitor.best
+        elements::nearest(self, ray, range)
     }
 
     fn any_hit(
@@ -346,44 +305,25 @@ impl Primitive for Nurbs {
         _from: Option<SurfaceId>,
         _scratch: &mut Scratch,
     ) -> bool {
-        let Some(frame) = Frame::new(ray) else {
-            return false;
-        };
-        let mut visitor = Any {
-            nurbs: self,
-            frame,
-            range,
-            found: false,
-        };
-        self.walk(ray, range, &mut visitor);
-        visitor.found
+        elements::any(self, ray, range)
     }
 
     fn surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
-        let toward = || (-ray.direction).try_normalize().unwrap_or(DVec3::Y);
         let Some(part) = self.parts.get(hit.surface.element as usize) else {
-            return SurfacePoint::bare(ray.at(hit.t), DVec3::ZERO, toward());
+            return SurfacePoint::bare(ray.at(hit.t), DVec3::ZERO, elements::against(ray));
         };
         let uv = DVec2::from_array(hit.uv);
         let jet = part.patch.jet(uv.x, uv.y);
-        let is_turned = if self.is_closed {
-            self.is_inside_out
-        } else {
-            self.is_flipped
-        };
-        let turned = |back: DVec3| if is_turned { back } else { -back };
-        let normal = part.patch.normal(uv, jet).map_or_else(toward, turned);
+        let back = part.patch.normal(uv, jet);
+        let normal = self.front.normal(back.map(|back| -back), ray);
         let [position, by_u, by_v] = jet;
         let size = DVec2::from_array(part.to) - DVec2::from_array(part.from);
-        let error = point_error(position, self.bounds.max_abs(), 128);
-        let (dpdu, dpdv) = (by_u / size.x, by_v / size.y);
-        let is_usable = dpdu.is_finite() && dpdv.is_finite();
-        SurfacePoint {
-            uv: DVec2::from_array(part.place(hit.uv)),
-            dpdu: if is_usable { dpdu } else { DVec3::ZERO },
-            dpdv: if is_usable { dpdv } else { DVec3::ZERO },
-            ..SurfacePoint::bare(position, error, normal)
-        }
+        let error = point_error(position, self.bounds().max_abs(), Self::ROUNDINGS);
+        elements::textured(
+            SurfacePoint::bare(position, error, normal),
+            DVec2::from_array(part.place(hit.uv)),
+            [by_u / size.x, by_v / size.y],
+        )
     }
 
     fn texture_uv(&self, _hit: &PrimHit, uv: DVec2) -> Option<DVec2> {
@@ -391,7 +331,7 @@ impl Primitive for Nurbs {
     }
 
     fn as_solid(&self) -> Option<&dyn Solid> {
-        self.is_closed.then_some(self as &dyn Solid)
+        self.front.is_closed.then_some(self as &dyn Solid)
     }
 
     fn baked(&self, map: &Transform) -> Option<Shape> {
@@ -406,12 +346,11 @@ impl Primitive for Nurbs {
         let mapped = Self::of(
             parts,
             self.trimming.clone(),
-            self.is_flipped != map.mirrors(),
-            self.is_closed,
+            self.front.is_flipped != map.mirrors(),
+            self.front.is_closed,
         );
-        let (size, far) = (mapped.bounds.size().max_element(), mapped.bounds.max_abs());
-        // Far away from the origin the coordinates would lose its shape.
-        if !(far <= LARGEST && size >= far * f64::from(f32::EPSILON)) {
+        let bounds = mapped.bounds();
+        if !(bounds.max_abs() <= LARGEST && elements::keeps_its_shape(&bounds)) {
             return None;
         }
         let is_flat = mapped.parts.iter().all(|part| part.patch.is_on_a_line());

@@ -11,16 +11,14 @@ mod rules;
 mod tests;
 mod triangle;
 
+use super::elements::{self, ElementTree, Elements, Front};
 use super::winding::{Pass, Winding};
 use crate::primitives::point_error;
-use crate::{
-    Crossings, GeometryError, PrimHit, Primitive, Scratch, Shape, Solid, SurfaceId, SurfacePoint,
-};
+use crate::{GeometryError, PrimHit, Primitive, Scratch, Shape, Solid, SurfaceId, SurfacePoint};
 use cage::Cage;
 use node::{Found, Leaf, Line, Node};
 use place::{Place, Spot};
 use std::sync::OnceLock;
-use strahl_accel::{Accelerator, Bvh2, TraversalStats, Visitor};
 use strahl_math::{Aabb, DVec2, DVec3, Interval, Ray, Transform};
 
 pub use data::{SubdivisionData, SubdivisionScheme};
@@ -47,15 +45,9 @@ pub struct Subdivision {
     cage: Cage,
     /// The trees of the elements, when the first ray comes.
     nodes: Vec<OnceLock<Box<Node>>>,
-    /// Over the elements, relative to the anchor.
-    tree: Bvh2,
-    anchor: DVec3,
-    bounds: Aabb,
-    /// Whether the front is the other side, after a mirroring transform.
-    is_flipped: bool,
-    is_closed: bool,
-    /// Whether the normals of a closed surface have to be turned outwards.
-    is_inside_out: bool,
+    /// Over the elements.
+    tree: ElementTree,
+    front: Front,
 }
 
 impl Subdivision {
@@ -73,26 +65,20 @@ impl Subdivision {
         let boxes: Vec<_> = (0..cage.elements())
             .map(|element| node::bounds(&cage.ring(element)))
             .collect();
-        let bounds = boxes.iter().fold(Aabb::EMPTY, |all, part| all.union(part));
-        let anchor = bounds.min;
-        let local: Vec<_> = boxes
-            .iter()
-            .map(|own| Aabb::new(own.min - anchor, own.max - anchor))
-            .collect();
         let mut surface = Self {
             nodes: boxes.iter().map(|_| OnceLock::new()).collect(),
-            tree: Bvh2::build(&local),
-            anchor,
-            bounds,
-            is_flipped,
-            is_closed: cage.is_closed(),
-            is_inside_out: false,
+            tree: ElementTree::new(&boxes),
+            front: Front {
+                is_flipped,
+                is_closed: cage.is_closed(),
+                is_inside_out: false,
+            },
             cage,
         };
         let middle = surface.middle();
         let aims = (0..surface.nodes.len())
             .filter_map(|element| Some(surface.at(element as u32, middle)?[0]));
-        surface.is_inside_out = surface.is_closed && surface.finds_inside_out(aims);
+        surface.front.is_inside_out = surface.front.is_closed && surface.finds_inside_out(aims);
         surface
     }
 
@@ -118,8 +104,7 @@ impl Subdivision {
             + size_of_val(self.nodes.as_slice())
             + nodes.map(|node| node.bytes()).sum::<usize>()
             + self.cage.bytes()
-            // Two nodes of the tree for each element.
-            + 2 * 64 * self.nodes.len()
+            + self.tree.bytes()
     }
 
     /// Parameters in the middle of an element.
@@ -145,114 +130,86 @@ impl Subdivision {
         }
     }
 
-    /// Shows the elements along a ray to the visitor.
-    fn walk<V: Visitor>(&self, ray: &Ray, range: Interval, visitor: &mut V) {
-        let local = Ray::new(ray.origin - self.anchor, ray.direction);
-        self.tree
-            .traverse(&local, range, visitor, &mut TraversalStats::default());
-    }
-
     /// Texture coordinates at parameters of an element, with the derivatives of the point by them.
     fn textured(&self, element: u32, [u, v]: [f64; 2], by: [DVec3; 2]) -> (DVec2, [DVec3; 2]) {
-        let Some([a, b, c, d]) = self.cage.uvs(element as usize) else {
+        let Some(corners) = self.cage.uvs(element as usize) else {
             return (DVec2::new(u, v), by);
         };
-        let (place, along_u, along_v) = match self.cage.scheme() {
-            SubdivisionScheme::CatmullClark => {
-                let (lower, upper) = (a + (b - a) * u, d + (c - d) * u);
-                let along_u = (b - a) * (1.0 - v) + (c - d) * v;
-                (lower + (upper - lower) * v, along_u, upper - lower)
+        match self.cage.scheme() {
+            SubdivisionScheme::CatmullClark => elements::bilinear(corners, [u, v], by),
+            SubdivisionScheme::Loop => {
+                let [a, b, c, _] = corners;
+                let along = [b - a, c - a];
+                let place = a + along[0] * u + along[1] * v;
+                (place, elements::derivatives(along, by))
             }
-            SubdivisionScheme::Loop => (a + (b - a) * u + (c - a) * v, b - a, c - a),
-        };
-        let determinant = along_u.x * along_v.y - along_u.y * along_v.x;
-        let [by_u, by_v] = by;
-        let by_x = (by_u * along_v.y - by_v * along_u.y) / determinant;
-        let by_y = (by_v * along_u.x - by_u * along_v.x) / determinant;
-        if by_x.is_finite() && by_y.is_finite() {
-            (place, [by_x, by_y])
-        } else {
-            (place, [DVec3::ZERO; 2])
         }
     }
 }
 
-/// Looks for the nearest hit.
-struct Nearest<'a> {
-    surface: &'a Subdivision,
-    line: Line<'a>,
-    range: Interval,
-    best: Option<PrimHit>,
-}
+impl Elements for Subdivision {
+    type Line<'a> = Line<'a>;
 
-impl Visitor for Nearest<'_> {
-    fn visit(&mut self, id: u32, t_max: f64) -> f64 {
-        let Some(node) = self.surface.node(id) else {
-            return t_max;
-        };
-        let (surface, line, best) = (self.surface, &self.line, &mut self.best);
-        let range = best.map_or(self.range, |best| self.range.with_max(best.t));
+    fn line<'a>(&self, ray: &'a Ray) -> Option<Line<'a>> {
+        Line::new(ray)
+    }
+
+    fn tree(&self) -> &ElementTree {
+        &self.tree
+    }
+
+    fn nearest(&self, id: u32, line: &Line<'_>, range: Interval) -> Option<PrimHit> {
+        let mut best: Option<PrimHit> = None;
         let mut ask = |leaf: &Leaf, place: Place, range: Interval| {
             let Some(found) = leaf.nearest(line, range) else {
                 return range;
             };
-            let found = surface.hit(id, place, &found);
-            let key = |hit: &PrimHit| (hit.t, hit.surface.element);
-            if best.is_none_or(|best| key(&found) < key(&best)) {
-                *best = Some(found);
+            let found = self.hit(id, place, &found);
+            if best.is_none_or(|best| found.t < best.t) {
+                best = Some(found);
             }
             range.with_max(found.t)
         };
-        node.walk(line, range, Place::WHOLE, &mut ask);
-        self.best.map_or(t_max, |best| best.t)
+        self.node(id)?.walk(line, range, Place::WHOLE, &mut ask);
+        best
     }
-}
 
-/// Looks for any hit.
-struct Any<'a> {
-    surface: &'a Subdivision,
-    line: Line<'a>,
-    range: Interval,
-    found: bool,
-}
-
-impl Visitor for Any<'_> {
-    const ANY: bool = true;
-
-    fn visit(&mut self, id: u32, t_max: f64) -> f64 {
-        let (line, found) = (&self.line, &mut self.found);
-        if let Some(node) = self.surface.node(id) {
-            let mut ask = |leaf: &Leaf, _: Place, range: Interval| {
-                *found = *found || leaf.any(line, range);
-                range
-            };
-            node.walk(line, self.range, Place::WHOLE, &mut ask);
+    fn any(&self, id: u32, line: &Line<'_>, range: Interval) -> bool {
+        let mut found = false;
+        let mut ask = |leaf: &Leaf, _: Place, range: Interval| {
+            found = found || leaf.any(line, range);
+            range
+        };
+        if let Some(node) = self.node(id) {
+            node.walk(line, range, Place::WHOLE, &mut ask);
         }
-        if self.found { f64::NEG_INFINITY } else { t_max }
+        found
     }
-}
 
-/// Collects all passes.
-struct All<'a> {
-    surface: &'a Subdivision,
-    line: Line<'a>,
-    passes: Vec<Pass>,
-}
-
-impl Visitor for All<'_> {
-    fn visit(&mut self, id: u32, t_max: f64) -> f64 {
-        let (surface, line, passes) = (self.surface, &self.line, &mut self.passes);
-        if let Some(node) = self.surface.node(id) {
-            let mut ask = |leaf: &Leaf, place: Place, range: Interval| {
-                passes.extend(leaf.all(line).into_iter().map(|found| Pass {
-                    hit: surface.hit(id, place, &found),
-                    sign: found.candidate.sign,
-                }));
-                range
-            };
+    fn all(&self, id: u32, line: &Line<'_>, passes: &mut Vec<Pass>) {
+        let mut ask = |leaf: &Leaf, place: Place, range: Interval| {
+            passes.extend(leaf.all(line).into_iter().map(|found| Pass {
+                hit: self.hit(id, place, &found),
+                sign: found.candidate.sign,
+            }));
+            range
+        };
+        if let Some(node) = self.node(id) {
             node.walk(line, Interval::LINE, Place::WHOLE, &mut ask);
         }
-        t_max
+    }
+}
+
+impl Winding for Subdivision {
+    /// A few for each level, of which there are up to 50, and those of a patch.
+    const ROUNDINGS: u32 = 512;
+
+    fn passes(&self, ray: &Ray) -> Vec<Pass> {
+        elements::passes(self, ray)
+    }
+
+    fn is_inside_out(&self) -> bool {
+        self.front.is_inside_out
     }
 }
 
@@ -267,11 +224,11 @@ impl Primitive for Subdivision {
     }
 
     fn bounds(&self) -> Aabb {
-        self.bounds
+        self.tree.bounds()
     }
 
     fn elements(&self) -> u32 {
-        self.nodes.len() as u32
+        self.tree.count()
     }
 
     fn closest_hit(
@@ -281,14 +238,7 @@ impl Primitive for Subdivision {
         _from: Option<SurfaceId>,
         _scratch: &mut Scratch,
     ) -> Option<PrimHit> {
-        let mut visitor = Nearest {
-            surface: self,
-            line: Line::new(ray)?,
-            range,
-            best: None,
-        };
-        self.walk(ray, range, &mut visitor);
-        visitor.best
+        elements::nearest(self, ray, range)
     }
 
     fn any_hit(
@@ -298,44 +248,21 @@ impl Primitive for Subdivision {
         _from: Option<SurfaceId>,
         _scratch: &mut Scratch,
     ) -> bool {
-        let Some(line) = Line::new(ray) else {
-            return false;
-        };
-        let mut visitor = Any {
-            surface: self,
-            line,
-            range,
-            found: false,
-        };
-        self.walk(ray, range, &mut visitor);
-        visitor.found
+        elements::any(self, ray, range)
     }
 
     fn surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
-        let toward = || (-ray.direction).try_normalize().unwrap_or(DVec3::Y);
         let element = hit.surface.element;
         let Some(node) = self.node(element) else {
-            return SurfacePoint::bare(ray.at(hit.t), DVec3::ZERO, toward());
+            return SurfacePoint::bare(ray.at(hit.t), DVec3::ZERO, elements::against(ray));
         };
         let scheme = self.cage.scheme();
         let spot = Spot::of(scheme, hit.surface.facet, hit.uv);
-        let ([position, by_u, by_v], front) = node.jet(spot);
-        let is_turned = if self.is_closed {
-            self.is_inside_out
-        } else {
-            self.is_flipped
-        };
-        let turned = |front: DVec3| if is_turned { -front } else { front };
-        let normal = front.map_or_else(toward, turned);
-        let (uv, [dpdu, dpdv]) = self.textured(element, spot.uv(scheme), [by_u, by_v]);
-        let error = point_error(position, self.bounds.max_abs(), Self::ROUNDINGS);
-        let is_usable = dpdu.is_finite() && dpdv.is_finite();
-        SurfacePoint {
-            uv,
-            dpdu: if is_usable { dpdu } else { DVec3::ZERO },
-            dpdv: if is_usable { dpdv } else { DVec3::ZERO },
-            ..SurfacePoint::bare(position, error, normal)
-        }
+        let ([position, by_u, by_v], across) = node.jet(spot);
+        let error = point_error(position, self.bounds().max_abs(), Self::ROUNDINGS);
+        let bare = SurfacePoint::bare(position, error, self.front.normal(across, ray));
+        let (uv, by) = self.textured(element, spot.uv(scheme), [by_u, by_v]);
+        elements::textured(bare, uv, by)
     }
 
     fn texture_uv(&self, _hit: &PrimHit, uv: DVec2) -> Option<DVec2> {
@@ -343,53 +270,13 @@ impl Primitive for Subdivision {
     }
 
     fn as_solid(&self) -> Option<&dyn Solid> {
-        self.is_closed.then_some(self as &dyn Solid)
+        self.front.is_closed.then_some(self as &dyn Solid)
     }
 
     fn baked(&self, map: &Transform) -> Option<Shape> {
         let data = self.cage.mapped(map)?;
-        let mapped = Self::of(Cage::try_new(&data).ok()?, self.is_flipped != map.mirrors());
-        let (size, far) = (mapped.bounds.size().max_element(), mapped.bounds.max_abs());
-        // Far away from the origin the coordinates would lose its shape.
-        (size >= far * f64::from(f32::EPSILON)).then(|| mapped.into())
-    }
-}
-
-impl Winding for Subdivision {
-    /// A few for each level, of which there are up to 50, and those of a patch.
-    const ROUNDINGS: u32 = 512;
-
-    fn passes(&self, ray: &Ray) -> Vec<Pass> {
-        let Some(line) = Line::new(ray) else {
-            return vec![];
-        };
-        let mut all = All {
-            surface: self,
-            line,
-            passes: vec![],
-        };
-        self.walk(ray, Interval::LINE, &mut all);
-        all.passes
-    }
-
-    fn is_inside_out(&self) -> bool {
-        self.is_inside_out
-    }
-}
-
-impl Solid for Subdivision {
-    fn crossings(
-        &self,
-        ray: &Ray,
-        range: Interval,
-        from: Option<SurfaceId>,
-        _scratch: &mut Scratch,
-        out: &mut Crossings,
-    ) {
-        self.crossings_by_winding(ray, range, from, out);
-    }
-
-    fn contains(&self, point: DVec3) -> bool {
-        self.contains_by_winding(point)
+        let is_flipped = self.front.is_flipped != map.mirrors();
+        let mapped = Self::of(Cage::try_new(&data).ok()?, is_flipped);
+        elements::keeps_its_shape(&mapped.bounds()).then(|| mapped.into())
     }
 }

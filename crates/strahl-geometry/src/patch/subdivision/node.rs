@@ -15,7 +15,7 @@ use crate::patch::border::{Border, Sides};
 use crate::patch::net::Net;
 use crate::patch::search::{Candidate, Frame};
 use crate::patch::tree;
-use std::sync::OnceLock;
+use std::sync::{Mutex, OnceLock, PoisonError};
 use strahl_math::error::gamma;
 use strahl_math::{Aabb, DVec2, DVec3, Interval, Ray};
 
@@ -47,20 +47,22 @@ pub(super) enum Node {
 /// A divided face.
 #[derive(Debug)]
 pub(super) struct Split {
-    ring: Ring,
-    kids: Vec<Kid>,
+    scheme: SubdivisionScheme,
+    kids: Box<[Kid]>,
 }
 
 /// A part of a divided face.
 #[derive(Debug)]
 struct Kid {
     bounds: Aabb,
-    /// When a ray comes.
+    /// Until a ray comes.
+    ring: Mutex<Option<Box<Ring>>>,
+    /// From then on.
     node: OnceLock<Box<Node>>,
 }
 
 /// The line of a ray, for all that is asked along it.
-pub(super) struct Line<'a> {
+pub(in crate::patch) struct Line<'a> {
     pub(super) ray: &'a Ray,
     pub(super) frame: Frame,
     inverse: DVec3,
@@ -237,9 +239,7 @@ impl Leaf {
 }
 
 fn patch<const K: usize>(net: Net<4, K>, sides: Sides<K>, is_thin: bool) -> Bezier<K> {
-    let is_whole = sides.iter().all(Option::is_none);
-    let border = Border((!is_whole).then(|| Box::new(sides)));
-    Bezier::with_border(net, border, is_thin)
+    Bezier::with_border(net, Border::new(&sides), is_thin)
 }
 
 impl Found {
@@ -307,24 +307,11 @@ impl Node {
         let thin = ring
             .tip()
             .filter(|tip| tip.width < THIN * ring.hull().max_abs());
-        let kids = ring
-            .children()
-            .iter()
-            .map(|child| {
-                if child.is_leaf() {
-                    let leaf = Leaf::new(child, thin);
-                    return Kid {
-                        bounds: leaf.bounds(),
-                        node: OnceLock::from(Box::new(Self::Leaf(leaf))),
-                    };
-                }
-                Kid {
-                    bounds: padded(child.hull()),
-                    node: OnceLock::new(),
-                }
-            })
-            .collect();
-        Self::Split(Box::new(Split { ring, kids }))
+        let kids = ring.children().into_iter();
+        Self::Split(Box::new(Split {
+            scheme: ring.scheme,
+            kids: kids.map(|child| Kid::new(child, thin)).collect(),
+        }))
     }
 
     /// Calls `ask` with the patches along a line, the nearer ones first, as long as it leaves a range. It narrows the range.
@@ -342,7 +329,7 @@ impl Node {
         // The four parts in the order in which the line enters their boxes.
         let mut order = [(0.0, 0); 4];
         let mut count = 0;
-        for (i, kid) in split.kids.iter().enumerate().take(4) {
+        for (i, kid) in split.kids.iter().enumerate() {
             let Some(near) = line.enter(&kid.bounds, range) else {
                 continue;
             };
@@ -357,8 +344,8 @@ impl Node {
         let mut left = range;
         for &(near, i) in &order[..count] {
             if near <= left.max {
-                let part = place.part(Place::of_child(split.ring.scheme, i));
-                left = split.kid(i).walk(line, left, part, ask);
+                let part = place.part(Place::of_child(split.scheme, i));
+                left = split.kids[i].grown().walk(line, left, part, ask);
             }
         }
         left
@@ -371,7 +358,7 @@ impl Node {
             Self::Leaf(leaf) => return leaf.jet(spot),
             Self::Split(split) => split,
         };
-        let scheme = split.ring.scheme;
+        let scheme = split.scheme;
         let Spot([a, b, c, _]) = spot;
         let i = match scheme {
             SubdivisionScheme::CatmullClark => match (a >= 0.5, c >= 0.5) {
@@ -383,7 +370,7 @@ impl Node {
             SubdivisionScheme::Loop => [a, b, c].iter().position(|w| *w > 0.5).unwrap_or(3),
         };
         let place = Place::of_child(scheme, i);
-        let ([point, by_u, by_v], normal) = split.kid(i).jet(place.inner(scheme, spot));
+        let ([point, by_u, by_v], normal) = split.kids[i].grown().jet(place.inner(scheme, spot));
         let size = place.size();
         ([point, by_u / size, by_v / size], normal)
     }
@@ -393,23 +380,48 @@ impl Node {
         let inner = match self {
             Self::Leaf(leaf) => leaf.bytes(),
             Self::Split(split) => {
-                let kids = split.kids.iter().filter_map(|kid| kid.node.get());
-                size_of::<Split>()
-                    + split.ring.bytes()
-                    + size_of_val(split.kids.as_slice())
-                    + kids.map(|kid| kid.bytes()).sum::<usize>()
+                let own = size_of::<Split>() + size_of_val(&*split.kids);
+                own + split.kids.iter().map(Kid::bytes).sum::<usize>()
             }
         };
         size_of::<Self>() + inner
     }
 }
 
-impl Split {
-    fn kid(&self, i: usize) -> &Node {
-        self.kids[i].node.get_or_init(|| {
-            let child = self.ring.children().swap_remove(i);
-            Box::new(Node::new(child))
+impl Kid {
+    /// A part of a face; `thin` as [`Leaf::new`] takes it.
+    fn new(ring: Ring, thin: Option<Tip>) -> Self {
+        if ring.is_leaf() {
+            let leaf = Leaf::new(&ring, thin);
+            return Self {
+                bounds: leaf.bounds(),
+                ring: Mutex::new(None),
+                node: OnceLock::from(Box::new(Node::Leaf(leaf))),
+            };
+        }
+        Self {
+            bounds: padded(ring.hull()),
+            ring: Mutex::new(Some(Box::new(ring))),
+            node: OnceLock::new(),
+        }
+    }
+
+    /// The node, which is made from the ring if it isn't there yet.
+    fn grown(&self) -> &Node {
+        self.node.get_or_init(|| {
+            let mut place = self.ring.lock().unwrap_or_else(PoisonError::into_inner);
+            let ring = place.take().expect("a node is made once");
+            Box::new(Node::new(*ring))
         })
+    }
+
+    /// The bytes that it takes beside itself.
+    fn bytes(&self) -> usize {
+        let node = self.node.get().map_or(0, |node| node.bytes());
+        let place = self.ring.lock().unwrap_or_else(PoisonError::into_inner);
+        node + place
+            .as_ref()
+            .map_or(0, |ring| size_of::<Ring>() + ring.bytes())
     }
 }
 

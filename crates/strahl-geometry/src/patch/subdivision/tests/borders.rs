@@ -41,12 +41,12 @@ fn subjects() -> Vec<Subdivision> {
     all.iter().map(surface).collect()
 }
 
-/// What goes wrong at one surface: rays that miss the border, those that don't leave the solid once more than they enter it (or
-/// of which the nearest hit is not the first pass), and those of which the line does not leave as often as it enters; with the
-/// parameters of the last one.
-type Wrong = ([usize; 3], [f64; 2]);
+/// What goes wrong at one surface: rays from within that don't meet the border exactly once where they are aimed (see [`meets_once`]); those
+/// that don't leave the solid once more than they enter it; lines that don't leave as often as they enter; and rays of which the
+/// nearest hits are not the passes of the line. With the parameters of the last one.
+type Wrong = ([usize; 4], [f64; 2]);
 
-/// Rays from within and through closed surfaces, in 16 parts for as many threads; those that go wrong, by the number of the surface.
+/// Rays at the borders of closed surfaces, in 16 parts for as many threads; those that go wrong, by the number of the surface.
 fn shoot(rays: usize, seed: u64) -> Vec<(usize, Wrong)> {
     let subjects = subjects();
     let parts: Vec<Vec<Wrong>> = std::thread::scope(|scope| {
@@ -60,41 +60,23 @@ fn shoot(rays: usize, seed: u64) -> Vec<(usize, Wrong)> {
     });
     let wrong = (0..subjects.len()).flat_map(|number| {
         let all = parts.iter().map(move |part| (number, part[number]));
-        all.filter(|(_, (counts, _))| *counts != [0; 3])
+        all.filter(|(_, (counts, _))| *counts != [0; 4])
     });
     wrong.collect()
 }
 
 fn shoot_part(subjects: &[Subdivision], rays: usize, seed: u64) -> Vec<Wrong> {
     let mut random = Random::new(seed);
-    let mut all = vec![([0; 3], [0.0; 2]); subjects.len()];
+    let mut all = vec![([0; 4], [0.0; 2]); subjects.len()];
     for _ in 0..rays {
         let number = random.below(subjects.len() as u64) as usize;
         let surface = &subjects[number];
         let element = random.below(u64::from(surface.elements())) as u32;
         let uv = place(surface.cage.scheme(), &mut random);
-        let ([target, ..], _) = jet(surface, element, uv);
-        let origin = match random.below(3) {
-            0 => DVec3::ZERO,
-            _ => random.cube() * 0.05,
+        let wrong = match random.below(4) {
+            0 => along(surface, jet(surface, element, uv), &mut random),
+            _ => from_within(surface, jet(surface, element, uv).0[0], &mut random),
         };
-        let ray = Ray::new(origin, (target - origin) * random.between(0.1, 10.0));
-        let passes = surface.passes_in_order(&ray);
-        let sum = |from: f64, to: f64| -> i32 {
-            let within = passes.iter().filter(|p| p.hit.t > from && p.hit.t <= to);
-            within.map(|pass| pass.sign).sum()
-        };
-        let first = surface.closest_hit(&ray, Interval::FORWARD, None, &mut Scratch::default());
-        let expected = passes.iter().map(|p| p.hit.t).find(|t| *t > 0.0);
-        let is_near = |pass: &&Pass| (ray.at(pass.hit.t) - target).length() < 1e-7;
-        let near = passes.iter().filter(is_near).count();
-        // Corner 6 of the cube has no creases: it is the tip of a cone that becomes ever thinner, and rays there are beside it.
-        let is_tip = number < 2 && (target - surface.data().points[6]).length() < 1e-6;
-        let wrong = [
-            near == 0 && !is_tip,
-            sum(0.0, f64::INFINITY).abs() != 1 || first.map(|hit| hit.t) != expected,
-            sum(f64::NEG_INFINITY, f64::INFINITY) != 0,
-        ];
         let (counts, place) = &mut all[number];
         for (count, is_wrong) in counts.iter_mut().zip(wrong) {
             *count += usize::from(is_wrong);
@@ -106,14 +88,97 @@ fn shoot_part(subjects: &[Subdivision], rays: usize, seed: u64) -> Vec<Wrong> {
     all
 }
 
-#[test]
-fn no_ray_slips_through_a_border_or_meets_two_patches() {
-    assert_eq!(shoot(48_000, 1), []);
+/// The sum of the signs of passes in a range of `t`.
+fn sum(passes: &[Pass], from: f64, to: f64) -> i32 {
+    let within = passes.iter().filter(|p| p.hit.t > from && p.hit.t <= to);
+    within.map(|pass| pass.sign).sum()
 }
 
-/// The long version, for releases: 10^7 rays on all processors.
+/// Whether the nearest hits of a ray, one behind the other, are at the passes of its line.
+fn agrees(surface: &Subdivision, ray: &Ray, passes: &[Pass]) -> bool {
+    let mut expected: Vec<f64> = passes.iter().map(|pass| pass.hit.t).collect();
+    // Where two parts of the surface meet they are one hit, but two passes.
+    expected.dedup();
+    hits(surface, ray).iter().map(|hit| hit.t).eq(expected)
+}
+
+/// Whether a ray meets the surface once where it is aimed.
+///
+/// There are two kinds of tips where that can't be asked. Corners without creases are the tips of needles that become ever thinner:
+/// rays there may be beside them, or meet more of the patches around. And at the end of a crease in Loop's scheme the patches are
+/// thinner than rounding errors: there, at the tip itself, the layers are too many by pairs of them in the same point.
+fn meets_once(surface: &Subdivision, target: DVec3, ray: &Ray, passes: &[Pass]) -> bool {
+    let way = |pass: &&Pass| (ray.at(pass.hit.t) - target).length();
+    let near: Vec<&Pass> = passes.iter().filter(|pass| way(pass) < 1e-7).collect();
+    if near.len() == 1 {
+        return true;
+    }
+    let data = surface.data();
+    let is_needle = |(vertex, sharpness): &(u32, f64)| {
+        let is_creased = data.creases.iter().any(|(edge, _)| edge.contains(vertex));
+        let tip = data.points[*vertex as usize];
+        *sharpness >= 10.0 && !is_creased && (target - tip).length() < 1e-6
+    };
+    if data.corners.iter().any(is_needle) {
+        return true;
+    }
+    let is_one_point = near.iter().all(|pass| way(pass) < 1e-14);
+    let signs: i32 = near.iter().map(|pass| pass.sign).sum();
+    data.scheme == Loop && !data.creases.is_empty() && is_one_point && signs.abs() == 1
+}
+
+/// A ray from within, aimed at a point.
+fn from_within(surface: &Subdivision, target: DVec3, random: &mut Random) -> [bool; 4] {
+    let origin = match random.below(3) {
+        0 => DVec3::ZERO,
+        _ => random.cube() * 0.05,
+    };
+    let ray = Ray::new(origin, (target - origin) * random.between(0.1, 10.0));
+    let passes = surface.passes_in_order(&ray);
+    let first = surface.closest_hit(&ray, Interval::FORWARD, None, &mut Scratch::default());
+    let expected = passes.iter().map(|pass| pass.hit.t).find(|t| *t > 0.0);
+    [
+        !meets_once(surface, target, &ray, &passes),
+        sum(&passes, 0.0, f64::INFINITY).abs() != 1,
+        sum(&passes, f64::NEG_INFINITY, f64::INFINITY) != 0,
+        first.map(|hit| hit.t) != expected,
+    ]
+}
+
+/// A ray from outside that touches the surface at a point, or passes it at an angle down to `1e-15`.
+fn along(
+    surface: &Subdivision,
+    ([target, by_u, by_v], front): ([DVec3; 3], Option<DVec3>),
+    random: &mut Random,
+) -> [bool; 4] {
+    let turned = by_u * random.between(-1.0, 1.0) + by_v * random.between(-1.0, 1.0);
+    let Some(along) = turned.try_normalize() else {
+        return [false; 4];
+    };
+    let across = front.unwrap_or(DVec3::ZERO);
+    let slope = match random.below(3) {
+        0 => 0.0,
+        _ => random.magnitude(-15.0, 0.0),
+    };
+    let direction = along + across * slope;
+    let ray = Ray::new(target - direction * random.between(3.0, 6.0), direction);
+    let passes = surface.passes_in_order(&ray);
+    [
+        false,
+        false,
+        sum(&passes, f64::NEG_INFINITY, f64::INFINITY) != 0,
+        !agrees(surface, &ray, &passes),
+    ]
+}
+
 #[test]
-#[ignore = "takes minutes; run it with --ignored"]
+fn no_ray_slips_through_a_border_or_meets_two_patches() {
+    assert_eq!(shoot(24_000, 1), []);
+}
+
+/// The long version, for releases: 10^7 rays on all processors; 6 GB of patches.
+#[test]
+#[ignore = "takes half an hour; run it with --ignored"]
 fn no_ray_of_ten_millions_slips_through_a_border() {
     assert_eq!(shoot(10_000_000, 2), []);
 }

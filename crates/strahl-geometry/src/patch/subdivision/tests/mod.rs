@@ -5,6 +5,7 @@ mod creases;
 mod hostile;
 mod limits;
 mod oracle;
+mod silhouettes;
 
 use super::*;
 use crate::conformance::Random;
