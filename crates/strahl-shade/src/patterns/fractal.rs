@@ -99,9 +99,6 @@ pub struct Fractal {
     pub interior: Interior,
 }
 
-/// The steps between two looks at an orbit that escapes for good.
-const STRIDE: u32 = 8;
-
 impl Fractal {
     /// A Mandelbrot set of exponent 2 as POV-Ray colours it: steps outside, 1 inside.
     pub fn mandelbrot(iterations: u32) -> Self {
@@ -145,9 +142,6 @@ impl Fractal {
     ///
     /// An orbit that returns exactly to one of its points is a cycle from there on, so whole rounds are left out (Brent 1980). Most
     /// orbits of the inside do so long before they are complete.
-    ///
-    /// An orbit of powers that has left the circle of radius 2 does not return if |c| < 2: |zᵖ + c| >= 2|z| - |c|. So it is enough to look
-    /// at every eighth point, and to repeat the last eight steps where it has left.
     #[inline(always)]
     fn follow(&self, point: DVec2, step: impl Fn(DVec2) -> DVec2) -> f64 {
         /// The magnet iterations also end when they have converged to 1.
@@ -163,25 +157,7 @@ impl Fractal {
         let (mut number, mut end) = (0, self.iterations);
         // A point that the orbit may return to, where it was reached, and the steps to the next such point.
         let (mut seen, mut seen_at, mut stretch) = (z, 0, 8);
-        let mut strides = self.escapes_for_good(point);
         while number < end {
-            if strides && end - number >= STRIDE {
-                let mut later = z;
-                for _ in 0..STRIDE {
-                    later = step(later);
-                }
-                strides = later.length_squared() <= bailout;
-                if strides {
-                    (z, number) = (later, number + STRIDE);
-                    if z == seen {
-                        end = number + (end - number) % (number - seen_at);
-                    } else if number - seen_at >= stretch {
-                        (seen, seen_at) = (z, number);
-                        stretch *= 2;
-                    }
-                    continue;
-                }
-            }
             z = step(z);
             let absolute = z.length_squared();
             if absolute < smallest {
@@ -195,7 +171,7 @@ impl Fractal {
             if z == seen {
                 // All points of the cycle have been visited.
                 end = number + (end - number) % (number - seen_at);
-            } else if number - seen_at >= stretch {
+            } else if number - seen_at == stretch {
                 (seen, seen_at) = (z, number);
                 stretch *= 2;
             }
@@ -209,16 +185,6 @@ impl Fractal {
             Interior::ImaginarySquared(f) => z.y * z.y * f,
             Interior::Absolute(f) => z.length() * f,
         }
-    }
-
-    /// Whether orbits do not come back from outside of the circle of radius 2, and only their ends are wanted.
-    fn escapes_for_good(&self, point: DVec2) -> bool {
-        /// Less than 2² by more than rounding can matter.
-        const LARGEST: f64 = 3.9;
-        let c = self.julia.unwrap_or(point);
-        matches!(self.kind, FractalKind::Power { .. })
-            && !matches!(self.interior, Interior::Smallest(_))
-            && c.length_squared() <= LARGEST
     }
 
     fn outside(&self, step: u32, z: DVec2) -> f64 {

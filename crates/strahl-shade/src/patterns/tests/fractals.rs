@@ -90,7 +90,7 @@ fn cycles_are_left_out_exactly() {
     assert!(cycles > 50, "{cycles}");
 }
 
-/// The orbits of powers are looked at now and then only, where they can't come back; the values are those of all their steps.
+/// The end of an orbit of powers is where it leaves the circle of radius 2, or its last point.
 #[test]
 fn orbits_end_where_they_leave_the_circle() {
     for (exponent, julia) in [
