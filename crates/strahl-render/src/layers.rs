@@ -47,10 +47,13 @@ pub(crate) fn paint<'s>(
     let eta = surface.eta_2 / surface.eta_1;
     texture.0.layers_in(space, &place, eta, paint);
 
-    let mut sum = Finish {
+    surface.material.fresnel = false;
+    surface.material.fresnel_reflection = Color::BLACK;
+    surface.material.finish = Cow::Owned(Finish {
         transmission: paint.transmission,
         ..Finish::BLACK
-    };
+    });
+    let sum = surface.material.finish.to_mut();
     let mut strongest = 0.0;
     if let Some(top) = paint.layers.first() {
         surface.n_shade = top.normal;
@@ -73,9 +76,6 @@ pub(crate) fn paint<'s>(
         .iter()
         .find(|stack| !stack.transmittance.is_black())
         .map_or(surface.n_shade, |stack| stack.normal);
-    surface.material.finish = Cow::Owned(sum);
-    surface.material.fresnel = false;
-    surface.material.fresnel_reflection = Color::BLACK;
 }
 
 /// A reflection ray to be sent.

@@ -56,6 +56,8 @@ impl Prim {
     pub(crate) const MASKED: u8 = 16;
     /// It may matter to rays that they start inside of it.
     pub(crate) const FILLED: u8 = 32;
+    /// Each hit must be checked, or it depends on the element whether it transmits light. Set by [`Prim::new`].
+    const CHECKED: u8 = 64;
 
     pub(crate) const fn new(kind: PrimKind, visible: u8, flags: u8) -> Self {
         let (tag, index, triangle) = match kind {
@@ -65,12 +67,27 @@ impl Prim {
             PrimKind::Placed(index) => (PrimTag::Placed, index, 0),
             PrimKind::Instance(index) => (PrimTag::Instance, index, 0),
         };
+        let is_mixed = flags & Self::TRANSMITS != 0 && flags & Self::STOPS != 0;
+        let filters = Self::FILTERED | Self::ONE_SIDED | Self::MASKED;
+        let checked = match is_mixed || flags & filters != 0 {
+            true => Self::CHECKED,
+            false => 0,
+        };
         Self {
             index,
             triangle,
             tag,
             visible,
-            flags,
+            flags: flags | checked,
+        }
+    }
+
+    /// The shape that it is, if all its hits count for whoever wants the primitive: they need no checks one by one.
+    #[inline(always)]
+    pub(crate) const fn plain_shape(&self) -> Option<u32> {
+        match self.tag {
+            PrimTag::Shape if self.flags & Self::CHECKED == 0 => Some(self.index),
+            _ => None,
         }
     }
 

@@ -361,6 +361,44 @@ impl<Q: Query> Visitor for GroupVisitor<'_, '_, '_, Q> {
         if prim.visible & self.search.class == 0 || !self.search.query.wants(prim.flags) {
             return t_max;
         }
+        // Most primitives of most scenes.
+        if !Q::ALL
+            && !Q::WATCHES
+            && id != self.from_prim
+            && let Some(index) = prim.plain_shape()
+        {
+            return self.plain_shape(id, index, t_max);
+        }
+        self.visit_any(id, prim, t_max)
+    }
+}
+
+impl<Q: Query> GroupVisitor<'_, '_, '_, Q> {
+    /// Tests a shape that the ray does not start on and whose hits need no further checks.
+    #[inline(always)]
+    fn plain_shape(&mut self, id: u32, index: u32, t_max: f64) -> f64 {
+        let number = self.base + self.group.first_id(id);
+        let (shape, slot) = (&self.group.shapes[index as usize].shape, self.search.slot);
+        slot.enter_for(Phase::Intersection, number);
+        let range = Interval::new(self.range_min, t_max);
+        let found = shape.closest_hit(self.ray, range, None, self.search.scratch);
+        slot.enter(Phase::Traversal);
+        let Some(found) = found else {
+            return t_max;
+        };
+        let hit = Hit {
+            t: found.t,
+            id: number + u64::from(found.surface.element),
+            facet: found.surface.facet,
+            uv: found.uv,
+        };
+        self.t_max = self.search.query.take(hit, t_max);
+        self.t_max
+    }
+
+    /// Visits a primitive of any kind, which the query wants.
+    #[inline(never)]
+    fn visit_any(&mut self, id: u32, prim: Prim, t_max: f64) -> f64 {
         let first = self.group.first_id(id);
         let from = if id == self.from_prim {
             self.from.map(|(origin, number)| (origin, number - first))

@@ -6,7 +6,7 @@ use crate::prim::PrimKind;
 use crate::scene::{RenderGroup, RenderScene};
 use strahl_geometry::{PrimHit, Primitive, Shape, SurfaceId, SurfacePoint};
 use strahl_math::{DVec2, DVec3, Ray, Transform};
-use strahl_shade::Color;
+use strahl_shade::{Color, MaterialId};
 use strahl_shade::patterns::TexturePoint;
 use strahl_shade::texture::Texture;
 
@@ -19,6 +19,31 @@ pub(crate) struct Resolved {
     pub(crate) look: Look,
     /// Where the elements of the innermost instance begin; 0 in the world.
     pub(crate) space: u64,
+}
+
+impl Resolved {
+    /// Nothing yet.
+    pub(crate) const UNKNOWN: Self = Self {
+        point: SurfacePoint {
+            position: DVec3::ZERO,
+            position_error: DVec3::ZERO,
+            n_geom: DVec3::ZERO,
+            n_shade: DVec3::ZERO,
+            uv: DVec2::ZERO,
+            dpdu: DVec3::ZERO,
+            dpdv: DVec3::ZERO,
+        },
+        local: None,
+        look: Look {
+            object: 0,
+            material: MaterialId(0),
+            texture_space: Look::NO_SPACE,
+            body: 0,
+            hollow: false,
+            uv: UvMapping::Off,
+        },
+        space: 0,
+    };
 }
 
 /// The properties of a surface point that determine the start of a ray.
@@ -43,10 +68,13 @@ impl RenderScene {
     /// The surface at a hit, in world space: `ray` is the ray that found it, whose origin does not lie on a surface (no
     /// [`crate::Origin`]).
     pub fn surface_at(&self, ray: &Ray, hit: &Hit) -> SurfacePoint {
-        self.resolve(ray, None, hit, Uv::Always).point
+        let mut resolved = Resolved::UNKNOWN;
+        self.resolve(ray, None, hit, Uv::Always, &mut resolved);
+        resolved.point
     }
 
     /// The surface at a hit: `ray` is the world ray that found it, `origin` where it started.
+    // In place: values of this size are copied by calls of memcpy.
     #[inline]
     pub(crate) fn resolve(
         &self,
@@ -54,24 +82,21 @@ impl RenderScene {
         origin: Option<&crate::Origin>,
         hit: &Hit,
         uv: Uv,
-    ) -> Resolved {
+        out: &mut Resolved,
+    ) {
         let world = &self.groups[0];
         let prim = world.prim_of(hit.id);
         if matches!(world.prims.at(prim).kind(), PrimKind::Instance(_)) {
-            return self.resolve_within(ray, origin, hit, uv);
+            *out = self.resolve_within(ray, origin, hit, uv);
+            return;
         }
         let element = (hit.id - world.first_id(prim)) as u32;
-        let look = world.look(prim, element);
-        let uv = self.wants_uv(&look, uv);
-        let mut point = world.surface_at(prim, ray, hit, element, uv);
+        out.look = world.look(prim, element);
+        (out.local, out.space) = (None, 0);
+        let uv = self.wants_uv(&out.look, uv);
+        out.point = world.surface_at(prim, ray, hit, element, uv);
         if uv {
-            point.uv = world.texture_uv(prim, hit, element, &point);
-        }
-        Resolved {
-            point,
-            local: None,
-            look,
-            space: 0,
+            out.point.uv = world.texture_uv(prim, hit, element, &out.point);
         }
     }
 

@@ -4,7 +4,7 @@ use crate::activity::Phase;
 use crate::hit::{Hit, Origin};
 use crate::media::{Crossing, MediaArena, MediaStack};
 use crate::query::Tracer;
-use crate::resolve::Uv;
+use crate::resolve::{Resolved, Uv};
 use crate::scene::InstanceUse;
 use strahl_math::{Interval, Ray};
 use strahl_shade::Color;
@@ -139,9 +139,11 @@ impl Tracer<'_> {
         hits.dedup_by(|a, b| a.t == b.t && a.id == b.id);
         let mut visible = Color::WHITE;
         let (mut inside, mut entered_at) = (*media, 0.0);
+        let mut resolved = Resolved::UNKNOWN;
         for hit in hits.iter() {
             self.slot.enter_for(Phase::Texture, hit.id);
-            let resolved = self.scene.resolve(ray, Some(from), hit, Uv::IfTextured);
+            let scene = self.scene;
+            scene.resolve(ray, Some(from), hit, Uv::IfTextured, &mut resolved);
             let id = resolved.look.material;
             let material = &self.scene.materials[id.0 as usize];
             let entering = resolved.point.n_geom.dot(ray.direction) < 0.0;

@@ -73,6 +73,10 @@ pub struct TreeTracer<'s> {
     passages: Vec<Passage>,
     /// The light samples of the current packet.
     samples: Samples,
+    /// The hits of the current packet.
+    ahead: Vec<Ahead<'s>>,
+    /// The surface at the current hit.
+    place: Option<Box<Surface<'s>>>,
 }
 
 impl<'s> TreeTracer<'s> {
@@ -106,6 +110,8 @@ impl<'s> TreeTracer<'s> {
             mirrors: Vec::new(),
             passages: Vec::new(),
             samples: Samples::default(),
+            ahead: Vec::new(),
+            place: None,
         }
     }
 
@@ -136,10 +142,11 @@ impl<'s> TreeTracer<'s> {
         let mut branch = Branch::primary(primary, eye);
         // Most trees have one ray, which needs no stack.
         let (mut first, mut deepest) = (None, 1);
+        let mut place = self.place.take().unwrap_or_else(|| Box::new(Surface::unknown()));
         loop {
-            let found = self.follow(&branch, hit.as_ref(), ahead.take(), observer);
+            let seen = self.follow(&branch, hit.as_ref(), ahead.take(), &mut place, observer);
             if branch.kind == RayKind::Primary {
-                first = found;
+                first = seen;
             }
             let Some(next) = self.waiting.pop() else {
                 break;
@@ -156,6 +163,7 @@ impl<'s> TreeTracer<'s> {
                 deepest = branch.depth;
             }
         }
+        self.place = Some(place);
         self.tracer.slot.ray(RayKind::Primary);
         self.tracer.slot.enter(Phase::Sampling);
         let color = self.combine(observer);
@@ -201,13 +209,14 @@ impl<'s> TreeTracer<'s> {
         Color::BLACK
     }
 
-    /// Shades the hit of a ray and queues its branches.
+    /// Shades the hit of a ray and queues its branches; `found` is a place for its surface.
     #[inline(always)]
     fn follow<O: TraceObserver>(
         &mut self,
         branch: &Branch,
         hit: Option<&Hit>,
         ahead: Option<&mut Ahead<'s>>,
+        found: &mut Surface<'s>,
         observer: &mut O,
     ) -> Option<FirstHit> {
         let scene = self.tracer.scene;
@@ -218,17 +227,15 @@ impl<'s> TreeTracer<'s> {
         }
         let index = self.nodes.len() as u32;
         let length = hit.map_or(f64::INFINITY, |h| h.t * branch.ray.direction.length());
-        let mut found;
         let known = ahead.as_ref().map_or(KnownLights::default(), |a| a.lights);
         let mut surface = match (hit, ahead) {
             (None, _) => None,
             (Some(_), Some(ahead)) => Some(&mut ahead.surface),
             (Some(hit), None) => {
-                found = Surface::at(scene, branch, hit, &self.media, self.uv);
-                Some(&mut found)
+                found.find(scene, branch, hit, &self.media, self.uv);
+                Some(found)
             }
         };
-        let fading = surface.as_ref().and_then(|s| s.fading());
         let (attenuation, fog) = self.in_front(branch, length);
         let mut node = Node {
             parent: branch.parent,
@@ -240,6 +247,7 @@ impl<'s> TreeTracer<'s> {
             attenuation,
             fog,
         };
+        let medium = self.media.top(branch.media);
         let report = |hit, background| RayReport {
             node: index,
             parent: branch.parent,
@@ -250,7 +258,7 @@ impl<'s> TreeTracer<'s> {
             ray: branch.ray,
             hit,
             background,
-            medium: self.media.top(branch.media),
+            medium,
             attenuation,
             fog,
             part: branch.part,
@@ -287,24 +295,8 @@ impl<'s> TreeTracer<'s> {
             return Some(first);
         }
 
-        let mut split = surface.split(&branch.ray);
-        if let Some(inside) = fading {
-            split.fade = scene.faded(inside, length);
-        }
-        if self.paint.stacks.len() > 1 && !surface.material.finish.transmission.is_black() {
-            layers::passages(
-                &self.paint,
-                surface,
-                &branch.ray,
-                split.fade,
-                &mut self.passages,
-            );
-            (split.kr, split.kt) = layers::sums_of_passages(&self.paint, &self.passages);
-        } else if split.total_reflection && !self.paint.layers.is_empty() {
-            // As in POV-Ray (measured): total reflection ignores colour and finish, and fades like light that passes.
-            split.kr = split.fade;
-        }
         if O::ACTIVE {
+            let split = self.split(branch, surface, length);
             let seen = O::DETAILED.then(|| self.hit_report(surface, hit, split, model));
             let total = seen.as_ref().is_some_and(|seen| seen.total_reflection);
             observer.ray(report(seen, None));
@@ -327,8 +319,34 @@ impl<'s> TreeTracer<'s> {
         }
         node.local = layers::grained(&self.paint, node.local);
         self.nodes.push(node);
-        self.queue_branches(branch, index, surface, hit, &split, observer);
+        if O::DETAILED || !surface.is_dull() {
+            let split = self.split(branch, surface, length);
+            self.queue_branches(branch, index, surface, hit, &split, observer);
+        }
         Some(first)
+    }
+
+    /// Divides the light at the current surface, which is `length` away from the origin of its ray.
+    #[inline]
+    fn split(&mut self, branch: &Branch, surface: &Surface<'_>, length: f64) -> Split {
+        let mut split = surface.split(&branch.ray);
+        if let Some(inside) = surface.fading() {
+            split.fade = self.tracer.scene.faded(inside, length);
+        }
+        if self.paint.stacks.len() > 1 && !surface.material.finish.transmission.is_black() {
+            layers::passages(
+                &self.paint,
+                surface,
+                &branch.ray,
+                split.fade,
+                &mut self.passages,
+            );
+            (split.kr, split.kt) = layers::sums_of_passages(&self.paint, &self.passages);
+        } else if split.total_reflection && !self.paint.layers.is_empty() {
+            // As in POV-Ray (measured): total reflection ignores colour and finish, and fades like light that passes.
+            split.kr = split.fade;
+        }
+        split
     }
 
     /// The attenuation by what lies in front of a hit, and the light that it adds.

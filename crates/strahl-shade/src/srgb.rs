@@ -30,6 +30,7 @@ pub fn decode(encoded: f64) -> f64 {
 }
 
 /// The 8-bit code of linear light: clamped to `0..=1`, encoded, rounded half up; NaN is 0.
+#[inline]
 pub fn encode_u8(linear: f64) -> u8 {
     static CODES: LazyLock<Codes> = LazyLock::new(Codes::new);
     CODES.of(linear)
@@ -70,6 +71,7 @@ impl Codes {
     /// The bits of 2⁻¹³.
     const ORIGIN: u64 = (1023 - OCTAVES as u64) << 52;
 
+    #[inline]
     fn of(&self, linear: f64) -> u8 {
         // NaN is not at or above any beginning.
         if linear >= 1.0 {

@@ -13,6 +13,7 @@ use strahl_math::{Interval, Ray};
 use strahl_shade::{Color, LightSample};
 
 /// A hit of a packet, before its tree grows.
+#[derive(Debug)]
 pub(super) struct Ahead<'s> {
     pub(super) surface: Surface<'s>,
     pub(super) lights: KnownLights,
@@ -20,8 +21,19 @@ pub(super) struct Ahead<'s> {
     plain: bool,
 }
 
+impl Ahead<'_> {
+    /// A place for a hit.
+    fn unknown() -> Self {
+        Self {
+            surface: Surface::unknown(),
+            lights: KnownLights::default(),
+            plain: false,
+        }
+    }
+}
+
 /// The shadow rays of a hit that were traced with the packet, and their results: a bit for each light.
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct KnownLights {
     followed: u32,
     /// The lights that are blocked by something opaque.
@@ -90,32 +102,38 @@ impl<'s> TreeTracer<'s> {
                 .map(|(ray, hit)| self.grow(ray, hit, None, &mut ()).color);
             return colors.collect();
         }
-        let mut all = ArrayVec::<Ahead<'s>, PACKET>::new();
+        let mut all = std::mem::take(&mut self.ahead);
+        let mut used = 0;
         for (ray, hit) in rays.iter().zip(&hits) {
             if let Some(hit) = hit {
                 self.tracer.slot.enter_for(Phase::Surface, hit.id);
-                let surface =
-                    Surface::at(scene, &Branch::primary(ray, eye), hit, &self.media, self.uv);
-                all.push(Ahead {
-                    plain: self.is_plain(&surface),
-                    surface,
-                    lights: KnownLights {
-                        lane: all.len() as u32,
-                        ..KnownLights::default()
-                    },
-                });
+                if used == all.len() {
+                    all.push(Ahead::unknown());
+                }
+                let ahead = &mut all[used];
+                let branch = Branch::primary(ray, eye);
+                ahead
+                    .surface
+                    .find(scene, &branch, hit, &self.media, self.uv);
+                ahead.plain = self.is_plain(&ahead.surface);
+                ahead.lights = KnownLights {
+                    lane: used as u32,
+                    ..KnownLights::default()
+                };
+                used += 1;
             }
         }
         for light in 0..scene.lights.len().min(u32::BITS as usize) {
-            self.shadows_together(light, &mut all);
+            self.shadows_together(light, &mut all[..used]);
         }
         self.tracer.slot.ray(RayKind::Primary);
-        let mut ahead = all.iter_mut();
+        let mut ahead = all[..used].iter_mut();
         let mut colors = ArrayVec::new();
         for (ray, hit) in rays.iter().zip(hits) {
             let ahead = if hit.is_some() { ahead.next() } else { None };
             colors.push(self.grow(ray, hit, ahead, &mut ()).color);
         }
+        self.ahead = all;
         colors
     }
 
