@@ -44,7 +44,7 @@ pub(crate) fn paint<'s>(
     };
     let mut made = None;
     let space = scene.texture_place(&mut place, hit, look, &mut made);
-    let eta = surface.eta_2 / surface.eta_1;
+    let eta = surface.fresnel_eta();
     texture.0.layers_in(space, &place, eta, paint);
 
     surface.material.fresnel = false;
@@ -55,6 +55,7 @@ pub(crate) fn paint<'s>(
     });
     let sum = surface.material.finish.to_mut();
     let mut strongest = 0.0;
+    surface.shows_lights = false;
     if let Some(top) = paint.layers.first() {
         surface.n_shade = top.normal;
     }
@@ -63,6 +64,7 @@ pub(crate) fn paint<'s>(
         sum.ambient += body * layer.finish.ambient;
         sum.emission += body * layer.finish.emission;
         sum.diffuse += body * layer.finish.diffuse;
+        surface.shows_lights |= layer.finish.shows_lights(body);
         let reflection = layer.reflectance * layer.share;
         sum.reflection += reflection;
         // The reflected direction reported for the surface is that of the layer which reflects most.

@@ -6,9 +6,9 @@ use crate::prim::PrimKind;
 use crate::scene::{RenderGroup, RenderScene};
 use strahl_geometry::{PrimHit, Primitive, Shape, SurfaceId, SurfacePoint};
 use strahl_math::{DVec2, DVec3, Ray, Transform};
-use strahl_shade::{Color, MaterialId};
 use strahl_shade::patterns::TexturePoint;
 use strahl_shade::texture::Texture;
+use strahl_shade::{Color, MaterialId};
 
 /// Everything about a hit, in world space.
 #[derive(Clone, Copy, Debug)]

@@ -10,8 +10,8 @@ use crate::trace::{Branch, FirstHit};
 use std::borrow::Cow;
 use strahl_math::{DVec3, Ray, error};
 use strahl_shade::{
-    Color, Finish, MaterialId, MaterialPoint, Refracted, ShadingModel, SpectralPart, fresnel_dielectric,
-    reflect, refract,
+    Color, Finish, MaterialId, MaterialPoint, Refracted, ShadingModel, SpectralPart,
+    fresnel_dielectric, reflect, refract,
 };
 
 /// The index of refraction of a medium for a part of the spectrum; `None` is air.
@@ -76,6 +76,9 @@ pub(crate) struct Surface<'s> {
     pub(crate) thin: bool,
     /// Which lights shine on it.
     pub(crate) lit: Lit,
+    /// Whether it can show the light of lights: otherwise diffuse reflection and highlights are black everywhere, and shadow rays not
+    /// worth tracing. Sky spheres seldom show it.
+    pub(crate) shows_lights: bool,
     pub(crate) eta_1: f64,
     pub(crate) eta_2: f64,
     /// Whether the ray is in what is on the other side of the surface, and gets out of it there.
@@ -108,6 +111,7 @@ impl<'s> Surface<'s> {
             entering: true,
             thin: false,
             lit: Lit::PLAIN,
+            shows_lights: true,
             eta_1: 1.0,
             eta_2: 1.0,
             inside: false,
@@ -184,12 +188,25 @@ impl<'s> Surface<'s> {
         (self.eta_1, self.eta_2) = (index(self.medium_1), index(self.medium_2));
         self.material = material.at(point.uv);
         self.lit = scene.lit(hit.id, look.object);
+        self.shows_lights = true;
         self.front = start(&self.resolved, hit, self.entering);
     }
 
     /// Whether light passes without refraction, at any angle.
     pub(crate) fn is_straight(&self) -> bool {
         self.thin || self.eta_1 == self.eta_2
+    }
+
+    /// The index of refraction behind the surface divided by that before it, for reflections that follow Fresnel's equations.
+    ///
+    /// As in POV-Ray (measured) it is 1, so that these equations reflect nothing, where a ray leaves an object that lies in another one:
+    /// glass under a sky sphere, too.
+    pub(crate) fn fresnel_eta(&self) -> f64 {
+        if self.inside && self.medium_2.is_some() {
+            1.0
+        } else {
+            self.eta_2 / self.eta_1
+        }
     }
 
     /// The media a ray is in after passing the surface.

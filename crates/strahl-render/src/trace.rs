@@ -142,7 +142,10 @@ impl<'s> TreeTracer<'s> {
         let mut branch = Branch::primary(primary, eye);
         // Most trees have one ray, which needs no stack.
         let (mut first, mut deepest) = (None, 1);
-        let mut place = self.place.take().unwrap_or_else(|| Box::new(Surface::unknown()));
+        let mut place = self
+            .place
+            .take()
+            .unwrap_or_else(|| Box::new(Surface::unknown()));
         loop {
             let seen = self.follow(&branch, hit.as_ref(), ahead.take(), &mut place, observer);
             if branch.kind == RayKind::Primary {

@@ -185,3 +185,33 @@ fn glass_without_texture_behind_blended_textures() {
         );
     }
 }
+
+#[test]
+fn surfaces_that_show_no_lights_send_no_shadow_rays() {
+    let shadow_rays = |finish: PovFinish| {
+        let texture = PlainTexture {
+            finish: finish.into(),
+            ..plain(opaque(0.5, 0.5, 0.5))
+        };
+        let scene = Scene::new()
+            .add(Sphere::new(DVec3::ZERO, 1.0).material(material(texture.into())))
+            .light(Light::point(DVec3::new(0.0, 0.0, 9.0), Color::WHITE))
+            .camera(Camera::perspective(
+                DVec3::new(0.0, 0.0, 5.0),
+                DVec3::ZERO,
+                DVec3::Y,
+                0.1,
+            ));
+        rendered(&compiled(&scene), |o| (o.width, o.height) = (1, 1))
+            .rays
+            .shadow
+    };
+    let dull = PovFinish {
+        diffuse: 0.0,
+        ..PovFinish::default()
+    };
+    assert_eq!(shadow_rays(dull), 0);
+    let shiny = PovFinish { phong: 1.0, ..dull };
+    assert_eq!(shadow_rays(shiny), 1);
+    assert_eq!(shadow_rays(PovFinish::default()), 1);
+}

@@ -16,4 +16,5 @@ groups! {
     lights_shine_from_surfaces,
     flat_boxes_are_sheets,
     films_interfere,
+    glass_in_something_reflects_only_where_it_is_entered,
 }

@@ -318,6 +318,16 @@ impl PovFinish {
         parts
     }
 
+    /// Whether light of a light source may show on a layer whose colour times opacity is `body`; `false` is certain.
+    #[inline]
+    pub fn shows_lights(&self, body: Color) -> bool {
+        let scatters = self.diffuse != 0.0 || self.diffuse_back != 0.0;
+        // Grain takes the colour without its opacity.
+        scatters && (!body.is_black() || self.crand != 0.0)
+            || self.phong != 0.0
+            || self.specular != 0.0
+    }
+
     /// The tint of highlights by `metallic`, for a surface of this pigment.
     #[inline]
     pub fn tint(&self, cos_light: f64, pigment: Color) -> Color {

@@ -18,7 +18,11 @@ pub(super) fn write_light(w: &Writer<'_>, page: &mut Page, hit: &HitReport, ligh
     };
     let n_dot_l = format!("l = {}, n·l = {}", d.point(l), d.number(term.n_dot_l));
     if term.shadow_ray.is_none() && term.visible.is_black() {
-        page.line(INNER, &format!("{n_dot_l}: it is behind the surface"));
+        let reason = match term.n_dot_l > 0.0 {
+            true => "no layer shows its light",
+            false => "it is behind the surface",
+        };
+        page.line(INNER, &format!("{n_dot_l}: {reason}"));
         return;
     }
     page.line(INNER, &n_dot_l);

@@ -1,4 +1,4 @@
-//! The first visible surface, without lists of crossings.
+//! The first visible surface, or all of them, without lists of crossings.
 //!
 //! If only the first hit is wanted, the lists need not be combined node by node. The sorted crossings of all leaves are enough:
 //! each changes the state of its leaf, which may change that of the operation above, and so on; the first crossing that changes
@@ -13,7 +13,7 @@ use super::boxes::Slabs;
 use super::course::Sum;
 use super::solid::Kind;
 use super::sweep::{Fusing, Rule};
-use super::timeline::{Timeline, TooClose};
+use super::timeline::{State, Timeline, TooClose};
 use crate::{PrimHit, Scratch, SurfaceId};
 use strahl_math::{Interval, Ray};
 
@@ -68,27 +68,95 @@ pub(super) fn first_visible(
     lists: &mut Lists,
     scratch: &mut Scratch,
 ) -> Answer {
-    let fusing = Fusing::new(ray);
-    let (start, begin) = start_and_begin(range, from.is_some(), &fusing);
-    if !(start < range.max) {
+    let Some(search) = Search::new(csg, ray, range, from, lists, scratch) else {
         return Answer::Certain(None);
-    }
-    lists.timeline.clear(csg.node_count());
-    lists.candidates.clear();
-    let search = Search {
-        csg,
-        ray,
-        slabs: None,
-        from: from.map(|surface| csg.leaf_surface(surface)),
-        fusing,
-        range: Interval::new(start, range.max),
-        begin,
-        lists,
-        scratch,
     };
     match search.run() {
         Ok(found) => Answer::Certain(found),
         Err(TooClose) => Answer::Unclear,
+    }
+}
+
+/// Appends all visible surfaces with `range.min < t <= range.max` of such a tree, ascending in `t`: those that [`first_visible`] finds one
+/// after the other. Fails if crossings are too close together; `out` may have some surfaces more then.
+pub(super) fn all_visible(
+    csg: &Csg,
+    ray: &Ray,
+    range: Interval,
+    from: Option<SurfaceId>,
+    lists: &mut Lists,
+    scratch: &mut Scratch,
+    out: &mut Vec<PrimHit>,
+) -> Result<(), TooClose> {
+    match Search::new(csg, ray, range, from, lists, scratch) {
+        None => Ok(()),
+        Some(search) => search.run_to_the_end(out),
+    }
+}
+
+impl<'a> Search<'a> {
+    /// `None` if the range is empty.
+    fn new(
+        csg: &'a Csg,
+        ray: &'a Ray,
+        range: Interval,
+        from: Option<SurfaceId>,
+        lists: &'a mut Lists,
+        scratch: &'a mut Scratch,
+    ) -> Option<Self> {
+        let fusing = Fusing::new(ray);
+        let (start, begin) = start_and_begin(range, from.is_some(), &fusing);
+        if !(start < range.max) {
+            return None;
+        }
+        lists.timeline.clear(csg.node_count());
+        lists.candidates.clear();
+        Some(Self {
+            csg,
+            ray,
+            slabs: None,
+            from: from.map(|surface| csg.leaf_surface(surface)),
+            fusing,
+            range: Interval::new(start, range.max),
+            begin,
+            lists,
+            scratch,
+        })
+    }
+
+    /// Combines all operands and appends what is visible.
+    fn run_to_the_end(mut self, out: &mut Vec<PrimHit>) -> Result<(), TooClose> {
+        let csg = self.csg;
+        let Some((root, Kind::Operation(rule))) = csg.node(0).map(|root| (root, root.kind)) else {
+            return Err(TooClose);
+        };
+        let range = Interval::new(self.begin, self.fusing.widened(self.range).max);
+        let mut sum = Sum::new(rule, range);
+        if self.core(0, root, &mut sum)? {
+            return Ok(());
+        }
+        let alive = sum.alive;
+        if self.rest(0, root, Interval::LINE, alive, &mut sum)? {
+            return Ok(());
+        }
+        self.visit_seen(sum.state, |hit| {
+            out.push(hit);
+            true
+        })
+    }
+
+    /// Goes along the ray from this state of the root to what is visible, until `take` returns false.
+    fn visit_seen(
+        &mut self,
+        state: State,
+        take: impl FnMut(PrimHit) -> bool,
+    ) -> Result<(), TooClose> {
+        let (csg, ray) = (self.csg, self.ray);
+        let timeline = &mut self.lists.timeline;
+        timeline.set_state(0, state);
+        let scratch = &mut *self.scratch;
+        let sees = |element| csg.is_seen(element, ray, scratch);
+        timeline.visit_seen(csg, self.range, &self.fusing, sees, take)
     }
 }
 
@@ -123,11 +191,11 @@ impl Search<'_> {
             if self.rest(0, root, window, alive, &mut sum)? {
                 return Ok(None);
             }
-            let timeline = &mut self.lists.timeline;
-            timeline.set_state(0, sum.state);
-            let (ray, scratch) = (self.ray, &mut *self.scratch);
-            let sees = |element| csg.is_seen(element, ray, scratch);
-            let found = timeline.first_seen(csg, self.range, &self.fusing, sees)?;
+            let mut found: Option<PrimHit> = None;
+            self.visit_seen(sum.state, |hit| {
+                found = Some(hit);
+                false
+            })?;
             let known = found.map_or(f64::INFINITY, |hit| hit.t + self.fusing.gap(hit.t, hit.t));
             if known <= window.max || alive.max <= window.max {
                 return Ok(found);

@@ -1,7 +1,7 @@
 //! The search for the first surface against the general method with lists: it gives the same bits and is rarely undecided.
 
 use super::evaluate::Evaluation;
-use super::first::{Answer, Lists, first_visible};
+use super::first::{Answer, Lists, all_visible, first_visible};
 use super::{Csg, CsgNode};
 use crate::conformance::Random;
 use crate::{
@@ -129,6 +129,8 @@ fn flat(random: &mut Random, lattice: bool) -> CsgNode {
 struct Tally {
     sure: u32,
     unclear: u32,
+    /// Searches that listed all visible surfaces.
+    all: u32,
     /// Those of the way for a few convex shapes.
     flat: u32,
     flat_unclear: u32,
@@ -152,6 +154,16 @@ fn compare(
             tally.sure += 1;
         }
         Answer::Unclear => tally.unclear += 1,
+    }
+    let (lists, mut all) = (&mut Lists::default(), Vec::new());
+    if all_visible(csg, ray, range, from, lists, &mut scratch, &mut all).is_ok() {
+        let visible = list.list.iter().filter(|c| c.visible).map(|c| c.hit);
+        assert_eq!(
+            all,
+            visible.collect::<Vec<_>>(),
+            "{ray:?} {range:?} {from:?}\n{csg:?}"
+        );
+        tally.all += 1;
     }
     if let Some(flat) = csg.flat() {
         let from = from.map(|surface| csg.leaf_surface(surface));

@@ -1,7 +1,7 @@
 use super::CsgNode;
 use super::compile::Compiler;
 use super::evaluate::Evaluation;
-use super::first::{Answer, first_visible};
+use super::first::{Answer, all_visible, first_visible};
 use super::flat::Flat;
 use super::half_spaces::HalfSpaces;
 use super::leaf::{Leaf, Next};
@@ -328,6 +328,14 @@ impl Primitive for Csg {
             }
             out.truncate(before);
         } else if self.shallow {
+            let mut workspace = scratch.take_csg();
+            let lists = &mut workspace.first;
+            let answer = all_visible(self, ray, range, from, lists, scratch, out);
+            scratch.give_csg(workspace);
+            if answer.is_ok() {
+                return;
+            }
+            out.truncate(before);
             // Searching several times is faster than listing what is not needed (measured: 0.85 of the time on cutglass.pov).
             return one_by_one(self, ray, range, from, scratch, out);
         }

@@ -113,15 +113,16 @@ impl Timeline {
         }
     }
 
-    /// Goes along the ray to the first crossing in the range that is visible from outside of the tree; `sees` says whether the ray meets the
-    /// bounds of the leaf that an element belongs to.
-    pub(super) fn first_seen(
+    /// Goes along the ray to the crossings in the range that are visible from outside of the tree, until `take` returns false. `sees` says
+    /// whether the ray meets the bounds of the leaf that an element belongs to.
+    pub(super) fn visit_seen(
         &mut self,
         csg: &Csg,
         range: Interval,
         fusing: &Fusing,
         mut sees: impl FnMut(u32) -> bool,
-    ) -> Result<Option<PrimHit>, TooClose> {
+        mut take: impl FnMut(PrimHit) -> bool,
+    ) -> Result<(), TooClose> {
         self.events.sort_unstable_by(|a, b| a.t.total_cmp(&b.t));
         let Self {
             events,
@@ -146,14 +147,17 @@ impl Timeline {
             let seen = event.is_seen(csg, states) && event.t > range.min;
             if seen && sees(event.surface.element) {
                 let uv = uvs.get((event.uv as usize).wrapping_sub(1));
-                return Ok(Some(PrimHit {
+                let goes_on = take(PrimHit {
                     t: event.t,
                     surface: event.surface,
                     uv: uv.copied().unwrap_or_default(),
-                }));
+                });
+                if !goes_on {
+                    break;
+                }
             }
         }
-        Ok(None)
+        Ok(())
     }
 }
 

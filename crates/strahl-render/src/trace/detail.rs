@@ -23,7 +23,7 @@ impl TreeTracer<'_> {
             Shading::Model(model)
         } else {
             Shading::Finish {
-                layers: layers::report(&self.paint, surface.v, surface.eta_2 / surface.eta_1),
+                layers: layers::report(&self.paint, surface.v, surface.fresnel_eta()),
                 model: self.settings.force_shading,
             }
         };

@@ -59,6 +59,9 @@ impl TreeTracer<'_> {
         {
             return term;
         }
+        if !surface.shows_lights {
+            return term;
+        }
         term.visible = Color::WHITE;
         let masked = self.tracer.scene.mask(light).is_some();
         if let Some(stopped) = stopped
