@@ -364,7 +364,6 @@ impl<Q: Query> Visitor for GroupVisitor<'_, '_, '_, Q> {
         // Most primitives of most scenes.
         if !Q::ALL
             && !Q::WATCHES
-            && id != self.from_prim
             && let Some(index) = prim.plain_shape()
         {
             return self.plain_shape(id, index, t_max);
@@ -374,14 +373,36 @@ impl<Q: Query> Visitor for GroupVisitor<'_, '_, '_, Q> {
 }
 
 impl<Q: Query> GroupVisitor<'_, '_, '_, Q> {
-    /// Tests a shape that the ray does not start on and whose hits need no further checks.
+    /// Tests a shape whose hits need no further checks.
     #[inline(always)]
     fn plain_shape(&mut self, id: u32, index: u32, t_max: f64) -> f64 {
-        let number = self.base + self.group.first_id(id);
+        let first = self.group.first_id(id);
+        let number = self.base + first;
+        let from = match self.from {
+            Some((origin, from)) if id == self.from_prim => Some(SurfaceId {
+                element: (from - first) as u32,
+                facet: origin.facet,
+            }),
+            _ => None,
+        };
         let (shape, slot) = (&self.group.shapes[index as usize].shape, self.search.slot);
         slot.enter_for(Phase::Intersection, number);
         let range = Interval::new(self.range_min, t_max);
-        let found = shape.closest_hit(self.ray, range, None, self.search.scratch);
+        let scratch = &mut *self.search.scratch;
+        let found = if Q::ANY {
+            // Where the ray meets it does not matter.
+            let met = shape.any_hit(self.ray, range, from, scratch);
+            met.then_some(PrimHit {
+                t: t_max,
+                surface: SurfaceId {
+                    element: 0,
+                    facet: 0,
+                },
+                uv: [0.0; 2],
+            })
+        } else {
+            shape.closest_hit(self.ray, range, from, scratch)
+        };
         slot.enter(Phase::Traversal);
         let Some(found) = found else {
             return t_max;

@@ -112,7 +112,7 @@ impl Query for Watched<'_> {
 
 /// Finds any opaque surface.
 pub(super) struct AnyOpaque {
-    /// The element found.
+    /// An element of the primitive found.
     pub(super) found: Option<u64>,
 }
 
