@@ -4,6 +4,7 @@ use crate::domain::{Domain, Dual, LANES, Lanes};
 use crate::error::FunctionError;
 use crate::field::ScalarField;
 use crate::graph::{Expr, Graph};
+use crate::rate::Rate;
 use crate::run::{prepare, run};
 use crate::tape::{self, Tape};
 use std::cell::Cell;
@@ -33,6 +34,7 @@ pub struct Workspace {
     lanes: Vec<Lanes>,
     bounds: Vec<Bounds>,
     duals: Vec<Dual>,
+    rates: Vec<Rate>,
     spent: u64,
 }
 
@@ -156,6 +158,41 @@ impl Function {
         }
         prepare(tape, stack);
         run(tape, stack, &mut self.fuel())
+    }
+
+    /// Bounds of the value on a part of a line, where the arguments are within bounds, and of its derivative along the line, on which
+    /// each argument changes at a rate of its own.
+    ///
+    /// A derivative of one sign proves that the value is monotone there. It is [`Bounds::UNKNOWN`] where the value may jump or be no
+    /// number, and where fields are called.
+    pub fn rate(
+        &self,
+        workspace: &mut Workspace,
+        arguments: &[Bounds],
+        rates: &[f64],
+    ) -> (Bounds, Bounds) {
+        let tape = self.tape();
+        let stack = reserve(&mut workspace.rates, tape);
+        for (register, i) in stack.iter_mut().zip(0..tape.inputs) {
+            let argument = arguments.get(i).copied().unwrap_or(Bounds::NAN);
+            *register = Rate {
+                value: Bounds::argument(argument.min, argument.max).with_nan(argument.nan),
+                rate: Bounds::point(rates.get(i).copied().unwrap_or(f64::NAN)),
+            };
+        }
+        prepare(tape, stack);
+        let result = run(tape, stack, &mut self.fuel());
+        let rate = if result.value.nan {
+            Bounds::UNKNOWN
+        } else {
+            result.rate
+        };
+        (result.value, rate)
+    }
+
+    /// Whether [`rate`](Self::rate) can be known: no fields are called.
+    pub fn has_rates(&self) -> bool {
+        self.tape().has_rates()
     }
 
     /// Whether [`bounds`](Self::bounds) converge to the values as boxes become small: all fields within have bounds.

@@ -73,6 +73,13 @@ impl Tape {
             && self.calls.iter().all(|(f, _)| f.tape().is_bounded())
             && self.loops.iter().all(|l| l.body.is_bounded())
     }
+
+    /// Whether it reads no fields, whose rates of change are unknown.
+    pub(crate) fn has_rates(&self) -> bool {
+        self.fields.is_empty()
+            && self.calls.iter().all(|(f, _)| f.tape().has_rates())
+            && self.loops.iter().all(|l| l.body.has_rates())
+    }
 }
 
 /// A loop: its body is a tape with the counter as first input and then what it takes from outside.

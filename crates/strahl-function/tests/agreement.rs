@@ -67,6 +67,10 @@ fn number() -> impl Strategy<Value = f64> {
     ]
 }
 
+fn rate() -> impl Strategy<Value = f64> {
+    prop_oneof![3 => -1.0..1.0, 1 => prop::sample::select(vec![-1.0, 0.0, 1e-3])]
+}
+
 fn build(steps: &[Step], constants: &[f64]) -> Function {
     let mut g = Graph::new(["x", "y", "z"]);
     let mut values: Vec<Expr> = g.xyz().to_vec();
@@ -152,6 +156,53 @@ proptest! {
     }
 
     #[test]
+    fn values_change_as_fast_as_their_rates_say(
+        steps in program(),
+        constants in prop::collection::vec(number(), 3),
+        start in [number(), number(), number()],
+        way in [rate(), rate(), rate()],
+        length in prop::sample::select(vec![1e-6, 1e-3, 0.03, 0.5]),
+        inside in prop::collection::vec(0.0..=1.0, 6),
+    ) {
+        let f = build(&steps, &constants);
+        let mut ws = Workspace::new();
+        // Around the exact point of the line.
+        let at = |s: f64| [0, 1, 2].map(|i| {
+            let step = way[i] * s;
+            let x = start[i] + step;
+            if step == 0.0 {
+                Bounds::point(x)
+            } else {
+                Bounds::new(x.next_down().next_down(), x.next_up().next_up())
+            }
+        });
+        let (first, last) = (at(0.0), at(length));
+        let region = [0, 1, 2].map(|i| first[i].hull(last[i]));
+        let (values, rate) = f.rate(&mut ws, &region, &way);
+        prop_assert_eq!(values, f.bounds(&mut ws, &region));
+        if rate.nan {
+            return Ok(());
+        }
+        let mut before: Option<(f64, Bounds)> = None;
+        let mut places: Vec<f64> = inside.iter().map(|t| t * length).collect();
+        places.sort_by(f64::total_cmp);
+        for s in places {
+            let value = f.bounds(&mut ws, &at(s));
+            prop_assert!(!value.nan, "no number at {s}");
+            if let Some((s0, v0)) = before {
+                let (low, high) = (rate.min * (s - s0), rate.max * (s - s0));
+                // The true change is between these.
+                let (least, most) = (value.min - v0.max, value.max - v0.min);
+                let room = 1e-14 * (least.abs() + most.abs() + v0.max.abs()) + 1e-300;
+                // Infinite values that don't change have no difference.
+                prop_assert!(!(least - room > high), "{least:e} {high:e} {rate:?}");
+                prop_assert!(!(most + room < low), "{most:e} {low:e} {rate:?}");
+            }
+            before = Some((s, value));
+        }
+    }
+
+    #[test]
     fn nothing_panics(
         steps in program(),
         constants in prop::collection::vec(any::<f64>(), 3),
@@ -164,6 +215,7 @@ proptest! {
         prop_assert!(same(f.gradient(&mut ws, &point).0, v));
         let region: Vec<Bounds> = ends.iter().map(|&(a, b)| Bounds::new(a, b)).collect();
         f.bounds(&mut ws, &region);
+        f.rate(&mut ws, &region, &point);
         let columns: Vec<&[f64]> = (0..point.len()).map(|i| &point[i..=i]).collect();
         let mut values = [0.0; 2];
         f.values(&mut ws, &columns, &mut values);
@@ -186,6 +238,43 @@ fn slopes(build: impl Fn(&mut Graph, [Expr; 3]) -> Expr, p: [f64; 3]) -> ([f64; 
         (f.value(&mut ws, &b) - f.value(&mut ws, &a)) / (b[i] - a[i])
     });
     (gradient, differences)
+}
+
+#[test]
+fn rates_tell_where_a_function_is_monotone() {
+    let rate = |build: &dyn Fn(&mut Graph, [Expr; 3]) -> Expr, from: f64, to: f64| {
+        let mut g = Graph::new(["x", "y", "z"]);
+        let xyz = g.xyz();
+        let root = build(&mut g, xyz);
+        let f = g.finish(root).unwrap();
+        assert!(f.has_rates());
+        let still = Bounds::point(0.5);
+        let region = [Bounds::new(from, to), still, still];
+        f.rate(&mut Workspace::new(), &region, &[1.0, 0.0, 0.0]).1
+    };
+    let wave = |g: &mut Graph, [x, _, _]: [Expr; 3]| g.sin(x);
+    let rising = rate(&wave, -1.0, 1.0);
+    assert!(rising.min > 0.5 && rising.max < 1.01, "{rising:?}");
+    assert!(rate(&wave, 1.0, 2.0).min < 0.0);
+    let corner = |g: &mut Graph, [x, y, _]: [Expr; 3]| {
+        let larger = g.max(&[x, y]);
+        g.sub(larger, x)
+    };
+    let level = rate(&corner, 0.6, 1.0);
+    assert!(level.min >= -1e-9 && level.max <= 1e-9, "{level:?}");
+    assert!(rate(&corner, 0.0, 0.4).max < -0.9);
+    // What jumps has no rate, unless it does not jump here.
+    let steps = |g: &mut Graph, [x, _, _]: [Expr; 3]| g.floor(x);
+    assert!(rate(&steps, 0.5, 1.5).nan);
+    assert_eq!(rate(&steps, 1.25, 1.5), Bounds::new(0.0, 0.0));
+    let pole = |g: &mut Graph, [x, _, _]: [Expr; 3]| g.tan(x);
+    assert!(rate(&pole, 1.0, 2.0).nan);
+    let turn = |g: &mut Graph, [x, y, _]: [Expr; 3]| {
+        let less = g.offset(y, -1.0);
+        g.atan2(x, less)
+    };
+    assert!(rate(&turn, -0.1, 0.1).nan);
+    assert!(rate(&turn, 0.1, 0.2).max < 0.0);
 }
 
 #[test]

@@ -276,10 +276,12 @@ impl Compiler {
                 let is_core = |operand: &u32| far_of(operand) != rule.neutral();
                 operands.extend(proto.operands.iter().copied().filter(is_core));
                 core = operands.len() - first;
-                // An intersection is finished as soon as nothing is left, so start with the smallest boxes.
+                // An intersection is finished as soon as nothing is left, so start with what is intersected in a few operations, and with
+                // the smallest boxes.
                 if let Some(core) = operands.get_mut(first..) {
                     let area = |i: &u32| boxes.get(*i as usize).map_or(0.0, |b| b.0.half_area());
                     core.sort_by(|a, b| area(a).partial_cmp(&area(b)).unwrap_or(Ordering::Equal));
+                    core.sort_by_key(|i| !self.has_stays(*i));
                     if rule == Rule::Intersection {
                         core.sort_by_key(|i| self.half_space(*i).is_some());
                         half_spaces = self.half_spaces(core).map(Box::new);
@@ -319,6 +321,16 @@ impl Compiler {
             self.elements,
             closed,
         )
+    }
+
+    /// Whether the node is a leaf that is intersected in a few operations.
+    fn has_stays(&self, node: u32) -> bool {
+        let kind = self.nodes.get(node as usize).map(|node| node.kind);
+        let Some(Kind::Leaf(leaf)) = kind else {
+            return false;
+        };
+        let leaf = self.leaves.get(leaf as usize);
+        leaf.is_some_and(Leaf::has_stays)
     }
 
     /// The node as a half-space, if it is one.

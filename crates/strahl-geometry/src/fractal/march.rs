@@ -21,11 +21,11 @@ pub(super) struct March<'a, S, V> {
     set: &'a S,
     origin: DVec3,
     direction: DVec3,
-    /// How far the set goes per unit of `s`, as it measures distances.
-    speed: f64,
+    /// How far `s` goes per unit of distance, as the set measures it.
+    pace: f64,
     /// The least and the longest step.
     steps: (f64, f64),
-    /// The parameter of the ray at which `s` is zero, and the one at which the ball around the set ends.
+    /// The parameter of the ray at which `s` is zero, and how far the march goes.
     start: f64,
     length: f64,
     /// Where the ray is not needed any more.
@@ -37,15 +37,16 @@ pub(super) struct March<'a, S, V> {
     clear: f64,
     /// Whether it is the latter.
     is_near: bool,
-    /// The last step over the one before.
-    trend: f64,
+    /// The last step, and the one before.
+    last: f64,
+    before: f64,
     /// Whether the ray is inside of the set.
     pub(super) inside: bool,
     pub(super) visit: &'a mut V,
 }
 
 impl<'a, S: OrbitSet, V: FnMut(Event) -> ControlFlow<()>> March<'a, S, V> {
-    /// The march along a line that is in the ball from `start` on and leaves it at `length`.
+    /// The march along a line that is in the ball from `start` on, and no farther than `length`.
     pub(super) fn new(
         set: &'a S,
         (origin, direction): (DVec3, DVec3),
@@ -59,7 +60,7 @@ impl<'a, S: OrbitSet, V: FnMut(Event) -> ControlFlow<()>> March<'a, S, V> {
             set,
             origin,
             direction,
-            speed: set.speed(direction),
+            pace: 1.0 / set.speed(direction),
             steps: (
                 shortest,
                 if longest > shortest {
@@ -75,12 +76,13 @@ impl<'a, S: OrbitSet, V: FnMut(Event) -> ControlFlow<()>> March<'a, S, V> {
             value: 0.0,
             clear: 0.0,
             is_near: true,
-            trend: 1.0,
+            last: 0.0,
+            before: 0.0,
             inside: false,
             visit,
         };
         march.look(0.0, set.place(origin));
-        march.trend = 1.0;
+        march.before = march.last;
         march.inside = march.value < 0.0;
         march
     }
@@ -102,7 +104,7 @@ impl<'a, S: OrbitSet, V: FnMut(Event) -> ControlFlow<()>> March<'a, S, V> {
     /// The step that a reach allows, and whether the surface is nearer than the least one.
     fn step(&self, reach: f64) -> (f64, bool) {
         let (shortest, longest) = self.steps;
-        let reach = reach / self.speed;
+        let reach = reach * self.pace;
         let is_near = !(reach > shortest);
         let step = if is_near {
             shortest
@@ -117,7 +119,7 @@ impl<'a, S: OrbitSet, V: FnMut(Event) -> ControlFlow<()>> March<'a, S, V> {
     /// Remembers how a place lies.
     fn look(&mut self, s: f64, place: Place) {
         let (step, is_near) = self.step(place.reach);
-        self.trend = step / (self.clear - self.s);
+        (self.before, self.last) = (self.clear - self.s, step);
         (self.s, self.value, self.clear, self.is_near) = (s, place.value, s + step, is_near);
     }
 
@@ -141,7 +143,7 @@ impl<'a, S: OrbitSet, V: FnMut(Event) -> ControlFlow<()>> March<'a, S, V> {
     /// Goes to a place, and on from there as far as places that are looked at together show that the line is clear.
     fn advance(&mut self, to: f64) -> ControlFlow<()> {
         let ahead = self.ahead(to);
-        let Some(places) = self.set.places(ahead.map(|s| self.at(s))) else {
+        let Some(places) = self.set.places((self.origin, self.direction), ahead) else {
             return self.go(to, self.set.place(self.at(to)));
         };
         self.go(to, places[0])?;
@@ -160,7 +162,7 @@ impl<'a, S: OrbitSet, V: FnMut(Event) -> ControlFlow<()>> March<'a, S, V> {
     /// A place and three more, as far from each other as they will be clear if steps go on to grow or shrink as the last one did.
     fn ahead(&self, s: f64) -> [f64; 4] {
         let (shortest, longest) = self.steps;
-        let trend = self.trend.clamp(TREND.0, TREND.1);
+        let trend = (self.last / self.before).clamp(TREND.0, TREND.1);
         let mut step = (self.clear - self.s) * trend;
         let mut places = [s; 4];
         for k in 1..4 {
@@ -182,10 +184,18 @@ impl<'a, S: OrbitSet, V: FnMut(Event) -> ControlFlow<()>> March<'a, S, V> {
         places
     }
 
+    /// Looks at the end.
+    pub(super) fn finish(&mut self) -> ControlFlow<()> {
+        if self.s < self.length {
+            self.go(self.length, self.set.place(self.at(self.length)))?;
+        }
+        ControlFlow::Continue(())
+    }
+
     /// Leaves the ball around the set.
     pub(super) fn leave(&mut self) -> ControlFlow<()> {
-        if self.inside && self.s < self.length {
-            self.go(self.length, self.set.place(self.at(self.length)))?;
+        if self.inside {
+            self.finish()?;
         }
         if self.inside {
             (self.visit)(Event::Crossing {
@@ -232,5 +242,10 @@ impl<S: OrbitSet, V: FnMut(Event) -> ControlFlow<()>> Visitor for March<'_, S, V
             }
             self.advance(next)?;
         }
+    }
+
+    /// Near the surface the end of every cell is looked at, else what is clear is left out.
+    fn resume(&self) -> f64 {
+        if self.is_near { self.s } else { self.clear }
     }
 }

@@ -85,8 +85,9 @@ pub(super) trait OrbitSet: Sized {
     fn value(&self, p: DVec3) -> f64;
     /// How a point lies to the surface.
     fn place(&self, p: DVec3) -> Place;
-    /// How four points lie to the surface, if that takes little more time than one; else nothing.
-    fn places(&self, _points: [DVec3; 4]) -> Option<[Place; 4]> {
+    /// How four points of a line lie to the surface, those at `origin + direction s`, if that takes little more time than one; else
+    /// nothing.
+    fn places(&self, _line: (DVec3, DVec3), _s: [f64; 4]) -> Option<[Place; 4]> {
         None
     }
     /// Whether the points up to this distance from a point are all inside of the set or all outside.
@@ -100,7 +101,10 @@ pub(super) trait OrbitSet: Sized {
         direction.length()
     }
 
-    /// Reports the events along a ray to the visitor until it stops. Those after the range may be left out.
+    /// Reports the events along a ray to the visitor until it stops. Those outside of the range may be left out.
+    ///
+    /// The line is searched from the ray's origin on, and what is behind the origin by itself, if it is asked for: so what is found ahead
+    /// does not depend on the range.
     fn walk(
         &self,
         ray: &Ray,
@@ -111,37 +115,82 @@ pub(super) trait OrbitSet: Sized {
         let Some(passage) = self.search().around.passage(ray, None, scratch) else {
             return ControlFlow::Continue(());
         };
-        let (mut start, end) = (passage.start(), passage.exit.hit.t);
-        if from.is_some() && start < 0.0 {
-            start = 0.0;
+        let (enter, exit) = (passage.start(), passage.exit.hit.t);
+        // A little before the origin, for ranges that begin there, unless the ray starts on the surface.
+        let origin = match from {
+            Some(_) => 0.0,
+            None => -self.search().shortest / ray.direction.abs().max_element(),
+        };
+        let start = if enter < origin { origin } else { enter };
+        let is_behind = enter < start && range.min < start && from.is_none();
+        let behind = if is_behind && start < exit {
+            Some(start)
+        } else if is_behind {
+            Some(exit)
+        } else {
+            None
+        };
+        let mut side = None;
+        if let Some(end) = behind {
+            let part = (enter, end);
+            side = self.search_part(ray, part, (range, None), &passage, None, &mut visit)?;
         }
+        self.search_part(
+            ray,
+            (start, exit),
+            (range, from),
+            &passage,
+            side,
+            &mut visit,
+        )?;
+        ControlFlow::Continue(())
+    }
+
+    /// Reports the events in a part of a ray, and the side at its end if it goes on there. `side` is the side at its start if the part
+    /// before has been searched.
+    fn search_part(
+        &self,
+        ray: &Ray,
+        (start, end): (f64, f64),
+        (range, from): (Interval, Option<SurfaceId>),
+        passage: &Passage,
+        side: Option<bool>,
+        visit: &mut impl FnMut(Event) -> ControlFlow<()>,
+    ) -> ControlFlow<(), Option<bool>> {
         if !(start < end && end.is_finite() && start.is_finite()) {
-            return ControlFlow::Continue(());
+            return ControlFlow::Continue(side);
         }
         let (length, origin) = (end - start, ray.at(start));
         // An empty range has a side at its start, too.
         let needed = range.max.max(range.min) - start;
         let line = (origin, ray.direction);
-        let mut march = March::new(self, line, (start, length, needed), &mut visit);
+        let mut march = March::new(self, line, (start, length, needed), visit);
         if from.is_some() && march.value.abs() < self.noise(origin) {
             // Where rounding hides the side, the direction of the ray decides.
             let leaves = self.gradient(origin).dot(ray.direction) >= 0.0;
             march.set_side(!leaves);
         }
         let inside = march.inside;
-        if started_within(&passage, start) {
-            (march.visit)(Event::Start { inside })?;
-        } else if inside {
-            (march.visit)(Event::Crossing {
+        match side {
+            // Where rounding hides the side, it is that of the part before.
+            Some(side) if side != inside => march.set_side(side),
+            Some(_) => {}
+            None if started_within(passage, start) => (march.visit)(Event::Start { inside })?,
+            None if inside => (march.visit)(Event::Crossing {
                 t: start,
                 surface: BALL,
                 enters: true,
-            })?;
+            })?,
+            None => {}
         }
-        self.search()
-            .octree
-            .walk(Interval::new(0.0, length), &mut march)?;
-        march.leave()
+        let cells = &self.search().octree;
+        cells.walk(Interval::new(0.0, length), &mut march)?;
+        if end < passage.exit.hit.t {
+            march.finish()?;
+            return ControlFlow::Continue(Some(march.inside));
+        }
+        march.leave()?;
+        ControlFlow::Continue(None)
     }
 
     fn t_error(&self, ray: &Ray, t: f64) -> f64 {

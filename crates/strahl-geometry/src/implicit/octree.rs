@@ -2,13 +2,8 @@
 
 use std::ops::ControlFlow;
 use std::sync::OnceLock;
-use std::sync::atomic::{AtomicU8, Ordering};
+use std::sync::atomic::{AtomicU8, AtomicU64, Ordering};
 use strahl_math::{Aabb, DVec3, Interval};
-
-/// Marks of a cell: nothing is known yet, it contains no surface, or it may contain one.
-const UNKNOWN: u8 = 0;
-const EMPTY: u8 = 1;
-const FULL: u8 = 2;
 
 /// Directions are taken as having components of at least this part of the largest one, so that nothing is divided by zero.
 const SLANT: f64 = 1.0 / (1u64 << 60) as f64;
@@ -21,6 +16,10 @@ pub(crate) trait Visitor {
     fn may_have_surface(&mut self, cell: &Aabb) -> bool;
     /// A part of the line within a cell that may contain a surface.
     fn part(&mut self, enter: f64, exit: f64) -> ControlFlow<()>;
+    /// Parts of the line that end before this are not needed.
+    fn resume(&self) -> f64 {
+        f64::NEG_INFINITY
+    }
 }
 
 /// A tree of cells, all of which are halved equally often.
@@ -29,165 +28,295 @@ pub(crate) trait Visitor {
 #[derive(Debug)]
 pub(crate) struct Octree {
     bounds: Aabb,
-    levels: u32,
-    mark: Mark,
+    /// How many of the smallest cells there are along each axis: a power of two.
+    cells: u32,
     root: Node,
+    is_root_full: OnceLock<bool>,
 }
 
-/// What is known of the eight children of a cell, and their nodes if they are met. The smallest cells have no nodes.
+/// Two levels of the tree at once: 64 cells, of which bits tell what is known. A cell is numbered by two bits for each axis, x in the
+/// lowest ones.
+///
+/// Bits are only ever set, each by threads that know the answer, and nothing else is published with them: so their order does not matter.
 #[derive(Debug, Default)]
 struct Node {
-    marks: [Mark; 8],
-    children: OnceLock<Box<[Node; 8]>>,
+    /// The cells that contain no surface.
+    empty: AtomicU64,
+    /// The cells that may contain one.
+    full: AtomicU64,
+    /// The blocks of eight cells that may contain one, numbered by one bit for each axis.
+    full_blocks: AtomicU8,
+    /// The nodes of the cells, once one of them is met. The smallest cells have none.
+    children: OnceLock<Box<[Node; 64]>>,
 }
 
-/// What is known about a cell.
-#[derive(Debug, Default)]
-struct Mark(AtomicU8);
+/// Where a cell is in its node.
+#[derive(Clone, Copy)]
+struct Slot(u32);
 
-impl Mark {
-    /// Whether there may be a surface: remembered, or asked of the visitor.
+impl Slot {
+    /// The slot at this depth of the smallest cell with this place: cells there are `2^shift` of the smallest ones wide.
     #[inline(always)]
-    fn is_full(&self, bounds: impl FnOnce() -> Aabb, visitor: &mut impl Visitor) -> bool {
-        // Nothing else is published with the mark, and threads that ask at the same time get the same answer.
-        match self.0.load(Ordering::Relaxed) {
-            UNKNOWN => {
-                let full = visitor.may_have_surface(&bounds());
-                self.0
-                    .store(if full { FULL } else { EMPTY }, Ordering::Relaxed);
-                full
-            }
-            mark => mark == FULL,
-        }
+    fn of(place: [u32; 3], shift: u32) -> Self {
+        let [x, y, z] = place;
+        Self((x >> shift & 3) | (y >> shift & 3) << 2 | (z >> shift & 3) << 4)
+    }
+
+    #[inline(always)]
+    fn bit(self) -> u64 {
+        1 << self.0
+    }
+
+    /// The bits of the cells in the same block of eight.
+    #[inline(always)]
+    fn block(self) -> u64 {
+        const FIRST: u64 = 0x0033_0033;
+        FIRST << (self.0 & 0b10_1010)
+    }
+
+    /// The bit of the block of eight.
+    fn block_bit(self) -> u8 {
+        1 << (self.0 >> 1 & 1 | self.0 >> 2 & 2 | self.0 >> 3 & 4)
     }
 }
 
-/// The child of a cell in which bit `k` of `octant` chooses the upper half along axis `k`.
-fn child(cell: &Aabb, middle: DVec3, octant: usize) -> Aabb {
-    let pick = |a: DVec3, b: DVec3| choose(octant, a, b);
-    Aabb::new(pick(middle, cell.min), pick(cell.max, middle))
+impl Node {
+    fn children(&self) -> &[Self; 64] {
+        self.children
+            .get_or_init(|| Box::new(std::array::from_fn(|_| Self::default())))
+    }
+
+    /// Finds out about a cell of which nothing is known: first about its block of eight, then about the cell itself.
+    #[cold]
+    fn examine(&self, slot: Slot, mut may_have_surface: impl FnMut(Part) -> bool) {
+        if self.full_blocks.load(Ordering::Relaxed) & slot.block_bit() == 0 {
+            if !may_have_surface(Part::Block) {
+                self.empty.fetch_or(slot.block(), Ordering::Relaxed);
+                return;
+            }
+            self.full_blocks
+                .fetch_or(slot.block_bit(), Ordering::Relaxed);
+        }
+        let known = if may_have_surface(Part::Cell) {
+            &self.full
+        } else {
+            &self.empty
+        };
+        known.fetch_or(slot.bit(), Ordering::Relaxed);
+    }
 }
 
-/// Component `k` of `a` if bit `k` is set, else of `b`.
-#[inline(always)]
-fn choose(bits: usize, a: DVec3, b: DVec3) -> DVec3 {
-    let pick = |bit: usize, a: f64, b: f64| if bits & bit == 0 { b } else { a };
-    DVec3::new(pick(1, a.x, b.x), pick(2, a.y, b.y), pick(4, a.z, b.z))
+/// What is examined of a node.
+enum Part {
+    Cell,
+    Block,
+}
+
+/// The largest known cell around a place: whether it may contain a surface, and its width as a power of two of the smallest cells.
+struct Found {
+    is_full: bool,
+    shift: u32,
 }
 
 impl Octree {
-    /// The tree of a box, of which nothing is known yet and whose cells are halved so often.
+    /// The tree of a box, of which nothing is known yet and whose cells are halved so often: 1 to 16 times.
     pub(crate) fn new(bounds: Aabb, levels: u32) -> Self {
         Self {
             bounds,
-            levels,
-            mark: Mark::default(),
+            cells: 1 << levels.clamp(1, 16),
             root: Node::default(),
+            is_root_full: OnceLock::new(),
+        }
+    }
+
+    /// The cell around one of the smallest cells that is `2^shift` of them wide.
+    fn cell(&self, place: [u32; 3], shift: u32) -> Aabb {
+        let (mut cell, size) = (self.bounds, self.bounds.size());
+        for axis in 0..3 {
+            let low = place[axis] >> shift << shift;
+            // In trees of odd depth the blocks of the root are larger than the box.
+            let high = (low + (1 << shift)).min(self.cells);
+            let at = |k: u32| size[axis] * (f64::from(k) / f64::from(self.cells));
+            cell.min[axis] = self.bounds.min[axis] + at(low);
+            cell.max[axis] = self.bounds.min[axis] + at(high);
+        }
+        cell
+    }
+
+    /// The cell around a place, as large as all of it is known to be empty, or one of the smallest.
+    #[inline(always)]
+    fn find(&self, place: [u32; 3], visitor: &mut impl Visitor) -> Found {
+        let mut node = &self.root;
+        let mut shift = (self.cells.ilog2() - 1) & !1;
+        loop {
+            let slot = Slot::of(place, shift);
+            if node.full.load(Ordering::Relaxed) & slot.bit() != 0 {
+                if shift == 0 {
+                    return Found {
+                        is_full: true,
+                        shift,
+                    };
+                }
+                node = &node.children()[slot.0 as usize];
+                shift -= 2;
+                continue;
+            }
+            let empty = node.empty.load(Ordering::Relaxed);
+            if empty & slot.bit() != 0 {
+                let is_block = empty & slot.block() == slot.block();
+                return Found {
+                    is_full: false,
+                    shift: shift + u32::from(is_block),
+                };
+            }
+            node.examine(slot, |part| {
+                let larger = u32::from(matches!(part, Part::Block));
+                visitor.may_have_surface(&self.cell(place, shift + larger))
+            });
         }
     }
 
     /// Passes the parts of the visitor's line that lie in cells which may have a surface to the visitor, in ascending order:
     /// neighbours share the same parameter, to the bit. Only cells that reach into the range are met.
     pub(crate) fn walk(&self, range: Interval, visitor: &mut impl Visitor) -> ControlFlow<()> {
-        let (origin, direction) = visitor.line();
-        let least = direction.abs().max_element() * SLANT;
-        let inverse = |d: f64| {
-            if d.abs() >= least {
-                1.0 / d
-            } else if d < 0.0 {
-                -1.0 / least
-            } else {
-                1.0 / least
-            }
-        };
-        let line = Line {
-            origin,
-            inverse: DVec3::new(
-                inverse(direction.x),
-                inverse(direction.y),
-                inverse(direction.z),
-            ),
-            first: (0..3).fold(0, |bits, k| bits | usize::from(direction[k] < 0.0) << k),
-            range,
-        };
-        let (low, high) = (line.at(self.bounds.min), line.at(self.bounds.max));
-        let (near, far) = (choose(line.first, high, low), choose(line.first, low, high));
-        let later = |a: f64, b: f64| if a > b { a } else { b };
-        let earlier = |a: f64, b: f64| if a < b { a } else { b };
-        let enter = later(later(near.x, near.y), near.z);
-        let exit = earlier(earlier(far.x, far.y), far.z);
-        if !line.needs(enter, exit) || !self.mark.is_full(|| self.bounds, visitor) {
+        let line = Line::new(self, visitor.line());
+        let (enter, exit) = line.within(self.cells);
+        if !(enter < exit && enter <= range.max && exit >= range.min) {
             return ControlFlow::Continue(());
         }
-        match self.levels.checked_sub(1) {
-            None => visitor.part(enter, exit),
-            Some(levels) => {
-                line.descend((&self.root, levels), &self.bounds, (enter, exit), visitor)
-            }
+        let is_full = || visitor.may_have_surface(&self.bounds);
+        if !*self.is_root_full.get_or_init(is_full) {
+            return ControlFlow::Continue(());
         }
-    }
-}
-
-struct Line {
-    origin: DVec3,
-    inverse: DVec3,
-    /// The octant met first.
-    first: usize,
-    range: Interval,
-}
-
-impl Line {
-    /// The parameters at which the planes through a corner are met.
-    fn at(&self, corner: DVec3) -> DVec3 {
-        (corner - self.origin) * self.inverse
-    }
-
-    /// Whether there is such a part, and some of it within the range.
-    fn needs(&self, enter: f64, exit: f64) -> bool {
-        enter < exit && enter <= self.range.max && exit >= self.range.min
-    }
-
-    /// Visits the children of a cell that may have a surface, below which there are so many levels and in which the line is from
-    /// `enter` to `exit`.
-    fn descend(
-        &self,
-        (node, levels): (&Node, u32),
-        bounds: &Aabb,
-        (mut enter, exit): (f64, f64),
-        visitor: &mut impl Visitor,
-    ) -> ControlFlow<()> {
-        let middle = bounds.center();
-        let DVec3 { x, y, z } = self.at(middle);
-        // The halves it is in, along each axis: the line passes from the first to the second one only.
-        let mut seconds =
-            usize::from(x <= enter) | usize::from(y <= enter) << 1 | usize::from(z <= enter) << 2;
-        loop {
-            let (mut until, mut crossed) = (exit, 0);
-            for (half, axis) in [(x, 1), (y, 2), (z, 4)] {
-                if seconds & axis == 0 && half < until {
-                    (until, crossed) = (half, axis);
-                }
-            }
-            if self.needs(enter, until) {
-                let octant = seconds ^ self.first;
-                let bounds = || child(bounds, middle, octant);
-                if node.marks[octant].is_full(bounds, visitor) {
-                    match levels.checked_sub(1) {
-                        None => visitor.part(enter, until)?,
-                        Some(levels) => {
-                            let children = node.children.get_or_init(Box::default);
-                            let child = (&children[octant], levels);
-                            self.descend(child, &bounds(), (enter, until), visitor)?;
-                        }
+        let mut t = if enter > range.min { enter } else { range.min };
+        // Rounding must not lead back to a plane that has been crossed.
+        let mut least = [0; 3];
+        while t < exit && t <= range.max {
+            let place = line.place(t, least, self.cells);
+            let found = self.find(line.turned(place), visitor);
+            let (until, ends) = line.leave(place, found.shift, least);
+            let mut next = until;
+            if found.is_full {
+                let enter = line.enter(place);
+                if enter < until && until >= range.min {
+                    visitor.part(enter, until)?;
+                    let resume = visitor.resume();
+                    if resume > next {
+                        next = resume;
                     }
                 }
             }
-            if crossed == 0 || until > self.range.max {
-                return ControlFlow::Continue(());
+            least = ends;
+            if least[0].max(least[1]).max(least[2]) >= self.cells {
+                break;
             }
-            seconds |= crossed;
-            enter = until;
+            if next > t {
+                t = next;
+            }
         }
+        ControlFlow::Continue(())
+    }
+}
+
+/// What is added to a number so that its last bits are the nearest whole number, in two's complement.
+const WHOLE: f64 = 3.0 * (1_u64 << 51) as f64;
+
+/// A line whose coordinates are counted in the smallest cells and turned around where it would descend, so that it goes through
+/// ascending planes along every axis.
+struct Line {
+    origin: [f64; 3],
+    direction: [f64; 3],
+    inverse: [f64; 3],
+    /// What turns the place of a cell back, axis by axis.
+    turn: [u32; 3],
+}
+
+impl Line {
+    fn new(tree: &Octree, (origin, direction): (DVec3, DVec3)) -> Self {
+        let cells = f64::from(tree.cells);
+        let scale = cells / tree.bounds.size();
+        let origin = (origin - tree.bounds.min) * scale;
+        let direction = direction * scale;
+        let least = direction.abs().max_element() * SLANT;
+        let mut line = Self {
+            origin: origin.to_array(),
+            direction: [least; 3],
+            inverse: [0.0; 3],
+            turn: [0; 3],
+        };
+        for axis in 0..3 {
+            let speed = direction[axis];
+            if speed < 0.0 {
+                line.origin[axis] = cells - line.origin[axis];
+                line.turn[axis] = tree.cells - 1;
+            }
+            if speed.abs() > least {
+                line.direction[axis] = speed.abs();
+            }
+            line.inverse[axis] = 1.0 / line.direction[axis];
+        }
+        line
+    }
+
+    /// The parameter at which a plane is met.
+    #[inline(always)]
+    fn at(&self, axis: usize, plane: u32) -> f64 {
+        (f64::from(plane) - self.origin[axis]) * self.inverse[axis]
+    }
+
+    /// Where the line is within a number of cells along each axis.
+    fn within(&self, cells: u32) -> (f64, f64) {
+        let (exit, _) = self.leave([cells - 1; 3], 0, [0; 3]);
+        (self.enter([0; 3]), exit)
+    }
+
+    /// The smallest cell around a point of the line, or one of its neighbours if the point is on their border; but none before `least`.
+    #[inline(always)]
+    fn place(&self, t: f64, least: [u32; 3], cells: u32) -> [u32; 3] {
+        let mut place = least;
+        for axis in 0..3 {
+            let x = self.origin[axis] + self.direction[axis] * t;
+            let nearest = (x - 0.5 + WHOLE).to_bits() as i32;
+            place[axis] = nearest.max(least[axis] as i32).min(cells as i32 - 1) as u32;
+        }
+        place
+    }
+
+    /// The place of a cell as the tree counts it.
+    #[inline(always)]
+    fn turned(&self, place: [u32; 3]) -> [u32; 3] {
+        let [x, y, z] = self.turn;
+        [place[0] ^ x, place[1] ^ y, place[2] ^ z]
+    }
+
+    /// The parameter at which one of the smallest cells is entered.
+    #[inline(always)]
+    fn enter(&self, place: [u32; 3]) -> f64 {
+        let later = |a: f64, b: f64| if a > b { a } else { b };
+        let (x, y) = (self.at(0, place[0]), self.at(1, place[1]));
+        later(later(x, y), self.at(2, place[2]))
+    }
+
+    /// The parameter at which a cell is left that is `2^shift` of the smallest ones wide, and the numbers of the planes that have been
+    /// crossed then: those that are crossed there, or `least`.
+    #[inline(always)]
+    fn leave(&self, place: [u32; 3], shift: u32, least: [u32; 3]) -> (f64, [u32; 3]) {
+        let mut planes = place;
+        let mut at = [0.0; 3];
+        for axis in 0..3 {
+            planes[axis] = ((place[axis] >> shift) + 1) << shift;
+            at[axis] = self.at(axis, planes[axis]);
+        }
+        let earlier = |a: f64, b: f64| if a < b { a } else { b };
+        let first = earlier(earlier(at[0], at[1]), at[2]);
+        for axis in 0..3 {
+            planes[axis] = if at[axis] <= first {
+                planes[axis]
+            } else {
+                least[axis]
+            };
+        }
+        (first, planes)
     }
 }
 
@@ -288,5 +417,51 @@ mod tests {
         let behind = Interval::new(3.5, 9.0);
         assert!(parts(&tree, line, behind, |_| false).is_empty());
         assert_eq!(parts(&tree, line, Interval::new(0.0, 0.9), |_| true), []);
+    }
+
+    #[test]
+    fn parts_that_are_not_needed_are_left_out() {
+        // So that no jump ends on a border.
+        const JUMP: f64 = 0.2371;
+        /// Needs nothing more for a while behind each part.
+        struct Jumper {
+            line: (DVec3, DVec3),
+            found: Vec<(f64, f64)>,
+        }
+        impl Visitor for Jumper {
+            fn line(&self) -> (DVec3, DVec3) {
+                self.line
+            }
+            fn may_have_surface(&mut self, _: &Aabb) -> bool {
+                true
+            }
+            fn part(&mut self, enter: f64, exit: f64) -> ControlFlow<()> {
+                self.found.push((enter, exit));
+                ControlFlow::Continue(())
+            }
+            fn resume(&self) -> f64 {
+                self.found
+                    .last()
+                    .map_or(f64::NEG_INFINITY, |part| part.1 + JUMP)
+            }
+        }
+        for way in [
+            DVec3::new(1.0, 0.3, -0.2),
+            DVec3::new(-0.1, -1.0, 0.7),
+            DVec3::Z,
+        ] {
+            let line = (DVec3::new(0.03, 0.01, 0.02) - way * 2.5, way);
+            let all = parts(&Octree::new(BOX, 6), line, Interval::LINE, |_| true);
+            let found = vec![];
+            let mut jumper = Jumper { line, found };
+            let _ = Octree::new(BOX, 6).walk(Interval::LINE, &mut jumper);
+            assert!(jumper.found.len() < 10, "{:?}", jumper.found);
+            for pair in jumper.found.windows(2) {
+                // The same parts as without jumps, and the first one that ends behind the jump.
+                let resume = pair[0].1 + JUMP;
+                let next = all.iter().find(|part| part.1 > resume);
+                assert_eq!(Some(&pair[1]), next);
+            }
+        }
     }
 }

@@ -12,7 +12,7 @@ use crate::{
     Crossings, GeometryError, PrimHit, Primitive, Scratch, Solid, SurfaceId, SurfacePoint,
 };
 pub use complex::HypercomplexFunction;
-use orbit::{Four, Rule, norm2};
+use orbit::{Four, Rule, Slice, norm2};
 use strahl_math::error::gamma;
 use strahl_math::{Aabb, DVec3, Interval, Ray};
 
@@ -73,8 +73,7 @@ impl Default for JuliaOptions {
 #[derive(Clone, Debug)]
 pub struct Julia {
     rule: Rule,
-    /// Offset and factors of the fourth component.
-    fourth: (f64, DVec3),
+    slice: Slice,
     search: BallSearch,
     /// The largest growth of a distance in space that the slice causes.
     tilt: f64,
@@ -131,7 +130,10 @@ impl Julia {
                 points: options.max_iteration,
                 exit,
             },
-            fourth: (options.distance * length / nw, -DVec3::new(nx, ny, nz) / nw),
+            slice: Slice {
+                offset: options.distance * length / nw,
+                factors: -DVec3::new(nx, ny, nz) / nw,
+            },
             search: BallSearch::new(exit, options.precision),
             tilt: norm2([1.0, nx / nw, ny / nw, nz / nw]).sqrt(),
         })
@@ -139,8 +141,7 @@ impl Julia {
 
     /// The number that a point stands for.
     fn number(&self, p: DVec3) -> Four {
-        let (offset, factors) = self.fourth;
-        [p.x, p.y, p.z, offset + factors.dot(p)]
+        self.slice.number(p.to_array())
     }
 }
 
@@ -157,8 +158,9 @@ impl OrbitSet for Julia {
         self.rule.place(self.number(p))
     }
 
-    fn places(&self, points: [DVec3; 4]) -> Option<[Place; 4]> {
-        self.rule.places(points.map(|p| self.number(p)))
+    fn places(&self, (origin, direction): (DVec3, DVec3), s: [f64; 4]) -> Option<[Place; 4]> {
+        let line = [origin.to_array(), direction.to_array()];
+        self.rule.places(&self.slice, line, s)
     }
 
     fn is_decided(&self, center: DVec3, radius: f64) -> bool {
@@ -170,7 +172,7 @@ impl OrbitSet for Julia {
     /// The gradient of the value in space.
     fn gradient(&self, p: DVec3) -> DVec3 {
         let [x, y, z, w] = self.rule.gradient(self.number(p), 0);
-        DVec3::new(x, y, z) + self.fourth.1 * w
+        DVec3::new(x, y, z) + self.slice.factors * w
     }
 
     /// The rounding error of the value: the error of the first points, propagated, and those of all further ones.
@@ -181,7 +183,7 @@ impl OrbitSet for Julia {
 
     /// The distance between numbers.
     fn speed(&self, direction: DVec3) -> f64 {
-        let fourth = self.fourth.1.dot(direction);
+        let fourth = self.slice.factors.dot(direction);
         norm2([direction.x, direction.y, direction.z, fourth]).sqrt()
     }
 }

@@ -1,10 +1,11 @@
 //! The orbit of a point: its end, and the derivatives of the end by the point.
 
 use super::complex::{Complex, HypercomplexFunction};
-use super::power::{Degree, Powers};
+use super::power::{Degree, Number, Powers};
 use super::real::{Lanes, Real};
 use super::{JuliaAlgebra, Place, QuaternionFunction};
-use strahl_simd::{Simd, dispatch};
+use strahl_math::DVec3;
+use strahl_simd::{Isa, Simd, dispatch};
 
 /// A number with four components.
 pub(super) type Four = [f64; 4];
@@ -16,6 +17,24 @@ pub(super) fn norm2(h: Four) -> f64 {
 
 /// The part of an estimated distance that is taken where the estimate may be too long.
 pub(super) const CAUTION: f64 = 0.5;
+
+/// The slice that is shown: a point of space has the first three components of its number, and this fourth one.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Slice {
+    pub(super) offset: f64,
+    /// What the other components are multiplied by.
+    pub(super) factors: DVec3,
+}
+
+impl Slice {
+    /// The number that a point stands for.
+    #[inline(always)]
+    pub(super) fn number<R: Real>(&self, [x, y, z]: [R; 3]) -> [R; 4] {
+        let DVec3 { x: p, y: q, z: r } = self.factors;
+        let sum = (x.like(p) * x + y.like(q) * y) + z.like(r) * z;
+        [x, y, z, x.like(self.offset) + sum]
+    }
+}
 
 /// The rule of an orbit.
 #[derive(Clone, Copy, Debug)]
@@ -87,63 +106,63 @@ impl Rule {
                 .hypercomplex_powers(f)
                 .map(|powers| powers.estimate(split(start))),
         };
-        powers.map_or_else(
+        let (value, reach) = powers.map_or_else(
             || {
                 let (r2, slope) = self.follow(start);
                 // The logarithm of the end's length is more like a straight line than the length.
                 let log = 0.5 * strahl_math::det::ln(r2 / (self.exit * self.exit));
-                self.place_of(r2, CAUTION * log.abs() * r2.sqrt() / slope)
+                let value = 0.5 * (r2 / (self.exit * self.exit) - 1.0);
+                (value, CAUTION * log.abs() * r2.sqrt() / slope)
             },
             |estimate| self.estimated(estimate),
-        )
+        );
+        place_of(value, reach)
     }
 
-    /// How four points lie to the surface, computed side by side, with the same bits as one by one; only for squares and cubes.
-    pub(super) fn places(&self, starts: [Four; 4]) -> Option<[Place; 4]> {
-        let [a, b, c, d] = starts;
-        let components = [0, 1, 2, 3].map(|k| [a[k], b[k], c[k], d[k]]);
-        let parameter = self.parameter.map(|x| [x; 4]);
-        let (ends, distances) = match self.algebra {
+    /// How four points of a line, given by its origin and its direction, lie to the surface; computed side by side, with the same bits
+    /// as one by one; only for squares and cubes.
+    pub(super) fn places(
+        &self,
+        slice: &Slice,
+        [origin, direction]: [[f64; 3]; 2],
+        s: [f64; 4],
+    ) -> Option<[Place; 4]> {
+        let (values, reaches) = match self.algebra {
             JuliaAlgebra::Quaternion(f) => {
                 let powers = self.quaternion_powers(f);
                 dispatch!(Simd::best(), isa => {
-                    let powers = powers.of(Lanes::all(isa, &parameter));
-                    let (end, distance) = powers.estimate(Lanes::all(isa, &components));
-                    (end.numbers(), distance.numbers())
+                    let s = Lanes::load(isa, &s);
+                    let start = slice.number(points_at(origin, direction, s));
+                    let [a, b, c, d] = self.parameter;
+                    let powers = powers.of([s.like(a), s.like(b), s.like(c), s.like(d)]);
+                    let (value, reach) = self.estimated(powers.estimate(start));
+                    (value.numbers(), reach.numbers())
                 })
             }
             JuliaAlgebra::Hypercomplex(f) => {
                 let powers = self.hypercomplex_powers(f)?;
                 dispatch!(Simd::best(), isa => {
-                    let powers = powers.of(split(Lanes::all(isa, &parameter)));
-                    let (end, distance) = powers.estimate(split(Lanes::all(isa, &components)));
-                    (end.numbers(), distance.numbers())
+                    let s = Lanes::load(isa, &s);
+                    let start = slice.number(points_at(origin, direction, s));
+                    let [a, b, c, d] = self.parameter;
+                    let powers = powers.of(split([s.like(a), s.like(b), s.like(c), s.like(d)]));
+                    let (value, reach) = self.estimated(powers.estimate(split(start)));
+                    (value.numbers(), reach.numbers())
                 })
             }
         };
-        Some(std::array::from_fn(|k| {
-            self.estimated((ends[k], distances[k]))
-        }))
+        Some([0, 1, 2, 3].map(|k| place_of(values[k], reaches[k])))
     }
 
-    /// The place with this end of the orbit and this estimated distance.
-    fn estimated(&self, (r2, distance): (f64, f64)) -> Place {
+    /// The value and the reach of the place with this end of the orbit and this estimated distance.
+    #[inline(always)]
+    fn estimated<R: Real>(&self, (r2, distance): (R, R)) -> (R, R) {
+        let limit = r2.like(self.exit * self.exit);
+        let value = r2.like(0.5) * (r2.over(limit) - r2.like(1.0));
         // Towards the surface the length shrinks ever more slowly, so from outside the estimate is rather too short. Inside of the set,
         // where lengths grow ever faster, half of it is taken.
-        let reach = if distance > 0.0 {
-            distance
-        } else {
-            -CAUTION * distance
-        };
-        self.place_of(r2, reach)
-    }
-
-    fn place_of(&self, r2: f64, reach: f64) -> Place {
-        Place {
-            value: self.value_of(r2),
-            // At poles there is no estimate.
-            reach: if reach.is_finite() { reach } else { 0.0 },
-        }
+        let within = r2.like(-CAUTION) * distance;
+        (value, distance.choose_le(r2.like(0.0), within, distance))
     }
 
     /// Whether the numbers up to this distance from a number are all inside of the set or all outside: proven for squares and
@@ -161,16 +180,15 @@ impl Rule {
     /// The squared length of the end of an orbit, and the bound of the end's derivative.
     fn follow(&self, start: Four) -> (f64, f64) {
         match self.algebra {
-            JuliaAlgebra::Quaternion(f) => {
-                let add = |h: Four| std::array::from_fn(|k| h[k] + self.parameter[k]);
-                self.follow_with(start, norm2, |h, slope| {
-                    let r2 = norm2(h);
-                    match f {
-                        QuaternionFunction::Square => (add(f.value(h)), slope * 2.0 * r2.sqrt()),
-                        QuaternionFunction::Cube => (add(f.value(h)), slope * 3.0 * r2),
+            JuliaAlgebra::Quaternion(f) => self.follow_with(start, norm2, |h, slope| {
+                let r2 = norm2(h);
+                match f {
+                    QuaternionFunction::Square => {
+                        (f.value(h).plus(self.parameter), slope * 2.0 * r2.sqrt())
                     }
-                })
-            }
+                    QuaternionFunction::Cube => (f.value(h).plus(self.parameter), slope * 3.0 * r2),
+                }
+            }),
             JuliaAlgebra::Hypercomplex(f) => {
                 let [p, q] = split(self.parameter);
                 // Each of the two complex numbers has its own slope; the larger one bounds that of the whole.
@@ -219,26 +237,44 @@ impl Rule {
     }
 
     fn quaternion_gradient(&self, f: QuaternionFunction, start: Four, behind: u32) -> Four {
-        let limit = self.exit * self.exit;
-        let mut h = start;
-        // Rows: the derivatives by the components of the starting point.
-        let mut rows: [Four; 4] =
-            std::array::from_fn(|k| std::array::from_fn(|l| f64::from(u8::from(k == l))));
-        let mut step = |h: &mut Four| {
-            rows = rows.map(|d| f.derivative(*h, d));
-            let next = f.value(*h);
-            *h = std::array::from_fn(|k| next[k] + self.parameter[k]);
-        };
-        for _ in 1..self.points {
-            if !(norm2(h) <= limit) {
-                break;
+        dispatch!(Simd::best(), isa => {
+            let zero = Lanes::load(isa, &[0.0; 4]);
+            self.gradient_in_lanes(f, zero, start, behind).numbers()
+        })
+    }
+
+    /// The gradient by the four components of the starting point, each in its lane; `zero` tells in which kind of lanes.
+    #[inline(always)]
+    fn gradient_in_lanes<I: Isa>(
+        &self,
+        f: QuaternionFunction,
+        zero: Lanes<I>,
+        [a, b, c, d]: Four,
+        behind: u32,
+    ) -> Lanes<I> {
+        let limit = zero.like(self.exit * self.exit);
+        let [p, q, r, s] = self.parameter;
+        let parameter = [zero.like(p), zero.like(q), zero.like(r), zero.like(s)];
+        let mut h = [zero.like(a), zero.like(b), zero.like(c), zero.like(d)];
+        // The derivatives of the four components.
+        let mut rows = zero.unit_lanes();
+        let (mut left, mut rest) = (self.points.saturating_sub(1), behind);
+        loop {
+            let escaped =
+                !((h[0] * h[0] + h[1] * h[1]) + (h[2] * h[2] + h[3] * h[3])).any_le(limit);
+            if left == 0 || escaped {
+                left = 0;
+                if rest == 0 {
+                    break;
+                }
+                rest -= 1;
+            } else {
+                left -= 1;
             }
-            step(&mut h);
+            rows = f.derivative(h, rows);
+            h = f.value(h).plus(parameter);
         }
-        for _ in 0..behind {
-            step(&mut h);
-        }
-        rows.map(|d| ((h[0] * d[0] + h[1] * d[1]) + (h[2] * d[2] + h[3] * d[3])) / limit)
+        ((h[0] * rows[0] + h[1] * rows[1]) + (h[2] * rows[2] + h[3] * rows[3])).over(limit)
     }
 
     fn hypercomplex_gradient(&self, f: HypercomplexFunction, start: Four, behind: u32) -> Four {
@@ -269,30 +305,57 @@ impl Rule {
 
 impl QuaternionFunction {
     /// A real part `a` and a vector `v`: the square is `a² - v²` and `2 a v`, the cube `a³ - 3 a v²` and `(3 a² - v²) v`.
-    fn value(self, [a, b, c, d]: Four) -> Four {
-        let v2 = (b * b + c * c) + d * d;
-        let (real, factor) = match self {
-            Self::Square => (a * a - v2, 2.0 * a),
-            Self::Cube => (a * (a * a - 3.0 * v2), 3.0 * a * a - v2),
-        };
-        [real, factor * b, factor * c, factor * d]
+    #[inline(always)]
+    fn value<R: Real>(self, h: [R; 4]) -> [R; 4] {
+        match self {
+            Self::Square => h.square(),
+            Self::Cube => h.cube(),
+        }
     }
 
     /// The derivative at a point along a direction.
-    fn derivative(self, [a, b, c, d]: Four, [da, db, dc, dd]: Four) -> Four {
+    #[inline(always)]
+    fn derivative<R: Real>(self, [a, b, c, d]: [R; 4], [da, db, dc, dd]: [R; 4]) -> [R; 4] {
+        let (two, three) = (a.like(2.0), a.like(3.0));
         let v2 = (b * b + c * c) + d * d;
-        let dv2 = 2.0 * ((b * db + c * dc) + d * dd);
+        let dv2 = two * ((b * db + c * dc) + d * dd);
         let (real, factor, dfactor) = match self {
-            Self::Square => (2.0 * a * da - dv2, 2.0 * a, 2.0 * da),
+            Self::Square => (two * a * da - dv2, two * a, two * da),
             Self::Cube => (
-                3.0 * (a * a - v2) * da - 3.0 * a * dv2,
-                3.0 * a * a - v2,
-                6.0 * a * da - dv2,
+                three * (a * a - v2) * da - three * a * dv2,
+                three * a * a - v2,
+                a.like(6.0) * a * da - dv2,
             ),
         };
-        let component = |x: f64, dx: f64| factor * dx + dfactor * x;
-        [real, component(b, db), component(c, dc), component(d, dd)]
+        [
+            real,
+            factor * db + dfactor * b,
+            factor * dc + dfactor * c,
+            factor * dd + dfactor * d,
+        ]
     }
+}
+
+/// The place with this value and this reach.
+#[inline(always)]
+fn place_of(value: f64, reach: f64) -> Place {
+    Place {
+        value: if value.is_nan() { f64::INFINITY } else { value },
+        // At poles there is no estimate.
+        reach: if reach.is_finite() { reach } else { 0.0 },
+    }
+}
+
+/// The points of a line at several parameters.
+#[inline(always)]
+fn points_at<R: Real>(origin: [f64; 3], direction: [f64; 3], s: R) -> [R; 3] {
+    let [x, y, z] = origin;
+    let [dx, dy, dz] = direction;
+    [
+        s.like(x) + s.like(dx) * s,
+        s.like(y) + s.like(dy) * s,
+        s.like(z) + s.like(dz) * s,
+    ]
 }
 
 /// A hypercomplex number as two complex ones. With `ij = k`, `ii = jj = -1` and commuting units `kk = 1`, so the numbers
@@ -403,6 +466,10 @@ mod tests {
             JuliaAlgebra::Hypercomplex(HypercomplexFunction::Square),
             JuliaAlgebra::Hypercomplex(HypercomplexFunction::Cube),
         ];
+        let slice = Slice {
+            offset: 0.1,
+            factors: DVec3::new(0.1, -0.3, 0.2),
+        };
         for algebra in algebras {
             let rule = Rule {
                 algebra,
@@ -412,14 +479,11 @@ mod tests {
             };
             for n in 0..500 {
                 // From the middle of the set, whose orbits are long, to far outside, where they end at once.
-                let start = |k: i32| {
-                    let x = f64::from(n + 37 * k) * 0.005;
-                    [0.7 * x, 0.3 - 0.2 * x, 0.25 * x, 0.1]
-                };
-                let starts = [start(0), start(1), start(2), start(3)];
-                let places = rule.places(starts).expect("a power");
-                for (start, place) in starts.into_iter().zip(places) {
-                    let alone = rule.place(start);
+                let line = [[0.3, -0.2, 0.1], [0.7, -0.2, 0.25]];
+                let s = [0, 37, 74, 111].map(|k| f64::from(n + k) * 0.005);
+                let places = rule.places(&slice, line, s).expect("a power");
+                for (s, place) in s.into_iter().zip(places) {
+                    let alone = rule.place(slice.number(points_at(line[0], line[1], s)));
                     assert_eq!(place.value.to_bits(), alone.value.to_bits(), "{algebra:?}");
                     assert_eq!(place.reach.to_bits(), alone.reach.to_bits(), "{algebra:?}");
                 }
@@ -432,7 +496,7 @@ mod tests {
             points: 8,
             exit: 4.0,
         };
-        assert!(rule.places([[0.1; 4]; 4]).is_none());
+        assert!(rule.places(&slice, [[0.1; 3]; 2], [0.1; 4]).is_none());
     }
 
     #[test]

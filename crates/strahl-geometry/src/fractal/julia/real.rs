@@ -54,13 +54,21 @@ pub(super) struct Lanes<I: Isa> {
 }
 
 impl<I: Isa> Lanes<I> {
-    /// The four components of four numbers.
     #[inline(always)]
-    pub(super) fn all(isa: I, [a, b, c, d]: &[[f64; 4]; 4]) -> [Self; 4] {
-        let (a, b, c, d) = (isa.load(a), isa.load(b), isa.load(c), isa.load(d));
-        let (a, b) = (Self { isa, vector: a }, Self { isa, vector: b });
-        let (c, d) = (Self { isa, vector: c }, Self { isa, vector: d });
-        [a, b, c, d]
+    pub(super) fn load(isa: I, numbers: &[f64; 4]) -> Self {
+        let vector = isa.load(numbers);
+        Self { isa, vector }
+    }
+
+    /// Four times lanes in which one is 1 and the others are 0: the first one, the second one, ...
+    #[inline(always)]
+    pub(super) fn unit_lanes(self) -> [Self; 4] {
+        [
+            Self::load(self.isa, &[1.0, 0.0, 0.0, 0.0]),
+            Self::load(self.isa, &[0.0, 1.0, 0.0, 0.0]),
+            Self::load(self.isa, &[0.0, 0.0, 1.0, 0.0]),
+            Self::load(self.isa, &[0.0, 0.0, 0.0, 1.0]),
+        ]
     }
 
     #[inline(always)]

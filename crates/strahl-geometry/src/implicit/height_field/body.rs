@@ -18,6 +18,10 @@ use strahl_math::{Aabb, DVec3, Interval, Ray};
 #[derive(Debug)]
 pub(super) struct Body(pub(super) Surface);
 
+/// How many times the distance at which candidates count as one the searched part of a ray reaches beyond what is asked for, so that the
+/// point which decides beside the last candidate that counts is not too near to it.
+const APART: f64 = 64.0;
+
 /// The planes that bound the solid, by their facets on the last element: the outward normal and a point.
 fn walls(water: f64) -> [(DVec3, DVec3); 5] {
     [
@@ -49,12 +53,11 @@ impl Body {
         walls(self.level()).get(surface.facet as usize).copied()
     }
 
-    /// All candidates for crossings of a line, ascending; all marked as inner.
-    fn candidates(&self, ray: &Ray, from: Option<SurfaceId>, out: &mut Crossings) {
+    /// The candidates for crossings of a ray in a range, ascending; all marked as inner, without errors.
+    fn candidates(&self, ray: &Ray, range: Interval, from: Option<SurfaceId>, out: &mut Crossings) {
         let skip = from.map(|surface| surface.element);
-        self.0.visit_hits(ray, Interval::LINE, skip, |_, hit| {
-            let error = self.t_error(ray, &hit);
-            out.list.push(Crossing::new(hit, error, Side::Inner));
+        self.0.visit_hits(ray, range, skip, |_, hit| {
+            out.list.push(Crossing::new(hit, 0.0, Side::Inner));
             ControlFlow::Continue(())
         });
         for (facet, (normal, point)) in walls(self.level()).into_iter().enumerate() {
@@ -63,12 +66,12 @@ impl Body {
                 facet: facet as u32,
             };
             let t = (point - ray.origin).dot(normal) / ray.direction.dot(normal);
-            if from == Some(surface) || !t.is_finite() {
+            if from == Some(surface) || !t.is_finite() || !range.accepts(t) {
                 continue;
             }
             let uv = [0.0; 2];
             let hit = PrimHit { t, surface, uv };
-            let mut crossing = Crossing::new(hit, self.t_error(ray, &hit), Side::Inner);
+            let mut crossing = Crossing::new(hit, 0.0, Side::Inner);
             crossing.visible = false;
             out.list.push(crossing);
         }
@@ -78,10 +81,8 @@ impl Body {
     }
 
     fn normal(&self, hit: &PrimHit) -> (DVec3, DVec3) {
-        self.wall(hit.surface).unwrap_or_else(|| {
-            let point = self.0.surface_at(hit);
-            (point.n_geom, point.position)
-        })
+        self.wall(hit.surface)
+            .unwrap_or_else(|| self.0.plane_at(hit))
     }
 
     /// The error of the parameter of a hit; for rays along a triangle at most the length of the field.
@@ -99,9 +100,13 @@ impl Body {
             let against = ray.direction.dot(self.normal(&c.hit).0) < 0.0;
             (!c.visible, against != enters)
         };
-        let best = cluster.iter().min_by_key(|c| rank(c)).copied();
+        let best = match cluster {
+            [only] => Some(*only),
+            _ => cluster.iter().min_by_key(|c| rank(c)).copied(),
+        };
         best.map(|c| Crossing {
             side: if enters { Side::Enter } else { Side::Exit },
+            t_error: self.t_error(ray, &c.hit),
             ..c
         })
     }
@@ -131,37 +136,40 @@ impl Solid for Body {
         } else {
             range.min
         };
+        let rounding =
+            |t: f64| gamma(32) * ((ray.origin.abs().max_element() + 1.0) / speed + t.abs());
+        // An empty range has a side at its start, too.
+        let end = if start < range.max { range.max } else { start };
+        // Candidates that may coincide with others in the range count, too. An end at infinity stays there.
+        let part = Interval::new(start - APART * rounding(start), end + APART * rounding(end));
         let mut found = scratch.take();
-        self.candidates(ray, from, &mut found);
+        self.candidates(ray, part, from, &mut found);
         let mut list = found.list.as_slice();
+        let mut begin = part.min;
         if from.is_some() {
             let behind = list.iter().take_while(|c| c.hit.t <= start).count();
             list = &list[behind..];
+            begin = start;
         }
-        // Before the first candidate and behind the last one nothing changes, so any point will do.
+        // Between candidates nothing changes, nor before the first one and behind the last one, so any point there will do.
         let step = 1.0 / speed;
-        let before = match list.first() {
-            Some(first) if from.is_some() => 0.5 * (start + first.hit.t),
-            Some(first) => first.hit.t - (step + first.hit.t.abs()),
-            None if from.is_some() => start + step,
-            None => 0.0,
+        let between = |a: f64, b: f64| match (a.is_finite(), b.is_finite()) {
+            (true, true) => 0.5 * (a + b),
+            (true, false) => a + (step + a.abs()),
+            (false, true) => b - (step + b.abs()),
+            (false, false) => 0.0,
         };
-        let mut inside = self.contains(ray.at(before));
+        let next = |list: &[Crossing]| list.first().map_or(part.max, |c| c.hit.t);
+        let mut inside = self.contains(ray.at(between(begin, next(list))));
         out.inside_at_start = inside;
         while !list.is_empty() {
-            let rounding =
-                |t: f64| gamma(32) * ((ray.origin.abs().max_element() + 1.0) / speed + t.abs());
             let joined =
                 |pair: &[Crossing]| pair[1].hit.t - pair[0].hit.t <= rounding(pair[1].hit.t);
             let count = 1 + list.windows(2).take_while(|pair| joined(pair)).count();
             let (cluster, rest) = list.split_at(count);
             list = rest;
             let last = cluster.last().map_or(0.0, |c| c.hit.t);
-            let after = match rest.first() {
-                Some(next) => 0.5 * (last + next.hit.t),
-                None => last + (step + last.abs()),
-            };
-            let now = self.contains(ray.at(after));
+            let now = self.contains(ray.at(between(last, next(rest))));
             if std::mem::replace(&mut inside, now) == now {
                 continue;
             }

@@ -222,13 +222,26 @@ impl Surface {
         }
     }
 
-    fn surface_at(&self, hit: &PrimHit) -> SurfacePoint {
+    /// The corners of the triangle of a hit, the one at the right angle first, and its slopes along x and z.
+    fn triangle_of(&self, hit: &PrimHit) -> ([DVec3; 3], [f64; 2]) {
         let element = hit.surface.element.min(self.triangles() - 1);
         let numbers = self.triangle(element);
         let [a, b, c] = numbers.map(|(i, j)| self.grid.vertex(i, j, self.grid.height(i, j)));
-        let (position, position_error) = combine(a, b, c, hit.uv);
-        // The slopes along x and z; a and b differ in x only, a and c in z only.
+        // a and b differ in x only, a and c in z only.
         let (by_x, by_z) = ((b.y - a.y) / (b.x - a.x), (c.y - a.y) / (c.z - a.z));
+        ([a, b, c], [by_x, by_z])
+    }
+
+    /// The normal of the triangle of a hit, and a point of its plane.
+    fn plane_at(&self, hit: &PrimHit) -> (DVec3, DVec3) {
+        let ([a, ..], [by_x, by_z]) = self.triangle_of(hit);
+        (DVec3::new(-by_x, 1.0, -by_z).normalize(), a)
+    }
+
+    fn surface_at(&self, hit: &PrimHit) -> SurfacePoint {
+        let element = hit.surface.element.min(self.triangles() - 1);
+        let ([a, b, c], [by_x, by_z]) = self.triangle_of(hit);
+        let (position, position_error) = combine(a, b, c, hit.uv);
         let n_geom = DVec3::new(-by_x, 1.0, -by_z).normalize();
         let n_shade = self.normals.as_ref().map_or(n_geom, |normals| {
             normals.interpolated(&self.grid, element / 2, position, n_geom)

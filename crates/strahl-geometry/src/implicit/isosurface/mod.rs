@@ -61,6 +61,8 @@ pub struct Isosurface {
     container: Container,
     options: IsosurfaceOptions,
     is_bounded: bool,
+    /// Whether bounds of the derivative along a ray can be known.
+    has_rates: bool,
     octree: Octree,
     /// How far cells are widened when they are examined.
     cell_pad: DVec3,
@@ -77,7 +79,7 @@ const SURFACE: SurfaceId = SurfaceId {
 const CELL_PAD: f64 = 256.0 * f64::EPSILON;
 
 /// The octree's cells are halved so often.
-const LEVELS: u32 = 7;
+const LEVELS: u32 = 6;
 
 /// The shortest and the longest part of a ray that is not divided, as a part of the container's size.
 const SHORTEST: (f64, f64) = (1e-6, 1e-3);
@@ -110,12 +112,14 @@ impl Isosurface {
         crate::primitives::check_positive("accuracy of the isosurface", options.accuracy)?;
         crate::primitives::check_positive("max_gradient of the isosurface", options.max_gradient)?;
         let is_bounded = function.is_bounded();
+        let has_rates = function.has_rates();
         let bounds = container.bounds();
         Ok(Self {
             function,
             container,
             options,
             is_bounded,
+            has_rates,
             octree: Octree::new(bounds, LEVELS),
             cell_pad: DVec3::splat(CELL_PAD * bounds.max_abs()),
         })
@@ -156,6 +160,15 @@ impl Isosurface {
             max: values.max - threshold,
             nan: values.nan,
         }
+    }
+
+    /// Bounds of the derivative of the function along a direction.
+    fn rate_within(&self, workspace: &mut Workspace, cell: &Aabb, direction: DVec3) -> Bounds {
+        let side = |k: usize| Bounds::new(cell.min[k], cell.max[k]);
+        let sides = [side(0), side(1), side(2)];
+        self.function
+            .rate(workspace, &sides, &direction.to_array())
+            .1
     }
 
     /// Whether a cell of the octree may contain a part of the surface.

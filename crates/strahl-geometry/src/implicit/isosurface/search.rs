@@ -56,17 +56,18 @@ impl Search<'_> {
     ) -> ControlFlow<()> {
         let changes = from.is_inside() != to.is_inside();
         let length = to.s - from.s;
-        if length <= self.shortest {
+        let bounded = self.surface.is_bounded();
+        let is_short = length <= self.shortest;
+        if bounded && !changes && !is_short && self.excludes(from.s, to.s) {
+            return ControlFlow::Continue(());
+        }
+        if is_short || self.surface.has_rates && self.is_monotone(from.s, to.s) {
             if !changes {
                 return ControlFlow::Continue(());
             }
             let (low, high) = (from.value, to.value);
             let root = find_crossing(from.s, to.s, low, high, |s| self.place(s).value);
             return visit(root);
-        }
-        let bounded = self.surface.is_bounded();
-        if bounded && !changes && self.excludes(from.s, to.s) {
-            return ControlFlow::Continue(());
         }
         let middle = self.place(from.s + 0.5 * length);
         if !bounded && !changes && middle.value.abs() > self.slope * length {
@@ -83,14 +84,27 @@ impl Search<'_> {
         self.run(middle, to, visit)
     }
 
-    /// Whether there is certainly no change of sign between two places.
-    fn excludes(&mut self, from: f64, to: f64) -> bool {
+    /// The box around the part of the ray between two places.
+    fn around(&self, from: f64, to: f64) -> Aabb {
         // Rounded products and sums are monotone, so these are the ends of the coordinates too.
         let a = self.origin + self.direction * from;
         let b = self.origin + self.direction * to;
-        let cell = Aabb::new(a.min(b), a.max(b));
-        let values = self.surface.bounds_within(self.workspace, &cell);
-        excludes_change(values)
+        Aabb::new(a.min(b), a.max(b))
+    }
+
+    /// Whether there is certainly no change of sign between two places.
+    fn excludes(&mut self, from: f64, to: f64) -> bool {
+        let cell = self.around(from, to);
+        excludes_change(self.surface.bounds_within(self.workspace, &cell))
+    }
+
+    /// Whether the function certainly only rises or only falls between two places.
+    fn is_monotone(&mut self, from: f64, to: f64) -> bool {
+        let cell = self.around(from, to);
+        let rate = self
+            .surface
+            .rate_within(self.workspace, &cell, self.direction);
+        !rate.nan && (rate.min > 0.0 || rate.max < 0.0)
     }
 }
 
