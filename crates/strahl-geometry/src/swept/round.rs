@@ -207,7 +207,10 @@ impl Segment {
 }
 
 /// The product of two polynomials in Bernstein form.
-fn product<const M: usize, const N: usize, const K: usize>(a: &[f64; M], b: &[f64; N]) -> [f64; K] {
+pub(super) fn product<const M: usize, const N: usize, const K: usize>(
+    a: &[f64; M],
+    b: &[f64; N],
+) -> [f64; K] {
     let mut out = [0.0; K];
     for (i, x) in a.iter().enumerate() {
         for (j, y) in b.iter().enumerate() {

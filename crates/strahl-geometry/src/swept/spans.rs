@@ -24,14 +24,7 @@ pub(super) trait WholeLine {
         from: Option<SurfaceId>,
         scratch: &mut Scratch,
     ) -> Option<PrimHit> {
-        let mut list = scratch.take();
-        self.walk(ray, from, &mut list);
-        let start = start_of(range, from);
-        let counts = |t: f64| range.accepts(t) && start < t;
-        let mut seen = list.list.iter().filter(|c| c.visible && counts(c.hit.t));
-        let hit = seen.next().map(|crossing| crossing.hit);
-        scratch.give(list);
-        hit
+        first_of_walk(self, ray, range, from, scratch)
     }
 
     /// The crossings in the range with the errors of their parameters, and what is inside at its start.
@@ -60,12 +53,35 @@ pub(super) trait WholeLine {
     }
 }
 
+/// The first visible hit in the range, from all crossings.
+pub(super) fn first_of_walk(
+    shape: &(impl WholeLine + ?Sized),
+    ray: &Ray,
+    range: Interval,
+    from: Option<SurfaceId>,
+    scratch: &mut Scratch,
+) -> Option<PrimHit> {
+    let mut list = scratch.take();
+    shape.walk(ray, from, &mut list);
+    let start = start_of(range, from);
+    let counts = |t: f64| range.accepts(t) && start < t;
+    let mut seen = list.list.iter().filter(|c| c.visible && counts(c.hit.t));
+    let hit = seen.next().map(|crossing| crossing.hit);
+    scratch.give(list);
+    hit
+}
+
 /// A bound of the distance of a ray's start from the surface it lies on, relative to the shape's size: 2⁻¹².
 ///
 /// This does not decide where a surface is. A ray says itself that it starts on a piece of surface; the start is then the
 /// nearest crossing with that piece. The limit only keeps a crossing elsewhere from being taken for it if rounding has lost the
 /// right one, as may happen beside an edge.
 const NEAR: f64 = 1.0 / 4096.0;
+
+/// Whether a hit with this normal is so near that it may be the start of the ray.
+pub(super) fn near_the_start(ray: &Ray, hit: &PrimHit, size: f64, normal: DVec3) -> bool {
+    (normal.dot(ray.direction) * hit.t).abs() <= NEAR * size
+}
 
 /// Root identity: of the crossings for which `normal` returns a vector, the nearest to 0 is the start of the ray, and gets `t =
 /// 0`.
@@ -85,7 +101,7 @@ pub(super) fn snap(
             continue;
         }
         if let Some(n) = normal(&crossing.hit)
-            && (n.dot(ray.direction) * t).abs() <= NEAR * size
+            && near_the_start(ray, &crossing.hit, size, n)
         {
             nearest = Some(crossing);
         }
