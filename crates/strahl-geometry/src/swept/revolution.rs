@@ -83,6 +83,11 @@ impl Revolution<'_> {
         (o.is_finite() && d.is_finite() && d != DVec3::ZERO).then(|| Line::new(ray, self.0))
     }
 
+    /// The first arc of the smooth run that an arc belongs to.
+    fn run(&self, facet: u32) -> Option<&u32> {
+        self.0.smooth.get(facet as usize)
+    }
+
     fn piece(&self, index: usize) -> Option<(&Arc, &Terms)> {
         self.0.arcs.get(index).zip(self.0.terms.get(index))
     }
@@ -130,12 +135,12 @@ impl Revolution<'_> {
 
     /// Root identity, as [`snap`] has it.
     fn snap_candidates(&self, ray: &Ray, line: &Line, from: SurfaceId, list: &mut Candidates) {
-        let run = |facet: u32| self.0.smooth.get(facet as usize);
         let size = self.bounds().size().max_element();
         let mut nearest: Option<(usize, f64)> = None;
         for (index, candidate) in list.iter_mut().enumerate() {
             let is_farther = |t: f64| nearest.is_some_and(|(_, best)| best <= t);
-            if run(candidate.facet) != run(from.facet) || is_farther(candidate.least_distance()) {
+            let same_run = self.run(candidate.facet) == self.run(from.facet);
+            if !same_run || is_farther(candidate.least_distance()) {
                 continue;
             }
             self.settle(line, candidate);
@@ -155,11 +160,16 @@ impl Revolution<'_> {
     /// which of them comes first.
     fn first_of(
         &self,
+        ray: &Ray,
         line: &Line,
         range: Interval,
-        start: f64,
+        from: Option<SurfaceId>,
         list: &mut Candidates,
     ) -> Option<PrimHit> {
+        if let Some(from) = from {
+            self.snap_candidates(ray, line, from, list);
+        }
+        let start = start_of(range, from);
         let mut inside = false;
         loop {
             let order = |a: &Candidate, b: &Candidate| {
@@ -275,9 +285,8 @@ impl WholeLine for Revolution<'_> {
             list.list.push(crossing);
         });
         if let Some(from) = from {
-            let run = |facet: u32| self.0.smooth.get(facet as usize);
             let near = |hit: &PrimHit| {
-                (run(hit.surface.facet) == run(from.facet)).then(|| self.normal(ray, hit))
+                (self.run(hit.surface.facet) == self.run(from.facet)).then(|| self.normal(ray, hit))
             };
             let size = self.bounds().size().max_element();
             snap(&mut list.list, ray, size, near);
@@ -306,13 +315,38 @@ impl WholeLine for Revolution<'_> {
     ) -> Option<PrimHit> {
         let line = self.line(ray)?;
         let mut candidates = Candidates::new();
+        if self.candidates(&line, &mut candidates) {
+            self.first_of(ray, &line, range, from, &mut candidates)
+        } else {
+            first_of_walk(self, ray, range, from, scratch)
+        }
+    }
+
+    /// A crossing that certainly is in the range need not be computed.
+    fn any_hit(
+        &self,
+        ray: &Ray,
+        range: Interval,
+        from: Option<SurfaceId>,
+        scratch: &mut Scratch,
+    ) -> bool {
+        let Some(line) = self.line(ray) else {
+            return false;
+        };
+        let mut candidates = Candidates::new();
         if !self.candidates(&line, &mut candidates) {
-            return first_of_walk(self, ray, range, from, scratch);
+            return first_of_walk(self, ray, range, from, scratch).is_some();
         }
-        if let Some(from) = from {
-            self.snap_candidates(ray, &line, from, &mut candidates);
-        }
-        self.first_of(&line, range, start_of(range, from), &mut candidates)
+        let start = start_of(range, from);
+        let start_run = from.and_then(|from| self.run(from.facet));
+        let counts = |c: &Candidate| {
+            let [low, high] = c.t;
+            // The nearest of the run that the ray starts on is its start.
+            let may_be_start = start_run.is_some() && start_run == self.run(c.facet);
+            c.visible && start < low && high <= range.max && high.is_finite() && !may_be_start
+        };
+        candidates.iter().any(counts)
+            || self.first_of(ray, &line, range, from, &mut candidates).is_some()
     }
 
     fn normal(&self, ray: &Ray, hit: &PrimHit) -> DVec3 {

@@ -27,6 +27,17 @@ pub(super) trait WholeLine {
         first_of_walk(self, ray, range, from, scratch)
     }
 
+    /// Whether there is a visible hit in the range.
+    fn any_hit(
+        &self,
+        ray: &Ray,
+        range: Interval,
+        from: Option<SurfaceId>,
+        scratch: &mut Scratch,
+    ) -> bool {
+        self.first_hit(ray, range, from, scratch).is_some()
+    }
+
     /// The crossings in the range with the errors of their parameters, and what is inside at its start.
     fn all_crossings(
         &self,

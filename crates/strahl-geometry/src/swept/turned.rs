@@ -40,6 +40,16 @@ macro_rules! turned_about_the_axis {
                 Revolution(&self.meridian).first_hit(ray, range, from, scratch)
             }
 
+            fn any_hit(
+                &self,
+                ray: &Ray,
+                range: Interval,
+                from: Option<SurfaceId>,
+                scratch: &mut Scratch,
+            ) -> bool {
+                Revolution(&self.meridian).any_hit(ray, range, from, scratch)
+            }
+
             fn surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
                 Revolution(&self.meridian).surface_at(ray, hit)
             }
