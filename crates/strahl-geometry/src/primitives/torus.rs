@@ -9,7 +9,7 @@ use crate::{
 use std::f64::consts::PI;
 use std::ops::ControlFlow;
 use strahl_math::error::gamma;
-use strahl_math::roots::{Bernstein, Isolated, RootCount, newton};
+use strahl_math::roots::{Bernstein, Isolated, RootCount, Window, newton};
 use strahl_math::{Aabb, DVec2, DVec3, Interval, Ray, Transform};
 
 /// A torus: a tube of the minor radius around a circle of the major radius.
@@ -142,7 +142,20 @@ impl<V: FnMut(Event) -> ControlFlow<()>> Walk<'_, V> {
             let [_, c1, c2, c3, c4] = coefficients;
             let cubic = Bernstein::from_power(&[c1, c2, c3, c4], low, high).with_error(error);
             let mut started = false;
-            let flow = cubic.isolate(&mut |part| {
+            // What lies behind the start doesn't matter, unless it is the inner surface of a spindle torus.
+            let ring = self.torus.minor < self.torus.major;
+            let mut window = Window {
+                from: if ring { 0.0 } else { f64::NEG_INFINITY },
+                to: f64::INFINITY,
+                starts_negative: None,
+            };
+            let [first, .., last] = cubic.coefficients().map(|c| c >= 0.0);
+            let mut is_first = ring;
+            let flow = cubic.isolate_within((first, last), &mut window, &mut |part| {
+                if std::mem::take(&mut is_first) {
+                    // Before s = 0 the torus' polynomial has the opposite sign of the cubic.
+                    self.inside = part.rising == (part.count == RootCount::Even);
+                }
                 let Some(s) = self.refine(part) else {
                     return ControlFlow::Continue(());
                 };
@@ -372,6 +385,25 @@ impl Torus {
         (coefficients, gamma(16) * magnitude)
     }
 
+    /// The direction away from the axis at a hit, and the surface there without texture coordinates.
+    fn outward_and_surface(&self, ray: &Ray, hit: &PrimHit) -> (DVec3, SurfacePoint) {
+        let p = (ray.origin - self.center) + ray.direction * hit.t;
+        let height = p.dot(self.axis);
+        let across = p - self.axis * height;
+        let distance = across.length();
+        let outward = if distance > 0.0 {
+            across / distance
+        } else {
+            self.frame.axes(self.axis).x_axis
+        };
+        // From the nearest point of the circle straight to the surface.
+        let n = (outward * (distance - self.major) + self.axis * height).normalize_or(outward);
+        let local = outward * self.major + n * self.minor;
+        let position = self.center + local;
+        let error = point_error(position, self.major + self.minor, 16);
+        (outward, SurfacePoint::bare(position, error, n))
+    }
+
     /// Reports the events along the ray to the visitor, until it stops.
     fn walk(&self, ray: &Ray, on_surface: bool, visit: impl FnMut(Event) -> ControlFlow<()>) {
         if let Some(segment) = self.segment(ray, on_surface) {
@@ -448,33 +480,22 @@ impl Primitive for Torus {
     }
 
     fn surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
-        let p = (ray.origin - self.center) + ray.direction * hit.t;
         let axes = self.frame.axes(self.axis);
-        let height = p.dot(self.axis);
-        let across = p - self.axis * height;
-        let distance = across.length();
-        let outward = if distance > 0.0 {
-            across / distance
-        } else {
-            axes.x_axis
-        };
-        // From the nearest point of the circle straight to the surface.
-        let n = (outward * (distance - self.major) + self.axis * height).normalize_or(outward);
-        let local = outward * self.major + n * self.minor;
-        let position = self.center + local;
-
+        let (outward, bare) = self.outward_and_surface(ray, hit);
+        let n = bare.n_geom;
         let (x, y) = (outward.dot(axes.x_axis), outward.dot(axes.y_axis));
         let (cos, sin) = (n.dot(outward), n.dot(self.axis));
         SurfacePoint {
-            position,
-            position_error: point_error(position, self.major + self.minor, 16),
-            n_geom: n,
-            n_shade: n,
             uv: DVec2::new(turn(-y, -x), turn(-sin, -cos)),
             dpdu: (axes.y_axis * x - axes.x_axis * y)
                 * (2.0 * PI * (self.major + self.minor * cos)),
             dpdv: (self.axis * cos - outward * sin) * (2.0 * PI * self.minor),
+            ..bare
         }
+    }
+
+    fn bare_surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
+        self.outward_and_surface(ray, hit).1
     }
 
     fn texture_uv(&self, _hit: &PrimHit, uv: DVec2) -> Option<DVec2> {

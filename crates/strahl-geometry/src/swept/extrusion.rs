@@ -211,10 +211,18 @@ impl Extrusion<'_> {
             }
             is_behind
         });
+        let many = crossings.len() > MANY;
+        if many {
+            crossings.sort_unstable_by(|a, b| order(b, a));
+        }
         loop {
-            let all = crossings.iter().enumerate();
-            let (index, _) = all.min_by(|(_, a), (_, b)| order(a, b))?;
-            let mut crossing = crossings.swap_remove(index);
+            let mut crossing = if many {
+                crossings.pop()?
+            } else {
+                let all = crossings.iter().enumerate();
+                let (index, _) = all.min_by(|(_, a), (_, b)| order(a, b))?;
+                crossings.swap_remove(index)
+            };
             let inside = within && between;
             match crossing.side {
                 Side::Enter => between = true,
@@ -339,6 +347,9 @@ impl WholeLine for Extrusion<'_> {
         self.bounds().max_abs()
     }
 }
+
+/// So many crossings are sorted, instead of looking for the first one again and again.
+const MANY: usize = 16;
 
 /// The order of crossings along a ray. Where a ray meets an edge it leaves before it enters, so there is no span without length.
 fn order(a: &Crossing, b: &Crossing) -> Ordering {

@@ -201,15 +201,20 @@ impl Outline {
                     rising,
                 });
             };
+            // One by one: mapping arrays is not inlined.
             match *piece {
-                Piece::Line(points) => {
-                    let [a, b] = points.map(side);
+                Piece::Line([a, b]) => {
+                    let (a, b) = (side(a), side(b));
                     if (a >= 0.0) != (b >= 0.0) {
                         found(a / (a - b), b >= 0.0);
                     }
                 }
-                Piece::Quadratic(points) => roots(points.map(side), error, &mut found),
-                Piece::Cubic(points) => roots(points.map(side), error, &mut found),
+                Piece::Quadratic([a, b, c]) => {
+                    roots([side(a), side(b), side(c)], error, &mut found)
+                }
+                Piece::Cubic([a, b, c, d]) => {
+                    roots([side(a), side(b), side(c), side(d)], error, &mut found);
+                }
             }
         });
     }
@@ -238,7 +243,11 @@ impl SingleRoot for [f64; 3] {
         let [a, b, end] = *self;
         let (h, c) = (b - a, (a - b) + (end - b));
         let discriminant = h * h - a * c;
-        let root = if discriminant > 0.0 { discriminant.sqrt() } else { 0.0 };
+        let root = if discriminant > 0.0 {
+            discriminant.sqrt()
+        } else {
+            0.0
+        };
         // Half the slope at the root.
         let slope = if rising { root } else { -root };
         // Of the two ways to write it the one without cancellation.
@@ -247,7 +256,11 @@ impl SingleRoot for [f64; 3] {
         } else {
             (slope - h) / c
         };
-        if s > 0.0 { if s < 1.0 { s } else { 1.0 } } else { 0.0 }
+        if s > 0.0 {
+            if s < 1.0 { s } else { 1.0 }
+        } else {
+            0.0
+        }
     }
 }
 
@@ -256,11 +269,17 @@ impl SingleRoot for [f64; 4] {
     fn single_root(&self, rising: bool) -> f64 {
         let [a, b, c, d] = *self;
         // As powers of the parameter.
-        let (p, q, r) = (3.0 * (b - a), 3.0 * ((c - b) - (b - a)), (d - a) - 3.0 * (c - b));
+        let (p, q, r) = (
+            3.0 * (b - a),
+            3.0 * ((c - b) - (b - a)),
+            (d - a) - 3.0 * (c - b),
+        );
         // Where the control polygon crosses zero.
         let steps = [[a, b], [b, c], [c, d]].into_iter().zip([0.0, 1.0, 2.0]);
         let crossing = steps.filter(|([from, to], _)| (*from < 0.0) != (*to < 0.0));
-        let guess = crossing.fold(0.0, |_, ([from, to], k)| (k + from / (from - to)) * (1.0 / 3.0));
+        let guess = crossing.fold(0.0, |_, ([from, to], k)| {
+            (k + from / (from - to)) * (1.0 / 3.0)
+        });
         newton(0.0, 1.0, rising, guess, |s| {
             let value = a + s * (p + s * (q + s * r));
             let slope = p + s * (2.0 * q + s * (3.0 * r));
@@ -270,6 +289,7 @@ impl SingleRoot for [f64; 4] {
 }
 
 /// The roots of a polynomial in Bernstein form where it changes its sign.
+#[inline]
 fn roots<const N: usize>(values: [f64; N], error: f64, found: &mut impl FnMut(f64, bool))
 where
     [f64; N]: SingleRoot,

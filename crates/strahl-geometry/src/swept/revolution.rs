@@ -2,7 +2,7 @@ use super::hyperbola::{Line, Meeting, Place};
 use super::meridian::{Arc, Meridian};
 use super::runs::Rect;
 use super::sextic::Terms;
-use super::spans::{WholeLine, first_of_walk, near_the_start, snap};
+use super::spans::{WholeLine, crossings_of_walk, first_of_walk, near_the_start, snap, t_error};
 use crate::primitives::{point_error, start_of, turn};
 use crate::{Crossing, Crossings, PrimHit, Scratch, Side, SurfaceId, SurfacePoint};
 use arrayvec::ArrayVec;
@@ -14,12 +14,17 @@ use strahl_math::{Aabb, DVec2, DVec3, Interval, Ray};
 /// In the half-plane of radius and height a line is one branch of a hyperbola. With the distance `m` of the line from the axis
 /// and `h` along its horizontal part, counted from the place nearest to the axis, a point of the meridian is on it where
 /// `h = ±q`, `q = sqrt(r² - m²)`, is where the line has the same height: two functions of the meridian's parameter, one for each half of the
-/// line. Neither has the double roots that their product has for level rays, the polynomial of degree 6 of other ray tracers.
-/// As radius and height are monotone on every arc, both functions are bounded by their values at the ends of an
-/// interval, and their slopes by a few products: bisection finds all roots, with certainty and mostly at once.
+/// line. Their product is a polynomial of degree 6 at most, the one of other ray tracers. Its coefficients tell of nearly all arcs how
+/// many roots they have ([`super::sextic`]).
+///
+/// Where they don't, as for level rays, for which the product has double roots, the two functions are searched one by one. As radius and height
+/// are monotone on every arc, both are bounded by their values at the ends of an interval, and their slopes by a few products:
+/// bisection finds all roots, with certainty.
 ///
 /// The side of the line on which a joint of two arcs lies is decided by the same numbers for both, so entering and leaving
-/// alternate despite rounding.
+/// alternate despite rounding; the coefficients only have a say where they are beyond doubt, and then agree.
+///
+/// Roots are first isolated. Where the bounds of their places on the ray tell what is asked, they are not computed.
 ///
 /// Hits have `uv = [s, side]`: the parameter on the arc, and 1 if the outer side is the right of the curve, else -1.
 pub(super) struct Revolution<'a>(pub(super) &'a Meridian);
@@ -223,15 +228,13 @@ impl Revolution<'_> {
 
     /// The surface at a hit, with texture coordinates: `u` once around the axis, `v` as the arc says.
     pub(super) fn surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
+        let bare = self.bare_surface_at(ray, hit);
+        let Some(arc) = self.arc(hit) else {
+            return bare;
+        };
         let outward = Self::outward(ray, hit);
         let [s, _] = hit.uv;
-        let arc = self.arc(hit);
-        let (r, y) = arc.map_or((0.0, 0.0), |arc| (arc.radius(s), arc.y.at(s)));
-        let position = DVec3::new(outward.x * r, y, outward.y * r);
-        let extent = self.bounds().max_abs();
-        let normal = self.normal(ray, hit);
-        let bare = SurfacePoint::bare(position, point_error(position, extent, 32), normal);
-        let Some(arc) = arc else { return bare };
+        let r = arc.radius(s);
         let [from, to] = arc.v;
         let right = arc.right(s);
         // Along the curve, per unit of `v`.
@@ -249,6 +252,17 @@ impl Revolution<'_> {
             dpdv: DVec3::new(outward.x * along.x, along.y, outward.y * along.x),
             ..bare
         }
+    }
+
+    /// The surface at a hit without texture coordinates.
+    pub(super) fn bare_surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
+        let outward = Self::outward(ray, hit);
+        let [s, _] = hit.uv;
+        let arc = self.arc(hit);
+        let (r, y) = arc.map_or((0.0, 0.0), |arc| (arc.radius(s), arc.y.at(s)));
+        let position = DVec3::new(outward.x * r, y, outward.y * r);
+        let error = point_error(position, self.bounds().max_abs(), 32);
+        SurfacePoint::bare(position, error, self.normal(ray, hit))
     }
 
     /// Whether a line away from the axis crosses the meridian an odd number of times.
@@ -322,6 +336,57 @@ impl WholeLine for Revolution<'_> {
         }
     }
 
+    /// What certainly is before or behind the range is not computed.
+    fn all_crossings(
+        &self,
+        ray: &Ray,
+        range: Interval,
+        from: Option<SurfaceId>,
+        scratch: &mut Scratch,
+        out: &mut Crossings,
+    ) {
+        let Some(line) = self.line(ray) else { return };
+        let mut candidates = Candidates::new();
+        let fits = self.candidates(&line, &mut candidates);
+        if let Some(from) = from
+            && fits
+        {
+            self.snap_candidates(ray, &line, from, &mut candidates);
+        }
+        let start = start_of(range, from);
+        let (mut inside, mut finite) = (false, true);
+        candidates.retain(|candidate| {
+            let [low, high] = candidate.t;
+            // Ranges may be empty: what is not before the start is behind it or not known.
+            if high > start && (low <= start || low <= range.max) {
+                self.settle(&line, candidate);
+            }
+            let [low, high] = candidate.t;
+            finite &= !candidate.is_exact() || low.is_finite();
+            inside ^= high <= start;
+            high > start && low <= range.max
+        });
+        if !(fits && finite) {
+            return crossings_of_walk(self, ray, range, from, scratch, out);
+        }
+        let place = |c: &Candidate| c.t[0];
+        candidates.sort_unstable_by(|a, b| {
+            let by_t = place(a).total_cmp(&place(b));
+            by_t.then_with(|| a.facet.cmp(&b.facet))
+        });
+        out.inside_at_start = inside;
+        for candidate in &candidates {
+            inside = !inside;
+            let approach = candidate.meeting.approach;
+            let hit = candidate.hit(if inside { -approach } else { approach });
+            let error = t_error(ray, hit.t, self.normal(ray, &hit), self.reach());
+            let side = if inside { Side::Enter } else { Side::Exit };
+            let mut crossing = Crossing::new(hit, error, side);
+            crossing.visible = candidate.visible;
+            out.list.push(crossing);
+        }
+    }
+
     /// A crossing that certainly is in the range need not be computed.
     fn any_hit(
         &self,
@@ -346,7 +411,9 @@ impl WholeLine for Revolution<'_> {
             c.visible && start < low && high <= range.max && high.is_finite() && !may_be_start
         };
         candidates.iter().any(counts)
-            || self.first_of(ray, &line, range, from, &mut candidates).is_some()
+            || self
+                .first_of(ray, &line, range, from, &mut candidates)
+                .is_some()
     }
 
     fn normal(&self, ray: &Ray, hit: &PrimHit) -> DVec3 {
@@ -361,5 +428,54 @@ impl WholeLine for Revolution<'_> {
 
     fn reach(&self) -> f64 {
         self.bounds().max_abs()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::spans::tests::first_hits_are_those_of_the_walk;
+    use super::*;
+    use crate::{Lathe, Sor, Spline};
+
+    #[test]
+    fn the_first_hit_needs_no_others() {
+        let points = |list: &[[f64; 2]]| list.iter().map(|p| DVec2::from_array(*p)).collect();
+        let vase: Vec<DVec2> = points(&[
+            [0.0, 0.1],
+            [0.0, 0.0],
+            [0.5, 0.0],
+            [0.9, 0.5],
+            [0.3, 1.1],
+            [0.4, 1.3],
+            [0.0, 1.2],
+            [0.0, 1.0],
+        ]);
+        for spline in [Spline::Linear, Spline::Quadratic, Spline::Cubic] {
+            let lathe = Lathe::try_new(spline, &vase).unwrap();
+            first_hits_are_those_of_the_walk(&Revolution(&lathe.meridian));
+        }
+        let sor: Vec<DVec2> = points(&[
+            [0.2, -1.0],
+            [0.6, -0.8],
+            [0.4, -0.1],
+            [0.8, 0.3],
+            [0.3, 0.8],
+            [0.1, 1.0],
+        ]);
+        let sor = Sor::try_new(&sor, true).unwrap();
+        first_hits_are_those_of_the_walk(&Revolution(&sor.meridian));
+    }
+
+    #[test]
+    fn many_crossings_are_sorted() {
+        // A screw without a pitch: a line along it crosses far more arcs than there are candidates.
+        let tooth = |k: u32| DVec2::new(1.0 + 0.1 * f64::from(k % 2), 0.02 * f64::from(k));
+        let lathe = Lathe::try_new(Spline::Linear, &(0..100).map(tooth).collect::<Vec<_>>());
+        let lathe = lathe.unwrap();
+        first_hits_are_those_of_the_walk(&Revolution(&lathe.meridian));
+        let along = Ray::new(DVec3::new(1.05, -1.0, 0.0), DVec3::Y);
+        let mut list = Crossings::default();
+        Revolution(&lathe.meridian).walk(&along, None, &mut list);
+        assert!(list.list.len() > 90, "{}", list.list.len());
     }
 }

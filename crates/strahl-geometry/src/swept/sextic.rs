@@ -273,3 +273,92 @@ impl Sextic {
         (Self { c: left, error }, Self { c: right, error })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::conformance::Random;
+
+    /// Random arcs and lines: terms, factors, and the value that the polynomial has to have at a parameter.
+    fn examples() -> impl Iterator<Item = (Terms, Factors)> {
+        let mut random = Random::new(5);
+        (0..3000).map(move |round| {
+            let mut four = || std::array::from_fn(|_| random.between(0.0, 1.0));
+            let (x, y) = (Piece::Cubic(four()), Piece::Cubic(four()));
+            let terms = Terms::new(&x, round % 2 == 0, &y, 0.5);
+            let [speed, base, dy, m2] = four();
+            let base = base - 0.5;
+            let factors = Factors {
+                height2: speed * speed,
+                height: 2.0 * speed * base,
+                radius2: dy * dy,
+                constant: base * base + dy * dy * 0.3 * m2,
+                error: 1e-14,
+            };
+            (terms, factors)
+        })
+    }
+
+    fn value(terms: &Terms, factors: &Factors, s: f64) -> f64 {
+        let ([height, _], [square, _]) = terms.at(s);
+        factors.height2 * height * height + factors.height * height + factors.constant
+            - factors.radius2 * square
+    }
+
+    #[test]
+    fn ends_and_middle_are_values() {
+        for (terms, factors) in examples() {
+            let polynomial = Sextic::new(&terms, &factors);
+            let (left, right) = polynomial.halves();
+            for (coefficient, s) in [
+                (polynomial.c[0], 0.0),
+                (polynomial.c[6], 1.0),
+                (polynomial.c[7], 1.0),
+                (left.c[7], 0.5),
+                (right.c[0], 0.5),
+            ] {
+                assert!(
+                    (coefficient - value(&terms, &factors, s)).abs() < 1e-14,
+                    "{s}"
+                );
+            }
+            let ([y, dy], [square, slope]) = terms.at(0.3);
+            let ([y2, _], [square2, _]) = terms.at(0.3 + 1e-7);
+            assert!(((y2 - y) * 1e7 - dy).abs() < 1e-5);
+            assert!(((square2 - square) * 1e7 - slope).abs() < 1e-5);
+        }
+    }
+
+    #[test]
+    fn each_part_has_one_root_and_all_roots_are_in_parts() {
+        let mut counts = [0; 5];
+        for (terms, factors) in examples() {
+            let polynomial = Sextic::new(&terms, &factors);
+            let sign = |s: f64| value(&terms, &factors, s) >= 0.0;
+            let parts: Vec<Single> = match polynomial.roots() {
+                Roots::None => vec![],
+                Roots::One(part) => vec![part],
+                Roots::Several => match polynomial.isolate() {
+                    Some(parts) => parts.iter().copied().collect(),
+                    None => continue,
+                },
+                Roots::Unsure => continue,
+            };
+            const STEPS: u32 = 640;
+            let at = |k: u32| f64::from(k) / f64::from(STEPS);
+            let changes: Vec<f64> = (0..STEPS)
+                .filter(|k| sign(at(*k)) != sign(at(k + 1)))
+                .map(at)
+                .collect();
+            assert_eq!(changes.len(), parts.len(), "{parts:?}");
+            for (part, place) in parts.iter().zip(&changes) {
+                assert!(part.low <= *place && *place < part.high);
+                assert!(part.low <= part.guess && part.guess <= part.high);
+                assert_eq!(part.rising, !sign(part.low));
+                assert_ne!(sign(part.low), sign(part.high));
+            }
+            counts[parts.len()] += 1;
+        }
+        assert!(counts[..3].iter().all(|count| *count > 50), "{counts:?}");
+    }
+}

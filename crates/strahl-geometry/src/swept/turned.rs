@@ -54,6 +54,10 @@ macro_rules! turned_about_the_axis {
                 Revolution(&self.meridian).surface_at(ray, hit)
             }
 
+            fn bare_surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
+                Revolution(&self.meridian).bare_surface_at(ray, hit)
+            }
+
             fn texture_uv(&self, _hit: &PrimHit, uv: DVec2) -> Option<DVec2> {
                 Some(uv)
             }
