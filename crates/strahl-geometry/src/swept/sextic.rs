@@ -175,9 +175,9 @@ impl Sextic {
     fn signs(&self) -> Option<Signs> {
         let mut least = [0.0; 4];
         let mut negative = 0;
-        for k in 0..4 {
+        for (k, least) in least.iter_mut().enumerate() {
             let (a, b) = (self.c[k].abs(), self.c[k + 4].abs());
-            least[k] = if a < b { a } else { b };
+            *least = if a < b { a } else { b };
         }
         for (k, c) in self.c.iter().enumerate() {
             negative |= u32::from(c.is_sign_negative()) << k;
@@ -260,11 +260,11 @@ impl Sextic {
             .c
             .iter()
             .fold(0.0, |m: f64, c| if c.abs() > m { c.abs() } else { m });
-        for i in 1..7 {
+        for (i, corner) in left.iter_mut().enumerate().take(7).skip(1) {
             for j in 0..7 - i {
                 right[j] = 0.5 * (right[j] + right[j + 1]);
             }
-            left[i] = right[0];
+            *corner = right[0];
         }
         left[7] = left[6];
         right[7] = right[6];
