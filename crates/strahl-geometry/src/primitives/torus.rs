@@ -9,7 +9,7 @@ use crate::{
 use std::f64::consts::PI;
 use std::ops::ControlFlow;
 use strahl_math::error::gamma;
-use strahl_math::roots::{Bernstein, Isolated, RootCount, find_root};
+use strahl_math::roots::{Bernstein, Isolated, RootCount, Window, newton};
 use strahl_math::{Aabb, DVec2, DVec3, Interval, Ray, Transform};
 
 /// A torus: a tube of the minor radius around a circle of the major radius.
@@ -43,6 +43,65 @@ struct Segment {
     high: f64,
 }
 
+/// A [`Segment`] seen from the axis: at `s` its height over the torus' plane is `height + s climb`, and its distance from the axis
+/// is `sqrt(aside² + (way + s speed)²)`, a sum of squares without cancellation.
+struct Profile {
+    height: f64,
+    climb: f64,
+    way: f64,
+    speed: f64,
+    aside2: f64,
+    major: f64,
+    minor2: f64,
+}
+
+impl Profile {
+    fn new(torus: &Torus, segment: &Segment) -> Self {
+        let (p, e) = (segment.start, segment.along);
+        let (height, climb) = (p.dot(torus.axis), e.dot(torus.axis));
+        let (p_flat, e_flat) = (p - torus.axis * height, e - torus.axis * climb);
+        let speed = e_flat.length();
+        let ahead = if speed > 0.0 {
+            e_flat / speed
+        } else {
+            DVec3::ZERO
+        };
+        let way = p_flat.dot(ahead);
+        let aside = p_flat - ahead * way;
+        Self {
+            height,
+            climb,
+            way,
+            speed,
+            aside2: aside.dot(aside),
+            major: torus.major,
+            minor2: torus.minor * torus.minor,
+        }
+    }
+
+    /// The squared distance from the circle, less the squared minor radius: negative inside.
+    #[inline]
+    fn value(&self, s: f64) -> f64 {
+        let way = self.way + s * self.speed;
+        let off = (self.aside2 + way * way).sqrt() - self.major;
+        let height = self.height + s * self.climb;
+        off * off + height * height - self.minor2
+    }
+
+    /// The same, and the value divided by its derivative.
+    #[inline]
+    fn value_and_step(&self, s: f64) -> (f64, f64) {
+        let way = self.way + s * self.speed;
+        let distance = (self.aside2 + way * way).sqrt();
+        let off = distance - self.major;
+        let height = self.height + s * self.climb;
+        let value = off * off + height * height - self.minor2;
+        // distance' = way speed / distance
+        let slope = 2.0 * (off * way * self.speed + distance * height * self.climb);
+        (value, value * distance / slope)
+    }
+}
+
 /// The events along a ray, in this order.
 enum Event {
     /// The ray starts on the surface, and is inside from there on or not.
@@ -62,6 +121,7 @@ enum Event {
 struct Walk<'a, V> {
     torus: &'a Torus,
     segment: Segment,
+    profile: Profile,
     on_surface: bool,
     inside: bool,
     /// The last root, until it is known whether the ray is inside behind it.
@@ -75,14 +135,27 @@ const CLEAR: f64 = 1.0 / 64.0;
 
 impl<V: FnMut(Event) -> ControlFlow<()>> Walk<'_, V> {
     fn run(mut self) {
-        let (coefficients, error) = self.torus.polynomial(&self.segment);
+        let (coefficients, error) = self.torus.polynomial(&self.segment, &self.profile);
         let Segment { low, high, .. } = self.segment;
         let flow = if self.on_surface {
             // The root at s = 0 is known: without it the polynomial is a cubic.
             let [_, c1, c2, c3, c4] = coefficients;
             let cubic = Bernstein::from_power(&[c1, c2, c3, c4], low, high).with_error(error);
             let mut started = false;
-            let flow = cubic.isolate(&mut |part| {
+            // What lies behind the start doesn't matter, unless it is the inner surface of a spindle torus.
+            let ring = self.torus.minor < self.torus.major;
+            let mut window = Window {
+                from: if ring { 0.0 } else { f64::NEG_INFINITY },
+                to: f64::INFINITY,
+                starts_negative: None,
+            };
+            let [first, .., last] = cubic.coefficients().map(|c| c >= 0.0);
+            let mut is_first = ring;
+            let flow = cubic.isolate_within((first, last), &mut window, &mut |part| {
+                if std::mem::take(&mut is_first) {
+                    // Before s = 0 the torus' polynomial has the opposite sign of the cubic.
+                    self.inside = part.rising == (part.count == RootCount::Even);
+                }
                 let Some(s) = self.refine(part) else {
                     return ControlFlow::Continue(());
                 };
@@ -98,7 +171,8 @@ impl<V: FnMut(Event) -> ControlFlow<()>> Walk<'_, V> {
                 self.root(0.0)
             }
         } else {
-            let quartic = Bernstein::from_power(&coefficients, low, high).with_error(error);
+            // There the segment runs from 0 to 1.
+            let quartic = Bernstein::on_unit_interval(&coefficients, error);
             quartic.isolate(&mut |part| self.part(part))
         };
         if flow.is_continue() {
@@ -133,7 +207,7 @@ impl<V: FnMut(Event) -> ControlFlow<()>> Walk<'_, V> {
         let inside = match next {
             // A gap within the rounding error does not count.
             Some(next) if next - s <= rounding => self.inside,
-            Some(next) => self.torus.value(self.segment.at(0.5 * (s + next))) < 0.0,
+            Some(next) => self.profile.value(0.5 * (s + next)) < 0.0,
             None => false,
         };
         let changes = std::mem::replace(&mut self.inside, inside) != inside;
@@ -152,9 +226,9 @@ impl<V: FnMut(Event) -> ControlFlow<()>> Walk<'_, V> {
     ///
     /// At the poles of a spindle torus outer and inner surface meet in a double root, where only the former does.
     fn refine<const N: usize>(&self, part: &Isolated<N>) -> Option<f64> {
-        let (torus, segment) = (self.torus, &self.segment);
+        let (torus, profile) = (self.torus, &self.profile);
         let (low, high) = (part.low(), part.high());
-        let inside = |s: f64| torus.value(segment.at(s)) < 0.0;
+        let inside = |s: f64| profile.value(s) < 0.0;
         let (first, last) =
             if part.count == RootCount::One && !self.on_surface && torus.minor < torus.major {
                 // Beyond doubt, and there is no inner surface: the distance has the sign of the polynomial.
@@ -165,14 +239,8 @@ impl<V: FnMut(Event) -> ControlFlow<()>> Walk<'_, V> {
         if first == last {
             return (part.count != RootCount::Even).then(|| part.root());
         }
-        let value = |s: f64| torus.value_and_slope(segment.at(s), segment.along);
-        Some(find_root(low, high, first, part.estimate(), value))
-    }
-}
-
-impl Segment {
-    fn at(&self, s: f64) -> DVec3 {
-        self.start + self.along * s
+        let function = |s: f64| profile.value_and_step(s);
+        Some(newton(low, high, first, part.estimate(), function))
     }
 }
 
@@ -295,18 +363,19 @@ impl Torus {
 
     /// The polynomial whose roots are the crossings: `(|p|² + R² - r²)² - 4 R² (|p|² - h²)` at `p = start + s along`, with a
     /// bound on the errors of its coefficients.
-    fn polynomial(&self, segment: &Segment) -> ([f64; 5], f64) {
+    fn polynomial(&self, segment: &Segment, profile: &Profile) -> ([f64; 5], f64) {
         let (p, e) = (segment.start, segment.along);
-        let (height, climb) = (p.dot(self.axis), e.dot(self.axis));
-        let (p_flat, e_flat) = (p - self.axis * height, e - self.axis * climb);
+        let Profile {
+            way, speed, aside2, ..
+        } = *profile;
         let (r2, big) = (self.minor * self.minor, self.major * self.major);
         let (square, mixed) = (e.dot(e), p.dot(e));
         // (R - r)(R + r) keeps the digits of a horn torus' small difference.
         let k = p.dot(p) + (self.major - self.minor) * (self.major + self.minor);
         let coefficients = [
-            k * k - 4.0 * big * p_flat.dot(p_flat),
-            4.0 * mixed * k - 8.0 * big * p_flat.dot(e_flat),
-            4.0 * mixed * mixed + 2.0 * square * k - 4.0 * big * e_flat.dot(e_flat),
+            k * k - 4.0 * big * (aside2 + way * way),
+            4.0 * mixed * k - 8.0 * big * (way * speed),
+            4.0 * mixed * mixed + 2.0 * square * k - 4.0 * big * (speed * speed),
             4.0 * square * mixed,
             square * square,
         ];
@@ -316,11 +385,31 @@ impl Torus {
         (coefficients, gamma(16) * magnitude)
     }
 
+    /// The direction away from the axis at a hit, and the surface there without texture coordinates.
+    fn outward_and_surface(&self, ray: &Ray, hit: &PrimHit) -> (DVec3, SurfacePoint) {
+        let p = (ray.origin - self.center) + ray.direction * hit.t;
+        let height = p.dot(self.axis);
+        let across = p - self.axis * height;
+        let distance = across.length();
+        let outward = if distance > 0.0 {
+            across / distance
+        } else {
+            self.frame.axes(self.axis).x_axis
+        };
+        // From the nearest point of the circle straight to the surface.
+        let n = (outward * (distance - self.major) + self.axis * height).normalize_or(outward);
+        let local = outward * self.major + n * self.minor;
+        let position = self.center + local;
+        let error = point_error(position, self.major + self.minor, 16);
+        (outward, SurfacePoint::bare(position, error, n))
+    }
+
     /// Reports the events along the ray to the visitor, until it stops.
     fn walk(&self, ray: &Ray, on_surface: bool, visit: impl FnMut(Event) -> ControlFlow<()>) {
         if let Some(segment) = self.segment(ray, on_surface) {
             Walk {
                 torus: self,
+                profile: Profile::new(self, &segment),
                 segment,
                 on_surface,
                 inside: false,
@@ -391,33 +480,22 @@ impl Primitive for Torus {
     }
 
     fn surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
-        let p = (ray.origin - self.center) + ray.direction * hit.t;
         let axes = self.frame.axes(self.axis);
-        let height = p.dot(self.axis);
-        let across = p - self.axis * height;
-        let distance = across.length();
-        let outward = if distance > 0.0 {
-            across / distance
-        } else {
-            axes.x_axis
-        };
-        // From the nearest point of the circle straight to the surface.
-        let n = (outward * (distance - self.major) + self.axis * height).normalize_or(outward);
-        let local = outward * self.major + n * self.minor;
-        let position = self.center + local;
-
+        let (outward, bare) = self.outward_and_surface(ray, hit);
+        let n = bare.n_geom;
         let (x, y) = (outward.dot(axes.x_axis), outward.dot(axes.y_axis));
         let (cos, sin) = (n.dot(outward), n.dot(self.axis));
         SurfacePoint {
-            position,
-            position_error: point_error(position, self.major + self.minor, 16),
-            n_geom: n,
-            n_shade: n,
             uv: DVec2::new(turn(-y, -x), turn(-sin, -cos)),
             dpdu: (axes.y_axis * x - axes.x_axis * y)
                 * (2.0 * PI * (self.major + self.minor * cos)),
             dpdv: (self.axis * cos - outward * sin) * (2.0 * PI * self.minor),
+            ..bare
         }
+    }
+
+    fn bare_surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
+        self.outward_and_surface(ray, hit).1
     }
 
     fn texture_uv(&self, _hit: &PrimHit, uv: DVec2) -> Option<DVec2> {

@@ -1,7 +1,8 @@
 use super::outline::{Cut, Outline, direction, slab};
-use super::spans::{WholeLine, snap};
-use crate::primitives::point_error;
-use crate::{Crossing, Crossings, PrimHit, Side, SurfaceId, SurfacePoint};
+use super::spans::{WholeLine, first_of_walk, snap};
+use crate::primitives::{point_error, start_of};
+use crate::{Crossing, Crossings, PrimHit, Scratch, Side, SurfaceId, SurfacePoint};
+use std::cmp::Ordering;
 use strahl_math::{Aabb, DVec2, DVec3, Interval, Ray};
 
 /// The facet of the cap at the lower height.
@@ -149,6 +150,95 @@ impl Extrusion<'_> {
         normal.normalize_or(DVec3::X)
     }
 
+    /// Where the line passes the two heights, entering and leaving.
+    fn caps(&self, ray: &Ray, from: Option<SurfaceId>) -> Option<[Crossing; 2]> {
+        let (o, d) = (ray.origin, ray.direction);
+        if !(o.is_finite() && d.is_finite()) || d == DVec3::ZERO {
+            return None;
+        }
+        let heights = slab(o.z, d.z, self.low, self.high)?;
+        let (first, last) = if d.z > 0.0 {
+            (LOW_CAP, HIGH_CAP)
+        } else {
+            (HIGH_CAP, LOW_CAP)
+        };
+        let cap = |t: f64, facet: u32, side: Side| {
+            let on_it = from.is_some_and(|from| from.facet == facet);
+            let t = if on_it { 0.0 } else { t };
+            Crossing::new(PrimHit::simple(t, facet), 0.0, side)
+        };
+        Some([
+            cap(heights.min, first, Side::Enter),
+            cap(heights.max, last, Side::Exit),
+        ])
+    }
+
+    /// Whether the line comes from within the infinite walls: those before the apex have been crossed an odd number of times.
+    fn starts_within(&self, ray: &Ray, walls: &[Crossing]) -> bool {
+        let apex = self.apex(ray);
+        let before = |c: &&Crossing| c.side == Side::Inner && c.hit.t < apex;
+        apex > f64::NEG_INFINITY && walls.iter().filter(before).count() % 2 == 1
+    }
+
+    /// Fills in what follows from whether the ray gets inside at a crossing.
+    fn finish(&self, ray: &Ray, crossing: &mut Crossing, enters: bool) {
+        if crossing.side == Side::Inner {
+            crossing.hit.uv[1] = self.outer_side(ray, &crossing.hit, enters);
+        } else {
+            crossing.visible = self.capped;
+        }
+        crossing.side = if enters { Side::Enter } else { Side::Exit };
+    }
+
+    /// The first visible hit behind the start and in the range, from all crossings with walls and caps in any order.
+    fn first_behind(
+        &self,
+        ray: &Ray,
+        start: f64,
+        range: Interval,
+        mut within: bool,
+        crossings: &mut Vec<Crossing>,
+    ) -> Option<PrimHit> {
+        let mut between = false;
+        crossings.retain(|crossing| {
+            let is_behind = crossing.hit.t.total_cmp(&start).is_gt();
+            if !is_behind {
+                match crossing.side {
+                    Side::Enter => between = true,
+                    Side::Exit => between = false,
+                    Side::Inner => within = !within,
+                }
+            }
+            is_behind
+        });
+        let many = crossings.len() > MANY;
+        if many {
+            crossings.sort_unstable_by(|a, b| order(b, a));
+        }
+        loop {
+            let mut crossing = if many {
+                crossings.pop()?
+            } else {
+                let all = crossings.iter().enumerate();
+                let (index, _) = all.min_by(|(_, a), (_, b)| order(a, b))?;
+                crossings.swap_remove(index)
+            };
+            let inside = within && between;
+            match crossing.side {
+                Side::Enter => between = true,
+                Side::Exit => between = false,
+                Side::Inner => within = !within,
+            }
+            let enters = within && between;
+            if enters != inside && crossing.hit.t.is_finite() {
+                self.finish(ray, &mut crossing, enters);
+                if crossing.visible {
+                    return range.accepts(crossing.hit.t).then_some(crossing.hit);
+                }
+            }
+        }
+    }
+
     pub(super) fn surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
         let at = ray.at(hit.t);
         let reach = self.outline.reach().max_element();
@@ -185,15 +275,7 @@ impl Extrusion<'_> {
 
 impl WholeLine for Extrusion<'_> {
     fn walk(&self, ray: &Ray, from: Option<SurfaceId>, list: &mut Crossings) {
-        let Ray {
-            origin: o,
-            direction: d,
-        } = *ray;
-        let finite = o.is_finite() && d.is_finite();
-        if !finite || d == DVec3::ZERO || self.bounds().clip(ray, Interval::LINE).is_none() {
-            return;
-        }
-        let Some(heights) = slab(o.z, d.z, self.low, self.high) else {
+        let Some(caps) = self.caps(ray, from) else {
             return;
         };
         let always = self.walls(ray, list);
@@ -201,40 +283,10 @@ impl WholeLine for Extrusion<'_> {
             return;
         }
         self.snap_walls(ray, from, &mut list.list);
+        list.list.extend(caps);
+        list.list.sort_unstable_by(order);
 
-        let rising = d.z > 0.0;
-        let (first, last) = if rising {
-            (LOW_CAP, HIGH_CAP)
-        } else {
-            (HIGH_CAP, LOW_CAP)
-        };
-        let cap = |t: f64, facet: u32, side: Side| {
-            let on_it = from.is_some_and(|from| from.facet == facet);
-            Crossing::new(
-                PrimHit::simple(if on_it { 0.0 } else { t }, facet),
-                0.0,
-                side,
-            )
-        };
-        list.list.push(cap(heights.min, first, Side::Enter));
-        list.list.push(cap(heights.max, last, Side::Exit));
-        // Where a ray meets an edge it leaves before it enters, so there is no span without length.
-        let rank = |side: Side| match side {
-            Side::Exit => 0,
-            Side::Inner => 1,
-            Side::Enter => 2,
-        };
-        let order = |c: &Crossing| (rank(c.side), c.hit.surface.facet);
-        list.list.sort_unstable_by(|a, b| {
-            a.hit
-                .t
-                .total_cmp(&b.hit.t)
-                .then_with(|| order(a).cmp(&order(b)))
-        });
-
-        let apex = self.apex(ray);
-        let before = |c: &&Crossing| c.side == Side::Inner && c.hit.t < apex;
-        let mut within = always || list.list.iter().filter(before).count() % 2 == 1;
+        let mut within = always || self.starts_within(ray, &list.list);
         let mut between = false;
         list.list.retain_mut(|crossing| {
             let inside = within && between;
@@ -244,17 +296,43 @@ impl WholeLine for Extrusion<'_> {
                 Side::Inner => within = !within,
             }
             let enters = within && between;
-            if enters == inside || !crossing.hit.t.is_finite() {
-                return false;
+            let counts = enters != inside && crossing.hit.t.is_finite();
+            if counts {
+                self.finish(ray, crossing, enters);
             }
-            if crossing.side == Side::Inner {
-                crossing.hit.uv[1] = self.outer_side(ray, &crossing.hit, enters);
-            } else {
-                crossing.visible = self.capped;
-            }
-            crossing.side = if enters { Side::Enter } else { Side::Exit };
-            true
+            counts
         });
+    }
+
+    /// In contrast to a walk, what lies behind the first hit is not sorted, and what lies before the range is only counted.
+    fn first_hit(
+        &self,
+        ray: &Ray,
+        range: Interval,
+        from: Option<SurfaceId>,
+        scratch: &mut Scratch,
+    ) -> Option<PrimHit> {
+        let caps = self.caps(ray, from)?;
+        let [low, high] = caps.map(|cap| cap.hit.t);
+        let start = start_of(range, from);
+        if !(low <= high) {
+            return first_of_walk(self, ray, range, from, scratch);
+        }
+        if high <= start || low > range.max {
+            return None;
+        }
+        let mut list = scratch.take();
+        let always = self.walls(ray, &mut list);
+        let hit = if list.list.is_empty() && !always {
+            None
+        } else {
+            self.snap_walls(ray, from, &mut list.list);
+            let within = always || self.starts_within(ray, &list.list);
+            list.list.extend(caps);
+            self.first_behind(ray, start, range, within, &mut list.list)
+        };
+        scratch.give(list);
+        hit
     }
 
     fn normal(&self, _: &Ray, hit: &PrimHit) -> DVec3 {
@@ -268,6 +346,21 @@ impl WholeLine for Extrusion<'_> {
     fn reach(&self) -> f64 {
         self.bounds().max_abs()
     }
+}
+
+/// So many crossings are sorted, instead of looking for the first one again and again.
+const MANY: usize = 16;
+
+/// The order of crossings along a ray. Where a ray meets an edge it leaves before it enters, so there is no span without length.
+fn order(a: &Crossing, b: &Crossing) -> Ordering {
+    let rank = |side: Side| match side {
+        Side::Exit => 0,
+        Side::Inner => 1,
+        Side::Enter => 2,
+    };
+    let later = |c: &Crossing| (rank(c.side), c.hit.surface.facet);
+    let by_t = a.hit.t.total_cmp(&b.hit.t);
+    by_t.then_with(|| later(a).cmp(&later(b)))
 }
 
 /// The factor between two vectors that are parallel up to rounding: `a` divided by `b`.

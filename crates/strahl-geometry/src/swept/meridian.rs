@@ -1,6 +1,7 @@
 use super::curve::{Piece, range};
 use super::outline::{End, smooth_runs};
 use super::runs::{Rect, Runs};
+use super::sextic::Terms;
 use strahl_math::DVec2;
 use strahl_math::error::gamma;
 use strahl_math::roots::find_root;
@@ -138,6 +139,11 @@ impl Arc {
         }
     }
 
+    /// What polynomials of lines are made of.
+    fn terms(&self, middle: f64) -> Terms {
+        Terms::new(&self.x, self.squared, &self.y, middle)
+    }
+
     /// The place and the direction at a parameter.
     fn tangent(&self, s: f64) -> End {
         let right = self.right(s);
@@ -154,6 +160,12 @@ pub(super) struct Meridian {
     pub(super) smooth: Box<[u32]>,
     /// Boxes of squared radius and height.
     pub(super) runs: Runs,
+    /// For each arc, its part of the polynomials that lines make with it.
+    pub(super) terms: Box<[Terms]>,
+    /// The height in the middle.
+    pub(super) middle: f64,
+    /// The largest height over the middle and the largest squared radius of all control points.
+    pub(super) reach: [f64; 2],
 }
 
 /// Collects the arcs of a [`Meridian`].
@@ -253,10 +265,20 @@ impl MeridianBuilder {
             .map(|arc| [arc.tangent(0.0), arc.tangent(1.0)])
             .collect();
         let boxes: Vec<_> = self.arcs.iter().map(Arc::bounds).collect();
+        let runs = Runs::build(&boxes);
+        let Rect { min, max } = runs.bounds();
+        let middle = 0.5 * (min.y + max.y);
+        let terms = self.arcs.iter().map(|arc| arc.terms(middle));
+        let terms: Box<[Terms]> = terms.collect();
+        let reach = terms.iter().map(Terms::reach);
+        let reach = reach.fold([0.0; 2], |[h, r]: [f64; 2], [y, x]| [h.max(y), r.max(x)]);
         Meridian {
             smooth: smooth_runs(&ends, &self.starts),
-            runs: Runs::build(&boxes),
+            runs,
             arcs: self.arcs.into_boxed_slice(),
+            terms,
+            middle,
+            reach,
         }
     }
 }

@@ -6,6 +6,7 @@
 mod curve;
 mod extrusion;
 mod glyph;
+mod hyperbola;
 mod lathe;
 mod meridian;
 mod outline;
@@ -13,6 +14,7 @@ mod prism;
 mod revolution;
 mod round;
 mod runs;
+mod sextic;
 mod sor;
 mod spans;
 mod sphere_sweep;

@@ -3,7 +3,7 @@ use super::runs::{Rect, Runs};
 use crate::GeometryError;
 use std::ops::ControlFlow;
 use strahl_math::error::gamma;
-use strahl_math::roots::{Bernstein, RootCount};
+use strahl_math::roots::{Bernstein, RootCount, newton};
 use strahl_math::{DVec2, Interval};
 
 /// Closed curves in a plane, made of lines, parabolas and cubics, from which prisms and letters are swept.
@@ -201,15 +201,20 @@ impl Outline {
                     rising,
                 });
             };
+            // One by one: mapping arrays is not inlined.
             match *piece {
-                Piece::Line(points) => {
-                    let [a, b] = points.map(side);
+                Piece::Line([a, b]) => {
+                    let (a, b) = (side(a), side(b));
                     if (a >= 0.0) != (b >= 0.0) {
                         found(a / (a - b), b >= 0.0);
                     }
                 }
-                Piece::Quadratic(points) => roots(points.map(side), error, &mut found),
-                Piece::Cubic(points) => roots(points.map(side), error, &mut found),
+                Piece::Quadratic([a, b, c]) => {
+                    roots([side(a), side(b), side(c)], error, &mut found)
+                }
+                Piece::Cubic([a, b, c, d]) => {
+                    roots([side(a), side(b), side(c), side(d)], error, &mut found);
+                }
             }
         });
     }
@@ -227,11 +232,82 @@ impl Outline {
     }
 }
 
+/// A polynomial in Bernstein form with a way to find the root of one that has opposite signs at 0 and 1, and no other root.
+trait SingleRoot {
+    fn single_root(&self, rising: bool) -> f64;
+}
+
+impl SingleRoot for [f64; 3] {
+    /// By the formula: `a + 2 h s + c s²`.
+    fn single_root(&self, rising: bool) -> f64 {
+        let [a, b, end] = *self;
+        let (h, c) = (b - a, (a - b) + (end - b));
+        let discriminant = h * h - a * c;
+        let root = if discriminant > 0.0 {
+            discriminant.sqrt()
+        } else {
+            0.0
+        };
+        // Half the slope at the root.
+        let slope = if rising { root } else { -root };
+        // Of the two ways to write it the one without cancellation.
+        let s = if (h >= 0.0) == rising {
+            -a / (h + slope)
+        } else {
+            (slope - h) / c
+        };
+        if s > 0.0 {
+            if s < 1.0 { s } else { 1.0 }
+        } else {
+            0.0
+        }
+    }
+}
+
+impl SingleRoot for [f64; 4] {
+    /// By Newton's method.
+    fn single_root(&self, rising: bool) -> f64 {
+        let [a, b, c, d] = *self;
+        // As powers of the parameter.
+        let (p, q, r) = (
+            3.0 * (b - a),
+            3.0 * ((c - b) - (b - a)),
+            (d - a) - 3.0 * (c - b),
+        );
+        // Where the control polygon crosses zero.
+        let steps = [[a, b], [b, c], [c, d]].into_iter().zip([0.0, 1.0, 2.0]);
+        let crossing = steps.filter(|([from, to], _)| (*from < 0.0) != (*to < 0.0));
+        let guess = crossing.fold(0.0, |_, ([from, to], k)| {
+            (k + from / (from - to)) * (1.0 / 3.0)
+        });
+        newton(0.0, 1.0, rising, guess, |s| {
+            let value = a + s * (p + s * (q + s * r));
+            let slope = p + s * (2.0 * q + s * (3.0 * r));
+            (value, value / slope)
+        })
+    }
+}
+
 /// The roots of a polynomial in Bernstein form where it changes its sign.
-fn roots<const N: usize>(values: [f64; N], error: f64, found: &mut impl FnMut(f64, bool)) {
-    let all = |sign: bool| values.iter().all(|v| (*v >= 0.0) == sign);
+#[inline]
+fn roots<const N: usize>(values: [f64; N], error: f64, found: &mut impl FnMut(f64, bool))
+where
+    [f64; N]: SingleRoot,
+{
+    let (mut positive, mut changes) = (0, 0);
+    let mut last = None;
+    for value in values {
+        let sign = value >= 0.0;
+        positive += u32::from(sign);
+        changes += u32::from(last.replace(sign).is_some_and(|last| last != sign));
+    }
     // Nearly all pieces lie on one side.
-    if all(true) || all(false) {
+    if positive == 0 || positive == N as u32 {
+        return;
+    }
+    if changes == 1 && values.iter().all(|v| v.abs() > error) {
+        let rising = values.first().is_some_and(|v| *v < 0.0);
+        found(values.single_root(rising), rising);
         return;
     }
     let polynomial = Bernstein::new(values, error, 0.0, 1.0);

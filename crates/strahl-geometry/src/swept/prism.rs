@@ -284,6 +284,25 @@ mod tests {
     )
     .unwrap());
 
+    #[test]
+    fn the_first_hit_needs_no_others() {
+        use super::super::spans::tests::first_hits_are_those_of_the_walk;
+        let comb: Vec<[f64; 2]> = (0..40)
+            .map(|k| [0.1 * f64::from(k) - 2.0, f64::from(k % 2) + 0.5])
+            .chain([[2.0, 0.0], [-2.0, 0.0], [-2.0, 0.5]])
+            .collect();
+        for (spline, sweep, list) in [
+            (Spline::Linear, PrismSweep::Linear, &FRAME[..]),
+            (Spline::Linear, PrismSweep::Linear, &comb),
+            (Spline::Quadratic, PrismSweep::Linear, &CLOVER[..7]),
+            (Spline::Cubic, PrismSweep::Conic, &CLOVER),
+            (Spline::Bezier, PrismSweep::Linear, &LEAF),
+        ] {
+            let prism = prism(spline, sweep, [-0.4, 0.7], list);
+            first_hits_are_those_of_the_walk(&prism.extrusion());
+        }
+    }
+
     fn hits(prism: &Prism, origin: [f64; 3], direction: [f64; 3]) -> Vec<(f64, u32)> {
         let ray = Ray::new(origin.into(), direction.into());
         let mut out = Crossings::default();

@@ -1,12 +1,12 @@
-use super::curve::Piece;
-use super::meridian::{Arc, ArcPoint, Meridian};
+use super::hyperbola::{Line, Meeting, Place};
+use super::meridian::{Arc, Meridian};
 use super::runs::Rect;
-use super::spans::{WholeLine, snap};
-use crate::primitives::{point_error, turn};
-use crate::{Crossing, Crossings, PrimHit, Side, SurfaceId, SurfacePoint};
+use super::sextic::Terms;
+use super::spans::{WholeLine, crossings_of_walk, first_of_walk, near_the_start, snap, t_error};
+use crate::primitives::{point_error, start_of, turn};
+use crate::{Crossing, Crossings, PrimHit, Scratch, Side, SurfaceId, SurfacePoint};
+use arrayvec::ArrayVec;
 use std::f64::consts::TAU;
-use strahl_math::error::gamma;
-use strahl_math::roots::find_root;
 use strahl_math::{Aabb, DVec2, DVec3, Interval, Ray};
 
 /// A meridian rotated about the y axis.
@@ -14,274 +14,196 @@ use strahl_math::{Aabb, DVec2, DVec3, Interval, Ray};
 /// In the half-plane of radius and height a line is one branch of a hyperbola. With the distance `m` of the line from the axis
 /// and `h` along its horizontal part, counted from the place nearest to the axis, a point of the meridian is on it where
 /// `h = ±q`, `q = sqrt(r² - m²)`, is where the line has the same height: two functions of the meridian's parameter, one for each half of the
-/// line. Neither has the double roots that their product has for level rays, the polynomial of degree 6 of other ray tracers.
-/// As radius and height are monotone on every arc, both functions are bounded by their values at the ends of an
-/// interval, and their slopes by a few products: bisection finds all roots, with certainty and mostly at once.
+/// line. Their product is a polynomial of degree 6 at most, the one of other ray tracers. Its coefficients tell of nearly all arcs how
+/// many roots they have ([`super::sextic`]).
+///
+/// Where they don't, as for level rays, for which the product has double roots, the two functions are searched one by one. As radius and height
+/// are monotone on every arc, both are bounded by their values at the ends of an interval, and their slopes by a few products:
+/// bisection finds all roots, with certainty.
 ///
 /// The side of the line on which a joint of two arcs lies is decided by the same numbers for both, so entering and leaving
-/// alternate despite rounding.
+/// alternate despite rounding; the coefficients only have a say where they are beyond doubt, and then agree.
+///
+/// Roots are first isolated. Where the bounds of their places on the ray tell what is asked, they are not computed.
 ///
 /// Hits have `uv = [s, side]`: the parameter on the arc, and 1 if the outer side is the right of the curve, else -1.
 pub(super) struct Revolution<'a>(pub(super) &'a Meridian);
 
-/// A line in the half-plane of the meridian.
-struct Line {
-    ray: Ray,
-    /// Horizontal speed.
-    speed: f64,
-    /// The position of the origin along the horizontal part.
-    start: f64,
-    /// The squared distance from the axis.
-    m2: f64,
-}
-
-/// A point of an arc as a line sees it.
+/// A crossing of which it is known about where it is, and perhaps exactly.
 #[derive(Clone, Copy)]
-struct Sample {
-    s: f64,
-    y: f64,
-    /// The height over the line, as [`Line::level`] says.
-    level: f64,
-    /// The distance along the horizontal part from the point nearest to the axis.
-    q: f64,
+struct Candidate {
+    /// Bounds of the ray's parameter.
+    t: [f64; 2],
+    facet: u32,
+    meeting: Meeting,
+    visible: bool,
 }
 
-impl Sample {
-    /// The function whose roots are searched, for the half of the line with this [`Half::climb`].
-    #[inline]
-    fn value(&self, half: Half) -> f64 {
-        self.level - half.climb * self.q
+impl Candidate {
+    fn is_exact(&self) -> bool {
+        matches!(self.meeting.place, Place::At { .. })
     }
 
-    #[inline]
-    fn sign(&self, half: Half) -> bool {
-        self.value(half) >= 0.0
+    /// The hit, if the place is known exactly.
+    fn hit(&self, side: f64) -> PrimHit {
+        let s = match self.meeting.place {
+            Place::At { s, .. } => s,
+            Place::Within(part) => part.guess,
+        };
+        let [t, _] = self.t;
+        PrimHit {
+            t,
+            surface: facet(self.facet as usize),
+            uv: [s, side],
+        }
     }
-}
 
-/// One half of a line.
-#[derive(Clone, Copy)]
-struct Half {
-    /// 1 or -1.
-    sign: f64,
-    /// The vertical speed away from the place nearest to the axis.
-    climb: f64,
-}
-
-impl Line {
-    fn new(ray: &Ray) -> Self {
-        let flat = |v: DVec3| DVec2::new(v.x, v.z);
-        let (o, d) = (flat(ray.origin), flat(ray.direction));
-        let speed = d.length();
-        // A vertical line may be taken to lie in any plane; the one through the axis is best.
-        let ahead = if speed > 0.0 {
-            d / speed
+    /// The end of the interval that is nearer to the start of the ray.
+    fn least_distance(&self) -> f64 {
+        let [low, high] = self.t;
+        if low > 0.0 {
+            low
+        } else if high < 0.0 {
+            -high
         } else {
-            o.try_normalize().unwrap_or(DVec2::X)
-        };
-        let m = ahead.perp_dot(o);
-        Self {
-            ray: *ray,
-            speed,
-            start: ahead.dot(o),
-            m2: m * m,
-        }
-    }
-
-    /// The height over the line times its horizontal speed, but for the part that depends on `q`.
-    fn level(&self, y: f64) -> f64 {
-        self.speed * (y - self.ray.origin.y) + self.ray.direction.y * self.start
-    }
-
-    fn q(&self, square: f64) -> f64 {
-        let q2 = square - self.m2;
-        if q2 > 0.0 { q2.sqrt() } else { 0.0 }
-    }
-
-    /// Whether the line may pass through a ring of this box.
-    fn meets(&self, rect: &Rect) -> bool {
-        if rect.max.x < self.m2 {
-            return false;
-        }
-        let dy = self.ray.direction.y;
-        let (near, far) = (self.q(rect.min.x) * dy, self.q(rect.max.x) * dy);
-        let (low, high) = (self.level(rect.min.y), self.level(rect.max.y));
-        let tallest = rect.min.y.abs() + rect.max.y.abs() + self.ray.origin.y.abs();
-        let slack = gamma(16) * (self.speed * tallest + (dy * self.start).abs() + far.abs());
-        let overlaps = |a: f64, b: f64| {
-            let (a, b) = if a < b { (a, b) } else { (b, a) };
-            low <= b + slack && a - slack <= high
-        };
-        overlaps(near, far) || overlaps(-near, -far)
-    }
-
-    #[inline]
-    fn sample(&self, s: f64, point: ArcPoint) -> Sample {
-        Sample {
-            s,
-            y: point.y,
-            level: self.level(point.y),
-            q: self.q(point.square),
-        }
-    }
-
-    /// All crossings with an arc: parameter, half of the line, whether the value rises.
-    #[inline]
-    fn roots(&self, arc: &Arc, visit: &mut impl FnMut(f64, f64, bool)) {
-        let (first, last) = (arc.start(), arc.end());
-        let within = |point: ArcPoint| point.square >= self.m2;
-        let (mut low, mut high) = ((0.0, first), (1.0, last));
-        match (within(first), within(last)) {
-            (false, false) => return,
-            (true, true) => {}
-            (outer, _) => {
-                // Points closer to the axis than the line don't matter.
-                let s = find_root(0.0, 1.0, !outer, f64::NAN, |s| {
-                    let (point, slope) = arc.at_with_slope(s);
-                    (point.square - self.m2, slope.square)
-                });
-                let point = ArcPoint {
-                    square: self.m2,
-                    ..arc.at(s)
-                };
-                if outer {
-                    high = (s, point);
-                } else {
-                    low = (s, point);
-                }
-            }
-        }
-        let (a, b) = (self.sample(low.0, low.1), self.sample(high.0, high.1));
-        let dy = self.ray.direction.y;
-        // The rounding error of the terms of the value.
-        let tallest = a.y.abs() + b.y.abs() + self.ray.origin.y.abs();
-        let widest = a.q + b.q + self.start.abs();
-        let noise = gamma(16) * (self.speed * tallest + dy.abs() * widest);
-        for sign in [1.0, -1.0] {
-            let climb = sign * dy;
-            self.search(arc, Half { sign, climb }, &a, &b, noise, visit);
-        }
-    }
-
-    fn search(
-        &self,
-        arc: &Arc,
-        half: Half,
-        a: &Sample,
-        b: &Sample,
-        noise: f64,
-        visit: &mut impl FnMut(f64, f64, bool),
-    ) {
-        let change = a.sign(half) != b.sign(half);
-        if !change {
-            // The two parts of the value are both monotone.
-            let (low, high) = sorted(a.level, b.level);
-            let (least, most) = sorted(half.climb * a.q, half.climb * b.q);
-            if low > most || high < least {
-                return;
-            }
-        }
-        let [low, high] = self.slopes(arc, half, a, b);
-        if low >= 0.0 || high <= 0.0 {
-            if change {
-                visit(self.refine(arc, half, a, b), half.sign, b.sign(half));
-            }
-            return;
-        }
-        let s = 0.5 * (a.s + b.s);
-        let steepest = if -low > high { -low } else { high };
-        // If the change in between is less than the rounding error, only the ends count. (NaN compares as less, too.)
-        let worth = steepest * (b.s - a.s) > noise;
-        if !(worth && a.s < s && s < b.s) {
-            if change {
-                visit(s, half.sign, b.sign(half));
-            }
-            return;
-        }
-        let middle = self.sample(s, arc.at(s));
-        if !change && middle.value(half).abs() > steepest * (b.s - a.s) * 0.5 {
-            return;
-        }
-        self.search(arc, half, a, &middle, noise, visit);
-        self.search(arc, half, &middle, b, noise, visit);
-    }
-
-    /// Bounds of the slope of the value between two samples.
-    #[inline]
-    fn slopes(&self, arc: &Arc, half: Half, a: &Sample, b: &Sample) -> [f64; 2] {
-        let dy = arc.dy_range(a.s, b.s).map(|dy| dy * self.speed);
-        if half.climb == 0.0 {
-            return dy;
-        }
-        // q' = (r²)' / 2q.
-        let (near, far) = sorted(a.q, b.q);
-        let dq = arc.d_square_range(a.s, b.s);
-        let over = |slope: f64, small: f64, large: f64| {
-            if slope == 0.0 {
-                0.0
-            } else {
-                slope / (2.0 * if slope > 0.0 { large } else { small })
-            }
-        };
-        let dq = [over(dq[0], near, far), over(dq[1], far, near)];
-        let (least, most) = sorted(half.climb * dq[0], half.climb * dq[1]);
-        [dy[0] - most, dy[1] - least]
-    }
-
-    /// The root between two samples of different signs, between which the value is monotone.
-    fn refine(&self, arc: &Arc, half: Half, a: &Sample, b: &Sample) -> f64 {
-        let guess = self.straight_root(arc, half, a, b).unwrap_or_else(|| {
-            let (from, to) = (a.value(half), b.value(half));
-            a.s + (b.s - a.s) * (from / (from - to))
-        });
-        find_root(a.s, b.s, b.sign(half), guess, |s| {
-            let (point, slope) = arc.at_with_slope(s);
-            let sample = self.sample(s, point);
-            // If q is 0 the slope is NaN, and the interval is halved.
-            let dq = half.climb * (slope.square / (2.0 * sample.q));
-            (sample.value(half), slope.y * self.speed - dq)
-        })
-    }
-
-    /// The root as far as a formula gives it, for straight arcs: the line crosses a cone, `level² = dy²·q²`.
-    #[inline]
-    fn straight_root(&self, arc: &Arc, half: Half, a: &Sample, b: &Sample) -> Option<f64> {
-        let (Piece::Line([x0, x1]), Piece::Line([y0, y1])) = (arc.x, arc.y) else {
-            return None;
-        };
-        if arc.is_squared() {
-            return None;
-        }
-        let (level, rise) = (self.level(y0), self.speed * (y1 - y0));
-        let (wide, grow) = (half.climb * x0, half.climb * (x1 - x0));
-        let m = half.climb * half.climb * self.m2;
-        // rise·s + level is squared on one side, grow·s + wide on the other.
-        let square = rise * rise - grow * grow;
-        let linear = rise * level - grow * wide;
-        let constant = level * level - wide * wide + m;
-        let root = (linear * linear - square * constant).sqrt();
-        let sum = -(linear + if linear < 0.0 { -root } else { root });
-        let is_here =
-            |s: &f64| a.s < *s && *s < b.s && ((level + rise * s) * half.climb).is_sign_positive();
-        [sum / square, constant / sum].into_iter().find(is_here)
-    }
-
-    /// The ray's parameter at a point of the meridian that is on the line.
-    fn parameter(&self, half: f64, point: ArcPoint) -> f64 {
-        let dy = self.ray.direction.y;
-        if dy.abs() > self.speed {
-            (point.y - self.ray.origin.y) / dy
-        } else {
-            (half * self.q(point.square) - self.start) / self.speed
+            0.0
         }
     }
 }
 
-fn sorted(a: f64, b: f64) -> (f64, f64) {
-    if a < b { (a, b) } else { (b, a) }
+/// More crossings are not sorted out one by one.
+type Candidates = ArrayVec<Candidate, 16>;
+
+fn facet(index: usize) -> SurfaceId {
+    SurfaceId {
+        element: 0,
+        facet: index as u32,
+    }
 }
 
 impl Revolution<'_> {
+    /// `None` if the ray meets nothing because it isn't one.
+    fn line(&self, ray: &Ray) -> Option<Line> {
+        let (o, d) = (ray.origin, ray.direction);
+        (o.is_finite() && d.is_finite() && d != DVec3::ZERO).then(|| Line::new(ray, self.0))
+    }
+
+    /// The first arc of the smooth run that an arc belongs to.
+    fn run(&self, facet: u32) -> Option<&u32> {
+        self.0.smooth.get(facet as usize)
+    }
+
+    fn piece(&self, index: usize) -> Option<(&Arc, &Terms)> {
+        self.0.arcs.get(index).zip(self.0.terms.get(index))
+    }
+
+    /// Visits all crossings with a line, arc by arc.
+    #[inline]
+    fn meetings(&self, line: &Line, mut visit: impl FnMut(usize, (&Arc, &Terms), Meeting)) {
+        self.0.runs.visit(
+            |rect| line.meets(rect),
+            |index| {
+                if let Some(arc) = self.piece(index) {
+                    line.crossings(arc, &mut |meeting| visit(index, arc, meeting));
+                }
+            },
+        );
+    }
+
+    /// Lists all crossings with a line; `false` if they are too many.
+    #[inline]
+    fn candidates(&self, line: &Line, list: &mut Candidates) -> bool {
+        let mut fits = true;
+        self.meetings(line, |index, (arc, _), meeting| {
+            let candidate = Candidate {
+                t: line.about(arc, &meeting.place),
+                facet: index as u32,
+                meeting,
+                visible: arc.visible,
+            };
+            fits &= list.try_push(candidate).is_ok();
+        });
+        fits
+    }
+
+    /// Computes where a candidate is.
+    fn settle(&self, line: &Line, candidate: &mut Candidate) {
+        if let Some((arc, terms)) = self.piece(candidate.facet as usize)
+            && !candidate.is_exact()
+        {
+            let [s, t] = line.exactly(arc, terms, &candidate.meeting.place);
+            // The half has served its purpose.
+            candidate.meeting.place = Place::At { s, half: 0.0 };
+            candidate.t = [t, t];
+        }
+    }
+
+    /// Root identity, as [`snap`] has it.
+    fn snap_candidates(&self, ray: &Ray, line: &Line, from: SurfaceId, list: &mut Candidates) {
+        let size = self.bounds().size().max_element();
+        let mut nearest: Option<(usize, f64)> = None;
+        for (index, candidate) in list.iter_mut().enumerate() {
+            let is_farther = |t: f64| nearest.is_some_and(|(_, best)| best <= t);
+            let same_run = self.run(candidate.facet) == self.run(from.facet);
+            if !same_run || is_farther(candidate.least_distance()) {
+                continue;
+            }
+            self.settle(line, candidate);
+            let hit = candidate.hit(candidate.meeting.approach);
+            if !is_farther(hit.t.abs()) && near_the_start(ray, &hit, size, self.normal(ray, &hit)) {
+                nearest = Some((index, hit.t.abs()));
+            }
+        }
+        if let Some((index, _)) = nearest
+            && let Some(candidate) = list.get_mut(index)
+        {
+            candidate.t = [0.0; 2];
+        }
+    }
+
+    /// The first visible crossing in the range and behind the start. Crossings are computed only where it is not clear without that
+    /// which of them comes first.
+    fn first_of(
+        &self,
+        ray: &Ray,
+        line: &Line,
+        range: Interval,
+        from: Option<SurfaceId>,
+        list: &mut Candidates,
+    ) -> Option<PrimHit> {
+        if let Some(from) = from {
+            self.snap_candidates(ray, line, from, list);
+        }
+        let start = start_of(range, from);
+        let mut inside = false;
+        loop {
+            let order = |a: &Candidate, b: &Candidate| {
+                // Of those that may be at the same place, the ones that are not computed come first.
+                let rank = |c: &Candidate| (c.is_exact(), c.facet);
+                a.t[0]
+                    .total_cmp(&b.t[0])
+                    .then_with(|| rank(a).cmp(&rank(b)))
+            };
+            let (index, _) = list.iter().enumerate().min_by(|a, b| order(a.1, b.1))?;
+            let candidate = list.get_mut(index)?;
+            let [low, high] = candidate.t;
+            if low > range.max {
+                return None;
+            }
+            if !candidate.is_exact() && high > start {
+                self.settle(line, candidate);
+                continue;
+            }
+            inside = !inside;
+            let candidate = list.swap_remove(index);
+            if candidate.visible && range.accepts(high) && start < high && high.is_finite() {
+                // Entering goes against the outer side.
+                let approach = candidate.meeting.approach;
+                return Some(candidate.hit(if inside { -approach } else { approach }));
+            }
+        }
+    }
+
     pub(super) fn bounds(&self) -> Aabb {
         let Rect { min, max } = self.0.runs.bounds();
         let r = max.x.sqrt();
@@ -306,15 +228,13 @@ impl Revolution<'_> {
 
     /// The surface at a hit, with texture coordinates: `u` once around the axis, `v` as the arc says.
     pub(super) fn surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
+        let bare = self.bare_surface_at(ray, hit);
+        let Some(arc) = self.arc(hit) else {
+            return bare;
+        };
         let outward = Self::outward(ray, hit);
         let [s, _] = hit.uv;
-        let arc = self.arc(hit);
-        let (r, y) = arc.map_or((0.0, 0.0), |arc| (arc.radius(s), arc.y.at(s)));
-        let position = DVec3::new(outward.x * r, y, outward.y * r);
-        let extent = self.bounds().max_abs();
-        let normal = self.normal(ray, hit);
-        let bare = SurfacePoint::bare(position, point_error(position, extent, 32), normal);
-        let Some(arc) = arc else { return bare };
+        let r = arc.radius(s);
         let [from, to] = arc.v;
         let right = arc.right(s);
         // Along the curve, per unit of `v`.
@@ -332,6 +252,17 @@ impl Revolution<'_> {
             dpdv: DVec3::new(outward.x * along.x, along.y, outward.y * along.x),
             ..bare
         }
+    }
+
+    /// The surface at a hit without texture coordinates.
+    pub(super) fn bare_surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
+        let outward = Self::outward(ray, hit);
+        let [s, _] = hit.uv;
+        let arc = self.arc(hit);
+        let (r, y) = arc.map_or((0.0, 0.0), |arc| (arc.radius(s), arc.y.at(s)));
+        let position = DVec3::new(outward.x * r, y, outward.y * r);
+        let error = point_error(position, self.bounds().max_abs(), 32);
+        SurfacePoint::bare(position, error, self.normal(ray, hit))
     }
 
     /// Whether a line away from the axis crosses the meridian an odd number of times.
@@ -355,40 +286,21 @@ impl Revolution<'_> {
 
 impl WholeLine for Revolution<'_> {
     fn walk(&self, ray: &Ray, from: Option<SurfaceId>, list: &mut Crossings) {
-        let (o, d) = (ray.origin, ray.direction);
-        if !(o.is_finite() && d.is_finite())
-            || d == DVec3::ZERO
-            || self.bounds().clip(ray, Interval::LINE).is_none()
-        {
-            return;
-        }
-        let line = Line::new(ray);
-        self.0.runs.visit(
-            |rect| line.meets(rect),
-            |index| {
-                let Some(arc) = self.0.arcs.get(index) else {
-                    return;
-                };
-                line.roots(arc, &mut |s, half, rising| {
-                    let t = line.parameter(half, arc.at(s));
-                    // The slope of the value has the sign of the approach to the right side, on the other half the other one.
-                    let approach = if rising { half } else { -half };
-                    let surface = SurfaceId {
-                        element: 0,
-                        facet: index as u32,
-                    };
-                    let uv = [s, approach];
-                    let hit = PrimHit { t, surface, uv };
-                    let mut crossing = Crossing::new(hit, 0.0, Side::Inner);
-                    crossing.visible = arc.visible;
-                    list.list.push(crossing);
-                });
-            },
-        );
+        let Some(line) = self.line(ray) else { return };
+        self.meetings(&line, |index, (arc, terms), meeting| {
+            let [s, t] = line.exactly(arc, terms, &meeting.place);
+            let hit = PrimHit {
+                t,
+                surface: facet(index),
+                uv: [s, meeting.approach],
+            };
+            let mut crossing = Crossing::new(hit, 0.0, Side::Inner);
+            crossing.visible = arc.visible;
+            list.list.push(crossing);
+        });
         if let Some(from) = from {
-            let run = |facet: u32| self.0.smooth.get(facet as usize);
             let near = |hit: &PrimHit| {
-                (run(hit.surface.facet) == run(from.facet)).then(|| self.normal(ray, hit))
+                (self.run(hit.surface.facet) == self.run(from.facet)).then(|| self.normal(ray, hit))
             };
             let size = self.bounds().size().max_element();
             snap(&mut list.list, ray, size, near);
@@ -408,6 +320,102 @@ impl WholeLine for Revolution<'_> {
         list.list.retain(|crossing| crossing.hit.t.is_finite());
     }
 
+    fn first_hit(
+        &self,
+        ray: &Ray,
+        range: Interval,
+        from: Option<SurfaceId>,
+        scratch: &mut Scratch,
+    ) -> Option<PrimHit> {
+        let line = self.line(ray)?;
+        let mut candidates = Candidates::new();
+        if self.candidates(&line, &mut candidates) {
+            self.first_of(ray, &line, range, from, &mut candidates)
+        } else {
+            first_of_walk(self, ray, range, from, scratch)
+        }
+    }
+
+    /// What certainly is before or behind the range is not computed.
+    fn all_crossings(
+        &self,
+        ray: &Ray,
+        range: Interval,
+        from: Option<SurfaceId>,
+        scratch: &mut Scratch,
+        out: &mut Crossings,
+    ) {
+        let Some(line) = self.line(ray) else { return };
+        let mut candidates = Candidates::new();
+        let fits = self.candidates(&line, &mut candidates);
+        if let Some(from) = from
+            && fits
+        {
+            self.snap_candidates(ray, &line, from, &mut candidates);
+        }
+        let start = start_of(range, from);
+        let (mut inside, mut finite) = (false, true);
+        candidates.retain(|candidate| {
+            let [low, high] = candidate.t;
+            // Ranges may be empty: what is not before the start is behind it or not known.
+            if high > start && (low <= start || low <= range.max) {
+                self.settle(&line, candidate);
+            }
+            let [low, high] = candidate.t;
+            finite &= !candidate.is_exact() || low.is_finite();
+            inside ^= high <= start;
+            high > start && low <= range.max
+        });
+        if !(fits && finite) {
+            return crossings_of_walk(self, ray, range, from, scratch, out);
+        }
+        let place = |c: &Candidate| c.t[0];
+        candidates.sort_unstable_by(|a, b| {
+            let by_t = place(a).total_cmp(&place(b));
+            by_t.then_with(|| a.facet.cmp(&b.facet))
+        });
+        out.inside_at_start = inside;
+        for candidate in &candidates {
+            inside = !inside;
+            let approach = candidate.meeting.approach;
+            let hit = candidate.hit(if inside { -approach } else { approach });
+            let error = t_error(ray, hit.t, self.normal(ray, &hit), self.reach());
+            let side = if inside { Side::Enter } else { Side::Exit };
+            let mut crossing = Crossing::new(hit, error, side);
+            crossing.visible = candidate.visible;
+            out.list.push(crossing);
+        }
+    }
+
+    /// A crossing that certainly is in the range need not be computed.
+    fn any_hit(
+        &self,
+        ray: &Ray,
+        range: Interval,
+        from: Option<SurfaceId>,
+        scratch: &mut Scratch,
+    ) -> bool {
+        let Some(line) = self.line(ray) else {
+            return false;
+        };
+        let mut candidates = Candidates::new();
+        if !self.candidates(&line, &mut candidates) {
+            return first_of_walk(self, ray, range, from, scratch).is_some();
+        }
+        let start = start_of(range, from);
+        let start_run = from.and_then(|from| self.run(from.facet));
+        let counts = |c: &Candidate| {
+            let [low, high] = c.t;
+            // The nearest of the run that the ray starts on is its start.
+            let may_be_start = start_run.is_some() && start_run == self.run(c.facet);
+            c.visible && start < low && high <= range.max && high.is_finite() && !may_be_start
+        };
+        candidates.iter().any(counts)
+            || self
+                .first_of(ray, &line, range, from, &mut candidates)
+                .is_some()
+    }
+
     fn normal(&self, ray: &Ray, hit: &PrimHit) -> DVec3 {
         let Some(arc) = self.arc(hit) else {
             return DVec3::Y; // A hit of another shape.
@@ -420,5 +428,54 @@ impl WholeLine for Revolution<'_> {
 
     fn reach(&self) -> f64 {
         self.bounds().max_abs()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::spans::tests::first_hits_are_those_of_the_walk;
+    use super::*;
+    use crate::{Lathe, Sor, Spline};
+
+    #[test]
+    fn the_first_hit_needs_no_others() {
+        let points = |list: &[[f64; 2]]| list.iter().map(|p| DVec2::from_array(*p)).collect();
+        let vase: Vec<DVec2> = points(&[
+            [0.0, 0.1],
+            [0.0, 0.0],
+            [0.5, 0.0],
+            [0.9, 0.5],
+            [0.3, 1.1],
+            [0.4, 1.3],
+            [0.0, 1.2],
+            [0.0, 1.0],
+        ]);
+        for spline in [Spline::Linear, Spline::Quadratic, Spline::Cubic] {
+            let lathe = Lathe::try_new(spline, &vase).unwrap();
+            first_hits_are_those_of_the_walk(&Revolution(&lathe.meridian));
+        }
+        let sor: Vec<DVec2> = points(&[
+            [0.2, -1.0],
+            [0.6, -0.8],
+            [0.4, -0.1],
+            [0.8, 0.3],
+            [0.3, 0.8],
+            [0.1, 1.0],
+        ]);
+        let sor = Sor::try_new(&sor, true).unwrap();
+        first_hits_are_those_of_the_walk(&Revolution(&sor.meridian));
+    }
+
+    #[test]
+    fn many_crossings_are_sorted() {
+        // A screw without a pitch: a line along it crosses far more arcs than there are candidates.
+        let tooth = |k: u32| DVec2::new(1.0 + 0.1 * f64::from(k % 2), 0.02 * f64::from(k));
+        let lathe = Lathe::try_new(Spline::Linear, &(0..100).map(tooth).collect::<Vec<_>>());
+        let lathe = lathe.unwrap();
+        first_hits_are_those_of_the_walk(&Revolution(&lathe.meridian));
+        let along = Ray::new(DVec3::new(1.05, -1.0, 0.0), DVec3::Y);
+        let mut list = Crossings::default();
+        Revolution(&lathe.meridian).walk(&along, None, &mut list);
+        assert!(list.list.len() > 90, "{}", list.list.len());
     }
 }

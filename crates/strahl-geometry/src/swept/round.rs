@@ -63,8 +63,21 @@ impl Marks {
 
     fn sorted(&mut self) -> &[f64] {
         let list = self.list.get_mut(..self.count).unwrap_or_default();
-        list.sort_unstable_by(f64::total_cmp);
+        insertion_sort(list);
         list
+    }
+}
+
+/// Sorts a few numbers.
+fn insertion_sort(list: &mut [f64]) {
+    for end in 1..list.len() {
+        for k in (0..end).rev() {
+            let (a, b) = (list[k], list[k + 1]);
+            if a <= b {
+                break;
+            }
+            (list[k], list[k + 1]) = (b, a);
+        }
     }
 }
 
@@ -207,7 +220,10 @@ impl Segment {
 }
 
 /// The product of two polynomials in Bernstein form.
-fn product<const M: usize, const N: usize, const K: usize>(a: &[f64; M], b: &[f64; N]) -> [f64; K] {
+pub(super) fn product<const M: usize, const N: usize, const K: usize>(
+    a: &[f64; M],
+    b: &[f64; N],
+) -> [f64; K] {
     let mut out = [0.0; K];
     for (i, x) in a.iter().enumerate() {
         for (j, y) in b.iter().enumerate() {
@@ -339,6 +355,11 @@ fn mark_line(from: DVec4, to: DVec4, line: &Line, marks: &mut Marks) -> bool {
     let a = step.w * step.w - drift.dot(drift);
     let b = from.w * step.w - across.dot(drift);
     let c = from.w * from.w - across.dot(across);
+    // In Bernstein form: c, c + b, c + 2 b + a. The line misses all spheres where none is positive.
+    let error = gamma(32) * (from.w * from.w + aside.dot(aside) + step.dot(step));
+    if c < -error && c + b < -error && c + 2.0 * b + a < -error {
+        return false;
+    }
     let bend = b * b - a * c;
     if let Some((s, t)) = quadratic(a, b, c, bend) {
         marks.push(s);

@@ -40,8 +40,22 @@ macro_rules! turned_about_the_axis {
                 Revolution(&self.meridian).first_hit(ray, range, from, scratch)
             }
 
+            fn any_hit(
+                &self,
+                ray: &Ray,
+                range: Interval,
+                from: Option<SurfaceId>,
+                scratch: &mut Scratch,
+            ) -> bool {
+                Revolution(&self.meridian).any_hit(ray, range, from, scratch)
+            }
+
             fn surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
                 Revolution(&self.meridian).surface_at(ray, hit)
+            }
+
+            fn bare_surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
+                Revolution(&self.meridian).bare_surface_at(ray, hit)
             }
 
             fn texture_uv(&self, _hit: &PrimHit, uv: DVec2) -> Option<DVec2> {

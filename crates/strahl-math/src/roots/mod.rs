@@ -4,11 +4,14 @@
 //! * [`Bernstein`]: all roots of a polynomial of any small degree on an interval, by sign variations in Bernstein
 //!   form; no allocation, ascending, with rounding errors accounted for.
 //! * [`find_root`]: the root of any function in a bracket, to the last bit; [`find_crossing`]: the same without derivatives.
+//! * [`newton`]: that of a smooth function, with fewer calls.
 
 mod bernstein;
 mod bracket;
+mod newton;
 mod quadratic;
 
 pub use bernstein::{Bernstein, Isolated, RootCount, Roots, Window};
 pub use bracket::{find_crossing, find_root};
+pub use newton::newton;
 pub use quadratic::quadratic;
