@@ -176,7 +176,7 @@ pub struct LightTerm {
     /// n·l.
     pub n_dot_l: f64,
     /// The shadow ray, for an area light the one to its centre; `None` if none was sent because the surface faces away or
-    /// shows no light of lights, or the light does not shine here or casts no shadows.
+    /// is one on which no light source shows, or the light does not shine here or casts no shadows.
     pub shadow_ray: Option<Ray>,
     /// How many shadow rays were traced: 1, or for area lights as many as needed.
     pub shadow_rays: u32,

@@ -76,8 +76,8 @@ pub(crate) struct Surface<'s> {
     pub(crate) thin: bool,
     /// Which lights shine on it.
     pub(crate) lit: Lit,
-    /// Whether it can show the light of lights: otherwise diffuse reflection and highlights are black everywhere, and shadow rays not
-    /// worth tracing. Sky spheres seldom show it.
+    /// Whether light sources can show on it. If not, its diffuse reflection and its highlights are black, so that it needs no shadow
+    /// rays: most sky spheres are such.
     pub(crate) shows_lights: bool,
     pub(crate) eta_1: f64,
     pub(crate) eta_2: f64,

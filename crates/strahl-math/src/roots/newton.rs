@@ -6,8 +6,8 @@ const SMALLEST: f64 = 0.25 * f64::EPSILON;
 ///
 /// `function` returns the value and Newton's step, which is the value divided by the slope; `rising` tells that the function is
 /// negative at `low`; `guess` is the first guess, the middle is taken if it is not inside. In contrast to [`super::find_root`], the
-/// last step is not verified: Newton's method converges quadratically, so the next step will be the smaller part of this one
-/// that this one is of the one before, squared, and if that is less than a rounding error it isn't computed. This saves a call or two, and never
+/// last step is not verified: Newton's method converges quadratically, so after steps of the sizes `a` and `b` the next one has about the
+/// size `b (b / a)²`, and where that is less than a rounding error it is not computed. This saves a call or two, and never
 /// takes rounding errors for progress. A step that leaves the interval, or is not half the one before, is replaced by halving
 /// the interval.
 #[inline]
