@@ -4,6 +4,9 @@
 //! software implementations instead: the `libm` crate, a port of musl's, and tables of our own for powers.
 
 mod power;
+mod sine;
+
+pub use sine::sines;
 
 /// Sine of `x` radians.
 pub fn sin(x: f64) -> f64 {

@@ -1,0 +1,152 @@
+//! The sine of four numbers at once, with the bits of the `libm` crate.
+//!
+//! Angles are reduced by the multiple of π/2 that is nearest to them (Cody and Waite 1980): π/2 is the sum of a number of 33 bits, whose
+//! product with the multiple is exact, and a rest. The polynomials and constants are those of FreeBSD's msun, which `libm` is a port of.
+
+#![allow(
+    clippy::excessive_precision,
+    clippy::unreadable_literal,
+    clippy::approx_constant,
+    reason = "the constants have the digits of msun"
+)]
+
+use strahl_simd::Isa;
+
+/// Adding and subtracting it rounds to a whole number.
+const ROUND: f64 = 1.5 / f64::EPSILON;
+const TWO_BY_PI: f64 = 6.36619772367581382433e-01;
+/// The first 33 bits of π/2.
+const HALF_PI: f64 = 1.57079632673412561417e+00;
+/// π/2 without them.
+const HALF_PI_REST: f64 = 6.07710050650619224932e-11;
+
+const SIN: [f64; 6] = [
+    -1.66666666666666324348e-01,
+    8.33333333332248946124e-03,
+    -1.98412698298579493134e-04,
+    2.75573137070700676789e-06,
+    -2.50507602534068634195e-08,
+    1.58969099521155010221e-10,
+];
+const COS: [f64; 6] = [
+    4.16666666666666019037e-02,
+    -1.38888888888741095749e-03,
+    2.48015872894767294178e-05,
+    -2.75573143513906633035e-07,
+    2.08757232129817482790e-09,
+    -1.13596475577881948265e-11,
+];
+
+/// The sines of four angles in radians, each with the bits of [`super::sin`].
+#[inline(always)]
+pub fn sines<I: Isa>(isa: I, x: I::F64x4) -> I::F64x4 {
+    let n = |number: f64| isa.splat(number);
+    let multiple = isa.sub(isa.add(isa.mul(x, n(TWO_BY_PI)), n(ROUND)), n(ROUND));
+    let exact = isa.sub(x, isa.mul(multiple, n(HALF_PI)));
+    let rest = isa.mul(multiple, n(HALF_PI_REST));
+    let y = isa.sub(exact, rest);
+    let lost = isa.sub(isa.sub(exact, y), rest);
+    let (sin, cos) = (sin_near_zero(isa, y, lost), cos_near_zero(isa, y, lost));
+    // The quadrant, from -2 to 2; -2 is 2.
+    let turns = isa.sub(isa.add(isa.mul(multiple, n(0.25)), n(ROUND)), n(ROUND));
+    let quadrant = isa.sub(multiple, isa.mul(turns, n(4.0)));
+    let from_one = isa.abs(isa.sub(isa.abs(quadrant), n(1.0)));
+    let value = isa.choose_le(from_one, n(0.5), cos, sin);
+    let negative = isa.mul(value, n(-1.0));
+    let value = isa.choose_le(quadrant, n(-0.5), negative, value);
+    let mut value = isa.choose_le(n(1.5), quadrant, negative, value);
+    let (size, part) = (isa.abs(x), isa.abs(y));
+    // `libm` goes another way where angles are small or large, lie between two multiples, or lose bits because they lie at one.
+    let usual = isa.le(n(0.8), size)
+        & isa.le(size, n(1e6))
+        & isa.le(part, n(0.7853))
+        & isa.le(isa.mul(size, n(1.0 / 8192.0)), part);
+    if usual != 0b1111 {
+        let (angles, mut values) = (isa.store(x), isa.store(value));
+        for lane in 0..4 {
+            if usual >> lane & 1 == 0 {
+                values[lane] = super::sin(angles[lane]);
+            }
+        }
+        value = isa.load(&values);
+    }
+    value
+}
+
+/// The sine of `y + lost`, `|y|` at most π/4.
+#[inline(always)]
+fn sin_near_zero<I: Isa>(isa: I, y: I::F64x4, lost: I::F64x4) -> I::F64x4 {
+    let n = |number: f64| isa.splat(number);
+    let z = isa.mul(y, y);
+    let w = isa.mul(z, z);
+    let high = isa.mul(isa.mul(z, w), isa.add(n(SIN[4]), isa.mul(z, n(SIN[5]))));
+    let low = isa.mul(z, isa.add(n(SIN[2]), isa.mul(z, n(SIN[3]))));
+    let r = isa.add(isa.add(n(SIN[1]), low), high);
+    let v = isa.mul(z, y);
+    let inner = isa.sub(isa.mul(n(0.5), lost), isa.mul(v, r));
+    let inner = isa.sub(isa.mul(z, inner), lost);
+    isa.sub(y, isa.sub(inner, isa.mul(v, n(SIN[0]))))
+}
+
+/// The cosine of `y + lost`, `|y|` at most π/4.
+#[inline(always)]
+fn cos_near_zero<I: Isa>(isa: I, y: I::F64x4, lost: I::F64x4) -> I::F64x4 {
+    let n = |number: f64| isa.splat(number);
+    let z = isa.mul(y, y);
+    let w = isa.mul(z, z);
+    let part = |a: f64, b: f64, c: f64| {
+        let inner = isa.add(n(b), isa.mul(z, n(c)));
+        isa.add(n(a), isa.mul(z, inner))
+    };
+    let low = isa.mul(z, part(COS[0], COS[1], COS[2]));
+    let high = isa.mul(isa.mul(w, w), part(COS[3], COS[4], COS[5]));
+    let r = isa.add(low, high);
+    let half = isa.mul(n(0.5), z);
+    let w = isa.sub(n(1.0), half);
+    let rounded = isa.sub(isa.sub(n(1.0), w), half);
+    let small = isa.sub(isa.mul(z, r), isa.mul(y, lost));
+    isa.add(w, isa.add(rounded, small))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use strahl_simd::{Simd, dispatch};
+
+    fn four(simd: Simd, x: [f64; 4]) -> [f64; 4] {
+        dispatch!(simd, isa => isa.store(sines(isa, isa.load(&x))))
+    }
+
+    #[test]
+    fn sines_have_the_bits_of_libm() {
+        let mut angles = vec![0.0, -0.0, 1e-300, 1e7, -1e22, f64::INFINITY, f64::NAN];
+        // Around the multiples of an eighth of a turn, where quadrants change and bits are lost.
+        for eighth in -40..=40 {
+            let angle = f64::from(eighth) * std::f64::consts::FRAC_PI_4;
+            for power in 8..56 {
+                let near = 1.0 + (-f64::from(power)).exp2();
+                angles.extend([angle, angle * near, angle / near]);
+            }
+        }
+        let mut state = 1u64;
+        for n in 0..40_000 {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            let unit = (state >> 11) as f64 / (1u64 << 53) as f64 - 0.5;
+            angles.push(unit * f64::from(1 << (n % 24)));
+        }
+        for simd in Simd::available() {
+            for four_angles in angles.chunks(4) {
+                let mut x = [0.7; 4];
+                x[..four_angles.len()].copy_from_slice(four_angles);
+                for (angle, sine) in x.into_iter().zip(four(simd, x)) {
+                    let expected = super::super::sin(angle);
+                    let is_same =
+                        sine.to_bits() == expected.to_bits() || sine.is_nan() && expected.is_nan();
+                    assert!(is_same, "sin {angle}: {sine} and not {expected} ({simd:?})");
+                }
+            }
+        }
+    }
+}
