@@ -47,7 +47,7 @@ pub fn sines<I: Isa>(isa: I, x: I::F64x4) -> I::F64x4 {
     let y = isa.sub(exact, rest);
     let lost = isa.sub(isa.sub(exact, y), rest);
     let (sin, cos) = (sin_near_zero(isa, y, lost), cos_near_zero(isa, y, lost));
-    // The quadrant, from -2 to 2; -2 is 2.
+    // The quadrant, from -2 to 2; -2 and 2 are the same.
     let turns = isa.sub(isa.add(isa.mul(multiple, n(0.25)), n(ROUND)), n(ROUND));
     let quadrant = isa.sub(multiple, isa.mul(turns, n(4.0)));
     let from_one = isa.abs(isa.sub(isa.abs(quadrant), n(1.0)));
@@ -56,7 +56,9 @@ pub fn sines<I: Isa>(isa: I, x: I::F64x4) -> I::F64x4 {
     let value = isa.choose_le(quadrant, n(-0.5), negative, value);
     let mut value = isa.choose_le(n(1.5), quadrant, negative, value);
     let (size, part) = (isa.abs(x), isa.abs(y));
-    // `libm` goes another way where angles are small or large, lie between two multiples, or lose bits because they lie at one.
+    // `libm` does something else where angles are small (below π/4) or large (from 2²⁰ π/2), where they lie in the middle between two multiples
+    // (it may take the other one), and where they lie so close to a multiple that bits are lost (16 of them). The bounds are a little
+    // narrower than its own.
     let usual = isa.le(n(0.8), size)
         & isa.le(size, n(1e6))
         & isa.le(part, n(0.7853))
@@ -94,12 +96,11 @@ fn cos_near_zero<I: Isa>(isa: I, y: I::F64x4, lost: I::F64x4) -> I::F64x4 {
     let n = |number: f64| isa.splat(number);
     let z = isa.mul(y, y);
     let w = isa.mul(z, z);
-    let part = |a: f64, b: f64, c: f64| {
-        let inner = isa.add(n(b), isa.mul(z, n(c)));
-        isa.add(n(a), isa.mul(z, inner))
-    };
-    let low = isa.mul(z, part(COS[0], COS[1], COS[2]));
-    let high = isa.mul(isa.mul(w, w), part(COS[3], COS[4], COS[5]));
+    let low = isa.add(n(COS[1]), isa.mul(z, n(COS[2])));
+    let low = isa.mul(z, isa.add(n(COS[0]), isa.mul(z, low)));
+    let high = isa.add(n(COS[4]), isa.mul(z, n(COS[5])));
+    let high = isa.add(n(COS[3]), isa.mul(z, high));
+    let high = isa.mul(isa.mul(w, w), high);
     let r = isa.add(low, high);
     let half = isa.mul(n(0.5), z);
     let w = isa.sub(n(1.0), half);

@@ -39,18 +39,22 @@ impl CrackleMetric {
         }
     }
 
-    /// The sum over coordinates and offset that [`CrackleMetric::distance_of`] converts to a distance. It grows with the
-    /// distance; for non-positive powers it is the distance itself.
+    /// The sum over coordinates and offset that [`CrackleMetric::distance_of`] converts to a distance. As in POV-Ray (measured) the points
+    /// with the smallest sums count as the nearest, also for negative powers, where they are the farthest; and the offset keeps its sign, so
+    /// that its power is below zero or not a number where it is negative and the power is odd or broken.
     #[inline]
     fn measure(self, v: DVec3, offset: f64) -> f64 {
+        self.part(v.x) + self.part(v.y) + self.part(v.z) + self.rest(offset)
+    }
+
+    /// The contribution of the offset.
+    #[inline]
+    fn rest(self, offset: f64) -> f64 {
         match self {
-            Self::Manhattan => v.x.abs() + v.y.abs() + v.z.abs() + offset,
-            Self::Euclidean => v.length_squared() + offset * offset,
-            Self::Power(m) => {
-                let power = |x: f64| det::pow(x.abs(), m);
-                let sum = power(v.x) + power(v.y) + power(v.z) + power(offset);
-                if m > 0.0 { sum } else { det::pow(sum, 1.0 / m) }
-            }
+            Self::Manhattan => offset,
+            Self::Euclidean => offset * offset,
+            Self::Power(_) if offset == 0.0 => 0.0,
+            Self::Power(m) => det::pow(offset, m),
         }
     }
 
@@ -58,8 +62,7 @@ impl CrackleMetric {
         match self {
             Self::Manhattan => measure,
             Self::Euclidean => measure.sqrt(),
-            Self::Power(m) if m > 0.0 => det::pow(measure, 1.0 / m),
-            Self::Power(_) => measure,
+            Self::Power(m) => det::pow(measure, 1.0 / m),
         }
     }
 
@@ -73,7 +76,7 @@ impl CrackleMetric {
         }
     }
 
-    /// Whether larger coordinates never give a smaller distance.
+    /// Whether larger coordinates never give a smaller measure.
     fn is_monotone(self) -> bool {
         match self {
             Self::Manhattan | Self::Euclidean => true,
@@ -148,16 +151,17 @@ impl Crackle {
         if self.solid {
             return noise(nearest.center, generator);
         }
-        let mut distances = DVec3::ZERO;
-        for (i, measure) in nearest
-            .measures
-            .into_iter()
-            .enumerate()
+        let used = nearest.measures.into_iter().zip(self.form.to_array());
+        let value = used
             .take(self.counting())
-        {
-            distances[i] = self.metric.distance_of(measure);
-        }
-        distances.dot(self.form).clamp(0.0, 1.0)
+            .map(|(measure, factor)| match measure < f64::INFINITY {
+                true => self.metric.distance_of(measure) * factor,
+                // No point was nearer: the measures are no numbers.
+                false => f64::NAN,
+            })
+            .fold(0.0, |sum, part| sum + part);
+        // As in POV-Ray (measured) a distance that is no number gives 0.
+        if value > 0.0 { value.min(1.0) } else { 0.0 }
     }
 
     /// How many of the nearest points matter.
@@ -191,13 +195,13 @@ impl Crackle {
             ]
         };
         let gaps = [gaps(fraction.x), gaps(fraction.y), gaps(fraction.z)];
-        let rest = metric.measure(DVec3::ZERO, self.offset);
+        let rest = metric.rest(self.offset);
         let last = self.counting() - 1;
-        // Rounding errors must not make a cube appear farther away than it is.
-        let slack = if metric.is_monotone() {
-            1.0 - 1e-12
-        } else {
-            0.0
+        let is_monotone = metric.is_monotone();
+        // The least measure of a point of a cube; rounding errors must not make a cube appear farther away than it is.
+        let least = |gap: f64| match is_monotone {
+            true => gap * (1.0 - 1e-12) + rest,
+            false => f64::NEG_INFINITY,
         };
         // The neighbours are sorted for a point in the lower half along each axis, otherwise they are mirrored.
         let signs = fraction.to_array().map(|f| if f > 0.5 { -1 } else { 1 });
@@ -206,7 +210,7 @@ impl Crackle {
             let [i, j, k] = [d[0] * signs[0], d[1] * signs[1], d[2] * signs[2]];
             let gap =
                 gaps[0][(i + 2) as usize] + gaps[1][(j + 2) as usize] + gaps[2][(k + 2) as usize];
-            if (gap + rest) * slack > nearest.measures[last] {
+            if least(gap) > nearest.measures[last] {
                 return;
             }
             let cell = [
@@ -232,7 +236,7 @@ impl Crackle {
         let smaller = |a: f64, b: f64| if a < b { a } else { b };
         let outer = |g: &[f64; 5]| smaller(g[0], g[4]);
         let outer = smaller(smaller(outer(&gaps[0]), outer(&gaps[1])), outer(&gaps[2]));
-        if (outer + rest) * slack > nearest.measures[last] {
+        if least(outer) > nearest.measures[last] {
             return nearest;
         }
         for d in &NEIGHBOURS[INNER..] {
@@ -243,13 +247,13 @@ impl Crackle {
 
     /// The nearest points of the 3³ cubes around a cube, by a metric without powers.
     fn nearest_inside(&self, metric: CrackleMetric, p: DVec3, home: [i64; 3]) -> Nearest {
-        let offset = metric.part(self.offset);
+        let rest = metric.rest(self.offset);
         Points::around(home, |points| {
             let (smallest, measures) = match metric {
                 CrackleMetric::Manhattan => {
-                    dispatch!(Simd::best(), isa => smallest::<_, true>(isa, points, p, offset))
+                    dispatch!(Simd::best(), isa => smallest::<_, true>(isa, points, p, rest))
                 }
-                _ => dispatch!(Simd::best(), isa => smallest::<_, false>(isa, points, p, offset)),
+                _ => dispatch!(Simd::best(), isa => smallest::<_, false>(isa, points, p, rest)),
             };
             let mut nearest = Nearest::none(p);
             for measure in smallest.into_iter().flatten() {
@@ -267,16 +271,17 @@ impl Crackle {
     }
 }
 
-/// The three smallest measures of each lane from `p` to the points, and all measures; `MANHATTAN` or Euclidean.
+/// The three smallest measures of each lane from `p` to the points, and all measures, by the Manhattan metric or the Euclidean one; `rest` is
+/// the contribution of the offset.
 #[inline(always)]
 fn smallest<I: Isa, const MANHATTAN: bool>(
     isa: I,
     points: &Points,
     p: DVec3,
-    offset: f64,
+    rest: f64,
 ) -> ([[f64; 4]; 3], [[f64; 4]; CHUNKS]) {
     let p = [isa.splat(p.x), isa.splat(p.y), isa.splat(p.z)];
-    let offset = isa.splat(offset);
+    let rest = isa.splat(rest);
     let far = isa.splat(f64::INFINITY);
     let (mut first, mut second, mut third) = (far, far, far);
     let mut measures = [[0.0; 4]; CHUNKS];
@@ -286,7 +291,7 @@ fn smallest<I: Isa, const MANHATTAN: bool>(
             let d = isa.sub(p[axis], isa.load(&points.places[axis][chunk]));
             parts[axis] = if MANHATTAN { isa.abs(d) } else { isa.mul(d, d) };
         }
-        let measure = isa.add(isa.add(isa.add(parts[0], parts[1]), parts[2]), offset);
+        let measure = isa.add(isa.add(isa.add(parts[0], parts[1]), parts[2]), rest);
         *measures = isa.store(measure);
         let larger = isa.max(measure, first);
         first = isa.min(measure, first);
@@ -353,10 +358,10 @@ impl Points {
             static LAST: RefCell<[Points; SLOTS]> = const { RefCell::new([Points::NONE; SLOTS]) };
         }
         let [i, j, k] = home;
-        let slot = i
+        let mixed = i
             .wrapping_add(j.wrapping_mul(3))
-            .wrapping_add(k.wrapping_mul(5))
-            & 7;
+            .wrapping_add(k.wrapping_mul(5));
+        let slot = mixed.rem_euclid(SLOTS as i64);
         LAST.with_borrow_mut(|slots| {
             let points = &mut slots[slot as usize];
             if points.home != home {
@@ -401,13 +406,19 @@ mod tests {
                 let h = lattice_hash(cell);
                 let place = DVec3::from_array(cell.map(|c| c as f64))
                     + DVec3::new(uniform(h), uniform(h + 1), uniform(h + 2));
-                let metric = crackle.metric;
-                metric.distance_of(metric.measure(p - place, crackle.offset))
+                crackle.metric.measure(p - place, crackle.offset)
             })
             .collect();
         all.sort_by(f64::total_cmp);
+        let [a, b, c] = [0, 1, 2].map(|n| crackle.metric.distance_of(all[n]));
         let form = crackle.form;
-        (all[0] * form.x + all[1] * form.y + all[2] * form.z).clamp(0.0, 1.0)
+        let used = |f: f64, d: f64| if f == 0.0 { 0.0 } else { d * f };
+        let value = used(form.x, a) + used(form.y, b) + used(form.z, c);
+        if value.is_nan() {
+            0.0
+        } else {
+            value.clamp(0.0, 1.0)
+        }
     }
 
     #[test]
@@ -418,19 +429,41 @@ mod tests {
                 DVec3::X,
                 DVec3::new(0.3, -0.2, 0.4),
             ] {
-                let crackle = Crackle {
-                    form,
-                    metric: CrackleMetric::from_number(metric),
-                    offset: 0.25,
-                    solid: false,
-                };
-                for i in 0..200 {
-                    let t = f64::from(i);
-                    let p = DVec3::new(t * 0.731 - 40.0, t * 0.317 + 3.0, 9.0 - t * 0.613);
-                    let value = crackle.value(p, NoiseGenerator::RangeCorrected);
-                    assert_eq!(value, slowly(&crackle, p), "{metric} {form} {p}");
+                for offset in [0.25, 0.0, -0.25] {
+                    let crackle = Crackle {
+                        form,
+                        metric: CrackleMetric::from_number(metric),
+                        offset,
+                        solid: false,
+                    };
+                    for i in 0..200 {
+                        let t = f64::from(i);
+                        let p = DVec3::new(t * 0.731 - 40.0, t * 0.317 + 3.0, 9.0 - t * 0.613);
+                        let value = crackle.value(p, NoiseGenerator::RangeCorrected);
+                        let expected = slowly(&crackle, p);
+                        assert_eq!(value, expected, "{metric} {offset} {form} {p}");
+                    }
                 }
             }
+        }
+    }
+
+    #[test]
+    fn all_instruction_sets_find_the_same_points() {
+        for i in 0..100 {
+            let t = f64::from(i);
+            let p = DVec3::new(t * 0.731 - 40.0, t * 0.317 + 3.0, 9.0 - t * 0.613);
+            Points::around(cell(p), |points| {
+                let found = |simd| {
+                    let squares =
+                        dispatch!(simd, isa => smallest::<_, false>(isa, points, p, 0.25));
+                    let sums = dispatch!(simd, isa => smallest::<_, true>(isa, points, p, -0.5));
+                    (squares, sums)
+                };
+                for simd in Simd::available() {
+                    assert_eq!(found(simd), found(Simd::best()), "{p}, {}", simd.level());
+                }
+            });
         }
     }
 

@@ -63,7 +63,7 @@ fn lanes(sources: u32, chunk: u32) -> usize {
     (sources - 4 * chunk).min(4) as usize
 }
 
-/// What the circles around a source have in common.
+/// How the circles around the sources differ.
 #[derive(Clone, Copy, PartialEq)]
 enum Water {
     /// All circles have one frequency and one height.
@@ -82,18 +82,15 @@ fn circles<I: Isa>(
     modifiers: &Modifiers,
 ) -> (I::F64x4, [I::F64x4; 3]) {
     let frequency = isa.splat(modifiers.frequency);
-    let from_source = |axis: usize| {
-        let lanes = isa.load(&sources.position[axis]);
-        isa.sub(isa.splat(p[axis]), lanes)
-    };
-    let [x, y, z] = [from_source(0), from_source(1), from_source(2)];
+    let mut from_source = [isa.splat(p.x), isa.splat(p.y), isa.splat(p.z)];
+    for (d, position) in from_source.iter_mut().zip(&sources.position) {
+        *d = isa.sub(*d, isa.load(position));
+    }
+    let [x, y, z] = from_source;
     let squares = isa.add(isa.add(isa.mul(x, x), isa.mul(y, y)), isa.mul(z, z));
     let length = isa.sqrt(squares);
     let inverse = isa.div(isa.splat(1.0), length);
-    let unit = |v: I::F64x4| {
-        let divided = isa.mul(v, inverse);
-        isa.choose_le(inverse, isa.splat(f64::MAX), divided, isa.splat(0.0))
-    };
+    let inverse = isa.choose_le(inverse, isa.splat(f64::MAX), inverse, isa.splat(0.0));
     let own = isa.load(&sources.frequency);
     let mut angle = isa.mul(length, frequency);
     if water == Water::Waves {
@@ -104,12 +101,17 @@ fn circles<I: Isa>(
     if water == Water::Waves {
         height = isa.div(height, own);
     }
-    (height, [unit(x), unit(y), unit(z)])
+    let unit = [
+        isa.mul(x, inverse),
+        isa.mul(y, inverse),
+        isa.mul(z, inverse),
+    ];
+    (height, unit)
 }
 
 /// The sum of the heights of the circles around the sources.
-fn height(water: Water, p: DVec3, sources: u32, modifiers: &Modifiers) -> f64 {
-    dispatch!(Simd::best(), isa => {
+fn height(simd: Simd, water: Water, p: DVec3, sources: u32, modifiers: &Modifiers) -> f64 {
+    dispatch!(simd, isa => {
         let mut sum = 0.0;
         for chunk in 0..sources.div_ceil(4) {
             let (height, _) = circles(isa, water, &Sources::get(chunk), p, modifiers);
@@ -122,8 +124,8 @@ fn height(water: Water, p: DVec3, sources: u32, modifiers: &Modifiers) -> f64 {
 }
 
 /// The mean over the sources of the unit vector from the source times the height of its circle.
-fn tilt(water: Water, p: DVec3, sources: u32, modifiers: &Modifiers) -> DVec3 {
-    let sum = dispatch!(Simd::best(), isa => {
+fn tilt(simd: Simd, water: Water, p: DVec3, sources: u32, modifiers: &Modifiers) -> DVec3 {
+    let sum = dispatch!(simd, isa => {
         let zero = isa.splat(0.0);
         let mut sum = zero;
         for chunk in 0..sources.div_ceil(4) {
@@ -139,23 +141,23 @@ fn tilt(water: Water, p: DVec3, sources: u32, modifiers: &Modifiers) -> DVec3 {
 }
 
 pub(super) fn ripples(p: DVec3, sources: u32, modifiers: &Modifiers) -> f64 {
-    let sum = height(Water::Ripples, p, sources, modifiers);
+    let sum = height(Simd::best(), Water::Ripples, p, sources, modifiers);
     0.5 * (1.0 + sum / f64::from(sources.max(1)))
 }
 
 pub(super) fn waves(p: DVec3, sources: u32, modifiers: &Modifiers) -> f64 {
-    let sum = height(Water::Waves, p, sources, modifiers);
+    let sum = height(Simd::best(), Water::Waves, p, sources, modifiers);
     0.5 + 0.2 * sum / f64::from(sources.max(1))
 }
 
 /// The perturbation of a normal by ripples: away from the sources, by the wave's slope.
 pub(crate) fn ripples_tilt(p: DVec3, sources: u32, modifiers: &Modifiers) -> DVec3 {
-    tilt(Water::Ripples, p, sources, modifiers)
+    tilt(Simd::best(), Water::Ripples, p, sources, modifiers)
 }
 
 /// The perturbation of a normal by waves.
 pub(crate) fn waves_tilt(p: DVec3, sources: u32, modifiers: &Modifiers) -> DVec3 {
-    tilt(Water::Waves, p, sources, modifiers)
+    tilt(Simd::best(), Water::Waves, p, sources, modifiers)
 }
 
 #[cfg(test)]
@@ -197,8 +199,13 @@ mod tests {
                 });
                 for p in at_a_source.chain(others) {
                     let (sum, push) = slowly(water, p, sources, &modifiers);
-                    assert_eq!(height(water, p, sources, &modifiers), sum, "{p}");
-                    assert_eq!(tilt(water, p, sources, &modifiers), push, "{p}");
+                    for simd in Simd::available() {
+                        let level = simd.level();
+                        let height = height(simd, water, p, sources, &modifiers);
+                        assert_eq!(height, sum, "{p}, {level}");
+                        let tilt = tilt(simd, water, p, sources, &modifiers);
+                        assert_eq!(tilt, push, "{p}, {level}");
+                    }
                 }
             }
         }

@@ -114,5 +114,28 @@ pub(super) fn built() -> Vec<Built> {
                 Modifiers::default(),
             ),
         ),
+        (
+            "crackle form <.5,.2,0> metric 1 offset -.25",
+            field(
+                Pattern::Crackle(Crackle {
+                    form: DVec3::new(0.5, 0.2, 0.0),
+                    metric: CrackleMetric::from_number(1.0),
+                    offset: -0.25,
+                    ..Crackle::default()
+                }),
+                Modifiers::default(),
+            ),
+        ),
+        (
+            "crackle metric 3 offset -.1",
+            field(
+                Pattern::Crackle(Crackle {
+                    metric: CrackleMetric::from_number(3.0),
+                    offset: -0.1,
+                    ..Crackle::default()
+                }),
+                Modifiers::default(),
+            ),
+        ),
     ]
 }
