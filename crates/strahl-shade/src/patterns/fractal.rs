@@ -1,3 +1,5 @@
+use std::ops::{Add, Div, Mul, Sub};
+
 use strahl_math::DVec2;
 
 /// Which iteration a fractal pattern runs.
@@ -119,19 +121,56 @@ impl Fractal {
             return value;
         }
         let c = self.julia.unwrap_or(point);
-        // Each iteration has its own loop.
+        // Each iteration has its own loop. All numbers are single ones: with `c` as a vector compilers move the coordinates of the orbit
+        // into one register and out again in each step, and a step takes as long as its chain of operations.
+        let (x, y) = (point.x, point.y);
         match self.kind {
-            FractalKind::Power { exponent: 2 } => self.follow(point, |z| product(z, z) + c),
-            FractalKind::Power { exponent } => self.follow(point, |z| {
-                let mut power = z;
-                for _ in 1..exponent {
-                    power = product(power, z);
-                }
-                power + c
-            }),
-            FractalKind::Magnet1 => self.follow(point, |z| magnet_1(z, c)),
-            FractalKind::Magnet2 => self.follow(point, |z| magnet_2(z, c)),
+            FractalKind::Power { exponent: 2 } => self.square(x, y, c.x, c.y),
+            FractalKind::Power { exponent } => self.power(exponent, x, y, c.x, c.y),
+            FractalKind::Magnet1 => self.magnet_1(x, y, c.x, c.y),
+            FractalKind::Magnet2 => self.magnet_2(x, y, c.x, c.y),
         }
+    }
+
+    #[inline(never)]
+    fn square(&self, x: f64, y: f64, c_x: f64, c_y: f64) -> f64 {
+        self.follow(Complex::new(x, y), |z| z.square() + Complex::new(c_x, c_y))
+    }
+
+    #[inline(never)]
+    fn power(&self, exponent: u32, x: f64, y: f64, c_x: f64, c_y: f64) -> f64 {
+        self.follow(Complex::new(x, y), |z| {
+            let mut power = z.number();
+            for _ in 1..exponent {
+                power = power * z.number();
+            }
+            power + Complex::new(c_x, c_y)
+        })
+    }
+
+    #[inline(never)]
+    fn magnet_1(&self, x: f64, y: f64, c_x: f64, c_y: f64) -> f64 {
+        let c = Complex::new(c_x, c_y);
+        self.follow(Complex::new(x, y), |z| {
+            let numerator = z.square() + c - Complex::ONE;
+            let denominator = z.number() * 2.0 + c - Complex::ONE * 2.0;
+            let q = numerator / denominator;
+            q * q
+        })
+    }
+
+    #[inline(never)]
+    fn magnet_2(&self, x: f64, y: f64, c_x: f64, c_y: f64) -> f64 {
+        let c = Complex::new(c_x, c_y);
+        let (c1, c2) = (c - Complex::ONE, c - Complex::ONE * 2.0);
+        let c12 = c1 * c2;
+        self.follow(Complex::new(x, y), |z| {
+            let (z, z2) = (z.number(), z.square());
+            let numerator = z2 * z + c1 * z * 3.0 + c12;
+            let denominator = z2 * 3.0 + c2 * z * 3.0 + c12 + Complex::ONE;
+            let q = numerator / denominator;
+            q * q
+        })
     }
 
     fn is_mandelbrot(&self) -> bool {
@@ -143,32 +182,33 @@ impl Fractal {
     /// An orbit that returns exactly to one of its points is a cycle from there on, so whole rounds are left out (Brent 1980). Most
     /// orbits of the inside do so long before they are complete.
     #[inline(always)]
-    fn follow(&self, point: DVec2, step: impl Fn(DVec2) -> DVec2) -> f64 {
+    fn follow(&self, point: Complex, step: impl Fn(OrbitPoint) -> Complex) -> f64 {
         /// The magnet iterations also end when they have converged to 1.
         const CONVERGED: f64 = 1e-4;
         let magnet = !matches!(self.kind, FractalKind::Power { .. });
         let bailout = if magnet { 1e4 } else { 4.0 };
         // A magnet's Mandelbrot orbit starts at zero, which would always be the smallest.
-        let (mut z, mut smallest) = if magnet && self.julia.is_none() {
-            (DVec2::ZERO, f64::INFINITY)
+        let (start, mut smallest) = if magnet && self.julia.is_none() {
+            (Complex::new(0.0, 0.0), f64::INFINITY)
         } else {
-            (point, point.length_squared())
+            (point, point.norm())
         };
+        let mut z = OrbitPoint::new(start);
         let (mut number, mut end) = (0, self.iterations);
         // A point that the orbit may return to, where it was reached, and the steps to the next such point.
         let (mut seen, mut seen_at, mut stretch) = (z, 0, 8);
         while number < end {
-            z = step(z);
-            let absolute = z.length_squared();
+            z = OrbitPoint::new(step(z));
+            let absolute = z.x2 + z.y2;
             if absolute < smallest {
                 smallest = absolute;
             }
-            let converged = magnet && (z - DVec2::X).length_squared() < CONVERGED;
+            let converged = magnet && (z.number() - Complex::ONE).norm() < CONVERGED;
             if !(absolute <= bailout) || converged {
                 return self.outside(number, z);
             }
             number += 1;
-            if z == seen {
+            if z.x == seen.x && z.y == seen.y {
                 // All points of the cycle have been visited.
                 end = number + (end - number) % (number - seen_at);
             } else if number - seen_at == stretch {
@@ -181,21 +221,21 @@ impl Fractal {
             Interior::Smallest(f) => smallest.sqrt() * f,
             Interior::Real(f) => z.x * f,
             Interior::Imaginary(f) => z.y * f,
-            Interior::RealSquared(f) => z.x * z.x * f,
-            Interior::ImaginarySquared(f) => z.y * z.y * f,
-            Interior::Absolute(f) => z.length() * f,
+            Interior::RealSquared(f) => z.x2 * f,
+            Interior::ImaginarySquared(f) => z.y2 * f,
+            Interior::Absolute(f) => (z.x2 + z.y2).sqrt() * f,
         }
     }
 
-    fn outside(&self, step: u32, z: DVec2) -> f64 {
+    fn outside(&self, step: u32, z: OrbitPoint) -> f64 {
         match self.exterior {
             Exterior::Constant(f) => f,
             Exterior::Steps => f64::from(step) / f64::from(self.iterations),
             Exterior::Real(f) => z.x * f,
             Exterior::Imaginary(f) => z.y * f,
-            Exterior::RealSquared(f) => z.x * z.x * f,
-            Exterior::ImaginarySquared(f) => z.y * z.y * f,
-            Exterior::Absolute(f) => z.length() * f,
+            Exterior::RealSquared(f) => z.x2 * f,
+            Exterior::ImaginarySquared(f) => z.y2 * f,
+            Exterior::Absolute(f) => (z.x2 + z.y2).sqrt() * f,
         }
     }
 }
@@ -210,33 +250,101 @@ fn in_largest_parts(c: DVec2) -> bool {
     q * (q + x) < 0.25 * y2 * INNER || left * left + y2 < 0.0625 * INNER
 }
 
-fn magnet_1(z: DVec2, c: DVec2) -> DVec2 {
-    let one = DVec2::X;
-    let numerator = product(z, z) + c - one;
-    let denominator = z * 2.0 + c - one * 2.0;
-    let q = quotient(numerator, denominator);
-    product(q, q)
+/// A point of an orbit with the squares of its coordinates.
+#[derive(Clone, Copy)]
+struct OrbitPoint {
+    x: f64,
+    y: f64,
+    x2: f64,
+    y2: f64,
 }
 
-fn magnet_2(z: DVec2, c: DVec2) -> DVec2 {
-    let one = DVec2::X;
-    let (c1, c2) = (c - one, c - one * 2.0);
-    let c12 = product(c1, c2);
-    let z2 = product(z, z);
-    let numerator = product(z2, z) + product(c1, z) * 3.0 + c12;
-    let denominator = z2 * 3.0 + product(c2, z) * 3.0 + c12 + one;
-    let q = quotient(numerator, denominator);
-    product(q, q)
+impl OrbitPoint {
+    #[inline(always)]
+    fn new(z: Complex) -> Self {
+        Self {
+            x: z.x,
+            y: z.y,
+            x2: z.x * z.x,
+            y2: z.y * z.y,
+        }
+    }
+
+    #[inline(always)]
+    fn number(self) -> Complex {
+        Complex::new(self.x, self.y)
+    }
+
+    #[inline(always)]
+    fn square(self) -> Complex {
+        Complex::new(self.x2 - self.y2, (self.x + self.x) * self.y)
+    }
 }
 
-/// The product of complex numbers.
-#[inline]
-fn product(a: DVec2, b: DVec2) -> DVec2 {
-    DVec2::new(a.x * b.x - a.y * b.y, a.x * b.y + a.y * b.x)
+/// The complex number x + iy.
+#[derive(Clone, Copy)]
+struct Complex {
+    x: f64,
+    y: f64,
 }
 
-/// The quotient of complex numbers.
-#[inline]
-fn quotient(a: DVec2, b: DVec2) -> DVec2 {
-    product(a, DVec2::new(b.x, -b.y)) / b.length_squared()
+impl Complex {
+    const ONE: Self = Self::new(1.0, 0.0);
+
+    #[inline(always)]
+    const fn new(x: f64, y: f64) -> Self {
+        Self { x, y }
+    }
+
+    /// The squared absolute value.
+    #[inline(always)]
+    fn norm(self) -> f64 {
+        self.x * self.x + self.y * self.y
+    }
+}
+
+impl Add for Complex {
+    type Output = Self;
+
+    #[inline(always)]
+    fn add(self, b: Self) -> Self {
+        Self::new(self.x + b.x, self.y + b.y)
+    }
+}
+
+impl Sub for Complex {
+    type Output = Self;
+
+    #[inline(always)]
+    fn sub(self, b: Self) -> Self {
+        Self::new(self.x - b.x, self.y - b.y)
+    }
+}
+
+impl Mul for Complex {
+    type Output = Self;
+
+    #[inline(always)]
+    fn mul(self, b: Self) -> Self {
+        Self::new(self.x * b.x - self.y * b.y, self.x * b.y + self.y * b.x)
+    }
+}
+
+impl Mul<f64> for Complex {
+    type Output = Self;
+
+    #[inline(always)]
+    fn mul(self, b: f64) -> Self {
+        Self::new(self.x * b, self.y * b)
+    }
+}
+
+impl Div for Complex {
+    type Output = Self;
+
+    #[inline(always)]
+    fn div(self, b: Self) -> Self {
+        let (q, norm) = (self * Self::new(b.x, -b.y), b.norm());
+        Self::new(q.x / norm, q.y / norm)
+    }
 }
