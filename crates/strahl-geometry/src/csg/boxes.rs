@@ -6,45 +6,43 @@ pub(super) struct Slabs {
     origin: DVec3,
     direction: DVec3,
     inverse: DVec3,
+    /// Whether the ray runs along a plane between two axes.
+    is_parallel: bool,
 }
 
 impl Slabs {
     pub(super) fn new(ray: &Ray) -> Self {
+        let inverse = 1.0 / ray.direction;
         Self {
             origin: ray.origin,
             direction: ray.direction,
-            inverse: 1.0 / ray.direction,
+            inverse,
+            is_parallel: !inverse.is_finite(),
         }
     }
 
     /// The part of the range within a box, conservatively widened as [`Aabb::clip`] does it; `None` if the ray misses.
+    #[inline]
     pub(super) fn clip(&self, bounds: &Aabb, range: Interval) -> Option<Interval> {
         // A difference, a reciprocal and a product, each within half an ulp: widened by more than their sum.
         const SLACK: f64 = 4.0 * f64::EPSILON;
-        let Interval {
-            min: mut enter,
-            max: mut exit,
-        } = range;
-        for axis in 0..3 {
-            let (o, inverse) = (self.origin[axis], self.inverse[axis]);
-            let (low, high) = (bounds.min[axis], bounds.max[axis]);
-            if self.direction[axis] == 0.0 {
-                if !(low <= o && o <= high) {
-                    return None;
-                }
-                continue;
-            }
-            let (a, b) = ((low - o) * inverse, (high - o) * inverse);
-            let (near, far) = if inverse > 0.0 { (a, b) } else { (b, a) };
-            let (near, far) = (near - near.abs() * SLACK, far + far.abs() * SLACK);
-            // NaN (an infinite reciprocal, a plane through the origin) clips nothing.
-            if near > enter {
-                enter = near;
-            }
-            if far < exit {
-                exit = far;
-            }
+        if self.is_parallel {
+            return bounds.clip(&Ray::new(self.origin, self.direction), range);
         }
+        let a = (bounds.min - self.origin) * self.inverse;
+        let b = (bounds.max - self.origin) * self.inverse;
+        let smaller = |a: f64, b: f64| if a < b { a } else { b };
+        let larger = |a: f64, b: f64| if a > b { a } else { b };
+        let near = larger(
+            larger(smaller(a.x, b.x), smaller(a.y, b.y)),
+            smaller(a.z, b.z),
+        );
+        let far = smaller(
+            smaller(larger(a.x, b.x), larger(a.y, b.y)),
+            larger(a.z, b.z),
+        );
+        let enter = larger(near - near.abs() * SLACK, range.min);
+        let exit = smaller(far + far.abs() * SLACK, range.max);
         (enter <= exit).then(|| Interval::new(enter, exit))
     }
 }

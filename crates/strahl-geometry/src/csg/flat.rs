@@ -24,8 +24,10 @@ const MOST_PLANES: usize = 3;
 /// An intersection of leaves that a line crosses at most twice, and of complements of such leaves.
 #[derive(Clone, Debug)]
 pub(super) struct Flat {
-    /// The numbers of the leaves, those that are not complements first.
+    /// The numbers of the leaves: those that are visible first, and of each kind those that are not complements.
     leaves: ArrayVec<u32, MOST>,
+    /// How many are visible; the others only clip.
+    visible: usize,
 }
 
 /// A crossing that changes whether the ray is inside of an operand.
@@ -63,11 +65,17 @@ impl Flat {
         if !numbers.iter().all(|n| leaves[*n as usize].has_stays()) {
             return None;
         }
-        // Stable: quick ones stay in front.
-        numbers.sort_by_key(|n| leaves[*n as usize].negative);
         // The complement of everything is no solid with a first surface of its own.
-        let first = *numbers.first()?;
-        (!leaves[first as usize].negative).then_some(Self { leaves: numbers })
+        if numbers.iter().all(|n| leaves[*n as usize].negative) {
+            return None;
+        }
+        let leaf = |n: &u32| &leaves[*n as usize];
+        // Stable: quick ones stay in front.
+        numbers.sort_by_key(|n| (!leaf(n).visible, leaf(n).negative));
+        Some(Self {
+            visible: numbers.iter().filter(|n| leaf(n).visible).count(),
+            leaves: numbers,
+        })
     }
 
     /// Searches the first visible surface with `range.min < t <= range.max`; `from` is the leaf that the ray starts on, and its
@@ -131,9 +139,14 @@ impl Flat {
         let range = Interval::new(start, range.max);
         // The part of the ray on which operands matter, a little wider than the operands so far.
         let mut alive = Interval::new(begin, fusing.widened(range).max);
+        let far = alive.max;
         let mut events = ArrayVec::<Event, { 2 * MOST }>::new();
         let mut inside = 0;
-        for number in &self.leaves {
+        for (n, number) in self.leaves.iter().enumerate() {
+            // Those that only clip don't matter where no surface is visible.
+            if n == self.visible && !events.iter().any(|e| e.t <= far) {
+                return Ok(());
+            }
             let leaf = &leaves[*number as usize];
             let own = from.filter(|(other, _)| other == number);
             let own = own.map(|(_, surface)| surface);

@@ -10,9 +10,6 @@ use std::sync::Arc;
 use strahl_math::error::{ROUNDOFF, gamma};
 use strahl_math::{Aabb, DVec3, Interval, Ray};
 
-/// The octree's cells are halved so often.
-const LEVELS: u32 = 6;
-
 /// The surface of the set.
 pub(super) const SURFACE: SurfaceId = SurfaceId {
     element: 0,
@@ -58,8 +55,9 @@ pub(super) struct BallSearch {
 }
 
 impl BallSearch {
-    /// In the ball around the origin; features smaller than a fiftieth of the reciprocal of `precision` may be missed.
-    pub(super) fn new(radius: f64, precision: f64) -> Self {
+    /// In the ball around the origin, in an octree whose cells are halved `levels` times; features smaller than a fiftieth of the
+    /// reciprocal of `precision` may be missed.
+    pub(super) fn new(radius: f64, precision: f64, levels: u32) -> Self {
         let precision = if precision > 1.0 { precision } else { 1.0 };
         Self {
             around: Container::Sphere(Sphere::new(DVec3::ZERO, radius)),
@@ -67,7 +65,7 @@ impl BallSearch {
             shortest: radius / (50.0 * precision),
             octree: Arc::new(Octree::new(
                 Aabb::new(DVec3::splat(-radius), DVec3::splat(radius)),
-                LEVELS,
+                levels,
             )),
         }
     }

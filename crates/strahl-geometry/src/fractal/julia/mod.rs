@@ -16,6 +16,9 @@ use orbit::{Four, Rule, Slice, norm2};
 use strahl_math::error::gamma;
 use strahl_math::{Aabb, DVec3, Interval, Ray};
 
+/// The levels of the octree. Estimates of the distance are good, so that smaller cells take longer than they save.
+const LEVELS: u32 = 4;
+
 /// A function of quaternions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum QuaternionFunction {
@@ -134,7 +137,7 @@ impl Julia {
                 offset: options.distance * length / nw,
                 factors: -DVec3::new(nx, ny, nz) / nw,
             },
-            search: BallSearch::new(exit, options.precision),
+            search: BallSearch::new(exit, options.precision, LEVELS),
             tilt: norm2([1.0, nx / nw, ny / nw, nz / nw]).sqrt(),
         })
     }

@@ -13,6 +13,9 @@ use strahl_math::det;
 use strahl_math::error::gamma;
 use strahl_math::{Aabb, DVec3, Interval, Ray};
 
+/// The levels of the octree.
+const LEVELS: u32 = 6;
+
 /// The Mandelbulb: the points `c` whose orbit `0 -> c -> cⁿ + c -> ...` stays near the origin for a number of iterations; or, with a
 /// constant parameter, a Julia set of the same power, the points `p` whose orbit `p -> pⁿ + c -> ...` does.
 ///
@@ -85,7 +88,7 @@ impl Mandelbulb {
             power,
             parameter,
             iterations,
-            search: BallSearch::new(radius, precision),
+            search: BallSearch::new(radius, precision, LEVELS),
         })
     }
 
