@@ -1,6 +1,6 @@
 //! Noise at a point, for the vectors of one level.
 
-use super::tables::{GRADIENTS, SPREAD, VALUES, hash};
+use super::tables::{CORNERS, GRADIENTS, SPREAD, hash};
 use super::{NoiseGenerator, SHIFT, perlin_row, smooth, unit};
 use crate::DVec3;
 use strahl_simd::{Isa, Level};
@@ -127,10 +127,16 @@ fn scalar<I: Isa>(isa: I, p: DVec3) -> f64 {
     let mut sum = 0.0;
     for i in 0..2 {
         // Four corners at once.
-        let x = isa.mul(four(isa, 1, &c, i), isa.splat(c.ways[0][i]));
-        let y = isa.mul(four(isa, 2, &c, i), dy);
-        let z = isa.mul(four(isa, 3, &c, i), dz);
-        let linear = isa.add(four(isa, 0, &c, i), isa.add(isa.add(x, y), z));
+        let n = &c.numbers[4 * i..];
+        let [value, x, y, z] = isa.transpose([
+            isa.load(&CORNERS[n[0] & 255]),
+            isa.load(&CORNERS[n[1] & 255]),
+            isa.load(&CORNERS[n[2] & 255]),
+            isa.load(&CORNERS[n[3] & 255]),
+        ]);
+        let x = isa.mul(x, isa.splat(c.ways[0][i]));
+        let (y, z) = (isa.mul(y, dy), isa.mul(z, dz));
+        let linear = isa.add(value, isa.add(isa.add(x, y), z));
         let share = isa.mul(isa.mul(isa.splat(c.shares[0][i]), t), u);
         let [a, b, c, d] = isa.store(isa.mul(share, linear));
         sum = sum + a + b + c + d;
@@ -138,17 +144,99 @@ fn scalar<I: Isa>(isa: I, p: DVec3) -> f64 {
     sum
 }
 
-/// Entries of a table for the four lower or the four upper corners along x.
+/// [`noise`] at four points, whose coordinates are given axis by axis, with the same bits.
 #[inline(always)]
-fn four<I: Isa>(isa: I, table: usize, c: &Corners, i: usize) -> I::F64x4 {
-    let table = &VALUES[table];
-    let n = &c.numbers;
-    isa.load(&[
-        table[n[4 * i] & 255],
-        table[n[4 * i + 1] & 255],
-        table[n[4 * i + 2] & 255],
-        table[n[4 * i + 3] & 255],
-    ])
+pub(super) fn noise_of_four<I: Isa>(
+    isa: I,
+    points: &[[f64; 4]; 3],
+    generator: NoiseGenerator,
+) -> [f64; 4] {
+    let limit = isa.splat(OVERFLOW);
+    let mut far = generator == NoiseGenerator::Perlin;
+    for coordinates in points {
+        far |= isa.lt(isa.abs(isa.load(coordinates)), limit) != 0b1111;
+    }
+    if far {
+        return one_by_one(isa, points, generator);
+    }
+    let sum = scalar_of_four(isa, points);
+    let value = match generator {
+        NoiseGenerator::Original => isa.add(sum, isa.splat(0.5)),
+        _ => {
+            let shifted = isa.add(sum, isa.splat(1.05242));
+            isa.mul(shifted, isa.splat(0.48985582))
+        }
+    };
+    isa.store(isa.min(isa.max(value, isa.splat(0.0)), isa.splat(1.0)))
+}
+
+#[inline(never)]
+fn one_by_one<I: Isa>(isa: I, points: &[[f64; 4]; 3], generator: NoiseGenerator) -> [f64; 4] {
+    let mut values = [0.0; 4];
+    for lane in 0..4 {
+        let p = DVec3::new(points[0][lane], points[1][lane], points[2][lane]);
+        values[lane] = noise(isa, p, generator);
+    }
+    values
+}
+
+/// [`scalar`] at four points, a lane for each, whose coordinates are numbers below [`OVERFLOW`].
+#[inline(always)]
+fn scalar_of_four<I: Isa>(isa: I, points: &[[f64; 4]; 3]) -> I::F64x4 {
+    let (zero, one) = (isa.splat(0.0), isa.splat(1.0));
+    let round = isa.splat(3.0 * LARGE);
+    let mut cells = [[0.0; 4]; 3];
+    let mut ways = [[one; 2]; 3];
+    let mut shares = [[one; 2]; 3];
+    for axis in 0..3 {
+        let x = isa.load(&points[axis]);
+        // As in `floor` and `place`.
+        let nearest = isa.sub(isa.add(x, round), round);
+        let floor = isa.sub(nearest, isa.choose_le(nearest, x, zero, one));
+        cells[axis] = isa.store(isa.add(floor, round));
+        let t = isa.sub(x, floor);
+        ways[axis] = [t, isa.sub(t, one)];
+        let slope = isa.sub(isa.splat(3.0), isa.mul(isa.splat(2.0), t));
+        let upper = isa.mul(isa.mul(t, t), slope);
+        shares[axis] = [isa.sub(one, upper), upper];
+    }
+    let mut numbers = [[0u8; 8]; 4];
+    for lane in 0..4 {
+        let [i, j, k] = [
+            neighbours(cells[0][lane].to_bits() as u32),
+            neighbours(cells[1][lane].to_bits() as u32),
+            neighbours(cells[2][lane].to_bits() as u32),
+        ];
+        for a in 0..2 {
+            let row = usize::from(hash(i[a]));
+            for b in 0..2 {
+                let column = usize::from(hash(row ^ j[b]));
+                for c in 0..2 {
+                    numbers[lane][4 * a + 2 * b + c] = hash(column ^ k[c]) as u8;
+                }
+            }
+        }
+    }
+    let mut sum = zero;
+    for i in 0..2 {
+        for j in 0..2 {
+            let share = isa.mul(shares[0][i], shares[1][j]);
+            for k in 0..2 {
+                let n = 4 * i + 2 * j + k;
+                let [value, x, y, z] = isa.transpose([
+                    isa.load(&CORNERS[usize::from(numbers[0][n])]),
+                    isa.load(&CORNERS[usize::from(numbers[1][n])]),
+                    isa.load(&CORNERS[usize::from(numbers[2][n])]),
+                    isa.load(&CORNERS[usize::from(numbers[3][n])]),
+                ]);
+                let (x, y) = (isa.mul(x, ways[0][i]), isa.mul(y, ways[1][j]));
+                let z = isa.mul(z, ways[2][k]);
+                let linear = isa.add(value, isa.add(isa.add(x, y), z));
+                sum = isa.add(sum, isa.mul(isa.mul(share, shares[2][k]), linear));
+            }
+        }
+    }
+    sum
 }
 
 /// The vector noise.

@@ -111,35 +111,93 @@ impl Turbulence {
     /// first octave is cut off at 0 and 1 (measured).
     pub fn scalar(&self, p: DVec3, generator: NoiseGenerator) -> f64 {
         dispatch!(Simd::best(), isa => {
-            let (mut frequency, mut strength) = (self.lambda, self.omega);
-            let mut sum = if self.octaves > 0 {
-                unit(stretched(isa, p, generator))
-            } else {
-                0.0
-            };
-            for _ in 1..self.octaves {
-                sum += stretched(isa, p * frequency, generator) * strength;
-                frequency *= self.lambda;
-                strength *= self.omega;
+            let (mut frequency, mut strength) = (1.0, 1.0);
+            let mut sum = 0.0;
+            let mut done = 0;
+            while done < self.octaves {
+                let count = (self.octaves - done).min(4) as usize;
+                let mut frequencies = [frequency; 4];
+                let mut strengths = [strength; 4];
+                for k in 0..count {
+                    (frequencies[k], strengths[k]) = (frequency, strength);
+                    frequency *= self.lambda;
+                    strength *= self.omega;
+                }
+                let mut values = octaves_at_once(isa, p, &frequencies, count, generator);
+                if done == 0 {
+                    values[0] = unit(values[0]);
+                }
+                for k in 0..count {
+                    sum += values[k] * strengths[k];
+                }
+                done += 4;
             }
             sum
         })
     }
 }
 
-/// Noise as granite, wrinkles and turbulence want it: with [`NoiseGenerator::Original`] the [`noise`] itself, else
-/// `2 noise - 1/2`, cut off at 0 and 1, which has about the same distribution.
-pub fn pattern_noise(p: DVec3, generator: NoiseGenerator) -> f64 {
-    dispatch!(Simd::best(), isa => unit(stretched(isa, p, generator)))
+/// Octaves of noise as granite and wrinkles want it, octave `i` at `frequency` 2ⁱ `p`: with [`NoiseGenerator::Original`] the [`noise`] itself,
+/// else `2 noise - 1/2`, cut off at 0 and 1, which has about the same distribution.
+pub fn pattern_octaves<const N: usize>(
+    p: DVec3,
+    frequency: f64,
+    generator: NoiseGenerator,
+) -> [f64; N] {
+    dispatch!(Simd::best(), isa => {
+        let mut all = [0.0; N];
+        let mut frequency = frequency;
+        for four in all.chunks_mut(4) {
+            let frequencies = [frequency, 2.0 * frequency, 4.0 * frequency, 8.0 * frequency];
+            let values = octaves_at_once(isa, p, &frequencies, four.len(), generator);
+            for k in 0..four.len() {
+                four[k] = unit(values[k]);
+            }
+            frequency *= 16.0;
+        }
+        all
+    })
+}
+
+/// [`stretched`] noise at a point times the first `count` of up to four frequencies: together, if that is faster than one after the other.
+#[inline(always)]
+fn octaves_at_once<I: Isa>(
+    isa: I,
+    p: DVec3,
+    frequencies: &[f64; 4],
+    count: usize,
+    generator: NoiseGenerator,
+) -> [f64; 4] {
+    let mut values = [0.0; 4];
+    if count < 3 {
+        for k in 0..count {
+            values[k] = stretched(isa, p * frequencies[k], generator);
+        }
+        return values;
+    }
+    let mut points = [[0.0; 4]; 3];
+    for k in 0..4 {
+        let place = p * frequencies[k];
+        (points[0][k], points[1][k], points[2][k]) = (place.x, place.y, place.z);
+    }
+    values = kernel::noise_of_four(isa, &points, generator);
+    for value in &mut values {
+        *value = stretch(*value, generator);
+    }
+    values
 }
 
 #[inline(always)]
 fn stretched<I: Isa>(isa: I, p: DVec3, generator: NoiseGenerator) -> f64 {
-    let n = kernel::noise(isa, p, generator);
+    stretch(kernel::noise(isa, p, generator), generator)
+}
+
+#[inline(always)]
+fn stretch(noise: f64, generator: NoiseGenerator) -> f64 {
     if generator == NoiseGenerator::Original {
-        n
+        noise
     } else {
-        2.0 * n - 0.5
+        2.0 * noise - 0.5
     }
 }
 

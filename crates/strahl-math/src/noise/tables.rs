@@ -36,20 +36,6 @@ pub(super) fn hash(i: usize) -> u16 {
 }
 
 /// For scalar noise: half the values of 256 corners, and their gradients along x, y and z.
-pub(super) static VALUES: [[f64; 256]; 4] = {
-    let mut table = [[0.0; 256]; 4];
-    let mut h = 0;
-    while h < 256 {
-        table[0][h] = 0.5 * R[h];
-        table[1][h] = R[h + 1];
-        table[2][h] = R[h + 2];
-        table[3][h] = R[h + 3];
-        h += 1;
-    }
-    table
-};
-
-/// Half the values of 256 corners, and their gradients along x, y and z: [`VALUES`], corner by corner.
 pub(super) static CORNERS: [[f64; 4]; 256] = {
     let mut table = [[0.0; 4]; 256];
     let mut h = 0;

@@ -369,3 +369,80 @@ fn beyond_the_range_of_integers_noise_is_that_of_pov_ray() {
         }
     }
 }
+
+#[test]
+fn octaves_together_have_the_bits_of_single_points() {
+    let generators = [
+        NoiseGenerator::Original,
+        NoiseGenerator::RangeCorrected,
+        NoiseGenerator::Perlin,
+    ];
+    let special = [
+        0.0,
+        -0.0,
+        -1.0,
+        4095.5,
+        1e9,
+        -3e9,
+        1e300,
+        f64::INFINITY,
+        f64::NAN,
+    ];
+    for i in 0..2000 {
+        let t = f64::from(i);
+        let mut p = DVec3::new(t * 0.731 - 700.0, t * 0.317 + 3.0, 9.0 - t * 0.613);
+        if let Some(x) = special.get(i as usize) {
+            p[i as usize % 3] = *x;
+        }
+        for generator in generators {
+            let together: [f64; 10] = pattern_octaves(p, 1.5, generator);
+            for (k, value) in together.into_iter().enumerate() {
+                let n = noise(p * (1.5 * f64::from(1 << k)), generator);
+                let alone = match generator {
+                    NoiseGenerator::Original => n,
+                    _ => (2.0 * n - 0.5).clamp(0.0, 1.0),
+                };
+                assert_eq!(value.to_bits(), alone.to_bits(), "{p} {k} {generator:?}");
+            }
+            for octaves in 0..=10 {
+                let turbulence = Turbulence {
+                    octaves,
+                    omega: 0.6,
+                    lambda: 2.3,
+                };
+                let (mut sum, mut frequency, mut strength) = (0.0, 1.0, 1.0);
+                for k in 0..octaves {
+                    let n = noise(p * frequency, generator);
+                    let n = match generator {
+                        NoiseGenerator::Original => n,
+                        _ => 2.0 * n - 0.5,
+                    };
+                    sum += if k == 0 { n.clamp(0.0, 1.0) } else { n } * strength;
+                    frequency *= turbulence.lambda;
+                    strength *= turbulence.omega;
+                }
+                let together = turbulence.scalar(p, generator);
+                assert_eq!(together.to_bits(), sum.to_bits(), "{p} {octaves}");
+            }
+        }
+    }
+}
+
+#[test]
+fn four_points_have_the_same_bits_on_all_levels() {
+    for i in 0..500 {
+        let t = f64::from(i);
+        let lanes = |a: f64| [0.0, 1.0, 2.0, 3.0].map(|k| (a * t + k) * 1.37 - 99.0 * k);
+        let points = [lanes(0.31), lanes(-0.77), lanes(1.13)];
+        for generator in [NoiseGenerator::Original, NoiseGenerator::RangeCorrected] {
+            let alone = [0, 1, 2, 3].map(|lane| {
+                let p = DVec3::from_array(points.map(|x| x[lane]));
+                noise(p, generator)
+            });
+            for simd in Simd::available() {
+                let four = dispatch!(simd, isa => kernel::noise_of_four(isa, &points, generator));
+                assert_eq!(four, alone, "{}", simd.level());
+            }
+        }
+    }
+}

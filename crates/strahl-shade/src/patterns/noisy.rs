@@ -1,6 +1,6 @@
 //! Patterns made of noise.
 
-use strahl_math::noise::{NoiseGenerator, noise, pattern_noise};
+use strahl_math::noise::{NoiseGenerator, noise, pattern_octaves};
 use strahl_math::{DVec3, det};
 
 use super::Modifiers;
@@ -22,10 +22,11 @@ pub(super) fn dents(p: DVec3, generator: NoiseGenerator) -> f64 {
 }
 
 pub(super) fn granite(p: DVec3, generator: NoiseGenerator) -> f64 {
+    let octaves: [f64; 6] = pattern_octaves(p, 4.0, generator);
     let mut frequency = 1.0;
     let mut sum = 0.0;
-    for _ in 0..6 {
-        sum += (0.5 - pattern_noise(p * (4.0 * frequency), generator)).abs() / frequency;
+    for value in octaves {
+        sum += (0.5 - value).abs() / frequency;
         frequency *= 2.0;
     }
     sum
@@ -52,10 +53,11 @@ pub(super) fn wood(p: DVec3, modifiers: &Modifiers) -> f64 {
 }
 
 pub(super) fn wrinkles(p: DVec3, generator: NoiseGenerator) -> f64 {
+    let octaves: [f64; 10] = pattern_octaves(p, 1.0, generator);
     let mut frequency = 1.0;
     let mut sum = 0.0;
-    for _ in 0..10 {
-        sum += pattern_noise(p * frequency, generator) / frequency;
+    for value in octaves {
+        sum += value / frequency;
         frequency *= 2.0;
     }
     0.5 * sum
