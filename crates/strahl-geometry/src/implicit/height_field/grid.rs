@@ -13,14 +13,33 @@ pub(super) struct Grid {
     /// Vertices along z, at least 2.
     depth: u32,
     heights: Box<[u16]>,
-    /// Lowest and highest vertex of blocks of 2 x 2, 4 x 4, ... cells; the last level is one block.
+    /// Lowest and highest vertex of blocks of 2 x 2, 4 x 4, ... cells, but not of the one block that is all of the field.
     levels: Vec<Level>,
+    /// Lowest and highest vertex of all.
+    full: [u16; 2],
 }
 
+/// The blocks of one size, in fours: those that make up the same block of the next size.
 #[derive(Debug)]
 struct Level {
+    /// How many fours there are along x.
     width: u32,
-    ranges: Box<[[u16; 2]]>,
+    fours: Box<[Four]>,
+}
+
+/// Lowest and highest vertex of the four quarters of a block, divided by [`SCALE`], which is exact; quarter `a + 2 b` is the lower (0) or the
+/// upper (1) one along x and along z. Those beyond the edge of the field mean nothing.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Four {
+    pub(super) low: [f32; 4],
+    pub(super) high: [f32; 4],
+}
+
+impl Four {
+    fn set(&mut self, quarter: usize, range: [u16; 2]) {
+        let [low, high] = range.map(|h| f32::from(h) / SCALE as f32);
+        (self.low[quarter], self.high[quarter]) = (low, high);
+    }
 }
 
 /// Two triangles: a square of the grid, cut along the diagonal from `10` to `01`.
@@ -53,25 +72,46 @@ impl Grid {
             depth,
             heights,
             levels: Vec::new(),
+            full: [0; 2],
         };
         let (mut columns, mut rows) = grid.cells();
+        let mut ranges: Vec<[u16; 2]> = Vec::new();
         while columns > 1 || rows > 1 {
             let below = (columns, rows);
             (columns, rows) = (columns.div_ceil(2), rows.div_ceil(2));
-            let below_level = grid.levels.len();
-            let mut ranges = Vec::with_capacity(columns as usize * rows as usize);
+            let cells = ranges.is_empty();
+            let mut fours = Vec::new();
+            let mut hulls = Vec::with_capacity(columns as usize * rows as usize);
             for (j, i) in (0..rows).flat_map(|j| (0..columns).map(move |i| (j, i))) {
-                let inside = [(0, 0), (1, 0), (0, 1), (1, 1)]
-                    .map(|(a, b)| (2 * i + a, 2 * j + b))
-                    .into_iter()
-                    .filter(|&(i, j)| i < below.0 && j < below.1);
-                ranges.push(hull(inside.map(|(i, j)| grid.range(below_level, i, j))));
+                let (mut four, mut all) = (Four::default(), [u16::MAX, 0]);
+                for quarter in 0..4 {
+                    let (i, j) = (2 * i + quarter % 2, 2 * j + quarter / 2);
+                    if i < below.0 && j < below.1 {
+                        let range = match cells {
+                            true => grid.cell(i, j).range(),
+                            false => ranges[j as usize * below.0 as usize + i as usize],
+                        };
+                        four.set(quarter as usize, range);
+                        all = hull([all, range].into_iter());
+                    }
+                }
+                if !cells {
+                    fours.push(four);
+                }
+                hulls.push(all);
             }
-            grid.levels.push(Level {
-                width: columns,
-                ranges: ranges.into(),
-            });
+            if !cells {
+                grid.levels.push(Level {
+                    width: columns,
+                    fours: fours.into(),
+                });
+            }
+            ranges = hulls;
         }
+        grid.full = match ranges.first() {
+            Some(full) => *full,
+            None => grid.cell(0, 0).range(),
+        };
         grid
     }
 
@@ -85,23 +125,50 @@ impl Grid {
         (self.width - 1, self.depth - 1)
     }
 
-    /// The number of the level that is one block.
-    pub(super) fn top(&self) -> usize {
-        self.levels.len()
+    /// How often cells have to be joined, two by two along each axis, until there is one block.
+    pub(super) fn top(&self) -> u32 {
+        let (columns, rows) = self.cells();
+        u32::BITS - (columns.max(rows) - 1).leading_zeros()
     }
 
-    /// Lowest and highest vertex of a block of `2^level` by `2^level` cells.
+    /// The quarters of a block of `2^level` by `2^level` cells, `level` at least 1: blocks of half the size, or cells.
     #[inline]
-    pub(super) fn range(&self, level: usize, i: u32, j: u32) -> [u16; 2] {
-        match level.checked_sub(1).and_then(|l| self.levels.get(l)) {
-            Some(level) => level.ranges[j as usize * level.width as usize + i as usize],
-            None => self.cell(i, j).range(),
+    pub(super) fn quarters(&self, level: u32, i: u32, j: u32) -> Four {
+        if level > 1 {
+            let level = &self.levels[level as usize - 2];
+            return level.fours[j as usize * level.width as usize + i as usize];
         }
+        // Without branches: at the edge the last cells are taken twice.
+        let (columns, rows) = self.cells();
+        let (i, j) = (2 * i, 2 * j);
+        let right = usize::from(i + 1 < columns);
+        let below = if j + 1 < rows { self.width as usize } else { 0 };
+        let first = j as usize * self.width as usize + i as usize;
+        let mut rows = [[0; 3]; 3];
+        for (row, at) in rows
+            .iter_mut()
+            .zip([0, self.width as usize, self.width as usize + below])
+        {
+            let from = &self.heights[first + at..][..2 + right];
+            *row = [from[0], from[1], from[1 + right]];
+        }
+        let mut four = Four::default();
+        for quarter in 0..4 {
+            let (a, b) = (quarter % 2, quarter / 2);
+            let [p, q, r, s] = [
+                rows[b][a],
+                rows[b][a + 1],
+                rows[b + 1][a],
+                rows[b + 1][a + 1],
+            ];
+            four.set(quarter, [p.min(q).min(r.min(s)), p.max(q).max(r.max(s))]);
+        }
+        four
     }
 
     /// Lowest and highest vertex of all.
     pub(super) fn full_range(&self) -> [u16; 2] {
-        self.range(self.top(), 0, 0)
+        self.full
     }
 
     #[inline]

@@ -1,8 +1,10 @@
 //! Traverses the pyramid of extremes with a ray: the blocks that the ray may meet, front to back.
 
 use super::grid::{Cell, Grid, SCALE};
+use arrayvec::ArrayVec;
 use std::ops::ControlFlow;
 use strahl_math::{DVec3, Interval, Ray};
+use strahl_simd::{Isa, Simd, dispatch};
 
 /// How far the boxes of blocks are widened, in units of the largest coordinate involved times the unit of f64. It covers the
 /// error of the triangle test (six roundings of numbers of that size) and that of the box test (four), with a margin; a box
@@ -12,6 +14,14 @@ const PAD: f64 = 32.0 * f64::EPSILON;
 /// Components of directions below this part of the largest one are taken as this large: the ray moves by less than `PAD` while it
 /// passes the field, and no division by zero can occur.
 const SLANT: f64 = 1.0 / (1u64 << 60) as f64;
+
+/// A block of `2^level` by `2^level` cells, or a cell, above which the ray is in a part of its parameters.
+#[derive(Clone, Copy)]
+struct Block {
+    level: u32,
+    place: (u32, u32),
+    part: (f64, f64),
+}
 
 /// A ray on its way through the field.
 pub(super) struct Descent<'a> {
@@ -75,50 +85,108 @@ impl<'a> Descent<'a> {
         let along_z = self.slab(2, 0.0, depth);
         let part = (later(along_x.0, along_z.0), earlier(along_x.1, along_z.1));
         match self.over(part, self.grid.full_range()) {
-            Some(part) => self.descend(top, (0, 0), part, &mut visit),
+            Some(part) => {
+                dispatch!(Simd::best(), isa => self.descend(isa, top, part, &mut visit))
+            }
             None => ControlFlow::Continue(()),
         }
     }
 
-    /// Visits the cells of a block above which the ray is in `part` of its parameters. The recursion is as deep as the pyramid, 31
-    /// levels at most.
-    fn descend(
+    /// Visits the cells of the block of all cells, above which the ray is in `part` of its parameters.
+    #[inline(always)]
+    fn descend<I: Isa>(
         &mut self,
-        level: usize,
-        (i, j): (u32, u32),
-        (enter, exit): (f64, f64),
+        isa: I,
+        top: u32,
+        part: (f64, f64),
         visit: &mut impl FnMut(&mut Interval, &Cell) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
-        let Some(below) = level.checked_sub(1) else {
-            return visit(&mut self.range, &self.grid.cell(i, j));
-        };
-        let (columns, rows) = self.grid.cells();
-        let middle = |k: u32, step: f64| f64::from((2 * k + 1) << below) * step;
-        let at_x = self.plane(0, middle(i, self.step.0));
-        let at_z = self.plane(2, middle(j, self.step.1));
-        // In the first half until the plane in the middle, in the second one from there.
-        let halves =
-            |(from, until): (f64, f64)| [(enter, earlier(exit, until)), (later(enter, from), exit)];
-        let (along_x, along_z) = (halves(at_x), halves(at_z));
+        let grid = self.grid;
+        let (columns, rows) = grid.cells();
         let (x, z) = self.first;
-        for (a, b) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
-            let (i, j) = (2 * i + (x ^ a), 2 * j + (z ^ b));
-            if i << below >= columns || j << below >= rows {
+        let (floor, below, above) = (
+            isa.splat(self.floor),
+            isa.splat(self.lower.y),
+            isa.splat(self.upper.y),
+        );
+        let inverse = isa.splat(self.inverse.y);
+        let start = isa.splat(self.range.min);
+        // Of each block on the way down at most three quarters wait.
+        let mut waiting = ArrayVec::<Block, 96>::new();
+        let mut next = Some(Block {
+            level: top,
+            place: (0, 0),
+            part,
+        });
+        while let Some(block) = next.or_else(|| waiting.pop()) {
+            next = None;
+            let (enter, exit) = block.part;
+            if enter > self.range.max {
                 continue;
             }
-            let (along_x, along_z) = (along_x[a as usize], along_z[b as usize]);
-            let part = (later(along_x.0, along_z.0), earlier(along_x.1, along_z.1));
-            if part.0 <= part.1
-                && let Some(part) = self.over(part, self.grid.range(below, i, j))
-            {
-                self.descend(below, (i, j), part, visit)?;
+            let (i, j) = block.place;
+            let Some(level) = block.level.checked_sub(1) else {
+                visit(&mut self.range, &grid.cell(i, j))?;
+                continue;
+            };
+            let middle = |k: u32, step: f64| f64::from((2 * k + 1) << level) * step;
+            let at_x = self.plane(0, middle(i, self.step.0));
+            let at_z = self.plane(2, middle(j, self.step.1));
+            // The ray is in the first half until the plane in the middle, in the second one from there.
+            let halves = |(from, until): (f64, f64), second: u32| {
+                let (first, last) = ((enter, earlier(exit, until)), (later(enter, from), exit));
+                match second {
+                    0 => [first, last],
+                    _ => [last, first],
+                }
+            };
+            let ([xa, xb], [za, zb]) = (halves(at_x, x), halves(at_z, z));
+            let four = grid.quarters(block.level, i, j);
+            let (low, high) = (isa.load_wide(&four.low), isa.load_wide(&four.high));
+            let is_high = isa.le(floor, high);
+            let a = isa.mul(isa.sub(isa.max(low, floor), below), inverse);
+            let b = isa.mul(isa.sub(high, above), inverse);
+            let enters = isa.max(
+                isa.load(&[xa.0, xb.0, xa.0, xb.0]),
+                isa.load(&[za.0, za.0, zb.0, zb.0]),
+            );
+            let exits = isa.min(
+                isa.load(&[xa.1, xb.1, xa.1, xb.1]),
+                isa.load(&[za.1, za.1, zb.1, zb.1]),
+            );
+            let enters = isa.max(isa.max(start, enters), isa.min(a, b));
+            let end = isa.splat(self.range.max);
+            let exits = isa.min(isa.min(end, exits), isa.max(a, b));
+            let met = isa.le(enters, exits) & is_high;
+            if met == 0 {
+                continue;
+            }
+            let (enters, exits) = (isa.store(enters), isa.store(exits));
+            // The last one first: the first one is next, the others wait.
+            for order in [3, 2, 1, 0] {
+                let quarter = order ^ (x | z << 1);
+                let place = (2 * i + (quarter & 1), 2 * j + (quarter >> 1));
+                if met >> quarter & 1 == 0
+                    || place.0 << level >= columns
+                    || place.1 << level >= rows
+                {
+                    continue;
+                }
+                if let Some(earlier) = next {
+                    waiting.push(earlier);
+                }
+                next = Some(Block {
+                    level,
+                    place,
+                    part: (enters[quarter as usize], exits[quarter as usize]),
+                });
             }
         }
         ControlFlow::Continue(())
     }
 
     /// The parameters between which the ray meets a plane at right angles to an axis, with the pad on both sides of it.
-    #[inline]
+    #[inline(always)]
     fn plane(&self, axis: usize, at: f64) -> (f64, f64) {
         let a = (at - self.lower[axis]) * self.inverse[axis];
         let b = (at - self.upper[axis]) * self.inverse[axis];
@@ -150,13 +218,13 @@ impl<'a> Descent<'a> {
 }
 
 /// The larger of two parameters; the first one if the second is NaN.
-#[inline]
+#[inline(always)]
 fn later(a: f64, b: f64) -> f64 {
     if b > a { b } else { a }
 }
 
 /// The smaller of two parameters; the first one if the second is NaN.
-#[inline]
+#[inline(always)]
 fn earlier(a: f64, b: f64) -> f64 {
     if b < a { b } else { a }
 }
