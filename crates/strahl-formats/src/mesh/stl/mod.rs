@@ -23,20 +23,35 @@ const TRIANGLE: usize = 50;
 /// Reads the triangles; errors and warnings go to the report.
 pub(crate) fn read(input: &Input<'_>, report: &mut Report) -> Scene {
     let mut scene = Scene::default();
-    let text = Text {
-        bytes: input.bytes,
-        name: input.name,
-        file: scene.sources.add(input.name),
-    };
     let expected = input.bytes[..HEADER.min(input.bytes.len())]
         .last_chunk::<4>()
         .filter(|_| input.bytes.len() >= HEADER);
     let expected = expected
         .map(|count| HEADER as u64 + TRIANGLE as u64 * u64::from(u32::from_le_bytes(*count)));
     let size = input.bytes.len() as u64;
-    let is_ascii = expected != Some(size) && begins_with_solid(input.bytes) && !text.is_binary();
+    let begins_with_solid = begins_with_solid(input.bytes);
+    // Some programs fill the last block of a text with zeros.
+    let zeros = input
+        .bytes
+        .iter()
+        .rev()
+        .take_while(|byte| **byte == 0)
+        .count();
+    let text = Text {
+        bytes: &input.bytes[..input.bytes.len() - zeros],
+        name: input.name,
+        file: scene.sources.add(input.name),
+    };
+    let is_ascii = expected != Some(size) && begins_with_solid && !text.is_binary();
     match expected {
-        _ if is_ascii => ascii(text, &mut scene, report),
+        _ if is_ascii => {
+            if zeros > 0 {
+                report.warning(|| {
+                    Diagnostic::warning(format!("`{}`: {zeros} zero bytes behind the text are ignored", input.name))
+                });
+            }
+            ascii(text, &mut scene, report);
+        }
         Some(expected) if size >= expected => {
             if size > expected {
                 report.warning(|| {
@@ -50,14 +65,19 @@ pub(crate) fn read(input: &Input<'_>, report: &mut Report) -> Scene {
         Some(expected) => report.error(|| {
             let promised = (expected - HEADER as u64) / TRIANGLE as u64;
             let there = (size - HEADER as u64) / TRIANGLE as u64;
+            let not_text = if begins_with_solid {
+                "it begins with `solid` but is not a text, and as a binary file "
+            } else {
+                ""
+            };
             Diagnostic::error(format!(
-                "`{}` is not an STL file, or it is cut off: its header says {promised} triangles, but it has room for {there}",
+                "`{}` is not an STL file, or it is cut off: {not_text}its header says {promised} triangles, but it has room for {there}",
                 input.name
             ))
         }),
         None => report.error(|| {
             Diagnostic::error(format!(
-                "`{}` is not an STL file: it does not begin with `solid`, and is too short for a binary file ({size} bytes)",
+                "`{}` is not an STL file: it is no text that begins with `solid`, and is too short for a binary file ({size} bytes)",
                 input.name
             ))
         }),

@@ -114,6 +114,26 @@ fn errors_of_ascii_files_have_a_caret() {
 }
 
 #[test]
+fn zeros_behind_a_text_are_ignored_with_a_warning() {
+    let text = "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid a\n";
+    for zeros in [1, 100] {
+        let mut bytes = text.as_bytes().to_vec();
+        bytes.extend(vec![0; zeros]);
+        let loaded = load(bytes);
+        assert_eq!(
+            messages(&loaded),
+            [format!(
+                "warning: `part.stl`: {zeros} zero bytes behind the text are ignored"
+            )]
+        );
+    }
+    let mut bytes = text.as_bytes().to_vec();
+    bytes[40] = 0;
+    assert!(messages(&load(bytes))[0].contains("it begins with `solid` but is not a text"));
+    assert!(messages(&load("solid\0"))[0].contains("expected `facet` or `endsolid`"));
+}
+
+#[test]
 fn damaged_binary_files_are_named() {
     let mut cut = binary("", &TETRAHEDRON);
     cut.truncate(cut.len() - 60);
