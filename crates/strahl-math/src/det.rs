@@ -18,6 +18,11 @@ pub fn cos(x: f64) -> f64 {
     libm::cos(x)
 }
 
+/// Sine and cosine of `x` radians, with the bits of [`sin`] and [`cos`].
+pub fn sin_cos(x: f64) -> (f64, f64) {
+    libm::sincos(x)
+}
+
 /// Tangent of `x` radians.
 pub fn tan(x: f64) -> f64 {
     libm::tan(x)
@@ -124,6 +129,24 @@ mod tests {
     fn acosh_of_a_large_negative_number_is_nan() {
         assert!(super::acosh(-234504.77989254522).is_nan());
         assert_eq!(super::acosh(1.0), 0.0);
+    }
+
+    #[test]
+    fn sine_and_cosine_together_have_the_same_bits() {
+        let check = |x: f64| {
+            let (sin, cos) = super::sin_cos(x);
+            assert_eq!(sin.to_bits(), super::sin(x).to_bits(), "{x}");
+            assert_eq!(cos.to_bits(), super::cos(x).to_bits(), "{x}");
+        };
+        for i in -20_000..20_000 {
+            let x = f64::from(i);
+            check(x * 0.000_37);
+            check(x * 1.37e5);
+            // Every exponent, around the limits where tiny angles are treated on their own.
+            check(f64::from_bits((i as u64) << 47 & 0x7fff_ffff_ffff_ffff));
+        }
+        check(f64::NAN);
+        check(f64::NEG_INFINITY);
     }
 
     #[test]

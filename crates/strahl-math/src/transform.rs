@@ -54,7 +54,7 @@ impl Transform {
             return Self::IDENTITY;
         }
         let a = axis / length;
-        let (s, c) = (crate::det::sin(radians), crate::det::cos(radians));
+        let (s, c) = crate::det::sin_cos(radians);
         let k = 1.0 - c;
         // Rodrigues' formula, column by column.
         let linear = DMat3::from_cols(

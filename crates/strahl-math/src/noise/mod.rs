@@ -130,7 +130,7 @@ impl Turbulence {
                 for k in 0..count {
                     sum += values[k] * strengths[k];
                 }
-                done += 4;
+                done = done.saturating_add(4);
             }
             sum
         })

@@ -147,15 +147,17 @@ fn sample(index: u32, shift: [f64; 4]) -> [f64; 4] {
     let mut point = shift;
     for (x, step) in point.iter_mut().zip(STEPS) {
         let y = *x + n * step;
-        *x = y - y.floor();
+        // Not below 0, where the cast rounds down.
+        *x = y - (y as i64) as f64;
     }
     point
 }
 
 /// Maps the unit square to the unit disc, uniformly.
 fn disc(a: f64, b: f64) -> (f64, f64) {
-    let (radius, angle) = (a.sqrt(), std::f64::consts::TAU * b);
-    (radius * det::cos(angle), radius * det::sin(angle))
+    let radius = a.sqrt();
+    let (sin, cos) = det::sin_cos(std::f64::consts::TAU * b);
+    (radius * cos, radius * sin)
 }
 
 #[cfg(test)]

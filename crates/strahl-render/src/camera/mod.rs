@@ -139,15 +139,17 @@ impl PrimaryRays {
             Projection::UltraWideAngle { angle } => {
                 let a = half_u * angle;
                 let b = half_v * angle * up.length() / right.length();
-                let flat = side * det::sin(a) + above * det::sin(b);
-                (flat + forward * (det::cos(a) * det::cos(b)), [a, b])
+                let ((sin_a, cos_a), (sin_b, cos_b)) = (det::sin_cos(a), det::sin_cos(b));
+                let flat = side * sin_a + above * sin_b;
+                (flat + forward * (cos_a * cos_b), [a, b])
             }
             Projection::Panoramic => {
                 let (a, b) = (half_u * std::f64::consts::PI, half_v * std::f64::consts::PI);
-                let level = right * det::sin(a) + c.direction * det::cos(a);
+                let ((sin_a, cos_a), (sin_b, cos_b)) = (det::sin_cos(a), det::sin_cos(b));
+                let level = right * sin_a + c.direction * cos_a;
                 // The place for `normal` is measured from the right (as in POV-Ray).
                 let place = [std::f64::consts::FRAC_PI_2 - a, b];
-                (level * det::cos(b) + up * det::sin(b), place)
+                (level * cos_b + up * sin_b, place)
             }
             Projection::Cylinder {
                 upright,
@@ -159,7 +161,8 @@ impl PrimaryRays {
                 } else {
                     (right, half_u, half_v * angle, above)
                 };
-                let straight = across * det::sin(around) + forward * det::cos(around);
+                let (sin, cos) = det::sin_cos(around);
+                let straight = across * sin + forward * cos;
                 let distance = along * axis.length();
                 let place = if upright {
                     [around, distance]
@@ -212,9 +215,10 @@ fn omnimax_film([u, v]: [f64; 2], aspect: f64) -> [f64; 2] {
 /// The direction at the angle `theta` from the third axis, on the side of the point `[a, b]` in the plane of the first two.
 fn polar(theta: f64, [a, b]: [f64; 2], [side, above, forward]: [DVec3; 3]) -> DVec3 {
     let radius = (a * a + b * b).sqrt();
-    let ahead = forward * det::cos(theta);
+    let (sin, cos) = det::sin_cos(theta);
+    let ahead = forward * cos;
     if radius > 0.0 {
-        ahead + (side * a + above * b) * (det::sin(theta) / radius)
+        ahead + (side * a + above * b) * (sin / radius)
     } else {
         ahead
     }
@@ -232,7 +236,7 @@ fn turn(a: f64, b: f64) -> f64 {
 
 /// A vector rotated by an angle about a unit axis (Rodrigues' formula).
 fn turned(v: DVec3, axis: DVec3, angle: f64) -> DVec3 {
-    let (sin, cos) = (det::sin(angle), det::cos(angle));
+    let (sin, cos) = det::sin_cos(angle);
     v * cos + axis.cross(v) * sin + axis * (axis.dot(v) * (1.0 - cos))
 }
 

@@ -59,7 +59,8 @@ impl Complex {
 
     pub(super) fn exp(self) -> Self {
         let r = det::exp(self.re);
-        Self::new(r * det::cos(self.im), r * det::sin(self.im))
+        let (sin, cos) = det::sin_cos(self.im);
+        Self::new(r * cos, r * sin)
     }
 
     /// The principal value.
@@ -76,17 +77,13 @@ impl Complex {
     }
 
     pub(super) fn sin(self) -> Self {
-        Self::new(
-            det::sin(self.re) * det::cosh(self.im),
-            det::cos(self.re) * det::sinh(self.im),
-        )
+        let (sin, cos) = det::sin_cos(self.re);
+        Self::new(sin * det::cosh(self.im), cos * det::sinh(self.im))
     }
 
     pub(super) fn cos(self) -> Self {
-        Self::new(
-            det::cos(self.re) * det::cosh(self.im),
-            -(det::sin(self.re) * det::sinh(self.im)),
-        )
+        let (sin, cos) = det::sin_cos(self.re);
+        Self::new(cos * det::cosh(self.im), -(sin * det::sinh(self.im)))
     }
 
     pub(super) fn sinh(self) -> Self {
