@@ -6,7 +6,7 @@ pub(super) struct Slabs {
     origin: DVec3,
     direction: DVec3,
     inverse: DVec3,
-    /// Whether the ray runs along a plane between two axes.
+    /// Whether a component of the direction is zero, or so small that its reciprocal is infinite.
     is_parallel: bool,
 }
 
@@ -21,7 +21,8 @@ impl Slabs {
         }
     }
 
-    /// The part of the range within a box, conservatively widened as [`Aabb::clip`] does it; `None` if the ray misses.
+    /// The part of the range within a box, conservatively widened as [`Aabb::clip`] does it; `None` if the ray misses. Empty boxes may
+    /// count as met.
     #[inline]
     pub(super) fn clip(&self, bounds: &Aabb, range: Interval) -> Option<Interval> {
         // A difference, a reciprocal and a product, each within half an ulp: widened by more than their sum.

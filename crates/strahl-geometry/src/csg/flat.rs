@@ -143,7 +143,7 @@ impl Flat {
         let mut events = ArrayVec::<Event, { 2 * MOST }>::new();
         let mut inside = 0;
         for (n, number) in self.leaves.iter().enumerate() {
-            // Those that only clip don't matter where no surface is visible.
+            // The others only clip, which does not matter if the ray meets no visible surface in the range.
             if n == self.visible && !events.iter().any(|e| e.t <= far) {
                 return Ok(());
             }

@@ -191,7 +191,7 @@ impl Fractal {
         let (start, mut smallest) = if magnet && self.julia.is_none() {
             (Complex::new(0.0, 0.0), f64::INFINITY)
         } else {
-            (point, point.norm())
+            (point, point.norm2())
         };
         let mut z = OrbitPoint::new(start);
         let (mut number, mut end) = (0, self.iterations);
@@ -203,7 +203,7 @@ impl Fractal {
             if absolute < smallest {
                 smallest = absolute;
             }
-            let converged = magnet && (z.number() - Complex::ONE).norm() < CONVERGED;
+            let converged = magnet && (z.number() - Complex::ONE).norm2() < CONVERGED;
             if !(absolute <= bailout) || converged {
                 return self.outside(number, z);
             }
@@ -298,7 +298,7 @@ impl Complex {
 
     /// The squared absolute value.
     #[inline(always)]
-    fn norm(self) -> f64 {
+    fn norm2(self) -> f64 {
         self.x * self.x + self.y * self.y
     }
 }
@@ -344,7 +344,7 @@ impl Div for Complex {
 
     #[inline(always)]
     fn div(self, b: Self) -> Self {
-        let (q, norm) = (self * Self::new(b.x, -b.y), b.norm());
+        let (q, norm) = (self * Self::new(b.x, -b.y), b.norm2());
         Self::new(q.x / norm, q.y / norm)
     }
 }

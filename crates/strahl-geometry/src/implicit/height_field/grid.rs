@@ -138,7 +138,7 @@ impl Grid {
             let level = &self.levels[level as usize - 2];
             return level.fours[j as usize * level.width as usize + i as usize];
         }
-        // Without branches: at the edge the last cells are taken twice.
+        // A cell beyond the edge repeats the last one, so that four are computed without branches.
         let (columns, rows) = self.cells();
         let (i, j) = (2 * i, 2 * j);
         let right = usize::from(i + 1 < columns);
