@@ -49,11 +49,10 @@ pub(crate) fn paint<'s>(
 
     surface.material.fresnel = false;
     surface.material.fresnel_reflection = Color::BLACK;
-    surface.material.finish = Cow::Owned(Finish {
+    let mut sum = Finish {
         transmission: paint.transmission,
         ..Finish::BLACK
-    });
-    let sum = surface.material.finish.to_mut();
+    };
     let mut strongest = 0.0;
     surface.shows_lights = false;
     if let Some(top) = paint.layers.first() {
@@ -73,6 +72,7 @@ pub(crate) fn paint<'s>(
             surface.n_shade = layer.normal;
         }
     }
+    surface.material.finish = Cow::Owned(sum);
     surface.n_refract = paint
         .stacks
         .iter()

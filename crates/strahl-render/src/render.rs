@@ -75,7 +75,12 @@ impl RenderOptions {
 
     /// Whether neighbouring rays are traced in packets. Not where costs are shown, since these are the costs of single rays.
     fn follows_together(&self, rays: &PrimaryRays) -> bool {
-        self.trace.packets && !self.costs && !self.info && !self.alpha && rays.is_sharp()
+        self.has_packets() && rays.is_sharp()
+    }
+
+    /// Whether rays may be traced in packets at all: neither costs nor properties of single rays are asked for.
+    const fn has_packets(&self) -> bool {
+        self.trace.packets && !self.costs && !self.info && !self.alpha
     }
 }
 

@@ -229,13 +229,14 @@ impl<'s> TreeTracer<'s> {
             self.tracer.slot.enter_for(Phase::Surface, hit.id);
         }
         let index = self.nodes.len() as u32;
-        let length = hit.map_or(f64::INFINITY, |h| h.t * branch.ray.direction.length());
+        let speed = branch.ray.direction.length();
+        let length = hit.map_or(f64::INFINITY, |h| h.t * speed);
         let known = ahead.as_ref().map_or(KnownLights::default(), |a| a.lights);
         let mut surface = match (hit, ahead) {
             (None, _) => None,
             (Some(_), Some(ahead)) => Some(&mut ahead.surface),
             (Some(hit), None) => {
-                found.find(scene, branch, hit, &self.media, self.uv);
+                found.find(scene, branch, speed, hit, &self.media, self.uv);
                 Some(found)
             }
         };

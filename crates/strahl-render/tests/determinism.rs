@@ -8,7 +8,7 @@ use common::{compiled, every_shape, glass_and_mirrors, patches, rendered};
 use strahl_accel::AcceleratorKind;
 use strahl_geometry::Primitive;
 use strahl_render::{CompileOptions, Refinement, Region, Sampling, TileOrder, compile};
-use strahl_scene::ObjectKind;
+use strahl_scene::{Lens, ObjectKind};
 
 const SAMPLINGS: [Sampling; 5] = [
     Sampling::Center,
@@ -111,6 +111,23 @@ fn packets_change_nothing() {
             assert_ne!(with.traversal, without.traversal, "{sampling}");
         }
     }
+}
+
+#[test]
+fn packets_through_a_lens_change_nothing() {
+    let mut scene = every_shape();
+    let camera = scene.camera.as_mut().expect("a camera");
+    camera.lens = Some(Lens::new(0.3, camera.eye + camera.direction * 4.0, 40));
+    let scene = compiled(&scene);
+    let [with, without] = [true, false].map(|packets| {
+        rendered(&scene, |o| {
+            (o.width, o.height) = (64, 48);
+            o.trace.packets = packets;
+        })
+    });
+    assert!(with.film == without.film && with.rays == without.rays);
+    assert_ne!(with.traversal, without.traversal);
+    assert!(with.rays.primary > 8 * 64 * 48, "{:?}", with.rays);
 }
 
 /// What is compared is there: each kind of shape has pixels.

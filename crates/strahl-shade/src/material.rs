@@ -273,6 +273,20 @@ impl Material {
             Some(pbr) => pbr.at(uv),
         }
     }
+
+    /// Stores [`Material::at`] in `out`.
+    // In place, and only what is needed of a borrowed finish: copies of the whole took 1 % of the time.
+    #[inline]
+    pub fn store_at<'m>(&'m self, uv: DVec2, out: &mut MaterialPoint<'m>) {
+        if self.pbr.is_some() || self.fresnel {
+            *out = self.at(uv);
+            return;
+        }
+        out.finish = Cow::Borrowed(&self.finish);
+        out.fresnel_reflection = Color::BLACK;
+        out.fresnel = false;
+        out.opacity = 1.0;
+    }
 }
 /// Beer-Lambert: the attenuation of light on a path of this length.
 #[inline]

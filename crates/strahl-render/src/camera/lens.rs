@@ -1,7 +1,12 @@
+use arrayvec::ArrayVec;
 use std::sync::Arc;
+use strahl_accel::PACKET;
 use strahl_math::{DVec3, Ray, det};
 use strahl_scene::{Bokeh, Camera, Projection};
 use strahl_shade::Color;
+
+/// The fewest rays that are traced when the mean is not exact enough.
+const FEW: u32 = 4;
 
 /// Focal blur: traces rays through a lens.
 #[derive(Clone, Debug)]
@@ -50,37 +55,63 @@ impl LensSampler {
 
     /// The mean of the rays through the lens. Each ray meets the plane of focus at the same point as the chief ray of a
     /// position up to half a pixel away along each axis: like POV-Ray's, the lens is never sharper than a pixel (measured: the
-    /// means over pixels of objects in focus). `center` returns the chief ray, if the camera sees something there.
+    /// means over pixels of objects in focus). `center` returns the chief ray, if the camera sees something there; the length of
+    /// its direction matters only to cameras with a sphere of focus, where it is 1. `trace` returns the colours of a few rays, at
+    /// most [`PACKET`]; where the camera sees nothing there is no ray.
     pub(super) fn color(
         &self,
         (x, y): (f64, f64),
         center: impl Fn(f64, f64) -> Option<Ray>,
-        mut trace: impl FnMut(&Ray) -> Color,
+        mut trace: impl FnMut(&[Option<Ray>]) -> ArrayVec<Color, PACKET>,
     ) -> Color {
         let shift = scramble((x, y));
         let (mut sum, mut squares, mut count) = (Color::BLACK, Color::BLACK, 0u32);
-        let (fewest, most) = self.samples;
-        while count < most {
-            let [a, b, c, d] = sample(count, shift);
-            let point = match &self.bokeh {
-                Some(bokeh) => bokeh.point(a, b),
-                None => disc(a, b),
-            };
-            let color = match center(x + c - 0.5, y + d - 0.5) {
-                Some(center) => trace(&self.through(&center, point)),
-                None => Color::BLACK,
-            };
-            sum += color;
-            squares += color * color;
-            count += 1;
-            if count >= fewest && self.settled(sum, squares, count) {
+        loop {
+            let wanted = self.wanted(sum, squares, count);
+            if wanted == 0 {
                 break;
             }
+            let mut rays = ArrayVec::<Option<Ray>, PACKET>::new();
+            for index in count..count + wanted {
+                let [a, b, c, d] = sample(index, shift);
+                let point = match &self.bokeh {
+                    Some(bokeh) => bokeh.point(a, b),
+                    None => disc(a, b),
+                };
+                let chief = center(x + c - 0.5, y + d - 0.5);
+                rays.push(chief.map(|chief| self.through(&chief, point)));
+            }
+            for color in trace(&rays) {
+                sum += color;
+                squares += color * color;
+            }
+            count += wanted;
         }
         sum / f64::from(count.max(1))
     }
 
+    /// The number of rays to trace next, at most [`PACKET`]; 0 if the mean is exact enough or has all its rays.
+    fn wanted(&self, sum: Color, squares: Color, count: u32) -> u32 {
+        let (fewest, most) = self.samples;
+        let more = if count < fewest.min(most) {
+            fewest.min(most) - count
+        } else {
+            // The squared error falls with the number of rays, so this many rays more should be enough. A packet of a few costs
+            // little more than one ray.
+            let excess = self.excess(sum, squares, count);
+            if excess <= 1.0 {
+                return 0;
+            }
+            let missing = f64::from(count) * (excess - 1.0);
+            (missing.min(PACKET as f64).ceil() as u32)
+                .max(FEW)
+                .min(most.saturating_sub(count))
+        };
+        more.min(PACKET as u32)
+    }
+
     /// The ray through a point of the lens (coordinates from -1 to 1) that belongs to a chief ray.
+    #[inline(always)]
     fn through(&self, center: &Ray, (x, y): (f64, f64)) -> Ray {
         let ahead = center.direction.dot(self.forward);
         let before = (center.origin - self.eye).dot(self.forward);
@@ -90,22 +121,26 @@ impl LensSampler {
             self.distance.abs()
         };
         let origin = center.origin + self.side * x + self.above * y;
-        let direction = (center.at(t) - origin).normalize_or(center.direction);
+        let direction = (center.at(t) - origin).normalize_or(self.forward);
         // If the intersection with the plane of focus lies behind the camera, the ray points away from it.
         Ray::new(origin, if t < 0.0 { -direction } else { direction })
     }
 
-    /// Whether the mean is exact enough: its standard error times the quantile of the confidence is below the limit.
-    fn settled(&self, sum: Color, squares: Color, count: u32) -> bool {
-        let n = f64::from(count);
+    /// The square of the mean's error divided by the square of the error allowed: the error is the standard error times the
+    /// quantile of the confidence. Infinite for a single ray, whose error is not known; 0 if there is no error.
+    fn excess(&self, sum: Color, squares: Color, count: u32) -> f64 {
         if count < 2 {
-            return false;
+            return f64::INFINITY;
         }
+        let n = f64::from(count);
         let mean = sum / n;
         let variance = (squares / n - mean * mean) * (1.0 / (n - 1.0));
-        let worst = variance.max_component();
-        let worst = if worst > 0.0 { worst } else { 0.0 };
-        self.quantile * worst.sqrt() <= self.tolerance
+        let error = variance.max_component() * (self.quantile * self.quantile);
+        if error > 0.0 {
+            error / (self.tolerance * self.tolerance)
+        } else {
+            0.0
+        }
     }
 }
 
@@ -171,6 +206,18 @@ mod tests {
         LensSampler::new(&camera).expect("a lens")
     }
 
+    /// Traces rays one by one.
+    fn each(
+        mut trace: impl FnMut(&Ray) -> Color,
+    ) -> impl FnMut(&[Option<Ray>]) -> ArrayVec<Color, PACKET> {
+        move |rays| {
+            let colors = rays.iter();
+            colors
+                .map(|ray| ray.as_ref().map_or(Color::BLACK, &mut trace))
+                .collect()
+        }
+    }
+
     #[test]
     fn rays_meet_in_the_plane_of_focus() {
         let lens = blurred(100);
@@ -179,7 +226,7 @@ mod tests {
         let mut widest: f64 = 0.0;
         let mut count = 0;
         let same = |_, _| Some(center);
-        lens.color((0.5, 0.5), same, |ray| {
+        let alternate = each(|ray| {
             assert!((ray.origin - DVec3::ZERO).length() <= 0.5 + 1e-12);
             let t = (5.0 - ray.origin.z) / ray.direction.z;
             assert!((ray.at(t) - meeting).length() < 1e-12);
@@ -187,6 +234,7 @@ mod tests {
             count += 1;
             Color::gray(f64::from(count % 2))
         });
+        lens.color((0.5, 0.5), same, alternate);
         assert!(widest > 0.45 && count == 100, "{widest} {count}");
     }
 
@@ -197,10 +245,10 @@ mod tests {
         let color = blurred(1000).color(
             (3.5, 2.5),
             |_, _| Some(ray),
-            |_| {
+            each(|_| {
                 count += 1;
                 Color::gray(0.25)
-            },
+            }),
         );
         assert_eq!((color, count), (Color::gray(0.25), 7));
     }
@@ -213,13 +261,14 @@ mod tests {
         let at = |x: f64, _| Some(Ray::new(DVec3::X * x, DVec3::Z));
         // An edge in focus through the pixel; the object is to its right.
         for edge in [3.2, 3.5, 3.9] {
-            let color = lens.color((3.5, 2.5), at, |ray| {
+            let right_of_edge = each(|ray| {
                 let x = ray.at((5.0 - ray.origin.z) / ray.direction.z).x;
                 Color::gray(f64::from(x > edge))
             });
+            let color = lens.color((3.5, 2.5), at, right_of_edge);
             assert!((color.r - (4.0 - edge)).abs() < 0.01, "{edge}: {color:?}");
         }
-        let blind = lens.color((3.5, 2.5), |_, _| None, |_| Color::WHITE);
+        let blind = lens.color((3.5, 2.5), |_, _| None, each(|_| Color::WHITE));
         assert_eq!(blind, Color::BLACK);
     }
 

@@ -3,8 +3,9 @@
 mod lens;
 mod mesh;
 
+use arrayvec::ArrayVec;
 use lens::LensSampler;
-use strahl_accel::Beam;
+use strahl_accel::{Beam, PACKET};
 use strahl_math::{DVec3, Ray, det};
 use strahl_scene::{Camera, Projection};
 use strahl_shade::Color;
@@ -41,20 +42,54 @@ impl PrimaryRays {
             return self.mesh_color(mesh, x, y, trace);
         }
         match &self.lens {
-            Some(lens) => lens.color((x, y), |x, y| self.ray(x, y), trace),
+            Some(lens) => lens.color(
+                (x, y),
+                |x, y| self.chief::<false>(x, y),
+                |rays| {
+                    let colors = rays.iter();
+                    colors
+                        .map(|ray| ray.as_ref().map_or(Color::BLACK, &mut trace))
+                        .collect()
+                },
+            ),
             None => self.ray(x, y).map_or(Color::BLACK, |ray| trace(&ray)),
         }
     }
 
+    /// [`PrimaryRays::color`] of a camera with a lens, whose rays are traced a few at a time: `trace` returns the colours of
+    /// at most [`PACKET`] rays; where the camera sees nothing there is no ray. `None` if the camera has no lens.
+    pub(crate) fn blurred(
+        &self,
+        x: f64,
+        y: f64,
+        trace: impl FnMut(&[Option<Ray>]) -> ArrayVec<Color, PACKET>,
+    ) -> Option<Color> {
+        if matches!(self.camera.projection, Projection::Mesh(_)) {
+            return None;
+        }
+        let lens = self.lens.as_ref()?;
+        Some(lens.color((x, y), |x, y| self.chief::<false>(x, y), trace))
+    }
+
     /// The chief ray, through the centre of the lens; `None` where the camera sees nothing, and for mesh cameras.
     pub fn ray(&self, x: f64, y: f64) -> Option<Ray> {
+        self.chief::<true>(x, y)
+    }
+
+    /// [`PrimaryRays::ray`], whose direction has length 1 if `UNIT` and any length if not.
+    #[inline(always)]
+    fn chief<const UNIT: bool>(&self, x: f64, y: f64) -> Option<Ray> {
         let c = &self.camera;
         // From -1 to 1, x to the right and y upwards.
         let (u, v) = (2.0 * x / self.width - 1.0, 1.0 - 2.0 * y / self.height);
         let sideways = c.right * u + c.up * v;
         let (ray, place) = match &c.projection {
             Projection::Perspective => {
-                let direction = (c.direction + sideways).normalize();
+                let direction = c.direction + sideways;
+                let direction = match UNIT || c.normal.is_some() {
+                    true => direction.normalize(),
+                    false => direction,
+                };
                 (Ray::new(c.eye, direction), [0.5 * u, 0.5 * v])
             }
             Projection::Orthographic => {

@@ -452,6 +452,12 @@ impl PixelTracer<'_> {
 
     /// The radiance at a position in the picture; `keep` says whether to store the hit's other data for the pixel.
     pub(super) fn sample(&mut self, x: f64, y: f64, keep: bool) -> Sample {
+        if self.options.has_packets() && !self.blind {
+            let rays = self.rays;
+            if let Some(color) = rays.blurred(x, y, |rays| self.follow(rays)) {
+                return color.into();
+            }
+        }
         let mut clear = (0.0, 0u32);
         let mut coverage = self.coverage.take();
         let before = self.tree.tracer.stats.primitive_tests;

@@ -112,9 +112,10 @@ impl<'s> TreeTracer<'s> {
                 }
                 let ahead = &mut all[used];
                 let branch = Branch::primary(ray, eye);
+                let speed = ray.direction.length();
                 ahead
                     .surface
-                    .find(scene, &branch, hit, &self.media, self.uv);
+                    .find(scene, &branch, speed, hit, &self.media, self.uv);
                 ahead.plain = self.is_plain(&ahead.surface);
                 ahead.lights = KnownLights {
                     lane: used as u32,
