@@ -52,6 +52,12 @@ impl SkySphere {
 }
 
 impl SkySphere {
+    /// The colour seen along all directions, if no layer has a pattern.
+    pub fn same_everywhere(&self) -> Option<Color> {
+        let plain = |layer: &Pigment| matches!(layer, Pigment::Solid(..));
+        self.layers.iter().all(plain).then(|| self.along(DVec3::Y))
+    }
+
     /// What all layers let pass along a direction, layers tinting those below.
     pub fn passes(&self, direction: DVec3) -> Color {
         let at = self
@@ -73,7 +79,7 @@ mod tests {
 
     #[test]
     fn upper_layers_cover_lower_ones() {
-        let sky = SkySphere {
+        let mut sky = SkySphere {
             layers: vec![
                 ColorFt::opaque(Color::new(1.0, 0.0, 0.0)).into(),
                 ColorFt {
@@ -88,7 +94,12 @@ mod tests {
             behind: Color::WHITE,
             tints_layers: true,
         };
-        assert_eq!(sky.along(DVec3::Z * 7.0), Color::new(0.25, 0.75, 0.0));
+        let seen = Color::new(0.25, 0.75, 0.0);
+        assert_eq!(sky.along(DVec3::Z * 7.0), seen);
+        assert_eq!(sky.same_everywhere(), Some(seen));
+        let other = Pigment::UvMapped(Box::default());
+        sky.layers.push(other);
+        assert_eq!(sky.same_everywhere(), None);
     }
 
     #[test]

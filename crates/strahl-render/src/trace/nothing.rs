@@ -9,12 +9,15 @@ use strahl_shade::Color;
 
 /// The radiance along primary rays that hit nothing, if it is the same for all.
 pub(super) fn common(scene: &RenderScene, settings: &TraceSettings) -> Option<Color> {
-    match &scene.background {
-        Background::Solid(color) if !scene.has_air() && !scene.absorbs_around_the_eye() => {
-            Some(settings.decoded(*color + Color::BLACK))
-        }
-        _ => None,
+    if scene.has_air() || scene.absorbs_around_the_eye() {
+        return None;
     }
+    let color = match &scene.background {
+        Background::Solid(color) => *color,
+        Background::Sky(sky) => sky.same_everywhere()?,
+        Background::Gradient { .. } => return None,
+    };
+    Some(settings.decoded(color + Color::BLACK))
 }
 
 impl TreeTracer<'_> {
