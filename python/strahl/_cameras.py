@@ -191,7 +191,7 @@ class Camera:
         *,
         samples: int | tuple[int, int] = 64,
         confidence: float = 0.9,
-        variance: float = 1 / 128,
+        variance: float = 1 / 10_000,
         bokeh: npt.ArrayLike | None = None,
     ) -> Camera:
         """With a lens: what is not in the plane of ``focal_point`` is blurred. ``aperture`` is four times the radius of the lens, as in POV-Ray.

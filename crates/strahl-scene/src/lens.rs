@@ -32,7 +32,7 @@ impl Lens {
             min_samples: if max_samples < 7 { 4 } else { 7 },
             max_samples,
             confidence: 0.9,
-            variance: 1.0 / 128.0,
+            variance: 1.0 / 10_000.0,
             bokeh: None,
         }
     }

@@ -8,6 +8,9 @@ use strahl_shade::Color;
 /// The fewest rays that are traced when the mean is not exact enough.
 const FEW: u32 = 4;
 
+/// A factor of the number of rays, as measured with POV-Ray (docs/src/notes/speed.md).
+const RATE: f64 = 0.977;
+
 /// Focal blur: traces rays through a lens.
 #[derive(Clone, Debug)]
 pub(super) struct LensSampler {
@@ -20,7 +23,7 @@ pub(super) struct LensSampler {
     distance: f64,
     flat: bool,
     samples: (u32, u32),
-    /// Half the width of the confidence interval of the mean in standard deviations, and the width allowed.
+    /// The one-sided quantile of the confidence, in standard deviations, and the square root of the variance allowed.
     quantile: f64,
     tolerance: f64,
     bokeh: Option<Arc<Bokeh>>,
@@ -48,7 +51,7 @@ impl LensSampler {
             ),
             samples: (lens.min_samples.max(1), lens.max_samples),
             quantile: quantile(lens.confidence),
-            tolerance: lens.variance,
+            tolerance: lens.variance.sqrt(),
             bokeh: lens.bokeh.clone(),
         })
     }
@@ -96,13 +99,11 @@ impl LensSampler {
         let more = if count < fewest.min(most) {
             fewest.min(most) - count
         } else {
-            // The squared error falls with the number of rays, so this many rays more should be enough. A packet of a few costs
-            // little more than one ray.
-            let excess = self.excess(sum, squares, count);
-            if excess <= 1.0 {
+            // A packet of a few costs little more than one ray.
+            let missing = self.enough(sum, squares, count) - f64::from(count);
+            if missing <= 0.0 {
                 return 0;
             }
-            let missing = f64::from(count) * (excess - 1.0);
             (missing.min(PACKET as f64).ceil() as u32)
                 .max(FEW)
                 .min(most.saturating_sub(count))
@@ -126,28 +127,34 @@ impl LensSampler {
         Ray::new(origin, if t < 0.0 { -direction } else { direction })
     }
 
-    /// The square of the mean's error divided by the square of the error allowed: the error is the standard error times the
-    /// quantile of the confidence. Infinite for a single ray, whose error is not known; 0 if there is no error.
-    fn excess(&self, sum: Color, squares: Color, count: u32) -> f64 {
+    /// The number of rays after which POV-Ray stops if their colours vary as these do. Infinite for a single ray, whose variance is
+    /// not known; 0 if there is none.
+    ///
+    /// As measured: n of at most m rays, of standard deviation s, are enough if n χ² ≥ m (0.977 s)² / `variance`, where χ² is the
+    /// quantile of the chi-square distribution, about n - q sqrt(2 n).
+    fn enough(&self, sum: Color, squares: Color, count: u32) -> f64 {
         if count < 2 {
             return f64::INFINITY;
         }
         let n = f64::from(count);
         let mean = sum / n;
-        let variance = (squares / n - mean * mean) * (1.0 / (n - 1.0));
-        let error = variance.max_component() * (self.quantile * self.quantile);
-        if error > 0.0 {
-            error / (self.tolerance * self.tolerance)
-        } else {
-            0.0
+        let variance = (squares - mean * mean * n) * (1.0 / (n - 1.0));
+        let worst = variance.max_component();
+        if !(worst > 0.0) {
+            return 0.0;
         }
+        // The root n of n - h sqrt(n) = ratio.
+        let ratio = RATE * (worst * f64::from(self.samples.1)).sqrt() / self.tolerance;
+        let h = std::f64::consts::FRAC_1_SQRT_2 * self.quantile;
+        let root = 0.5 * (h + (h * h + 4.0 * ratio).sqrt());
+        root * root
     }
 }
 
-/// Half the width, in standard deviations, of the interval around the mean of a normal distribution that contains this fraction
-/// of it (Abramowitz and Stegun, formula 26.2.23).
+/// The number of standard deviations above the mean of a normal distribution below which this fraction of it lies, for fractions
+/// from a half on, below which it is zero (Abramowitz and Stegun, formula 26.2.23).
 fn quantile(confidence: f64) -> f64 {
-    let tail = 0.5 * (1.0 - confidence.clamp(0.0, 1.0 - 1e-9));
+    let tail = 1.0 - confidence.clamp(0.5, 1.0 - 1e-9);
     let t = (-2.0 * det::ln(tail)).sqrt();
     let above = 2.515_517 + t * (0.802_853 + t * 0.010_328);
     let below = 1.0 + t * (1.432_788 + t * (0.189_269 + t * 0.001_308));
@@ -274,9 +281,9 @@ mod tests {
 
     #[test]
     fn quantiles_are_those_of_the_tables() {
-        for (confidence, expected) in [(0.9, 1.6449), (0.95, 1.9600), (0.99, 2.5758)] {
+        for (confidence, expected) in [(0.9, 1.2816), (0.95, 1.6449), (0.99, 2.3263)] {
             assert!((quantile(confidence) - expected).abs() < 5e-4);
         }
-        assert!(quantile(1.0).is_finite() && quantile(0.0) < 1e-3);
+        assert!(quantile(1.0).is_finite() && quantile(0.0).abs() < 1e-3);
     }
 }

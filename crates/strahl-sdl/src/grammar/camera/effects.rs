@@ -96,7 +96,7 @@ impl Parser<'_> {
                 let value = self.float()?;
                 if !(0.0..1.0).contains(&value) {
                     let message = format!(
-                        "variance must be from 0 to less than 1, not {value}; 1/128 is used"
+                        "variance must be from 0 to less than 1, not {value}; 1/10000 is used"
                     );
                     self.warn(place, message);
                 } else {
