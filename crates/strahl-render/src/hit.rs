@@ -58,3 +58,12 @@ pub struct Origin {
     /// world coordinates can't hold.
     pub local: DVec3,
 }
+
+impl Origin {
+    /// A place to store an origin.
+    pub(crate) const NOWHERE: Self = Self {
+        id: 0,
+        facet: 0,
+        local: DVec3::ZERO,
+    };
+}

@@ -4,11 +4,10 @@ use crate::hit::{Hit, Origin};
 use crate::light_sets::Lit;
 use crate::media::{Body, Crossing, MediaArena, MediaStack, Medium};
 use crate::observer::{HitReport, Shading};
-use crate::resolve::{LocalPoint, Resolved, Uv};
+use crate::resolve::{Resolved, Uv};
 use crate::scene::RenderScene;
 use crate::trace::{Branch, FirstHit};
 use std::borrow::Cow;
-use strahl_geometry::SurfacePoint;
 use strahl_math::{DVec3, Ray, error};
 use strahl_shade::{
     Color, Finish, MaterialId, MaterialPoint, Refracted, ShadingModel, SpectralPart,
@@ -123,14 +122,7 @@ impl<'s> Surface<'s> {
             },
             medium_1: None,
             medium_2: None,
-            front: (
-                DVec3::ZERO,
-                Origin {
-                    id: 0,
-                    facet: 0,
-                    local: DVec3::ZERO,
-                },
-            ),
+            front: (DVec3::ZERO, Origin::NOWHERE),
         }
     }
 
@@ -191,13 +183,7 @@ impl<'s> Surface<'s> {
         material.store_at(point.uv, &mut self.material);
         self.lit = scene.lit(hit.id, look.object);
         self.shows_lights = true;
-        let (point, origin) = &mut self.front;
-        *point = offset(&self.resolved.point, self.entering);
-        (origin.id, origin.facet) = (hit.id, hit.facet);
-        origin.local = *point;
-        if let Some(local) = &self.resolved.local {
-            origin.local = local_offset(local, self.entering);
-        }
+        store_start(&self.resolved, hit, self.entering, &mut self.front);
     }
 
     /// Whether light passes without refraction, at any angle.
@@ -484,34 +470,24 @@ impl<'s> Surface<'s> {
 }
 
 /// Where a ray that leaves a hit starts, on the side of the surface's own normal or on the opposite side.
-#[inline(never)]
 fn start(r: &Resolved, hit: &Hit, along_normal: bool) -> (DVec3, Origin) {
-    let point = offset(&r.point, along_normal);
-    let local = r.local.as_ref();
-    let origin = Origin {
-        id: hit.id,
-        facet: hit.facet,
-        local: local.map_or(point, |local| local_offset(local, along_normal)),
-    };
-    (point, origin)
+    let mut out = (DVec3::ZERO, Origin::NOWHERE);
+    store_start(r, hit, along_normal, &mut out);
+    out
 }
 
-/// A point on the side of the surface's normal, or on the opposite side.
+/// [`start`] in place: a copy of the result would wait until all of its parts are stored.
 #[inline(always)]
-fn offset(p: &SurfacePoint, along_normal: bool) -> DVec3 {
-    error::offset_origin(p.position, p.position_error, toward(p.n_geom, along_normal))
-}
-
-/// [`offset`] in the space of an instance.
-#[inline(never)]
-fn local_offset(p: &LocalPoint, along_normal: bool) -> DVec3 {
-    error::offset_origin(p.position, p.error, toward(p.normal, along_normal))
-}
-
-/// The normal or its opposite. The normals of all spaces point to the same side of the surface.
-#[inline(always)]
-fn toward(n: DVec3, along_normal: bool) -> DVec3 {
-    if along_normal { n } else { -n }
+fn store_start(r: &Resolved, hit: &Hit, along_normal: bool, out: &mut (DVec3, Origin)) {
+    // Both normals point to the same side of the surface in their spaces.
+    let toward = |n: DVec3| if along_normal { n } else { -n };
+    let (point, origin) = out;
+    let p = &r.point;
+    *point = error::offset_origin(p.position, p.position_error, toward(p.n_geom));
+    (origin.id, origin.facet, origin.local) = (hit.id, hit.facet, *point);
+    if let Some(l) = &r.local {
+        origin.local = error::offset_origin(l.position, l.error, toward(l.normal));
+    }
 }
 
 /// A distinct colour for every number: hues by the golden ratio, three levels of brightness.

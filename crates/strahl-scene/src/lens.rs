@@ -12,9 +12,11 @@ pub struct Lens {
     pub min_samples: u32,
     /// Most rays of a position in the picture.
     pub max_samples: u32,
-    /// The confidence, from 0 to less than 1, at which the mean of the rays is good enough to end the sampling.
+    /// The confidence, from 0 to less than 1, that the colours of the rays do not vary more than `variance` allows. It has little
+    /// influence.
     pub confidence: f64,
-    /// The variance allowed for the mean.
+    /// The variance allowed, from 0 to less than 1. The number of rays grows with the standard deviation of their colours times the
+    /// square root of `max_samples / variance`, as in POV-Ray.
     pub variance: f64,
     /// The shape of the aperture; a disc without.
     pub bokeh: Option<Arc<Bokeh>>,

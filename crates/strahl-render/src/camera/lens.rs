@@ -5,11 +5,24 @@ use strahl_math::{DVec3, Ray, det};
 use strahl_scene::{Bokeh, Camera, Projection};
 use strahl_shade::Color;
 
-/// The fewest rays that are traced when the mean is not exact enough.
+/// The fewest rays that are traced when the mean is not exact enough: a packet of a few costs little more than one ray.
 const FEW: u32 = 4;
 
-/// A factor of the number of rays, as measured with POV-Ray (docs/src/notes/speed.md).
-const RATE: f64 = 0.977;
+/// The number of rays that POV-Ray traces, divided by `sd * sqrt(most / variance)`, in the limit of many rays. Measured on planes
+/// whose colours have the standard deviation `sd`; the numbers are in the test `as_many_rays_as_povray`.
+const RAYS_PER_DEVIATION: f64 = 0.977;
+
+/// Traces a few rays one by one; where there is no ray the colour is black.
+pub(super) fn one_by_one(
+    mut trace: impl FnMut(&Ray) -> Color,
+) -> impl FnMut(&[Option<Ray>]) -> ArrayVec<Color, PACKET> {
+    move |rays| {
+        let colors = rays.iter();
+        colors
+            .map(|ray| ray.as_ref().map_or(Color::BLACK, &mut trace))
+            .collect()
+    }
+}
 
 /// Focal blur: traces rays through a lens.
 #[derive(Clone, Debug)]
@@ -23,8 +36,9 @@ pub(super) struct LensSampler {
     distance: f64,
     flat: bool,
     samples: (u32, u32),
-    /// The one-sided quantile of the confidence, in standard deviations, and the square root of the variance allowed.
+    /// The quantile of the normal distribution at `confidence`, in standard deviations.
     quantile: f64,
+    /// The square root of `variance`.
     tolerance: f64,
     bokeh: Option<Arc<Bokeh>>,
 }
@@ -93,13 +107,12 @@ impl LensSampler {
         sum / f64::from(count.max(1))
     }
 
-    /// The number of rays to trace next, at most [`PACKET`]; 0 if the mean is exact enough or has all its rays.
+    /// The number of rays to trace next, at most [`PACKET`]; 0 if there are enough, or as many as allowed.
     fn wanted(&self, sum: Color, squares: Color, count: u32) -> u32 {
         let (fewest, most) = self.samples;
         let more = if count < fewest.min(most) {
             fewest.min(most) - count
         } else {
-            // A packet of a few costs little more than one ray.
             let missing = self.enough(sum, squares, count) - f64::from(count);
             if missing <= 0.0 {
                 return 0;
@@ -127,11 +140,12 @@ impl LensSampler {
         Ray::new(origin, if t < 0.0 { -direction } else { direction })
     }
 
-    /// The number of rays after which POV-Ray stops if their colours vary as these do. Infinite for a single ray, whose variance is
-    /// not known; 0 if there is none.
+    /// The number of rays after which POV-Ray stops, if further rays vary as the `count` rays with this sum and this sum of squares
+    /// do. Infinite for a single ray, whose variance is not known.
     ///
-    /// As measured: n of at most m rays, of standard deviation s, are enough if n χ² ≥ m (0.977 s)² / `variance`, where χ² is the
-    /// quantile of the chi-square distribution, about n - q sqrt(2 n).
+    /// POV-Ray's numbers (measured) are those of a chi-square test: n of at most m rays with standard deviation s are enough if
+    /// n χ² ≥ m (0.977 s)² / `variance`, where χ² ≈ n - q sqrt(2 n) is the quantile of the chi-square distribution of n degrees of
+    /// freedom, q the quantile of the normal distribution at `confidence`. The root of the left side is about n - q sqrt(n / 2).
     fn enough(&self, sum: Color, squares: Color, count: u32) -> f64 {
         if count < 2 {
             return f64::INFINITY;
@@ -143,16 +157,17 @@ impl LensSampler {
         if !(worst > 0.0) {
             return 0.0;
         }
-        // The root n of n - h sqrt(n) = ratio.
-        let ratio = RATE * (worst * f64::from(self.samples.1)).sqrt() / self.tolerance;
+        let most = f64::from(self.samples.1);
+        let right = RAYS_PER_DEVIATION * (worst * most).sqrt() / self.tolerance;
+        // Solves n - h sqrt(n) = right for sqrt(n).
         let h = std::f64::consts::FRAC_1_SQRT_2 * self.quantile;
-        let root = 0.5 * (h + (h * h + 4.0 * ratio).sqrt());
+        let root = 0.5 * (h + (h * h + 4.0 * right).sqrt());
         root * root
     }
 }
 
-/// The number of standard deviations above the mean of a normal distribution below which this fraction of it lies, for fractions
-/// from a half on, below which it is zero (Abramowitz and Stegun, formula 26.2.23).
+/// The quantile of the normal distribution, in standard deviations: this fraction of the distribution lies below it. 0 for fractions
+/// below a half (Abramowitz and Stegun, formula 26.2.23).
 fn quantile(confidence: f64) -> f64 {
     let tail = 1.0 - confidence.clamp(0.5, 1.0 - 1e-9);
     let t = (-2.0 * det::ln(tail)).sqrt();
@@ -213,18 +228,6 @@ mod tests {
         LensSampler::new(&camera).expect("a lens")
     }
 
-    /// Traces rays one by one.
-    fn each(
-        mut trace: impl FnMut(&Ray) -> Color,
-    ) -> impl FnMut(&[Option<Ray>]) -> ArrayVec<Color, PACKET> {
-        move |rays| {
-            let colors = rays.iter();
-            colors
-                .map(|ray| ray.as_ref().map_or(Color::BLACK, &mut trace))
-                .collect()
-        }
-    }
-
     #[test]
     fn rays_meet_in_the_plane_of_focus() {
         let lens = blurred(100);
@@ -233,7 +236,7 @@ mod tests {
         let mut widest: f64 = 0.0;
         let mut count = 0;
         let same = |_, _| Some(center);
-        let alternate = each(|ray| {
+        let alternate = one_by_one(|ray| {
             assert!((ray.origin - DVec3::ZERO).length() <= 0.5 + 1e-12);
             let t = (5.0 - ray.origin.z) / ray.direction.z;
             assert!((ray.at(t) - meeting).length() < 1e-12);
@@ -252,7 +255,7 @@ mod tests {
         let color = blurred(1000).color(
             (3.5, 2.5),
             |_, _| Some(ray),
-            each(|_| {
+            one_by_one(|_| {
                 count += 1;
                 Color::gray(0.25)
             }),
@@ -268,15 +271,52 @@ mod tests {
         let at = |x: f64, _| Some(Ray::new(DVec3::X * x, DVec3::Z));
         // An edge in focus through the pixel; the object is to its right.
         for edge in [3.2, 3.5, 3.9] {
-            let right_of_edge = each(|ray| {
+            let right_of_edge = one_by_one(|ray| {
                 let x = ray.at((5.0 - ray.origin.z) / ray.direction.z).x;
                 Color::gray(f64::from(x > edge))
             });
             let color = lens.color((3.5, 2.5), at, right_of_edge);
             assert!((color.r - (4.0 - edge)).abs() < 0.01, "{edge}: {color:?}");
         }
-        let blind = lens.color((3.5, 2.5), |_, _| None, each(|_| Color::WHITE));
+        let blind = lens.color((3.5, 2.5), |_, _| None, one_by_one(|_| Color::WHITE));
         assert_eq!(blind, Color::BLACK);
+    }
+
+    #[test]
+    fn as_many_rays_as_povray() {
+        // Standard deviation, variance, confidence, most rays, rays that POV-Ray 3.7 traced for each pixel of a plane with a random
+        // colour at each point (`cells`), or with a gradient.
+        let measured = [
+            (0.288_675, 1.0 / 1250.0, 0.95, 3000, 574.1),
+            (0.288_675, 1.0 / 312.0, 0.95, 3000, 293.4),
+            (0.288_675, 1.0 / 312.0, 0.50, 3000, 279.6),
+            (0.288_675, 1.0 / 312.0, 0.99, 3000, 299.3),
+            (0.288_675, 1.0 / 78.0, 0.95, 3000, 151.9),
+            (0.288_675, 1.0 / 20.0, 0.95, 3000, 80.8),
+            (0.072_169, 1.0 / 78.0, 0.95, 3000, 43.0),
+            (0.072_169, 1.0 / 20.0, 0.95, 3000, 24.2),
+            (0.1, 1.0 / 20_000.0, 0.95, 3000, 789.0),
+            (0.1, 1.0 / 5000.0, 0.95, 3000, 401.5),
+            (0.05, 1.0 / 5000.0, 0.95, 3000, 205.0),
+            (0.05, 1.0 / 5000.0, 0.95, 400, 76.5),
+            (0.05, 1.0 / 10_000.0, 0.9, 400, 104.7),
+            (0.1, 1.0 / 128.0, 0.9, 400, 27.6),
+        ];
+        for (deviation, variance, confidence, most, rays) in measured {
+            let mut lens = blurred(most);
+            (lens.tolerance, lens.quantile) = (f64::sqrt(variance), quantile(confidence));
+            let n = 1000.0;
+            let (mean, squares) = (0.5, 0.25 * n + deviation * deviation * (n - 1.0));
+            let enough = lens.enough(Color::gray(mean * n), Color::gray(squares), 1000);
+            assert!(
+                (enough / rays - 1.0).abs() < 0.09,
+                "{enough} instead of {rays}"
+            );
+        }
+        // A single ray tells nothing of the variance, and what does not vary needs no more rays.
+        let lens = blurred(100);
+        assert_eq!(lens.enough(Color::WHITE, Color::WHITE, 1), f64::INFINITY);
+        assert_eq!(lens.enough(Color::WHITE * 4.0, Color::WHITE * 4.0, 4), 0.0);
     }
 
     #[test]

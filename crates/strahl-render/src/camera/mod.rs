@@ -4,7 +4,7 @@ mod lens;
 mod mesh;
 
 use arrayvec::ArrayVec;
-use lens::LensSampler;
+use lens::{LensSampler, one_by_one};
 use strahl_accel::{Beam, PACKET};
 use strahl_math::{DVec3, Ray, det};
 use strahl_scene::{Camera, Projection};
@@ -42,16 +42,7 @@ impl PrimaryRays {
             return self.mesh_color(mesh, x, y, trace);
         }
         match &self.lens {
-            Some(lens) => lens.color(
-                (x, y),
-                |x, y| self.chief::<false>(x, y),
-                |rays| {
-                    let colors = rays.iter();
-                    colors
-                        .map(|ray| ray.as_ref().map_or(Color::BLACK, &mut trace))
-                        .collect()
-                },
-            ),
+            Some(lens) => lens.color((x, y), |x, y| self.chief::<false>(x, y), one_by_one(trace)),
             None => self.ray(x, y).map_or(Color::BLACK, |ray| trace(&ray)),
         }
     }
