@@ -196,7 +196,7 @@ class Camera:
     ) -> Camera:
         """With a lens: what is not in the plane of ``focal_point`` is blurred. ``aperture`` is four times the radius of the lens, as in POV-Ray.
 
-        ``samples`` is the largest number of rays per place, or a pair with the smallest. Sampling ends when the mean is good to the ``variance`` with this ``confidence``. ``bokeh`` (n, n) are
+        ``samples`` is the largest number of rays per place, or a pair with the smallest. The more their colours vary, the more rays there are, depending on ``variance`` and ``confidence`` by POV-Ray's rule. ``bokeh`` (n, n) are
         weights of the parts of the lens, the first row at the top; without it the lens is round.
         """
         pair = samples if isinstance(samples, tuple) else (7 if integer(samples, "samples", 1) >= 7 else 4, samples)
