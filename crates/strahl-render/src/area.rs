@@ -1,12 +1,10 @@
 //! Shadow rays to area lights.
 
-use crate::hit::Hit;
-use crate::observer::{LightTerm, TraceObserver};
+use crate::observer::TraceObserver;
 use crate::shadow::ShadowRay;
-use crate::surface::Surface;
-use crate::trace::{Branch, TreeTracer};
+use crate::trace::{Arriving, Point, TreeTracer};
 use strahl_math::{DVec3, Ray};
-use strahl_shade::{AreaGrid, AreaLight, Color, Light, LightSample, ShadingModel};
+use strahl_shade::{AreaGrid, AreaLight, Color, Light, LightSample};
 
 /// If the visibilities of the corners of a cell differ by more than this, an adaptive light subdivides the cell: less than a
 /// step of an 8-bit channel.
@@ -45,11 +43,7 @@ struct AreaQuery<'q> {
     grid: AreaGrid<'q>,
     /// The centre of the light.
     center: &'q LightSample,
-    surface: &'q Surface<'q>,
-    hit: &'q Hit,
-    model: ShadingModel,
-    branch: &'q Branch,
-    node: u32,
+    point: &'q Point<'q>,
 }
 
 impl AreaQuery<'_> {
@@ -64,37 +58,25 @@ impl AreaQuery<'_> {
     }
 }
 
-impl TreeTracer<'_> {
+impl<'s> TreeTracer<'s> {
     /// Fills in the light that arrives from an area light: one shadow ray for each point of the grid that is needed.
     #[cold]
-    #[expect(
-        clippy::too_many_arguments,
-        reason = "the arguments of the trace loop's own function, of which this is the rare branch"
-    )]
     pub(crate) fn area_light<O: TraceObserver>(
         &mut self,
         area: &AreaLight,
-        sample: &LightSample,
-        surface: &Surface<'_>,
-        hit: &Hit,
-        model: ShadingModel,
         light: usize,
-        branch: &Branch,
-        node: u32,
-        term: &mut LightTerm,
+        point: &Point<'s>,
+        arriving: &mut Arriving,
         observer: &mut O,
     ) {
+        let sample = &arriving.sample;
         let query = AreaQuery {
             number: light,
             light: &self.tracer.scene.lights[light].light,
             area,
-            grid: area.grid(surface.resolved.point.position, sample.l),
+            grid: area.grid(point.surface.resolved.point.position, sample.l),
             center: sample,
-            surface,
-            hit,
-            model,
-            branch,
-            node,
+            point,
         };
         let before = self.counts.shadow;
         let mut known = std::mem::take(&mut self.area_points);
@@ -105,18 +87,23 @@ impl TreeTracer<'_> {
             j: [0, area.size_2.saturating_sub(1)],
             level: 0,
         };
-        term.visible = self.area_cell(&query, whole, &mut known, observer);
+        let visible = self.area_cell(&query, whole, &mut known, observer);
         self.area_points = known;
-        term.shadow_rays = (self.counts.shadow - before) as u32;
-        if area.illumination && !term.visible.is_black() {
-            (term.diffuse, term.specular) = self.area_shading(&query, term.visible);
+        if area.illumination {
+            arriving.reflected = Some(if visible.is_black() {
+                (Color::BLACK, Color::BLACK)
+            } else {
+                self.area_shading(&query, visible)
+            });
         }
+        arriving.visible = visible;
+        arriving.shadow_rays = (self.counts.shadow - before) as u32;
     }
 
     /// The light reflected from an area light with `area_illumination`: the mean over its points, each shaded by itself, times
     /// the visibility of the whole light (as in POV-Ray).
     fn area_shading(&self, query: &AreaQuery<'_>, visible: Color) -> (Color, Color) {
-        let lit = query.surface.resolved.point.position;
+        let lit = query.point.surface.resolved.point.position;
         let (mut diffuse, mut specular) = (Color::BLACK, Color::BLACK);
         for j in 0..query.area.size_2 {
             for i in 0..query.area.size_1 {
@@ -132,11 +119,10 @@ impl TreeTracer<'_> {
                         None => continue,
                     }
                 };
-                let n_dot_l = query.surface.n_shade.dot(l);
-                if self.faces(query.surface, l, n_dot_l) {
+                let n_dot_l = query.point.surface.n_shade.dot(l);
+                if self.faces(query.point, l, n_dot_l) {
                     let light = color * visible;
-                    let (d, s) =
-                        self.reflected(query.surface, query.light, query.model, light, l, n_dot_l);
+                    let (d, s) = self.reflected(query.point, query.light, light, l, n_dot_l);
                     diffuse += d;
                     specular += s;
                 }
@@ -194,15 +180,15 @@ impl TreeTracer<'_> {
         if let Some(Some(visible)) = known.get(index) {
             return *visible;
         }
-        let (surface, center) = (query.surface, query.center);
+        let (point, center) = (query.point, query.center);
         let direction = center.shadow_direction + query.offset(i, j);
-        let (origin_point, from) = surface.start(query.hit, direction);
+        let (origin_point, from) = point.surface.start(&point.hit, direction);
         let shadow_ray = ShadowRay {
             ray: Ray::new(origin_point, direction),
             range: center.range,
             from,
             light: query.number,
-            media: query.branch.media,
+            media: point.branch.media,
         };
         let (media, hits) = (&mut self.media, &mut self.shadow_hits);
         let shadow = self.tracer.shadow(&shadow_ray, media, hits);
@@ -210,7 +196,7 @@ impl TreeTracer<'_> {
         self.counts.shadow_hit += u64::from(shadow.hit);
         if O::DETAILED {
             let report = self.tracer.shadow_report(&shadow_ray, media, hits);
-            observer.area_shadow(query.node, query.number as u32, report);
+            observer.area_shadow(point.node, query.number as u32, report);
         }
         if let Some(slot) = known.get_mut(index) {
             *slot = Some(shadow.visible);

@@ -40,6 +40,14 @@ pub struct Hit {
 }
 
 impl Hit {
+    /// A place for a hit.
+    pub(crate) const NONE: Self = Self {
+        t: f64::INFINITY,
+        id: 0,
+        facet: 0,
+        uv: [0.0; 2],
+    };
+
     /// The acceptance rule: smaller `t` wins, ties go to the smaller id.
     #[inline]
     pub(crate) fn beats(&self, other: &Self) -> bool {

@@ -32,6 +32,12 @@ pub(crate) struct LightSets {
 }
 
 impl RenderScene {
+    /// Whether not all lights shine on everything.
+    #[inline]
+    pub(crate) fn has_light_groups(&self) -> bool {
+        !self.light_sets.lists.is_empty()
+    }
+
     /// The numbers of the lights of a set; `None` if these are all lights.
     #[inline]
     pub(crate) fn lights_in(&self, set: u32) -> Option<&[u32]> {

@@ -190,6 +190,22 @@ pub struct LightTerm {
     pub specular: Color,
 }
 
+impl LightTerm {
+    /// No light of a light source.
+    pub(crate) const fn none(light: usize) -> Self {
+        Self {
+            light: light as u32,
+            n_dot_l: 0.0,
+            shadow_ray: None,
+            shadow_rays: 0,
+            visible: Color::BLACK,
+            color: Color::BLACK,
+            diffuse: Color::BLACK,
+            specular: Color::BLACK,
+        }
+    }
+}
+
 /// Is told what the trace loop does, and so records ray trees. The observer `()` costs nothing.
 pub trait TraceObserver {
     /// Whether reports are wanted; otherwise they are not even made.

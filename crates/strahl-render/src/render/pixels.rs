@@ -247,7 +247,7 @@ impl PixelTracer<'_> {
         values: &mut [Sample],
     ) {
         let rays: ArrayVec<Option<Ray>, PACKET> = packet.iter().map(|(_, ray)| *ray).collect();
-        let colors = self.follow(&rays);
+        let colors = self.tree.trace_packet(&rays);
         for ((index, _), color) in packet.drain(..).zip(colors) {
             values[index] = color.into();
         }
@@ -395,20 +395,11 @@ impl PixelTracer<'_> {
             let rays: ArrayVec<Option<Ray>, PACKET> = few
                 .map(|(dx, dy)| self.rays.ray(f64::from(x) + dx, f64::from(y) + dy))
                 .collect();
-            for color in self.follow(&rays) {
+            for color in self.tree.trace_packet(&rays) {
                 samples.sum += color;
                 samples.count += 1;
             }
         }
-    }
-
-    /// The radiance along each ray; none where the camera sees nothing.
-    fn follow(&mut self, rays: &[Option<Ray>]) -> ArrayVec<Color, PACKET> {
-        let all: ArrayVec<Ray, PACKET> = rays.iter().copied().flatten().collect();
-        let mut colors = self.tree.trace_together(&all).into_iter();
-        let each = rays.iter();
-        each.map(|ray| ray.and_then(|_| colors.next()).unwrap_or(Color::BLACK))
-            .collect()
     }
 
     /// Traces four rows of a tile in packets, square by square, through the same position in each pixel.
@@ -435,7 +426,7 @@ impl PixelTracer<'_> {
                         .ray(f64::from(x) + place.0, f64::from(y) + place.1)
                 })
                 .collect();
-            let colors = self.follow(&rays);
+            let colors = self.tree.trace_packet(&rays);
             for ((x, y), color) in square.positions().zip(colors) {
                 self.ahead.put(x, y, color);
             }
@@ -454,7 +445,7 @@ impl PixelTracer<'_> {
     pub(super) fn sample(&mut self, x: f64, y: f64, keep: bool) -> Sample {
         if self.options.has_packets() && !self.blind {
             let rays = self.rays;
-            if let Some(color) = rays.blurred(x, y, |rays| self.follow(rays)) {
+            if let Some(color) = rays.blurred(x, y, |rays| self.tree.trace_packet(rays)) {
                 return color.into();
             }
         }

@@ -14,6 +14,7 @@ pub(crate) struct Branch {
     pub(crate) kind: RayKind,
     /// Its visibility class: transmitted rays see the same objects as the ray that sent them.
     pub(crate) class: RayClass,
+    /// The node of the ray that sent it; of a primary ray its number in the packet.
     pub(crate) parent: u32,
     pub(crate) depth: u32,
     /// The part of the spectrum it stands for.
@@ -26,20 +27,31 @@ pub(crate) struct Branch {
 }
 
 impl Branch {
-    /// The root of a tree, in the media the eye is in.
-    pub(super) fn primary(ray: &Ray, media: MediaStack) -> Self {
+    /// A place for a ray.
+    pub(super) const NONE: Self = Self {
+        ray: Ray {
+            origin: DVec3::ZERO,
+            direction: DVec3::ZERO,
+        },
+        origin: None,
+        kind: RayKind::Primary,
+        class: RayClass::Camera,
+        parent: 0,
+        depth: 1,
+        part: SpectralPart::WHITE,
+        divided: false,
+        weight: 1.0,
+        share: Share::ALL,
+        media: MediaStack::VACUUM,
+    };
+
+    /// The root of a tree, in the media the eye is in; `number` tells the trees of a packet apart.
+    pub(super) fn primary(ray: &Ray, number: u32, media: MediaStack) -> Self {
         Self {
             ray: *ray,
-            origin: None,
-            kind: RayKind::Primary,
-            class: RayClass::Camera,
-            parent: 0,
-            depth: 1,
-            part: SpectralPart::WHITE,
-            divided: false,
-            weight: 1.0,
-            share: Share::ALL,
+            parent: number,
             media,
+            ..Self::NONE
         }
     }
 }

@@ -1,7 +1,7 @@
 //! The factors of what a hit sends, for ray trees: what the loop multiplies, one by one. None of it runs without an observer.
 
-use super::{Branch, TreeTracer};
-use crate::hit::Hit;
+use super::TreeTracer;
+use super::stages::Point;
 use crate::layers;
 use crate::observer::{HitReport, LightDetail, LightTerm, Shading, SurfaceTerm};
 use crate::shadow::ShadowRay;
@@ -9,37 +9,31 @@ use crate::surface::{Split, Surface};
 use strahl_math::{DVec3, Ray};
 use strahl_shade::{Color, Light, LightSample, ShadingModel, reflect};
 
-impl TreeTracer<'_> {
+impl<'s> TreeTracer<'s> {
     /// All there is to tell of a hit.
     #[cold]
-    pub(super) fn hit_report(
-        &self,
-        surface: &Surface<'_>,
-        hit: &Hit,
-        split: Split,
-        model: ShadingModel,
-    ) -> HitReport {
-        let shading = if self.paint.layers.is_empty() {
-            Shading::Model(model)
+    pub(super) fn hit_report(&self, point: &Point<'s>, split: Split) -> HitReport {
+        let (surface, paint) = (&point.surface, &point.paint);
+        let shading = if paint.layers.is_empty() {
+            Shading::Model(point.model)
         } else {
             Shading::Finish {
-                layers: layers::report(&self.paint, surface.v, surface.fresnel_eta()),
+                layers: layers::report(paint, surface.v, surface.fresnel_eta()),
                 model: self.settings.force_shading,
             }
         };
-        surface.report(self.tracer.scene, hit, split, shading)
+        surface.report(self.tracer.scene, &point.hit, split, shading)
     }
 
     /// What the term of a light is made of.
     #[cold]
-    pub(super) fn light_detail(
-        &mut self,
-        surface: &Surface<'_>,
-        hit: &Hit,
-        model: ShadingModel,
-        branch: &Branch,
-        term: &LightTerm,
-    ) -> LightDetail {
+    pub(super) fn light_detail(&mut self, point: &Point<'s>, term: &LightTerm) -> LightDetail {
+        let Point {
+            surface,
+            hit,
+            branch,
+            ..
+        } = point;
         let number = term.light as usize;
         let light = &self.tracer.scene.lights[number].light;
         let mut detail = LightDetail {
@@ -69,33 +63,38 @@ impl TreeTracer<'_> {
             detail.mean_of = Some(area.size_1 * area.size_2);
             return detail;
         }
-        if let Some(fog) = self.fog_before(light, &sample, surface, branch) {
+        if let Some(fog) = self.fog_before(light, &sample, point) {
             detail.fog = fog;
         }
         if !term.visible.is_black() {
-            self.surface_terms(surface, light, model, &sample, &mut detail);
+            self.surface_terms(point, light, &sample, &mut detail);
         }
         detail
     }
 
     fn surface_terms(
         &self,
-        surface: &Surface<'_>,
+        point: &Point<'s>,
         light: &Light,
-        model: ShadingModel,
         sample: &LightSample,
         detail: &mut LightDetail,
     ) {
+        let Point {
+            surface,
+            paint,
+            model,
+            ..
+        } = point;
         let (l, arriving) = (sample.l, detail.arriving);
-        if self.paint.layers.is_empty() {
-            detail.terms.push(coefficients(surface, model, l, arriving));
+        if paint.layers.is_empty() {
+            detail
+                .terms
+                .push(coefficients(surface, *model, l, arriving));
         }
-        for layer in &self.paint.layers {
+        for layer in &paint.layers {
             let term = match self.settings.force_shading {
-                None => layers::layer_term(&self.paint, layer, surface, l, arriving),
-                Some(model) => {
-                    layers::layer_term_by(&self.paint, model, layer, surface, l, arriving)
-                }
+                None => layers::layer_term(paint, layer, surface, l, arriving),
+                Some(model) => layers::layer_term_by(paint, model, layer, surface, l, arriving),
             };
             detail.terms.push(term);
         }

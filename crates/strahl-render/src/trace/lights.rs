@@ -1,130 +1,266 @@
-//! The contribution of lights to a hit: the second step of the loop.
+//! The stage of lights, light by light: which points it may shine on, its shadow rays, the light that surfaces reflect.
 
-use super::together::KnownLights;
-use super::{Branch, TreeTracer};
+use super::TreeTracer;
+use super::stages::{Lanes, Point};
 use crate::activity::Phase;
-use crate::hit::Hit;
 use crate::layers;
-use crate::observer::{LightTerm, RayKind, TraceObserver};
+use crate::observer::{LightTerm, TraceObserver};
 use crate::shadow::{Shadow, ShadowRay};
-use crate::surface::Surface;
+use arrayvec::ArrayVec;
+use strahl_accel::PACKET;
 use strahl_math::{DVec3, Ray};
-use strahl_shade::{Color, Light, LightSample, ShadingModel};
+use strahl_shade::{Color, Light, LightSample};
 
-impl TreeTracer<'_> {
-    /// The contribution of one light; no shadow ray if the surface faces away.
-    #[inline(always)]
-    #[expect(
-        clippy::too_many_arguments,
-        reason = "inlined into its only caller; what belongs together is together already"
-    )]
+/// Fewer shadow rays are traced one by one.
+const FEW: usize = 3;
+
+/// A light at a point that may face it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Arriving {
+    /// The lane of the point.
+    lane: usize,
+    pub(crate) sample: LightSample,
+    /// The cosine between the shading normal and the direction to the light.
+    n_dot_l: f64,
+    /// The visibility of the light: 0 in full shadow, 1 if nothing is in between; the mean over an area light.
+    pub(crate) visible: Color,
+    /// How many shadow rays were traced.
+    pub(crate) shadow_rays: u32,
+    /// The diffuse part and the highlight, if they are known before the light is shaded.
+    pub(crate) reflected: Option<(Color, Color)>,
+}
+
+impl<'s> TreeTracer<'s> {
+    /// Adds the light that surfaces reflect from light sources.
     pub(super) fn light<O: TraceObserver>(
         &mut self,
-        surface: &Surface<'_>,
-        hit: &Hit,
-        model: ShadingModel,
-        light: usize,
-        known: KnownLights,
-        branch: &Branch,
-        node: u32,
+        points: &mut [Point<'s>],
+        lanes: &Lanes,
         observer: &mut O,
-    ) -> LightTerm {
-        let scene_light = &self.tracer.scene.lights[light].light;
-        let mut term = LightTerm {
-            light: light as u32,
-            n_dot_l: 0.0,
-            shadow_ray: None,
-            shadow_rays: 0,
-            visible: Color::BLACK,
-            color: Color::BLACK,
-            diffuse: Color::BLACK,
-            specular: Color::BLACK,
-        };
-        let (sample, stopped) = match self.samples.known(light, known) {
-            Some((sample, stopped)) => (*sample, Some(stopped)),
-            None => {
-                let point = surface.resolved.point.position;
-                let sample = scene_light.illuminate(point);
-                match sample.or_else(|| scene_light.aim(point)) {
-                    Some(sample) => (sample, None),
-                    None => return term,
-                }
+    ) {
+        let scene = self.tracer.scene;
+        if !scene.has_light_groups() {
+            for light in 0..scene.lights.len() {
+                self.one_light(points, lanes, light, observer);
             }
-        };
-        term.n_dot_l = surface.n_shade.dot(sample.l);
-        term.color = sample.color;
-        // Points of an area light with `area_illumination` may be above the horizon where its centre is not.
-        if !self.faces(surface, sample.l, term.n_dot_l)
-            && scene_light.area.is_none_or(|a| !a.illumination)
-        {
-            return term;
+            return;
         }
-        if !surface.shows_lights {
-            return term;
+        // The lights of a light group shine on the objects of the group only.
+        for lane in lanes {
+            let set = points[*lane].surface.lit.set;
+            let alone = Lanes::from_iter([*lane]);
+            for light in scene.lights_in(set).unwrap_or_default() {
+                self.one_light(points, &alone, *light as usize, observer);
+            }
         }
-        term.visible = Color::WHITE;
-        let masked = self.tracer.scene.mask(light).is_some();
-        if let Some(stopped) = stopped
-            && (stopped || !self.tracer.scene.transmits)
-        {
-            self.count_shadow(
-                &mut term,
-                if stopped {
-                    Shadow::STOPPED
-                } else {
-                    Shadow::NONE
-                },
-            );
-        } else if (scene_light.casts_shadows || masked) && !sample.range.is_empty() {
-            let (origin_point, origin) = surface.start(hit, sample.shadow_direction);
-            let ray = Ray::new(origin_point, sample.shadow_direction);
+    }
+
+    /// Adds the light of one light source.
+    fn one_light<O: TraceObserver>(
+        &mut self,
+        points: &mut [Point<'s>],
+        lanes: &Lanes,
+        number: usize,
+        observer: &mut O,
+    ) {
+        let light = &self.tracer.scene.lights[number].light;
+        let mut arriving = std::mem::take(&mut self.arriving);
+        arriving.clear();
+        for lane in lanes {
+            self.aim(&points[*lane], *lane, number, &mut arriving, observer);
+        }
+        let blockable = light.casts_shadows || self.tracer.scene.mask(number).is_some();
+        if blockable && !arriving.is_empty() {
+            self.shadows(points, number, &mut arriving, observer);
+        }
+        for one in &mut arriving {
+            self.shade(&mut points[one.lane], light, number, one, observer);
+        }
+        self.arriving = arriving;
+    }
+
+    /// Finds out whether a light may shine on a point.
+    #[inline(always)]
+    fn aim<O: TraceObserver>(
+        &mut self,
+        point: &Point<'s>,
+        lane: usize,
+        number: usize,
+        arriving: &mut Vec<Arriving>,
+        observer: &mut O,
+    ) {
+        let light = &self.tracer.scene.lights[number].light;
+        let position = point.surface.resolved.point.position;
+        let sample = light.illuminate(position);
+        let Some(sample) = sample.or_else(|| light.aim(position)) else {
             if O::DETAILED {
-                term.shadow_ray = Some(ray);
+                self.report_light(point, LightTerm::none(number), observer);
             }
-            self.tracer.slot.shadow(light);
-            if let Some(area) = &scene_light.area {
-                // Copies: what is passed by reference stays in memory, and only the rare area lights need that.
-                let (sample, mut seen) = (sample, term);
-                self.area_light(
-                    area, &sample, surface, hit, model, light, branch, node, &mut seen, observer,
-                );
-                term = seen;
-                if area.illumination {
-                    self.back_to_shading(branch.kind, hit);
-                    return term;
+            return;
+        };
+        let n_dot_l = point.surface.n_shade.dot(sample.l);
+        // Points of an area light with `area_illumination` may be above the horizon where its centre is not.
+        let may_face = self.faces(point, sample.l, n_dot_l)
+            || light.area.is_some_and(|area| area.illumination);
+        if may_face && point.surface.shows_lights {
+            arriving.push(Arriving {
+                lane,
+                sample,
+                n_dot_l,
+                visible: Color::WHITE,
+                shadow_rays: 0,
+                reflected: None,
+            });
+        } else if O::DETAILED {
+            let term = LightTerm {
+                n_dot_l,
+                color: sample.color,
+                ..LightTerm::none(number)
+            };
+            self.report_light(point, term, observer);
+        }
+    }
+
+    /// Traces the shadow rays of points to one light.
+    fn shadows<O: TraceObserver>(
+        &mut self,
+        points: &[Point<'s>],
+        number: usize,
+        arriving: &mut [Arriving],
+        observer: &mut O,
+    ) {
+        let scene = self.tracer.scene;
+        let light = &scene.lights[number].light;
+        self.tracer.slot.shadow(number);
+        let single = light.area.is_some() || scene.mask(number).is_some();
+        if !single && arriving.len() >= FEW {
+            self.shadows_together(points, number, arriving);
+            return;
+        }
+        for one in arriving {
+            if one.sample.range.is_empty() {
+                continue;
+            }
+            let point = &points[one.lane];
+            match &light.area {
+                Some(area) => self.area_light(area, number, point, one, observer),
+                None => {
+                    let shadow_ray = shadow_ray(point, number, &one.sample);
+                    let (media, hits) = (&mut self.media, &mut self.shadow_hits);
+                    let shadow = self.tracer.shadow(&shadow_ray, media, hits);
+                    self.count_shadow(one, shadow);
                 }
-            } else {
-                let shadow_ray = ShadowRay {
-                    ray,
-                    range: sample.range,
-                    from: origin,
-                    light,
-                    media: branch.media,
-                };
-                let (media, hits) = (&mut self.media, &mut self.shadow_hits);
-                let shadow = match stopped {
-                    None => self.tracer.shadow(&shadow_ray, media, hits),
-                    Some(_) => self.tracer.filtered(&shadow_ray, media, hits),
-                };
-                self.count_shadow(&mut term, shadow);
             }
-            self.back_to_shading(branch.kind, hit);
+            self.back_to_shading(point);
         }
-        if let Some(fog) = self.fog_before(scene_light, &sample, surface, branch) {
-            term.visible *= fog;
+    }
+
+    /// Traces shadow rays in packets. Those that start on the far side of their surface, or have another range, go by themselves.
+    fn shadows_together(&mut self, points: &[Point<'s>], number: usize, arriving: &mut [Arriving]) {
+        let mut rays = ArrayVec::<Ray, PACKET>::new();
+        let (mut from, mut t_max) = ([None; PACKET], [f64::NEG_INFINITY; PACKET]);
+        let (mut places, mut alone) = ([0; PACKET], 0u32);
+        let min = arriving[0].sample.range.min;
+        for (index, one) in arriving.iter().enumerate().take(PACKET) {
+            let LightSample {
+                range,
+                shadow_direction,
+                ..
+            } = one.sample;
+            if range.is_empty() {
+                continue;
+            }
+            let start = points[one.lane].surface.start_in_front(shadow_direction);
+            let Some((start, origin)) = start.filter(|_| range.min == min) else {
+                alone |= 1 << index;
+                continue;
+            };
+            let lane = rays.len();
+            rays.push(Ray::new(start, shadow_direction));
+            (from[lane], t_max[lane], places[lane]) = (Some(origin), range.max, index);
         }
-        if !term.visible.is_black() {
-            let arriving = sample.color * term.visible;
-            (term.diffuse, term.specular) = self.reflected(
-                surface,
-                scene_light,
-                model,
-                arriving,
-                sample.l,
-                term.n_dot_l,
-            );
+        let stopped = self.tracer.all_occluded(&rays, min, t_max, &from, number);
+        for (lane, index) in places[..rays.len()].iter().enumerate() {
+            let one = &mut arriving[*index];
+            let shadow = if stopped >> lane & 1 == 1 {
+                Shadow::STOPPED
+            } else if self.tracer.scene.transmits {
+                let shadow_ray = shadow_ray(&points[one.lane], number, &one.sample);
+                let (media, hits) = (&mut self.media, &mut self.shadow_hits);
+                self.tracer.filtered(&shadow_ray, media, hits)
+            } else {
+                Shadow::NONE
+            };
+            self.count_shadow(one, shadow);
         }
-        term
+        for (index, one) in arriving.iter_mut().enumerate().take(PACKET) {
+            if alone >> index & 1 == 1 {
+                let shadow_ray = shadow_ray(&points[one.lane], number, &one.sample);
+                let (media, hits) = (&mut self.media, &mut self.shadow_hits);
+                let shadow = self.tracer.shadow(&shadow_ray, media, hits);
+                self.count_shadow(one, shadow);
+            }
+        }
+        if let Some(first) = arriving.first() {
+            self.back_to_shading(&points[first.lane]);
+        }
+    }
+
+    /// Adds the light of a light source that a surface reflects.
+    #[inline(always)]
+    fn shade<O: TraceObserver>(
+        &mut self,
+        point: &mut Point<'s>,
+        light: &Light,
+        number: usize,
+        arriving: &Arriving,
+        observer: &mut O,
+    ) {
+        let Arriving {
+            sample, n_dot_l, ..
+        } = arriving;
+        let mut visible = arriving.visible;
+        let (diffuse, specular) = match arriving.reflected {
+            Some(known) => known,
+            None => {
+                if let Some(fog) = self.fog_before(light, sample, point) {
+                    visible *= fog;
+                }
+                if visible.is_black() {
+                    (Color::BLACK, Color::BLACK)
+                } else {
+                    let color = sample.color * visible;
+                    self.reflected(point, light, color, sample.l, *n_dot_l)
+                }
+            }
+        };
+        point.local += diffuse + specular;
+        if O::DETAILED {
+            let direction = sample.shadow_direction;
+            let start = point.surface.start(&point.hit, direction).0;
+            let term = LightTerm {
+                light: number as u32,
+                n_dot_l: *n_dot_l,
+                shadow_ray: (arriving.shadow_rays > 0).then(|| Ray::new(start, direction)),
+                shadow_rays: arriving.shadow_rays,
+                visible,
+                color: sample.color,
+                diffuse,
+                specular,
+            };
+            self.report_light(point, term, observer);
+        }
+    }
+
+    #[cold]
+    fn report_light<O: TraceObserver>(
+        &mut self,
+        point: &Point<'s>,
+        term: LightTerm,
+        observer: &mut O,
+    ) {
+        let detail = self.light_detail(point, &term);
+        observer.light(point.node, term, detail);
     }
 
     /// What fog leaves of a light that it weakens on its way to a hit.
@@ -133,14 +269,13 @@ impl TreeTracer<'_> {
         &self,
         light: &Light,
         sample: &LightSample,
-        surface: &Surface<'_>,
-        branch: &Branch,
+        point: &Point<'s>,
     ) -> Option<Color> {
         let scene = self.tracer.scene;
-        if !light.fogged || scene.fogs.is_empty() || !self.media.in_air(branch.media) {
+        if !light.fogged || scene.fogs.is_empty() || !self.media.in_air(point.branch.media) {
             return None;
         }
-        let ray = Ray::new(surface.resolved.point.position, sample.l);
+        let ray = Ray::new(point.surface.resolved.point.position, sample.l);
         let length = if sample.range.max.is_infinite() {
             f64::INFINITY
         } else {
@@ -151,54 +286,52 @@ impl TreeTracer<'_> {
 
     /// The shadow rays of a hit are traced.
     #[inline(always)]
-    fn back_to_shading(&self, kind: RayKind, hit: &Hit) {
-        self.tracer.slot.ray(kind);
-        self.tracer.slot.enter_for(Phase::Shading, hit.id);
+    fn back_to_shading(&self, point: &Point<'s>) {
+        self.tracer.slot.ray(point.branch.kind);
+        self.tracer.slot.enter_for(Phase::Shading, point.hit.id);
     }
 
     /// Takes what a shadow ray brought.
     #[inline]
-    fn count_shadow(&mut self, term: &mut LightTerm, shadow: Shadow) {
+    fn count_shadow(&mut self, arriving: &mut Arriving, shadow: Shadow) {
         self.counts.shadow += 1;
         self.counts.shadow_hit += u64::from(shadow.hit);
-        term.shadow_rays = 1;
-        term.visible = shadow.visible;
+        arriving.shadow_rays = 1;
+        arriving.visible = shadow.visible;
     }
 
-    /// Whether light from the unit direction `l` reaches the front of the current surface.
+    /// Whether light from the unit direction `l` reaches the front of a surface.
     #[inline]
-    pub(crate) fn faces(&self, surface: &Surface<'_>, l: DVec3, n_dot_l: f64) -> bool {
-        if surface.lit.both_sides {
+    pub(crate) fn faces(&self, point: &Point<'_>, l: DVec3, n_dot_l: f64) -> bool {
+        if point.surface.lit.both_sides {
             true
-        } else if self.paint.layers.is_empty() {
+        } else if point.paint.layers.is_empty() {
             n_dot_l > 0.0
         } else {
-            layers::faces(&self.paint, l)
+            layers::faces(&point.paint, l)
         }
     }
 
-    /// The light that the current surface reflects if light arrives from the unit direction `l`: the diffuse part and the
-    /// highlight.
+    /// The light that a surface reflects if light arrives from the unit direction `l`: the diffuse part and the highlight.
     #[inline]
     pub(crate) fn reflected(
         &self,
-        surface: &Surface<'_>,
+        point: &Point<'_>,
         light: &Light,
-        model: ShadingModel,
         arriving: Color,
         l: DVec3,
         n_dot_l: f64,
     ) -> (Color, Color) {
-        let (diffuse, highlight) = if self.paint.layers.is_empty() {
-            surface.reflected(model, arriving, l, n_dot_l)
+        let Point {
+            surface,
+            paint,
+            model,
+            ..
+        } = point;
+        let (diffuse, highlight) = if paint.layers.is_empty() {
+            surface.reflected(*model, arriving, l, n_dot_l)
         } else {
-            layers::lit(
-                &self.paint,
-                surface,
-                l,
-                arriving,
-                self.settings.force_shading,
-            )
+            layers::lit(paint, surface, l, arriving, self.settings.force_shading)
         };
         let highlight = if light.highlights {
             highlight
@@ -206,5 +339,19 @@ impl TreeTracer<'_> {
             Color::BLACK
         };
         (diffuse, highlight)
+    }
+}
+
+/// The shadow ray from a point to a light.
+#[inline]
+fn shadow_ray(point: &Point<'_>, light: usize, sample: &LightSample) -> ShadowRay {
+    let direction = sample.shadow_direction;
+    let (start, from) = point.surface.start(&point.hit, direction);
+    ShadowRay {
+        ray: Ray::new(start, direction),
+        range: sample.range,
+        from,
+        light,
+        media: point.branch.media,
     }
 }

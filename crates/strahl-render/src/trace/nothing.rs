@@ -23,28 +23,30 @@ pub(super) fn common(scene: &RenderScene, settings: &TraceSettings) -> Option<Co
 impl TreeTracer<'_> {
     /// The radiance along a primary ray that hits nothing.
     pub(crate) fn nothing(&mut self, primary: &Ray) -> SampleResult {
-        self.counts.count(RayKind::Primary, false);
-        let color = match self.beyond {
-            Some(color) => color,
-            None => {
-                let scene = self.tracer.scene;
-                let branch = Branch::primary(primary, self.eye_media(primary.origin));
-                let (keeps, adds) = self.in_front(&branch, f64::INFINITY);
-                // The same sum as of a tree without branches, including the sign of zeros.
-                let mut color = scene.background.along(primary.direction) + Color::BLACK;
-                color *= keeps;
-                if scene.has_air() {
-                    color += adds;
-                }
-                self.settings.decoded(color)
-            }
-        };
+        let branch = Branch::primary(primary, 0, self.eye_media(primary.origin));
         SampleResult {
-            color,
+            color: self.nothing_along(&branch),
             first: None,
             depth: 1,
             rays: 1,
         }
+    }
+
+    /// The same for a ray that is in a tree already.
+    pub(super) fn nothing_along(&mut self, primary: &Branch) -> Color {
+        self.counts.count(RayKind::Primary, false);
+        if let Some(color) = self.beyond {
+            return color;
+        }
+        let scene = self.tracer.scene;
+        let (keeps, adds) = self.in_front(primary, f64::INFINITY);
+        // The same sum as of a tree without branches, including the sign of zeros.
+        let mut color = scene.background.along(primary.ray.direction) + Color::BLACK;
+        color *= keeps;
+        if scene.has_air() {
+            color += adds;
+        }
+        self.settings.decoded(color)
     }
 
     /// A sum of light as colours are stored.

@@ -1,0 +1,280 @@
+//! The stages: rays to hits, hits to points on surfaces, points to colours. Lights and branches have files of their own.
+//!
+//! ```text
+//! repeat until no rays wait
+//!   take       up to sixteen rays that wait, the last first
+//!   intersect  rays to hits
+//!   enter      a node for each ray; rays without a hit see the background
+//!   paint      hits to points with a normal, layers and coefficients
+//!   light      light by light: which points face it, shadow rays, reflected light
+//!   branch     reflection and transparency rays, which wait
+//! ```
+//!
+//! A stage does with each ray what it would do with that ray alone, so the number of rays that go together changes no bit.
+
+use super::{Branch, FirstHit, Node, TreeTracer};
+use crate::activity::Phase;
+use crate::hit::{Hit, RayClass};
+use crate::layers;
+use crate::observer::{BranchEnd, HitReport, RayKind, RayReport, Shading, TraceObserver};
+use crate::surface::{Split, Surface};
+use arrayvec::ArrayVec;
+use strahl_accel::PACKET;
+use strahl_math::{Interval, Ray};
+use strahl_shade::texture::TexturePaint;
+use strahl_shade::{Color, ShadingModel};
+
+/// Fewer rays are traced one by one.
+const FEW: usize = 3;
+
+/// The lanes of a batch that a stage has to do with, in order.
+pub(super) type Lanes = ArrayVec<usize, PACKET>;
+
+/// A ray and its hit on their way through the stages.
+#[derive(Debug)]
+pub(crate) struct Point<'s> {
+    pub(crate) branch: Branch,
+    pub(crate) hit: Hit,
+    /// Number of the ray's node.
+    pub(crate) node: u32,
+    /// The distance of the hit from the ray's origin.
+    pub(super) length: f64,
+    pub(crate) surface: Surface<'s>,
+    pub(crate) model: ShadingModel,
+    /// The layers of the texture; none without a texture.
+    pub(crate) paint: TexturePaint<'s>,
+    /// The light that the surface sends to the origin of the ray by itself.
+    pub(super) local: Color,
+}
+
+impl<'s> Point<'s> {
+    /// A place for a point; `paint` has the settings of textures.
+    fn unknown(paint: &TexturePaint<'s>) -> Self {
+        Self {
+            branch: Branch::NONE,
+            hit: Hit::NONE,
+            node: 0,
+            length: 0.0,
+            surface: Surface::unknown(),
+            model: ShadingModel::Lambert,
+            paint: paint.clone(),
+            local: Color::BLACK,
+        }
+    }
+}
+
+impl<'s> TreeTracer<'s> {
+    /// Grows the trees of the rays that wait, `width` rays at a time. Returns `false` if it left off because there are too many of them:
+    /// one of several trees may have as many rays as allowed.
+    pub(super) fn grow<O: TraceObserver>(&mut self, width: usize, observer: &mut O) -> bool {
+        let mut points = std::mem::take(&mut self.points);
+        let mut finished = true;
+        while finished && !self.waiting.is_empty() {
+            let count = self.take(width, &mut points);
+            let mut hits = [None; PACKET];
+            self.intersect(&points[..count], &mut hits);
+            let mut lanes = self.enter(&mut points[..count], &hits[..count], observer);
+            self.paint(&mut points, &mut lanes, observer);
+            self.light(&mut points, &lanes, observer);
+            self.branch(&mut points, &lanes, observer);
+            finished = width == 1 || self.nodes.len() + self.waiting.len() < self.limit();
+        }
+        self.points = points;
+        finished
+    }
+
+    /// The number of rays from which on trees are grown one by one, because one of them may have as many as allowed.
+    fn limit(&self) -> usize {
+        const MOST: u32 = 1 << 16;
+        self.settings.max_tree_rays.min(MOST) as usize
+    }
+
+    /// Takes rays that wait, the last first.
+    fn take(&mut self, width: usize, points: &mut Vec<Point<'s>>) -> usize {
+        let mut count = 0;
+        while count < width
+            && let Some(next) = self.waiting.pop()
+        {
+            if count == points.len() {
+                points.push(Point::unknown(&self.blank));
+            }
+            points[count].branch = next;
+            count += 1;
+        }
+        count
+    }
+
+    /// The nearest hits of rays: those of one class together, if they are not too few.
+    fn intersect(&mut self, points: &[Point<'s>], hits: &mut [Option<Hit>; PACKET]) {
+        for class in [RayClass::Camera, RayClass::Secondary] {
+            let mut lanes = Lanes::new();
+            let (mut rays, mut from) = (ArrayVec::<Ray, PACKET>::new(), [None; PACKET]);
+            for (lane, point) in points.iter().enumerate() {
+                if point.branch.class == class {
+                    from[rays.len()] = point.branch.origin.as_ref();
+                    rays.push(point.branch.ray);
+                    lanes.push(lane);
+                }
+            }
+            if lanes.len() >= FEW {
+                self.tracer.slot.ray(points[lanes[0]].branch.kind);
+                let mut found = [None; PACKET];
+                self.tracer
+                    .closest_hits(&rays, Interval::FORWARD, &from, class, &mut found);
+                for (lane, hit) in lanes.iter().zip(found) {
+                    hits[*lane] = hit;
+                }
+            } else {
+                for (index, lane) in lanes.iter().enumerate() {
+                    self.tracer.slot.ray(points[*lane].branch.kind);
+                    hits[*lane] = self.tracer.closest_hit(
+                        &rays[index],
+                        Interval::FORWARD,
+                        from[index],
+                        class,
+                    );
+                }
+            }
+        }
+    }
+
+    /// Makes the nodes of rays, and finds out about the surfaces that they meet. The others see the background.
+    fn enter<O: TraceObserver>(
+        &mut self,
+        points: &mut [Point<'s>],
+        hits: &[Option<Hit>],
+        observer: &mut O,
+    ) -> Lanes {
+        let scene = self.tracer.scene;
+        let mut lanes = Lanes::new();
+        for (lane, (point, hit)) in points.iter_mut().zip(hits).enumerate() {
+            let branch = &point.branch;
+            self.deepest = self.deepest.max(branch.depth);
+            if hit.is_none() && branch.kind == RayKind::Primary && !O::ACTIVE {
+                self.roots[branch.parent as usize % PACKET] = self.nothing_along(branch);
+                continue;
+            }
+            self.counts.count(branch.kind, hit.is_some());
+            let speed = branch.ray.direction.length();
+            let length = hit.map_or(f64::INFINITY, |h| h.t * speed);
+            let (attenuation, fog) = self.in_front(branch, length);
+            point.node = self.nodes.len() as u32;
+            let mut node = Node {
+                parent: branch.parent,
+                kind: branch.kind,
+                local: Color::BLACK,
+                share: branch.share,
+                reflected: Color::BLACK,
+                transmitted: Color::BLACK,
+                attenuation,
+                fog,
+            };
+            match hit {
+                Some(hit) => {
+                    self.tracer.slot.enter_for(Phase::Surface, hit.id);
+                    point.hit = *hit;
+                    point.length = length;
+                    point
+                        .surface
+                        .find(scene, branch, speed, hit, &self.media, self.uv);
+                    lanes.push(lane);
+                }
+                None => node.local = scene.background.along(branch.ray.direction),
+            }
+            self.nodes.push(node);
+            if O::ACTIVE && hit.is_none() {
+                let seen = self.nodes[point.node as usize].local;
+                observer.ray(self.ray_report(point, None, Some(seen)));
+            }
+        }
+        lanes
+    }
+
+    /// Evaluates the textures of surfaces. Leaves out the lanes that need no light.
+    fn paint<O: TraceObserver>(
+        &mut self,
+        points: &mut [Point<'s>],
+        lanes: &mut Lanes,
+        observer: &mut O,
+    ) {
+        let scene = self.tracer.scene;
+        lanes.retain(|lane| {
+            let point = &mut points[*lane];
+            self.tracer.slot.enter_for(Phase::Texture, point.hit.id);
+            layers::paint(scene, &mut point.surface, &point.hit, &mut point.paint);
+            self.tracer.slot.enter_for(Phase::Shading, point.hit.id);
+            let surface = &point.surface;
+            point.model = self.model_of(surface);
+            let diagnostic = point.model.is_diagnostic();
+            if diagnostic || point.branch.kind == RayKind::Primary {
+                let first = FirstHit {
+                    distance: point.length,
+                    position: surface.resolved.point.position,
+                    normal: surface.n_shade,
+                    object: surface.resolved.look.object,
+                    material: surface.resolved.look.material,
+                };
+                if point.branch.kind == RayKind::Primary {
+                    self.first = Some(first);
+                }
+                if diagnostic {
+                    self.nodes[point.node as usize].local =
+                        surface.diagnose(scene, point.model, &first);
+                }
+            }
+            if O::ACTIVE {
+                self.report_hit(point, observer);
+            }
+            let finish = &point.surface.material.finish;
+            point.local = finish.ambient * scene.ambient + finish.emission;
+            !diagnostic
+        });
+    }
+
+    /// Tells an observer about a hit.
+    #[cold]
+    fn report_hit<O: TraceObserver>(&mut self, point: &Point<'s>, observer: &mut O) {
+        let (surface, model) = (&point.surface, point.model);
+        if model.is_diagnostic() {
+            let shading = Shading::Model(model);
+            let scene = self.tracer.scene;
+            let seen = O::DETAILED.then(|| surface.report(scene, &point.hit, Split::NONE, shading));
+            observer.ray(self.ray_report(point, seen, None));
+            return;
+        }
+        let split = self.split(point);
+        let seen = O::DETAILED.then(|| self.hit_report(point, split));
+        let total = seen.as_ref().is_some_and(|seen| seen.total_reflection);
+        observer.ray(self.ray_report(point, seen, None));
+        if total {
+            let end = BranchEnd::TotalReflection;
+            observer.ended(point.node, RayKind::Refraction, 0.0, end);
+        }
+    }
+
+    /// All there is to tell of a ray: of its hit, or of the background that it sees.
+    #[cold]
+    fn ray_report(
+        &self,
+        point: &Point<'s>,
+        hit: Option<HitReport>,
+        background: Option<Color>,
+    ) -> RayReport {
+        let (branch, node) = (&point.branch, &self.nodes[point.node as usize]);
+        RayReport {
+            node: point.node,
+            parent: branch.parent,
+            kind: branch.kind,
+            depth: branch.depth,
+            weight: branch.weight,
+            share: branch.share,
+            ray: branch.ray,
+            hit,
+            background,
+            medium: self.media.top(branch.media),
+            attenuation: node.attenuation,
+            fog: node.fog,
+            part: branch.part,
+        }
+    }
+}
