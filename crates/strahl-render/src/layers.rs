@@ -31,21 +31,26 @@ pub(crate) fn paint<'s>(
         surface.n_shade = -surface.n_shade;
     }
     surface.n_smooth = Some(surface.n_shade);
-    let point = &surface.resolved.point;
-    let mut place = TexturePoint {
-        position: point.position,
-        tilted_at: None,
-        in_object: None,
-        surface: point.position,
-        n_geom: surface.n_geom,
-        n_shade: surface.n_shade,
-        uv: point.uv,
-        direction: -surface.v,
-    };
-    let mut made = None;
-    let space = scene.texture_place(&mut place, hit, look, &mut made);
-    let eta = surface.fresnel_eta();
-    texture.0.layers_in(space, &place, eta, paint);
+    let position = surface.resolved.point.position;
+    let (normal, eta) = (surface.n_shade, surface.fresnel_eta());
+    if !texture
+        .0
+        .solid_layer(position, normal, -surface.v, eta, paint)
+    {
+        let mut place = TexturePoint {
+            position,
+            tilted_at: None,
+            in_object: None,
+            surface: position,
+            n_geom: surface.n_geom,
+            n_shade: normal,
+            uv: surface.resolved.point.uv,
+            direction: -surface.v,
+        };
+        let mut made = None;
+        let space = scene.texture_place(&mut place, hit, look, &mut made);
+        texture.0.layers_in(space, &place, eta, paint);
+    }
 
     surface.material.fresnel = false;
     surface.material.fresnel_reflection = Color::BLACK;
@@ -59,7 +64,7 @@ pub(crate) fn paint<'s>(
         surface.n_shade = top.normal;
     }
     for layer in &paint.layers {
-        let body = paint.body(layer);
+        let body = layer.body;
         sum.ambient += body * layer.finish.ambient;
         sum.emission += body * layer.finish.emission;
         sum.diffuse += body * layer.finish.diffuse;
@@ -290,8 +295,8 @@ pub(crate) fn lit(
     let (mut diffuse, mut highlights) = (Color::BLACK, Color::BLACK);
     for layer in &paint.layers {
         let term = match model {
-            None => layer_term(paint, layer, surface, l, light),
-            Some(model) => layer_term_by(paint, model, layer, surface, l, light),
+            None => layer_term(layer, surface, l, light),
+            Some(model) => layer_term_by(model, layer, surface, l, light),
         };
         diffuse += term.diffuse;
         highlights += term.highlight;
@@ -302,20 +307,17 @@ pub(crate) fn lit(
 /// The light that a layer reflects from the direction `l`, with all its factors.
 #[inline(always)]
 pub(crate) fn layer_term(
-    paint: &TexturePaint<'_>,
     layer: &LayerPoint<'_>,
     surface: &Surface<'_>,
     l: DVec3,
     light: Color,
 ) -> SurfaceTerm {
-    let body = paint.body(layer);
-    term(layer, body, layer.finish, None, surface, l, light)
+    term(layer, layer.finish, None, surface, l, light)
 }
 
 /// The same, with a shading model in place of the finish's own highlights and of its `brilliance`.
 #[cold]
 pub(crate) fn layer_term_by(
-    paint: &TexturePaint<'_>,
     model: ShadingModel,
     layer: &LayerPoint<'_>,
     surface: &Surface<'_>,
@@ -326,14 +328,12 @@ pub(crate) fn layer_term_by(
         brilliance: 1.0,
         ..*layer.finish
     };
-    let body = paint.body(layer);
-    term(layer, body, &finish, Some(model), surface, l, light)
+    term(layer, &finish, Some(model), surface, l, light)
 }
 
 #[inline(always)]
 fn term(
     layer: &LayerPoint<'_>,
-    body: Color,
     finish: &PovFinish,
     model: Option<ShadingModel>,
     surface: &Surface<'_>,
@@ -347,7 +347,7 @@ fn term(
     let light = film.map_or(light, |factor| light * factor);
     let both_sides = surface.lit.both_sides;
     let diffuse_factor = finish.diffuse_factor(if both_sides { cos.abs() } else { cos });
-    let mut diffuse = body * light * diffuse_factor;
+    let mut diffuse = layer.body * light * diffuse_factor;
     let mut grain = 0.0;
     if finish.crand != 0.0 && diffuse_factor != 0.0 {
         // As in POV-Ray (measured): the pigment's colour counts in full, also where the layer is transparent.
@@ -403,7 +403,7 @@ pub(crate) fn report(paint: &TexturePaint<'_>, v: DVec3, eta: f64) -> Vec<LayerR
             finish: *layer.finish,
             share: layer.share,
             above: layer.above,
-            body: paint.body(layer),
+            body: layer.body,
             rise: (!reflection.is_none()).then(|| reflection.rise(cos_view, eta)),
             film: layer.film.map(|film| film.factor(cos_view, cos_view)),
             reflectance: layer.reflectance,

@@ -129,8 +129,8 @@ impl<'s> TreeTracer<'s> {
         let shadow_before = self.counts.shadow;
         let eye = self.eye_media(primary.origin);
         self.begin();
-        self.waiting.push(Branch::primary(primary, 0, eye));
-        self.grow(1, observer);
+        self.put(0, primary, 0, eye);
+        self.grow(1, 1, observer);
         self.tracer.slot.ray(RayKind::Primary);
         self.tracer.slot.enter(Phase::Sampling);
         self.combine(observer);
@@ -153,14 +153,14 @@ impl<'s> TreeTracer<'s> {
         let (counts, stats) = (self.counts, self.tracer.stats);
         let eye = self.eye_media(first.origin);
         self.begin();
-        // The last that waits is taken first.
-        for (number, ray) in rays.iter().enumerate().rev() {
+        let mut count = 0;
+        for (number, ray) in rays.iter().enumerate() {
             if let Some(ray) = ray {
-                let branch = Branch::primary(ray, number as u32, eye);
-                self.waiting.push(branch);
+                self.put(count, ray, number as u32, eye);
+                count += 1;
             }
         }
-        if !self.grow(PACKET, &mut ()) {
+        if !self.grow(count, PACKET, &mut ()) {
             (self.counts, self.tracer.stats) = (counts, stats);
             return self.trace_each(rays);
         }
@@ -185,6 +185,14 @@ impl<'s> TreeTracer<'s> {
         !self.tracer.scene.fills
             || origins.clone().all(|origin| Some(origin) == first)
             || origins.all(|origin| self.eye_media(origin) == MediaStack::VACUUM)
+    }
+
+    /// Puts a primary ray to those that go through the stages first.
+    fn put(&mut self, index: usize, ray: &Ray, number: u32, eye: MediaStack) {
+        if index == self.points.len() {
+            self.points.push(Point::unknown(&self.blank));
+        }
+        self.points[index].branch = Branch::primary(ray, number, eye);
     }
 
     /// Forgets the last trees.

@@ -168,8 +168,10 @@ pub(crate) fn explain_from(
             let corners = corners.map(|(dx, dy)| Sample::from(sample(0, dx, dy)));
             let pixel = match &options.sampling {
                 Sampling::Recursive(refinement) => {
-                    let mut inner = |dx, dy| Sample::from(sample(1, dx, dy));
-                    subdivided(corners, refinement, &mut inner)
+                    let mut inner = |&(dx, dy): &(f64, f64)| Sample::from(sample(1, dx, dy));
+                    subdivided(corners, refinement, &mut |places| {
+                        places.iter().map(&mut inner).collect()
+                    })
                 }
                 _ => mean_of_corners(corners),
             };

@@ -112,6 +112,8 @@ pub struct LayerPoint<'a> {
     pub share: f64,
     /// The transmittance of the layers above.
     pub above: Color,
+    /// The colour times opacity, share and the transmittance of the layers above: what diffuse and ambient light are multiplied by.
+    pub body: Color,
     /// The thin film on the layer (`irid`).
     pub film: Option<FilmPoint>,
     /// The factor of the radiance from the mirror direction.
@@ -177,15 +179,31 @@ impl TexturePaint<'_> {
         });
     }
 
-    /// The colour of a layer times its opacity, its share and the transmittance of the layers above.
-    #[inline]
-    pub fn body(&self, layer: &LayerPoint<'_>) -> Color {
-        let opacity = if self.filter_by_color {
-            layer.color.opacity_by_color()
-        } else {
-            layer.color.opacity()
-        };
-        layer.color.rgb * layer.above * (layer.share * opacity)
+    /// Begins with a point: no layers yet.
+    fn begin(&mut self, n_shade: DVec3) -> Stack {
+        self.layers.clear();
+        self.stacks.clear();
+        Stack {
+            share: 1.0,
+            // From 1 on nothing is seen (measured).
+            above: if self.bailout < 1.0 {
+                Color::WHITE
+            } else {
+                Color::BLACK
+            },
+            seen: n_shade,
+        }
+    }
+
+    /// Ends with all layers. `refraction` is the factor of the light from behind.
+    fn end(&mut self, stack: &Stack, refraction: f64) {
+        self.transmission = Color::BLACK + stack.above * stack.share;
+        if refraction != 1.0 {
+            self.transmission = self.transmission * refraction;
+        }
+        for stack in &mut self.stacks {
+            stack.weight *= refraction;
+        }
     }
 }
 
@@ -195,21 +213,6 @@ struct Stack {
     above: Color,
     /// The normal that the patterns `slope` and `aoi` see: that of the texture evaluated last, in its own space, as in POV-Ray (measured).
     seen: DVec3,
-}
-
-impl Stack {
-    fn new(point: &TexturePoint, bailout: f64) -> Self {
-        Self {
-            share: 1.0,
-            // From 1 on nothing is seen (measured).
-            above: if bailout < 1.0 {
-                Color::WHITE
-            } else {
-                Color::BLACK
-            },
-            seen: point.n_shade,
-        }
-    }
 }
 
 impl Texture {
@@ -227,9 +230,7 @@ impl Texture {
         eta: f64,
         out: &mut TexturePaint<'a>,
     ) {
-        out.layers.clear();
-        out.stacks.clear();
-        let mut stack = Stack::new(point, out.bailout);
+        let mut stack = out.begin(point.n_shade);
         match space {
             None => {
                 let ways = Ways::of(&Identity);
@@ -241,14 +242,32 @@ impl Texture {
                 self.paint(&inner, n, Ways::of(space), eta, &mut stack, out);
             }
         }
-        let passing = self.refraction();
-        out.transmission = Color::BLACK + stack.above * stack.share;
-        if passing != 1.0 {
-            out.transmission = out.transmission * passing;
-        }
-        for stack in &mut out.stacks {
-            stack.weight *= passing;
-        }
+        out.end(&stack, self.refraction());
+    }
+
+    /// The same for a texture of one colour and without a normal of its own, at a point with this normal on the surface, seen along a
+    /// direction; no space changes it. Returns whether it is such a texture.
+    #[inline]
+    pub fn solid_layer<'a>(
+        &'a self,
+        surface: DVec3,
+        normal: DVec3,
+        direction: DVec3,
+        eta: f64,
+        out: &mut TexturePaint<'a>,
+    ) -> bool {
+        let Self::Plain(texture) = self else {
+            return false;
+        };
+        let (Pigment::Solid(color, _), None) = (&texture.pigment, &texture.normal) else {
+            return false;
+        };
+        let mut stack = out.begin(normal);
+        let cos_view = -normal.dot(direction);
+        texture.add_layer(*color, normal, cos_view, surface, eta, &mut stack, out);
+        out.end_stack(0, &stack);
+        out.end(&stack, texture.finish.refraction);
+        true
     }
 
     /// The factor of the light from behind (`refraction` in a finish): as measured, that of the uppermost layer counts, and for
@@ -537,6 +556,25 @@ impl PlainTexture {
             })
         };
         let cos_view = -normal.dot(point.direction);
+        self.add_layer(color, normal, cos_view, point.surface, eta, stack, out);
+    }
+
+    /// Adds a layer of this colour and normal below those of a stack.
+    #[inline]
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "what is known of the point, the stack and the layers are different things"
+    )]
+    fn add_layer<'a>(
+        &'a self,
+        color: ColorFt,
+        normal: DVec3,
+        cos_view: f64,
+        surface: DVec3,
+        eta: f64,
+        stack: &mut Stack,
+        out: &mut TexturePaint<'a>,
+    ) {
         // A layer below an opaque layer does not reflect; otherwise the layers above do not weaken its reflection (measured).
         let reflection = &self.finish.reflection;
         let (reflectance, reflection_weight) = if stack.above.is_black() || reflection.is_none() {
@@ -548,16 +586,19 @@ impl PlainTexture {
                 weight * stack.above.gray_value(),
             )
         };
-        let film = self
-            .finish
-            .irid
-            .map(|irid| irid.at(point.surface, &out.irid));
+        let film = self.finish.irid.map(|irid| irid.at(surface, &out.irid));
         let seen = match &film {
             None => reflectance,
             Some(film) => reflectance * reflection.of_film(film, cos_view),
         };
+        let opacity = if out.filter_by_color {
+            color.opacity_by_color()
+        } else {
+            color.opacity()
+        };
         out.layers.push(LayerPoint {
             color,
+            body: color.rgb * stack.above * (stack.share * opacity),
             normal,
             finish: &self.finish,
             share: stack.share,

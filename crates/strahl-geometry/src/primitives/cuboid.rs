@@ -129,6 +129,12 @@ impl Cuboid {
     }
 }
 
+/// The axis across the face of a hit, and whether it is the face at its end.
+fn face(hit: &PrimHit) -> (usize, bool) {
+    let facet = hit.surface.facet;
+    ((facet / 2).min(2) as usize, facet % 2 == 1)
+}
+
 impl Primitive for Cuboid {
     fn kind(&self) -> &'static str {
         "box"
@@ -162,8 +168,23 @@ impl Primitive for Cuboid {
     }
 
     fn surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
-        let axis = (hit.surface.facet / 2).min(2) as usize;
-        let at_max = hit.surface.facet % 2 == 1;
+        let (axis, at_max) = face(hit);
+        let bare = self.bare_surface_at(ray, hit);
+        let size = self.max - self.min;
+        let part = (bare.position - self.min) / size;
+        let [right, up] = &UNFOLDED[axis][usize::from(at_max)];
+        let (u, dpdu) = right.at(part, size);
+        let (v, dpdv) = up.at(part, size);
+        SurfacePoint {
+            uv: DVec2::new(u, v),
+            dpdu,
+            dpdv,
+            ..bare
+        }
+    }
+
+    fn bare_surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
+        let (axis, at_max) = face(hit);
         // Exactly on the plane; the other coordinates are clamped, so that rounding does not move them off the face.
         let mut position = ray.at(hit.t).clamp(self.min, self.max);
         position[axis] = if at_max {
@@ -173,21 +194,7 @@ impl Primitive for Cuboid {
         };
         let mut n = DVec3::ZERO;
         n[axis] = if at_max { 1.0 } else { -1.0 };
-
-        let size = self.max - self.min;
-        let part = (position - self.min) / size;
-        let [right, up] = &UNFOLDED[axis][usize::from(at_max)];
-        let (u, dpdu) = right.at(part, size);
-        let (v, dpdv) = up.at(part, size);
-        SurfacePoint {
-            position,
-            position_error: point_error(position, 0.0, 1),
-            n_geom: n,
-            n_shade: n,
-            uv: DVec2::new(u, v),
-            dpdu,
-            dpdv,
-        }
+        SurfacePoint::bare(position, point_error(position, 0.0, 1), n)
     }
 
     fn texture_uv(&self, _hit: &PrimHit, uv: DVec2) -> Option<DVec2> {

@@ -91,6 +91,10 @@ impl Primitive for Cylinder {
         self.0.surface_at(ray, hit)
     }
 
+    fn bare_surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
+        self.0.bare_surface_at(ray, hit)
+    }
+
     fn as_solid(&self) -> Option<&dyn Solid> {
         Some(self)
     }

@@ -93,6 +93,14 @@ pub(super) fn circle_bounds(center: DVec3, normal: DVec3, radius: f64) -> Aabb {
     Aabb::new(center - reach, center + reach)
 }
 
+impl Disc {
+    /// From the centre to a hit, in the plane of the disc.
+    fn local(&self, ray: &Ray, hit: &PrimHit) -> DVec3 {
+        let local = (ray.origin - self.center) + ray.direction * hit.t;
+        local - self.normal * local.dot(self.normal)
+    }
+}
+
 impl Primitive for Disc {
     fn kind(&self) -> &'static str {
         "disc"
@@ -142,9 +150,7 @@ impl Primitive for Disc {
     }
 
     fn surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
-        let local = (ray.origin - self.center) + ray.direction * hit.t;
-        let local = local - self.normal * local.dot(self.normal);
-        let position = self.center + local;
+        let local = self.local(ray, hit);
         let axes = self.frame.axes(self.normal);
         let (x, y) = (local.dot(axes.x_axis), local.dot(axes.y_axis));
         let distance = DVec2::new(x, y).length();
@@ -155,14 +161,18 @@ impl Primitive for Disc {
         };
         let width = self.radius - self.hole;
         SurfacePoint {
-            position,
-            position_error: point_error(position, local.length(), 8),
-            n_geom: self.normal,
-            n_shade: self.normal,
             uv: DVec2::new(turn(y, x), (distance - self.hole) / width),
             dpdu: (axes.y_axis * cos - axes.x_axis * sin) * (2.0 * PI * distance),
             dpdv: (axes.x_axis * cos + axes.y_axis * sin) * width,
+            ..self.bare_surface_at(ray, hit)
         }
+    }
+
+    fn bare_surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
+        let local = self.local(ray, hit);
+        let position = self.center + local;
+        let error = point_error(position, local.length(), 8);
+        SurfacePoint::bare(position, error, self.normal)
     }
 
     fn as_solid(&self) -> Option<&dyn Solid> {

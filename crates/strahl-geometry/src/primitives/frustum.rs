@@ -42,6 +42,17 @@ struct AxisRay {
     sideways: DVec3,
 }
 
+/// A point, seen from the axis.
+struct Around {
+    /// From the centre of the base.
+    local: DVec3,
+    height: f64,
+    /// From the axis to the point, its length and its direction.
+    across: DVec3,
+    distance: f64,
+    out: DVec3,
+}
+
 impl Frustum {
     pub(super) fn new(
         base: DVec3,
@@ -315,56 +326,73 @@ impl Frustum {
     }
 
     pub(super) fn surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
-        let f = ray.origin - self.base;
-        let local = f + ray.direction * hit.t;
-        let height = local.dot(self.axis);
-        let across = local - self.axis * height;
-        let distance = across.length();
+        let Around {
+            height,
+            distance,
+            out,
+            ..
+        } = self.around(ray, hit);
         let axes = self.frame.axes(self.axis);
-        let out = if distance > 0.0 {
-            across / distance
-        } else {
-            axes.x_axis
-        };
         let (x, y) = (out.dot(axes.x_axis), out.dot(axes.y_axis));
         let round = axes.y_axis * x - axes.x_axis * y;
+        let (v, dpdv) = match hit.surface.facet {
+            BASE => (distance / self.base_radius, out * self.base_radius),
+            APEX => (distance / self.apex_radius(), out * self.apex_radius()),
+            _ => (
+                height / self.height,
+                (self.axis + out * self.slope) * self.height,
+            ),
+        };
+        SurfacePoint {
+            uv: DVec2::new(turn(y, x), v),
+            dpdu: round * (2.0 * PI * distance),
+            dpdv,
+            ..self.bare_surface_at(ray, hit)
+        }
+    }
 
-        let (local, n, v, dpdv) = match hit.surface.facet {
-            BASE | APEX => {
-                let (level, radius, n) = if hit.surface.facet == BASE {
-                    (0.0, self.base_radius, -self.axis)
-                } else {
-                    (self.height, self.apex_radius(), self.axis)
-                };
-                (
-                    across + self.axis * level,
-                    n,
-                    distance / radius,
-                    out * radius,
-                )
-            }
+    pub(super) fn bare_surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
+        let Around {
+            local,
+            height,
+            across,
+            distance,
+            out,
+        } = self.around(ray, hit);
+        let (local, n) = match hit.surface.facet {
+            BASE => (across + self.axis * 0.0, -self.axis),
+            APEX => (across + self.axis * self.height, self.axis),
             _ => {
                 // Back onto the side along its normal, in the plane of axis and point.
                 let per_length = 1.0 / (1.0 + self.slope * self.slope).sqrt();
                 let off = (distance - (self.base_radius + self.slope * height)) * per_length;
                 let n = (out - self.axis * self.slope) * per_length;
-                (
-                    local - n * off,
-                    n,
-                    height / self.height,
-                    (self.axis + out * self.slope) * self.height,
-                )
+                (local - n * off, n)
             }
         };
         let position = self.base + local;
-        SurfacePoint {
-            position,
-            position_error: point_error(position, local.length() + self.base_radius, 16),
-            n_geom: n,
-            n_shade: n,
-            uv: DVec2::new(turn(y, x), v),
-            dpdu: round * (2.0 * PI * distance),
-            dpdv,
+        let error = point_error(position, local.length() + self.base_radius, 16);
+        SurfacePoint::bare(position, error, n)
+    }
+
+    /// Where a hit is, seen from the axis.
+    #[inline]
+    fn around(&self, ray: &Ray, hit: &PrimHit) -> Around {
+        let f = ray.origin - self.base;
+        let local = f + ray.direction * hit.t;
+        let height = local.dot(self.axis);
+        let across = local - self.axis * height;
+        let distance = across.length();
+        Around {
+            local,
+            height,
+            across,
+            distance,
+            out: if distance > 0.0 {
+                across / distance
+            } else {
+                self.frame.axes(self.axis).x_axis
+            },
         }
     }
 

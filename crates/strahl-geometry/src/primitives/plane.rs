@@ -119,9 +119,8 @@ impl Primitive for Plane {
     }
 
     fn surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
-        let at = ray.at(hit.t);
-        let position = at - self.normal * (at - self.point).dot(self.normal);
-        let local = position - self.point;
+        let bare = self.bare_surface_at(ray, hit);
+        let local = bare.position - self.point;
         let axes = self.frame.axes(self.normal);
         let (dpdu, dpdv) = (axes.x_axis, axes.y_axis);
         // local = u dpdu + v dpdv, where the two need not be perpendicular once a map is baked in.
@@ -132,14 +131,19 @@ impl Primitive for Plane {
             dpdu.cross(local).dot(per_area),
         );
         SurfacePoint {
-            position,
-            position_error: point_error(position, local.length(), 8),
-            n_geom: self.normal,
-            n_shade: self.normal,
             uv,
             dpdu,
             dpdv,
+            ..bare
         }
+    }
+
+    fn bare_surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
+        let at = ray.at(hit.t);
+        let position = at - self.normal * (at - self.point).dot(self.normal);
+        let local = position - self.point;
+        let error = point_error(position, local.length(), 8);
+        SurfacePoint::bare(position, error, self.normal)
     }
 
     fn as_solid(&self) -> Option<&dyn Solid> {

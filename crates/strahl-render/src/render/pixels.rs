@@ -9,7 +9,7 @@ use crate::coverage::Coverage;
 use crate::film::{PixelInfo, Region};
 use crate::observer::RayKind;
 use crate::render::Progress;
-use crate::sampling::Sample;
+use crate::sampling::{Few, Sample};
 use crate::scene::RenderScene;
 use crate::sight::{SQUARE, Sight};
 use crate::tiles::TILE;
@@ -19,41 +19,21 @@ use strahl_accel::{PACKET, TraversalStats};
 use strahl_math::Ray;
 use strahl_shade::Color;
 
-/// Colours of four rows of a tile, traced in packets before the pixels are visited.
-#[derive(Default)]
-struct Ahead {
-    x: u32,
-    y: u32,
-    /// Row by row, as wide as a tile.
-    colors: Vec<Option<Color>>,
-}
+/// Rays with the numbers of what they are for.
+type Packet = ArrayVec<(usize, Option<Ray>), PACKET>;
 
-impl Ahead {
-    /// Begins with empty rows from this position on.
-    fn start(&mut self, x: u32, y: u32) {
-        (self.x, self.y) = (x, y);
-        self.colors.clear();
-    }
-
-    fn index(&self, x: u32, y: u32) -> usize {
-        ((y.wrapping_sub(self.y)).wrapping_mul(TILE)).wrapping_add(x.wrapping_sub(self.x)) as usize
-    }
-
-    fn put(&mut self, x: u32, y: u32, color: Color) {
-        let index = self.index(x, y);
-        if self.colors.is_empty() {
-            self.colors.resize((TILE * SQUARE) as usize, None);
-        }
-        if let Some(place) = self.colors.get_mut(index) {
-            *place = Some(color);
-        }
-    }
-
-    /// The colour of a pixel, if it was traced in a packet; it is removed.
-    fn take(&mut self, x: u32, y: u32) -> Option<Color> {
-        let index = self.index(x, y);
-        self.colors.get_mut(index)?.take()
-    }
+/// The squares of a tile, row by row.
+fn squares(tile: Region) -> impl Iterator<Item = Region> {
+    let (right, bottom) = (tile.x + tile.width, tile.y + tile.height);
+    let rows = (tile.y..bottom).step_by(SQUARE as usize);
+    let columns = (tile.x..right).step_by(SQUARE as usize);
+    rows.flat_map(move |y| columns.clone().map(move |x| (x, y)))
+        .map(move |(x, y)| Region {
+            x,
+            y,
+            width: (right - x).min(SQUARE),
+            height: (bottom - y).min(SQUARE),
+        })
 }
 
 /// Fewer samples of a pixel are traced one by one.
@@ -73,8 +53,6 @@ pub(super) struct PixelTracer<'s> {
     blind: bool,
     /// Whether neighbouring rays are traced in packets.
     together: bool,
-    /// Colours traced in packets.
-    ahead: Ahead,
     /// For the alpha channel: what the last sample showed of the background.
     coverage: Option<Coverage>,
     /// Whether the last tile was left half done, because the render is cancelled.
@@ -103,7 +81,6 @@ impl<'s> PixelTracer<'s> {
             infos: Vec::new(),
             depth: 0,
             blind: false,
-            ahead: Ahead::default(),
             coverage: options
                 .alpha
                 .then(|| Coverage::new(scene.background.clone(), scene.background_alpha)),
@@ -131,19 +108,58 @@ impl Drop for PixelTracer<'_> {
 }
 
 impl PixelTracer<'_> {
+    /// The pixels of a tile in the first pass: in packets where each has one ray, otherwise with `trace`. `shown` makes a value of a
+    /// colour; `blank` is that of [`PixelTracer::tile`].
+    pub(super) fn first_pass<T: Clone>(
+        &mut self,
+        tile: Region,
+        blank: impl Fn(&mut Self, u32) -> Option<T>,
+        trace: impl Fn(&mut Self, u32, u32) -> T,
+        shown: impl Fn(Color) -> T,
+    ) -> TileResult<T> {
+        let place = self.options.sampling.common_place(0);
+        let Some((dx, dy)) = place.filter(|_| self.together) else {
+            return self.tile(tile, blank, trace);
+        };
+        self.start_tile();
+        let sight = self.sight(tile);
+        let mut values = vec![shown(Color::BLACK); tile.pixels() as usize];
+        for square in squares(tile) {
+            if self.leaves() {
+                break;
+            }
+            self.blind = sight.is_empty(square.x, square.y);
+            if self.blind {
+                let same = blank(self, square.pixels() as u32);
+                for (x, y) in square.positions() {
+                    let value = same.clone();
+                    values[tile.index(x, y)] = value.unwrap_or_else(|| trace(self, x, y));
+                }
+                continue;
+            }
+            let rays: ArrayVec<Option<Ray>, PACKET> = square
+                .positions()
+                .map(|(x, y)| self.rays.ray(f64::from(x) + dx, f64::from(y) + dy))
+                .collect();
+            let colors = self.tree.trace_packet(&rays);
+            for ((x, y), color) in square.positions().zip(colors) {
+                values[tile.index(x, y)] = shown(color);
+            }
+        }
+        self.end_tile(tile, None, values, Vec::new())
+    }
+
     /// Traces the pixels of a tile with `trace`. Where beam culling shows that all pixels of a square see the background,
     /// `blank` is called once with their number and returns the value of each, if it is the same for all.
     pub(super) fn tile<T: Clone>(
         &mut self,
         tile: Region,
-        pass: u32,
         blank: impl Fn(&mut Self, u32) -> Option<T>,
         trace: impl Fn(&mut Self, u32, u32) -> T,
     ) -> TileResult<T> {
         self.start_tile();
         let mut costs = Vec::new();
         let sight = self.sight(tile);
-        self.ahead.colors.clear();
         let mut pixel = |tracer: &mut Self, x: u32, y: u32| {
             if !tracer.options.costs {
                 return trace(tracer, x, y);
@@ -153,14 +169,7 @@ impl PixelTracer<'_> {
             value
         };
         let mut values = Vec::with_capacity(tile.pixels() as usize);
-        let place = self.options.sampling.common_place(pass);
         'tile: for y in tile.y..tile.y + tile.height {
-            if let Some(place) = place
-                && self.together
-                && (y - tile.y).is_multiple_of(SQUARE)
-            {
-                self.look_ahead(tile, y, place, &sight);
-            }
             let end = tile.x + tile.width;
             for left in (tile.x..end).step_by(SQUARE as usize) {
                 if self.leaves() {
@@ -182,11 +191,11 @@ impl PixelTracer<'_> {
 
     /// The first samples of the pixels of a tile.
     pub(super) fn centers(&mut self, tile: Region) -> TileResult<Sample> {
-        self.tile(
+        self.first_pass(
             tile,
-            0,
             |tracer, pixels| Some(tracer.blank(pixels)?.sample()),
             |tracer, x, y| tracer.pixel(0, x, y).sample(),
+            |color| Samples::NONE.with(color.into()).sample(),
         )
     }
 
@@ -202,7 +211,7 @@ impl PixelTracer<'_> {
         let sight = small.then(|| self.sight(tile));
         let mut values = vec![Sample::NOTHING; points.len()];
         let mut costs = Vec::new();
-        let mut packet = ArrayVec::<(usize, Option<Ray>), PACKET>::new();
+        let mut packet = Packet::new();
         for (index, &(x, y)) in points.iter().enumerate() {
             if self.leaves() {
                 break;
@@ -221,7 +230,7 @@ impl PixelTracer<'_> {
             if self.together && !self.blind {
                 packet.push((index, self.rays.ray(place.0, place.1)));
                 if packet.is_full() {
-                    self.trace_packet(&mut packet, &mut values);
+                    self.trace_packet(&mut packet, |index, color| values[index] = color.into());
                 }
             } else if options.costs {
                 let (value, cost) = self.measured(|tracer| tracer.sample(place.0, place.1, true));
@@ -231,7 +240,7 @@ impl PixelTracer<'_> {
                 values[index] = self.sample(place.0, place.1, true);
             }
         }
-        self.trace_packet(&mut packet, &mut values);
+        self.trace_packet(&mut packet, |index, color| values[index] = color.into());
         if !corners {
             for value in &mut values {
                 *value = Samples::NONE.with(*value).sample();
@@ -240,16 +249,67 @@ impl PixelTracer<'_> {
         self.end_tile(tile, Some(points), values, costs)
     }
 
-    /// Traces numbered rays in a packet, which is then empty.
-    fn trace_packet(
+    /// More samples of the rough pixels of a tile, whose first ones are known. Packets have samples of several pixels.
+    pub(super) fn refined(
         &mut self,
-        packet: &mut ArrayVec<(usize, Option<Ray>), PACKET>,
-        values: &mut [Sample],
-    ) {
+        tile: Region,
+        is_rough: impl Fn(u32, u32) -> bool,
+        first: impl Fn(u32, u32) -> Sample,
+    ) -> TileResult<Option<Sample>> {
+        if !self.together {
+            let more = |tracer: &mut Self, x, y| tracer.pixel(1, x, y).with(first(x, y)).sample();
+            return self.tile(
+                tile,
+                |_, _| None,
+                |tracer, x, y| is_rough(x, y).then(|| more(tracer, x, y)),
+            );
+        }
+        self.start_tile();
+        let sight = self.sight(tile);
+        let mut sums = vec![Samples::NONE; tile.pixels() as usize];
+        let mut packet = Packet::new();
+        let add = |sums: &mut [Samples], index: usize, color| {
+            let samples: &mut Samples = &mut sums[index];
+            samples.sum += color;
+            samples.count += 1;
+        };
+        let options = self.options;
+        for square in squares(tile) {
+            if self.leaves() {
+                break;
+            }
+            for (x, y) in square.positions().filter(|&(x, y)| is_rough(x, y)) {
+                let index = tile.index(x, y);
+                self.blind = sight.is_empty(x, y);
+                if self.blind {
+                    sums[index] = self.pixel(1, x, y);
+                    continue;
+                }
+                for (dx, dy) in options.sampling.places(1, x, y, options.seed) {
+                    let ray = self.rays.ray(f64::from(x) + dx, f64::from(y) + dy);
+                    packet.push((index, ray));
+                    if packet.is_full() {
+                        self.trace_packet(&mut packet, |index, color| {
+                            add(&mut sums, index, color);
+                        });
+                    }
+                }
+            }
+        }
+        self.trace_packet(&mut packet, |index, color| add(&mut sums, index, color));
+        let value = |((x, y), samples): ((u32, u32), Samples)| {
+            is_rough(x, y).then(|| samples.with(first(x, y)).sample())
+        };
+        let values = tile.positions().zip(sums).map(value).collect();
+        self.end_tile(tile, None, values, Vec::new())
+    }
+
+    /// Traces numbered rays in a packet, which is then empty.
+    fn trace_packet(&mut self, packet: &mut Packet, mut put: impl FnMut(usize, Color)) {
         let rays: ArrayVec<Option<Ray>, PACKET> = packet.iter().map(|(_, ray)| *ray).collect();
         let colors = self.tree.trace_packet(&rays);
         for ((index, _), color) in packet.drain(..).zip(colors) {
-            values[index] = color.into();
+            put(index, color);
         }
     }
 
@@ -346,11 +406,6 @@ impl PixelTracer<'_> {
         let mut samples = Samples::NONE;
         let options = self.options;
         let places = options.sampling.places(pass, x, y, options.seed);
-        if let Some(color) = self.ahead.take(x, y) {
-            samples.sum += color;
-            samples.count += 1;
-            return samples;
-        }
         if self.together && !self.blind && places.len() >= FEW {
             self.samples_together(x, y, places, &mut samples);
             return samples;
@@ -402,42 +457,27 @@ impl PixelTracer<'_> {
         }
     }
 
-    /// Traces four rows of a tile in packets, square by square, through the same position in each pixel.
-    fn look_ahead(&mut self, tile: Region, y: u32, place: (f64, f64), sight: &Sight) {
-        self.ahead.start(tile.x, y);
-        let bottom = (tile.y + tile.height).min(y + SQUARE);
-        for left in (tile.x..tile.x + tile.width).step_by(SQUARE as usize) {
-            if self.leaves() {
-                return;
-            }
-            if sight.is_empty(left, y) {
-                continue;
-            }
-            let square = Region {
-                x: left,
-                y,
-                width: (tile.x + tile.width - left).min(SQUARE),
-                height: bottom - y,
+    /// The samples at places of a pixel.
+    pub(super) fn samples(&mut self, x: u32, y: u32, places: &[(f64, f64)]) -> Few {
+        let at = |(dx, dy): (f64, f64)| (f64::from(x) + dx, f64::from(y) + dy);
+        if self.together && !self.blind && places.len() > 1 {
+            let ray = |&place: &(f64, f64)| {
+                let (x, y) = at(place);
+                self.rays.ray(x, y)
             };
-            let rays: ArrayVec<Option<Ray>, PACKET> = square
-                .positions()
-                .map(|(x, y)| {
-                    self.rays
-                        .ray(f64::from(x) + place.0, f64::from(y) + place.1)
-                })
-                .collect();
+            let rays: ArrayVec<Option<Ray>, PACKET> = places.iter().map(ray).collect();
             let colors = self.tree.trace_packet(&rays);
-            for ((x, y), color) in square.positions().zip(colors) {
-                self.ahead.put(x, y, color);
-            }
+            return colors.into_iter().map(Sample::from).collect();
         }
+        let sample = |&place: &(f64, f64)| {
+            let (x, y) = at(place);
+            self.sample(x, y, false)
+        };
+        places.iter().map(sample).collect()
     }
 
     /// The colour at the corner of pixels, and what shows of the background.
     pub(super) fn corner(&mut self, x: u32, y: u32) -> Sample {
-        if let Some(color) = self.ahead.take(x, y) {
-            return color.into();
-        }
         self.sample(f64::from(x), f64::from(y), true)
     }
 

@@ -215,11 +215,11 @@ impl Work {
         match stage {
             Stage::Pixels => turn.trace(
                 |tracer, tile| {
-                    tracer.tile(
+                    tracer.first_pass(
                         tile,
-                        0,
                         |tracer, pixels| Some(tracer.blank(pixels)?.shown()),
                         |tracer, x, y| tracer.pixel(0, x, y).shown(),
+                        |color| Samples::NONE.with(color.into()).shown(),
                     )
                 },
                 |film, result, _| film.set_tile(result.tile, &result.values),
@@ -249,13 +249,13 @@ impl Work {
             Stage::Corners { step: 1 } => turn.trace(
                 |tracer, tile| match known {
                     Some(_) => tracer.points(tile, points(tile, origin, 1, known), true),
-                    None => tracer.tile(
+                    None => tracer.first_pass(
                         tile,
-                        0,
                         |tracer, corners| {
                             Some(Sample::from(tracer.tree.same_nothing(corners as usize)?))
                         },
                         |tracer, x, y| tracer.corner(x, y),
+                        Sample::from,
                     ),
                 },
                 |film, result, ready| {
@@ -282,7 +282,6 @@ impl Work {
                     |tracer, tile| {
                         tracer.tile(
                             tile,
-                            1,
                             |_, _| None::<Shown>,
                             |tracer, x, y| tracer.remaining(first.at(x, y), x, y).shown(),
                         )
@@ -293,23 +292,8 @@ impl Work {
             Stage::Refine(_) => {
                 let (first, rough) = (&*lattice, &*rough);
                 let is_rough = |x, y| rough[first.region.index(x, y)];
-                let more = |tracer: &mut super::PixelTracer<'_>, x, y| {
-                    let mut samples: Samples = tracer.pixel(1, x, y);
-                    let center = first.at(x, y);
-                    samples.sum += center.color;
-                    samples.clear += center.clear;
-                    samples.count += 1;
-                    samples.sample()
-                };
                 turn.trace(
-                    |tracer, tile| {
-                        tracer.tile(
-                            tile,
-                            1,
-                            |_, _| None,
-                            |tracer, x, y| is_rough(x, y).then(|| more(tracer, x, y)),
-                        )
-                    },
+                    |tracer, tile| tracer.refined(tile, is_rough, |x, y| first.at(x, y)),
                     |film, result, _| set_some(film, result.tile, result.values),
                 )
             }
@@ -319,7 +303,6 @@ impl Work {
                     |tracer, tile| {
                         tracer.tile(
                             tile,
-                            1,
                             |_, _| None,
                             |tracer, x, y| {
                                 let corners = lattice.around(x, y);
@@ -328,12 +311,8 @@ impl Work {
                                     .iter()
                                     .any(|corner| corner.color != corners[0].color)
                                     .then(|| {
-                                        subdivided(corners, &refinement, &mut |dx, dy| {
-                                            tracer.sample(
-                                                f64::from(x) + dx,
-                                                f64::from(y) + dy,
-                                                false,
-                                            )
+                                        subdivided(corners, &refinement, &mut |places| {
+                                            tracer.samples(x, y, places)
                                         })
                                     })
                             },

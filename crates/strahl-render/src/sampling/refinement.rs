@@ -1,6 +1,7 @@
 //! Where pixels differ so much that they are refined, and how a pixel is divided.
 
 use super::Sample;
+use arrayvec::ArrayVec;
 use std::{collections::HashMap, fmt, str::FromStr};
 use strahl_math::det;
 use strahl_shade::Color;
@@ -95,12 +96,19 @@ impl Compared {
     }
 }
 
+/// The samples of a few places.
+pub(crate) type Few = ArrayVec<Sample, 5>;
+
+/// Takes samples at a few places.
+pub(crate) type Take<'a> = dyn FnMut(&[(f64, f64)]) -> Few + 'a;
+
 /// The mean of a pixel with these samples at its corners (top left, top right, bottom left, bottom right): the mean of the corners if
-/// they are alike, or else that of the four quarters of the pixel (Whitted 1980). `sample` takes a place in the pixel, `0..=1` from its top left corner.
+/// they are alike, or else that of the four quarters of the pixel (Whitted 1980). `sample` takes up to five places in the pixel, `0..=1` from its top left corner,
+/// and returns their samples.
 pub(crate) fn subdivided(
     corners: [Sample; 4],
     refinement: &Refinement,
-    sample: &mut dyn FnMut(f64, f64) -> Sample,
+    sample: &mut Take<'_>,
 ) -> Sample {
     let size = 1 << refinement.depth.saturating_sub(1);
     let mut division = Division {
@@ -119,7 +127,7 @@ struct Division<'a> {
     /// Samples on borders that squares share, by their place in smallest squares.
     known: HashMap<(u32, u32), Sample>,
     refinement: &'a Refinement,
-    sample: &'a mut dyn FnMut(f64, f64) -> Sample,
+    sample: &'a mut Take<'a>,
 }
 
 impl Division<'_> {
@@ -129,11 +137,13 @@ impl Division<'_> {
             return (a + b + c + d) / 4.0;
         }
         let half = size / 2;
-        let top = self.at(i + half, j);
-        let left = self.at(i, j + half);
-        let middle = self.at(i + half, j + half);
-        let right = self.at(i + size, j + half);
-        let bottom = self.at(i + half, j + size);
+        let [top, left, middle, right, bottom] = self.at([
+            (i + half, j),
+            (i, j + half),
+            (i + half, j + half),
+            (i + size, j + half),
+            (i + half, j + size),
+        ]);
         let quarters = self.square((i, j), half, [a, top, left, middle])
             + self.square((i + half, j), half, [top, b, middle, right])
             + self.square((i, j + half), half, [left, middle, c, bottom])
@@ -149,13 +159,16 @@ impl Division<'_> {
             .any(|&(a, b)| shown[a].differs(shown[b], self.refinement))
     }
 
-    fn at(&mut self, i: u32, j: u32) -> Sample {
-        let place = (f64::from(i) * self.cell, f64::from(j) * self.cell);
-        let sample = &mut self.sample;
-        *self
-            .known
-            .entry((i, j))
-            .or_insert_with(|| sample(place.0, place.1))
+    /// The samples at places in smallest squares; those that are not known are taken together.
+    fn at(&mut self, places: [(u32, u32); 5]) -> [Sample; 5] {
+        let new = places
+            .iter()
+            .filter(|place| !self.known.contains_key(place));
+        let new: ArrayVec<(u32, u32), 5> = new.copied().collect();
+        let place = |&(i, j): &(u32, u32)| (f64::from(i) * self.cell, f64::from(j) * self.cell);
+        let at: ArrayVec<(f64, f64), 5> = new.iter().map(place).collect();
+        self.known.extend(new.into_iter().zip((self.sample)(&at)));
+        places.map(|place| self.known[&place])
     }
 }
 
@@ -194,10 +207,11 @@ mod tests {
             let step = step_at(0.7);
             let corners = [0.0, 1.0, 0.0, 1.0].map(|x| step(x, 0.0));
             let mut count = 0;
-            let color = subdivided(corners, &refinement, &mut |x, y| {
-                count += 1;
-                assert!((0.0..=1.0).contains(&x) && (0.0..=1.0).contains(&y));
-                step(x, y)
+            let color = subdivided(corners, &refinement, &mut |places| {
+                count += places.len();
+                let inside = |x: f64| (0.0..=1.0).contains(&x);
+                assert!(places.iter().all(|&(x, y)| inside(x) && inside(y)));
+                places.iter().map(|&(x, y)| step(x, y)).collect()
             });
             assert_eq!((count, color), (rays, Sample::from(Color::gray(share))));
         }
@@ -205,7 +219,7 @@ mod tests {
 
     #[test]
     fn alike_corners_need_no_rays() {
-        let mut none = |_: f64, _: f64| -> Sample { unreachable!("no place is looked at") };
+        let mut none = |_: &[(f64, f64)]| -> Few { unreachable!("no place is looked at") };
         let corners = [Sample::from(Color::gray(0.25)); 4];
         let color = subdivided(corners, &Refinement::DEFAULT, &mut none);
         assert_eq!(color, Sample::from(Color::gray(0.25)));

@@ -93,8 +93,8 @@ impl<'s> TreeTracer<'s> {
         }
         for layer in &paint.layers {
             let term = match self.settings.force_shading {
-                None => layers::layer_term(paint, layer, surface, l, arriving),
-                Some(model) => layers::layer_term_by(paint, model, layer, surface, l, arriving),
+                None => layers::layer_term(layer, surface, l, arriving),
+                Some(model) => layers::layer_term_by(model, layer, surface, l, arriving),
             };
             detail.terms.push(term);
         }

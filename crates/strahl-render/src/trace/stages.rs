@@ -49,7 +49,7 @@ pub(crate) struct Point<'s> {
 
 impl<'s> Point<'s> {
     /// A place for a point; `paint` has the settings of textures.
-    fn unknown(paint: &TexturePaint<'s>) -> Self {
+    pub(super) fn unknown(paint: &TexturePaint<'s>) -> Self {
         Self {
             branch: Branch::NONE,
             hit: Hit::NONE,
@@ -64,20 +64,26 @@ impl<'s> Point<'s> {
 }
 
 impl<'s> TreeTracer<'s> {
-    /// Grows the trees of the rays that wait, `width` rays at a time. Returns `false` if it left off because there are too many of them:
+    /// Grows the trees of the first `count` rays, `width` rays at a time. Returns `false` if it left off because there are too many of them:
     /// one of several trees may have as many rays as allowed.
-    pub(super) fn grow<O: TraceObserver>(&mut self, width: usize, observer: &mut O) -> bool {
+    pub(super) fn grow<O: TraceObserver>(
+        &mut self,
+        count: usize,
+        width: usize,
+        observer: &mut O,
+    ) -> bool {
         let mut points = std::mem::take(&mut self.points);
         let mut finished = true;
-        while finished && !self.waiting.is_empty() {
-            let count = self.take(width, &mut points);
+        let mut count = count;
+        while finished && count > 0 {
             let mut hits = [None; PACKET];
             self.intersect(&points[..count], &mut hits);
             let mut lanes = self.enter(&mut points[..count], &hits[..count], observer);
             self.paint(&mut points, &mut lanes, observer);
             self.light(&mut points, &lanes, observer);
-            self.branch(&mut points, &lanes, observer);
+            self.branch(&points, &lanes, observer);
             finished = width == 1 || self.nodes.len() + self.waiting.len() < self.limit();
+            count = self.take(width, &mut points);
         }
         self.points = points;
         finished
