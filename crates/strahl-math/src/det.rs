@@ -6,7 +6,10 @@
 mod power;
 mod sine;
 
+pub use power::powers;
 pub use sine::sines;
+
+use strahl_simd::{Simd, dispatch};
 
 /// Sine of `x` radians.
 pub fn sin(x: f64) -> f64 {
@@ -101,13 +104,29 @@ pub fn pow(base: f64, exponent: f64) -> f64 {
     small_power(base, exponent).unwrap_or_else(|| power::pow(base, exponent))
 }
 
+/// Raises all numbers to the power of one exponent, four at a time, with the bits of [`pow`].
+pub fn pow_all(values: &mut [f64], exponent: f64) {
+    let (fours, rest) = values.as_chunks_mut::<4>();
+    dispatch!(Simd::best(), isa => {
+        for four in fours {
+            *four = powers(isa, four, exponent);
+        }
+    });
+    for value in rest {
+        *value = pow(*value, exponent);
+    }
+}
+
+/// An exponent that is a whole number from 0 to 64.
+#[inline]
+fn whole(exponent: f64) -> Option<u32> {
+    let whole = exponent as u32;
+    (f64::from(whole) == exponent && whole <= 64).then_some(whole)
+}
+
 /// Whole exponents from 0 to 64 by repeated squaring.
 fn small_power(base: f64, exponent: f64) -> Option<f64> {
-    let whole = exponent as u32;
-    if f64::from(whole) != exponent || whole > 64 {
-        return None;
-    }
-    let (mut result, mut square, mut bits) = (1.0, base, whole);
+    let (mut result, mut square, mut bits) = (1.0, base, whole(exponent)?);
     while bits > 0 {
         if bits & 1 == 1 {
             result *= square;

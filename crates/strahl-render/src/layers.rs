@@ -1,9 +1,14 @@
 //! Surfaces with POV-Ray's textures: several layers, each with a colour, a normal and a finish of its own.
 
+mod known;
+
+pub(crate) use known::KnownPaints;
+
 use crate::hit::Hit;
 use crate::observer::{LayerReport, Share, SurfaceTerm};
 use crate::scene::RenderScene;
 use crate::surface::{Split, Surface};
+use known::Known;
 use std::borrow::Cow;
 use strahl_math::{DVec3, Ray};
 use strahl_shade::patterns::TexturePoint;
@@ -18,6 +23,7 @@ pub(crate) fn paint<'s>(
     surface: &mut Surface<'_>,
     hit: &Hit,
     paint: &mut TexturePaint<'s>,
+    paints: &mut KnownPaints<'s>,
 ) {
     let look = &surface.resolved.look;
     let material = &scene.materials[look.material.0 as usize];
@@ -31,6 +37,11 @@ pub(crate) fn paint<'s>(
         surface.n_shade = -surface.n_shade;
     }
     surface.n_smooth = Some(surface.n_shade);
+    let known = paints.of(look.material, surface.entering);
+    if let Some(Known::Same(known)) = known {
+        known.put(surface, paint);
+        return;
+    }
     let position = surface.resolved.point.position;
     let (normal, eta) = (surface.n_shade, surface.fresnel_eta());
     if !texture
@@ -83,6 +94,9 @@ pub(crate) fn paint<'s>(
         .iter()
         .find(|stack| !stack.transmittance.is_black())
         .map_or(surface.n_shade, |stack| stack.normal);
+    if let Some(known @ Known::Unknown) = known {
+        *known = Known::of(&texture.0, paint, sum, surface.shows_lights);
+    }
 }
 
 /// A reflection ray to be sent.

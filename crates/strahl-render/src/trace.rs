@@ -28,6 +28,7 @@ use branch::Node;
 use eye::Eye;
 pub(crate) use eye::Filled;
 pub(crate) use lights::Arriving;
+use stages::Lanes;
 pub(crate) use stages::Point;
 
 pub use outcome::{FirstHit, RayCounts, SampleResult};
@@ -35,7 +36,7 @@ pub use settings::TraceSettings;
 
 use crate::activity::Phase;
 use crate::hit::Hit;
-use crate::layers::{Mirror, Passage};
+use crate::layers::{KnownPaints, Mirror, Passage};
 use crate::media::{MediaArena, MediaStack};
 use crate::observer::{RayKind, TraceObserver};
 use crate::query::Tracer;
@@ -70,6 +71,8 @@ pub struct TreeTracer<'s> {
     points: Vec<Point<'s>>,
     /// A texture without layers, with the settings of the scene.
     blank: TexturePaint<'s>,
+    /// The layers of textures of one colour.
+    paints: KnownPaints<'s>,
     /// The radiances of primary rays, by their numbers in the packet.
     roots: [Color; PACKET],
     /// What the last primary ray met.
@@ -113,6 +116,7 @@ impl<'s> TreeTracer<'s> {
                 bailout: settings.adc_bailout,
                 ..TexturePaint::default()
             },
+            paints: KnownPaints::new(scene),
             roots: [Color::BLACK; PACKET],
             first: None,
             deepest: 0,
@@ -203,10 +207,11 @@ impl<'s> TreeTracer<'s> {
         self.roots = [Color::BLACK; PACKET];
     }
 
-    /// Sums the trees from their leaves: every ray has the hit's own light, plus kr times the radiance along its reflection ray,
+    /// Sums the trees from their leaves, into the radiances of primary rays: every ray has the hit's own light, plus kr times the radiance along its reflection ray,
     /// plus kt times the radiance along its transparency ray.
     fn combine<O: TraceObserver>(&mut self, observer: &mut O) {
         let fogged = self.tracer.scene.has_air();
+        let (mut sums, mut numbers) = (ArrayVec::<Color, PACKET>::new(), Lanes::new());
         for index in (0..self.nodes.len()).rev() {
             let node = &self.nodes[index];
             let sum = node.local + node.reflected + node.transmitted;
@@ -219,7 +224,8 @@ impl<'s> TreeTracer<'s> {
             }
             let (kind, parent) = (node.kind, node.parent as usize);
             if kind == RayKind::Primary {
-                self.roots[parent % PACKET] = self.settings.decoded(total);
+                sums.push(total);
+                numbers.push(parent);
                 continue;
             }
             let taken = node.share.of(total);
@@ -231,6 +237,10 @@ impl<'s> TreeTracer<'s> {
                 RayKind::Reflection => parent.reflected += taken,
                 RayKind::Refraction => parent.transmitted += taken,
             }
+        }
+        self.settings.decode_all(&mut sums);
+        for (number, sum) in numbers.into_iter().zip(sums) {
+            self.roots[number % PACKET] = sum;
         }
     }
 

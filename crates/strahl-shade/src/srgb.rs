@@ -9,6 +9,12 @@ use std::sync::LazyLock;
 
 use strahl_math::det;
 
+/// The encoded value from which on [`decode`] follows a curve.
+const CURVE: f64 = 0.040_45;
+
+/// The number of values that [`decode_all`] takes at a time.
+const FEW: usize = 48;
+
 /// The encoded value of linear light; below zero the function continues with its straight line, above one with its curve.
 pub fn encode(linear: f64) -> f64 {
     if linear <= 0.003_130_8 {
@@ -22,10 +28,30 @@ pub fn encode(linear: f64) -> f64 {
 ///
 /// The standard's rounded constants leave a step of about 1e-7 where line and curve meet.
 pub fn decode(encoded: f64) -> f64 {
-    if encoded <= 0.040_45 {
+    if encoded <= CURVE {
         encoded / 12.92
     } else {
         det::pow((encoded + 0.055) / 1.055, 2.4)
+    }
+}
+
+/// [`decode`] for many values at a time, with the same bits.
+pub fn decode_all(values: &mut [f64]) {
+    for few in values.chunks_mut(FEW) {
+        let mut powers = [1.0; FEW];
+        for (power, value) in powers.iter_mut().zip(few.iter()) {
+            if *value > CURVE {
+                *power = (*value + 0.055) / 1.055;
+            }
+        }
+        det::pow_all(&mut powers, 2.4);
+        for (value, power) in few.iter_mut().zip(powers) {
+            *value = if *value > CURVE {
+                power
+            } else {
+                decode(*value)
+            };
+        }
     }
 }
 

@@ -270,6 +270,19 @@ impl Texture {
         true
     }
 
+    /// Whether the layers at all points are the same but for the normals, which are those of the surface: one colour, no normal of its own, no
+    /// reflection and no film.
+    pub fn is_same_everywhere(&self) -> bool {
+        let Self::Plain(texture) = self else {
+            return false;
+        };
+        let finish = &texture.finish;
+        matches!(texture.pigment, Pigment::Solid(..))
+            && texture.normal.is_none()
+            && finish.reflection.is_none()
+            && finish.irid.is_none()
+    }
+
     /// The factor of the light from behind (`refraction` in a finish): as measured, that of the uppermost layer counts, and for
     /// blended textures there is none.
     fn refraction(&self) -> f64 {

@@ -7,6 +7,7 @@
 
 mod tables;
 
+use strahl_simd::Isa;
 use tables::{EXP, LOG};
 
 /// The beginning of the logarithm's table, slightly below 0.71, so that 1 lies inside an interval.
@@ -93,7 +94,6 @@ pub(super) fn pow(base: f64, exponent: f64) -> f64 {
     }
     let (high, low) = ln_parts(base);
     // The product of logarithm and exponent, in two parts (Dekker 1971).
-    let upper = |v: f64| f64::from_bits(v.to_bits() & !0x07ff_ffff);
     let (e, l) = (upper(exponent), upper(high));
     let product = e * l;
     let rest = (exponent - e) * l + exponent * (high - l + low);
@@ -103,10 +103,114 @@ pub(super) fn pow(base: f64, exponent: f64) -> f64 {
     exp_parts(product, rest)
 }
 
+/// Four bases to the power of one exponent, each with the bits of [`super::pow`].
+#[inline(always)]
+pub fn powers<I: Isa>(isa: I, bases: &[f64; 4], exponent: f64) -> [f64; 4] {
+    let n = |number: f64| isa.splat(number);
+    let mut usual = exponent.is_finite() && super::whole(exponent).is_none();
+    for base in bases {
+        usual &= is_usual(*base);
+    }
+    if !usual {
+        return each(bases, exponent);
+    }
+    // As `ln_parts`: what concerns bits lane by lane, the rest in vectors.
+    let (mut inverse, mut log_high, mut log_low) = ([0.0; 4], [0.0; 4], [0.0; 4]);
+    let (mut exponents, mut z, mut z_high) = ([0.0; 4], [0.0; 4], [0.0; 4]);
+    for lane in 0..4 {
+        let bits = bases[lane].to_bits();
+        let above = bits.wrapping_sub(START);
+        [inverse[lane], log_high[lane], log_low[lane]] = LOG[(above >> 45 & 127) as usize];
+        exponents[lane] = (above as i64 >> 52) as f64;
+        let mantissa = bits.wrapping_sub(above & (0xfff << 52));
+        z[lane] = f64::from_bits(mantissa);
+        z_high[lane] = f64::from_bits(mantissa.wrapping_add(1 << 31) & !0xffff_ffff);
+    }
+    let (inverse, z_high) = (isa.load(&inverse), isa.load(&z_high));
+    let (exponents, log_high) = (isa.load(&exponents), isa.load(&log_high));
+    let r_high = isa.sub(isa.mul(z_high, inverse), n(1.0));
+    let r_low = isa.mul(isa.sub(isa.load(&z), z_high), inverse);
+    let r = isa.add(r_high, r_low);
+    let t1 = isa.add(isa.mul(exponents, n(LN_2[0])), log_high);
+    let t2 = isa.add(t1, r);
+    let low1 = isa.add(isa.mul(exponents, n(LN_2[1])), isa.load(&log_low));
+    let low2 = isa.add(isa.sub(t1, t2), r);
+    let half = isa.mul(n(-0.5), r);
+    let half_high = isa.mul(n(-0.5), r_high);
+    let square_high = isa.mul(r_high, half_high);
+    let high = isa.add(t2, square_high);
+    let low3 = isa.mul(r_low, isa.add(half, half_high));
+    let low4 = isa.add(isa.sub(t2, high), square_high);
+    let r2 = isa.mul(r, r);
+    let first = isa.sub(n(1.0 / 3.0), isa.mul(r, n(0.25)));
+    let second = isa.sub(n(0.2), isa.mul(r, n(1.0 / 6.0)));
+    let third = isa.sub(n(1.0 / 7.0), isa.mul(r, n(0.125)));
+    let polynomial = isa.add(first, isa.mul(r2, isa.add(second, isa.mul(r2, third))));
+    let low = isa.add(
+        isa.add(isa.add(isa.add(low1, low2), low3), low4),
+        isa.mul(isa.mul(r2, r), polynomial),
+    );
+    let sum = isa.add(high, low);
+    let rest = isa.add(isa.sub(high, sum), low);
+    // The product of logarithm and exponent.
+    let e = upper(exponent);
+    let mut sums = isa.store(sum);
+    for sum in &mut sums {
+        *sum = upper(*sum);
+    }
+    let l = isa.load(&sums);
+    let product = isa.mul(n(e), l);
+    let rest = isa.add(
+        isa.mul(n(exponent - e), l),
+        isa.mul(n(exponent), isa.add(isa.sub(sum, l), rest)),
+    );
+    if isa.lt(n(-700.0), product) & isa.lt(product, n(700.0)) != 0b1111 {
+        return each(bases, exponent);
+    }
+    // As `exp_parts`.
+    let rounded = isa.add(isa.mul(product, n(STEPS)), n(ROUND));
+    let steps = isa.sub(rounded, n(ROUND));
+    let r = isa.sub(
+        isa.sub(product, isa.mul(steps, n(STEP[0]))),
+        isa.mul(steps, n(STEP[1])),
+    );
+    let r = isa.add(r, rest);
+    let rounded = isa.store(rounded);
+    let (mut scales, mut tails) = ([0.0; 4], [0.0; 4]);
+    for lane in 0..4 {
+        let number = rounded[lane].to_bits();
+        let (scale, tail) = EXP[(number & 127) as usize];
+        scales[lane] = f64::from_bits(scale.wrapping_add((number & !127) << 45));
+        tails[lane] = tail;
+    }
+    let scale = isa.load(&scales);
+    let r2 = isa.mul(r, r);
+    let quadratic = isa.mul(r2, isa.add(n(0.5), isa.mul(r, n(1.0 / 6.0))));
+    let quartic = isa.mul(
+        isa.mul(r2, r2),
+        isa.add(n(1.0 / 24.0), isa.mul(r, n(1.0 / 120.0))),
+    );
+    let change = isa.add(isa.add(isa.add(isa.load(&tails), r), quadratic), quartic);
+    isa.store(isa.add(scale, isa.mul(scale, change)))
+}
+
+/// Powers one by one.
+#[inline(never)]
+fn each(bases: &[f64; 4], exponent: f64) -> [f64; 4] {
+    bases.map(|base| super::pow(base, exponent))
+}
+
+/// A number without its last 27 bits: products of two such numbers are exact.
+#[inline(always)]
+fn upper(v: f64) -> f64 {
+    f64::from_bits(v.to_bits() & !0x07ff_ffff)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use proptest::prelude::*;
+    use strahl_simd::{Simd, dispatch};
 
     /// The number of doubles between two numbers.
     fn apart(a: f64, b: f64) -> u64 {
@@ -137,6 +241,34 @@ mod tests {
             let (base, exponent) = (f64::from_bits(base), f64::from_bits(exponent));
             let (a, b) = (pow(base, exponent), libm::pow(base, exponent));
             prop_assert!((a.is_nan() && b.is_nan()) || apart(a, b) <= 1, "{base} {exponent}: {a} {b}");
+        }
+    }
+
+    fn four(simd: Simd, bases: [f64; 4], exponent: f64) -> [u64; 4] {
+        dispatch!(simd, isa => powers(isa, &bases, exponent)).map(f64::to_bits)
+    }
+
+    #[test]
+    fn four_powers_have_the_bits_of_single_ones() {
+        let special = [0.0, -1.0, f64::INFINITY, f64::NAN, 1e-310];
+        let exponents = [2.4, 1.0 / 2.2, 40.0, 0.0, -3.7, 1e5, 123.5, f64::NAN];
+        for simd in Simd::available() {
+            for step in 0..4000 {
+                let base = |lane: i32| 1.003f64.powi(step - 2000) * (1.0 + 0.1 * f64::from(lane));
+                let mut bases = [0, 1, 2, 3].map(base);
+                if step % 50 == 0 {
+                    bases[step as usize / 50 % 4] = special[step as usize / 50 % 5];
+                }
+                for exponent in exponents {
+                    let single = bases.map(|base| crate::det::pow(base, exponent).to_bits());
+                    assert_eq!(
+                        four(simd, bases, exponent),
+                        single,
+                        "{bases:?} {exponent} {}",
+                        simd.level()
+                    );
+                }
+            }
         }
     }
 

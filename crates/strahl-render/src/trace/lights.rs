@@ -313,7 +313,8 @@ impl<'s> TreeTracer<'s> {
     }
 
     /// The light that a surface reflects if light arrives from the unit direction `l`: the diffuse part and the highlight.
-    #[inline]
+    // Inline: colours that are passed in memory would be loaded before their stores have ended.
+    #[inline(always)]
     pub(crate) fn reflected(
         &self,
         point: &Point<'_>,

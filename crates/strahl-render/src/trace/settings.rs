@@ -52,6 +52,16 @@ impl TraceSettings {
         }
     }
 
+    /// Colours in linear light; diagnostic pictures are not converted.
+    pub(super) fn decode_all(&self, colors: &mut [Color]) {
+        if !self
+            .force_shading
+            .is_some_and(|model| model.is_diagnostic())
+        {
+            self.working_space.decode_all(colors);
+        }
+    }
+
     /// A colour in linear light; diagnostic pictures are not converted.
     pub(super) fn decoded(&self, color: Color) -> Color {
         match self.force_shading {

@@ -207,7 +207,13 @@ impl<'s> TreeTracer<'s> {
         lanes.retain(|lane| {
             let point = &mut points[*lane];
             self.tracer.slot.enter_for(Phase::Texture, point.hit.id);
-            layers::paint(scene, &mut point.surface, &point.hit, &mut point.paint);
+            let Point {
+                surface,
+                hit,
+                paint,
+                ..
+            } = point;
+            layers::paint(scene, surface, hit, paint, &mut self.paints);
             self.tracer.slot.enter_for(Phase::Shading, point.hit.id);
             let surface = &point.surface;
             point.model = self.model_of(surface);

@@ -1,0 +1,105 @@
+//! Textures of one colour: their layers are evaluated once.
+
+use crate::scene::RenderScene;
+use crate::surface::Surface;
+use std::borrow::Cow;
+use strahl_shade::texture::{LayerPoint, StackPoint, Texture, TexturePaint};
+use strahl_shade::{Color, Finish, MaterialId};
+
+/// The layers of materials that are the same everywhere, by material and side, as one thread has met them.
+#[derive(Debug)]
+pub(crate) struct KnownPaints<'s>(Vec<Known<'s>>);
+
+/// What is known of the layers of a material.
+#[derive(Debug)]
+pub(super) enum Known<'s> {
+    Unknown,
+    /// They differ from point to point, or there are several.
+    Varies,
+    Same(Box<KnownPaint<'s>>),
+}
+
+/// The layer of a material that has one, the same everywhere but for its normal.
+#[derive(Debug)]
+pub(super) struct KnownPaint<'s> {
+    layer: LayerPoint<'s>,
+    stack: StackPoint,
+    transmission: Color,
+    /// The coefficients of the surface.
+    sum: Finish,
+    shows_lights: bool,
+}
+
+impl<'s> Known<'s> {
+    /// What a texture with these layers and this sum of coefficients at a point tells of all points.
+    pub(super) fn of(
+        texture: &Texture,
+        paint: &TexturePaint<'s>,
+        sum: Finish,
+        shows_lights: bool,
+    ) -> Self {
+        match (&paint.layers[..], &paint.stacks[..]) {
+            ([layer], [stack]) if texture.is_same_everywhere() => {
+                Self::Same(Box::new(KnownPaint {
+                    layer: *layer,
+                    stack: *stack,
+                    transmission: paint.transmission,
+                    sum,
+                    shows_lights,
+                }))
+            }
+            _ => Self::Varies,
+        }
+    }
+}
+
+impl<'s> KnownPaints<'s> {
+    /// With more materials nothing is remembered: each may have a colour of its own.
+    const MOST: usize = 4096;
+
+    /// Nothing is known yet.
+    pub(crate) fn new(scene: &RenderScene) -> Self {
+        let materials = scene.materials.len();
+        let count = if materials > Self::MOST {
+            0
+        } else {
+            2 * materials
+        };
+        let mut known = Vec::new();
+        known.resize_with(count, || Known::Unknown);
+        Self(known)
+    }
+
+    #[inline]
+    pub(super) fn of(
+        &mut self,
+        material: MaterialId,
+        from_outside: bool,
+    ) -> Option<&mut Known<'s>> {
+        self.0
+            .get_mut(2 * material.0 as usize + usize::from(from_outside))
+    }
+}
+
+impl<'s> KnownPaint<'s> {
+    /// Evaluates the texture at a surface: what [`paint`](super::paint) does, with the same bits.
+    pub(super) fn put(&self, surface: &mut Surface<'_>, paint: &mut TexturePaint<'s>) {
+        let normal = surface.n_shade;
+        paint.layers.clear();
+        paint.layers.push(LayerPoint {
+            normal,
+            ..self.layer
+        });
+        paint.stacks.clear();
+        paint.stacks.push(StackPoint {
+            normal,
+            ..self.stack
+        });
+        paint.transmission = self.transmission;
+        surface.material.fresnel = false;
+        surface.material.fresnel_reflection = Color::BLACK;
+        surface.material.finish = Cow::Owned(self.sum);
+        surface.shows_lights = self.shows_lights;
+        surface.n_refract = normal;
+    }
+}
