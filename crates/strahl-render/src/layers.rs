@@ -306,12 +306,40 @@ pub(crate) fn lit(
     light: Color,
     model: Option<ShadingModel>,
 ) -> (Color, Color) {
+    // One function for each: a term that comes from either would be stored with all its factors.
+    match model {
+        None => sum_of_terms(
+            paint,
+            #[inline(always)]
+            |layer| layer_term(layer, surface, l, light),
+        ),
+        Some(model) => lit_by(paint, model, surface, l, light),
+    }
+}
+
+/// The same, with a shading model in place of the finishes' own highlights and of their `brilliance`.
+#[cold]
+fn lit_by(
+    paint: &TexturePaint<'_>,
+    model: ShadingModel,
+    surface: &Surface<'_>,
+    l: DVec3,
+    light: Color,
+) -> (Color, Color) {
+    sum_of_terms(paint, |layer| {
+        layer_term_by(model, layer, surface, l, light)
+    })
+}
+
+/// The diffuse light and the highlights of all layers.
+#[inline(always)]
+fn sum_of_terms<'p>(
+    paint: &TexturePaint<'p>,
+    term: impl Fn(&LayerPoint<'p>) -> SurfaceTerm,
+) -> (Color, Color) {
     let (mut diffuse, mut highlights) = (Color::BLACK, Color::BLACK);
     for layer in &paint.layers {
-        let term = match model {
-            None => layer_term(layer, surface, l, light),
-            Some(model) => layer_term_by(model, layer, surface, l, light),
-        };
+        let term = term(layer);
         diffuse += term.diffuse;
         highlights += term.highlight;
     }

@@ -75,6 +75,8 @@ pub struct TreeTracer<'s> {
     paints: KnownPaints<'s>,
     /// The radiances of primary rays, by their numbers in the packet.
     roots: [Color; PACKET],
+    /// Whether somebody wants to know what a primary ray meets.
+    keeps_first: bool,
     /// What the last primary ray met.
     first: Option<FirstHit>,
     /// The deepest level of the trees.
@@ -118,6 +120,7 @@ impl<'s> TreeTracer<'s> {
             },
             paints: KnownPaints::new(scene),
             roots: [Color::BLACK; PACKET],
+            keeps_first: false,
             first: None,
             deepest: 0,
             arriving: Vec::new(),
@@ -133,6 +136,7 @@ impl<'s> TreeTracer<'s> {
         let shadow_before = self.counts.shadow;
         let eye = self.eye_media(primary.origin);
         self.begin();
+        self.keeps_first = true;
         self.put(0, primary, 0, eye);
         self.grow(1, 1, observer);
         self.tracer.slot.ray(RayKind::Primary);
@@ -203,7 +207,7 @@ impl<'s> TreeTracer<'s> {
     fn begin(&mut self) {
         self.waiting.clear();
         self.nodes.clear();
-        (self.first, self.deepest) = (None, 0);
+        (self.keeps_first, self.first, self.deepest) = (false, None, 0);
         self.roots = [Color::BLACK; PACKET];
     }
 

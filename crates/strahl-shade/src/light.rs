@@ -170,8 +170,30 @@ impl Light {
     }
 
     /// The light that arrives at `point` without occlusion; `None` if none does, or the point is at the light.
-    #[inline]
+    // The usual light is inline: a sample that is returned in memory would be loaded before its stores have ended.
+    #[inline(always)]
     pub fn illuminate(&self, point: DVec3) -> Option<LightSample> {
+        let LightKind::Point { position } = self.kind else {
+            return self.illuminate_by_kind(point);
+        };
+        if !matches!(self.falloff, Falloff::None) {
+            return self.illuminate_by_kind(point);
+        }
+        let to_light = position - point;
+        let distance = to_light.length();
+        if !(distance > 0.0) {
+            return None;
+        }
+        Some(LightSample {
+            l: to_light / distance,
+            shadow_direction: to_light,
+            range: self.until_here(distance),
+            color: self.color,
+        })
+    }
+
+    /// [`Light::illuminate`] for all lights.
+    fn illuminate_by_kind(&self, point: DVec3) -> Option<LightSample> {
         let (position, cone) = match self.kind {
             LightKind::Directional { direction } => {
                 let l = -direction;

@@ -218,21 +218,8 @@ impl<'s> TreeTracer<'s> {
             let surface = &point.surface;
             point.model = self.model_of(surface);
             let diagnostic = point.model.is_diagnostic();
-            if diagnostic || point.branch.kind == RayKind::Primary {
-                let first = FirstHit {
-                    distance: point.length,
-                    position: surface.resolved.point.position,
-                    normal: surface.n_shade,
-                    object: surface.resolved.look.object,
-                    material: surface.resolved.look.material,
-                };
-                if point.branch.kind == RayKind::Primary {
-                    self.first = Some(first);
-                }
-                if diagnostic {
-                    self.nodes[point.node as usize].local =
-                        surface.diagnose(scene, point.model, &first);
-                }
+            if diagnostic || self.keeps_first && point.branch.kind == RayKind::Primary {
+                self.first_hit(point);
             }
             if O::ACTIVE {
                 self.report_hit(point, observer);
@@ -241,6 +228,26 @@ impl<'s> TreeTracer<'s> {
             point.local = finish.ambient * scene.ambient + finish.emission;
             !diagnostic
         });
+    }
+
+    /// Takes note of what a primary ray met, and of what a diagnostic shading model shows of a hit.
+    #[cold]
+    fn first_hit(&mut self, point: &Point<'s>) {
+        let surface = &point.surface;
+        let first = FirstHit {
+            distance: point.length,
+            position: surface.resolved.point.position,
+            normal: surface.n_shade,
+            object: surface.resolved.look.object,
+            material: surface.resolved.look.material,
+        };
+        if point.branch.kind == RayKind::Primary {
+            self.first = Some(first);
+        }
+        if point.model.is_diagnostic() {
+            self.nodes[point.node as usize].local =
+                surface.diagnose(self.tracer.scene, point.model, &first);
+        }
     }
 
     /// Tells an observer about a hit.
