@@ -113,6 +113,25 @@ fn packets_change_nothing() {
     }
 }
 
+/// Sixteen trees in one batch: a tree is cut where it would be cut alone.
+#[test]
+fn trees_in_packets_are_cut_as_single_ones() {
+    let scene = compiled(&glass_and_mirrors());
+    for limit in [2, 5, 9, 40] {
+        let [with, without] = [true, false].map(|packets| {
+            rendered(&scene, |o| {
+                (o.width, o.height) = (90, 61);
+                (o.trace.max_tree_rays, o.trace.packets) = (limit, packets);
+            })
+        });
+        assert!(
+            with.film == without.film && with.rays == without.rays,
+            "{limit}"
+        );
+        assert!(with.rays.cut_trees > 0, "{:?}", with.rays);
+    }
+}
+
 #[test]
 fn packets_through_a_lens_change_nothing() {
     let mut scene = every_shape();

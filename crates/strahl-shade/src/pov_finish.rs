@@ -57,6 +57,11 @@ impl PovReflection {
         self.min.is_black() && self.max.is_black()
     }
 
+    /// Whether the reflectance is the same at all angles and for all pigments.
+    pub fn is_constant(&self) -> bool {
+        self.is_none() || !self.fresnel && self.min == self.max && self.metallic == 0.0
+    }
+
     /// The factor of the radiance from the mirror direction.
     ///
     /// `cos_view` is the cosine between the tilted normal and the direction to the viewer, `pigment` the pigment's colour,

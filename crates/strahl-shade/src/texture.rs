@@ -271,7 +271,7 @@ impl Texture {
     }
 
     /// Whether the layers at all points are the same but for the normals, which are those of the surface: one colour, no normal of its own, no
-    /// reflection and no film.
+    /// film, and the same reflection at all angles.
     pub fn is_same_everywhere(&self) -> bool {
         let Self::Plain(texture) = self else {
             return false;
@@ -279,7 +279,7 @@ impl Texture {
         let finish = &texture.finish;
         matches!(texture.pigment, Pigment::Solid(..))
             && texture.normal.is_none()
-            && finish.reflection.is_none()
+            && finish.reflection.is_constant()
             && finish.irid.is_none()
     }
 

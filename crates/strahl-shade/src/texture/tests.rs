@@ -234,3 +234,48 @@ fn shadows_are_attenuated_as_measured() {
     // Reflection does not darken the light in a shadow, even with `conserve_energy`.
     assert_eq!(glass().shadow_attenuation(&point), Color::gray(0.6));
 }
+
+/// The short way for textures of one colour, at a point seen at an angle, in a space of its own or not.
+#[test]
+fn a_solid_layer_is_that_of_any_point() {
+    let mirror = PovFinish {
+        reflection: PovReflection {
+            max: Color::gray(0.8),
+            fresnel: true,
+            ..PovReflection::constant(Color::gray(0.1))
+        },
+        conserve_energy: true,
+        refraction: 0.7,
+        ..PovFinish::default()
+    };
+    let clear = ColorFt {
+        filter: 0.6,
+        ..Color::new(0.9, 0.3, 0.2).into()
+    };
+    let (normal, direction) = (DVec3::new(0.6, 0.8, 0.0), DVec3::new(-0.8, 0.0, 0.6));
+    let point = TexturePoint {
+        n_geom: normal,
+        n_shade: normal,
+        direction,
+        ..TexturePoint::in_space(DVec3::new(0.3, 0.2, 0.1))
+    };
+    let turned = Transform::rotate(DVec3::X, 0.5);
+    for (texture, same) in [
+        (bluish(), true),
+        (veil(), true),
+        (plain(clear, mirror).into(), false),
+    ] {
+        assert_eq!(texture.is_same_everywhere(), same);
+        for space in [None, Some(&turned)] {
+            let (mut long, mut short) = (TexturePaint::default(), TexturePaint::default());
+            texture.layers_in(space, &point, 1.5, &mut long);
+            assert!(texture.solid_layer(point.surface, normal, direction, 1.5, &mut short));
+            assert_eq!(long.layers, short.layers);
+            assert_eq!(long.stacks, short.stacks);
+            assert_eq!(long.transmission, short.transmission);
+        }
+    }
+    let layered = Texture::Layered(vec![bluish(), veil()]);
+    let mut paint = TexturePaint::default();
+    assert!(!layered.solid_layer(point.surface, normal, direction, 1.0, &mut paint));
+}
