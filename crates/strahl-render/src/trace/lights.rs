@@ -74,7 +74,9 @@ impl<'s> TreeTracer<'s> {
             self.shadows(points, number, &mut arriving, observer);
         }
         for one in &mut arriving {
-            self.shade(&mut points[one.lane], light, number, one, observer);
+            let point = &mut points[one.lane];
+            self.back_to_shading(point);
+            self.shade(point, light, number, one, observer);
         }
         self.arriving = arriving;
     }
@@ -151,7 +153,6 @@ impl<'s> TreeTracer<'s> {
                     self.count_shadow(one, shadow);
                 }
             }
-            self.back_to_shading(point);
         }
     }
 
@@ -200,9 +201,6 @@ impl<'s> TreeTracer<'s> {
                 let shadow = self.tracer.shadow(&shadow_ray, media, hits);
                 self.count_shadow(one, shadow);
             }
-        }
-        if let Some(first) = arriving.first() {
-            self.back_to_shading(&points[first.lane]);
         }
     }
 
@@ -284,7 +282,7 @@ impl<'s> TreeTracer<'s> {
         Some(scene.fog_along(&ray, length).0)
     }
 
-    /// The shadow rays of a hit are traced.
+    /// Shadow rays are traced; work for a point follows.
     #[inline(always)]
     fn back_to_shading(&self, point: &Point<'s>) {
         self.tracer.slot.ray(point.branch.kind);
