@@ -218,6 +218,12 @@ impl Samples {
         clear: 0.0,
     };
 
+    /// Adds an opaque sample.
+    fn add(&mut self, color: Color) {
+        self.sum += color;
+        self.count += 1;
+    }
+
     /// With one sample more.
     fn with(mut self, sample: Sample) -> Self {
         self.sum += sample.color;

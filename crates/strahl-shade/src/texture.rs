@@ -1,6 +1,9 @@
 //! Textures: pigment, normal and finish together, in layers and by patterns.
 
+mod paint;
 mod spaces;
+
+pub use paint::{LayerPoint, StackPoint, TexturePaint};
 
 use std::sync::Arc;
 
@@ -11,8 +14,9 @@ use crate::interior::Interior;
 use crate::normal::PovNormal;
 use crate::patterns::{Modifiers, PatternField, TexturePoint};
 use crate::pigment::{Blend, BlendMap, Pigment};
-use crate::pov_finish::{FilmPoint, IridSettings, PovFinish};
+use crate::pov_finish::PovFinish;
 use crate::{Color, ColorFt};
+use paint::Stack;
 use spaces::{Chain, Identity, NormalSpace, Ways};
 
 /// One texture statement: pigment, normal and finish.
@@ -83,136 +87,6 @@ impl From<Texture> for SharedTexture {
     fn from(texture: Texture) -> Self {
         Self(Arc::new(texture))
     }
-}
-
-/// One layer of a texture at a point, with all properties that only depend on the surface.
-///
-/// What a viewer sees, with `E` the ambient light, a light of colour `L` (shadows included) in direction `l`, and `R` the light
-/// from the mirror direction, is the sum over all layers of
-///
-/// ```text
-/// share · above · [ color.rgb · opacity · (finish.ambient · E + finish.emission + finish.diffuse_factor(n·l) · L)
-///                   + finish.highlight(n, l, v, color.rgb) · L ]
-/// + share · finish.reflection.reflected(reflectance, R)
-/// ```
-///
-/// With a film (`irid`) the light L is multiplied by [`FilmPoint::factor`]; `reflectance` contains the factor already;
-///
-/// plus [`TexturePaint::transmission`] times the light from behind. Layers above weaken all but the reflection; the
-/// opacity `1 - filter - transmit` weakens all but highlights and reflection (all this as measured).
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LayerPoint<'a> {
-    /// The pigment's colour.
-    pub color: ColorFt,
-    /// The tilted unit normal, in the space of the texture point handed in.
-    pub normal: DVec3,
-    /// The finish.
-    pub finish: &'a PovFinish,
-    /// The share of this layer's stack where textures are blended; the shares of all stacks sum to 1.
-    pub share: f64,
-    /// The transmittance of the layers above.
-    pub above: Color,
-    /// The colour times opacity, share and the transmittance of the layers above: what diffuse and ambient light are multiplied by.
-    pub body: Color,
-    /// The thin film on the layer (`irid`).
-    pub film: Option<FilmPoint>,
-    /// The factor of the radiance from the mirror direction.
-    pub reflectance: Color,
-    /// The weight of the ray in the mirror direction, as POV-Ray has it:
-    /// [`PovReflection::weight`](crate::pov_finish::PovReflection::weight) times the grey value of `above`, whatever the share
-    /// (measured).
-    pub reflection_weight: f64,
-    /// The number of its stack in [`TexturePaint::stacks`].
-    pub stack: u32,
-}
-
-/// A stack of layers at a point: a texture, or one of several that are blended there.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct StackPoint {
-    /// The unit normal of the uppermost layer, which refracts.
-    pub normal: DVec3,
-    /// The share of the surface, 0 to 1.
-    pub share: f64,
-    /// The transmittance of all layers together, without the share.
-    pub transmittance: Color,
-    /// The factor of the weight of the ray behind: the largest component of the transmittance, whatever the share (measured), times
-    /// the `refraction` of the finish.
-    pub weight: f64,
-}
-
-/// A texture evaluated at a point. Reused from point to point, it stops allocating.
-#[derive(Clone, Debug, Default)]
-pub struct TexturePaint<'a> {
-    /// The layers: stack by stack, from the top to the bottom.
-    pub layers: Vec<LayerPoint<'a>>,
-    /// The transmittance of all layers for light from behind: the sum over the stacks of share times the product of `rgb ·
-    /// filter + transmit`, with `conserve_energy` also times `1 - reflectance`; and all that times the `refraction` of the
-    /// uppermost layer.
-    pub transmission: Color,
-    /// The stacks: one, or those of all textures that are blended here.
-    pub stacks: Vec<StackPoint>,
-    /// Selects the opacity of layers: [`ColorFt::opacity_by_color`] instead of [`ColorFt::opacity`]. Set by the owner.
-    pub filter_by_color: bool,
-    /// What the scene says about films. Set by the owner.
-    pub irid: IridSettings,
-    /// Nothing passes layers whose transmittance together has a grey value below this: what is behind, lower layers too, stays unseen
-    /// (measured). Set by the owner.
-    pub bailout: f64,
-}
-
-impl TexturePaint<'_> {
-    /// Makes the layers from number `first` on a stack.
-    fn end_stack(&mut self, first: usize, stack: &Stack) {
-        let number = self.stacks.len() as u32;
-        let layers = &mut self.layers[first..];
-        let Some(normal) = layers.first().map(|top| top.normal) else {
-            return;
-        };
-        for layer in layers {
-            layer.stack = number;
-        }
-        self.stacks.push(StackPoint {
-            normal,
-            share: stack.share,
-            transmittance: stack.above,
-            weight: stack.above.max_component(),
-        });
-    }
-
-    /// Begins with a point: no layers yet.
-    fn begin(&mut self, n_shade: DVec3) -> Stack {
-        self.layers.clear();
-        self.stacks.clear();
-        Stack {
-            share: 1.0,
-            // From 1 on nothing is seen (measured).
-            above: if self.bailout < 1.0 {
-                Color::WHITE
-            } else {
-                Color::BLACK
-            },
-            seen: n_shade,
-        }
-    }
-
-    /// Ends with all layers. `refraction` is the factor of the light from behind.
-    fn end(&mut self, stack: &Stack, refraction: f64) {
-        self.transmission = Color::BLACK + stack.above * stack.share;
-        if refraction != 1.0 {
-            self.transmission = self.transmission * refraction;
-        }
-        for stack in &mut self.stacks {
-            stack.weight *= refraction;
-        }
-    }
-}
-
-/// A stack of layers under construction.
-struct Stack {
-    share: f64,
-    above: Color,
-    /// The normal that the patterns `slope` and `aoi` see: that of the texture evaluated last, in its own space, as in POV-Ray (measured).
-    seen: DVec3,
 }
 
 impl Texture {

@@ -268,11 +268,6 @@ impl PixelTracer<'_> {
         let sight = self.sight(tile);
         let mut sums = vec![Samples::NONE; tile.pixels() as usize];
         let mut packet = Packet::new();
-        let add = |sums: &mut [Samples], index: usize, color| {
-            let samples: &mut Samples = &mut sums[index];
-            samples.sum += color;
-            samples.count += 1;
-        };
         let options = self.options;
         for square in squares(tile) {
             if self.leaves() {
@@ -289,14 +284,12 @@ impl PixelTracer<'_> {
                     let ray = self.rays.ray(f64::from(x) + dx, f64::from(y) + dy);
                     packet.push((index, ray));
                     if packet.is_full() {
-                        self.trace_packet(&mut packet, |index, color| {
-                            add(&mut sums, index, color);
-                        });
+                        self.trace_packet(&mut packet, |index, color| sums[index].add(color));
                     }
                 }
             }
         }
-        self.trace_packet(&mut packet, |index, color| add(&mut sums, index, color));
+        self.trace_packet(&mut packet, |index, color| sums[index].add(color));
         let value = |((x, y), samples): ((u32, u32), Samples)| {
             is_rough(x, y).then(|| samples.with(first(x, y)).sample())
         };
@@ -393,8 +386,7 @@ impl PixelTracer<'_> {
         let color = self.tree.same_nothing(pixels as usize * each)?;
         let mut samples = Samples::NONE;
         for _ in 0..each {
-            samples.sum += color;
-            samples.count += 1;
+            samples.add(color);
         }
         Some(samples)
     }
@@ -451,8 +443,7 @@ impl PixelTracer<'_> {
                 .map(|(dx, dy)| self.rays.ray(f64::from(x) + dx, f64::from(y) + dy))
                 .collect();
             for color in self.tree.trace_packet(&rays) {
-                samples.sum += color;
-                samples.count += 1;
+                samples.add(color);
             }
         }
     }

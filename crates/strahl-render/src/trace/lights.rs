@@ -1,7 +1,7 @@
 //! The stage of lights, light by light: which points it may shine on, its shadow rays, the light that surfaces reflect.
 
 use super::TreeTracer;
-use super::stages::{Lanes, Point};
+use super::stages::{FEW, Lanes, Point};
 use crate::activity::Phase;
 use crate::layers;
 use crate::observer::{LightTerm, TraceObserver};
@@ -10,9 +10,6 @@ use arrayvec::ArrayVec;
 use strahl_accel::PACKET;
 use strahl_math::{DVec3, Ray};
 use strahl_shade::{Color, Light, LightSample};
-
-/// Fewer shadow rays are traced one by one.
-const FEW: usize = 3;
 
 /// A light at a point that may face it.
 #[derive(Clone, Copy, Debug)]
