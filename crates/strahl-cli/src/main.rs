@@ -27,8 +27,9 @@ mod tile;
 mod work;
 
 use args::{Cli, Command};
-use clap::Parser;
+use clap::{CommandFactory, FromArgMatches};
 use report::Reporter;
+use std::mem::ManuallyDrop;
 use std::process::ExitCode;
 use strahl::memory::Bounded;
 
@@ -37,14 +38,19 @@ use strahl::memory::Bounded;
 static MEMORY: Bounded = Bounded::new();
 
 fn main() -> ExitCode {
-    let translated = match pov::translate(std::env::args_os().collect()) {
+    // Making the description of the command line takes as long as tracing a thousand pixels, and so does dropping it.
+    let mut command = ManuallyDrop::new(Cli::command());
+    let translated = match pov::translate(std::env::args_os().collect(), &command) {
         Ok(translated) => translated,
         Err(problem) => {
             terminal::line(&format!("error: {problem}"));
             return ExitCode::from(2);
         }
     };
-    let cli = Cli::parse_from(&translated.words);
+    let matches = command.try_get_matches_from_mut(&translated.words);
+    let matches = matches.unwrap_or_else(|error| error.exit());
+    let cli =
+        Cli::from_arg_matches(&matches).unwrap_or_else(|error| error.format(&mut command).exit());
     // The viewer ends by itself.
     if !matches!(cli.command, Command::View(_)) {
         interrupt::listen();

@@ -116,7 +116,13 @@ impl Codes {
 /// The smallest number that is quantized to `code` or more: bisection of the few numbers around the inverse.
 fn beginning(code: f64, largest: f64) -> f64 {
     let about = decode((code - 0.5) / largest);
-    let (mut below, mut above) = (about * (1.0 - 1e-6), about * (1.0 + 1e-6));
+    let (mut below, mut above) = (about, about);
+    // The inverse is good to a few units in the last place, except around the step.
+    let mut reach = 8.0 * f64::EPSILON;
+    while quantize(below, largest) >= code || quantize(above, largest) < code {
+        (below, above) = (about * (1.0 - reach), about * (1.0 + reach));
+        reach *= 4.0;
+    }
     loop {
         let middle = 0.5 * (below + above);
         if middle <= below || middle >= above {

@@ -8,8 +8,7 @@ mod keys;
 mod settings;
 mod switches;
 
-use crate::args::Cli;
-use clap::CommandFactory;
+use clap::Command;
 use keys::is_key;
 use settings::{Own, Settings};
 use std::ffi::OsString;
@@ -24,22 +23,21 @@ pub(crate) struct Translated {
 }
 
 /// Translates a whole command line, with the program's name. Only `render`, and `submit` for a cluster, accept POV-Ray's words; the word `render` may be left
-/// out before a scene, an .ini file, a switch or an option of `render`.
-pub(crate) fn translate(words: Vec<OsString>) -> Result<Translated, String> {
-    let command = Cli::command();
-    let Some(words) = begin::with_command(words, &command) else {
+/// out before a scene, an .ini file, a switch or an option of `render`. `command` describes strahl's own command line.
+pub(crate) fn translate(words: Vec<OsString>, command: &Command) -> Result<Translated, String> {
+    let Some(words) = begin::with_command(words, command) else {
         return Ok(Translated {
             words: begin::QUESTION.map(OsString::from).to_vec(),
             notes: vec![],
         });
     };
-    let Some((render, arguments)) = begin::rendering(&words, &command) else {
+    let Some((render, arguments)) = begin::rendering(&words, command) else {
         return Ok(Translated {
             words,
             notes: vec![],
         });
     };
-    let with_value = begin::options_with_value(&command, arguments);
+    let with_value = begin::options_with_value(command, arguments);
     let mut settings = Settings::default();
     // Strahl's own options come last, because the last occurrence of an option counts.
     let mut own: Vec<OsString> = vec![];
@@ -117,9 +115,12 @@ fn assignment(word: &str) -> Option<(&str, &str)> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::args::Cli;
+    use clap::CommandFactory;
 
     fn whole(line: &str) -> Result<String, String> {
-        let translated = translate(line.split_whitespace().map(OsString::from).collect())?;
+        let words = line.split_whitespace().map(OsString::from).collect();
+        let translated = translate(words, &Cli::command())?;
         let words: Vec<_> = translated
             .words
             .iter()
