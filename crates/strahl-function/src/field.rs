@@ -30,6 +30,17 @@ pub trait ScalarField: Debug + Send + Sync {
         Bounds::UNKNOWN
     }
 
+    /// Whether [`rate`](Self::rate) can be known.
+    fn has_rates(&self) -> bool {
+        false
+    }
+
+    /// The [`bounds`](Self::bounds), and bounds of the derivative along a line on which the arguments, within bounds, change at rates within
+    /// bounds; [`Bounds::UNKNOWN`] where the value may jump or be no number.
+    fn rate(&self, arguments: &[Bounds], _rates: &[Bounds]) -> (Bounds, Bounds) {
+        (self.bounds(arguments), Bounds::UNKNOWN)
+    }
+
     /// The value, which must have the bits of [`value`](Self::value), and its partial derivatives.
     ///
     /// By default central differences, good to about ten digits where the field is smooth.

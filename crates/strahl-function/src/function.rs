@@ -164,7 +164,7 @@ impl Function {
     /// each argument changes at a rate of its own.
     ///
     /// A derivative of one sign proves that the value is monotone there. It is [`Bounds::UNKNOWN`] where the value may jump or be no
-    /// number, and where fields are called.
+    /// number, and where fields are called whose rates are unknown.
     pub fn rate(
         &self,
         workspace: &mut Workspace,
@@ -190,7 +190,7 @@ impl Function {
         (result.value, rate)
     }
 
-    /// Whether [`rate`](Self::rate) can be known: no fields are called.
+    /// Whether [`rate`](Self::rate) can be known: those of all fields that are called can be.
     pub fn has_rates(&self) -> bool {
         self.tape().has_rates()
     }

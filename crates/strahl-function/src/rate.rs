@@ -21,7 +21,7 @@ const ONE: Bounds = Bounds::new(1.0, 1.0);
 
 impl Rate {
     /// A value with its rate, which counts only if the value is certainly finite.
-    fn new(value: Bounds, rate: Bounds) -> Self {
+    pub(crate) fn new(value: Bounds, rate: Bounds) -> Self {
         let is_finite = value.min > f64::NEG_INFINITY && value.max < f64::INFINITY;
         let is_known = is_finite && !value.nan && !rate.nan && !rate.is_empty();
         Self {
@@ -191,18 +191,16 @@ impl Domain for Rate {
     }
     fn field(field: &dyn ScalarField, arguments: &[Self]) -> Self {
         let mut values = [Bounds::UNKNOWN; limits::PARAMETERS];
-        for (value, argument) in values.iter_mut().zip(arguments) {
-            *value = argument.value;
+        let mut rates = [Bounds::UNKNOWN; limits::PARAMETERS];
+        for ((value, rate), argument) in values.iter_mut().zip(&mut rates).zip(arguments) {
+            (*value, *rate) = (argument.value, argument.rate);
         }
-        let value = field.bounds(&values[..arguments.len().min(limits::PARAMETERS)]);
-        Self {
-            value,
-            rate: if arguments.iter().all(Self::is_constant) {
-                ZERO
-            } else {
-                Bounds::UNKNOWN
-            },
+        let count = arguments.len().min(limits::PARAMETERS);
+        if arguments.iter().all(Self::is_constant) {
+            return Self::constant_within(field.bounds(&values[..count]));
         }
+        let (value, rate) = field.rate(&values[..count], &rates[..count]);
+        Self::new(value, rate)
     }
     fn round(counter: Self, to: Self, fuel: &mut u64, price: u64) -> Round<()> {
         <Bounds as Domain>::round(counter.value, to.value, fuel, price)

@@ -74,9 +74,9 @@ impl Tape {
             && self.loops.iter().all(|l| l.body.is_bounded())
     }
 
-    /// Whether it reads no fields, whose rates of change are unknown.
+    /// Whether the rates of change of all fields it reads can be known.
     pub(crate) fn has_rates(&self) -> bool {
-        self.fields.is_empty()
+        self.fields.iter().all(|(field, _)| field.has_rates())
             && self.calls.iter().all(|(f, _)| f.tape().has_rates())
             && self.loops.iter().all(|l| l.body.has_rates())
     }

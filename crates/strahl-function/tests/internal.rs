@@ -157,3 +157,45 @@ fn no_name_is_given_twice() {
     names.sort_unstable();
     assert!(names.windows(2).all(|w| w[0] != w[1]));
 }
+
+#[test]
+fn rates_of_noise_bound_its_changes_and_sums_of_octaves_have_none() {
+    let mut ws = Workspace::new();
+    let mut seed = 7_u64;
+    let mut random = || {
+        seed = seed
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        (seed >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+    };
+    let mut monotone = 0;
+    for (name, parameters) in [
+        ("f_noise3d", &[][..]),
+        ("f_snoise3d", &[]),
+        ("f_noise_generator", &[3.0]),
+    ] {
+        let f = at(name, parameters).unwrap();
+        assert!(f.has_rates(), "{name}");
+        for _ in 0..300 {
+            let start = [0; 3].map(|_| 20.0 * random());
+            let way = [0; 3].map(|_| random());
+            let length = 0.05 * (1.0 + random());
+            let at = |s: f64| [0, 1, 2].map(|i| start[i] + way[i] * s);
+            let (first, last) = (at(0.0), at(length));
+            let region =
+                [0, 1, 2].map(|i| Bounds::new(first[i].min(last[i]), first[i].max(last[i])));
+            let (value, rate) = f.rate(&mut ws, &region, &way);
+            assert_eq!(value, f.bounds(&mut ws, &region));
+            monotone += u32::from(rate.min > 0.0 || rate.max < 0.0);
+            for _ in 0..5 {
+                let s = 0.5 * (1.0 + random()) * length;
+                let change = f.value(&mut ws, &at(s)) - f.value(&mut ws, &first);
+                assert!(change >= rate.min * s - 1e-9, "{name} {change} {rate:?}");
+                assert!(change <= rate.max * s + 1e-9, "{name} {change} {rate:?}");
+            }
+        }
+    }
+    assert!(monotone > 300, "{monotone}");
+    let sum = at("f_ridged_mf", &[0.9, 2.1, 7.0, 0.8, 2.0, 2.0]).unwrap();
+    assert!(!sum.has_rates());
+}

@@ -11,7 +11,7 @@ use crate::graph::{Expr, Graph};
 use std::sync::Arc;
 use strahl_math::DVec3;
 use strahl_math::det;
-use strahl_math::noise::{NoiseGenerator, noise, noise_bounds};
+use strahl_math::noise::{NoiseGenerator, noise, noise_bounds, noise_rate};
 
 pub(super) const TABLE: &[Internal] = &[
     row("f_noise3d", 0, Kind::Noise),
@@ -144,6 +144,36 @@ impl ScalarField for NoiseFunction {
         };
         bounds.with_nan(nan)
     }
+
+    /// Sums over octaves change so fast that rates hardly ever tell more than bounds of the value.
+    fn has_rates(&self) -> bool {
+        matches!(self.kind, Kind::Noise | Kind::Signed | Kind::Generator)
+    }
+
+    fn rate(&self, arguments: &[Bounds], rates: &[Bounds]) -> (Bounds, Bounds) {
+        let unknown = || (self.bounds(arguments), Bounds::UNKNOWN);
+        let finite = |b: &Bounds| b.min.is_finite() && b.max.is_finite() && !b.nan;
+        let (&[x, y, z, ref rest @ ..], &[p, q, r, ..]) = (arguments, rates) else {
+            return unknown();
+        };
+        let generator = match (self.kind, rest) {
+            (Kind::Noise | Kind::Signed, []) => Some(self.generator),
+            (Kind::Generator, [number]) => number.single().map(numbered),
+            _ => None,
+        };
+        let Some(generator) = generator.filter(|_| [x, y, z, p, q, r].iter().all(finite)) else {
+            return unknown();
+        };
+        let min = DVec3::new(x.min, y.min, z.min);
+        let max = DVec3::new(x.max, y.max, z.max);
+        let way = [p, q, r].map(|r| (r.min, r.max));
+        let ((low, high), (fall, rise)) = noise_rate(min, max, &way, generator);
+        let (value, rate) = (Bounds::new(low, high), Bounds::new(fall, rise));
+        match self.kind {
+            Kind::Signed => (signed(value), rate.mul(Bounds::point(2.0))),
+            _ => (value, rate),
+        }
+    }
 }
 
 /// Bounds of the noise over a box.
@@ -153,10 +183,14 @@ fn noise_within([x, y, z]: [Bounds; 3], generator: NoiseGenerator) -> Bounds {
     Bounds::new(low, high)
 }
 
+/// Noise from 0 to 1 as noise from -1 to 1.
+fn signed(noise: Bounds) -> Bounds {
+    noise.mul(Bounds::point(2.0)).sub(Bounds::point(1.0))
+}
+
 /// Bounds of the noise from -1 to 1.
 fn signed_within(p: [Bounds; 3], generator: NoiseGenerator) -> Bounds {
-    let double = noise_within(p, generator).mul(Bounds::point(2.0));
-    double.sub(Bounds::point(1.0))
+    signed(noise_within(p, generator))
 }
 
 /// The box of the next octave.

@@ -25,7 +25,7 @@ mod kernel;
 mod plane;
 mod tables;
 
-pub use bounds::noise_bounds;
+pub use bounds::{noise_bounds, noise_rate};
 pub use plane::{PlaneBounds, PlaneNoise, plane_noise, plane_noise_bounds};
 
 use crate::DVec3;

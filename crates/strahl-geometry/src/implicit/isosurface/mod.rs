@@ -149,10 +149,7 @@ impl Isosurface {
 
     /// Bounds of the function less the threshold.
     fn bounds_within(&self, workspace: &mut Workspace, cell: &Aabb) -> Bounds {
-        let side = |k: usize| Bounds::new(cell.min[k], cell.max[k]);
-        let values = self
-            .function
-            .bounds(workspace, &[side(0), side(1), side(2)]);
+        let values = self.function.bounds(workspace, &sides(cell));
         let threshold = self.options.threshold;
         // A difference has the sign of the exact one.
         Bounds {
@@ -164,11 +161,8 @@ impl Isosurface {
 
     /// Bounds of the derivative of the function along a direction.
     fn rate_within(&self, workspace: &mut Workspace, cell: &Aabb, direction: DVec3) -> Bounds {
-        let side = |k: usize| Bounds::new(cell.min[k], cell.max[k]);
-        let sides = [side(0), side(1), side(2)];
-        self.function
-            .rate(workspace, &sides, &direction.to_array())
-            .1
+        let (sides, way) = (sides(cell), direction.to_array());
+        self.function.rate(workspace, &sides, &way).1
     }
 
     /// Whether a cell of the octree may contain a part of the surface.
@@ -268,7 +262,7 @@ impl Isosurface {
             origin: ray.at(start),
             direction: ray.direction,
             shortest: shortest / speed,
-            slope: self.options.max_gradient * speed,
+            slope: self.options.max_gradient * ray.direction.length(),
         }
     }
 
@@ -339,6 +333,11 @@ impl Isosurface {
         let error = DVec3::splat(off + f64::MIN_POSITIVE) + p.abs() * (4.0 * ROUNDOFF);
         SurfacePoint::bare(p, error, normal)
     }
+}
+
+/// The coordinates within a cell.
+fn sides(cell: &Aabb) -> [Bounds; 3] {
+    [0, 1, 2].map(|k| Bounds::new(cell.min[k], cell.max[k]))
 }
 
 /// The events along a ray.

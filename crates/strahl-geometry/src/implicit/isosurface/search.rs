@@ -16,8 +16,7 @@ pub(super) struct Search<'a> {
     pub(super) direction: DVec3,
     /// Parts of this length are not divided any more.
     pub(super) shortest: f64,
-    /// At least half of the largest change of the function per unit of `s`, if it has no bounds and the scene's gradient is
-    /// trusted.
+    /// At least the largest change of the function per unit of `s`, if it has no bounds and the scene's gradient is trusted.
     pub(super) slope: f64,
 }
 
@@ -56,12 +55,20 @@ impl Search<'_> {
     ) -> ControlFlow<()> {
         let changes = from.is_inside() != to.is_inside();
         let length = to.s - from.s;
-        let bounded = self.surface.is_bounded();
         let is_short = length <= self.shortest;
-        if bounded && !changes && !is_short && self.excludes(from.s, to.s) {
+        if !changes && self.excludes(from, to, is_short) {
             return ControlFlow::Continue(());
         }
-        if is_short || self.surface.has_rates && self.is_monotone(from.s, to.s) {
+        let mut is_monotone = false;
+        if self.surface.has_rates && !is_short {
+            // Most parts without a surface are excluded by the values alone, which takes less time.
+            let rate = self.rate(from.s, to.s);
+            is_monotone = !rate.nan && (rate.min > 0.0 || rate.max < 0.0);
+            if !changes && stays_away(from, to, rate) {
+                return ControlFlow::Continue(());
+            }
+        }
+        if is_short || is_monotone {
             if !changes {
                 return ControlFlow::Continue(());
             }
@@ -70,9 +77,6 @@ impl Search<'_> {
             return visit(root);
         }
         let middle = self.place(from.s + 0.5 * length);
-        if !bounded && !changes && middle.value.abs() > self.slope * length {
-            return ControlFlow::Continue(());
-        }
         if !(from.s < middle.s && middle.s < to.s) {
             return if changes {
                 visit(to.s)
@@ -92,20 +96,48 @@ impl Search<'_> {
         Aabb::new(a.min(b), a.max(b))
     }
 
-    /// Whether there is certainly no change of sign between two places.
-    fn excludes(&mut self, from: f64, to: f64) -> bool {
-        let cell = self.around(from, to);
-        excludes_change(self.surface.bounds_within(self.workspace, &cell))
+    /// Whether there is no change of sign between two places with values of one sign: certainly if the function has bounds, else if the
+    /// scene's gradient is right.
+    fn excludes(&mut self, from: Place, to: Place, is_short: bool) -> bool {
+        if self.surface.is_bounded() {
+            let cell = self.around(from.s, to.s);
+            return !is_short && excludes_change(self.surface.bounds_within(self.workspace, &cell));
+        }
+        // A value that is not a number, which is infinite here, tells nothing about its neighbours.
+        from.value.is_finite() == to.value.is_finite()
+            && from.value.abs() + to.value.abs() > self.slope * (to.s - from.s)
     }
 
-    /// Whether the function certainly only rises or only falls between two places.
-    fn is_monotone(&mut self, from: f64, to: f64) -> bool {
+    /// Bounds of the derivative of the function along the ray between two places.
+    fn rate(&mut self, from: f64, to: f64) -> Bounds {
         let cell = self.around(from, to);
-        let rate = self
-            .surface
-            .rate_within(self.workspace, &cell, self.direction);
-        !rate.nan && (rate.min > 0.0 || rate.max < 0.0)
+        self.surface
+            .rate_within(self.workspace, &cell, self.direction)
     }
+}
+
+/// Whether a function with values of one sign at two places certainly has no zero in between, because it does not change fast enough: a
+/// line from each place, as steep as the derivative allows, bounds it.
+fn stays_away(from: Place, to: Place, rate: Bounds) -> bool {
+    // Far more than the rounding errors of what follows.
+    const SLACK: f64 = 1e-6;
+    let (a, b) = (from.value.abs(), to.value.abs());
+    // The derivative of the absolute value.
+    let (fall, rise) = if from.is_inside() {
+        (rate.max, -rate.min)
+    } else {
+        (-rate.min, rate.max)
+    };
+    if rate.nan {
+        return false;
+    }
+    // A monotone function has its least value at an end.
+    if fall <= 0.0 || rise <= 0.0 {
+        return true;
+    }
+    // Both lines have the same height where they meet.
+    let lowest = (a * rise + b * fall - fall * rise * (to.s - from.s)) / (fall + rise);
+    lowest > SLACK * (a + b)
 }
 
 /// Whether values within bounds are all inside or all outside, where NaN counts as outside.
