@@ -298,10 +298,7 @@ impl Compiler {
                 kind: proto.kind,
                 parent: proto.parent,
                 quick: match proto.kind {
-                    Kind::Leaf(leaf) => self
-                        .leaves
-                        .get(leaf as usize)
-                        .is_some_and(|leaf| leaf.is_convex() && leaf.placement.is_none()),
+                    Kind::Leaf(leaf) => self.leaves.get(leaf as usize).is_some_and(Leaf::is_quick),
                     Kind::Operation(_) => false,
                 },
                 bounds: *bounds,

@@ -124,6 +124,30 @@ fn flat(random: &mut Random, lattice: bool) -> CsgNode {
     }
 }
 
+/// Two groups of a few leaves, one in the other or beside it.
+fn nested(random: &mut Random, lattice: bool) -> CsgNode {
+    let mut group = |most: u64| {
+        let count = 1 + random.below(most);
+        let leaves: Vec<CsgNode> = (0..count).map(|_| leaf(random, lattice, 1)).collect();
+        match random.below(5) {
+            0 => CsgNode::merge(leaves).inverted(),
+            1 => CsgNode::merge(leaves),
+            2 => CsgNode::difference(leaves),
+            _ => CsgNode::union(leaves),
+        }
+    };
+    let (a, b) = (group(4), group(3));
+    let c = leaf(random, lattice, 2);
+    match random.below(6) {
+        0 => CsgNode::clip(CsgNode::union([a, b]), [c]),
+        1 => CsgNode::merge([a, CsgNode::intersection([b, c])]),
+        2 => CsgNode::union([a, CsgNode::difference([c, b])]),
+        3 => CsgNode::difference([CsgNode::union([a, b]), c]),
+        4 => CsgNode::difference([CsgNode::merge([a, c]), b]),
+        _ => CsgNode::intersection([CsgNode::merge([a, c]), b]),
+    }
+}
+
 /// The number of decided searches, and their results.
 #[derive(Debug, Default)]
 struct Tally {
@@ -131,9 +155,9 @@ struct Tally {
     unclear: u32,
     /// Searches that listed all visible surfaces.
     all: u32,
-    /// Those of the way for a few convex shapes.
-    flat: u32,
-    flat_unclear: u32,
+    /// Those with the table of a small tree.
+    small: u32,
+    small_unclear: u32,
     hits: u32,
 }
 
@@ -165,14 +189,14 @@ fn compare(
         );
         tally.all += 1;
     }
-    if let Some(flat) = csg.flat() {
-        let from = from.map(|surface| csg.leaf_surface(surface));
-        match flat.first_visible(csg.all_leaves(), ray, range, from, |_| true) {
+    if let Some(small) = csg.small() {
+        let (from, leaves) = (from.map(|s| csg.leaf_surface(s)), csg.all_leaves());
+        match small.first_visible(leaves, ray, range, from, &mut scratch, |_, _| true) {
             Answer::Certain(found) => {
                 assert_eq!(found, expected, "{ray:?} {range:?} {from:?}\n{csg:?}");
-                tally.flat += 1;
+                tally.small += 1;
             }
-            Answer::Unclear => tally.flat_unclear += 1,
+            Answer::Unclear => tally.small_unclear += 1,
         }
     }
     tally.hits += u32::from(expected.is_some());
@@ -253,13 +277,25 @@ fn coincident_and_touching_surfaces_are_left_to_the_general_way() {
 }
 
 #[test]
+fn small_trees_have_the_same_first_surface() {
+    let tally = follow_rays(25, 3000, false, nested);
+    assert!(tally.small > 60_000 && tally.hits > 20_000, "{tally:?}");
+    assert!(tally.small_unclear * 50 < tally.small, "{tally:?}");
+    let tally = follow_rays(26, 3000, true, nested);
+    assert!(
+        tally.small > 20_000 && tally.small_unclear > 2_000,
+        "{tally:?}"
+    );
+}
+
+#[test]
 fn a_few_convex_shapes_have_the_same_first_surface() {
     let tally = follow_rays(23, 1500, false, flat);
-    assert!(tally.flat > 60_000 && tally.hits > 20_000, "{tally:?}");
-    assert!(tally.flat_unclear * 50 < tally.flat, "{tally:?}");
+    assert!(tally.small > 60_000 && tally.hits > 20_000, "{tally:?}");
+    assert!(tally.small_unclear * 50 < tally.small, "{tally:?}");
     let tally = follow_rays(24, 1500, true, flat);
     assert!(
-        tally.flat > 20_000 && tally.flat_unclear > 2_000,
+        tally.small > 20_000 && tally.small_unclear > 2_000,
         "{tally:?}"
     );
 }

@@ -118,6 +118,11 @@ impl Leaf {
         }
     }
 
+    /// Whether it is intersected as fast as its box.
+    pub(super) fn is_quick(&self) -> bool {
+        self.is_convex() && self.placement.is_none()
+    }
+
     /// Whether the points of the shape's surface count as inside, which matters only where faces coincide.
     ///
     /// These are POV-Ray's rules where it has any (measured: the surfaces of planes, blobs, superellipsoids and isosurfaces

@@ -9,17 +9,20 @@
 //! * `compile` makes the one from the other, `evaluate` traverses the tree for a ray, `sweep` combines lists, `half_spaces`
 //!   intersects all planes of an intersection in one pass.
 //! * `first` finds the first surface without lists, if no two crossings are close together: `course` finds the crossings that
-//!   matter, `timeline` goes through them. `flat` does the same for a few convex shapes.
+//!   matter, `timeline` goes through them. `small` does the same for trees of a few simple leaves,
+//!   with a table of their `states`, and `one_span` for intersections among them.
 
 mod boxes;
 mod compile;
 mod course;
 mod evaluate;
 mod first;
-mod flat;
 mod half_spaces;
 mod leaf;
+mod one_span;
+mod small;
 mod solid;
+mod states;
 mod sweep;
 mod tighten;
 mod timeline;

@@ -1,81 +1,169 @@
-//! The visible surfaces of a few convex shapes and quadrics, some of them subtracted: lenses, capped pieces, drilled blocks.
+//! The visible surfaces of trees of a few leaves: lenses, glasses, drilled blocks, capped pieces.
 //!
-//! These trees are frequent and their rays cheap, so that the general search spends most of its time on its lists. Here the
-//! crossings are sorted in place. As in [`first`](super::first), crossings that could coincide are left to the general evaluation,
-//! so all three give the same bits.
+//! These trees are frequent and their rays cheap, so that the general search spends most of its time on its lists and on going
+//! through the tree. Here the tree is a table: which of its leaves contain the ray is a small number, and for each leaf a set of
+//! such numbers tells where its surface is visible. The crossings of all leaves are sorted in place. As in
+//! [`first`](super::first), crossings that could coincide are left to the general evaluation, so all three give the same bits.
 
+use super::boxes::Slabs;
 use super::first::{Answer, start_and_begin};
 use super::leaf::Leaf;
-use super::solid::{Kind, Node};
+use super::solid::{Kind, NO_PARENT, Node};
+use super::states::{MOST, States};
 use super::sweep::{Fusing, Rule};
 use super::timeline::TooClose;
 use crate::primitives::convex::Span;
-use crate::{PrimHit, SurfaceId};
+use crate::{PrimHit, Scratch, Shape, Side, SurfaceId};
 use arrayvec::ArrayVec;
-use std::ops::ControlFlow;
+use std::ops::{BitAnd, BitOr, ControlFlow};
 use strahl_math::{Interval, Ray};
 
-/// The most operands.
-const MOST: usize = 6;
-
-/// More planes are searched faster by [`HalfSpaces`](super::half_spaces).
+/// More planes of one intersection are searched faster by [`HalfSpaces`](super::half_spaces).
 const MOST_PLANES: usize = 3;
 
-/// An intersection of leaves that a line crosses at most twice, and of complements of such leaves.
+/// The most crossings of a ray; with more the general search decides.
+const CROSSINGS: usize = 24;
+
+/// A tree of a few leaves.
 #[derive(Clone, Debug)]
-pub(super) struct Flat {
-    /// The numbers of the leaves: those that are visible first, and of each kind those that are not complements.
-    leaves: ArrayVec<u32, MOST>,
-    /// How many are visible; the others only clip.
-    visible: usize,
+pub(super) struct Small {
+    /// Those that are visible first, and of each kind those that are not complements.
+    operands: ArrayVec<Operand, MOST>,
+    /// The number of the visible ones; the others only clip.
+    pub(super) visible: usize,
+    /// Whether it is an intersection of leaves that a line crosses at most twice, or of their complements.
+    is_intersection: bool,
 }
 
-/// A crossing that changes whether the ray is inside of an operand.
+/// A ray and what is asked of it.
+pub(super) struct Query<'a> {
+    pub(super) ray: &'a Ray,
+    pub(super) range: Interval,
+    /// Crossings before this don't count ([`Search::begin`](super::first::Search::begin)).
+    pub(super) begin: f64,
+    /// The part of the ray on which leaves matter, a little wider than what is required of it.
+    pub(super) alive: Interval,
+    /// The leaf that the ray starts on, and its surface there.
+    from: Option<(u32, SurfaceId)>,
+    pub(super) fusing: Fusing,
+}
+
+impl<'a> Query<'a> {
+    /// `None` if the range is empty.
+    #[inline(always)]
+    fn new(ray: &'a Ray, range: Interval, from: Option<(u32, SurfaceId)>) -> Option<Self> {
+        let fusing = Fusing::new(ray);
+        let (start, begin) = start_and_begin(range, from.is_some(), &fusing);
+        let range = Interval::new(start, range.max);
+        (start < range.max).then(|| Self {
+            ray,
+            range,
+            begin,
+            alive: Interval::new(begin, fusing.widened(range).max),
+            from,
+            fusing,
+        })
+    }
+
+    /// The surface that the ray starts on, if it belongs to this leaf.
+    #[inline]
+    pub(super) fn own(&self, leaf: u32) -> Option<SurfaceId> {
+        let (other, surface) = self.from?;
+        (other == leaf).then_some(surface)
+    }
+
+    /// Whether a crossing could coincide with the surface that the ray leaves.
+    #[inline]
+    pub(super) fn starts_at(&self, t: f64) -> bool {
+        self.from.is_some() && t.abs() <= self.fusing.gap(t, 0.0)
+    }
+}
+
+/// A leaf of the tree. Its place in the list is its bit in the states.
+#[derive(Clone, Debug)]
+struct Operand {
+    leaf: u32,
+    /// Whether a line crosses it at most twice ([`Leaf::stay`]).
+    simple: bool,
+    /// Whether it is intersected as fast as its box; otherwise its box is tested first.
+    quick: bool,
+    /// Whether nothing is visible where the ray is outside of what it contributes.
+    required: bool,
+    /// The states in which its surface is visible, whether the ray is in front of it or behind it.
+    seen: States,
+    /// The states in which it matters whether the ray is inside of it.
+    matters: States,
+}
+
+/// A crossing of a leaf's surface.
 #[derive(Clone, Copy)]
 struct Event {
     t: f64,
     surface: SurfaceId,
-    enters: bool,
+    operand: u8,
+    /// One plus the index of the hit's coordinates; 0 if they are zero.
+    uv: u8,
     visible: bool,
 }
 
-impl Flat {
-    /// The root of a tree, if it is such an intersection.
+/// The crossings along the ray, and the state where the ray begins.
+#[derive(Default)]
+struct Events {
+    list: ArrayVec<Event, CROSSINGS>,
+    uvs: ArrayVec<[f64; 2], CROSSINGS>,
+    /// The bits of the leaves that contain the ray at its beginning.
+    state: u8,
+}
+
+impl Small {
+    /// The tree whose root is the first node, if it is such a tree.
     pub(super) fn of(nodes: &[Node], operands: &[u32], leaves: &[Leaf]) -> Option<Self> {
-        let root = nodes.first()?;
-        // Many half-spaces and hierarchies have faster ways of their own.
-        let planes = root.half_spaces.as_ref().map_or(0, |planes| planes.len());
-        if root.kind != Kind::Operation(Rule::Intersection)
-            || planes > MOST_PLANES
-            || root.hierarchy.is_some()
+        let small = leaves.len() <= MOST
+            && nodes.iter().all(|node| {
+                // Many half-spaces and hierarchies have faster ways of their own.
+                let planes = node.half_spaces.as_ref().map_or(0, |planes| planes.len());
+                planes <= MOST_PLANES && node.hierarchy.is_none()
+            });
+        // A single leaf is no operation.
+        if !small || leaves.len() < 2 {
+            return None;
+        }
+        let leaf = |n: u32| &leaves[n as usize];
+        if !leaves
+            .iter()
+            .all(|l| l.has_stays() || matches!(l.shape, Shape::Torus(_)))
         {
             return None;
         }
-        let operands = operands.get(root.first as usize..root.end as usize)?;
-        if operands.len() > MOST {
+        // The complement of everything is no solid with a first surface of its own.
+        if leaves.iter().all(|l| l.negative) {
             return None;
         }
-        let mut numbers = ArrayVec::<u32, MOST>::new();
-        for operand in operands {
-            match nodes.get(*operand as usize)?.kind {
-                Kind::Leaf(leaf) => numbers.push(leaf),
-                Kind::Operation(_) => return None,
+        let mut order = ArrayVec::<u32, MOST>::new();
+        let mut waiting = vec![0];
+        while let Some(index) = waiting.pop() {
+            let node: &Node = nodes.get(index as usize)?;
+            match node.kind {
+                Kind::Leaf(number) => order.try_push(number).ok()?,
+                Kind::Operation(_) => {
+                    let own = operands.get(node.first as usize..node.end as usize)?;
+                    waiting.extend(own.iter().rev());
+                }
             }
         }
-        if !numbers.iter().all(|n| leaves[*n as usize].has_stays()) {
-            return None;
-        }
-        // The complement of everything is no solid with a first surface of its own.
-        if numbers.iter().all(|n| leaves[*n as usize].negative) {
-            return None;
-        }
-        let leaf = |n: &u32| &leaves[*n as usize];
         // Stable: quick ones stay in front.
-        numbers.sort_by_key(|n| (!leaf(n).visible, leaf(n).negative));
+        order.sort_by_key(|n| (!leaf(*n).visible, leaf(*n).negative));
+        let operands = Table::new(nodes, operands, &order)?.operands(leaves, &order);
         Some(Self {
-            visible: numbers.iter().filter(|n| leaf(n).visible).count(),
-            leaves: numbers,
+            visible: order.iter().filter(|n| leaf(**n).visible).count(),
+            is_intersection: operands.iter().all(|o| o.required && o.simple),
+            operands,
         })
+    }
+
+    /// The leaves' numbers.
+    pub(super) fn leaf_numbers(&self) -> impl Iterator<Item = u32> {
+        self.operands.iter().map(|operand| operand.leaf)
     }
 
     /// Searches the first visible surface with `range.min < t <= range.max`; `from` is the leaf that the ray starts on, and its
@@ -86,11 +174,12 @@ impl Flat {
         ray: &Ray,
         range: Interval,
         from: Option<(u32, SurfaceId)>,
-        mut sees: impl FnMut(&PrimHit) -> bool,
+        scratch: &mut Scratch,
+        sees: impl Fn(&PrimHit, &mut Scratch) -> bool,
     ) -> Answer {
         let mut first = None;
-        let sure = self.walk(leaves, ray, range, from, |hit| {
-            if !sees(&hit) {
+        let sure = self.walk(leaves, ray, range, from, scratch, |hit, scratch| {
+            if !sees(&hit, scratch) {
                 return ControlFlow::Continue(());
             }
             first = Some(hit);
@@ -102,23 +191,27 @@ impl Flat {
         }
     }
 
-    /// Appends all visible surfaces; false if the general evaluation is needed, after some may have been appended.
+    /// Appends all visible surfaces; fails if the general evaluation is needed, after some may have been appended.
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "a query and where its results go"
+    )]
     pub(super) fn all_visible(
         &self,
         leaves: &[Leaf],
         ray: &Ray,
         range: Interval,
         from: Option<(u32, SurfaceId)>,
-        mut sees: impl FnMut(&PrimHit) -> bool,
+        scratch: &mut Scratch,
+        sees: impl Fn(&PrimHit, &mut Scratch) -> bool,
         out: &mut Vec<PrimHit>,
-    ) -> bool {
-        let sure = self.walk(leaves, ray, range, from, |hit| {
-            if sees(&hit) {
+    ) -> Result<(), TooClose> {
+        self.walk(leaves, ray, range, from, scratch, |hit, scratch| {
+            if sees(&hit, scratch) {
                 out.push(hit);
             }
             ControlFlow::Continue(())
-        });
-        sure.is_ok()
+        })
     }
 
     /// Visits the visible surfaces along the ray until the visitor stops.
@@ -129,113 +222,337 @@ impl Flat {
         ray: &Ray,
         range: Interval,
         from: Option<(u32, SurfaceId)>,
-        visit: impl FnMut(PrimHit) -> ControlFlow<()>,
+        scratch: &mut Scratch,
+        mut visit: impl FnMut(PrimHit, &mut Scratch) -> ControlFlow<()>,
     ) -> Result<(), TooClose> {
-        let fusing = Fusing::new(ray);
-        let (start, begin) = start_and_begin(range, from.is_some(), &fusing);
-        if !(start < range.max) {
+        let Some(mut query) = Query::new(ray, range, from) else {
             return Ok(());
+        };
+        if self.is_intersection {
+            return self.visit_one_span(leaves, &mut query, &mut |hit| visit(hit, scratch));
         }
-        let range = Interval::new(start, range.max);
-        // The part of the ray on which operands matter, a little wider than the operands so far.
-        let mut alive = Interval::new(begin, fusing.widened(range).max);
-        let far = alive.max;
-        let mut events = ArrayVec::<Event, { 2 * MOST }>::new();
-        let mut inside = 0;
-        for (n, number) in self.leaves.iter().enumerate() {
+        let far = query.alive.max;
+        let mut slabs = None;
+        let mut events = Events::default();
+        let mut possible = States::ALL;
+        for (bit, operand) in self.operands.iter().enumerate() {
             // The others only clip, which does not matter if the ray meets no visible surface in the range.
-            if n == self.visible && !events.iter().any(|e| e.t <= far) {
+            if bit == self.visible && !events.list.iter().any(|e| e.t <= far) {
                 return Ok(());
             }
-            let leaf = &leaves[*number as usize];
-            let own = from.filter(|(other, _)| other == number);
-            let own = own.map(|(_, surface)| surface);
-            let Some(stay) = leaf.stay(ray, own) else {
-                return Err(TooClose);
-            };
-            // Whether the operand is what is outside of the span.
-            let outside = leaf.negative != stay.outside;
-            let reaches = |s: &Span| s.exit.t >= alive.min && s.enter.t <= alive.max;
-            let Some(span) = stay.span.filter(reaches) else {
-                if !outside {
-                    return Ok(());
-                }
-                inside += 1;
+            if !operand.matters.meets(possible) {
                 continue;
-            };
-            for (end, enters) in [(span.enter, true), (span.exit, false)] {
-                let left = own.is_some_and(|s| end.t == 0.0 && s.facet == end.facet);
-                if left || end.t.is_infinite() {
-                    continue;
-                }
-                if from.is_some() && end.t.abs() <= fusing.gap(end.t, 0.0) {
-                    return Err(TooClose);
-                }
-                if end.t > begin {
-                    let surface = SurfaceId {
-                        element: leaf.first_element,
-                        facet: end.facet,
-                    };
-                    let event = Event {
-                        t: end.t,
-                        surface,
-                        enters: enters != outside,
-                        visible: leaf.visible,
-                    };
-                    // There are a few: the place among them is found by going back.
-                    let place = events.iter().rposition(|e| e.t <= event.t);
-                    events.insert(place.map_or(0, |p| p + 1), event);
-                }
             }
-            let starts = span.enter.t <= begin && begin < span.exit.t;
-            inside += u32::from(starts != outside);
-            if !outside {
-                let within = Interval::new(span.enter.t, span.exit.t);
-                alive = alive.intersection(fusing.widened(within));
-                if !(alive.min <= alive.max) {
-                    return Ok(());
+            let (leaf, own) = (&leaves[operand.leaf as usize], query.own(operand.leaf));
+            let misses = |slabs: &Slabs| slabs.clip(&leaf.bounds, query.alive).is_none();
+            let course = match operand.simple {
+                _ if !operand.quick && misses(slabs.get_or_insert_with(|| Slabs::new(ray))) => {
+                    Course::Constant(leaf.negative)
+                }
+                true => query.cross(leaf, own, bit, &mut events)?,
+                false => query.cross_listed(leaf, own, bit, scratch, &mut events)?,
+            };
+            match course {
+                Course::Constant(false) if operand.required => return Ok(()),
+                Course::Constant(inside) => {
+                    possible = possible & States::with(bit, inside);
+                    events.state |= u8::from(inside) << bit;
+                }
+                Course::Varies { inside, within } => {
+                    events.state |= u8::from(inside) << bit;
+                    if operand.required {
+                        query.alive = query.alive.intersection(query.fusing.widened(within));
+                        if !(query.alive.min <= query.alive.max) {
+                            return Ok(());
+                        }
+                    }
                 }
             }
         }
-        self.follow(&events, inside, range, &fusing, visit)
+        self.follow(&events, &query, scratch, visit)
     }
 
-    /// Visits the visible crossings in the range at which the ray enters or leaves all operands; `inside` is the number of operands
-    /// that contain it at the beginning.
+    /// Visits the visible crossings in the range.
     #[inline(always)]
     fn follow(
         &self,
-        events: &[Event],
-        mut inside: u32,
-        range: Interval,
-        fusing: &Fusing,
-        mut visit: impl FnMut(PrimHit) -> ControlFlow<()>,
+        events: &Events,
+        query: &Query<'_>,
+        scratch: &mut Scratch,
+        mut visit: impl FnMut(PrimHit, &mut Scratch) -> ControlFlow<()>,
     ) -> Result<(), TooClose> {
-        let all = self.leaves.len() as u32;
-        let followers = events.iter().skip(1).map(|next| next.t);
-        for (event, next) in events.iter().zip(followers.chain([f64::INFINITY])) {
+        let Query { range, fusing, .. } = query;
+        let mut state = events.state;
+        let followers = events.list.iter().skip(1).map(|next| next.t);
+        for (event, next) in events.list.iter().zip(followers.chain([f64::INFINITY])) {
             if event.t > range.max {
                 break;
             }
             if next != f64::INFINITY && !(next - event.t > fusing.gap(event.t, next)) {
                 return Err(TooClose);
             }
-            let before = inside == all;
-            if event.enters {
-                inside += 1;
-            } else {
-                inside = inside.saturating_sub(1);
-            }
-            if (inside == all) != before && event.visible && event.t > range.min {
+            let operand = &self.operands[usize::from(event.operand)];
+            let seen = operand.seen.contains(state) && event.visible && event.t > range.min;
+            state ^= 1 << event.operand;
+            if seen {
+                let uv = events.uvs.get(usize::from(event.uv).wrapping_sub(1));
                 let hit = PrimHit {
+                    t: event.t,
                     surface: event.surface,
-                    ..PrimHit::simple(event.t, 0)
+                    uv: uv.copied().unwrap_or_default(),
                 };
-                if visit(hit).is_break() {
+                if visit(hit, scratch).is_break() {
                     break;
                 }
             }
         }
         Ok(())
+    }
+}
+
+/// The states of a leaf along the relevant part of the ray.
+enum Course {
+    /// The same everywhere.
+    Constant(bool),
+    /// The state where the ray begins, and the interval in which it may be inside.
+    Varies { inside: bool, within: Interval },
+}
+
+impl Query<'_> {
+    /// Adds the crossings of a leaf that a line crosses at most twice.
+    #[inline(always)]
+    fn cross(
+        &self,
+        leaf: &Leaf,
+        own: Option<SurfaceId>,
+        bit: usize,
+        events: &mut Events,
+    ) -> Result<Course, TooClose> {
+        let Some(stay) = leaf.stay(self.ray, own) else {
+            return Err(TooClose);
+        };
+        // Whether the operand is what is outside of the span.
+        let outside = leaf.negative != stay.outside;
+        let reaches = |s: &Span| s.exit.t >= self.alive.min && s.enter.t <= self.alive.max;
+        let Some(span) = stay.span.filter(reaches) else {
+            return Ok(Course::Constant(outside));
+        };
+        for end in [span.enter, span.exit] {
+            let left = own.is_some_and(|s| end.t == 0.0 && s.facet == end.facet);
+            if left || end.t.is_infinite() {
+                continue;
+            }
+            self.check_start(end.t)?;
+            if end.t > self.begin {
+                let surface = SurfaceId {
+                    element: leaf.first_element,
+                    facet: end.facet,
+                };
+                events.insert(end.t, surface, bit, 0, leaf.visible)?;
+            }
+        }
+        let starts = span.enter.t <= self.begin && self.begin < span.exit.t;
+        Ok(Course::Varies {
+            inside: starts != outside,
+            within: match outside {
+                true => Interval::LINE,
+                false => Interval::new(span.enter.t, span.exit.t),
+            },
+        })
+    }
+
+    /// The same for a shape that is crossed more often.
+    #[inline(never)]
+    fn cross_listed(
+        &self,
+        leaf: &Leaf,
+        own: Option<SurfaceId>,
+        bit: usize,
+        scratch: &mut Scratch,
+        events: &mut Events,
+    ) -> Result<Course, TooClose> {
+        let mut list = scratch.take();
+        leaf.bare_crossings(self.ray, self.alive, own, scratch, &mut list);
+        let mut inside = list.inside_at_start;
+        let mut varies = false;
+        let mut result = Ok(());
+        for crossing in &list.list {
+            let t = crossing.hit.t;
+            result = result.and_then(|()| self.check_start(t));
+            if crossing.side == Side::Inner {
+                result = Err(TooClose);
+            } else if t > self.begin {
+                varies = true;
+                let uv = events.uv_index(crossing.hit.uv);
+                let added = uv.and_then(|uv| {
+                    events.insert(t, crossing.hit.surface, bit, uv, crossing.visible)
+                });
+                result = result.and(added);
+            } else {
+                inside = crossing.side == Side::Enter;
+            }
+        }
+        scratch.give(list);
+        result?;
+        Ok(match varies {
+            false => Course::Constant(inside),
+            true => Course::Varies {
+                inside,
+                within: Interval::LINE,
+            },
+        })
+    }
+
+    /// Fails for crossings that could coincide with the surface that the ray leaves.
+    #[inline]
+    fn check_start(&self, t: f64) -> Result<(), TooClose> {
+        match self.starts_at(t) {
+            true => Err(TooClose),
+            false => Ok(()),
+        }
+    }
+}
+
+impl Events {
+    /// Adds a crossing behind those that are not further away.
+    #[inline]
+    fn insert(
+        &mut self,
+        t: f64,
+        surface: SurfaceId,
+        operand: usize,
+        uv: u8,
+        visible: bool,
+    ) -> Result<(), TooClose> {
+        let event = Event {
+            t,
+            surface,
+            operand: operand as u8,
+            uv,
+            visible,
+        };
+        if self.list.is_full() {
+            return Err(TooClose);
+        }
+        // There are a few: the place among them is found by going back.
+        let place = self.list.iter().rposition(|e| e.t <= t);
+        self.list.insert(place.map_or(0, |p| p + 1), event);
+        Ok(())
+    }
+
+    /// Keeps the coordinates of a hit; one plus their index, or 0 for zeros.
+    fn uv_index(&mut self, uv: [f64; 2]) -> Result<u8, TooClose> {
+        if uv == [0.0; 2] {
+            return Ok(0);
+        }
+        self.uvs.try_push(uv).map_err(|_| TooClose)?;
+        Ok(self.uvs.len() as u8)
+    }
+}
+
+/// The tree as sets of states: bit `i` of a state says whether the ray is inside of leaf `order[i]`.
+struct Table<'a> {
+    nodes: &'a [Node],
+    operands: &'a [u32],
+    /// The node of each leaf.
+    places: ArrayVec<u32, MOST>,
+    /// For each node the states in which the ray is inside of it.
+    holds: Vec<States>,
+}
+
+impl<'a> Table<'a> {
+    fn new(nodes: &'a [Node], operands: &'a [u32], order: &[u32]) -> Option<Self> {
+        let mut places = ArrayVec::new();
+        for leaf in order {
+            let place = nodes
+                .iter()
+                .position(|node| node.kind == Kind::Leaf(*leaf))?;
+            places.try_push(place as u32).ok()?;
+        }
+        let mut table = Self {
+            nodes,
+            operands,
+            places,
+            holds: vec![States::NONE; nodes.len()],
+        };
+        // Parents come before their operands.
+        for (index, node) in nodes.iter().enumerate().rev() {
+            table.holds[index] = match node.kind {
+                Kind::Leaf(leaf) => {
+                    let bit = order.iter().position(|other| *other == leaf)?;
+                    States::with(bit, true)
+                }
+                Kind::Operation(rule) => {
+                    let held = table.operands_of(node).map(|operand| table.holds[operand]);
+                    match rule {
+                        Rule::Intersection => held.fold(States::ALL, BitAnd::bitand),
+                        Rule::Union | Rule::Merge => held.fold(States::NONE, BitOr::bitor),
+                    }
+                }
+            };
+        }
+        Some(table)
+    }
+
+    fn operands_of(&self, node: &Node) -> impl Iterator<Item = usize> {
+        let own = &self.operands[node.first as usize..node.end as usize];
+        own.iter().map(|operand| *operand as usize)
+    }
+
+    /// The states in which a crossing of leaf `bit` is visible from outside of the tree; the rules are those of
+    /// [`timeline`](super::timeline), for all states at once.
+    fn seen(&self, bit: usize) -> States {
+        let mut child = self.places[bit];
+        // The states in which the crossing changes all nodes so far, and those in which it is an inner surface of a union.
+        let (mut changes, mut inner) = (States::ALL, States::NONE);
+        loop {
+            let parent = self.nodes[child as usize].parent;
+            if parent == NO_PARENT {
+                return changes | inner;
+            }
+            let node = &self.nodes[parent as usize];
+            let Kind::Operation(rule) = node.kind else {
+                return States::NONE;
+            };
+            let holds = self.holds[parent as usize];
+            let changed = holds ^ holds.flipped(bit);
+            match rule {
+                Rule::Union => inner = inner | changes & !changed,
+                Rule::Merge => {
+                    let others = self
+                        .operands_of(node)
+                        .filter(|other| *other != child as usize);
+                    let covered = others.fold(States::NONE, |a, b| a | self.holds[b]);
+                    inner = inner & !covered;
+                }
+                Rule::Intersection => inner = inner & holds,
+            }
+            changes = changes & changed;
+            child = parent;
+        }
+    }
+
+    fn operands(&self, leaves: &[Leaf], order: &[u32]) -> ArrayVec<Operand, MOST> {
+        let leaf = |number: u32| &leaves[number as usize];
+        let seen: ArrayVec<States, MOST> = (0..order.len())
+            .map(|bit| match leaf(order[bit]).visible {
+                true => self.seen(bit),
+                false => States::NONE,
+            })
+            .collect();
+        let operand = |(bit, number): (usize, &u32)| {
+            let outside = States::with(bit, false);
+            let changed = seen.iter().map(|s| *s ^ s.flipped(bit));
+            let others = seen.iter().enumerate().filter(|(other, _)| *other != bit);
+            Operand {
+                leaf: *number,
+                simple: leaf(*number).has_stays(),
+                quick: leaf(*number).is_quick(),
+                required: others.clone().all(|(_, seen)| !seen.meets(outside)),
+                seen: seen[bit],
+                matters: changed.fold(seen[bit], BitOr::bitor),
+            }
+        };
+        order.iter().enumerate().map(operand).collect()
     }
 }

@@ -2,9 +2,9 @@ use super::CsgNode;
 use super::compile::Compiler;
 use super::evaluate::Evaluation;
 use super::first::{Answer, all_visible, first_visible};
-use super::flat::Flat;
 use super::half_spaces::HalfSpaces;
 use super::leaf::{Leaf, Next};
+use super::small::Small;
 use super::sweep::Rule;
 use crate::primitive::one_by_one;
 use crate::{
@@ -43,8 +43,8 @@ pub struct Csg {
     closed: bool,
     /// Whether it is an operation on solids that is not nested too deep for recursion.
     shallow: bool,
-    /// The tree as a few convex shapes, if it is that.
-    flat: Option<Flat>,
+    /// The tree as a table, if it has few leaves and these are simple.
+    small: Option<Box<Small>>,
 }
 
 /// Bounds of leaves (`bounded_by`), in the space of the tree: a ray sees the leaves if it meets all of them ([`crate::Bounded`]).
@@ -114,9 +114,13 @@ impl Csg {
         }
         let combined = matches!(nodes.first(), Some(root) if root.kind != Kind::Leaf(0));
         let shallow = closed && combined && depths.iter().all(|depth| *depth <= SHALLOW);
-        let flat = closed.then(|| Flat::of(&nodes, &operands, &leaves));
+        let small = if shallow {
+            Small::of(&nodes, &operands, &leaves)
+        } else {
+            None
+        };
         Self {
-            flat: flat.flatten(),
+            small: small.map(Box::new),
             nodes,
             operands,
             leaves,
@@ -172,10 +176,10 @@ impl Csg {
         self.shallow
     }
 
-    /// The tree as a few convex shapes, if it is that.
+    /// The tree as a table, if it is small.
     #[cfg(test)]
-    pub(super) fn flat(&self) -> Option<&Flat> {
-        self.flat.as_ref()
+    pub(super) fn small(&self) -> Option<&Small> {
+        self.small.as_deref()
     }
 
     #[cfg(test)]
@@ -288,10 +292,13 @@ impl Primitive for Csg {
         from: Option<SurfaceId>,
         scratch: &mut Scratch,
     ) -> Option<PrimHit> {
-        if let Some(flat) = &self.flat {
+        if let Some(small) = &self.small {
             let from = from.map(|surface| self.leaf_surface(surface));
-            let sees = |hit: &PrimHit| self.is_seen(hit.surface.element, ray, scratch);
-            if let Answer::Certain(hit) = flat.first_visible(&self.leaves, ray, range, from, sees) {
+            let sees = |hit: &PrimHit, scratch: &mut Scratch| {
+                self.is_seen(hit.surface.element, ray, scratch)
+            };
+            let answer = small.first_visible(&self.leaves, ray, range, from, scratch, sees);
+            if let Answer::Certain(hit) = answer {
                 return hit;
             }
         } else if self.shallow {
@@ -320,10 +327,13 @@ impl Primitive for Csg {
         out: &mut Vec<PrimHit>,
     ) {
         let before = out.len();
-        if let Some(flat) = &self.flat {
+        if let Some(small) = &self.small {
             let from = from.map(|surface| self.leaf_surface(surface));
-            let sees = |hit: &PrimHit| self.is_seen(hit.surface.element, ray, scratch);
-            if flat.all_visible(&self.leaves, ray, range, from, sees, out) {
+            let sees = |hit: &PrimHit, scratch: &mut Scratch| {
+                self.is_seen(hit.surface.element, ray, scratch)
+            };
+            let sure = small.all_visible(&self.leaves, ray, range, from, scratch, sees, out);
+            if sure.is_ok() {
                 return;
             }
             out.truncate(before);
