@@ -10,7 +10,7 @@
 //!   intersects all planes of an intersection in one pass.
 //! * `first` finds the first surface without lists, if no two crossings are close together: `course` finds the crossings that
 //!   matter, `timeline` goes through them. `small` does the same for trees of a few simple leaves,
-//!   with a table of their `states`, and `one_span` for intersections among them.
+//!   with a `table` of their `states`, and `one_span` for intersections among them.
 
 mod boxes;
 mod compile;
@@ -24,6 +24,7 @@ mod small;
 mod solid;
 mod states;
 mod sweep;
+mod table;
 mod tighten;
 mod timeline;
 mod tree;

@@ -216,25 +216,11 @@ fn in_cell<I: Isa>(
         |axis| Share::new(from[axis], to[axis], way.map(|way| way[axis])),
     );
     let Share { s0, s1, q0, q1 } = shares[2];
-    let low = isa.min(
-        mix(isa, at[0].0, at[1].0, s0),
-        mix(isa, at[0].0, at[1].0, s1),
-    );
-    let high = isa.max(
-        mix(isa, at[0].1, at[1].1, s0),
-        mix(isa, at[0].1, at[1].1, s1),
-    );
+    let (low, high) = ends(isa, at[0], at[1], (s0, s1));
     let (low, high) = (isa.store(low), isa.store(high));
     let (mut fall, mut rise) = ([0.0; 4], [0.0; 4]);
     if way.is_some() {
-        let least = isa.min(
-            mix(isa, rates[0].0, rates[1].0, s0),
-            mix(isa, rates[0].0, rates[1].0, s1),
-        );
-        let most = isa.max(
-            mix(isa, rates[0].1, rates[1].1, s0),
-            mix(isa, rates[0].1, rates[1].1, s1),
-        );
+        let (least, most) = ends(isa, rates[0], rates[1], (s0, s1));
         let down = isa.sub(at[1].0, at[0].1);
         let up = isa.sub(at[1].1, at[0].0);
         let (q0, q1) = (isa.splat(q0), isa.splat(q1));
@@ -265,6 +251,19 @@ fn along<I: Isa>(isa: I, g: [I::F64x4; 3], way: [I::F64x4; 3]) -> I::F64x4 {
 #[inline(always)]
 fn mix<I: Isa>(isa: I, a: I::F64x4, b: I::F64x4, s: f64) -> I::F64x4 {
     isa.add(isa.mul(a, isa.splat(1.0 - s)), isa.mul(b, isa.splat(s)))
+}
+
+/// The smallest and the largest mix of two ranges for a share between two numbers: it is linear in the share, so an end is extreme.
+#[inline(always)]
+fn ends<I: Isa>(
+    isa: I,
+    a: (I::F64x4, I::F64x4),
+    b: (I::F64x4, I::F64x4),
+    (s0, s1): Range,
+) -> (I::F64x4, I::F64x4) {
+    let low = isa.min(mix(isa, a.0, b.0, s0), mix(isa, a.0, b.0, s1));
+    let high = isa.max(mix(isa, a.1, b.1, s0), mix(isa, a.1, b.1, s1));
+    (low, high)
 }
 
 /// The share of the upper side of a blend along one axis, and its derivative along a line: between two numbers each.
