@@ -94,6 +94,13 @@ macro_rules! shapes {
             }
         }
 
+        impl Shape {
+            /// [`Primitive::bare_surface_at`] in place: a result of this size would be stored twice.
+            pub fn store_bare_surface(&self, ray: &Ray, hit: &PrimHit, out: &mut SurfacePoint) {
+                match self { $(Self::$variant(shape) => *out = shape.bare_surface_at(ray, hit),)+ }
+            }
+        }
+
         $(impl From<$type> for Shape {
             fn from(shape: $type) -> Self {
                 Self::$variant(shape)

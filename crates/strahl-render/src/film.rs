@@ -295,11 +295,11 @@ impl Film {
     /// are.
     pub fn sha256(&self) -> String {
         let mut hasher = Sha256::new();
-        let mut row = Vec::with_capacity(self.region.width as usize * 12);
-        for pixels in self.pixels.chunks(self.region.width as usize) {
-            row.clear();
-            row.extend(pixels.iter().flatten().flat_map(|v| v.to_le_bytes()));
-            hasher.update(&row);
+        let mut bytes = vec![0; self.region.width as usize * size_of::<[f32; 3]>()];
+        for row in self.pixels.chunks(self.region.width as usize) {
+            let values = bytes.as_chunks_mut().0.iter_mut().zip(row.as_flattened());
+            values.for_each(|(four, value)| *four = value.to_le_bytes());
+            hasher.update(&bytes);
         }
         hasher
             .finalize()

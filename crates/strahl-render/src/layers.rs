@@ -37,9 +37,10 @@ pub(crate) fn paint<'s>(
         surface.n_shade = -surface.n_shade;
     }
     surface.n_smooth = Some(surface.n_shade);
-    let known = paints.of(look.material, surface.entering);
+    let side = (look.material, surface.entering);
+    let known = paints.of(side);
     if let Some(Known::Same(known)) = known {
-        known.put(surface, paint);
+        known.put(side, surface, paint);
         return;
     }
     let position = surface.resolved.point.position;

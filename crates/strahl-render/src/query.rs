@@ -7,6 +7,7 @@ use crate::activity::{Phase, Slot};
 use crate::blocks::{Blocks, Fetched, LeafClass};
 use crate::hit::{Hit, Origin, RayClass};
 use crate::prim::{Prim, PrimKind};
+use crate::resolve::Resolved;
 use crate::scene::{InstanceUse, RenderGroup, RenderScene};
 use crate::walk::WalkEvent;
 use kinds::{AnyOpaque, Closest, Query, Transmitting, Watched};
@@ -59,9 +60,9 @@ impl<'s> Tracer<'s> {
         from: Option<&Origin>,
         class: RayClass,
     ) -> Option<Hit> {
-        let mut query = Closest { best: None };
+        let mut query: Closest = None;
         self.search(ray, range, from, class, NONE, &mut query);
-        query.best
+        query
     }
 
     /// [`Tracer::closest_hit`], reporting every step of the traversal.
@@ -73,12 +74,12 @@ impl<'s> Tracer<'s> {
         events: &mut Vec<WalkEvent>,
     ) -> Option<Hit> {
         let mut query = Watched {
-            closest: Closest { best: None },
+            closest: None,
             opaque: false,
             events: Some(events),
         };
         self.search(ray, range, None, class, NONE, &mut query);
-        query.closest.best
+        query.closest
     }
 
     /// The nearest hit in `range` on an opaque surface.
@@ -90,12 +91,12 @@ impl<'s> Tracer<'s> {
         from: Option<&Origin>,
     ) -> Option<Hit> {
         let mut query = Watched {
-            closest: Closest { best: None },
+            closest: None,
             opaque: true,
             events: None,
         };
         self.search(ray, range, from, RayClass::Shadow, NONE, &mut query);
-        query.closest.best
+        query.closest
     }
 
     /// Whether an opaque surface is in `range`.
@@ -145,7 +146,7 @@ impl<'s> Tracer<'s> {
         ray: &Ray,
         range: Interval,
     ) -> Option<f64> {
-        let mut query = Closest { best: None };
+        let mut query: Closest = None;
         let group = self.scene.groups.get(mask.group as usize)?;
         let inner = mask.transform.ray_to_object(ray);
         let mut search = Search {
@@ -159,7 +160,7 @@ impl<'s> Tracer<'s> {
             query: &mut query,
         };
         search.group(group, &inner, range, None, 0, NONE);
-        query.best.map(|hit| hit.t)
+        query.map(|hit| hit.t)
     }
 
     /// Forgets the last occluders, so that the cost of the following queries does not depend on earlier ones.
@@ -631,9 +632,9 @@ impl<Q: Query> GroupVisitor<'_, '_, '_, Q> {
         let look = self.group.look(id, surface.element);
         let material = &self.search.scene.materials[look.material.0 as usize];
         let masked = material.is_masked();
-        let point = self
-            .group
-            .surface_at(id, self.ray, hit, surface.element, masked);
+        let mut point = Resolved::UNKNOWN.point;
+        self.group
+            .store_surface(id, self.ray, hit, surface.element, masked, &mut point);
         let front = point.n_geom.dot(self.ray.direction) < 0.0;
         if material.sides == Sides::Front && !front {
             return false;

@@ -94,7 +94,7 @@ impl RenderScene {
         out.look = world.look(prim, element);
         (out.local, out.space) = (None, 0);
         let uv = self.wants_uv(&out.look, uv);
-        out.point = world.surface_at(prim, ray, hit, element, uv);
+        world.store_surface(prim, ray, hit, element, uv, &mut out.point);
         if uv {
             out.point.uv = world.texture_uv(prim, hit, element, &out.point);
         }
@@ -130,9 +130,9 @@ impl RenderScene {
                 }
             }
         };
-        let inner = at
-            .group
-            .surface_at(at.prim, &local_ray, hit, at.element, uv);
+        let mut inner = Resolved::UNKNOWN.point;
+        at.group
+            .store_surface(at.prim, &local_ray, hit, at.element, uv, &mut inner);
         let (mut point, local) = match &at.to_world {
             None => (inner, None),
             Some(m) => {
@@ -268,42 +268,47 @@ impl RenderScene {
 }
 
 impl RenderGroup {
-    /// The surface at a hit, in this group's space, with texture coordinates if `uv`.
+    /// Stores the surface at a hit, in this group's space, with texture coordinates if `uv`.
     #[inline]
-    pub(crate) fn surface_at(
+    pub(crate) fn store_surface(
         &self,
         prim: u32,
         ray: &Ray,
         hit: &Hit,
         element: u32,
         uv: bool,
-    ) -> SurfacePoint {
+        out: &mut SurfacePoint,
+    ) {
         let hit = prim_hit(hit, element);
-        let surface = |shape: &Shape, ray: &Ray| {
+        let store = |shape: &Shape, ray: &Ray, out: &mut SurfacePoint| {
             if uv {
-                shape.surface_at(ray, &hit)
+                *out = shape.surface_at(ray, &hit);
             } else {
-                shape.bare_surface_at(ray, &hit)
+                shape.store_bare_surface(ray, &hit, out);
             }
         };
         match self.prims.at(prim).kind() {
-            PrimKind::Triangle(mesh, triangle) => self.meshes[mesh as usize]
-                .mesh
-                .surface_at_element(triangle, hit.uv),
+            PrimKind::Triangle(mesh, triangle) => {
+                let mesh = &self.meshes[mesh as usize].mesh;
+                *out = mesh.surface_at_element(triangle, hit.uv);
+            }
             PrimKind::Sphere(number) => {
                 let sphere = self.spheres.get(number, &self.blocks);
-                if uv {
+                *out = if uv {
                     sphere.surface_at(ray, &hit)
                 } else {
                     sphere.bare_surface_at(ray, &hit)
-                }
+                };
             }
-            PrimKind::Shape(index) => surface(&self.shapes[index as usize].shape, ray),
+            PrimKind::Shape(index) => store(&self.shapes[index as usize].shape, ray, out),
             PrimKind::Placed(index) => {
                 let used = &self.shapes[index as usize];
                 match &used.transform {
-                    None => surface(&used.shape, ray),
-                    Some(m) => surface_to_world(m, &surface(&used.shape, &m.ray_to_object(ray))),
+                    None => store(&used.shape, ray, out),
+                    Some(m) => {
+                        store(&used.shape, &m.ray_to_object(ray), out);
+                        *out = surface_to_world(m, out);
+                    }
                 }
             }
             PrimKind::Instance(_) => unreachable!("locate ends at a primitive that is no instance"),

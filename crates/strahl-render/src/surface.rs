@@ -61,6 +61,9 @@ impl Split {
 pub(crate) struct Surface<'s> {
     pub(crate) resolved: Resolved,
     pub(crate) material: MaterialPoint<'s>,
+    /// The material, and whether its outside, whose layers are the same everywhere and are in `material` already, and in the point's
+    /// layers: most rays meet what the ray before them in this place has met.
+    pub(crate) painted: Option<(MaterialId, bool)>,
     /// Unit vector towards the viewer.
     pub(crate) v: DVec3,
     pub(crate) n_geom: DVec3,
@@ -103,6 +106,7 @@ impl<'s> Surface<'s> {
                 fresnel: false,
                 opacity: 1.0,
             },
+            painted: None,
             v: DVec3::ZERO,
             n_geom: DVec3::ZERO,
             n_shade: DVec3::ZERO,
@@ -180,7 +184,10 @@ impl<'s> Surface<'s> {
         };
         let index = |id| index_of(scene, id, branch.part);
         (self.eta_1, self.eta_2) = (index(self.medium_1), index(self.medium_2));
-        material.store_at(point.uv, &mut self.material);
+        if self.painted != Some((look.material, self.entering)) {
+            self.painted = None;
+            material.store_at(point.uv, &mut self.material);
+        }
         self.lit = scene.lit(hit.id, look.object);
         self.shows_lights = true;
         store_start(&self.resolved, hit, self.entering, &mut self.front);

@@ -13,6 +13,7 @@
 //! bottom-up in the order reflection, transparency, so the sum does not depend on the order of tracing. Layers of a texture
 //! with different reflections send a reflection ray each.
 
+mod aim;
 mod branch;
 mod detail;
 mod eye;

@@ -173,19 +173,32 @@ impl Light {
     // The usual light is inline: a sample that is returned in memory would be loaded before its stores have ended.
     #[inline(always)]
     pub fn illuminate(&self, point: DVec3) -> Option<LightSample> {
-        let LightKind::Point { position } = self.kind else {
+        let Some(position) = self.plain_position() else {
             return self.illuminate_by_kind(point);
         };
-        if !matches!(self.falloff, Falloff::None) {
-            return self.illuminate_by_kind(point);
-        }
         let to_light = position - point;
         let distance = to_light.length();
+        self.plain_sample(to_light, distance, to_light / distance)
+    }
+
+    /// The position of a light that shines from a point, into all directions and at all distances alike.
+    #[inline]
+    pub fn plain_position(&self) -> Option<DVec3> {
+        match (self.kind, self.falloff) {
+            (LightKind::Point { position }, Falloff::None) => Some(position),
+            _ => None,
+        }
+    }
+
+    /// [`Light::illuminate`] of a light with a [`Light::plain_position`], which is at this vector from the point, with its length and
+    /// its direction.
+    #[inline(always)]
+    pub fn plain_sample(&self, to_light: DVec3, distance: f64, l: DVec3) -> Option<LightSample> {
         if !(distance > 0.0) {
             return None;
         }
         Some(LightSample {
-            l: to_light / distance,
+            l,
             shadow_direction: to_light,
             range: self.until_here(distance),
             color: self.color,

@@ -58,33 +58,47 @@ pub fn decode_all(values: &mut [f64]) {
 /// The 8-bit code of linear light: clamped to `0..=1`, encoded, rounded half up; NaN is 0.
 #[inline]
 pub fn encode_u8(linear: f64) -> u8 {
-    static CODES: LazyLock<Codes> = LazyLock::new(Codes::new);
-    CODES.of(linear)
+    Codes::get().of(linear)
 }
 
-/// Codes by the leading bits of a number: the number of powers of two below 1 that are told apart, and of parts of each.
+/// Appends [`encode_u8`] of each sample of linear light.
+pub fn push_u8(linear: &[f32], codes: &mut Vec<u8>) {
+    let table = Codes::get();
+    codes.extend(linear.iter().map(|x| table.of(f64::from(*x))));
+}
+
+/// Codes by the leading bits of a number: the number of powers of two below 1 that are told apart, and of parts of each. At most
+/// one code begins within a part.
 const OCTAVES: usize = 13;
-const PARTS: usize = 64;
+const PARTS: usize = 256;
 
 /// The 8-bit codes, found without a power.
 struct Codes {
-    /// Where each code but 0 begins, and infinity.
-    beginnings: [f64; 256],
+    /// Where the code after each begins; after the last, infinity.
+    ends: [f64; 256],
     /// The code of the smallest number of each part of each octave from 2⁻¹³ to 1.
     lowest: [u8; OCTAVES * PARTS],
 }
 
 impl Codes {
+    fn get() -> &'static Self {
+        static CODES: LazyLock<Codes> = LazyLock::new(Codes::new);
+        &CODES
+    }
+
     fn new() -> Self {
-        let mut beginnings = [f64::INFINITY; 256];
-        for (code, begin) in (1..).zip(&mut beginnings[..255]) {
-            *begin = beginning(f64::from(code), 255.0);
+        let mut ends = [f64::INFINITY; 256];
+        for (code, end) in (1..).zip(&mut ends[..255]) {
+            *end = beginning(f64::from(code), 255.0);
         }
+        let mut code = 0;
         let lowest = std::array::from_fn(|index| {
-            let start = Self::start_of(index);
-            beginnings.partition_point(|begin| start >= *begin) as u8
+            while Self::start_of(index) >= ends[usize::from(code)] {
+                code += 1;
+            }
+            code
         });
-        Self { beginnings, lowest }
+        Self { ends, lowest }
     }
 
     /// The smallest number of a part.
@@ -94,22 +108,18 @@ impl Codes {
 
     /// The bits below those that number a part.
     const SHIFT: u32 = 52 - PARTS.ilog2();
-    /// The bits of 2⁻¹³.
+    /// The bits of 2⁻¹³, whose code is 0.
     const ORIGIN: u64 = (1023 - OCTAVES as u64) << 52;
 
     #[inline]
     fn of(&self, linear: f64) -> u8 {
-        // NaN is not at or above any beginning.
-        if linear >= 1.0 {
-            return 255;
-        }
-        let index = (linear.to_bits().wrapping_sub(Self::ORIGIN) >> Self::SHIFT) as usize;
-        // Negative numbers and NaN have indices beyond the table, as do numbers below 2^-13, whose code is 0.
-        let mut code = self.lowest.get(index).copied().unwrap_or(0);
-        while linear >= self.beginnings[usize::from(code)] {
-            code += 1;
-        }
-        code
+        // In this order NaN becomes the smallest number, too.
+        let within = linear
+            .max(f64::from_bits(Self::ORIGIN))
+            .min(1.0f64.next_down());
+        let index = (within.to_bits() - Self::ORIGIN) >> Self::SHIFT;
+        let code = self.lowest[index as usize];
+        code + u8::from(within >= self.ends[usize::from(code)])
     }
 }
 

@@ -78,15 +78,14 @@ fn encode_png(
 
 /// Appends the sRGB codes of pixels, those of 16 bit with the high byte first, as PNG and PPM store them.
 pub(super) fn push_codes(pixels: &[[f32; 3]], depth: BitDepth, codes: &mut Vec<u8>) {
-    let samples = pixels
-        .as_flattened()
-        .iter()
-        .map(|&sample| f64::from(sample));
+    let samples = pixels.as_flattened();
     match depth {
-        BitDepth::Eight => codes.extend(samples.map(srgb::encode_u8)),
-        BitDepth::Sixteen => {
-            codes.extend(samples.flat_map(|sample| srgb::encode_u16(sample).to_be_bytes()));
-        }
+        BitDepth::Eight => srgb::push_u8(samples, codes),
+        BitDepth::Sixteen => codes.extend(
+            samples
+                .iter()
+                .flat_map(|&sample| srgb::encode_u16(f64::from(sample)).to_be_bytes()),
+        ),
     }
 }
 

@@ -95,6 +95,47 @@ impl Cuboid {
     /// The span in which the line is inside. The face the ray starts on is at exactly `t = 0`.
     #[inline]
     pub(crate) fn span(&self, ray: &Ray, from: Option<SurfaceId>) -> Option<Span> {
+        let (o, d) = (ray.origin, ray.direction);
+        if d.cmpeq(DVec3::ZERO).any() {
+            return self.span_along_faces(ray, from);
+        }
+        // All axes at once, which is half the work of one after the other.
+        let mut at_min = ((self.min - o) / d).to_array();
+        let mut at_max = ((self.max - o) / d).to_array();
+        if let Some(surface) = from {
+            let (axis, high) = (surface.facet as usize / 2, surface.facet % 2 == 1);
+            let ends = if high { &mut at_max } else { &mut at_min };
+            if let Some(end) = ends.get_mut(axis) {
+                *end = 0.0;
+            }
+        }
+        let mut span = Span::LINE;
+        let mut valid = true;
+        for axis in 0..3 {
+            let forward = d[axis] > 0.0;
+            let (low, high) = (2 * axis as u32, 2 * axis as u32 + 1);
+            let (t, facet) = match forward {
+                true => ((at_min[axis], at_max[axis]), (low, high)),
+                false => ((at_max[axis], at_min[axis]), (high, low)),
+            };
+            // As in `Span::cut`: an edge belongs to the facet that was there first, and nothing is before or behind NaN.
+            valid &= t.0 <= t.1;
+            let (before, behind) = (t.0 > span.enter.t, t.1 < span.exit.t);
+            span.enter = End {
+                t: if before { t.0 } else { span.enter.t },
+                facet: if before { facet.0 } else { span.enter.facet },
+            };
+            span.exit = End {
+                t: if behind { t.1 } else { span.exit.t },
+                facet: if behind { facet.1 } else { span.exit.facet },
+            };
+        }
+        (valid && span.enter.t < span.exit.t && span.enter.t.is_finite()).then_some(span)
+    }
+
+    /// [`Cuboid::span`] of rays that are parallel to a face.
+    #[inline(never)]
+    fn span_along_faces(&self, ray: &Ray, from: Option<SurfaceId>) -> Option<Span> {
         let mut span = Span::LINE;
         for axis in 0..3 {
             let (o, d) = (ray.origin[axis], ray.direction[axis]);

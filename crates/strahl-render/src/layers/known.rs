@@ -10,6 +10,9 @@ use strahl_shade::{Color, Finish, MaterialId};
 #[derive(Debug)]
 pub(crate) struct KnownPaints<'s>(Vec<Known<'s>>);
 
+/// A material, and whether it is seen from outside.
+type Side = (MaterialId, bool);
+
 /// What is known of the layers of a material.
 #[derive(Debug)]
 pub(super) enum Known<'s> {
@@ -71,20 +74,26 @@ impl<'s> KnownPaints<'s> {
     }
 
     #[inline]
-    pub(super) fn of(
-        &mut self,
-        material: MaterialId,
-        from_outside: bool,
-    ) -> Option<&mut Known<'s>> {
+    pub(super) fn of(&mut self, (material, outside): Side) -> Option<&mut Known<'s>> {
         self.0
-            .get_mut(2 * material.0 as usize + usize::from(from_outside))
+            .get_mut(2 * material.0 as usize + usize::from(outside))
     }
 }
 
 impl<'s> KnownPaint<'s> {
-    /// Evaluates the texture at a surface: what [`paint`](super::paint) does, with the same bits.
-    pub(super) fn put(&self, surface: &mut Surface<'_>, paint: &mut TexturePaint<'s>) {
+    /// Evaluates the texture at a surface of this side of its material: what [`paint`](super::paint) does, with the same bits.
+    #[inline]
+    pub(super) fn put(&self, side: Side, surface: &mut Surface<'_>, paint: &mut TexturePaint<'s>) {
         let normal = surface.n_shade;
+        surface.n_refract = normal;
+        surface.shows_lights = self.shows_lights;
+        if surface.painted == Some(side)
+            && let (Some(layer), Some(stack)) = (paint.layers.first_mut(), paint.stacks.first_mut())
+        {
+            (layer.normal, stack.normal) = (normal, normal);
+            return;
+        }
+        surface.painted = Some(side);
         paint.layers.clear();
         paint.layers.push(LayerPoint {
             normal,
@@ -99,7 +108,5 @@ impl<'s> KnownPaint<'s> {
         surface.material.fresnel = false;
         surface.material.fresnel_reflection = Color::BLACK;
         surface.material.finish = Cow::Owned(self.sum);
-        surface.shows_lights = self.shows_lights;
-        surface.n_refract = normal;
     }
 }

@@ -51,10 +51,8 @@ pub(super) trait Query {
     fn tell(&mut self, _event: WalkEvent) {}
 }
 
-/// Finds the closest hit; of several at the same `t` that with the smallest id.
-pub(super) struct Closest {
-    pub(super) best: Option<Hit>,
-}
+/// Finds the closest hit; of several at the same `t` that with the smallest id. It is the closest so far.
+pub(super) type Closest = Option<Hit>;
 
 impl Query for Closest {
     const ALL: bool = false;
@@ -65,8 +63,8 @@ impl Query for Closest {
 
     #[inline]
     fn take(&mut self, hit: Hit, t_max: f64) -> f64 {
-        if self.best.is_none_or(|best| hit.beats(&best)) {
-            self.best = Some(hit);
+        if self.is_none_or(|best| hit.beats(&best)) {
+            *self = Some(hit);
             hit.t
         } else {
             t_max
@@ -96,7 +94,7 @@ impl Query for Watched<'_> {
     }
 
     fn take(&mut self, hit: Hit, t_max: f64) -> f64 {
-        self.closest.take(hit, t_max)
+        Query::take(&mut self.closest, hit, t_max)
     }
 
     fn wants_hit(&self, transmits: bool) -> bool {

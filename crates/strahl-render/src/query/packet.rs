@@ -7,6 +7,7 @@ use crate::activity::{Phase, Slot};
 use crate::blocks::{Block, BlockOfLeaf, Blocks, Fetched, Flats, LeafClass, PacketCulls};
 use crate::hit::{Hit, Origin, RayClass};
 use crate::scene::{RenderGroup, RenderScene};
+use arrayvec::ArrayVec;
 use std::borrow::Borrow;
 use strahl_accel::{
     Accelerator, BLOCK, Leaf, PACKET, Packet, PacketVisitor, TraversalStats, Visitor, lanes_of,
@@ -62,7 +63,6 @@ impl Tracer<'_> {
         class: RayClass,
         hits: &mut [Option<Hit>; PACKET],
     ) {
-        let mut queries = [const { Closest { best: None } }; PACKET];
         let asked = Asked {
             rays,
             min: range.min,
@@ -70,10 +70,9 @@ impl Tracer<'_> {
             class,
             first: NONE,
         };
-        self.search_packet(&asked, common_end(rays, range), &mut queries);
-        for (hit, query) in hits.iter_mut().zip(queries) {
-            *hit = query.best;
-        }
+        let queries: &mut [Closest; PACKET] = hits;
+        queries.fill(None);
+        self.search_packet(&asked, common_end(rays, range), queries);
     }
 
     /// [`Tracer::any_opaque`] for several rays, at most [`PACKET`], as bits.
@@ -142,7 +141,7 @@ impl Tracer<'_> {
         let class = asked.class.bit();
         let mut stats = TraversalStats::default();
         let mut nested = TraversalStats::default();
-        let mut shears = [RayShear::UNUSED; PACKET];
+        let mut shears = ArrayVec::<RayShear, PACKET>::new();
         let max_abs = group.bounds.max_abs();
         let (sheared, lines);
         let mut culls = PacketCulls {
@@ -150,11 +149,8 @@ impl Tracer<'_> {
             lines: None,
         };
         if is_sheared {
-            for (shear, ray) in shears.iter_mut().zip(asked.rays) {
-                *shear = RayShear::new(ray);
-            }
-            let count = asked.rays.len().min(PACKET);
-            sheared = PacketShears::new(&shears[..count], max_abs);
+            shears.extend(asked.rays.iter().take(PACKET).map(RayShear::new));
+            sheared = PacketShears::new(&shears, max_abs);
             culls.shears = sheared.as_ref();
         }
         let mut from_prims = [NONE; PACKET];

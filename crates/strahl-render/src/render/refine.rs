@@ -6,6 +6,7 @@ use crate::film::{Region, try_filled};
 use crate::sampling::{Compared, Refinement, Sample, Sampling};
 use crate::scene::RenderScene;
 use crate::tiles::tiles;
+use arrayvec::ArrayVec;
 use strahl_shade::Color;
 
 /// Whether the second pass of [`Sampling::Adaptive`] takes more samples of pixel `(x, y)` of the picture.
@@ -52,18 +53,19 @@ impl Lattice {
             rough.fill(true);
             return Ok(rough);
         }
-        // Neighbours are often equal: then there is nothing to raise to a power.
-        let mut last = (Color::BLACK, Compared::new(Color::BLACK, refinement));
-        let shown: Vec<Compared> = self
-            .samples
-            .iter()
-            .map(|&Sample { color, .. }| {
-                if color != last.0 {
-                    last = (color, Compared::new(color, refinement));
-                }
-                last.1
-            })
-            .collect();
+        let mut shown = Vec::with_capacity(self.samples.len());
+        for few in self.samples.chunks(Compared::FEW) {
+            let color = few[0].color;
+            if few.iter().all(|sample| sample.color == color) {
+                // Neighbours are often equal.
+                let same = Compared::new(color, refinement);
+                shown.resize(shown.len() + few.len(), same);
+            } else {
+                let colors: ArrayVec<Color, { Compared::FEW }> =
+                    few.iter().map(|sample| sample.color).collect();
+                shown.extend(Compared::few(&colors, refinement));
+            }
+        }
         let width = region.width as usize;
         for (index, &here) in shown.iter().enumerate() {
             let right = (!(index + 1).is_multiple_of(width)).then_some(index + 1);

@@ -80,13 +80,24 @@ impl fmt::Display for Refinement {
 pub(crate) struct Compared([f32; 3]);
 
 impl Compared {
+    /// The number of colours that [`Compared::few`] takes.
+    pub(crate) const FEW: usize = 16;
+
     pub(crate) fn new(color: Color, refinement: &Refinement) -> Self {
-        let exponent = 1.0 / refinement.gamma;
-        let shown = |v: f64| match v > 0.0 {
-            true => det::pow(v, exponent) as f32,
-            false => 0.0,
-        };
-        Self([shown(color.r), shown(color.g), shown(color.b)])
+        Self::few(&[color], refinement)[0]
+    }
+
+    /// A few colours at a time, with the same bits: powers take most of the time.
+    pub(crate) fn few(colors: &[Color], refinement: &Refinement) -> ArrayVec<Self, { Self::FEW }> {
+        let mut powers = ArrayVec::<f64, { 3 * Self::FEW }>::new();
+        powers.extend(colors.iter().flat_map(|color| color.to_array()));
+        let positive = |v: &f64| *v > 0.0;
+        for v in powers.iter_mut().filter(|v| !positive(v)) {
+            *v = 0.0;
+        }
+        det::pow_all(&mut powers, 1.0 / refinement.gamma);
+        let (colors, _) = powers.as_chunks();
+        colors.iter().map(|c| Self(c.map(|v| v as f32))).collect()
     }
 
     /// Whether two colours differ so much that a place between them is looked at.
@@ -152,7 +163,7 @@ impl Division<'_> {
     }
 
     fn differ(&self, corners: [Sample; 4]) -> bool {
-        let shown = corners.map(|sample| Compared::new(sample.color, self.refinement));
+        let shown = Compared::few(&corners.map(|sample| sample.color), self.refinement);
         let pairs = [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)];
         pairs
             .iter()

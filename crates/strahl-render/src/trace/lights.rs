@@ -1,6 +1,7 @@
 //! The stage of lights, light by light: which points it may shine on, its shadow rays, the light that surfaces reflect.
 
 use super::TreeTracer;
+use super::aim::{Directions, Places};
 use super::stages::{FEW, Lanes, Point};
 use crate::activity::Phase;
 use crate::layers;
@@ -37,8 +38,9 @@ impl<'s> TreeTracer<'s> {
     ) {
         let scene = self.tracer.scene;
         if !scene.has_light_groups() {
+            let places = (lanes.len() >= FEW).then(|| Places::of(points, lanes));
             for light in 0..scene.lights.len() {
-                self.one_light(points, lanes, light, observer);
+                self.one_light(points, lanes, places.as_ref(), light, observer);
             }
             return;
         }
@@ -47,24 +49,34 @@ impl<'s> TreeTracer<'s> {
             let set = points[*lane].surface.lit.set;
             let alone = Lanes::from_iter([*lane]);
             for light in scene.lights_in(set).unwrap_or_default() {
-                self.one_light(points, &alone, *light as usize, observer);
+                self.one_light(points, &alone, None, *light as usize, observer);
             }
         }
     }
 
-    /// Adds the light of one light source.
+    /// Adds the light of one light source; `places` has the points of these lanes, if they are not too few.
     fn one_light<O: TraceObserver>(
         &mut self,
         points: &mut [Point<'s>],
         lanes: &Lanes,
+        places: Option<&Places>,
         number: usize,
         observer: &mut O,
     ) {
         let light = &self.tracer.scene.lights[number].light;
         let mut arriving = std::mem::take(&mut self.arriving);
         arriving.clear();
-        for lane in lanes {
-            self.aim(&points[*lane], *lane, number, &mut arriving, observer);
+        let directions = match (places, light.plain_position()) {
+            (Some(places), Some(position)) => Some(Directions::new(position, places)),
+            _ => None,
+        };
+        for (index, lane) in lanes.iter().enumerate() {
+            let point = &points[*lane];
+            let seen = match &directions {
+                Some(directions) => directions.sample(light, index),
+                None => seen_from(light, point),
+            };
+            self.aim(point, seen, *lane, number, &mut arriving, observer);
         }
         let blockable = light.casts_shadows || self.tracer.scene.mask(number).is_some();
         if blockable && !arriving.is_empty() {
@@ -78,26 +90,24 @@ impl<'s> TreeTracer<'s> {
         self.arriving = arriving;
     }
 
-    /// Finds out whether a light may shine on a point.
+    /// Finds out whether a light may shine on a point, which sees it as [`seen_from`] says.
     #[inline(always)]
     fn aim<O: TraceObserver>(
         &mut self,
         point: &Point<'s>,
+        seen: Option<(LightSample, f64)>,
         lane: usize,
         number: usize,
         arriving: &mut Vec<Arriving>,
         observer: &mut O,
     ) {
         let light = &self.tracer.scene.lights[number].light;
-        let position = point.surface.resolved.point.position;
-        let sample = light.illuminate(position);
-        let Some(sample) = sample.or_else(|| light.aim(position)) else {
+        let Some((sample, n_dot_l)) = seen else {
             if O::DETAILED {
                 self.report_light(point, LightTerm::none(number), observer);
             }
             return;
         };
-        let n_dot_l = point.surface.n_shade.dot(sample.l);
         // Points of an area light with `area_illumination` may be above the horizon where its centre is not.
         let may_face = self.faces(point, sample.l, n_dot_l)
             || light.area.is_some_and(|area| area.illumination);
@@ -336,6 +346,14 @@ impl<'s> TreeTracer<'s> {
         };
         (diffuse, highlight)
     }
+}
+
+/// A light as a point sees it, and the cosine between the shading normal and the direction to the light.
+#[inline(always)]
+fn seen_from(light: &Light, point: &Point<'_>) -> Option<(LightSample, f64)> {
+    let position = point.surface.resolved.point.position;
+    let sample = light.illuminate(position).or_else(|| light.aim(position))?;
+    Some((sample, point.surface.n_shade.dot(sample.l)))
 }
 
 /// The shadow ray from a point to a light.

@@ -113,35 +113,48 @@ impl<'s> TreeTracer<'s> {
     /// The nearest hits of rays: those of one class together, if they are not too few.
     fn intersect(&mut self, points: &[Point<'s>], hits: &mut [Option<Hit>; PACKET]) {
         for class in [RayClass::Camera, RayClass::Secondary] {
-            let mut lanes = Lanes::new();
-            let (mut rays, mut from) = (ArrayVec::<Ray, PACKET>::new(), [None; PACKET]);
-            for (lane, point) in points.iter().enumerate() {
-                if point.branch.class == class {
-                    from[rays.len()] = point.branch.origin.as_ref();
-                    rays.push(point.branch.ray);
-                    lanes.push(lane);
-                }
+            let of_class = |lane: &usize| points[*lane].branch.class == class;
+            let lanes: Lanes = (0..points.len()).filter(of_class).collect();
+            if lanes.len() == points.len() && lanes.len() >= FEW {
+                self.intersect_together(points, &lanes, hits);
+                return;
             }
             if lanes.len() >= FEW {
-                self.tracer.slot.ray(points[lanes[0]].branch.kind);
                 let mut found = [None; PACKET];
-                self.tracer
-                    .closest_hits(&rays, Interval::FORWARD, &from, class, &mut found);
+                self.intersect_together(points, &lanes, &mut found);
                 for (lane, hit) in lanes.iter().zip(found) {
                     hits[*lane] = hit;
                 }
-            } else {
-                for (index, lane) in lanes.iter().enumerate() {
-                    self.tracer.slot.ray(points[*lane].branch.kind);
-                    hits[*lane] = self.tracer.closest_hit(
-                        &rays[index],
-                        Interval::FORWARD,
-                        from[index],
-                        class,
-                    );
-                }
+                continue;
+            }
+            for lane in lanes {
+                let branch = &points[lane].branch;
+                self.tracer.slot.ray(branch.kind);
+                let from = branch.origin.as_ref();
+                hits[lane] = self
+                    .tracer
+                    .closest_hit(&branch.ray, Interval::FORWARD, from, class);
             }
         }
+    }
+
+    /// The nearest hits of rays of one class, one behind the other.
+    #[inline(never)]
+    fn intersect_together(
+        &mut self,
+        points: &[Point<'s>],
+        lanes: &Lanes,
+        hits: &mut [Option<Hit>; PACKET],
+    ) {
+        let (mut rays, mut from) = (ArrayVec::<Ray, PACKET>::new(), [None; PACKET]);
+        for (from, lane) in from.iter_mut().zip(lanes) {
+            *from = points[*lane].branch.origin.as_ref();
+            rays.push(points[*lane].branch.ray);
+        }
+        let first = &points[lanes[0]].branch;
+        self.tracer.slot.ray(first.kind);
+        self.tracer
+            .closest_hits(&rays, Interval::FORWARD, &from, first.class, hits);
     }
 
     /// Makes the nodes of rays, and finds out about the surfaces that they meet. The others see the background.

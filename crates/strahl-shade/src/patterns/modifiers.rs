@@ -41,6 +41,37 @@ pub(super) fn triangle(x: f64) -> f64 {
     if x < 0.5 { 2.0 * x } else { 2.0 - 2.0 * x }
 }
 
+/// The period of the values that maps are looked up with.
+const PERIOD: f64 = 1.000_01;
+
+/// `x % PERIOD`, with the same bits: the library's function takes as long as a pattern.
+fn repeated(x: f64) -> f64 {
+    /// Numbers from here on take the library's function.
+    const FAR: f64 = (1 << 20) as f64;
+    /// The period without its last 21 bits, so that products with whole numbers below `FAR` are exact.
+    const HIGH: f64 = f64::from_bits(PERIOD.to_bits() >> 21 << 21);
+    const LOW: f64 = PERIOD - HIGH;
+    let size = x.abs();
+    if size < PERIOD {
+        return x;
+    }
+    if !(size < FAR) {
+        return x % PERIOD;
+    }
+    // Both differences are exact: they are multiples of 2^-52 below 2.
+    let periods = f64::from((size / PERIOD) as u32);
+    let rest = (size - periods * HIGH) - periods * LOW;
+    // The quotient was rounded.
+    let rest = if rest < 0.0 {
+        rest + PERIOD
+    } else if rest >= PERIOD {
+        rest - PERIOD
+    } else {
+        rest
+    };
+    rest.copysign(x)
+}
+
 /// Modifiers that apply to any pattern.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Modifiers {
@@ -83,7 +114,6 @@ impl Modifiers {
     ///
     /// A frequency of 0 leaves the value as it is, with a period of exactly 1 and without the phase (measured).
     pub fn shape(&self, value: f64, wave: Wave) -> f64 {
-        const PERIOD: f64 = 1.00001;
         if self.frequency == 0.0 {
             let is_whole = (0.0..=1.0).contains(&value);
             return wave.apply(if is_whole {
@@ -92,7 +122,7 @@ impl Modifiers {
                 value - value.floor()
             });
         }
-        let x = (value * self.frequency + self.phase) % PERIOD;
+        let x = repeated(value * self.frequency + self.phase);
         let x = if x < 0.0 { x + 1.0 } else { x };
         wave.apply(x)
     }
@@ -114,5 +144,40 @@ impl Modifiers {
         } else {
             p + self.turbulence * self.octaves.vector(p)
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn repeated_values_are_remainders_bit_for_bit() {
+        let check = |x: f64| {
+            for x in [x.next_down(), x, x.next_up()] {
+                for x in [x, -x] {
+                    let expected = x % PERIOD;
+                    assert_eq!(repeated(x).to_bits(), expected.to_bits(), "{x:e}");
+                }
+            }
+        };
+        let mut state = 7u64;
+        let mut unit = || {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1);
+            (state >> 11) as f64 / (1u64 << 53) as f64
+        };
+        for n in 0..3000 {
+            check(f64::from(n) * PERIOD);
+            check(f64::from(n));
+            check(unit() * 10.0);
+            check(unit() * f64::from(1 << (n % 25)));
+            check(f64::from(350 * n) * PERIOD);
+        }
+        for x in [0.0, PERIOD, f64::MIN_POSITIVE, 1e-310, 1e300, f64::MAX] {
+            check(x);
+        }
+        assert!(repeated(f64::NAN).is_nan() && repeated(f64::INFINITY).is_nan());
     }
 }

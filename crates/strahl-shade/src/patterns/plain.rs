@@ -28,7 +28,18 @@ pub(super) fn spherical(p: DVec3) -> f64 {
 
 /// Values above 1 are taken modulo 1 here, exactly; [`Modifiers::shape`] deals with the rest.
 pub(super) fn wrapped(x: f64) -> f64 {
-    if x > 1.0 { x % 1.0 } else { x }
+    if x > 1.0 { fraction(x) } else { x }
+}
+
+/// `x % 1.0` of a number that is not negative, with the same bits.
+fn fraction(x: f64) -> f64 {
+    /// Numbers from here on take the library's function, which is slow.
+    const FAR: f64 = (1u64 << 32) as f64;
+    if x < FAR {
+        x - f64::from(x as u32)
+    } else {
+        x % 1.0
+    }
 }
 
 pub(super) fn gradient(p: DVec3, direction: DVec3) -> f64 {
@@ -41,7 +52,7 @@ pub(super) fn leopard(p: DVec3) -> f64 {
 }
 
 pub(super) fn onion(p: DVec3) -> f64 {
-    p.length() % 1.0
+    fraction(p.length())
 }
 
 /// The angle around the y axis in turns, `1/4..=5/4`; 1/4 near the axis (measured).

@@ -1,0 +1,133 @@
+//! The directions from the points of a batch to a light, side by side.
+
+use super::stages::{Lanes, Point};
+use strahl_accel::PACKET;
+use strahl_math::DVec3;
+use strahl_shade::{Light, LightSample};
+use strahl_simd::{Simd, dispatch};
+
+/// Vectors, axis by axis.
+type Vectors = [[f64; PACKET]; 3];
+
+/// Points on surfaces and their shading normals.
+#[derive(Debug)]
+pub(super) struct Places {
+    positions: Vectors,
+    normals: Vectors,
+}
+
+impl Places {
+    /// Those of some lanes, one behind the other.
+    pub(super) fn of(points: &[Point<'_>], lanes: &Lanes) -> Self {
+        let mut places = Self {
+            positions: [[0.0; PACKET]; 3],
+            normals: [[0.0; PACKET]; 3],
+        };
+        for (index, lane) in lanes.iter().enumerate() {
+            let surface = &points[*lane].surface;
+            put(
+                &mut places.positions,
+                index,
+                surface.resolved.point.position,
+            );
+            put(&mut places.normals, index, surface.n_shade);
+        }
+        places
+    }
+}
+
+/// A light that shines from a point, as places see it. All with the bits that [`Light::illuminate`] has for each place.
+#[derive(Debug)]
+pub(super) struct Directions {
+    to_light: Vectors,
+    distance: [f64; PACKET],
+    /// Unit vectors towards the light.
+    l: Vectors,
+    n_dot_l: [f64; PACKET],
+}
+
+impl Directions {
+    /// To a light at this position.
+    #[inline]
+    pub(super) fn new(light: DVec3, places: &Places) -> Self {
+        let mut out = Self {
+            to_light: [[0.0; PACKET]; 3],
+            distance: [0.0; PACKET],
+            l: [[0.0; PACKET]; 3],
+            n_dot_l: [0.0; PACKET],
+        };
+        // Loops over arrays, which the compiler turns into vector instructions of the level.
+        dispatch!(Simd::best(), _isa => {
+            let ([x, y, z], [nx, ny, nz]) = (&places.positions, &places.normals);
+            for k in 0..PACKET {
+                let (dx, dy, dz) = (light.x - x[k], light.y - y[k], light.z - z[k]);
+                let distance = (dx * dx + dy * dy + dz * dz).sqrt();
+                let (lx, ly, lz) = (dx / distance, dy / distance, dz / distance);
+                (out.to_light[0][k], out.to_light[1][k], out.to_light[2][k]) = (dx, dy, dz);
+                out.distance[k] = distance;
+                (out.l[0][k], out.l[1][k], out.l[2][k]) = (lx, ly, lz);
+                out.n_dot_l[k] = nx[k] * lx + ny[k] * ly + nz[k] * lz;
+            }
+        });
+        out
+    }
+
+    /// The light at a place, and the cosine between its shading normal and the direction to the light; `None` if the light is there.
+    #[inline(always)]
+    pub(super) fn sample(&self, light: &Light, index: usize) -> Option<(LightSample, f64)> {
+        let k = index % PACKET;
+        let (to_light, l) = (get(&self.to_light, k), get(&self.l, k));
+        let sample = light.plain_sample(to_light, self.distance[k], l)?;
+        Some((sample, self.n_dot_l[k]))
+    }
+}
+
+#[inline(always)]
+fn put(vectors: &mut Vectors, index: usize, v: DVec3) {
+    for (axis, x) in v.to_array().into_iter().enumerate() {
+        vectors[axis][index % PACKET] = x;
+    }
+}
+
+#[inline(always)]
+fn get(vectors: &Vectors, index: usize) -> DVec3 {
+    DVec3::new(vectors[0][index], vectors[1][index], vectors[2][index])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use strahl_geometry::conformance::Random;
+    use strahl_shade::Color;
+
+    #[test]
+    fn directions_have_the_bits_of_single_points() {
+        let mut random = Random::new(3);
+        let mut vector = |size: f64| {
+            let mut unit = || 2.0 * random.unit() - 1.0;
+            DVec3::new(unit(), unit(), unit()) * size
+        };
+        for size in [1e-3, 1.0, 1e6, 1e160] {
+            let mut light = Light::point(vector(size), Color::new(1.0, 2.0, 3.0));
+            light.clearance = 0.1 * size;
+            let mut places = Places {
+                positions: [[0.0; PACKET]; 3],
+                normals: [[0.0; PACKET]; 3],
+            };
+            for k in 0..PACKET {
+                put(&mut places.positions, k, vector(size));
+                put(&mut places.normals, k, vector(1.0));
+            }
+            let at_the_light = light.plain_position().unwrap();
+            put(&mut places.positions, 5, at_the_light);
+            let directions = Directions::new(at_the_light, &places);
+            for k in 0..PACKET {
+                let (position, normal) = (get(&places.positions, k), get(&places.normals, k));
+                let expected = light.illuminate(position).map(|s| (s, normal.dot(s.l)));
+                let found = directions.sample(&light, k);
+                // As texts, which have all digits: NaN, where distances overflow, differs from itself.
+                assert_eq!(format!("{found:?}"), format!("{expected:?}"), "{size} {k}");
+            }
+        }
+    }
+}
