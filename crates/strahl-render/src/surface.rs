@@ -96,7 +96,7 @@ pub(crate) struct Surface<'s> {
 }
 
 impl<'s> Surface<'s> {
-    /// A place for a surface, which [`Surface::find`] fills.
+    /// A place for a surface, which [`Surface::find`], [`Surface::look`] and [`Surface::find_start`] fill.
     pub(crate) fn unknown() -> Self {
         Self {
             resolved: Resolved::UNKNOWN,
@@ -130,25 +130,24 @@ impl<'s> Surface<'s> {
         }
     }
 
-    /// Finds out about the surface at a hit; `speed` is the length of the ray's direction.
+    /// Finds the point of a hit.
     // In place: a surface has some 700 bytes, and copies of it took 5 % of the time.
     #[inline(always)]
-    pub(crate) fn find(
+    pub(crate) fn find(&mut self, scene: &RenderScene, branch: &Branch, hit: &Hit, uv: Uv) {
+        let from = branch.origin.as_ref();
+        scene.resolve(&branch.ray, from, hit, uv, &mut self.resolved);
+    }
+
+    /// Finds out about the surface at the point that was found; `speed` is the length of the ray's direction.
+    #[inline(always)]
+    pub(crate) fn look(
         &mut self,
         scene: &'s RenderScene,
         branch: &Branch,
         speed: f64,
         hit: &Hit,
         media: &MediaArena,
-        uv: Uv,
     ) {
-        scene.resolve(
-            &branch.ray,
-            branch.origin.as_ref(),
-            hit,
-            uv,
-            &mut self.resolved,
-        );
         let Resolved {
             point, look, space, ..
         } = &self.resolved;
@@ -190,6 +189,11 @@ impl<'s> Surface<'s> {
         }
         self.lit = scene.lit(hit.id, look.object);
         self.shows_lights = true;
+    }
+
+    /// Finds where rays towards the side of the viewer start.
+    #[inline(always)]
+    pub(crate) fn find_start(&mut self, hit: &Hit) {
         store_start(&self.resolved, hit, self.entering, &mut self.front);
     }
 

@@ -154,7 +154,7 @@ impl<'s> TreeTracer<'s> {
 
     /// Traces primary rays, at most [`PACKET`], with their trees, and returns their radiances; where there is no ray it is black. It pays
     /// if the rays are close to each other.
-    pub(crate) fn trace_packet(&mut self, rays: &[Option<Ray>]) -> ArrayVec<Color, PACKET> {
+    pub(crate) fn trace_packet(&mut self, rays: &[Option<Ray>]) -> &[Color] {
         let mut traced = rays.iter().flatten();
         let Some(first) = traced.next().filter(|_| self.have_one_eye(rays)) else {
             return self.trace_each(rays);
@@ -176,15 +176,19 @@ impl<'s> TreeTracer<'s> {
         self.tracer.slot.ray(RayKind::Primary);
         self.tracer.slot.enter(Phase::Sampling);
         self.combine(&mut ());
-        self.roots[..rays.len()].iter().copied().collect()
+        &self.roots[..rays.len()]
     }
 
     /// Traces primary rays one after the other.
-    fn trace_each(&mut self, rays: &[Option<Ray>]) -> ArrayVec<Color, PACKET> {
+    fn trace_each(&mut self, rays: &[Option<Ray>]) -> &[Color] {
         let mut trace = |ray: &Ray| self.trace(ray, &mut ()).color;
-        rays.iter()
+        let colors: ArrayVec<Color, PACKET> = rays
+            .iter()
             .map(|ray| ray.as_ref().map_or(Color::BLACK, &mut trace))
-            .collect()
+            .collect();
+        let roots = &mut self.roots[..colors.len()];
+        roots.copy_from_slice(&colors);
+        roots
     }
 
     /// Whether all rays start in the same media.
@@ -244,8 +248,8 @@ impl<'s> TreeTracer<'s> {
             }
         }
         self.settings.decode_all(&mut sums);
-        for (number, sum) in numbers.into_iter().zip(sums) {
-            self.roots[number % PACKET] = sum;
+        for (number, sum) in numbers.iter().zip(&sums) {
+            self.roots[number % PACKET] = *sum;
         }
     }
 

@@ -137,13 +137,16 @@ impl PixelTracer<'_> {
                 }
                 continue;
             }
-            let rays: ArrayVec<Option<Ray>, PACKET> = square
-                .positions()
-                .map(|(x, y)| self.rays.ray(f64::from(x) + dx, f64::from(y) + dy))
-                .collect();
+            // Not collected, which would copy them all.
+            let mut rays = ArrayVec::<Option<Ray>, PACKET>::new();
+            rays.extend(
+                square
+                    .positions()
+                    .map(|(x, y)| self.rays.ray(f64::from(x) + dx, f64::from(y) + dy)),
+            );
             let colors = self.tree.trace_packet(&rays);
             for ((x, y), color) in square.positions().zip(colors) {
-                values[tile.index(x, y)] = shown(color);
+                values[tile.index(x, y)] = shown(*color);
             }
         }
         self.end_tile(tile, None, values, Vec::new())
@@ -299,10 +302,11 @@ impl PixelTracer<'_> {
 
     /// Traces numbered rays in a packet, which is then empty.
     fn trace_packet(&mut self, packet: &mut Packet, mut put: impl FnMut(usize, Color)) {
-        let rays: ArrayVec<Option<Ray>, PACKET> = packet.iter().map(|(_, ray)| *ray).collect();
+        let mut rays = ArrayVec::<Option<Ray>, PACKET>::new();
+        rays.extend(packet.iter().map(|(_, ray)| *ray));
         let colors = self.tree.trace_packet(&rays);
         for ((index, _), color) in packet.drain(..).zip(colors) {
-            put(index, color);
+            put(index, *color);
         }
     }
 
@@ -443,7 +447,7 @@ impl PixelTracer<'_> {
                 .map(|(dx, dy)| self.rays.ray(f64::from(x) + dx, f64::from(y) + dy))
                 .collect();
             for color in self.tree.trace_packet(&rays) {
-                samples.add(color);
+                samples.add(*color);
             }
         }
     }
@@ -458,7 +462,7 @@ impl PixelTracer<'_> {
             };
             let rays: ArrayVec<Option<Ray>, PACKET> = places.iter().map(ray).collect();
             let colors = self.tree.trace_packet(&rays);
-            return colors.into_iter().map(Sample::from).collect();
+            return colors.iter().copied().map(Sample::from).collect();
         }
         let sample = |&place: &(f64, f64)| {
             let (x, y) = at(place);
@@ -476,7 +480,9 @@ impl PixelTracer<'_> {
     pub(super) fn sample(&mut self, x: f64, y: f64, keep: bool) -> Sample {
         if self.options.has_packets() && !self.blind {
             let rays = self.rays;
-            if let Some(color) = rays.blurred(x, y, |rays| self.tree.trace_packet(rays)) {
+            let trace =
+                |rays: &[Option<Ray>]| self.tree.trace_packet(rays).iter().copied().collect();
+            if let Some(color) = rays.blurred(x, y, trace) {
                 return color.into();
             }
         }

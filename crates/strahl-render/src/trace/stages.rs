@@ -166,6 +166,13 @@ impl<'s> TreeTracer<'s> {
     ) -> Lanes {
         let scene = self.tracer.scene;
         let mut lanes = Lanes::new();
+        // One loop for each part: a point waits for the results of another's square roots and divisions meanwhile.
+        for (point, hit) in points.iter_mut().zip(hits) {
+            if let Some(hit) = hit {
+                self.tracer.slot.enter_for(Phase::Surface, hit.id);
+                point.surface.find(scene, &point.branch, hit, self.uv);
+            }
+        }
         for (lane, (point, hit)) in points.iter_mut().zip(hits).enumerate() {
             let branch = &point.branch;
             self.deepest = self.deepest.max(branch.depth);
@@ -193,9 +200,7 @@ impl<'s> TreeTracer<'s> {
                     self.tracer.slot.enter_for(Phase::Surface, hit.id);
                     point.hit = *hit;
                     point.length = length;
-                    point
-                        .surface
-                        .find(scene, branch, speed, hit, &self.media, self.uv);
+                    point.surface.look(scene, branch, speed, hit, &self.media);
                     lanes.push(lane);
                 }
                 None => node.local = scene.background.along(branch.ray.direction),
@@ -205,6 +210,10 @@ impl<'s> TreeTracer<'s> {
                 let seen = self.nodes[point.node as usize].local;
                 observer.ray(self.ray_report(point, None, Some(seen)));
             }
+        }
+        for lane in &lanes {
+            let Point { surface, hit, .. } = &mut points[*lane];
+            surface.find_start(hit);
         }
         lanes
     }
