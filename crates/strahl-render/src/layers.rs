@@ -2,7 +2,7 @@
 
 mod known;
 
-pub(crate) use known::KnownPaints;
+pub(crate) use known::{KnownPaints, Side};
 
 use crate::hit::Hit;
 use crate::observer::{LayerReport, Share, SurfaceTerm};

@@ -1,6 +1,7 @@
 //! The properties of a hit that shading needs, and how the surface divides light.
 
 use crate::hit::{Hit, Origin};
+use crate::layers::Side;
 use crate::light_sets::Lit;
 use crate::media::{Body, Crossing, MediaArena, MediaStack, Medium};
 use crate::observer::{HitReport, Shading};
@@ -61,9 +62,9 @@ impl Split {
 pub(crate) struct Surface<'s> {
     pub(crate) resolved: Resolved,
     pub(crate) material: MaterialPoint<'s>,
-    /// The material, and whether its outside, whose layers are the same everywhere and are in `material` already, and in the point's
-    /// layers: most rays meet what the ray before them in this place has met.
-    pub(crate) painted: Option<(MaterialId, bool)>,
+    /// The side of a material of one colour whose layers are still here, and in the point's `paint`, from an earlier ray: if the
+    /// next ray meets it too, as most do, only the normals change.
+    pub(crate) painted: Option<Side>,
     /// Unit vector towards the viewer.
     pub(crate) v: DVec3,
     pub(crate) n_geom: DVec3,
@@ -96,7 +97,7 @@ pub(crate) struct Surface<'s> {
 }
 
 impl<'s> Surface<'s> {
-    /// A place for a surface, which [`Surface::find`], [`Surface::look`] and [`Surface::find_start`] fill.
+    /// A place for a surface, which [`Surface::find`], [`Surface::find_sides`] and [`Surface::find_start`] fill.
     pub(crate) fn unknown() -> Self {
         Self {
             resolved: Resolved::UNKNOWN,
@@ -138,9 +139,10 @@ impl<'s> Surface<'s> {
         scene.resolve(&branch.ray, from, hit, uv, &mut self.resolved);
     }
 
-    /// Finds out about the surface at the point that was found; `speed` is the length of the ray's direction.
+    /// Finds which side of the surface the ray meets, what is on both sides, and the material; `speed` is the length of the ray's
+    /// direction.
     #[inline(always)]
-    pub(crate) fn look(
+    pub(crate) fn find_sides(
         &mut self,
         scene: &'s RenderScene,
         branch: &Branch,

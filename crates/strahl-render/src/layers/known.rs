@@ -11,7 +11,7 @@ use strahl_shade::{Color, Finish, MaterialId};
 pub(crate) struct KnownPaints<'s>(Vec<Known<'s>>);
 
 /// A material, and whether it is seen from outside.
-type Side = (MaterialId, bool);
+pub(crate) type Side = (MaterialId, bool);
 
 /// What is known of the layers of a material.
 #[derive(Debug)]

@@ -36,7 +36,7 @@ impl Places {
     }
 }
 
-/// A light that shines from a point, as places see it. All with the bits that [`Light::illuminate`] has for each place.
+/// The directions from places to a light that shines from a point, with the bits of [`Light::illuminate`] at each place.
 #[derive(Debug)]
 pub(super) struct Directions {
     to_light: Vectors,

@@ -166,7 +166,7 @@ impl<'s> TreeTracer<'s> {
     ) -> Lanes {
         let scene = self.tracer.scene;
         let mut lanes = Lanes::new();
-        // One loop for each part: a point waits for the results of another's square roots and divisions meanwhile.
+        // Three short loops: while a point waits for a square root or a division, the processor goes on with the next point.
         for (point, hit) in points.iter_mut().zip(hits) {
             if let Some(hit) = hit {
                 self.tracer.slot.enter_for(Phase::Surface, hit.id);
@@ -200,7 +200,9 @@ impl<'s> TreeTracer<'s> {
                     self.tracer.slot.enter_for(Phase::Surface, hit.id);
                     point.hit = *hit;
                     point.length = length;
-                    point.surface.look(scene, branch, speed, hit, &self.media);
+                    point
+                        .surface
+                        .find_sides(scene, branch, speed, hit, &self.media);
                     lanes.push(lane);
                 }
                 None => node.local = scene.background.along(branch.ray.direction),
