@@ -4,7 +4,8 @@ mod common;
 
 use common::{compiled, rendered};
 use strahl_geometry::{Cuboid, Sphere};
-use strahl_math::DVec3;
+use strahl_math::{DVec3, Ray};
+use strahl_render::{TraceSettings, trace::TreeTracer};
 use strahl_scene::{Camera, CsgOp, Object, ObjectExt, Scene};
 use strahl_shade::patterns::Pattern;
 use strahl_shade::pigment::Pigment;
@@ -214,4 +215,34 @@ fn surfaces_that_show_no_lights_send_no_shadow_rays() {
     let shiny = PovFinish { phong: 1.0, ..dull };
     assert_eq!(shadow_rays(shiny), 1);
     assert_eq!(shadow_rays(PovFinish::default()), 1);
+}
+
+#[test]
+fn a_ray_does_not_see_what_the_ray_before_it_has_met() {
+    // Materials of one colour, of a pattern and without a texture, in every order, on surfaces that turn.
+    let ball =
+        |x: f64, material: Material| Sphere::new(DVec3::new(x, 0.0, 0.0), 0.45).material(material);
+    let scene = Scene::new()
+        .camera(Camera::perspective(DVec3::Z, DVec3::ZERO, DVec3::Y, 1.0))
+        .light(Light::point(DVec3::new(1.0, 5.0, 9.0), Color::WHITE))
+        .add(ball(0.0, material(plain(opaque(1.0, 0.2, 0.1)).into())))
+        .add(ball(1.0, material(plain(opaque(0.1, 0.9, 0.3)).into())))
+        .add(ball(2.0, Material::default()))
+        .add(checkered().translated(DVec3::new(3.5, 0.0, 0.0)));
+    let scene = compiled(&scene);
+    let settings = TraceSettings::of(&scene);
+    let mut reused = TreeTracer::new(&scene, settings);
+    let ray = |x: f64, y: f64| Ray::new(DVec3::new(x, y, 5.0), DVec3::NEG_Z);
+    let mut colors = Vec::new();
+    for n in 0..600 {
+        let x = f64::from(n * 7 % 45) * 0.1 - 0.2;
+        let ray = ray(x, f64::from(n % 9 - 4) * 0.09);
+        let color = reused.trace(&ray, &mut ()).color;
+        let fresh = TreeTracer::new(&scene, settings).trace(&ray, &mut ()).color;
+        assert_eq!(color, fresh, "{ray:?}");
+        if !colors.contains(&color) {
+            colors.push(color);
+        }
+    }
+    assert!(colors.len() > 20, "{} colours", colors.len());
 }
