@@ -109,7 +109,7 @@ class TreeRay(Node):
     parent: int | None = None
     """The ray that sent it; none for the primary ray."""
     kind: str
-    """`primary`, `reflection` or `transparency`."""
+    """`primary`, `reflection`, `transparency` or `gather`."""
     depth: int
     """Level in the tree, 1 for the primary ray."""
     weight: float
@@ -128,6 +128,8 @@ class TreeRay(Node):
     """The colour of the background, if it hit nothing."""
     lights: list[Light]
     """The lights looked at from the hit."""
+    gathered: Gathered | None = None
+    """Light that a method of light transport found at the hit."""
     ended: list[Ended]
     """Rays that were not traced."""
     children: list[int]
@@ -166,6 +168,18 @@ class Line(Node):
     """Where it starts."""
     direction: Triple
     """How far it moves per unit of `t`."""
+    _json: dict[str, Any] = field(repr=False, compare=False)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Gathered(Node):
+    """Light that is neither the hit's own, nor reflected, nor transmitted."""
+    method: str
+    """The name of the method that found it."""
+    radiance: Triple
+    """The radiance, without that of its rays."""
+    rays: int
+    """How many rays it asked for."""
     _json: dict[str, Any] = field(repr=False, compare=False)
 
 

@@ -16,6 +16,8 @@ pub enum RayPurpose {
     Reflection,
     /// Transmitted.
     Refraction,
+    /// Sent by a method of light transport.
+    Gather,
     /// To the light of this number.
     Shadow(u32),
 }
@@ -67,6 +69,7 @@ const PRIMARY: u64 = 1;
 const REFLECTION: u64 = 2;
 const REFRACTION: u64 = 3;
 const SHADOW: u64 = 4;
+const GATHER: u64 = 5;
 
 /// The bits of a stored element, above which the phase is stored.
 const ELEMENT_BITS: u32 = 60;
@@ -89,6 +92,7 @@ impl Slot {
             RayKind::Primary => PRIMARY,
             RayKind::Reflection => REFLECTION,
             RayKind::Refraction => REFRACTION,
+            RayKind::Gather => GATHER,
         };
         self.purpose.store(purpose, Ordering::Relaxed);
     }
@@ -126,6 +130,7 @@ impl Slot {
             PRIMARY => RayPurpose::Primary,
             REFLECTION => RayPurpose::Reflection,
             REFRACTION => RayPurpose::Refraction,
+            GATHER => RayPurpose::Gather,
             SHADOW => RayPurpose::Shadow(light),
             _ => return None,
         };
@@ -183,6 +188,7 @@ mod tests {
             (RayKind::Primary, RayPurpose::Primary),
             (RayKind::Reflection, RayPurpose::Reflection),
             (RayKind::Refraction, RayPurpose::Refraction),
+            (RayKind::Gather, RayPurpose::Gather),
         ];
         for (kind, ray) in purposes {
             slot.ray(kind);

@@ -93,7 +93,7 @@ impl TraceObserver for Coverage {
                     parent.clear += luminance(taken) * clear;
                 }
             }
-            RayKind::Reflection => {}
+            RayKind::Reflection | RayKind::Gather => {}
         }
     }
 }

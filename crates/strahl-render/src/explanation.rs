@@ -56,7 +56,7 @@ pub struct TreeRay {
     pub id: u32,
     /// The ray that sent it; none for the primary ray.
     pub parent: Option<u32>,
-    /// `primary`, `reflection` or `transparency`.
+    /// `primary`, `reflection`, `transparency` or `gather`.
     pub kind: String,
     /// Level in the tree, 1 for the primary ray.
     pub depth: u32,
@@ -76,6 +76,8 @@ pub struct TreeRay {
     pub background: Option<Triple>,
     /// The lights looked at from the hit.
     pub lights: Vec<Light>,
+    /// Light that a method of light transport found at the hit.
+    pub gathered: Option<Gathered>,
     /// Rays that were not traced.
     pub ended: Vec<Ended>,
     /// Numbers of the rays it sent.
@@ -99,6 +101,17 @@ pub struct Line {
     pub origin: Triple,
     /// How far it moves per unit of `t`.
     pub direction: Triple,
+}
+
+/// Light that is neither the hit's own, nor reflected, nor transmitted.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Gathered {
+    /// The name of the method that found it.
+    pub method: String,
+    /// The radiance, without that of its rays.
+    pub radiance: Triple,
+    /// How many rays it asked for.
+    pub rays: u32,
 }
 
 /// A branch that was not traced.

@@ -48,6 +48,7 @@ mod spheres;
 mod surface;
 mod tiles;
 pub mod trace;
+pub mod transport;
 mod tree;
 mod view;
 mod walk;
@@ -63,8 +64,8 @@ pub use hit::{Hit, Origin, RayClass};
 pub use names::{light_kind, light_position};
 pub use objects::{ObjectInfo, Objects};
 pub use observer::{
-    BranchEnd, HitReport, LayerReport, LightDetail, LightTerm, RayKind, RayReport, Shading,
-    ShadowHit, ShadowReport, Share, SurfaceTerm, TraceObserver,
+    BranchEnd, GatherTerm, HitReport, LayerReport, LightDetail, LightTerm, RayKind, RayReport,
+    Shading, ShadowHit, ShadowReport, Share, SurfaceTerm, TraceObserver,
 };
 pub use profile::{Part as ProfilePart, Profile, ProfileReport};
 pub use queries::{HitInfo, HitSurface};

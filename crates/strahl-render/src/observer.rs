@@ -16,6 +16,8 @@ pub enum RayKind {
     Reflection,
     /// In the transparency direction.
     Refraction,
+    /// In a direction that a [`Gather`](crate::transport::Gather) asked for.
+    Gather,
 }
 
 impl fmt::Display for RayKind {
@@ -24,6 +26,7 @@ impl fmt::Display for RayKind {
             Self::Primary => "primary",
             Self::Reflection => "reflection",
             Self::Refraction => "transparency",
+            Self::Gather => "gather",
         })
     }
 }
@@ -113,8 +116,19 @@ pub struct RayReport {
     pub medium: Option<MaterialId>,
     /// The attenuation by the medium it ran through; where light was divided into its spectrum, times the part's share.
     pub attenuation: Color,
-    /// The light that fog and rainbows in front of the hit add.
+    /// The light that fog, rainbows and a medium in front of the hit add.
     pub fog: Color,
+}
+
+/// The light that a [`Gather`](crate::transport::Gather) found at a hit. It is neither local, nor reflected, nor transmitted.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GatherTerm {
+    /// The name of the method.
+    pub method: String,
+    /// The radiance, without that of its rays.
+    pub radiance: Color,
+    /// How many rays it asked for; those that a limit ends are reported as ended.
+    pub rays: u32,
 }
 
 /// The surface a ray of the tree hit.
@@ -220,6 +234,9 @@ pub trait TraceObserver {
 
     /// The contribution of a light to the hit of a ray was computed.
     fn light(&mut self, _node: u32, _term: LightTerm, _detail: LightDetail) {}
+
+    /// Light was gathered at the hit of a ray.
+    fn gathered(&mut self, _node: u32, _term: GatherTerm) {}
 
     /// A shadow ray to a point of an area light was traced. [`TraceObserver::light`] is called with the mean afterwards.
     fn area_shadow(&mut self, _node: u32, _light: u32, _shadow: ShadowReport) {}

@@ -138,6 +138,7 @@ impl Tables {
             RayPurpose::Primary => "primary rays",
             RayPurpose::Reflection => "reflection rays",
             RayPurpose::Refraction => "transparency rays",
+            RayPurpose::Gather => "gather rays",
             RayPurpose::Shadow(light) => {
                 *self.lights.entry(light).or_default() += count;
                 "shadow rays"

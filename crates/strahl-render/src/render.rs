@@ -20,6 +20,7 @@ use crate::sampling::{Sample, Sampling};
 use crate::scene::RenderScene;
 use crate::tiles::TileOrder;
 use crate::trace::{RayCounts, TraceSettings};
+use crate::transport::Transport;
 use pixels::PixelTracer;
 use strahl_accel::TraversalStats;
 use strahl_shade::Color;
@@ -46,6 +47,8 @@ pub struct RenderOptions {
     pub coarse_first: bool,
     /// How ray trees are grown.
     pub trace: TraceSettings,
+    /// What the trace loop asks besides the scene.
+    pub transport: Transport,
     /// Whether to fill [`Film::info`].
     pub info: bool,
     /// Whether to fill [`Rendered::costs`].
@@ -67,6 +70,7 @@ impl RenderOptions {
             tile_order: TileOrder::Rows,
             coarse_first: false,
             trace: TraceSettings::of(scene),
+            transport: Transport::default(),
             info: false,
             costs: false,
             alpha: false,

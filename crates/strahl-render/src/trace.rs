@@ -17,6 +17,7 @@ mod aim;
 mod branch;
 mod detail;
 mod eye;
+mod gather;
 mod lights;
 mod nothing;
 mod outcome;
@@ -44,6 +45,7 @@ use crate::query::Tracer;
 use crate::resolve::Uv;
 use crate::scene::RenderScene;
 use crate::surface::Surface;
+use crate::transport::Transport;
 use arrayvec::ArrayVec;
 use strahl_accel::PACKET;
 use strahl_math::Ray;
@@ -58,6 +60,8 @@ pub struct TreeTracer<'s> {
     /// Rays traced so far.
     pub counts: RayCounts,
     settings: TraceSettings,
+    /// What is asked besides the scene.
+    transport: Transport,
     /// The radiance along primary rays that hit nothing, if it is the same for all.
     beyond: Option<Color>,
     uv: Uv,
@@ -68,6 +72,8 @@ pub struct TreeTracer<'s> {
     waiting: Vec<Branch>,
     /// The rays that were traced; parents come before their children.
     nodes: Vec<Node>,
+    /// The light that is gathered at their hits; only as long as needed.
+    gathered: Vec<Color>,
     /// The rays that go through the stages at the moment.
     points: Vec<Point<'s>>,
     /// A texture without layers, with the settings of the scene.
@@ -91,6 +97,8 @@ pub struct TreeTracer<'s> {
     mirrors: Vec<Mirror>,
     /// The passages of the current hit, if textures are blended there.
     passages: Vec<Passage>,
+    /// The last surface of a path outside of all trees.
+    met: Option<Box<Point<'s>>>,
 }
 
 impl<'s> TreeTracer<'s> {
@@ -108,10 +116,12 @@ impl<'s> TreeTracer<'s> {
             uv: if uv_shown { Uv::Always } else { Uv::IfTextured },
             counts: RayCounts::default(),
             settings,
+            transport: Transport::default(),
             media: MediaArena::default(),
             eye: Eye::default(),
             waiting: Vec::new(),
             nodes: Vec::new(),
+            gathered: Vec::new(),
             points: Vec::new(),
             blank: TexturePaint {
                 filter_by_color: scene.settings.filter_by_color,
@@ -129,6 +139,7 @@ impl<'s> TreeTracer<'s> {
             area_points: Vec::new(),
             mirrors: Vec::new(),
             passages: Vec::new(),
+            met: None,
         }
     }
 
@@ -212,6 +223,7 @@ impl<'s> TreeTracer<'s> {
     fn begin(&mut self) {
         self.waiting.clear();
         self.nodes.clear();
+        self.gathered.clear();
         (self.keeps_first, self.first, self.deepest) = (false, None, 0);
         self.roots = [Color::BLACK; PACKET];
     }
@@ -219,11 +231,17 @@ impl<'s> TreeTracer<'s> {
     /// Sums the trees from their leaves, into the radiances of primary rays: every ray has the hit's own light, plus kr times the radiance along its reflection ray,
     /// plus kt times the radiance along its transparency ray.
     fn combine<O: TraceObserver>(&mut self, observer: &mut O) {
-        let fogged = self.tracer.scene.has_air();
+        let fogged = self.adds_light_on_the_way();
+        if self.transport.gather.is_some() {
+            self.gathered.resize(self.nodes.len(), Color::BLACK);
+        }
         let (mut sums, mut numbers) = (ArrayVec::<Color, PACKET>::new(), Lanes::new());
         for index in (0..self.nodes.len()).rev() {
             let node = &self.nodes[index];
-            let sum = node.local + node.reflected + node.transmitted;
+            let mut sum = node.local + node.reflected + node.transmitted;
+            if let Some(gathered) = self.gathered.get(index) {
+                sum += *gathered;
+            }
             let mut total = sum * node.attenuation;
             if fogged {
                 total += node.fog;
@@ -238,13 +256,14 @@ impl<'s> TreeTracer<'s> {
                 continue;
             }
             let taken = node.share.of(total);
-            let parent = &mut self.nodes[parent];
+            let node = &mut self.nodes[parent];
             match kind {
                 RayKind::Primary => {}
                 // There may be several of each kind: layers reflect separately, and parts of the spectrum are refracted
                 // separately.
-                RayKind::Reflection => parent.reflected += taken,
-                RayKind::Refraction => parent.transmitted += taken,
+                RayKind::Reflection => node.reflected += taken,
+                RayKind::Refraction => node.transmitted += taken,
+                RayKind::Gather => self.gathered[parent] += taken,
             }
         }
         self.settings.decode_all(&mut sums);
@@ -253,15 +272,23 @@ impl<'s> TreeTracer<'s> {
         }
     }
 
+    /// Whether what lies in front of hits may add light.
+    fn adds_light_on_the_way(&self) -> bool {
+        self.tracer.scene.has_air() || self.transport.medium.is_some()
+    }
+
     /// The attenuation by what lies in front of a hit, and the light that it adds.
     #[inline(always)]
-    fn in_front(&self, branch: &Branch, length: f64) -> (Color, Color) {
+    fn in_front(&mut self, branch: &Branch, length: f64) -> (Color, Color) {
         let scene = self.tracer.scene;
         let mut attenuation = scene.absorbed(self.media.top(branch.media), length);
         let mut fog = Color::BLACK;
         if scene.has_air() && self.media.in_air(branch.media) {
             let (keeps, adds) = scene.air_along(&branch.ray, length);
             (attenuation, fog) = (attenuation * keeps, adds);
+        }
+        if self.transport.medium.is_some() {
+            (attenuation, fog) = self.medium_along(branch, length, (attenuation, fog));
         }
         if branch.divided {
             let share = branch.part.share();

@@ -1,6 +1,6 @@
 use crate::camera::PrimaryRays;
 use crate::observer::{
-    BranchEnd, LightDetail, LightTerm, RayKind, RayReport, ShadowReport, TraceObserver,
+    BranchEnd, GatherTerm, LightDetail, LightTerm, RayKind, RayReport, ShadowReport, TraceObserver,
 };
 use crate::render::{RenderError, RenderOptions, is_refined, mean_of_corners};
 use crate::sampling::{Sample, Sampling, subdivided};
@@ -25,14 +25,16 @@ pub struct RayNode {
     pub report: RayReport,
     /// The lights looked at from the hit, in the order of the scene: those that shine on the object at all.
     pub lights: Vec<LightReport>,
+    /// The light that a method of light transport found at the hit.
+    pub gathered: Option<GatherTerm>,
     /// Branches that were not followed: which, with what weight, why.
     pub ended: Vec<(RayKind, f64, BranchEnd)>,
     /// Numbers of the rays it sent.
     pub children: Vec<u32>,
     /// The hit's own contribution: ka·Ia, emission and the lights' terms (or the background).
     pub local: Color,
-    /// The radiance along the ray: `(local + reflected + transmitted) · attenuation + fog`, with each child's [`crate::Share`]
-    /// of its total.
+    /// The radiance along the ray: `(local + reflected + transmitted + gathered) · attenuation + fog`, with each child's
+    /// [`crate::Share`] of its total.
     pub total: Color,
 }
 
@@ -85,6 +87,7 @@ impl TraceObserver for RayTree {
         self.nodes.push(RayNode {
             report,
             lights,
+            gathered: None,
             ended,
             children,
             local,
@@ -96,6 +99,10 @@ impl TraceObserver for RayTree {
         detail.shadows.append(&mut self.shadows);
         let report = LightReport { term, detail };
         self.nodes[node as usize].lights.push(report);
+    }
+
+    fn gathered(&mut self, node: u32, term: GatherTerm) {
+        self.nodes[node as usize].gathered = Some(term);
     }
 
     fn area_shadow(&mut self, _node: u32, _light: u32, shadow: ShadowReport) {
@@ -142,7 +149,7 @@ pub(crate) fn explain_from(
     });
     crate::Film::try_new(options.width, options.height, region, false)?;
     let rays = PrimaryRays::new(camera, options.width, options.height);
-    let mut tracer = TreeTracer::new(scene, options.trace);
+    let mut tracer = TreeTracer::new(scene, options.trace).with_transport(&options.transport);
     let (mut samples, mut count) = (Vec::new(), 0);
     let mut sample = |pass: u32, dx: f64, dy: f64| {
         let place = (f64::from(x) + dx, f64::from(y) + dy);

@@ -5,6 +5,7 @@ use crate::sampling::Sampling;
 use crate::scene::RenderScene;
 use crate::tiles::TileOrder;
 use crate::trace::TraceSettings;
+use crate::transport::{Gather, MediumIntegrator, Transport};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use strahl_scene::Camera;
@@ -30,6 +31,8 @@ pub struct View {
     pub seed: u64,
     /// How ray trees are grown: depth, cutoff, shading model.
     pub trace: TraceSettings,
+    /// Methods of light transport besides the trace loop.
+    pub transport: Transport,
 }
 
 /// What is handed over of a picture, and in what order. None of it changes a pixel.
@@ -67,6 +70,7 @@ impl RenderScene {
             sampling: Sampling::Center,
             seed: 0,
             trace: TraceSettings::of(self),
+            transport: Transport::default(),
         }
     }
 }
@@ -120,6 +124,20 @@ impl View {
         self
     }
 
+    /// With light that this method finds at hits.
+    #[must_use]
+    pub fn with_gather(mut self, gather: Arc<dyn Gather>) -> Self {
+        self.transport.gather = Some(gather);
+        self
+    }
+
+    /// With a medium along all rays.
+    #[must_use]
+    pub fn with_medium(mut self, medium: Arc<dyn MediumIntegrator>) -> Self {
+        self.transport.medium = Some(medium);
+        self
+    }
+
     /// The rays of the camera.
     ///
     /// # Errors
@@ -143,6 +161,7 @@ impl View {
             tile_order: output.tile_order,
             coarse_first: output.coarse_first,
             trace: self.trace,
+            transport: self.transport.clone(),
             info: output.info,
             costs: output.costs,
             alpha: output.alpha,

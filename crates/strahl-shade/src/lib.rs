@@ -31,7 +31,7 @@ pub mod texture;
 pub use color::Color;
 pub use color_ft::ColorFt;
 pub use fresnel::fresnel_dielectric;
-pub use light::{AreaGrid, AreaLight, Falloff, Light, LightKind, LightSample};
+pub use light::{AreaGrid, AreaLight, Emission, Falloff, Light, LightKind, LightSample};
 pub use material::{Finish, Material, MaterialId, MaterialPoint, Sides};
 pub use pbr::{Pbr, TextureRef, Textures};
 pub use reflectance::{ShadingModel, UnknownShadingModel};

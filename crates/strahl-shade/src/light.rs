@@ -1,7 +1,9 @@
 mod area;
+mod emission;
 mod falloff;
 
 pub use area::{AreaGrid, AreaLight};
+pub use emission::Emission;
 pub use falloff::Falloff;
 
 use crate::Color;

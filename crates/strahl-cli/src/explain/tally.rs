@@ -17,6 +17,7 @@ pub(crate) struct Counts {
     pub(crate) primary: u32,
     pub(crate) reflection: u32,
     pub(crate) refraction: u32,
+    pub(crate) gather: u32,
     pub(crate) shadow: u32,
     pub(crate) levels: u32,
 }
@@ -86,6 +87,7 @@ impl Counts {
                 RayKind::Primary => counts.primary += 1,
                 RayKind::Reflection => counts.reflection += 1,
                 RayKind::Refraction => counts.refraction += 1,
+                RayKind::Gather => counts.gather += 1,
             }
             counts.shadow += node
                 .lights
@@ -102,6 +104,7 @@ impl Counts {
             primary: self.primary + o.primary,
             reflection: self.reflection + o.reflection,
             refraction: self.refraction + o.refraction,
+            gather: self.gather + o.gather,
             shadow: self.shadow + o.shadow,
             levels: self.levels.max(o.levels),
         }
@@ -109,14 +112,18 @@ impl Counts {
 
     /// The number of rays other than shadow rays.
     pub(crate) fn rays(self) -> u32 {
-        self.primary + self.reflection + self.refraction
+        self.primary + self.reflection + self.refraction + self.gather
     }
 
     /// In words.
     pub(crate) fn words(self) -> String {
         let rays = self.rays();
+        let gather = match self.gather {
+            0 => String::new(),
+            count => format!(", {count} gather"),
+        };
         format!(
-            "{rays} {} ({} primary, {} reflection, {} transparency), {} shadow {}, {} {}",
+            "{rays} {} ({} primary, {} reflection, {} transparency{gather}), {} shadow {}, {} {}",
             plural(rays, "ray", "rays"),
             self.primary,
             self.reflection,

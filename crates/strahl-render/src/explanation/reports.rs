@@ -1,8 +1,8 @@
 //! From the reports of rays to plain data.
 
 use super::{
-    Ended, Explanation, Finish, Highlight, Hit, Irid, Layer, Light, Line, Obstacle, Pigment,
-    Reflection, Sample, ShadingData, Shadow, SurfaceTerm, TreeRay, Triple,
+    Ended, Explanation, Finish, Gathered, Highlight, Hit, Irid, Layer, Light, Line, Obstacle,
+    Pigment, Reflection, Sample, ShadingData, Shadow, SurfaceTerm, TreeRay, Triple,
 };
 use crate::names::{light_kind, light_position};
 use crate::observer::{
@@ -77,6 +77,11 @@ impl TreeRay {
             hit: hit.map(|hit| Hit::new(scene, hit)),
             background: report.background.map(color),
             lights: lights.map(|light| Light::new(scene, hit, light)).collect(),
+            gathered: node.gathered.as_ref().map(|term| Gathered {
+                method: term.method.clone(),
+                radiance: color(term.radiance),
+                rays: term.rays,
+            }),
             ended: ended.collect(),
             children: node.children.clone(),
             medium: report.medium.map(|id| scene.material_name(id.0)),

@@ -67,7 +67,7 @@ impl<'s> PixelTracer<'s> {
         options: &'s RenderOptions,
         progress: &'s dyn Progress,
     ) -> Self {
-        let mut tree = TreeTracer::new(scene, options.trace);
+        let mut tree = TreeTracer::new(scene, options.trace).with_transport(&options.transport);
         if let Some(activities) = progress.activities() {
             tree.tracer.slot = activities.slot();
             tree.tracer.slot.enter(Phase::Sampling);

@@ -63,8 +63,8 @@ impl<'s> TreeTracer<'s> {
             detail.mean_of = Some(area.size_1 * area.size_2);
             return detail;
         }
-        if let Some(fog) = self.fog_before(light, &sample, point) {
-            detail.fog = fog;
+        if let Some(air) = self.air_before(light, &sample, point) {
+            detail.fog = air;
         }
         if !term.visible.is_black() {
             self.surface_terms(point, light, &sample, &mut detail);

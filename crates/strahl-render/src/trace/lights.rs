@@ -228,8 +228,8 @@ impl<'s> TreeTracer<'s> {
         let (diffuse, specular) = match arriving.reflected {
             Some(known) => known,
             None => {
-                if let Some(fog) = self.fog_before(light, sample, point) {
-                    visible *= fog;
+                if let Some(air) = self.air_before(light, sample, point) {
+                    visible *= air;
                 }
                 if visible.is_black() {
                     (Color::BLACK, Color::BLACK)
@@ -268,16 +268,39 @@ impl<'s> TreeTracer<'s> {
         observer.light(point.node, term, detail);
     }
 
-    /// What fog leaves of a light that it weakens on its way to a hit.
-    #[inline]
-    pub(super) fn fog_before(
-        &self,
+    /// What fog and a medium leave of a light that they weaken on its way to a hit.
+    #[inline(always)]
+    pub(super) fn air_before(
+        &mut self,
         light: &Light,
         sample: &LightSample,
         point: &Point<'s>,
     ) -> Option<Color> {
+        if self.tracer.scene.fogs.is_empty() && self.transport.medium.is_none() {
+            return None;
+        }
+        self.weakened_before(light, sample, point)
+    }
+
+    #[cold]
+    fn weakened_before(
+        &mut self,
+        light: &Light,
+        sample: &LightSample,
+        point: &Point<'s>,
+    ) -> Option<Color> {
+        let fog = self.fog_before(light, sample, point);
+        if self.transport.medium.is_none() {
+            return fog;
+        }
+        let keeps = self.medium_before(sample, point);
+        Some(fog.map_or(keeps, |fog| fog * keeps))
+    }
+
+    /// What fog leaves of it.
+    fn fog_before(&self, light: &Light, sample: &LightSample, point: &Point<'s>) -> Option<Color> {
         let scene = self.tracer.scene;
-        if !light.fogged || scene.fogs.is_empty() || !self.media.in_air(point.branch.media) {
+        if !light.fogged || !self.media.in_air(point.branch.media) {
             return None;
         }
         let ray = Ray::new(point.surface.resolved.point.position, sample.l);

@@ -43,7 +43,7 @@ impl TreeTracer<'_> {
         // The same sum as of a tree without branches, including the sign of zeros.
         let mut color = scene.background.along(primary.ray.direction) + Color::BLACK;
         color *= keeps;
-        if scene.has_air() {
+        if self.adds_light_on_the_way() {
             color += adds;
         }
         self.settings.decoded(color)

@@ -21,6 +21,10 @@ pub struct RayCounts {
     pub refraction: u64,
     /// Those that hit an object.
     pub refraction_hit: u64,
+    /// Rays by which a [`Gather`](crate::transport::Gather) finds light.
+    pub gather: u64,
+    /// Those that hit an object.
+    pub gather_hit: u64,
     /// Trees that reached the limit of rays.
     pub cut_trees: u64,
 }
@@ -28,12 +32,16 @@ pub struct RayCounts {
 impl RayCounts {
     /// All rays.
     pub fn total(&self) -> u64 {
-        self.primary + self.shadow + self.reflection + self.refraction
+        self.primary + self.shadow + self.reflection + self.refraction + self.gather
     }
 
     /// Those of them that hit something.
     pub fn hits(&self) -> u64 {
-        self.primary_hit + self.shadow_hit + self.reflection_hit + self.refraction_hit
+        self.primary_hit
+            + self.shadow_hit
+            + self.reflection_hit
+            + self.refraction_hit
+            + self.gather_hit
     }
 
     pub(super) fn count(&mut self, kind: RayKind, hit: bool) {
@@ -41,6 +49,7 @@ impl RayCounts {
             RayKind::Primary => (&mut self.primary, &mut self.primary_hit),
             RayKind::Reflection => (&mut self.reflection, &mut self.reflection_hit),
             RayKind::Refraction => (&mut self.refraction, &mut self.refraction_hit),
+            RayKind::Gather => (&mut self.gather, &mut self.gather_hit),
         };
         *rays += 1;
         *hits += u64::from(hit);
@@ -57,6 +66,8 @@ impl std::ops::AddAssign for RayCounts {
         self.reflection_hit += o.reflection_hit;
         self.refraction += o.refraction;
         self.refraction_hit += o.refraction_hit;
+        self.gather += o.gather;
+        self.gather_hit += o.gather_hit;
         self.cut_trees += o.cut_trees;
     }
 }

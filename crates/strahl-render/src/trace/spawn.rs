@@ -158,7 +158,7 @@ impl<'s> TreeTracer<'s> {
 
     /// Queues a branch, unless a limit is reached.
     #[inline(always)]
-    fn queue<O: TraceObserver>(
+    pub(super) fn queue<O: TraceObserver>(
         &mut self,
         point: &Point<'s>,
         offshoot: &Offshoot,

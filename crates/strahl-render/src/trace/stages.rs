@@ -7,6 +7,7 @@
 //!   enter      a node for each ray; rays without a hit see the background
 //!   paint      hits to points with a normal, layers and coefficients
 //!   light      light by light: which points face it, shadow rays, reflected light
+//!   gather     light that a method of light transport finds, if there is one
 //!   branch     reflection and transparency rays, which wait
 //! ```
 //!
@@ -81,6 +82,9 @@ impl<'s> TreeTracer<'s> {
             let mut lanes = self.enter(&mut points[..count], &hits[..count], observer);
             self.paint(&mut points, &mut lanes, observer);
             self.light(&mut points, &lanes, observer);
+            if self.transport.gather.is_some() {
+                self.gather(&points, &lanes, observer);
+            }
             self.branch(&points, &lanes, observer);
             finished = width == 1 || self.nodes.len() + self.waiting.len() < self.limit();
             count = self.take(width, &mut points);
