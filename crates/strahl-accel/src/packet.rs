@@ -1,4 +1,4 @@
-use crate::traversal::Leaf;
+use crate::leaf::Leaf;
 use strahl_math::Ray;
 use strahl_simd::Isa;
 

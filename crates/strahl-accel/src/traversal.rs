@@ -1,4 +1,4 @@
-use crate::bvh8::{BLOCK, NO_PRIMITIVE};
+use crate::leaf::Leaf;
 use crate::{Beam, Packet, PacketVisitor};
 use strahl_math::{Aabb, DVec3, Interval, Ray};
 use strahl_simd::Isa;
@@ -41,41 +41,6 @@ pub trait Visitor {
 
     /// The traversal visits a node or a cell; if it is a leaf, the primitives visited next are in it.
     fn step(&mut self, _step: Step) {}
-}
-
-/// A leaf of a structure with blocks of slots.
-#[derive(Clone, Copy, Debug)]
-pub struct Leaf<'a> {
-    /// The class of all its primitives.
-    pub class: u8,
-    /// Its first block.
-    pub first_block: usize,
-    /// Number of its primitives, at least one.
-    pub count: usize,
-    /// The slots of the structure.
-    pub slots: &'a [u32],
-}
-
-impl<'a> Leaf<'a> {
-    /// Number of its blocks.
-    #[inline(always)]
-    pub const fn blocks(&self) -> usize {
-        self.count.div_ceil(BLOCK)
-    }
-
-    /// Its primitives.
-    #[inline(always)]
-    pub fn ids(&self) -> &'a [u32] {
-        let first = self.first_block * BLOCK;
-        &self.slots[first..first + self.count]
-    }
-
-    /// The content of a slot of one of its blocks: a primitive, or [`NO_PRIMITIVE`].
-    #[inline(always)]
-    pub fn id(&self, block: usize, lane: usize) -> u32 {
-        let slot = (self.first_block + block) * BLOCK + lane;
-        self.slots.get(slot).copied().unwrap_or(NO_PRIMITIVE)
-    }
 }
 
 /// A step of a ray's traversal, for visitors that watch.

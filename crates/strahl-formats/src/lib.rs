@@ -2,5 +2,6 @@
 
 pub mod font;
 pub mod image;
+mod input;
 mod mesh;
 pub mod scene;

@@ -2,7 +2,7 @@
 
 use crate::cost::PixelCost;
 use crate::film::Region;
-use crate::render::{Probe, Progress, RenderError, RenderOptions, Seen, probe_rows};
+use crate::render::{PixelProbe, Progress, RenderError, RenderOptions, Seen, probe_rows};
 use crate::sampling::{Compared, Refinement, Sampling};
 use crate::scene::RenderScene;
 use crate::tiles::TILE;
@@ -283,7 +283,7 @@ impl Look<'_> {
 
     /// What all rays see, in rows.
     fn everywhere(&self) -> Result<Vec<Vec<Seen>>, RenderError> {
-        let row = |probe: &mut Probe<'_>, row: u32| {
+        let row = |probe: &mut PixelProbe<'_>, row: u32| {
             let columns = 0..self.columns();
             columns.map(|c| probe(self.x(c), self.y(row))).collect()
         };
@@ -292,7 +292,7 @@ impl Look<'_> {
 
     /// The pixels that are refined on the lines between rays beside and above each other.
     fn edges(&self, seen: &[Vec<Seen>], refinement: Refinement) -> Result<Edges, RenderError> {
-        let row = |probe: &mut Probe<'_>, row: u32| {
+        let row = |probe: &mut PixelProbe<'_>, row: u32| {
             let (mut edges, y) = (Edges::default(), self.y(row));
             let own = &seen[row as usize];
             for (column, pair) in (0..).zip(own.windows(2)) {

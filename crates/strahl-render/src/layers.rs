@@ -2,7 +2,7 @@
 
 mod known;
 
-pub(crate) use known::{KnownPaints, Side};
+pub(crate) use known::KnownPaints;
 
 use crate::hit::Hit;
 use crate::observer::{LayerReport, Share, SurfaceTerm};

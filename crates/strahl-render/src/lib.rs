@@ -13,6 +13,7 @@
 
 mod activity;
 mod area;
+mod attenuation;
 mod blocks;
 mod camera;
 mod compile;
@@ -21,10 +22,10 @@ mod coverage;
 mod estimate;
 pub mod explanation;
 mod film;
-mod fog;
 mod hit;
 mod layers;
 mod light_sets;
+mod lit;
 mod look;
 mod media;
 mod names;
@@ -50,6 +51,7 @@ mod tiles;
 pub mod trace;
 pub mod transport;
 mod tree;
+mod uses;
 mod view;
 mod walk;
 
@@ -69,7 +71,7 @@ pub use observer::{
 };
 pub use profile::{Part as ProfilePart, Profile, ProfileReport};
 pub use queries::{HitInfo, HitSurface};
-pub use query::Tracer;
+pub use query::{Tracer, WalkEvent};
 pub use render::{Pass, PixelState, Progress, RenderError, RenderOptions, Rendered, render};
 pub use sampling::{Refinement, Sampling, UnknownSampling};
 pub use scene::{RenderScene, SceneStats};
@@ -81,4 +83,4 @@ pub use tiles::TileOrder;
 pub use trace::{RayCounts, SampleResult, TraceSettings};
 pub use tree::{LightReport, PixelSample, PixelTree, RayNode, RayTree, explain};
 pub use view::{Output, View};
-pub use walk::{RayWalk, WalkEvent, walk};
+pub use walk::{RayWalk, walk};

@@ -1,5 +1,3 @@
-use crate::prim::PrimKind;
-use crate::scene::RenderScene;
 use strahl_scene::CsgOp;
 
 /// How an object is lit.
@@ -31,59 +29,33 @@ pub(crate) struct LightSets {
     special: bool,
 }
 
-impl RenderScene {
+impl LightSets {
     /// Whether not all lights shine on everything.
     #[inline]
-    pub(crate) fn has_light_groups(&self) -> bool {
-        !self.light_sets.lists.is_empty()
+    pub(crate) fn has_groups(&self) -> bool {
+        !self.lists.is_empty()
     }
 
     /// The numbers of the lights of a set; `None` if these are all lights.
     #[inline]
     pub(crate) fn lights_in(&self, set: u32) -> Option<&[u32]> {
-        if self.light_sets.lists.is_empty() {
+        if self.lists.is_empty() {
             return None;
         }
-        let list = self.light_sets.lists.get(set as usize);
+        let list = self.lists.get(set as usize);
         Some(list.map_or(&[], Vec::as_slice))
     }
 
-    /// How an element of this object is lit.
+    /// Whether an object is not [`Lit::PLAIN`].
     #[inline]
-    pub(crate) fn lit(&self, element: u64, object: u32) -> Lit {
-        if self.light_sets.special {
-            self.lit_specially(element, object)
-        } else {
-            Lit::PLAIN
-        }
+    pub(crate) const fn are_special(&self) -> bool {
+        self.special
     }
 
-    /// The lighting of an instance in a light group overrides that of its elements.
-    #[cold]
-    fn lit_specially(&self, element: u64, object: u32) -> Lit {
-        let own = self.light_sets.of_objects.get(object as usize);
-        let own = own.copied().unwrap_or(Lit::PLAIN);
-        let mut around = Lit::PLAIN;
-        let (mut group, mut rest) = (&self.groups[0], element);
-        loop {
-            let prim = group.prim_of(rest);
-            let (outer, next) = match group.prims.at(prim).kind() {
-                PrimKind::Instance(index) => {
-                    let instance = &group.instances[index as usize];
-                    (instance.lit, Some(instance.group))
-                }
-                _ => (own, None),
-            };
-            around.both_sides |= outer.both_sides;
-            if around.set == Lit::PLAIN.set {
-                around.set = outer.set;
-            }
-            let Some(next) = next else {
-                return around;
-            };
-            rest -= group.first_id(prim);
-            group = &self.groups[next as usize];
-        }
+    /// How an object is lit.
+    pub(crate) fn of_object(&self, object: u32) -> Lit {
+        let own = self.of_objects.get(object as usize);
+        own.copied().unwrap_or(Lit::PLAIN)
     }
 }
 

@@ -1,5 +1,4 @@
-use crate::scene::RenderScene;
-use strahl_shade::{Color, Material, MaterialId};
+use strahl_shade::{Material, MaterialId};
 
 /// What is filled with one medium: an object with all its parts that have no medium of their own, or all of a material.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -162,33 +161,6 @@ impl MediaArena {
             rest = below;
         }
         stack
-    }
-}
-
-impl RenderScene {
-    /// What of light is left after a way through the medium around it. That of an object with a texture of POV-Ray's is not
-    /// weakened here, but where it leaves the object: see [`crate::surface::Surface::fading`].
-    pub(crate) fn absorbed(&self, around: Option<MaterialId>, length: f64) -> Color {
-        let Some(id) = around else {
-            return Color::WHITE;
-        };
-        let material = &self.materials[id.0 as usize];
-        match Crossing::of(material) {
-            Crossing::BySide => material.attenuation(length),
-            Crossing::ByTurns => Color::WHITE,
-        }
-    }
-
-    /// Whether the eye may be in a medium that weakens light which meets nothing.
-    pub(crate) fn absorbs_around_the_eye(&self) -> bool {
-        let weakens = |m: &Material| !m.absorption.is_black() || m.interior.is_some();
-        let mut materials = self.materials.iter();
-        self.fills && materials.any(|m| Crossing::of(m) == Crossing::BySide && weakens(m))
-    }
-
-    /// What the `interior` of an object leaves of light that gets out of it after a way through it.
-    pub(crate) fn faded(&self, inside: MaterialId, length: f64) -> Color {
-        self.materials[inside.0 as usize].attenuation(length)
     }
 }
 

@@ -1,3 +1,4 @@
+mod block;
 mod kinds;
 mod leaves;
 mod packet;
@@ -6,8 +7,9 @@ mod visitor;
 
 use crate::activity::{Phase, Slot};
 use crate::hit::{Hit, Origin, RayClass};
-use crate::scene::{InstanceUse, RenderGroup, RenderScene};
-use crate::walk::WalkEvent;
+use crate::scene::{RenderGroup, RenderScene};
+use crate::uses::InstanceUse;
+pub use kinds::WalkEvent;
 use kinds::{AnyOpaque, Closest, Query, Transmitting, Watched};
 use plain::Plain;
 use std::sync::Arc;

@@ -6,8 +6,9 @@ mod refine;
 mod work;
 
 pub(crate) use crew::Crew;
+pub(crate) use pixels::Seen;
 pub use plan::Pass;
-pub(crate) use probe::{Probe, Seen, probe_rows};
+pub(crate) use probe::{PixelProbe, probe_rows};
 pub(crate) use refine::is_refined;
 pub use work::PixelState;
 pub(crate) use work::Work;

@@ -293,7 +293,7 @@ impl RenderGroup {
                 *out = mesh.surface_at_element(triangle, hit.uv);
             }
             PrimKind::Sphere(number) => {
-                let sphere = self.spheres.get(number, &self.blocks);
+                let sphere = self.spheres.get(number, self.blocks.spheres());
                 *out = if uv {
                     sphere.surface_at(ray, &hit)
                 } else {

@@ -1,51 +1,19 @@
 use crate::blocks::Blocks;
-use crate::light_sets::{LightSets, Lit};
+use crate::light_sets::LightSets;
 use crate::look::{Look, Looks};
 use crate::objects::Objects;
 use crate::prim::{Prim, PrimKind};
 use crate::runs::RunList;
 use crate::spheres::Spheres;
+use crate::uses::{InstanceUse, MeshUse, ShapeUse};
 use std::sync::Arc;
 use strahl_accel::{Accelerator, AnyAccelerator};
-use strahl_geometry::{Primitive, Shape, TriangleMesh};
+use strahl_geometry::Shape;
 use strahl_math::{Aabb, DVec3, Transform};
 use strahl_scene::{
     Background, BackgroundAlpha, Camera, Fog, Rainbow, SceneLight, Settings, SourceMap,
 };
 use strahl_shade::{Color, Material};
-
-#[derive(Clone, Debug)]
-pub(crate) struct ShapeUse {
-    pub(crate) shape: Shape,
-    pub(crate) transform: Option<Box<Transform>>,
-    /// Object and material; CSG trees have one per leaf.
-    pub(crate) look: Looks,
-    /// Where its inside is, if that is not what the surface says.
-    pub(crate) inside: Option<Box<Inside>>,
-}
-
-/// Where the inside of a solid is that is cut or inverted.
-#[derive(Clone, Debug)]
-pub(crate) struct Inside {
-    /// The solid as it was before `clipped_by`, which cuts no more than the surface.
-    pub(crate) solid: Shape,
-    /// Where it counts: as in POV-Ray (measured) the inverse of something bounded fills no more than its box.
-    pub(crate) limit: Aabb,
-}
-
-#[derive(Clone, Debug)]
-pub(crate) struct MeshUse {
-    pub(crate) mesh: Arc<TriangleMesh>,
-    pub(crate) look: Look,
-}
-
-#[derive(Clone, Debug)]
-pub(crate) struct InstanceUse {
-    pub(crate) group: u32,
-    pub(crate) transform: Transform,
-    /// How all its elements are lit; [`Lit::PLAIN`] leaves it to the objects in the group.
-    pub(crate) lit: Lit,
-}
 
 /// A list of primitives with its accelerator: the world, an instanced group, or the separate space of small objects far from
 /// the origin.
@@ -132,19 +100,6 @@ pub struct RenderScene {
     pub(crate) transmits: bool,
     /// Whether it matters to rays what the eye is inside of.
     pub(crate) fills: bool,
-}
-
-impl Inside {
-    /// The same in another space.
-    pub(crate) fn moved(&self, map: &Transform) -> Option<Self> {
-        let limit = if self.limit.is_bounded() {
-            map.bounds_to_world(&self.limit)
-        } else {
-            Aabb::EVERYTHING
-        };
-        let solid = self.solid.baked(map)?;
-        Some(Self { solid, limit })
-    }
 }
 
 /// Sizes of a compiled scene.

@@ -5,7 +5,7 @@ use crate::hit::{Hit, Origin};
 use crate::media::{Crossing, MediaArena, MediaStack};
 use crate::query::Tracer;
 use crate::resolve::{Resolved, Uv};
-use crate::scene::InstanceUse;
+use crate::uses::InstanceUse;
 use strahl_math::{Interval, Ray};
 use strahl_shade::Color;
 

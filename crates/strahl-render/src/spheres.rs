@@ -1,9 +1,9 @@
-use crate::blocks::Blocks;
 use crate::look::{Look, LookRun};
 use crate::prim::{Prim, PrimKind};
 use crate::runs::RunList;
 use strahl_accel::{BLOCK, NO_PRIMITIVE};
 use strahl_geometry::Sphere;
+use strahl_geometry::blocks::SphereBlock;
 use strahl_math::DVec3;
 
 /// A sphere that is seen from outside and whose texture is not rotated: scenes have millions of them.
@@ -60,21 +60,21 @@ impl Spheres {
         number
     }
 
-    /// A sphere; `blocks` are the blocks it was moved to, if it was.
+    /// A sphere; `blocks` are the group's blocks of spheres, to which it may have been moved.
     #[inline(always)]
-    pub(crate) fn get(&self, number: u32, blocks: &Blocks) -> Sphere {
+    pub(crate) fn get(&self, number: u32, blocks: &[SphereBlock]) -> Sphere {
         match &self.kept {
             Kept::ByNumber(list) => list[number as usize].sphere(),
             Kept::InBlocks(places) => {
                 let place = places[number as usize] as usize;
-                blocks.sphere(place / BLOCK, place % BLOCK)
+                blocks[place / BLOCK].sphere(place % BLOCK)
             }
         }
     }
 
     /// A sphere that is not yet in a block.
     pub(crate) fn loose(&self, number: u32) -> Sphere {
-        self.get(number, &Blocks::NONE)
+        self.get(number, &[])
     }
 
     /// Object and material of a sphere.
@@ -83,8 +83,14 @@ impl Spheres {
         self.looks.at(number)
     }
 
-    /// The spheres without their coordinates, if the blocks made for these slots contain all of them.
-    pub(crate) fn completed(self, slots: &[u32], prims: &RunList<Prim>, blocks: &Blocks) -> Self {
+    /// The spheres without their coordinates, if the blocks made for these slots contain all of them; `place` gives the index of a block
+    /// of slots among the blocks of spheres.
+    pub(crate) fn completed(
+        self,
+        slots: &[u32],
+        prims: &RunList<Prim>,
+        place: impl Fn(usize) -> usize,
+    ) -> Self {
         let mut places = vec![u32::MAX; self.looks.len()];
         for (slot, id) in slots
             .iter()
@@ -92,7 +98,7 @@ impl Spheres {
             .filter(|(_, id)| **id != NO_PRIMITIVE)
         {
             if let PrimKind::Sphere(number) = prims.at(*id).kind() {
-                let place = blocks.place(slot / BLOCK) * BLOCK + slot % BLOCK;
+                let place = place(slot / BLOCK) * BLOCK + slot % BLOCK;
                 places[number as usize] = place as u32;
             }
         }

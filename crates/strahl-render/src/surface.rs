@@ -1,7 +1,6 @@
 //! The properties of a hit that shading needs, and how the surface divides light.
 
 use crate::hit::{Hit, Origin};
-use crate::layers::Side;
 use crate::light_sets::Lit;
 use crate::media::{Body, Crossing, MediaArena, MediaStack, Medium};
 use crate::observer::{HitReport, Shading};
@@ -14,6 +13,9 @@ use strahl_shade::{
     Color, Finish, MaterialId, MaterialPoint, Refracted, ShadingModel, SpectralPart,
     fresnel_dielectric, reflect, refract,
 };
+
+/// A material, and whether it is seen from outside.
+pub(crate) type Side = (MaterialId, bool);
 
 /// The index of refraction of a medium for a part of the spectrum; `None` is air.
 #[inline]

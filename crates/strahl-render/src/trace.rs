@@ -21,6 +21,7 @@ mod gather;
 mod lights;
 mod nothing;
 mod outcome;
+mod point;
 mod settings;
 mod spawn;
 mod stages;
@@ -30,8 +31,8 @@ use branch::Node;
 use eye::Eye;
 pub(crate) use eye::Filled;
 pub(crate) use lights::Arriving;
-use stages::Lanes;
-pub(crate) use stages::Point;
+use point::Lanes;
+pub(crate) use point::Point;
 
 pub use outcome::{FirstHit, RayCounts, SampleResult};
 pub use settings::TraceSettings;
@@ -48,7 +49,7 @@ use crate::surface::Surface;
 use crate::transport::Transport;
 use arrayvec::ArrayVec;
 use strahl_accel::PACKET;
-use strahl_math::Ray;
+use strahl_math::{DVec3, Ray};
 use strahl_shade::texture::TexturePaint;
 use strahl_shade::{Color, ShadingModel};
 
@@ -209,6 +210,19 @@ impl<'s> TreeTracer<'s> {
         !self.tracer.scene.fills
             || origins.clone().all(|origin| Some(origin) == first)
             || origins.all(|origin| self.eye_media(origin) == MediaStack::VACUUM)
+    }
+
+    /// The media of a tree from this place: all other stacks are forgotten.
+    #[inline]
+    pub(super) fn eye_media(&mut self, place: DVec3) -> MediaStack {
+        let scene = self.tracer.scene;
+        if scene.fills
+            && let Some(media) = self.eye.moved_to(scene, place)
+        {
+            self.media.begin(media.iter().copied());
+        }
+        self.media.clear();
+        self.media.eye()
     }
 
     /// Puts a primary ray to those that go through the stages first.

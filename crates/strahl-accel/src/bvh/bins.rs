@@ -2,15 +2,13 @@
 //!
 //! I. Wald, "On fast construction of SAH-based bounding volume hierarchies" (2007).
 
-use super::refs::Ref;
+use super::refs::{CHUNK, Ref};
 use crate::boxes::Box32;
 use rayon::prelude::*;
 use strahl_math::{Mat4, Vec4};
 
 /// Most bins per axis.
 pub(crate) const BINS: usize = 32;
-/// Sets larger than this are sorted into bins in parallel, in chunks of this size.
-pub(crate) const CHUNK: usize = 16 * 1024;
 /// Adding this to a number of up to a few millions rounds it to an integer, which is in the last bits of the sum.
 const ROUND: f32 = 12_582_912.0;
 

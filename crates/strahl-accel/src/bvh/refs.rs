@@ -1,11 +1,13 @@
 //! References to primitives during construction, and the extents of sets of them.
 
-use super::bins::CHUNK;
 use crate::Shapes;
 use crate::boxes::Box32;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering};
 use strahl_math::Aabb;
+
+/// Sets larger than this are looked at in parallel, in chunks of this size.
+pub(crate) const CHUNK: usize = 16 * 1024;
 
 /// A reference to a primitive during construction: its box, whose fourth lanes hold its number and its class.
 #[derive(Clone, Copy)]

@@ -1,7 +1,8 @@
 //! Splits sets of primitives by the surface area heuristic, for all top-down builders.
 
 use super::MAX_DEPTH;
-use super::bins::{Bins, CHUNK, Plane};
+use super::bins::{Bins, Plane};
+use super::refs::CHUNK;
 use super::refs::{Extent, Ref, centers, classes};
 use crate::boxes::Box32;
 use rayon::prelude::*;

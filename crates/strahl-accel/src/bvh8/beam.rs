@@ -1,4 +1,5 @@
-use super::node::{Child, Nodes, WIDTH, WideNode};
+use super::node::{Child, WIDTH, WideNode};
+use super::nodes::Nodes;
 use super::{Bvh8, Tree};
 use crate::beam::{Beam, CullPlane};
 use crate::bvh::MAX_DEPTH;

@@ -1,11 +1,13 @@
 //! Builds the tree of nodes of eight from any set that can be split in two: the largest child is split until there are eight.
 //! The same tree for any number of threads.
 
-use super::node::{Child, Node, Nodes, WIDTH, WideNode};
-use super::{BLOCK, NO_PRIMITIVE, Tree};
+use super::Tree;
+use super::node::{Child, Node, WIDTH, WideNode};
+use super::nodes::Nodes;
 use crate::boxes::Box32;
 use crate::bvh::split::LeafModel;
 use crate::cull::CullBounds;
+use crate::leaf::{BLOCK, NO_PRIMITIVE};
 use arrayvec::ArrayVec;
 
 /// Larger sets are split among threads.

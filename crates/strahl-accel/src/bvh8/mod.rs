@@ -10,6 +10,7 @@ mod fast;
 mod grow;
 mod high;
 mod node;
+mod nodes;
 mod packet;
 mod presplit;
 mod spatial;
@@ -22,17 +23,12 @@ use crate::List;
 use crate::boxes::Box32;
 use crate::cull::CullBounds;
 use crate::parameters::{Parameter, Parameters};
-use node::{Child, Nodes};
+use node::Child;
+use nodes::Nodes;
 use strahl_simd::{Level, Simd, gather_pages};
 
 pub use build::Build;
 pub use view::Content;
-
-/// Primitives in a block of slots.
-pub const BLOCK: usize = 4;
-
-/// Marks a slot without a primitive.
-pub const NO_PRIMITIVE: u32 = u32::MAX;
 
 /// The parameters of [`Bvh8`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -126,7 +122,7 @@ pub struct Bvh8 {
 struct Tree {
     root: Child,
     nodes: Nodes,
-    /// The primitives of the leaves, leaf by leaf; leaves are filled up with [`NO_PRIMITIVE`] to whole blocks.
+    /// The primitives of the leaves, leaf by leaf; leaves are filled up with [`crate::NO_PRIMITIVE`] to whole blocks.
     slots: Vec<u32>,
     bounds: CullBounds,
 }

@@ -10,12 +10,13 @@
 mod hull;
 mod lanes;
 
-use super::node::{Child, Node, Nodes, WIDTH};
+use super::node::{Child, Node, WIDTH};
+use super::nodes::Nodes;
 use super::{Bvh8, Tree};
 use crate::bvh::MAX_DEPTH;
 use crate::cull::CullStart;
+use crate::leaf::Leaf;
 use crate::packet::{PACKET, Packet, PacketVisitor, lanes_of};
-use crate::traversal::Leaf;
 use crate::{TraversalStats, Visitor};
 use arrayvec::ArrayVec;
 use hull::{Hull, HullSlabs};

@@ -8,7 +8,7 @@
 use super::Bvh8;
 use crate::Shapes;
 use crate::boxes::Box32;
-use crate::bvh::bins::CHUNK;
+use crate::bvh::refs::CHUNK;
 use crate::bvh::refs::{Extent, Ref};
 use rayon::prelude::*;
 

@@ -5,7 +5,8 @@
 
 use crate::Shapes;
 use crate::boxes::Box32;
-use crate::bvh::bins::{BINS, CHUNK, Cut, cheapest};
+use crate::bvh::bins::{BINS, Cut, cheapest};
+use crate::bvh::refs::CHUNK;
 use crate::bvh::refs::Ref;
 use rayon::prelude::*;
 use strahl_math::Vec4;

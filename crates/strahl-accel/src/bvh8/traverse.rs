@@ -1,11 +1,12 @@
 use super::compact::CompactNode;
-use super::node::{Child, Nodes, WIDTH, WideNode};
+use super::node::{Child, WIDTH, WideNode};
+use super::nodes::Nodes;
 use super::{Bvh8, Tree};
 use crate::bvh::MAX_DEPTH;
 use crate::bvh::watch::BoxTree;
 use crate::cull::{CullClock, CullLanes, QuickLanes};
+use crate::leaf::Leaf;
 use crate::list::visit_all;
-use crate::traversal::Leaf;
 use crate::{Accelerator, Beam, Packet, PacketVisitor, TraversalStats, Visitor};
 use arrayvec::ArrayVec;
 use strahl_math::{Interval, Ray};
@@ -94,7 +95,7 @@ impl Accelerator for Bvh8 {
     }
 
     fn references(&self) -> usize {
-        let used = self.slots().iter().filter(|id| **id != super::NO_PRIMITIVE);
+        let used = self.slots().iter().filter(|id| **id != crate::NO_PRIMITIVE);
         used.count() + self.unbounded.references()
     }
 }

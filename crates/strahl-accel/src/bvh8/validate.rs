@@ -1,7 +1,8 @@
 use super::node::Child;
-use super::{Bvh8, NO_PRIMITIVE, Tree};
+use super::{Bvh8, Tree};
 use crate::boxes::Box32;
 use crate::bvh::validate::Places;
+use crate::leaf::NO_PRIMITIVE;
 use strahl_math::Aabb;
 
 impl Bvh8 {

@@ -1,4 +1,4 @@
-use super::Fallible;
+use crate::input::Fallible;
 use std::path::Path;
 use std::{fmt, str::FromStr};
 use strahl_scene::Diagnostic;

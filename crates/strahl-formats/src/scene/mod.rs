@@ -11,20 +11,14 @@
 //!
 //! A format that describes surfaces only (OBJ, PLY, STL) leaves camera and lights empty: the renderer frames the objects.
 
-pub(crate) mod ahead;
-pub(crate) mod bytes;
 mod detect;
 mod gltf;
 mod nff;
-pub(crate) mod report;
-pub(crate) mod text;
-pub(crate) mod textures;
 
+pub use crate::input::bytes::read_decompressed;
+use crate::input::{Folder, Input, Report, bytes};
 use crate::mesh::{obj, ply, stl};
-pub(crate) use bytes::Folder;
-pub use bytes::read_decompressed;
 pub use detect::{FormatInfo, SceneFormat, UnknownSceneFormat, formats};
-pub(crate) use report::{Fallible, Report};
 use std::borrow::Cow;
 use std::path::Path;
 use strahl_scene::{Diagnostic, Scene};
@@ -38,16 +32,6 @@ pub struct Loaded {
     pub diagnostics: Vec<Diagnostic>,
     /// The other files that were read, by their paths from the scene's folder.
     pub files: Vec<String>,
-}
-
-/// What every reader is given.
-pub(crate) struct Input<'a> {
-    /// The file, decompressed; never empty.
-    pub(crate) bytes: &'a [u8],
-    /// Its name as shown to the user.
-    pub(crate) name: &'a str,
-    /// Where other files may be read from.
-    pub(crate) folder: Option<&'a Folder>,
 }
 
 /// Reads a scene file. Without a `format` the file's extension decides, before it `.gz` is ignored; without a known

@@ -4,6 +4,7 @@ use super::bounds::bounded;
 use super::flatten::{FlatGroup, Pass, shape_at, visible};
 use super::inherit::Todo;
 use super::inside;
+use super::operation::{combine, wrong_count};
 use crate::look::{Look, Looks};
 use crate::prim::Prim;
 use std::sync::Arc;
@@ -122,20 +123,6 @@ impl Pass {
     }
 }
 
-pub(super) fn wrong_count(op: CsgOp, count: usize) -> Option<String> {
-    let (right, expected) = match op {
-        CsgOp::Inverse => (count == 1, "exactly one object"),
-        CsgOp::Clip => (count >= 2, "an object and at least one to clip it by"),
-        CsgOp::Bound => (count >= 2, "an object and at least one to bound it by"),
-        CsgOp::Union
-        | CsgOp::Merge
-        | CsgOp::Intersection
-        | CsgOp::Difference
-        | CsgOp::LightGroup { .. } => (count >= 1, "at least one object"),
-    };
-    (!right).then(|| format!("{} takes {expected}, found {count}", op.name()))
-}
-
 /// The parts of a union that is clipped, each clipped by the same shapes; a node of another kind is its only part.
 ///
 /// All surfaces of a union are kept, so its parts can be clipped one by one: an accelerator then finds the few that a ray meets.
@@ -180,24 +167,6 @@ fn copies(leaves: &[CsgNode]) -> Vec<CsgNode> {
         _ => None,
     };
     leaves.iter().filter_map(copy).collect()
-}
-
-/// The operation without regard to who sees the result.
-pub(super) fn combine(op: CsgOp, children: Vec<CsgNode>) -> CsgNode {
-    let count = if op == CsgOp::Bound {
-        1
-    } else {
-        children.len()
-    };
-    let operands = children.into_iter().take(count).collect();
-    match op {
-        CsgOp::Union | CsgOp::Bound | CsgOp::LightGroup { .. } => CsgNode::Union(operands),
-        CsgOp::Merge => CsgNode::Merge(operands),
-        CsgOp::Intersection => CsgNode::Intersection(operands),
-        CsgOp::Difference => CsgNode::Difference(operands),
-        CsgOp::Inverse => CsgNode::Inverse(operands),
-        CsgOp::Clip => CsgNode::Clip(operands),
-    }
 }
 
 #[cfg(test)]

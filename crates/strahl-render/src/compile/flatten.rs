@@ -1,15 +1,15 @@
 use super::bounds::{Bound, bounded};
-use super::csg::wrong_count;
 use super::inherit::Todo;
 use super::materials::{MaterialTable, material_fills, material_problem, material_transmits};
+use super::operation::wrong_count;
 use crate::hit::RayClass;
 use crate::light_sets::{LightSetsDraft, Lit};
 use crate::look::{Look, Looks, UvMapping};
 use crate::objects::{ObjectInfo, Objects};
 use crate::prim::{Prim, PrimKind};
 use crate::runs::RunList;
-use crate::scene::{InstanceUse, MeshUse, ShapeUse};
 use crate::spheres::{PlainSphere, Spheres};
+use crate::uses::{InstanceUse, MeshUse, ShapeUse};
 use std::collections::HashSet;
 use std::sync::Arc;
 use strahl_geometry::{GeometryError, Polygon, Primitive, Shape};

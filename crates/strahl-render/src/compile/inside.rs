@@ -1,7 +1,7 @@
 //! Where the insides of solids are that are cut or inverted.
 
-use super::csg::combine;
-use crate::scene::Inside;
+use super::operation::combine;
+use crate::uses::Inside;
 use std::sync::Arc;
 use strahl_geometry::{Csg, CsgNode, Cuboid, Plane, Primitive, Shape, Solid};
 use strahl_math::{Aabb, DVec3, Transform};

@@ -15,6 +15,7 @@ mod flatten;
 mod inherit;
 mod inside;
 mod materials;
+mod operation;
 mod shapes;
 mod spaces;
 mod view;
@@ -23,7 +24,8 @@ use crate::blocks::Blocks;
 use crate::light_sets::{LightSets, Lit};
 use crate::objects::Objects;
 use crate::prim::{Prim, PrimKind};
-use crate::scene::{InstanceUse, Part, RenderGroup, RenderScene};
+use crate::scene::{Part, RenderGroup, RenderScene};
+use crate::uses::InstanceUse;
 use assemble::Assembled;
 pub(crate) use materials::material_transmits;
 use shapes::{Flagged, GroupShapes};
@@ -153,7 +155,9 @@ impl Prepared {
             RenderGroup {
                 common,
                 sheared: blocks.has_triangles() || !g.meshes.is_empty(),
-                spheres: g.spheres.completed(accelerator.slots(), &g.prims, &blocks),
+                spheres: g
+                    .spheres
+                    .completed(accelerator.slots(), &g.prims, |block| blocks.place(block)),
                 prims: g.prims,
                 shapes: g.shapes,
                 meshes: g.meshes,

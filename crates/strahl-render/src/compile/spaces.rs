@@ -3,7 +3,7 @@ use crate::light_sets::Lit;
 use crate::look::Looks;
 use crate::prim::{Prim, PrimKind};
 use crate::runs::RunList;
-use crate::scene::InstanceUse;
+use crate::uses::InstanceUse;
 use std::borrow::Cow;
 use strahl_geometry::{Primitive, Shape};
 use strahl_math::{Aabb, DVec3, Transform};

@@ -1,17 +1,14 @@
 //! Textures of one colour: their layers are evaluated once.
 
 use crate::scene::RenderScene;
-use crate::surface::Surface;
+use crate::surface::{Side, Surface};
 use std::borrow::Cow;
 use strahl_shade::texture::{LayerPoint, StackPoint, Texture, TexturePaint};
-use strahl_shade::{Color, Finish, MaterialId};
+use strahl_shade::{Color, Finish};
 
 /// The layers of materials that are the same everywhere, by material and side, as one thread has met them.
 #[derive(Debug)]
 pub(crate) struct KnownPaints<'s>(Vec<Known<'s>>);
-
-/// A material, and whether it is seen from outside.
-pub(crate) type Side = (MaterialId, bool);
 
 /// What is known of the layers of a material.
 #[derive(Debug)]

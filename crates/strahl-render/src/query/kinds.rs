@@ -3,7 +3,7 @@
 use crate::hit::Hit;
 use crate::prim::Prim;
 use crate::scene::{Part, RenderGroup};
-use crate::walk::WalkEvent;
+use strahl_accel::Step;
 
 /// What a search does with the primitives that its ray may hit.
 pub(super) trait Query {
@@ -161,4 +161,29 @@ impl Query for Transmitting<'_> {
     fn wants_hit(&self, transmits: bool) -> bool {
         transmits
     }
+}
+
+/// An event of the traversal.
+#[derive(Clone, Copy, Debug)]
+pub enum WalkEvent {
+    /// The accelerator visited a node or a cell; if it is a leaf, the following events belong to it.
+    Step(Step),
+    /// A primitive was tested.
+    Test {
+        /// Number of its first element.
+        id: u64,
+        /// Number of its object.
+        object: u32,
+        /// The closest hit so far, after the test; `None` if there is none.
+        closest: Option<f64>,
+        /// Whether the test found that hit.
+        found: bool,
+    },
+    /// An instance was entered; the following events are in its space, whose `t` is the same.
+    Enter {
+        /// Number of its first element.
+        id: u64,
+    },
+    /// The instance was left.
+    Leave,
 }

@@ -1,8 +1,9 @@
 //! Leaves tested in blocks: which of four primitives a ray hits, and what becomes of these hits.
 
+use super::block::{Block, BlockOfLeaf};
 use super::kinds::Query;
 use super::{GroupVisitor, NONE};
-use crate::blocks::{Block, BlockOfLeaf, Flats};
+use crate::blocks::Flats;
 use crate::hit::Hit;
 use crate::prim::{Prim, PrimKind};
 use std::borrow::Borrow;

@@ -1,10 +1,11 @@
 //! Searches for several rays at once. Tests of the whole packet only cull; the remaining rays are tested one by one, as single
 //! rays are.
 
+use super::block::{Block, BlockOfLeaf, Fetched, PacketCulls};
 use super::kinds::{AnyOpaque, Closest, Query};
 use super::{From, GroupVisitor, NONE, Search, Tracer};
 use crate::activity::{Phase, Slot};
-use crate::blocks::{Block, BlockOfLeaf, Blocks, Fetched, Flats, LeafClass, PacketCulls};
+use crate::blocks::{Blocks, Flats, LeafClass};
 use crate::hit::{Hit, Origin, RayClass};
 use crate::scene::{RenderGroup, RenderScene};
 use arrayvec::ArrayVec;

@@ -2,9 +2,10 @@
 //! common case of large scenes, without the code for all others.
 
 use super::Search;
+use super::block::Block;
 use super::kinds::Query;
 use super::leaves::lane_entered;
-use crate::blocks::{Block, OneKind};
+use crate::blocks::OneKind;
 use crate::hit::Hit;
 use strahl_accel::{BLOCK, Bvh8, Leaf, NO_PRIMITIVE, Visitor};
 use strahl_geometry::RayShear;

@@ -1,14 +1,14 @@
 //! The primitives that a ray may meet, in one group: what the traversal finds is tested here.
 
-use super::kinds::Query;
+use super::block::Fetched;
+use super::kinds::{Query, WalkEvent};
 use super::{From, NONE, Search};
 use crate::activity::Phase;
-use crate::blocks::{Blocks, Fetched, LeafClass};
+use crate::blocks::{Blocks, LeafClass};
 use crate::hit::Hit;
 use crate::prim::{Prim, PrimKind};
 use crate::resolve::Resolved;
 use crate::scene::RenderGroup;
-use crate::walk::WalkEvent;
 use strahl_accel::{Leaf, Step, Visitor};
 use strahl_geometry::blocks::{SphereBlock, TriangleBlock};
 use strahl_geometry::{PrimHit, Primitive, RayShear, SurfaceId};
@@ -311,7 +311,7 @@ impl<Q: Query> GroupVisitor<'_, '_, '_, Q> {
                 })
             }
             PrimKind::Sphere(number) => {
-                let sphere = self.group.spheres.get(number, &self.group.blocks);
+                let sphere = self.group.spheres.get(number, self.group.blocks.spheres());
                 sphere.closest_hit(self.ray, range, from, self.search.scratch)
             }
             PrimKind::Shape(index) => {

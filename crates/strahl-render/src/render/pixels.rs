@@ -1,6 +1,5 @@
 //! Traces the pixels of tiles on one thread.
 
-use super::probe::Seen;
 use super::{RenderOptions, Samples, TileResult};
 use crate::activity::Phase;
 use crate::camera::PrimaryRays;
@@ -18,6 +17,13 @@ use arrayvec::ArrayVec;
 use strahl_accel::{PACKET, TraversalStats};
 use strahl_math::Ray;
 use strahl_shade::Color;
+
+/// What a ray through the centre of a pixel has seen, and its cost.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Seen {
+    pub(crate) color: Color,
+    pub(crate) cost: PixelCost,
+}
 
 /// Rays with the numbers of what they are for.
 type Packet = ArrayVec<(usize, Option<Ray>), PACKET>;

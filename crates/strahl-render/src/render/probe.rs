@@ -1,22 +1,13 @@
 //! Traces single rays through pixels here and there, for a look at a scene.
 
-use super::pixels::PixelTracer;
+use super::pixels::{PixelTracer, Seen};
 use super::{Progress, RenderError, RenderOptions};
 use crate::camera::PrimaryRays;
-use crate::cost::PixelCost;
 use crate::scene::RenderScene;
 use rayon::prelude::*;
-use strahl_shade::Color;
-
-/// What a ray through the centre of a pixel has seen, and its cost.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Seen {
-    pub(crate) color: Color,
-    pub(crate) cost: PixelCost,
-}
 
 /// Traces the ray through the centre of the pixel at a column and row.
-pub(crate) type Probe<'a> = dyn FnMut(u32, u32) -> Seen + 'a;
+pub(crate) type PixelProbe<'a> = dyn FnMut(u32, u32) -> Seen + 'a;
 
 /// Calls `look` for each row number below `rows`, on all threads, with a function that traces rays. The counts of a row don't depend on the
 /// others; the options' way of sampling plays no part.
@@ -25,7 +16,7 @@ pub(crate) fn probe_rows<T: Send>(
     options: &RenderOptions,
     progress: &dyn Progress,
     rows: u32,
-    look: impl Fn(&mut Probe<'_>, u32) -> T + Sync,
+    look: impl Fn(&mut PixelProbe<'_>, u32) -> T + Sync,
 ) -> Result<Vec<T>, RenderError> {
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(options.threads)

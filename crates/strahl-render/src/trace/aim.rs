@@ -1,6 +1,6 @@
 //! The directions from the points of a batch to a light, side by side.
 
-use super::stages::{Lanes, Point};
+use super::point::{Lanes, Point};
 use strahl_accel::PACKET;
 use strahl_math::DVec3;
 use strahl_shade::{Light, LightSample};

@@ -1,7 +1,7 @@
 //! The factors of what a hit sends, for ray trees: what the loop multiplies, one by one. None of it runs without an observer.
 
 use super::TreeTracer;
-use super::stages::Point;
+use super::point::Point;
 use crate::layers;
 use crate::observer::{HitReport, LightDetail, LightTerm, Shading, SurfaceTerm};
 use crate::shadow::ShadowRay;

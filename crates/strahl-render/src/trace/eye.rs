@@ -1,8 +1,7 @@
 //! What the eye is inside of.
 
-use super::TreeTracer;
 use crate::look::Look;
-use crate::media::{MediaStack, Medium};
+use crate::media::Medium;
 use crate::prim::{Prim, PrimKind};
 use crate::scene::{RenderGroup, RenderScene};
 use strahl_geometry::{Primitive, Shape, Solid};
@@ -78,21 +77,6 @@ impl Eye {
     }
 }
 
-impl TreeTracer<'_> {
-    /// The media of a tree from this place: all other stacks are forgotten.
-    #[inline]
-    pub(super) fn eye_media(&mut self, place: DVec3) -> MediaStack {
-        let scene = self.tracer.scene;
-        if scene.fills
-            && let Some(media) = self.eye.moved_to(scene, place)
-        {
-            self.media.begin(media.iter().copied());
-        }
-        self.media.clear();
-        self.media.eye()
-    }
-}
-
 impl Filled {
     fn medium_at(&self, scene: &RenderScene, place: DVec3) -> Option<Medium> {
         let look = self.look_at(scene, place)?;
@@ -109,7 +93,7 @@ impl Filled {
         };
         let (look, contains) = match group.prims.at(self.prim).kind() {
             PrimKind::Sphere(number) => {
-                let sphere = group.spheres.get(number, &group.blocks);
+                let sphere = group.spheres.get(number, group.blocks.spheres());
                 (group.spheres.look(number), sphere.contains(place))
             }
             PrimKind::Shape(index) | PrimKind::Placed(index) => {
@@ -232,7 +216,7 @@ impl RenderGroup {
     fn filled_bounds(&self, prim: u32, reach: &[Aabb]) -> Aabb {
         match self.prims.at(prim).kind() {
             PrimKind::Triangle(..) => Aabb::EMPTY,
-            PrimKind::Sphere(number) => self.spheres.get(number, &self.blocks).bounds(),
+            PrimKind::Sphere(number) => self.spheres.get(number, self.blocks.spheres()).bounds(),
             PrimKind::Shape(index) | PrimKind::Placed(index) => {
                 let used = &self.shapes[index as usize];
                 if let Some(inside) = &used.inside {

@@ -1,7 +1,7 @@
 //! The stage of gathered light, and the media along rays: where methods of light transport are asked.
 
 use super::branch::Offshoot;
-use super::stages::{Lanes, Point};
+use super::point::{Lanes, Point};
 use super::{Branch, TreeTracer};
 use crate::hit::RayClass;
 use crate::layers;

@@ -2,7 +2,8 @@
 
 use super::TreeTracer;
 use super::aim::{Directions, Places};
-use super::stages::{FEW, Lanes, Point};
+use super::point::{Lanes, Point};
+use super::stages::FEW;
 use crate::activity::Phase;
 use crate::layers;
 use crate::observer::{LightTerm, TraceObserver};

@@ -1,7 +1,7 @@
 //! The branches of a hit: the last stage.
 
 use super::branch::Offshoot;
-use super::stages::{Lanes, Point};
+use super::point::{Lanes, Point};
 use super::{Branch, TreeTracer};
 use crate::hit::RayClass;
 use crate::layers::{self, Mirror, Passage};

@@ -13,56 +13,20 @@
 //!
 //! A stage does with each ray what it would do with that ray alone, so the number of rays that go together changes no bit.
 
-use super::{Branch, FirstHit, Node, TreeTracer};
+use super::point::{Lanes, Point};
+use super::{FirstHit, Node, TreeTracer};
 use crate::activity::Phase;
 use crate::hit::{Hit, RayClass};
 use crate::layers;
 use crate::observer::{BranchEnd, HitReport, RayKind, RayReport, Shading, TraceObserver};
-use crate::surface::{Split, Surface};
+use crate::surface::Split;
 use arrayvec::ArrayVec;
 use strahl_accel::PACKET;
 use strahl_math::{Interval, Ray};
-use strahl_shade::texture::TexturePaint;
-use strahl_shade::{Color, ShadingModel};
+use strahl_shade::Color;
 
 /// Fewer rays, to hits or to a light, are traced one by one.
 pub(super) const FEW: usize = 3;
-
-/// The lanes of a batch that a stage has to do with, in order.
-pub(super) type Lanes = ArrayVec<usize, PACKET>;
-
-/// A ray and its hit on their way through the stages.
-#[derive(Debug)]
-pub(crate) struct Point<'s> {
-    pub(crate) branch: Branch,
-    pub(crate) hit: Hit,
-    /// Number of the ray's node.
-    pub(crate) node: u32,
-    /// The distance of the hit from the ray's origin.
-    pub(super) length: f64,
-    pub(crate) surface: Surface<'s>,
-    pub(crate) model: ShadingModel,
-    /// The layers of the texture; none without a texture.
-    pub(crate) paint: TexturePaint<'s>,
-    /// The light that the surface sends to the origin of the ray by itself.
-    pub(super) local: Color,
-}
-
-impl<'s> Point<'s> {
-    /// A place for a point; `paint` has the settings of textures.
-    pub(super) fn unknown(paint: &TexturePaint<'s>) -> Self {
-        Self {
-            branch: Branch::NONE,
-            hit: Hit::NONE,
-            node: 0,
-            length: 0.0,
-            surface: Surface::unknown(),
-            model: ShadingModel::Lambert,
-            paint: paint.clone(),
-            local: Color::BLACK,
-        }
-    }
-}
 
 impl<'s> TreeTracer<'s> {
     /// Grows the trees of the first `count` rays, `width` rays at a time. Returns `false` if it left off because there are too many of them:

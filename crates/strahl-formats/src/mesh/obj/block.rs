@@ -1,7 +1,7 @@
 use super::faces::{Counts, RawCorner};
-use crate::scene::ahead::{Piece, Statements, read_statements};
-use crate::scene::report::Fallible;
-use crate::scene::text::{Text, Word, Words, parse_f64};
+use crate::input::ahead::{Piece, Statements, read_statements};
+use crate::input::report::Fallible;
+use crate::input::text::{Text, Word, Words, parse_f64};
 use std::sync::Arc;
 use strahl_math::{DVec2, DVec3};
 use strahl_scene::Diagnostic;

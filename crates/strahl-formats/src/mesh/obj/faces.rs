@@ -1,7 +1,7 @@
-use super::vertices::{Key, Link, Vertices};
+use super::vertices::{Key, Link, NormalKey, Vertices};
+use crate::input::report::Report;
+use crate::input::text::{Text, Word};
 use crate::mesh::{MeshParts, Triangulator, Vertex, object_name, polygon_normal};
-use crate::scene::report::Report;
-use crate::scene::text::{Text, Word};
 use std::collections::HashMap;
 use std::ops::Add;
 use std::sync::Arc;
@@ -191,17 +191,6 @@ impl PartKey {
             (object, group) => Arc::from(format!("{object}/{group}")),
         }
     }
-}
-
-/// The normal of a vertex of a mesh.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum NormalKey {
-    /// None: flat faces.
-    Flat,
-    /// One of the list.
-    Given(u32),
-    /// The mean within a smoothing group.
-    Group(u32),
 }
 
 #[derive(Debug, Default)]

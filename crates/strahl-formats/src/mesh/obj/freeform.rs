@@ -5,8 +5,8 @@
 
 use super::block::{Parser, Place};
 use super::faces::{Counts, RawCorner, entry};
-use crate::scene::report::Fallible;
-use crate::scene::text::{Text, Word};
+use crate::input::report::Fallible;
+use crate::input::text::{Text, Word};
 use std::collections::HashMap;
 use strahl_geometry::{GeometryError, Nurbs, NurbsCurve, NurbsData, TrimLoop};
 use strahl_math::{DVec2, DVec3};

@@ -21,12 +21,12 @@ mod freeform;
 mod mtl;
 mod vertices;
 
-use crate::scene::Input;
-use crate::scene::ahead::{Ahead, Statements};
-use crate::scene::bytes::{path_beside, read_beside};
-use crate::scene::report::{Fallible, Report};
-use crate::scene::text::Text;
-use crate::scene::textures::TextureFiles;
+use crate::input::Input;
+use crate::input::ahead::{Ahead, Statements};
+use crate::input::bytes::{path_beside, read_beside};
+use crate::input::report::{Fallible, Report};
+use crate::input::text::Text;
+use crate::input::textures::TextureFiles;
 use block::{Block, Face, Parser, Place, Step, read_ahead};
 use faces::{Counts, Faces, PartKey, RawCorner, check_corner};
 use freeform::{FreeForm, Outcome, Points};

@@ -14,9 +14,9 @@
 //! Without `illum` a material has a highlight, as with `illum 2`. Other maps are ignored with a warning.
 
 use crate::image::TextureUse;
-use crate::scene::report::{Fallible, Report};
-use crate::scene::text::{Text, Word, Words, parse_f64};
-use crate::scene::textures::TextureFiles;
+use crate::input::report::{Fallible, Report};
+use crate::input::text::{Text, Word, Words, parse_f64};
+use crate::input::textures::TextureFiles;
 use strahl_scene::Diagnostic;
 use strahl_shade::image_texture::{Filter, Wrap};
 use strahl_shade::{Color, Finish, Material, Pbr, TextureRef, Textures};

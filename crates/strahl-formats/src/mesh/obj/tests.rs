@@ -1,4 +1,4 @@
-use crate::scene::ahead::assert_parts_make_no_difference;
+use crate::input::ahead::assert_parts_make_no_difference;
 use crate::scene::{Loaded, SceneFormat, load_bytes, load_path};
 use proptest::prelude::*;
 use std::fs;

@@ -1,5 +1,15 @@
-use super::faces::NormalKey;
 use std::collections::HashMap;
+
+/// The normal of a vertex of a mesh.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum NormalKey {
+    /// None: flat faces.
+    Flat,
+    /// One of the list.
+    Given(u32),
+    /// The mean within a smoothing group.
+    Group(u32),
+}
 
 /// No part, no vertex, no texture coordinate.
 const NONE: u32 = u32::MAX;

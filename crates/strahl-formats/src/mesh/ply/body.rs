@@ -1,7 +1,8 @@
 use super::faces::Faces;
 use super::header::{Element, Encoding, Header, Property, Scalar};
-use super::source::Source;
-use crate::scene::report::{Fallible, Report};
+use super::positions::Positions;
+use super::source::{Source, list_length};
+use crate::input::report::{Fallible, Report};
 use strahl_geometry::MeshData;
 use strahl_math::DVec3;
 use strahl_scene::Diagnostic;
@@ -32,32 +33,6 @@ const USED: [(&str, usize); 14] = [
     ("texture_s", UV),
     ("texture_t", UV + 1),
 ];
-
-/// The vertices in the form in which they are stored until the faces are known.
-pub(super) enum Positions {
-    /// Declared as `float`: exactly what the file says.
-    Single(Vec<[f32; 3]>),
-    /// Anything else.
-    Double(Vec<DVec3>),
-}
-
-impl Positions {
-    pub(super) fn len(&self) -> usize {
-        match self {
-            Self::Single(list) => list.len(),
-            Self::Double(list) => list.len(),
-        }
-    }
-
-    /// A vertex; the index has been checked.
-    #[inline]
-    pub(super) fn at(&self, index: u32) -> DVec3 {
-        match self {
-            Self::Single(list) => DVec3::from_array(list[index as usize].map(f64::from)),
-            Self::Double(list) => list[index as usize],
-        }
-    }
-}
 
 /// Reads the rows.
 pub(super) struct Body<'h, 'r> {
@@ -318,16 +293,6 @@ fn use_of(property: &Property) -> Use {
 fn skip_list(property: &Property, length: Scalar, source: &mut impl Source) -> Fallible<()> {
     let count = list_length(length, source)?;
     source.skip(property.scalar, count)
-}
-
-/// The length of a list.
-pub(super) fn list_length(scalar: Scalar, source: &mut impl Source) -> Fallible<u64> {
-    let length = source.integer(scalar)?;
-    u64::try_from(length).map_err(|_| {
-        Box::new(source.at_last(Diagnostic::error(format!(
-            "the length of a list cannot be negative, found `{length}`"
-        ))))
-    })
 }
 
 fn skip_element(element: &Element, source: &mut impl Source) -> Fallible<()> {

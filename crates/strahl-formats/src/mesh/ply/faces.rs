@@ -1,8 +1,8 @@
-use super::body::{Positions, list_length};
 use super::header::Scalar;
-use super::source::Source;
+use super::positions::Positions;
+use super::source::{Source, list_length};
+use crate::input::report::{Fallible, Report};
 use crate::mesh::{Triangulator, polygon_normal};
-use crate::scene::report::{Fallible, Report};
 use strahl_math::DVec3;
 use strahl_scene::Diagnostic;
 

@@ -1,5 +1,5 @@
-use crate::scene::Fallible;
-use crate::scene::text::{Text, Word, Words};
+use crate::input::Fallible;
+use crate::input::text::{Text, Word, Words};
 use strahl_scene::Diagnostic;
 
 /// How the body is written.

@@ -14,12 +14,13 @@
 mod body;
 mod faces;
 mod header;
+mod positions;
 mod source;
 
+use crate::input::Input;
+use crate::input::report::{Fallible, Report};
+use crate::input::text::Text;
 use crate::mesh::object_name;
-use crate::scene::Input;
-use crate::scene::report::{Fallible, Report};
-use crate::scene::text::Text;
 use body::Body;
 use header::{Encoding, Header};
 use source::{Ascii, Binary};

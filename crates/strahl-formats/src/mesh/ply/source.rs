@@ -1,6 +1,6 @@
 use super::header::{Header, Scalar};
-use crate::scene::Fallible;
-use crate::scene::text::{Text, Words, parse_f32, parse_f64, parse_integer};
+use crate::input::Fallible;
+use crate::input::text::{Text, Words, parse_f32, parse_f64, parse_integer};
 use strahl_scene::Diagnostic;
 
 /// Where the numbers of the body come from.
@@ -164,4 +164,14 @@ impl Source for Binary<'_> {
         problem.message = format!("`{}`: {}", self.name, problem.message);
         problem
     }
+}
+
+/// The length of a list.
+pub(super) fn list_length(scalar: Scalar, source: &mut impl Source) -> Fallible<u64> {
+    let length = source.integer(scalar)?;
+    u64::try_from(length).map_err(|_| {
+        Box::new(source.at_last(Diagnostic::error(format!(
+            "the length of a list cannot be negative, found `{length}`"
+        ))))
+    })
 }

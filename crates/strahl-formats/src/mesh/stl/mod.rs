@@ -6,10 +6,10 @@
 //! the corners' order (they agree, or the file is wrong), so is the attribute that some programs keep colours in.
 //! Every `solid` of an ASCII file becomes a mesh of its own name.
 
+use crate::input::Input;
+use crate::input::report::{Fallible, Report};
+use crate::input::text::{Text, Word, Words, parse_f32};
 use crate::mesh::{object_name, polygon_normal};
-use crate::scene::Input;
-use crate::scene::report::{Fallible, Report};
-use crate::scene::text::{Text, Word, Words, parse_f32};
 use hashbrown::HashMap;
 use std::sync::Arc;
 use strahl_geometry::{MeshData, TriangleMesh};

@@ -1,5 +1,5 @@
-use crate::scene::Folder;
-use crate::scene::bytes::{path_beside, read_beside};
+use crate::input::Folder;
+use crate::input::bytes::{path_beside, read_beside};
 use gltf::json::buffer::View;
 use gltf::json::{Index, Root};
 use std::borrow::Cow;

@@ -1,7 +1,7 @@
 use super::buffers::{Buffers, data_uri, decoded, shown};
 use crate::image::{TextureUse, decode_texture};
-use crate::scene::textures::TextureFiles;
-use crate::scene::{Input, Report};
+use crate::input::textures::TextureFiles;
+use crate::input::{Input, Report};
 use gltf::json::Root;
 use gltf::json::extensions::material::Material as Extensions;
 use gltf::json::material::AlphaMode;

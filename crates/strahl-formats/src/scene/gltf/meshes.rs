@@ -1,8 +1,8 @@
 use super::accessor::Elements;
 use super::buffers::Buffers;
 use super::materials::Materials;
+use crate::input::{Input, Report};
 use crate::mesh::polygon_normal;
-use crate::scene::{Input, Report};
 use gltf::json::Root;
 use gltf::json::accessor::Type;
 use gltf::json::mesh::{Mode, Primitive, Semantic};

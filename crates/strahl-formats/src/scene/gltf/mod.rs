@@ -23,8 +23,8 @@ mod materials;
 mod meshes;
 mod nodes;
 
-use super::text::Text;
-use super::{Input, Report};
+use crate::input::text::Text;
+use crate::input::{Input, Report};
 use buffers::Buffers;
 use gltf::json::validation::{Error, Validate};
 use gltf::json::{Path as JsonPath, Root};

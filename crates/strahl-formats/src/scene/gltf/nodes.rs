@@ -1,6 +1,6 @@
 use super::materials::Materials;
 use super::meshes::Meshes;
-use crate::scene::Report;
+use crate::input::Report;
 use gltf::json::Root;
 use gltf::json::camera::Type as CameraType;
 use gltf::json::extensions::scene::khr_lights_punctual::{Light as JsonLight, Type as LightType};

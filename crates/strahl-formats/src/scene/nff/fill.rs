@@ -1,5 +1,5 @@
+use crate::input::Report;
 use crate::mesh::{MeshBuilder, MeshPieces, Vertex, VertexKey};
-use crate::scene::Report;
 use std::sync::Arc;
 use strahl_math::DVec3;
 use strahl_scene::{Diagnostic, FileId, Object, Span};

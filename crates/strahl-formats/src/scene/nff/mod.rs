@@ -28,13 +28,13 @@ mod fill;
 mod part;
 mod statements;
 
-use super::ahead::{Ahead, Statements};
-use super::text::Text;
-use super::{Fallible, Input, Report};
+use crate::input::ahead::{Ahead, Statements};
+use crate::input::text::Text;
+use crate::input::{Fallible, Input, Report};
 use fill::Fill;
-use part::{Kind, LightLine, Part, Parts, Placed, read_ahead};
+use part::{Kind, LightLine, Part, Placed};
 use rayon::Scope;
-use statements::Parser;
+use statements::{Parser, Parts, read_ahead};
 use std::fmt::Write;
 use std::sync::Arc;
 use strahl_scene::{Background, Diagnostic, Object, Scene, Span};

@@ -1,9 +1,5 @@
 use super::fill::{FillNumbers, FlatCorner, SmoothCorner};
-use super::statements::Parser;
 use crate::mesh::MeshBuilder;
-use crate::scene::ahead::{Piece, read_statements};
-use crate::scene::report::Report;
-use crate::scene::text::{Text, Words};
 use strahl_geometry::Shape;
 use strahl_math::DVec3;
 use strahl_scene::Span;
@@ -73,28 +69,4 @@ impl Part {
             self.smooth.triangle(triangle.map(corner), line);
         }
     }
-}
-
-/// The parts between two places of the text, and the report about them.
-pub(super) type Parts = (Vec<Part>, Report);
-
-/// Parses the statements that begin before `end`, up to the first erroneous one or a view.
-///
-/// It assumes that a fill has begun before.
-pub(super) fn read_ahead<'a>(
-    text: Text<'a>,
-    words: Words<'a>,
-    end: usize,
-) -> Option<Piece<'a, Parts>> {
-    let mut parser = Parser::new(text, words, Report::default());
-    parser.has_fill = true;
-    if !parser.seek_statement(end) {
-        return None;
-    }
-    let (start, rest) = read_statements(&mut parser, end)?;
-    Some(Piece {
-        start,
-        content: (parser.parts, parser.report),
-        rest,
-    })
 }

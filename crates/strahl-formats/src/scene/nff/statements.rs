@@ -1,9 +1,9 @@
 use super::fill::FillNumbers;
 use super::part::{Kind, LightLine, Part, Placed};
+use crate::input::ahead::{Piece, Statements, read_statements};
+use crate::input::text::{Text, Word, Words, parse_f64, parse_integer};
+use crate::input::{Fallible, Report};
 use crate::mesh::{NO_AREA, Triangulator, polygon_normal};
-use crate::scene::ahead::Statements;
-use crate::scene::text::{Text, Word, Words, parse_f64, parse_integer};
-use crate::scene::{Fallible, Report};
 use std::f64::consts::PI;
 use strahl_geometry::{Cone, Cylinder, Polygon, Primitive, Shape, Sphere};
 use strahl_math::DVec3;
@@ -469,4 +469,28 @@ fn is_view_word(word: &Word<'_>) -> bool {
         word.bytes,
         b"from" | b"at" | b"up" | b"angle" | b"hither" | b"resolution"
     )
+}
+
+/// The parts between two places of the text, and the report about them.
+pub(super) type Parts = (Vec<Part>, Report);
+
+/// Parses the statements that begin before `end`, up to the first erroneous one or a view.
+///
+/// It assumes that a fill has begun before.
+pub(super) fn read_ahead<'a>(
+    text: Text<'a>,
+    words: Words<'a>,
+    end: usize,
+) -> Option<Piece<'a, Parts>> {
+    let mut parser = Parser::new(text, words, Report::default());
+    parser.has_fill = true;
+    if !parser.seek_statement(end) {
+        return None;
+    }
+    let (start, rest) = read_statements(&mut parser, end)?;
+    Some(Piece {
+        start,
+        content: (parser.parts, parser.report),
+        rest,
+    })
 }

@@ -36,7 +36,7 @@ pub fn read_decompressed(path: &Path) -> Result<Vec<u8>, Box<Diagnostic>> {
 }
 
 /// The bytes of a file.
-pub(super) enum FileBytes {
+pub(crate) enum FileBytes {
     Read(Vec<u8>),
     Mapped(Mmap),
 }
@@ -53,7 +53,7 @@ impl Deref for FileBytes {
 }
 
 /// All bytes of a file, or the reason why it can't be read.
-pub(super) fn read_file(path: &Path) -> Fallible<FileBytes> {
+pub(crate) fn read_file(path: &Path) -> Fallible<FileBytes> {
     let name = path.display();
     let about = |e: &io::Error| match e.kind() {
         ErrorKind::NotFound => Diagnostic::error(format!("there is no file `{name}`")),
@@ -125,7 +125,7 @@ fn read_within_memory(from: &mut impl Read, bytes: &mut Vec<u8>) -> io::Result<(
 }
 
 /// Decompresses data that begins like gzip; anything else is returned unchanged.
-pub(super) fn decompressed<'a>(bytes: Cow<'a, [u8]>, name: &str) -> Fallible<Cow<'a, [u8]>> {
+pub(crate) fn decompressed<'a>(bytes: Cow<'a, [u8]>, name: &str) -> Fallible<Cow<'a, [u8]>> {
     const MAGIC: [u8; 2] = [0x1f, 0x8b];
     if !bytes.starts_with(&MAGIC) {
         return Ok(bytes);

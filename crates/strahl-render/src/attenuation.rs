@@ -1,6 +1,9 @@
+//! What fog, rainbows and the insides of objects leave of light.
+
+use crate::media::Crossing;
 use crate::scene::RenderScene;
 use strahl_math::Ray;
-use strahl_shade::Color;
+use strahl_shade::{Color, Material, MaterialId};
 
 impl RenderScene {
     /// Whether there is fog or a rainbow.
@@ -40,5 +43,32 @@ impl RenderScene {
             keeps *= kept;
         }
         (keeps, adds)
+    }
+}
+
+impl RenderScene {
+    /// What of light is left after a way through the medium around it. That of an object with a texture of POV-Ray's is not
+    /// weakened here, but where it leaves the object: see [`crate::surface::Surface::fading`].
+    pub(crate) fn absorbed(&self, around: Option<MaterialId>, length: f64) -> Color {
+        let Some(id) = around else {
+            return Color::WHITE;
+        };
+        let material = &self.materials[id.0 as usize];
+        match Crossing::of(material) {
+            Crossing::BySide => material.attenuation(length),
+            Crossing::ByTurns => Color::WHITE,
+        }
+    }
+
+    /// Whether the eye may be in a medium that weakens light which meets nothing.
+    pub(crate) fn absorbs_around_the_eye(&self) -> bool {
+        let weakens = |m: &Material| !m.absorption.is_black() || m.interior.is_some();
+        let mut materials = self.materials.iter();
+        self.fills && materials.any(|m| Crossing::of(m) == Crossing::BySide && weakens(m))
+    }
+
+    /// What the `interior` of an object leaves of light that gets out of it after a way through it.
+    pub(crate) fn faded(&self, inside: MaterialId, length: f64) -> Color {
+        self.materials[inside.0 as usize].attenuation(length)
     }
 }
