@@ -1,6 +1,6 @@
 //! A ray on its way through the cells that may have a surface of a set of orbits.
 
-use super::orbit_set::{BALL, Event, OrbitSet, Place, SURFACE};
+use super::orbit_set::{BALL, Event, OrbitSet, Places, SURFACE};
 use crate::implicit::Visitor;
 use std::ops::ControlFlow;
 use strahl_math::roots::find_crossing;
@@ -81,9 +81,11 @@ impl<'a, S: OrbitSet, V: FnMut(Event) -> ControlFlow<()>> March<'a, S, V> {
             inside: false,
             visit,
         };
-        march.look(0.0, set.place(origin));
-        march.before = march.last;
-        march.inside = march.value < 0.0;
+        let place = set.place(origin);
+        let (step, is_near) = march.step(place.reach);
+        (march.value, march.clear, march.is_near) = (place.value, step, is_near);
+        (march.before, march.last) = (step, step);
+        march.inside = place.value < 0.0;
         march
     }
 
@@ -102,6 +104,7 @@ impl<'a, S: OrbitSet, V: FnMut(Event) -> ControlFlow<()>> March<'a, S, V> {
     }
 
     /// The step that a reach allows, and whether the surface is nearer than the least one.
+    #[inline(always)]
     fn step(&self, reach: f64) -> (f64, bool) {
         let (shortest, longest) = self.steps;
         let reach = reach * self.pace;
@@ -116,22 +119,23 @@ impl<'a, S: OrbitSet, V: FnMut(Event) -> ControlFlow<()>> March<'a, S, V> {
         (step, is_near)
     }
 
-    /// Remembers how a place lies.
-    fn look(&mut self, s: f64, place: Place) {
-        let (step, is_near) = self.step(place.reach);
+    /// Goes to a place with this value, where this step is allowed, and reports the crossing on the way, if there is one.
+    #[inline(always)]
+    fn go(&mut self, to: f64, value: f64, (step, is_near): (f64, bool)) -> ControlFlow<()> {
+        let before = (self.s, self.value);
         (self.before, self.last) = (self.clear - self.s, step);
-        (self.s, self.value, self.clear, self.is_near) = (s, place.value, s + step, is_near);
-    }
-
-    /// Goes to a place and reports the crossing on the way, if there is one.
-    fn go(&mut self, to: f64, there: Place) -> ControlFlow<()> {
-        let (s, value) = (self.s, self.value);
-        self.look(to, there);
-        if (there.value < 0.0) == self.inside {
+        (self.s, self.value, self.clear, self.is_near) = (to, value, to + step, is_near);
+        if (value < 0.0) == self.inside {
             return ControlFlow::Continue(());
         }
+        self.cross(before)
+    }
+
+    /// Reports the crossing between a place with its value and this one.
+    #[inline(never)]
+    fn cross(&mut self, (s, value): (f64, f64)) -> ControlFlow<()> {
         let at = |s| self.set.value(self.at(s));
-        let zero = find_crossing(s, to, value, there.value, at);
+        let zero = find_crossing(s, self.s, value, self.value, at);
         self.inside = !self.inside;
         (self.visit)(Event::Crossing {
             t: self.start + zero,
@@ -140,21 +144,31 @@ impl<'a, S: OrbitSet, V: FnMut(Event) -> ControlFlow<()>> March<'a, S, V> {
         })
     }
 
+    /// Looks at a place and goes there.
+    fn look(&mut self, to: f64) -> ControlFlow<()> {
+        let place = self.set.place(self.at(to));
+        self.go(to, place.value, self.step(place.reach))
+    }
+
     /// Goes to a place, and on from there as far as places that are looked at together show that the line is clear.
     fn advance(&mut self, to: f64) -> ControlFlow<()> {
         let ahead = self.ahead(to);
-        let Some(places) = self.set.places((self.origin, self.direction), ahead) else {
-            return self.go(to, self.set.place(self.at(to)));
-        };
-        self.go(to, places[0])?;
-        for (s, place) in ahead.into_iter().zip(places).skip(1) {
-            let (step, is_near) = self.step(place.reach);
+        let mut places = Places::default();
+        if !self
+            .set
+            .store_places((self.origin, self.direction), &ahead, &mut places)
+        {
+            return self.look(to);
+        }
+        self.go(to, places.values[0], self.step(places.reaches[0]))?;
+        for k in 1..4 {
+            let (s, step) = (ahead[k], self.step(places.reaches[k]));
             // What is clear around both places has to touch.
-            let back = if is_near { 0.0 } else { step };
+            let back = if step.1 { 0.0 } else { step.0 };
             if !(s - back <= self.clear && s <= self.length) {
                 break;
             }
-            self.go(s, place)?;
+            self.go(s, places.values[k], step)?;
         }
         ControlFlow::Continue(())
     }
@@ -162,7 +176,7 @@ impl<'a, S: OrbitSet, V: FnMut(Event) -> ControlFlow<()>> March<'a, S, V> {
     /// A place and three more, as far from each other as they will be clear if steps go on to grow or shrink as the last one did.
     fn ahead(&self, s: f64) -> [f64; 4] {
         let (shortest, longest) = self.steps;
-        let trend = (self.last / self.before).clamp(TREND.0, TREND.1);
+        let trend = between(self.last / self.before, TREND);
         let mut step = (self.clear - self.s) * trend;
         let mut places = [s; 4];
         for k in 1..4 {
@@ -173,10 +187,10 @@ impl<'a, S: OrbitSet, V: FnMut(Event) -> ControlFlow<()>> March<'a, S, V> {
                 step = longest;
             }
             let next = step * trend;
-            let overlap = if next > shortest {
-                OVERLAP * next.min(longest)
-            } else {
-                0.0
+            let overlap = match next > shortest {
+                true if next > longest => OVERLAP * longest,
+                true => OVERLAP * next,
+                false => 0.0,
             };
             places[k] = places[k - 1] + step + overlap;
             step = next;
@@ -187,7 +201,7 @@ impl<'a, S: OrbitSet, V: FnMut(Event) -> ControlFlow<()>> March<'a, S, V> {
     /// Looks at the end.
     pub(super) fn finish(&mut self) -> ControlFlow<()> {
         if self.s < self.length {
-            self.go(self.length, self.set.place(self.at(self.length)))?;
+            self.look(self.length)?;
         }
         ControlFlow::Continue(())
     }
@@ -247,5 +261,17 @@ impl<S: OrbitSet, V: FnMut(Event) -> ControlFlow<()>> Visitor for March<'_, S, V
     /// Near the surface the end of every cell is looked at, else what is clear is left out.
     fn resume(&self) -> f64 {
         if self.is_near { self.s } else { self.clear }
+    }
+}
+
+/// A number, or the end of the range that it is beyond; NaN stays.
+#[inline(always)]
+fn between(x: f64, (low, high): (f64, f64)) -> f64 {
+    if x < low {
+        low
+    } else if x > high {
+        high
+    } else {
+        x
     }
 }

@@ -23,7 +23,8 @@ pub trait Prepass: Sync {
     /// The number of parts of a generation, which are counted from 0; no parts end the work.
     fn parts(&self, value: &Self::Value, generation: u32) -> u32;
 
-    /// Computes a part. It must depend on the arguments only.
+    /// Computes a part; `at` is the number of the generation and that of the part. It must depend on the value, the numbers and the
+    /// scene only.
     fn part(&self, prober: &mut Prober<'_>, value: &Self::Value, at: (u32, u32)) -> Self::Part;
 
     /// Adds a part to the value; called in the order of generations and parts.

@@ -7,7 +7,7 @@ mod real;
 #[cfg(test)]
 mod tests;
 
-use super::orbit_set::{BALL, BallSearch, OrbitSet, Place};
+use super::orbit_set::{BALL, BallSearch, OrbitSet, Place, Places};
 use crate::{
     Crossings, GeometryError, PrimHit, Primitive, Scratch, Solid, SurfaceId, SurfacePoint,
 };
@@ -161,9 +161,15 @@ impl OrbitSet for Julia {
         self.rule.place(self.number(p))
     }
 
-    fn places(&self, (origin, direction): (DVec3, DVec3), s: [f64; 4]) -> Option<[Place; 4]> {
+    #[inline]
+    fn store_places(
+        &self,
+        (origin, direction): (DVec3, DVec3),
+        s: &[f64; 4],
+        out: &mut Places,
+    ) -> bool {
         let line = [origin.to_array(), direction.to_array()];
-        self.rule.places(&self.slice, line, s)
+        self.rule.store_places(&self.slice, line, s, out)
     }
 
     fn is_decided(&self, center: DVec3, radius: f64) -> bool {

@@ -3,7 +3,7 @@
 use super::complex::{Complex, HypercomplexFunction};
 use super::power::{Degree, Number, Powers};
 use super::real::{Lanes, Real};
-use super::{JuliaAlgebra, Place, QuaternionFunction};
+use super::{JuliaAlgebra, Place, Places, QuaternionFunction};
 use strahl_math::DVec3;
 use strahl_simd::{Isa, Simd, dispatch};
 
@@ -119,39 +119,52 @@ impl Rule {
         place_of(value, reach)
     }
 
-    /// How four points of a line, given by its origin and its direction, lie to the surface; computed side by side, with the same bits
-    /// as one by one; only for squares and cubes.
-    pub(super) fn places(
+    /// Stores how four points of a line, given by its origin and its direction, lie to the surface; computed side by side, with the same
+    /// bits as one by one; only for squares and cubes, else it does nothing and returns `false`.
+    pub(super) fn store_places(
         &self,
         slice: &Slice,
         [origin, direction]: [[f64; 3]; 2],
-        s: [f64; 4],
-    ) -> Option<[Place; 4]> {
-        let (values, reaches) = match self.algebra {
+        s: &[f64; 4],
+        out: &mut Places,
+    ) -> bool {
+        match self.algebra {
             JuliaAlgebra::Quaternion(f) => {
                 let powers = self.quaternion_powers(f);
                 dispatch!(Simd::best(), isa => {
-                    let s = Lanes::load(isa, &s);
+                    let s = Lanes::load(isa, s);
                     let start = slice.number(points_at(origin, direction, s));
                     let [a, b, c, d] = self.parameter;
                     let powers = powers.of([s.like(a), s.like(b), s.like(c), s.like(d)]);
-                    let (value, reach) = self.estimated(powers.estimate(start));
-                    (value.numbers(), reach.numbers())
-                })
+                    self.store_estimated(powers.estimate(start), out);
+                });
             }
             JuliaAlgebra::Hypercomplex(f) => {
-                let powers = self.hypercomplex_powers(f)?;
+                let Some(powers) = self.hypercomplex_powers(f) else {
+                    return false;
+                };
                 dispatch!(Simd::best(), isa => {
-                    let s = Lanes::load(isa, &s);
+                    let s = Lanes::load(isa, s);
                     let start = slice.number(points_at(origin, direction, s));
                     let [a, b, c, d] = self.parameter;
                     let powers = powers.of(split([s.like(a), s.like(b), s.like(c), s.like(d)]));
-                    let (value, reach) = self.estimated(powers.estimate(split(start)));
-                    (value.numbers(), reach.numbers())
-                })
+                    self.store_estimated(powers.estimate(split(start)), out);
+                });
             }
-        };
-        Some([0, 1, 2, 3].map(|k| place_of(values[k], reaches[k])))
+        }
+        true
+    }
+
+    /// Stores what [`place_of`] makes of four [estimates](Self::estimated).
+    #[inline(always)]
+    fn store_estimated<I: Isa>(&self, estimate: (Lanes<I>, Lanes<I>), out: &mut Places) {
+        let (value, reach) = self.estimated(estimate);
+        // What is not a number is not at most anything; reaches are never negative.
+        let infinite = value.like(f64::INFINITY);
+        out.values = value.choose_le(infinite, value, infinite).numbers();
+        out.reaches = reach
+            .choose_le(reach.like(f64::MAX), reach, reach.like(0.0))
+            .numbers();
     }
 
     /// The value and the reach of the place with this end of the orbit and this estimated distance.
@@ -481,11 +494,13 @@ mod tests {
                 // From the middle of the set, whose orbits are long, to far outside, where they end at once.
                 let line = [[0.3, -0.2, 0.1], [0.7, -0.2, 0.25]];
                 let s = [0, 37, 74, 111].map(|k| f64::from(n + k) * 0.005);
-                let places = rule.places(&slice, line, s).expect("a power");
-                for (s, place) in s.into_iter().zip(places) {
-                    let alone = rule.place(slice.number(points_at(line[0], line[1], s)));
-                    assert_eq!(place.value.to_bits(), alone.value.to_bits(), "{algebra:?}");
-                    assert_eq!(place.reach.to_bits(), alone.reach.to_bits(), "{algebra:?}");
+                let mut places = Places::default();
+                assert!(rule.store_places(&slice, line, &s, &mut places));
+                for k in 0..4 {
+                    let alone = rule.place(slice.number(points_at(line[0], line[1], s[k])));
+                    let (value, reach) = (places.values[k], places.reaches[k]);
+                    assert_eq!(value.to_bits(), alone.value.to_bits(), "{algebra:?}");
+                    assert_eq!(reach.to_bits(), alone.reach.to_bits(), "{algebra:?}");
                 }
             }
         }
@@ -496,7 +511,7 @@ mod tests {
             points: 8,
             exit: 4.0,
         };
-        assert!(rule.places(&slice, [[0.1; 3]; 2], [0.1; 4]).is_none());
+        assert!(!rule.store_places(&slice, [[0.1; 3]; 2], &[0.1; 4], &mut Places::default()));
     }
 
     #[test]
