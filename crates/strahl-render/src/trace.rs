@@ -14,6 +14,8 @@
 //! with different reflections send a reflection ray each.
 
 mod aim;
+#[cfg(test)]
+mod batch_tests;
 mod branch;
 mod detail;
 mod eye;

@@ -1,0 +1,79 @@
+//! The number of rays that go through the stages together changes no bit.
+
+use super::{TraceSettings, TreeTracer};
+use crate::compile::{CompileOptions, compile};
+use crate::scene::RenderScene;
+use strahl_accel::PACKET;
+use strahl_geometry::{Cuboid, Plane, Sphere};
+use strahl_math::{DVec3, Ray};
+use strahl_scene::{Background, Camera, ObjectExt, Scene};
+use strahl_shade::{AreaLight, Color, Light, Material};
+
+/// Every kind of ray: glass in glass, mirrors that face each other, an area light, light through tinted balls.
+fn scene() -> RenderScene {
+    let mirror = Material::shiny(Color::gray(0.2), 0.3, 20.0).with_reflection(Color::gray(0.6));
+    let tinted =
+        Material::matte(Color::gray(0.2)).with_transparency(Color::new(0.9, 0.4, 0.3), 0.7, 0.1);
+    let mut lamp = Light::point(DVec3::new(3.0, 6.0, 4.0), Color::gray(0.7));
+    lamp.area = Some(AreaLight::new(DVec3::X, DVec3::Z, 3, 3));
+    let wall = |x: f64| {
+        let low = DVec3::new(x, -1.0, -3.0);
+        Cuboid::new(low, low + DVec3::new(0.2, 3.0, 6.0)).material(mirror.clone())
+    };
+    let mut scene = Scene::new()
+        .add(Plane::new(DVec3::Y * -1.0, DVec3::Y).material(mirror.clone()))
+        .add(wall(-3.0))
+        .add(wall(3.0))
+        .add(Sphere::new(DVec3::ZERO, 1.0).material(Material::glass(1.5)))
+        .add(Sphere::new(DVec3::ZERO, 0.5).material(Material::glass(1.2)))
+        .light(lamp)
+        .light(Light::point(DVec3::new(-2.0, 5.0, 3.0), Color::gray(0.4)))
+        .background(Background::Solid(Color::new(0.1, 0.2, 0.4)))
+        .camera(Camera::perspective(
+            DVec3::new(0.3, 1.0, 7.0),
+            DVec3::ZERO,
+            DVec3::Y,
+            0.8,
+        ));
+    for k in 0..12 {
+        let turn = f64::from(k) * 0.6;
+        let center = DVec3::new(2.0 * turn.sin(), -0.6, 2.0 * turn.cos());
+        scene = scene.add(Sphere::new(center, 0.4).material(tinted.clone()));
+    }
+    compile(&scene, &CompileOptions::default()).expect("a scene")
+}
+
+#[test]
+fn batches_of_any_size_have_the_same_bits() {
+    let scene = scene();
+    let settings = TraceSettings::of(&scene);
+    let rays: Vec<Option<Ray>> = (0..32 * 24)
+        .map(|k| {
+            let (x, y) = (
+                f64::from(k % 32) / 32.0 - 0.5,
+                f64::from(k / 32) / 24.0 - 0.5,
+            );
+            let direction = DVec3::new(0.9 * x, -0.7 * y - 0.1, -1.0);
+            // Some lanes have no ray.
+            (k % 13 != 5).then(|| Ray::new(DVec3::new(0.3, 1.0, 7.0), direction))
+        })
+        .collect();
+    let mut single = TreeTracer::new(&scene, settings);
+    let alone: Vec<Color> = rays
+        .iter()
+        .map(|ray| match ray {
+            Some(ray) => single.trace(ray, &mut ()).color,
+            None => Color::BLACK,
+        })
+        .collect();
+    for size in [1, 2, 3, 7, PACKET] {
+        let mut tracer = TreeTracer::new(&scene, settings);
+        let together: Vec<Color> = rays
+            .chunks(size)
+            .flat_map(|batch| tracer.trace_packet(batch).to_vec())
+            .collect();
+        assert_eq!(together, alone, "{size}");
+        assert_eq!(tracer.counts, single.counts, "{size}");
+    }
+    assert!(single.counts.reflection > 500 && single.counts.refraction > 500);
+}
