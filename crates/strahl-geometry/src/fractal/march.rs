@@ -161,6 +161,10 @@ impl<'a, S: OrbitSet, V: FnMut(Event) -> ControlFlow<()>> March<'a, S, V> {
             return self.look(to);
         }
         self.go(to, places.values[0], self.step(places.reaches[0]))?;
+        #[expect(
+            clippy::needless_range_loop,
+            reason = "the iterators `zip` and `skip` took as long as the rest of the loop"
+        )]
         for k in 1..4 {
             let (s, step) = (ahead[k], self.step(places.reaches[k]));
             // What is clear around both places has to touch.

@@ -496,9 +496,9 @@ mod tests {
                 let s = [0, 37, 74, 111].map(|k| f64::from(n + k) * 0.005);
                 let mut places = Places::default();
                 assert!(rule.store_places(&slice, line, &s, &mut places));
-                for k in 0..4 {
-                    let alone = rule.place(slice.number(points_at(line[0], line[1], s[k])));
-                    let (value, reach) = (places.values[k], places.reaches[k]);
+                let found = places.values.iter().zip(places.reaches);
+                for (s, (value, reach)) in s.into_iter().zip(found) {
+                    let alone = rule.place(slice.number(points_at(line[0], line[1], s)));
                     assert_eq!(value.to_bits(), alone.value.to_bits(), "{algebra:?}");
                     assert_eq!(reach.to_bits(), alone.reach.to_bits(), "{algebra:?}");
                 }
