@@ -21,8 +21,10 @@ mod detail;
 mod eye;
 mod gather;
 mod lights;
+mod medium;
 mod nothing;
 mod outcome;
+mod path;
 mod point;
 mod settings;
 mod spawn;
@@ -100,8 +102,9 @@ pub struct TreeTracer<'s> {
     mirrors: Vec<Mirror>,
     /// The passages of the current hit, if textures are blended there.
     passages: Vec<Passage>,
-    /// The last surface of a path outside of all trees.
+    /// The place of the last surface of a path outside of all trees, and whether the path has met one.
     met: Option<Box<Point<'s>>>,
+    has_met: bool,
 }
 
 impl<'s> TreeTracer<'s> {
@@ -143,6 +146,7 @@ impl<'s> TreeTracer<'s> {
             mirrors: Vec::new(),
             passages: Vec::new(),
             met: None,
+            has_met: false,
         }
     }
 

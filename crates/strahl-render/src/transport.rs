@@ -30,15 +30,14 @@ pub struct Transport {
 /// The same methods, not only equal ones.
 impl PartialEq for Transport {
     fn eq(&self, other: &Self) -> bool {
-        let gather = match (&self.gather, &other.gather) {
-            (Some(a), Some(b)) => Arc::ptr_eq(a, b),
-            (a, b) => a.is_none() && b.is_none(),
-        };
-        let medium = match (&self.medium, &other.medium) {
-            (Some(a), Some(b)) => Arc::ptr_eq(a, b),
-            (a, b) => a.is_none() && b.is_none(),
-        };
-        gather && medium
+        is_same(&self.gather, &other.gather) && is_same(&self.medium, &other.medium)
+    }
+}
+
+fn is_same<T: ?Sized>(a: &Option<Arc<T>>, b: &Option<Arc<T>>) -> bool {
+    match (a, b) {
+        (Some(a), Some(b)) => Arc::ptr_eq(a, b),
+        (a, b) => a.is_none() && b.is_none(),
     }
 }
 
@@ -69,7 +68,7 @@ pub struct SurfaceSample {
     pub transmitted: Option<DVec3>,
     /// Level of the ray in its tree, 1 for a primary ray.
     pub depth: u32,
-    /// The largest channel of what the radiance from here counts in the sample.
+    /// The throughput: the largest channel of the product of all coefficients on the way to the ray, 1 for a primary ray.
     pub weight: f64,
 }
 

@@ -17,7 +17,7 @@ use strahl_render::{
     CompileOptions, Film, Output, RayKind, Region, RenderScene, Sampling, Session, Threads, View,
 };
 use strahl_scene::{Background, Camera, Fog, FogKind, ObjectExt, Scene, Span};
-use strahl_shade::{Color, ColorFt, Light, Material};
+use strahl_shade::{AreaLight, Color, ColorFt, Light, Material};
 
 /// Light from everywhere.
 #[derive(Debug)]
@@ -290,6 +290,53 @@ fn a_medium_along_rays_does_what_fog_does() {
         }
     }
     sums_are_exact(&hazy);
+}
+
+/// Lets no light through that comes from light sources.
+#[derive(Debug)]
+struct Night;
+
+impl MediumIntegrator for Night {
+    fn along(&self, path: &MediumPath, _: &mut Probe<'_, '_>) -> MediumTerm {
+        let transmittance = match path.kind {
+            MediumRay::Shadow => Color::BLACK,
+            MediumRay::Camera | MediumRay::Secondary => Color::WHITE,
+        };
+        MediumTerm {
+            transmittance,
+            ..MediumTerm::NONE
+        }
+    }
+}
+
+#[test]
+fn a_medium_weakens_lights_of_every_kind() {
+    let mut scene = glass_and_mirrors();
+    for illumination in [false, true] {
+        let mut lamp = Light::point(DVec3::new(2.0, 5.0, 5.0), Color::gray(0.5));
+        lamp.area = Some(AreaLight {
+            illumination,
+            ..AreaLight::new(DVec3::X, DVec3::Z, 3, 3)
+        });
+        scene = scene.light(lamp);
+    }
+    let lit = view(&scene);
+    let night = sure_film(&lit.clone().with_medium(Arc::new(Night)));
+    scene.lights.clear();
+    assert_eq!(night.sha256(), film(&view(&scene), 1).sha256());
+    assert_ne!(night.sha256(), film(&lit, 1).sha256());
+}
+
+#[test]
+fn a_path_leaves_no_surface_that_it_has_not_met() {
+    let scene = compiled(&glass_and_mirrors());
+    let mut prober = scene.prober();
+    assert!(prober.leave(DVec3::Y).is_none());
+    let down = prober.begin(&Ray::new(DVec3::new(0.0, 9.0, 0.0), DVec3::NEG_Y));
+    assert!(prober.surface(&down).is_some() && prober.leave(DVec3::Y).is_some());
+    let up = prober.begin(&Ray::new(DVec3::new(0.0, 9.0, 0.0), DVec3::Y));
+    assert!(prober.leave(DVec3::Y).is_none());
+    assert!(prober.surface(&up).is_none() && prober.leave(DVec3::Y).is_none());
 }
 
 #[test]

@@ -1,17 +1,11 @@
-//! The stage of gathered light, and the media along rays: where methods of light transport are asked.
+//! The stage of gathered light.
 
+use super::TreeTracer;
 use super::branch::Offshoot;
 use super::point::{Lanes, Point};
-use super::{Branch, TreeTracer};
-use crate::hit::RayClass;
-use crate::layers;
 use crate::observer::{GatherTerm, RayKind, Share, TraceObserver};
-use crate::resolve::Uv;
-use crate::transport::{
-    Gathered, MediumPath, MediumRay, MediumTerm, PathRay, Probe, SurfaceSample, Transport,
-};
-use strahl_math::{DVec3, Interval, Ray};
-use strahl_shade::{Color, LightSample};
+use crate::transport::{Gathered, Probe, SurfaceSample, Transport};
+use strahl_shade::Color;
 
 impl<'s> TreeTracer<'s> {
     /// The same with methods of light transport that are asked besides.
@@ -80,7 +74,7 @@ impl<'s> TreeTracer<'s> {
     }
 
     /// A hit as methods of light transport see it.
-    fn sample_of(&mut self, point: &Point<'s>) -> SurfaceSample {
+    pub(super) fn sample_of(&mut self, point: &Point<'s>) -> SurfaceSample {
         let split = self.split(point);
         let Point {
             branch,
@@ -98,120 +92,10 @@ impl<'s> TreeTracer<'s> {
             diffuse: surface.material.finish.diffuse,
             reflection: split.kr,
             transmission: split.kt * split.fade,
-            mirrored: split.reflected,
+            mirrored: split.reflected.filter(|_| !split.kr.is_black()),
             transmitted: split.refracted,
             depth: branch.depth,
             weight: branch.weight,
-        }
-    }
-
-    /// Begins a path outside of all trees.
-    pub(crate) fn begin_path(&mut self, ray: &Ray) -> PathRay {
-        self.met = None;
-        PathRay {
-            ray: *ray,
-            origin: None,
-            media: self.eye_media(ray.origin),
-        }
-    }
-
-    /// The surface that a ray of a path meets first.
-    pub(crate) fn surface_on(&mut self, path: &PathRay) -> Option<SurfaceSample> {
-        let PathRay { ray, origin, media } = path;
-        let (range, class) = (Interval::FORWARD, RayClass::Secondary);
-        let hit = self
-            .tracer
-            .closest_hit(ray, range, origin.as_ref(), class)?;
-        let mut point = self
-            .met
-            .take()
-            .unwrap_or_else(|| Box::new(Point::unknown(&self.blank)));
-        let (scene, speed) = (self.tracer.scene, ray.direction.length());
-        point.branch = Branch {
-            origin: *origin,
-            ..Branch::primary(ray, 0, *media)
-        };
-        (point.hit, point.length) = (hit, hit.t * speed);
-        let Point {
-            branch,
-            surface,
-            paint,
-            ..
-        } = &mut *point;
-        surface.find(scene, branch, &hit, Uv::IfTextured);
-        surface.find_sides(scene, branch, speed, &hit, &self.media);
-        surface.find_start(&hit);
-        layers::paint(scene, surface, &hit, paint, &mut self.paints);
-        let sample = self.sample_of(&point);
-        self.met = Some(point);
-        Some(sample)
-    }
-
-    /// Goes on with a path from the surface that its last ray has met.
-    pub(crate) fn leave_surface(&mut self, direction: DVec3) -> Option<PathRay> {
-        let Point {
-            branch,
-            surface,
-            hit,
-            ..
-        } = &**self.met.as_ref()?;
-        let (start, origin) = surface.start(hit, direction);
-        let media = if surface.n_geom.dot(direction) < 0.0 {
-            surface.media_behind(branch.media, &mut self.media)
-        } else {
-            branch.media
-        };
-        Some(PathRay {
-            ray: Ray::new(start, direction),
-            origin: Some(origin),
-            media,
-        })
-    }
-
-    /// What lies in front of a hit, a medium included: the attenuation, and the light that is added.
-    #[cold]
-    pub(super) fn medium_along(
-        &mut self,
-        branch: &Branch,
-        length: f64,
-        (keeps, adds): (Color, Color),
-    ) -> (Color, Color) {
-        let kind = match branch.kind {
-            RayKind::Primary => MediumRay::Camera,
-            _ => MediumRay::Secondary,
-        };
-        let path = MediumPath {
-            ray: branch.ray,
-            length,
-            kind,
-            inside: self.media.top(branch.media),
-        };
-        let term = self.integrated(&path);
-        (keeps * term.transmittance, adds + term.radiance)
-    }
-
-    /// What a medium leaves of a light on its way to a hit.
-    #[cold]
-    pub(super) fn medium_before(&mut self, sample: &LightSample, point: &Point<'s>) -> Color {
-        let length = if sample.range.max.is_infinite() {
-            f64::INFINITY
-        } else {
-            sample.shadow_direction.length()
-        };
-        let path = MediumPath {
-            ray: Ray::new(point.surface.resolved.point.position, sample.l),
-            length,
-            kind: MediumRay::Shadow,
-            inside: self.media.top(point.branch.media),
-        };
-        self.integrated(&path).transmittance
-    }
-
-    /// What the medium does along a ray.
-    fn integrated(&mut self, path: &MediumPath) -> MediumTerm {
-        match self.transport.medium.clone() {
-            Some(medium) => medium.along(path, &mut self.probe()),
-            None => MediumTerm::NONE,
         }
     }
 }

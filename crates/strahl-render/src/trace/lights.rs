@@ -227,7 +227,12 @@ impl<'s> TreeTracer<'s> {
         } = arriving;
         let mut visible = arriving.visible;
         let (diffuse, specular) = match arriving.reflected {
-            Some(known) => known,
+            // The mean over an area light with `area_illumination`, which fog leaves as it is.
+            Some(known) if self.transport.medium.is_none() => known,
+            Some((diffuse, specular)) => {
+                let keeps = self.medium_before(sample, point);
+                (diffuse * keeps, specular * keeps)
+            }
             None => {
                 if let Some(air) = self.air_before(light, sample, point) {
                     visible *= air;

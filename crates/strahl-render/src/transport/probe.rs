@@ -40,7 +40,8 @@ impl<'s> Probe<'_, 's> {
     pub fn light(&mut self, number: usize, position: DVec3) -> Option<(LightSample, Color)> {
         let light = &self.tracer.scene.lights.get(number)?.light;
         let sample = light.illuminate(position)?;
-        if !light.casts_shadows || sample.range.is_empty() {
+        let is_free = !light.casts_shadows && self.tracer.scene.mask(number).is_none();
+        if is_free || sample.range.is_empty() {
             return Some((sample, Color::WHITE));
         }
         let shadow_ray = ShadowRay {
