@@ -118,15 +118,16 @@ impl PovNormal {
     /// The perturbed normal in the pattern's space, not of unit length.
     fn tilt_inside(&self, point: &TexturePoint, n: DVec3) -> DVec3 {
         let transformed = self.modifiers.warped(point.position);
-        let p = self.modifiers.displaced(transformed);
-        let inner = point.at(transformed);
+        let moved = || self.modifiers.displaced(transformed);
         match &self.kind {
-            NormalKind::Bumps => n + dnoise(p) * self.amount,
+            NormalKind::Bumps => n + dnoise(moved()) * self.amount,
             NormalKind::Dents => {
+                let p = moved();
                 let depth = noise(p, self.modifiers.noise);
                 n + dnoise(p) * (self.amount * (depth * depth * depth))
             }
             NormalKind::Wrinkles => {
+                let p = moved();
                 let mut frequency = 1.0;
                 let mut sum = DVec3::ZERO;
                 for _ in 0..10 {
@@ -136,29 +137,32 @@ impl PovNormal {
                 n + sum * self.amount
             }
             NormalKind::Ripples(sources) => {
-                n + water::ripples_tilt(p, *sources, &self.modifiers) * self.amount
+                n + water::ripples_tilt(moved(), *sources, &self.modifiers) * self.amount
             }
             NormalKind::Waves(sources) => {
-                n + water::waves_tilt(p, *sources, &self.modifiers) * self.amount
+                n + water::waves_tilt(moved(), *sources, &self.modifiers) * self.amount
             }
             NormalKind::Quilted(controls) => {
-                n + crate::patterns::quilted_tilt(p, *controls) * self.amount
+                n + crate::patterns::quilted_tilt(moved(), *controls) * self.amount
             }
             NormalKind::Height(pattern, slopes) => {
                 let field = self.field(pattern);
                 // The tetrahedron surrounds the displaced point; its corners are not displaced again.
                 let height = |position: DVec3| {
-                    let value = field.value_moved(position, &inner);
+                    let value = field.value_moved(position, point);
                     slopes.as_ref().map_or(value, |map| map.height(value))
                 };
                 let center = field.moved(transformed);
                 n - tetrahedral_gradient(center, self.accuracy, height) * self.amount
             }
-            NormalKind::BumpMap(image) => (n + image.tilt(p, n) * self.amount).normalize_or_zero(),
+            NormalKind::BumpMap(image) => {
+                (n + image.tilt(moved(), n) * self.amount).normalize_or_zero()
+            }
             NormalKind::Map(pattern, map) => {
                 let field = self.field(pattern);
-                let value = field.value_inside(&inner);
-                let inner = inner.at(field.moved(transformed));
+                let place = field.moved(transformed);
+                let value = field.value_moved(place, point);
+                let inner = point.at(place);
                 let unit = self.for_parts(n);
                 match map.lookup(value) {
                     None => n,
@@ -170,13 +174,13 @@ impl PovNormal {
             }
             NormalKind::Blocks(pattern, normals) => {
                 let field = self.field(pattern);
-                let block = field.block_inside(&inner);
-                let inner = inner.at(field.moved(transformed));
-                let normal = normals.get(block).or(normals.last());
+                let place = field.moved(transformed);
+                let inner = point.at(place);
+                let normal = normals.get(pattern.block(place)).or(normals.last());
                 normal.map_or(n, |normal| normal.tilt(&inner, self.for_parts(n)))
             }
             NormalKind::Average(members) => {
-                let inner = inner.at(p);
+                let inner = point.at(moved());
                 let unit = self.for_parts(n);
                 let sum = members
                     .iter()

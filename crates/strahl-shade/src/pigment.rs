@@ -5,6 +5,7 @@ use std::sync::Arc;
 use crate::ColorFt;
 use crate::image_map::ImageMap;
 use crate::patterns::{Modifiers, PatternField, TexturePoint};
+use strahl_math::DVec3;
 
 /// Entries at positions in `0..=1`, between which a value is looked up: the common part of all maps.
 ///
@@ -115,28 +116,29 @@ impl Pigment {
                 Some(Blend::Two(low, high, t)) => low.lerp(*high, t),
             },
             Self::PigmentMap(field, map) => {
-                let inner = point.at(field.moved(point.position));
-                match map.lookup(field.value(point)) {
+                let (value, place) = field.value_and_place(point);
+                let color = |pigment: &Self| pigment.color_moved(point, place);
+                match map.lookup(value) {
                     None => ColorFt::default(),
-                    Some(Blend::One(pigment)) => pigment.color_at(&inner),
-                    Some(Blend::Two(low, high, t)) => {
-                        low.color_at(&inner).lerp(high.color_at(&inner), t)
-                    }
+                    Some(Blend::One(pigment)) => color(pigment),
+                    Some(Blend::Two(low, high, t)) => color(low).lerp(color(high), t),
                 }
             }
             Self::Blocks(field, pigments) => {
-                let inner = point.at(field.moved(point.position));
-                let block = pigments.get(field.block(point)).or(pigments.last());
-                block.map_or_else(ColorFt::default, |pigment| pigment.color_at(&inner))
+                let place = field.moved(point.position);
+                let block = pigments.get(field.block_moved(place)).or(pigments.last());
+                block.map_or_else(ColorFt::default, |pigment| {
+                    pigment.color_moved(point, place)
+                })
             }
             Self::Image(image, modifiers) => image
                 .color(modifiers.moved(point.position))
                 .unwrap_or(ColorFt::CLEAR),
             Self::Average(members, modifiers) => {
-                let inner = point.at(modifiers.moved(point.position));
+                let place = modifiers.moved(point.position);
                 let (mut sum, mut total) = (ColorFt::default(), 0.0);
                 for (weight, pigment) in members {
-                    sum = sum + pigment.color_at(&inner) * *weight;
+                    sum = sum + pigment.color_moved(point, place) * *weight;
                     total += weight;
                 }
                 if total == 0.0 {
@@ -148,6 +150,14 @@ impl Pigment {
             Self::UvMapped(pigment) => pigment.color_at(&point.on_surface_but_normals()),
         }
     }
+
+    /// The colour at the point after it has moved to a place.
+    fn color_moved(&self, point: &TexturePoint, place: DVec3) -> ColorFt {
+        match self {
+            Self::Solid(color, _) => *color,
+            _ => self.color_at(&point.at(place)),
+        }
+    }
 }
 
 #[cfg(test)]
@@ -155,7 +165,6 @@ mod tests {
     use super::*;
     use crate::Color;
     use crate::patterns::Pattern;
-    use strahl_math::DVec3;
 
     fn gray(value: f64) -> ColorFt {
         Color::gray(value).into()

@@ -283,8 +283,9 @@ impl Texture {
             Self::Plain(_) | Self::Layered(_) => visit(self, point, &Identity, 1.0),
             Self::Map(field, map) => {
                 let warps = &field.modifiers.warps;
-                let inner = point.moved(|p| field.moved(p));
-                match map.lookup(field.value(point)) {
+                let (value, place) = field.value_and_place(point);
+                let inner = point.moved_to(place, |p| field.moved(p));
+                match map.lookup(value) {
                     None => {}
                     Some(Blend::One(texture)) => visit(texture, &inner, warps, 1.0),
                     Some(Blend::Two(low, high, t)) => {
@@ -296,8 +297,9 @@ impl Texture {
             }
             Self::Blocks(field, textures) => {
                 let warps = &field.modifiers.warps;
-                let inner = point.moved(|p| field.moved(p));
-                if let Some(texture) = textures.get(field.block(point)).or(textures.last()) {
+                let place = field.moved(point.position);
+                let inner = point.moved_to(place, |p| field.moved(p));
+                if let Some(texture) = textures.get(field.block_moved(place)).or(textures.last()) {
                     visit(texture, &inner, warps, 1.0);
                 }
             }

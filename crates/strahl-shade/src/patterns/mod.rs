@@ -82,8 +82,14 @@ impl TexturePoint {
     /// The same in another space, to which a map carries positions.
     #[must_use]
     pub(crate) fn moved(&self, map: impl Fn(DVec3) -> DVec3) -> Self {
+        self.moved_to(map(self.position), map)
+    }
+
+    /// The same if the map is known to carry the position to this one.
+    #[must_use]
+    pub(crate) fn moved_to(&self, position: DVec3, map: impl Fn(DVec3) -> DVec3) -> Self {
         Self {
-            position: map(self.position),
+            position,
             tilted_at: self.tilted_at.map(&map),
             in_object: self.in_object.map(&map),
             ..*self
@@ -256,7 +262,7 @@ impl Pattern {
     }
 
     /// The number of the block at `p`, which is already warped; 0 for patterns without blocks.
-    fn block(&self, p: DVec3) -> usize {
+    pub(crate) fn block(&self, p: DVec3) -> usize {
         match self {
             Self::Brick { size, mortar } => blocks::brick(p, *size, *mortar),
             Self::Checker => blocks::checker(p),
@@ -346,14 +352,24 @@ impl From<Pattern> for Box<PatternField> {
 impl PatternField {
     /// The value at a point, in `0..=1.00001`: what lies beyond is repeated into it by [`Modifiers::shape`].
     pub fn value(&self, point: &TexturePoint) -> f64 {
-        let inner = point.at(self.modifiers.warped(point.position));
-        self.as_ref().value_inside(&inner)
+        self.value_and_place(point).0
     }
 
-    /// The number of the block at a point, below [`Pattern::block_count`]; 0 for patterns without blocks.
+    /// The value at a point, and the place where it is evaluated: [`PatternField::moved`].
+    pub fn value_and_place(&self, point: &TexturePoint) -> (f64, DVec3) {
+        let place = self.moved(point.position);
+        (self.as_ref().value_moved(place, point), place)
+    }
+
+    /// The number of the block at a point, as [`PatternField::block_moved`] counts it.
     pub fn block(&self, point: &TexturePoint) -> usize {
-        let inner = point.at(self.modifiers.warped(point.position));
-        self.as_ref().block_inside(&inner)
+        self.block_moved(self.moved(point.position))
+    }
+
+    /// The number of the block at a place to which [`PatternField::moved`] has led, below [`Pattern::block_count`]; 0 for patterns
+    /// without blocks.
+    pub(crate) fn block_moved(&self, place: DVec3) -> usize {
+        self.pattern.block(place)
     }
 
     /// The position after warps, transformations and the turbulence that moves points: there the pattern is evaluated, and
@@ -379,12 +395,7 @@ pub(crate) struct FieldRef<'a> {
 }
 
 impl FieldRef<'_> {
-    /// The value at a point in the pattern's own space, where only turbulence is left to be applied.
-    pub(crate) fn value_inside(&self, point: &TexturePoint) -> f64 {
-        self.value_moved(self.moved(point.position), point)
-    }
-
-    /// The value at `p`, which turbulence has moved already.
+    /// The value at `p`, to which warps and turbulence have led already; nothing else of the point than its position is another there.
     pub(crate) fn value_moved(&self, p: DVec3, point: &TexturePoint) -> f64 {
         let raw = self.pattern.raw(p, point, self.modifiers);
         let wave = self.modifiers.wave;
@@ -399,11 +410,6 @@ impl FieldRef<'_> {
             return wave.apply(raw);
         }
         self.modifiers.shape(raw, wave)
-    }
-
-    /// The block at a point in the pattern's own space.
-    pub(crate) fn block_inside(&self, point: &TexturePoint) -> usize {
-        self.pattern.block(self.moved(point.position))
     }
 
     /// The point after turbulence, if the pattern lets turbulence move it.
