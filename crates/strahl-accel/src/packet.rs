@@ -21,7 +21,7 @@ pub struct Packet<'r> {
 impl Packet<'_> {
     /// The lanes that are traced, as bits.
     #[inline(always)]
-    pub(crate) fn alive(&self) -> u32 {
+    pub fn alive(&self) -> u32 {
         let mut alive = 0;
         for lane in 0..self.rays.len().min(PACKET) {
             alive |= u32::from(self.t_max[lane] > f64::NEG_INFINITY) << lane;
@@ -37,6 +37,15 @@ pub trait PacketVisitor {
 
     /// Tests primitive `id` for the ray of a lane, and returns its new `t_max`, as [`Visitor::visit`](crate::Visitor::visit).
     fn visit(&mut self, id: u32, lane: usize, t_max: f64) -> f64;
+
+    /// The same for several lanes, given as bits; `t_max` is changed accordingly. Lanes whose search has ended are left out.
+    fn visit_together(&mut self, id: u32, lanes: u32, t_max: &mut [f64; PACKET]) {
+        for lane in lanes_of(lanes) {
+            if t_max[lane] > f64::NEG_INFINITY {
+                t_max[lane] = self.visit(id, lane, t_max[lane]);
+            }
+        }
+    }
 
     /// Tests all primitives of a leaf for the ray of a lane, as [`Visitor::visit_leaf`](crate::Visitor::visit_leaf).
     fn visit_leaf<I: Isa>(&mut self, isa: I, leaf: &Leaf<'_>, lane: usize, t_max: f64) -> f64;

@@ -43,7 +43,8 @@ fn moved(x: f32, steps: i32) -> f32 {
 /// `error` bounds the distance of `position` from the true surface, coordinate by coordinate; `normal` is the unit normal
 /// of the side to end up on. The result is rounded away from the surface. (Pharr, Jakob, Humphreys: Physically Based
 /// Rendering, 4th ed., section 6.8.6, in f64.)
-#[inline]
+// Inline: a result that is returned in memory would be copied before its stores have ended.
+#[inline(always)]
 pub fn offset_origin(position: DVec3, error: DVec3, normal: DVec3) -> DVec3 {
     let distance = normal.abs().dot(error);
     let moved = position + normal * distance;

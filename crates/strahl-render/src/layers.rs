@@ -314,7 +314,9 @@ pub(crate) fn lit(
             #[inline(always)]
             |layer| layer_term(layer, surface, l, light),
         ),
-        Some(model) => lit_by(paint, model, surface, l, light),
+        // Channel by channel: a colour that is passed in memory would be stored on the other way, too, and loaded before its stores
+        // have ended.
+        Some(model) => lit_by(paint, model, surface, l, light.r, light.g, light.b),
     }
 }
 
@@ -325,8 +327,11 @@ fn lit_by(
     model: ShadingModel,
     surface: &Surface<'_>,
     l: DVec3,
-    light: Color,
+    r: f64,
+    g: f64,
+    b: f64,
 ) -> (Color, Color) {
+    let light = Color::new(r, g, b);
     sum_of_terms(paint, |layer| {
         layer_term_by(model, layer, surface, l, light)
     })

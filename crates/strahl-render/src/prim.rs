@@ -86,7 +86,7 @@ impl Prim {
     #[inline(always)]
     pub(crate) const fn plain_shape(&self) -> Option<u32> {
         match self.tag {
-            PrimTag::Shape if self.flags & Self::CHECKED == 0 => Some(self.index),
+            PrimTag::Shape | PrimTag::Placed if self.flags & Self::CHECKED == 0 => Some(self.index),
             _ => None,
         }
     }

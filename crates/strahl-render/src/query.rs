@@ -3,6 +3,7 @@ mod kinds;
 mod leaves;
 mod packet;
 mod plain;
+mod shapes;
 mod visitor;
 
 use crate::activity::{Phase, Slot};

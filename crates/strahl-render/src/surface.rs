@@ -141,14 +141,14 @@ impl<'s> Surface<'s> {
         scene.resolve(&branch.ray, from, hit, uv, &mut self.resolved);
     }
 
-    /// Finds which side of the surface the ray meets, what is on both sides, and the material; `speed` is the length of the ray's
-    /// direction.
+    /// Finds which side of the surface the ray meets, what is on both sides, and the material; `per_speed` is the reciprocal of the
+    /// length of the ray's direction.
     #[inline(always)]
     pub(crate) fn find_sides(
         &mut self,
         scene: &'s RenderScene,
         branch: &Branch,
-        speed: f64,
+        per_speed: f64,
         hit: &Hit,
         media: &MediaArena,
     ) {
@@ -156,16 +156,15 @@ impl<'s> Surface<'s> {
             point, look, space, ..
         } = &self.resolved;
         let material = &scene.materials[look.material.0 as usize];
-        self.v = -(branch.ray.direction * speed.recip());
+        self.v = -(branch.ray.direction * per_speed);
         self.entering = point.n_geom.dot(self.v) >= 0.0;
         let side = if self.entering { 1.0 } else { -1.0 };
         let n_shade = match &material.pbr {
             None => point.n_shade,
             Some(pbr) => pbr.shading_normal(point.uv, point.n_shade, point.dpdu, point.dpdv),
         };
-        self.n_geom = point.n_geom * side;
-        self.n_shade = n_shade * side;
-        self.n_refract = self.n_shade;
+        let n_shade = n_shade * side;
+        (self.n_geom, self.n_shade, self.n_refract) = (point.n_geom * side, n_shade, n_shade);
         self.n_smooth = None;
         self.own = look.medium(material, *space);
         self.thin = material.thin;
@@ -256,7 +255,7 @@ impl<'s> Surface<'s> {
     }
 
     /// The reflected light if light arrives from the unit direction `l`: the diffuse part and the highlight.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn reflected(
         &self,
         model: ShadingModel,
@@ -498,11 +497,13 @@ fn store_start(r: &Resolved, hit: &Hit, along_normal: bool, out: &mut (DVec3, Or
     let toward = |n: DVec3| if along_normal { n } else { -n };
     let (point, origin) = out;
     let p = &r.point;
-    *point = error::offset_origin(p.position, p.position_error, toward(p.n_geom));
-    (origin.id, origin.facet, origin.local) = (hit.id, hit.facet, *point);
-    if let Some(l) = &r.local {
-        origin.local = error::offset_origin(l.position, l.error, toward(l.normal));
-    }
+    let place = error::offset_origin(p.position, p.position_error, toward(p.n_geom));
+    let local = match &r.local {
+        None => place,
+        Some(l) => error::offset_origin(l.position, l.error, toward(l.normal)),
+    };
+    *point = place;
+    (origin.id, origin.facet, origin.local) = (hit.id, hit.facet, local);
 }
 
 /// A distinct colour for every number: hues by the golden ratio, three levels of brightness.

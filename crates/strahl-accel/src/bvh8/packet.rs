@@ -41,13 +41,9 @@ impl Bvh8 {
             },
         };
         for id in self.unbounded.ids() {
-            for lane in 0..packet.rays.len().min(PACKET) {
-                let t_max = &mut packet.t_max[lane];
-                if *t_max > f64::NEG_INFINITY {
-                    *t_max = visitor.visit(*id, lane, *t_max);
-                    stats.primitive_tests += 1;
-                }
-            }
+            let alive = packet.alive();
+            visitor.visit_together(*id, alive, &mut packet.t_max);
+            stats.primitive_tests += u64::from(alive.count_ones());
         }
         if let Some((tree, nodes)) = tree {
             dispatch!(self.simd, isa => tree.walk_octants(isa, nodes, packet, visitor, stats));

@@ -172,13 +172,14 @@ impl PacketLines {
             margin: 0.0,
         };
         let mut farthest = 0.0;
+        let mut squares = [1.0; PACKET];
         for (lane, ray) in rays.iter().enumerate().take(PACKET) {
             let d = ray.direction;
             for axis in 0..3 {
                 all.origin[axis].0[lane] = ray.origin[axis] as f32;
                 all.direction[axis].0[lane] = d[axis] as f32;
             }
-            all.inverse.0[lane] = (1.0 / d.dot(d)) as f32;
+            squares[lane] = d.dot(d);
             let distance = ray.origin.abs().element_sum();
             // NaN is kept.
             farthest = if distance <= farthest {
@@ -187,6 +188,8 @@ impl PacketLines {
                 distance
             };
         }
+        // By themselves, as vectors.
+        all.inverse = Lanes16(squares.map(|square| (1.0 / square) as f32));
         all.margin = 2.0 * 64.0 * U * (max_abs + farthest);
         all
     }

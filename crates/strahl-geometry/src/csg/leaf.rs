@@ -146,6 +146,8 @@ impl Leaf {
 
     /// Where the line is inside of a convex solid or a quadric; the ends are those that [`Leaf::crossings`] lists. `None` for other
     /// shapes, and for rays along a plane.
+    // Inline: the span would be copied before its stores have ended.
+    #[inline(always)]
     pub(super) fn stay(&self, ray: &Ray, from: Option<SurfaceId>) -> Option<Stay> {
         let placed;
         let ray = match &self.placement {

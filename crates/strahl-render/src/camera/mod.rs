@@ -63,24 +63,53 @@ impl PrimaryRays {
     }
 
     /// The chief ray, through the centre of the lens; `None` where the camera sees nothing, and for mesh cameras.
+    #[inline]
     pub fn ray(&self, x: f64, y: f64) -> Option<Ray> {
         self.chief::<true>(x, y)
     }
 
     /// [`PrimaryRays::ray`], whose direction has length 1 if `UNIT` and any length if not.
+    // Inline for the camera that nearly all scenes have, and nothing returned in memory by others: such a ray would be copied before its
+    // stores have ended.
     #[inline(always)]
     fn chief<const UNIT: bool>(&self, x: f64, y: f64) -> Option<Ray> {
         let c = &self.camera;
         // From -1 to 1, x to the right and y upwards.
         let (u, v) = (2.0 * x / self.width - 1.0, 1.0 - 2.0 * y / self.height);
+        if c.normal.is_some() || !matches!(c.projection, Projection::Perspective) {
+            let mut ray = [DVec3::ZERO; 2];
+            let [origin, direction] = &mut ray;
+            return self
+                .special_chief([u, v], origin, direction)
+                .then(|| Ray::new(ray[0], ray[1]));
+        }
+        let direction = c.direction + (c.right * u + c.up * v);
+        Some(Ray::new(
+            c.eye,
+            match UNIT {
+                true => direction.normalize(),
+                false => direction,
+            },
+        ))
+    }
+
+    /// Stores the chief ray of a camera that isn't perspective or has a `normal`, at coordinates from -1 to 1; its direction has length 1.
+    /// Returns `false` where there is none.
+    #[inline(never)]
+    fn special_chief(&self, at: [f64; 2], origin: &mut DVec3, direction: &mut DVec3) -> bool {
+        let Some(ray) = self.special_ray(at) else {
+            return false;
+        };
+        (*origin, *direction) = (ray.origin, ray.direction);
+        true
+    }
+
+    fn special_ray(&self, [u, v]: [f64; 2]) -> Option<Ray> {
+        let c = &self.camera;
         let sideways = c.right * u + c.up * v;
         let (ray, place) = match &c.projection {
             Projection::Perspective => {
-                let direction = c.direction + sideways;
-                let direction = match UNIT || c.normal.is_some() {
-                    true => direction.normalize(),
-                    false => direction,
-                };
+                let direction = (c.direction + sideways).normalize();
                 (Ray::new(c.eye, direction), [0.5 * u, 0.5 * v])
             }
             Projection::Orthographic => {

@@ -3,6 +3,7 @@
 
 use super::block::{Block, BlockOfLeaf, Fetched, PacketCulls};
 use super::kinds::{AnyOpaque, Closest, Query};
+use super::shapes::PlainShape;
 use super::{From, GroupVisitor, NONE, Search, Tracer};
 use crate::activity::{Phase, Slot};
 use crate::blocks::{Blocks, Flats, LeafClass};
@@ -14,7 +15,7 @@ use strahl_accel::{
     Accelerator, BLOCK, Leaf, PACKET, Packet, PacketVisitor, TraversalStats, Visitor, lanes_of,
 };
 use strahl_geometry::blocks::{Hits, PacketLines, PacketShears, SphereBlock, TriangleBlock};
-use strahl_geometry::{RayShear, Scratch};
+use strahl_geometry::{RayShear, Scratch, Shape, SurfaceId};
 use strahl_math::{Interval, Ray};
 use strahl_simd::Isa;
 
@@ -189,13 +190,9 @@ impl Tracer<'_> {
             t_max,
         };
         if asked.first != NONE {
-            for lane in 0..asked.rays.len().min(PACKET) {
-                let t_max = &mut packet.t_max[lane];
-                if *t_max > f64::NEG_INFINITY {
-                    *t_max = visitor.visit(asked.first, lane, *t_max);
-                    stats.primitive_tests += 1;
-                }
-            }
+            let alive = packet.alive();
+            visitor.visit_together(asked.first, alive, &mut packet.t_max);
+            stats.primitive_tests += u64::from(alive.count_ones());
         }
         if !accelerator.traverse_packet(&mut packet, &mut visitor, &mut stats) {
             for (lane, ray) in asked.rays.iter().enumerate().take(PACKET) {
@@ -296,6 +293,50 @@ impl<Q: Query> Together<'_, '_, Q> {
         }
     }
 
+    /// Tests a shape whose hits need no further checks for several rays.
+    #[inline(never)]
+    fn plain_shape(&mut self, id: u32, index: u32, lanes: u32, t_max: &mut [f64; PACKET]) {
+        let shape = PlainShape::of(self.group, id, index, 0);
+        self.slot.enter_for(Phase::Intersection, shape.number);
+        match (shape.shape, shape.transform) {
+            // Most scenes have one, which all rays are tested for; it takes less time than to find out what to do.
+            (Shape::Plane(plane), None) => {
+                self.meet_together(id, &shape, lanes, t_max, |ray, range, from, scratch| {
+                    shape.meet_as::<Q, _>(plane, ray, range, from, scratch)
+                });
+            }
+            _ => self.meet_together(id, &shape, lanes, t_max, |ray, range, from, scratch| {
+                shape.meet::<Q>(ray, range, from, scratch)
+            }),
+        }
+        self.slot.enter(Phase::Traversal);
+    }
+
+    #[inline(always)]
+    fn meet_together(
+        &mut self,
+        id: u32,
+        shape: &PlainShape<'_>,
+        lanes: u32,
+        t_max: &mut [f64; PACKET],
+        meet: impl Fn(&Ray, Interval, Option<SurfaceId>, &mut Scratch) -> Option<Hit>,
+    ) {
+        for lane in lanes_of(lanes) {
+            let before = t_max[lane];
+            if !(before > f64::NEG_INFINITY) {
+                continue;
+            }
+            let from = match self.asked.from[lane] {
+                Some(origin) if id == self.from_prims[lane] => Some(shape.start(origin, origin.id)),
+                _ => None,
+            };
+            let range = Interval::new(self.asked.min, before);
+            if let Some(hit) = meet(&self.asked.rays[lane], range, from, self.scratch) {
+                t_max[lane] = self.queries[lane].take(hit, before);
+            }
+        }
+    }
+
     /// Tests the primitives of one block of a leaf for several rays.
     #[inline(always)]
     #[expect(
@@ -334,6 +375,24 @@ impl<Q: Query> PacketVisitor for Together<'_, '_, Q> {
         of_lane!(self, lane, t_max, visitor => visitor.visit(id, t_max))
     }
 
+    fn visit_together(&mut self, id: u32, lanes: u32, t_max: &mut [f64; PACKET]) {
+        let prim = self.group.prims.at(id);
+        if prim.visible & self.class == 0 || !self.queries[0].wants(prim.flags) {
+            return;
+        }
+        if let Some(index) = prim.plain_shape().filter(|_| !Q::ALL && !Q::WATCHES) {
+            self.plain_shape(id, index, lanes, t_max);
+            return;
+        }
+        for lane in lanes_of(lanes) {
+            let before = t_max[lane];
+            if before > f64::NEG_INFINITY {
+                t_max[lane] =
+                    of_lane!(self, lane, before, visitor => visitor.visit_any(id, prim, before));
+            }
+        }
+    }
+
     #[inline(always)]
     fn visit_leaf<I: Isa>(&mut self, isa: I, leaf: &Leaf<'_>, lane: usize, t_max: f64) -> f64 {
         of_lane!(self, lane, t_max, visitor => visitor.visit_leaf(isa, leaf, t_max))
@@ -358,11 +417,7 @@ impl<Q: Query> PacketVisitor for Together<'_, '_, Q> {
             LeafClass::Spheres => self.leaf_of_blocks::<I, SphereBlock>(isa, leaf, lanes, t_max),
             LeafClass::Single => {
                 for id in leaf.ids() {
-                    for lane in lanes_of(lanes) {
-                        if t_max[lane] > f64::NEG_INFINITY {
-                            t_max[lane] = self.visit(*id, lane, t_max[lane]);
-                        }
-                    }
+                    self.visit_together(*id, lanes, t_max);
                 }
             }
         }

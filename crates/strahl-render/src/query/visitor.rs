@@ -2,6 +2,7 @@
 
 use super::block::Fetched;
 use super::kinds::{Query, WalkEvent};
+use super::shapes::PlainShape;
 use super::{From, NONE, Search};
 use crate::activity::Phase;
 use crate::blocks::{Blocks, LeafClass};
@@ -87,42 +88,18 @@ impl<Q: Query> GroupVisitor<'_, '_, '_, Q> {
     /// Tests a shape whose hits need no further checks.
     #[inline(always)]
     fn plain_shape(&mut self, id: u32, index: u32, t_max: f64) -> f64 {
-        let first = self.group.first_id(id);
-        let number = self.base + first;
+        let shape = PlainShape::of(self.group, id, index, self.base);
         let from = match self.from {
-            Some((origin, from)) if id == self.from_prim => Some(SurfaceId {
-                element: (from - first) as u32,
-                facet: origin.facet,
-            }),
+            Some((origin, from)) if id == self.from_prim => Some(shape.start(origin, from)),
             _ => None,
         };
-        let (shape, slot) = (&self.group.shapes[index as usize].shape, self.search.slot);
-        slot.enter_for(Phase::Intersection, number);
+        let slot = self.search.slot;
+        slot.enter_for(Phase::Intersection, shape.number);
         let range = Interval::new(self.range_min, t_max);
-        let scratch = &mut *self.search.scratch;
-        let found = if Q::ANY {
-            // Where the ray meets it does not matter.
-            let met = shape.any_hit(self.ray, range, from, scratch);
-            met.then_some(PrimHit {
-                t: t_max,
-                surface: SurfaceId {
-                    element: 0,
-                    facet: 0,
-                },
-                uv: [0.0; 2],
-            })
-        } else {
-            shape.closest_hit(self.ray, range, from, scratch)
-        };
+        let hit = shape.meet::<Q>(self.ray, range, from, self.search.scratch);
         slot.enter(Phase::Traversal);
-        let Some(found) = found else {
+        let Some(hit) = hit else {
             return t_max;
-        };
-        let hit = Hit {
-            t: found.t,
-            id: number + u64::from(found.surface.element),
-            facet: found.surface.facet,
-            uv: found.uv,
         };
         self.t_max = self.search.query.take(hit, t_max);
         self.t_max
@@ -130,7 +107,7 @@ impl<Q: Query> GroupVisitor<'_, '_, '_, Q> {
 
     /// Visits a primitive of any kind, which the query wants.
     #[inline(never)]
-    fn visit_any(&mut self, id: u32, prim: Prim, t_max: f64) -> f64 {
+    pub(super) fn visit_any(&mut self, id: u32, prim: Prim, t_max: f64) -> f64 {
         let first = self.group.first_id(id);
         let from = if id == self.from_prim {
             self.from.map(|(origin, number)| (origin, number - first))

@@ -1,6 +1,7 @@
-//! The directions from the points of a batch to a light, side by side.
+//! The lengths of the rays of a batch, and the directions from its points to a light, side by side.
 
 use super::point::{Lanes, Point};
+use super::stages::FEW;
 use strahl_accel::PACKET;
 use strahl_math::DVec3;
 use strahl_shade::{Light, LightSample};
@@ -17,22 +18,61 @@ pub(super) struct Places {
 }
 
 impl Places {
-    /// Those of some lanes, one behind the other.
-    pub(super) fn of(points: &[Point<'_>], lanes: &Lanes) -> Self {
-        let mut places = Self {
-            positions: [[0.0; PACKET]; 3],
-            normals: [[0.0; PACKET]; 3],
-        };
+    /// A place for places.
+    pub(super) const NONE: Self = Self {
+        positions: [[0.0; PACKET]; 3],
+        normals: [[0.0; PACKET]; 3],
+    };
+
+    /// Finds those of some lanes, one behind the other.
+    #[inline(always)]
+    pub(super) fn find(&mut self, points: &[Point<'_>], lanes: &Lanes) {
         for (index, lane) in lanes.iter().enumerate() {
             let surface = &points[*lane].surface;
-            put(
-                &mut places.positions,
-                index,
-                surface.resolved.point.position,
-            );
-            put(&mut places.normals, index, surface.n_shade);
+            put(&mut self.positions, index, surface.resolved.point.position);
+            put(&mut self.normals, index, surface.n_shade);
         }
-        places
+    }
+}
+
+/// The lengths of the directions of rays, and their reciprocals.
+#[derive(Debug)]
+pub(super) struct Speeds {
+    lengths: [f64; PACKET],
+    reciprocals: [f64; PACKET],
+}
+
+impl Speeds {
+    /// Those of at most [`PACKET`] rays, with the bits of [`DVec3::length`].
+    #[inline]
+    pub(super) fn of(points: &[Point<'_>]) -> Self {
+        let (mut lengths, mut reciprocals) = ([1.0; PACKET], [1.0; PACKET]);
+        if points.len() < FEW {
+            for (k, point) in points.iter().enumerate() {
+                lengths[k] = point.branch.ray.direction.length();
+                reciprocals[k] = lengths[k].recip();
+            }
+        } else {
+            for (square, point) in lengths.iter_mut().zip(points) {
+                *square = point.branch.ray.direction.length_squared();
+            }
+            dispatch!(Simd::best(), _isa => {
+                for k in 0..PACKET {
+                    lengths[k] = lengths[k].sqrt();
+                    reciprocals[k] = 1.0 / lengths[k];
+                }
+            });
+        }
+        Self {
+            lengths,
+            reciprocals,
+        }
+    }
+
+    /// The length and its reciprocal.
+    #[inline(always)]
+    pub(super) fn get(&self, lane: usize) -> (f64, f64) {
+        (self.lengths[lane % PACKET], self.reciprocals[lane % PACKET])
     }
 }
 
@@ -47,15 +87,19 @@ pub(super) struct Directions {
 }
 
 impl Directions {
-    /// To a light at this position.
+    /// A place for directions.
+    pub(super) const NONE: Self = Self {
+        to_light: [[0.0; PACKET]; 3],
+        distance: [0.0; PACKET],
+        l: [[0.0; PACKET]; 3],
+        n_dot_l: [0.0; PACKET],
+    };
+
+    /// Finds those to a light at this position.
+    // In place: they have a thousand bytes.
     #[inline]
-    pub(super) fn new(light: DVec3, places: &Places) -> Self {
-        let mut out = Self {
-            to_light: [[0.0; PACKET]; 3],
-            distance: [0.0; PACKET],
-            l: [[0.0; PACKET]; 3],
-            n_dot_l: [0.0; PACKET],
-        };
+    pub(super) fn find(&mut self, light: DVec3, places: &Places) {
+        let out = self;
         // Loops over arrays, which the compiler turns into vector instructions of the level.
         dispatch!(Simd::best(), _isa => {
             let ([x, y, z], [nx, ny, nz]) = (&places.positions, &places.normals);
@@ -69,7 +113,6 @@ impl Directions {
                 out.n_dot_l[k] = nx[k] * lx + ny[k] * ly + nz[k] * lz;
             }
         });
-        out
     }
 
     /// The light at a place, and the cosine between its shading normal and the direction to the light; `None` if the light is there.
@@ -110,17 +153,15 @@ mod tests {
         for size in [1e-3, 1.0, 1e6, 1e160] {
             let mut light = Light::point(vector(size), Color::new(1.0, 2.0, 3.0));
             light.clearance = 0.1 * size;
-            let mut places = Places {
-                positions: [[0.0; PACKET]; 3],
-                normals: [[0.0; PACKET]; 3],
-            };
+            let mut places = Places::NONE;
             for k in 0..PACKET {
                 put(&mut places.positions, k, vector(size));
                 put(&mut places.normals, k, vector(1.0));
             }
             let at_the_light = light.plain_position().unwrap();
             put(&mut places.positions, 5, at_the_light);
-            let directions = Directions::new(at_the_light, &places);
+            let mut directions = Directions::NONE;
+            directions.find(at_the_light, &places);
             for k in 0..PACKET {
                 let (position, normal) = (get(&places.positions, k), get(&places.normals, k));
                 let expected = light.illuminate(position).map(|s| (s, normal.dot(s.l)));

@@ -46,6 +46,7 @@ impl Branch {
     };
 
     /// The root of a tree, in the media the eye is in; `number` tells the trees of a packet apart.
+    #[inline(always)]
     pub(super) fn primary(ray: &Ray, number: u32, media: MediaStack) -> Self {
         Self {
             ray: *ray,

@@ -39,9 +39,15 @@ impl<'s> TreeTracer<'s> {
     ) {
         let scene = self.tracer.scene;
         if !scene.has_light_groups() {
-            let places = (lanes.len() >= FEW).then(|| Places::of(points, lanes));
+            let mut found;
+            let mut places = None;
+            if lanes.len() >= FEW && !scene.lights.is_empty() {
+                found = Places::NONE;
+                found.find(points, lanes);
+                places = Some(&found);
+            }
             for light in 0..scene.lights.len() {
-                self.one_light(points, lanes, places.as_ref(), light, observer);
+                self.one_light(points, lanes, places, light, observer);
             }
             return;
         }
@@ -67,13 +73,16 @@ impl<'s> TreeTracer<'s> {
         let light = &self.tracer.scene.lights[number].light;
         let mut arriving = std::mem::take(&mut self.arriving);
         arriving.clear();
-        let directions = match (places, light.plain_position()) {
-            (Some(places), Some(position)) => Some(Directions::new(position, places)),
-            _ => None,
-        };
+        let mut found;
+        let mut directions = None;
+        if let (Some(places), Some(position)) = (places, light.plain_position()) {
+            found = Directions::NONE;
+            found.find(position, places);
+            directions = Some(&found);
+        }
         for (index, lane) in lanes.iter().enumerate() {
             let point = &points[*lane];
-            let seen = match &directions {
+            let seen = match directions {
                 Some(directions) => directions.sample(light, index),
                 None => seen_from(light, point),
             };

@@ -13,6 +13,7 @@
 //!
 //! A stage does with each ray what it would do with that ray alone, so the number of rays that go together changes no bit.
 
+use super::aim::Speeds;
 use super::point::{Lanes, Point};
 use super::{FirstHit, Node, TreeTracer};
 use crate::activity::Phase;
@@ -141,6 +142,7 @@ impl<'s> TreeTracer<'s> {
                 point.surface.find(scene, &point.branch, hit, self.uv);
             }
         }
+        let speeds = Speeds::of(points);
         for (lane, (point, hit)) in points.iter_mut().zip(hits).enumerate() {
             let branch = &point.branch;
             self.deepest = self.deepest.max(branch.depth);
@@ -149,7 +151,7 @@ impl<'s> TreeTracer<'s> {
                 continue;
             }
             self.counts.count(branch.kind, hit.is_some());
-            let speed = branch.ray.direction.length();
+            let (speed, per_speed) = speeds.get(lane);
             let length = hit.map_or(f64::INFINITY, |h| h.t * speed);
             let (attenuation, fog) = self.in_front(branch, length);
             point.node = self.nodes.len() as u32;
@@ -170,7 +172,7 @@ impl<'s> TreeTracer<'s> {
                     point.length = length;
                     point
                         .surface
-                        .find_sides(scene, branch, speed, hit, &self.media);
+                        .find_sides(scene, branch, per_speed, hit, &self.media);
                     lanes.push(lane);
                 }
                 None => node.local = scene.background.along(branch.ray.direction),

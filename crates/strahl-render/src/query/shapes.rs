@@ -1,0 +1,84 @@
+//! Shapes whose hits need no further checks: most primitives of most scenes.
+
+use super::kinds::Query;
+use crate::hit::{Hit, Origin};
+use crate::scene::RenderGroup;
+use strahl_geometry::{PrimHit, Primitive, Scratch, Shape, SurfaceId};
+use strahl_math::{Interval, Ray, Transform};
+
+/// A shape of a group, as a primitive that [is plain](crate::prim::Prim::plain_shape).
+pub(super) struct PlainShape<'g> {
+    pub(super) shape: &'g Shape,
+    pub(super) transform: Option<&'g Transform>,
+    /// The number of its first element, in the group.
+    first: u64,
+    /// The same number in the scene.
+    pub(super) number: u64,
+}
+
+impl<'g> PlainShape<'g> {
+    /// The shape with this index, of the primitive `id`; `base` is the number of the group's first element.
+    #[inline(always)]
+    pub(super) fn of(group: &'g RenderGroup, id: u32, index: u32, base: u64) -> Self {
+        let used = &group.shapes[index as usize];
+        let first = group.first_id(id);
+        Self {
+            shape: &used.shape,
+            transform: used.transform.as_deref(),
+            first,
+            number: base + first,
+        }
+    }
+
+    /// The surface that a ray starts on, given its origin and the number of the element, counted in the group.
+    #[inline(always)]
+    pub(super) fn start(&self, origin: &Origin, from: u64) -> SurfaceId {
+        SurfaceId {
+            element: (from - self.first) as u32,
+            facet: origin.facet,
+        }
+    }
+
+    /// Where a ray meets it first; anywhere, if that is all the query asks for.
+    #[inline(always)]
+    pub(super) fn meet<Q: Query>(
+        &self,
+        ray: &Ray,
+        range: Interval,
+        from: Option<SurfaceId>,
+        scratch: &mut Scratch,
+    ) -> Option<Hit> {
+        match self.transform {
+            None => self.meet_as::<Q, _>(self.shape, ray, range, from, scratch),
+            Some(map) => {
+                let inner = map.ray_to_object(ray);
+                self.meet_as::<Q, _>(self.shape, &inner, range, from, scratch)
+            }
+        }
+    }
+
+    /// The same, given the primitive that the shape is, and the ray in its space.
+    #[inline(always)]
+    pub(super) fn meet_as<Q: Query, P: Primitive>(
+        &self,
+        primitive: &P,
+        ray: &Ray,
+        range: Interval,
+        from: Option<SurfaceId>,
+        scratch: &mut Scratch,
+    ) -> Option<Hit> {
+        let found = if Q::ANY {
+            primitive
+                .any_hit(ray, range, from, scratch)
+                .then_some(PrimHit::simple(range.max, 0))
+        } else {
+            primitive.closest_hit(ray, range, from, scratch)
+        }?;
+        Some(Hit {
+            t: found.t,
+            id: self.number + u64::from(found.surface.element),
+            facet: found.surface.facet,
+            uv: found.uv,
+        })
+    }
+}
