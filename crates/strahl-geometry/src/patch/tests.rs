@@ -99,6 +99,31 @@ crate::primitive_tests!(with_corners, || patch(wavy())
     ])
     .unwrap());
 
+/// What 16 threads count, added up: each shoots its part of the rays, with a seed of its own.
+pub(super) fn in_parts<const N: usize>(
+    rays: usize,
+    seed: u64,
+    shoot: impl Fn(usize, u64) -> [usize; N] + Sync,
+) -> [usize; N] {
+    let mut sums = [0; N];
+    std::thread::scope(|scope| {
+        let start = |part| {
+            scope.spawn({
+                let shoot = &shoot;
+                move || shoot(rays / 16, seed * 16 + part)
+            })
+        };
+        let threads: Vec<_> = (0..16).map(start).collect();
+        for thread in threads {
+            let counts = thread.join().expect("no panic");
+            sums.iter_mut()
+                .zip(counts)
+                .for_each(|(sum, count)| *sum += count);
+        }
+    });
+    sums
+}
+
 /// All hits of a line, one after the other.
 pub(super) fn hits(patch: &BicubicPatch, ray: &Ray) -> Vec<PrimHit> {
     let scratch = &mut Scratch::default();

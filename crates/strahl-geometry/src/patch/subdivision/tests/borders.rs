@@ -183,6 +183,38 @@ fn no_ray_of_ten_millions_slips_through_a_border() {
     assert_eq!(shoot(10_000_000, 2), []);
 }
 
+/// Where the needle of a corner without creases is thinner than rounding errors, a ray along it meets the layers around the tip in tens of
+/// places, as often as its line passes through them.
+#[test]
+fn rays_along_a_needle_meet_what_their_lines_pass() {
+    let rays = [
+        (
+            [0.4746116916204657, -1.949223383240756, -1.9492233832411068],
+            [-0.3333333333333333, 0.666666666666627, 0.6666666666667063],
+        ),
+        (
+            [-2.8328065829973763, 4.665613166000124, 4.665613165989381],
+            [
+                0.33333333333333337,
+                -0.6666666666676436,
+                -0.6666666666656899,
+            ],
+        ),
+        (
+            [0.1445103827576002, -1.2890207655151, -1.2890207655153012],
+            [-0.3333333333333333, 0.6666666666666373, 0.6666666666666959],
+        ),
+    ];
+    let surface = surface(&creased(Loop));
+    for (origin, direction) in rays {
+        let ray = Ray::new(DVec3::from(origin), DVec3::from(direction));
+        let passes = surface.passes_in_order(&ray);
+        assert!(passes.len() > 40, "{}", passes.len());
+        assert_eq!(sum(&passes, f64::NEG_INFINITY, f64::INFINITY), 0, "{ray:?}");
+        assert!(agrees(&surface, &ray, &passes), "{ray:?}");
+    }
+}
+
 /// The border of a patch, as the neighbours know it, is closed: each curve begins where the one before it ends, to the last bit.
 #[test]
 fn rays_in_a_plane_of_symmetry_are_no_exception() {

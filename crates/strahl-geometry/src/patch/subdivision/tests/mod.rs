@@ -159,12 +159,12 @@ pub(super) fn jet(
     surface.node(element).expect("an element").jet(spot)
 }
 
-/// All hits of a line, one after the other.
+/// All hits of a line, one after the other. Along needles that are thinner than rounding errors there may be a hundred.
 pub(super) fn hits(shape: &impl Primitive, ray: &Ray) -> Vec<PrimHit> {
     let scratch = &mut Scratch::default();
     let (mut range, mut list) = (Interval::LINE, vec![]);
     while let Some(hit) = shape.closest_hit(ray, range, None, scratch) {
-        assert!(list.len() < 40, "{ray:?} {list:?}");
+        assert!(list.len() < 1000, "{ray:?} {list:?}");
         list.push(hit);
         range.min = hit.t;
     }
