@@ -314,24 +314,29 @@ pub(crate) fn lit(
             #[inline(always)]
             |layer| layer_term(layer, surface, l, light),
         ),
-        // Channel by channel: a colour that is passed in memory would be stored on the other way, too, and loaded before its stores
-        // have ended.
-        Some(model) => lit_by(paint, model, surface, l, light.r, light.g, light.b),
+        // Number by number: what is passed in memory would be stored on the other way, too, and loaded before its stores have ended.
+        Some(model) => {
+            let (DVec3 { x, y, z }, Color { r, g, b }) = (l, light);
+            lit_by(paint, model, surface, x, y, z, r, g, b)
+        }
     }
 }
 
 /// The same, with a shading model in place of the finishes' own highlights and of their `brilliance`.
 #[cold]
+#[expect(clippy::too_many_arguments, reason = "in registers: see its caller")]
 fn lit_by(
     paint: &TexturePaint<'_>,
     model: ShadingModel,
     surface: &Surface<'_>,
-    l: DVec3,
+    x: f64,
+    y: f64,
+    z: f64,
     r: f64,
     g: f64,
     b: f64,
 ) -> (Color, Color) {
-    let light = Color::new(r, g, b);
+    let (l, light) = (DVec3::new(x, y, z), Color::new(r, g, b));
     sum_of_terms(paint, |layer| {
         layer_term_by(model, layer, surface, l, light)
     })
