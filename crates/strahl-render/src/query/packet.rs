@@ -299,7 +299,7 @@ impl<Q: Query> Together<'_, '_, Q> {
         let shape = PlainShape::of(self.group, id, index, 0);
         self.slot.enter_for(Phase::Intersection, shape.number);
         match (shape.shape, shape.transform) {
-            // Most scenes have one, which all rays are tested for; it takes less time than to find out what to do.
+            // Nearly every scene has a plane, and all rays are tested for it: the test is compiled into the loop.
             (Shape::Plane(plane), None) => {
                 self.meet_together(id, &shape, lanes, t_max, |ray, range, from, scratch| {
                     shape.meet_as::<Q, _>(plane, ray, range, from, scratch)

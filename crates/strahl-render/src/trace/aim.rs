@@ -18,7 +18,7 @@ pub(super) struct Places {
 }
 
 impl Places {
-    /// A place for places.
+    /// Room for the places that [`Places::find`] finds.
     pub(super) const NONE: Self = Self {
         positions: [[0.0; PACKET]; 3],
         normals: [[0.0; PACKET]; 3],
@@ -87,7 +87,7 @@ pub(super) struct Directions {
 }
 
 impl Directions {
-    /// A place for directions.
+    /// Room for the directions that [`Directions::find`] finds.
     pub(super) const NONE: Self = Self {
         to_light: [[0.0; PACKET]; 3],
         distance: [0.0; PACKET],
