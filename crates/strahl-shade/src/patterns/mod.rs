@@ -361,7 +361,7 @@ impl PatternField {
         (self.as_ref().value_moved(place, point), place)
     }
 
-    /// The number of the block at a point, as [`PatternField::block_moved`] counts it.
+    /// The number of the block at a point, below [`Pattern::block_count`]; 0 for patterns without blocks.
     pub fn block(&self, point: &TexturePoint) -> usize {
         self.block_moved(self.moved(point.position))
     }
