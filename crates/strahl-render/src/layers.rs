@@ -13,11 +13,12 @@ use std::borrow::Cow;
 use strahl_math::{DVec3, Ray};
 use strahl_shade::patterns::TexturePoint;
 use strahl_shade::pov_finish::PovFinish;
-use strahl_shade::texture::{LayerPoint, TexturePaint};
+use strahl_shade::texture::{LayerPoint, Texture, TexturePaint};
 use strahl_shade::{Color, Finish, ShadingModel};
 
 /// Evaluates the texture at a surface, if its material has one: the layers into `paint`, their sums into the surface's
 /// coefficients (`specular` stays black, because each layer has its own highlight). Otherwise `paint` has no layers.
+#[inline(always)]
 pub(crate) fn paint<'s>(
     scene: &'s RenderScene,
     surface: &mut Surface<'_>,
@@ -38,17 +39,25 @@ pub(crate) fn paint<'s>(
     }
     surface.n_smooth = Some(surface.n_shade);
     let side = (look.material, surface.entering);
-    let known = paints.of(side);
-    if let Some(Known::Same(known)) = known {
-        known.put(side, surface, paint);
-        return;
+    match paints.of(side) {
+        Some(Known::Same(known)) => known.put(side, surface, paint),
+        known => evaluate(scene, &texture.0, surface, hit, paint, known),
     }
+}
+
+/// Evaluates a texture that is not known to have the same layers everywhere.
+#[inline(never)]
+fn evaluate<'s>(
+    scene: &'s RenderScene,
+    texture: &'s Texture,
+    surface: &mut Surface<'_>,
+    hit: &Hit,
+    paint: &mut TexturePaint<'s>,
+    known: Option<&mut Known<'s>>,
+) {
     let position = surface.resolved.point.position;
     let (normal, eta) = (surface.n_shade, surface.fresnel_eta());
-    if !texture
-        .0
-        .solid_layer(position, normal, -surface.v, eta, paint)
-    {
+    if !texture.solid_layer(position, normal, -surface.v, eta, paint) {
         let mut place = TexturePoint {
             position,
             tilted_at: None,
@@ -60,8 +69,9 @@ pub(crate) fn paint<'s>(
             direction: -surface.v,
         };
         let mut made = None;
+        let look = &surface.resolved.look;
         let space = scene.texture_place(&mut place, hit, look, &mut made);
-        texture.0.layers_in(space, &place, eta, paint);
+        texture.layers_in(space, &place, eta, paint);
     }
 
     surface.material.fresnel = false;
@@ -96,7 +106,7 @@ pub(crate) fn paint<'s>(
         .find(|stack| !stack.transmittance.is_black())
         .map_or(surface.n_shade, |stack| stack.normal);
     if let Some(known @ Known::Unknown) = known {
-        *known = Known::of(&texture.0, paint, sum, surface.shows_lights);
+        *known = Known::of(texture, paint, sum, surface.shows_lights);
     }
 }
 
@@ -299,7 +309,8 @@ fn mirrors_of_layers(
 
 /// The light that the layers reflect if light of this colour arrives from the direction `l`: the diffuse part and the
 /// highlights. `model` replaces the finishes' own highlights and `brilliance`.
-#[inline]
+// Inline: directions and colours that are passed in memory would be loaded before their stores have ended.
+#[inline(always)]
 pub(crate) fn lit(
     paint: &TexturePaint<'_>,
     surface: &Surface<'_>,

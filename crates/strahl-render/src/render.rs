@@ -247,7 +247,11 @@ impl Samples {
 
     /// How much of what lies behind the picture shows.
     fn clear(&self) -> f64 {
-        self.clear / f64::from(self.count.max(1))
+        if self.count <= 1 {
+            self.clear
+        } else {
+            self.clear / f64::from(self.count)
+        }
     }
 
     /// The mean of the samples.

@@ -236,7 +236,7 @@ impl<'s> TreeTracer<'s> {
         if index == self.points.len() {
             self.points.push(Point::unknown(&self.blank));
         }
-        self.points[index].branch = Branch::primary(ray, number, eye);
+        self.points[index].branch.begin(ray, number, eye);
     }
 
     /// Forgets the last trees.

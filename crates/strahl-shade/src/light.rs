@@ -180,7 +180,8 @@ impl Light {
         };
         let to_light = position - point;
         let distance = to_light.length();
-        self.plain_sample(to_light, distance, to_light / distance)
+        let end = (distance - self.clearance) / distance;
+        self.plain_sample(to_light, distance, to_light / distance, end)
     }
 
     /// The position of a light that shines from a point, into all directions and at all distances alike.
@@ -193,16 +194,22 @@ impl Light {
     }
 
     /// [`Light::illuminate`] of a light with a [`Light::plain_position`], which is at this vector from the point, with its length and
-    /// its direction.
+    /// its direction. `end` is where the range ends if the light has a [clearance](Light::clearance): the distance less the clearance, divided by the distance.
     #[inline(always)]
-    pub fn plain_sample(&self, to_light: DVec3, distance: f64, l: DVec3) -> Option<LightSample> {
+    pub fn plain_sample(
+        &self,
+        to_light: DVec3,
+        distance: f64,
+        l: DVec3,
+        end: f64,
+    ) -> Option<LightSample> {
         if !(distance > 0.0) {
             return None;
         }
         Some(LightSample {
             l,
             shadow_direction: to_light,
-            range: self.until_here(distance),
+            range: self.range_to(end),
             color: self.color,
         })
     }
@@ -274,8 +281,14 @@ impl Light {
     /// The range of t in which objects cast a shadow on a point at this distance, where t = 1 is the light.
     #[inline]
     fn until_here(&self, distance: f64) -> Interval {
+        self.range_to((distance - self.clearance) / distance)
+    }
+
+    /// The same, given where it ends if the light has a clearance.
+    #[inline]
+    fn range_to(&self, end: f64) -> Interval {
         if self.clearance > 0.0 {
-            Interval::new(0.0, (distance - self.clearance) / distance)
+            Interval::new(0.0, end)
         } else {
             Interval::UNTIL_LIGHT
         }

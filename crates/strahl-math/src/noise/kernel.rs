@@ -148,16 +148,18 @@ fn scalar<I: Isa>(isa: I, p: DVec3) -> f64 {
 #[inline(always)]
 pub(super) fn noise_of_four<I: Isa>(
     isa: I,
-    points: &[[f64; 4]; 3],
+    points: [I::F64x4; 3],
     generator: NoiseGenerator,
 ) -> [f64; 4] {
     let limit = isa.splat(OVERFLOW);
     let mut far = generator == NoiseGenerator::Perlin;
     for coordinates in points {
-        far |= isa.lt(isa.abs(isa.load(coordinates)), limit) != 0b1111;
+        far |= isa.lt(isa.abs(coordinates), limit) != 0b1111;
     }
     if far {
-        return one_by_one(isa, points, generator);
+        let [x, y, z] = points;
+        let points = [isa.store(x), isa.store(y), isa.store(z)];
+        return one_by_one(isa, &points, generator);
     }
     let sum = scalar_of_four(isa, points);
     let value = match generator {
@@ -182,14 +184,14 @@ fn one_by_one<I: Isa>(isa: I, points: &[[f64; 4]; 3], generator: NoiseGenerator)
 
 /// [`scalar`] at four points, a lane for each, whose coordinates are numbers below [`OVERFLOW`].
 #[inline(always)]
-fn scalar_of_four<I: Isa>(isa: I, points: &[[f64; 4]; 3]) -> I::F64x4 {
+fn scalar_of_four<I: Isa>(isa: I, points: [I::F64x4; 3]) -> I::F64x4 {
     let (zero, one) = (isa.splat(0.0), isa.splat(1.0));
     let round = isa.splat(3.0 * LARGE);
     let mut cells = [[0.0; 4]; 3];
     let mut ways = [[one; 2]; 3];
     let mut shares = [[one; 2]; 3];
     for axis in 0..3 {
-        let x = isa.load(&points[axis]);
+        let x = points[axis];
         // As in `floor` and `place`.
         let nearest = isa.sub(isa.add(x, round), round);
         let floor = isa.sub(nearest, isa.choose_le(nearest, x, zero, one));

@@ -175,12 +175,13 @@ fn octaves_at_once<I: Isa>(
         }
         return values;
     }
-    let mut points = [[0.0; 4]; 3];
-    for k in 0..4 {
-        let place = p * frequencies[k];
-        (points[0][k], points[1][k], points[2][k]) = (place.x, place.y, place.z);
-    }
-    values = kernel::noise_of_four(isa, &points, generator);
+    let by = isa.load(frequencies);
+    let points = [
+        isa.mul(isa.splat(p.x), by),
+        isa.mul(isa.splat(p.y), by),
+        isa.mul(isa.splat(p.z), by),
+    ];
+    values = kernel::noise_of_four(isa, points, generator);
     for value in &mut values {
         *value = stretch(*value, generator);
     }

@@ -440,7 +440,11 @@ fn four_points_have_the_same_bits_on_all_levels() {
                 noise(p, generator)
             });
             for simd in Simd::available() {
-                let four = dispatch!(simd, isa => kernel::noise_of_four(isa, &points, generator));
+                let four = dispatch!(simd, isa => {
+                    let [x, y, z] = &points;
+                    let points = [isa.load(x), isa.load(y), isa.load(z)];
+                    kernel::noise_of_four(isa, points, generator)
+                });
                 assert_eq!(four, alone, "{}", simd.level());
             }
         }

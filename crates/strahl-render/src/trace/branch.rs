@@ -46,14 +46,36 @@ impl Branch {
     };
 
     /// The root of a tree, in the media the eye is in; `number` tells the trees of a packet apart.
+    pub(super) fn primary(ray: &Ray, number: u32, eye: MediaStack) -> Self {
+        let mut branch = Self::NONE;
+        branch.begin(ray, number, eye);
+        branch
+    }
+
+    /// Makes it [the root of a tree](Branch::primary).
+    // In place: a branch has more than 200 bytes, and would be put together elsewhere and copied.
     #[inline(always)]
-    pub(super) fn primary(ray: &Ray, number: u32, media: MediaStack) -> Self {
-        Self {
-            ray: *ray,
-            parent: number,
+    pub(super) fn begin(&mut self, primary: &Ray, number: u32, eye: MediaStack) {
+        let none = Self::NONE;
+        let Self {
+            ray,
+            origin,
+            kind,
+            class,
+            parent,
+            depth,
+            part,
+            divided,
+            weight,
+            share,
             media,
-            ..Self::NONE
-        }
+        } = self;
+        *ray = *primary;
+        *origin = none.origin;
+        (*kind, *class, *depth) = (none.kind, none.class, none.depth);
+        (*part, *divided) = (none.part, none.divided);
+        (*weight, *share) = (none.weight, none.share);
+        (*parent, *media) = (number, eye);
     }
 }
 

@@ -77,7 +77,7 @@ impl<'s> TreeTracer<'s> {
         let mut directions = None;
         if let (Some(places), Some(position)) = (places, light.plain_position()) {
             found = Directions::NONE;
-            found.find(position, places);
+            found.find(position, light.clearance, places);
             directions = Some(&found);
         }
         for (index, lane) in lanes.iter().enumerate() {
