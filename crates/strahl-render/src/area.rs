@@ -1,14 +1,22 @@
 //! Shadow rays to area lights.
+//!
+//! Which points of a light's grid are needed shows step by step, because cells are divided whose corners differ. Each round finds out which
+//! points every lit point needs next; their shadow rays go in packets, those to one point of the grid behind each other.
 
 use crate::observer::TraceObserver;
-use crate::shadow::ShadowRay;
-use crate::trace::{Arriving, Point, TreeTracer};
-use strahl_math::{DVec3, Ray};
+use crate::shadow::Shadow;
+use crate::trace::{Aim, Arriving, FEW, Point, TreeTracer};
+use arrayvec::ArrayVec;
+use strahl_accel::PACKET;
+use strahl_math::DVec3;
 use strahl_shade::{AreaGrid, AreaLight, Color, Light, LightSample};
 
 /// If the visibilities of the corners of a cell differ by more than this, an adaptive light subdivides the cell: less than a
 /// step of an 8-bit channel.
 const THRESHOLD: f64 = 1.0 / 256.0;
+
+/// Most points of all grids that are gone through together, unless a single grid has more.
+const TOGETHER: usize = 1 << 12;
 
 /// The mean of four colours.
 fn mean([a, b, c, d]: [Color; 4]) -> Color {
@@ -22,6 +30,59 @@ struct Cell {
     j: [u32; 2],
     /// How often the grid has been halved to get here.
     level: u32,
+}
+
+impl Cell {
+    /// The whole grid of a light.
+    fn whole(area: &AreaLight) -> Self {
+        Self {
+            i: [0, area.size_1.saturating_sub(1)],
+            j: [0, area.size_2.saturating_sub(1)],
+            level: 0,
+        }
+    }
+
+    /// The numbers of the points at its corners, row by row.
+    fn corners(&self, area: &AreaLight) -> [usize; 4] {
+        let row = area.size_1 as usize;
+        let [i0, i1] = [self.i[0] as usize, self.i[1] as usize];
+        let [j0, j1] = [self.j[0] as usize * row, self.j[1] as usize * row];
+        [j0 + i0, j0 + i1, j1 + i0, j1 + i1]
+    }
+
+    /// Its quarters, if it can be divided.
+    fn quarters(&self) -> Option<[Self; 4]> {
+        let ([i_low, i_high], i_splits) = halves(self.i);
+        let ([j_low, j_high], j_splits) = halves(self.j);
+        let quarter = |i, j| Self {
+            i,
+            j,
+            level: self.level + 1,
+        };
+        (i_splits || j_splits).then(|| {
+            [
+                quarter(i_low, j_low),
+                quarter(i_high, j_low),
+                quarter(i_low, j_high),
+                quarter(i_high, j_high),
+            ]
+        })
+    }
+
+    /// Whether it is divided in any case.
+    fn is_coarse(&self, area: &AreaLight) -> bool {
+        area.adaptive.is_none_or(|level| self.level < level)
+    }
+
+    /// Calls `visit` with the parts whose corners are certainly needed.
+    fn parts(self, area: &AreaLight, visit: &mut impl FnMut(Self)) {
+        match self.quarters() {
+            Some(quarters) if self.is_coarse(area) => {
+                quarters.into_iter().for_each(|q| q.parts(area, visit));
+            }
+            _ => visit(self),
+        }
+    }
 }
 
 /// Halves an interval of the grid: one with an even number of cells at its middle point, which both halves share, one with an
@@ -47,9 +108,11 @@ struct AreaQuery<'q> {
 }
 
 impl AreaQuery<'_> {
-    /// From the centre of the light to a point of its grid, as seen from the lit point.
-    fn offset(&self, i: u32, j: u32) -> DVec3 {
-        let offset = self.grid.offset(i, j);
+    /// From the centre of the light to a point of its grid, given by its number, as seen from the lit point.
+    #[inline]
+    fn offset(&self, index: u32) -> DVec3 {
+        let columns = self.area.size_1;
+        let offset = self.grid.offset(index % columns, index / columns);
         if self.light.is_parallel() {
             offset * (self.center.shadow_direction.length() / self.area.reach)
         } else {
@@ -58,46 +121,233 @@ impl AreaQuery<'_> {
     }
 }
 
+/// A point of the grid, as a lit point sees it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Seen {
+    /// Nobody needs it so far.
+    Unknown,
+    /// Its shadow ray is to be traced.
+    Wanted,
+    /// The share of its light that arrives.
+    Visible(Color),
+}
+
+/// A point of the grid that a lit point needs.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Wanted {
+    /// The number of the lit point.
+    lit: u32,
+    /// The number of the point in the grid, row by row.
+    index: u32,
+}
+
+/// A part of the grid whose corners a lit point needs.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Part {
+    lit: u32,
+    cell: Cell,
+}
+
+/// The working memory of area lights.
+#[derive(Debug, Default)]
+pub(crate) struct AreaMemory {
+    /// What is known of the grids of a few lit points, one after the other.
+    grids: Vec<Seen>,
+    /// The parts of this round, and of the next one.
+    parts: Vec<Part>,
+    next: Vec<Part>,
+    /// The points of this round.
+    wanted: Vec<Wanted>,
+    in_turn: Vec<Wanted>,
+}
+
+/// The colours of the corners of a cell, which are known.
+#[inline(always)]
+fn corner_colors(area: &AreaLight, grid: &[Seen], cell: &Cell) -> [Color; 4] {
+    let (mut colors, corners) = ([Color::BLACK; 4], cell.corners(area));
+    for k in 0..4 {
+        if let Some(Seen::Visible(color)) = grid.get(corners[k]) {
+            colors[k] = *color;
+        }
+    }
+    colors
+}
+
+/// Whether the corners of a cell differ so much that it is divided.
+fn differ(corners: &[Color; 4]) -> bool {
+    let differs = |a: &Color| {
+        let difference = *a - corners[0];
+        difference.map(f64::abs).max_component() > THRESHOLD
+    };
+    corners.iter().any(differs)
+}
+
+/// The mean over a cell, whose points are known as far as they are needed: of its four corners, or of its four quarters if the corners
+/// differ too much. The depth of the recursion is the logarithm of [`AreaLight::MAX_SIZE`].
+fn mean_of(area: &AreaLight, grid: &[Seen], cell: Cell) -> Color {
+    let quarters = cell.quarters();
+    if quarters.is_none() || !cell.is_coarse(area) {
+        let corners = corner_colors(area, grid, &cell);
+        if quarters.is_none() || !differ(&corners) {
+            return mean(corners);
+        }
+    }
+    let quarters = quarters.unwrap_or([cell; 4]);
+    mean(quarters.map(|quarter| mean_of(area, grid, quarter)))
+}
+
 impl<'s> TreeTracer<'s> {
-    /// Fills in the light that arrives from an area light: one shadow ray for each point of the grid that is needed.
+    /// Fills in the light that arrives from an area light at points: one shadow ray for each point of the grid that is needed.
     #[cold]
     pub(crate) fn area_light<O: TraceObserver>(
         &mut self,
         area: &AreaLight,
         light: usize,
-        point: &Point<'s>,
-        arriving: &mut Arriving,
+        points: &[Point<'s>],
+        arriving: &mut [Arriving],
         observer: &mut O,
     ) {
-        let sample = &arriving.sample;
-        let query = AreaQuery {
-            number: light,
-            light: &self.tracer.scene.lights[light].light,
-            area,
-            grid: area.grid(point.surface.resolved.point.position, sample.l),
-            center: sample,
-            point,
+        let size = area.size_1 as usize * area.size_2 as usize;
+        let together = (TOGETHER / size.max(1)).clamp(1, PACKET);
+        for few in arriving.chunks_mut(together) {
+            let light_source = &self.tracer.scene.lights[light].light;
+            let samples: ArrayVec<LightSample, PACKET> = few.iter().map(|one| one.sample).collect();
+            let mut queries = ArrayVec::<AreaQuery<'_>, PACKET>::new();
+            queries.extend(few.iter().zip(&samples).map(|(one, center)| {
+                let point = &points[one.lane];
+                AreaQuery {
+                    number: light,
+                    light: light_source,
+                    area,
+                    grid: area.grid(point.surface.resolved.point.position, center.l),
+                    center,
+                    point,
+                }
+            }));
+            let mut memory = std::mem::take(&mut self.area_memory);
+            memory.grids.clear();
+            memory.grids.resize(size * few.len(), Seen::Unknown);
+            self.area_rays(&queries, size, &mut memory, few, observer);
+            self.area_memory = memory;
+            if area.illumination {
+                let lit = few.iter_mut().zip(&queries);
+                for (one, query) in lit.filter(|(one, _)| !one.sample.range.is_empty()) {
+                    one.reflected = Some(if one.visible.is_black() {
+                        (Color::BLACK, Color::BLACK)
+                    } else {
+                        self.area_shading(query, one.visible)
+                    });
+                }
+            }
+        }
+    }
+
+    /// Traces the shadow rays of lit points, whose grids have `size` points, in rounds.
+    fn area_rays<O: TraceObserver>(
+        &mut self,
+        queries: &[AreaQuery<'_>],
+        size: usize,
+        memory: &mut AreaMemory,
+        arriving: &mut [Arriving],
+        observer: &mut O,
+    ) {
+        let AreaMemory {
+            grids,
+            parts,
+            next,
+            wanted,
+            in_turn,
+        } = memory;
+        let Some(area) = queries.first().map(|query| query.area) else {
+            return;
         };
-        let before = self.counts.shadow;
-        let mut known = std::mem::take(&mut self.area_points);
-        known.clear();
-        known.resize(area.size_1 as usize * area.size_2 as usize, None);
-        let whole = Cell {
-            i: [0, area.size_1.saturating_sub(1)],
-            j: [0, area.size_2.saturating_sub(1)],
-            level: 0,
+        parts.clear();
+        for (lit, one) in (0..).zip(&*arriving) {
+            if !one.sample.range.is_empty() {
+                Cell::whole(area).parts(area, &mut |cell| parts.push(Part { lit, cell }));
+            }
+        }
+        let mut is_first = true;
+        while !parts.is_empty() {
+            wanted.clear();
+            for Part { lit, cell } in &*parts {
+                let grid = &mut grids[*lit as usize * size..][..size];
+                for index in cell.corners(area) {
+                    if grid[index] == Seen::Unknown {
+                        grid[index] = Seen::Wanted;
+                        arriving[*lit as usize].shadow_rays += 1;
+                        let index = index as u32;
+                        wanted.push(Wanted { lit: *lit, index });
+                    }
+                }
+            }
+            // At first all lit points need the same points of the grid.
+            if is_first && queries.len() > 1 {
+                turned(wanted, in_turn);
+            }
+            is_first = false;
+            for few in wanted.chunks(PACKET) {
+                self.area_packet(queries, few, size, grids, observer);
+            }
+            next.clear();
+            for Part { lit, cell } in &*parts {
+                let grid = &grids[*lit as usize * size..][..size];
+                if let Some(quarters) = cell.quarters()
+                    && differ(&corner_colors(area, grid, cell))
+                {
+                    next.extend(quarters.map(|cell| Part { lit: *lit, cell }));
+                }
+            }
+            std::mem::swap(parts, next);
+        }
+        for (lit, one) in arriving.iter_mut().enumerate() {
+            if !one.sample.range.is_empty() {
+                let grid = &grids[lit * size..][..size];
+                one.visible = mean_of(area, grid, Cell::whole(area));
+            }
+        }
+    }
+
+    /// Traces a few shadow rays to points of the grids, and stores what arrives.
+    fn area_packet<O: TraceObserver>(
+        &mut self,
+        queries: &[AreaQuery<'_>],
+        wanted: &[Wanted],
+        size: usize,
+        grids: &mut [Seen],
+        observer: &mut O,
+    ) {
+        let Some(light) = queries.first().map(|query| query.number) else {
+            return;
         };
-        let visible = self.area_cell(&query, whole, &mut known, observer);
-        self.area_points = known;
-        if area.illumination {
-            arriving.reflected = Some(if visible.is_black() {
-                (Color::BLACK, Color::BLACK)
-            } else {
-                self.area_shading(&query, visible)
+        let mut aims = ArrayVec::<Aim<'_>, PACKET>::new();
+        for Wanted { lit, index } in wanted {
+            let query = &queries[*lit as usize];
+            aims.push(Aim {
+                point: query.point,
+                direction: query.center.shadow_direction + query.offset(*index),
+                range: query.center.range,
             });
         }
-        arriving.visible = visible;
-        arriving.shadow_rays = (self.counts.shadow - before) as u32;
+        let mut shadows = [Shadow::NONE; PACKET];
+        let together = self.settings.packets && self.tracer.scene.mask(light).is_none();
+        if together && aims.len() >= FEW {
+            self.shadows_of(&aims, light, &mut shadows);
+        } else {
+            for (aim, shadow) in aims.iter().zip(&mut shadows) {
+                *shadow = self.shadow_of(aim, light);
+            }
+        }
+        for ((wanted, aim), shadow) in wanted.iter().zip(&aims).zip(&shadows) {
+            self.counts.shadow += 1;
+            self.counts.shadow_hit += u64::from(shadow.hit);
+            if O::DETAILED {
+                let report = self.shadow_report(aim, light);
+                observer.area_shadow(aim.point.node, light as u32, report);
+            }
+            let place = wanted.lit as usize * size + wanted.index as usize;
+            grids[place] = Seen::Visible(shadow.visible);
+        }
     }
 
     /// The light reflected from an area light with `area_illumination`: the mean over its points, each shaded by itself, times
@@ -105,104 +355,40 @@ impl<'s> TreeTracer<'s> {
     fn area_shading(&self, query: &AreaQuery<'_>, visible: Color) -> (Color, Color) {
         let lit = query.point.surface.resolved.point.position;
         let (mut diffuse, mut specular) = (Color::BLACK, Color::BLACK);
-        for j in 0..query.area.size_2 {
-            for i in 0..query.area.size_1 {
-                let offset = query.offset(i, j);
-                let (l, color) = if query.light.is_parallel() {
-                    // As in POV-Ray (measured) the points light from their own directions, with the intensity of the centre.
-                    let direction = query.center.shadow_direction + offset;
-                    (direction.normalize_or(query.center.l), query.center.color)
-                } else {
-                    // The point has the intensity of the centre, seen from the point's position.
-                    match query.light.illuminate(lit - offset) {
-                        Some(sample) => (sample.l, sample.color),
-                        None => continue,
-                    }
-                };
-                let n_dot_l = query.point.surface.n_shade.dot(l);
-                if self.faces(query.point, l, n_dot_l) {
-                    let light = color * visible;
-                    let (d, s) = self.reflected(query.point, query.light, light, l, n_dot_l);
-                    diffuse += d;
-                    specular += s;
+        for index in 0..query.area.size_1 * query.area.size_2 {
+            let offset = query.offset(index);
+            let (l, color) = if query.light.is_parallel() {
+                // As in POV-Ray (measured) the points light from their own directions, with the intensity of the centre.
+                let direction = query.center.shadow_direction + offset;
+                (direction.normalize_or(query.center.l), query.center.color)
+            } else {
+                // The point has the intensity of the centre, seen from the point's position.
+                match query.light.illuminate(lit - offset) {
+                    Some(sample) => (sample.l, sample.color),
+                    None => continue,
                 }
+            };
+            let n_dot_l = query.point.surface.n_shade.dot(l);
+            if self.faces(query.point, l, n_dot_l) {
+                let light = color * visible;
+                let (d, s) = self.reflected(query.point, query.light, light, l, n_dot_l);
+                diffuse += d;
+                specular += s;
             }
         }
         let count = f64::from(query.area.size_1) * f64::from(query.area.size_2);
         (diffuse / count, specular / count)
     }
+}
 
-    /// The mean over a cell: of its four corners, or of its four quarters if the corners differ too much. The depth of the
-    /// recursion is the logarithm of [`AreaLight::MAX_SIZE`].
-    fn area_cell<O: TraceObserver>(
-        &mut self,
-        query: &AreaQuery<'_>,
-        cell: Cell,
-        known: &mut [Option<Color>],
-        observer: &mut O,
-    ) -> Color {
-        let ([i_low, i_high], i_splits) = halves(cell.i);
-        let ([j_low, j_high], j_splits) = halves(cell.j);
-        let splits = i_splits || j_splits;
-        let must = query.area.adaptive.is_none_or(|level| cell.level < level);
-        if !(splits && must) {
-            let [i0, i1] = cell.i;
-            let [j0, j1] = cell.j;
-            let corners = [(i0, j0), (i1, j0), (i0, j1), (i1, j1)]
-                .map(|(i, j)| self.area_point(query, (i, j), known, observer));
-            let differ = |a: &Color| {
-                let difference = *a - corners[0];
-                difference.map(f64::abs).max_component() > THRESHOLD
-            };
-            if !splits || !corners.iter().any(differ) {
-                return mean(corners);
-            }
-        }
-        let level = cell.level + 1;
-        let quarters = [
-            (i_low, j_low),
-            (i_high, j_low),
-            (i_low, j_high),
-            (i_high, j_high),
-        ];
-        mean(quarters.map(|(i, j)| self.area_cell(query, Cell { i, j, level }, known, observer)))
+/// Orders points that several lit points need, all of them the same ones, by the points of the grid.
+fn turned(wanted: &mut Vec<Wanted>, in_turn: &mut Vec<Wanted>) {
+    let each = wanted.iter().take_while(|w| w.lit == wanted[0].lit).count();
+    in_turn.clear();
+    for number in 0..each {
+        in_turn.extend(wanted.iter().skip(number).step_by(each));
     }
-
-    /// The visibility of one point of the grid; its shadow ray is traced once.
-    fn area_point<O: TraceObserver>(
-        &mut self,
-        query: &AreaQuery<'_>,
-        (i, j): (u32, u32),
-        known: &mut [Option<Color>],
-        observer: &mut O,
-    ) -> Color {
-        let index = j as usize * query.area.size_1 as usize + i as usize;
-        if let Some(Some(visible)) = known.get(index) {
-            return *visible;
-        }
-        let (point, center) = (query.point, query.center);
-        let direction = center.shadow_direction + query.offset(i, j);
-        let (origin_point, from) = point.surface.start(&point.hit, direction);
-        let shadow_ray = ShadowRay {
-            ray: Ray::new(origin_point, direction),
-            range: center.range,
-            from,
-            light: query.number,
-            media: point.branch.media,
-        };
-        let (media, hits) = (&mut self.media, &mut self.shadow_hits);
-        let shadow = self.tracer.shadow(&shadow_ray, media, hits);
-        self.counts.shadow += 1;
-        self.counts.shadow_hit += u64::from(shadow.hit);
-        if O::DETAILED {
-            let report = self.tracer.shadow_report(&shadow_ray, media, hits);
-            observer.area_shadow(point.node, query.number as u32, report);
-        }
-        if let Some(slot) = known.get_mut(index) {
-            *slot = Some(shadow.visible);
-        }
-        shadow.visible
-    }
+    std::mem::swap(wanted, in_turn);
 }
 
 #[cfg(test)]

@@ -11,7 +11,7 @@ use crate::hit::{Hit, Origin, RayClass};
 use crate::scene::{RenderGroup, RenderScene};
 use crate::uses::InstanceUse;
 pub use kinds::WalkEvent;
-use kinds::{AnyOpaque, Closest, Query, Transmitting, Watched};
+use kinds::{Any, Closest, Query, Transmitting, Watched};
 use plain::Plain;
 use std::sync::Arc;
 use strahl_accel::{Accelerator, AnyAccelerator, TraversalStats, Visitor};
@@ -28,6 +28,8 @@ pub struct Tracer<'s> {
     pub stats: TraversalStats,
     /// For each light the primitive of the world that blocked it last: likely to block it again.
     occluders: Vec<u32>,
+    /// For each light whether most of the last rays to it that nothing opaque blocked met something that transmits light.
+    pub(crate) crossed: Vec<bool>,
     /// Whether to test that primitive first.
     pub(crate) remembers: bool,
     /// What this thread is doing.
@@ -45,6 +47,7 @@ impl<'s> Tracer<'s> {
             scratch: Scratch::default(),
             stats: TraversalStats::default(),
             occluders: vec![NONE; scene.lights.len()],
+            crossed: vec![false; scene.lights.len()],
             remembers: true,
             slot: Arc::default(),
         }
@@ -101,7 +104,7 @@ impl<'s> Tracer<'s> {
     /// Whether an opaque surface is in `range`.
     #[inline]
     pub fn any_opaque(&mut self, ray: &Ray, range: Interval, from: Option<&Origin>) -> bool {
-        let mut query = AnyOpaque { found: None };
+        let mut query = Any::OPAQUE;
         self.search(ray, range, from, RayClass::Shadow, NONE, &mut query);
         query.found.is_some()
     }
@@ -116,7 +119,7 @@ impl<'s> Tracer<'s> {
         from: &Origin,
         light: usize,
     ) -> bool {
-        let mut query = AnyOpaque { found: None };
+        let mut query = Any::OPAQUE;
         self.search(
             ray,
             range,
@@ -162,9 +165,10 @@ impl<'s> Tracer<'s> {
         query.map(|hit| hit.t)
     }
 
-    /// Forgets the last occluders, so that the cost of the following queries does not depend on earlier ones.
+    /// Forgets what the last rays to lights met, so that the cost of the following queries does not depend on earlier ones.
     pub(crate) fn forget_occluders(&mut self) {
         self.occluders.fill(NONE);
+        self.crossed.fill(false);
     }
 
     /// All hits in `range` on primitives that may transmit light, in no particular order. Hits on a primitive that lies in
@@ -239,7 +243,11 @@ impl<Q: Query> Search<'_, '_, Q> {
         first: u32,
     ) -> f64 {
         let from_prim = from.map_or(NONE, |(_, id)| group.prim_of(id));
-        let part = if self.parts { Q::part(group) } else { None };
+        let part = if self.parts {
+            self.query.part(group)
+        } else {
+            None
+        };
         let (accelerator, blocks, sheared) = match part {
             None => (&group.accelerator, &group.blocks, group.sheared),
             Some(part) => (&part.accelerator, &part.blocks, part.sheared),

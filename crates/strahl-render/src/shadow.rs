@@ -47,11 +47,12 @@ struct Kept<'h> {
 }
 
 /// A ray towards a light.
-pub(crate) struct ShadowRay {
-    pub(crate) ray: Ray,
+#[derive(Clone, Copy)]
+pub(crate) struct ShadowRay<'r> {
+    pub(crate) ray: &'r Ray,
     /// Where occluders are looked for.
     pub(crate) range: Interval,
-    pub(crate) from: Origin,
+    pub(crate) from: &'r Origin,
     /// Number of the light.
     pub(crate) light: usize,
     /// The media that the ray starts in.
@@ -66,14 +67,14 @@ impl Tracer<'_> {
     /// does not matter.
     pub(crate) fn shadow(
         &mut self,
-        shadow_ray: &ShadowRay,
+        shadow_ray: &ShadowRay<'_>,
         arena: &mut MediaArena,
         hits: &mut Vec<Hit>,
     ) -> Shadow {
         let light = shadow_ray.light;
         let mut range = shadow_ray.range;
         if let Some(mask) = self.scene.mask(light) {
-            let Some(masked) = self.before_mask(mask, &shadow_ray.ray, range) else {
+            let Some(masked) = self.before_mask(mask, shadow_ray.ray, range) else {
                 return Shadow {
                     visible: Color::BLACK,
                     hit: false,
@@ -84,7 +85,7 @@ impl Tracer<'_> {
                 return Shadow::NONE;
             }
         }
-        if self.occluded(&shadow_ray.ray, range, &shadow_ray.from, light) {
+        if self.occluded(shadow_ray.ray, range, shadow_ray.from, light) {
             return Shadow::STOPPED;
         }
         let shadow_ray = ShadowRay {
@@ -105,18 +106,28 @@ impl Tracer<'_> {
     /// The share of the light that arrives if nothing opaque is in between.
     pub(crate) fn filtered(
         &mut self,
-        shadow_ray: &ShadowRay,
+        shadow_ray: &ShadowRay<'_>,
         arena: &mut MediaArena,
         hits: &mut Vec<Hit>,
     ) -> Shadow {
         self.filtered_by(shadow_ray, arena, hits, |_| {})
     }
 
+    /// The same for a ray that meets nothing: the media that it is in weaken the light.
+    #[inline]
+    pub(crate) fn unobstructed(
+        &mut self,
+        shadow_ray: &ShadowRay<'_>,
+        arena: &mut MediaArena,
+    ) -> Shadow {
+        self.weakened(shadow_ray, arena, &[], &mut |_| {})
+    }
+
     /// The same, telling what each hit lets through.
     #[inline]
     fn filtered_by(
         &mut self,
-        shadow_ray: &ShadowRay,
+        shadow_ray: &ShadowRay<'_>,
         arena: &mut MediaArena,
         hits: &mut Vec<Hit>,
         mut tell: impl FnMut(Kept<'_>),
@@ -124,6 +135,26 @@ impl Tracer<'_> {
         if !self.scene.transmits {
             return Shadow::NONE;
         }
+        hits.clear();
+        let ShadowRay {
+            ray, range, from, ..
+        } = shadow_ray;
+        self.transmitting_hits(ray, *range, Some(from), hits);
+        hits.sort_unstable_by(|a, b| a.t.total_cmp(&b.t).then(a.id.cmp(&b.id)));
+        // A grid may report a primitive more than once; an element has one hit at one t.
+        hits.dedup_by(|a, b| a.t == b.t && a.id == b.id);
+        self.weakened(shadow_ray, arena, hits, &mut tell)
+    }
+
+    /// What these surfaces, one behind the other, and what is between them leave of the light.
+    #[inline(always)]
+    fn weakened(
+        &mut self,
+        shadow_ray: &ShadowRay<'_>,
+        arena: &mut MediaArena,
+        hits: &[Hit],
+        tell: &mut impl FnMut(Kept<'_>),
+    ) -> Shadow {
         let ShadowRay {
             ray,
             range,
@@ -131,12 +162,6 @@ impl Tracer<'_> {
             media,
             ..
         } = shadow_ray;
-        let range = *range;
-        hits.clear();
-        self.transmitting_hits(ray, range, Some(from), hits);
-        hits.sort_unstable_by(|a, b| a.t.total_cmp(&b.t).then(a.id.cmp(&b.id)));
-        // A grid may report a primitive more than once; an element has one hit at one t.
-        hits.dedup_by(|a, b| a.t == b.t && a.id == b.id);
         let mut visible = Color::WHITE;
         let (mut inside, mut entered_at) = (*media, 0.0);
         let mut resolved = Resolved::UNKNOWN;

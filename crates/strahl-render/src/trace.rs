@@ -34,14 +34,16 @@ pub(crate) use branch::Branch;
 use branch::Node;
 use eye::Eye;
 pub(crate) use eye::Filled;
-pub(crate) use lights::Arriving;
+pub(crate) use lights::{Aim, Arriving};
 use point::Lanes;
 pub(crate) use point::Point;
+pub(crate) use stages::FEW;
 
 pub use outcome::{FirstHit, RayCounts, SampleResult};
 pub use settings::TraceSettings;
 
 use crate::activity::Phase;
+use crate::area::AreaMemory;
 use crate::hit::Hit;
 use crate::layers::{KnownPaints, Mirror, Passage};
 use crate::media::{MediaArena, MediaStack};
@@ -64,7 +66,7 @@ pub struct TreeTracer<'s> {
     pub tracer: Tracer<'s>,
     /// Rays traced so far.
     pub counts: RayCounts,
-    settings: TraceSettings,
+    pub(crate) settings: TraceSettings,
     /// What is asked besides the scene.
     transport: Transport,
     /// The radiance along primary rays that hit nothing, if it is the same for all.
@@ -96,8 +98,7 @@ pub struct TreeTracer<'s> {
     /// The points that a light may shine on.
     arriving: Vec<Arriving>,
     pub(crate) shadow_hits: Vec<Hit>,
-    /// The visibilities of the points of an area light that are known, for one lit point at a time.
-    pub(crate) area_points: Vec<Option<Color>>,
+    pub(crate) area_memory: AreaMemory,
     /// The reflection rays of the current hit.
     mirrors: Vec<Mirror>,
     /// The passages of the current hit, if textures are blended there.
@@ -142,7 +143,7 @@ impl<'s> TreeTracer<'s> {
             deepest: 0,
             arriving: Vec::new(),
             shadow_hits: Vec::new(),
-            area_points: Vec::new(),
+            area_memory: AreaMemory::default(),
             mirrors: Vec::new(),
             passages: Vec::new(),
             met: None,

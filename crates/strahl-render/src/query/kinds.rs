@@ -11,7 +11,7 @@ pub(super) trait Query {
     fn wants(&self, flags: u8) -> bool;
 
     /// The part of a group that has all primitives that matter, if there is a separate accelerator for it.
-    fn part(_group: &RenderGroup) -> Option<&Part> {
+    fn part<'g>(&self, _group: &'g RenderGroup) -> Option<&'g Part> {
         None
     }
 
@@ -108,21 +108,38 @@ impl Query for Watched<'_> {
     }
 }
 
-/// Finds any opaque surface.
-pub(super) struct AnyOpaque {
+/// Finds any opaque surface, or any surface that may transmit light.
+#[derive(Clone, Copy)]
+pub(super) struct Any {
+    /// [`Prim::STOPS`] or [`Prim::TRANSMITS`].
+    flag: u8,
     /// An element of the primitive found.
     pub(super) found: Option<u64>,
 }
 
-impl Query for AnyOpaque {
+impl Any {
+    pub(super) const OPAQUE: Self = Self {
+        flag: Prim::STOPS,
+        found: None,
+    };
+    pub(super) const TRANSMITTING: Self = Self {
+        flag: Prim::TRANSMITS,
+        found: None,
+    };
+}
+
+impl Query for Any {
     const ALL: bool = false;
 
     fn wants(&self, flags: u8) -> bool {
-        flags & Prim::STOPS != 0
+        flags & self.flag != 0
     }
 
-    fn part(group: &RenderGroup) -> Option<&Part> {
-        group.stopping.as_deref()
+    fn part<'g>(&self, group: &'g RenderGroup) -> Option<&'g Part> {
+        match self.flag {
+            Prim::STOPS => group.stopping.as_deref(),
+            _ => group.transmitting.as_deref(),
+        }
     }
 
     const ANY: bool = true;
@@ -133,7 +150,7 @@ impl Query for AnyOpaque {
     }
 
     fn wants_hit(&self, transmits: bool) -> bool {
-        !transmits
+        transmits == (self.flag == Prim::TRANSMITS)
     }
 }
 
@@ -149,7 +166,7 @@ impl Query for Transmitting<'_> {
         flags & Prim::TRANSMITS != 0
     }
 
-    fn part(group: &RenderGroup) -> Option<&Part> {
+    fn part<'g>(&self, group: &'g RenderGroup) -> Option<&'g Part> {
         group.transmitting.as_deref()
     }
 

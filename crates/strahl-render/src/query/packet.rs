@@ -2,7 +2,7 @@
 //! rays are.
 
 use super::block::{Block, BlockOfLeaf, Fetched, PacketCulls};
-use super::kinds::{AnyOpaque, Closest, Query};
+use super::kinds::{Any, Closest, Query};
 use super::shapes::PlainShape;
 use super::{From, GroupVisitor, NONE, Search, Tracer};
 use crate::activity::{Phase, Slot};
@@ -91,7 +91,8 @@ impl Tracer<'_> {
             class: RayClass::Shadow,
             first: NONE,
         };
-        self.search_any(&asked, common_end(rays, range)).0
+        self.search_any(&asked, common_end(rays, range), Any::OPAQUE)
+            .0
     }
 
     /// [`Tracer::occluded`] for several rays to one light, as bits; each has a range from `min` to the `t_max` of its lane.
@@ -110,14 +111,37 @@ impl Tracer<'_> {
             class: RayClass::Shadow,
             first: self.occluders[light],
         };
-        let (found, last) = self.search_any(&asked, t_max);
+        let (found, last) = self.search_any(&asked, t_max, Any::OPAQUE);
         self.remember(light, last);
         found
     }
 
-    /// The occluded rays, as bits, and the occluder of the last of them.
-    fn search_any(&mut self, asked: &Asked<'_>, t_max: [f64; PACKET]) -> (u32, Option<u64>) {
-        let mut queries = [const { AnyOpaque { found: None } }; PACKET];
+    /// The rays that meet surfaces which may transmit light, as bits; each has a range from `min` to the `t_max` of its lane.
+    pub(crate) fn any_transmitting(
+        &mut self,
+        rays: &[Ray],
+        min: f64,
+        t_max: [f64; PACKET],
+        from: &[Option<&Origin>; PACKET],
+    ) -> u32 {
+        let asked = Asked {
+            rays,
+            min,
+            from,
+            class: RayClass::Shadow,
+            first: NONE,
+        };
+        self.search_any(&asked, t_max, Any::TRANSMITTING).0
+    }
+
+    /// The rays that find something, as bits, and what the last of them has found.
+    fn search_any(
+        &mut self,
+        asked: &Asked<'_>,
+        t_max: [f64; PACKET],
+        any: Any,
+    ) -> (u32, Option<u64>) {
+        let mut queries = [any; PACKET];
         self.search_packet(asked, t_max, &mut queries);
         let (mut found, mut last) = (0, None);
         for (lane, query) in queries.iter().enumerate() {
@@ -135,7 +159,7 @@ impl Tracer<'_> {
     ) {
         let group = &self.scene.groups[0];
         let parts = self.remembers;
-        let part = if parts { Q::part(group) } else { None };
+        let part = if parts { queries[0].part(group) } else { None };
         let (accelerator, blocks, is_sheared) = match part {
             None => (&group.accelerator, &group.blocks, group.sheared),
             Some(part) => (&part.accelerator, &part.blocks, part.sheared),

@@ -12,7 +12,7 @@ use crate::sampling::{Few, Sample};
 use crate::scene::RenderScene;
 use crate::sight::{SQUARE, Sight};
 use crate::tiles::TILE;
-use crate::trace::{RayCounts, SampleResult, TreeTracer};
+use crate::trace::{RayCounts, SampleResult, TraceSettings, TreeTracer};
 use arrayvec::ArrayVec;
 use strahl_accel::{PACKET, TraversalStats};
 use strahl_math::Ray;
@@ -73,7 +73,11 @@ impl<'s> PixelTracer<'s> {
         options: &'s RenderOptions,
         progress: &'s dyn Progress,
     ) -> Self {
-        let mut tree = TreeTracer::new(scene, options.trace).with_transport(&options.transport);
+        let settings = TraceSettings {
+            packets: options.has_packets(),
+            ..options.trace
+        };
+        let mut tree = TreeTracer::new(scene, settings).with_transport(&options.transport);
         if let Some(activities) = progress.activities() {
             tree.tracer.slot = activities.slot();
             tree.tracer.slot.enter(Phase::Sampling);

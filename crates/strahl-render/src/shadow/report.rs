@@ -13,14 +13,14 @@ impl Tracer<'_> {
     #[cold]
     pub(crate) fn shadow_report(
         &mut self,
-        shadow_ray: &ShadowRay,
+        shadow_ray: &ShadowRay<'_>,
         arena: &mut MediaArena,
         hits: &mut Vec<Hit>,
     ) -> ShadowReport {
         let ShadowRay { ray, from, .. } = shadow_ray;
         let shadow = self.shadow(shadow_ray, arena, hits);
         let mut report = ShadowReport {
-            ray: *ray,
+            ray: **ray,
             met: Vec::new(),
             rest: Color::WHITE,
             visible: shadow.visible,

@@ -1,12 +1,11 @@
 //! The factors of what a hit sends, for ray trees: what the loop multiplies, one by one. None of it runs without an observer.
 
-use super::TreeTracer;
 use super::point::Point;
+use super::{Aim, TreeTracer};
 use crate::layers;
 use crate::observer::{HitReport, LightDetail, LightTerm, Shading, SurfaceTerm};
-use crate::shadow::ShadowRay;
 use crate::surface::{Split, Surface};
-use strahl_math::{DVec3, Ray};
+use strahl_math::DVec3;
 use strahl_shade::{Color, Light, LightSample, ShadingModel, reflect};
 
 impl<'s> TreeTracer<'s> {
@@ -28,12 +27,7 @@ impl<'s> TreeTracer<'s> {
     /// What the term of a light is made of.
     #[cold]
     pub(super) fn light_detail(&mut self, point: &Point<'s>, term: &LightTerm) -> LightDetail {
-        let Point {
-            surface,
-            hit,
-            branch,
-            ..
-        } = point;
+        let Point { surface, .. } = point;
         let number = term.light as usize;
         let light = &self.tracer.scene.lights[number].light;
         let mut detail = LightDetail {
@@ -47,16 +41,12 @@ impl<'s> TreeTracer<'s> {
         detail.l = Some(sample.l);
         detail.arriving = sample.color * term.visible;
         if light.area.is_none() && term.shadow_ray.is_some() {
-            let (origin, from) = surface.start(hit, sample.shadow_direction);
-            let shadow_ray = ShadowRay {
-                ray: Ray::new(origin, sample.shadow_direction),
+            let aim = Aim {
+                point,
+                direction: sample.shadow_direction,
                 range: sample.range,
-                from,
-                light: number,
-                media: branch.media,
             };
-            let (media, hits) = (&mut self.media, &mut self.shadow_hits);
-            let shadow = self.tracer.shadow_report(&shadow_ray, media, hits);
+            let shadow = self.shadow_report(&aim, number);
             detail.shadows.push(shadow);
         }
         if let Some(area) = light.area.as_ref().filter(|area| area.illumination) {

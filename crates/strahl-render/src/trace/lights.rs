@@ -5,19 +5,20 @@ use super::aim::{Directions, Places};
 use super::point::{Lanes, Point};
 use super::stages::FEW;
 use crate::activity::Phase;
+use crate::hit::Origin;
 use crate::layers;
-use crate::observer::{LightTerm, TraceObserver};
+use crate::observer::{LightTerm, ShadowReport, TraceObserver};
 use crate::shadow::{Shadow, ShadowRay};
 use arrayvec::ArrayVec;
-use strahl_accel::PACKET;
-use strahl_math::{DVec3, Ray};
+use strahl_accel::{PACKET, lanes_of};
+use strahl_math::{DVec3, Interval, Ray};
 use strahl_shade::{Color, Light, LightSample};
 
 /// A light at a point that may face it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Arriving {
     /// The lane of the point.
-    lane: usize,
+    pub(crate) lane: usize,
     pub(crate) sample: LightSample,
     /// The cosine between the shading normal and the direction to the light.
     n_dot_l: f64,
@@ -27,6 +28,34 @@ pub(crate) struct Arriving {
     pub(crate) shadow_rays: u32,
     /// The diffuse part and the highlight, if they are known before the light is shaded.
     pub(crate) reflected: Option<(Color, Color)>,
+}
+
+/// A shadow ray to be traced.
+pub(crate) struct Aim<'p> {
+    pub(crate) point: &'p Point<'p>,
+    pub(crate) direction: DVec3,
+    /// Where occluders are looked for.
+    pub(crate) range: Interval,
+}
+
+impl Aim<'_> {
+    /// The ray, and where it starts.
+    #[inline]
+    fn start(&self) -> (Ray, Origin) {
+        let (start, from) = self.point.surface.start(&self.point.hit, self.direction);
+        (Ray::new(start, self.direction), from)
+    }
+
+    #[inline(always)]
+    fn shadow_ray<'r>(&self, light: usize, ray: &'r Ray, from: &'r Origin) -> ShadowRay<'r> {
+        ShadowRay {
+            ray,
+            range: self.range,
+            from,
+            light,
+            media: self.point.branch.media,
+        }
+    }
 }
 
 impl<'s> TreeTracer<'s> {
@@ -151,8 +180,11 @@ impl<'s> TreeTracer<'s> {
         let scene = self.tracer.scene;
         let light = &scene.lights[number].light;
         self.tracer.slot.shadow(number);
-        let single = light.area.is_some() || scene.mask(number).is_some();
-        if !single && arriving.len() >= FEW {
+        if let Some(area) = &light.area {
+            self.area_light(area, number, points, arriving, observer);
+            return;
+        }
+        if scene.mask(number).is_none() && arriving.len() >= FEW {
             self.shadows_together(points, number, arriving);
             return;
         }
@@ -160,65 +192,113 @@ impl<'s> TreeTracer<'s> {
             if one.sample.range.is_empty() {
                 continue;
             }
-            let point = &points[one.lane];
-            match &light.area {
-                Some(area) => self.area_light(area, number, point, one, observer),
-                None => {
-                    let shadow_ray = shadow_ray(point, number, &one.sample);
-                    let (media, hits) = (&mut self.media, &mut self.shadow_hits);
-                    let shadow = self.tracer.shadow(&shadow_ray, media, hits);
-                    self.count_shadow(one, shadow);
-                }
+            let aim = Aim {
+                point: &points[one.lane],
+                direction: one.sample.shadow_direction,
+                range: one.sample.range,
+            };
+            let shadow = self.shadow_of(&aim, number);
+            self.count_shadow(one, shadow);
+        }
+    }
+
+    /// Traces shadow rays in packets.
+    fn shadows_together(&mut self, points: &[Point<'s>], number: usize, arriving: &mut [Arriving]) {
+        let mut aims = ArrayVec::<Aim<'_>, PACKET>::new();
+        for one in arriving.iter().take(PACKET) {
+            aims.push(Aim {
+                point: &points[one.lane],
+                direction: one.sample.shadow_direction,
+                range: one.sample.range,
+            });
+        }
+        let mut shadows = [Shadow::NONE; PACKET];
+        self.shadows_of(&aims, number, &mut shadows);
+        for (one, shadow) in arriving.iter_mut().zip(&shadows) {
+            if !one.sample.range.is_empty() {
+                self.count_shadow(one, *shadow);
             }
         }
     }
 
-    /// Traces shadow rays in packets. Those that start on the far side of their surface, or have another range, go by themselves.
-    fn shadows_together(&mut self, points: &[Point<'s>], number: usize, arriving: &mut [Arriving]) {
+    /// What arrives of a light along shadow rays, at most [`PACKET`], which are traced together. Those that start on the far side of their
+    /// surface, or have another range, go by themselves; where a range is empty nothing is looked for.
+    #[inline(always)]
+    pub(crate) fn shadows_of(
+        &mut self,
+        aims: &[Aim<'_>],
+        light: usize,
+        shadows: &mut [Shadow; PACKET],
+    ) {
         let mut rays = ArrayVec::<Ray, PACKET>::new();
         let (mut from, mut t_max) = ([None; PACKET], [f64::NEG_INFINITY; PACKET]);
         let (mut places, mut alone) = ([0; PACKET], 0u32);
-        let min = arriving[0].sample.range.min;
-        for (index, one) in arriving.iter().enumerate().take(PACKET) {
-            let LightSample {
-                range,
-                shadow_direction,
-                ..
-            } = one.sample;
-            if range.is_empty() {
+        let min = aims.first().map_or(0.0, |aim| aim.range.min);
+        for (index, aim) in aims.iter().enumerate().take(PACKET) {
+            if aim.range.is_empty() {
                 continue;
             }
-            let start = points[one.lane].surface.start_in_front(shadow_direction);
-            let Some((start, origin)) = start.filter(|_| range.min == min) else {
+            let start = aim.point.surface.start_in_front(aim.direction);
+            let Some((start, origin)) = start.filter(|_| aim.range.min == min) else {
                 alone |= 1 << index;
                 continue;
             };
             let lane = rays.len();
-            rays.push(Ray::new(start, shadow_direction));
-            (from[lane], t_max[lane], places[lane]) = (Some(origin), range.max, index);
+            rays.push(Ray::new(start, aim.direction));
+            (from[lane], t_max[lane], places[lane]) = (Some(origin), aim.range.max, index);
         }
-        let stopped = self.tracer.all_occluded(&rays, min, t_max, &from, number);
+        let stopped = self.tracer.all_occluded(&rays, min, t_max, &from, light);
+        let transmits = self.tracer.scene.transmits;
+        let mut open = !stopped & ((1 << rays.len()) - 1);
+        let (all, mut crossing) = (open.count_ones(), 0);
+        if transmits && all > 0 && !self.tracer.crossed[light] {
+            for lane in lanes_of(stopped) {
+                t_max[lane] = f64::NEG_INFINITY;
+            }
+            open = self.tracer.any_transmitting(&rays, min, t_max, &from);
+        }
         for (lane, index) in places[..rays.len()].iter().enumerate() {
-            let one = &mut arriving[*index];
-            let shadow = if stopped >> lane & 1 == 1 {
-                Shadow::STOPPED
-            } else if self.tracer.scene.transmits {
-                let shadow_ray = shadow_ray(&points[one.lane], number, &one.sample);
-                let (media, hits) = (&mut self.media, &mut self.shadow_hits);
-                self.tracer.filtered(&shadow_ray, media, hits)
+            let shadow = &mut shadows[index % PACKET];
+            if stopped >> lane & 1 == 1 {
+                *shadow = Shadow::STOPPED;
+            } else if transmits {
+                let from = from[lane].unwrap_or(&Origin::NOWHERE);
+                let shadow_ray = aims[*index].shadow_ray(light, &rays[lane], from);
+                *shadow = if open >> lane & 1 == 1 {
+                    let (media, hits) = (&mut self.media, &mut self.shadow_hits);
+                    self.tracer.filtered(&shadow_ray, media, hits)
+                } else {
+                    self.tracer.unobstructed(&shadow_ray, &mut self.media)
+                };
+                crossing += u32::from(shadow.hit);
             } else {
-                Shadow::NONE
-            };
-            self.count_shadow(one, shadow);
-        }
-        for (index, one) in arriving.iter_mut().enumerate().take(PACKET) {
-            if alone >> index & 1 == 1 {
-                let shadow_ray = shadow_ray(&points[one.lane], number, &one.sample);
-                let (media, hits) = (&mut self.media, &mut self.shadow_hits);
-                let shadow = self.tracer.shadow(&shadow_ray, media, hits);
-                self.count_shadow(one, shadow);
+                *shadow = Shadow::NONE;
             }
         }
+        // Where most rays meet something, looking for those that don't is in vain.
+        self.tracer.crossed[light] = 2 * crossing > all;
+        for (index, aim) in aims.iter().enumerate().take(PACKET) {
+            if alone >> index & 1 == 1 {
+                shadows[index] = self.shadow_of(aim, light);
+            }
+        }
+    }
+
+    /// What arrives of a light along a shadow ray that goes by itself.
+    pub(crate) fn shadow_of(&mut self, aim: &Aim<'_>, light: usize) -> Shadow {
+        let (ray, from) = aim.start();
+        let shadow_ray = aim.shadow_ray(light, &ray, &from);
+        let (media, hits) = (&mut self.media, &mut self.shadow_hits);
+        self.tracer.shadow(&shadow_ray, media, hits)
+    }
+
+    /// What is in the way of a shadow ray.
+    #[cold]
+    pub(crate) fn shadow_report(&mut self, aim: &Aim<'_>, light: usize) -> ShadowReport {
+        let (ray, from) = aim.start();
+        let shadow_ray = aim.shadow_ray(light, &ray, &from);
+        let (media, hits) = (&mut self.media, &mut self.shadow_hits);
+        self.tracer.shadow_report(&shadow_ray, media, hits)
     }
 
     /// Adds the light of a light source that a surface reflects.
@@ -392,18 +472,4 @@ fn seen_from(light: &Light, point: &Point<'_>) -> Option<(LightSample, f64)> {
     let position = point.surface.resolved.point.position;
     let sample = light.illuminate(position).or_else(|| light.aim(position))?;
     Some((sample, point.surface.n_shade.dot(sample.l)))
-}
-
-/// The shadow ray from a point to a light.
-#[inline]
-fn shadow_ray(point: &Point<'_>, light: usize, sample: &LightSample) -> ShadowRay {
-    let direction = sample.shadow_direction;
-    let (start, from) = point.surface.start(&point.hit, direction);
-    ShadowRay {
-        ray: Ray::new(start, direction),
-        range: sample.range,
-        from,
-        light,
-        media: point.branch.media,
-    }
 }

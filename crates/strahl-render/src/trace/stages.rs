@@ -27,7 +27,7 @@ use strahl_math::{Interval, Ray};
 use strahl_shade::Color;
 
 /// Fewer rays, to hits or to a light, are traced one by one.
-pub(super) const FEW: usize = 3;
+pub(crate) const FEW: usize = 3;
 
 impl<'s> TreeTracer<'s> {
     /// Grows the trees of the first `count` rays, `width` rays at a time. Returns `false` if it left off because there are too many of them:

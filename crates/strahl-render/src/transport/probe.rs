@@ -45,9 +45,9 @@ impl<'s> Probe<'_, 's> {
             return Some((sample, Color::WHITE));
         }
         let shadow_ray = ShadowRay {
-            ray: Ray::new(position, sample.shadow_direction),
+            ray: &Ray::new(position, sample.shadow_direction),
             range: sample.range,
-            from: Origin::NOWHERE,
+            from: &Origin::NOWHERE,
             light: number,
             media: MediaStack::VACUUM,
         };
