@@ -143,6 +143,10 @@ impl Tracer<'_> {
         hits.sort_unstable_by(|a, b| a.t.total_cmp(&b.t).then(a.id.cmp(&b.id)));
         // A grid may report a primitive more than once; an element has one hit at one t.
         hits.dedup_by(|a, b| a.t == b.t && a.id == b.id);
+        if hits.is_empty() {
+            // Compiled by itself, without a place for surfaces.
+            return self.weakened(shadow_ray, arena, &[], &mut tell);
+        }
         self.weakened(shadow_ray, arena, hits, &mut tell)
     }
 

@@ -11,6 +11,9 @@ use super::{BitDepth, Picture, WriteOptions};
 /// Offset of the picture on a page, a chunk of the PNG extensions 1.5: a region's place in the full picture.
 const OFFSET_CHUNK: ChunkType = ChunkType(*b"oFFs");
 
+/// Pictures of so many pixels are compressed at once.
+const WHOLE: usize = 1 << 21;
+
 /// The level of deflate, `1..=9`. Level 2 takes a third of the time of zlib's default, 6; grainy pictures grow by a tenth, clean ones
 /// by a quarter.
 const COMPRESSION: u8 = 2;
@@ -60,19 +63,27 @@ fn encode_png(
         writer.write_chunk(OFFSET_CHUNK, &offset)?;
     }
 
-    // Row by row: the codes of a large picture need no memory of their own.
-    let mut rows = writer.stream_writer()?;
-    let mut codes = Vec::new();
     let width = window.width as usize;
-    for (y, row) in picture.rgb.chunks_exact(width).enumerate() {
-        codes.clear();
-        match picture.alpha {
-            Some(alpha) => push_straight(row, &alpha[y * width..], options.bit_depth, &mut codes),
-            None => push_codes(row, options.bit_depth, &mut codes),
+    let push_row = |y: usize, row: &[[f32; 3]], codes: &mut Vec<u8>| match picture.alpha {
+        Some(alpha) => push_straight(row, &alpha[y * width..], options.bit_depth, codes),
+        None => push_codes(row, options.bit_depth, codes),
+    };
+    let rows = picture.rgb.chunks_exact(width).enumerate();
+    let mut codes = Vec::new();
+    if picture.rgb.len() <= WHOLE {
+        // At once: the compressor clears its buffer for each piece that it gets.
+        rows.for_each(|(y, row)| push_row(y, row, &mut codes));
+        writer.write_image_data(&codes)?;
+    } else {
+        // Row by row: the codes of a large picture need no memory of their own.
+        let mut out = writer.stream_writer()?;
+        for (y, row) in rows {
+            codes.clear();
+            push_row(y, row, &mut codes);
+            out.write_all(&codes)?;
         }
-        rows.write_all(&codes)?;
+        out.finish()?;
     }
-    rows.finish()?;
     writer.finish()
 }
 

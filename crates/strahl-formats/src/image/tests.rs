@@ -121,6 +121,25 @@ fn integer_formats_hold_the_srgb_codes() {
     }
 }
 
+/// Large pictures are compressed row by row, others at once.
+#[test]
+fn png_pictures_of_all_sizes_hold_the_same_rows() {
+    let (width, height) = (2048, 1025);
+    let rgb = colors(width, height);
+    let codes = |height: u32| {
+        let part = &rgb[..(width * height) as usize];
+        let bytes = encoded(
+            ImageFormat::Png,
+            &Picture::new(width, height, part),
+            &WriteOptions::default(),
+        );
+        image::load_from_memory(&bytes).unwrap().into_rgb8()
+    };
+    let (large, small) = (codes(height), codes(1024));
+    assert_eq!(large.as_raw()[..small.as_raw().len()], small.as_raw()[..]);
+    assert_eq!(large.dimensions(), (width, height));
+}
+
 #[test]
 fn png_tells_its_colour_space_metadata_and_region() {
     let rgb = colors(20, 9);

@@ -15,7 +15,11 @@ fn scene() -> RenderScene {
     let tinted =
         Material::matte(Color::gray(0.2)).with_transparency(Color::new(0.9, 0.4, 0.3), 0.7, 0.1);
     let mut lamp = Light::point(DVec3::new(3.0, 6.0, 4.0), Color::gray(0.7));
-    lamp.area = Some(AreaLight::new(DVec3::X, DVec3::Z, 3, 3));
+    lamp.area = Some(AreaLight {
+        adaptive: Some(1),
+        jitter: true,
+        ..AreaLight::new(DVec3::X, DVec3::Z, 5, 5)
+    });
     let wall = |x: f64| {
         let low = DVec3::new(x, -1.0, -3.0);
         Cuboid::new(low, low + DVec3::new(0.2, 3.0, 6.0)).material(mirror.clone())
@@ -58,7 +62,12 @@ fn batches_of_any_size_have_the_same_bits() {
             (k % 13 != 5).then(|| Ray::new(DVec3::new(0.3, 1.0, 7.0), direction))
         })
         .collect();
-    let mut single = TreeTracer::new(&scene, settings);
+    // Shadow rays to the area light, too, go by themselves.
+    let one_by_one = TraceSettings {
+        packets: false,
+        ..settings
+    };
+    let mut single = TreeTracer::new(&scene, one_by_one);
     let alone: Vec<Color> = rays
         .iter()
         .map(|ray| match ray {
