@@ -263,6 +263,7 @@ impl PovFinish {
     ///
     /// `cos_light` is the cosine between the tilted normal and the direction to the light. The opacity
     /// `1 - filter - transmit` is [`crate::ColorFt::opacity`].
+    #[inline]
     pub fn diffuse_factor(&self, cos_light: f64) -> f64 {
         let (strength, cos) = if cos_light > 0.0 {
             (self.diffuse, cos_light)
@@ -303,8 +304,8 @@ impl PovFinish {
         let cosine = |shape| match shape {
             ShadingModel::Phong => crate::reflect(n, to_viewer).dot(to_light),
             ShadingModel::BlinnPhong => {
-                let (DVec3 { x, y, z }, v) = (to_light, to_viewer);
-                half_vector_cosine(&n, x, y, z, v.x, v.y, v.z)
+                let h = to_light + to_viewer;
+                cosine_of(n.x, n.y, n.z, h.x, h.y, h.z)
             }
             _ => 0.0,
         };
@@ -366,12 +367,12 @@ impl PovFinish {
     }
 }
 
-/// The cosine between a normal and the direction halfway between light and viewer.
+/// The cosine between a unit vector and another vector; 0 if that is zero.
 // Not inline: the square root and the division would be taken out of the loop over layers, for surfaces without highlights too. In
-// numbers: a vector would be stored and loaded in parts of other sizes.
+// numbers: vectors would be stored and loaded in parts of other sizes.
 #[inline(never)]
-fn half_vector_cosine(n: &DVec3, x: f64, y: f64, z: f64, vx: f64, vy: f64, vz: f64) -> f64 {
-    n.dot((DVec3::new(x, y, z) + DVec3::new(vx, vy, vz)).normalize_or_zero())
+fn cosine_of(nx: f64, ny: f64, nz: f64, x: f64, y: f64, z: f64) -> f64 {
+    DVec3::new(nx, ny, nz).dot(DVec3::new(x, y, z).normalize_or_zero())
 }
 
 #[cfg(test)]
