@@ -127,6 +127,11 @@ impl Transform {
         self.linear
     }
 
+    /// The linear part of the way back, from outer space into object space.
+    pub fn inverse_linear(&self) -> DMat3 {
+        self.inverse
+    }
+
     /// The translation.
     pub fn translation(&self) -> DVec3 {
         self.translation

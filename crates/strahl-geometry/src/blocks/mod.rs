@@ -4,11 +4,13 @@
 //! Where a block decides, it performs the operations of the primitive's own test in the same order, so the results have the
 //! same bits.
 
+pub(crate) mod convex;
 mod packet;
 mod polygons;
 mod spheres;
 mod triangles;
 
+pub use convex::{PacketRays, PacketSpans};
 pub use packet::{PacketLines, PacketShears};
 pub use polygons::{PlaneHits, PolygonBlock};
 pub use spheres::SphereBlock;
@@ -30,7 +32,7 @@ pub struct Hits {
 
 /// The scalar product, with the terms added in the order of the scalar code.
 #[inline(always)]
-fn dot<I: Isa>(isa: I, p: [I::F64x4; 3], q: [I::F64x4; 3]) -> I::F64x4 {
+pub(crate) fn dot<I: Isa>(isa: I, p: [I::F64x4; 3], q: [I::F64x4; 3]) -> I::F64x4 {
     let xy = isa.add(isa.mul(p[0], q[0]), isa.mul(p[1], q[1]));
     isa.add(xy, isa.mul(p[2], q[2]))
 }

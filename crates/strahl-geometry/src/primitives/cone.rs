@@ -1,9 +1,11 @@
 use super::convex::Span;
 use super::frustum::Frustum;
+use crate::blocks::convex::{FourLines, FourRays, FourSpans};
 use crate::{
     Crossings, GeometryError, PrimHit, Primitive, Scratch, Shape, Solid, SurfaceId, SurfacePoint,
 };
 use strahl_math::{Aabb, DVec3, Interval, Ray, Transform};
+use strahl_simd::Isa;
 
 /// A right circular cone or truncated cone: closed with caps, or open, without thickness.
 ///
@@ -110,6 +112,18 @@ impl Primitive for Cone {
     /// Any similarity makes a cone of a cone.
     fn baked(&self, map: &Transform) -> Option<Shape> {
         self.0.baked(map).map(|frustum| Self(frustum).into())
+    }
+}
+
+impl FourLines for Cone {
+    #[inline(always)]
+    fn spans<I: Isa>(&self, isa: I, rays: &FourRays<I>) -> FourSpans {
+        self.0.spans(isa, rays)
+    }
+
+    #[inline]
+    fn closest_within(&self, span: &Span, range: Interval) -> Option<PrimHit> {
+        self.0.closest_within(span, range)
     }
 }
 

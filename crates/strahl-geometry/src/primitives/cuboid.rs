@@ -1,10 +1,13 @@
 use super::convex::{End, Span};
 use super::{check_finite, point_error};
+use crate::blocks::LANES;
+use crate::blocks::convex::{FourLines, FourRays, FourSpans};
 use crate::{
     Crossings, GeometryError, PrimHit, Primitive, Scratch, Shape, Solid, SurfaceId, SurfacePoint,
 };
 use strahl_math::error::gamma;
 use strahl_math::{Aabb, DMat3, DVec2, DVec3, Interval, Ray, Transform};
+use strahl_simd::Isa;
 
 /// A box whose faces are perpendicular to the coordinate axes, called `box` in scenes.
 ///
@@ -254,6 +257,52 @@ impl Primitive for Cuboid {
         let along_the_axes = m == DMat3::from_diagonal(scale) && scale.cmpgt(DVec3::ZERO).all();
         along_the_axes
             .then(|| Self::new(map.point_to_world(self.min), map.point_to_world(self.max)).into())
+    }
+}
+
+impl FourLines for Cuboid {
+    #[inline(always)]
+    fn spans<I: Isa>(&self, isa: I, rays: &FourRays<I>) -> FourSpans {
+        let zero = isa.splat(0.0);
+        let (min, max) = (self.min.to_array(), self.max.to_array());
+        let (mut enter, mut exit) = (isa.splat(f64::NEG_INFINITY), isa.splat(f64::INFINITY));
+        let (mut along_faces, mut valid) = (0, 0b1111);
+        let mut out = FourSpans::default();
+        for axis in 0..3 {
+            let (o, d) = (rays.origin[axis], rays.direction[axis]);
+            along_faces |= isa.le(d, zero) & isa.le(zero, d);
+            let at_min = isa.div(isa.sub(isa.splat(min[axis]), o), d);
+            let at_max = isa.div(isa.sub(isa.splat(max[axis]), o), d);
+            let near = isa.choose_le(d, zero, at_max, at_min);
+            let far = isa.choose_le(d, zero, at_min, at_max);
+            valid &= isa.le(near, far);
+            // An edge belongs to the facet that was there first.
+            let (before, behind) = (isa.lt(enter, near), isa.lt(far, exit));
+            enter = isa.choose_le(near, enter, enter, near);
+            exit = isa.choose_le(exit, far, exit, far);
+            let forward = isa.lt(zero, d);
+            let (low, high) = (2 * axis as u32, 2 * axis as u32 + 1);
+            for lane in 0..LANES {
+                let is = |mask: u32| mask >> lane & 1 == 1;
+                let (first, last) = if is(forward) {
+                    (low, high)
+                } else {
+                    (high, low)
+                };
+                if is(before) {
+                    out.enter_facet[lane] = first;
+                }
+                if is(behind) {
+                    out.exit_facet[lane] = last;
+                }
+            }
+        }
+        out.known = !along_faces & 0b1111;
+        let finite =
+            isa.lt(isa.splat(f64::NEG_INFINITY), enter) & isa.lt(enter, isa.splat(f64::INFINITY));
+        out.met = out.known & valid & isa.lt(enter, exit) & finite;
+        (out.enter, out.exit) = (isa.store(enter), isa.store(exit));
+        out
     }
 }
 

@@ -4,10 +4,13 @@ use super::convex::{End, Span};
 use super::disc::circle_bounds;
 use super::frame::{UvFrame, similarity, turn};
 use super::{check_finite, check_length, plane_t_error, point_error, unit_vector};
+use crate::blocks::convex::{FourLines, FourRays, FourSpans, scaled, sub};
+use crate::blocks::{LANES, dot};
 use crate::{Crossings, GeometryError, PrimHit, SurfaceId, SurfacePoint};
 use std::f64::consts::PI;
 use strahl_math::error::gamma;
 use strahl_math::{Aabb, DVec2, DVec3, Interval, Ray, Transform};
+use strahl_simd::Isa;
 
 /// The curved side.
 pub(super) const SIDE: u32 = 0;
@@ -253,7 +256,17 @@ impl Frustum {
         range: Interval,
         from: Option<SurfaceId>,
     ) -> Option<PrimHit> {
-        let span = self.span(ray, from)?;
+        self.closest_end(&self.span(ray, from)?, range, from)
+    }
+
+    /// The first visible end of a span in a range.
+    #[inline]
+    fn closest_end(
+        &self,
+        span: &Span,
+        range: Interval,
+        from: Option<SurfaceId>,
+    ) -> Option<PrimHit> {
         if self.capped {
             return span.closest(range, from);
         }
@@ -408,5 +421,91 @@ impl Frustum {
             capped: self.capped,
             frame: self.frame.turned(self.axis, orthogonal),
         })
+    }
+}
+
+impl FourLines for Frustum {
+    #[inline(always)]
+    fn spans<I: Isa>(&self, isa: I, rays: &FourRays<I>) -> FourSpans {
+        let splat = [self.base, self.axis];
+        let [base, axis] = [
+            [
+                isa.splat(splat[0].x),
+                isa.splat(splat[0].y),
+                isa.splat(splat[0].z),
+            ],
+            [
+                isa.splat(splat[1].x),
+                isa.splat(splat[1].y),
+                isa.splat(splat[1].z),
+            ],
+        ];
+        let zero = isa.splat(0.0);
+        // As in `axis_ray`.
+        let f = sub(isa, rays.origin, base);
+        let (height, climb) = (dot(isa, f, axis), dot(isa, rays.direction, axis));
+        let across = sub(isa, f, scaled(isa, axis, height));
+        let sideways = sub(isa, rays.direction, scaled(isa, axis, climb));
+        // As in `side_span`.
+        let slope = isa.splat(self.slope);
+        let radius = isa.add(isa.splat(self.base_radius), isa.mul(slope, height));
+        let growth = isa.mul(slope, climb);
+        let a = isa.sub(dot(isa, sideways, sideways), isa.mul(growth, growth));
+        let b = isa.sub(isa.mul(radius, growth), dot(isa, across, sideways));
+        let spread = sub(
+            isa,
+            scaled(isa, across, growth),
+            scaled(isa, sideways, radius),
+        );
+        let [ax, ay, az] = across;
+        let [sx, sy, sz] = sideways;
+        let turn = [
+            isa.sub(isa.mul(ay, sz), isa.mul(sy, az)),
+            isa.sub(isa.mul(az, sx), isa.mul(sz, ax)),
+            isa.sub(isa.mul(ax, sy), isa.mul(sx, ay)),
+        ];
+        let twist = dot(isa, axis, turn);
+        let discriminant = isa.sub(dot(isa, spread, spread), isa.mul(twist, twist));
+        // The own test decides about lines steeper than the side, and along the caps.
+        let level = isa.le(climb, zero) & isa.le(zero, climb);
+        let mut out = FourSpans {
+            known: isa.lt(zero, a) & !level,
+            ..FourSpans::default()
+        };
+        let crossed = out.known & isa.lt(zero, discriminant);
+        if crossed == 0 {
+            return out;
+        }
+        let s = isa.sqrt(discriminant);
+        let distance = isa.sqrt(dot(isa, across, across));
+        let q = isa.choose_le(zero, b, isa.add(b, s), isa.sub(b, s));
+        let c = isa.mul(isa.sub(distance, radius), isa.add(distance, radius));
+        let (one, other) = (isa.div(c, q), isa.div(q, a));
+        let first = isa.choose_le(one, other, one, other);
+        let second = isa.choose_le(one, other, other, one);
+        // As in `slab` and `Span::cut`.
+        let low = isa.div(isa.sub(zero, height), climb);
+        let high = isa.div(isa.sub(isa.splat(self.height), height), climb);
+        let above = isa.choose_le(climb, zero, high, low);
+        let below = isa.choose_le(climb, zero, low, high);
+        let enter = isa.choose_le(above, first, first, above);
+        let exit = isa.choose_le(second, below, second, below);
+        out.met = crossed & isa.lt(first, second) & isa.le(above, below) & isa.lt(enter, exit);
+        let (through_cap, out_of_cap) = (isa.lt(first, above), isa.lt(below, second));
+        let up = isa.lt(zero, climb);
+        (out.enter, out.exit) = (isa.store(enter), isa.store(exit));
+        for lane in 0..LANES {
+            let is = |mask: u32| mask >> lane & 1 == 1;
+            let (first_cap, last_cap) = if is(up) { (BASE, APEX) } else { (APEX, BASE) };
+            out.enter_facet[lane] = if is(through_cap) { first_cap } else { SIDE };
+            out.exit_facet[lane] = if is(out_of_cap) { last_cap } else { SIDE };
+        }
+        out
+    }
+
+    #[inline]
+    fn closest_within(&self, span: &Span, range: Interval) -> Option<PrimHit> {
+        let is_finite = span.enter.t.is_finite() || span.exit.t.is_finite();
+        self.closest_end(span, range, None).filter(|_| is_finite)
     }
 }

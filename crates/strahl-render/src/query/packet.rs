@@ -14,13 +14,21 @@ use std::borrow::Borrow;
 use strahl_accel::{
     Accelerator, BLOCK, Leaf, PACKET, Packet, PacketVisitor, TraversalStats, Visitor, lanes_of,
 };
-use strahl_geometry::blocks::{Hits, PacketLines, PacketShears, SphereBlock, TriangleBlock};
+use strahl_geometry::blocks::{
+    Hits, PacketLines, PacketRays, PacketShears, PacketSpans, SphereBlock, TriangleBlock,
+};
 use strahl_geometry::{RayShear, Scratch, Shape, SurfaceId};
 use strahl_math::{Interval, Ray};
 use strahl_simd::Isa;
 
 /// For fewer rays the culling test of a block does not pay.
 const FEW: u32 = 3;
+
+/// Whether it pays to test these lanes four side by side: if more than two in each group of four are wanted.
+const fn are_dense(lanes: u32) -> bool {
+    let groups = (lanes | lanes >> 1 | lanes >> 2 | lanes >> 3) & 0x1111;
+    lanes.count_ones() > 2 * groups.count_ones()
+}
 
 /// Evaluates an expression with the visitor of a single ray: `of_lane!(self, lane, t_max, visitor => expression)`. A macro,
 /// because a closure would not be compiled for the vector instructions of its caller.
@@ -203,6 +211,8 @@ impl Tracer<'_> {
             from_prims,
             shears: &shears,
             culls,
+            coordinates: None,
+            spans: PacketSpans::default(),
             plain: group
                 .common
                 .is_some_and(|(visible, flags)| visible & class != 0 && queries[0].is_plain(flags)),
@@ -268,6 +278,10 @@ struct Together<'v, 's, Q> {
     /// Empty where no primitive needs them.
     shears: &'v [RayShear],
     culls: PacketCulls<'v>,
+    /// The rays coordinate by coordinate, once a shape needs them.
+    coordinates: Option<PacketRays>,
+    /// Where they are inside of a shape.
+    spans: PacketSpans,
     plain: bool,
     queries: &'v mut [Q; PACKET],
 }
@@ -329,11 +343,52 @@ impl<Q: Query> Together<'_, '_, Q> {
                     shape.meet_as::<Q, _>(plane, ray, range, from, scratch)
                 });
             }
+            // The test of a box along the axes takes too little time.
+            (Shape::Cylinder(_) | Shape::Cone(_), _) | (Shape::Cuboid(_), Some(_))
+                if are_dense(lanes) =>
+            {
+                self.meet_spans(id, &shape, lanes, t_max);
+            }
             _ => self.meet_together(id, &shape, lanes, t_max, |ray, range, from, scratch| {
                 shape.meet::<Q>(ray, range, from, scratch)
             }),
         }
         self.slot.enter(Phase::Traversal);
+    }
+
+    /// Tests a convex shape for several rays: four side by side.
+    fn meet_spans(
+        &mut self,
+        id: u32,
+        shape: &PlainShape<'_>,
+        lanes: u32,
+        t_max: &mut [f64; PACKET],
+    ) {
+        let rays = self
+            .coordinates
+            .get_or_insert_with(|| PacketRays::new(self.asked.rays));
+        self.spans.find(shape.shape, rays, shape.transform, lanes);
+        for lane in lanes_of(lanes) {
+            let before = t_max[lane];
+            if !(before > f64::NEG_INFINITY) {
+                continue;
+            }
+            let range = Interval::new(self.asked.min, before);
+            let ray = &self.asked.rays[lane];
+            let hit = match self.asked.from[lane] {
+                Some(origin) if id == self.from_prims[lane] => {
+                    let from = Some(shape.start(origin, origin.id));
+                    shape.meet::<Q>(ray, range, from, self.scratch)
+                }
+                _ => match shape.meet_known::<Q>(&self.spans, lane, range) {
+                    Some(hit) => hit,
+                    None => shape.meet::<Q>(ray, range, None, self.scratch),
+                },
+            };
+            if let Some(hit) = hit {
+                t_max[lane] = self.queries[lane].take(hit, before);
+            }
+        }
     }
 
     #[inline(always)]

@@ -3,6 +3,7 @@
 use super::kinds::Query;
 use crate::hit::{Hit, Origin};
 use crate::scene::RenderGroup;
+use strahl_geometry::blocks::PacketSpans;
 use strahl_geometry::{PrimHit, Primitive, Scratch, Shape, SurfaceId};
 use strahl_math::{Interval, Ray, Transform};
 
@@ -74,11 +75,32 @@ impl<'g> PlainShape<'g> {
         } else {
             primitive.closest_hit(ray, range, from, scratch)
         }?;
-        Some(Hit {
+        Some(self.hit(&found))
+    }
+
+    /// The same for a ray of a packet whose span in the shape is known; `None` if it isn't.
+    #[inline(always)]
+    pub(super) fn meet_known<Q: Query>(
+        &self,
+        spans: &PacketSpans,
+        lane: usize,
+        range: Interval,
+    ) -> Option<Option<Hit>> {
+        let found = spans.closest(self.shape, lane, range)?;
+        Some(found.map(|found| match Q::ANY {
+            true => self.hit(&PrimHit::simple(range.max, 0)),
+            false => self.hit(&found),
+        }))
+    }
+
+    /// A hit in the scene.
+    #[inline(always)]
+    fn hit(&self, found: &PrimHit) -> Hit {
+        Hit {
             t: found.t,
             id: self.number + u64::from(found.surface.element),
             facet: found.surface.facet,
             uv: found.uv,
-        })
+        }
     }
 }

@@ -83,6 +83,8 @@ fn shoot_part(subjects: &[Subdivision], rays: usize, seed: u64) -> Vec<Wrong> {
         }
         if wrong.contains(&true) {
             *place = uv;
+            // The long version takes an hour: what it has found is told at once.
+            eprintln!("subject {number}, element {element} at {uv:?}, part {seed}: {wrong:?}");
         }
     }
     all
@@ -105,7 +107,7 @@ fn agrees(surface: &Subdivision, ray: &Ray, passes: &[Pass]) -> bool {
 /// Whether a ray meets the surface once where it is aimed.
 ///
 /// There are two kinds of tips where that can't be asked. Corners without creases are the tips of needles that become ever thinner:
-/// rays there may be beside them, or meet more of the patches around. And at the end of a crease in Loop's scheme the patches are
+/// rays there may be beside them, or meet more of the patches around. And at the end of a crease in Loop's scheme, or where creases meet, the patches are
 /// thinner than rounding errors: there, at the tip itself, the layers are too many by pairs of them in the same point.
 fn meets_once(surface: &Subdivision, target: DVec3, ray: &Ray, passes: &[Pass]) -> bool {
     let way = |pass: &&Pass| (ray.at(pass.hit.t) - target).length();
@@ -124,7 +126,7 @@ fn meets_once(surface: &Subdivision, target: DVec3, ray: &Ray, passes: &[Pass]) 
     }
     let is_one_point = near.iter().all(|pass| way(pass) < 1e-14);
     let signs: i32 = near.iter().map(|pass| pass.sign).sum();
-    data.scheme == Loop && !data.creases.is_empty() && is_one_point && signs.abs() == 1
+    !data.creases.is_empty() && is_one_point && signs.abs() == 1
 }
 
 /// A ray from within, aimed at a point.
@@ -176,7 +178,11 @@ fn no_ray_slips_through_a_border_or_meets_two_patches() {
     assert_eq!(shoot(24_000, 1), []);
 }
 
-/// The long version, for releases: 10^7 rays on all processors, 66 minutes of processor time; 6 GB of patches.
+/// The long version, for releases: 10^7 rays on all processors, 80 minutes of processor time; 6 GB of patches.
+///
+/// It fails: some ten rays that touch the surface have fewer hits than passes. One is at `subjects()[17]` (the ball with 50 faces at a vertex) with
+/// origin `(-2.144277006113773, 3.187611277008536, -2.108536212954964)` and direction `(0.5056747460638136, -0.5893922525513798, 0.6300077966388259)`: its line
+/// passes at t = 4.0982, 4.2968, 4.3015 and 4.3273, and [`Primitive::closest_hit`], asked again behind each hit, does not find 4.2968. It is the known fault of docs/src/pov-ray.md.
 #[test]
 #[ignore = "takes half an hour; run it with --ignored"]
 fn no_ray_of_ten_millions_slips_through_a_border() {

@@ -1,0 +1,280 @@
+//! Convex solids and the rays of a packet: four rays side by side.
+//!
+//! Where a kernel knows the answer, it has made the operations of the solid's own test in the same order, so the results have the same bits.
+
+use super::LANES;
+use crate::primitives::convex::{End, Span};
+use crate::{PrimHit, Shape};
+use strahl_accel::PACKET;
+use strahl_math::{DMat3, DVec3, Interval, Ray, Transform};
+use strahl_simd::{Isa, Simd, dispatch};
+
+/// Groups of four rays in a packet.
+const GROUPS: usize = PACKET / LANES;
+
+/// The rays of a packet, coordinate by coordinate.
+#[derive(Clone, Copy, Debug)]
+pub struct PacketRays {
+    origin: [[[f64; LANES]; 3]; GROUPS],
+    direction: [[[f64; LANES]; 3]; GROUPS],
+}
+
+impl PacketRays {
+    /// At most [`PACKET`] rays; there are zeros in the lanes without one.
+    pub fn new(rays: &[Ray]) -> Self {
+        let mut all = Self {
+            origin: [[[0.0; LANES]; 3]; GROUPS],
+            direction: [[[0.0; LANES]; 3]; GROUPS],
+        };
+        for (number, ray) in rays.iter().enumerate().take(PACKET) {
+            let (group, lane) = (number / LANES, number % LANES);
+            let (o, d) = (ray.origin.to_array(), ray.direction.to_array());
+            for axis in 0..3 {
+                all.origin[group][axis][lane] = o[axis];
+                all.direction[group][axis][lane] = d[axis];
+            }
+        }
+        all
+    }
+
+    /// One group, in the space to which a map leads.
+    #[inline(always)]
+    fn four<I: Isa>(&self, isa: I, group: usize, map: Option<&Transform>) -> FourRays<I> {
+        let origin = load(isa, &self.origin[group]);
+        let direction = load(isa, &self.direction[group]);
+        let Some(map) = map else {
+            return FourRays { origin, direction };
+        };
+        // As `Transform::ray_to_object`.
+        let DVec3 { x, y, z } = map.translation();
+        let shift = [isa.splat(x), isa.splat(y), isa.splat(z)];
+        let linear = map.inverse_linear();
+        FourRays {
+            origin: mapped(isa, linear, sub(isa, origin, shift)),
+            direction: mapped(isa, linear, direction),
+        }
+    }
+}
+
+#[inline(always)]
+fn load<I: Isa>(isa: I, [x, y, z]: &[[f64; LANES]; 3]) -> [I::F64x4; 3] {
+    [isa.load(x), isa.load(y), isa.load(z)]
+}
+
+#[inline(always)]
+pub(crate) fn sub<I: Isa>(isa: I, a: [I::F64x4; 3], b: [I::F64x4; 3]) -> [I::F64x4; 3] {
+    [
+        isa.sub(a[0], b[0]),
+        isa.sub(a[1], b[1]),
+        isa.sub(a[2], b[2]),
+    ]
+}
+
+/// Vectors times a number each.
+#[inline(always)]
+pub(crate) fn scaled<I: Isa>(isa: I, v: [I::F64x4; 3], by: I::F64x4) -> [I::F64x4; 3] {
+    [isa.mul(v[0], by), isa.mul(v[1], by), isa.mul(v[2], by)]
+}
+
+/// A matrix times vectors, with the products added in the order of the scalar code.
+#[inline(always)]
+fn mapped<I: Isa>(isa: I, m: DMat3, [x, y, z]: [I::F64x4; 3]) -> [I::F64x4; 3] {
+    let (a, b, c) = (m.x_axis, m.y_axis, m.z_axis);
+    [
+        row(isa, [a.x, b.x, c.x], x, y, z),
+        row(isa, [a.y, b.y, c.y], x, y, z),
+        row(isa, [a.z, b.z, c.z], x, y, z),
+    ]
+}
+
+#[inline(always)]
+fn row<I: Isa>(isa: I, [a, b, c]: [f64; 3], x: I::F64x4, y: I::F64x4, z: I::F64x4) -> I::F64x4 {
+    let xy = isa.add(isa.mul(isa.splat(a), x), isa.mul(isa.splat(b), y));
+    isa.add(xy, isa.mul(isa.splat(c), z))
+}
+
+/// Four rays, coordinate by coordinate.
+pub(crate) struct FourRays<I: Isa> {
+    pub(crate) origin: [I::F64x4; 3],
+    pub(crate) direction: [I::F64x4; 3],
+}
+
+/// Where four lines are inside of a convex solid.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct FourSpans {
+    /// The lanes whose span is known, as bits; the solid's own test decides about the others.
+    pub(crate) known: u32,
+    /// Those of them that have one.
+    pub(crate) met: u32,
+    pub(crate) enter: [f64; LANES],
+    pub(crate) exit: [f64; LANES],
+    pub(crate) enter_facet: [u32; LANES],
+    pub(crate) exit_facet: [u32; LANES],
+}
+
+/// A convex solid that finds the spans of four lines at once.
+pub(crate) trait FourLines {
+    /// The spans of lines that don't start on the solid.
+    fn spans<I: Isa>(&self, isa: I, rays: &FourRays<I>) -> FourSpans;
+
+    /// The first hit in a range, given the span of a ray that does not start on the solid.
+    fn closest_within(&self, span: &Span, range: Interval) -> Option<PrimHit> {
+        span.closest(range, None)
+    }
+}
+
+/// Where the rays of a packet are inside of a convex solid.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct PacketSpans([FourSpans; GROUPS]);
+
+impl PacketSpans {
+    /// Finds those of the rays `lanes`, as bits, which don't start on the shape, in the space to which a map leads. Returns `false` for shapes that
+    /// have no such search: boxes, cylinders and cones do.
+    pub fn find(
+        &mut self,
+        shape: &Shape,
+        rays: &PacketRays,
+        map: Option<&Transform>,
+        lanes: u32,
+    ) -> bool {
+        self.find_at(Simd::best(), shape, rays, map, lanes)
+    }
+
+    #[inline(always)]
+    fn find_at(
+        &mut self,
+        simd: Simd,
+        shape: &Shape,
+        rays: &PacketRays,
+        map: Option<&Transform>,
+        lanes: u32,
+    ) -> bool {
+        match shape {
+            Shape::Cuboid(solid) => self.find_of(simd, solid, rays, map, lanes),
+            Shape::Cylinder(solid) => self.find_of(simd, solid, rays, map, lanes),
+            Shape::Cone(solid) => self.find_of(simd, solid, rays, map, lanes),
+            _ => return false,
+        }
+        true
+    }
+
+    #[inline(always)]
+    fn find_of(
+        &mut self,
+        simd: Simd,
+        solid: &impl FourLines,
+        rays: &PacketRays,
+        map: Option<&Transform>,
+        lanes: u32,
+    ) {
+        dispatch!(simd, isa => {
+            for group in 0..GROUPS {
+                if lanes >> (group * LANES) & 0b1111 != 0 {
+                    self.0[group] = solid.spans(isa, &rays.four(isa, group, map));
+                }
+            }
+        });
+    }
+
+    /// The first hit of a ray on the shape in a range, as [`Primitive::closest_hit`](crate::Primitive::closest_hit) finds it; `None` if only that
+    /// function knows.
+    #[inline]
+    pub fn closest(&self, shape: &Shape, lane: usize, range: Interval) -> Option<Option<PrimHit>> {
+        let (spans, lane) = (&self.0[lane / LANES % GROUPS], lane % LANES);
+        if spans.known >> lane & 1 == 0 {
+            return None;
+        }
+        if spans.met >> lane & 1 == 0 {
+            return Some(None);
+        }
+        let span = Span {
+            enter: End {
+                t: spans.enter[lane],
+                facet: spans.enter_facet[lane],
+            },
+            exit: End {
+                t: spans.exit[lane],
+                facet: spans.exit_facet[lane],
+            },
+        };
+        Some(match shape {
+            Shape::Cylinder(solid) => solid.closest_within(&span, range),
+            Shape::Cone(solid) => solid.closest_within(&span, range),
+            _ => span.closest(range, None),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::conformance::Random;
+    use crate::{Cone, Cuboid, Cylinder, Primitive, Scratch};
+
+    /// Rays at a solid: from everywhere, at its rims, along its axes, and some that are no numbers.
+    fn rays(random: &mut Random, center: DVec3) -> Vec<Ray> {
+        let mut vector = |size: f64| {
+            let mut unit = || 2.0 * random.unit() - 1.0;
+            DVec3::new(unit(), unit(), unit()) * size
+        };
+        (0..PACKET)
+            .map(|k| {
+                let origin = center + vector(4.0);
+                let mut direction = (center + vector(1.2) - origin) * 0.7;
+                match k {
+                    3 => direction.x = 0.0,
+                    7 => direction = DVec3::Y,
+                    11 => direction = DVec3::ZERO,
+                    13 => direction.z = f64::NAN,
+                    _ => {}
+                }
+                Ray::new(origin, direction)
+            })
+            .collect()
+    }
+
+    #[test]
+    fn packets_hit_what_single_rays_hit() {
+        let mut random = Random::new(5);
+        let (mut known, mut met) = (0, 0);
+        for round in 0..4000 {
+            let center = DVec3::new(random.unit(), random.unit(), random.unit());
+            let top = center + DVec3::new(random.unit() - 0.5, 1.0, random.unit() - 0.5);
+            let shapes: [Shape; 5] = [
+                Cuboid::from_corners(center - DVec3::splat(0.5), top).into(),
+                Cylinder::new(center - DVec3::Y, top, 0.4).into(),
+                Cylinder::open(center - DVec3::Y, top, 0.4).into(),
+                Cone::new(center - DVec3::Y, 0.7, top, 0.1).into(),
+                Cone::open(center - DVec3::Y, 0.0, top, 0.8).into(),
+            ];
+            let rays = rays(&mut random, center);
+            let packet = PacketRays::new(&rays);
+            let turn = Transform::rotate(DVec3::new(1.0, 2.0, 0.5), random.unit())
+                .then(&Transform::translate(center * 0.2));
+            let map = (round % 2 == 1).then_some(&turn);
+            let range = match round % 3 {
+                0 => Interval::FORWARD,
+                1 => Interval::new(0.9, 1.3),
+                _ => Interval::LINE,
+            };
+            let levels = Simd::available();
+            for (shape, simd) in shapes
+                .iter()
+                .flat_map(|s| levels.iter().map(move |l| (s, l)))
+            {
+                let mut spans = PacketSpans::default();
+                assert!(spans.find_at(*simd, shape, &packet, map, 0xffff));
+                for (lane, ray) in rays.iter().enumerate() {
+                    let inner = map.map_or(*ray, |map| map.ray_to_object(ray));
+                    let alone = shape.closest_hit(&inner, range, None, &mut Scratch::default());
+                    if let Some(together) = spans.closest(shape, lane, range) {
+                        assert_eq!(together, alone, "{shape:?} {ray:?} {range:?}");
+                        known += 1;
+                        met += u32::from(alone.is_some());
+                    }
+                }
+            }
+        }
+        assert!(known > 220_000 && met > 60_000, "{known} {met}");
+    }
+}
