@@ -65,6 +65,10 @@ fn shoot(rays: usize, seed: u64) -> Vec<(usize, Wrong)> {
     wrong.collect()
 }
 
+#[expect(
+    clippy::print_stderr,
+    reason = "the long version takes an hour: what it has found is told at once"
+)]
 fn shoot_part(subjects: &[Subdivision], rays: usize, seed: u64) -> Vec<Wrong> {
     let mut random = Random::new(seed);
     let mut all = vec![([0; 4], [0.0; 2]); subjects.len()];
@@ -83,7 +87,6 @@ fn shoot_part(subjects: &[Subdivision], rays: usize, seed: u64) -> Vec<Wrong> {
         }
         if wrong.contains(&true) {
             *place = uv;
-            // The long version takes an hour: what it has found is told at once.
             eprintln!("subject {number}, element {element} at {uv:?}, part {seed}: {wrong:?}");
         }
     }
