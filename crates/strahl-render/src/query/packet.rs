@@ -92,15 +92,8 @@ impl Tracer<'_> {
         range: Interval,
         from: &[Option<&Origin>; PACKET],
     ) -> u32 {
-        let asked = Asked {
-            rays,
-            min: range.min,
-            from,
-            class: RayClass::Shadow,
-            first: NONE,
-        };
-        self.search_any(&asked, common_end(rays, range), Any::OPAQUE)
-            .0
+        let t_max = common_end(rays, range);
+        self.any(rays, range.min, t_max, from, Any::OPAQUE)
     }
 
     /// [`Tracer::occluded`] for several rays to one light, as bits; each has a range from `min` to the `t_max` of its lane.
@@ -132,6 +125,17 @@ impl Tracer<'_> {
         t_max: [f64; PACKET],
         from: &[Option<&Origin>; PACKET],
     ) -> u32 {
+        self.any(rays, min, t_max, from, Any::TRANSMITTING)
+    }
+
+    fn any(
+        &mut self,
+        rays: &[Ray],
+        min: f64,
+        t_max: [f64; PACKET],
+        from: &[Option<&Origin>; PACKET],
+        any: Any,
+    ) -> u32 {
         let asked = Asked {
             rays,
             min,
@@ -139,7 +143,7 @@ impl Tracer<'_> {
             class: RayClass::Shadow,
             first: NONE,
         };
-        self.search_any(&asked, t_max, Any::TRANSMITTING).0
+        self.search_any(&asked, t_max, any).0
     }
 
     /// The rays that find something, as bits, and what the last of them has found.
