@@ -151,8 +151,8 @@ impl PacketSpans {
     ) -> bool {
         match shape {
             Shape::Cuboid(solid) => self.find_of(simd, solid, rays, map, lanes),
-            Shape::Cylinder(solid) => self.find_of(simd, solid, rays, map, lanes),
-            Shape::Cone(solid) => self.find_of(simd, solid, rays, map, lanes),
+            Shape::Cylinder(solid) => self.find_of(simd, solid.frustum(), rays, map, lanes),
+            Shape::Cone(solid) => self.find_of(simd, solid.frustum(), rays, map, lanes),
             _ => return false,
         }
         true
@@ -198,8 +198,8 @@ impl PacketSpans {
             },
         };
         Some(match shape {
-            Shape::Cylinder(solid) => solid.closest_within(&span, range),
-            Shape::Cone(solid) => solid.closest_within(&span, range),
+            Shape::Cylinder(solid) => solid.frustum().closest_within(&span, range),
+            Shape::Cone(solid) => solid.frustum().closest_within(&span, range),
             _ => span.closest(range, None),
         })
     }

@@ -1,11 +1,9 @@
 use super::convex::Span;
 use super::frustum::Frustum;
-use crate::blocks::convex::{FourLines, FourRays, FourSpans};
 use crate::{
     Crossings, GeometryError, PrimHit, Primitive, Scratch, Shape, Solid, SurfaceId, SurfacePoint,
 };
 use strahl_math::{Aabb, DVec3, Interval, Ray, Transform};
-use strahl_simd::Isa;
 
 /// A right circular cone or truncated cone: closed with caps, or open, without thickness.
 ///
@@ -18,6 +16,11 @@ use strahl_simd::Isa;
 pub struct Cone(Frustum);
 
 impl Cone {
+    /// The frustum that it is.
+    pub(crate) fn frustum(&self) -> &Frustum {
+        &self.0
+    }
+
     /// The solid cone between two points on its axis, with the radii there.
     pub fn new(base: DVec3, base_radius: f64, apex: DVec3, apex_radius: f64) -> Self {
         Self(Frustum::new(base, base_radius, apex, apex_radius, true))
@@ -112,18 +115,6 @@ impl Primitive for Cone {
     /// Any similarity makes a cone of a cone.
     fn baked(&self, map: &Transform) -> Option<Shape> {
         self.0.baked(map).map(|frustum| Self(frustum).into())
-    }
-}
-
-impl FourLines for Cone {
-    #[inline(always)]
-    fn spans<I: Isa>(&self, isa: I, rays: &FourRays<I>) -> FourSpans {
-        self.0.spans(isa, rays)
-    }
-
-    #[inline]
-    fn closest_within(&self, span: &Span, range: Interval) -> Option<PrimHit> {
-        self.0.closest_within(span, range)
     }
 }
 

@@ -1,12 +1,10 @@
 use super::check_positive;
 use super::convex::Span;
 use super::frustum::Frustum;
-use crate::blocks::convex::{FourLines, FourRays, FourSpans};
 use crate::{
     Crossings, GeometryError, PrimHit, Primitive, Scratch, Shape, Solid, SurfaceId, SurfacePoint,
 };
 use strahl_math::{Aabb, DVec3, Interval, Ray, Transform};
-use strahl_simd::Isa;
 
 /// A right circular cylinder: closed with caps, or an open tube without thickness.
 ///
@@ -19,6 +17,11 @@ use strahl_simd::Isa;
 pub struct Cylinder(Frustum);
 
 impl Cylinder {
+    /// The frustum that it is.
+    pub(crate) fn frustum(&self) -> &Frustum {
+        &self.0
+    }
+
     /// The solid cylinder between the centres of its two caps.
     pub fn new(base: DVec3, apex: DVec3, radius: f64) -> Self {
         Self(Frustum::new(base, radius, apex, radius, true))
@@ -104,18 +107,6 @@ impl Primitive for Cylinder {
     /// Any similarity makes a cylinder of a cylinder.
     fn baked(&self, map: &Transform) -> Option<Shape> {
         self.0.baked(map).map(|frustum| Self(frustum).into())
-    }
-}
-
-impl FourLines for Cylinder {
-    #[inline(always)]
-    fn spans<I: Isa>(&self, isa: I, rays: &FourRays<I>) -> FourSpans {
-        self.0.spans(isa, rays)
-    }
-
-    #[inline]
-    fn closest_within(&self, span: &Span, range: Interval) -> Option<PrimHit> {
-        self.0.closest_within(span, range)
     }
 }
 

@@ -25,7 +25,7 @@ pub(super) const APEX: u32 = 2;
 /// intersection of its spans in the two, so that side and caps join without gaps and entering and leaving
 /// alternate whatever the rounding.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Frustum {
+pub(crate) struct Frustum {
     pub(super) base: DVec3,
     /// Unit vector from the base to the apex.
     pub(super) axis: DVec3,
@@ -427,19 +427,9 @@ impl Frustum {
 impl FourLines for Frustum {
     #[inline(always)]
     fn spans<I: Isa>(&self, isa: I, rays: &FourRays<I>) -> FourSpans {
-        let splat = [self.base, self.axis];
-        let [base, axis] = [
-            [
-                isa.splat(splat[0].x),
-                isa.splat(splat[0].y),
-                isa.splat(splat[0].z),
-            ],
-            [
-                isa.splat(splat[1].x),
-                isa.splat(splat[1].y),
-                isa.splat(splat[1].z),
-            ],
-        ];
+        let (p, n) = (self.base, self.axis);
+        let base = [isa.splat(p.x), isa.splat(p.y), isa.splat(p.z)];
+        let axis = [isa.splat(n.x), isa.splat(n.y), isa.splat(n.z)];
         let zero = isa.splat(0.0);
         // As in `axis_ray`.
         let f = sub(isa, rays.origin, base);
