@@ -134,9 +134,11 @@ impl<const K: usize> Bezier<K> {
     /// All hits of the line, in no order.
     pub(super) fn all(&self, frame: &Frame, keep: Keep<'_>) -> Vec<Candidate> {
         let winding = || self.winding(frame);
-        let lost = |hits: &[Candidate], sign| degree::lost(&self.net, frame, hits, sign);
+        let lost = |hits: &[Candidate], given_up: &[Candidate], sign| {
+            degree::lost(&self.net, frame, hits, given_up, sign)
+        };
         let mut found = if self.is_thin {
-            settle::add_lost(vec![], winding(), lost)
+            settle::add_lost(vec![], winding(), |hits, sign| lost(hits, &[], sign))
         } else {
             let mut search = self.search(frame, keep, Aim::All(vec![]));
             search.run();

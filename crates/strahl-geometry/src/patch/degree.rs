@@ -35,6 +35,42 @@ impl<const K: usize> Part<K> {
         })
     }
 
+    /// The smallest of the parts that have half its sides each time, and contain the place of a candidate, which is larger than its zone.
+    fn around(mut self, candidate: &Candidate) -> Self {
+        for axis in 0..2 {
+            let place = candidate.place()[axis];
+            while self.size[axis] > candidate.zone[axis] {
+                let [a, b] = self.halves(axis);
+                self = if place < b.from[axis] { a } else { b };
+            }
+        }
+        self
+    }
+
+    /// The middle of the smallest part that lacks a hit of this sign, not smaller than `smallest` in space, and whether borders told which half it was each
+    /// time.
+    fn halved(mut self, hits: &[Candidate], sign: i32, smallest: f64) -> ([f64; 2], bool) {
+        let mut is_certain = true;
+        for step in 0..HALVINGS {
+            if self.extent() <= smallest {
+                break;
+            }
+            let [a, b] = self.halves(step % 2);
+            let (in_a, in_b) = (a.missing(hits, sign), b.missing(hits, sign));
+            self = match (in_a > 0, in_b > 0) {
+                (true, false) => a,
+                (false, true) => b,
+                // What is nearer to the ray.
+                (both, _) => {
+                    is_certain &= both;
+                    if a.distance() <= b.distance() { a } else { b }
+                }
+            };
+        }
+        let middle = std::array::from_fn(|k| self.from[k] + 0.5 * self.size[k]);
+        (middle, is_certain)
+    }
+
     /// How many more hits of this sign its border asks for than there are.
     fn missing(&self, hits: &[Candidate], sign: i32) -> i32 {
         let is_within = |hit: &&Candidate| {
@@ -69,13 +105,17 @@ impl<const K: usize> Part<K> {
 }
 
 /// A hit of this sign that `hits` lack.
+///
+/// Where the numbers are too coarse to tell which half of the patch lacks it, it is at a place where the search gave up, if there is one
+/// (`given_up`): there the search may have lost it, and only there.
 pub(super) fn lost<const K: usize>(
     net: &Net<4, K>,
     frame: &Frame,
     hits: &[Candidate],
+    given_up: &[Candidate],
     sign: i32,
 ) -> Candidate {
-    let mut part = Part {
+    let whole = || Part {
         view: frame.view(net),
         from: [0.0; 2],
         size: [1.0; 2],
@@ -84,21 +124,15 @@ pub(super) fn lost<const K: usize>(
         let way = (p - frame.origin).abs().max_element();
         if way > most { way } else { most }
     });
-    for step in 0..HALVINGS {
-        if part.extent() <= gamma(2) * reach {
-            break;
+    let (mut place, is_certain) = whole().halved(hits, sign, gamma(2) * reach);
+    if !is_certain && !given_up.iter().any(|c| c.is_about(place)) {
+        let parts = given_up.iter().map(|c| whole().around(c));
+        let nearest = parts.min_by(|a, b| a.distance().total_cmp(&b.distance()));
+        if let Some(nearest) = nearest {
+            (place, _) = nearest.halved(hits, sign, gamma(2) * reach);
         }
-        let [a, b] = part.halves(step % 2);
-        let (in_a, in_b) = (a.missing(hits, sign), b.missing(hits, sign));
-        // Where the numbers are too coarse to tell, what is nearer to the ray.
-        part = match (in_a > 0, in_b > 0) {
-            (true, false) => a,
-            (false, true) => b,
-            _ if a.distance() <= b.distance() => a,
-            _ => b,
-        };
     }
-    let [u, v] = std::array::from_fn(|k| part.from[k] + 0.5 * part.size[k]);
+    let [u, v] = place;
     Candidate {
         t: frame.t(project(net.at(u, v))),
         u,

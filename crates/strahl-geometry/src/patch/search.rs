@@ -119,6 +119,11 @@ impl Candidate {
             && (other.v - self.v).abs() <= other.zone[1] + self.zone[1]
     }
 
+    /// Whether a place is as near to it as its parameters are known.
+    pub(super) fn is_about(&self, [u, v]: [f64; 2]) -> bool {
+        (self.u - u).abs() <= 2.0 * self.zone[0] && (self.v - v).abs() <= 2.0 * self.zone[1]
+    }
+
     /// How far within the border it lies, in units of its zone; negative outside.
     pub(super) fn margin(&self) -> f64 {
         let side = |x: f64, zone: f64| if x < 0.5 { x / zone } else { (1.0 - x) / zone };

@@ -11,7 +11,7 @@ use super::search::Candidate;
 pub(super) fn settle(
     mut found: Vec<Candidate>,
     winding: impl FnOnce() -> i32,
-    lost: impl Fn(&[Candidate], i32) -> Candidate,
+    lost: impl Fn(&[Candidate], &[Candidate], i32) -> Candidate,
 ) -> Vec<Candidate> {
     // The order of parameters, so that nothing depends on the order of the search.
     found.sort_by(|a, b| {
@@ -20,11 +20,11 @@ pub(super) fn settle(
             .then(a.v.total_cmp(&b.v))
     });
     let mut single: Vec<Candidate> = Vec::with_capacity(found.len());
-    let mut is_doubtful = false;
+    // Only the border knows about these.
+    let mut given_up: Vec<Candidate> = vec![];
     for candidate in found {
         if candidate.sign == 0 {
-            // The search gave up: only the border knows.
-            is_doubtful = true;
+            given_up.push(candidate);
             continue;
         }
         if !single.iter().any(|other| other.is_twin(&candidate)) {
@@ -33,7 +33,7 @@ pub(super) fn settle(
     }
     let is_at_border = |c: &Candidate| c.margin().abs() <= 1.0;
     let (at_border, mut hits): (Vec<_>, Vec<_>) = single.into_iter().partition(is_at_border);
-    if at_border.is_empty() && !is_doubtful {
+    if at_border.is_empty() && given_up.is_empty() {
         return hits;
     }
     let mut missing = winding();
@@ -66,7 +66,7 @@ pub(super) fn settle(
             .filter(|(_, inside)| *inside)
             .map(|(c, _)| c),
     );
-    add_lost(hits, missing, lost)
+    add_lost(hits, missing, |hits, sign| lost(hits, &given_up, sign))
 }
 
 /// The hits, with so many more of the sign of `missing`.
