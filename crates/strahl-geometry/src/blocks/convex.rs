@@ -42,16 +42,10 @@ impl PacketRays {
     fn four<I: Isa>(&self, isa: I, group: usize, map: Option<&Transform>) -> FourRays<I> {
         let origin = load(isa, &self.origin[group]);
         let direction = load(isa, &self.direction[group]);
-        let Some(map) = map else {
-            return FourRays { origin, direction };
-        };
-        // As `Transform::ray_to_object`.
-        let DVec3 { x, y, z } = map.translation();
-        let shift = [isa.splat(x), isa.splat(y), isa.splat(z)];
-        let linear = map.inverse_linear();
-        FourRays {
-            origin: mapped(isa, linear, sub(isa, origin, shift)),
-            direction: mapped(isa, linear, direction),
+        let rays = FourRays { origin, direction };
+        match map {
+            None => rays,
+            Some(map) => rays.to_object(isa, map),
         }
     }
 }
@@ -99,17 +93,36 @@ pub(crate) struct FourRays<I: Isa> {
     pub(crate) direction: [I::F64x4; 3],
 }
 
+impl<I: Isa> FourRays<I> {
+    /// In the space to which a map leads, as [`Transform::ray_to_object`].
+    #[inline(always)]
+    pub(crate) fn to_object(&self, isa: I, map: &Transform) -> Self {
+        let DVec3 { x, y, z } = map.translation();
+        let shift = [isa.splat(x), isa.splat(y), isa.splat(z)];
+        let linear = map.inverse_linear();
+        Self {
+            origin: mapped(isa, linear, sub(isa, self.origin, shift)),
+            direction: mapped(isa, linear, self.direction),
+        }
+    }
+}
+
 /// Where four lines are inside of a convex solid.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct FourSpans {
     /// The lanes whose span is known, as bits; the solid's own test decides about the others.
     pub(crate) known: u32,
-    /// Those of them that have one.
+    /// Others of which the beginning of the first span is known.
+    pub(crate) only_enter: u32,
+    /// Those of both that have a span.
     pub(crate) met: u32,
     pub(crate) enter: [f64; LANES],
     pub(crate) exit: [f64; LANES],
     pub(crate) enter_facet: [u32; LANES],
     pub(crate) exit_facet: [u32; LANES],
+    /// The numbers of the leaves whose surfaces are at the ends, in a CSG tree.
+    pub(crate) enter_leaf: [u32; LANES],
+    pub(crate) exit_leaf: [u32; LANES],
 }
 
 /// A convex solid that finds the spans of four lines at once.
@@ -128,34 +141,38 @@ pub(crate) trait FourLines {
 pub struct PacketSpans([FourSpans; GROUPS]);
 
 impl PacketSpans {
-    /// Finds those of the rays `lanes`, as bits, which don't start on the shape, in the space to which a map leads. Returns `false` for shapes that
-    /// have no such search: boxes, cylinders and cones do.
-    pub fn find(
-        &mut self,
-        shape: &Shape,
-        rays: &PacketRays,
-        map: Option<&Transform>,
-        lanes: u32,
-    ) -> bool {
-        self.find_at(Simd::best(), shape, rays, map, lanes)
+    /// Whether there is such a search for a shape: for boxes, cylinders, cones and small intersections of convex solids.
+    #[inline]
+    pub fn know(shape: &Shape) -> bool {
+        match shape {
+            Shape::Cuboid(_) | Shape::Cylinder(_) | Shape::Cone(_) => true,
+            Shape::Csg(csg) => csg.has_four_spans(),
+            _ => false,
+        }
+    }
+
+    /// Finds the spans of those of the rays `lanes`, as bits, which don't start on the shape, in the space to which a map leads. Of shapes without
+    /// such a search nothing is known.
+    pub fn find(&mut self, shape: &Shape, rays: &PacketRays, map: Option<&Transform>, lanes: u32) {
+        self.find_at(Simd::best(), shape, rays, map, lanes);
     }
 
     #[inline(always)]
-    fn find_at(
+    pub(crate) fn find_at(
         &mut self,
         simd: Simd,
         shape: &Shape,
         rays: &PacketRays,
         map: Option<&Transform>,
         lanes: u32,
-    ) -> bool {
+    ) {
         match shape {
             Shape::Cuboid(solid) => self.find_of(simd, solid, rays, map, lanes),
             Shape::Cylinder(solid) => self.find_of(simd, solid.frustum(), rays, map, lanes),
             Shape::Cone(solid) => self.find_of(simd, solid.frustum(), rays, map, lanes),
-            _ => return false,
+            Shape::Csg(tree) => self.find_of(simd, &**tree, rays, map, lanes),
+            _ => self.0 = Default::default(),
         }
-        true
     }
 
     #[inline(always)]
@@ -181,7 +198,8 @@ impl PacketSpans {
     #[inline]
     pub fn closest(&self, shape: &Shape, lane: usize, range: Interval) -> Option<Option<PrimHit>> {
         let (spans, lane) = (&self.0[lane / LANES % GROUPS], lane % LANES);
-        if spans.known >> lane & 1 == 0 {
+        let only_enter = spans.only_enter >> lane & 1 == 1;
+        if spans.known >> lane & 1 == 0 && !only_enter {
             return None;
         }
         if spans.met >> lane & 1 == 0 {
@@ -200,6 +218,10 @@ impl PacketSpans {
         Some(match shape {
             Shape::Cylinder(solid) => solid.frustum().closest_within(&span, range),
             Shape::Cone(solid) => solid.frustum().closest_within(&span, range),
+            Shape::Csg(csg) => {
+                let ends = [spans.enter_leaf[lane], spans.exit_leaf[lane]];
+                return csg.closest_end(&span, ends, range, only_enter);
+            }
             _ => span.closest(range, None),
         })
     }
@@ -263,7 +285,7 @@ mod tests {
                 .flat_map(|s| levels.iter().map(move |l| (s, l)))
             {
                 let mut spans = PacketSpans::default();
-                assert!(spans.find_at(*simd, shape, &packet, map, 0xffff));
+                spans.find_at(*simd, shape, &packet, map, 0xffff);
                 for (lane, ray) in rays.iter().enumerate() {
                     let inner = map.map_or(*ray, |map| map.ray_to_object(ray));
                     let alone = shape.closest_hit(&inner, range, None, &mut Scratch::default());

@@ -10,7 +10,8 @@
 //!   intersects all planes of an intersection in one pass.
 //! * `first` finds the first surface without lists, if no two crossings are close together: `course` finds the crossings that
 //!   matter, `timeline` goes through them. `small` does the same for trees of a few simple leaves,
-//!   with a `table` of their `states`, and `one_span` for intersections among them.
+//!   with a `table` of their `states`, and `one_span` for intersections among them; `packet` searches
+//!   those of convex solids for four rays side by side.
 
 mod boxes;
 mod compile;
@@ -20,6 +21,7 @@ mod first;
 mod half_spaces;
 mod leaf;
 mod one_span;
+mod packet;
 mod small;
 mod solid;
 mod states;

@@ -33,7 +33,7 @@ pub(super) struct Small {
     /// The number of the visible ones; the others only clip.
     pub(super) visible: usize,
     /// Whether it is an intersection of leaves that a line crosses at most twice, or of their complements.
-    is_intersection: bool,
+    pub(super) is_intersection: bool,
 }
 
 /// A ray and what is asked of it.

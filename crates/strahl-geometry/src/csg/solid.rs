@@ -4,6 +4,7 @@ use super::evaluate::Evaluation;
 use super::first::{Answer, all_visible, first_visible};
 use super::half_spaces::HalfSpaces;
 use super::leaf::{Leaf, Next};
+use super::packet::Convex;
 use super::small::Small;
 use super::sweep::Rule;
 use crate::primitive::one_by_one;
@@ -45,6 +46,8 @@ pub struct Csg {
     shallow: bool,
     /// The tree as a table, if it has few leaves and these are simple.
     small: Option<Box<Small>>,
+    /// Its operands, if it is a small intersection of convex solids and of complements of such.
+    convex: Option<Box<Convex>>,
 }
 
 /// Bounds of leaves (`bounded_by`), in the space of the tree: a ray sees the leaves if it meets all of them ([`crate::Bounded`]).
@@ -119,8 +122,13 @@ impl Csg {
         } else {
             None
         };
+        let convex = match &small {
+            Some(small) if small.is_intersection && bounds.is_empty() => Convex::of(&leaves),
+            _ => None,
+        };
         Self {
             small: small.map(Box::new),
+            convex: convex.map(Box::new),
             nodes,
             operands,
             leaves,
@@ -180,6 +188,11 @@ impl Csg {
     #[cfg(test)]
     pub(super) fn small(&self) -> Option<&Small> {
         self.small.as_deref()
+    }
+
+    /// Its operands, if it is a small intersection of convex solids and of complements of such.
+    pub(super) fn convex(&self) -> Option<&Convex> {
+        self.convex.as_deref()
     }
 
     #[cfg(test)]

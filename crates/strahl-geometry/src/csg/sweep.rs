@@ -29,7 +29,7 @@ pub(super) struct Fusing {
 impl Fusing {
     /// The largest gap that is ever closed, relative to the magnitudes involved. Error bounds are far below (some 1e-15),
     /// except where a ray grazes a surface; the limit makes lists independent of the range asked for, see [`Fusing::margin`].
-    const LIMIT: f64 = 1.0 / (1u64 << 20) as f64;
+    pub(super) const LIMIT: f64 = 1.0 / (1u64 << 20) as f64;
 
     pub(super) fn new(ray: &Ray) -> Self {
         let scale = ray.origin.abs().max_element() / ray.direction.abs().max_element();

@@ -1,10 +1,13 @@
 use super::convex::{End, Span};
 use super::frame::UvFrame;
 use super::{check_direction, check_finite, plane_t_error, point_error, unit_vector};
+use crate::blocks::convex::{FourLines, FourRays, FourSpans, sub};
+use crate::blocks::dot;
 use crate::{
     Crossings, GeometryError, PrimHit, Primitive, Scratch, Shape, Solid, SurfaceId, SurfacePoint,
 };
 use strahl_math::{Aabb, DVec2, DVec3, Interval, Ray, Transform};
+use strahl_simd::Isa;
 
 /// An infinite plane; as a solid the half-space behind it, away from the normal.
 ///
@@ -77,6 +80,27 @@ impl Plane {
                 ..Span::LINE
             }
         })
+    }
+}
+
+impl FourLines for Plane {
+    #[inline(always)]
+    fn spans<I: Isa>(&self, isa: I, rays: &FourRays<I>) -> FourSpans {
+        let (p, n) = (self.point, self.normal);
+        let point = [isa.splat(p.x), isa.splat(p.y), isa.splat(p.z)];
+        let normal = [isa.splat(n.x), isa.splat(n.y), isa.splat(n.z)];
+        let (zero, infinite) = (isa.splat(0.0), isa.splat(f64::INFINITY));
+        let speed = dot(isa, rays.direction, normal);
+        let t = isa.div(dot(isa, sub(isa, point, rays.origin), normal), speed);
+        // The own test decides about lines along the plane.
+        let known = isa.lt(isa.abs(t), infinite) & isa.lt(zero, isa.abs(speed));
+        FourSpans {
+            known,
+            met: known,
+            enter: isa.store(isa.choose_le(zero, speed, isa.splat(f64::NEG_INFINITY), t)),
+            exit: isa.store(isa.choose_le(zero, speed, t, infinite)),
+            ..FourSpans::default()
+        }
     }
 }
 

@@ -1,12 +1,15 @@
 use super::convex::{End, Span};
 use super::frame::{UvFrame, similarity, turn};
 use super::{check_finite, point_error};
+use crate::blocks::convex::{FourLines, FourRays, FourSpans, scaled, sub};
+use crate::blocks::dot;
 use crate::{
     Crossings, GeometryError, PrimHit, Primitive, Scratch, Shape, Solid, SurfaceId, SurfacePoint,
 };
 use std::f64::consts::PI;
 use strahl_math::error::gamma;
 use strahl_math::{Aabb, DVec2, DVec3, Interval, Ray, Transform, det};
+use strahl_simd::Isa;
 
 /// A sphere.
 ///
@@ -142,6 +145,49 @@ impl Sphere {
             } else {
                 tangent
             }
+    }
+}
+
+impl FourLines for Sphere {
+    /// As [`Sphere::crossings_of`].
+    #[inline(always)]
+    fn spans<I: Isa>(&self, isa: I, rays: &FourRays<I>) -> FourSpans {
+        let (p, d) = (self.center, rays.direction);
+        let center = [isa.splat(p.x), isa.splat(p.y), isa.splat(p.z)];
+        let (zero, r) = (isa.splat(0.0), isa.splat(self.radius.abs()));
+        let f = sub(isa, rays.origin, center);
+        let a = dot(isa, d, d);
+        let b = isa.sub(zero, dot(isa, f, d));
+        let step = scaled(isa, d, isa.div(b, a));
+        let closest = [
+            isa.add(f[0], step[0]),
+            isa.add(f[1], step[1]),
+            isa.add(f[2], step[2]),
+        ];
+        let below = isa.sub(isa.mul(r, r), dot(isa, closest, closest));
+        let discriminant = isa.mul(a, below);
+        let met = isa.lt(zero, discriminant);
+        let mut out = FourSpans {
+            known: 0b1111,
+            ..FourSpans::default()
+        };
+        if met == 0 {
+            return out;
+        }
+        let s = isa.sqrt(discriminant);
+        let distance = isa.sqrt(dot(isa, f, f));
+        let c = isa.mul(isa.sub(distance, r), isa.add(distance, r));
+        let q = isa.choose_le(zero, b, isa.add(b, s), isa.sub(b, s));
+        let (one, other) = (isa.div(c, q), isa.div(q, a));
+        let (enter, exit) = (
+            isa.choose_le(zero, b, one, other),
+            isa.choose_le(zero, b, other, one),
+        );
+        // The own test decides about what is no number.
+        out.known &= !met | isa.lt(enter, exit);
+        out.met = met & out.known;
+        (out.enter, out.exit) = (isa.store(enter), isa.store(exit));
+        out
     }
 }
 

@@ -340,6 +340,11 @@ impl<Q: Query> Together<'_, '_, Q> {
     fn plain_shape(&mut self, id: u32, index: u32, lanes: u32, t_max: &mut [f64; PACKET]) {
         let shape = PlainShape::of(self.group, id, index, 0);
         self.slot.enter_for(Phase::Intersection, shape.number);
+        let side_by_side = match (shape.shape, shape.transform) {
+            // The test of a box along the axes takes too little time.
+            (Shape::Cuboid(_), None) => false,
+            (shape, _) => PacketSpans::know(shape) && are_dense(lanes & !self.lanes_from(id)),
+        };
         match (shape.shape, shape.transform) {
             // Nearly every scene has a plane, and all rays are tested for it: the test is compiled into the loop.
             (Shape::Plane(plane), None) => {
@@ -347,12 +352,7 @@ impl<Q: Query> Together<'_, '_, Q> {
                     shape.meet_as::<Q, _>(plane, ray, range, from, scratch)
                 });
             }
-            // The test of a box along the axes takes too little time.
-            (Shape::Cylinder(_) | Shape::Cone(_), _) | (Shape::Cuboid(_), Some(_))
-                if are_dense(lanes) =>
-            {
-                self.meet_spans(id, &shape, lanes, t_max);
-            }
+            _ if side_by_side => self.meet_spans(id, &shape, lanes, t_max),
             _ => self.meet_together(id, &shape, lanes, t_max, |ray, range, from, scratch| {
                 shape.meet::<Q>(ray, range, from, scratch)
             }),
@@ -360,7 +360,17 @@ impl<Q: Query> Together<'_, '_, Q> {
         self.slot.enter(Phase::Traversal);
     }
 
-    /// Tests a convex shape for several rays: four side by side.
+    /// The lanes whose rays start on a primitive.
+    #[inline]
+    fn lanes_from(&self, id: u32) -> u32 {
+        let mut lanes = 0;
+        for (lane, from) in self.from_prims.iter().enumerate() {
+            lanes |= u32::from(*from == id) << lane;
+        }
+        lanes
+    }
+
+    /// Tests a shape for several rays: four side by side.
     fn meet_spans(
         &mut self,
         id: u32,
@@ -368,10 +378,12 @@ impl<Q: Query> Together<'_, '_, Q> {
         lanes: u32,
         t_max: &mut [f64; PACKET],
     ) {
+        let elsewhere = lanes & !self.lanes_from(id);
         let rays = self
             .coordinates
             .get_or_insert_with(|| PacketRays::new(self.asked.rays));
-        self.spans.find(shape.shape, rays, shape.transform, lanes);
+        self.spans
+            .find(shape.shape, rays, shape.transform, elsewhere);
         for lane in lanes_of(lanes) {
             let before = t_max[lane];
             if !(before > f64::NEG_INFINITY) {

@@ -76,6 +76,18 @@ impl CrackleMetric {
         }
     }
 
+    /// The contributions of four coordinates.
+    #[inline(always)]
+    fn parts(self, x: [f64; 4]) -> [f64; 4] {
+        match self {
+            Self::Power(m) => {
+                let x = x.map(f64::abs);
+                dispatch!(Simd::best(), isa => det::powers(isa, &x, m))
+            }
+            _ => x.map(|x| self.part(x)),
+        }
+    }
+
     /// Whether larger coordinates never give a smaller measure.
     fn is_monotone(self) -> bool {
         match self {
@@ -184,15 +196,10 @@ impl Crackle {
         let home = cell(p);
         let fraction = p - p.floor();
         // The contributions of the gaps between p and the cubes along each axis.
+        let none = metric.part(0.0);
         let gaps = |f: f64| {
-            let part = |gap| metric.part(gap);
-            [
-                part(f + 1.0),
-                part(f),
-                part(0.0),
-                part(1.0 - f),
-                part(2.0 - f),
-            ]
+            let [a, b, c, d] = metric.parts([f + 1.0, f, 1.0 - f, 2.0 - f]);
+            [a, b, none, c, d]
         };
         let gaps = [gaps(fraction.x), gaps(fraction.y), gaps(fraction.z)];
         let rest = metric.rest(self.offset);
@@ -206,12 +213,13 @@ impl Crackle {
         // The neighbours are sorted for a point in the lower half along each axis, otherwise they are mirrored.
         let signs = fraction.to_array().map(|f| if f > 0.5 { -1 } else { 1 });
         let random = numbers();
-        let visit = |d: &[i64; 3], nearest: &mut Nearest| {
+        // The point in a neighbour, unless all of its points are farther away than those found.
+        let point = |d: &[i64; 3], nearest: &Nearest| {
             let [i, j, k] = [d[0] * signs[0], d[1] * signs[1], d[2] * signs[2]];
             let gap =
                 gaps[0][(i + 2) as usize] + gaps[1][(j + 2) as usize] + gaps[2][(k + 2) as usize];
             if least(gap) > nearest.measures[last] {
-                return;
+                return None;
             }
             let cell = [
                 home[0].wrapping_add(i),
@@ -220,15 +228,23 @@ impl Crackle {
             ];
             let h = lattice_hash(cell);
             let corner = DVec3::new(cell[0] as f64, cell[1] as f64, cell[2] as f64);
-            let place = corner + DVec3::new(random[h], random[h + 1], random[h + 2]);
-            nearest.insert(metric.measure(p - place, self.offset), place);
+            Some(corner + DVec3::new(random[h], random[h + 1], random[h + 2]))
         };
         let mut nearest = match metric {
-            CrackleMetric::Power(_) => {
+            CrackleMetric::Power(m) => {
                 let mut nearest = Nearest::none(p);
+                let (mut places, mut count) = ([p; 4], 0);
                 for d in &NEIGHBOURS[..INNER] {
-                    visit(d, &mut nearest);
+                    if let Some(place) = point(d, &nearest) {
+                        places[count] = place;
+                        count += 1;
+                    }
+                    if count == 4 {
+                        insert_by_power(&mut nearest, p, &places, m, rest);
+                        count = 0;
+                    }
                 }
+                insert_by_power(&mut nearest, p, &places[..count], m, rest);
                 nearest
             }
             _ => self.nearest_inside(metric, p, home),
@@ -240,7 +256,9 @@ impl Crackle {
             return nearest;
         }
         for d in &NEIGHBOURS[INNER..] {
-            visit(d, &mut nearest);
+            if let Some(place) = point(d, &nearest) {
+                nearest.insert(metric.measure(p - place, self.offset), place);
+            }
         }
         nearest
     }
@@ -269,6 +287,33 @@ impl Crackle {
             nearest
         })
     }
+}
+
+/// Puts up to four points among the nearest to `p` by the metric with powers `m`, all at once: their measures are what takes the time. `rest` is
+/// the contribution of the offset.
+#[inline(never)]
+fn insert_by_power(nearest: &mut Nearest, p: DVec3, places: &[DVec3], m: f64, rest: f64) {
+    // Lanes without a point have numbers that are raised as fast as others.
+    let mut gaps = [[1.0; 4]; 3];
+    for (lane, place) in places.iter().enumerate() {
+        let gap = (p - *place).abs();
+        (gaps[0][lane], gaps[1][lane], gaps[2][lane]) = (gap.x, gap.y, gap.z);
+    }
+    let [x, y, z] = dispatch!(Simd::best(), isa => powers_of(isa, &gaps, m));
+    for (lane, place) in places.iter().enumerate() {
+        nearest.insert(x[lane] + y[lane] + z[lane] + rest, *place);
+    }
+}
+
+/// All coordinates to the power of `m`.
+#[inline(always)]
+fn powers_of<I: Isa>(isa: I, gaps: &[[f64; 4]; 3], m: f64) -> [[f64; 4]; 3] {
+    let [x, y, z] = gaps;
+    [
+        det::powers(isa, x, m),
+        det::powers(isa, y, m),
+        det::powers(isa, z, m),
+    ]
 }
 
 /// The three smallest measures of each lane from `p` to the points, and all measures, by the Manhattan metric or the Euclidean one; `rest` is
