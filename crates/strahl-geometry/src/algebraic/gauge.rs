@@ -1,7 +1,9 @@
+use crate::blocks::dot;
 use std::ops::ControlFlow;
 use strahl_math::error::ROUNDOFF;
 use strahl_math::roots::find_root;
 use strahl_math::{DVec3, det};
+use strahl_simd::Isa;
 
 /// The gauge of a superellipsoid: the factor by which it must grow to reach a point, `N = (g^q + |z|^q)^(1/q)` with
 /// `g = (|x|^p + |y|^p)^(1/p)`, which is 1 on the surface and proportional to the distance from the centre along each ray from
@@ -81,6 +83,35 @@ impl Gauge {
     pub(super) fn along(&self, point: DVec3, direction: DVec3) -> (f64, f64) {
         let (value, gradient) = self.value_and_gradient(point);
         (value, gradient.dot(direction))
+    }
+
+    /// [`Gauge::along`] at four points, with the same bits in the lanes that are returned as known: those of points off the planes of symmetry
+    /// with finite derivatives.
+    #[inline(always)]
+    pub(super) fn along_four<I: Isa>(
+        &self,
+        isa: I,
+        [x, y, z]: [I::F64x4; 3],
+        direction: [I::F64x4; 3],
+    ) -> (I::F64x4, I::F64x4, u32) {
+        let (zero, turned) = (isa.splat(0.0), isa.splat(-1.0));
+        let (a, b, c) = (isa.abs(x), isa.abs(y), isa.abs(z));
+        let (g, by_x, by_y) = combine_four(isa, self.p, a, b);
+        let (value, by_g, by_z) = combine_four(isa, self.q, g, c);
+        let (by_x, by_y) = (isa.mul(by_g, by_x), isa.mul(by_g, by_y));
+        let finite = isa.splat(f64::MAX);
+        let known = isa.lt(zero, a)
+            & isa.lt(zero, b)
+            & isa.lt(zero, c)
+            & isa.le(by_x, finite)
+            & isa.le(by_y, finite)
+            & isa.le(by_z, finite);
+        let gradient = [
+            isa.choose_le(zero, x, by_x, isa.mul(by_x, turned)),
+            isa.choose_le(zero, y, by_y, isa.mul(by_y, turned)),
+            isa.choose_le(zero, z, by_z, isa.mul(by_z, turned)),
+        ];
+        (value, dot(isa, gradient, direction), known)
     }
 
     /// Bounds of the derivative along the line, where the magnitudes of the coordinates are within bounds and change at these
@@ -240,6 +271,28 @@ fn combine(p: f64, a: f64, b: f64) -> (f64, f64, f64) {
     }
 }
 
+/// [`combine`] of four pairs, all above zero.
+#[inline(always)]
+fn combine_four<I: Isa>(
+    isa: I,
+    p: f64,
+    a: I::F64x4,
+    b: I::F64x4,
+) -> (I::F64x4, I::F64x4, I::F64x4) {
+    let (large, small) = (isa.choose_le(a, b, b, a), isa.choose_le(a, b, a, b));
+    let ratio = isa.div(small, large);
+    let power = raise_four(isa, ratio, p);
+    let sum = isa.add(isa.splat(1.0), power);
+    let root = raise_four(isa, sum, 1.0 / p);
+    let by_large = isa.div(root, sum);
+    let by_small = isa.mul(by_large, isa.div(power, ratio));
+    (
+        isa.mul(large, root),
+        isa.choose_le(a, b, by_small, by_large),
+        isa.choose_le(a, b, by_large, by_small),
+    )
+}
+
 /// `ratio^(p - 1)`, given `ratio^p`.
 #[inline]
 fn steepness(p: f64, ratio: f64, power: f64) -> f64 {
@@ -272,6 +325,16 @@ fn raise(base: f64, exponent: f64) -> f64 {
         base.sqrt()
     } else {
         det::pow(base, exponent)
+    }
+}
+
+/// Powers of four numbers that are not negative.
+#[inline(always)]
+fn raise_four<I: Isa>(isa: I, bases: I::F64x4, exponent: f64) -> I::F64x4 {
+    if exponent == 0.5 {
+        isa.sqrt(bases)
+    } else {
+        isa.load(&det::powers(isa, &isa.store(bases), exponent))
     }
 }
 

@@ -1,5 +1,7 @@
 use super::event::{self, Event, Question};
 use super::gauge::{Gauge, GaugeLine};
+use crate::blocks::LANES;
+use crate::blocks::convex::{FourLines, FourRays, FourSpans, load, scaled, select};
 use crate::primitives::{check_positive, point_error};
 use crate::{
     Crossings, GeometryError, PrimHit, Primitive, Scratch, Solid, SurfaceId, SurfacePoint,
@@ -7,6 +9,7 @@ use crate::{
 use std::ops::ControlFlow;
 use strahl_math::error::gamma;
 use strahl_math::{Aabb, DVec3, Interval, Ray};
+use strahl_simd::Isa;
 
 /// A superquadric ellipsoid about the origin: `(|x|^(2/e) + |y|^(2/e))^(e/n) + |z|^(2/n) <= 1`.
 ///
@@ -65,6 +68,11 @@ impl Superellipsoid {
     /// The number that shapes sections through the z axis.
     pub fn n(&self) -> f64 {
         self.n
+    }
+
+    /// Whether the body is convex.
+    pub(crate) fn is_convex(&self) -> bool {
+        self.gauge.is_convex()
     }
 
     fn segment(&self, ray: &Ray, on_surface: bool) -> Option<Segment> {
@@ -222,6 +230,58 @@ impl Superellipsoid {
             } else {
                 tangent
             }
+    }
+}
+
+impl FourLines for Superellipsoid {
+    /// Where the lines enter a convex body: the steps of [`Superellipsoid::approach`], side by side. Where they leave it is not known.
+    #[inline(always)]
+    fn spans<I: Isa>(&self, isa: I, rays: &FourRays<I>) -> FourSpans {
+        let (mut start, mut direction) = ([[0.5; LANES]; 3], [[0.0; LANES]; 3]);
+        let (mut t, mut length) = ([0.0; LANES], [0.0; LANES]);
+        let (mut out, mut searching) = (FourSpans::default(), 0);
+        for (lane, ray) in rays.rays(isa).iter().enumerate() {
+            match self.segment(ray, false) {
+                None => out.known |= 1 << lane,
+                Some(segment) => {
+                    searching |= 1 << lane;
+                    (t[lane], length[lane]) = (segment.t, segment.length);
+                    for axis in 0..3 {
+                        start[axis][lane] = segment.start[axis];
+                        direction[axis][lane] = segment.direction[axis];
+                    }
+                }
+            }
+        }
+        let [x, y, z] = load(isa, &start);
+        let direction = load(isa, &direction);
+        let length = isa.load(&length);
+        let (zero, level) = (isa.splat(0.0), isa.splat(1.0));
+        let mut s = zero;
+        for _ in 0..MAX_STEPS {
+            if searching == 0 {
+                break;
+            }
+            let step = scaled(isa, direction, s);
+            let point = [
+                isa.add(x, step[0]),
+                isa.add(y, step[1]),
+                isa.add(z, step[2]),
+            ];
+            let (value, slope, known) = self.gauge.along_four(isa, point, direction);
+            searching &= known;
+            let next = isa.add(s, isa.div(isa.sub(level, value), slope));
+            let arrived = isa.le(value, level);
+            let missed = !arrived & (!isa.lt(slope, zero) | isa.lt(length, next));
+            let arrived = arrived | !missed & isa.le(next, s);
+            out.only_enter |= searching & arrived;
+            out.known |= searching & missed;
+            searching &= !(arrived | missed);
+            s = select(isa, searching, next, s);
+        }
+        out.met = out.only_enter;
+        out.enter = isa.store(isa.add(isa.load(&t), s));
+        out
     }
 }
 

@@ -51,7 +51,7 @@ impl PacketRays {
 }
 
 #[inline(always)]
-fn load<I: Isa>(isa: I, [x, y, z]: &[[f64; LANES]; 3]) -> [I::F64x4; 3] {
+pub(crate) fn load<I: Isa>(isa: I, [x, y, z]: &[[f64; LANES]; 3]) -> [I::F64x4; 3] {
     [isa.load(x), isa.load(y), isa.load(z)]
 }
 
@@ -87,6 +87,28 @@ fn row<I: Isa>(isa: I, [a, b, c]: [f64; 3], x: I::F64x4, y: I::F64x4, z: I::F64x
     isa.add(xy, isa.mul(isa.splat(c), z))
 }
 
+/// The values of `yes` in these lanes, as bits, else those of `no`.
+#[inline(always)]
+pub(crate) fn select<I: Isa>(isa: I, lanes: u32, yes: I::F64x4, no: I::F64x4) -> I::F64x4 {
+    let chosen = isa.load(&CHOSEN[(lanes & 0b1111) as usize]);
+    isa.choose_le(isa.splat(1.0), chosen, yes, no)
+}
+
+/// Ones in the lanes of a number's bits.
+const CHOSEN: [[f64; LANES]; 16] = {
+    let mut all = [[0.0; LANES]; 16];
+    let mut bits = 0;
+    while bits < 16 {
+        let mut lane = 0;
+        while lane < LANES {
+            all[bits][lane] = (bits >> lane & 1) as f64;
+            lane += 1;
+        }
+        bits += 1;
+    }
+    all
+};
+
 /// Four rays, coordinate by coordinate.
 pub(crate) struct FourRays<I: Isa> {
     pub(crate) origin: [I::F64x4; 3],
@@ -94,6 +116,23 @@ pub(crate) struct FourRays<I: Isa> {
 }
 
 impl<I: Isa> FourRays<I> {
+    /// One by one.
+    #[inline(always)]
+    pub(crate) fn rays(&self, isa: I) -> [Ray; LANES] {
+        let mut rays = [Ray::new(DVec3::ZERO, DVec3::ZERO); LANES];
+        for axis in 0..3 {
+            let (o, d) = (
+                isa.store(self.origin[axis]),
+                isa.store(self.direction[axis]),
+            );
+            for lane in 0..LANES {
+                rays[lane].origin[axis] = o[lane];
+                rays[lane].direction[axis] = d[lane];
+            }
+        }
+        rays
+    }
+
     /// In the space to which a map leads, as [`Transform::ray_to_object`].
     #[inline(always)]
     pub(crate) fn to_object(&self, isa: I, map: &Transform) -> Self {
@@ -141,11 +180,12 @@ pub(crate) trait FourLines {
 pub struct PacketSpans([FourSpans; GROUPS]);
 
 impl PacketSpans {
-    /// Whether there is such a search for a shape: for boxes, cylinders, cones and small intersections of convex solids.
+    /// Whether there is such a search for a shape: for boxes, cylinders, cones, convex superellipsoids and small intersections of convex solids.
     #[inline]
     pub fn know(shape: &Shape) -> bool {
         match shape {
             Shape::Cuboid(_) | Shape::Cylinder(_) | Shape::Cone(_) => true,
+            Shape::Superellipsoid(body) => body.is_convex(),
             Shape::Csg(csg) => csg.has_four_spans(),
             _ => false,
         }
@@ -170,6 +210,9 @@ impl PacketSpans {
             Shape::Cuboid(solid) => self.find_of(simd, solid, rays, map, lanes),
             Shape::Cylinder(solid) => self.find_of(simd, solid.frustum(), rays, map, lanes),
             Shape::Cone(solid) => self.find_of(simd, solid.frustum(), rays, map, lanes),
+            Shape::Superellipsoid(body) if body.is_convex() => {
+                self.find_of(simd, body, rays, map, lanes);
+            }
             Shape::Csg(tree) => self.find_of(simd, &**tree, rays, map, lanes),
             _ => self.0 = Default::default(),
         }
@@ -222,6 +265,12 @@ impl PacketSpans {
                 let ends = [spans.enter_leaf[lane], spans.exit_leaf[lane]];
                 return csg.closest_end(&span, ends, range, only_enter);
             }
+            Shape::Superellipsoid(_) => {
+                let hit = range.accepts(span.enter.t) && span.enter.t.is_finite();
+                // The ray may start inside.
+                let unknown = !hit && !(span.enter.t > range.max);
+                return (!unknown).then(|| hit.then(|| PrimHit::simple(span.enter.t, 0)));
+            }
             _ => span.closest(range, None),
         })
     }
@@ -231,7 +280,7 @@ impl PacketSpans {
 mod tests {
     use super::*;
     use crate::conformance::Random;
-    use crate::{Cone, Cuboid, Cylinder, Primitive, Scratch};
+    use crate::{Cone, Cuboid, Cylinder, Primitive, Scratch, Superellipsoid};
 
     /// Rays at a solid: from everywhere, at its rims, along its axes, and some that are no numbers.
     fn rays(random: &mut Random, center: DVec3) -> Vec<Ray> {
@@ -262,12 +311,16 @@ mod tests {
         for round in 0..4000 {
             let center = DVec3::new(random.unit(), random.unit(), random.unit());
             let top = center + DVec3::new(random.unit() - 0.5, 1.0, random.unit() - 0.5);
-            let shapes: [Shape; 5] = [
+            let shapes: [Shape; 9] = [
                 Cuboid::from_corners(center - DVec3::splat(0.5), top).into(),
                 Cylinder::new(center - DVec3::Y, top, 0.4).into(),
                 Cylinder::open(center - DVec3::Y, top, 0.4).into(),
                 Cone::new(center - DVec3::Y, 0.7, top, 0.1).into(),
                 Cone::open(center - DVec3::Y, 0.0, top, 0.8).into(),
+                Superellipsoid::new(0.3, 0.2).into(),
+                Superellipsoid::new(1.0, 0.5 + random.unit()).into(),
+                Superellipsoid::new(2.0, 1.0).into(),
+                Superellipsoid::new(0.01 + random.unit(), 0.01 + random.unit()).into(),
             ];
             let rays = rays(&mut random, center);
             let packet = PacketRays::new(&rays);

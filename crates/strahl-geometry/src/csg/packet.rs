@@ -7,7 +7,7 @@ use super::solid::Csg;
 use super::states::MOST;
 use super::sweep::Fusing;
 use crate::blocks::LANES;
-use crate::blocks::convex::{FourLines, FourRays, FourSpans};
+use crate::blocks::convex::{FourLines, FourRays, FourSpans, select};
 use crate::primitives::convex::Span;
 use crate::{PrimHit, Shape};
 use arrayvec::ArrayVec;
@@ -112,28 +112,6 @@ impl FourLines for Csg {
 
 /// What complements drill away, and the numbers of their leaves.
 type Holes = ArrayVec<(FourSpans, u32), MOST>;
-
-/// The values of `yes` in these lanes, as bits, else those of `no`.
-#[inline(always)]
-fn select<I: Isa>(isa: I, lanes: u32, yes: I::F64x4, no: I::F64x4) -> I::F64x4 {
-    let chosen = isa.load(&CHOSEN[(lanes & 0b1111) as usize]);
-    isa.choose_le(isa.splat(1.0), chosen, yes, no)
-}
-
-/// Ones in the lanes of a number's bits.
-const CHOSEN: [[f64; LANES]; 16] = {
-    let mut all = [[0.0; LANES]; 16];
-    let mut bits = 0;
-    while bits < 16 {
-        let mut lane = 0;
-        while lane < LANES {
-            all[bits][lane] = (bits >> lane & 1) as f64;
-            lane += 1;
-        }
-        bits += 1;
-    }
-    all
-};
 
 /// [`Fusing`] for four rays.
 struct FourFusing<I: Isa> {
