@@ -130,10 +130,7 @@ impl Small {
             return None;
         }
         let leaf = |n: u32| &leaves[n as usize];
-        if !leaves
-            .iter()
-            .all(|l| l.has_stays() || matches!(l.shape, Shape::Torus(_)))
-        {
+        if !leaves.iter().all(|l| l.has_stays() || is_listed(&l.shape)) {
             return None;
         }
         // The complement of everything is no solid with a first surface of its own.
@@ -309,6 +306,14 @@ impl Small {
         }
         Ok(())
     }
+}
+
+/// Whether the crossings of a shape that lines cross more often than twice are listed in little time.
+fn is_listed(shape: &Shape) -> bool {
+    matches!(
+        shape,
+        Shape::Torus(_) | Shape::Polynomial(_) | Shape::Superellipsoid(_)
+    )
 }
 
 /// The states of a leaf along the relevant part of the ray.
