@@ -63,15 +63,15 @@ pub(super) struct BallSearch {
 
 impl BallSearch {
     /// In the ball around the origin, in an octree whose cells are halved `levels` times; features smaller than a fiftieth of the
-    /// reciprocal of `precision` may be missed.
-    pub(super) fn new(radius: f64, precision: f64, levels: u32) -> Self {
+    /// reciprocal of `precision` may be missed. The set lies within `reach`, which is not above the radius.
+    pub(super) fn new(radius: f64, reach: f64, precision: f64, levels: u32) -> Self {
         let precision = if precision > 1.0 { precision } else { 1.0 };
         Self {
-            around: Container::Sphere(Sphere::new(DVec3::ZERO, radius)),
+            around: Container::Sphere(Sphere::new(DVec3::ZERO, reach)),
             radius,
             shortest: radius / (50.0 * precision),
             octree: Arc::new(Octree::new(
-                Aabb::new(DVec3::splat(-radius), DVec3::splat(radius)),
+                Aabb::new(DVec3::splat(-reach), DVec3::splat(reach)),
                 levels,
             )),
         }

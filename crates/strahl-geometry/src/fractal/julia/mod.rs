@@ -67,6 +67,7 @@ impl Default for JuliaOptions {
 /// this is the set that POV-Ray 3.7 shows (measured). It is a solid with a smooth surface. A point of space has the
 /// first three components of the number, the slice gives the fourth.
 ///
+/// Of squares and cubes only a smaller ball is searched: a number that is too long has a next point beyond the bail-out radius.
 /// Rays march by an estimate of the distance, from the first derivative of the orbit's end (by half of it where it may be too long); crossings are then refined to
 /// the last digit. An octree, whose cells are examined when a ray first meets them, stores where the surface may be at all: of squares
 /// and cubes it is proven where it is not. Shading takes the normal POV-Ray has: that of the set of one point
@@ -126,18 +127,19 @@ impl Julia {
             JuliaAlgebra::Hypercomplex(_) => 4.0,
         };
         let length = norm2(options.slice).sqrt();
+        let rule = Rule {
+            algebra,
+            parameter,
+            points: options.max_iteration,
+            exit,
+        };
         Ok(Self {
-            rule: Rule {
-                algebra,
-                parameter,
-                points: options.max_iteration,
-                exit,
-            },
+            rule,
             slice: Slice {
                 offset: options.distance * length / nw,
                 factors: -DVec3::new(nx, ny, nz) / nw,
             },
-            search: BallSearch::new(exit, options.precision, LEVELS),
+            search: BallSearch::new(exit, rule.reach(), options.precision, LEVELS),
             tilt: norm2([1.0, nx / nw, ny / nw, nz / nw]).sqrt(),
         })
     }

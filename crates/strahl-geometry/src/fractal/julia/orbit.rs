@@ -4,7 +4,8 @@ use super::complex::{Complex, HypercomplexFunction};
 use super::power::{Degree, Number, Powers};
 use super::real::{Lanes, Real};
 use super::{JuliaAlgebra, Place, Places, QuaternionFunction};
-use strahl_math::DVec3;
+use std::f64::consts::SQRT_2;
+use strahl_math::{DVec3, det};
 use strahl_simd::{Isa, Simd, dispatch};
 
 /// A number with four components.
@@ -48,6 +49,42 @@ pub(super) struct Rule {
 }
 
 impl Rule {
+    /// A bound of the lengths of the numbers whose orbits stay near the origin, at most the bail-out radius.
+    ///
+    /// For a quaternion `h` the next point is at least `|h|² - |parameter|` or `|h|³ - |parameter|` from the origin; if that is within a radius, `h` is within a
+    /// smaller one, and the point before it within one that is smaller still. Of the two complex numbers of a hypercomplex one the squared lengths count by half.
+    pub(super) fn reach(&self) -> f64 {
+        let length = norm2(self.parameter).sqrt();
+        let parts = split(self.parameter).map(|part| part.norm2().sqrt());
+        let mut reach = self.exit;
+        // It comes near its limit in a few steps.
+        for _ in 1..self.points.min(64) {
+            let before = match self.algebra {
+                JuliaAlgebra::Quaternion(QuaternionFunction::Square) => (reach + length).sqrt(),
+                JuliaAlgebra::Quaternion(QuaternionFunction::Cube) => det::cbrt(reach + length),
+                // The largest `u + v` with `(u - |p|)² + (v - |q|)² <= 2 reach²`: u and v are the parts' squared lengths, p and q the parts of the parameter.
+                JuliaAlgebra::Hypercomplex(HypercomplexFunction::Square) => {
+                    (reach + 0.5 * (parts[0] + parts[1])).sqrt()
+                }
+                JuliaAlgebra::Hypercomplex(HypercomplexFunction::Cube) => {
+                    let squares = parts.map(|part| {
+                        let longest = det::cbrt(SQRT_2 * reach + part);
+                        longest * longest
+                    });
+                    (0.5 * (squares[0] + squares[1])).sqrt()
+                }
+                JuliaAlgebra::Hypercomplex(_) => return reach,
+            };
+            if !(before < reach) {
+                break;
+            }
+            reach = before;
+        }
+        // The surface is clearly within.
+        let wider = reach * (1.0 + 1e-6);
+        if wider < self.exit { wider } else { self.exit }
+    }
+
     /// A bound (to first order) of the derivative of [`Place::value`] by the point.
     pub(super) fn slope(&self, start: Four) -> f64 {
         let (r2, slope) = self.follow(start);
@@ -110,7 +147,7 @@ impl Rule {
             || {
                 let (r2, slope) = self.follow(start);
                 // The logarithm of the end's length is more like a straight line than the length.
-                let log = 0.5 * strahl_math::det::ln(r2 / (self.exit * self.exit));
+                let log = 0.5 * det::ln(r2 / (self.exit * self.exit));
                 let value = 0.5 * (r2 / (self.exit * self.exit) - 1.0);
                 (value, CAUTION * log.abs() * r2.sqrt() / slope)
             },

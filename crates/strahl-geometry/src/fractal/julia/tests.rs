@@ -16,6 +16,36 @@ crate::primitive_tests!(quaternion, || julia(QUATERNION, 6));
 crate::primitive_tests!(cubed, || julia(CUBE, 4));
 crate::primitive_tests!(hypercomplex, || julia(HYPERCOMPLEX, 5));
 
+#[test]
+fn no_number_of_the_set_is_beyond_its_reach() {
+    let mut random = crate::conformance::Random::new(3);
+    let (mut inside, mut longest) = (0, 0.0f64);
+    for algebra in [
+        QUATERNION,
+        CUBE,
+        HYPERCOMPLEX,
+        JuliaAlgebra::Hypercomplex(HypercomplexFunction::Cube),
+    ] {
+        for points in [1, 2, 3, 8] {
+            let set = julia(algebra, points);
+            let reach = set.rule.reach();
+            assert!(points == 1 || reach < 0.95 * set.rule.exit, "{algebra:?}");
+            for _ in 0..20_000 {
+                let number = std::array::from_fn(|_| (2.0 * random.unit() - 1.0) * set.rule.exit);
+                if norm2(number) <= set.rule.exit * set.rule.exit && set.rule.value(number) <= 0.0 {
+                    let length = norm2(number).sqrt() / reach;
+                    assert!(length < 1.0, "{algebra:?} {points} {number:?}");
+                    if points > 1 {
+                        longest = longest.max(length);
+                    }
+                    inside += 1;
+                }
+            }
+        }
+    }
+    assert!(inside > 20_000 && longest > 0.9, "{inside} {longest}");
+}
+
 /// The points at which a line of 4001 points enters and leaves the inside.
 fn changes(set: &Julia, from: DVec3, to: DVec3) -> Vec<u32> {
     let mut inside = false;

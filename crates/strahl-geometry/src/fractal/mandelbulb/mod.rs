@@ -88,7 +88,7 @@ impl Mandelbulb {
             power,
             parameter,
             iterations,
-            search: BallSearch::new(radius, precision, LEVELS),
+            search: BallSearch::new(radius, radius, precision, LEVELS),
         })
     }
 
