@@ -194,7 +194,12 @@ fn a_ray_that_touches_two_patches_has_the_hits_of_its_passes() {
     assert_eq!(sum(&passes, 4.0, 4.31), 0);
 }
 
-/// The long version, for releases: 10^7 rays on all processors, 80 minutes of processor time; 6 GB of patches.
+/// The long version, for releases: 10^7 rays on all processors, 90 minutes of processor time; 9 GB of patches.
+///
+/// One of them fails: from the origin along (-1.2145474534317753, 1.157517329104268, 1.157517329104268) to `creased(Loop)`, in its plane of symmetry, where
+/// the border between two patches lies. The ray meets the border at 0.727 and at 0.741, where it is aimed, and the surface at 0.796; only the last one is
+/// found. Its neighbours at all sides meet all three. Seen along a ray in its plane, the border is a line that goes forth and back, so the border's
+/// winding is the same with both hits and with none.
 #[test]
 #[ignore = "takes more than an hour; run it with --ignored"]
 fn no_ray_of_ten_millions_slips_through_a_border() {
