@@ -1,6 +1,7 @@
 //! Intersections of convex solids and the rays of a packet: four rays side by side, as [`one_span`](super::one_span) does it with one.
 //!
-//! What a kernel says is certain; where crossings could coincide, or a hole decides, the search with one ray does.
+//! The kernel answers only where it is certain. Where crossings could coincide, or where a ray is past the beginning of a span with holes, the search
+//! with one ray decides.
 
 use super::leaf::Leaf;
 use super::solid::Csg;
@@ -66,7 +67,7 @@ impl Csg {
                 return Some(Some(hit));
             }
             if only_enter {
-                // The first one counts only where nothing is in front of the range.
+                // What comes behind is unknown: it does not matter if it is behind the range, too.
                 return (end.t > range.max).then_some(None);
             }
         }
@@ -97,7 +98,7 @@ impl FourLines for Csg {
             let spans = leaf.four_spans(isa, rays);
             if n < convex.positive {
                 ends.cut(isa, &spans, *number);
-            } else if ends.leaves_open(&spans) != 0 {
+            } else if ends.meet_hole(&spans) != 0 {
                 holes.push((spans, *number));
             }
         }
@@ -143,7 +144,8 @@ impl<I: Isa> FourFusing<I> {
         isa.mul(isa.splat(2.0), both)
     }
 
-    /// The lanes in which nothing at `a` could coincide with something at `b`, which is not in front of it; there is nothing at infinity.
+    /// The lanes in which nothing at `a` could coincide with something at `b`, which is not in front of it. At infinity there are no
+    /// crossings.
     #[inline(always)]
     fn apart(&self, isa: I, a: I::F64x4, b: I::F64x4) -> u32 {
         isa.lt(self.gap(isa, a, b), isa.sub(b, a))
@@ -242,9 +244,9 @@ impl<I: Isa> Ends<I> {
         self.decided = self.missed | !self.enter_known & 0b1111;
     }
 
-    /// The undecided lanes in which a complement's solid may drill something away; those about whose span nothing is known are decided.
+    /// Takes note of the lanes in which nothing is known about the solid of a complement, and returns the undecided ones that meet it.
     #[inline(always)]
-    fn leaves_open(&mut self, hole: &FourSpans) -> u32 {
+    fn meet_hole(&mut self, hole: &FourSpans) -> u32 {
         (self.enter_known, self.exit_known) =
             (self.enter_known & hole.known, self.exit_known & hole.known);
         self.decided |= !hole.known & 0b1111;
@@ -256,7 +258,7 @@ impl<I: Isa> Ends<I> {
     fn drill(&mut self, isa: I, fusing: &FourFusing<I>, holes: &Holes) {
         let mut drilled = 0;
         for _ in holes {
-            let before = drilled;
+            let mut moved = 0;
             for (hole, leaf) in holes {
                 let (begin, end) = (isa.load(&hole.enter), isa.load(&hole.exit));
                 let enter = self.enter.t;
@@ -267,10 +269,11 @@ impl<I: Isa> Ends<I> {
                 if covers != 0 {
                     self.enter.t = select(isa, covers, end, enter);
                     self.enter.note(covers, *leaf, &hole.exit_facet);
-                    drilled |= covers;
+                    moved |= covers;
                 }
             }
-            if drilled == before {
+            drilled |= moved;
+            if moved == 0 {
                 break;
             }
         }
