@@ -454,6 +454,9 @@ pub(crate) fn render_options(scene: &RenderScene, args: &PictureArgs) -> RenderO
 
 /// The number of threads, at most one per processor: more would slow each other down.
 pub(crate) fn threads(asked: usize, reporter: &Reporter) -> usize {
+    if asked <= 1 {
+        return asked;
+    }
     let most = std::thread::available_parallelism().map_or(1, usize::from);
     if asked > most {
         let are = if most == 1 { "is" } else { "are" };

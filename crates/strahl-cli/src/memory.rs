@@ -2,6 +2,7 @@
 
 use crate::{interrupt, terminal, work};
 use std::str::FromStr;
+use std::sync::OnceLock;
 use strahl::memory::{Bounded, Refusal};
 use sysinfo::System;
 
@@ -48,12 +49,28 @@ impl FromStr for MemoryLimit {
 
 /// Limits the memory of the program.
 pub(crate) fn bound(memory: &Bounded, limit: MemoryLimit) {
-    let bytes = match limit {
-        MemoryLimit::None => u64::MAX,
-        MemoryLimit::Bytes(bytes) => bytes,
-        MemoryLimit::Part(part) => machine().map_or(u64::MAX, |all| (all as f64 * part) as u64),
-    };
-    memory.limit(usize::try_from(bytes).unwrap_or(usize::MAX), end);
+    match limit {
+        MemoryLimit::None => memory.limit(usize::MAX, end),
+        MemoryLimit::Bytes(bytes) => memory.limit(saturated(bytes), end),
+        MemoryLimit::Part(part) => {
+            // Only the first one counts: a program is bound once.
+            let _ = PART.set(part);
+            memory.limit_later(saturated(LEAST), part_of_machine, end);
+        }
+    }
+}
+
+/// The part of the machine's memory that may be used.
+static PART: OnceLock<f64> = OnceLock::new();
+
+/// That part in bytes. It takes a quarter of a millisecond, because several files are read; with less than `LEAST` in use nobody asks.
+fn part_of_machine() -> usize {
+    let part = PART.get().copied().unwrap_or(1.0);
+    saturated(machine().map_or(u64::MAX, |all| (all as f64 * part) as u64))
+}
+
+fn saturated(bytes: u64) -> usize {
+    usize::try_from(bytes).unwrap_or(usize::MAX)
 }
 
 /// The memory of the machine, or of the container.

@@ -117,8 +117,8 @@ impl Primitive for Bounded {
         self.shape.texture_uv(hit, uv)
     }
 
-    fn bare_surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
-        self.shape.bare_surface_at(ray, hit)
+    fn store_bare_surface(&self, ray: &Ray, hit: &PrimHit, out: &mut SurfacePoint) {
+        self.shape.store_bare_surface(ray, hit, out);
     }
 
     fn as_solid(&self) -> Option<&dyn Solid> {

@@ -60,7 +60,19 @@ pub struct SurfacePoint {
 }
 
 impl SurfacePoint {
+    /// A place for a surface that will be stored.
+    pub const UNKNOWN: Self = Self {
+        position: DVec3::ZERO,
+        position_error: DVec3::ZERO,
+        n_geom: DVec3::ZERO,
+        n_shade: DVec3::ZERO,
+        uv: DVec2::ZERO,
+        dpdu: DVec3::ZERO,
+        dpdv: DVec3::ZERO,
+    };
+
     /// A point without texture coordinates, shaded as the flat surface it lies on.
+    #[inline(always)]
     pub(crate) fn bare(position: DVec3, position_error: DVec3, normal: DVec3) -> Self {
         Self {
             position,
@@ -196,9 +208,17 @@ pub trait Primitive: Send + Sync + std::fmt::Debug {
     /// The surface at a hit that this primitive reported for this ray.
     fn surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint;
 
-    /// The same surface without `uv`, `dpdu` and `dpdv`, which have no meaning here: possibly faster.
+    /// Stores the same surface without `uv`, `dpdu` and `dpdv`, which have no meaning then: possibly faster.
+    // In place: a result of this size would be stored twice, and its copy would wait for the first.
+    fn store_bare_surface(&self, ray: &Ray, hit: &PrimHit, out: &mut SurfacePoint) {
+        *out = self.surface_at(ray, hit);
+    }
+
+    /// What [`Primitive::store_bare_surface`] stores.
     fn bare_surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
-        self.surface_at(ray, hit)
+        let mut surface = SurfacePoint::UNKNOWN;
+        self.store_bare_surface(ray, hit, &mut surface);
+        surface
     }
 
     /// Where textures with `uv_mapping` are evaluated at a hit; `uv` is what `surface_at` gave. `None` for surfaces that POV-Ray
@@ -319,8 +339,8 @@ impl<P: Primitive + ?Sized> Primitive for Arc<P> {
         (**self).surface_at(ray, hit)
     }
 
-    fn bare_surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
-        (**self).bare_surface_at(ray, hit)
+    fn store_bare_surface(&self, ray: &Ray, hit: &PrimHit, out: &mut SurfacePoint) {
+        (**self).store_bare_surface(ray, hit, out);
     }
 
     fn texture_uv(&self, hit: &PrimHit, uv: DVec2) -> Option<DVec2> {

@@ -77,8 +77,8 @@ macro_rules! shapes {
                 match self { $(Self::$variant(shape) => shape.surface_at(ray, hit),)+ }
             }
 
-            fn bare_surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
-                match self { $(Self::$variant(shape) => shape.bare_surface_at(ray, hit),)+ }
+            fn store_bare_surface(&self, ray: &Ray, hit: &PrimHit, out: &mut SurfacePoint) {
+                match self { $(Self::$variant(shape) => shape.store_bare_surface(ray, hit, out),)+ }
             }
 
             fn texture_uv(&self, hit: &PrimHit, uv: DVec2) -> Option<DVec2> {
@@ -91,13 +91,6 @@ macro_rules! shapes {
 
             fn baked(&self, map: &Transform) -> Option<Shape> {
                 match self { $(Self::$variant(shape) => shape.baked(map),)+ }
-            }
-        }
-
-        impl Shape {
-            /// [`Primitive::bare_surface_at`] in place: a result of this size would be stored twice.
-            pub fn store_bare_surface(&self, ray: &Ray, hit: &PrimHit, out: &mut SurfacePoint) {
-                match self { $(Self::$variant(shape) => *out = shape.bare_surface_at(ray, hit),)+ }
             }
         }
 

@@ -149,8 +149,8 @@ pub struct Rendered {
     pub costs: Option<Vec<PixelCost>>,
 }
 
-/// Renders a picture with threads of its own. Programs that render several pictures, or look at one on the way, have a
-/// [`Session`](crate::Session).
+/// Renders a picture with threads of its own; if one is asked for, with the thread that calls. Programs that render several
+/// pictures, or look at one on the way, have a [`Session`](crate::Session).
 ///
 /// # Errors
 /// [`RenderError`]: no such picture, no memory, no threads, or cancelled.
@@ -160,18 +160,24 @@ pub fn render(
     progress: &dyn Progress,
 ) -> Result<Rendered, RenderError> {
     let mut work = Work::new(options)?;
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(options.threads)
-        .build()
-        .map_err(|e| RenderError::Threads(options.threads, e.to_string()))?;
+    // A thread that is started for one short picture takes longer than some pictures.
+    let pool = match options.threads {
+        1 => None,
+        count => Some(
+            rayon::ThreadPoolBuilder::new()
+                .num_threads(count)
+                .build()
+                .map_err(|e| RenderError::Threads(count, e.to_string()))?,
+        ),
+    };
     let crew = Crew {
         scene,
         rays: &PrimaryRays::new(scene.camera(), options.width, options.height),
-        pool: &pool,
+        pool: pool.as_ref(),
         progress,
     };
     match work.go_on(&crew, None)? {
-        true => Ok(work.rendered(pool.current_num_threads())),
+        true => Ok(work.rendered(crew.threads())),
         false => Err(RenderError::Cancelled),
     }
 }

@@ -130,20 +130,18 @@ impl RenderScene {
                 }
             }
         };
-        let mut inner = Resolved::UNKNOWN.point;
+        let mut point = SurfacePoint::UNKNOWN;
         at.group
-            .store_surface(at.prim, &local_ray, hit, at.element, uv, &mut inner);
-        let (mut point, local) = match &at.to_world {
-            None => (inner, None),
-            Some(m) => {
-                let local = LocalPoint {
-                    position: inner.position,
-                    error: inner.position_error,
-                    normal: inner.n_geom,
-                };
-                (surface_to_world(m, &inner), Some(local))
-            }
-        };
+            .store_surface(at.prim, &local_ray, hit, at.element, uv, &mut point);
+        let local = at.to_world.as_ref().map(|m| {
+            let local = LocalPoint {
+                position: point.position,
+                error: point.position_error,
+                normal: point.n_geom,
+            };
+            surface_to_world(m, &mut point);
+            local
+        });
         if uv {
             point.uv = at.group.texture_uv(at.prim, hit, at.element, &point);
         }
@@ -294,11 +292,11 @@ impl RenderGroup {
             }
             PrimKind::Sphere(number) => {
                 let sphere = self.spheres.get(number, self.blocks.spheres());
-                *out = if uv {
-                    sphere.surface_at(ray, &hit)
+                if uv {
+                    *out = sphere.surface_at(ray, &hit);
                 } else {
-                    sphere.bare_surface_at(ray, &hit)
-                };
+                    sphere.store_bare_surface(ray, &hit, out);
+                }
             }
             PrimKind::Shape(index) => store(&self.shapes[index as usize].shape, ray, out),
             PrimKind::Placed(index) => {
@@ -307,7 +305,7 @@ impl RenderGroup {
                     None => store(&used.shape, ray, out),
                     Some(m) => {
                         store(&used.shape, &m.ray_to_object(ray), out);
-                        *out = surface_to_world(m, out);
+                        surface_to_world(m, out);
                     }
                 }
             }
@@ -346,20 +344,16 @@ fn prim_hit(hit: &Hit, element: u32) -> PrimHit {
 }
 
 /// Transforms a surface point from object space to the space around it.
-pub(crate) fn surface_to_world(m: &Transform, p: &SurfacePoint) -> SurfacePoint {
-    let position = m.point_to_world(p.position);
+fn surface_to_world(m: &Transform, p: &mut SurfacePoint) {
     // The transformation rounds too: three products and three sums per coordinate.
     let magnitude = m.error_to_world(p.position.abs()) + m.translation().abs();
-    let position_error =
+    p.position_error =
         m.error_to_world(p.position_error) + magnitude * strahl_math::error::gamma(8);
+    p.position = m.point_to_world(p.position);
     let unit = |n| m.normal_to_world(n).normalize_or(n);
-    SurfacePoint {
-        position,
-        position_error,
-        n_geom: unit(p.n_geom),
-        n_shade: unit(p.n_shade),
-        uv: p.uv,
-        dpdu: m.vector_to_world(p.dpdu),
-        dpdv: m.vector_to_world(p.dpdv),
-    }
+    let flat = p.n_shade == p.n_geom;
+    p.n_geom = unit(p.n_geom);
+    p.n_shade = if flat { p.n_geom } else { unit(p.n_shade) };
+    p.dpdu = m.vector_to_world(p.dpdu);
+    p.dpdv = m.vector_to_world(p.dpdv);
 }

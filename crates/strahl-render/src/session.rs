@@ -212,7 +212,7 @@ impl Session {
         let crew = Crew {
             scene: view.scene(),
             rays: &view.rays()?,
-            pool: &self.pool,
+            pool: Some(&self.pool),
             progress: &Watch {
                 clock: output.clock,
                 stop: output.stop.clone(),

@@ -10,7 +10,7 @@
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 use std::sync::OnceLock;
-use std::sync::atomic::{AtomicIsize, AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicIsize, AtomicUsize, Ordering};
 
 /// The number of bytes that a thread counts by itself before it updates the common counter: this takes a nanosecond, while
 /// threads would contend for the common counter's cache line.
@@ -21,8 +21,8 @@ thread_local! {
     static UNTOLD: Cell<isize> = const { Cell::new(0) };
     /// Whether this thread can continue if an allocation is refused.
     static CAN_DO_WITHOUT: Cell<bool> = const { Cell::new(false) };
-    /// Whether this thread is ending the program, for which it needs memory.
-    static ENDING: Cell<bool> = const { Cell::new(false) };
+    /// Whether this thread is ending the program, or finding out about the limit, for which it needs memory.
+    static EXEMPT: Cell<bool> = const { Cell::new(false) };
 }
 
 /// A refused allocation.
@@ -42,6 +42,9 @@ pub struct Refusal {
 pub struct Bounded {
     used: AtomicIsize,
     limit: AtomicUsize,
+    /// Whether `limit` is the number of bytes from which on [`Bounded::limit_later`]'s function is asked.
+    preliminary: AtomicBool,
+    find: OnceLock<fn() -> usize>,
     end: OnceLock<fn(Refusal) -> !>,
 }
 
@@ -57,6 +60,8 @@ impl Bounded {
         Self {
             used: AtomicIsize::new(0),
             limit: AtomicUsize::new(usize::MAX),
+            preliminary: AtomicBool::new(false),
+            find: OnceLock::new(),
             end: OnceLock::new(),
         }
     }
@@ -66,7 +71,40 @@ impl Bounded {
     pub fn limit(&self, bytes: usize, end: fn(Refusal) -> !) {
         // A second function is ignored, as documented.
         let _ = self.end.set(end);
+        self.preliminary.store(false, Ordering::Relaxed);
         self.limit.store(bytes, Ordering::Relaxed);
+    }
+
+    /// The same with a limit that takes time to find out: `find` is asked when more than `free` bytes are in use for the first time.
+    /// Both functions may allocate memory. Only the first two count.
+    pub fn limit_later(&self, free: usize, find: fn() -> usize, end: fn(Refusal) -> !) {
+        let _ = (self.end.set(end), self.find.set(find));
+        self.limit.store(free, Ordering::Relaxed);
+        self.preliminary.store(true, Ordering::Relaxed);
+    }
+
+    /// Whether bytes in use exceed the limit.
+    fn exceeded(&self, used: isize) -> bool {
+        let used = usize::try_from(used).unwrap_or(0);
+        if used <= self.limit.load(Ordering::Relaxed) || EXEMPT.get() {
+            return false;
+        }
+        self.exceeds_true_limit(used)
+    }
+
+    #[cold]
+    fn exceeds_true_limit(&self, used: usize) -> bool {
+        if self.preliminary.load(Ordering::Relaxed)
+            && let Some(find) = self.find.get()
+        {
+            EXEMPT.set(true);
+            let limit = find();
+            EXEMPT.set(false);
+            // Several threads may come here at once, with the same result.
+            self.limit.store(limit, Ordering::Relaxed);
+            self.preliminary.store(false, Ordering::Relaxed);
+        }
+        used > self.limit.load(Ordering::Relaxed)
     }
 
     /// Bytes in use, accurate to some ten thousand per thread.
@@ -85,8 +123,7 @@ impl Bounded {
             return true;
         }
         let used = self.used.fetch_add(untold, Ordering::Relaxed) + untold;
-        let limit = self.limit.load(Ordering::Relaxed);
-        if usize::try_from(used).is_ok_and(|used| used > limit) && !ENDING.get() {
+        if self.exceeded(used) {
             self.used.fetch_sub(untold, Ordering::Relaxed);
             return false;
         }
@@ -110,7 +147,7 @@ impl Bounded {
     fn refused(&self, asked: usize) -> *mut u8 {
         if !CAN_DO_WITHOUT.get()
             && let Some(end) = self.end.get()
-            && !ENDING.replace(true)
+            && !EXEMPT.replace(true)
         {
             end(Refusal {
                 asked,
@@ -212,6 +249,25 @@ mod tests {
             let all = memory.alloc(layout((1 << 20) - OWN as usize));
             assert!(!all.is_null());
             memory.dealloc(all, layout((1 << 20) - OWN as usize));
+        }
+    }
+
+    #[test]
+    fn a_limit_is_found_out_when_it_may_matter() {
+        let memory = Bounded::new();
+        memory.preliminary.store(true, Ordering::Relaxed);
+        memory.limit.store(1 << 19, Ordering::Relaxed);
+        memory.find.set(|| 1 << 20).unwrap();
+        // SAFETY: layouts of some bytes; the block is freed once, with its layout.
+        unsafe {
+            let little = memory.alloc(layout(1 << 18));
+            assert_eq!(memory.limit.load(Ordering::Relaxed), 1 << 19);
+            let more = memory.alloc(layout(1 << 19));
+            assert!(!more.is_null());
+            assert_eq!(memory.limit.load(Ordering::Relaxed), 1 << 20);
+            assert!(memory.alloc(layout(1 << 20)).is_null());
+            memory.dealloc(little, layout(1 << 18));
+            memory.dealloc(more, layout(1 << 19));
         }
     }
 

@@ -99,6 +99,9 @@ impl Extent {
     /// The extent of a large set, computed in parallel: minima and maxima are exact in any grouping, so the result does not
     /// depend on the threads.
     pub(crate) fn of_many(refs: &[Ref]) -> Self {
+        if refs.len() <= CHUNK {
+            return Self::of(refs);
+        }
         let parts = refs.par_chunks(CHUNK).map(Self::of);
         parts.reduce(|| Self::EMPTY, Self::joined)
     }
@@ -127,17 +130,21 @@ pub(crate) fn gather(
         Some(Ref::new(&Box32::try_new(&bounds)?, id, class))
     };
     let all_bounded = AtomicBool::new(true);
-    let mut refs = Vec::with_capacity(count);
-    (0..count as u32)
-        .into_par_iter()
-        .with_min_len(CHUNK)
-        .map(|id| {
-            one(id).unwrap_or_else(|| {
-                all_bounded.store(false, Ordering::Relaxed);
-                Ref::new(&Box32::EMPTY, id, 0)
-            })
+    let any = |id: u32| {
+        one(id).unwrap_or_else(|| {
+            all_bounded.store(false, Ordering::Relaxed);
+            Ref::new(&Box32::EMPTY, id, 0)
         })
-        .collect_into_vec(&mut refs);
+    };
+    let ids = 0..count as u32;
+    let mut refs = Vec::with_capacity(count);
+    // Here and elsewhere, few primitives are not worth the threads that the first parallel iterator of a program starts.
+    if count <= CHUNK {
+        refs.extend(ids.map(any));
+    } else {
+        let all = ids.into_par_iter().with_min_len(CHUNK).map(any);
+        all.collect_into_vec(&mut refs);
+    }
     let mut unbounded = Vec::new();
     if !all_bounded.into_inner() {
         refs.retain(|r| {

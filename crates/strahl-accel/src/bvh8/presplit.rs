@@ -26,20 +26,27 @@ pub(super) fn presplit(shapes: &dyn Shapes, refs: Vec<Ref>, share: f64) -> Vec<R
     let whole = Grid::new(&extent.bounds);
     let budget = (refs.len() as f64 * share) as usize;
     let budget = budget.min(Bvh8::MAX_PRIMITIVES.saturating_sub(refs.len()));
-    let priorities: Vec<f32> = refs.par_iter().map(|r| whole.priority(shapes, r)).collect();
+    let priority = |r: &Ref| whole.priority(shapes, r);
+    let priorities: Vec<f32> = if refs.len() <= CHUNK {
+        refs.iter().map(priority).collect()
+    } else {
+        refs.par_iter().map(priority).collect()
+    };
     let Some(scale) = scale(&priorities, budget) else {
         return refs;
     };
+    let cut = |(refs, priorities): (&[Ref], &[f32])| {
+        let mut parts = Vec::with_capacity(refs.len() * 2);
+        for (r, priority) in refs.iter().zip(priorities) {
+            whole.cut(shapes, *r, cuts(*priority, scale), &mut parts);
+        }
+        parts
+    };
+    if refs.len() <= CHUNK {
+        return cut((&refs, &priorities));
+    }
     let chunks = refs.par_chunks(CHUNK).zip(priorities.par_chunks(CHUNK));
-    let parts: Vec<Vec<Ref>> = chunks
-        .map(|(refs, priorities)| {
-            let mut parts = Vec::with_capacity(refs.len() * 2);
-            for (r, priority) in refs.iter().zip(priorities) {
-                whole.cut(shapes, *r, cuts(*priority, scale), &mut parts);
-            }
-            parts
-        })
-        .collect();
+    let parts: Vec<Vec<Ref>> = chunks.map(cut).collect();
     parts.concat()
 }
 
@@ -52,8 +59,12 @@ fn cuts(priority: f32, scale: f32) -> u32 {
 /// The largest factor found for the priorities that keeps the number of splits within the budget; `None` if there are none.
 fn scale(priorities: &[f32], budget: usize) -> Option<f32> {
     let total = |scale: f32| -> usize {
-        let cuts = priorities.par_iter().map(|p| cuts(*p, scale) as usize);
-        cuts.sum()
+        let cuts = |p: &f32| cuts(*p, scale) as usize;
+        if priorities.len() <= CHUNK {
+            priorities.iter().map(cuts).sum()
+        } else {
+            priorities.par_iter().map(cuts).sum()
+        }
     };
     let most = priorities.iter().fold(0.0, |a: f32, b| a.max(*b));
     if !(most > 0.0) || budget == 0 {

@@ -279,34 +279,43 @@ impl Leaf {
         }
     }
 
-    /// The surface at a hit, in the tree's space, with normals that point out of the tree's solid. `bare` leaves out what textures need.
-    pub(super) fn surface_at(&self, ray: &Ray, hit: &PrimHit, bare: bool) -> SurfacePoint {
+    /// Stores the surface at a hit, in the tree's space, with normals that point out of the tree's solid. `bare` leaves out what textures need.
+    pub(super) fn store_surface(
+        &self,
+        ray: &Ray,
+        hit: &PrimHit,
+        bare: bool,
+        out: &mut SurfacePoint,
+    ) {
         let local = self.own_hit(hit);
         let ray = self.ray_to_object(ray);
-        let mut surface = if bare {
-            self.shape.bare_surface_at(&ray, &local)
+        if bare {
+            self.shape.store_bare_surface(&ray, &local, out);
         } else {
-            self.shape.surface_at(&ray, &local)
-        };
+            *out = self.shape.surface_at(&ray, &local);
+        }
         if let Some(placement) = &self.placement {
             let map = &placement.map;
-            let position = map.point_to_world(surface.position);
-            surface = SurfacePoint {
-                position,
-                position_error: map.error_to_world(surface.position_error)
-                    + map.error_to_world(surface.position.abs()) * gamma(4)
-                    + position.abs() * (2.0 * ROUNDOFF),
-                n_geom: map.normal_to_world(surface.n_geom).normalize(),
-                n_shade: map.normal_to_world(surface.n_shade).normalize(),
-                uv: surface.uv,
-                dpdu: map.vector_to_world(surface.dpdu),
-                dpdv: map.vector_to_world(surface.dpdv),
+            let position = map.point_to_world(out.position);
+            out.position_error = map.error_to_world(out.position_error)
+                + map.error_to_world(out.position.abs()) * gamma(4)
+                + position.abs() * (2.0 * ROUNDOFF);
+            out.position = position;
+            let flat = out.n_shade == out.n_geom;
+            out.n_geom = map.normal_to_world(out.n_geom).normalize();
+            out.n_shade = if flat {
+                out.n_geom
+            } else {
+                map.normal_to_world(out.n_shade).normalize()
             };
+            if !bare {
+                out.dpdu = map.vector_to_world(out.dpdu);
+                out.dpdv = map.vector_to_world(out.dpdv);
+            }
         }
         if self.negative {
-            surface.n_geom = -surface.n_geom;
-            surface.n_shade = -surface.n_shade;
+            out.n_geom = -out.n_geom;
+            out.n_shade = -out.n_shade;
         }
-        surface
     }
 }

@@ -244,12 +244,11 @@ impl Csg {
         }
     }
 
-    fn surface(&self, ray: &Ray, hit: &PrimHit, bare: bool) -> SurfacePoint {
+    fn store_surface(&self, ray: &Ray, hit: &PrimHit, bare: bool, out: &mut SurfacePoint) {
         let (leaf, _) = self.leaf_of(hit.surface.element);
-        match self.leaves.get(leaf) {
-            Some(leaf) => leaf.surface_at(ray, hit, bare),
-            // A compiled tree has a leaf.
-            None => SurfacePoint::bare(ray.at(hit.t), DVec3::ZERO, DVec3::Z),
+        // A compiled tree has a leaf.
+        if let Some(leaf) = self.leaves.get(leaf) {
+            leaf.store_surface(ray, hit, bare, out);
         }
     }
 
@@ -377,11 +376,13 @@ impl Primitive for Csg {
     }
 
     fn surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
-        self.surface(ray, hit, false)
+        let mut surface = SurfacePoint::UNKNOWN;
+        self.store_surface(ray, hit, false, &mut surface);
+        surface
     }
 
-    fn bare_surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
-        self.surface(ray, hit, true)
+    fn store_bare_surface(&self, ray: &Ray, hit: &PrimHit, out: &mut SurfacePoint) {
+        self.store_surface(ray, hit, true, out);
     }
 
     fn texture_uv(&self, hit: &PrimHit, uv: DVec2) -> Option<DVec2> {

@@ -366,14 +366,14 @@ impl Primitive for Polygon {
         }
     }
 
-    fn bare_surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
+    fn store_bare_surface(&self, ray: &Ray, hit: &PrimHit, out: &mut SurfacePoint) {
         let n = self.normal;
         let at = ray.at(hit.t);
         let aside = at - self.corners[0];
         let position = at - n * n.dot(aside);
         let noise = gamma(8) * n.abs().dot(aside.abs()) + self.deviation;
         let error = n.abs() * noise + position.abs() * (2.0 * ROUNDOFF);
-        SurfacePoint::bare(position, error, n)
+        *out = SurfacePoint::bare(position, error, n);
     }
 
     fn baked(&self, map: &Transform) -> Option<Shape> {

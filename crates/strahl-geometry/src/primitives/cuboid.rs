@@ -227,7 +227,7 @@ impl Primitive for Cuboid {
         }
     }
 
-    fn bare_surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
+    fn store_bare_surface(&self, ray: &Ray, hit: &PrimHit, out: &mut SurfacePoint) {
         let (axis, at_max) = face(hit);
         // Exactly on the plane; the other coordinates are clamped, so that rounding does not move them off the face.
         let mut position = ray.at(hit.t).clamp(self.min, self.max);
@@ -238,7 +238,7 @@ impl Primitive for Cuboid {
         };
         let mut n = DVec3::ZERO;
         n[axis] = if at_max { 1.0 } else { -1.0 };
-        SurfacePoint::bare(position, point_error(position, 0.0, 1), n)
+        *out = SurfacePoint::bare(position, point_error(position, 0.0, 1), n);
     }
 
     fn texture_uv(&self, _hit: &PrimHit, uv: DVec2) -> Option<DVec2> {

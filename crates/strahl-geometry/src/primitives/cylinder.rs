@@ -96,8 +96,8 @@ impl Primitive for Cylinder {
         self.0.surface_at(ray, hit)
     }
 
-    fn bare_surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
-        self.0.bare_surface_at(ray, hit)
+    fn store_bare_surface(&self, ray: &Ray, hit: &PrimHit, out: &mut SurfacePoint) {
+        self.0.store_bare_surface(ray, hit, out);
     }
 
     fn as_solid(&self) -> Option<&dyn Solid> {

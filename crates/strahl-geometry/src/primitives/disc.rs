@@ -168,11 +168,11 @@ impl Primitive for Disc {
         }
     }
 
-    fn bare_surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
+    fn store_bare_surface(&self, ray: &Ray, hit: &PrimHit, out: &mut SurfacePoint) {
         let local = self.local(ray, hit);
         let position = self.center + local;
         let error = point_error(position, local.length(), 8);
-        SurfacePoint::bare(position, error, self.normal)
+        *out = SurfacePoint::bare(position, error, self.normal);
     }
 
     fn as_solid(&self) -> Option<&dyn Solid> {

@@ -356,15 +356,17 @@ impl Frustum {
                 (self.axis + out * self.slope) * self.height,
             ),
         };
+        let mut bare = SurfacePoint::UNKNOWN;
+        self.store_bare_surface(ray, hit, &mut bare);
         SurfacePoint {
             uv: DVec2::new(turn(y, x), v),
             dpdu: round * (2.0 * PI * distance),
             dpdv,
-            ..self.bare_surface_at(ray, hit)
+            ..bare
         }
     }
 
-    pub(super) fn bare_surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
+    pub(super) fn store_bare_surface(&self, ray: &Ray, hit: &PrimHit, surface: &mut SurfacePoint) {
         let Around {
             local,
             height,
@@ -385,7 +387,7 @@ impl Frustum {
         };
         let position = self.base + local;
         let error = point_error(position, local.length() + self.base_radius, 16);
-        SurfacePoint::bare(position, error, n)
+        *surface = SurfacePoint::bare(position, error, n);
     }
 
     /// Where a hit is, seen from the axis.

@@ -162,12 +162,12 @@ impl Primitive for Plane {
         }
     }
 
-    fn bare_surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
+    fn store_bare_surface(&self, ray: &Ray, hit: &PrimHit, out: &mut SurfacePoint) {
         let at = ray.at(hit.t);
         let position = at - self.normal * (at - self.point).dot(self.normal);
         let local = position - self.point;
         let error = point_error(position, local.length(), 8);
-        SurfacePoint::bare(position, error, self.normal)
+        *out = SurfacePoint::bare(position, error, self.normal);
     }
 
     fn as_solid(&self) -> Option<&dyn Solid> {

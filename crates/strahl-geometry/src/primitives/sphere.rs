@@ -262,12 +262,12 @@ impl Primitive for Sphere {
     }
 
     #[inline]
-    fn bare_surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
+    fn store_bare_surface(&self, ray: &Ray, hit: &PrimHit, out: &mut SurfacePoint) {
         let r = self.radius.abs();
         let outward = ((ray.origin - self.center) + ray.direction * hit.t).normalize_or(DVec3::Y);
         let position = self.center + outward * r;
         let n = if self.radius < 0.0 { -outward } else { outward };
-        SurfacePoint::bare(position, point_error(position, r, 8), n)
+        *out = SurfacePoint::bare(position, point_error(position, r, 8), n);
     }
 
     fn texture_uv(&self, _hit: &PrimHit, uv: DVec2) -> Option<DVec2> {

@@ -385,8 +385,9 @@ impl Torus {
         (coefficients, gamma(16) * magnitude)
     }
 
-    /// The direction away from the axis at a hit, and the surface there without texture coordinates.
-    fn outward_and_surface(&self, ray: &Ray, hit: &PrimHit) -> (DVec3, SurfacePoint) {
+    /// Stores the surface at a hit without texture coordinates, and returns the direction away from the axis.
+    #[inline]
+    fn store_outward(&self, ray: &Ray, hit: &PrimHit, out: &mut SurfacePoint) -> DVec3 {
         let p = (ray.origin - self.center) + ray.direction * hit.t;
         let height = p.dot(self.axis);
         let across = p - self.axis * height;
@@ -401,7 +402,8 @@ impl Torus {
         let local = outward * self.major + n * self.minor;
         let position = self.center + local;
         let error = point_error(position, self.major + self.minor, 16);
-        (outward, SurfacePoint::bare(position, error, n))
+        *out = SurfacePoint::bare(position, error, n);
+        outward
     }
 
     /// Reports the events along the ray to the visitor, until it stops.
@@ -481,7 +483,8 @@ impl Primitive for Torus {
 
     fn surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
         let axes = self.frame.axes(self.axis);
-        let (outward, bare) = self.outward_and_surface(ray, hit);
+        let mut bare = SurfacePoint::UNKNOWN;
+        let outward = self.store_outward(ray, hit, &mut bare);
         let n = bare.n_geom;
         let (x, y) = (outward.dot(axes.x_axis), outward.dot(axes.y_axis));
         let (cos, sin) = (n.dot(outward), n.dot(self.axis));
@@ -494,8 +497,8 @@ impl Primitive for Torus {
         }
     }
 
-    fn bare_surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
-        self.outward_and_surface(ray, hit).1
+    fn store_bare_surface(&self, ray: &Ray, hit: &PrimHit, out: &mut SurfacePoint) {
+        self.store_outward(ray, hit, out);
     }
 
     fn texture_uv(&self, _hit: &PrimHit, uv: DVec2) -> Option<DVec2> {

@@ -228,7 +228,8 @@ impl Revolution<'_> {
 
     /// The surface at a hit, with texture coordinates: `u` once around the axis, `v` as the arc says.
     pub(super) fn surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
-        let bare = self.bare_surface_at(ray, hit);
+        let mut bare = SurfacePoint::UNKNOWN;
+        self.store_bare_surface(ray, hit, &mut bare);
         let Some(arc) = self.arc(hit) else {
             return bare;
         };
@@ -254,15 +255,15 @@ impl Revolution<'_> {
         }
     }
 
-    /// The surface at a hit without texture coordinates.
-    pub(super) fn bare_surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
+    /// Stores the surface at a hit without texture coordinates.
+    pub(super) fn store_bare_surface(&self, ray: &Ray, hit: &PrimHit, out: &mut SurfacePoint) {
         let outward = Self::outward(ray, hit);
         let [s, _] = hit.uv;
         let arc = self.arc(hit);
         let (r, y) = arc.map_or((0.0, 0.0), |arc| (arc.radius(s), arc.y.at(s)));
         let position = DVec3::new(outward.x * r, y, outward.y * r);
         let error = point_error(position, self.bounds().max_abs(), 32);
-        SurfacePoint::bare(position, error, self.normal(ray, hit))
+        *out = SurfacePoint::bare(position, error, self.normal(ray, hit));
     }
 
     /// Whether a line away from the axis crosses the meridian an odd number of times.

@@ -54,8 +54,8 @@ macro_rules! turned_about_the_axis {
                 Revolution(&self.meridian).surface_at(ray, hit)
             }
 
-            fn bare_surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
-                Revolution(&self.meridian).bare_surface_at(ray, hit)
+            fn store_bare_surface(&self, ray: &Ray, hit: &PrimHit, out: &mut SurfacePoint) {
+                Revolution(&self.meridian).store_bare_surface(ray, hit, out);
             }
 
             fn texture_uv(&self, _hit: &PrimHit, uv: DVec2) -> Option<DVec2> {

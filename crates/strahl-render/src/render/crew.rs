@@ -17,8 +17,16 @@ use strahl_accel::TraversalStats;
 pub(crate) struct Crew<'a> {
     pub(crate) scene: &'a RenderScene,
     pub(crate) rays: &'a PrimaryRays,
-    pub(crate) pool: &'a rayon::ThreadPool,
+    /// The threads; `None` if the thread that asked for the picture does all the work. Then a sink gets the parts of a pass at its end.
+    pub(crate) pool: Option<&'a rayon::ThreadPool>,
     pub(crate) progress: &'a dyn Progress,
+}
+
+impl Crew<'_> {
+    /// The number of threads that trace.
+    pub(crate) fn threads(&self) -> usize {
+        self.pool.map_or(1, rayon::ThreadPool::current_num_threads)
+    }
 }
 
 /// What the threads write to.
@@ -225,7 +233,7 @@ impl Turn<'_, '_> {
         let mut broke = false;
         let mut deliver = |sink: &mut dyn Sink| {
             let _stop = StopAtEnd(&stop);
-            let mut running = crew.pool.current_num_threads();
+            let mut running = crew.threads();
             while running > 0 {
                 match receiver.recv() {
                     Ok(Message::Ready(number)) if !broke => {
@@ -248,12 +256,20 @@ impl Turn<'_, '_> {
                 }
             }
         };
-        crew.pool.in_place_scope(|scope| {
-            scope.spawn_broadcast(|_, _| work());
-            if let Some(sink) = sink {
-                deliver(sink);
+        match crew.pool {
+            Some(pool) => pool.in_place_scope(|scope| {
+                scope.spawn_broadcast(|_, _| work());
+                if let Some(sink) = sink {
+                    deliver(sink);
+                }
+            }),
+            None => {
+                work();
+                if let Some(sink) = sink {
+                    deliver(sink);
+                }
             }
-        });
+        }
         let shared = lock(&shared);
         let traced = shared.done.iter().all(|done| *done);
         match traced && (!watched || delivered == of) {

@@ -23,9 +23,13 @@ pub(super) fn common(scene: &RenderScene, settings: &TraceSettings) -> Option<Co
 impl TreeTracer<'_> {
     /// The radiance along a primary ray that hits nothing.
     pub(crate) fn nothing(&mut self, primary: &Ray) -> SampleResult {
-        let branch = Branch::primary(primary, 0, self.eye_media(primary.origin));
+        let eye = self.eye_media(primary.origin);
+        self.put(0, primary, 0, eye);
+        let points = std::mem::take(&mut self.points);
+        let color = self.nothing_along(&points[0].branch);
+        self.points = points;
         SampleResult {
-            color: self.nothing_along(&branch),
+            color,
             first: None,
             depth: 1,
             rays: 1,

@@ -500,9 +500,9 @@ impl Primitive for Terrain {
         }
     }
 
-    fn bare_surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
+    fn store_bare_surface(&self, ray: &Ray, hit: &PrimHit, out: &mut SurfacePoint) {
         let point = self.surface_at(ray, hit);
-        SurfacePoint::bare(point.position, point.position_error, point.n_geom)
+        *out = SurfacePoint::bare(point.position, point.position_error, point.n_geom);
     }
 
     fn as_solid(&self) -> Option<&dyn Solid> {
