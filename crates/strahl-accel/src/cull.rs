@@ -29,7 +29,7 @@ impl CullBounds {
             bounds,
             max_abs,
             near: if max_abs >= SMALLEST_QUICK {
-                (FAR * max_abs) as f32
+                (NEAR * max_abs) as f32
             } else {
                 -1.0
             },
@@ -360,6 +360,10 @@ const SLACK: f64 = 8.0 / (1u64 << 24) as f64;
 
 /// Origins further away than this many times B are moved to the structure.
 const FAR: f64 = 4.0;
+
+/// Origins no further away than this many times B are ordinary for [`QuickLanes`]: boxes grow by at most 12u times that, 5e-5 of B. Many
+/// eyes and lights are further than [`FAR`] from what they look at.
+pub(crate) const NEAR: f64 = 64.0;
 
 /// Rounding errors of a ray that is moved from far away, per |o|: those of the move (a product and a sum per coordinate), and
 /// those that a primitive makes that does not move the ray.

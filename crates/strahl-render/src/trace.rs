@@ -31,7 +31,7 @@ mod spawn;
 mod stages;
 
 pub(crate) use branch::Branch;
-use branch::Node;
+use branch::{Node, Waiting};
 use eye::Eye;
 pub(crate) use eye::Filled;
 pub(crate) use lights::{Aim, Arriving};
@@ -76,7 +76,7 @@ pub struct TreeTracer<'s> {
     /// What the eye is in.
     eye: Eye,
     /// The rays that are still to be traced.
-    waiting: Vec<Branch>,
+    waiting: Waiting,
     /// The rays that were traced; parents come before their children.
     nodes: Vec<Node>,
     /// The light that is gathered at their hits; only as long as needed.
@@ -126,7 +126,7 @@ impl<'s> TreeTracer<'s> {
             transport: Transport::default(),
             media: MediaArena::default(),
             eye: Eye::default(),
-            waiting: Vec::new(),
+            waiting: Waiting::default(),
             nodes: Vec::new(),
             gathered: Vec::new(),
             points: Vec::new(),

@@ -14,15 +14,15 @@ use super::node::{Child, Node, WIDTH};
 use super::nodes::Nodes;
 use super::{Bvh8, Tree};
 use crate::bvh::MAX_DEPTH;
-use crate::cull::CullStart;
+use crate::cull::{CullStart, NEAR};
 use crate::leaf::Leaf;
 use crate::packet::{PACKET, Packet, PacketVisitor, lanes_of};
 use crate::{TraversalStats, Visitor};
 use arrayvec::ArrayVec;
 use hull::{Hull, HullSlabs};
-use lanes::Lanes;
+use lanes::{Filled, Lanes};
 use strahl_math::Interval;
-use strahl_simd::{Isa, dispatch};
+use strahl_simd::{Isa, Portable, dispatch};
 
 impl Bvh8 {
     /// Traverses the hierarchy with all rays of a packet; `false` if it can traverse single rays only, as a compact one.
@@ -66,56 +66,34 @@ impl Tree {
         visitor: &mut V,
         stats: &mut TraversalStats,
     ) {
-        let count = packet.rays.len().min(PACKET);
         let Some(first) = packet.rays.first() else {
             return;
         };
         let mut lanes = Lanes::unused();
         // Planes are taken relative to an origin, so that the common part of the rays' origins does not widen the intervals.
         let o = first.origin;
-        let near = o.abs().max_element() <= 4.0 * self.bounds.max_abs();
+        let near = o.abs().max_element() <= NEAR * self.bounds.max_abs();
         let point = if near {
             o.as_vec3().as_dvec3()
         } else {
             self.bounds.bounds().center()
         };
-        let point = point.as_vec3();
-        if let Some((hull, octant)) = lanes.fill(isa, packet, &self.bounds, point.to_array()) {
-            let walk = Walk {
-                hull: HullSlabs::new(isa, &hull, point.to_array(), octant),
-                octant,
-            };
-            let members = packet.alive();
-            self.walk_together(
-                isa, nodes, &walk, members, &mut lanes, packet, visitor, stats,
-            );
-            return;
-        }
-        let reference = [
-            f64::from(point.x),
-            f64::from(point.y),
-            f64::from(point.z),
-            0.0,
-        ];
-        let mut hulls = [Hull::NOTHING; OCTANTS];
-        let mut members = [0u32; OCTANTS];
-        for (lane, ray) in packet.rays[..count].iter().enumerate() {
-            let range = Interval::new(packet.min, packet.t_max[lane]);
-            if range.max == f64::NEG_INFINITY {
-                continue;
+        let point = point.as_vec3().to_array();
+        let (hulls, members) = match lanes.fill(isa, packet, &self.bounds, point) {
+            Some(Filled::Alike(hull, octant)) => {
+                let walk = Walk {
+                    hull: HullSlabs::new(isa, &hull, point, octant),
+                    octant,
+                };
+                let members = packet.alive();
+                self.walk_together(
+                    isa, nodes, &walk, members, &mut lanes, packet, visitor, stats,
+                );
+                return;
             }
-            let Some(start) = CullStart::new(ray, range, &self.bounds) else {
-                continue;
-            };
-            let constants = start.lanes(isa);
-            let shift = start.relative_to(isa, &reference);
-            let t_min = start.clock.t_min(range.min);
-            lanes.set(lane, &constants, start.clock, range);
-            let octant = constants.down as usize % OCTANTS;
-            hulls[octant].grow(&constants.rd, &shift, t_min);
-            members[octant] |= 1 << lane;
-        }
-        let point = point.to_array();
+            Some(Filled::Mixed(signs)) => lanes.hulls(isa, &signs, packet.alive()),
+            None => self.one_by_one(packet, point, &mut lanes),
+        };
         for octant in 0..OCTANTS {
             if members[octant] != 0 {
                 let walk = Walk {
@@ -134,6 +112,37 @@ impl Tree {
                 );
             }
         }
+    }
+
+    /// Sets the constants of rays of any kind, and returns by octant their hull and which they are.
+    #[cold]
+    #[inline(never)]
+    fn one_by_one(
+        &self,
+        packet: &Packet<'_>,
+        [x, y, z]: [f32; 3],
+        lanes: &mut Lanes,
+    ) -> ([Hull; OCTANTS], [u32; OCTANTS]) {
+        let reference = [f64::from(x), f64::from(y), f64::from(z), 0.0];
+        let mut hulls = [Hull::NOTHING; OCTANTS];
+        let mut members = [0u32; OCTANTS];
+        for (lane, ray) in packet.rays.iter().enumerate().take(PACKET) {
+            let range = Interval::new(packet.min, packet.t_max[lane]);
+            if range.max == f64::NEG_INFINITY {
+                continue;
+            }
+            let Some(start) = CullStart::new(ray, range, &self.bounds) else {
+                continue;
+            };
+            let constants = start.lanes(Portable);
+            let shift = start.relative_to(Portable, &reference);
+            let t_min = start.clock.t_min(range.min);
+            lanes.set(lane, &constants, start.clock, range);
+            let octant = constants.down as usize % OCTANTS;
+            hulls[octant].grow(&constants.rd, &shift, t_min);
+            members[octant] |= 1 << lane;
+        }
+        (hulls, members)
     }
 
     #[inline(always)]

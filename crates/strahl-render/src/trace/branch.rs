@@ -79,6 +79,43 @@ impl Branch {
     }
 }
 
+/// Rays that wait to be traced, the last first.
+///
+/// A ray is put together where it waits, and taken from there: it has more than 200 bytes, and a copy of what has just been stored
+/// waits for the stores.
+#[derive(Debug, Default)]
+pub(super) struct Waiting {
+    places: Vec<Branch>,
+    count: usize,
+}
+
+impl Waiting {
+    pub(super) fn len(&self) -> usize {
+        self.count
+    }
+
+    pub(super) fn clear(&mut self) {
+        self.count = 0;
+    }
+
+    /// The place of one ray more, which has the ray that waited there before.
+    #[inline]
+    pub(super) fn add(&mut self) -> &mut Branch {
+        if self.count == self.places.len() {
+            self.places.push(Branch::NONE);
+        }
+        self.count += 1;
+        &mut self.places[self.count - 1]
+    }
+
+    /// Takes the last ray.
+    #[inline]
+    pub(super) fn take(&mut self) -> Option<&Branch> {
+        self.count = self.count.checked_sub(1)?;
+        self.places.get(self.count)
+    }
+}
+
 /// A branch: a ray sent by a hit.
 pub(super) struct Offshoot {
     pub(super) kind: RayKind,
@@ -126,4 +163,18 @@ pub(super) struct Node {
     pub(super) attenuation: Color,
     /// The light that fog and rainbows in front of the hit add.
     pub(super) fog: Color,
+}
+
+impl Node {
+    /// A place for a node.
+    pub(super) const NONE: Self = Self {
+        parent: 0,
+        kind: RayKind::Primary,
+        local: Color::BLACK,
+        share: Share::ALL,
+        reflected: Color::BLACK,
+        transmitted: Color::BLACK,
+        attenuation: Color::BLACK,
+        fog: Color::BLACK,
+    };
 }

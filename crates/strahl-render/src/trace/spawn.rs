@@ -199,21 +199,20 @@ impl<'s> TreeTracer<'s> {
         };
         let straight = kind == RayKind::Refraction && surface.is_straight();
         let (start, origin) = surface.start(hit, direction);
-        self.waiting.push(Branch {
-            ray: Ray::new(start, direction),
-            origin: Some(origin),
-            kind,
-            class: match kind {
-                RayKind::Refraction if !offshoot.returned => branch.class,
-                _ => RayClass::Secondary,
-            },
-            parent: *node,
-            depth: branch.depth + u32::from(self.settings.straight_counts || !straight),
-            part: offshoot.part,
-            share: offshoot.share,
-            divided: offshoot.divided,
-            weight,
-            media,
-        });
+        let place = self.waiting.add();
+        place.ray = Ray::new(start, direction);
+        place.origin = Some(origin);
+        place.kind = kind;
+        place.class = match kind {
+            RayKind::Refraction if !offshoot.returned => branch.class,
+            _ => RayClass::Secondary,
+        };
+        place.parent = *node;
+        place.depth = branch.depth + u32::from(self.settings.straight_counts || !straight);
+        place.part = offshoot.part;
+        place.share = offshoot.share;
+        place.divided = offshoot.divided;
+        place.weight = weight;
+        place.media = media;
     }
 }

@@ -68,12 +68,12 @@ impl<'s> TreeTracer<'s> {
     fn take(&mut self, width: usize, points: &mut Vec<Point<'s>>) -> usize {
         let mut count = 0;
         while count < width
-            && let Some(next) = self.waiting.pop()
+            && let Some(next) = self.waiting.take()
         {
             if count == points.len() {
                 points.push(Point::unknown(&self.blank));
             }
-            points[count].branch = next;
+            points[count].branch = *next;
             count += 1;
         }
         count
@@ -155,16 +155,11 @@ impl<'s> TreeTracer<'s> {
             let length = hit.map_or(f64::INFINITY, |h| h.t * speed);
             let (attenuation, fog) = self.in_front(branch, length);
             point.node = self.nodes.len() as u32;
-            let mut node = Node {
-                parent: branch.parent,
-                kind: branch.kind,
-                local: Color::BLACK,
-                share: branch.share,
-                reflected: Color::BLACK,
-                transmitted: Color::BLACK,
-                attenuation,
-                fog,
-            };
+            // In place, as other things of this size.
+            self.nodes.push(Node::NONE);
+            let node = &mut self.nodes[point.node as usize];
+            (node.parent, node.kind, node.share) = (branch.parent, branch.kind, branch.share);
+            (node.attenuation, node.fog) = (attenuation, fog);
             match hit {
                 Some(hit) => {
                     self.tracer.slot.enter_for(Phase::Surface, hit.id);
@@ -177,7 +172,6 @@ impl<'s> TreeTracer<'s> {
                 }
                 None => node.local = scene.background.along(branch.ray.direction),
             }
-            self.nodes.push(node);
             if O::ACTIVE && hit.is_none() {
                 let seen = self.nodes[point.node as usize].local;
                 observer.ray(self.ray_report(point, None, Some(seen)));

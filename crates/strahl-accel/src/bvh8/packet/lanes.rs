@@ -5,6 +5,8 @@ use crate::bvh8::node::Node;
 use crate::bvh8::traverse::Slabs;
 use crate::cull::{CullBounds, CullClock, CullLanes, LONGEST_QUICK, MOST_RECIPROCAL, QUICK_SLACK};
 use crate::packet::{PACKET, Packet, lanes_of};
+
+use super::OCTANTS;
 use strahl_math::Interval;
 use strahl_simd::{Isa, Lanes16};
 
@@ -20,6 +22,21 @@ pub(super) struct Lanes {
     /// The upper ends of the ranges.
     far: Lanes16,
     pub(super) clocks: [CullClock; PACKET],
+}
+
+/// Rays that [`Lanes::fill`] has made constants for.
+pub(super) enum Filled<I: Isa> {
+    /// All go in the octant with this number.
+    Alike(Hull, usize),
+    Mixed(Signs<I>),
+}
+
+/// Rays of several octants.
+pub(super) struct Signs<I: Isa> {
+    /// Per axis the rays that go down, as bits.
+    down: [u32; 3],
+    /// Per axis the least and the greatest summand for planes relative to the hull's point.
+    shift: [[I::F32x16; 2]; 3],
 }
 
 /// The factor 20u of the error bound of constants relative to a point.
@@ -40,8 +57,7 @@ impl Lanes {
         }
     }
 
-    /// Computes the constants of all rays at once, side by side in f32, if all are ordinary and go in the same octant; returns
-    /// their hull and that octant.
+    /// Computes the constants of all rays at once, side by side in f32, if all are ordinary.
     ///
     /// They are those of [`crate::cull::QuickLanes`], where the error bound is derived. Planes relative to a point f are crossed at
     /// `(b - f) r + (f - o) r`. In units of u|r| rounding changes the first product by at most 5|b - f| with what the loop adds, the second by
@@ -53,7 +69,7 @@ impl Lanes {
         packet: &Packet<'_>,
         bounds: &CullBounds,
         point: [f32; 3],
-    ) -> Option<(Hull, usize)> {
+    ) -> Option<Filled<I>> {
         let first = packet.rays.get(packet.alive().trailing_zeros() as usize)?;
         let nothing = Lanes16([0.0; PACKET]);
         let (mut origins, mut directions) = ([nothing; 3], [nothing; 3]);
@@ -99,16 +115,12 @@ impl Lanes {
             t_min,
             ..Hull::NOTHING
         };
-        let mut octant = 0;
+        let (mut down, mut shift) = ([0; 3], [[zero; 2]; 3]);
         for axis in 0..3 {
             let o = isa.load_f32x16(&origins[axis]);
             let r = isa.div_f32x16(one, isa.load_f32x16(&directions[axis]));
             let r = isa.max_f32x16(isa.min_f32x16(r, most), least);
-            match isa.lt_f32x16(r, zero) {
-                0 => {}
-                ALL => octant |= 1 << axis,
-                _ => return None,
-            }
+            down[axis] = isa.lt_f32x16(r, zero);
             let (size, distance) = (isa.abs_f32x16(r), isa.abs_f32x16(o));
             let reach = isa.mul_add_f32x16(distance, slack, margin);
             let e = isa.mul_f32x16(size, reach);
@@ -121,14 +133,43 @@ impl Lanes {
             let reach = isa.mul_add_f32x16(distance, relative_slack, isa.splat_f32x16(rest as f32));
             let e = isa.mul_f32x16(size, reach);
             let way = isa.sub_f32x16(isa.splat_f32x16(f), o);
+            shift[axis] = [isa.mul_sub_f32x16(way, r, e), isa.mul_add_f32x16(way, r, e)];
             hull.rd[axis] = [isa.smallest_f32x16(r), isa.largest_f32x16(r)];
             hull.shift[axis] = [
-                isa.smallest_f32x16(isa.mul_sub_f32x16(way, r, e)),
-                isa.largest_f32x16(isa.mul_add_f32x16(way, r, e)),
+                isa.smallest_f32x16(shift[axis][0]),
+                isa.largest_f32x16(shift[axis][1]),
             ];
         }
         self.t_min = Lanes16([t_min; PACKET]);
-        Some((hull, octant))
+        if down.iter().all(|down| *down == 0 || *down == ALL) {
+            let octant = (0..3).fold(0, |octant, axis| octant | (down[axis] as usize & 1) << axis);
+            return Some(Filled::Alike(hull, octant));
+        }
+        Some(Filled::Mixed(Signs { down, shift }))
+    }
+
+    /// By octant the hull of those of some rays that go in it, and these rays.
+    #[inline(always)]
+    pub(super) fn hulls<I: Isa>(
+        &self,
+        isa: I,
+        signs: &Signs<I>,
+        rays: u32,
+    ) -> ([Hull; OCTANTS], [u32; OCTANTS]) {
+        let mut hulls = [Hull::NOTHING; OCTANTS];
+        let mut members = [0; OCTANTS];
+        let [x, y, z] = signs
+            .shift
+            .map(|ends| ends.map(|end| isa.store_f32x16(end)));
+        for lane in lanes_of(rays) {
+            let octant = (0..3).fold(0, |octant, axis| {
+                octant | (signs.down[axis] as usize >> lane & 1) << axis
+            });
+            let shift = [0, 1].map(|end| [x[end].0[lane], y[end].0[lane], z[end].0[lane], 0.0]);
+            hulls[octant].grow(&of_lane(&self.rd, lane), &shift, self.t_min.0[lane]);
+            members[octant] |= 1 << lane;
+        }
+        (hulls, members)
     }
 
     /// Sets the constants of a single ray of any kind.
