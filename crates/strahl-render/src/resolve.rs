@@ -24,15 +24,7 @@ pub(crate) struct Resolved {
 impl Resolved {
     /// Nothing yet.
     pub(crate) const UNKNOWN: Self = Self {
-        point: SurfacePoint {
-            position: DVec3::ZERO,
-            position_error: DVec3::ZERO,
-            n_geom: DVec3::ZERO,
-            n_shade: DVec3::ZERO,
-            uv: DVec2::ZERO,
-            dpdu: DVec3::ZERO,
-            dpdv: DVec3::ZERO,
-        },
+        point: SurfacePoint::UNKNOWN,
         local: None,
         look: Look {
             object: 0,
@@ -87,7 +79,7 @@ impl RenderScene {
         let world = &self.groups[0];
         let prim = world.prim_of(hit.id);
         if matches!(world.prims.at(prim).kind(), PrimKind::Instance(_)) {
-            *out = self.resolve_within(ray, origin, hit, uv);
+            self.resolve_within(ray, origin, hit, uv, out);
             return;
         }
         let element = (hit.id - world.first_id(prim)) as u32;
@@ -113,11 +105,13 @@ impl RenderScene {
         origin: Option<&crate::Origin>,
         hit: &Hit,
         uv: Uv,
-    ) -> Resolved {
-        let at = self.locate(hit.id);
-        let look = at.group.look(at.prim, at.element);
-        let uv = self.wants_uv(&look, uv);
-        let local_ray = match &at.to_world {
+        out: &mut Resolved,
+    ) {
+        let mut made = None;
+        let (at, to_world) = self.locate_with_map(hit.id, &mut made);
+        out.look = at.group.look(at.prim, at.element);
+        let uv = self.wants_uv(&out.look, uv);
+        let local_ray = match to_world {
             None => *ray,
             Some(m) => {
                 let entered = m.ray_to_object(ray);
@@ -130,27 +124,22 @@ impl RenderScene {
                 }
             }
         };
-        let mut point = SurfacePoint::UNKNOWN;
+        let point = &mut out.point;
         at.group
-            .store_surface(at.prim, &local_ray, hit, at.element, uv, &mut point);
-        let local = at.to_world.as_ref().map(|m| {
+            .store_surface(at.prim, &local_ray, hit, at.element, uv, point);
+        out.local = to_world.map(|m| {
             let local = LocalPoint {
                 position: point.position,
                 error: point.position_error,
                 normal: point.n_geom,
             };
-            surface_to_world(m, &mut point);
+            surface_to_world(m, point);
             local
         });
         if uv {
-            point.uv = at.group.texture_uv(at.prim, hit, at.element, &point);
+            point.uv = at.group.texture_uv(at.prim, hit, at.element, point);
         }
-        Resolved {
-            point,
-            local,
-            look,
-            space: at.space,
-        }
+        out.space = at.space;
     }
 
     /// Moves a point to where the texture at a hit is evaluated. Returns the map from the space of the texture to the world; `None` if
@@ -187,11 +176,12 @@ impl RenderScene {
         if self.is_in_world(hit.id) {
             return to_group;
         }
-        let outer = self.locate(hit.id).to_world?;
-        Some(made.insert(match to_group {
-            None => outer,
-            Some(inner) => inner.then(&outer),
-        }))
+        let Some(inner) = to_group else {
+            return self.locate_with_map(hit.id, made).1;
+        };
+        let mut nested = None;
+        let outer = self.locate_with_map(hit.id, &mut nested).1?;
+        Some(made.insert(inner.then(outer)))
     }
 
     /// Whether an element belongs to no instance; the number must come from a hit in this scene.

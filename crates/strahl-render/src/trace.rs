@@ -31,7 +31,7 @@ mod spawn;
 mod stages;
 
 pub(crate) use branch::Branch;
-use branch::{Node, Waiting};
+use branch::{Node, Places};
 use eye::Eye;
 pub(crate) use eye::Filled;
 pub(crate) use lights::{Aim, Arriving};
@@ -76,9 +76,9 @@ pub struct TreeTracer<'s> {
     /// What the eye is in.
     eye: Eye,
     /// The rays that are still to be traced.
-    waiting: Waiting,
+    waiting: Places<Branch>,
     /// The rays that were traced; parents come before their children.
-    nodes: Vec<Node>,
+    nodes: Places<Node>,
     /// The light that is gathered at their hits; only as long as needed.
     gathered: Vec<Color>,
     /// The rays that go through the stages at the moment.
@@ -126,8 +126,8 @@ impl<'s> TreeTracer<'s> {
             transport: Transport::default(),
             media: MediaArena::default(),
             eye: Eye::default(),
-            waiting: Waiting::default(),
-            nodes: Vec::new(),
+            waiting: Places::default(),
+            nodes: Places::default(),
             gathered: Vec::new(),
             points: Vec::new(),
             blank: TexturePaint {

@@ -3,6 +3,7 @@
 use crate::hit::{Origin, RayClass};
 use crate::media::MediaStack;
 use crate::observer::{RayKind, Share};
+use std::ops::{Deref, DerefMut};
 use strahl_math::{DVec3, Ray};
 use strahl_shade::{Color, SpectralPart};
 
@@ -79,40 +80,59 @@ impl Branch {
     }
 }
 
-/// Rays that wait to be traced, the last first.
-///
-/// A ray is put together where it waits, and taken from there: it has more than 200 bytes, and a copy of what has just been stored
-/// waits for the stores.
-#[derive(Debug, Default)]
-pub(super) struct Waiting {
-    places: Vec<Branch>,
+/// A list of large elements whose places are used again: an element is put together where it stays, because a copy of what has just been
+/// stored waits for the stores.
+#[derive(Debug)]
+pub(super) struct Places<T> {
+    list: Vec<T>,
     count: usize,
 }
 
-impl Waiting {
-    pub(super) fn len(&self) -> usize {
-        self.count
+impl<T> Default for Places<T> {
+    fn default() -> Self {
+        Self {
+            list: Vec::new(),
+            count: 0,
+        }
     }
+}
 
+impl<T: Clone> Places<T> {
     pub(super) fn clear(&mut self) {
         self.count = 0;
     }
 
-    /// The place of one ray more, which has the ray that waited there before.
+    /// The place of one element more. It has the element that was there before, or `first`.
     #[inline]
-    pub(super) fn add(&mut self) -> &mut Branch {
-        if self.count == self.places.len() {
-            self.places.push(Branch::NONE);
+    pub(super) fn add(&mut self, first: &T) -> &mut T {
+        if self.count == self.list.len() {
+            self.list.push(first.clone());
         }
         self.count += 1;
-        &mut self.places[self.count - 1]
+        &mut self.list[self.count - 1]
     }
 
-    /// Takes the last ray.
+    /// Takes the last element.
     #[inline]
-    pub(super) fn take(&mut self) -> Option<&Branch> {
+    pub(super) fn take(&mut self) -> Option<&T> {
         self.count = self.count.checked_sub(1)?;
-        self.places.get(self.count)
+        self.list.get(self.count)
+    }
+}
+
+impl<T> Deref for Places<T> {
+    type Target = [T];
+
+    #[inline]
+    fn deref(&self) -> &[T] {
+        &self.list[..self.count]
+    }
+}
+
+impl<T> DerefMut for Places<T> {
+    #[inline]
+    fn deref_mut(&mut self) -> &mut [T] {
+        &mut self.list[..self.count]
     }
 }
 

@@ -199,7 +199,7 @@ impl<'s> TreeTracer<'s> {
         };
         let straight = kind == RayKind::Refraction && surface.is_straight();
         let (start, origin) = surface.start(hit, direction);
-        let place = self.waiting.add();
+        let place = self.waiting.add(&Branch::NONE);
         place.ray = Ray::new(start, direction);
         place.origin = Some(origin);
         place.kind = kind;

@@ -155,11 +155,11 @@ impl<'s> TreeTracer<'s> {
             let length = hit.map_or(f64::INFINITY, |h| h.t * speed);
             let (attenuation, fog) = self.in_front(branch, length);
             point.node = self.nodes.len() as u32;
-            // In place, as other things of this size.
-            self.nodes.push(Node::NONE);
-            let node = &mut self.nodes[point.node as usize];
+            let node = self.nodes.add(&Node::NONE);
             (node.parent, node.kind, node.share) = (branch.parent, branch.kind, branch.share);
             (node.attenuation, node.fog) = (attenuation, fog);
+            (node.local, node.reflected, node.transmitted) =
+                (Color::BLACK, Color::BLACK, Color::BLACK);
             match hit {
                 Some(hit) => {
                     self.tracer.slot.enter_for(Phase::Surface, hit.id);
