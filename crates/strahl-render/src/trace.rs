@@ -27,16 +27,18 @@ mod outcome;
 mod path;
 mod point;
 mod settings;
+mod slots;
 mod spawn;
 mod stages;
 
 pub(crate) use branch::Branch;
-use branch::{Node, Places};
+use branch::Node;
 use eye::Eye;
 pub(crate) use eye::Filled;
 pub(crate) use lights::{Aim, Arriving};
 use point::Lanes;
 pub(crate) use point::Point;
+use slots::Slots;
 pub(crate) use stages::FEW;
 
 pub use outcome::{FirstHit, RayCounts, SampleResult};
@@ -76,9 +78,9 @@ pub struct TreeTracer<'s> {
     /// What the eye is in.
     eye: Eye,
     /// The rays that are still to be traced.
-    waiting: Places<Branch>,
+    waiting: Slots<Branch>,
     /// The rays that were traced; parents come before their children.
-    nodes: Places<Node>,
+    nodes: Slots<Node>,
     /// The light that is gathered at their hits; only as long as needed.
     gathered: Vec<Color>,
     /// The rays that go through the stages at the moment.
@@ -126,8 +128,8 @@ impl<'s> TreeTracer<'s> {
             transport: Transport::default(),
             media: MediaArena::default(),
             eye: Eye::default(),
-            waiting: Places::default(),
-            nodes: Places::default(),
+            waiting: Slots::default(),
+            nodes: Slots::default(),
             gathered: Vec::new(),
             points: Vec::new(),
             blank: TexturePaint {

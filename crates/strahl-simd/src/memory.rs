@@ -151,7 +151,8 @@ impl Bounded {
         {
             end(Refusal {
                 asked,
-                used: self.used(),
+                // With what this thread counts by itself, so that the sum is above the limit if that is the reason.
+                used: self.used().saturating_add_signed(UNTOLD.get()),
                 limit: self.limit.load(Ordering::Relaxed),
             })
         }

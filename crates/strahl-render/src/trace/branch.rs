@@ -3,7 +3,6 @@
 use crate::hit::{Origin, RayClass};
 use crate::media::MediaStack;
 use crate::observer::{RayKind, Share};
-use std::ops::{Deref, DerefMut};
 use strahl_math::{DVec3, Ray};
 use strahl_shade::{Color, SpectralPart};
 
@@ -77,62 +76,6 @@ impl Branch {
         (*part, *divided) = (none.part, none.divided);
         (*weight, *share) = (none.weight, none.share);
         (*parent, *media) = (number, eye);
-    }
-}
-
-/// A list of large elements whose places are used again: an element is put together where it stays, because a copy of what has just been
-/// stored waits for the stores.
-#[derive(Debug)]
-pub(super) struct Places<T> {
-    list: Vec<T>,
-    count: usize,
-}
-
-impl<T> Default for Places<T> {
-    fn default() -> Self {
-        Self {
-            list: Vec::new(),
-            count: 0,
-        }
-    }
-}
-
-impl<T: Clone> Places<T> {
-    pub(super) fn clear(&mut self) {
-        self.count = 0;
-    }
-
-    /// The place of one element more. It has the element that was there before, or `first`.
-    #[inline]
-    pub(super) fn add(&mut self, first: &T) -> &mut T {
-        if self.count == self.list.len() {
-            self.list.push(first.clone());
-        }
-        self.count += 1;
-        &mut self.list[self.count - 1]
-    }
-
-    /// Takes the last element.
-    #[inline]
-    pub(super) fn take(&mut self) -> Option<&T> {
-        self.count = self.count.checked_sub(1)?;
-        self.list.get(self.count)
-    }
-}
-
-impl<T> Deref for Places<T> {
-    type Target = [T];
-
-    #[inline]
-    fn deref(&self) -> &[T] {
-        &self.list[..self.count]
-    }
-}
-
-impl<T> DerefMut for Places<T> {
-    #[inline]
-    fn deref_mut(&mut self) -> &mut [T] {
-        &mut self.list[..self.count]
     }
 }
 
