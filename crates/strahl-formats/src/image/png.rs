@@ -11,9 +11,6 @@ use super::{BitDepth, Picture, WriteOptions};
 /// Offset of the picture on a page, a chunk of the PNG extensions 1.5: a region's place in the full picture.
 const OFFSET_CHUNK: ChunkType = ChunkType(*b"oFFs");
 
-/// Pictures of so many pixels are compressed at once.
-const WHOLE: usize = 1 << 21;
-
 /// The level of deflate, `1..=9`. Level 2 takes a third of the time of zlib's default, 6; grainy pictures grow by a tenth, clean ones
 /// by a quarter.
 const COMPRESSION: u8 = 2;
@@ -70,20 +67,14 @@ fn encode_png(
     };
     let rows = picture.rgb.chunks_exact(width).enumerate();
     let mut codes = Vec::new();
-    if picture.rgb.len() <= WHOLE {
-        // At once: the compressor clears its buffer for each piece that it gets.
-        rows.for_each(|(y, row)| push_row(y, row, &mut codes));
-        writer.write_image_data(&codes)?;
-    } else {
-        // Row by row: the codes of a large picture need no memory of their own.
-        let mut out = writer.stream_writer()?;
-        for (y, row) in rows {
-            codes.clear();
-            push_row(y, row, &mut codes);
-            out.write_all(&codes)?;
-        }
-        out.finish()?;
+    // Row by row: the codes of a large picture need no memory of their own.
+    let mut out = writer.stream_writer()?;
+    for (y, row) in rows {
+        codes.clear();
+        push_row(y, row, &mut codes);
+        out.write_all(&codes)?;
     }
+    out.finish()?;
     writer.finish()
 }
 
