@@ -94,15 +94,15 @@ impl Bounded {
 
     #[cold]
     fn exceeds_true_limit(&self, used: usize) -> bool {
-        if self.preliminary.load(Ordering::Relaxed)
+        if self.preliminary.load(Ordering::Acquire)
             && let Some(find) = self.find.get()
         {
             EXEMPT.set(true);
             let limit = find();
             EXEMPT.set(false);
-            // Several threads may come here at once, with the same result.
+            // Several threads may come here at once, with the same result. Who sees that the limit is no longer preliminary sees it, too.
             self.limit.store(limit, Ordering::Relaxed);
-            self.preliminary.store(false, Ordering::Relaxed);
+            self.preliminary.store(false, Ordering::Release);
         }
         used > self.limit.load(Ordering::Relaxed)
     }

@@ -91,7 +91,7 @@ impl Tree {
                 );
                 return;
             }
-            Some(Filled::Mixed(signs)) => lanes.hulls(isa, &signs, packet.alive()),
+            Some(Filled::Mixed(directions)) => lanes.hulls(isa, &directions, packet.alive()),
             None => self.one_by_one(packet, point, &mut lanes),
         };
         for octant in 0..OCTANTS {

@@ -246,9 +246,10 @@ impl Csg {
 
     fn store_surface(&self, ray: &Ray, hit: &PrimHit, bare: bool, out: &mut SurfacePoint) {
         let (leaf, _) = self.leaf_of(hit.surface.element);
-        // A compiled tree has a leaf.
-        if let Some(leaf) = self.leaves.get(leaf) {
-            leaf.store_surface(ray, hit, bare, out);
+        match self.leaves.get(leaf) {
+            Some(leaf) => leaf.store_surface(ray, hit, bare, out),
+            // A compiled tree has a leaf.
+            None => *out = SurfacePoint::bare(ray.at(hit.t), DVec3::ZERO, DVec3::Z),
         }
     }
 

@@ -231,7 +231,10 @@ impl Turn<'_, '_> {
             }
         };
         let mut broke = false;
-        let mut deliver = |sink: &mut dyn Sink| {
+        let mut deliver = |sink: Option<&mut (dyn Sink + '_)>| {
+            let Some(sink) = sink else {
+                return;
+            };
             let _stop = StopAtEnd(&stop);
             let mut running = crew.threads();
             while running > 0 {
@@ -259,15 +262,11 @@ impl Turn<'_, '_> {
         match crew.pool {
             Some(pool) => pool.in_place_scope(|scope| {
                 scope.spawn_broadcast(|_, _| work());
-                if let Some(sink) = sink {
-                    deliver(sink);
-                }
+                deliver(sink);
             }),
             None => {
                 work();
-                if let Some(sink) = sink {
-                    deliver(sink);
-                }
+                deliver(sink);
             }
         }
         let shared = lock(&shared);

@@ -199,20 +199,28 @@ impl<'s> TreeTracer<'s> {
         };
         let straight = kind == RayKind::Refraction && surface.is_straight();
         let (start, origin) = surface.start(hit, direction);
-        let place = self.waiting.add(&Branch::NONE);
-        place.ray = Ray::new(start, direction);
-        place.origin = Some(origin);
-        place.kind = kind;
-        place.class = match kind {
+        let class_here = match kind {
             RayKind::Refraction if !offshoot.returned => branch.class,
             _ => RayClass::Secondary,
         };
-        place.parent = *node;
-        place.depth = branch.depth + u32::from(self.settings.straight_counts || !straight);
-        place.part = offshoot.part;
-        place.share = offshoot.share;
-        place.divided = offshoot.divided;
-        place.weight = weight;
-        place.media = media;
+        let depth_here = branch.depth + u32::from(self.settings.straight_counts || !straight);
+        // Field by field, and all of them: the slot has another ray.
+        let Branch {
+            ray,
+            origin: from,
+            kind: of_kind,
+            class,
+            parent,
+            depth,
+            part,
+            divided,
+            weight: with_weight,
+            share,
+            media: within,
+        } = self.waiting.add(&Branch::NONE);
+        (*ray, *from) = (Ray::new(start, direction), Some(origin));
+        (*of_kind, *class, *parent, *depth) = (kind, class_here, *node, depth_here);
+        (*part, *divided) = (offshoot.part, offshoot.divided);
+        (*with_weight, *share, *within) = (weight, offshoot.share, media);
     }
 }

@@ -155,11 +155,20 @@ impl<'s> TreeTracer<'s> {
             let length = hit.map_or(f64::INFINITY, |h| h.t * speed);
             let (attenuation, fog) = self.in_front(branch, length);
             point.node = self.nodes.len() as u32;
-            let node = self.nodes.add(&Node::NONE);
-            (node.parent, node.kind, node.share) = (branch.parent, branch.kind, branch.share);
-            (node.attenuation, node.fog) = (attenuation, fog);
-            (node.local, node.reflected, node.transmitted) =
-                (Color::BLACK, Color::BLACK, Color::BLACK);
+            // Field by field, and all of them: the slot has another node.
+            let Node {
+                parent,
+                kind,
+                local,
+                share,
+                reflected,
+                transmitted,
+                attenuation: keeps,
+                fog: adds,
+            } = self.nodes.add(&Node::NONE);
+            (*parent, *kind, *share) = (branch.parent, branch.kind, branch.share);
+            (*local, *reflected, *transmitted) = (Color::BLACK, Color::BLACK, Color::BLACK);
+            (*keeps, *adds) = (attenuation, fog);
             match hit {
                 Some(hit) => {
                     self.tracer.slot.enter_for(Phase::Surface, hit.id);
@@ -170,7 +179,7 @@ impl<'s> TreeTracer<'s> {
                         .find_sides(scene, branch, per_speed, hit, &self.media);
                     lanes.push(lane);
                 }
-                None => node.local = scene.background.along(branch.ray.direction),
+                None => *local = scene.background.along(branch.ray.direction),
             }
             if O::ACTIVE && hit.is_none() {
                 let seen = self.nodes[point.node as usize].local;

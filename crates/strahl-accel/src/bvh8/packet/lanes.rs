@@ -1,12 +1,11 @@
 //! The constants of the rays of a packet side by side, and the test of one child of a node against all of them.
 
+use super::OCTANTS;
 use super::hull::Hull;
 use crate::bvh8::node::Node;
 use crate::bvh8::traverse::Slabs;
 use crate::cull::{CullBounds, CullClock, CullLanes, LONGEST_QUICK, MOST_RECIPROCAL, QUICK_SLACK};
 use crate::packet::{PACKET, Packet, lanes_of};
-
-use super::OCTANTS;
 use strahl_math::Interval;
 use strahl_simd::{Isa, Lanes16};
 
@@ -26,13 +25,14 @@ pub(super) struct Lanes {
 
 /// Rays that [`Lanes::fill`] has made constants for.
 pub(super) enum Filled<I: Isa> {
-    /// All go in the octant with this number.
+    /// All go in the octant with this number, and have this hull.
     Alike(Hull, usize),
-    Mixed(Signs<I>),
+    /// They go in several octants; [`Lanes::hulls`] finds the hull of each.
+    Mixed(Directions<I>),
 }
 
-/// Rays of several octants.
-pub(super) struct Signs<I: Isa> {
+/// The octants of rays, and what is needed for their hulls.
+pub(super) struct Directions<I: Isa> {
     /// Per axis the rays that go down, as bits.
     down: [u32; 3],
     /// Per axis the least and the greatest summand for planes relative to the hull's point.
@@ -57,7 +57,7 @@ impl Lanes {
         }
     }
 
-    /// Computes the constants of all rays at once, side by side in f32, if all are ordinary.
+    /// Computes the constants of all rays at once, side by side in f32; `None` if a ray is not ordinary, as [`crate::cull::QuickLanes`] has it.
     ///
     /// They are those of [`crate::cull::QuickLanes`], where the error bound is derived. Planes relative to a point f are crossed at
     /// `(b - f) r + (f - o) r`. In units of u|r| rounding changes the first product by at most 5|b - f| with what the loop adds, the second by
@@ -145,7 +145,7 @@ impl Lanes {
             let octant = (0..3).fold(0, |octant, axis| octant | (down[axis] as usize & 1) << axis);
             return Some(Filled::Alike(hull, octant));
         }
-        Some(Filled::Mixed(Signs { down, shift }))
+        Some(Filled::Mixed(Directions { down, shift }))
     }
 
     /// By octant the hull of those of some rays that go in it, and these rays.
@@ -153,17 +153,17 @@ impl Lanes {
     pub(super) fn hulls<I: Isa>(
         &self,
         isa: I,
-        signs: &Signs<I>,
+        directions: &Directions<I>,
         rays: u32,
     ) -> ([Hull; OCTANTS], [u32; OCTANTS]) {
         let mut hulls = [Hull::NOTHING; OCTANTS];
         let mut members = [0; OCTANTS];
-        let [x, y, z] = signs
+        let [x, y, z] = directions
             .shift
             .map(|ends| ends.map(|end| isa.store_f32x16(end)));
         for lane in lanes_of(rays) {
             let octant = (0..3).fold(0, |octant, axis| {
-                octant | (signs.down[axis] as usize >> lane & 1) << axis
+                octant | (directions.down[axis] as usize >> lane & 1) << axis
             });
             let shift = [0, 1].map(|end| [x[end].0[lane], y[end].0[lane], z[end].0[lane], 0.0]);
             hulls[octant].grow(&of_lane(&self.rd, lane), &shift, self.t_min.0[lane]);
