@@ -24,11 +24,11 @@ impl<const ANY: bool, V: Visitor> PacketVisitor for Lanes<ANY, V> {
     }
 }
 
-/// Rays that start at one point, or have one direction, or have little in common.
+/// Rays that start at one point, to one side or to all sides, or have one direction, or have little in common.
 fn together(rng: &mut Rng, boxes: &[Aabb], offset: DVec3, scale: f64) -> Vec<Ray> {
     let first = ray(rng, boxes, offset, scale);
     let size = [1e-9, 1e-3, 0.1][rng.below(3)];
-    let kind = rng.below(4);
+    let kind = rng.below(5);
     let count = 1 + rng.below(PACKET);
     let mut rays = vec![first];
     while rays.len() < count {
@@ -41,6 +41,7 @@ fn together(rng: &mut Rng, boxes: &[Aabb], offset: DVec3, scale: f64) -> Vec<Ray
             ),
             1 => Ray::new(first.origin + aside * scale, first.direction),
             2 => Ray::new(other.origin, first.direction),
+            3 => Ray::new(first.origin, offset + rng.point() * scale - first.origin),
             _ => other,
         });
     }

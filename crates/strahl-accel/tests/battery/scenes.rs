@@ -79,7 +79,7 @@ pub(crate) fn ray(rng: &mut Rng, boxes: &[Aabb], offset: DVec3, scale: f64) -> R
         2 => b.center(),
         _ => offset + rng.point() * scale,
     };
-    let distance = [1e-3, 1.0, 3.0, 1e3, 1e6, 1e12][rng.below(6)];
+    let distance = [1e-3, 1.0, 3.0, 30.0, 1e3, 1e6, 1e12][rng.below(7)];
     let mut origin = target + rng.point() * (scale * distance);
     if rng.below(8) == 0 {
         origin = b.corners()[rng.below(8)];
