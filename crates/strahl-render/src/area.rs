@@ -121,15 +121,49 @@ impl AreaQuery<'_> {
     }
 }
 
-/// A point of the grid, as a lit point sees it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Seen {
-    /// Nobody needs it so far.
-    Unknown,
-    /// Its shadow ray is to be traced.
-    Wanted,
-    /// The share of its light that arrives.
-    Visible(Color),
+/// What is known of the grids of a few lit points, one after the other.
+#[derive(Debug, Default)]
+struct Grids {
+    /// The points of a grid.
+    size: usize,
+    /// Whether a point is needed. Nothing else is cleared: an adaptive light needs a few of many points.
+    needed: Vec<bool>,
+    /// The share of the light of a needed point that arrives, once its shadow ray is traced.
+    visible: Vec<Color>,
+}
+
+impl Grids {
+    /// So many grids of so many points, of which nothing is known.
+    fn clear(&mut self, count: usize, size: usize) {
+        self.size = size;
+        self.needed.clear();
+        self.needed.resize(size * count, false);
+        if self.visible.len() < size * count {
+            self.visible.resize(size * count, Color::BLACK);
+        }
+    }
+
+    /// The colours of the corners of a cell, as a lit point sees them; they are known.
+    #[inline(always)]
+    fn corner_colors(&self, area: &AreaLight, lit: usize, cell: &Cell) -> [Color; 4] {
+        let grid = &self.visible[lit * self.size..][..self.size];
+        let corners = cell.corners(area);
+        [0, 1, 2, 3].map(|k| grid[corners[k]])
+    }
+
+    /// The mean over a cell, whose points are known as far as they are needed: of its four corners, or of its four quarters if the corners
+    /// differ too much. The depth of the recursion is the logarithm of [`AreaLight::MAX_SIZE`].
+    fn mean_of(&self, area: &AreaLight, lit: usize, cell: Cell) -> Color {
+        let quarters = cell.quarters();
+        if quarters.is_none() || !cell.is_coarse(area) {
+            let corners = self.corner_colors(area, lit, &cell);
+            if quarters.is_none() || !differ(&corners) {
+                return mean(corners);
+            }
+        }
+        let quarters = quarters.unwrap_or([cell; 4]);
+        mean(quarters.map(|quarter| self.mean_of(area, lit, quarter)))
+    }
 }
 
 /// A point of the grid that a lit point needs.
@@ -151,26 +185,13 @@ pub(crate) struct Part {
 /// The working memory of area lights.
 #[derive(Debug, Default)]
 pub(crate) struct AreaMemory {
-    /// What is known of the grids of a few lit points, one after the other.
-    grids: Vec<Seen>,
+    grids: Grids,
     /// The parts of this round, and of the next one.
     parts: Vec<Part>,
     next: Vec<Part>,
     /// The points of this round.
     wanted: Vec<Wanted>,
     in_turn: Vec<Wanted>,
-}
-
-/// The colours of the corners of a cell, which are known.
-#[inline(always)]
-fn corner_colors(area: &AreaLight, grid: &[Seen], cell: &Cell) -> [Color; 4] {
-    let (mut colors, corners) = ([Color::BLACK; 4], cell.corners(area));
-    for k in 0..4 {
-        if let Some(Seen::Visible(color)) = grid.get(corners[k]) {
-            colors[k] = *color;
-        }
-    }
-    colors
 }
 
 /// Whether the corners of a cell differ so much that it is divided.
@@ -180,20 +201,6 @@ fn differ(corners: &[Color; 4]) -> bool {
         difference.map(f64::abs).max_component() > THRESHOLD
     };
     corners.iter().any(differs)
-}
-
-/// The mean over a cell, whose points are known as far as they are needed: of its four corners, or of its four quarters if the corners
-/// differ too much. The depth of the recursion is the logarithm of [`AreaLight::MAX_SIZE`].
-fn mean_of(area: &AreaLight, grid: &[Seen], cell: Cell) -> Color {
-    let quarters = cell.quarters();
-    if quarters.is_none() || !cell.is_coarse(area) {
-        let corners = corner_colors(area, grid, &cell);
-        if quarters.is_none() || !differ(&corners) {
-            return mean(corners);
-        }
-    }
-    let quarters = quarters.unwrap_or([cell; 4]);
-    mean(quarters.map(|quarter| mean_of(area, grid, quarter)))
 }
 
 impl<'s> TreeTracer<'s> {
@@ -225,9 +232,8 @@ impl<'s> TreeTracer<'s> {
                 }
             }));
             let mut memory = std::mem::take(&mut self.area_memory);
-            memory.grids.clear();
-            memory.grids.resize(size * few.len(), Seen::Unknown);
-            self.area_rays(&queries, size, &mut memory, few, observer);
+            memory.grids.clear(few.len(), size);
+            self.area_rays(&queries, &mut memory, few, observer);
             self.area_memory = memory;
             if area.illumination {
                 let lit = few.iter_mut().zip(&queries);
@@ -242,11 +248,10 @@ impl<'s> TreeTracer<'s> {
         }
     }
 
-    /// Traces the shadow rays of lit points, whose grids have `size` points, in rounds.
+    /// Traces the shadow rays of lit points in rounds.
     fn area_rays<O: TraceObserver>(
         &mut self,
         queries: &[AreaQuery<'_>],
-        size: usize,
         memory: &mut AreaMemory,
         arriving: &mut [Arriving],
         observer: &mut O,
@@ -271,10 +276,9 @@ impl<'s> TreeTracer<'s> {
         while !parts.is_empty() {
             wanted.clear();
             for Part { lit, cell } in &*parts {
-                let grid = &mut grids[*lit as usize * size..][..size];
+                let needed = &mut grids.needed[*lit as usize * grids.size..][..grids.size];
                 for index in cell.corners(area) {
-                    if grid[index] == Seen::Unknown {
-                        grid[index] = Seen::Wanted;
+                    if !std::mem::replace(&mut needed[index], true) {
                         arriving[*lit as usize].shadow_rays += 1;
                         let index = index as u32;
                         wanted.push(Wanted { lit: *lit, index });
@@ -287,13 +291,12 @@ impl<'s> TreeTracer<'s> {
             }
             is_first = false;
             for few in wanted.chunks(PACKET) {
-                self.area_packet(queries, few, size, grids, observer);
+                self.area_packet(queries, few, grids, observer);
             }
             next.clear();
             for Part { lit, cell } in &*parts {
-                let grid = &grids[*lit as usize * size..][..size];
                 if let Some(quarters) = cell.quarters()
-                    && differ(&corner_colors(area, grid, cell))
+                    && differ(&grids.corner_colors(area, *lit as usize, cell))
                 {
                     next.extend(quarters.map(|cell| Part { lit: *lit, cell }));
                 }
@@ -302,8 +305,7 @@ impl<'s> TreeTracer<'s> {
         }
         for (lit, one) in arriving.iter_mut().enumerate() {
             if !one.sample.range.is_empty() {
-                let grid = &grids[lit * size..][..size];
-                one.visible = mean_of(area, grid, Cell::whole(area));
+                one.visible = grids.mean_of(area, lit, Cell::whole(area));
             }
         }
     }
@@ -313,8 +315,7 @@ impl<'s> TreeTracer<'s> {
         &mut self,
         queries: &[AreaQuery<'_>],
         wanted: &[Wanted],
-        size: usize,
-        grids: &mut [Seen],
+        grids: &mut Grids,
         observer: &mut O,
     ) {
         let Some(light) = queries.first().map(|query| query.number) else {
@@ -345,8 +346,8 @@ impl<'s> TreeTracer<'s> {
                 let report = self.shadow_report(aim, light);
                 observer.area_shadow(aim.point.node, light as u32, report);
             }
-            let place = wanted.lit as usize * size + wanted.index as usize;
-            grids[place] = Seen::Visible(shadow.visible);
+            let place = wanted.lit as usize * grids.size + wanted.index as usize;
+            grids.visible[place] = shadow.visible;
         }
     }
 

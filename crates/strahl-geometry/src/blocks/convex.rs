@@ -72,7 +72,7 @@ pub(crate) fn scaled<I: Isa>(isa: I, v: [I::F64x4; 3], by: I::F64x4) -> [I::F64x
 
 /// A matrix times vectors, with the products added in the order of the scalar code.
 #[inline(always)]
-fn mapped<I: Isa>(isa: I, m: DMat3, [x, y, z]: [I::F64x4; 3]) -> [I::F64x4; 3] {
+pub(crate) fn mapped<I: Isa>(isa: I, m: DMat3, [x, y, z]: [I::F64x4; 3]) -> [I::F64x4; 3] {
     let (a, b, c) = (m.x_axis, m.y_axis, m.z_axis);
     [
         row(isa, [a.x, b.x, c.x], x, y, z),
@@ -180,11 +180,15 @@ pub(crate) trait FourLines {
 pub struct PacketSpans([FourSpans; GROUPS]);
 
 impl PacketSpans {
-    /// Whether there is such a search for a shape: for boxes, cylinders, cones, convex superellipsoids and small intersections of convex solids.
+    /// Whether there is such a search for a shape: for spheres, boxes, cylinders, cones, quadrics, convex superellipsoids and small intersections of convex solids.
     #[inline]
     pub fn know(shape: &Shape) -> bool {
         match shape {
-            Shape::Cuboid(_) | Shape::Cylinder(_) | Shape::Cone(_) => true,
+            Shape::Sphere(_)
+            | Shape::Cuboid(_)
+            | Shape::Cylinder(_)
+            | Shape::Cone(_)
+            | Shape::Quadric(_) => true,
             Shape::Superellipsoid(body) => body.is_convex(),
             Shape::Csg(csg) => csg.has_four_spans(),
             _ => false,
@@ -207,9 +211,11 @@ impl PacketSpans {
         lanes: u32,
     ) {
         match shape {
+            Shape::Sphere(solid) => self.find_of(simd, solid, rays, map, lanes),
             Shape::Cuboid(solid) => self.find_of(simd, solid, rays, map, lanes),
             Shape::Cylinder(solid) => self.find_of(simd, solid.frustum(), rays, map, lanes),
             Shape::Cone(solid) => self.find_of(simd, solid.frustum(), rays, map, lanes),
+            Shape::Quadric(solid) => self.find_of(simd, &**solid, rays, map, lanes),
             Shape::Superellipsoid(body) if body.is_convex() => {
                 self.find_of(simd, body, rays, map, lanes);
             }
@@ -280,7 +286,7 @@ impl PacketSpans {
 mod tests {
     use super::*;
     use crate::conformance::Random;
-    use crate::{Cone, Cuboid, Cylinder, Primitive, Scratch, Superellipsoid};
+    use crate::{Cone, Cuboid, Cylinder, Primitive, Quadric, Scratch, Sphere, Superellipsoid};
 
     /// Rays at a solid: from everywhere, at its rims, along its axes, and some that are no numbers.
     fn rays(random: &mut Random, center: DVec3) -> Vec<Ray> {
@@ -304,6 +310,19 @@ mod tests {
             .collect()
     }
 
+    /// A quadric of any kind; some of its coefficients are zero.
+    fn quadric(random: &mut Random) -> Quadric {
+        let mut coefficients = [0.0; 10];
+        for coefficient in &mut coefficients {
+            *coefficient = match random.below(3) {
+                0 => 0.0,
+                1 => (4.0 * random.unit()).round() - 2.0,
+                _ => 2.0 * random.unit() - 1.0,
+            };
+        }
+        Quadric::new(coefficients)
+    }
+
     #[test]
     fn packets_hit_what_single_rays_hit() {
         let mut random = Random::new(5);
@@ -311,12 +330,14 @@ mod tests {
         for round in 0..4000 {
             let center = DVec3::new(random.unit(), random.unit(), random.unit());
             let top = center + DVec3::new(random.unit() - 0.5, 1.0, random.unit() - 0.5);
-            let shapes: [Shape; 9] = [
+            let shapes: [Shape; 11] = [
+                Sphere::new(center, 0.6).into(),
                 Cuboid::from_corners(center - DVec3::splat(0.5), top).into(),
                 Cylinder::new(center - DVec3::Y, top, 0.4).into(),
                 Cylinder::open(center - DVec3::Y, top, 0.4).into(),
                 Cone::new(center - DVec3::Y, 0.7, top, 0.1).into(),
                 Cone::open(center - DVec3::Y, 0.0, top, 0.8).into(),
+                quadric(&mut random).into(),
                 Superellipsoid::new(0.3, 0.2).into(),
                 Superellipsoid::new(1.0, 0.5 + random.unit()).into(),
                 Superellipsoid::new(2.0, 1.0).into(),

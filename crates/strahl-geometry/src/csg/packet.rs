@@ -1,4 +1,4 @@
-//! Intersections of convex solids and the rays of a packet: four rays side by side, as [`one_span`](super::one_span) does it with one.
+//! Intersections of convex solids and quadrics and the rays of a packet: four rays side by side, as [`one_span`](super::one_span) does it with one.
 //!
 //! The kernel answers only where it is certain. Where crossings could coincide, or where a ray is past the beginning of a span with holes, the search
 //! with one ray decides.
@@ -15,7 +15,7 @@ use arrayvec::ArrayVec;
 use strahl_math::Interval;
 use strahl_simd::Isa;
 
-/// The operands of an intersection of convex solids and complements of such.
+/// The operands of an intersection of convex solids, quadrics and complements of such.
 #[derive(Clone, Debug)]
 pub(super) struct Convex {
     /// The leaves' numbers, complements last.
@@ -25,9 +25,9 @@ pub(super) struct Convex {
 }
 
 impl Convex {
-    /// The operands among these leaves; `None` if one is neither a convex solid nor the complement of one.
+    /// The operands among these leaves; `None` if one is neither a convex solid or a quadric nor the complement of one.
     pub(super) fn of(leaves: &[Leaf]) -> Option<Self> {
-        if !leaves.iter().all(Leaf::is_convex) {
+        if !leaves.iter().all(Leaf::has_stays) {
             return None;
         }
         let mut order = ArrayVec::<u32, MOST>::new();
@@ -319,7 +319,7 @@ impl<I: Isa> Ends<I> {
 }
 
 impl Leaf {
-    /// Where four lines that don't start on the shape are inside of it, if it is convex.
+    /// Where four lines that don't start on the shape are inside of it, if that is one span.
     #[inline(always)]
     fn four_spans<I: Isa>(&self, isa: I, rays: &FourRays<I>) -> FourSpans {
         let placed;
@@ -336,6 +336,12 @@ impl Leaf {
             Shape::Cylinder(solid) => solid.frustum().spans(isa, rays),
             Shape::Cone(solid) => solid.frustum().spans(isa, rays),
             Shape::Plane(solid) => solid.spans(isa, rays),
+            Shape::Quadric(solid) => {
+                let (mut spans, inside_between) = solid.four_roots(isa, rays);
+                spans.known &= inside_between;
+                spans.met &= inside_between;
+                spans
+            }
             _ => FourSpans::default(),
         }
     }
@@ -347,7 +353,7 @@ mod tests {
     use super::*;
     use crate::blocks::{PacketRays, PacketSpans};
     use crate::conformance::Random;
-    use crate::{Cone, Cuboid, Cylinder, Plane, Primitive, Scratch, Sphere};
+    use crate::{Cone, Cuboid, Cylinder, Plane, Primitive, Quadric, Scratch, Sphere};
     use std::sync::Arc;
     use strahl_accel::PACKET;
     use strahl_math::{DVec3, Ray, Transform};
@@ -362,12 +368,14 @@ mod tests {
         let center = DVec3::new(number(-0.6, 0.6), number(-0.6, 0.6), number(-0.6, 0.6));
         let size = number(0.5, 1.4);
         let top = center + DVec3::new(0.0, number(0.5, 1.5), 0.0);
-        let shape: Shape = match (random.below(5), lattice) {
+        let shape: Shape = match (random.below(7), lattice) {
             (0, _) => Cuboid::new(center - DVec3::splat(size), center + DVec3::splat(size)).into(),
             (1, _) => Cylinder::new(center, top, size).into(),
             (2, _) => Cone::new(center, size, top, 0.5).into(),
             (3, true) => Plane::new(center, DVec3::Y).into(),
             (3, false) => Plane::new(center, random.direction()).into(),
+            (4, _) => Quadric::new([1.0, 2.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -size]).into(),
+            (5, _) => Quadric::new([1.0, -size, 1.0, 0.2, 0.0, 0.0, 0.0, 0.0, 0.0, -size]).into(),
             _ => Sphere::new(center, size).into(),
         };
         let node = CsgNode::leaf(shape, tag);

@@ -1,10 +1,13 @@
 use super::convex::{End, Span, Stay, start_of};
 use super::point_error;
+use crate::blocks::convex::{FourLines, FourRays, FourSpans, mapped, scaled, sub};
+use crate::blocks::dot;
 use crate::{
     Crossings, GeometryError, PrimHit, Primitive, Scratch, Shape, Solid, SurfaceId, SurfacePoint,
 };
 use strahl_math::error::gamma;
 use strahl_math::{Aabb, DMat3, DVec2, DVec3, Interval, Ray, Transform};
+use strahl_simd::Isa;
 
 /// A quadric: the surface where a polynomial of degree 2 in x, y and z vanishes; inside is where it is not positive.
 ///
@@ -27,14 +30,16 @@ pub struct Quadric {
     half_linear: DVec3,
     /// The constant term.
     constant: f64,
+    /// The row sum norm of `square`.
+    norm: f64,
 }
 
-/// `F(t) = a t² + 2 h t + c` along a ray, with bounds on the rounding errors of `a` and `h`.
+/// `F(t) = a t² + 2 h t + c` along a ray from a point `p` with the direction `d`.
 struct Along {
+    p: DVec3,
+    d: DVec3,
     a: f64,
-    a_error: f64,
     h: f64,
-    h_error: f64,
 }
 
 impl Quadric {
@@ -51,6 +56,7 @@ impl Quadric {
             square,
             half_linear: DVec3::new(g, h, i) * 0.5,
             constant: j,
+            norm: norm(square),
         };
         plain
             .center()
@@ -121,7 +127,7 @@ impl Quadric {
 
     fn well_conditioned_inverse(&self) -> Option<DMat3> {
         let inverse = self.square.inverse();
-        let condition = norm(self.square) * norm(inverse);
+        let condition = self.norm * norm(inverse);
         // Beyond this the inverse has lost more than half of its digits.
         (condition < 1e8).then_some(inverse)
     }
@@ -148,7 +154,7 @@ impl Quadric {
         );
         let tight = Aabb::new(centered.origin - reach, centered.origin + reach);
         // The inverse is uncertain by the condition number, the level by the cancellation in the constant.
-        let condition = norm(q) * norm(inverse);
+        let condition = self.norm * norm(inverse);
         let blur = gamma(64)
             * condition
             * (1.0 + self.magnitude_at(centered.origin - self.origin) / level);
@@ -159,16 +165,29 @@ impl Quadric {
     }
 
     fn along(&self, p: DVec3, d: DVec3) -> Along {
-        let bent = self.square * d;
-        let sizes = magnitudes(self.square);
-        let half_gradient = self.half_gradient_at(p);
-        let size_of_gradient = sizes * p.abs() + self.half_linear.abs();
-        Along {
-            a: d.dot(bent),
-            a_error: gamma(8) * d.abs().dot(sizes * d.abs()),
-            h: half_gradient.dot(d),
-            h_error: gamma(8) * size_of_gradient.dot(d.abs()),
-        }
+        let a = d.dot(self.square * d);
+        let h = self.half_gradient_at(p).dot(d);
+        Along { p, d, a, h }
+    }
+
+    /// More than the rounding error of `a` for a direction of length 1: the row sum norm bounds the sum of the magnitudes of the terms.
+    fn error_of_bend(&self) -> f64 {
+        gamma(16) * self.norm
+    }
+
+    /// Whether `a` is not larger than its rounding error, given the square of the length of the direction.
+    #[inline]
+    fn is_straight(&self, along: &Along, length_squared: f64) -> bool {
+        let Along { a, d, .. } = *along;
+        let error = || gamma(8) * d.abs().dot(magnitudes(self.square) * d.abs());
+        !(a.abs() > self.error_of_bend() * length_squared) && a.abs() <= error()
+    }
+
+    /// Whether `h` is not larger than its rounding error.
+    fn is_level(&self, along: &Along) -> bool {
+        let Along { p, d, h, .. } = *along;
+        let terms = magnitudes(self.square) * p.abs() + self.half_linear.abs();
+        h.abs() <= gamma(8) * terms.dot(d.abs())
     }
 
     /// The parameters of the crossings, ascending, and whether the ray is inside before the first one.
@@ -191,18 +210,15 @@ impl Quadric {
             return none(false);
         }
         if on_surface {
-            let Along {
-                a,
-                a_error,
-                h,
-                h_error,
-            } = self.along(start, d);
-            if h.abs() <= h_error {
+            let along = self.along(start, d);
+            let Along { a, h, .. } = along;
+            let is_straight = self.is_straight(&along, d.length_squared());
+            if self.is_level(&along) {
                 // A tangent: leaves inwards where the surface bends away from it.
-                return none(a < -a_error);
+                return none(a < 0.0 && !is_straight);
             }
             let other = -2.0 * h / a;
-            if a.abs() <= a_error || !other.is_finite() {
+            if is_straight || !other.is_finite() {
                 return (
                     Roots {
                         t: [0.0; 2],
@@ -218,19 +234,16 @@ impl Quadric {
             };
             return (Roots { t, count: 2 }, a < 0.0);
         }
-        let shift = -start.dot(d) / d.length_squared();
+        let length_squared = d.length_squared();
+        let shift = -start.dot(d) / length_squared;
         let shift = if shift.is_finite() { shift } else { 0.0 };
         let p = start + d * shift;
-        let Along {
-            a,
-            a_error,
-            h,
-            h_error,
-        } = self.along(p, d);
+        let along = self.along(p, d);
+        let Along { a, h, .. } = along;
         let c = self.value_at(p);
         // A leading coefficient below its rounding error would cause a second crossing near infinity.
-        if a.abs() <= a_error {
-            if h.abs() <= h_error {
+        if self.is_straight(&along, length_squared) {
+            if self.is_level(&along) {
                 return none(c < 0.0);
             }
             let t = shift - c / (2.0 * h);
@@ -256,6 +269,48 @@ impl Quadric {
             },
             a < 0.0,
         )
+    }
+
+    /// Where four lines cross the surface that don't start on it, as [`Quadric::roots`]; and the lanes, as bits, that are inside between the two
+    /// crossings, and not outside. Nothing is known of lines that may cross it only once.
+    #[inline(always)]
+    pub(crate) fn four_roots<I: Isa>(&self, isa: I, rays: &FourRays<I>) -> (FourSpans, u32) {
+        let d = rays.direction;
+        let three = |v: DVec3| [isa.splat(v.x), isa.splat(v.y), isa.splat(v.z)];
+        let start = sub(isa, rays.origin, three(self.origin));
+        let length_squared = dot(isa, d, d);
+        let minus = isa.splat(-0.0);
+        let shift = isa.div(isa.sub(minus, dot(isa, start, d)), length_squared);
+        let p = add(isa, start, scaled(isa, d, shift));
+        let a = dot(isa, d, mapped(isa, self.square, d));
+        let bent = mapped(isa, self.square, p);
+        let h = dot(isa, add(isa, bent, three(self.half_linear)), d);
+        let value = dot(isa, p, add(isa, bent, three(self.half_linear * 2.0)));
+        let c = isa.add(value, isa.splat(self.constant));
+        let error = isa.mul(isa.splat(self.error_of_bend()), length_squared);
+        let is_finite = isa.le(isa.abs(shift), isa.splat(f64::MAX));
+        let zero = isa.splat(0.0);
+        let discriminant = isa.sub(isa.mul(h, h), isa.mul(a, c));
+        let met = isa.lt(zero, discriminant);
+        let inside_between = isa.lt(zero, a);
+        let mut out = FourSpans {
+            known: is_finite & isa.lt(error, isa.abs(a)),
+            ..FourSpans::default()
+        };
+        if met == 0 {
+            return (out, inside_between);
+        }
+        let s = isa.sqrt(discriminant);
+        let less = isa.sub(minus, h);
+        let q = isa.choose_le(zero, h, isa.sub(less, s), isa.add(less, s));
+        let t0 = isa.add(shift, isa.div(q, a));
+        let t1 = isa.add(shift, isa.div(c, q));
+        let (enter, exit) = (isa.choose_le(t0, t1, t0, t1), isa.choose_le(t0, t1, t1, t0));
+        // The own test decides about what is no number.
+        out.known &= !met | isa.lt(enter, exit);
+        out.met = met & out.known;
+        (out.enter, out.exit) = (isa.store(enter), isa.store(exit));
+        (out, inside_between)
     }
 
     /// Where the line is inside.
@@ -290,7 +345,7 @@ impl Quadric {
         let Along { a, h, .. } = self.along(p, ray.direction);
         let moved =
             gamma(8) * (ray.origin.length() + self.origin.length() + (ray.direction * t).length());
-        let gradient = 2.0 * self.half_gradient_at(p).length() + norm(self.square) * moved;
+        let gradient = 2.0 * self.half_gradient_at(p).length() + self.norm * moved;
         let value = gamma(16) * self.magnitude_at(p) + gradient * moved;
         let (straight, tangent) = (value / (2.0 * h.abs()), (value / a.abs()).sqrt());
         let error = if straight < tangent || !tangent.is_finite() {
@@ -299,6 +354,23 @@ impl Quadric {
             tangent
         };
         gamma(4) * t.abs() + error
+    }
+}
+
+#[inline(always)]
+fn add<I: Isa>(isa: I, a: [I::F64x4; 3], b: [I::F64x4; 3]) -> [I::F64x4; 3] {
+    [
+        isa.add(a[0], b[0]),
+        isa.add(a[1], b[1]),
+        isa.add(a[2], b[2]),
+    ]
+}
+
+impl FourLines for Quadric {
+    /// The spans are those between two crossings, inside or outside: both ends of either are hits.
+    #[inline(always)]
+    fn spans<I: Isa>(&self, isa: I, rays: &FourRays<I>) -> FourSpans {
+        self.four_roots(isa, rays).0
     }
 }
 
@@ -420,6 +492,7 @@ impl Primitive for Quadric {
             square: symmetric,
             half_linear: transposed * self.half_linear,
             constant: self.constant,
+            norm: norm(symmetric),
         }))
     }
 }
