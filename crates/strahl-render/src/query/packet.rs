@@ -8,6 +8,7 @@ use super::{From, GroupVisitor, NONE, Search, Tracer};
 use crate::activity::{Phase, Slot};
 use crate::blocks::{Blocks, Flats, LeafClass};
 use crate::hit::{Hit, Origin, RayClass};
+use crate::prim::PrimKind;
 use crate::scene::{RenderGroup, RenderScene};
 use arrayvec::ArrayVec;
 use std::borrow::Borrow;
@@ -36,15 +37,16 @@ macro_rules! of_lane {
     ($self:ident, $lane:expr, $t_max:expr, $visitor:ident => $body:expr) => {{
         let lane = $lane % PACKET;
         let mut search = Search {
-            scene: $self.scene,
-            scratch: $self.scratch,
-            stats: $self.stats,
-            slot: $self.slot,
-            class: $self.class,
-            parts: $self.parts,
+            scene: $self.shared.scene,
+            scratch: $self.shared.scratch,
+            stats: $self.shared.stats,
+            slot: $self.shared.slot,
+            class: $self.shared.class,
+            parts: $self.shared.parts,
             query: &mut $self.queries[lane],
         };
-        let from: From<'_> = $self.asked.from[lane].map(|o| (o, o.id));
+        let base = $self.place.base;
+        let from: From<'_> = $self.asked.from[lane].map(|o| (o, o.id - base));
         let mut $visitor = GroupVisitor {
             search: &mut search,
             group: $self.group,
@@ -54,7 +56,7 @@ macro_rules! of_lane {
             range_min: $self.asked.min,
             from,
             from_prim: $self.from_prims[lane],
-            base: 0,
+            base,
             t_max: $t_max,
             plain: $self.plain,
         };
@@ -170,15 +172,68 @@ impl Tracer<'_> {
         queries: &mut [Q; PACKET],
     ) {
         let group = &self.scene.groups[0];
-        let parts = self.remembers;
-        let part = if parts { queries[0].part(group) } else { None };
+        self.slot.enter(Phase::Traversal);
+        let mut shared = Shared {
+            scene: self.scene,
+            scratch: &mut self.scratch,
+            stats: &mut self.stats,
+            slot: &self.slot,
+            class: asked.class.bit(),
+            parts: self.remembers,
+        };
+        shared.search(group, asked, Place::WORLD, t_max, queries);
+    }
+}
+
+/// What the searches of the world and of the groups within it share.
+struct Shared<'v, 's> {
+    scene: &'s RenderScene,
+    scratch: &'v mut Scratch,
+    stats: &'v mut TraversalStats,
+    slot: &'v Slot,
+    class: u8,
+    /// Whether to search only the part of a group that matters to the query.
+    parts: bool,
+}
+
+/// Where a group is.
+#[derive(Clone, Copy)]
+struct Place {
+    /// The number of its first element.
+    base: u64,
+    /// The number of instances around it.
+    depth: u32,
+}
+
+impl Place {
+    const WORLD: Self = Self { base: 0, depth: 0 };
+
+    /// From here on rays go into instances one by one: a packet takes some kilobytes of the stack.
+    const DEEPEST: u32 = 8;
+}
+
+impl<'s> Shared<'_, 's> {
+    /// Searches a group for rays in its space, and returns the new upper ends of their ranges.
+    // One function for the world and for groups within it: the traversal is compiled into it.
+    #[inline(never)]
+    fn search<Q: Query>(
+        &mut self,
+        group: &'s RenderGroup,
+        asked: &Asked<'_>,
+        place: Place,
+        t_max: [f64; PACKET],
+        queries: &mut [Q; PACKET],
+    ) -> [f64; PACKET] {
+        let part = if self.parts {
+            queries[0].part(group)
+        } else {
+            None
+        };
         let (accelerator, blocks, is_sheared) = match part {
             None => (&group.accelerator, &group.blocks, group.sheared),
             Some(part) => (&part.accelerator, &part.blocks, part.sheared),
         };
-        let class = asked.class.bit();
         let mut stats = TraversalStats::default();
-        let mut nested = TraversalStats::default();
         let mut shears = ArrayVec::<RayShear, PACKET>::new();
         let max_abs = group.bounds.max_abs();
         let (sheared, lines);
@@ -194,32 +249,28 @@ impl Tracer<'_> {
         let mut from_prims = [NONE; PACKET];
         for (prim, from) in from_prims.iter_mut().zip(asked.from) {
             if let Some(origin) = from {
-                *prim = group.prim_of(origin.id);
+                *prim = group.prim_of(origin.id - place.base);
             }
         }
         if blocks.has_spheres() {
             lines = PacketLines::new(asked.rays, max_abs);
             culls.lines = Some(&lines);
         }
-        self.slot.enter(Phase::Traversal);
+        let class = self.class;
         let mut visitor = Together {
-            scene: self.scene,
-            scratch: &mut self.scratch,
-            stats: &mut nested,
-            slot: &self.slot,
-            class,
-            parts,
+            plain: group
+                .common
+                .is_some_and(|(visible, flags)| visible & class != 0 && queries[0].is_plain(flags)),
+            shared: &mut *self,
             group,
             blocks,
             asked,
+            place,
             from_prims,
             shears: &shears,
             culls,
             coordinates: None,
             spans: PacketSpans::default(),
-            plain: group
-                .common
-                .is_some_and(|(visible, flags)| visible & class != 0 && queries[0].is_plain(flags)),
             queries,
         };
         let mut packet = Packet {
@@ -236,13 +287,15 @@ impl Tracer<'_> {
             for (lane, ray) in asked.rays.iter().enumerate().take(PACKET) {
                 let range = Interval::new(asked.min, packet.t_max[lane]);
                 if range.max > f64::NEG_INFINITY {
-                    of_lane!(visitor, lane, range.max, one =>
-                        accelerator.traverse(ray, range, &mut one, &mut stats));
+                    packet.t_max[lane] = of_lane!(visitor, lane, range.max, one => {
+                        accelerator.traverse(ray, range, &mut one, &mut stats);
+                        one.t_max
+                    });
                 }
             }
         }
-        stats += nested;
-        self.stats += stats;
+        *self.stats += stats;
+        packet.t_max
     }
 }
 
@@ -266,18 +319,13 @@ struct Asked<'r> {
     first: u32,
 }
 
-/// A search of the world for several rays.
-struct Together<'v, 's, Q> {
-    scene: &'s RenderScene,
-    scratch: &'v mut Scratch,
-    /// Of the searches in instanced groups.
-    stats: &'v mut TraversalStats,
-    slot: &'v Slot,
-    class: u8,
-    parts: bool,
+/// A search of a group for several rays.
+struct Together<'v, 'w, 's, Q> {
+    shared: &'v mut Shared<'w, 's>,
     group: &'s RenderGroup,
     blocks: &'s Blocks,
     asked: &'v Asked<'v>,
+    place: Place,
     from_prims: [u32; PACKET],
     /// Empty where no primitive needs them.
     shears: &'v [RayShear],
@@ -290,7 +338,7 @@ struct Together<'v, 's, Q> {
     queries: &'v mut [Q; PACKET],
 }
 
-impl<Q: Query> Together<'_, '_, Q> {
+impl<Q: Query> Together<'_, '_, '_, Q> {
     /// Tests the primitives of a leaf for several rays.
     #[inline(always)]
     fn leaf_of_blocks<I: Isa, B: BlockOfLeaf>(
@@ -338,8 +386,10 @@ impl<Q: Query> Together<'_, '_, Q> {
     /// Tests a shape whose hits need no further checks for several rays.
     #[inline(never)]
     fn plain_shape(&mut self, id: u32, index: u32, lanes: u32, t_max: &mut [f64; PACKET]) {
-        let shape = PlainShape::of(self.group, id, index, 0);
-        self.slot.enter_for(Phase::Intersection, shape.number);
+        let shape = PlainShape::of(self.group, id, index, self.place.base);
+        self.shared
+            .slot
+            .enter_for(Phase::Intersection, shape.number);
         let side_by_side = match (shape.shape, shape.transform) {
             // The test of a box along the axes takes too little time.
             (Shape::Cuboid(_), None) => false,
@@ -357,7 +407,45 @@ impl<Q: Query> Together<'_, '_, Q> {
                 shape.meet::<Q>(ray, range, from, scratch)
             }),
         }
-        self.slot.enter(Phase::Traversal);
+        self.shared.slot.enter(Phase::Traversal);
+    }
+
+    /// Searches the group of an instance for several rays.
+    #[inline(never)]
+    fn instance(&mut self, id: u32, index: u32, lanes: u32, t_max: &mut [f64; PACKET]) {
+        let instance = &self.group.instances[index as usize];
+        let inner = &self.shared.scene.groups[instance.group as usize];
+        let place = Place {
+            base: self.place.base + self.group.first_id(id),
+            depth: self.place.depth + 1,
+        };
+        // The other lanes have the first ray, which no search looks at.
+        let first = lanes.trailing_zeros() as usize % PACKET;
+        let spare = instance.transform.ray_to_object(&self.asked.rays[first]);
+        let mut rays = [spare; PACKET];
+        let (mut from, mut ends) = ([None; PACKET], [f64::NEG_INFINITY; PACKET]);
+        for lane in lanes_of(lanes) {
+            rays[lane] = instance.transform.ray_to_object(&self.asked.rays[lane]);
+            ends[lane] = t_max[lane];
+            if let Some(origin) = self.asked.from[lane].filter(|_| self.from_prims[lane] == id) {
+                from[lane] = Some(origin);
+                // The origin lies in this space, not in one further inside, and is exact here.
+                let prim = inner.prims.at(inner.prim_of(origin.id - place.base));
+                if !matches!(prim.kind(), PrimKind::Instance(_)) {
+                    rays[lane].origin = origin.local;
+                }
+            }
+        }
+        let asked = Asked {
+            rays: &rays[..self.asked.rays.len().min(PACKET)],
+            from: &from,
+            first: NONE,
+            ..*self.asked
+        };
+        let ends = self.shared.search(inner, &asked, place, ends, self.queries);
+        for lane in lanes_of(lanes) {
+            t_max[lane] = ends[lane];
+        }
     }
 
     /// The lanes whose rays start on a primitive.
@@ -393,12 +481,12 @@ impl<Q: Query> Together<'_, '_, Q> {
             let ray = &self.asked.rays[lane];
             let hit = match self.asked.from[lane] {
                 Some(origin) if id == self.from_prims[lane] => {
-                    let from = Some(shape.start(origin, origin.id));
-                    shape.meet::<Q>(ray, range, from, self.scratch)
+                    let from = Some(shape.start(origin, origin.id - self.place.base));
+                    shape.meet::<Q>(ray, range, from, self.shared.scratch)
                 }
                 _ => match shape.meet_known::<Q>(&self.spans, lane, range) {
                     Some(hit) => hit,
-                    None => shape.meet::<Q>(ray, range, None, self.scratch),
+                    None => shape.meet::<Q>(ray, range, None, self.shared.scratch),
                 },
             };
             if let Some(hit) = hit {
@@ -422,11 +510,13 @@ impl<Q: Query> Together<'_, '_, Q> {
                 continue;
             }
             let from = match self.asked.from[lane] {
-                Some(origin) if id == self.from_prims[lane] => Some(shape.start(origin, origin.id)),
+                Some(origin) if id == self.from_prims[lane] => {
+                    Some(shape.start(origin, origin.id - self.place.base))
+                }
                 _ => None,
             };
             let range = Interval::new(self.asked.min, before);
-            if let Some(hit) = meet(&self.asked.rays[lane], range, from, self.scratch) {
+            if let Some(hit) = meet(&self.asked.rays[lane], range, from, self.shared.scratch) {
                 t_max[lane] = self.queries[lane].take(hit, before);
             }
         }
@@ -463,7 +553,7 @@ impl<Q: Query> Together<'_, '_, Q> {
     }
 }
 
-impl<Q: Query> PacketVisitor for Together<'_, '_, Q> {
+impl<Q: Query> PacketVisitor for Together<'_, '_, '_, Q> {
     const ANY: bool = Q::ANY;
 
     fn visit(&mut self, id: u32, lane: usize, t_max: f64) -> f64 {
@@ -472,11 +562,18 @@ impl<Q: Query> PacketVisitor for Together<'_, '_, Q> {
 
     fn visit_together(&mut self, id: u32, lanes: u32, t_max: &mut [f64; PACKET]) {
         let prim = self.group.prims.at(id);
-        if prim.visible & self.class == 0 || !self.queries[0].wants(prim.flags) {
+        if prim.visible & self.shared.class == 0 || !self.queries[0].wants(prim.flags) {
             return;
         }
         if let Some(index) = prim.plain_shape().filter(|_| !Q::ALL && !Q::WATCHES) {
             self.plain_shape(id, index, lanes, t_max);
+            return;
+        }
+        if let PrimKind::Instance(index) = prim.kind()
+            && lanes.count_ones() >= FEW
+            && self.place.depth < Place::DEEPEST
+        {
+            self.instance(id, index, lanes, t_max);
             return;
         }
         for lane in lanes_of(lanes) {
