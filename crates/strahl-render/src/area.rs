@@ -42,12 +42,10 @@ impl Cell {
         }
     }
 
-    /// The numbers of the points at its corners, row by row.
-    fn corners(&self, area: &AreaLight) -> [usize; 4] {
-        let row = area.size_1 as usize;
-        let [i0, i1] = [self.i[0] as usize, self.i[1] as usize];
-        let [j0, j1] = [self.j[0] as usize * row, self.j[1] as usize * row];
-        [j0 + i0, j0 + i1, j1 + i0, j1 + i1]
+    /// The points at its corners, row by row.
+    fn corners(&self) -> [GridPoint; 4] {
+        let ([i0, i1], [j0, j1]) = (self.i, self.j);
+        [(i0, j0), (i1, j0), (i0, j1), (i1, j1)].map(|(i, j)| GridPoint { i, j })
     }
 
     /// Its quarters, if it can be divided.
@@ -96,6 +94,21 @@ fn halves([low, high]: [u32; 2]) -> ([[u32; 2]; 2], bool) {
     ([[low, middle], [middle + width % 2, high]], true)
 }
 
+/// A point of the grid: its place in its row, and its row.
+#[derive(Clone, Copy, Debug)]
+struct GridPoint {
+    i: u32,
+    j: u32,
+}
+
+impl GridPoint {
+    /// Its number, row by row.
+    #[inline(always)]
+    fn number(self, area: &AreaLight) -> usize {
+        self.j as usize * area.size_1 as usize + self.i as usize
+    }
+}
+
 /// An area light as seen from one lit point.
 struct AreaQuery<'q> {
     number: usize,
@@ -108,11 +121,10 @@ struct AreaQuery<'q> {
 }
 
 impl AreaQuery<'_> {
-    /// From the centre of the light to a point of its grid, given by its number, as seen from the lit point.
+    /// From the centre of the light to a point of its grid, as seen from the lit point.
     #[inline]
-    fn offset(&self, index: u32) -> DVec3 {
-        let columns = self.area.size_1;
-        let offset = self.grid.offset(index % columns, index / columns);
+    fn offset(&self, GridPoint { i, j }: GridPoint) -> DVec3 {
+        let offset = self.grid.offset(i, j);
         if self.light.is_parallel() {
             offset * (self.center.shadow_direction.length() / self.area.reach)
         } else {
@@ -147,8 +159,7 @@ impl Grids {
     #[inline(always)]
     fn corner_colors(&self, area: &AreaLight, lit: usize, cell: &Cell) -> [Color; 4] {
         let grid = &self.visible[lit * self.size..][..self.size];
-        let corners = cell.corners(area);
-        [0, 1, 2, 3].map(|k| grid[corners[k]])
+        cell.corners().map(|corner| grid[corner.number(area)])
     }
 
     /// The mean over a cell, whose points are known as far as they are needed: of its four corners, or of its four quarters if the corners
@@ -171,8 +182,7 @@ impl Grids {
 pub(crate) struct Wanted {
     /// The number of the lit point.
     lit: u32,
-    /// The number of the point in the grid, row by row.
-    index: u32,
+    point: GridPoint,
 }
 
 /// A part of the grid whose corners a lit point needs.
@@ -277,11 +287,11 @@ impl<'s> TreeTracer<'s> {
             wanted.clear();
             for Part { lit, cell } in &*parts {
                 let needed = &mut grids.needed[*lit as usize * grids.size..][..grids.size];
-                for index in cell.corners(area) {
+                for point in cell.corners() {
+                    let index = point.number(area);
                     if !std::mem::replace(&mut needed[index], true) {
                         arriving[*lit as usize].shadow_rays += 1;
-                        let index = index as u32;
-                        wanted.push(Wanted { lit: *lit, index });
+                        wanted.push(Wanted { lit: *lit, point });
                     }
                 }
             }
@@ -322,11 +332,11 @@ impl<'s> TreeTracer<'s> {
             return;
         };
         let mut aims = ArrayVec::<Aim<'_>, PACKET>::new();
-        for Wanted { lit, index } in wanted {
+        for Wanted { lit, point } in wanted {
             let query = &queries[*lit as usize];
             aims.push(Aim {
                 point: query.point,
-                direction: query.center.shadow_direction + query.offset(*index),
+                direction: query.center.shadow_direction + query.offset(*point),
                 range: query.center.range,
             });
         }
@@ -346,7 +356,8 @@ impl<'s> TreeTracer<'s> {
                 let report = self.shadow_report(aim, light);
                 observer.area_shadow(aim.point.node, light as u32, report);
             }
-            let place = wanted.lit as usize * grids.size + wanted.index as usize;
+            let number = wanted.point.number(queries[wanted.lit as usize].area);
+            let place = wanted.lit as usize * grids.size + number;
             grids.visible[place] = shadow.visible;
         }
     }
@@ -356,8 +367,10 @@ impl<'s> TreeTracer<'s> {
     fn area_shading(&self, query: &AreaQuery<'_>, visible: Color) -> (Color, Color) {
         let lit = query.point.surface.resolved.point.position;
         let (mut diffuse, mut specular) = (Color::BLACK, Color::BLACK);
-        for index in 0..query.area.size_1 * query.area.size_2 {
-            let offset = query.offset(index);
+        let (columns, rows) = (query.area.size_1, query.area.size_2);
+        let all = (0..rows).flat_map(|j| (0..columns).map(move |i| GridPoint { i, j }));
+        for point in all {
+            let offset = query.offset(point);
             let (l, color) = if query.light.is_parallel() {
                 // As in POV-Ray (measured) the points light from their own directions, with the intensity of the centre.
                 let direction = query.center.shadow_direction + offset;

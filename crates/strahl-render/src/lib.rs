@@ -22,6 +22,7 @@ mod coverage;
 mod estimate;
 pub mod explanation;
 mod film;
+mod first_ids;
 mod hit;
 mod layers;
 mod light_sets;

@@ -265,7 +265,7 @@ impl<Q: Query> Search<'_, '_, Q> {
             let searched = Plain {
                 bvh,
                 blocks,
-                first_ids: group.first_ids.as_deref(),
+                first_ids: group.first_ids.as_ref(),
                 from_prim,
                 base,
             };

@@ -1,4 +1,5 @@
 use crate::blocks::Blocks;
+use crate::first_ids::FirstIds;
 use crate::light_sets::LightSets;
 use crate::look::{Look, Looks};
 use crate::objects::Objects;
@@ -25,7 +26,7 @@ pub(crate) struct RenderGroup {
     pub(crate) meshes: Vec<MeshUse>,
     pub(crate) instances: Vec<InstanceUse>,
     /// First element number of each primitive, if some primitive has more than one element.
-    pub(crate) first_ids: Option<Vec<u64>>,
+    pub(crate) first_ids: Option<FirstIds>,
     /// Number of elements, instances expanded.
     pub(crate) count: u64,
     pub(crate) bounds: Aabb,
@@ -56,7 +57,7 @@ impl RenderGroup {
     pub(crate) fn first_id(&self, prim: u32) -> u64 {
         match &self.first_ids {
             None => u64::from(prim),
-            Some(first) => first[prim as usize],
+            Some(ids) => ids.of(prim),
         }
     }
 
@@ -65,7 +66,7 @@ impl RenderGroup {
     pub(crate) fn prim_of(&self, id: u64) -> u32 {
         match &self.first_ids {
             None => id as u32,
-            Some(first) => (first.partition_point(|f| *f <= id) - 1) as u32,
+            Some(ids) => ids.prim_of(id),
         }
     }
 }

@@ -1,5 +1,6 @@
 use super::flatten::FlatGroup;
 use crate::blocks::Lists;
+use crate::first_ids::FirstIds;
 use crate::prim::{Prim, PrimKind};
 use crate::runs::RunList;
 use crate::spheres::Spheres;
@@ -16,7 +17,7 @@ pub(super) struct Assembled {
     pub(super) spheres: Spheres,
     pub(super) meshes: Vec<MeshUse>,
     pub(super) instances: Vec<InstanceUse>,
-    pub(super) first_ids: Option<Vec<u64>>,
+    pub(super) first_ids: Option<FirstIds>,
     pub(super) count: u64,
     /// Bounds of its bounded primitives.
     pub(super) bounds: Aabb,
@@ -213,7 +214,7 @@ fn number(group: FlatGroup, done: &[Assembled]) -> Result<Assembled, Vec<Diagnos
         reach = reach.union(&own);
         prim_bounds.push(own);
     }
-    let first_ids = (!simple).then_some(first_ids);
+    let first_ids = (!simple).then(|| FirstIds::new(first_ids, count));
     Ok(Assembled {
         prims: prims.completed(),
         shapes,

@@ -6,6 +6,7 @@ use super::block::Block;
 use super::kinds::Query;
 use super::leaves::lane_entered;
 use crate::blocks::OneKind;
+use crate::first_ids::FirstIds;
 use crate::hit::Hit;
 use strahl_accel::{BLOCK, Bvh8, Leaf, NO_PRIMITIVE, Visitor};
 use strahl_geometry::RayShear;
@@ -20,7 +21,7 @@ pub(super) struct Plain<'g> {
     pub(super) bvh: &'g Bvh8,
     pub(super) blocks: OneKind<'g>,
     /// First element number of each primitive, if it is not the primitive's own.
-    pub(super) first_ids: Option<&'g [u64]>,
+    pub(super) first_ids: Option<&'g FirstIds>,
     /// The primitive the ray starts on.
     pub(super) from_prim: u32,
     /// The number of the group's first element.
@@ -78,7 +79,7 @@ impl Plain<'_> {
     fn first_id(&self, prim: u32) -> u64 {
         match self.first_ids {
             None => u64::from(prim),
-            Some(first) => first.get(prim as usize).copied().unwrap_or_default(),
+            Some(ids) => ids.of(prim),
         }
     }
 }
