@@ -11,7 +11,7 @@
 use super::Csg;
 use super::boxes::Slabs;
 use super::course::Sum;
-use super::solid::Kind;
+use super::solid::{Kind, Node};
 use super::sweep::{Fusing, Rule};
 use super::timeline::{State, Timeline, TooClose};
 use crate::{PrimHit, Scratch, SurfaceId};
@@ -132,6 +132,9 @@ impl<'a> Search<'a> {
         let Some((root, Kind::Operation(rule))) = csg.node(0).map(|root| (root, root.kind)) else {
             return Err(TooClose);
         };
+        if rule == Rule::Intersection && self.leaves_for_good(root) {
+            return Ok(());
+        }
         let range = Interval::new(self.begin, self.fusing.widened(self.range).max);
         let mut sum = Sum::new(rule, range);
         if self.core(0, root, &mut sum)? {
@@ -169,6 +172,9 @@ impl Search<'_> {
         let Some((root, Kind::Operation(rule))) = csg.node(0).map(|root| (root, root.kind)) else {
             return Err(TooClose);
         };
+        if rule == Rule::Intersection && self.leaves_for_good(root) {
+            return Ok(None);
+        }
         let range = Interval::new(self.begin, self.fusing.widened(self.range).max);
         let mut sum = Sum::new(rule, range);
         if self.core(0, root, &mut sum)? {
@@ -207,6 +213,23 @@ impl Search<'_> {
             window = Interval::new(window.max, if known > far { known } else { far });
             step = window.max - window.min;
         }
+    }
+
+    /// Whether the ray starts on a leaf that is an operand of the root, and leaves it for good.
+    #[inline]
+    fn leaves_for_good(&self, root: &Node) -> bool {
+        let (csg, Some((own, surface))) = (self.csg, self.from) else {
+            return false;
+        };
+        let Some(leaf) = csg.leaf(own).filter(|leaf| leaf.has_stays()) else {
+            return false;
+        };
+        let mut kinds =
+            (root.first..root.core).filter_map(|i| Some(csg.node(csg.operand(i)?)?.kind));
+        kinds.any(|kind| matches!(kind, Kind::Leaf(number) if number == own))
+            && leaf
+                .stay(self.ray, Some(surface))
+                .is_some_and(|stay| leaf.is_left_for_good(&stay, surface))
     }
 
     /// The surface that the ray starts on, if it belongs to this leaf.

@@ -1,5 +1,5 @@
 use super::sweep::Fusing;
-use crate::primitives::convex::Stay;
+use crate::primitives::convex::{Span, Stay};
 use crate::{
     Crossing, Crossings, PrimHit, Primitive, Scratch, Shape, Side, Solid, SurfaceId, SurfacePoint,
 };
@@ -167,6 +167,14 @@ impl Leaf {
             _ => return None,
         };
         Some(Stay::within(span))
+    }
+
+    /// Whether a ray that starts on this surface of the leaf leaves what it contributes, and never comes back to it: as most rays from surfaces do,
+    /// to lights and where they are mirrored. An intersection with the leaf is behind them then.
+    #[inline(always)]
+    pub(super) fn is_left_for_good(&self, stay: &Stay, surface: SurfaceId) -> bool {
+        let ends = |span: Span| span.exit.t == 0.0 && span.exit.facet == surface.facet;
+        self.negative == stay.outside && stay.span.is_none_or(ends)
     }
 
     /// Appends the crossings of a ray with this leaf's contribution, with the tree's element numbers.

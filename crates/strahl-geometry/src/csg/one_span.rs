@@ -5,7 +5,7 @@ use super::leaf::Leaf;
 use super::small::{Query, Small};
 use super::states::MOST;
 use super::timeline::TooClose;
-use crate::primitives::convex::Span;
+use crate::primitives::convex::{Span, Stay};
 use crate::{PrimHit, SurfaceId};
 use arrayvec::ArrayVec;
 use std::ops::ControlFlow;
@@ -71,6 +71,12 @@ impl Small {
         let (mut enter, mut exit) = (Nearest::NONE, Nearest::NONE);
         let mut holes = Holes::new();
         let (far, mut may_show) = (query.alive.max, false);
+        let start = query.start(leaves);
+        if let (Some((_, Some(stay))), Some((number, surface))) = (start, query.from)
+            && leaves[number as usize].is_left_for_good(&stay, surface)
+        {
+            return Ok(());
+        }
         for (n, number) in self.leaf_numbers().enumerate() {
             // The others only clip, which does not matter if the ray meets no visible surface in the range.
             if n == self.visible && !may_show {
@@ -78,7 +84,11 @@ impl Small {
             }
             let leaf = &leaves[number as usize];
             let own = query.own(number);
-            let Some(stay) = leaf.stay(query.ray, own) else {
+            let stay = match start {
+                Some((own, stay)) if own == number => stay,
+                _ => leaf.stay(query.ray, None),
+            };
+            let Some(stay) = stay else {
                 return Err(TooClose);
             };
             let outside = leaf.negative != stay.outside;
@@ -207,6 +217,14 @@ fn visit_around(
 }
 
 impl Query<'_> {
+    /// The leaf that the ray starts on, and where it is inside of its shape; `None` if it starts elsewhere.
+    #[inline(always)]
+    fn start(&self, leaves: &[Leaf]) -> Option<(u32, Option<Stay>)> {
+        let (number, surface) = self.from?;
+        let leaf = &leaves[number as usize];
+        Some((number, leaf.stay(self.ray, Some(surface))))
+    }
+
     /// Whether two parameters, the first one not above the second, are so close that crossings there could coincide; there are none at
     /// infinity.
     #[inline(always)]

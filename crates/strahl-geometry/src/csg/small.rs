@@ -45,7 +45,7 @@ pub(super) struct Query<'a> {
     /// The part of the ray on which leaves matter, a little wider than what is required of it.
     pub(super) alive: Interval,
     /// The leaf that the ray starts on, and its surface there.
-    from: Option<(u32, SurfaceId)>,
+    pub(super) from: Option<(u32, SurfaceId)>,
     pub(super) fusing: Fusing,
 }
 
