@@ -1,26 +1,63 @@
 use super::PrimaryRays;
+use arrayvec::ArrayVec;
+use strahl_accel::PACKET;
 use strahl_math::{DVec2, DVec3, Ray};
 use strahl_scene::{CameraFace, CameraMesh, MeshCamera, MeshLayout};
 use strahl_shade::Color;
 
 impl PrimaryRays {
-    /// The mean of the rays from the faces that belong to a position in the picture; black if there are none.
+    /// The mean of the rays from the faces that belong to a position in the picture; black if there are none. `trace` returns the colours of
+    /// at most [`PACKET`] rays.
     pub(super) fn mesh_color(
         &self,
         mesh: &MeshCamera,
         x: f64,
         y: f64,
-        mut trace: impl FnMut(&Ray) -> Color,
+        mut trace: impl FnMut(&[Option<Ray>]) -> ArrayVec<Color, PACKET>,
     ) -> Color {
+        let (mut sum, mut count) = (Color::BLACK, 0u32);
+        let mut rays = ArrayVec::<Option<Ray>, PACKET>::new();
+        let mut trace_all = |rays: &mut ArrayVec<Option<Ray>, PACKET>| {
+            for color in trace(rays) {
+                sum += color;
+                count += 1;
+            }
+            rays.clear();
+        };
+        self.visit_mesh_rays(mesh, x, y, &mut |ray| {
+            rays.push(Some(ray));
+            if rays.is_full() {
+                trace_all(&mut rays);
+            }
+        });
+        if !rays.is_empty() {
+            trace_all(&mut rays);
+        }
+        if count == 0 {
+            Color::BLACK
+        } else {
+            sum / f64::from(count)
+        }
+    }
+
+    /// The ray of a position in the picture, if the camera has no more than one for each; `None` where it sees nothing.
+    pub(super) fn mesh_ray(&self, mesh: &MeshCamera, x: f64, y: f64) -> Option<Ray> {
+        let mut found = None;
+        if has_one_ray(mesh) {
+            self.visit_mesh_rays(mesh, x, y, &mut |ray| found = Some(ray));
+        }
+        found
+    }
+
+    /// Visits the rays from the faces that belong to a position in the picture.
+    fn visit_mesh_rays(&self, mesh: &MeshCamera, x: f64, y: f64, visit: &mut impl FnMut(Ray)) {
         let (width, height) = (self.width as usize, self.height as usize);
         let column = (x.max(0.0) as usize).min(width.saturating_sub(1));
         let row = (y.max(0.0) as usize).min(height.saturating_sub(1));
         let pixel = row * width + column;
-        let (mut sum, mut count) = (Color::BLACK, 0u32);
         let mut add = |ray: Option<Ray>| {
             if let Some(ray) = ray {
-                sum += trace(&ray);
-                count += 1;
+                visit(ray);
             }
         };
         match mesh.layout {
@@ -57,11 +94,14 @@ impl PrimaryRays {
                 add(found);
             }
         }
-        if count == 0 {
-            Color::BLACK
-        } else {
-            sum / f64::from(count)
-        }
+    }
+}
+
+/// Whether no position in the picture has more than one ray.
+pub(super) fn has_one_ray(mesh: &MeshCamera) -> bool {
+    match mesh.layout {
+        MeshLayout::Each(rays) | MeshLayout::Joined(rays) => rays <= 1,
+        MeshLayout::SideBySide | MeshLayout::ByUv => true,
     }
 }
 

@@ -5,6 +5,7 @@ mod mesh;
 
 use arrayvec::ArrayVec;
 use lens::{LensSampler, one_by_one};
+use mesh::has_one_ray;
 use strahl_accel::{Beam, PACKET};
 use strahl_math::{DVec3, Ray, det};
 use strahl_scene::{Camera, Projection};
@@ -39,7 +40,7 @@ impl PrimaryRays {
     /// not called.
     pub fn color(&self, x: f64, y: f64, mut trace: impl FnMut(&Ray) -> Color) -> Color {
         if let Projection::Mesh(mesh) = &self.camera.projection {
-            return self.mesh_color(mesh, x, y, trace);
+            return self.mesh_color(mesh, x, y, one_by_one(trace));
         }
         match &self.lens {
             Some(lens) => lens.color((x, y), |x, y| self.chief::<false>(x, y), one_by_one(trace)),
@@ -47,22 +48,22 @@ impl PrimaryRays {
         }
     }
 
-    /// [`PrimaryRays::color`] of a camera with a lens, whose rays are traced a few at a time: `trace` returns the colours of
-    /// at most [`PACKET`] rays; where the camera sees nothing there is no ray. `None` if the camera has no lens.
-    pub(crate) fn blurred(
+    /// [`PrimaryRays::color`] of a camera with a lens or with many rays from a mesh, which are traced a few at a time: `trace` returns the colours
+    /// of at most [`PACKET`] rays; where the camera sees nothing there is no ray. `None` if each position has at most one ray.
+    pub(crate) fn mean(
         &self,
         x: f64,
         y: f64,
         trace: impl FnMut(&[Option<Ray>]) -> ArrayVec<Color, PACKET>,
     ) -> Option<Color> {
-        if matches!(self.camera.projection, Projection::Mesh(_)) {
-            return None;
+        if let Projection::Mesh(mesh) = &self.camera.projection {
+            return (!has_one_ray(mesh)).then(|| self.mesh_color(mesh, x, y, trace));
         }
         let lens = self.lens.as_ref()?;
         Some(lens.color((x, y), |x, y| self.chief::<false>(x, y), trace))
     }
 
-    /// The chief ray, through the centre of the lens; `None` where the camera sees nothing, and for mesh cameras.
+    /// The chief ray, through the centre of the lens; `None` where the camera sees nothing, and for mesh cameras with several rays for a pixel.
     #[inline]
     pub fn ray(&self, x: f64, y: f64) -> Option<Ray> {
         self.chief::<true>(x, y)
@@ -74,15 +75,14 @@ impl PrimaryRays {
     #[inline(always)]
     fn chief<const UNIT: bool>(&self, x: f64, y: f64) -> Option<Ray> {
         let c = &self.camera;
-        // From -1 to 1, x to the right and y upwards.
-        let (u, v) = (2.0 * x / self.width - 1.0, 1.0 - 2.0 * y / self.height);
         if c.normal.is_some() || !matches!(c.projection, Projection::Perspective) {
             let mut ray = [DVec3::ZERO; 2];
             let [origin, direction] = &mut ray;
             return self
-                .special_chief([u, v], origin, direction)
+                .special_chief([x, y], origin, direction)
                 .then(|| Ray::new(ray[0], ray[1]));
         }
+        let [u, v] = self.on_film(x, y);
         let direction = c.direction + (c.right * u + c.up * v);
         Some(Ray::new(
             c.eye,
@@ -93,7 +93,13 @@ impl PrimaryRays {
         ))
     }
 
-    /// Stores the chief ray of a camera that isn't perspective or has a `normal`, at coordinates from -1 to 1; its direction has length 1.
+    /// A position in the picture as coordinates from -1 to 1, the first to the right and the second upwards.
+    #[inline(always)]
+    fn on_film(&self, x: f64, y: f64) -> [f64; 2] {
+        [2.0 * x / self.width - 1.0, 1.0 - 2.0 * y / self.height]
+    }
+
+    /// Stores the chief ray of a camera that isn't perspective or has a `normal`, at a position in the picture; its direction has length 1.
     /// Returns `false` where there is none.
     #[inline(never)]
     fn special_chief(&self, at: [f64; 2], origin: &mut DVec3, direction: &mut DVec3) -> bool {
@@ -104,8 +110,12 @@ impl PrimaryRays {
         true
     }
 
-    fn special_ray(&self, [u, v]: [f64; 2]) -> Option<Ray> {
+    fn special_ray(&self, [x, y]: [f64; 2]) -> Option<Ray> {
         let c = &self.camera;
+        if let Projection::Mesh(mesh) = &c.projection {
+            return self.mesh_ray(mesh, x, y);
+        }
+        let [u, v] = self.on_film(x, y);
         let sideways = c.right * u + c.up * v;
         let (ray, place) = match &c.projection {
             Projection::Perspective => {
@@ -130,7 +140,10 @@ impl PrimaryRays {
 
     /// Whether each position in the picture has at most one ray, that of [`PrimaryRays::ray`].
     pub(crate) fn is_sharp(&self) -> bool {
-        self.lens.is_none() && !matches!(self.camera.projection, Projection::Mesh(_))
+        match &self.camera.projection {
+            Projection::Mesh(mesh) => has_one_ray(mesh),
+            _ => self.lens.is_none(),
+        }
     }
 
     /// The beam of all rays through a rectangle of the picture, given by two opposite corners; `None` for other projections

@@ -492,7 +492,7 @@ impl PixelTracer<'_> {
             let rays = self.rays;
             let trace =
                 |rays: &[Option<Ray>]| self.tree.trace_packet(rays).iter().copied().collect();
-            if let Some(color) = rays.blurred(x, y, trace) {
+            if let Some(color) = rays.mean(x, y, trace) {
                 return color.into();
             }
         }
