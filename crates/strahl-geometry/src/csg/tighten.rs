@@ -254,6 +254,11 @@ impl Cell {
     fn low(&self, axis: usize) -> f64 {
         self.center[axis] - self.half[axis]
     }
+
+    /// What boxes are ordered by along an axis.
+    fn order(&self, axis: usize) -> (f64, f64) {
+        (self.low(axis), -self.half[axis])
+    }
 }
 
 /// The part of a box that may contain the inside of all forms. It is never larger than the box.
@@ -306,10 +311,10 @@ fn first_possible(mut cell: Cell, axis: usize, side: f64, forms: &[Form]) -> Opt
     // Seen from above everything is mirrored.
     cell.center[axis] *= side;
     let whole = cell.half;
+    // The box that begins first is the last one; of several, the largest.
     let mut waiting = vec![cell];
     let mut budget = BUDGET;
-    while let Some(next) = nearest(&waiting, axis) {
-        let cell = waiting.swap_remove(next);
+    while let Some(cell) = waiting.pop() {
         let mut there = cell;
         there.center[axis] *= side;
         if forms.iter().any(|form| form.excludes(&there)) {
@@ -333,21 +338,13 @@ fn first_possible(mut cell: Cell, axis: usize, side: f64, forms: &[Form]) -> Opt
             return Some(side * cell.low(axis));
         }
         budget -= 1;
-        waiting.extend(cell.bisected(widest.0));
+        for part in cell.bisected(widest.0) {
+            let comes_later = |other: &Cell| other.order(axis) > part.order(axis);
+            let place = waiting.partition_point(comes_later);
+            waiting.insert(place, part);
+        }
     }
     None
-}
-
-/// The box that begins first along an axis; of several, the largest.
-fn nearest(cells: &[Cell], axis: usize) -> Option<usize> {
-    let key = |cell: &Cell| (cell.low(axis), -cell.half[axis]);
-    (0..cells.len()).reduce(|best, next| {
-        if key(&cells[next]) < key(&cells[best]) {
-            next
-        } else {
-            best
-        }
-    })
 }
 
 /// Half the side of a cube around the origin outside of which no point is inside of all forms and of the box, if that can be
