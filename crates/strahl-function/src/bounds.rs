@@ -1,5 +1,6 @@
 use crate::rounding::{
-    above, add_down, add_up, below, div_down, div_up, lower, mul_down, mul_up, or, upper,
+    above, add_down, add_up, below, div_down, div_up, finite_sums, greater, less, lower, mul_down,
+    mul_up, or, stepped, upper,
 };
 use strahl_math::det;
 
@@ -70,6 +71,14 @@ impl Bounds {
             Self::new(if min == 0.0 { -0.0 } else { min }, max)
         } else {
             Self::UNKNOWN
+        }
+    }
+
+    /// Both zeros, if the lower end is a zero.
+    pub(crate) fn with_both_zeros(self) -> Self {
+        Self {
+            min: -(0.0 - self.min),
+            ..self
         }
     }
 
@@ -156,43 +165,47 @@ impl Bounds {
         }
     }
 
+    #[inline]
     pub(crate) fn neg(self) -> Self {
         Self {
-            min: if self.max == 0.0 { -0.0 } else { -self.max },
+            // The opposite of either zero is -0.
+            min: -(self.max + 0.0),
             max: -self.min,
             nan: self.nan,
         }
     }
 
+    #[inline]
     pub(crate) fn abs(self) -> Self {
         if self.is_empty() {
             return self;
         }
-        let (a, b) = (self.min.abs(), self.max.abs());
+        // At most one end is further from zero than its opposite is.
+        let nearest = greater(self.min, -self.max);
         Self {
-            min: if self.has_zero() { 0.0 } else { lower(a, b) },
-            max: upper(a, b),
+            min: greater(nearest, 0.0),
+            max: greater(self.min.abs(), self.max.abs()),
             nan: self.nan,
         }
     }
 
     #[inline]
     pub(crate) fn add(self, other: Self) -> Self {
-        // The usual case. The ends of an empty interval are infinite, and so are their sums, or NaN.
-        let sums = (self.min + other.min, self.max + other.max);
-        if sums.0.abs() < f64::INFINITY && sums.1.abs() < f64::INFINITY {
-            return Self {
-                min: add_down(self.min, other.min),
-                max: add_up(self.max, other.max),
-                nan: self.nan || other.nan,
-            };
+        // The ends of an empty interval are infinite, and so are their sums, or NaN.
+        match finite_sums([self.min, self.max], [other.min, other.max]) {
+            Some([min, max]) => Self {
+                min,
+                max,
+                nan: self.nan | other.nan,
+            },
+            None => self.add_any(other),
         }
-        self.add_infinite(other)
     }
 
-    /// [`Bounds::add`] where a sum is not finite.
+    /// [`Bounds::add`] in all cases, such as sums that are not finite.
     #[cold]
-    fn add_infinite(self, other: Self) -> Self {
+    #[inline(never)]
+    fn add_any(self, other: Self) -> Self {
         if self.is_empty() || other.is_empty() {
             return Self::NAN;
         }
@@ -207,17 +220,26 @@ impl Bounds {
         }
     }
 
+    #[inline]
     pub(crate) fn sub(self, other: Self) -> Self {
         self.add(other.neg())
     }
 
+    #[inline]
     pub(crate) fn mul(self, other: Self) -> Self {
+        // The ends of an empty interval are infinite, and so are their products, or NaN.
+        if let Some((min, max)) = self.plain_products(other) {
+            let nan = self.nan | other.nan;
+            return Self { min, max, nan };
+        }
+        self.mul_any(other)
+    }
+
+    /// [`Bounds::mul`] in all cases, such as products that are zero or not finite.
+    #[inline(never)]
+    fn mul_any(self, other: Self) -> Self {
         if self.is_empty() || other.is_empty() {
             return Self::NAN;
-        }
-        if let Some((min, max)) = self.plain_products(other) {
-            let nan = self.nan || other.nan;
-            return Self { min, max, nan };
         }
         let nan =
             self.has_zero() && other.is_unbounded() || other.has_zero() && self.is_unbounded();
@@ -226,30 +248,35 @@ impl Bounds {
 
     /// The least and the largest product of ends, rounded outwards, if none of them is zero, infinite or NaN: the usual case, in which
     /// rounding the two that count is enough.
-    #[inline]
+    #[inline(always)]
     fn plain_products(self, other: Self) -> Option<(f64, f64)> {
         let (a, b) = (self.min * other.min, self.min * other.max);
         let (c, d) = (self.max * other.min, self.max * other.max);
-        let plain = |x: f64| x.abs() > 0.0 && x.abs() < f64::INFINITY;
-        if !(plain(a) && plain(b) && plain(c) && plain(d)) {
+        let size = [a.abs(), b.abs(), c.abs(), d.abs()];
+        let sum = (size[0] + size[2]) + (size[1] + size[3]);
+        let least = less(less(size[0], size[2]), less(size[1], size[3]));
+        // Whatever is not finite shows in the sum.
+        if !(sum < f64::INFINITY && least > 0.0) {
             return None;
         }
-        let least = |x: f64, y: f64| if x < y { x } else { y };
-        let most = |x: f64, y: f64| if x > y { x } else { y };
         Some((
-            least(least(a, b), least(c, d)).next_down(),
-            most(most(a, b), most(c, d)).next_up(),
+            stepped(less(less(a, b), less(c, d)), -1),
+            stepped(greater(greater(a, b), greater(c, d)), 1),
         ))
     }
 
+    #[inline]
     pub(crate) fn square(self) -> Self {
         let magnitude = self.abs();
         if magnitude.is_empty() {
             return magnitude;
         }
+        let (least, most) = (magnitude.min * magnitude.min, magnitude.max * magnitude.max);
+        // The neighbours of numbers that are not negative; what is zero or infinite already stays.
+        let is_last = magnitude.max == 0.0 || most == f64::INFINITY;
         Self {
-            min: mul_down(magnitude.min, magnitude.min),
-            max: mul_up(magnitude.max, magnitude.max),
+            min: f64::from_bits(least.to_bits().saturating_sub(1)),
+            max: f64::from_bits(most.to_bits() + u64::from(!is_last)),
             nan: self.nan,
         }
     }
@@ -299,7 +326,21 @@ impl Bounds {
         result
     }
 
+    #[inline]
     pub(crate) fn sqrt(self) -> Self {
+        if self.min > 0.0 && !self.is_empty() && self.max < f64::INFINITY {
+            return Self {
+                min: stepped(self.min.sqrt(), -1),
+                max: stepped(self.max.sqrt(), 1),
+                nan: self.nan,
+            };
+        }
+        self.sqrt_any()
+    }
+
+    /// [`Bounds::sqrt`] in all cases, such as of what is not positive or not finite.
+    #[inline(never)]
+    fn sqrt_any(self) -> Self {
         let inside = self.restrict(-0.0, f64::INFINITY);
         if inside.is_empty() {
             return inside;
@@ -319,22 +360,9 @@ impl Bounds {
         if base.is_empty() {
             return base;
         }
-        let end = |x: f64| {
-            let mut result = Self::point(1.0);
-            let mut square = Self::point(x);
-            let mut bits = exponent;
-            while bits > 0 {
-                if bits & 1 == 1 {
-                    result = result.mul(square);
-                }
-                square = square.square();
-                bits >>= 1;
-            }
-            result
-        };
         Self {
-            min: end(base.min).min,
-            max: end(base.max).max,
+            min: power_end(base.min, exponent, base.min < 0.0),
+            max: power_end(base.max, exponent, base.max > 0.0),
             nan: self.nan,
         }
     }
@@ -459,42 +487,41 @@ impl Bounds {
     }
 
     /// `if a <= b { a } else { b }`.
+    #[inline]
     pub(crate) fn minimum(self, other: Self) -> Self {
         if self.is_empty() || other.is_empty() {
             return other;
         }
+        if self.nan {
+            return Self {
+                min: lower(self.min, other.min),
+                ..other
+            };
+        }
         Self {
             min: lower(self.min, other.min),
-            max: if self.nan || self.max > other.max {
-                other.max
-            } else {
-                self.max
-            },
+            max: less(other.max, self.max),
             nan: other.nan,
         }
-        .hull_if(self.nan, other)
     }
 
     /// `if a < b { b } else { a }`.
+    #[inline]
     pub(crate) fn maximum(self, other: Self) -> Self {
         if self.is_empty() || other.is_empty() {
             return self;
         }
         Self {
-            min: if other.nan || self.min > other.min {
+            min: if other.nan {
                 self.min
-            } else if self.min < other.min {
-                other.min
             } else {
-                lower(self.min, other.min)
+                let (a, b) = (greater(self.min, other.min), greater(other.min, self.min));
+                // They differ only if both are zero.
+                lower(a, b)
             },
             max: upper(self.max, other.max),
             nan: self.nan,
         }
-    }
-
-    fn hull_if(self, condition: bool, other: Self) -> Self {
-        if condition { self.hull(other) } else { self }
     }
 
     pub(crate) fn less(self, other: Self, or_equal: bool) -> Self {
@@ -532,9 +559,36 @@ impl Bounds {
     }
 }
 
+/// An odd power, or one of a positive number, whose products are rounded away from zero or towards it.
+fn power_end(x: f64, exponent: u8, is_away: bool) -> f64 {
+    if x == 0.0 {
+        return x;
+    }
+    let product = |a: f64, b: f64| {
+        let product = a * b;
+        match is_away {
+            true => product.next_up(),
+            // Zero stays.
+            false => f64::from_bits(product.to_bits().saturating_sub(1)),
+        }
+    };
+    let (mut result, mut square, mut bits) = (1.0, x.abs(), exponent);
+    loop {
+        if bits & 1 == 1 {
+            result = product(result, square);
+        }
+        bits >>= 1;
+        if bits == 0 {
+            return result.copysign(x);
+        }
+        square = product(square, square);
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::cmp::Ordering;
 
     #[test]
     fn exact_sums_are_not_widened() {
@@ -557,42 +611,116 @@ mod tests {
         );
     }
 
-    #[test]
-    fn plain_products_are_those_of_all_corners() {
+    /// Intervals between numbers of all magnitudes, and those that are not numbers.
+    fn intervals() -> Vec<Bounds> {
         let ends = [
-            -1e300,
+            f64::NEG_INFINITY,
+            f64::MIN,
             -3.5,
             -1.0,
             -1e-200,
+            -f64::from_bits(1),
             -0.0,
             0.0,
+            f64::from_bits(1),
             1e-200,
             0.1,
+            1.0,
             2.0,
             7e9,
-            1e300,
+            f64::MAX,
             f64::INFINITY,
         ];
-        let mut intervals = vec![];
+        let mut intervals = vec![Bounds::NAN];
         for (i, &min) in ends.iter().enumerate() {
             for &max in &ends[i..] {
                 intervals.push(Bounds::new(min, max));
                 intervals.push(Bounds::new(min, max).with_nan(true));
             }
         }
-        let mut plain = 0;
-        for &a in &intervals {
-            for &b in &intervals {
-                if let Some((min, max)) = a.plain_products(b) {
-                    let all = a.corners(b, mul_down, mul_up);
-                    let same =
-                        min.to_bits() == all.min.to_bits() && max.to_bits() == all.max.to_bits();
-                    assert!(same, "{a:?} {b:?} {all:?}");
-                    plain += 1;
+        intervals
+    }
+
+    fn assert_same(ours: Bounds, theirs: Bounds, of: &dyn std::fmt::Debug) {
+        let bits = |b: Bounds| (b.min.to_bits(), b.max.to_bits(), b.nan);
+        assert_eq!(bits(ours), bits(theirs), "{ours:?} {theirs:?} of {of:?}");
+    }
+
+    #[test]
+    fn usual_cases_have_the_bits_of_the_general_ones() {
+        for a in intervals() {
+            for b in intervals() {
+                let of = (a, b);
+                assert_same(a.add(b), a.add_any(b), &of);
+                assert_same(a.sub(b), a.add_any(b.neg()), &of);
+                assert_same(a.mul(b), a.mul_any(b), &of);
+                if a.is_empty() || b.is_empty() || a.nan || b.nan {
+                    continue;
                 }
+                // A zero at a lower end is negative if one of two is, at an upper end positive.
+                let zero = if a.min.is_sign_negative() {
+                    a.min
+                } else {
+                    b.min
+                };
+                let (min, max) = match a.min.partial_cmp(&b.min) {
+                    Some(Ordering::Less) => (a.min, b.min),
+                    Some(Ordering::Greater) => (b.min, a.min),
+                    _ => (zero, zero),
+                };
+                let most = if a.max > b.max { b.max } else { a.max };
+                assert_same(a.minimum(b), Bounds::new(min, most), &of);
+                let zero = if a.max.is_sign_positive() {
+                    a.max
+                } else {
+                    b.max
+                };
+                let most = match a.max.partial_cmp(&b.max) {
+                    Some(Ordering::Less) => b.max,
+                    Some(Ordering::Greater) => a.max,
+                    _ => zero,
+                };
+                assert_same(a.maximum(b), Bounds::new(max, most), &of);
             }
         }
-        assert!(plain > 4_000, "{plain}");
+    }
+
+    #[test]
+    fn powers_of_intervals_have_the_bits_of_products_of_points() {
+        for a in intervals() {
+            assert_same(a.sqrt(), a.sqrt_any(), &a);
+            let size = a.abs();
+            if size.is_empty() {
+                continue;
+            }
+            let low = mul_down(size.min, size.min);
+            let square = Bounds::new(low, mul_up(size.max, size.max)).with_nan(a.nan);
+            assert_same(a.square(), square, &a);
+            let most = upper(a.min.abs(), a.max.abs());
+            let least = if a.has_zero() {
+                0.0
+            } else {
+                lower(a.min.abs(), a.max.abs())
+            };
+            assert_same(size, Bounds::new(least, most).with_nan(a.nan), &a);
+            for exponent in [3, 4, 7, 64] {
+                let end = |x: f64| {
+                    let (mut result, mut square) = (Bounds::point(1.0), Bounds::point(x));
+                    let mut bits = exponent;
+                    while bits > 0 {
+                        if bits & 1 == 1 {
+                            result = result.mul_any(square);
+                        }
+                        square = square.mul_any(square);
+                        bits >>= 1;
+                    }
+                    result
+                };
+                let base = if exponent % 2 == 1 { a } else { size };
+                let ends = Bounds::new(end(base.min).min, end(base.max).max).with_nan(a.nan);
+                assert_same(a.power(exponent), ends, &(a, exponent));
+            }
+        }
     }
 
     #[test]

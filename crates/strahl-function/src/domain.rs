@@ -258,9 +258,11 @@ impl Domain for Bounds {
     fn unknown() -> Self {
         Self::UNKNOWN
     }
+    #[inline(always)]
     fn unary(op: UnaryOp, a: Self) -> Self {
         op.bounds(a)
     }
+    #[inline(always)]
     fn binary(op: BinaryOp, a: Self, b: Self) -> Self {
         op.bounds(a, b)
     }
@@ -334,10 +336,12 @@ impl Domain for Dual {
     fn unknown() -> Self {
         Self::number(f64::NAN)
     }
+    #[inline(always)]
     fn unary(op: UnaryOp, a: Self) -> Self {
         let value = op.value(a.value);
         Self::number(value).along(a, op.slope(a.value, value))
     }
+    #[inline(always)]
     fn binary(op: BinaryOp, a: Self, b: Self) -> Self {
         let value = op.value(a.value, b.value);
         let (by_a, by_b) = op.slopes(a.value, b.value, value);

@@ -131,6 +131,7 @@ impl UnaryOp {
     }
 
     /// Bounds of the operation on every number within bounds.
+    #[inline]
     pub fn bounds(self, a: Bounds) -> Bounds {
         use std::f64::consts::{FRAC_PI_2, PI};
         const ALL: (f64, f64) = (f64::NEG_INFINITY, f64::INFINITY);
@@ -245,6 +246,7 @@ impl BinaryOp {
     }
 
     /// Bounds of the operation on all pairs of numbers within bounds.
+    #[inline]
     pub fn bounds(self, a: Bounds, b: Bounds) -> Bounds {
         match self {
             Self::Add => a.add(b),

@@ -52,6 +52,7 @@ impl Rate {
 }
 
 /// The derivative of an operation on values within `a`, which gives values within `value`; nothing for steps.
+#[inline(always)]
 fn slope(op: UnaryOp, a: Bounds, value: Bounds) -> Option<Bounds> {
     let squared = a.square();
     Some(match op {
@@ -87,6 +88,7 @@ fn slope(op: UnaryOp, a: Bounds, value: Bounds) -> Option<Bounds> {
 }
 
 /// The rate of an operation on two values that gives values within `value`.
+#[inline(always)]
 fn rate(op: BinaryOp, a: Rate, b: Rate, value: Bounds) -> Bounds {
     match op {
         BinaryOp::Add => a.rate.add(b.rate),
@@ -153,6 +155,7 @@ impl Domain for Rate {
             rate: Bounds::UNKNOWN,
         }
     }
+    #[inline(always)]
     fn unary(op: UnaryOp, a: Self) -> Self {
         let value = op.bounds(a.value);
         if a.is_constant() {
@@ -163,6 +166,7 @@ impl Domain for Rate {
             None => Self::step(value),
         }
     }
+    #[inline(always)]
     fn binary(op: BinaryOp, a: Self, b: Self) -> Self {
         let value = op.bounds(a.value, b.value);
         if a.is_constant() && b.is_constant() {
