@@ -9,6 +9,7 @@ use crate::run::{prepare, run};
 use crate::tape::{self, Tape};
 use std::cell::Cell;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 /// A function of named parameters, ready to be evaluated. Cheap to clone.
 ///
@@ -30,12 +31,61 @@ struct Inner {
 /// Working memory of evaluations: one for each thread, used for any number of functions.
 #[derive(Clone, Debug, Default)]
 pub struct Workspace {
-    points: Vec<f64>,
-    lanes: Vec<Lanes>,
-    bounds: Vec<Bounds>,
-    duals: Vec<Dual>,
-    rates: Vec<Rate>,
+    points: Registers<f64>,
+    lanes: Registers<Lanes>,
+    bounds: Registers<Bounds>,
+    duals: Registers<Dual>,
+    rates: Registers<Rate>,
     spent: u64,
+}
+
+/// The registers of the functions that are evaluated with a workspace.
+#[derive(Clone, Debug)]
+struct Registers<T> {
+    stack: Vec<T>,
+    /// The number of the tape whose constants are in place; 0 for none.
+    tape: u64,
+}
+
+impl<T> Default for Registers<T> {
+    fn default() -> Self {
+        Self {
+            stack: Vec::new(),
+            tape: 0,
+        }
+    }
+}
+
+impl<T: Domain> Registers<T> {
+    /// Those for a tape, with its constants in place.
+    #[inline]
+    fn of(&mut self, tape: &Tape) -> &mut [T] {
+        if self.tape != tape.number {
+            if self.stack.len() < tape.stack {
+                self.stack.resize(tape.stack, T::constant(0.0));
+            }
+            prepare(tape, &mut self.stack);
+            self.tape = tape.number;
+        }
+        &mut self.stack
+    }
+}
+
+/// Copies the arguments of a tape to its inputs.
+#[inline]
+fn fill<T: Domain, A: Copy>(
+    stack: &mut [T],
+    tape: &Tape,
+    arguments: &[A],
+    convert: impl Fn(A) -> T,
+) {
+    let inputs = &mut stack[..tape.inputs];
+    for (register, &argument) in inputs.iter_mut().zip(arguments) {
+        *register = convert(argument);
+    }
+    if let Some(missing) = inputs.get_mut(arguments.len()..) {
+        missing.fill(T::constant(f64::NAN));
+    }
 }
 
 impl Workspace {
@@ -55,7 +105,9 @@ impl Function {
     pub(crate) fn compile(mut graph: Graph, root: Expr) -> Result<Self, FunctionError> {
         let depth = graph.depth(root);
         let size = graph.reachable(root).len();
-        let tape = tape::compile(&graph, root)?;
+        let mut tape = tape::compile(&graph, root)?;
+        static TAPES: AtomicU64 = AtomicU64::new(1);
+        tape.number = TAPES.fetch_add(1, Ordering::Relaxed);
         let limit = graph.allowed();
         if tape.cost > limit || tape.cost == u64::MAX {
             let cost = tape.cost;
@@ -91,9 +143,8 @@ impl Function {
     /// The value at a point.
     pub fn value(&self, workspace: &mut Workspace, arguments: &[f64]) -> f64 {
         let tape = self.tape();
-        let stack = reserve(&mut workspace.points, tape);
-        fill(stack, arguments, tape.inputs);
-        prepare(tape, stack);
+        let stack = workspace.points.of(tape);
+        fill(stack, tape, arguments, |x| x);
         let mut fuel = self.fuel();
         let result = run(tape, stack, &mut fuel);
         workspace.spent = workspace.spent.wrapping_add(self.fuel() - fuel);
@@ -121,8 +172,7 @@ impl Function {
     /// has NaN there.
     pub fn values(&self, workspace: &mut Workspace, arguments: &[&[f64]], values: &mut [f64]) {
         let tape = self.tape();
-        let stack = reserve(&mut workspace.lanes, tape);
-        prepare(tape, stack);
+        let stack = workspace.lanes.of(tape);
         for (chunk, out) in values.chunks_mut(LANES).enumerate() {
             for (input, register) in stack[..tape.inputs].iter_mut().enumerate() {
                 let column = arguments.get(input).copied().unwrap_or(&[]);
@@ -146,17 +196,8 @@ impl Function {
     /// An interval that contains the value at every point whose arguments are within bounds.
     pub fn bounds(&self, workspace: &mut Workspace, arguments: &[Bounds]) -> Bounds {
         let tape = self.tape();
-        let stack = reserve(&mut workspace.bounds, tape);
-        for (register, i) in stack.iter_mut().zip(0..tape.inputs) {
-            *register = arguments.get(i).map_or(Bounds::NAN, |a| {
-                if a.is_empty() {
-                    *a
-                } else {
-                    Bounds::argument(a.min, a.max).with_nan(a.nan)
-                }
-            });
-        }
-        prepare(tape, stack);
+        let stack = workspace.bounds.of(tape);
+        fill(stack, tape, arguments, Bounds::with_both_zeros);
         run(tape, stack, &mut self.fuel())
     }
 
@@ -172,7 +213,7 @@ impl Function {
         rates: &[f64],
     ) -> (Bounds, Bounds) {
         let tape = self.tape();
-        let stack = reserve(&mut workspace.rates, tape);
+        let stack = workspace.rates.of(tape);
         for (register, i) in stack.iter_mut().zip(0..tape.inputs) {
             let argument = arguments.get(i).copied().unwrap_or(Bounds::NAN);
             *register = Rate {
@@ -180,7 +221,6 @@ impl Function {
                 rate: Bounds::point(rates.get(i).copied().unwrap_or(f64::NAN)),
             };
         }
-        prepare(tape, stack);
         let result = run(tape, stack, &mut self.fuel());
         let rate = if result.value.nan {
             Bounds::UNKNOWN
@@ -205,14 +245,13 @@ impl Function {
     /// At steps and corners (`floor`, `abs`, `min`, ...) the derivative of one side is given.
     pub fn gradient(&self, workspace: &mut Workspace, arguments: &[f64]) -> (f64, [f64; 3]) {
         let tape = self.tape();
-        let stack = reserve(&mut workspace.duals, tape);
+        let stack = workspace.duals.of(tape);
         for (register, i) in stack.iter_mut().zip(0..tape.inputs) {
             *register = Dual::number(arguments.get(i).copied().unwrap_or(f64::NAN));
             if let Some(partial) = register.partials.get_mut(i) {
                 *partial = 1.0;
             }
         }
-        prepare(tape, stack);
         let result = run(tape, stack, &mut self.fuel());
         (result.value, result.partials)
     }
@@ -236,20 +275,6 @@ impl Function {
 
     pub(crate) fn depth(&self) -> u32 {
         self.inner.depth
-    }
-}
-
-/// The registers for a tape.
-fn reserve<'a, T: Domain>(stack: &'a mut Vec<T>, tape: &Tape) -> &'a mut [T] {
-    if stack.len() < tape.stack {
-        stack.resize(tape.stack, T::constant(0.0));
-    }
-    stack
-}
-
-fn fill(stack: &mut [f64], arguments: &[f64], inputs: usize) {
-    for (register, i) in stack.iter_mut().zip(0..inputs) {
-        *register = arguments.get(i).copied().unwrap_or(f64::NAN);
     }
 }
 

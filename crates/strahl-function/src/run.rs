@@ -1,8 +1,8 @@
 //! The interpreter, once for all domains.
 
 use crate::domain::{Domain, Round};
-use crate::op::BinaryOp;
-use crate::tape::{LoopCode, Op, Tape};
+use crate::op::{BinaryOp, UnaryOp};
+use crate::tape::{Op, Tape};
 
 /// Writes the constants of a tape to their registers.
 pub(crate) fn prepare<T: Domain>(tape: &Tape, stack: &mut [T]) {
@@ -18,8 +18,18 @@ pub(crate) fn run<T: Domain>(tape: &Tape, stack: &mut [T], fuel: &mut T::Fuel) -
     for i in &tape.code {
         let (out, a, b) = (i.out as usize, i.a as usize, i.b as usize);
         r[out] = match i.op {
-            Op::Unary(op) => T::unary(op, r[a]),
-            Op::Binary(op) => T::binary(op, r[a], r[b]),
+            Op::Neg => T::unary(UnaryOp::Neg, r[a]),
+            Op::Abs => T::unary(UnaryOp::Abs, r[a]),
+            Op::Square => T::unary(UnaryOp::Square, r[a]),
+            Op::Sqrt => T::unary(UnaryOp::Sqrt, r[a]),
+            Op::Add => T::binary(BinaryOp::Add, r[a], r[b]),
+            Op::Sub => T::binary(BinaryOp::Sub, r[a], r[b]),
+            Op::Mul => T::binary(BinaryOp::Mul, r[a], r[b]),
+            Op::Div => T::binary(BinaryOp::Div, r[a], r[b]),
+            Op::Min => T::binary(BinaryOp::Min, r[a], r[b]),
+            Op::Max => T::binary(BinaryOp::Max, r[a], r[b]),
+            Op::Unary(op) => unary(op, r[a]),
+            Op::Binary(op) => binary(op, r[a], r[b]),
             Op::Select => {
                 let [negative, zero, positive] = tape.selects[b];
                 T::select(
@@ -29,21 +39,45 @@ pub(crate) fn run<T: Domain>(tape: &Tape, stack: &mut [T], fuel: &mut T::Fuel) -
                     r[positive as usize],
                 )
             }
-            Op::Field => {
-                let (field, arguments) = &tape.fields[b];
-                gather(r, arguments, rest);
-                T::field(field.as_ref(), &rest[..arguments.len()])
-            }
-            Op::Call => {
-                let (function, arguments) = &tape.calls[b];
-                gather(r, arguments, rest);
-                prepare(function.tape(), rest);
-                run(function.tape(), rest, fuel)
-            }
-            Op::Loop => repeat(&tape.loops[b], r, rest, fuel),
+            Op::Field => field(tape, b, r, rest),
+            Op::Call => call(tape, b, r, rest, fuel),
+            Op::Loop => repeat(tape, b, r, rest, fuel),
         };
     }
     r[tape.result as usize]
+}
+
+// What follows is not part of the interpreter's own code, which is to have few instructions between one operation and the next.
+
+#[inline(never)]
+fn unary<T: Domain>(op: UnaryOp, a: T) -> T {
+    T::unary(op, a)
+}
+
+#[inline(never)]
+fn binary<T: Domain>(op: BinaryOp, a: T, b: T) -> T {
+    T::binary(op, a, b)
+}
+
+#[inline(never)]
+fn field<T: Domain>(tape: &Tape, at: usize, registers: &[T], stack: &mut [T]) -> T {
+    let (field, arguments) = &tape.fields[at];
+    gather(registers, arguments, stack);
+    T::field(field.as_ref(), &stack[..arguments.len()])
+}
+
+#[inline(never)]
+fn call<T: Domain>(
+    tape: &Tape,
+    at: usize,
+    registers: &[T],
+    stack: &mut [T],
+    fuel: &mut T::Fuel,
+) -> T {
+    let (function, arguments) = &tape.calls[at];
+    gather(registers, arguments, stack);
+    prepare(function.tape(), stack);
+    run(function.tape(), stack, fuel)
 }
 
 fn gather<T: Domain>(registers: &[T], from: &[u32], to: &mut [T]) {
@@ -52,7 +86,15 @@ fn gather<T: Domain>(registers: &[T], from: &[u32], to: &mut [T]) {
     }
 }
 
-fn repeat<T: Domain>(code: &LoopCode, registers: &[T], stack: &mut [T], fuel: &mut T::Fuel) -> T {
+#[inline(never)]
+fn repeat<T: Domain>(
+    tape: &Tape,
+    at: usize,
+    registers: &[T],
+    stack: &mut [T],
+    fuel: &mut T::Fuel,
+) -> T {
+    let code = &tape.loops[at];
     let (op, neutral) = if code.product {
         (BinaryOp::Mul, 1.0)
     } else {

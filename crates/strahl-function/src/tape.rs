@@ -18,14 +18,54 @@ pub(crate) struct Instruction {
     pub(crate) b: u32,
 }
 
+/// What an instruction does. The most frequent operations are decoded in one step.
 #[derive(Clone, Copy, Debug)]
+#[repr(u8)]
 pub(crate) enum Op {
+    Neg,
+    Abs,
+    Square,
+    Sqrt,
+    Add,
+    Sub,
+    Mul,
+    Div,
+    Min,
+    Max,
+    /// Any other operation on one value.
     Unary(UnaryOp),
+    /// Any other operation on two values.
     Binary(BinaryOp),
     Select,
     Field,
     Call,
     Loop,
+}
+
+impl From<UnaryOp> for Op {
+    fn from(op: UnaryOp) -> Self {
+        match op {
+            UnaryOp::Neg => Self::Neg,
+            UnaryOp::Abs => Self::Abs,
+            UnaryOp::Square => Self::Square,
+            UnaryOp::Sqrt => Self::Sqrt,
+            other => Self::Unary(other),
+        }
+    }
+}
+
+impl From<BinaryOp> for Op {
+    fn from(op: BinaryOp) -> Self {
+        match op {
+            BinaryOp::Add => Self::Add,
+            BinaryOp::Sub => Self::Sub,
+            BinaryOp::Mul => Self::Mul,
+            BinaryOp::Div => Self::Div,
+            BinaryOp::Min => Self::Min,
+            BinaryOp::Max => Self::Max,
+            other => Self::Binary(other),
+        }
+    }
 }
 
 /// A function as straight-line code.
@@ -34,6 +74,8 @@ pub(crate) enum Op {
 /// overwritten, so that a batch writes the constants once.
 #[derive(Debug, Default)]
 pub(crate) struct Tape {
+    /// A number that no other function's tape has, so that a workspace knows whose constants it holds.
+    pub(crate) number: u64,
     pub(crate) code: Vec<Instruction>,
     pub(crate) inputs: usize,
     pub(crate) constants: Vec<f64>,
@@ -231,8 +273,8 @@ fn assemble(
             Node::Constant(_) | Node::Parameter(_) | Node::Variable(_) => {
                 return Err(FunctionError::UnboundVariable);
             }
-            Node::Unary(op, a) => (Op::Unary(op), at(a)?, 0),
-            Node::Binary(op, a, b) => (Op::Binary(op), at(a)?, at(b)?),
+            Node::Unary(op, a) => (op.into(), at(a)?, 0),
+            Node::Binary(op, a, b) => (op.into(), at(a)?, at(b)?),
             Node::Select(s, n, z, p) => {
                 tape.selects.push([at(n)?, at(z)?, at(p)?]);
                 (Op::Select, at(s)?, tape.selects.len() as u32 - 1)
