@@ -39,6 +39,17 @@ pub struct Workspace {
     spent: u64,
 }
 
+/// Functions are equal if they have the same parameters and take the same steps, with the same fields: then all their values have
+/// the same bits. Functions that are written differently are not equal.
+impl PartialEq for Function {
+    fn eq(&self, other: &Self) -> bool {
+        let (a, b) = (&*self.inner, &*other.inner);
+        self.place() == other.place() || a.root == b.root && a.graph.is_same(&b.graph)
+    }
+}
+
+impl Eq for Function {}
+
 /// The registers of the functions that are evaluated with a workspace.
 #[derive(Clone, Debug)]
 struct Registers<T> {
@@ -301,16 +312,16 @@ impl ScalarField for Function {
 
     fn value(&self, arguments: &[f64]) -> f64 {
         thread_local! {
-            static WORKSPACE: Cell<Workspace> = Cell::default();
+            static WORKSPACE: Cell<Option<Box<Workspace>>> = Cell::default();
         }
         if arguments.is_empty() {
             return self.constant().unwrap_or(f64::NAN);
         }
         // Taken and put back, so that a field within the function can do the same.
         WORKSPACE.with(|cell| {
-            let mut workspace = cell.take();
+            let mut workspace = cell.take().unwrap_or_default();
             let value = Function::value(self, &mut workspace, arguments);
-            cell.set(workspace);
+            cell.set(Some(workspace));
             value
         })
     }

@@ -131,6 +131,20 @@ impl Graph {
         self.allowed.unwrap_or(limits::COST)
     }
 
+    /// Whether another graph has the same nodes in the same order, so that all evaluations do the same.
+    pub(crate) fn is_same(&self, other: &Self) -> bool {
+        let mut fields = self.fields.iter().zip(&other.fields);
+        let mut functions = self.functions.iter().zip(&other.functions);
+        self.nodes == other.nodes
+            && self.lists == other.lists
+            && self.parameters == other.parameters
+            && self.allowed() == other.allowed()
+            && self.functions.len() == other.functions.len()
+            && self.fields.len() == other.fields.len()
+            && fields.all(|(a, b)| Arc::ptr_eq(a, b))
+            && functions.all(|(a, b)| a.place() == b.place())
+    }
+
     /// The number of operations that building took so far, including those for nodes that already existed.
     pub fn work(&self) -> u64 {
         self.work

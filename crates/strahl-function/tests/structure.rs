@@ -424,6 +424,33 @@ impl ScalarField for Product {
 }
 
 #[test]
+fn functions_that_do_the_same_are_equal() {
+    let build = |constant: f64, field: &Arc<dyn ScalarField>| {
+        let mut g = Graph::new(["x"]);
+        let x = g.parameter("x");
+        let scaled = g.scaled(x, constant);
+        let read = g.field(field, &[scaled]);
+        let sum = g.add(read, x);
+        g.finish(sum).unwrap()
+    };
+    let field: Arc<dyn ScalarField> = Arc::new(build_square());
+    let other: Arc<dyn ScalarField> = Arc::new(build_square());
+    let f = build(2.0, &field);
+    assert_eq!(f, f.clone());
+    assert_eq!(f, build(2.0, &field));
+    assert_ne!(f, build(3.0, &field));
+    // What another field does is not known.
+    assert_ne!(f, build(2.0, &other));
+}
+
+fn build_square() -> Function {
+    let mut g = Graph::new(["x"]);
+    let x = g.parameter("x");
+    let square = g.square(x);
+    g.finish(square).unwrap()
+}
+
+#[test]
 fn fields_are_called_from_all_domains() {
     let field: Arc<dyn ScalarField> = Arc::new(Product);
     let mut g = Graph::new(["x", "y", "z"]);

@@ -6,12 +6,12 @@ use strahl_function::Workspace;
 /// It is removed and put back, so that a function that calls another object's function can do the same.
 pub(super) fn with_workspace<T>(f: impl FnOnce(&mut Workspace) -> T) -> T {
     thread_local! {
-        static WORKSPACE: Cell<Workspace> = Cell::default();
+        static WORKSPACE: Cell<Option<Box<Workspace>>> = Cell::default();
     }
     WORKSPACE.with(|cell| {
-        let mut workspace = cell.take();
+        let mut workspace = cell.take().unwrap_or_default();
         let result = f(&mut workspace);
-        cell.set(workspace);
+        cell.set(Some(workspace));
         result
     })
 }
