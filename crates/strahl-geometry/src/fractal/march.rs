@@ -1,7 +1,7 @@
 //! A ray on its way through the cells that may have a surface of a set of orbits.
 
 use super::orbit_set::{BALL, Event, OrbitSet, Places, SURFACE};
-use crate::implicit::Visitor;
+use crate::implicit::{Content, Visitor};
 use std::ops::ControlFlow;
 use strahl_math::roots::find_crossing;
 use strahl_math::{Aabb, DVec3};
@@ -231,10 +231,15 @@ impl<S: OrbitSet, V: FnMut(Event) -> ControlFlow<()>> Visitor for March<'_, S, V
         (self.origin, self.direction)
     }
 
-    fn may_have_surface(&mut self, cell: &Aabb) -> bool {
-        !self
+    fn content(&mut self, cell: &Aabb) -> Content {
+        if self
             .set
             .is_decided(cell.center(), 0.5 * cell.size().length())
+        {
+            Content::Empty { is_inside: None }
+        } else {
+            Content::Surface
+        }
     }
 
     fn part(&mut self, enter: f64, exit: f64) -> ControlFlow<()> {

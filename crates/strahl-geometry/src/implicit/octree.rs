@@ -12,14 +12,30 @@ const SLANT: f64 = 1.0 / (1u64 << 60) as f64;
 pub(crate) trait Visitor {
     /// The origin and the direction of the line.
     fn line(&self) -> (DVec3, DVec3);
-    /// Whether a cell of which nothing is known yet may contain a surface. The answer must depend on the cell alone.
-    fn may_have_surface(&mut self, cell: &Aabb) -> bool;
+    /// What a cell holds of which nothing is known yet. The answer must depend on the cell alone.
+    fn content(&mut self, cell: &Aabb) -> Content;
+    /// The line is within a cell for the first time: on which side of the surface, if the cell holds none and that is known.
+    fn begin(&mut self, _is_inside: Option<bool>) -> ControlFlow<()> {
+        ControlFlow::Continue(())
+    }
     /// A part of the line within a cell that may contain a surface.
     fn part(&mut self, enter: f64, exit: f64) -> ControlFlow<()>;
     /// Parts of the line that end before this are not needed.
     fn resume(&self) -> f64 {
         f64::NEG_INFINITY
     }
+}
+
+/// What a cell holds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Content {
+    /// Perhaps a part of a surface.
+    Surface,
+    /// No surface; whether its places are inside of one is `None` if it is not known.
+    Empty {
+        /// Inside rather than outside.
+        is_inside: Option<bool>,
+    },
 }
 
 /// A tree of cells, all of which are halved equally often.
@@ -42,6 +58,10 @@ pub(crate) struct Octree {
 struct Node {
     /// The cells that contain no surface.
     empty: AtomicU64,
+    /// Those of them that are known to be inside of one.
+    inside: AtomicU64,
+    /// Those of them that are known to be outside.
+    outside: AtomicU64,
     /// The cells that may contain one.
     full: AtomicU64,
     /// The blocks of eight cells that may contain one, numbered by one bit for each axis.
@@ -88,21 +108,39 @@ impl Node {
 
     /// Finds out about a cell of which nothing is known: first about its block of eight, then about the cell itself.
     #[cold]
-    fn examine(&self, slot: Slot, mut may_have_surface: impl FnMut(Part) -> bool) {
+    fn examine(&self, slot: Slot, mut content: impl FnMut(Part) -> Content) {
         if self.full_blocks.load(Ordering::Relaxed) & slot.block_bit() == 0 {
-            if !may_have_surface(Part::Block) {
-                self.empty.fetch_or(slot.block(), Ordering::Relaxed);
+            if let Content::Empty { is_inside } = content(Part::Block) {
+                self.add_empty(slot.block(), is_inside);
                 return;
             }
             self.full_blocks
                 .fetch_or(slot.block_bit(), Ordering::Relaxed);
         }
-        let known = if may_have_surface(Part::Cell) {
-            &self.full
+        if let Content::Empty { is_inside } = content(Part::Cell) {
+            self.add_empty(slot.bit(), is_inside);
         } else {
-            &self.empty
-        };
-        known.fetch_or(slot.bit(), Ordering::Relaxed);
+            self.full.fetch_or(slot.bit(), Ordering::Relaxed);
+        }
+    }
+
+    /// Stores that cells contain no surface.
+    fn add_empty(&self, cells: u64, is_inside: Option<bool>) {
+        match is_inside {
+            Some(true) => _ = self.inside.fetch_or(cells, Ordering::Relaxed),
+            Some(false) => _ = self.outside.fetch_or(cells, Ordering::Relaxed),
+            None => {}
+        }
+        self.empty.fetch_or(cells, Ordering::Relaxed);
+    }
+
+    /// On which side of the surface an empty cell is, if that is known.
+    fn side(&self, slot: Slot) -> Option<bool> {
+        let has = |cells: &AtomicU64| cells.load(Ordering::Relaxed) & slot.bit() != 0;
+        match (has(&self.inside), has(&self.outside)) {
+            (false, false) => None,
+            (is_inside, _) => Some(is_inside),
+        }
     }
 }
 
@@ -113,9 +151,22 @@ enum Part {
 }
 
 /// The largest known cell around a place: whether it may contain a surface, and its width as a power of two of the smallest cells.
-struct Found {
+struct Found<'a> {
     is_full: bool,
     shift: u32,
+    /// Where it is.
+    node: &'a Node,
+    slot: Slot,
+}
+
+impl Found<'_> {
+    fn side(&self) -> Option<bool> {
+        if self.is_full {
+            None
+        } else {
+            self.node.side(self.slot)
+        }
+    }
 }
 
 impl Octree {
@@ -145,7 +196,7 @@ impl Octree {
 
     /// The cell around a place, as large as all of it is known to be empty, or one of the smallest.
     #[inline(always)]
-    fn find(&self, place: [u32; 3], visitor: &mut impl Visitor) -> Found {
+    fn find(&self, place: [u32; 3], visitor: &mut impl Visitor) -> Found<'_> {
         let mut node = &self.root;
         let mut shift = (self.cells.ilog2() - 1) & !1;
         loop {
@@ -155,6 +206,8 @@ impl Octree {
                     return Found {
                         is_full: true,
                         shift,
+                        node,
+                        slot,
                     };
                 }
                 node = &node.children()[slot.0 as usize];
@@ -167,11 +220,13 @@ impl Octree {
                 return Found {
                     is_full: false,
                     shift: shift + u32::from(is_block),
+                    node,
+                    slot,
                 };
             }
             node.examine(slot, |part| {
                 let larger = u32::from(matches!(part, Part::Block));
-                visitor.may_have_surface(&self.cell(place, shift + larger))
+                visitor.content(&self.cell(place, shift + larger))
             });
         }
     }
@@ -184,16 +239,21 @@ impl Octree {
         if !(enter < exit && enter <= range.max && exit >= range.min) {
             return ControlFlow::Continue(());
         }
-        let is_full = || visitor.may_have_surface(&self.bounds);
+        let is_full = || visitor.content(&self.bounds) == Content::Surface;
         if !*self.is_root_full.get_or_init(is_full) {
             return ControlFlow::Continue(());
         }
         let mut t = if enter > range.min { enter } else { range.min };
         // Rounding must not lead back to a plane that has been crossed.
         let mut least = [0; 3];
+        let mut has_begun = false;
         while t < exit && t <= range.max {
             let place = line.place(t, least, self.cells);
             let found = self.find(line.turned(place), visitor);
+            if !has_begun {
+                visitor.begin(found.side())?;
+                has_begun = true;
+            }
             let (until, ends) = line.leave(place, found.shift, least);
             let mut next = until;
             if found.is_full {
@@ -335,6 +395,7 @@ mod tests {
     struct Parts<F> {
         line: (DVec3, DVec3),
         full: F,
+        side: Option<bool>,
         found: Vec<(f64, f64)>,
     }
 
@@ -342,8 +403,17 @@ mod tests {
         fn line(&self) -> (DVec3, DVec3) {
             self.line
         }
-        fn may_have_surface(&mut self, cell: &Aabb) -> bool {
-            (self.full)(cell)
+        fn content(&mut self, cell: &Aabb) -> Content {
+            if (self.full)(cell) {
+                Content::Surface
+            } else {
+                let is_inside = Some(cell.center().length() < 0.7);
+                Content::Empty { is_inside }
+            }
+        }
+        fn begin(&mut self, is_inside: Option<bool>) -> ControlFlow<()> {
+            self.side = is_inside;
+            ControlFlow::Continue(())
         }
         fn part(&mut self, enter: f64, exit: f64) -> ControlFlow<()> {
             self.found.push((enter, exit));
@@ -357,8 +427,12 @@ mod tests {
         range: Interval,
         full: impl FnMut(&Aabb) -> bool,
     ) -> Vec<(f64, f64)> {
-        let found = vec![];
-        let mut visitor = Parts { line, full, found };
+        let mut visitor = Parts {
+            line,
+            full,
+            side: None,
+            found: vec![],
+        };
         let _ = tree.walk(range, &mut visitor);
         visitor.found
     }
@@ -403,6 +477,24 @@ mod tests {
     }
 
     #[test]
+    fn the_side_of_an_empty_cell_is_known() {
+        let tree = Octree::new(BOX, 7);
+        for (x, side) in [(-0.9, Some(false)), (-0.7, None), (0.1, Some(true))] {
+            let mut visitor = Parts {
+                line: (DVec3::new(x, 0.0, 0.0), DVec3::X),
+                full: has_shell,
+                side: None,
+                found: vec![],
+            };
+            // Twice: the first time the cell is not known yet.
+            for _ in 0..2 {
+                let _ = tree.walk(Interval::FORWARD, &mut visitor);
+                assert_eq!(visitor.side, side, "{x}");
+            }
+        }
+    }
+
+    #[test]
     fn cells_are_asked_about_once_on_the_way_and_within_the_range() {
         let tree = Octree::new(BOX, 7);
         let line = (DVec3::new(-2.0, 0.1, 0.05), DVec3::X);
@@ -432,8 +524,8 @@ mod tests {
             fn line(&self) -> (DVec3, DVec3) {
                 self.line
             }
-            fn may_have_surface(&mut self, _: &Aabb) -> bool {
-                true
+            fn content(&mut self, _: &Aabb) -> Content {
+                Content::Surface
             }
             fn part(&mut self, enter: f64, exit: f64) -> ControlFlow<()> {
                 self.found.push((enter, exit));

@@ -5,13 +5,13 @@ mod search;
 mod tests;
 
 use super::container::Container;
-use super::octree::Octree;
+use super::octree::{Content, Octree, Visitor as _};
 use super::workspace::with_workspace;
 use crate::{
     Crossing, Crossings, GeometryError, PrimHit, Primitive, Scratch, Side, Solid, SurfaceId,
     SurfacePoint,
 };
-use search::{Course, Search, excludes_change, least_value};
+use search::{Course, Search, least_value, side};
 use std::ops::ControlFlow;
 use strahl_function::{Bounds, Function, Workspace};
 use strahl_math::error::{ROUNDOFF, gamma};
@@ -66,6 +66,17 @@ pub struct Isosurface {
     octree: Octree,
     /// How far cells are widened when they are examined.
     cell_pad: DVec3,
+    /// The octree's bounds, as much wider: points within are in the cells that are found for them.
+    reach: Aabb,
+}
+
+/// Isosurfaces are equal if all rays find the same on them, to the bit.
+impl PartialEq for Isosurface {
+    fn eq(&self, other: &Self) -> bool {
+        self.options == other.options
+            && self.container == other.container
+            && self.function == other.function
+    }
 }
 
 /// The facet that is the function's surface.
@@ -114,6 +125,7 @@ impl Isosurface {
         let is_bounded = function.is_bounded();
         let has_rates = function.has_rates();
         let bounds = container.bounds();
+        let cell_pad = DVec3::splat(CELL_PAD * bounds.max_abs());
         Ok(Self {
             function,
             container,
@@ -121,7 +133,8 @@ impl Isosurface {
             is_bounded,
             has_rates,
             octree: Octree::new(bounds, LEVELS),
-            cell_pad: DVec3::splat(CELL_PAD * bounds.max_abs()),
+            cell_pad,
+            reach: bounds.padded(cell_pad),
         })
     }
 
@@ -165,17 +178,25 @@ impl Isosurface {
         self.function.rate(workspace, &sides, &way).1
     }
 
-    /// Whether a cell of the octree may contain a part of the surface.
-    fn may_cross(&self, workspace: &mut Workspace, cell: &Aabb) -> bool {
+    /// What a cell of the octree holds.
+    fn content(&self, workspace: &mut Workspace, cell: &Aabb) -> Content {
         let cell = cell.padded(self.cell_pad);
         if self.container.excludes(&cell) {
-            return false;
+            return Content::Empty { is_inside: None };
         }
         if self.is_bounded {
-            return !excludes_change(self.bounds_within(workspace, &cell));
+            return match side(self.bounds_within(workspace, &cell)) {
+                None => Content::Surface,
+                is_inside => Content::Empty { is_inside },
+            };
         }
         let reach = self.options.max_gradient * 0.5 * cell.size().length();
-        !(self.value(workspace, cell.center()).abs() > reach)
+        if self.value(workspace, cell.center()).abs() > reach {
+            // What the scene says of the gradient may be wrong.
+            Content::Empty { is_inside: None }
+        } else {
+            Content::Surface
+        }
     }
 
     /// The largest extent of the container.
@@ -220,31 +241,27 @@ impl Isosurface {
         }
         let needed = Interval::new(0.0, end - start)
             .intersection(Interval::new(range.min - start, range.max - start));
-        let mut search = self.search(ray, start, workspace);
         let skips = needed.min > 0.0 && from != Some(SURFACE);
-        let mut last = search.place(if skips { needed.min } else { 0.0 });
-        if from == Some(SURFACE) {
-            last.value = self.value_leaving(ray, last.value, search.workspace);
-        }
-        let inside = last.is_inside();
-        match passage.enter.filter(|enter| enter.hit.t == start) {
-            Some(enter) if !skips => {
-                if inside {
-                    visit(Event::Crossing(self.cap(enter, Side::Enter)))?;
-                }
-            }
-            _ => visit(Event::Start { inside })?,
-        }
         let mut course = Course {
-            search,
+            search: self.search(ray, start, workspace),
             start,
             length: end - start,
-            last,
-            inside,
+            enter: passage.enter.filter(|enter| enter.hit.t == start && !skips),
+            last: if skips { needed.min } else { 0.0 },
+            value: None,
+            inside: None,
             visit,
         };
+        if from == Some(SURFACE) {
+            let search = &mut course.search;
+            let value = search.place(0.0).value;
+            course.value = Some(self.value_leaving(ray, value, search.workspace));
+            course.begin(None)?;
+        }
         self.octree.walk(needed, &mut course)?;
-        if course.inside {
+        // If the walk has met no cell.
+        course.begin(None)?;
+        if course.inside == Some(true) {
             visit(Event::Crossing(self.cap(passage.exit, Side::Exit)))?;
         }
         ControlFlow::Continue(())

@@ -1,7 +1,7 @@
 //! The crossings of one ray with a surface, found in parts that shrink until they are proven empty or short.
 
 use super::{Event, Isosurface, SURFACE};
-use crate::implicit::octree::Visitor;
+use crate::implicit::octree::{Content, Visitor};
 use crate::{Crossing, PrimHit, Side};
 use std::ops::ControlFlow;
 use strahl_function::{Bounds, Workspace};
@@ -34,13 +34,14 @@ impl Place {
 }
 
 impl Search<'_> {
+    fn point(&self, s: f64) -> DVec3 {
+        self.origin + self.direction * s
+    }
+
     /// The function at a parameter; NaN counts as outside.
     pub(super) fn place(&mut self, s: f64) -> Place {
-        let p = self.origin + self.direction * s;
-        Place {
-            s,
-            value: self.surface.value(self.workspace, p),
-        }
+        let value = self.surface.value(self.workspace, self.point(s));
+        Place { s, value }
     }
 
     /// Reports the changes of sign between two parameters to the visitor, ascending.
@@ -91,8 +92,7 @@ impl Search<'_> {
     /// The box around the part of the ray between two places.
     fn around(&self, from: f64, to: f64) -> Aabb {
         // Rounded products and sums are monotone, so these are the ends of the coordinates too.
-        let a = self.origin + self.direction * from;
-        let b = self.origin + self.direction * to;
+        let (a, b) = (self.point(from), self.point(to));
         Aabb::new(a.min(b), a.max(b))
     }
 
@@ -101,7 +101,7 @@ impl Search<'_> {
     fn excludes(&mut self, from: Place, to: Place, is_short: bool) -> bool {
         if self.surface.is_bounded() {
             let cell = self.around(from.s, to.s);
-            return !is_short && excludes_change(self.surface.bounds_within(self.workspace, &cell));
+            return !is_short && side(self.surface.bounds_within(self.workspace, &cell)).is_some();
         }
         // A value that is not a number, which is infinite here, tells nothing about its neighbours.
         from.value.is_finite() == to.value.is_finite()
@@ -140,9 +140,15 @@ fn stays_away(from: Place, to: Place, rate: Bounds) -> bool {
     lowest > SLACK * (a + b)
 }
 
-/// Whether values within bounds are all inside or all outside, where NaN counts as outside.
-pub(super) fn excludes_change(values: Bounds) -> bool {
-    values.min > 0.0 || values.is_empty() || values.max < 0.0 && !values.nan
+/// Whether values within bounds are all inside (`true`) or all outside, where NaN counts as outside; otherwise `None`.
+pub(super) fn side(values: Bounds) -> Option<bool> {
+    if values.min > 0.0 || values.is_empty() {
+        Some(false)
+    } else if values.max < 0.0 && !values.nan {
+        Some(true)
+    } else {
+        None
+    }
 }
 
 /// The smallest value on one side of the surface.
@@ -161,10 +167,14 @@ pub(super) struct Course<'a, V> {
     pub(super) start: f64,
     /// The container ends here.
     pub(super) length: f64,
+    /// Where the ray enters the container, if what is needed begins there.
+    pub(super) enter: Option<Crossing>,
     /// The end of the part searched last, or where the first one begins.
-    pub(super) last: Place,
-    /// Whether the ray is inside of the surface there.
-    pub(super) inside: bool,
+    pub(super) last: f64,
+    /// The value there, if it has been evaluated.
+    pub(super) value: Option<f64>,
+    /// Whether the ray is inside of the surface there, once it has begun.
+    pub(super) inside: Option<bool>,
     pub(super) visit: &'a mut V,
 }
 
@@ -173,8 +183,34 @@ impl<V: FnMut(Event) -> ControlFlow<()>> Visitor for Course<'_, V> {
         (self.search.origin, self.search.direction)
     }
 
-    fn may_have_surface(&mut self, cell: &Aabb) -> bool {
-        self.search.surface.may_cross(self.search.workspace, cell)
+    fn content(&mut self, cell: &Aabb) -> Content {
+        self.search.surface.content(self.search.workspace, cell)
+    }
+
+    fn begin(&mut self, is_inside: Option<bool>) -> ControlFlow<()> {
+        if self.inside.is_some() {
+            return ControlFlow::Continue(());
+        }
+        let search = &mut self.search;
+        // Rounding may move what is far from the origin of the ray out of the cell.
+        let is_near = search.surface.reach.contains(search.point(self.last));
+        let inside = match is_inside.filter(|_| is_near) {
+            Some(is_inside) => is_inside,
+            None => {
+                let last = self.last;
+                let value = *self.value.get_or_insert_with(|| search.place(last).value);
+                value < 0.0
+            }
+        };
+        self.inside = Some(inside);
+        match self.enter {
+            Some(enter) if inside => {
+                let cap = search.surface.cap(enter, Side::Enter);
+                (self.visit)(Event::Crossing(cap))
+            }
+            Some(_) => ControlFlow::Continue(()),
+            None => (self.visit)(Event::Start { inside }),
+        }
     }
 
     fn part(&mut self, enter: f64, exit: f64) -> ControlFlow<()> {
@@ -187,35 +223,38 @@ impl<V: FnMut(Event) -> ControlFlow<()>> Visitor for Course<'_, V> {
         if !(enter < exit) {
             return ControlFlow::Continue(());
         }
-        let mut first = if enter == self.last.s {
-            self.last
-        } else {
-            self.search.place(enter)
+        let mut first = match self.value {
+            Some(value) if enter == self.last => Place { s: enter, value },
+            _ => self.search.place(enter),
         };
-        if enter < self.last.s {
-            // What is needed begins within this part; all of it is searched, so that crossings have the same bits.
-            let inside = first.is_inside();
-            self.inside = inside;
-            (self.visit)(Event::Start { inside })?;
-        }
-        if first.is_inside() != self.inside {
+        let mut inside = match self.inside {
+            Some(inside) if enter >= self.last => inside,
+            _ => {
+                // What is needed begins within this part; all of it is searched, so that crossings have the same bits.
+                let inside = first.is_inside();
+                (self.visit)(Event::Start { inside })?;
+                inside
+            }
+        };
+        if first.is_inside() != inside {
             // There is no crossing between the parts, so this is zero within rounding.
-            first.value = least_value(self.inside);
+            first.value = least_value(inside);
         }
-        self.last = self.search.place(exit);
+        let last = self.search.place(exit);
+        (self.last, self.value) = (exit, Some(last.value));
         let Self {
             search,
             start,
-            last,
-            inside,
             visit,
             ..
         } = self;
-        search.run(first, *last, &mut |s| {
-            *inside = !*inside;
-            let side = if *inside { Side::Enter } else { Side::Exit };
+        let flow = search.run(first, last, &mut |s| {
+            inside = !inside;
+            let side = if inside { Side::Enter } else { Side::Exit };
             let hit = PrimHit::simple(*start + s, SURFACE.facet);
             visit(Event::Crossing(Crossing::new(hit, 0.0, side)))
-        })
+        });
+        self.inside = Some(inside);
+        flow
     }
 }

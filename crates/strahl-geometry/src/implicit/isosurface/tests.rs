@@ -106,6 +106,19 @@ fn crossings_are_those_of_the_sphere() {
 }
 
 #[test]
+fn rays_from_within_know_the_side_on_which_they_start() {
+    let surface = iso(ball(), cube(1.5), 1.0);
+    let (mut random, mut scratch) = (Random::new(5), Scratch::default());
+    for _ in 0..500 {
+        let (from, to) = (random.cube() * 1.4, random.cube() * 1.4);
+        let ray = Ray::new(from, to - from);
+        let mut out = Crossings::default();
+        surface.crossings(&ray, Interval::FORWARD, None, &mut scratch, &mut out);
+        assert_eq!(out.inside_at_start, from.length() < 1.0, "{from}");
+    }
+}
+
+#[test]
 fn steep_thin_sheets_have_no_holes() {
     // A sheet of thickness 0.002 with a gradient of about 1000; POV-Ray's default gradient would lose all of it.
     let sheet = function(|g, [x, y, _]| {
