@@ -3,7 +3,8 @@
 mod common;
 
 use common::{debug, errors, parse_with};
-use strahl_geometry::{Primitive, Scratch, Shape, SubdivisionScheme};
+use std::sync::Arc;
+use strahl_geometry::{Isosurface, Primitive, Scratch, Shape, SubdivisionScheme};
 use strahl_math::{DVec2, DVec3, Interval, Ray};
 use strahl_scene::{CsgOp, Object, ObjectKind, Scene};
 use strahl_sdl::MemoryHost;
@@ -824,6 +825,25 @@ fn popular_objects_are_shared() {
         .iter()
         .filter(|o| matches!(o.kind, ObjectKind::Csg { .. }));
     assert_eq!(copies.count(), 16);
+}
+
+#[test]
+fn equal_isosurfaces_are_one_shape() {
+    let (scene, _) = scene(
+        "#macro Ball(R, G) isosurface { function { x*x + y*y + z*z - R } contained_by { box { -2, 2 } } max_gradient G } #end \
+         Ball(1, 4) Ball(2, 4) object { Ball(1, 4) translate x } Ball(1, 5)",
+    );
+    let shapes: Vec<&Arc<Isosurface>> = scene
+        .objects
+        .0
+        .iter()
+        .map(|object| match &object.kind {
+            ObjectKind::Shape(Shape::Isosurface(shape)) => shape,
+            other => panic!("{other:?}"),
+        })
+        .collect();
+    assert!(Arc::ptr_eq(shapes[0], shapes[2]));
+    assert!(!Arc::ptr_eq(shapes[0], shapes[1]) && !Arc::ptr_eq(shapes[0], shapes[3]));
 }
 
 #[test]

@@ -1,5 +1,5 @@
 use super::Texture;
-use super::objects::KnownFont;
+use super::objects::{KnownFont, KnownIsosurfaces};
 use super::texture::{KnownMaterials, KnownPicture, top_of};
 use crate::keywords::Word;
 use crate::parser::{PResult, Parser};
@@ -28,6 +28,8 @@ pub struct State {
     pub(super) pictures: Vec<KnownPicture>,
     /// The fonts read so far.
     pub(super) fonts: Vec<KnownFont>,
+    /// Isosurfaces to be shared.
+    pub(super) isosurfaces: KnownIsosurfaces,
 }
 
 impl State {

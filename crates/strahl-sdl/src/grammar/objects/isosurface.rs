@@ -2,6 +2,8 @@ use crate::grammar::Entity;
 use crate::keywords::Word;
 use crate::parser::{PResult, Parser};
 use crate::value::Value;
+use std::collections::VecDeque;
+use std::sync::Arc;
 use strahl_function::Function;
 use strahl_geometry::{Container, Cuboid, Isosurface, IsosurfaceOptions, Sphere};
 
@@ -56,8 +58,34 @@ pub(super) fn isosurface(p: &mut Parser<'_>) -> PResult<Entity> {
                 _ => break,
             }
         }
-        Ok(Isosurface::try_new(function, container, options))
+        let surface = Isosurface::try_new(function, container, options);
+        Ok(surface.map(|surface| p.state.isosurfaces.share(surface)))
     })
+}
+
+/// The isosurfaces read last. Macros and loops repeat the same one; then all of them are one shape, and what is found out about its
+/// function is found out once.
+#[derive(Debug, Default)]
+pub(in crate::grammar) struct KnownIsosurfaces {
+    recent: VecDeque<Arc<Isosurface>>,
+}
+
+impl KnownIsosurfaces {
+    /// How many are kept.
+    const RECENT: usize = 16;
+
+    /// The shape of an isosurface, which is an equal one if it is among those.
+    fn share(&mut self, surface: Isosurface) -> Arc<Isosurface> {
+        if let Some(known) = self.recent.iter().find(|known| ***known == surface) {
+            return Arc::clone(known);
+        }
+        let surface = Arc::new(surface);
+        if self.recent.len() >= Self::RECENT {
+            self.recent.pop_front();
+        }
+        self.recent.push_back(Arc::clone(&surface));
+        surface
+    }
 }
 
 impl Parser<'_> {

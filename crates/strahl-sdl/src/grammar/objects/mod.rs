@@ -39,6 +39,7 @@ mod text;
 mod torus;
 mod triangle;
 
+pub(super) use isosurface::KnownIsosurfaces;
 pub(super) use named::object;
 pub(crate) use reuse::{Shared, Tally, expanded};
 pub(super) use text::KnownFont;
