@@ -2,6 +2,8 @@
 
 /// The most parameters of a function (POV-Ray's limit).
 pub const PARAMETERS: usize = 56;
+/// So many arguments, at most, have most fields; more take more time to pass on.
+pub(crate) const FEW: usize = 4;
 /// The most operations of a function.
 pub const NODES: usize = 1 << 20;
 /// The deepest nesting of calls and loops.

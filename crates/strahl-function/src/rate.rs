@@ -139,6 +139,21 @@ fn scaled(rate: Bounds, factor: Bounds) -> Bounds {
     if rate == ZERO { ZERO } else { rate.mul(factor) }
 }
 
+/// [`Domain::field`] for up to so many arguments.
+fn field_of<const MOST: usize>(field: &dyn ScalarField, arguments: &[Rate]) -> Rate {
+    let mut values = [Bounds::UNKNOWN; MOST];
+    let mut rates = [Bounds::UNKNOWN; MOST];
+    for ((value, rate), argument) in values.iter_mut().zip(&mut rates).zip(arguments) {
+        (*value, *rate) = (argument.value, argument.rate);
+    }
+    let count = arguments.len().min(MOST);
+    if arguments.iter().all(Rate::is_constant) {
+        return Rate::constant_within(field.bounds(&values[..count]));
+    }
+    let (value, rate) = field.rate(&values[..count], &rates[..count]);
+    Rate::new(value, rate)
+}
+
 impl Domain for Rate {
     type Mask = ();
     type Fuel = u64;
@@ -194,17 +209,11 @@ impl Domain for Rate {
         }
     }
     fn field(field: &dyn ScalarField, arguments: &[Self]) -> Self {
-        let mut values = [Bounds::UNKNOWN; limits::PARAMETERS];
-        let mut rates = [Bounds::UNKNOWN; limits::PARAMETERS];
-        for ((value, rate), argument) in values.iter_mut().zip(&mut rates).zip(arguments) {
-            (*value, *rate) = (argument.value, argument.rate);
+        if arguments.len() <= limits::FEW {
+            field_of::<{ limits::FEW }>(field, arguments)
+        } else {
+            field_of::<{ limits::PARAMETERS }>(field, arguments)
         }
-        let count = arguments.len().min(limits::PARAMETERS);
-        if arguments.iter().all(Self::is_constant) {
-            return Self::constant_within(field.bounds(&values[..count]));
-        }
-        let (value, rate) = field.rate(&values[..count], &rates[..count]);
-        Self::new(value, rate)
     }
     fn round(counter: Self, to: Self, fuel: &mut u64, price: u64) -> Round<()> {
         <Bounds as Domain>::round(counter.value, to.value, fuel, price)
