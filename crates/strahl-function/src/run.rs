@@ -2,7 +2,7 @@
 
 use crate::domain::{Domain, Round};
 use crate::op::{BinaryOp, UnaryOp};
-use crate::tape::{Op, Tape};
+use crate::tape::{FRAME, Op, Tape};
 
 /// Writes the constants of a tape to their registers.
 pub(crate) fn prepare<T: Domain>(tape: &Tape, stack: &mut [T]) {
@@ -14,9 +14,36 @@ pub(crate) fn prepare<T: Domain>(tape: &Tape, stack: &mut [T]) {
 /// Runs a tape whose inputs and constants are in place at the start of `stack`, which has `tape.stack` registers. Its loops
 /// take their rounds from `fuel`.
 pub(crate) fn run<T: Domain>(tape: &Tape, stack: &mut [T], fuel: &mut T::Fuel) -> T {
-    let (r, rest) = stack.split_at_mut(tape.registers);
+    let (registers, rest) = stack.split_at_mut(tape.registers);
+    match <&mut [T; FRAME]>::try_from(&mut *registers) {
+        Ok(few) => steps(tape, few, |register| register as usize % FRAME, rest, fuel),
+        Err(_) => many_steps(tape, registers, rest, fuel),
+    }
+}
+
+/// The steps of a tape with more registers than a usual one.
+#[inline(never)]
+fn many_steps<T: Domain>(
+    tape: &Tape,
+    registers: &mut [T],
+    rest: &mut [T],
+    fuel: &mut T::Fuel,
+) -> T {
+    steps(tape, registers, |register| register as usize, rest, fuel)
+}
+
+/// The steps of a tape on its registers. `at` gives the place of a register: where the compiler sees that it is one of the slice's, it
+/// leaves out its checks.
+#[inline(always)]
+fn steps<T: Domain>(
+    tape: &Tape,
+    r: &mut [T],
+    at: impl Fn(u32) -> usize,
+    rest: &mut [T],
+    fuel: &mut T::Fuel,
+) -> T {
     for i in &tape.code {
-        let (out, a, b) = (i.out as usize, i.a as usize, i.b as usize);
+        let (out, a, b, row) = (at(i.out), at(i.a), at(i.b), i.b as usize);
         r[out] = match i.op {
             Op::Neg => T::unary(UnaryOp::Neg, r[a]),
             Op::Abs => T::unary(UnaryOp::Abs, r[a]),
@@ -31,20 +58,15 @@ pub(crate) fn run<T: Domain>(tape: &Tape, stack: &mut [T], fuel: &mut T::Fuel) -
             Op::Unary(op) => unary(op, r[a]),
             Op::Binary(op) => binary(op, r[a], r[b]),
             Op::Select => {
-                let [negative, zero, positive] = tape.selects[b];
-                T::select(
-                    r[a],
-                    r[negative as usize],
-                    r[zero as usize],
-                    r[positive as usize],
-                )
+                let [negative, zero, positive] = tape.selects[row].map(&at);
+                T::select(r[a], r[negative], r[zero], r[positive])
             }
-            Op::Field => field(tape, b, r, rest),
-            Op::Call => call(tape, b, r, rest, fuel),
-            Op::Loop => repeat(tape, b, r, rest, fuel),
+            Op::Field => field(tape, row, r, rest),
+            Op::Call => call(tape, row, r, rest, fuel),
+            Op::Loop => repeat(tape, row, r, rest, fuel),
         };
     }
-    r[tape.result as usize]
+    r[at(tape.result)]
 }
 
 // What follows is not part of the interpreter's own code, which is to have few instructions between one operation and the next.

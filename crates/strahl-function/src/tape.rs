@@ -68,6 +68,9 @@ impl From<BinaryOp> for Op {
     }
 }
 
+/// So many registers has every tape at least: a power of two that hardly any tape needs more of.
+pub(crate) const FRAME: usize = 256;
+
 /// A function as straight-line code.
 ///
 /// Registers hold, in this order, the inputs, the constants, and intermediate values; inputs and constants are never
@@ -79,6 +82,7 @@ pub(crate) struct Tape {
     pub(crate) code: Vec<Instruction>,
     pub(crate) inputs: usize,
     pub(crate) constants: Vec<f64>,
+    /// At least [`FRAME`].
     pub(crate) registers: usize,
     /// Registers of this tape and of the deepest chain of loops and calls within it.
     pub(crate) stack: usize,
@@ -350,7 +354,7 @@ fn assemble(
         .get(&root)
         .copied()
         .ok_or(FunctionError::UnboundVariable)?;
-    tape.registers = used as usize;
+    tape.registers = (used as usize).max(FRAME);
     tape.stack = tape.registers + nested;
     Ok(tape)
 }

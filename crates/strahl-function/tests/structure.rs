@@ -443,6 +443,26 @@ fn functions_that_do_the_same_are_equal() {
     assert_ne!(f, build(2.0, &other));
 }
 
+#[test]
+fn functions_may_have_hundreds_of_registers() {
+    // Every term has a constant of its own.
+    let mut g = Graph::new(["x"]);
+    let x = g.parameter("x");
+    let terms: Vec<Expr> = (1..=600).map(|k| g.scaled(x, 1.0 / f64::from(k))).collect();
+    let sum = g.total(&terms);
+    let f = g.finish(sum).unwrap();
+    let expected = (2..=600).fold(3.0, |sum, k| sum + 3.0 * (1.0 / f64::from(k)));
+    assert_eq!(value(&f, &[3.0]), expected);
+    let mut ws = Workspace::new();
+    let mut values = [0.0; 2];
+    f.values(&mut ws, &[&[3.0; 2]], &mut values);
+    assert_eq!(values, [expected; 2]);
+    let bounds = f.bounds(&mut ws, &[Bounds::point(3.0)]);
+    assert!(bounds.contains(expected) && bounds.max - bounds.min < 1e-10);
+    assert_eq!(f.gradient(&mut ws, &[3.0]).0, expected);
+    assert!(f.rate(&mut ws, &[Bounds::point(3.0)], &[1.0]).1.min > 6.0);
+}
+
 fn build_square() -> Function {
     let mut g = Graph::new(["x"]);
     let x = g.parameter("x");
