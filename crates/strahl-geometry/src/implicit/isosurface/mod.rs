@@ -206,23 +206,25 @@ impl Isosurface {
 
     /// The rounding error of the function near a point.
     fn noise(&self, workspace: &mut Workspace, p: DVec3, gradient: DVec3) -> f64 {
-        let place = gradient.abs().dot(p.abs()) * gamma(4);
-        let values = self.bounds_within(workspace, &Aabb::new(p, p));
-        let width = values.max - values.min;
-        if self.is_bounded && width.is_finite() && width >= 0.0 {
-            place + width
-        } else {
-            let size = self.options.threshold.abs() + gradient.length() * self.size() + 1.0;
-            place + gamma(64) * size
+        let place = place_noise(p, gradient);
+        if self.is_bounded {
+            let values = self.bounds_within(workspace, &Aabb::new(p, p));
+            let width = values.max - values.min;
+            if width.is_finite() && width >= 0.0 {
+                return place + width;
+            }
         }
+        let size = self.options.threshold.abs() + gradient.length() * self.size() + 1.0;
+        place + gamma(64) * size
     }
 
     /// Reports the events along a ray to the visitor, in order, until it stops. Crossings of the function's surface have no
-    /// error bound. Those outside of the range may be left out.
+    /// error bound. Those outside of the range may be left out, and of those within the rough range only an approximate place is found.
     fn walk(
         &self,
         ray: &Ray,
         (range, from): (Interval, Option<SurfaceId>),
+        rough: Interval,
         scratch: &mut Scratch,
         workspace: &mut Workspace,
         visit: &mut impl FnMut(Event) -> ControlFlow<()>,
@@ -243,8 +245,7 @@ impl Isosurface {
             .intersection(Interval::new(range.min - start, range.max - start));
         let skips = needed.min > 0.0 && from != Some(SURFACE);
         let mut course = Course {
-            search: self.search(ray, start, workspace),
-            start,
+            search: self.search(ray, start, rough, workspace),
             length: end - start,
             enter: passage.enter.filter(|enter| enter.hit.t == start && !skips),
             last: if skips { needed.min } else { 0.0 },
@@ -267,7 +268,13 @@ impl Isosurface {
         ControlFlow::Continue(())
     }
 
-    fn search<'a>(&'a self, ray: &Ray, start: f64, workspace: &'a mut Workspace) -> Search<'a> {
+    fn search<'a>(
+        &'a self,
+        ray: &Ray,
+        start: f64,
+        rough: Interval,
+        workspace: &'a mut Workspace,
+    ) -> Search<'a> {
         // The largest component neither overflows nor vanishes, and is the length but for a factor of at most the root of 3.
         let speed = ray.direction.abs().max_element();
         let (least, most) = SHORTEST;
@@ -276,6 +283,8 @@ impl Isosurface {
         Search {
             surface: self,
             workspace,
+            start,
+            rough,
             origin: ray.at(start),
             direction: ray.direction,
             shortest: shortest / speed,
@@ -285,8 +294,11 @@ impl Isosurface {
 
     /// The value at the start of a ray that leaves the surface: if rounding hides its sign, the direction of the ray decides.
     fn value_leaving(&self, ray: &Ray, value: f64, workspace: &mut Workspace) -> f64 {
-        let (_, gradient) = self.gradient(workspace, ray.origin);
-        if value.abs() <= self.noise(workspace, ray.origin, gradient) {
+        let p = ray.origin;
+        let (_, gradient) = self.gradient(workspace, p);
+        let size = value.abs();
+        // The noise is at least that of the place, which is known sooner.
+        if size <= place_noise(p, gradient) || size <= self.noise(workspace, p, gradient) {
             least_value(gradient.dot(ray.direction) < 0.0)
         } else {
             value
@@ -333,12 +345,13 @@ impl Isosurface {
             if !(step.length() < nearby) {
                 break;
             }
-            let next = self.gradient(workspace, p - step);
-            if !(next.0.abs() < value.abs()) {
+            // The last step hardly ever gets nearer, and gradients are dear.
+            let next = p - step;
+            if !(self.value(workspace, next).abs() < value.abs()) {
                 break;
             }
-            p -= step;
-            (value, gradient) = next;
+            p = next;
+            (value, gradient) = self.gradient(workspace, p);
         }
         let slope = gradient.length();
         let off = (self.noise(workspace, p, gradient) + value.abs()) / slope;
@@ -352,9 +365,35 @@ impl Isosurface {
     }
 }
 
+/// The part of a function's rounding error near a point that comes from the point's.
+fn place_noise(p: DVec3, gradient: DVec3) -> f64 {
+    gradient.abs().dot(p.abs()) * gamma(4)
+}
+
 /// The coordinates within a cell.
 fn sides(cell: &Aabb) -> [Bounds; 3] {
     [0, 1, 2].map(|k| Bounds::new(cell.min[k], cell.max[k]))
+}
+
+/// No crossings are found roughly.
+const EXACT: Interval = Interval {
+    min: f64::INFINITY,
+    max: f64::NEG_INFINITY,
+};
+
+/// Stores an event that is a visible hit in a range, and stops there or behind the range.
+fn first_hit(event: Event, range: Interval, hit: &mut Option<PrimHit>) -> ControlFlow<()> {
+    let Event::Crossing(crossing) = event else {
+        return ControlFlow::Continue(());
+    };
+    if crossing.visible && range.accepts(crossing.hit.t) {
+        *hit = Some(crossing.hit);
+        return ControlFlow::Break(());
+    }
+    if crossing.hit.t > range.max {
+        return ControlFlow::Break(());
+    }
+    ControlFlow::Continue(())
 }
 
 /// The events along a ray.
@@ -391,21 +430,25 @@ impl Primitive for Isosurface {
         let mut closest = None;
         with_workspace(|workspace| {
             // The result only matters while visiting.
-            let _ = self.walk(ray, (range, from), scratch, workspace, &mut |event| {
-                let Event::Crossing(crossing) = event else {
-                    return ControlFlow::Continue(());
-                };
-                if crossing.visible && range.accepts(crossing.hit.t) {
-                    closest = Some(crossing.hit);
-                    return ControlFlow::Break(());
-                }
-                if crossing.hit.t > range.max {
-                    return ControlFlow::Break(());
-                }
-                ControlFlow::Continue(())
-            });
+            let visit = &mut |event| first_hit(event, range, &mut closest);
+            let _ = self.walk(ray, (range, from), EXACT, scratch, workspace, visit);
         });
         closest
+    }
+
+    fn any_hit(
+        &self,
+        ray: &Ray,
+        range: Interval,
+        from: Option<SurfaceId>,
+        scratch: &mut Scratch,
+    ) -> bool {
+        let mut any = None;
+        with_workspace(|workspace| {
+            let visit = &mut |event| first_hit(event, range, &mut any);
+            let _ = self.walk(ray, (range, from), range, scratch, workspace, visit);
+        });
+        any.is_some()
     }
 
     fn surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
@@ -444,7 +487,7 @@ impl Solid for Isosurface {
         };
         with_workspace(|workspace| {
             let needed = Interval::new(start, range.max);
-            let _ = self.walk(ray, (needed, from), scratch, workspace, &mut |event| {
+            let visit = &mut |event| {
                 match event {
                     Event::Start { inside } => out.inside_at_start = inside,
                     Event::Crossing(c) if c.hit.t <= start => {
@@ -454,7 +497,8 @@ impl Solid for Isosurface {
                     Event::Crossing(_) => return ControlFlow::Break(()),
                 }
                 ControlFlow::Continue(())
-            });
+            };
+            let _ = self.walk(ray, (needed, from), EXACT, scratch, workspace, visit);
             for crossing in &mut out.list {
                 if crossing.surface() == SURFACE {
                     crossing.t_error = self.t_error(ray, crossing.hit.t, workspace);

@@ -6,12 +6,16 @@ use crate::{Crossing, PrimHit, Side};
 use std::ops::ControlFlow;
 use strahl_function::{Bounds, Workspace};
 use strahl_math::roots::find_crossing;
-use strahl_math::{Aabb, DVec3};
+use strahl_math::{Aabb, DVec3, Interval};
 
 /// A ray within the container: the point at `s` is `origin + s direction`.
 pub(super) struct Search<'a> {
     pub(super) surface: &'a Isosurface,
     pub(super) workspace: &'a mut Workspace,
+    /// The parameter of the ray at which `s` is zero.
+    pub(super) start: f64,
+    /// Within this range of the ray it is enough to know that there is a crossing.
+    pub(super) rough: Interval,
     pub(super) origin: DVec3,
     pub(super) direction: DVec3,
     /// Parts of this length are not divided any more.
@@ -55,6 +59,10 @@ impl Search<'_> {
         visit: &mut impl FnMut(f64) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
         let changes = from.is_inside() != to.is_inside();
+        let is_rough = |s: f64| self.rough.accepts(self.start + s);
+        if changes && is_rough(from.s) && is_rough(to.s) {
+            return visit(to.s);
+        }
         let length = to.s - from.s;
         let is_short = length <= self.shortest;
         if !changes && self.excludes(from, to, is_short) {
@@ -163,8 +171,6 @@ pub(super) fn least_value(inside: bool) -> f64 {
 /// A ray on its way through the cells that may have a surface.
 pub(super) struct Course<'a, V> {
     pub(super) search: Search<'a>,
-    /// The parameter of the ray at which `s` is zero.
-    pub(super) start: f64,
     /// The container ends here.
     pub(super) length: f64,
     /// Where the ray enters the container, if what is needed begins there.
@@ -242,16 +248,12 @@ impl<V: FnMut(Event) -> ControlFlow<()>> Visitor for Course<'_, V> {
         }
         let last = self.search.place(exit);
         (self.last, self.value) = (exit, Some(last.value));
-        let Self {
-            search,
-            start,
-            visit,
-            ..
-        } = self;
+        let start = self.search.start;
+        let Self { search, visit, .. } = self;
         let flow = search.run(first, last, &mut |s| {
             inside = !inside;
             let side = if inside { Side::Enter } else { Side::Exit };
-            let hit = PrimHit::simple(*start + s, SURFACE.facet);
+            let hit = PrimHit::simple(start + s, SURFACE.facet);
             visit(Event::Crossing(Crossing::new(hit, 0.0, side)))
         });
         self.inside = Some(inside);
