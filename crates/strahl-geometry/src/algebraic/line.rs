@@ -1,6 +1,6 @@
 use std::ops::ControlFlow;
 use strahl_math::error::gamma;
-use strahl_math::roots::{Bernstein, RootCount, Window, find_root};
+use strahl_math::roots::{Bernstein, FourBernsteins, RootCount, Window, find_root};
 
 /// A polynomial `c[0] + c[1] s + ...` on the whole line `-∞ < s < ∞`, scaled so that its roots of interest are near `|s| <= 1`.
 ///
@@ -15,6 +15,9 @@ pub(super) struct Line<const N: usize> {
     /// Bound on the sum of the errors of the coefficients.
     error: f64,
 }
+
+/// The ends of the four pieces.
+const ENDS: [f64; 5] = [f64::NEG_INFINITY, -1.0, 0.0, 1.0, f64::INFINITY];
 
 /// A simple change of sign.
 #[derive(Clone, Copy, Debug)]
@@ -89,23 +92,34 @@ impl<const N: usize> Line<N> {
         window: &mut Window,
         mut visit: impl FnMut(Root) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
-        for (low, high, make) in [
-            (
-                f64::NEG_INFINITY,
-                -1.0,
-                Self::before as fn(&Self) -> Piece<N>,
-            ),
-            (-1.0, 0.0, Self::left),
-            (0.0, 1.0, Self::right),
-            (1.0, f64::INFINITY, Self::behind),
-        ] {
-            if high <= window.from {
+        let power = self.pieces();
+        let four = FourBernsteins::on_unit_interval(&power, self.error);
+        let positive = [
+            self.positive_at_infinity(true),
+            self.positive_at_one(true),
+            self.positive_at_zero(),
+            self.positive_at_one(false),
+            self.positive_at_infinity(false),
+        ];
+        for number in 0..4 {
+            if ENDS[number + 1] <= window.from {
                 continue;
             }
-            if low > window.to && window.starts_negative.is_some() {
+            if ENDS[number] > window.to && window.starts_negative.is_some() {
                 return ControlFlow::Break(());
             }
-            make(self).roots(self.error, window, &mut visit)?;
+            let ends = (positive[number], positive[number + 1]);
+            if four.is_clear(number, ends) {
+                window.starts_negative.get_or_insert(!ends.0);
+                continue;
+            }
+            let piece = Piece {
+                coefficients: power.map(|four| four[number]),
+                falling: number % 2 == 1,
+                inverse: number == 0 || number == 3,
+                ends,
+            };
+            piece.roots(four.lane(number), window, &mut visit)?;
         }
         window
             .starts_negative
@@ -162,72 +176,36 @@ impl<const N: usize> Line<N> {
         self.coefficients.first().is_some_and(|c| *c >= 0.0)
     }
 
-    /// The coefficients of the polynomial in `-s`.
-    fn turned(&self) -> [f64; N] {
-        let mut turned = self.coefficients;
-        for c in turned.iter_mut().skip(1).step_by(2) {
-            *c = -*c;
+    /// The coefficients of the four pieces, in `v`: those of the polynomial in `-s` and in `s`, and for the outer pieces in reverse.
+    fn pieces(&self) -> [[f64; 4]; N] {
+        let mut pieces = [[0.0; 4]; N];
+        for (k, (piece, c)) in pieces.iter_mut().zip(&self.coefficients).enumerate() {
+            let turned = if k % 2 == 1 { -c } else { *c };
+            (piece[1], piece[2]) = (turned, *c);
         }
-        turned
-    }
-
-    /// The coefficients in reverse.
-    fn reversed(&self, coefficients: &[f64; N]) -> [f64; N] {
-        let mut reversed = *coefficients;
-        if let Some(used) = reversed.get_mut(..=self.degree) {
-            used.reverse();
+        let mut reverse = |degree: usize| {
+            for k in 0..=degree {
+                let [_, turned, c, _] = pieces[degree - k];
+                (pieces[k][0], pieces[k][3]) = (turned, c);
+            }
+        };
+        // The loop over all of them is unrolled.
+        if self.degree == N - 1 {
+            reverse(N - 1);
+        } else {
+            reverse(self.degree);
         }
-        reversed
-    }
-
-    fn before(&self) -> Piece<N> {
-        Piece {
-            coefficients: self.reversed(&self.turned()),
-            falling: false,
-            inverse: true,
-            ends: (self.positive_at_infinity(true), self.positive_at_one(true)),
-        }
-    }
-
-    fn left(&self) -> Piece<N> {
-        Piece {
-            coefficients: self.turned(),
-            falling: true,
-            inverse: false,
-            ends: (self.positive_at_one(true), self.positive_at_zero()),
-        }
-    }
-
-    fn right(&self) -> Piece<N> {
-        Piece {
-            coefficients: self.coefficients,
-            falling: false,
-            inverse: false,
-            ends: (self.positive_at_zero(), self.positive_at_one(false)),
-        }
-    }
-
-    fn behind(&self) -> Piece<N> {
-        Piece {
-            coefficients: self.reversed(&self.coefficients),
-            falling: true,
-            inverse: true,
-            ends: (
-                self.positive_at_one(false),
-                self.positive_at_infinity(false),
-            ),
-        }
+        pieces
     }
 }
 
 impl<const N: usize> Piece<N> {
     fn roots(
         &self,
-        error: f64,
+        ascending: Bernstein<N>,
         window: &mut Window,
         visit: &mut impl FnMut(Root) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
-        let ascending = Bernstein::on_unit_interval(&self.coefficients, error);
         let along = if self.falling {
             ascending.mirrored()
         } else {

@@ -31,6 +31,10 @@ pub struct Polynomial {
     sums: Vec<f64>,
     /// The length, a power of two, above which the terms of the highest degree outweigh the others.
     length: f64,
+    /// Its reciprocal, also a power of two.
+    per_length: f64,
+    /// The relative error of a value.
+    rounding: f64,
     /// The box around the surface, if it is known to be closed.
     extent: Option<Box<Aabb>>,
 }
@@ -84,9 +88,11 @@ impl Polynomial {
         };
         Self {
             extent: extent(&terms, &sums).map(reach),
+            rounding: gamma(4 * terms.degree().min(MAX_DEGREE) + 8),
             terms,
             sums,
             length,
+            per_length: 1.0 / length,
         }
     }
 
@@ -138,7 +144,7 @@ impl Polynomial {
 
     /// A multiple of the polynomial's value at a point: negative inside, positive outside.
     pub fn value(&self, point: DVec3) -> f64 {
-        let p = point / self.length;
+        let p = point * self.per_length;
         self.terms.evaluate(p.x, p.y, p.z)
     }
 
@@ -150,13 +156,16 @@ impl Polynomial {
     /// A bound on the rounding error of the value where no coordinate (in the polynomial's units) is larger than `reach`.
     fn value_error(&self, reach: f64) -> f64 {
         let magnitude = self.sums.iter().rev().fold(0.0, |m, sum| m * reach + sum);
-        gamma(4 * self.degree() + 8) * magnitude
+        self.rounding * magnitude
     }
 
     /// The ray relative to its point nearest to the origin, where the terms are smallest; for a ray that starts on the surface
     /// relative to its start, where the known root is.
     fn segment(&self, ray: &Ray, on_surface: bool) -> Option<Segment> {
-        let (o, d) = (ray.origin / self.length, ray.direction / self.length);
+        let (o, d) = (
+            ray.origin * self.per_length,
+            ray.direction * self.per_length,
+        );
         let square = d.length_squared();
         let t = if on_surface { 0.0 } else { -o.dot(d) / square };
         let start = o + d * t;
@@ -182,7 +191,7 @@ impl Polynomial {
                 total += sum * term;
                 term *= far * (k + i + 1) as f64 / (i + 1) as f64;
             }
-            gamma(4 * self.degree() + 8) * total
+            self.rounding * total
         })
     }
 
@@ -241,9 +250,10 @@ impl Polynomial {
         if start.is_nan() {
             return ControlFlow::Continue(());
         }
+        let s_per_t = 1.0 / segment.t_per_s;
         let place = |t: f64, outwards: f64| {
-            let s = (t - segment.t) / segment.t_per_s;
-            let slack = 4.0 * f64::EPSILON * (t.abs() + segment.t.abs()) / segment.t_per_s;
+            let s = (t - segment.t) * s_per_t;
+            let slack = 8.0 * f64::EPSILON * (t.abs() + segment.t.abs()) * s_per_t;
             if slack.is_finite() {
                 s + outwards * slack
             } else {
@@ -346,18 +356,17 @@ impl Primitive for Polynomial {
     }
 
     fn surface_at(&self, ray: &Ray, hit: &PrimHit) -> SurfacePoint {
-        let p = ray.origin / self.length + (ray.direction / self.length) * hit.t;
+        let p = ray.origin * self.per_length + (ray.direction * self.per_length) * hit.t;
         let Dual { value, gradient } = self.dual(p);
         let size = p.length() + 1.0;
         // One Newton step along the gradient, unless the value is zero within its rounding error.
         let step = gradient * (value / gradient.length_squared());
         let error = self.value_error(p.abs().max_element());
-        let local = if step.length() < size && value.abs() > error {
-            p - step
+        let (local, gradient) = if value.abs() > error && step.length() < size {
+            (p - step, self.dual(p - step).gradient)
         } else {
-            p
+            (p, gradient)
         };
-        let gradient = self.dual(local).gradient;
         let steepness = gradient.length();
         // Where sheets of the surface meet, at most half of the digits are known, and any direction will do.
         let n = gradient.normalize_or(DVec3::Y);

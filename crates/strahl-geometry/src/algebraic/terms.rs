@@ -32,6 +32,27 @@ pub(super) trait Value: Copy {
     fn add_constant(&mut self, c: f64);
     /// Multiplies by a variable.
     fn multiply(&mut self, variable: Self::Variable);
+    /// Multiplies by a power of a variable.
+    #[inline]
+    fn raise(&mut self, variable: Self::Variable, power: u32) {
+        for _ in 0..power {
+            self.multiply(variable);
+        }
+    }
+    /// The polynomial in a variable with these coefficients, by falling powers.
+    #[inline]
+    fn horner(coefficients: &[f64], variable: Self::Variable) -> Self {
+        let mut sum = Self::ZERO;
+        for (k, c) in coefficients.iter().enumerate() {
+            if k > 0 {
+                sum.multiply(variable);
+            }
+            if *c != 0.0 {
+                sum.add_constant(*c);
+            }
+        }
+        sum
+    }
 }
 
 impl Value for f64 {
@@ -85,14 +106,27 @@ impl Value for Dual {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Univariate<const N: usize> {
     pub(super) coefficients: [f64; N],
-    /// How many of them are used, unless all are computed; 0 for zero.
+    /// How many of them are used; 0 for zero.
     used: usize,
 }
 
 impl<const N: usize> Univariate<N> {
-    /// Whether there are so few coefficients that all of them are computed, also those that are not used yet: a loop without
-    /// conditions takes less time than the coefficients it could leave out.
-    const DENSE: bool = N <= 7;
+    /// Whether there are so few coefficients that they are kept in registers, by loops over all numbers of coefficients there may
+    /// be, which the compiler unrolls.
+    const SHORT: bool = N <= 7;
+
+    /// Multiplies by `a + b s` where so many coefficients are used: one at least.
+    #[inline(always)]
+    fn multiply_used(&mut self, used: usize, (a, b): (f64, f64)) {
+        let c = &mut self.coefficients;
+        if used < N {
+            c[used] = c[used - 1] * b;
+        }
+        for k in (1..used).rev() {
+            c[k] = c[k] * a + c[k - 1] * b;
+        }
+        c[0] *= a;
+    }
 }
 
 impl<const N: usize> Value for Univariate<N> {
@@ -105,19 +139,21 @@ impl<const N: usize> Value for Univariate<N> {
 
     #[inline]
     fn add(&mut self, other: &Self) {
-        if Self::DENSE {
-            self.coefficients =
-                std::array::from_fn(|k| self.coefficients[k] + other.coefficients[k]);
-            return;
-        }
         let used = if other.used > self.used {
             other.used
         } else {
             self.used
         };
-        let pairs = self.coefficients.iter_mut().zip(&other.coefficients);
-        for (sum, c) in pairs.take(used) {
-            *sum += c;
+        // To add them all takes less time than to count them, unless it is a number.
+        if !Self::SHORT || other.used <= 1 {
+            let pairs = self.coefficients.iter_mut().zip(&other.coefficients);
+            for (sum, c) in pairs.take(other.used) {
+                *sum += c;
+            }
+        } else {
+            for k in 0..N {
+                self.coefficients[k] += other.coefficients[k];
+            }
         }
         self.used = used;
     }
@@ -133,27 +169,51 @@ impl<const N: usize> Value for Univariate<N> {
     }
 
     #[inline]
-    fn multiply(&mut self, (a, b): (f64, f64)) {
-        let mut below = 0.0;
-        if Self::DENSE {
-            for c in &mut self.coefficients {
-                let here = *c;
-                *c = here * a + below * b;
-                below = here;
+    fn multiply(&mut self, variable: (f64, f64)) {
+        if self.used > 0 {
+            self.multiply_used(self.used, variable);
+        }
+        if self.used > 0 && self.used < N {
+            self.used += 1;
+        }
+    }
+
+    #[inline]
+    fn raise(&mut self, variable: (f64, f64), power: u32) {
+        if !Self::SHORT {
+            for _ in 0..power {
+                self.multiply(variable);
             }
             return;
         }
-        if self.used == 0 {
-            return;
+        let mut left = power;
+        for used in 1..N {
+            if left == 0 {
+                return;
+            }
+            if self.used == used {
+                self.multiply_used(used, variable);
+                self.used += 1;
+                left -= 1;
+            }
         }
-        for c in self.coefficients.iter_mut().take(self.used + 1) {
-            let here = *c;
-            *c = here * a + below * b;
-            below = here;
+    }
+
+    #[inline]
+    fn horner(coefficients: &[f64], variable: (f64, f64)) -> Self {
+        let mut sum = Self::ZERO;
+        let mut coefficients = coefficients.iter();
+        let Some(first) = coefficients.next() else {
+            return sum;
+        };
+        sum.add_constant(*first);
+        for used in 1..N {
+            let Some(c) = coefficients.next() else { break };
+            sum.multiply_used(used, variable);
+            sum.coefficients[0] += c;
+            sum.used += 1;
         }
-        if self.used < N {
-            self.used += 1;
-        }
+        sum
     }
 }
 
@@ -237,37 +297,22 @@ impl Terms {
         let (mut power_x, mut power_y) = (0, 0);
         for row in &self.rows {
             if row.x != power_x {
-                raise(&mut same_x, y, power_y);
+                same_x.raise(y, power_y);
                 sum.add(&same_x);
-                raise(&mut sum, x, power_x.saturating_sub(row.x));
+                sum.raise(x, power_x.saturating_sub(row.x));
                 (same_x, power_x, power_y) = (V::ZERO, row.x, row.y);
             }
-            raise(&mut same_x, y, power_y.saturating_sub(row.y));
+            same_x.raise(y, power_y.saturating_sub(row.y));
             power_y = row.y;
-            let mut coefficients = self.row(row).iter();
-            let mut in_z = V::ZERO;
-            if let Some(c) = coefficients.next() {
-                in_z.add_constant(*c);
+            match self.row(row) {
+                [c] => same_x.add_constant(*c),
+                in_z => same_x.add(&V::horner(in_z, z)),
             }
-            for c in coefficients {
-                in_z.multiply(z);
-                if *c != 0.0 {
-                    in_z.add_constant(*c);
-                }
-            }
-            same_x.add(&in_z);
         }
-        raise(&mut same_x, y, power_y);
+        same_x.raise(y, power_y);
         sum.add(&same_x);
-        raise(&mut sum, x, power_x);
+        sum.raise(x, power_x);
         sum
-    }
-}
-
-#[inline]
-fn raise<V: Value>(value: &mut V, variable: V::Variable, power: u32) {
-    for _ in 0..power {
-        value.multiply(variable);
     }
 }
 

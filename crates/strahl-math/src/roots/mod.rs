@@ -11,7 +11,7 @@ mod bracket;
 mod newton;
 mod quadratic;
 
-pub use bernstein::{Bernstein, Isolated, RootCount, Roots, Window};
+pub use bernstein::{Bernstein, FourBernsteins, Isolated, RootCount, Roots, Window};
 pub use bracket::{find_crossing, find_root};
 pub use newton::newton;
 pub use quadratic::quadratic;
