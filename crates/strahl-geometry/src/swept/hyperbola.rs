@@ -248,6 +248,38 @@ impl Line {
         }
     }
 
+    /// A length of the ray's parameter in which it goes no farther than this.
+    #[inline]
+    pub(super) fn time_of(&self, distance: f64) -> f64 {
+        distance / (self.speed + self.ray.direction.y.abs())
+    }
+
+    /// Whether a crossing certainly is at a parameter of the ray that is no larger than `near`: whether the line is on different
+    /// sides of the arc at the two heights that it has there. Only for arcs whose height grows evenly.
+    #[inline]
+    pub(super) fn certainly_crosses(
+        &self,
+        arc: &Arc,
+        terms: &Terms,
+        place: &Place,
+        near: f64,
+    ) -> bool {
+        let (Place::Within(part), Piece::Line([from, to])) = (place, arc.y) else {
+            return false;
+        };
+        let Ray { origin, direction } = self.ray;
+        let per_height = 1.0 / (to - from);
+        let start = (origin.y - from) * per_height;
+        let step = near * direction.y * per_height;
+        let is_here = |s: f64| part.low < s && s < part.high;
+        let (a, b) = (start - step.abs(), start + step.abs());
+        let value = |s: f64| self.factors.value(terms.at(s));
+        // Beyond the rounding errors of the coefficients and of the value.
+        let unsure = 2.0 * self.factors.error;
+        let rising = if part.rising { 1.0 } else { -1.0 };
+        is_here(a) && is_here(b) && rising * value(a) < -unsure && rising * value(b) > unsure
+    }
+
     /// The root in a part of an arc that has one.
     ///
     /// Newton's method on the half of the line that is on the same side: `|level| - |dy| q` has the sign and the root of the

@@ -2,7 +2,9 @@ use super::hyperbola::{Line, Meeting, Place};
 use super::meridian::{Arc, Meridian};
 use super::runs::Rect;
 use super::sextic::Terms;
-use super::spans::{WholeLine, crossings_of_walk, first_of_walk, near_the_start, snap, t_error};
+use super::spans::{
+    NEAR, WholeLine, crossings_of_walk, first_of_walk, near_the_start, snap, t_error,
+};
 use crate::primitives::{point_error, start_of, turn};
 use crate::{Crossing, Crossings, PrimHit, Scratch, Side, SurfaceId, SurfacePoint};
 use arrayvec::ArrayVec;
@@ -141,6 +143,12 @@ impl Revolution<'_> {
     /// Root identity, as [`snap`] has it.
     fn snap_candidates(&self, ray: &Ray, line: &Line, from: SurfaceId, list: &mut Candidates) {
         let size = self.bounds().size().max_element();
+        if let Some(start) = self.certain_start(line, size, from, list) {
+            // Where on the arc it is does not matter.
+            start.meeting.place = Place::At { s: 0.0, half: 0.0 };
+            start.t = [0.0; 2];
+            return;
+        }
         let mut nearest: Option<(usize, f64)> = None;
         for (index, candidate) in list.iter_mut().enumerate() {
             let is_farther = |t: f64| nearest.is_some_and(|(_, best)| best <= t);
@@ -161,20 +169,37 @@ impl Revolution<'_> {
         }
     }
 
-    /// The first visible crossing in the range and behind the start. Crossings are computed only where it is not clear without that
-    /// which of them comes first.
+    /// The crossing that the ray starts on, if it is clear without computing it: all others that may be the start are farther away.
+    fn certain_start<'a>(
+        &self,
+        line: &Line,
+        size: f64,
+        from: SurfaceId,
+        list: &'a mut Candidates,
+    ) -> Option<&'a mut Candidate> {
+        // Well within what counts as near, to leave room for rounding.
+        let near = line.time_of(0.25 * NEAR * size);
+        let run = self.run(from.facet);
+        let mut may_be_near = list
+            .iter_mut()
+            .filter(|c| c.least_distance() <= 2.0 * near && self.run(c.facet) == run);
+        let (start, None) = (may_be_near.next()?, may_be_near.next()) else {
+            return None;
+        };
+        let (arc, terms) = self.piece(start.facet as usize)?;
+        line.certainly_crosses(arc, terms, &start.meeting.place, near)
+            .then_some(start)
+    }
+
+    /// The first visible crossing in the range and behind the start, for a list in which that has been told apart. Crossings are
+    /// computed only where it is not clear without that which of them comes first.
     fn first_of(
         &self,
-        ray: &Ray,
         line: &Line,
         range: Interval,
-        from: Option<SurfaceId>,
+        start: f64,
         list: &mut Candidates,
     ) -> Option<PrimHit> {
-        if let Some(from) = from {
-            self.snap_candidates(ray, line, from, list);
-        }
-        let start = start_of(range, from);
         let mut inside = false;
         loop {
             let order = |a: &Candidate, b: &Candidate| {
@@ -330,11 +355,13 @@ impl WholeLine for Revolution<'_> {
     ) -> Option<PrimHit> {
         let line = self.line(ray)?;
         let mut candidates = Candidates::new();
-        if self.candidates(&line, &mut candidates) {
-            self.first_of(ray, &line, range, from, &mut candidates)
-        } else {
-            first_of_walk(self, ray, range, from, scratch)
+        if !self.candidates(&line, &mut candidates) {
+            return first_of_walk(self, ray, range, from, scratch);
         }
+        if let Some(from) = from {
+            self.snap_candidates(ray, &line, from, &mut candidates);
+        }
+        self.first_of(&line, range, start_of(range, from), &mut candidates)
     }
 
     /// What certainly is before or behind the range is not computed.
@@ -405,15 +432,21 @@ impl WholeLine for Revolution<'_> {
         }
         let start = start_of(range, from);
         let start_run = from.and_then(|from| self.run(from.facet));
-        let counts = |c: &Candidate| {
+        let certain = |c: &Candidate| {
             let [low, high] = c.t;
-            // The nearest of the run that the ray starts on is its start.
-            let may_be_start = start_run.is_some() && start_run == self.run(c.facet);
-            c.visible && start < low && high <= range.max && high.is_finite() && !may_be_start
+            c.visible && start < low && high <= range.max && high.is_finite()
         };
-        candidates.iter().any(counts)
+        // The nearest of the run that the ray starts on is its start.
+        let may_be_start = |c: &Candidate| start_run.is_some() && start_run == self.run(c.facet);
+        if candidates.iter().any(|c| certain(c) && !may_be_start(c)) {
+            return true;
+        }
+        if let Some(from) = from {
+            self.snap_candidates(ray, &line, from, &mut candidates);
+        }
+        candidates.iter().any(certain)
             || self
-                .first_of(ray, &line, range, from, &mut candidates)
+                .first_of(&line, range, start, &mut candidates)
                 .is_some()
     }
 

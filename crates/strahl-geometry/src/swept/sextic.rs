@@ -91,6 +91,15 @@ pub(super) struct Factors {
     pub(super) error: f64,
 }
 
+impl Factors {
+    /// The value at a point of an arc, as [`Terms::at`] gives it.
+    #[inline]
+    pub(super) fn value(&self, ([height, _], [square, _]): ([f64; 2], [f64; 2])) -> f64 {
+        self.height2 * height * height + self.height * height + self.constant
+            - self.radius2 * square
+    }
+}
+
 /// The polynomial of a line and an arc.
 #[derive(Clone, Copy)]
 pub(super) struct Sextic {
@@ -206,15 +215,15 @@ impl Sextic {
     /// Whether all coefficients have the same sign, beyond doubt.
     #[inline]
     fn is_beyond(&self) -> bool {
-        let [mut low, mut high] = [[0.0; 4]; 2];
-        for k in 0..4 {
-            let (a, b) = (self.c[k], self.c[k + 4]);
-            low[k] = if a < b { a } else { b };
-            high[k] = if a > b { a } else { b };
+        let smaller = |a: f64, b: f64| if a < b { a } else { b };
+        // Turned so that the first is positive, whose sign is that of all or of no use.
+        let side = f64::copysign(1.0, self.c[0]);
+        let mut least = [0.0; 4];
+        for (k, least) in least.iter_mut().enumerate() {
+            *least = smaller(side * self.c[k], side * self.c[k + 4]);
         }
-        let above = low.iter().all(|c| *c > self.error);
-        let below = high.iter().all(|c| *c < -self.error);
-        above || below
+        let [a, b, c, d] = least;
+        smaller(smaller(a, c), smaller(b, d)) > self.error
     }
 
     /// The parts with one root each, which are all roots of an arc with several; `None` if they cannot be told apart.
@@ -300,9 +309,7 @@ mod tests {
     }
 
     fn value(terms: &Terms, factors: &Factors, s: f64) -> f64 {
-        let ([height, _], [square, _]) = terms.at(s);
-        factors.height2 * height * height + factors.height * height + factors.constant
-            - factors.radius2 * square
+        factors.value(terms.at(s))
     }
 
     #[test]

@@ -99,7 +99,7 @@ pub(super) fn crossings_of_walk(
 /// This does not decide where a surface is. A ray says itself that it starts on a piece of surface; the start is then the
 /// nearest crossing with that piece. The limit only keeps a crossing elsewhere from being taken for it if rounding has lost the
 /// right one, as may happen beside an edge.
-const NEAR: f64 = 1.0 / 4096.0;
+pub(super) const NEAR: f64 = 1.0 / 4096.0;
 
 /// Whether a hit with this normal is so near that it may be the start of the ray.
 pub(super) fn near_the_start(ray: &Ray, hit: &PrimHit, size: f64, normal: DVec3) -> bool {
