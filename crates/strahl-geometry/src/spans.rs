@@ -54,11 +54,14 @@ pub struct Crossings {
     pub inside_at_start: bool,
     /// The crossings, ascending in `t`.
     pub list: Vec<Crossing>,
+    /// Whether the crossings are not compared with others, so that shapes may leave out the errors.
+    pub(crate) without_errors: bool,
 }
 
 impl Crossings {
-    /// Empties the list (outside, nothing crossed), keeping its memory.
+    /// Empties the list (outside, nothing crossed, errors wanted), keeping its memory.
     pub fn clear(&mut self) {
+        self.without_errors = false;
         self.inside_at_start = false;
         self.list.clear();
     }

@@ -54,7 +54,7 @@ pub(super) fn list(
     let question = Question {
         range,
         on_surface: from.is_some(),
-        errors: true,
+        errors: !out.without_errors,
     };
     let start = start_of(range, from);
     walk(&question, &mut |event| {

@@ -199,7 +199,8 @@ impl Leaf {
         self.contribute(out);
     }
 
-    /// The same without the errors that the transform adds, if the crossings are not compared with others.
+    /// The same without the errors that the transform adds, and without those of shapes that take time for them, if the crossings
+    /// are not compared with others.
     pub(super) fn bare_crossings(
         &self,
         ray: &Ray,
@@ -208,6 +209,15 @@ impl Leaf {
         scratch: &mut Scratch,
         out: &mut Crossings,
     ) {
+        // Not for shapes that are made of others, which they may compare.
+        out.without_errors = matches!(
+            self.shape,
+            Shape::Torus(_)
+                | Shape::Polynomial(_)
+                | Shape::Superellipsoid(_)
+                | Shape::Sor(_)
+                | Shape::Lathe(_)
+        );
         self.shape_crossings(&self.ray_to_object(ray), range, from, scratch, out);
         self.contribute(out);
     }

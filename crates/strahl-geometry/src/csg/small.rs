@@ -125,8 +125,13 @@ impl Small {
                 let planes = node.half_spaces.as_ref().map_or(0, |planes| planes.len());
                 planes <= MOST_PLANES && node.hierarchy.is_none()
             });
-        // A single leaf is no operation.
-        if !small || leaves.len() < 2 {
+        if !small {
+            return None;
+        }
+        // A single leaf is no operation, but the bounds of other shapes often are one, most of them balls.
+        if let [leaf] = leaves
+            && !leaf.is_convex()
+        {
             return None;
         }
         let leaf = |n: u32| &leaves[n as usize];
@@ -312,7 +317,11 @@ impl Small {
 fn is_listed(shape: &Shape) -> bool {
     matches!(
         shape,
-        Shape::Torus(_) | Shape::Polynomial(_) | Shape::Superellipsoid(_)
+        Shape::Torus(_)
+            | Shape::Polynomial(_)
+            | Shape::Superellipsoid(_)
+            | Shape::Sor(_)
+            | Shape::Lathe(_)
     )
 }
 

@@ -117,13 +117,15 @@ impl Csg {
         }
         let combined = matches!(nodes.first(), Some(root) if root.kind != Kind::Leaf(0));
         let shallow = closed && combined && depths.iter().all(|depth| *depth <= SHALLOW);
-        let small = if shallow {
+        let small = if shallow || closed && !combined {
             Small::of(&nodes, &operands, &leaves)
         } else {
             None
         };
         let convex = match &small {
-            Some(small) if small.is_intersection && bounds.is_empty() => Convex::of(&leaves),
+            Some(small) if small.is_intersection && combined && bounds.is_empty() => {
+                Convex::of(&leaves)
+            }
             _ => None,
         };
         Self {

@@ -538,9 +538,12 @@ impl Solid for Torus {
                 Event::Crossing { t, enters } if t <= start => out.inside_at_start = enters,
                 Event::Crossing { t, enters } if t <= range.max => {
                     let side = if enters { Side::Enter } else { Side::Exit };
+                    let error = match out.without_errors {
+                        true => 0.0,
+                        false => self.t_error(ray, t),
+                    };
                     let hit = PrimHit::simple(t, 0);
-                    out.list
-                        .push(Crossing::new(hit, self.t_error(ray, t), side));
+                    out.list.push(Crossing::new(hit, error, side));
                 }
                 Event::Crossing { .. } => return ControlFlow::Break(()),
             }

@@ -407,7 +407,10 @@ impl WholeLine for Revolution<'_> {
             inside = !inside;
             let approach = candidate.meeting.approach;
             let hit = candidate.hit(if inside { -approach } else { approach });
-            let error = t_error(ray, hit.t, self.normal(ray, &hit), self.reach());
+            let error = match out.without_errors {
+                true => 0.0,
+                false => t_error(ray, hit.t, self.normal(ray, &hit), self.reach()),
+            };
             let side = if inside { Side::Enter } else { Side::Exit };
             let mut crossing = Crossing::new(hit, error, side);
             crossing.visible = candidate.visible;
