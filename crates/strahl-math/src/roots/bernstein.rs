@@ -378,8 +378,9 @@ impl<const N: usize> FourBernsteins<N> {
         }
         for i in 1..N {
             for j in (i..N).rev() {
-                for lane in 0..4 {
-                    b[j][lane] += b[j - 1][lane];
+                let before = b[j - 1];
+                for (c, before) in b[j].iter_mut().zip(before) {
+                    *c += before;
                 }
             }
         }
