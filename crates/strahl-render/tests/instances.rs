@@ -111,6 +111,9 @@ fn packets_go_into_instances() {
         assert!(with.film == without.film && with.rays == without.rays);
         assert_ne!(with.traversal, without.traversal);
         let rays = with.rays;
-        assert!(rays.primary_hit > 2000 && rays.reflection_hit > 100, "{rays:?}");
+        assert!(
+            rays.primary_hit > 2000 && rays.reflection_hit > 100,
+            "{rays:?}"
+        );
     }
 }
