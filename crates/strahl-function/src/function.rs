@@ -6,10 +6,9 @@ use crate::field::ScalarField;
 use crate::graph::{Expr, Graph};
 use crate::rate::Rate;
 use crate::run::{prepare, run};
-use crate::tape::{self, Tape};
+use crate::tape::{self, Tape, TapeNumber};
 use std::cell::Cell;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicU64, Ordering};
 
 /// A function of named parameters, ready to be evaluated. Cheap to clone.
 ///
@@ -54,15 +53,15 @@ impl Eq for Function {}
 #[derive(Clone, Debug)]
 struct Registers<T> {
     stack: Vec<T>,
-    /// The number of the tape whose constants are in place; 0 for none.
-    tape: u64,
+    /// The tape whose constants are in place.
+    tape: TapeNumber,
 }
 
 impl<T> Default for Registers<T> {
     fn default() -> Self {
         Self {
             stack: Vec::new(),
-            tape: 0,
+            tape: TapeNumber::default(),
         }
     }
 }
@@ -117,8 +116,7 @@ impl Function {
         let depth = graph.depth(root);
         let size = graph.reachable(root).len();
         let mut tape = tape::compile(&graph, root)?;
-        static TAPES: AtomicU64 = AtomicU64::new(1);
-        tape.number = TAPES.fetch_add(1, Ordering::Relaxed);
+        tape.number = TapeNumber::next();
         let limit = graph.allowed();
         if tape.cost > limit || tape.cost == u64::MAX {
             let cost = tape.cost;

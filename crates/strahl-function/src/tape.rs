@@ -6,7 +6,9 @@ use crate::function::Function;
 use crate::graph::{Expr, Graph, Loop, Node};
 use crate::op::{BinaryOp, UnaryOp};
 use std::collections::HashMap;
+use std::fmt;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 /// One instruction: registers `a` and `b` give register `out`.
 #[derive(Clone, Copy, Debug)]
@@ -71,6 +73,25 @@ impl From<BinaryOp> for Op {
 /// So many registers has every tape at least: a power of two that hardly any tape needs more of.
 pub(crate) const FRAME: usize = 256;
 
+/// What tells a function's tape from all others; by default it is that of no tape. It has no part in what is shown of a function, so that equal
+/// functions look the same.
+#[derive(Clone, Copy, Default, PartialEq, Eq)]
+pub(crate) struct TapeNumber(u64);
+
+impl TapeNumber {
+    /// A number that no tape has so far.
+    pub(crate) fn next() -> Self {
+        static NEXT: AtomicU64 = AtomicU64::new(1);
+        Self(NEXT.fetch_add(1, Ordering::Relaxed))
+    }
+}
+
+impl fmt::Debug for TapeNumber {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("_")
+    }
+}
+
 /// A function as straight-line code.
 ///
 /// Registers hold, in this order, the inputs, the constants, and intermediate values; inputs and constants are never
@@ -78,7 +99,7 @@ pub(crate) const FRAME: usize = 256;
 #[derive(Debug, Default)]
 pub(crate) struct Tape {
     /// A number that no other function's tape has, so that a workspace knows whose constants it holds.
-    pub(crate) number: u64,
+    pub(crate) number: TapeNumber,
     pub(crate) code: Vec<Instruction>,
     pub(crate) inputs: usize,
     pub(crate) constants: Vec<f64>,
