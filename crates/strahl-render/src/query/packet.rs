@@ -1,6 +1,8 @@
 //! Searches for several rays at once. Tests of the whole packet only cull; the remaining rays are tested one by one, as single
 //! rays are.
 
+mod instance;
+
 use super::block::{Block, BlockOfLeaf, Fetched, PacketCulls};
 use super::kinds::{Any, Closest, Query};
 use super::shapes::PlainShape;
@@ -11,6 +13,7 @@ use crate::hit::{Hit, Origin, RayClass};
 use crate::prim::PrimKind;
 use crate::scene::{RenderGroup, RenderScene};
 use arrayvec::ArrayVec;
+use instance::Place;
 use std::borrow::Borrow;
 use strahl_accel::{
     Accelerator, BLOCK, Leaf, PACKET, Packet, PacketVisitor, TraversalStats, Visitor, lanes_of,
@@ -194,22 +197,6 @@ struct Shared<'v, 's> {
     class: u8,
     /// Whether to search only the part of a group that matters to the query.
     parts: bool,
-}
-
-/// Where a group is.
-#[derive(Clone, Copy)]
-struct Place {
-    /// The number of its first element.
-    base: u64,
-    /// The number of instances around it.
-    depth: u32,
-}
-
-impl Place {
-    const WORLD: Self = Self { base: 0, depth: 0 };
-
-    /// From here on rays go into instances one by one: a packet takes some kilobytes of the stack.
-    const DEEPEST: u32 = 8;
 }
 
 impl<'s> Shared<'_, 's> {
@@ -408,44 +395,6 @@ impl<Q: Query> Together<'_, '_, '_, Q> {
             }),
         }
         self.shared.slot.enter(Phase::Traversal);
-    }
-
-    /// Searches the group of an instance for several rays.
-    #[inline(never)]
-    fn instance(&mut self, id: u32, index: u32, lanes: u32, t_max: &mut [f64; PACKET]) {
-        let instance = &self.group.instances[index as usize];
-        let inner = &self.shared.scene.groups[instance.group as usize];
-        let place = Place {
-            base: self.place.base + self.group.first_id(id),
-            depth: self.place.depth + 1,
-        };
-        // The other lanes have the first ray, which no search looks at.
-        let first = lanes.trailing_zeros() as usize % PACKET;
-        let spare = instance.transform.ray_to_object(&self.asked.rays[first]);
-        let mut rays = [spare; PACKET];
-        let (mut from, mut ends) = ([None; PACKET], [f64::NEG_INFINITY; PACKET]);
-        for lane in lanes_of(lanes) {
-            rays[lane] = instance.transform.ray_to_object(&self.asked.rays[lane]);
-            ends[lane] = t_max[lane];
-            if let Some(origin) = self.asked.from[lane].filter(|_| self.from_prims[lane] == id) {
-                from[lane] = Some(origin);
-                // The origin lies in this space, not in one further inside, and is exact here.
-                let prim = inner.prims.at(inner.prim_of(origin.id - place.base));
-                if !matches!(prim.kind(), PrimKind::Instance(_)) {
-                    rays[lane].origin = origin.local;
-                }
-            }
-        }
-        let asked = Asked {
-            rays: &rays[..self.asked.rays.len().min(PACKET)],
-            from: &from,
-            first: NONE,
-            ..*self.asked
-        };
-        let ends = self.shared.search(inner, &asked, place, ends, self.queries);
-        for lane in lanes_of(lanes) {
-            t_max[lane] = ends[lane];
-        }
     }
 
     /// The lanes whose rays start on a primitive.

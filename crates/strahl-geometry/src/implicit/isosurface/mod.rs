@@ -70,7 +70,7 @@ pub struct Isosurface {
     reach: Aabb,
 }
 
-/// Isosurfaces are equal if all rays find the same on them, to the bit.
+/// Equal isosurfaces have equal numbers and functions, so every ray finds the same on them.
 impl PartialEq for Isosurface {
     fn eq(&self, other: &Self) -> bool {
         self.options == other.options
@@ -345,7 +345,7 @@ impl Isosurface {
             if !(step.length() < nearby) {
                 break;
             }
-            // The last step hardly ever gets nearer, and gradients are dear.
+            // The last step hardly ever gets nearer, and a gradient takes twice the time of a value.
             let next = p - step;
             if !(self.value(workspace, next).abs() < value.abs()) {
                 break;
@@ -375,7 +375,7 @@ fn sides(cell: &Aabb) -> [Bounds; 3] {
     [0, 1, 2].map(|k| Bounds::new(cell.min[k], cell.max[k]))
 }
 
-/// No crossings are found roughly.
+/// The rough range of a walk that finds all crossings exactly: no parameter is in it.
 const EXACT: Interval = Interval {
     min: f64::INFINITY,
     max: f64::NEG_INFINITY,
