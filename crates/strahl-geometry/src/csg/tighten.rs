@@ -226,6 +226,19 @@ impl Form {
         }
         value - reach > SLACK * magnitude
     }
+
+    /// Whether a point is inside, or so near that no cell around it is [excluded](Self::excludes).
+    fn contains(&self, point: &[f64; 4]) -> bool {
+        let (mut value, mut magnitude) = (0.0, 0.0);
+        for (row, p) in self.0.iter().zip(point) {
+            for (m, q) in row.iter().zip(point) {
+                let term = m * p * q;
+                value += term;
+                magnitude += term.abs();
+            }
+        }
+        value <= 0.5 * SLACK * magnitude
+    }
 }
 
 impl Cell {
@@ -319,6 +332,12 @@ fn first_possible(mut cell: Cell, axis: usize, side: f64, forms: &[Form]) -> Opt
         there.center[axis] *= side;
         if forms.iter().any(|form| form.excludes(&there)) {
             continue;
+        }
+        // All boxes around a point that is inside of all forms stay, so no box begins later than here.
+        let mut first = there.center;
+        first[axis] = side * cell.low(axis);
+        if forms.iter().all(|form| form.contains(&first)) {
+            return Some(first[axis]);
         }
         // Across the axis boxes may be coarse: only the distance along the axis matters.
         let widest = (0..3)
