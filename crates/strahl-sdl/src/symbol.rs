@@ -12,32 +12,33 @@ impl Symbol {
     }
 }
 
-/// All names so far, each stored once: an open-addressing hash table over one string.
+/// All names so far, each stored once: an open-addressing hash table of their numbers.
 ///
 /// It is used instead of a `HashMap<Box<str>, _>` because every identifier of the text is looked up here: one multiplication per
 /// eight bytes, no allocation for known names, and no access to the text of names of up to 16 bytes.
 #[derive(Debug)]
 pub(crate) struct Symbols {
     text: String,
-    ends: Vec<u32>,
-    /// The length is a power of two.
-    table: Vec<Slot>,
+    /// The names in the order of their numbers.
+    names: Vec<Name>,
+    /// Symbol numbers plus one; 0 is free. The length is a power of two.
+    table: Vec<u32>,
     /// Keywords that the scene has declared as names.
     freed: Vec<Symbol>,
 }
 
-/// A slot of the table.
-#[derive(Clone, Copy, Debug, Default)]
-struct Slot {
-    /// The first bytes of the name; a shorter name is padded with zeros.
+/// A name.
+#[derive(Clone, Copy, Debug)]
+struct Name {
+    /// The first bytes; a shorter name is padded with zeros.
     head: u128,
-    /// The length of the name in bytes.
+    /// The number of bytes.
     length: u32,
-    /// Symbol number plus one; 0 is free.
-    number: u32,
+    /// Where the name ends in the text of all names.
+    end: u32,
 }
 
-/// The number of bytes of a name that its slot holds.
+/// The number of bytes of a name that are known without its text.
 const HEAD: usize = 16;
 
 /// The head of the name of this length at the beginning of a text.
@@ -63,8 +64,8 @@ impl Symbols {
     pub(crate) fn new() -> Self {
         let mut symbols = Self {
             text: String::new(),
-            ends: vec![],
-            table: vec![Slot::default(); 2048],
+            names: vec![],
+            table: vec![0; 2048],
             freed: vec![],
         };
         for (_, text, _) in Word::ALL {
@@ -75,13 +76,11 @@ impl Symbols {
 
     /// The spelling of a symbol; empty if it belongs to another table.
     pub(crate) fn text(&self, symbol: Symbol) -> &str {
-        let index = symbol.index();
-        let start = match index {
-            0 => 0,
-            _ => self.ends.get(index - 1).copied().unwrap_or(0) as usize,
+        let Some(name) = self.names.get(symbol.index()) else {
+            return "";
         };
-        let end = self.ends.get(index).copied().unwrap_or(0) as usize;
-        self.text.get(start..end).unwrap_or("")
+        let (start, end) = (name.end - name.length, name.end);
+        self.text.get(start as usize..end as usize).unwrap_or("")
     }
 
     /// Turns a keyword into a name, from here on.
@@ -96,7 +95,7 @@ impl Symbols {
 
     /// All spellings, in the order in which they were added.
     pub(crate) fn iter(&self) -> impl Iterator<Item = (Symbol, &str)> {
-        (0..self.ends.len() as u32).map(|n| (Symbol(n), self.text(Symbol(n))))
+        (0..self.names.len() as u32).map(|n| (Symbol(n), self.text(Symbol(n))))
     }
 
     /// The symbol of a name, which is valid UTF-8: ASCII letters, digits and underscores, or the key of a dictionary.
@@ -111,49 +110,46 @@ impl Symbols {
         let mask = self.table.len() - 1;
         let mut slot = hash(head, name) as usize & mask;
         loop {
-            let Slot {
-                head: known,
-                length: known_length,
-                number,
-            } = self.table[slot];
-            if number == 0 {
+            let Some(index) = self.table[slot].checked_sub(1) else {
                 break;
-            }
-            let symbol = Symbol(number.wrapping_sub(1));
-            if known == head
-                && known_length as usize == length
+            };
+            let known = self.names[index as usize];
+            let symbol = Symbol(index);
+            if known.head == head
+                && known.length as usize == length
                 && (length <= HEAD || self.text(symbol).as_bytes() == name)
             {
                 return symbol;
             }
             slot = (slot + 1) & mask;
         }
-        let symbol = Symbol(self.ends.len() as u32);
-        self.text.push_str(std::str::from_utf8(name).unwrap_or(""));
-        self.ends.push(self.text.len() as u32);
-        self.table[slot] = Slot {
+        let symbol = Symbol(self.names.len() as u32);
+        let name = std::str::from_utf8(name).unwrap_or("");
+        self.text.push_str(name);
+        self.names.push(Name {
             head,
-            length: length as u32,
-            number: symbol.0 + 1,
-        };
-        if self.ends.len() * 2 > self.table.len() {
+            length: name.len() as u32,
+            end: self.text.len() as u32,
+        });
+        self.table[slot] = symbol.0 + 1;
+        if self.names.len() * 2 > self.table.len() {
             self.grow();
         }
         symbol
     }
 
     fn grow(&mut self) {
-        let names: Vec<Vec<u8>> = self.iter().map(|(_, t)| t.as_bytes().to_vec()).collect();
-        let size = self.table.len() * 4;
-        *self = Self {
-            text: String::with_capacity(self.text.len() * 2),
-            ends: Vec::with_capacity(self.ends.len() * 2),
-            table: vec![Slot::default(); size],
-            freed: std::mem::take(&mut self.freed),
-        };
-        for name in names {
-            self.intern(&name);
+        let mut table = vec![0; self.table.len() * 2];
+        let mask = table.len() - 1;
+        for (symbol, text) in self.iter() {
+            let head = self.names[symbol.index()].head;
+            let mut slot = hash(head, text.as_bytes()) as usize & mask;
+            while table[slot] != 0 {
+                slot = (slot + 1) & mask;
+            }
+            table[slot] = symbol.0 + 1;
         }
+        self.table = table;
     }
 }
 

@@ -225,6 +225,8 @@ impl Scopes {
         match stack.iter().rposition(|b| b.depth <= depth) {
             Some(at) if stack[at].depth == depth => stack[at].bound = bound,
             found => {
+                // Most names are bound once: without this a list would get room for four values.
+                stack.reserve_exact(usize::from(stack.is_empty()));
                 stack.insert(found.map_or(0, |at| at + 1), Binding { depth, bound });
                 self.remember(symbol, depth);
             }
