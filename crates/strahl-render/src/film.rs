@@ -269,8 +269,9 @@ impl Film {
 
     /// The colours as sRGB codes of 8 bits, three for each pixel, row by row: what a PNG holds. Values outside `0..=1` are clipped.
     pub fn to_srgb8(&self) -> Vec<u8> {
-        let codes = self.pixels.iter().flatten();
-        codes.map(|v| srgb::encode_u8(f64::from(*v))).collect()
+        let mut codes = vec![];
+        srgb::push_u8(self.pixels.as_flattened(), &mut codes);
+        codes
     }
 
     /// Copies the colours to their place in a buffer of the whole picture, row by row from the top.

@@ -57,14 +57,14 @@ pub fn decode_all(values: &mut [f64]) {
 
 /// The 8-bit code of linear light: clamped to `0..=1`, encoded, rounded half up; NaN is 0.
 #[inline]
-pub fn encode_u8(linear: f64) -> u8 {
+pub fn encode_u8(linear: f32) -> u8 {
     Codes::get().of(linear)
 }
 
 /// Appends [`encode_u8`] of each sample of linear light.
 pub fn push_u8(linear: &[f32], codes: &mut Vec<u8>) {
     let table = Codes::get();
-    codes.extend(linear.iter().map(|x| table.of(f64::from(*x))));
+    codes.extend(linear.iter().map(|x| table.of(*x)));
 }
 
 /// Codes by the leading bits of a number: the number of powers of two below 1 that are told apart, and of parts of each. At most
@@ -75,7 +75,7 @@ const PARTS: usize = 256;
 /// The 8-bit codes, found without a power.
 struct Codes {
     /// Where the code after each begins; after the last, infinity.
-    ends: [f64; 256],
+    ends: [f32; 256],
     /// The code of the smallest number of each part of each octave from 2⁻¹³ to 1.
     lowest: [u8; OCTAVES * PARTS],
 }
@@ -87,9 +87,11 @@ impl Codes {
     }
 
     fn new() -> Self {
-        let mut ends = [f64::INFINITY; 256];
-        for (code, end) in (1..).zip(&mut ends[..255]) {
-            *end = beginning(f64::from(code), 255.0);
+        let mut middles: [f64; 255] = std::array::from_fn(|code| (code as f64 + 0.5) / 255.0);
+        decode_all(&mut middles);
+        let mut ends = [f32::INFINITY; 256];
+        for (end, (code, middle)) in ends.iter_mut().zip((1..=255).zip(middles)) {
+            *end = beginning(f64::from(code), middle as f32);
         }
         let mut code = 0;
         let lowest = std::array::from_fn(|index| {
@@ -102,48 +104,38 @@ impl Codes {
     }
 
     /// The smallest number of a part.
-    fn start_of(index: usize) -> f64 {
-        f64::from_bits(Self::ORIGIN + ((index as u64) << Self::SHIFT))
+    fn start_of(index: usize) -> f32 {
+        f32::from_bits(Self::ORIGIN + ((index as u32) << Self::SHIFT))
     }
 
     /// The bits below those that number a part.
-    const SHIFT: u32 = 52 - PARTS.ilog2();
+    const SHIFT: u32 = 23 - PARTS.ilog2();
     /// The bits of 2⁻¹³, whose code is 0.
-    const ORIGIN: u64 = (1023 - OCTAVES as u64) << 52;
+    const ORIGIN: u32 = (127 - OCTAVES as u32) << 23;
 
     #[inline]
-    fn of(&self, linear: f64) -> u8 {
+    fn of(&self, linear: f32) -> u8 {
         // In this order NaN becomes the smallest number, too.
         let within = linear
-            .max(f64::from_bits(Self::ORIGIN))
-            .min(1.0f64.next_down());
+            .max(f32::from_bits(Self::ORIGIN))
+            .min(1.0f32.next_down());
         let index = (within.to_bits() - Self::ORIGIN) >> Self::SHIFT;
         let code = self.lowest[index as usize];
         code + u8::from(within >= self.ends[usize::from(code)])
     }
 }
 
-/// The smallest number that is quantized to `code` or more: bisection of the few numbers around the inverse.
-fn beginning(code: f64, largest: f64) -> f64 {
-    let about = decode((code - 0.5) / largest);
-    let (mut below, mut above) = (about, about);
-    // The inverse is good to a few units in the last place, except around the step.
-    let mut reach = 8.0 * f64::EPSILON;
-    while quantize(below, largest) >= code || quantize(above, largest) < code {
-        (below, above) = (about * (1.0 - reach), about * (1.0 + reach));
-        reach *= 4.0;
+/// The smallest number that is quantized to `code` or more, found from a number near it.
+fn beginning(code: f64, near: f32) -> f32 {
+    let quantized = |x: f32| quantize(f64::from(x), 255.0);
+    let mut begin = near;
+    while quantized(begin) < code {
+        begin = begin.next_up();
     }
-    loop {
-        let middle = 0.5 * (below + above);
-        if middle <= below || middle >= above {
-            return above;
-        }
-        if quantize(middle, largest) >= code {
-            above = middle;
-        } else {
-            below = middle;
-        }
+    while quantized(begin.next_down()) >= code {
+        begin = begin.next_down();
     }
+    begin
 }
 
 /// The 16-bit code of linear light: clamped to `0..=1`, encoded, rounded half up; NaN is 0.
@@ -189,7 +181,7 @@ mod tests {
     #[test]
     fn every_code_survives_decoding_and_encoding() {
         for code in 0..=u8::MAX {
-            assert_eq!(encode_u8(f64::from(decode_u8(code))), code);
+            assert_eq!(encode_u8(decode_u8(code)), code);
         }
         for code in 0..=u16::MAX {
             assert_eq!(encode_u16(f64::from(decode_u16(code))), code);
@@ -198,22 +190,23 @@ mod tests {
 
     #[test]
     fn the_search_for_a_code_agrees_with_the_formula() {
+        let formula = |x: f32| quantize(f64::from(x), 255.0) as u8;
         for code in 1..=255 {
-            let begin = beginning(f64::from(code), 255.0);
+            let middle = decode((f64::from(code) - 0.5) / 255.0);
+            let begin = beginning(f64::from(code), middle as f32);
             for x in [begin.next_down(), begin, begin.next_up()] {
-                assert_eq!(f64::from(encode_u8(x)), quantize(x, 255.0), "{x}");
+                assert_eq!(encode_u8(x), formula(x), "{x}");
             }
-            assert_eq!(
-                (
-                    encode_u8(begin.next_down()) + 1,
-                    i32::from(encode_u8(begin))
-                ),
-                (code as u8, code)
-            );
+            assert_eq!(encode_u8(begin.next_down()) + 1, code);
+            assert_eq!(encode_u8(begin), code);
         }
-        for x in [f64::NAN, -1.0, -0.0, 0.0, 1.0, 2.0, f64::INFINITY] {
-            assert_eq!(f64::from(encode_u8(x)), quantize(x, 255.0), "{x}");
+        let (nan, infinity) = (f32::NAN, f32::INFINITY);
+        for x in [nan, -1.0, -0.0, 0.0, 1e-4, 1.0, 2.0, infinity, -infinity] {
+            assert_eq!(encode_u8(x), formula(x), "{x}");
         }
+        let mut codes = vec![7];
+        push_u8(&[0.5, 0.0, 1.0], &mut codes);
+        assert_eq!(codes, [7, 188, 0, 255]);
     }
 
     #[test]
@@ -231,8 +224,8 @@ mod tests {
     fn codes_switch_half_way_between_their_encoded_values() {
         for code in 0..u8::MAX {
             let boundary = decode((f64::from(code) + 0.5) / 255.0);
-            assert_eq!(encode_u8(boundary - 1e-9), code);
-            assert_eq!(encode_u8(boundary + 1e-9), code + 1);
+            assert_eq!(encode_u8((boundary * (1.0 - 1e-7)) as f32), code);
+            assert_eq!(encode_u8((boundary * (1.0 + 1e-7)) as f32), code + 1);
         }
     }
 
@@ -249,7 +242,7 @@ mod tests {
             (f64::INFINITY, 65_535),
         ] {
             assert_eq!(encode_u16(linear), code, "{linear}");
-            assert_eq!(u16::from(encode_u8(linear)), code / 257, "{linear}");
+            assert_eq!(u16::from(encode_u8(linear as f32)), code / 257, "{linear}");
         }
     }
 }

@@ -102,7 +102,7 @@ pub(crate) fn srgb8(picture: &Picture, region: Region, step: u32, look: &Look) -
 
 /// The sRGB code of a linear value.
 fn encode(value: f64) -> u8 {
-    strahl::shade::srgb::encode_u8(value)
+    strahl::shade::srgb::encode_u8(value as f32)
 }
 
 fn of_info(info: &PixelInfo, look: &Look) -> [u8; 3] {

@@ -45,7 +45,7 @@ pub(super) fn write_pixel(page: &mut Page, pixel: &Pixel<'_>, digits: Digits) {
 impl Pixel<'_> {
     /// The 8-bit codes of the value.
     pub(crate) fn codes(&self) -> [u8; 3] {
-        self.tree.film.map(|c| srgb::encode_u8(f64::from(c)))
+        self.tree.film.map(srgb::encode_u8)
     }
 }
 

@@ -102,7 +102,7 @@ fn integer_formats_hold_the_srgb_codes() {
         let expected: Vec<u8> = rgb
             .as_flattened()
             .iter()
-            .map(|&x| srgb::encode_u8(f64::from(x)))
+            .map(|&x| srgb::encode_u8(x))
             .collect();
         assert_eq!(back.as_rgb8().unwrap().as_raw(), &expected, "{format:?}");
         for (i, pixel) in expected.chunks_exact(3).enumerate().skip(3) {

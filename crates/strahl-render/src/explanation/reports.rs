@@ -32,7 +32,7 @@ impl Explanation {
             samples: samples.map(|(n, s)| Sample::new(scene, n, s)).collect(),
             color: color(tree.color),
             film: tree.film,
-            rgb8: tree.film.map(|c| srgb::encode_u8(f64::from(c))),
+            rgb8: tree.film.map(srgb::encode_u8),
         }
     }
 }

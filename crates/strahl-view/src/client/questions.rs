@@ -239,7 +239,7 @@ pub(super) fn hover(hub: &Hub, picture: &Picture, (x, y): (u32, u32)) -> Result<
         let index = y as usize * view.width as usize + x as usize;
         canvas.pixels.get(index).copied().unwrap_or_default()
     };
-    let codes = linear.map(|c| strahl::shade::srgb::encode_u8(f64::from(c)));
+    let codes = linear.map(strahl::shade::srgb::encode_u8);
     let scene = view.scene();
     let ray = chief_ray(view, x, y);
     let mut hits = [None];
