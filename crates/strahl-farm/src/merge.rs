@@ -327,7 +327,7 @@ mod tests {
         // The checksum of another film in the same metadata.
         let film = one.film.clone();
         one.film.pixels[3] = [1.0, 2.0, 3.0];
-        let mut metadata = strahl::metadata(&one.film);
+        let mut metadata = strahl::metadata();
         metadata.push(("tile".into(), serde_json::to_string(&one.info).unwrap()));
         let sums = strahl::formats::image::read_exr(&path)
             .unwrap()

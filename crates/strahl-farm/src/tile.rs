@@ -146,7 +146,7 @@ impl TileFile {
     /// [`TileError::Image`]: it can't be written; nothing is left behind.
     pub fn write(&self, path: &Path) -> Result<(), TileError> {
         let layers = strahl::layers(&self.film);
-        let mut metadata = strahl::metadata(&self.film);
+        let mut metadata = strahl::metadata();
         metadata.extend(self.info.notes.iter().cloned());
         let info = serde_json::to_string(&self.info).map_err(|error| TileError::Damaged {
             path: path.to_owned(),

@@ -196,7 +196,7 @@ impl Film {
         let film = self.whole(py)?;
         let bytes = work::run(py, move || {
             let (format, mut bytes) = (ImageFormat::Png, Vec::new());
-            let picture = strahl::picture(&film, &[], strahl::metadata(&film));
+            let picture = strahl::picture(&film, &[], strahl::metadata());
             encode_picture(&mut bytes, format, &picture, &WriteOptions::default()).map(|()| bytes)
         })?
         .map_err(|error| errors::image(&error))?;

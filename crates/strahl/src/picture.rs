@@ -11,7 +11,7 @@ use strahl_render::{Film, PixelInfo};
 /// [`ImageError`]: unknown extension, or the file can't be written. There is never half a file.
 pub fn save(path: &Path, film: &Film, options: &WriteOptions) -> Result<(), ImageError> {
     let layers = layers(film);
-    write_picture(path, &picture(film, &layers, metadata(film)), options)
+    write_picture(path, &picture(film, &layers, metadata()), options)
 }
 
 /// A film in the form that writers take.
@@ -37,15 +37,12 @@ pub fn picture<'a>(
     }
 }
 
-/// Metadata of a film: the program and the checksum of its bits.
-pub fn metadata(film: &Film) -> Vec<(String, String)> {
-    vec![
-        (
-            "Software".into(),
-            concat!("strahl ", env!("CARGO_PKG_VERSION")).into(),
-        ),
-        ("sha256".into(), film.sha256()),
-    ]
+/// Metadata of a picture: the program and its version.
+pub fn metadata() -> Vec<(String, String)> {
+    vec![(
+        "Software".into(),
+        concat!("strahl ", env!("CARGO_PKG_VERSION")).into(),
+    )]
 }
 
 /// The film's further data as layers: `depth.Z`, `normal.XYZ`, `position.XYZ`, `object.id`, `material.id`, `tree.depth`,

@@ -76,7 +76,7 @@ fn write(
         reporter.say("note: the tiles have layers, which only .exr pictures can keep");
         layers.clear();
     }
-    let mut metadata = strahl::metadata(film);
+    let mut metadata = strahl::metadata();
     metadata.extend(merged.notes.iter().cloned());
     target.write(&strahl::picture(film, &layers, metadata), options)
 }

@@ -275,7 +275,7 @@ impl Job<'_> {
             };
             return tile::write(film, info, file);
         }
-        let mut metadata = strahl::metadata(film);
+        let mut metadata = strahl::metadata();
         metadata.extend(notes);
         let options = WriteOptions {
             bit_depth: self.args.bit_depth,

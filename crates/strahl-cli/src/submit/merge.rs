@@ -136,7 +136,7 @@ fn write(job: &Job, merged: &Merged, file: &Path) -> Result<(), Failure> {
     if !target.format().info().layers {
         layers.clear();
     }
-    let mut metadata = strahl::metadata(&merged.film);
+    let mut metadata = strahl::metadata();
     metadata.extend(merged.notes.iter().cloned());
     target.write(&strahl::picture(&merged.film, &layers, metadata), &options)
 }
