@@ -1,4 +1,5 @@
 use crate::explain::{Chosen, Digits, MostRays};
+use crate::later::Later;
 use crate::memory::MemoryLimit;
 use crate::submit::SubmitCommand;
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -52,24 +53,24 @@ pub(crate) enum Command {
     #[command(args_override_self = true)]
     Render(Box<RenderArgs>),
     /// Show a scene in the browser: the picture while it is rendered, and the ray tree of every pixel that is clicked
-    View(Box<ViewArgs>),
+    View(Later<Box<ViewArgs>>),
     /// Print the ray tree of a pixel: every ray with its numbers and the line of the scene that caused it
-    Explain(ExplainArgs),
+    Explain(Later<ExplainArgs>),
     /// Render with every accelerator: prints a table of their costs, and checks that the pictures are the same
-    Compare(CompareArgs),
+    Compare(Later<CompareArgs>),
     /// Draw the cost of each pixel
-    Heatmap(HeatmapArgs),
+    Heatmap(Later<HeatmapArgs>),
     /// Follow the ray of a pixel through an accelerator: every cell, sphere or node with its tests
-    TraceRay(TraceRayArgs),
+    TraceRay(Later<TraceRayArgs>),
     /// Put the tiles of a picture together
-    Merge(MergeArgs),
+    Merge(Later<MergeArgs>),
     /// Give a picture or a film to a cluster or render farm
     #[command(subcommand)]
     Submit(SubmitCommand),
     /// Print the contents of a scene: objects, bounds, lights, camera, memory
-    Info(SceneArgs),
+    Info(Later<SceneArgs>),
     /// Look for errors in a scene without rendering it
-    Check(CheckArgs),
+    Check(Later<CheckArgs>),
     /// List scene formats, picture formats and accelerators
     Formats,
     /// Print a completion script for a shell: `strahl completions bash > ~/.local/share/bash-completion/completions/strahl`

@@ -13,6 +13,7 @@ mod fonts;
 mod heat;
 mod input;
 mod interrupt;
+mod later;
 mod memory;
 mod output;
 mod pov;

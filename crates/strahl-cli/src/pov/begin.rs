@@ -32,18 +32,24 @@ pub(super) fn with_command(mut words: Vec<OsString>, command: &Command) -> Optio
     Some(words)
 }
 
-/// The command that renders, now or on a cluster: the index of its last word, and its arguments.
-pub(super) fn rendering<'c>(
+/// The command that renders, now or on a cluster: the index of its last word, and its options that are followed by a value.
+pub(super) fn rendering(
     words: &[OsString],
-    command: &'c Command,
-) -> Option<(usize, &'c Command)> {
+    command: &Command,
+) -> Option<(usize, BTreeSet<String>)> {
     let at = behind_global_options(words, command);
     let name = words.get(at)?.to_str()?;
-    let found = command.find_subcommand(name)?;
     match (name, words.get(at + 1).and_then(|word| word.to_str())) {
-        ("render", _) => Some((at, found)),
+        ("render", _) => {
+            let render = command.find_subcommand(name)?;
+            Some((at, options_with_value(command, render)))
+        }
         ("submit", Some(engine @ ("slurm" | "openjd"))) => {
-            Some((at + 1, found.find_subcommand(engine)?))
+            // Its arguments are described now.
+            let mut all = command.clone();
+            all.build();
+            let submit = all.find_subcommand(name)?.find_subcommand(engine)?;
+            Some((at + 1, options_with_value(command, submit)))
         }
         _ => None,
     }
@@ -100,7 +106,7 @@ fn begins_render(word: &OsString, command: &Command) -> bool {
 }
 
 /// The options of a command and those common to all commands that are followed by a value as a separate word.
-pub(super) fn options_with_value(command: &Command, of: &Command) -> BTreeSet<String> {
+fn options_with_value(command: &Command, of: &Command) -> BTreeSet<String> {
     valued(of.get_arguments().chain(command.get_arguments()))
 }
 

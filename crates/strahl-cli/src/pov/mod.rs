@@ -31,13 +31,12 @@ pub(crate) fn translate(words: Vec<OsString>, command: &Command) -> Result<Trans
             notes: vec![],
         });
     };
-    let Some((render, arguments)) = begin::rendering(&words, command) else {
+    let Some((render, with_value)) = begin::rendering(&words, command) else {
         return Ok(Translated {
             words,
             notes: vec![],
         });
     };
-    let with_value = begin::options_with_value(command, arguments);
     let mut settings = Settings::default();
     // Strahl's own options come last, because the last occurrence of an option counts.
     let mut own: Vec<OsString> = vec![];

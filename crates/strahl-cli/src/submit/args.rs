@@ -1,6 +1,7 @@
 //! The command lines of `strahl submit`.
 
 use crate::args::RenderArgs;
+use crate::later::Later;
 use clap::{Args, Subcommand};
 use std::path::PathBuf;
 
@@ -8,10 +9,10 @@ use std::path::PathBuf;
 pub(crate) enum SubmitCommand {
     /// Write a job folder and submit it to Slurm: an array of tasks, and a merge behind it
     #[command(args_override_self = true)]
-    Slurm(Box<SlurmArgs>),
+    Slurm(Later<Box<SlurmArgs>>),
     /// Write a job folder with a template of Open Job Description, for `openjd run` and AWS Deadline Cloud
     #[command(args_override_self = true)]
-    Openjd(Box<OpenjdArgs>),
+    Openjd(Later<Box<OpenjdArgs>>),
     /// Print how far a job is
     Status(StatusArgs),
     /// Submit what is missing of a job
