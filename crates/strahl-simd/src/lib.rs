@@ -147,6 +147,8 @@ pub trait Isa: Copy + Send + Sync + 'static {
     fn sqrt(self, a: Self::F64x4) -> Self::F64x4;
     /// The absolute values.
     fn abs(self, a: Self::F64x4) -> Self::F64x4;
+    /// The greatest whole numbers that are not above the lanes.
+    fn floor(self, a: Self::F64x4) -> Self::F64x4;
     /// The smaller number in each lane; of a NaN and a number, and of equal numbers, the second.
     fn min(self, a: Self::F64x4, b: Self::F64x4) -> Self::F64x4;
     /// The larger number in each lane; of a NaN and a number, and of equal numbers, the second.
@@ -163,6 +165,8 @@ pub trait Isa: Copy + Send + Sync + 'static {
     fn le(self, a: Self::F64x4, b: Self::F64x4) -> u32;
     /// The lanes where `a < b`; false for NaN.
     fn lt(self, a: Self::F64x4, b: Self::F64x4) -> u32;
+    /// The columns of a matrix whose rows are in memory.
+    fn load_columns(self, rows: [&[f64; 4]; 4]) -> [Self::F64x4; 4];
     /// The columns of a matrix that is given by its rows.
     fn transpose(self, rows: [Self::F64x4; 4]) -> [Self::F64x4; 4];
 }

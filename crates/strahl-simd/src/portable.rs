@@ -269,6 +269,11 @@ macro_rules! lane_by_lane {
         }
 
         #[inline(always)]
+        fn floor(self, a: [f64; 4]) -> [f64; 4] {
+            std::array::from_fn(|i| a[i].floor())
+        }
+
+        #[inline(always)]
         fn min(self, a: [f64; 4], b: [f64; 4]) -> [f64; 4] {
             std::array::from_fn(|i| if a[i] < b[i] { a[i] } else { b[i] })
         }
@@ -291,6 +296,11 @@ macro_rules! lane_by_lane {
         #[inline(always)]
         fn lt(self, a: [f64; 4], b: [f64; 4]) -> u32 {
             (0..4).fold(0, |mask, i| mask | u32::from(a[i] < b[i]) << i)
+        }
+
+        #[inline(always)]
+        fn load_columns(self, rows: [&[f64; 4]; 4]) -> [[f64; 4]; 4] {
+            std::array::from_fn(|i| std::array::from_fn(|k| rows[k][i]))
         }
 
         #[inline(always)]

@@ -13,6 +13,7 @@ fn everything<I: Isa>(isa: I) -> Vec<u64> {
         isa.div(a, b),
         isa.sqrt(b),
         isa.abs(a),
+        isa.floor(isa.load(&[-0.0, 2.5, -2.5, 1e300])),
         isa.min(a, b),
         isa.max(b, a),
         isa.min(isa.splat(0.0), isa.splat(-0.0)),
@@ -133,6 +134,11 @@ fn rows_become_columns() {
         let columns = dispatch!(simd, isa => {
             isa.transpose(rows.map(|row| isa.load(&row))).map(|column| isa.store(column))
         });
+        let loaded = dispatch!(simd, isa => {
+            let [a, b, c, d] = &rows;
+            isa.load_columns([a, b, c, d]).map(|column| isa.store(column))
+        });
+        assert_eq!(loaded, columns, "{}", simd.level());
         for (i, column) in columns.into_iter().enumerate() {
             assert_eq!(column, rows.map(|row| row[i]), "{}", simd.level());
         }

@@ -248,6 +248,12 @@ macro_rules! avx {
         }
 
         #[inline(always)]
+        fn floor(self, a: __m256d) -> __m256d {
+            // SAFETY: `self` proves AVX.
+            unsafe { _mm256_floor_pd(a) }
+        }
+
+        #[inline(always)]
         fn min(self, a: __m256d, b: __m256d) -> __m256d {
             // SAFETY: `self` proves AVX.
             unsafe { _mm256_min_pd(a, b) }
@@ -287,6 +293,25 @@ macro_rules! avx {
         fn lt(self, a: __m256d, b: __m256d) -> u32 {
             // SAFETY: `self` proves AVX.
             unsafe { _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_LT_OQ>(a, b)) as u32 }
+        }
+
+        #[inline(always)]
+        fn load_columns(self, [a, b, c, d]: [&[f64; 4]; 4]) -> [__m256d; 4] {
+            // SAFETY: `self` proves AVX; each row is four numbers, both halves are read, and the loads need no alignment. To put a half from
+            // memory into a register takes no unit that shuffles.
+            unsafe {
+                let (a, b, c, d) = (a.as_ptr(), b.as_ptr(), c.as_ptr(), d.as_ptr());
+                let p = _mm256_loadu2_m128d(c, a);
+                let q = _mm256_loadu2_m128d(d, b);
+                let r = _mm256_loadu2_m128d(c.add(2), a.add(2));
+                let s = _mm256_loadu2_m128d(d.add(2), b.add(2));
+                [
+                    _mm256_unpacklo_pd(p, q),
+                    _mm256_unpackhi_pd(p, q),
+                    _mm256_unpacklo_pd(r, s),
+                    _mm256_unpackhi_pd(r, s),
+                ]
+            }
         }
 
         #[inline(always)]
