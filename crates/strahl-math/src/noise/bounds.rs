@@ -161,7 +161,7 @@ fn corners<I: Isa>(isa: I, cell: [usize; 3], z: usize, generator: NoiseGenerator
             for y in 0..2 {
                 let column = usize::from(hash(row ^ (cell[1] + by + y) & 4095));
                 let h = usize::from(hash(column ^ (cell[2] + by + z) & 4095) & 255);
-                all[2 * x + y] = isa.load(&CORNERS[h]);
+                all[2 * x + y] = isa.load(&CORNERS.0[h]);
             }
         }
     }

@@ -65,7 +65,10 @@ pub fn noise(p: DVec3, generator: NoiseGenerator) -> f64 {
 ///
 /// The same for every [`NoiseGenerator`]; what turbulence displaces points by.
 pub fn dnoise(p: DVec3) -> DVec3 {
-    dispatch!(Simd::best(), isa => kernel::vector(isa, p))
+    dispatch!(Simd::best(), isa => {
+        let [x, y, z, _] = isa.store(kernel::vector(isa, isa.load(&[p.x, p.y, p.z, 0.0])));
+        DVec3::new(x, y, z)
+    })
 }
 
 /// Octaves of noise: each has `lambda` times the frequency and `omega` times the strength of the one before.
@@ -93,15 +96,28 @@ impl Default for Turbulence {
 impl Turbulence {
     /// The sum of `omega^i dnoise(lambda^i p)` over the octaves `i`.
     pub fn vector(&self, p: DVec3) -> DVec3 {
-        dispatch!(Simd::best(), isa => {
+        self.vector_with(Simd::best(), p)
+    }
+
+    #[inline(always)]
+    fn vector_with(&self, simd: Simd, p: DVec3) -> DVec3 {
+        dispatch!(simd, isa => {
             let (mut frequency, mut strength) = (1.0, 1.0);
-            let mut sum = DVec3::ZERO;
-            for _ in 0..self.octaves {
-                sum += kernel::vector(isa, p * frequency) * strength;
-                frequency *= self.lambda;
-                strength *= self.omega;
+            let mut sum = isa.splat(0.0);
+            let mut left = self.octaves;
+            while left > 0 {
+                let (mut frequencies, mut strengths) = ([0.0; 4], [0.0; 4]);
+                for k in 0..4 {
+                    (frequencies[k], strengths[k]) = (frequency, strength);
+                    frequency *= self.lambda;
+                    strength *= self.omega;
+                }
+                let count = left.min(4);
+                sum = kernel::add_vectors(isa, p, frequencies, &strengths, count as usize, sum);
+                left -= count;
             }
-            sum
+            let [x, y, z, _] = isa.store(sum);
+            DVec3::new(x, y, z)
         })
     }
 
@@ -113,24 +129,33 @@ impl Turbulence {
         dispatch!(Simd::best(), isa => {
             let (mut frequency, mut strength) = (1.0, 1.0);
             let mut sum = 0.0;
-            let mut done = 0;
-            while done < self.octaves {
-                let count = (self.octaves - done).min(4) as usize;
-                let mut frequencies = [frequency; 4];
-                let mut strengths = [strength; 4];
-                for k in 0..count {
+            let mut left = self.octaves;
+            let mut is_first = true;
+            while left >= 3 {
+                let (mut frequencies, mut strengths) = ([0.0; 4], [0.0; 4]);
+                for k in 0..4 {
                     (frequencies[k], strengths[k]) = (frequency, strength);
                     frequency *= self.lambda;
                     strength *= self.omega;
                 }
-                let mut values = octaves_at_once(isa, p, &frequencies, count, generator);
-                if done == 0 {
-                    values[0] = unit(values[0]);
+                let [mut a, b, c, d] = isa.store(four_stretched(isa, p, frequencies, generator));
+                if is_first {
+                    a = unit(a);
+                    is_first = false;
                 }
-                for k in 0..count {
-                    sum += values[k] * strengths[k];
+                sum = sum + a * strengths[0] + b * strengths[1] + c * strengths[2];
+                if left == 3 {
+                    return sum;
                 }
-                done = done.saturating_add(4);
+                sum += d * strengths[3];
+                left -= 4;
+            }
+            for _ in 0..left {
+                let value = stretched(isa, p * frequency, generator);
+                sum += if is_first { unit(value) } else { value } * strength;
+                is_first = false;
+                frequency *= self.lambda;
+                strength *= self.omega;
             }
             sum
         })
@@ -147,58 +172,55 @@ pub fn pattern_octaves<const N: usize>(
     dispatch!(Simd::best(), isa => {
         let mut all = [0.0; N];
         let mut frequency = frequency;
-        for four in all.chunks_mut(4) {
+        let (fours, rest) = all.as_chunks_mut();
+        for four in fours {
             let frequencies = [frequency, 2.0 * frequency, 4.0 * frequency, 8.0 * frequency];
-            let values = octaves_at_once(isa, p, &frequencies, four.len(), generator);
-            for k in 0..four.len() {
-                four[k] = unit(values[k]);
+            *four = isa.store(four_stretched(isa, p, frequencies, generator));
+            for value in four {
+                *value = unit(*value);
             }
             frequency *= 16.0;
+        }
+        for value in rest {
+            *value = unit(stretched(isa, p * frequency, generator));
+            frequency *= 2.0;
         }
         all
     })
 }
 
-/// [`stretched`] noise at a point times the first `count` of up to four frequencies: together, if that is faster than one after the other.
 #[inline(always)]
-fn octaves_at_once<I: Isa>(
+fn stretched<I: Isa>(isa: I, p: DVec3, generator: NoiseGenerator) -> f64 {
+    let (factor, shift) = stretch(generator);
+    kernel::noise(isa, p, generator) * factor - shift
+}
+
+/// The same at a point times each of four frequencies.
+#[inline(always)]
+fn four_stretched<I: Isa>(
     isa: I,
     p: DVec3,
-    frequencies: &[f64; 4],
-    count: usize,
+    frequencies: [f64; 4],
     generator: NoiseGenerator,
-) -> [f64; 4] {
-    let mut values = [0.0; 4];
-    if count < 3 {
-        for k in 0..count {
-            values[k] = stretched(isa, p * frequencies[k], generator);
-        }
-        return values;
-    }
-    let by = isa.load(frequencies);
+) -> I::F64x4 {
+    let by = isa.load(&frequencies);
     let points = [
         isa.mul(isa.splat(p.x), by),
         isa.mul(isa.splat(p.y), by),
         isa.mul(isa.splat(p.z), by),
     ];
-    values = kernel::noise_of_four(isa, points, generator);
-    for value in &mut values {
-        *value = stretch(*value, generator);
-    }
-    values
+    let noise = kernel::noise_of_four(isa, points, generator);
+    let (factor, shift) = stretch(generator);
+    isa.sub(isa.mul(noise, isa.splat(factor)), isa.splat(shift))
 }
 
+/// What noise is multiplied by, and what is subtracted then. With the original noise that is nothing, which changes no bit.
 #[inline(always)]
-fn stretched<I: Isa>(isa: I, p: DVec3, generator: NoiseGenerator) -> f64 {
-    stretch(kernel::noise(isa, p, generator), generator)
-}
-
-#[inline(always)]
-fn stretch(noise: f64, generator: NoiseGenerator) -> f64 {
+fn stretch(generator: NoiseGenerator) -> (f64, f64) {
     if generator == NoiseGenerator::Original {
-        noise
+        (1.0, 0.0)
     } else {
-        2.0 * noise - 0.5
+        (2.0, 0.5)
     }
 }
 

@@ -68,7 +68,7 @@ fn corners<I: Isa>(isa: I, cell: [f64; 2], generator: NoiseGenerator) -> [I::F64
         let column = usize::from(hash(row ^ j));
         for b in 0..2 {
             let h = usize::from(hash(column ^ (k + j + b) & 4095) & 255);
-            all[2 * a + b] = isa.load(&CORNERS[h]);
+            all[2 * a + b] = isa.load(&CORNERS.0[h]);
         }
     }
     all

@@ -35,27 +35,31 @@ pub(super) fn hash(i: usize) -> u16 {
     HASH[i & 4095]
 }
 
+/// Vectors of which none lies in two cache lines.
+#[repr(align(64))]
+pub(super) struct InLines<const N: usize>(pub(super) [[f64; 4]; N]);
+
 /// For scalar noise: half the values of 256 corners, and their gradients along x, y and z.
-pub(super) static CORNERS: [[f64; 4]; 256] = {
+pub(super) static CORNERS: InLines<256> = {
     let mut table = [[0.0; 4]; 256];
     let mut h = 0;
     while h < 256 {
         table[h] = [0.5 * R[h], R[h + 1], R[h + 2], R[h + 3]];
         h += 1;
     }
-    table
+    InLines(table)
 };
 
 /// For vector noise: what its three components have at a corner. Entry `h` has the values of corner `h`, the next three entries the
 /// gradients along x, y and z.
-pub(super) static SPREAD: [[f64; 4]; R_LEN - 8] = {
+pub(super) static SPREAD: InLines<{ R_LEN - 8 }> = {
     let mut table = [[0.0; 4]; R_LEN - 8];
     let mut h = 0;
     while h < R_LEN - 8 {
         table[h] = [R[h], R[h + 4], R[h + 8], 0.0];
         h += 1;
     }
-    table
+    InLines(table)
 };
 
 /// Values and gradients in `-1..=1`, overlapping.
