@@ -13,7 +13,7 @@ use strahl_simd::{Simd, dispatch};
 
 /// Sine of `x` radians.
 pub fn sin(x: f64) -> f64 {
-    libm::sin(x)
+    sine::sine(x)
 }
 
 /// Cosine of `x` radians.

@@ -37,6 +37,44 @@ const COS: [f64; 6] = [
     -1.13596475577881948265e-11,
 ];
 
+/// The sine of an angle in radians, with the bits of the `libm` crate.
+#[inline(always)]
+pub(super) fn sine(x: f64) -> f64 {
+    let size = x.abs();
+    // `libm` does something else where angles are small (below π/4) or large (from 2²⁰ π/2), where they lie in the middle between two multiples
+    // (it may take the other one), and where they lie so close to a multiple that bits are lost (16 of them). The bounds are a little
+    // narrower than its own.
+    if !(0.8..=1e6).contains(&size) {
+        return libm::sin(x);
+    }
+    let multiple = (x * TWO_BY_PI + ROUND) - ROUND;
+    let exact = x - multiple * HALF_PI;
+    let rest = multiple * HALF_PI_REST;
+    let y = exact - rest;
+    let lost = (exact - y) - rest;
+    let part = y.abs();
+    if !(part <= 0.7853 && size * (1.0 / 8192.0) <= part) {
+        return libm::sin(x);
+    }
+    let quadrant = multiple as i32;
+    let value = if quadrant & 1 == 0 {
+        let z = y * y;
+        let w = z * z;
+        let r = (SIN[1] + z * (SIN[2] + z * SIN[3])) + (z * w) * (SIN[4] + z * SIN[5]);
+        let v = z * y;
+        y - (((z * (0.5 * lost - v * r)) - lost) - v * SIN[0])
+    } else {
+        let z = y * y;
+        let w = z * z;
+        let low = z * (COS[0] + z * (COS[1] + z * COS[2]));
+        let high = (w * w) * (COS[3] + z * (COS[4] + z * COS[5]));
+        let half = 0.5 * z;
+        let w = 1.0 - half;
+        w + (((1.0 - w) - half) + (z * (low + high) - y * lost))
+    };
+    if quadrant & 2 == 0 { value } else { -value }
+}
+
 /// The sines of four angles in radians, each with the bits of [`super::sin`].
 #[inline(always)]
 pub fn sines<I: Isa>(isa: I, x: I::F64x4) -> I::F64x4 {
@@ -56,9 +94,7 @@ pub fn sines<I: Isa>(isa: I, x: I::F64x4) -> I::F64x4 {
     let value = isa.choose_le(quadrant, n(-0.5), negative, value);
     let mut value = isa.choose_le(n(1.5), quadrant, negative, value);
     let (size, part) = (isa.abs(x), isa.abs(y));
-    // `libm` does something else where angles are small (below π/4) or large (from 2²⁰ π/2), where they lie in the middle between two multiples
-    // (it may take the other one), and where they lie so close to a multiple that bits are lost (16 of them). The bounds are a little
-    // narrower than its own.
+    // The bounds are those of `sine`.
     let usual = isa.le(n(0.8), size)
         & isa.le(size, n(1e6))
         & isa.le(part, n(0.7853))
@@ -67,7 +103,7 @@ pub fn sines<I: Isa>(isa: I, x: I::F64x4) -> I::F64x4 {
         let (angles, mut values) = (isa.store(x), isa.store(value));
         for lane in 0..4 {
             if usual >> lane & 1 == 0 {
-                values[lane] = super::sin(angles[lane]);
+                values[lane] = libm::sin(angles[lane]);
             }
         }
         value = isa.load(&values);
@@ -142,10 +178,12 @@ mod tests {
                 let mut x = [0.7; 4];
                 x[..four_angles.len()].copy_from_slice(four_angles);
                 for (angle, sine) in x.into_iter().zip(four(simd, x)) {
-                    let expected = super::super::sin(angle);
-                    let is_same =
-                        sine.to_bits() == expected.to_bits() || sine.is_nan() && expected.is_nan();
-                    assert!(is_same, "sin {angle}: {sine} and not {expected} ({simd:?})");
+                    let expected = libm::sin(angle);
+                    for sine in [sine, super::sine(angle)] {
+                        let is_same = sine.to_bits() == expected.to_bits()
+                            || sine.is_nan() && expected.is_nan();
+                        assert!(is_same, "sin {angle}: {sine} and not {expected} ({simd:?})");
+                    }
                 }
             }
         }
