@@ -1,5 +1,6 @@
 //! Ripples and waves: circles around a few sources near the origin. Four sources are computed at once.
 
+use std::borrow::Cow;
 use std::sync::LazyLock;
 
 use strahl_math::noise::dnoise;
@@ -47,12 +48,13 @@ impl Sources {
     }
 
     /// The same, remembered for the first ones. A scene has ten sources if it doesn't say how many.
-    fn get(chunk: u32) -> Self {
+    #[inline]
+    fn remembered(chunk: u32) -> Cow<'static, Self> {
         static FIRST: LazyLock<[Sources; 8]> =
             LazyLock::new(|| std::array::from_fn(|chunk| Sources::new(chunk as u32)));
         match FIRST.get(chunk as usize) {
-            Some(sources) => *sources,
-            None => Self::new(chunk),
+            Some(sources) => Cow::Borrowed(sources),
+            None => Cow::Owned(Self::new(chunk)),
         }
     }
 }
@@ -114,7 +116,7 @@ fn height(simd: Simd, water: Water, p: DVec3, sources: u32, modifiers: &Modifier
     dispatch!(simd, isa => {
         let mut sum = 0.0;
         for chunk in 0..sources.div_ceil(4) {
-            let (height, _) = circles(isa, water, &Sources::get(chunk), p, modifiers);
+            let (height, _) = circles(isa, water, &Sources::remembered(chunk), p, modifiers);
             for height in &isa.store(height)[..lanes(sources, chunk)] {
                 sum += height;
             }
@@ -129,7 +131,7 @@ fn tilt(simd: Simd, water: Water, p: DVec3, sources: u32, modifiers: &Modifiers)
         let zero = isa.splat(0.0);
         let mut sum = zero;
         for chunk in 0..sources.div_ceil(4) {
-            let (height, [x, y, z]) = circles(isa, water, &Sources::get(chunk), p, modifiers);
+            let (height, [x, y, z]) = circles(isa, water, &Sources::remembered(chunk), p, modifiers);
             let terms = isa.transpose([isa.mul(x, height), isa.mul(y, height), isa.mul(z, height), zero]);
             for term in &terms[..lanes(sources, chunk)] {
                 sum = isa.add(sum, *term);
