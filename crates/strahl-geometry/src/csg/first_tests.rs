@@ -166,6 +166,8 @@ struct Tally {
     /// Those with the table of a small tree.
     small: u32,
     small_unclear: u32,
+    /// Those of merges.
+    merged: u32,
     hits: u32,
 }
 
@@ -207,8 +209,22 @@ fn compare(
             Answer::Certain(found) => {
                 assert_eq!(found, expected, "{ray:?} {range:?} {from:?}\n{csg:?}");
                 tally.small += 1;
+                tally.merged += u32::from(small.is_merge);
             }
             Answer::Unclear => tally.small_unclear += 1,
+        }
+        let (scratch, mut all) = (&mut scratch, Vec::new());
+        let seen = |_: &PrimHit, _: &mut Scratch| true;
+        if small
+            .all_visible(leaves, ray, range, from, scratch, seen, &mut all)
+            .is_ok()
+        {
+            let visible = list.list.iter().filter(|c| c.visible).map(|c| c.hit);
+            assert_eq!(
+                all,
+                visible.collect::<Vec<_>>(),
+                "{ray:?} {range:?} {from:?}\n{csg:?}"
+            );
         }
     }
     tally.hits += u32::from(expected.is_some());
@@ -300,6 +316,37 @@ fn single_leaves_have_the_same_first_surface() {
     let tally = follow_rays(27, 3000, false, |random, lattice| leaf(random, lattice, 0));
     assert!(tally.small > 30_000 && tally.hits > 20_000, "{tally:?}");
     assert!(tally.small_unclear * 50 < tally.small, "{tally:?}");
+}
+
+/// A merge of a few leaves that lines cross at most twice; some of them only clip.
+fn merged(random: &mut Random, lattice: bool) -> CsgNode {
+    let count = 2 + random.below(5);
+    let leaves: Vec<CsgNode> = (0..count)
+        .map(|tag| {
+            let center = random.cube();
+            let (size, quadratic) = (random.between(0.3, 1.2), random.below(3) == 0);
+            if !lattice && quadratic {
+                return CsgNode::leaf(quadric(random, center, size), tag as u32);
+            }
+            leaf(random, lattice, tag as u32)
+        })
+        .collect();
+    match random.below(4) {
+        0 => CsgNode::merge(leaves.into_iter().map(|leaf| CsgNode::merge([leaf]))),
+        _ => CsgNode::merge(leaves),
+    }
+}
+
+#[test]
+fn merges_have_the_same_surfaces() {
+    let tally = follow_rays(28, 3000, false, merged);
+    assert!(tally.merged > 60_000 && tally.hits > 60_000, "{tally:?}");
+    assert!(tally.small_unclear * 50 < tally.small, "{tally:?}");
+    let tally = follow_rays(29, 3000, true, merged);
+    assert!(
+        tally.merged > 20_000 && tally.small_unclear > 2_000,
+        "{tally:?}"
+    );
 }
 
 #[test]

@@ -10,7 +10,7 @@
 //!   intersects all planes of an intersection in one pass.
 //! * `first` finds the first surface without lists, if no two crossings are close together: `course` finds the crossings that
 //!   matter, `timeline` goes through them. `small` does the same for trees of a few simple leaves,
-//!   with a `table` of their `states`, and `one_span` for intersections among them; `packet` searches
+//!   with a `table` of their `states`, `one_span` for intersections and `merged` for merges among them; `packet` searches
 //!   those of convex solids for four rays side by side.
 
 mod boxes;
@@ -20,6 +20,7 @@ mod evaluate;
 mod first;
 mod half_spaces;
 mod leaf;
+mod merged;
 mod one_span;
 mod packet;
 mod small;

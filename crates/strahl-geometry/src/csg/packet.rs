@@ -15,18 +15,30 @@ use arrayvec::ArrayVec;
 use strahl_math::Interval;
 use strahl_simd::Isa;
 
-/// The operands of an intersection of convex solids, quadrics and complements of such.
+/// The operands of an intersection of convex solids, quadrics and complements of such, or of a union or merge of convex solids and quadrics.
 #[derive(Clone, Debug)]
 pub(super) struct Convex {
     /// The leaves' numbers, complements last.
     leaves: ArrayVec<u32, MOST>,
     /// The number of those that are no complements.
     positive: usize,
+    /// Whether a point is in the tree if it is in any of them.
+    any: bool,
 }
 
 impl Convex {
-    /// The operands among these leaves; `None` if one is neither a convex solid or a quadric nor the complement of one.
+    /// The operands of an intersection, among these leaves; `None` if one is neither a convex solid or a quadric nor the complement of one.
     pub(super) fn of(leaves: &[Leaf]) -> Option<Self> {
+        Self::of_operands(leaves, false)
+    }
+
+    /// The operands of a tree of nothing but unions and merges; `None` if one is neither a convex solid nor a quadric.
+    pub(super) fn of_union(leaves: &[Leaf]) -> Option<Self> {
+        let operands = Self::of_operands(leaves, true)?;
+        (operands.positive == leaves.len()).then_some(operands)
+    }
+
+    fn of_operands(leaves: &[Leaf], any: bool) -> Option<Self> {
         if !leaves.iter().all(Leaf::has_stays) {
             return None;
         }
@@ -39,6 +51,7 @@ impl Convex {
         (positive > 0).then_some(Self {
             leaves: order,
             positive,
+            any,
         })
     }
 }
@@ -83,6 +96,9 @@ impl FourLines for Csg {
             return FourSpans::default();
         };
         let fusing = FourFusing::new(isa, rays);
+        if convex.any {
+            return self.first_of_union(isa, rays, convex, &fusing);
+        }
         let mut ends = Ends::new(isa);
         let mut holes = Holes::new();
         for (n, number) in convex.leaves.iter().enumerate() {
@@ -108,6 +124,58 @@ impl FourLines for Csg {
             ends.drill(isa, &fusing, &holes);
         }
         ends.spans(isa)
+    }
+}
+
+impl Csg {
+    /// Where lines enter the first of the solids of a union: nothing is known about what comes behind.
+    #[inline(always)]
+    fn first_of_union<I: Isa>(
+        &self,
+        isa: I,
+        rays: &FourRays<I>,
+        convex: &Convex,
+        fusing: &FourFusing<I>,
+    ) -> FourSpans {
+        let nowhere = isa.splat(f64::INFINITY);
+        let mut enter = Nearest::new(isa, f64::INFINITY);
+        let (mut first_exit, mut known, mut met) = (nowhere, 0b1111, 0);
+        for number in &convex.leaves {
+            let Some(leaf) = self.leaf(*number) else {
+                return FourSpans::default();
+            };
+            let spans = leaf.four_spans(isa, rays);
+            known &= spans.known;
+            if known == 0 {
+                return FourSpans::default();
+            }
+            let crossed = spans.met & known;
+            if crossed == 0 {
+                continue;
+            }
+            met |= crossed;
+            let t = select(isa, crossed, isa.load(&spans.enter), nowhere);
+            enter.note(isa.lt(t, enter.t), *number, &spans.enter_facet);
+            enter.next = isa.min(enter.next, isa.choose_le(enter.t, t, t, enter.t));
+            enter.t = isa.choose_le(enter.t, t, enter.t, t);
+            let t = select(isa, crossed, isa.load(&spans.exit), nowhere);
+            first_exit = isa.min(first_exit, t);
+        }
+        let next = isa.min(enter.next, first_exit);
+        // A line that begins inside enters nothing first.
+        let clear =
+            isa.lt(isa.splat(f64::NEG_INFINITY), enter.t) & fusing.apart(isa, enter.t, next);
+        FourSpans {
+            known: known & !met,
+            only_enter: known & met & clear,
+            met,
+            enter: isa.store(enter.t),
+            exit: [f64::INFINITY; LANES],
+            enter_facet: enter.facet,
+            exit_facet: [0; LANES],
+            enter_leaf: enter.leaf,
+            exit_leaf: [0; LANES],
+        }
     }
 }
 
@@ -391,8 +459,10 @@ mod tests {
         let mut operands: Vec<CsgNode> = (0..count)
             .map(|tag| operand(random, lattice, tag))
             .collect();
-        let node = match random.below(4) {
+        let node = match random.below(6) {
             0 => CsgNode::intersection(operands),
+            4 => CsgNode::merge(operands),
+            5 => CsgNode::union(operands),
             1 => {
                 let first = operands.remove(0);
                 CsgNode::clip(first, operands)

@@ -10,7 +10,7 @@ use super::first::{Answer, start_and_begin};
 use super::leaf::Leaf;
 use super::solid::{Kind, Node};
 use super::states::{MOST, States};
-use super::sweep::Fusing;
+use super::sweep::{Fusing, Rule};
 use super::table::Table;
 use super::timeline::TooClose;
 use crate::primitives::convex::Span;
@@ -29,11 +29,13 @@ const CROSSINGS: usize = 24;
 #[derive(Clone, Debug)]
 pub(super) struct Small {
     /// Those that are visible first, and of each kind those that are not complements.
-    operands: ArrayVec<Operand, MOST>,
+    pub(super) operands: ArrayVec<Operand, MOST>,
     /// The number of the visible ones; the others only clip.
     pub(super) visible: usize,
     /// Whether it is an intersection of leaves that a line crosses at most twice, or of their complements.
     pub(super) is_intersection: bool,
+    /// Whether it is a merge of such leaves, none of them a complement.
+    pub(super) is_merge: bool,
 }
 
 /// A ray and what is asked of it.
@@ -160,6 +162,11 @@ impl Small {
         Some(Self {
             visible: order.iter().filter(|n| leaf(**n).visible).count(),
             is_intersection: operands.iter().all(|o| o.required && o.simple),
+            is_merge: leaves.iter().all(|l| l.has_stays() && !l.negative)
+                && nodes.len() > 1
+                && nodes
+                    .iter()
+                    .all(|node| matches!(node.kind, Kind::Leaf(_) | Kind::Operation(Rule::Merge))),
             operands,
         })
     }
@@ -233,6 +240,9 @@ impl Small {
         };
         if self.is_intersection {
             return self.visit_one_span(leaves, &mut query, &mut |hit| visit(hit, scratch));
+        }
+        if self.is_merge {
+            return self.visit_merged(leaves, &query, &mut |hit| visit(hit, scratch));
         }
         let far = query.alive.max;
         let mut slabs = None;

@@ -40,13 +40,15 @@ pub struct Csg {
     /// The different bounds that leaves are seen through.
     bounds: Vec<Bounds>,
     elements: u32,
+    /// Whether each leaf has one element.
+    one_each: bool,
     /// Whether all leaves are solids.
     closed: bool,
     /// Whether it is an operation on solids that is not nested too deep for recursion.
     shallow: bool,
     /// The tree as a table, if it has few leaves and these are simple.
     small: Option<Box<Small>>,
-    /// Its operands, if it is a small intersection of convex solids and of complements of such.
+    /// Its operands, if it is a small intersection of convex solids and of complements of such, or a small union of convex solids.
     convex: Option<Box<Convex>>,
 }
 
@@ -91,6 +93,13 @@ pub(super) struct Node {
     pub(super) hierarchy: Option<Box<Bvh2>>,
 }
 
+impl Node {
+    /// Whether it is a leaf, or in it wherever one of its operands is.
+    fn only_adds(&self) -> bool {
+        !matches!(self.kind, Kind::Operation(Rule::Intersection))
+    }
+}
+
 impl Csg {
     /// Compiles a tree.
     ///
@@ -126,9 +135,16 @@ impl Csg {
             Some(small) if small.is_intersection && combined && bounds.is_empty() => {
                 Convex::of(&leaves)
             }
+            Some(_) if combined && bounds.is_empty() && nodes.iter().all(Node::only_adds) => {
+                Convex::of_union(&leaves)
+            }
             _ => None,
         };
+        let mut numbers = leaves.iter().map(|leaf| leaf.first_element).zip(0..);
+        let one_each =
+            numbers.all(|(first, index)| first == index) && elements as usize == leaves.len();
         Self {
+            one_each,
             small: small.map(Box::new),
             convex: convex.map(Box::new),
             nodes,
@@ -156,7 +172,16 @@ impl Csg {
     }
 
     /// The leaf that an element number of a hit belongs to, and the element's number within that leaf's shape.
+    #[inline]
     pub fn leaf_of(&self, element: u32) -> (usize, u32) {
+        if self.one_each && element < self.elements {
+            return (element as usize, 0);
+        }
+        self.leaf_with(element)
+    }
+
+    #[inline(never)]
+    fn leaf_with(&self, element: u32) -> (usize, u32) {
         let after = self
             .leaves
             .partition_point(|leaf| leaf.first_element <= element);
