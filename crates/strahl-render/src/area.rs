@@ -138,7 +138,7 @@ impl AreaQuery<'_> {
 struct Grids {
     /// The points of a grid.
     size: usize,
-    /// Whether a point is needed. Nothing else is cleared: an adaptive light needs a few of many points.
+    /// Whether a point is needed, of the lit points to which different things arrive.
     needed: Vec<bool>,
     /// The share of the light of a needed point that arrives, once its shadow ray is traced.
     visible: Vec<Color>,
@@ -146,13 +146,23 @@ struct Grids {
 
 impl Grids {
     /// So many grids of so many points, of which nothing is known.
-    fn clear(&mut self, count: usize, size: usize) {
+    fn make(&mut self, count: usize, size: usize) {
         self.size = size;
-        self.needed.clear();
-        self.needed.resize(size * count, false);
         if self.visible.len() < size * count {
             self.visible.resize(size * count, Color::BLACK);
+            self.needed.resize(size * count, false);
         }
+    }
+
+    /// Which points of the grid a lit point needs.
+    fn needed_by(&mut self, lit: usize) -> &mut [bool] {
+        &mut self.needed[lit * self.size..][..self.size]
+    }
+
+    /// The share of the light of a point that arrives at a lit point; it is known.
+    #[inline(always)]
+    fn color(&self, area: &AreaLight, lit: usize, point: GridPoint) -> Color {
+        self.visible[lit * self.size + point.number(area)]
     }
 
     /// The colours of the corners of a cell, as a lit point sees them; they are known.
@@ -177,6 +187,35 @@ impl Grids {
     }
 }
 
+/// What every lit point needs at first.
+#[derive(Debug, Default)]
+struct FirstRound {
+    /// The parts of the grid.
+    cells: Vec<Cell>,
+    /// Their corners, each once.
+    points: Vec<GridPoint>,
+    /// Which points of the grid these are.
+    needed: Vec<bool>,
+}
+
+impl FirstRound {
+    fn find(&mut self, area: &AreaLight) {
+        self.cells.clear();
+        self.points.clear();
+        self.needed.clear();
+        self.needed
+            .resize(area.size_1 as usize * area.size_2 as usize, false);
+        Cell::whole(area).parts(area, &mut |cell| {
+            self.cells.push(cell);
+            for point in cell.corners() {
+                if !std::mem::replace(&mut self.needed[point.number(area)], true) {
+                    self.points.push(point);
+                }
+            }
+        });
+    }
+}
+
 /// A point of the grid that a lit point needs.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Wanted {
@@ -195,13 +234,13 @@ pub(crate) struct Part {
 /// The working memory of area lights.
 #[derive(Debug, Default)]
 pub(crate) struct AreaMemory {
+    first: FirstRound,
     grids: Grids,
     /// The parts of this round, and of the next one.
     parts: Vec<Part>,
     next: Vec<Part>,
     /// The points of this round.
     wanted: Vec<Wanted>,
-    in_turn: Vec<Wanted>,
 }
 
 /// Whether the corners of a cell differ so much that it is divided.
@@ -242,7 +281,7 @@ impl<'s> TreeTracer<'s> {
                 }
             }));
             let mut memory = std::mem::take(&mut self.area_memory);
-            memory.grids.clear(few.len(), size);
+            memory.grids.make(few.len(), size);
             self.area_rays(&queries, &mut memory, few, observer);
             self.area_memory = memory;
             if area.illumination {
@@ -267,42 +306,46 @@ impl<'s> TreeTracer<'s> {
         observer: &mut O,
     ) {
         let AreaMemory {
+            first,
             grids,
             parts,
             next,
             wanted,
-            in_turn,
         } = memory;
         let Some(area) = queries.first().map(|query| query.area) else {
             return;
         };
+        first.find(area);
+        let is_lit = |one: &Arriving| !one.sample.range.is_empty();
+        wanted.clear();
+        for &point in &first.points {
+            let lit = (0..).zip(&*arriving).filter(|(_, one)| is_lit(one));
+            wanted.extend(lit.map(|(lit, _)| Wanted { lit, point }));
+        }
+        for few in wanted.chunks(PACKET) {
+            self.area_packet(queries, few, grids, observer);
+        }
+        // Where the same arrives from all of these points, as from most lights, nothing is left to do.
         parts.clear();
-        for (lit, one) in (0..).zip(&*arriving) {
-            if !one.sample.range.is_empty() {
-                Cell::whole(area).parts(area, &mut |cell| parts.push(Part { lit, cell }));
+        let mut mixed = ArrayVec::<usize, PACKET>::new();
+        for (lit, one) in arriving.iter_mut().enumerate() {
+            if !is_lit(one) {
+                continue;
+            }
+            one.shadow_rays = first.points.len() as u32;
+            let mut colors = first.points.iter().map(|p| grids.color(area, lit, *p));
+            one.visible = colors.next().unwrap_or(Color::BLACK);
+            if colors.any(|color| color != one.visible) {
+                mixed.push(lit);
+                grids.needed_by(lit).copy_from_slice(&first.needed);
+                let part = |&cell| Part {
+                    lit: lit as u32,
+                    cell,
+                };
+                parts.extend(first.cells.iter().map(part));
             }
         }
-        let mut is_first = true;
         while !parts.is_empty() {
-            wanted.clear();
-            for Part { lit, cell } in &*parts {
-                let needed = &mut grids.needed[*lit as usize * grids.size..][..grids.size];
-                for point in cell.corners() {
-                    let index = point.number(area);
-                    if !std::mem::replace(&mut needed[index], true) {
-                        arriving[*lit as usize].shadow_rays += 1;
-                        wanted.push(Wanted { lit: *lit, point });
-                    }
-                }
-            }
-            // At first all lit points need the same points of the grid.
-            if is_first && queries.len() > 1 {
-                turned(wanted, in_turn);
-            }
-            is_first = false;
-            for few in wanted.chunks(PACKET) {
-                self.area_packet(queries, few, grids, observer);
-            }
             next.clear();
             for Part { lit, cell } in &*parts {
                 if let Some(quarters) = cell.quarters()
@@ -312,11 +355,22 @@ impl<'s> TreeTracer<'s> {
                 }
             }
             std::mem::swap(parts, next);
-        }
-        for (lit, one) in arriving.iter_mut().enumerate() {
-            if !one.sample.range.is_empty() {
-                one.visible = grids.mean_of(area, lit, Cell::whole(area));
+            wanted.clear();
+            for Part { lit, cell } in &*parts {
+                let needed = grids.needed_by(*lit as usize);
+                for point in cell.corners() {
+                    if !std::mem::replace(&mut needed[point.number(area)], true) {
+                        arriving[*lit as usize].shadow_rays += 1;
+                        wanted.push(Wanted { lit: *lit, point });
+                    }
+                }
             }
+            for few in wanted.chunks(PACKET) {
+                self.area_packet(queries, few, grids, observer);
+            }
+        }
+        for lit in mixed {
+            arriving[lit].visible = grids.mean_of(area, lit, Cell::whole(area));
         }
     }
 
@@ -393,16 +447,6 @@ impl<'s> TreeTracer<'s> {
         let count = f64::from(query.area.size_1) * f64::from(query.area.size_2);
         (diffuse / count, specular / count)
     }
-}
-
-/// Orders points that several lit points need, all of them the same ones, by the points of the grid.
-fn turned(wanted: &mut Vec<Wanted>, in_turn: &mut Vec<Wanted>) {
-    let each = wanted.iter().take_while(|w| w.lit == wanted[0].lit).count();
-    in_turn.clear();
-    for number in 0..each {
-        in_turn.extend(wanted.iter().skip(number).step_by(each));
-    }
-    std::mem::swap(wanted, in_turn);
 }
 
 #[cfg(test)]
