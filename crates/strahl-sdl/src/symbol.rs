@@ -109,10 +109,7 @@ impl Symbols {
         let name = text.get(..length).unwrap_or(text);
         let mask = self.table.len() - 1;
         let mut slot = hash(head, name) as usize & mask;
-        loop {
-            let Some(index) = self.table[slot].checked_sub(1) else {
-                break;
-            };
+        while let Some(index) = self.table[slot].checked_sub(1) {
             let known = self.names[index as usize];
             let symbol = Symbol(index);
             if known.head == head

@@ -46,7 +46,7 @@ fn shown(parsed: &Parsed, alpha: bool) -> Vec<Vec<u8>> {
     options.threads = 1;
     options.alpha = alpha;
     let film = render(&scene, &options, &()).expect("a picture").film;
-    let code = |c: f32| srgb::encode_u8(f64::from(c).clamp(0.0, 1.0));
+    let code = |c: f32| srgb::encode_u8(c.clamp(0.0, 1.0));
     let colors = film.pixels.iter().enumerate();
     colors
         .map(|(at, color)| match &film.alpha {
