@@ -138,7 +138,7 @@ impl AreaQuery<'_> {
 struct Grids {
     /// The points of a grid.
     size: usize,
-    /// Whether a point is needed, of the lit points to which different things arrive.
+    /// Which points are needed, for the lit points that receive different light from the first ones.
     needed: Vec<bool>,
     /// The share of the light of a needed point that arrives, once its shadow ray is traced.
     visible: Vec<Color>,
@@ -325,7 +325,7 @@ impl<'s> TreeTracer<'s> {
         for few in wanted.chunks(PACKET) {
             self.area_packet(queries, few, grids, observer);
         }
-        // Where the same arrives from all of these points, as from most lights, nothing is left to do.
+        // Most lit points receive the same from all of these points of the grid, and then they need no others.
         parts.clear();
         let mut mixed = ArrayVec::<usize, PACKET>::new();
         for (lit, one) in arriving.iter_mut().enumerate() {

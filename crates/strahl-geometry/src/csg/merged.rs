@@ -1,12 +1,12 @@
-//! Merges of convex solids: what a ray is inside of is one span or several that are apart, so only their ends are looked for, and crossings within
-//! need no list.
+//! Merges of convex solids: a ray is inside of them along one span, or along several that are apart. Only the ends of these spans are visible, so
+//! the crossings within are never listed.
 
 use super::boxes::Slabs;
 use super::leaf::Leaf;
 use super::small::{Query, Small};
 use super::states::MOST;
 use super::timeline::TooClose;
-use crate::primitives::convex::{End, Span};
+use crate::primitives::convex::Span;
 use crate::{PrimHit, SurfaceId};
 use arrayvec::ArrayVec;
 use std::ops::ControlFlow;
@@ -145,8 +145,8 @@ impl Query<'_> {
             if end.t > self.range.max {
                 return Ok(());
             }
-            let (_, number) = spans[index];
-            if self.shows_end(leaves, &end, number, visit).is_break() {
+            let leaf = &leaves[spans[index].1 as usize];
+            if self.shows(leaf, end.t, end.facet, visit).is_break() {
                 return Ok(());
             }
             at = end.t;
@@ -187,28 +187,5 @@ impl Query<'_> {
     #[inline(always)]
     fn could_coincide(&self, a: f64, b: f64) -> bool {
         !((a - b).abs() > self.fusing.gap(a, b)) && a.is_finite() && b.is_finite()
-    }
-
-    /// Visits an end, if it is visible and in the range.
-    #[inline(always)]
-    fn shows_end(
-        &self,
-        leaves: &[Leaf],
-        end: &End,
-        number: u32,
-        visit: &mut impl FnMut(PrimHit) -> ControlFlow<()>,
-    ) -> ControlFlow<()> {
-        let leaf = &leaves[number as usize];
-        if !(leaf.visible && end.t > self.range.min) {
-            return ControlFlow::Continue(());
-        }
-        let surface = SurfaceId {
-            element: leaf.first_element,
-            facet: end.facet,
-        };
-        visit(PrimHit {
-            surface,
-            ..PrimHit::simple(end.t, 0)
-        })
     }
 }

@@ -5,8 +5,8 @@ use super::leaf::Leaf;
 use super::small::{Query, Small};
 use super::states::MOST;
 use super::timeline::TooClose;
+use crate::PrimHit;
 use crate::primitives::convex::{Span, Stay};
-use crate::{PrimHit, SurfaceId};
 use arrayvec::ArrayVec;
 use std::ops::ControlFlow;
 use strahl_math::Interval;
@@ -146,7 +146,10 @@ impl Small {
                 if query.is_double(&end) {
                     return Err(TooClose);
                 }
-                if query.shows(leaves, &end, visit).is_break() {
+                if query
+                    .shows(&leaves[end.leaf as usize], end.t, end.facet, visit)
+                    .is_break()
+                {
                     break;
                 }
             }
@@ -209,7 +212,11 @@ fn visit_around(
         } else {
             inside = inside.saturating_sub(1);
         }
-        if (inside == all) != before && query.shows(leaves, event, visit).is_break() {
+        if (inside == all) != before
+            && query
+                .shows(&leaves[event.leaf as usize], event.t, event.facet, visit)
+                .is_break()
+        {
             break;
         }
     }
@@ -245,27 +252,5 @@ impl Query<'_> {
     #[inline(always)]
     fn reaches(&self, t: f64) -> bool {
         t > self.begin && t <= self.range.max && t.is_finite()
-    }
-
-    /// Visits an end of the intersection, if it is visible and in the range.
-    #[inline(always)]
-    fn shows(
-        &self,
-        leaves: &[Leaf],
-        end: &End,
-        visit: &mut impl FnMut(PrimHit) -> ControlFlow<()>,
-    ) -> ControlFlow<()> {
-        let leaf = &leaves[end.leaf as usize];
-        if !(leaf.visible && end.t > self.range.min) {
-            return ControlFlow::Continue(());
-        }
-        let surface = SurfaceId {
-            element: leaf.first_element,
-            facet: end.facet,
-        };
-        visit(PrimHit {
-            surface,
-            ..PrimHit::simple(end.t, 0)
-        })
     }
 }

@@ -344,6 +344,28 @@ enum Course {
 }
 
 impl Query<'_> {
+    /// Visits a crossing of the surface of the tree on a facet of a leaf, if it is visible and behind the beginning of the range.
+    #[inline(always)]
+    pub(super) fn shows(
+        &self,
+        leaf: &Leaf,
+        t: f64,
+        facet: u32,
+        visit: &mut impl FnMut(PrimHit) -> ControlFlow<()>,
+    ) -> ControlFlow<()> {
+        if !(leaf.visible && t > self.range.min) {
+            return ControlFlow::Continue(());
+        }
+        let surface = SurfaceId {
+            element: leaf.first_element,
+            facet,
+        };
+        visit(PrimHit {
+            surface,
+            ..PrimHit::simple(t, 0)
+        })
+    }
+
     /// Adds the crossings of a leaf that a line crosses at most twice.
     #[inline(always)]
     fn cross(

@@ -94,7 +94,7 @@ pub(super) struct Node {
 }
 
 impl Node {
-    /// Whether it is a leaf, or in it wherever one of its operands is.
+    /// Whether it is a leaf, a union or a merge: whatever is in an operand is in the whole.
     fn only_adds(&self) -> bool {
         !matches!(self.kind, Kind::Operation(Rule::Intersection))
     }
