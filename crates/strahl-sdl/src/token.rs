@@ -108,7 +108,7 @@ impl Kind {
             Self::Unknown => "an invalid character",
             Self::Name => "a name",
             Self::Directive => "a directive",
-            Self::End => "the end",
+            Self::End => "the end of the file",
         }
     }
 }

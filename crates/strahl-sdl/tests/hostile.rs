@@ -28,7 +28,7 @@ fn limited(text: &str, limit: impl FnOnce(&mut Options)) -> String {
 fn unfinished_texts() {
     assert!(errors("#debug \"abc")[0].contains("this string does not end"));
     assert!(errors("sphere { 0, 1 } /* /* */")[0].contains("this comment does not end"));
-    assert!(errors("sphere { 0, 1")[0].contains("found the end"));
+    assert!(errors("sphere { 0, 1")[0].contains("found the end of the file"));
     assert!(errors("#if (1) sphere { 0, 1 }")[0].contains("`#if` has no `#end`"));
     assert!(errors("#macro A() ")[0].contains("`#macro` has no `#end`"));
     assert!(errors("#while (0) sphere { 0, 1 }")[0].contains("`#while` has no `#end`"));
