@@ -233,8 +233,8 @@ struct Edges {
 fn antialiasing(sampling: Sampling) -> Option<(Refinement, u64)> {
     match sampling {
         Sampling::Adaptive(refinement) => {
-            let side = u64::from(refinement.depth);
-            Some((refinement, side * side - 1))
+            let more = sampling.places(1, 0, 0, 0).len();
+            Some((refinement, more as u64))
         }
         Sampling::Recursive(refinement) => {
             // Half of the places of the finest division, as for an edge.
