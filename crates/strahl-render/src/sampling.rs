@@ -5,7 +5,7 @@ mod refinement;
 mod sample;
 
 pub use refinement::Refinement;
-pub(crate) use refinement::{Compared, Few, subdivided};
+pub(crate) use refinement::{Compared, Few, Slopes, subdivided};
 pub(crate) use sample::Sample;
 
 use std::{fmt, str::FromStr};

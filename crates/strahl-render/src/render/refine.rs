@@ -3,7 +3,7 @@
 use super::{Lattice, PixelTracer, RenderError, RenderOptions};
 use crate::camera::PrimaryRays;
 use crate::film::{Region, try_filled};
-use crate::sampling::{Compared, Refinement, Sample, Sampling};
+use crate::sampling::{Compared, Refinement, Sample, Sampling, Slopes};
 use crate::scene::RenderScene;
 use crate::tiles::tiles;
 use arrayvec::ArrayVec;
@@ -53,26 +53,29 @@ impl Lattice {
             rough.fill(true);
             return Ok(rough);
         }
-        let mut shown = Vec::with_capacity(self.samples.len());
-        for few in self.samples.chunks(Compared::FEW) {
-            let color = few[0].color;
-            if few.iter().all(|sample| sample.color == color) {
-                // Neighbours are often equal.
-                let same = Compared::new(color, refinement);
-                shown.resize(shown.len() + few.len(), same);
-            } else {
-                let colors: ArrayVec<Color, { Compared::FEW }> =
-                    few.iter().map(|sample| sample.color).collect();
-                shown.extend(Compared::few(&colors, refinement));
-            }
-        }
+        let slopes = Slopes::new(refinement);
         let width = region.width as usize;
-        for (index, &here) in shown.iter().enumerate() {
+        let mut doubtful = Vec::<[usize; 2]>::new();
+        for (index, here) in self.samples.iter().enumerate() {
             let right = (!(index + 1).is_multiple_of(width)).then_some(index + 1);
             for neighbour in [right, Some(index + width)].into_iter().flatten() {
-                let differs = |there: &Compared| here.differs(*there, refinement);
-                if shown.get(neighbour).is_some_and(differs) {
-                    rough[index] = true;
+                let alike = |there: &Sample| slopes.surely_alike(here.color, there.color);
+                if !self.samples.get(neighbour).is_none_or(alike) {
+                    doubtful.push([index, neighbour]);
+                }
+            }
+        }
+        for few in doubtful.chunks(Compared::FEW / 2) {
+            let colors: ArrayVec<Color, { Compared::FEW }> = few
+                .iter()
+                .flatten()
+                .map(|&index| self.samples[index].color)
+                .collect();
+            let shown = Compared::few(&colors, refinement);
+            let (pairs, _) = shown.as_chunks();
+            for (&[here, neighbour], [a, b]) in few.iter().zip(pairs) {
+                if a.differs(*b, refinement) {
+                    rough[here] = true;
                     rough[neighbour] = true;
                 }
             }

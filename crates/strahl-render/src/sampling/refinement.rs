@@ -107,6 +107,61 @@ impl Compared {
     }
 }
 
+/// How steep the power is by which colours are compared: whether two of them are surely alike is seen without powers.
+///
+/// Between a and b the function x^p grows by at most |a - b| times its largest slope there. For p <= 1 this is the slope at the lesser
+/// of the two.
+pub(crate) struct Slopes {
+    /// The largest slope in each step of numbers: from a quarter of a power of two to the next.
+    steps: ArrayVec<f64, { Self::STEPS }>,
+    /// Colours whose difference has a smaller bound are alike.
+    alike: f64,
+}
+
+impl Slopes {
+    /// From the least number to 2^16 times one.
+    const STEPS: usize = 4 * 32;
+    /// Of the numbers of the first step.
+    const LEAST: f64 = 1.0 / 65536.0;
+
+    pub(crate) fn new(refinement: &Refinement) -> Self {
+        let power = 1.0 / refinement.gamma;
+        let mut steps = ArrayVec::new();
+        if power <= 1.0 {
+            let first = Self::step(Self::LEAST);
+            let edges = (first..).map(|step| f64::from_bits(step << 50));
+            steps.extend(edges.take(Self::STEPS));
+            det::pow_all(&mut steps, power - 1.0);
+            for slope in &mut steps {
+                *slope *= power;
+            }
+        }
+        // Compared numbers are rounded to single precision.
+        let alike = 0.999 * refinement.threshold - 1e-4;
+        Self { steps, alike }
+    }
+
+    /// The number of the step of a positive number.
+    const fn step(v: f64) -> u64 {
+        v.to_bits() >> 50
+    }
+
+    /// Whether two colours surely don't differ. If not, they may or may not.
+    pub(crate) fn surely_alike(&self, a: Color, b: Color) -> bool {
+        let growth = |a: f64, b: f64| {
+            if a == b {
+                return 0.0;
+            }
+            let least = a.min(b);
+            let from_first = || Self::step(least).checked_sub(Self::step(Self::LEAST));
+            let step = (least > 0.0).then(from_first).flatten();
+            let slope = step.and_then(|step| self.steps.get(step as usize));
+            slope.map_or(f64::INFINITY, |slope| slope * (a - b).abs())
+        };
+        growth(a.r, b.r) + growth(a.g, b.g) + growth(a.b, b.b) <= self.alike
+    }
+}
+
 /// The samples of a few places.
 pub(crate) type Few = ArrayVec<Sample, 5>;
 
@@ -205,6 +260,43 @@ mod tests {
         assert!(differ(0.5, 0.7, 2.5) && !differ(0.5, 0.65, 2.5));
         assert!(differ(0.5, 0.61, 1.0) && !differ(0.5, 0.59, 1.0));
         assert!(differ(1.0, 3.0, 2.5) && !differ(-3.0, 0.0, 2.5));
+    }
+
+    /// Colours that are surely alike don't differ, and most that don't differ are surely alike.
+    #[test]
+    fn slopes_bound_differences() {
+        let mut state = 1_u64;
+        let mut number = || {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1);
+            (state >> 40) as f64 / f64::from(1 << 24)
+        };
+        for (gamma, threshold) in [(2.5, 0.3), (2.5, 0.01), (1.0, 0.3), (0.5, 0.3), (4.0, 2.0)] {
+            let r = Refinement {
+                threshold,
+                gamma,
+                ..Refinement::DEFAULT
+            };
+            let slopes = Slopes::new(&r);
+            let (mut alike, mut surely) = (0, 0);
+            for _ in 0..20_000 {
+                let scale = det::pow(2.0, 40.0 * number() - 22.0);
+                let near = det::pow(2.0, -12.0 * number());
+                let [a, c, d]: [f64; 3] = std::array::from_fn(|_| scale * (number() - 0.01));
+                let a = Color::new(a, c, d);
+                let b = a + Color::new(number(), number(), number()) * (scale * near);
+                let differ = Compared::new(a, &r).differs(Compared::new(b, &r), &r);
+                assert!(!(slopes.surely_alike(a, b) && differ), "{a:?} {b:?}");
+                alike += u32::from(!differ);
+                surely += u32::from(slopes.surely_alike(a, b));
+                assert!(slopes.surely_alike(a, a));
+            }
+            assert!(
+                gamma < 1.0 || surely > alike / 4,
+                "{gamma}: {surely} of {alike}"
+            );
+        }
     }
 
     /// POV-Ray's second method takes five rays more in a pixel with an edge for `+R2`, fourteen for `+R3`.
