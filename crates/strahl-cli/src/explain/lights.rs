@@ -2,8 +2,7 @@
 
 use super::names::{light_at, object_at};
 use super::page::Page;
-use super::terms::INNER;
-use super::text::{RAY, Writer};
+use super::writer::{INNER, RAY, Writer};
 use strahl::math::DVec3;
 use strahl::shade::{Color, ShadingModel};
 use strahl::tracing::{HitReport, LayerReport, LightReport, Shading, ShadowReport, SurfaceTerm};

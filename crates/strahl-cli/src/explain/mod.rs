@@ -10,6 +10,7 @@ mod summary;
 mod tally;
 mod terms;
 mod text;
+mod writer;
 
 pub(crate) use digits::Digits;
 pub(crate) use dot::dot;

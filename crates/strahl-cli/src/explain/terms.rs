@@ -2,13 +2,10 @@
 
 use super::page::Page;
 use super::tally::plural;
-use super::text::{RAY, Writer};
+use super::writer::{INNER, RAY, Writer};
 use strahl::shade::pov_finish::PovFinish;
 use strahl::shade::{Color, ShadingModel};
 use strahl::tracing::{HitReport, LayerReport, Shading};
-
-/// Indentation of the lines of a light or a layer.
-pub(super) const INNER: usize = RAY + 2;
 
 /// Writes the model and its coefficients, ambient light and emission.
 pub(super) fn write_shading(w: &Writer<'_>, page: &mut Page, hit: &HitReport) {

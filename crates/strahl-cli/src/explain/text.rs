@@ -4,6 +4,7 @@ use super::page::Page;
 use super::summary::{write_outline, write_pixel, write_samples};
 use super::tally::Tally;
 use super::terms::write_shading;
+use super::writer::{RAY, Writer};
 use super::{Chosen, Digits, Pixel, Shown};
 use strahl::math::det;
 use strahl::shade::Color;
@@ -92,15 +93,6 @@ fn write_sample(page: &mut Page, scene: &RenderScene, sample: &PixelSample, show
         );
     }
 }
-
-/// Writes the paragraph of each ray.
-pub(super) struct Writer<'s> {
-    pub(super) scene: &'s RenderScene,
-    pub(super) digits: Digits,
-}
-
-/// Indentation of the lines of a ray.
-pub(super) const RAY: usize = 2;
 
 impl Writer<'_> {
     fn node(&self, page: &mut Page, tree: &RayTree, node: &RayNode) {

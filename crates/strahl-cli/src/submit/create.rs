@@ -1,9 +1,9 @@
 //! Makes job folders.
 
-use super::args::PartArgs;
 use super::status::duration;
 use super::word;
 use crate::animation::Animation;
+use crate::args::submit::PartArgs;
 use crate::args::{Cli, RenderArgs};
 use crate::input::{Input, Moment, render_options, threads};
 use crate::report::{Failure, Reporter};

@@ -1,8 +1,8 @@
 //! Hands jobs to Slurm and to Open Job Description.
 
-use super::args::{OpenjdArgs, SlurmArgs};
 use super::create::{Created, create};
 use super::word;
+use crate::args::submit::{OpenjdArgs, SlurmArgs};
 use crate::report::{Failure, Reporter};
 use serde::{Deserialize, Serialize};
 use std::ffi::OsString;

@@ -1,7 +1,7 @@
 //! `strahl submit merge`: makes the pictures of a job.
 
-use super::args::MergeJobArgs;
 use super::{open, word};
+use crate::args::submit::MergeJobArgs;
 use crate::args::{Cli, Command as Parsed};
 use crate::output::say;
 use crate::report::Failure;

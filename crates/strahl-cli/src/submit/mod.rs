@@ -1,6 +1,5 @@
 //! `strahl submit`: pictures and films for clusters and render farms.
 
-mod args;
 mod create;
 mod engine;
 mod merge;
@@ -8,8 +7,7 @@ mod resume;
 mod status;
 mod task;
 
-pub(crate) use args::SubmitCommand;
-
+use crate::args::submit::SubmitCommand;
 use crate::report::Failure;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};

@@ -1,9 +1,9 @@
 //! `strahl submit resume`: submits what is missing.
 
-use super::args::ResumeArgs;
 use super::engine::{SLURM_JOB, SlurmJob, line, openjd_line, submit_slurm};
 use super::status::states;
 use super::{open, word};
+use crate::args::submit::ResumeArgs;
 use crate::output::say;
 use crate::report::Failure;
 use std::collections::BTreeSet;

@@ -1,8 +1,8 @@
 //! `strahl submit status`: how far a job is.
 
-use super::args::StatusArgs;
 use super::merge::{OUTCOME, Outcome};
 use super::{open, word};
+use crate::args::submit::StatusArgs;
 use crate::output::say;
 use crate::report::Failure;
 use serde::Serialize;

@@ -1,7 +1,7 @@
 //! `strahl submit task`: renders parts of a job.
 
-use super::args::TaskArgs;
 use super::open;
+use crate::args::submit::TaskArgs;
 use crate::args::{Cli, Command};
 use crate::input::Kept;
 use crate::output::say;

@@ -1,5 +1,5 @@
+use super::axes::other_axes;
 use super::inside_map::InsideMap;
-use super::polygon::other_axes;
 use strahl_math::DVec3;
 
 /// The edges of a polygon projected on its principal plane, in a hierarchy of boxes around runs of edges that follow each other.

@@ -3,6 +3,7 @@
 //! All of them decide hits in the ray's own projection ([`RayShear`]), where a corner that several pieces share has one and the
 //! same image. No ray slips through between two pieces.
 
+mod axes;
 mod brep;
 #[cfg(test)]
 mod brep_tests;

@@ -1,3 +1,4 @@
+use super::axes::{largest_axis, other_axes};
 use super::edge_runs::EdgeRuns;
 use super::shear::RayShear;
 use crate::{GeometryError, PrimHit, Primitive, Scratch, Shape, SurfaceId, SurfacePoint};
@@ -472,21 +473,4 @@ fn texture_corner(ring: &[DVec3]) -> u32 {
 fn l1(v: DVec3) -> f64 {
     let v = v.abs();
     v.x + v.y + v.z
-}
-
-/// The axis along which a vector is longest.
-pub(super) fn largest_axis(v: DVec3) -> usize {
-    let v = v.abs();
-    if v.x >= v.y && v.x >= v.z {
-        0
-    } else if v.y >= v.z {
-        1
-    } else {
-        2
-    }
-}
-
-/// The two axes after `axis`, in cyclic order.
-pub(super) const fn other_axes(axis: usize) -> (usize, usize) {
-    ((axis + 1) % 3, (axis + 2) % 3)
 }

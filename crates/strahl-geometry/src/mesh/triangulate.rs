@@ -1,5 +1,5 @@
 use super::Polygon;
-use super::polygon::{largest_axis, other_axes};
+use super::axes::{largest_axis, other_axes};
 use std::collections::{BTreeMap, HashMap};
 
 /// Splits a polygon into triangles that cover it once: indices into [`Polygon::corners`], counter-clockwise as seen from the

@@ -1,6 +1,6 @@
 //! The command lines of `strahl submit`.
 
-use crate::args::RenderArgs;
+use super::render::RenderArgs;
 use crate::later::Later;
 use clap::{Args, Subcommand};
 use std::path::PathBuf;
