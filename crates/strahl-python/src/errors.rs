@@ -1,6 +1,5 @@
 //! Exceptions and warnings, whose classes are in `strahl._errors`.
 
-use crate::work;
 use pyo3::exceptions::{PyOSError, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -41,7 +40,19 @@ pub(crate) fn internal(py: Python<'_>, text: &str) -> PyErr {
 
 /// The exception for a panic.
 pub(crate) fn of_panic(py: Python<'_>, payload: &(dyn Any + Send)) -> PyErr {
-    internal(py, work::text_of(payload))
+    internal(py, text_of(payload))
+}
+
+/// The text of a panic.
+fn text_of(payload: &(dyn Any + Send)) -> &str {
+    match (
+        payload.downcast_ref::<&str>(),
+        payload.downcast_ref::<String>(),
+    ) {
+        (Some(text), _) => text,
+        (None, Some(text)) => text,
+        (None, None) => "a panic without a text",
+    }
 }
 
 /// The exception with all diagnostics of a scene.

@@ -1,8 +1,8 @@
 //! What many rays have hit, as arrays.
 
+use crate::asked::Asked;
 use crate::convert::{self, number};
 use crate::found::Found;
-use crate::queries::Asked;
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::prelude::*;
 use std::sync::OnceLock;

@@ -4,6 +4,7 @@
 //! here. Nothing here holds Python's lock while it computes (`work`).
 
 mod air;
+mod asked;
 mod cameras;
 mod convert;
 mod errors;

@@ -1,5 +1,6 @@
 //! Questions about many rays and points at once.
 
+use crate::asked::Asked;
 use crate::convert::{contiguous, vectors};
 use crate::found::Found;
 use crate::hits::Hits;
@@ -8,21 +9,14 @@ use crate::{convert, errors};
 use numpy::{PyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use rayon::prelude::*;
-use std::sync::Arc;
-use strahl::prelude::{DVec3, Interval, Ray, RenderScene};
-use strahl::tracing::{Searcher, Session};
+use strahl::prelude::{DVec3, Interval, Ray};
+use strahl::tracing::Searcher;
 
 /// Rays between looks at the stop: with their hits they fit into the nearest cache. So few are answered without a further thread.
 const PART: usize = 64;
 
 /// Parts that a thread takes at once.
 const PARTS: usize = 16;
-
-/// A scene, and the threads that answer questions about it.
-pub(crate) struct Asked {
-    pub(crate) scene: Arc<RenderScene>,
-    pub(crate) session: Session,
-}
 
 /// Rays in arrays of the caller: a row for each, or one row for all.
 pub(crate) struct Rays<'a> {

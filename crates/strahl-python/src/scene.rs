@@ -1,6 +1,7 @@
 //! Scenes: a description that can grow, and what is compiled from it.
 
 use crate::air::{Fog, Rainbow};
+use crate::asked::Asked;
 use crate::cameras::Camera;
 use crate::convert::{Triple, color};
 use crate::film::Film;
@@ -8,7 +9,7 @@ use crate::hits::Hits;
 use crate::lights::Light;
 use crate::looks::{Background, Material};
 use crate::object::{Object, Renumbering, adopt};
-use crate::queries::{Asked, Rays};
+use crate::queries::Rays;
 use crate::settings::{DEFAULT_SIZE, OutputNumbers, ViewNumbers};
 use crate::textures::Pattern;
 use crate::{errors, sessions, work};

@@ -124,18 +124,6 @@ fn wait<T: Send>(
     }
 }
 
-/// The text of a panic.
-pub(crate) fn text_of(payload: &(dyn Any + Send)) -> &str {
-    match (
-        payload.downcast_ref::<&str>(),
-        payload.downcast_ref::<String>(),
-    ) {
-        (Some(text), _) => text,
-        (None, Some(text)) => text,
-        (None, None) => "a panic without a text",
-    }
-}
-
 /// Panics as a bug in strahl would: tests look at what Python gets to see.
 #[pyfunction]
 pub(crate) fn panic_for_tests(py: Python<'_>) -> PyResult<()> {
