@@ -2,8 +2,10 @@
 
 use super::border::Border;
 use super::degree;
+use super::frame::Frame;
 use super::net::Net;
-use super::search::{Aim, Candidate, Frame, Keep, Search};
+use super::newton::Candidate;
+use super::search::{Aim, Keep, Search};
 use super::settle;
 use super::tree::{self, Tree};
 use std::sync::OnceLock;

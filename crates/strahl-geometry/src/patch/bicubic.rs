@@ -1,7 +1,8 @@
 use super::bezier::{Bezier, is_on_a_line};
 use super::elements;
+use super::frame::Frame;
 use super::net::Net;
-use super::search::{Candidate, Frame};
+use super::newton::Candidate;
 use super::tree::{points, project};
 use crate::primitives::point_error;
 use crate::{GeometryError, PrimHit, Primitive, Scratch, Shape, SurfaceId, SurfacePoint};

@@ -5,8 +5,9 @@
 //! or collapsed there (F. Stenger, "Computing the topological degree of a mapping in R^n", Numerische Mathematik 25, 1975).
 
 use super::border::winding;
+use super::frame::Frame;
 use super::net::Net;
-use super::search::{Candidate, Frame};
+use super::newton::Candidate;
 use super::tree::{OVERLAP, points, project};
 use strahl_math::error::gamma;
 

@@ -5,8 +5,9 @@
 //! on: this closes in quadratically on a hit, or ends at once where there is none. Windows that don't shrink, since there are two
 //! hits, are halved. As soon as the map is nearly linear over a window, Newton's method takes over.
 
+use super::frame::Frame;
 use super::net::Jet;
-use super::search::{self, Candidate, Frame, Rectangle, Ways, jet, newton};
+use super::newton::{Candidate, Found, Rectangle, Ways, jet, newton};
 use super::tree::{Curving, NEARLY_LINEAR, OVERLAP};
 use arrayvec::ArrayVec;
 use strahl_math::DVec3;
@@ -81,9 +82,9 @@ pub(super) fn search<I: Isa, const K: usize>(
                     start,
                 );
                 let hit = match hit {
-                    search::Found::Nothing => continue,
-                    search::Found::Hit(hit) => hit,
-                    search::Found::Near(_) | search::Found::Lost => return None,
+                    Found::Nothing => continue,
+                    Found::Hit(hit) => hit,
+                    Found::Near(_) | Found::Lost => return None,
                 };
                 if !found.iter().any(|other| other.is_twin(&hit)) {
                     found.try_push(hit).ok()?;

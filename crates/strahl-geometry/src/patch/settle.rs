@@ -1,6 +1,6 @@
 //! Which candidates of a search are hits, where they are doubtful.
 
-use super::search::Candidate;
+use super::newton::Candidate;
 
 /// The hits among all candidates of a line; `winding` is how often the border of the patch winds around it.
 ///

@@ -1,4 +1,4 @@
-use super::search::Frame;
+use super::frame::Frame;
 use super::*;
 use crate::conformance::Random;
 use crate::{GeometryError, PrimHit, Primitive, Scratch, Sphere, Torus};

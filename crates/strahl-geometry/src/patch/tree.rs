@@ -6,8 +6,8 @@
 //! Woop, Benthin, Wald, Johnson, Tabellion, "Exploiting Local Orientation Similarity for Efficient Ray Traversal of Hair and
 //! Fur", High Performance Graphics 2014).
 
+use super::frame::Frame;
 use super::net::Net;
-use super::search::Frame;
 use std::collections::VecDeque;
 use std::sync::OnceLock;
 use strahl_accel::{SixteenBoxes, SixteenSlabs};

@@ -10,7 +10,9 @@ mod trim;
 
 use super::bicubic::LARGEST;
 use super::elements::{self, ElementTree, Elements, Front};
-use super::search::{Candidate, Frame, Keep};
+use super::frame::Frame;
+use super::newton::Candidate;
+use super::search::Keep;
 use super::winding::{Pass, Winding};
 use crate::primitives::point_error;
 use crate::{GeometryError, PrimHit, Primitive, Scratch, Shape, Solid, SurfaceId, SurfacePoint};

@@ -1,7 +1,9 @@
 //! A Bezier patch as a part of a larger surface, whatever its degree.
 
 use crate::patch::bezier::{Bezier, is_on_a_line};
-use crate::patch::search::{Candidate, Frame, Keep};
+use crate::patch::frame::Frame;
+use crate::patch::newton::Candidate;
+use crate::patch::search::Keep;
 use crate::patch::tree::{points, project};
 use std::fmt::Debug;
 use strahl_math::{Aabb, DVec2, DVec3, Interval, Transform};
