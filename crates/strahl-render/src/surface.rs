@@ -1,12 +1,13 @@
 //! The properties of a hit that shading needs, and how the surface divides light.
 
+use crate::branch::Branch;
 use crate::hit::{Hit, Origin};
 use crate::light_sets::Lit;
 use crate::media::{Body, Crossing, MediaArena, MediaStack, Medium};
 use crate::observer::{HitReport, Shading};
+use crate::outcome::FirstHit;
 use crate::resolve::{Resolved, Uv};
 use crate::scene::RenderScene;
-use crate::trace::{Branch, FirstHit};
 use std::borrow::Cow;
 use strahl_math::{DVec3, Ray, error};
 use strahl_shade::{

@@ -14,16 +14,15 @@
 //! with different reflections send a reflection ray each.
 
 mod aim;
+mod area_light;
 #[cfg(test)]
 mod batch_tests;
-mod branch;
 mod detail;
 mod eye;
 mod gather;
 mod lights;
 mod medium;
 mod nothing;
-mod outcome;
 mod path;
 mod point;
 mod settings;
@@ -31,8 +30,6 @@ mod slots;
 mod spawn;
 mod stages;
 
-pub(crate) use branch::Branch;
-use branch::Node;
 use eye::Eye;
 pub(crate) use eye::Filled;
 pub(crate) use lights::{Aim, Arriving};
@@ -41,11 +38,12 @@ pub(crate) use point::Point;
 use slots::Slots;
 pub(crate) use stages::FEW;
 
-pub use outcome::{FirstHit, RayCounts, SampleResult};
+pub use crate::outcome::{FirstHit, RayCounts, SampleResult};
 pub use settings::TraceSettings;
 
 use crate::activity::Phase;
 use crate::area::AreaMemory;
+use crate::branch::{Branch, Node};
 use crate::hit::Hit;
 use crate::layers::{KnownPaints, Mirror, Passage};
 use crate::media::{MediaArena, MediaStack};

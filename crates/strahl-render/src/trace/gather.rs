@@ -1,8 +1,8 @@
 //! The stage of gathered light.
 
 use super::TreeTracer;
-use super::branch::Offshoot;
 use super::point::{Lanes, Point};
+use crate::branch::Offshoot;
 use crate::observer::{GatherTerm, RayKind, Share, TraceObserver};
 use crate::transport::{Gathered, Probe, SurfaceSample, Transport};
 use strahl_shade::Color;

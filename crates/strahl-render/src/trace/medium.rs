@@ -1,8 +1,8 @@
 //! The medium that a method of light transport integrates along rays.
 
 use super::TreeTracer;
-use super::branch::Branch;
 use super::point::Point;
+use crate::branch::Branch;
 use crate::observer::RayKind;
 use crate::transport::{MediumPath, MediumRay, MediumTerm};
 use strahl_math::Ray;

@@ -1,8 +1,8 @@
 //! Paths of rays outside of trees, surface by surface.
 
 use super::TreeTracer;
-use super::branch::Branch;
 use super::point::Point;
+use crate::branch::Branch;
 use crate::hit::RayClass;
 use crate::layers;
 use crate::resolve::Uv;

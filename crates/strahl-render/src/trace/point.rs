@@ -1,6 +1,6 @@
 //! What goes through the stages.
 
-use super::branch::Branch;
+use crate::branch::Branch;
 use crate::hit::Hit;
 use crate::surface::Surface;
 use arrayvec::ArrayVec;

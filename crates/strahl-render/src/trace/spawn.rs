@@ -1,8 +1,8 @@
 //! The branches of a hit: the last stage.
 
-use super::branch::Offshoot;
 use super::point::{Lanes, Point};
 use super::{Branch, TreeTracer};
+use crate::branch::Offshoot;
 use crate::hit::RayClass;
 use crate::layers::{self, Mirror, Passage};
 use crate::observer::{BranchEnd, RayKind, Share, TraceObserver};

@@ -28,7 +28,7 @@ pub(crate) struct Branch {
 
 impl Branch {
     /// A place for a ray.
-    pub(super) const NONE: Self = Self {
+    pub(crate) const NONE: Self = Self {
         ray: Ray {
             origin: DVec3::ZERO,
             direction: DVec3::ZERO,
@@ -46,7 +46,7 @@ impl Branch {
     };
 
     /// The root of a tree, in the media the eye is in; `number` tells the trees of a packet apart.
-    pub(super) fn primary(ray: &Ray, number: u32, eye: MediaStack) -> Self {
+    pub(crate) fn primary(ray: &Ray, number: u32, eye: MediaStack) -> Self {
         let mut branch = Self::NONE;
         branch.begin(ray, number, eye);
         branch
@@ -55,7 +55,7 @@ impl Branch {
     /// Makes it [the root of a tree](Branch::primary).
     // In place: a branch has more than 200 bytes, and would be put together elsewhere and copied.
     #[inline(always)]
-    pub(super) fn begin(&mut self, primary: &Ray, number: u32, eye: MediaStack) {
+    pub(crate) fn begin(&mut self, primary: &Ray, number: u32, eye: MediaStack) {
         let none = Self::NONE;
         let Self {
             ray,
@@ -80,24 +80,24 @@ impl Branch {
 }
 
 /// A branch: a ray sent by a hit.
-pub(super) struct Offshoot {
-    pub(super) kind: RayKind,
+pub(crate) struct Offshoot {
+    pub(crate) kind: RayKind,
     /// How much it contributes to the hit.
-    pub(super) share: Share,
+    pub(crate) share: Share,
     /// The factor of the weight.
-    pub(super) coefficient: f64,
-    pub(super) direction: DVec3,
-    pub(super) part: SpectralPart,
+    pub(crate) coefficient: f64,
+    pub(crate) direction: DVec3,
+    pub(crate) part: SpectralPart,
     /// Whether it stands for a part of the spectrum while the hit's ray stands for all of it.
-    pub(super) divided: bool,
+    pub(crate) divided: bool,
     /// Whether it stays on its side of the surface although it is no reflection ray: a part of the spectrum that is totally
     /// reflected where the rest is refracted.
-    pub(super) returned: bool,
+    pub(crate) returned: bool,
 }
 
 impl Offshoot {
     #[inline]
-    pub(super) fn new(kind: RayKind, share: Share, direction: DVec3, part: SpectralPart) -> Self {
+    pub(crate) fn new(kind: RayKind, share: Share, direction: DVec3, part: SpectralPart) -> Self {
         Self {
             kind,
             share,
@@ -112,25 +112,25 @@ impl Offshoot {
 
 /// A ray that was traced and waits for its branches.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Node {
-    pub(super) parent: u32,
-    pub(super) kind: RayKind,
+pub(crate) struct Node {
+    pub(crate) parent: u32,
+    pub(crate) kind: RayKind,
     /// The hit's own contribution, or the background.
-    pub(super) local: Color,
+    pub(crate) local: Color,
     /// How much it contributes to its parent.
-    pub(super) share: Share,
+    pub(crate) share: Share,
     /// The contributions of its branches.
-    pub(super) reflected: Color,
-    pub(super) transmitted: Color,
+    pub(crate) reflected: Color,
+    pub(crate) transmitted: Color,
     /// The attenuation by the medium in front of the hit.
-    pub(super) attenuation: Color,
+    pub(crate) attenuation: Color,
     /// The light that fog and rainbows in front of the hit add.
-    pub(super) fog: Color,
+    pub(crate) fog: Color,
 }
 
 impl Node {
     /// A place for a node.
-    pub(super) const NONE: Self = Self {
+    pub(crate) const NONE: Self = Self {
         parent: 0,
         kind: RayKind::Primary,
         local: Color::BLACK,

@@ -44,7 +44,7 @@ impl RayCounts {
             + self.gather_hit
     }
 
-    pub(super) fn count(&mut self, kind: RayKind, hit: bool) {
+    pub(crate) fn count(&mut self, kind: RayKind, hit: bool) {
         let (rays, hits) = match kind {
             RayKind::Primary => (&mut self.primary, &mut self.primary_hit),
             RayKind::Reflection => (&mut self.reflection, &mut self.reflection_hit),
