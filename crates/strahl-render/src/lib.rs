@@ -75,12 +75,12 @@ pub use observer::{
 pub use profile::{Part as ProfilePart, Profile, ProfileReport};
 pub use queries::{HitInfo, HitSurface};
 pub use query::{Tracer, WalkEvent};
-pub use render::{Pass, PixelState, Progress, RenderError, RenderOptions, Rendered, render};
+pub use render::{PixelState, Progress, RenderError, RenderOptions, Rendered, render};
 pub use sampling::{Refinement, Sampling, UnknownSampling};
 pub use scene::{RenderScene, SceneStats};
 pub use searcher::Searcher;
 pub use session::{Outcome, Session, Threads, Unfinished};
-pub use sink::{Sink, Tile};
+pub use sink::{Pass, Sink, Tile};
 pub use strahl_accel::PACKET;
 pub use tiles::TileOrder;
 pub use trace::{RayCounts, SampleResult, TraceSettings};

@@ -7,7 +7,6 @@ mod work;
 
 pub(crate) use crew::Crew;
 pub(crate) use pixels::Seen;
-pub use plan::Pass;
 pub(crate) use probe::{PixelProbe, probe_rows};
 pub(crate) use refine::is_refined;
 pub use work::PixelState;

@@ -1,9 +1,9 @@
 use crate::compile::{CompileOptions, Prepared};
 use crate::explanation::Explanation;
 use crate::film::Film;
-use crate::render::{Crew, Pass, PixelState, Progress, RenderError, Rendered, Work};
+use crate::render::{Crew, PixelState, Progress, RenderError, Rendered, Work};
 use crate::scene::RenderScene;
-use crate::sink::Sink;
+use crate::sink::{Pass, Sink};
 use crate::trace::RayCounts;
 use crate::tree::{PixelTree, explain_from};
 use crate::view::{Output, View};

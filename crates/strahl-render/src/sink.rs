@@ -1,6 +1,18 @@
 use crate::film::Film;
-use crate::render::Pass;
 use std::ops::ControlFlow;
+
+/// A pass over the picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Pass {
+    /// Its number, from 0.
+    pub number: u32,
+    /// How many passes the picture takes.
+    pub of: u32,
+    /// Side of the blocks of pixels that show one sample, in pixels; 1 is the full resolution.
+    pub step: u32,
+    /// Whether it takes more samples of pixels that are shown already: antialiasing.
+    pub refines: bool,
+}
 
 /// Receives a picture part by part while it is made. All calls come from the thread that renders, one after the other, so a sink
 /// may own and borrow what it likes.

@@ -1,11 +1,11 @@
 //! All threads trace the tiles of a pass, and the thread that asked for the picture hands finished parts to a sink.
 
-use super::{Pass, PixelTracer, Progress, RenderOptions, TileResult};
+use super::{PixelTracer, Progress, RenderOptions, TileResult};
 use crate::camera::PrimaryRays;
 use crate::cost::PixelCost;
 use crate::film::{Film, Region};
 use crate::scene::RenderScene;
-use crate::sink::{Sink, Tile};
+use crate::sink::{Pass, Sink, Tile};
 use crate::trace::RayCounts;
 use arrayvec::ArrayVec;
 use std::ops::ControlFlow;

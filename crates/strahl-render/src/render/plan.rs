@@ -3,20 +3,8 @@
 use super::RenderOptions;
 use crate::film::Region;
 use crate::sampling::{Refinement, Sampling};
+use crate::sink::Pass;
 use crate::tiles::TILE;
-
-/// A pass over the picture.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Pass {
-    /// Its number, from 0.
-    pub number: u32,
-    /// How many passes the picture takes.
-    pub of: u32,
-    /// Side of the blocks of pixels that show one sample, in pixels; 1 is the full resolution.
-    pub step: u32,
-    /// Whether it takes more samples of pixels that are shown already: antialiasing.
-    pub refines: bool,
-}
 
 /// What a pass does.
 #[derive(Clone, Copy, Debug, PartialEq)]

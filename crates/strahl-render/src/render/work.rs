@@ -2,13 +2,11 @@
 
 use super::crew::{Canvas, Ended, Part, TileList, Turn};
 use super::plan::{Stage, edge, points};
-use super::{
-    Crew, Lattice, Pass, RenderError, RenderOptions, Rendered, Samples, Shown, mean_of_corners,
-};
+use super::{Crew, Lattice, RenderError, RenderOptions, Rendered, Samples, Shown, mean_of_corners};
 use crate::cost::PixelCost;
 use crate::film::{Film, Region, try_filled};
 use crate::sampling::{Sample, Sampling, subdivided};
-use crate::sink::Sink;
+use crate::sink::{Pass, Sink};
 use crate::tiles::{TILE, tiles, tiles_of};
 use crate::trace::RayCounts;
 use arrayvec::ArrayVec;
