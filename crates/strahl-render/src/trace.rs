@@ -36,7 +36,6 @@ pub(crate) use lights::{Aim, Arriving};
 use point::Lanes;
 pub(crate) use point::Point;
 use slots::Slots;
-pub(crate) use stages::FEW;
 
 pub use crate::outcome::{FirstHit, RayCounts, SampleResult};
 pub use settings::TraceSettings;

@@ -1,7 +1,7 @@
 //! The lengths of the rays of a batch, and the directions from its points to a light, side by side.
 
+use super::point::FEW;
 use super::point::{Lanes, Point};
-use super::stages::FEW;
 use strahl_accel::PACKET;
 use strahl_math::DVec3;
 use strahl_shade::{Light, LightSample};

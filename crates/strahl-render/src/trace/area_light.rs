@@ -3,7 +3,8 @@
 //! Which points of a light's grid are needed shows step by step, because cells are divided whose corners differ. Each round finds out which
 //! points every lit point needs next; their shadow rays go in packets, those to one point of the grid behind each other.
 
-use super::{Aim, Arriving, FEW, Point, TreeTracer};
+use super::point::FEW;
+use super::{Aim, Arriving, Point, TreeTracer};
 use crate::area::{AreaMemory, Cell, GridPoint, Grids, Part, Wanted, differ};
 use crate::observer::TraceObserver;
 use crate::shadow::Shadow;

@@ -2,8 +2,8 @@
 
 use super::TreeTracer;
 use super::aim::{Directions, Places};
+use super::point::FEW;
 use super::point::{Lanes, Point};
-use super::stages::FEW;
 use crate::activity::Phase;
 use crate::hit::Origin;
 use crate::layers;

@@ -14,7 +14,7 @@
 //! A stage does with each ray what it would do with that ray alone, so the number of rays that go together changes no bit.
 
 use super::aim::Speeds;
-use super::point::{Lanes, Point};
+use super::point::{FEW, Lanes, Point};
 use super::{FirstHit, Node, TreeTracer};
 use crate::activity::Phase;
 use crate::hit::{Hit, RayClass};
@@ -25,9 +25,6 @@ use arrayvec::ArrayVec;
 use strahl_accel::PACKET;
 use strahl_math::{Interval, Ray};
 use strahl_shade::Color;
-
-/// Fewer rays, to hits or to a light, are traced one by one.
-pub(crate) const FEW: usize = 3;
 
 impl<'s> TreeTracer<'s> {
     /// Grows the trees of the first `count` rays, `width` rays at a time. Returns `false` if it left off because there are too many of them:
