@@ -33,8 +33,7 @@ mod stages;
 use eye::Eye;
 pub(crate) use eye::Filled;
 pub(crate) use lights::{Aim, Arriving};
-use point::Lanes;
-pub(crate) use point::Point;
+pub(crate) use point::{Lanes, Point};
 use slots::Slots;
 
 pub use crate::outcome::{FirstHit, RayCounts, SampleResult};

@@ -148,12 +148,15 @@ impl PovNormal {
             NormalKind::Height(pattern, slopes) => {
                 let field = self.field(pattern);
                 // The tetrahedron surrounds the displaced point; its corners are not displaced again.
-                let height = |position: DVec3| {
-                    let value = field.value_moved(position, point);
-                    slopes.as_ref().map_or(value, |map| map.height(value))
+                let heights = |corners| {
+                    let values = field.values_moved(corners, point);
+                    match slopes {
+                        None => values,
+                        Some(map) => values.map(|value| map.height(value)),
+                    }
                 };
                 let center = field.moved(transformed);
-                n - tetrahedral_gradient(center, self.accuracy, height) * self.amount
+                n - tetrahedral_gradient(center, self.accuracy, heights) * self.amount
             }
             NormalKind::BumpMap(image) => {
                 (n + image.tilt(moved(), n) * self.amount).normalize_or_zero()
@@ -223,8 +226,9 @@ impl From<PatternField> for PovNormal {
     }
 }
 
-/// `0.1/δ` times the sum over the corners v of a regular tetrahedron of `v f(p + δ v)`: 2/15 of the gradient.
-fn tetrahedral_gradient(p: DVec3, delta: f64, f: impl Fn(DVec3) -> f64) -> DVec3 {
+/// `0.1/δ` times the sum over the corners v of a regular tetrahedron of `v f(p + δ v)`: 2/15 of the gradient. `f` is asked for all four
+/// at once.
+fn tetrahedral_gradient(p: DVec3, delta: f64, f: impl Fn([DVec3; 4]) -> [f64; 4]) -> DVec3 {
     /// Corners at distance 1 from the centre: cosines and sines of the tetrahedral angle.
     const CORNERS: [DVec3; 4] = [
         DVec3::new(0.942_809_041, -0.333_333_333, 0.0),
@@ -233,10 +237,11 @@ fn tetrahedral_gradient(p: DVec3, delta: f64, f: impl Fn(DVec3) -> f64) -> DVec3
         DVec3::new(0.0, 1.0, 0.0),
     ];
     let delta = if delta > 0.0 { delta } else { 0.02 };
-    let sum = CORNERS
-        .iter()
-        .map(|corner| *corner * f(p + *corner * delta))
-        .fold(DVec3::ZERO, |a, b| a + b);
+    let values = f(CORNERS.map(|corner| p + corner * delta));
+    let mut sum = DVec3::ZERO;
+    for (corner, value) in CORNERS.iter().zip(values) {
+        sum += *corner * value;
+    }
     sum * (0.1 / delta)
 }
 

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::ColorFt;
 use crate::image_map::ImageMap;
-use crate::patterns::{Modifiers, PatternField, TexturePoint};
+use crate::patterns::{FractalField, Modifiers, PatternField, TexturePoint};
 use strahl_math::DVec3;
 
 /// Entries at positions in `0..=1`, between which a value is looked up: the common part of all maps.
@@ -53,6 +53,17 @@ impl<T> BlendMap<T> {
         } else {
             Blend::Two(low, high, t)
         })
+    }
+}
+
+impl BlendMap<ColorFt> {
+    /// The colour for `value`.
+    fn color(&self, value: f64) -> ColorFt {
+        match self.lookup(value) {
+            None => ColorFt::default(),
+            Some(Blend::One(color)) => *color,
+            Some(Blend::Two(low, high, t)) => low.lerp(*high, t),
+        }
     }
 }
 
@@ -110,11 +121,7 @@ impl Pigment {
     pub fn color_at(&self, point: &TexturePoint) -> ColorFt {
         match self {
             Self::Solid(color, _) => *color,
-            Self::ColorMap(field, map) => match map.lookup(field.value(point)) {
-                None => ColorFt::default(),
-                Some(Blend::One(color)) => *color,
-                Some(Blend::Two(low, high, t)) => low.lerp(*high, t),
-            },
+            Self::ColorMap(field, map) => map.color(field.value(point)),
             Self::PigmentMap(field, map) => {
                 let (value, place) = field.value_and_place(point);
                 let color = |pigment: &Self| pigment.color_moved(point, place);
@@ -148,6 +155,22 @@ impl Pigment {
                 }
             }
             Self::UvMapped(pigment) => pigment.color_at(&point.on_surface_but_normals()),
+        }
+    }
+
+    /// The fractal that selects the colours, with its modifiers, if one does.
+    pub(crate) fn fractal(&self) -> Option<FractalField<'_>> {
+        match self {
+            Self::ColorMap(field, _) => field.fractal(),
+            _ => None,
+        }
+    }
+
+    /// The colour where that fractal has this value, of which the modifiers have not made another one yet.
+    pub(crate) fn color_by_fractal(&self, raw: f64) -> ColorFt {
+        match self {
+            Self::ColorMap(field, map) => map.color(field.value_of_raw(raw)),
+            _ => ColorFt::default(),
         }
     }
 

@@ -12,7 +12,7 @@ use strahl_math::{DVec3, Transform};
 use crate::image_map::ImageMap;
 use crate::interior::Interior;
 use crate::normal::PovNormal;
-use crate::patterns::{Modifiers, PatternField, TexturePoint};
+use crate::patterns::{FractalField, Modifiers, PatternField, TexturePoint};
 use crate::pigment::{Blend, BlendMap, Pigment};
 use crate::pov_finish::PovFinish;
 use crate::{Color, ColorFt};
@@ -142,6 +142,15 @@ impl Texture {
         out.end_stack(0, &stack);
         out.end(&stack, texture.finish.refraction);
         true
+    }
+
+    /// The fractal that selects the colours of a texture of one layer, if one does. Whoever knows its value at the point of
+    /// [`Texture::layers_in`] can store it in [`TexturePaint::fractal`].
+    pub fn fractal(&self) -> Option<FractalField<'_>> {
+        match self {
+            Self::Plain(texture) => texture.pigment.fractal(),
+            _ => None,
+        }
     }
 
     /// Whether the layers at all points are the same but for the normals, which are those of the surface: one colour, no normal of its own, no
@@ -436,7 +445,9 @@ impl PlainTexture {
         if let Some((outer, in_map)) = self.tilt(point, n, ways) {
             (normal, stack.seen) = (outer, in_map);
         }
-        let color = if stack.seen == point.n_shade {
+        let color = if let Some(raw) = out.fractal.take() {
+            self.pigment.color_by_fractal(raw)
+        } else if stack.seen == point.n_shade {
             self.pigment.color_at(point)
         } else {
             self.pigment.color_at(&TexturePoint {

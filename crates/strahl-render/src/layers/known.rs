@@ -8,7 +8,11 @@ use strahl_shade::{Color, Finish};
 
 /// The layers of materials that are the same everywhere, by material and side, as one thread has met them.
 #[derive(Debug)]
-pub(crate) struct KnownPaints<'s>(Vec<Known<'s>>);
+pub(crate) struct KnownPaints<'s> {
+    known: Vec<Known<'s>>,
+    /// Whether the colours of some come from fractals.
+    pub(super) has_fractals: bool,
+}
 
 /// What is known of the layers of a material.
 #[derive(Debug)]
@@ -67,12 +71,18 @@ impl<'s> KnownPaints<'s> {
         };
         let mut known = Vec::new();
         known.resize_with(count, || Known::Unknown);
-        Self(known)
+        let mut textures = scene.materials[..count / 2]
+            .iter()
+            .flat_map(|material| [material.texture_seen(true), material.texture_seen(false)]);
+        Self {
+            has_fractals: textures.any(|t| t.is_some_and(|t| t.0.fractal().is_some())),
+            known,
+        }
     }
 
     #[inline]
     pub(super) fn of(&mut self, (material, outside): Side) -> Option<&mut Known<'s>> {
-        self.0
+        self.known
             .get_mut(2 * material.0 as usize + usize::from(outside))
     }
 }

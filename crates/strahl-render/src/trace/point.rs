@@ -12,7 +12,7 @@ use strahl_shade::{Color, ShadingModel};
 pub(super) const FEW: usize = 3;
 
 /// The lanes of a batch that a stage has to do with, in order.
-pub(super) type Lanes = ArrayVec<usize, PACKET>;
+pub(crate) type Lanes = ArrayVec<usize, PACKET>;
 
 /// A ray and its hit on their way through the stages.
 #[derive(Debug)]

@@ -198,6 +198,7 @@ impl<'s> TreeTracer<'s> {
         observer: &mut O,
     ) {
         let scene = self.tracer.scene;
+        layers::follow_fractals(scene, points, lanes, &self.paints);
         lanes.retain(|lane| {
             let point = &mut points[*lane];
             self.tracer.slot.enter_for(Phase::Texture, point.hit.id);

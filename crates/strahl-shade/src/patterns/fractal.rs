@@ -1,6 +1,9 @@
-use std::ops::{Add, Div, Mul, Sub};
+mod complex;
+mod together;
 
+use complex::{Complex, Number, OrbitPoint};
 use strahl_math::DVec2;
+use strahl_simd::Simd;
 
 /// Which iteration a fractal pattern runs.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -114,10 +117,7 @@ impl Fractal {
     }
 
     pub(super) fn value(&self, point: DVec2) -> f64 {
-        if let Interior::Constant(value) = self.interior
-            && self.is_mandelbrot()
-            && in_largest_parts(point)
-        {
+        if let Some(value) = self.value_at_once(point) {
             return value;
         }
         let c = self.julia.unwrap_or(point);
@@ -125,85 +125,75 @@ impl Fractal {
         // into one register and out again in each step, and a step takes as long as its chain of operations.
         let (x, y) = (point.x, point.y);
         match self.kind {
-            FractalKind::Power { exponent: 2 } => self.square(x, y, c.x, c.y),
-            FractalKind::Power { exponent } => self.power(exponent, x, y, c.x, c.y),
-            FractalKind::Magnet1 => self.magnet_1(x, y, c.x, c.y),
-            FractalKind::Magnet2 => self.magnet_2(x, y, c.x, c.y),
+            FractalKind::Power { exponent: 2 } => self.follow(Square, x, y, c.x, c.y),
+            FractalKind::Power { exponent } => self.follow(Power(exponent), x, y, c.x, c.y),
+            FractalKind::Magnet1 => self.follow(Magnet1, x, y, c.x, c.y),
+            FractalKind::Magnet2 => self.follow(Magnet2, x, y, c.x, c.y),
         }
     }
 
-    #[inline(never)]
-    fn square(&self, x: f64, y: f64, c_x: f64, c_y: f64) -> f64 {
-        self.follow(Complex::new(x, y), |z| z.square() + Complex::new(c_x, c_y))
+    /// Stores the values at several points.
+    pub(super) fn store_values(&self, points: &[DVec2], values: &mut [f64]) {
+        together::values(Simd::best(), self, points, values);
     }
 
-    #[inline(never)]
-    fn power(&self, exponent: u32, x: f64, y: f64, c_x: f64, c_y: f64) -> f64 {
-        self.follow(Complex::new(x, y), |z| {
-            let mut power = z.number();
-            for _ in 1..exponent {
-                power = power * z.number();
+    /// The value at a point that needs no orbit.
+    #[inline(always)]
+    fn value_at_once(&self, point: DVec2) -> Option<f64> {
+        match self.interior {
+            Interior::Constant(value) if self.is_mandelbrot() && in_largest_parts(point) => {
+                Some(value)
             }
-            power + Complex::new(c_x, c_y)
-        })
-    }
-
-    #[inline(never)]
-    fn magnet_1(&self, x: f64, y: f64, c_x: f64, c_y: f64) -> f64 {
-        let c = Complex::new(c_x, c_y);
-        self.follow(Complex::new(x, y), |z| {
-            let numerator = z.square() + c - Complex::ONE;
-            let denominator = z.number() * 2.0 + c - Complex::ONE * 2.0;
-            let q = numerator / denominator;
-            q * q
-        })
-    }
-
-    #[inline(never)]
-    fn magnet_2(&self, x: f64, y: f64, c_x: f64, c_y: f64) -> f64 {
-        let c = Complex::new(c_x, c_y);
-        let (c1, c2) = (c - Complex::ONE, c - Complex::ONE * 2.0);
-        let c12 = c1 * c2;
-        self.follow(Complex::new(x, y), |z| {
-            let (z, z2) = (z.number(), z.square());
-            let numerator = z2 * z + c1 * z * 3.0 + c12;
-            let denominator = z2 * 3.0 + c2 * z * 3.0 + c12 + Complex::ONE;
-            let q = numerator / denominator;
-            q * q
-        })
+            _ => None,
+        }
     }
 
     fn is_mandelbrot(&self) -> bool {
         self.julia.is_none() && self.kind == FractalKind::Power { exponent: 2 }
     }
 
-    /// The value at a point, by its orbit under `step`.
+    fn is_magnet(&self) -> bool {
+        !matches!(self.kind, FractalKind::Power { .. })
+    }
+
+    /// The squared absolute value from which on orbits escape.
+    #[inline(always)]
+    fn bailout(&self) -> f64 {
+        if self.is_magnet() { 1e4 } else { 4.0 }
+    }
+
+    /// Where the orbit of a point starts, and the smallest squared absolute value up to there.
+    #[inline(always)]
+    fn start(&self, x: f64, y: f64) -> (Complex<f64>, f64) {
+        if self.is_magnet() && self.julia.is_none() {
+            // A magnet's Mandelbrot orbit starts at zero, which would always be the smallest.
+            (Complex::new(0.0, 0.0), f64::INFINITY)
+        } else {
+            let point = Complex::new(x, y);
+            (point, point.norm2())
+        }
+    }
+
+    /// The value at a point, by its orbit.
     ///
     /// An orbit that returns exactly to one of its points is a cycle from there on, so whole rounds are left out (Brent 1980). Most
     /// orbits of the inside do so long before they are complete.
-    #[inline(always)]
-    fn follow(&self, point: Complex, step: impl Fn(OrbitPoint) -> Complex) -> f64 {
-        /// The magnet iterations also end when they have converged to 1.
-        const CONVERGED: f64 = 1e-4;
-        let magnet = !matches!(self.kind, FractalKind::Power { .. });
-        let bailout = if magnet { 1e4 } else { 4.0 };
-        // A magnet's Mandelbrot orbit starts at zero, which would always be the smallest.
-        let (start, mut smallest) = if magnet && self.julia.is_none() {
-            (Complex::new(0.0, 0.0), f64::INFINITY)
-        } else {
-            (point, point.norm2())
-        };
+    #[inline(never)]
+    fn follow<R: Rule>(&self, rule: R, x: f64, y: f64, c_x: f64, c_y: f64) -> f64 {
+        let c = Complex::new(c_x, c_y);
+        let bailout = self.bailout();
+        let (start, mut smallest) = self.start(x, y);
         let mut z = OrbitPoint::new(start);
         let (mut number, mut end) = (0, self.iterations);
         // A point that the orbit may return to, where it was reached, and the steps to the next such point.
-        let (mut seen, mut seen_at, mut stretch) = (z, 0, 8);
+        let (mut seen, mut seen_at, mut stretch) = (z, 0, FIRST_STRETCH);
         while number < end {
-            z = OrbitPoint::new(step(z));
+            z = OrbitPoint::new(rule.step(z, c, 1.0, 2.0, 3.0));
             let absolute = z.x2 + z.y2;
             if absolute < smallest {
                 smallest = absolute;
             }
-            let converged = magnet && (z.number() - Complex::ONE).norm2() < CONVERGED;
+            let converged = R::CONVERGES && z.distance2_from(1.0) < CONVERGED;
             if !(absolute <= bailout) || converged {
                 return self.outside(number, z);
             }
@@ -216,6 +206,10 @@ impl Fractal {
                 stretch *= 2;
             }
         }
+        self.inside(z, smallest)
+    }
+
+    fn inside(&self, z: OrbitPoint<f64>, smallest: f64) -> f64 {
         match self.interior {
             Interior::Constant(f) => f,
             Interior::Smallest(f) => smallest.sqrt() * f,
@@ -227,7 +221,7 @@ impl Fractal {
         }
     }
 
-    fn outside(&self, step: u32, z: OrbitPoint) -> f64 {
+    fn outside(&self, step: u32, z: OrbitPoint<f64>) -> f64 {
         match self.exterior {
             Exterior::Constant(f) => f,
             Exterior::Steps => f64::from(step) / f64::from(self.iterations),
@@ -250,101 +244,88 @@ fn in_largest_parts(c: DVec2) -> bool {
     q * (q + x) < 0.25 * y2 * INNER || left * left + y2 < 0.0625 * INNER
 }
 
-/// A point of an orbit with the squares of its coordinates.
-#[derive(Clone, Copy)]
-struct OrbitPoint {
-    x: f64,
-    y: f64,
-    x2: f64,
-    y2: f64,
+/// The steps after which an orbit is first compared with another of its points.
+const FIRST_STRETCH: u32 = 8;
+
+/// The magnet iterations also end when they have converged to 1: at less than this squared distance.
+const CONVERGED: f64 = 1e-4;
+
+/// The formula of an iteration. It is the same for single numbers and for vectors of them.
+trait Rule: Copy {
+    /// Whether orbits also end near 1.
+    const CONVERGES: bool = false;
+
+    /// The point after `z`; the last numbers are the constants 1, 2 and 3.
+    fn step<N: Number>(
+        self,
+        z: OrbitPoint<N>,
+        c: Complex<N>,
+        one: N,
+        two: N,
+        three: N,
+    ) -> Complex<N>;
 }
 
-impl OrbitPoint {
+#[derive(Clone, Copy)]
+struct Square;
+
+#[derive(Clone, Copy)]
+struct Power(u32);
+
+#[derive(Clone, Copy)]
+struct Magnet1;
+
+#[derive(Clone, Copy)]
+struct Magnet2;
+
+impl Rule for Square {
     #[inline(always)]
-    fn new(z: Complex) -> Self {
-        Self {
-            x: z.x,
-            y: z.y,
-            x2: z.x * z.x,
-            y2: z.y * z.y,
+    fn step<N: Number>(self, z: OrbitPoint<N>, c: Complex<N>, _: N, _: N, _: N) -> Complex<N> {
+        z.square() + c
+    }
+}
+
+impl Rule for Power {
+    #[inline(always)]
+    fn step<N: Number>(self, z: OrbitPoint<N>, c: Complex<N>, _: N, _: N, _: N) -> Complex<N> {
+        let mut power = z.number();
+        for _ in 1..self.0 {
+            power = power * z.number();
         }
-    }
-
-    #[inline(always)]
-    fn number(self) -> Complex {
-        Complex::new(self.x, self.y)
-    }
-
-    #[inline(always)]
-    fn square(self) -> Complex {
-        Complex::new(self.x2 - self.y2, (self.x + self.x) * self.y)
+        power + c
     }
 }
 
-/// The complex number x + iy.
-#[derive(Clone, Copy)]
-struct Complex {
-    x: f64,
-    y: f64,
-}
-
-impl Complex {
-    const ONE: Self = Self::new(1.0, 0.0);
+impl Rule for Magnet1 {
+    const CONVERGES: bool = true;
 
     #[inline(always)]
-    const fn new(x: f64, y: f64) -> Self {
-        Self { x, y }
-    }
-
-    /// The squared absolute value.
-    #[inline(always)]
-    fn norm2(self) -> f64 {
-        self.x * self.x + self.y * self.y
+    fn step<N: Number>(self, z: OrbitPoint<N>, c: Complex<N>, one: N, two: N, _: N) -> Complex<N> {
+        let numerator = (z.square() + c).minus_real(one);
+        let denominator = (z.number() * two + c).minus_real(two);
+        let q = numerator / denominator;
+        q * q
     }
 }
 
-impl Add for Complex {
-    type Output = Self;
+impl Rule for Magnet2 {
+    const CONVERGES: bool = true;
 
     #[inline(always)]
-    fn add(self, b: Self) -> Self {
-        Self::new(self.x + b.x, self.y + b.y)
-    }
-}
-
-impl Sub for Complex {
-    type Output = Self;
-
-    #[inline(always)]
-    fn sub(self, b: Self) -> Self {
-        Self::new(self.x - b.x, self.y - b.y)
-    }
-}
-
-impl Mul for Complex {
-    type Output = Self;
-
-    #[inline(always)]
-    fn mul(self, b: Self) -> Self {
-        Self::new(self.x * b.x - self.y * b.y, self.x * b.y + self.y * b.x)
-    }
-}
-
-impl Mul<f64> for Complex {
-    type Output = Self;
-
-    #[inline(always)]
-    fn mul(self, b: f64) -> Self {
-        Self::new(self.x * b, self.y * b)
-    }
-}
-
-impl Div for Complex {
-    type Output = Self;
-
-    #[inline(always)]
-    fn div(self, b: Self) -> Self {
-        let (q, norm) = (self * Self::new(b.x, -b.y), b.norm2());
-        Self::new(q.x / norm, q.y / norm)
+    fn step<N: Number>(
+        self,
+        z: OrbitPoint<N>,
+        c: Complex<N>,
+        one: N,
+        two: N,
+        three: N,
+    ) -> Complex<N> {
+        let (c1, c2) = (c.minus_real(one), c.minus_real(two));
+        let c12 = c1 * c2;
+        let (z, z2) = (z.number(), z.square());
+        let numerator = z2 * z + c1 * z * three + c12;
+        let denominator = (z2 * three + c2 * z * three + c12).plus_real(one);
+        let q = numerator / denominator;
+        q * q
     }
 }

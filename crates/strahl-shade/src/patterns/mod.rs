@@ -379,11 +379,51 @@ impl PatternField {
         field.moved(self.modifiers.warped(position))
     }
 
+    /// The pattern with its modifiers, if it is a fractal.
+    pub(crate) fn fractal(&self) -> Option<FractalField<'_>> {
+        match &self.pattern {
+            Pattern::Fractal(fractal) => Some(FractalField {
+                fractal,
+                field: self,
+            }),
+            _ => None,
+        }
+    }
+
+    /// The value where the modifiers have not changed the pattern's yet.
+    pub(crate) fn value_of_raw(&self, raw: f64) -> f64 {
+        self.as_ref().value_of_raw(raw)
+    }
+
     fn as_ref(&self) -> FieldRef<'_> {
         FieldRef {
             pattern: &self.pattern,
             modifiers: &self.modifiers,
         }
+    }
+}
+
+/// A fractal with its modifiers.
+#[derive(Clone, Copy, Debug)]
+pub struct FractalField<'a> {
+    fractal: &'a Fractal,
+    field: &'a PatternField,
+}
+
+impl FractalField<'_> {
+    /// The point of the fractal's plane to which the modifiers lead.
+    pub fn place(&self, position: DVec3) -> DVec2 {
+        self.field.moved(position).truncate()
+    }
+
+    /// Whether both are the same, not just alike.
+    pub fn is(&self, other: &Self) -> bool {
+        std::ptr::eq(self.fractal, other.fractal)
+    }
+
+    /// Stores the values at several places, of which the modifiers have not made others yet. Faster than one after the other.
+    pub fn store_values(&self, places: &[DVec2], values: &mut [f64]) {
+        self.fractal.store_values(places, values);
     }
 }
 
@@ -397,7 +437,24 @@ pub(crate) struct FieldRef<'a> {
 impl FieldRef<'_> {
     /// The value at `p`, to which warps and turbulence have led already; nothing else of the point than its position is another there.
     pub(crate) fn value_moved(&self, p: DVec3, point: &TexturePoint) -> f64 {
-        let raw = self.pattern.raw(p, point, self.modifiers);
+        self.value_of_raw(self.pattern.raw(p, point, self.modifiers))
+    }
+
+    /// The values at four places to which warps and turbulence have led already.
+    pub(crate) fn values_moved(&self, places: [DVec3; 4], point: &TexturePoint) -> [f64; 4] {
+        let mut values = [0.0; 4];
+        if let Pattern::Fractal(fractal) = self.pattern {
+            fractal.store_values(&places.map(DVec3::truncate), &mut values);
+            return values.map(|raw| self.value_of_raw(raw));
+        }
+        for (value, place) in values.iter_mut().zip(places) {
+            *value = self.value_moved(place, point);
+        }
+        values
+    }
+
+    /// The value that modifiers make of the pattern's.
+    fn value_of_raw(&self, raw: f64) -> f64 {
         let wave = self.modifiers.wave;
         let wave = wave.unwrap_or_else(|| self.pattern.default_wave());
         let is_beyond = match self.pattern {
