@@ -36,6 +36,9 @@ impl MapType {
     /// The image coordinates of a point, u to the right and v upwards.
     fn place(self, p: DVec3) -> DVec2 {
         use std::f64::consts::{PI, TAU};
+        if self == Self::Planar {
+            return DVec2::new(p.x, p.y);
+        }
         let turn = det::atan2(p.z, p.x) / TAU;
         let u = if turn < 0.0 { turn + 1.0 } else { turn };
         let around = (p.x * p.x + p.z * p.z).sqrt();
@@ -144,7 +147,7 @@ impl ImageMap {
             let [r, g, b, a, _] = self.sample_around(place + DVec2::new(dx, dy) * texel);
             Color::new(r, g, b).gray_value() * a
         };
-        if self.sample_at(place).is_none() {
+        if self.is_beside(place) {
             return DVec3::ZERO;
         }
         let (center, left, right) = (gray(0.0, 0.0), gray(-1.0, -1.0), gray(1.0, -1.0));
@@ -175,24 +178,30 @@ impl ImageMap {
 
     /// The number of a texel in a row or column of `count`: a single image goes on as it ends (measured), others are repeated.
     fn within(&self, number: f64, count: u32) -> u32 {
+        let whole = number as i64;
+        if (0..i64::from(count)).contains(&whole) {
+            return whole as u32;
+        }
         if self.once {
             number.clamp(0.0, f64::from(count - 1)) as u32
         } else {
-            (number as i64).rem_euclid(i64::from(count)) as u32
+            whole.rem_euclid(i64::from(count)) as u32
         }
     }
 
-    fn sample_at(&self, place: DVec2) -> Option<[f64; 5]> {
+    /// Whether a place is outside of a single image.
+    fn is_beside(&self, place: DVec2) -> bool {
         let inside = |x: f64| (0.0..1.0).contains(&x);
         let beside = match self.map_type {
             MapType::Planar => !inside(place.x) || !inside(place.y),
             MapType::Cylindrical => !inside(place.y),
             MapType::Spherical | MapType::Toroidal => false,
         };
-        if self.once && beside {
-            return None;
-        }
-        Some(self.sample_around(place))
+        self.once && beside
+    }
+
+    fn sample_at(&self, place: DVec2) -> Option<[f64; 5]> {
+        (!self.is_beside(place)).then(|| self.sample_around(place))
     }
 
     /// The same for an image that is repeated.
@@ -384,6 +393,32 @@ mod tests {
                     map.tilt(DVec3::splat(x), DVec3::Y),
                 );
             }
+        }
+    }
+
+    #[test]
+    fn numbers_of_texels_are_remainders_or_limited() {
+        let mut map = ImageMap::new(picture());
+        for number in [
+            -7.0,
+            -3.0,
+            -1.0,
+            -0.5,
+            0.0,
+            1.0,
+            2.0,
+            2.5,
+            3.0,
+            8.0,
+            1e300,
+            f64::NAN,
+        ] {
+            map.once = false;
+            let repeated = (number as i64).rem_euclid(3) as u32;
+            assert_eq!(map.within(number, 3), repeated, "{number}");
+            map.once = true;
+            let limited = number.clamp(0.0, 2.0) as u32;
+            assert_eq!(map.within(number, 3), limited, "{number}");
         }
     }
 }
