@@ -1,9 +1,7 @@
 //! Surfaces with POV-Ray's textures: several layers, each with a colour, a normal and a finish of its own.
 
-mod fractals;
 mod known;
 
-pub(crate) use fractals::follow_fractals;
 pub(crate) use known::KnownPaints;
 
 use crate::hit::Hit;

@@ -19,6 +19,7 @@ mod area_light;
 mod batch_tests;
 mod detail;
 mod eye;
+mod fractals;
 mod gather;
 mod lights;
 mod medium;
@@ -33,7 +34,8 @@ mod stages;
 use eye::Eye;
 pub(crate) use eye::Filled;
 pub(crate) use lights::{Aim, Arriving};
-pub(crate) use point::{Lanes, Point};
+use point::Lanes;
+pub(crate) use point::Point;
 use slots::Slots;
 
 pub use crate::outcome::{FirstHit, RayCounts, SampleResult};

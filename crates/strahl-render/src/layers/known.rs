@@ -11,7 +11,7 @@ use strahl_shade::{Color, Finish};
 pub(crate) struct KnownPaints<'s> {
     known: Vec<Known<'s>>,
     /// Whether the colours of some come from fractals.
-    pub(super) has_fractals: bool,
+    pub(crate) has_fractals: bool,
 }
 
 /// What is known of the layers of a material.

@@ -1,8 +1,8 @@
 //! Fractals as colours: those of several surfaces are computed together.
 
-use super::KnownPaints;
+use super::point::{Lanes, Point};
+use crate::layers::KnownPaints;
 use crate::scene::RenderScene;
-use crate::trace::{Lanes, Point};
 use arrayvec::ArrayVec;
 use strahl_accel::PACKET;
 use strahl_math::DVec2;
@@ -16,9 +16,9 @@ struct Place<'s> {
     at: DVec2,
 }
 
-/// Computes the values of the fractals that give surfaces their colours, for [`paint`](super::paint).
+/// Computes the values of the fractals that give surfaces their colours, for [`paint`](crate::layers::paint).
 #[inline]
-pub(crate) fn follow_fractals<'s>(
+pub(super) fn follow_fractals<'s>(
     scene: &'s RenderScene,
     points: &mut [Point<'s>],
     lanes: &Lanes,
