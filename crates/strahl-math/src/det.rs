@@ -7,7 +7,7 @@ mod power;
 mod sine;
 
 pub use power::powers;
-pub use sine::sines;
+pub use sine::{sines, sines_and_cosines};
 
 use strahl_simd::{Simd, dispatch};
 

@@ -78,37 +78,93 @@ pub(super) fn sine(x: f64) -> f64 {
 /// The sines of four angles in radians, each with the bits of [`super::sin`].
 #[inline(always)]
 pub fn sines<I: Isa>(isa: I, x: I::F64x4) -> I::F64x4 {
-    let n = |number: f64| isa.splat(number);
-    let multiple = isa.sub(isa.add(isa.mul(x, n(TWO_BY_PI)), n(ROUND)), n(ROUND));
-    let exact = isa.sub(x, isa.mul(multiple, n(HALF_PI)));
-    let rest = isa.mul(multiple, n(HALF_PI_REST));
-    let y = isa.sub(exact, rest);
-    let lost = isa.sub(isa.sub(exact, y), rest);
-    let (sin, cos) = (sin_near_zero(isa, y, lost), cos_near_zero(isa, y, lost));
-    // The quadrant, from -2 to 2; -2 and 2 are the same.
-    let turns = isa.sub(isa.add(isa.mul(multiple, n(0.25)), n(ROUND)), n(ROUND));
-    let quadrant = isa.sub(multiple, isa.mul(turns, n(4.0)));
-    let from_one = isa.abs(isa.sub(isa.abs(quadrant), n(1.0)));
-    let value = isa.choose_le(from_one, n(0.5), cos, sin);
-    let negative = isa.mul(value, n(-1.0));
-    let value = isa.choose_le(quadrant, n(-0.5), negative, value);
-    let mut value = isa.choose_le(n(1.5), quadrant, negative, value);
-    let (size, part) = (isa.abs(x), isa.abs(y));
-    // The bounds are those of `sine`.
-    let usual = isa.le(n(0.8), size)
-        & isa.le(size, n(1e6))
-        & isa.le(part, n(0.7853))
-        & isa.le(isa.mul(size, n(1.0 / 8192.0)), part);
-    if usual != 0b1111 {
-        let (angles, mut values) = (isa.store(x), isa.store(value));
+    let reduced = Reduced::new(isa, x);
+    reduced.corrected(isa, x, reduced.sines(isa), libm::sin)
+}
+
+/// The sines and the cosines of four angles in radians, each with the bits of [`super::sin_cos`].
+#[inline(always)]
+pub fn sines_and_cosines<I: Isa>(isa: I, x: I::F64x4) -> [I::F64x4; 2] {
+    let reduced = Reduced::new(isa, x);
+    [
+        reduced.corrected(isa, x, reduced.sines(isa), libm::sin),
+        reduced.corrected(isa, x, reduced.cosines(isa), libm::cos),
+    ]
+}
+
+/// Four angles, reduced by multiples of π/2.
+struct Reduced<V> {
+    /// The quadrants, from -2 to 2; -2 and 2 are the same.
+    quadrant: V,
+    /// The sines and cosines of what is left.
+    sin: V,
+    cos: V,
+    /// The lanes in which they have the bits of `libm`.
+    usual: u32,
+}
+
+impl<V: Copy> Reduced<V> {
+    #[inline(always)]
+    fn new<I: Isa<F64x4 = V>>(isa: I, x: V) -> Self {
+        let n = |number: f64| isa.splat(number);
+        let multiple = isa.sub(isa.add(isa.mul(x, n(TWO_BY_PI)), n(ROUND)), n(ROUND));
+        let exact = isa.sub(x, isa.mul(multiple, n(HALF_PI)));
+        let rest = isa.mul(multiple, n(HALF_PI_REST));
+        let y = isa.sub(exact, rest);
+        let lost = isa.sub(isa.sub(exact, y), rest);
+        let turns = isa.sub(isa.add(isa.mul(multiple, n(0.25)), n(ROUND)), n(ROUND));
+        let (size, part) = (isa.abs(x), isa.abs(y));
+        Self {
+            quadrant: isa.sub(multiple, isa.mul(turns, n(4.0))),
+            sin: sin_near_zero(isa, y, lost),
+            cos: cos_near_zero(isa, y, lost),
+            // The bounds are those of `sine`.
+            usual: isa.le(n(0.8), size)
+                & isa.le(size, n(1e6))
+                & isa.le(part, n(0.7853))
+                & isa.le(isa.mul(size, n(1.0 / 8192.0)), part),
+        }
+    }
+
+    /// `odd` in the quadrants -1 and 1, `even` in the others.
+    #[inline(always)]
+    fn by_parity<I: Isa<F64x4 = V>>(&self, isa: I, even: V, odd: V) -> V {
+        let from_one = isa.abs(isa.sub(isa.abs(self.quadrant), isa.splat(1.0)));
+        isa.choose_le(from_one, isa.splat(0.5), odd, even)
+    }
+
+    #[inline(always)]
+    fn sines<I: Isa<F64x4 = V>>(&self, isa: I) -> V {
+        let value = self.by_parity(isa, self.sin, self.cos);
+        // Negative in the quadrants -2, -1 and 2.
+        let negative = isa.mul(value, isa.splat(-1.0));
+        let value = isa.choose_le(self.quadrant, isa.splat(-0.5), negative, value);
+        isa.choose_le(isa.splat(1.5), self.quadrant, negative, value)
+    }
+
+    #[inline(always)]
+    fn cosines<I: Isa<F64x4 = V>>(&self, isa: I) -> V {
+        let value = self.by_parity(isa, self.cos, self.sin);
+        // Negative in the quadrants -2, 1 and 2.
+        let negative = isa.mul(value, isa.splat(-1.0));
+        let value = isa.choose_le(self.quadrant, isa.splat(-1.5), negative, value);
+        isa.choose_le(isa.splat(0.5), self.quadrant, negative, value)
+    }
+
+    /// The values with those that another function gives where they may have other bits.
+    #[inline(always)]
+    fn corrected<I: Isa<F64x4 = V>>(&self, isa: I, x: V, values: V, f: fn(f64) -> f64) -> V {
+        if self.usual == 0b1111 {
+            return values;
+        }
+        let (angles, mut values) = (isa.store(x), isa.store(values));
         for lane in 0..4 {
-            if usual >> lane & 1 == 0 {
-                values[lane] = libm::sin(angles[lane]);
+            if self.usual >> lane & 1 == 0 {
+                values[lane] = f(angles[lane]);
             }
         }
-        value = isa.load(&values);
+        isa.load(&values)
     }
-    value
 }
 
 /// The sine of `y + lost`, `|y|` at most π/4.
@@ -154,6 +210,13 @@ mod tests {
         dispatch!(simd, isa => isa.store(sines(isa, isa.load(&x))))
     }
 
+    fn four_pairs(simd: Simd, x: [f64; 4]) -> [[f64; 4]; 2] {
+        dispatch!(simd, isa => {
+            let [sin, cos] = sines_and_cosines(isa, isa.load(&x));
+            [isa.store(sin), isa.store(cos)]
+        })
+    }
+
     #[test]
     fn sines_have_the_bits_of_libm() {
         let mut angles = vec![0.0, -0.0, 1e-300, 1e7, -1e22, f64::INFINITY, f64::NAN];
@@ -177,6 +240,15 @@ mod tests {
             for four_angles in angles.chunks(4) {
                 let mut x = [0.7; 4];
                 x[..four_angles.len()].copy_from_slice(four_angles);
+                let [sines, cosines] = four_pairs(simd, x);
+                for (k, angle) in x.into_iter().enumerate() {
+                    let expected = libm::sincos(angle);
+                    for (value, expected) in [(sines[k], expected.0), (cosines[k], expected.1)] {
+                        let is_same = value.to_bits() == expected.to_bits()
+                            || value.is_nan() && expected.is_nan();
+                        assert!(is_same, "{angle}: {value} and not {expected} ({simd:?})");
+                    }
+                }
                 for (angle, sine) in x.into_iter().zip(four(simd, x)) {
                     let expected = libm::sin(angle);
                     for sine in [sine, super::sine(angle)] {

@@ -1,4 +1,7 @@
+mod fours;
+
 use arrayvec::ArrayVec;
+use fours::FourRays;
 use std::sync::Arc;
 use strahl_accel::PACKET;
 use strahl_math::{DVec3, Ray, det};
@@ -41,11 +44,14 @@ pub(super) struct LensSampler {
     /// The square root of `variance`.
     tolerance: f64,
     bokeh: Option<Arc<Bokeh>>,
+    /// How four rays are made at once, for the cameras of nearly all scenes.
+    fours: Option<FourRays>,
 }
 
 impl LensSampler {
     /// `None` if the camera is sharp everywhere.
-    pub(super) fn new(camera: &Camera) -> Option<Self> {
+    /// `size` is the width and the height of the picture.
+    pub(super) fn new(camera: &Camera, size: [f64; 2]) -> Option<Self> {
         let lens = camera.lens.as_ref()?;
         let forward = camera.direction.normalize_or_zero();
         let distance = (lens.focal_point - camera.eye).dot(forward);
@@ -53,7 +59,7 @@ impl LensSampler {
             return None;
         }
         let radius = 0.25 * lens.aperture;
-        Some(Self {
+        let mut lens = Self {
             side: camera.right.normalize_or_zero() * radius,
             above: camera.up.normalize_or_zero() * radius,
             forward,
@@ -67,12 +73,15 @@ impl LensSampler {
             quantile: quantile(lens.confidence),
             tolerance: lens.variance.sqrt(),
             bokeh: lens.bokeh.clone(),
-        })
+            fours: None,
+        };
+        lens.fours = FourRays::new(camera, &lens, size);
+        Some(lens)
     }
 
     /// The mean of the rays through the lens. Each ray meets the plane of focus at the same point as the chief ray of a
     /// position up to half a pixel away along each axis: like POV-Ray's, the lens is never sharper than a pixel (measured: the
-    /// means over pixels of objects in focus). `center` returns the chief ray, if the camera sees something there; the length of
+    /// means over pixels of objects in focus). `center` returns the camera's chief ray, if it sees something there; the length of
     /// its direction matters only to cameras with a sphere of focus, where it is 1. `trace` returns the colours of a few rays, at
     /// most [`PACKET`]; where the camera sees nothing there is no ray.
     pub(super) fn color(
@@ -89,14 +98,11 @@ impl LensSampler {
                 break;
             }
             let mut rays = ArrayVec::<Option<Ray>, PACKET>::new();
-            for index in count..count + wanted {
-                let [a, b, c, d] = sample(index, shift);
-                let point = match &self.bokeh {
-                    Some(bokeh) => bokeh.point(a, b),
-                    None => disc(a, b),
-                };
-                let chief = center(x + c - 0.5, y + d - 0.5);
-                rays.push(chief.map(|chief| self.through(&chief, point)));
+            let numbers = count..count + wanted;
+            let made = self.fours.as_ref();
+            if !made.is_some_and(|fours| fours.push(numbers.clone(), shift, [x, y], &mut rays)) {
+                rays.clear();
+                rays.extend(numbers.map(|index| self.ray(index, shift, (x, y), &center)));
             }
             for color in trace(&rays) {
                 sum += color;
@@ -122,6 +128,24 @@ impl LensSampler {
                 .min(most.saturating_sub(count))
         };
         more.min(PACKET as u32)
+    }
+
+    /// The ray with this number.
+    #[inline(always)]
+    fn ray(
+        &self,
+        index: u32,
+        shift: [f64; 4],
+        (x, y): (f64, f64),
+        center: impl Fn(f64, f64) -> Option<Ray>,
+    ) -> Option<Ray> {
+        let [a, b, c, d] = sample(index, shift);
+        let point = match &self.bokeh {
+            Some(bokeh) => bokeh.point(a, b),
+            None => disc(a, b),
+        };
+        let chief = center(x + c - 0.5, y + d - 0.5);
+        chief.map(|chief| self.through(&chief, point))
     }
 
     /// The ray through a point of the lens (coordinates from -1 to 1) that belongs to a chief ray.
@@ -191,15 +215,16 @@ fn scramble((x, y): (f64, f64)) -> [f64; 4] {
     [unit(bits), unit(bits << 24), unit(more), unit(more << 24)]
 }
 
+/// One over the root of x^5 = x + 1, and over its powers.
+const STEPS: [f64; 4] = [
+    0.856_674_883_854_502_9,
+    0.733_891_856_627_126,
+    0.628_706_721_037_808_7,
+    0.538_597_257_223_610_1,
+];
+
 /// Point `index` of a low-discrepancy sequence in the unit cube of four dimensions (M. Roberts' sequence, 2018), shifted.
 fn sample(index: u32, shift: [f64; 4]) -> [f64; 4] {
-    // One over the root of x^5 = x + 1, and over its powers.
-    const STEPS: [f64; 4] = [
-        0.856_674_883_854_502_9,
-        0.733_891_856_627_126,
-        0.628_706_721_037_808_7,
-        0.538_597_257_223_610_1,
-    ];
     let n = f64::from(index);
     let mut point = shift;
     for (x, step) in point.iter_mut().zip(STEPS) {
@@ -219,13 +244,50 @@ fn disc(a: f64, b: f64) -> (f64, f64) {
 
 #[cfg(test)]
 mod tests {
+    use super::super::PrimaryRays;
     use super::*;
     use strahl_scene::Lens;
 
     fn blurred(max_samples: u32) -> LensSampler {
         let mut camera = Camera::perspective(DVec3::ZERO, DVec3::Z, DVec3::Y, 1.0);
         camera.lens = Some(Lens::new(2.0, DVec3::Z * 5.0, max_samples));
-        LensSampler::new(&camera).expect("a lens")
+        let mut lens = LensSampler::new(&camera, [1.0, 1.0]).expect("a lens");
+        // The tests have chief rays of their own.
+        lens.fours = None;
+        lens
+    }
+
+    /// The rays of a position, made one by one or four at once.
+    fn rays_of(camera: &Camera, at: (f64, f64), together: bool) -> Vec<Option<Ray>> {
+        let mut rays = PrimaryRays::new(camera, 64, 48);
+        let lens = rays.lens.as_mut().expect("a lens");
+        assert!(lens.fours.is_some());
+        if !together {
+            lens.fours = None;
+        }
+        let mut all = vec![];
+        rays.mean(at.0, at.1, |rays| {
+            all.extend_from_slice(rays);
+            rays.iter()
+                .map(|_| Color::gray((all.len() % 7) as f64))
+                .collect()
+        });
+        all
+    }
+
+    #[test]
+    fn four_rays_at_once_have_the_bits_of_single_ones() {
+        let eye = DVec3::new(50.0, 10.0, 30.0);
+        let mut camera = Camera::perspective(eye, DVec3::new(0.0, 10.0, 0.0), DVec3::Y, 0.6);
+        for focal_point in [DVec3::new(5.0, 10.0, 5.0), DVec3::new(90.0, 9.0, 60.0)] {
+            for most in [1, 7, 120] {
+                camera.lens = Some(Lens::new(10.0, focal_point, most));
+                for n in 0..200 {
+                    let at = (f64::from(n) * 0.31, f64::from(n) * 0.23 + 0.5);
+                    assert_eq!(rays_of(&camera, at, true), rays_of(&camera, at, false));
+                }
+            }
+        }
     }
 
     #[test]

@@ -28,7 +28,7 @@ impl PrimaryRays {
         let mut camera = camera.clone();
         camera.right *= camera.aspect.unwrap_or(width / height);
         Self {
-            lens: LensSampler::new(&camera),
+            lens: LensSampler::new(&camera, [width, height]),
             camera,
             width,
             height,
