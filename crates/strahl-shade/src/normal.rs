@@ -149,7 +149,7 @@ impl PovNormal {
                 let field = self.field(pattern);
                 // The tetrahedron surrounds the displaced point; its corners are not displaced again.
                 let heights = |corners| {
-                    let values = field.values_moved(corners, point);
+                    let values = field.values_moved(&corners, point);
                     match slopes {
                         None => values,
                         Some(map) => values.map(|value| map.height(value)),

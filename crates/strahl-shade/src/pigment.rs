@@ -56,6 +56,16 @@ impl<T> BlendMap<T> {
     }
 }
 
+impl<'a, T> Blend<'a, T> {
+    /// Both entries and the share of the second, if there are two.
+    fn pair(&self) -> Option<(&'a T, &'a T, f64)> {
+        match *self {
+            Self::One(_) => None,
+            Self::Two(low, high, t) => Some((low, high, t)),
+        }
+    }
+}
+
 impl BlendMap<ColorFt> {
     /// The colour for `value`.
     fn color(&self, value: f64) -> ColorFt {
@@ -156,6 +166,59 @@ impl Pigment {
             }
             Self::UvMapped(pigment) => pigment.color_at(&point.on_surface_but_normals()),
         }
+    }
+
+    /// The colours at four places, which take the place of the point's position.
+    pub(crate) fn colors_of_four(&self, places: &[DVec3; 4], point: &TexturePoint) -> [ColorFt; 4] {
+        match self {
+            Self::Solid(color, _) => [*color; 4],
+            Self::ColorMap(field, map) if field.pattern.is_fast_at_four() => {
+                let places = places.map(|place| field.moved(place));
+                let values = field.values_moved(&places, point);
+                values.map(|value| map.color(value))
+            }
+            Self::PigmentMap(field, map) if field.pattern.is_fast_at_four() => {
+                let places = places.map(|place| field.moved(place));
+                let values = field.values_moved(&places, point);
+                Self::blended_at_four(values.map(|value| map.lookup(value)), &places, point)
+            }
+            _ => places.map(|place| self.color_at(&point.at(place))),
+        }
+    }
+
+    /// The colours of blends at four places.
+    fn blended_at_four(
+        blends: [Option<Blend<'_, Self>>; 4],
+        places: &[DVec3; 4],
+        point: &TexturePoint,
+    ) -> [ColorFt; 4] {
+        let pairs = [0, 1, 2, 3].map(|k| blends[k].as_ref().and_then(Blend::pair));
+        if let [
+            Some((low, high, t0)),
+            Some((_, _, t1)),
+            Some((_, _, t2)),
+            Some((_, _, t3)),
+        ] = pairs
+            && pairs
+                .iter()
+                .flatten()
+                .all(|(a, b, _)| std::ptr::eq(*a, low) && std::ptr::eq(*b, high))
+        {
+            let (low, high) = (
+                low.colors_of_four(places, point),
+                high.colors_of_four(places, point),
+            );
+            let shares = [t0, t1, t2, t3];
+            return std::array::from_fn(|k| low[k].lerp(high[k], shares[k]));
+        }
+        std::array::from_fn(|k| {
+            let color = |pigment: &Self| pigment.color_moved(point, places[k]);
+            match blends[k] {
+                None => ColorFt::default(),
+                Some(Blend::One(pigment)) => color(pigment),
+                Some(Blend::Two(low, high, t)) => color(low).lerp(color(high), t),
+            }
+        })
     }
 
     /// The fractal that selects the colours, with its modifiers, if one does.

@@ -61,6 +61,15 @@ pub fn noise(p: DVec3, generator: NoiseGenerator) -> f64 {
     dispatch!(Simd::best(), isa => kernel::noise(isa, p, generator))
 }
 
+/// [`noise`] at four points, whose coordinates are given axis by axis, with the same bits.
+pub fn noise_of_four(points: &[[f64; 4]; 3], generator: NoiseGenerator) -> [f64; 4] {
+    dispatch!(Simd::best(), isa => {
+        let [x, y, z] = points;
+        let points = [isa.load(x), isa.load(y), isa.load(z)];
+        isa.store(kernel::noise_of_four(isa, points, generator))
+    })
+}
+
 /// Vector noise at `p`: three independent value-gradient noises, each with a mean near zero and seldom beyond ±1.
 ///
 /// The same for every [`NoiseGenerator`]; what turbulence displaces points by.
@@ -183,6 +192,33 @@ pub fn pattern_octaves<const N: usize>(
         }
         for value in rest {
             *value = unit(stretched(isa, p * frequency, generator));
+            frequency *= 2.0;
+        }
+        all
+    })
+}
+
+/// [`pattern_octaves`] at four points, whose coordinates are given axis by axis, with the same bits.
+pub fn pattern_octaves_of_four<const N: usize>(
+    points: &[[f64; 4]; 3],
+    frequency: f64,
+    generator: NoiseGenerator,
+) -> [[f64; 4]; N] {
+    dispatch!(Simd::best(), isa => {
+        let (factor, shift) = stretch(generator);
+        let [x, y, z] = points;
+        let [x, y, z] = [isa.load(x), isa.load(y), isa.load(z)];
+        let mut all = [[0.0; 4]; N];
+        let mut frequency = frequency;
+        for values in &mut all {
+            let by = isa.splat(frequency);
+            let points = [isa.mul(x, by), isa.mul(y, by), isa.mul(z, by)];
+            let noise = kernel::noise_of_four(isa, points, generator);
+            let noise = isa.sub(isa.mul(noise, isa.splat(factor)), isa.splat(shift));
+            *values = isa.store(noise);
+            for value in values {
+                *value = unit(*value);
+            }
             frequency *= 2.0;
         }
         all

@@ -9,6 +9,7 @@
 
 mod blocks;
 mod crackle;
+mod four;
 mod fractal;
 mod modifiers;
 mod noisy;
@@ -395,6 +396,11 @@ impl PatternField {
         self.as_ref().value_of_raw(raw)
     }
 
+    /// The values at four places to which [`PatternField::moved`] has led.
+    pub(crate) fn values_moved(&self, places: &[DVec3; 4], point: &TexturePoint) -> [f64; 4] {
+        self.as_ref().values_moved(places, point)
+    }
+
     fn as_ref(&self) -> FieldRef<'_> {
         FieldRef {
             pattern: &self.pattern,
@@ -441,16 +447,9 @@ impl FieldRef<'_> {
     }
 
     /// The values at four places to which warps and turbulence have led already.
-    pub(crate) fn values_moved(&self, places: [DVec3; 4], point: &TexturePoint) -> [f64; 4] {
-        let mut values = [0.0; 4];
-        if let Pattern::Fractal(fractal) = self.pattern {
-            fractal.store_values(&places.map(DVec3::truncate), &mut values);
-            return values.map(|raw| self.value_of_raw(raw));
-        }
-        for (value, place) in values.iter_mut().zip(places) {
-            *value = self.value_moved(place, point);
-        }
-        values
+    pub(crate) fn values_moved(&self, places: &[DVec3; 4], point: &TexturePoint) -> [f64; 4] {
+        let raw = self.pattern.raw_of_four(places, point, self.modifiers);
+        raw.map(|raw| self.value_of_raw(raw))
     }
 
     /// The value that modifiers make of the pattern's.

@@ -1,6 +1,6 @@
 //! Patterns made of noise.
 
-use strahl_math::noise::{NoiseGenerator, noise, pattern_octaves};
+use strahl_math::noise::{NoiseGenerator, noise, pattern_octaves, pattern_octaves_of_four};
 use strahl_math::{DVec3, det};
 
 use super::Modifiers;
@@ -61,4 +61,29 @@ pub(super) fn wrinkles(p: DVec3, generator: NoiseGenerator) -> f64 {
         frequency *= 2.0;
     }
     0.5 * sum
+}
+
+/// [`granite`] at four places, given axis by axis.
+pub(super) fn granite_of_four(places: &[[f64; 4]; 3], generator: NoiseGenerator) -> [f64; 4] {
+    let octaves: [_; 6] = pattern_octaves_of_four(places, 4.0, generator);
+    sum_of_octaves(octaves, |value| (0.5 - value).abs())
+}
+
+/// [`wrinkles`] at four places, given axis by axis.
+pub(super) fn wrinkles_of_four(places: &[[f64; 4]; 3], generator: NoiseGenerator) -> [f64; 4] {
+    let octaves: [_; 10] = pattern_octaves_of_four(places, 1.0, generator);
+    sum_of_octaves(octaves, |value| value).map(|sum| 0.5 * sum)
+}
+
+/// The sum over octaves of what they add, each half as strong as the one before.
+fn sum_of_octaves<const N: usize>(octaves: [[f64; 4]; N], addend: impl Fn(f64) -> f64) -> [f64; 4] {
+    let mut frequency = 1.0;
+    let mut sums = [0.0; 4];
+    for values in octaves {
+        for (sum, value) in sums.iter_mut().zip(values) {
+            *sum += addend(value) / frequency;
+        }
+        frequency *= 2.0;
+    }
+    sums
 }
