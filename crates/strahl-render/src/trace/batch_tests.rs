@@ -7,9 +7,35 @@ use strahl_accel::PACKET;
 use strahl_geometry::{Cuboid, Plane, Sphere};
 use strahl_math::{DVec3, Ray};
 use strahl_scene::{Background, Camera, ObjectExt, Scene};
+use strahl_shade::patterns::{Fractal, FractalKind, Pattern};
+use strahl_shade::pigment::{BlendMap, Pigment};
+use strahl_shade::pov_finish::PovFinish;
+use strahl_shade::texture::{PlainTexture, Texture};
 use strahl_shade::{AreaLight, Color, Light, Material};
 
-/// Every kind of ray: glass in glass, mirrors that face each other, an area light, light through tinted balls.
+/// A texture whose colours come from a fractal.
+fn fractal(kind: FractalKind) -> Material {
+    let fractal = Fractal {
+        kind,
+        ..Fractal::mandelbrot(40)
+    };
+    let colors = vec![
+        (0.0, Color::new(0.1, 0.2, 0.6).into()),
+        (1.0, Color::new(0.9, 0.7, 0.2).into()),
+    ];
+    let pigment = Pigment::ColorMap(Pattern::Fractal(fractal).into(), BlendMap::new(colors));
+    let finish = PovFinish {
+        ambient: Color::gray(0.8),
+        ..PovFinish::default()
+    };
+    Material::textured(Texture::from(PlainTexture {
+        pigment,
+        finish: finish.into(),
+        ..PlainTexture::default()
+    }))
+}
+
+/// Every kind of ray: glass in glass, mirrors that face each other, an area light, light through tinted balls; and fractals.
 fn scene() -> RenderScene {
     let mirror = Material::shiny(Color::gray(0.2), 0.3, 20.0).with_reflection(Color::gray(0.6));
     let tinted =
@@ -28,6 +54,7 @@ fn scene() -> RenderScene {
         .add(Plane::new(DVec3::Y * -1.0, DVec3::Y).material(mirror.clone()))
         .add(wall(-3.0))
         .add(wall(3.0))
+        .add(Plane::new(DVec3::Z * -3.0, DVec3::Z).material(fractal(FractalKind::Magnet1)))
         .add(Sphere::new(DVec3::ZERO, 1.0).material(Material::glass(1.5)))
         .add(Sphere::new(DVec3::ZERO, 0.5).material(Material::glass(1.2)))
         .light(lamp)
@@ -42,7 +69,12 @@ fn scene() -> RenderScene {
     for k in 0..12 {
         let turn = f64::from(k) * 0.6;
         let center = DVec3::new(2.0 * turn.sin(), -0.6, 2.0 * turn.cos());
-        scene = scene.add(Sphere::new(center, 0.4).material(tinted.clone()));
+        let material = match k {
+            0 => fractal(FractalKind::Power { exponent: 2 }),
+            1 => fractal(FractalKind::Power { exponent: 3 }),
+            _ => tinted.clone(),
+        };
+        scene = scene.add(Sphere::new(center, 0.4).material(material));
     }
     compile(&scene, &CompileOptions::default()).expect("a scene")
 }
