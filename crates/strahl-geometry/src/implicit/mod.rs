@@ -13,5 +13,5 @@ pub(crate) use container::Passage;
 pub use grid_isosurface::{GridIsosurface, GridOptions};
 pub use height_field::HeightField;
 pub use isosurface::{Isosurface, IsosurfaceOptions};
-pub(crate) use octree::{Cell, Content, Octree, Visitor};
+pub(crate) use octree::{Content, Octree, Visitor};
 pub use parametric::{Parametric, ParametricOptions};

@@ -19,7 +19,7 @@ pub(crate) trait Visitor {
         ControlFlow::Continue(())
     }
     /// A part of the line within a cell that may contain a surface.
-    fn part(&mut self, cell: &Cell<'_>, enter: f64, exit: f64) -> ControlFlow<()>;
+    fn part(&mut self, enter: f64, exit: f64) -> ControlFlow<()>;
     /// Parts of the line that end before this are not needed.
     fn resume(&self) -> f64 {
         f64::NEG_INFINITY
@@ -36,35 +36,6 @@ pub(crate) enum Content {
         /// Inside rather than outside.
         is_inside: Option<bool>,
     },
-}
-
-/// What a visitor notes of a cell.
-pub(crate) type Note = [f32; 6];
-
-/// One of the smallest cells.
-pub(crate) struct Cell<'a> {
-    tree: &'a Octree,
-    node: &'a Node,
-    slot: Slot,
-    place: [u32; 3],
-}
-
-impl Cell<'_> {
-    pub(crate) fn bounds(&self) -> Aabb {
-        self.tree.cell(self.place, 0)
-    }
-
-    /// What is noted of the cell, which `make` finds out and which must depend on the cell alone. Who asks for the first time gets nothing:
-    /// many cells are met by a single ray, for which it would take too long.
-    pub(crate) fn note(&self, make: impl FnOnce() -> Note) -> Option<&Note> {
-        if self.node.asked.load(Ordering::Relaxed) & self.slot.bit() == 0 {
-            self.node.asked.fetch_or(self.slot.bit(), Ordering::Relaxed);
-            return None;
-        }
-        let none = || Box::new(std::array::from_fn(|_| OnceLock::new()));
-        let notes = self.node.notes.get_or_init(none);
-        Some(notes[self.slot.0 as usize].get_or_init(make))
-    }
 }
 
 /// A tree of cells, all of which are halved equally often.
@@ -97,10 +68,6 @@ struct Node {
     full_blocks: AtomicU8,
     /// The nodes of the cells, once one of them is met. The smallest cells have none.
     children: OnceLock<Box<[Node; 64]>>,
-    /// The smallest cells whose notes have been asked for.
-    asked: AtomicU64,
-    /// Their notes, once one of them has been asked for again.
-    notes: OnceLock<Box<[OnceLock<Note>; 64]>>,
 }
 
 /// Where a cell is in its node.
@@ -282,8 +249,7 @@ impl Octree {
         let mut has_begun = false;
         while t < exit && t <= range.max {
             let place = line.place(t, least, self.cells);
-            let turned = line.turned(place);
-            let found = self.find(turned, visitor);
+            let found = self.find(line.turned(place), visitor);
             if !has_begun {
                 visitor.begin(found.side())?;
                 has_begun = true;
@@ -293,13 +259,7 @@ impl Octree {
             if found.is_full {
                 let enter = line.enter(place);
                 if enter < until && until >= range.min {
-                    let cell = Cell {
-                        tree: self,
-                        node: found.node,
-                        slot: found.slot,
-                        place: turned,
-                    };
-                    visitor.part(&cell, enter, until)?;
+                    visitor.part(enter, until)?;
                     let resume = visitor.resume();
                     if resume > next {
                         next = resume;
@@ -455,7 +415,7 @@ mod tests {
             self.side = is_inside;
             ControlFlow::Continue(())
         }
-        fn part(&mut self, _cell: &Cell<'_>, enter: f64, exit: f64) -> ControlFlow<()> {
+        fn part(&mut self, enter: f64, exit: f64) -> ControlFlow<()> {
             self.found.push((enter, exit));
             ControlFlow::Continue(())
         }
@@ -501,50 +461,6 @@ mod tests {
             let length: f64 = parts.iter().map(|p| p.1 - p.0).sum();
             assert!(length * a.sqrt() < 0.3, "{length}");
         }
-    }
-
-    #[test]
-    fn notes_are_made_once_and_those_of_their_cell() {
-        struct Noting {
-            line: (DVec3, DVec3),
-            made: usize,
-            noted: Vec<(f64, Option<Note>)>,
-        }
-        impl Visitor for Noting {
-            fn line(&self) -> (DVec3, DVec3) {
-                self.line
-            }
-            fn content(&mut self, _cell: &Aabb) -> Content {
-                Content::Surface
-            }
-            fn part(&mut self, cell: &Cell<'_>, enter: f64, exit: f64) -> ControlFlow<()> {
-                let Aabb { min, max } = cell.bounds();
-                let (origin, direction) = self.line;
-                let middle = origin + direction * (0.5 * (enter + exit));
-                // The line goes along borders of cells.
-                assert!(cell.bounds().padded(DVec3::splat(1e-12)).contains(middle));
-                let note = cell.note(|| {
-                    self.made += 1;
-                    [min.x, min.y, min.z, max.x, max.y, max.z].map(|x| x as f32)
-                });
-                self.noted.push((min.x, note.copied()));
-                ControlFlow::Continue(())
-            }
-        }
-        let tree = Octree::new(BOX, 6);
-        let walk = || {
-            let line = (DVec3::new(3.0, 2.0, -2.5), DVec3::new(-1.5, -1.0, 1.2));
-            let (made, noted) = (0, vec![]);
-            let mut visitor = Noting { line, made, noted };
-            let _ = tree.walk(Interval::LINE, &mut visitor);
-            visitor
-        };
-        let [first, second, third] = [walk(), walk(), walk()];
-        assert!(first.noted.iter().all(|(_, note)| note.is_none()));
-        assert!(second.made > 60 && second.made == second.noted.len());
-        assert!(third.made == 0 && third.noted == second.noted);
-        let is_own = |(x, note): &(f64, Option<Note>)| note.is_some_and(|n| n[0] == *x as f32);
-        assert!(third.noted.iter().all(is_own));
     }
 
     #[test]
@@ -611,7 +527,7 @@ mod tests {
             fn content(&mut self, _: &Aabb) -> Content {
                 Content::Surface
             }
-            fn part(&mut self, _cell: &Cell<'_>, enter: f64, exit: f64) -> ControlFlow<()> {
+            fn part(&mut self, enter: f64, exit: f64) -> ControlFlow<()> {
                 self.found.push((enter, exit));
                 ControlFlow::Continue(())
             }

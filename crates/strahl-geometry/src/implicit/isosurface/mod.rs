@@ -5,7 +5,7 @@ mod search;
 mod tests;
 
 use super::container::Container;
-use super::octree::{Content, Note, Octree, Visitor as _};
+use super::octree::{Content, Octree, Visitor as _};
 use super::workspace::with_workspace;
 use crate::{
     Crossing, Crossings, GeometryError, PrimHit, Primitive, Scratch, Side, Solid, SurfaceId,
@@ -176,19 +176,6 @@ impl Isosurface {
     fn rate_within(&self, workspace: &mut Workspace, cell: &Aabb, direction: DVec3) -> Bounds {
         let (sides, way) = (sides(cell), direction.to_array());
         self.function.rate(workspace, &sides, &way).1
-    }
-
-    /// Bounds of the derivatives along the axes, in pairs, a little wider; NaN first if one of them is not known.
-    fn slopes_within(&self, workspace: &mut Workspace, cell: &Aabb) -> Note {
-        let mut slopes = [0.0; 6];
-        for (axis, slopes) in slopes.as_chunks_mut().0.iter_mut().enumerate() {
-            let rate = self.rate_within(workspace, cell, DVec3::AXES[axis]);
-            *slopes = [(rate.min as f32).next_down(), (rate.max as f32).next_up()];
-            if rate.nan || !slopes.iter().all(|slope| slope.is_finite()) {
-                return [f32::NAN; 6];
-            }
-        }
-        slopes
     }
 
     /// What a cell of the octree holds.

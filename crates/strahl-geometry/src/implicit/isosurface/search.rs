@@ -1,7 +1,7 @@
 //! The crossings of one ray with a surface, found in parts that shrink until they are proven empty or short.
 
 use super::{Event, Isosurface, SURFACE};
-use crate::implicit::octree::{Cell, Content, Note, Visitor};
+use crate::implicit::octree::{Content, Visitor};
 use crate::{Crossing, PrimHit, Side};
 use std::ops::ControlFlow;
 use strahl_function::{Bounds, Workspace};
@@ -116,25 +116,6 @@ impl Search<'_> {
             && from.value.abs() + to.value.abs() > self.slope * (to.s - from.s)
     }
 
-    /// Whether what is known of the derivatives in a cell proves that there is no change of sign between two places in it with values of
-    /// one sign. It takes less time than to find out about the part between them, and what it leaves out is nothing.
-    fn is_clear(&mut self, cell: &Cell<'_>, from: Place, to: Place) -> bool {
-        let surface = self.surface;
-        if !surface.has_rates || !(to.s - from.s > self.shortest) {
-            return false;
-        }
-        let bounds = cell.bounds().padded(surface.cell_pad);
-        let make = || surface.slopes_within(self.workspace, &bounds);
-        let Some(slopes) = cell.note(make) else {
-            return false;
-        };
-        // Rounding may move what is far from the origin of the ray out of the cell.
-        let ends = [self.point(from.s), self.point(to.s)];
-        !slopes[0].is_nan()
-            && ends.iter().all(|end| bounds.contains(*end))
-            && stays_far(from, to, along(slopes, self.direction))
-    }
-
     /// Bounds of the derivative of the function along the ray between two places.
     fn rate(&mut self, from: f64, to: f64) -> Bounds {
         let cell = self.around(from, to);
@@ -146,12 +127,6 @@ impl Search<'_> {
 /// Whether a function with values of one sign at two places certainly has no zero in between, because it does not change fast enough: a
 /// line from each place, as steep as the derivative allows, bounds it.
 fn stays_away(from: Place, to: Place, rate: Bounds) -> bool {
-    // A monotone function has its least value at an end.
-    !rate.nan && (rate.min >= 0.0 || rate.max <= 0.0 || stays_far(from, to, rate))
-}
-
-/// The same, and by so much that rounding does not hide it. `rate` is known.
-fn stays_far(from: Place, to: Place, rate: Bounds) -> bool {
     // Far more than the rounding errors of what follows.
     const SLACK: f64 = 1e-6;
     let (a, b) = (from.value.abs(), to.value.abs());
@@ -161,27 +136,16 @@ fn stays_far(from: Place, to: Place, rate: Bounds) -> bool {
     } else {
         (-rate.min, rate.max)
     };
-    let lowest = if fall <= 0.0 || rise <= 0.0 {
-        a.min(b)
-    } else {
-        // Both lines have the same height where they meet.
-        (a * rise + b * fall - fall * rise * (to.s - from.s)) / (fall + rise)
-    };
-    lowest > SLACK * (a + b)
-}
-
-/// Bounds of the derivative along a direction, by those along the axes, which are wider than all rounding errors.
-fn along(slopes: &Note, direction: DVec3) -> Bounds {
-    let mut rate = Bounds::new(0.0, 0.0);
-    for (axis, [low, high]) in slopes.as_chunks().0.iter().enumerate() {
-        let (a, b) = (
-            f64::from(*low) * direction[axis],
-            f64::from(*high) * direction[axis],
-        );
-        rate.min += a.min(b);
-        rate.max += a.max(b);
+    if rate.nan {
+        return false;
     }
-    rate
+    // A monotone function has its least value at an end.
+    if fall <= 0.0 || rise <= 0.0 {
+        return true;
+    }
+    // Both lines have the same height where they meet.
+    let lowest = (a * rise + b * fall - fall * rise * (to.s - from.s)) / (fall + rise);
+    lowest > SLACK * (a + b)
 }
 
 /// Whether values within bounds are all inside (`true`) or all outside, where NaN counts as outside; otherwise `None`.
@@ -255,7 +219,7 @@ impl<V: FnMut(Event) -> ControlFlow<()>> Visitor for Course<'_, V> {
         }
     }
 
-    fn part(&mut self, cell: &Cell<'_>, enter: f64, exit: f64) -> ControlFlow<()> {
+    fn part(&mut self, enter: f64, exit: f64) -> ControlFlow<()> {
         let enter = if enter > 0.0 { enter } else { 0.0 };
         let exit = if exit < self.length {
             exit
@@ -284,10 +248,6 @@ impl<V: FnMut(Event) -> ControlFlow<()>> Visitor for Course<'_, V> {
         }
         let last = self.search.place(exit);
         (self.last, self.value) = (exit, Some(last.value));
-        if inside == last.is_inside() && self.search.is_clear(cell, first, last) {
-            self.inside = Some(inside);
-            return ControlFlow::Continue(());
-        }
         let start = self.search.start;
         let Self { search, visit, .. } = self;
         let flow = search.run(first, last, &mut |s| {
