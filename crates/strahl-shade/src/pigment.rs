@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use crate::ColorFt;
 use crate::image_map::ImageMap;
-use crate::patterns::{FractalField, Modifiers, PatternField, TexturePoint};
-use strahl_math::DVec3;
+use crate::patterns::{Fractal, Modifiers, PatternField, TexturePoint};
+use strahl_math::{DVec2, DVec3};
 
 /// Entries at positions in `0..=1`, between which a value is looked up: the common part of all maps.
 ///
@@ -73,6 +73,41 @@ impl BlendMap<ColorFt> {
             None => ColorFt::default(),
             Some(Blend::One(color)) => *color,
             Some(Blend::Two(low, high, t)) => low.lerp(*high, t),
+        }
+    }
+}
+
+/// A pigment whose colours are selected by a fractal: those of several points take less time together.
+#[derive(Clone, Copy, Debug)]
+pub struct FractalPigment<'a> {
+    fractal: &'a Fractal,
+    field: &'a PatternField,
+    map: &'a BlendMap<ColorFt>,
+}
+
+impl FractalPigment<'_> {
+    /// The number of colours that are computed at once.
+    const FEW: usize = 16;
+
+    /// The point of the complex plane to which warps and turbulence lead from a position.
+    pub fn place(&self, position: DVec3) -> DVec2 {
+        self.field.moved(position).truncate()
+    }
+
+    /// Whether both are one pigment, not just equal ones.
+    pub fn is(&self, other: &Self) -> bool {
+        std::ptr::eq(self.map, other.map)
+    }
+
+    /// Stores the colours at points of the complex plane. The slices have the same length.
+    pub fn store_colors(&self, places: &[DVec2], colors: &mut [ColorFt]) {
+        let mut values = [0.0; Self::FEW];
+        for (places, colors) in places.chunks(Self::FEW).zip(colors.chunks_mut(Self::FEW)) {
+            let values = &mut values[..places.len()];
+            self.fractal.store_values(places, values);
+            for (color, value) in colors.iter_mut().zip(values) {
+                *color = self.map.color(self.field.value_of_raw(*value));
+            }
         }
     }
 }
@@ -221,20 +256,17 @@ impl Pigment {
         })
     }
 
-    /// The fractal that selects the colours, with its modifiers, if one does.
-    pub(crate) fn fractal(&self) -> Option<FractalField<'_>> {
-        match self {
-            Self::ColorMap(field, _) => field.fractal(),
-            _ => None,
-        }
-    }
-
-    /// The colour where that fractal has this value, of which the modifiers have not made another one yet.
-    pub(crate) fn color_by_fractal(&self, raw: f64) -> ColorFt {
-        match self {
-            Self::ColorMap(field, map) => map.color(field.value_of_raw(raw)),
-            _ => ColorFt::default(),
-        }
+    /// The pigment as one whose colours a fractal selects, if it is one.
+    pub(crate) fn of_fractal(&self) -> Option<FractalPigment<'_>> {
+        let Self::ColorMap(field, map) = self else {
+            return None;
+        };
+        let fractal = field.fractal()?;
+        Some(FractalPigment {
+            fractal,
+            field,
+            map,
+        })
     }
 
     /// The colour at the point after it has moved to a place.

@@ -12,8 +12,8 @@ use strahl_math::{DVec3, Transform};
 use crate::image_map::ImageMap;
 use crate::interior::Interior;
 use crate::normal::PovNormal;
-use crate::patterns::{FractalField, Modifiers, PatternField, TexturePoint};
-use crate::pigment::{Blend, BlendMap, Pigment};
+use crate::patterns::{Modifiers, PatternField, TexturePoint};
+use crate::pigment::{Blend, BlendMap, FractalPigment, Pigment};
 use crate::pov_finish::PovFinish;
 use crate::{Color, ColorFt};
 use paint::Stack;
@@ -144,11 +144,11 @@ impl Texture {
         true
     }
 
-    /// The fractal that selects the colours of a texture of one layer, if one does. Whoever knows its value at the point of
-    /// [`Texture::layers_in`] can store it in [`TexturePaint::fractal`].
-    pub fn fractal(&self) -> Option<FractalField<'_>> {
+    /// The pigment of a texture of one layer, if a fractal selects its colours. Who knows its colour at the point of
+    /// [`Texture::layers_in`] can store it in [`TexturePaint::pigment`].
+    pub fn fractal(&self) -> Option<FractalPigment<'_>> {
         match self {
-            Self::Plain(texture) => texture.pigment.fractal(),
+            Self::Plain(texture) => texture.pigment.of_fractal(),
             _ => None,
         }
     }
@@ -445,8 +445,8 @@ impl PlainTexture {
         if let Some((outer, in_map)) = self.tilt(point, n, ways) {
             (normal, stack.seen) = (outer, in_map);
         }
-        let color = if let Some(raw) = out.fractal.take() {
-            self.pigment.color_by_fractal(raw)
+        let color = if let Some(color) = out.pigment.take() {
+            color
         } else if stack.seen == point.n_shade {
             self.pigment.color_at(point)
         } else {

@@ -6,17 +6,19 @@ use crate::scene::RenderScene;
 use arrayvec::ArrayVec;
 use strahl_accel::PACKET;
 use strahl_math::DVec2;
-use strahl_shade::patterns::{FractalField, TexturePoint};
+use strahl_shade::ColorFt;
+use strahl_shade::patterns::TexturePoint;
+use strahl_shade::pigment::FractalPigment;
 use strahl_shade::texture::Texture;
 
 /// A surface whose colour comes from a fractal.
 struct Place<'s> {
     lane: usize,
-    fractal: FractalField<'s>,
+    fractal: FractalPigment<'s>,
     at: DVec2,
 }
 
-/// Computes the values of the fractals that give surfaces their colours, for [`paint`](crate::layers::paint).
+/// Computes the colours of surfaces whose pigments are fractals, for [`paint`](crate::layers::paint).
 #[inline]
 pub(super) fn follow_fractals<'s>(
     scene: &'s RenderScene,
@@ -31,6 +33,9 @@ pub(super) fn follow_fractals<'s>(
 
 #[cold]
 fn follow<'s>(scene: &'s RenderScene, points: &mut [Point<'s>], lanes: &Lanes) {
+    for lane in lanes {
+        points[*lane].paint.pigment = None;
+    }
     let places = lanes.iter().filter_map(|lane| place(scene, points, *lane));
     let mut places: ArrayVec<Place<'s>, PACKET> = places.collect();
     while let Some(first) = places.last().map(|place| place.fractal) {
@@ -44,10 +49,10 @@ fn follow<'s>(scene: &'s RenderScene, points: &mut [Point<'s>], lanes: &Lanes) {
             }
             !is_same
         });
-        let mut values = [0.0; PACKET];
-        first.store_values(&at, &mut values[..at.len()]);
-        for (lane, value) in same.into_iter().zip(values) {
-            points[lane].paint.fractal = Some(value);
+        let mut colors = [ColorFt::default(); PACKET];
+        first.store_colors(&at, &mut colors[..at.len()]);
+        for (lane, color) in same.into_iter().zip(colors) {
+            points[lane].paint.pigment = Some(color);
         }
     }
 }

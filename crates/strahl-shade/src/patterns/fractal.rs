@@ -133,7 +133,7 @@ impl Fractal {
     }
 
     /// Stores the values at several points.
-    pub(super) fn store_values(&self, points: &[DVec2], values: &mut [f64]) {
+    pub(crate) fn store_values(&self, points: &[DVec2], values: &mut [f64]) {
         together::values(Simd::best(), self, points, values);
     }
 

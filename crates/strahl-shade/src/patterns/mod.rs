@@ -380,18 +380,15 @@ impl PatternField {
         field.moved(self.modifiers.warped(position))
     }
 
-    /// The pattern with its modifiers, if it is a fractal.
-    pub(crate) fn fractal(&self) -> Option<FractalField<'_>> {
+    /// The fractal, if the pattern is one.
+    pub(crate) fn fractal(&self) -> Option<&Fractal> {
         match &self.pattern {
-            Pattern::Fractal(fractal) => Some(FractalField {
-                fractal,
-                field: self,
-            }),
+            Pattern::Fractal(fractal) => Some(fractal),
             _ => None,
         }
     }
 
-    /// The value where the modifiers have not changed the pattern's yet.
+    /// The value of the field where its pattern has a raw value, which frequency, phase and wave have not changed yet.
     pub(crate) fn value_of_raw(&self, raw: f64) -> f64 {
         self.as_ref().value_of_raw(raw)
     }
@@ -406,30 +403,6 @@ impl PatternField {
             pattern: &self.pattern,
             modifiers: &self.modifiers,
         }
-    }
-}
-
-/// A fractal with its modifiers.
-#[derive(Clone, Copy, Debug)]
-pub struct FractalField<'a> {
-    fractal: &'a Fractal,
-    field: &'a PatternField,
-}
-
-impl FractalField<'_> {
-    /// The point of the fractal's plane to which the modifiers lead.
-    pub fn place(&self, position: DVec3) -> DVec2 {
-        self.field.moved(position).truncate()
-    }
-
-    /// Whether both are the same, not just alike.
-    pub fn is(&self, other: &Self) -> bool {
-        std::ptr::eq(self.fractal, other.fractal)
-    }
-
-    /// Stores the values at several places, of which the modifiers have not made others yet. Faster than one after the other.
-    pub fn store_values(&self, places: &[DVec2], values: &mut [f64]) {
-        self.fractal.store_values(places, values);
     }
 }
 
@@ -452,7 +425,7 @@ impl FieldRef<'_> {
         raw.map(|raw| self.value_of_raw(raw))
     }
 
-    /// The value that modifiers make of the pattern's.
+    /// See [`PatternField::value_of_raw`].
     fn value_of_raw(&self, raw: f64) -> f64 {
         let wave = self.modifiers.wave;
         let wave = wave.unwrap_or_else(|| self.pattern.default_wave());

@@ -78,9 +78,9 @@ pub struct TexturePaint<'a> {
     /// Nothing passes layers whose transmittance together has a grey value below this: what is behind, lower layers too, stays unseen
     /// (measured). Set by the owner.
     pub bailout: f64,
-    /// The value of [`Texture::fractal`](crate::texture::Texture::fractal) at the next point, without its modifiers, if it is known
-    /// already. Set by the owner.
-    pub fractal: Option<f64>,
+    /// The colour at the next point of a pigment that is a [fractal](crate::texture::Texture::fractal), if it is known already. Set by the
+    /// owner before each point.
+    pub pigment: Option<ColorFt>,
 }
 
 impl TexturePaint<'_> {

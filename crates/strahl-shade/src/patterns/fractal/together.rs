@@ -202,7 +202,10 @@ impl Together<'_> {
 
 /// Stores what [`Fractal::value`] returns for each point.
 pub(super) fn values(simd: Simd, fractal: &Fractal, points: &[DVec2], values: &mut [f64]) {
-    if fractal.iterations == 0 || points.len() == 1 {
+    let orbits = points
+        .iter()
+        .filter(|point| fractal.value_at_once(**point).is_none());
+    if fractal.iterations == 0 || orbits.take(2).count() < 2 {
         for (point, value) in points.iter().zip(values) {
             *value = fractal.value(*point);
         }
