@@ -238,11 +238,21 @@ impl Host for FolderHost {
         }
         let beside = Path::new(from).parent().map(Path::to_path_buf);
         let written = self.written.folder().filter(|f| f.is_dir());
-        let folders: Vec<PathBuf> = beside
+        let all = beside
             .into_iter()
             .chain(self.library.clone())
-            .chain(written.map(Path::to_path_buf))
-            .collect();
+            .chain(written.map(Path::to_path_buf));
+        let mut folders = Vec::<PathBuf>::new();
+        for folder in all {
+            // The current folder has two names.
+            let folder = match folder == Path::new(".") {
+                true => PathBuf::new(),
+                false => folder,
+            };
+            if !folders.contains(&folder) {
+                folders.push(folder);
+            }
+        }
         self.search(name, &folders)
     }
 
