@@ -49,8 +49,7 @@ pub(super) struct LensSampler {
 }
 
 impl LensSampler {
-    /// `None` if the camera is sharp everywhere.
-    /// `size` is the width and the height of the picture.
+    /// The lens of a camera; `size` is the width and the height of the picture in pixels. `None` if the camera is sharp everywhere.
     pub(super) fn new(camera: &Camera, size: [f64; 2]) -> Option<Self> {
         let lens = camera.lens.as_ref()?;
         let forward = camera.direction.normalize_or_zero();

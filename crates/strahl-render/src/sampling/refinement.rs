@@ -136,7 +136,7 @@ impl Slopes {
                 *slope *= power;
             }
         }
-        // Compared numbers are rounded to single precision.
+        // Less than the threshold by more than all rounding errors: compared numbers have single precision.
         let alike = 0.999 * refinement.threshold - 1e-4;
         Self { steps, alike }
     }

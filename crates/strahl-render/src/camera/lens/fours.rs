@@ -46,8 +46,8 @@ impl FourRays {
         })
     }
 
-    /// Appends the rays with these numbers at a position, with the bits that they have one by one. Returns `false` where one of them has no
-    /// direction of its own.
+    /// Appends the rays with these numbers at a position, with the bits of [`LensSampler::ray`]. Returns `false` if the direction of one
+    /// of them has no length or is not finite; what it has appended is of no use then.
     pub(super) fn push(
         &self,
         numbers: Range<u32>,
