@@ -3,11 +3,12 @@
 use super::border::Border;
 use super::degree;
 use super::frame::Frame;
+use super::hull;
 use super::net::Net;
 use super::newton::Candidate;
 use super::search::{Aim, Keep, Search};
 use super::settle;
-use super::tree::{self, Tree};
+use super::tree::Tree;
 use std::sync::OnceLock;
 use strahl_math::error::gamma;
 use strahl_math::{Aabb, DVec2, DVec3, Interval};
@@ -44,7 +45,7 @@ impl<const K: usize> Bezier<K> {
     pub(super) fn new(net: Net<4, K>) -> Self {
         Self {
             is_rational: net.points().any(|p| p[3] != 1.0),
-            bounds: tree::bounds(&net),
+            bounds: hull::bounds(&net),
             net,
             border: Border::default(),
             seam: 0.0,

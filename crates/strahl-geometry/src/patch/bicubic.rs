@@ -1,9 +1,9 @@
 use super::bezier::{Bezier, is_on_a_line};
 use super::elements;
 use super::frame::Frame;
+use super::hull::{points, project};
 use super::net::Net;
 use super::newton::Candidate;
-use super::tree::{points, project};
 use crate::primitives::point_error;
 use crate::{GeometryError, PrimHit, Primitive, Scratch, Shape, SurfaceId, SurfacePoint};
 use std::sync::Arc;

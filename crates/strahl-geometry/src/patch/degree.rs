@@ -6,9 +6,9 @@
 
 use super::border::winding;
 use super::frame::Frame;
+use super::hull::{OVERLAP, points, project};
 use super::net::Net;
 use super::newton::Candidate;
-use super::tree::{OVERLAP, points, project};
 use strahl_math::error::gamma;
 
 /// After so many halvings in turn, parameters are neighbouring numbers. Mostly points are so much earlier.

@@ -6,9 +6,11 @@
 //! hits, are halved. As soon as the map is nearly linear over a window, Newton's method takes over.
 
 use super::frame::Frame;
+use super::hull::OVERLAP;
+use super::leaf::NEARLY_LINEAR;
 use super::net::Jet;
 use super::newton::{Candidate, Found, Rectangle, Ways, jet, newton};
-use super::tree::{Curving, NEARLY_LINEAR, OVERLAP};
+use super::piece::Curving;
 use arrayvec::ArrayVec;
 use strahl_math::DVec3;
 use strahl_math::error::gamma;

@@ -1,8 +1,9 @@
 //! The point at which a ray meets a piece of a patch, by Newton's method.
 
 use super::frame::Frame;
+use super::hull::OVERLAP;
 use super::net::{Jet, Net, bernstein};
-use super::tree::{OVERLAP, Square};
+use super::piece::Square;
 use strahl_math::DVec3;
 use strahl_math::error::gamma;
 use strahl_simd::Isa;

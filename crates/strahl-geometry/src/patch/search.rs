@@ -9,9 +9,12 @@
 
 use super::frame::Frame;
 use super::graze;
+use super::hull::{OVERLAP, project};
+use super::leaf::NEARLY_LINEAR;
 use super::net::Net;
 use super::newton::{Candidate, Found, Rectangle, newton, ways};
-use super::tree::{Curving, NEARLY_LINEAR, OVERLAP, Square, Tree, Visitor, project};
+use super::piece::{Curving, Square};
+use super::tree::{Tree, Visitor};
 use strahl_math::Interval;
 use strahl_math::error::gamma;
 use strahl_simd::{Simd, dispatch};

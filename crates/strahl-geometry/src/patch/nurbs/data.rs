@@ -5,8 +5,8 @@ use super::spline::{Knots, Names, elevated, even};
 use super::{check_points, check_weights};
 use crate::GeometryError;
 use crate::patch::bezier::{Bezier, is_on_a_line};
+use crate::patch::hull::project;
 use crate::patch::net::Net;
-use crate::patch::tree::project;
 use strahl_math::DVec3;
 
 /// The control net of a NURBS surface with its degrees and knots.

@@ -2,9 +2,9 @@
 
 use crate::patch::bezier::{Bezier, is_on_a_line};
 use crate::patch::frame::Frame;
+use crate::patch::hull::{points, project};
 use crate::patch::newton::Candidate;
 use crate::patch::search::Keep;
-use crate::patch::tree::{points, project};
 use std::fmt::Debug;
 use strahl_math::{Aabb, DVec2, DVec3, Interval, Transform};
 

@@ -13,9 +13,9 @@ use super::{quad, triangle};
 use crate::patch::bezier::Bezier;
 use crate::patch::border::{Border, Sides};
 use crate::patch::frame::Frame;
+use crate::patch::hull;
 use crate::patch::net::Net;
 use crate::patch::newton::Candidate;
-use crate::patch::tree;
 use std::sync::{Mutex, OnceLock, PoisonError};
 use strahl_math::error::gamma;
 use strahl_math::{Aabb, DVec2, DVec3, Interval, Ray};
@@ -433,10 +433,10 @@ pub(super) fn bounds(ring: &Ring) -> Aabb {
             return padded(ring.hull());
         }
         match ring.scheme {
-            SubdivisionScheme::CatmullClark => tree::bounds(&quad::net(ring)),
+            SubdivisionScheme::CatmullClark => hull::bounds(&quad::net(ring)),
             SubdivisionScheme::Loop => triangle::nets(ring)
                 .iter()
-                .fold(Aabb::EMPTY, |all, net| all.union(&tree::hull(net))),
+                .fold(Aabb::EMPTY, |all, net| all.union(&hull::hull(net))),
         }
     };
     if ring.is_leaf() {
@@ -451,5 +451,5 @@ pub(super) fn bounds(ring: &Ring) -> Aabb {
 /// A box, widened by rounding errors.
 fn padded(tight: Aabb) -> Aabb {
     let noise = tight.min.abs().max(tight.max.abs()) * gamma(256);
-    tight.padded(noise + tight.size() * (8.0 * tree::OVERLAP))
+    tight.padded(noise + tight.size() * (8.0 * hull::OVERLAP))
 }
