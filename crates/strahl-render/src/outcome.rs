@@ -90,7 +90,7 @@ pub struct FirstHit {
 /// The result of one primary ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SampleResult {
-    /// Linear colour.
+    /// The radiance, a colour of the scene's working space.
     pub color: Color,
     /// The first hit.
     pub first: Option<FirstHit>,

@@ -21,8 +21,10 @@ use crate::scene::RenderScene;
 use crate::tiles::TileOrder;
 use crate::trace::{RayCounts, TraceSettings};
 use crate::transport::Transport;
+use arrayvec::ArrayVec;
 use pixels::PixelTracer;
-use strahl_accel::TraversalStats;
+use strahl_accel::{PACKET, TraversalStats};
+use strahl_scene::WorkingSpace;
 use strahl_shade::Color;
 
 /// How to render.
@@ -196,6 +198,19 @@ struct TileResult<T> {
 }
 
 impl<T> TileResult<T> {
+    /// With other values, which are made of all of these.
+    fn with<U>(self, make: impl FnOnce(Vec<T>) -> Vec<U>) -> TileResult<U> {
+        TileResult {
+            tile: self.tile,
+            points: self.points,
+            values: make(self.values),
+            infos: self.infos,
+            costs: self.costs,
+            counts: self.counts,
+            traversal: self.traversal,
+        }
+    }
+
     /// The pixels with a value each.
     fn places(&self) -> Box<dyn Iterator<Item = (u32, u32)> + '_> {
         match &self.points {
@@ -221,6 +236,47 @@ struct Shown {
     alpha: f32,
 }
 
+impl Shown {
+    /// A pixel with the mean of its samples.
+    fn of(mean: Sample, space: WorkingSpace) -> Self {
+        Self::all(&[mean], space)[0]
+    }
+
+    /// Pixels with the means of their samples. Means are colours of the scene's working space, as in POV-Ray (measured): where it is not linear,
+    /// edges are darker than means of linear light would be.
+    fn all(means: &[Sample], space: WorkingSpace) -> Vec<Self> {
+        let mut all = Vec::with_capacity(means.len());
+        for means in means.chunks(PACKET) {
+            let share = |mean: &Sample| match space {
+                WorkingSpace::Linear => 1.0,
+                _ => covered(mean),
+            };
+            let shares: ArrayVec<f64, PACKET> = means.iter().map(share).collect();
+            let colors = means.iter().zip(&shares);
+            let mut colors: ArrayVec<Color, PACKET> =
+                colors.map(|(mean, share)| mean.color / *share).collect();
+            space.decode_all(&mut colors);
+            let pixels = colors.iter().zip(&shares).zip(means);
+            all.extend(pixels.map(|((color, share), mean)| Self {
+                color: (*color * *share).to_f32(),
+                alpha: (1.0 - mean.clear) as f32,
+            }));
+        }
+        all
+    }
+}
+
+/// The share of a pixel that has its colour: what does not show the background. The colour is that of this share times the share, so it is
+/// divided by it to become linear. Light that is added where little is covered, such as highlights on glass, counts as covering as much as it
+/// is bright.
+fn covered(mean: &Sample) -> f64 {
+    if mean.clear == 0.0 {
+        return 1.0;
+    }
+    let share = (1.0 - mean.clear).max(mean.color.max_component().min(1.0));
+    if share > 0.0 { share } else { 1.0 }
+}
+
 impl Samples {
     const NONE: Self = Self {
         sum: Color::BLACK,
@@ -240,14 +296,6 @@ impl Samples {
         self.clear += sample.clear;
         self.count += 1;
         self
-    }
-
-    /// What the film holds of the pixel.
-    fn shown(&self) -> Shown {
-        Shown {
-            color: self.mean().to_f32(),
-            alpha: (1.0 - self.clear()) as f32,
-        }
     }
 
     /// How much of what lies behind the picture shows.
@@ -314,11 +362,11 @@ impl Region {
 }
 
 impl Film {
-    fn set(&mut self, (x, y): (u32, u32), sample: Sample) {
+    fn set(&mut self, (x, y): (u32, u32), shown: Shown) {
         let index = self.region.index(x, y);
-        self.pixels[index] = sample.color.to_f32();
+        self.pixels[index] = shown.color;
         if let Some(alpha) = &mut self.alpha {
-            alpha[index] = (1.0 - sample.clear) as f32;
+            alpha[index] = shown.alpha;
         }
     }
 
@@ -339,16 +387,16 @@ impl Film {
     }
 
     /// Shows a sample in all pixels of a block, as far as they lie in the film.
-    fn fill(&mut self, block: Region, sample: Sample) {
+    fn fill(&mut self, block: Region, shown: Shown) {
         let Some(block) = block.intersection(&self.region) else {
             return;
         };
-        let (color, width) = (sample.color.to_f32(), block.width as usize);
+        let width = block.width as usize;
         for y in block.y..block.y + block.height {
             let start = self.region.index(block.x, y);
-            self.pixels[start..start + width].fill(color);
+            self.pixels[start..start + width].fill(shown.color);
             if let Some(alpha) = &mut self.alpha {
-                alpha[start..start + width].fill((1.0 - sample.clear) as f32);
+                alpha[start..start + width].fill(shown.alpha);
             }
         }
     }

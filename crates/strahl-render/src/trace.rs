@@ -119,7 +119,7 @@ impl<'s> TreeTracer<'s> {
         tracer.remembers = settings.shadow_cache;
         Self {
             tracer,
-            beyond: nothing::common(scene, &settings),
+            beyond: nothing::common(scene),
             uv: if uv_shown { Uv::Always } else { Uv::IfTextured },
             counts: RayCounts::default(),
             settings,
@@ -287,7 +287,6 @@ impl<'s> TreeTracer<'s> {
                 RayKind::Gather => self.gathered[parent] += taken,
             }
         }
-        self.settings.decode_all(&mut sums);
         for (number, sum) in numbers.iter().zip(&sums) {
             self.roots[number % PACKET] = *sum;
         }

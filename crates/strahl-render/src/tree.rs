@@ -56,7 +56,7 @@ pub struct PixelSample {
     pub pass: u32,
     /// The number of the ray, where a place has several: rays through a lens, or of a camera made of meshes.
     pub ray: Option<u32>,
-    /// The linear colour it brings. (The tree's total is in the numbers the scene's colours are given in.)
+    /// The radiance that it brings, in linear light. (The tree's total, of which the pixel's mean is made, is a colour of the scene's working space.)
     pub color: Color,
     /// Its tree.
     pub tree: RayTree,
@@ -69,7 +69,8 @@ pub struct PixelTree {
     pub samples: Vec<PixelSample>,
     /// How many places of the picture they belong to; the camera may see nothing through some.
     pub places: u32,
-    /// The pixel's linear colour before rounding: the mean over the places, or over the squares it was divided into.
+    /// The pixel's linear colour before rounding: the mean over the places, or over the squares it was divided into, of colours of the scene's
+    /// working space.
     pub color: Color,
     /// The colour as it is in the film.
     pub film: [f32; 3],
@@ -158,11 +159,12 @@ pub(crate) fn explain_from(
         rays.color(place.0, place.1, |ray| {
             let mut tree = RayTree::default();
             let color = tracer.trace(ray, &mut tree).color;
+            let linear = options.trace.space().decode(color);
             samples.push(PixelSample {
                 place,
                 pass,
                 ray: (!rays.is_sharp()).then_some(number),
-                color,
+                color: linear,
                 tree,
             });
             number += 1;
@@ -176,7 +178,7 @@ pub(crate) fn explain_from(
             let pixel = match &options.sampling {
                 Sampling::Recursive(refinement) => {
                     let mut inner = |&(dx, dy): &(f64, f64)| Sample::from(sample(1, dx, dy));
-                    subdivided(corners, refinement, &mut |places| {
+                    subdivided(corners, refinement, options.trace.space(), &mut |places| {
                         places.iter().map(&mut inner).collect()
                     })
                 }
@@ -208,6 +210,7 @@ pub(crate) fn explain_from(
             }
         }
     };
+    let color = options.trace.space().decode(color);
     Ok(PixelTree {
         samples,
         places: count,

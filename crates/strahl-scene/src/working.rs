@@ -4,7 +4,7 @@ use strahl_shade::{Color, srgb};
 /// The colour space in which the colours of a scene are given and its light is computed.
 ///
 /// Sums of light are correct in linear space only; the others exist for old scenes (POV-Ray's `assumed_gamma`). Pictures are
-/// always linear: the radiance of primary rays is decoded at the end.
+/// always linear: the mean of a pixel is decoded at the end.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum WorkingSpace {
     /// Linear light.

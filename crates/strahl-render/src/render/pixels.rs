@@ -21,6 +21,7 @@ use strahl_shade::Color;
 /// What a ray through the centre of a pixel has seen, and its cost.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Seen {
+    /// In linear light.
     pub(crate) color: Color,
     pub(crate) cost: PixelCost,
 }
@@ -371,7 +372,7 @@ impl PixelTracer<'_> {
     pub(super) fn probe(&mut self, x: u32, y: u32) -> Seen {
         let (x, y) = (f64::from(x) + 0.5, f64::from(y) + 0.5);
         let (sample, cost) = self.measured(|tracer| tracer.sample(x, y, false));
-        let color = sample.color;
+        let color = self.options.trace.space().decode(sample.color);
         Seen { color, cost }
     }
 
@@ -507,7 +508,7 @@ impl PixelTracer<'_> {
             } else if let Some(coverage) = &mut coverage {
                 coverage.restart();
                 let mut sample = tree.trace(ray, coverage);
-                sample.color = tree.decoded(coverage.color);
+                sample.color = coverage.color;
                 clear = (clear.0 + coverage.clear, clear.1 + 1);
                 sample
             } else {

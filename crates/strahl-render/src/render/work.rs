@@ -2,7 +2,7 @@
 
 use super::crew::{Canvas, Ended, Part, TileList, Turn};
 use super::plan::{Stage, edge, points};
-use super::{Crew, Lattice, RenderError, RenderOptions, Rendered, Samples, Shown, mean_of_corners};
+use super::{Crew, Lattice, RenderError, RenderOptions, Rendered, Shown, mean_of_corners};
 use crate::cost::PixelCost;
 use crate::film::{Film, Region, try_filled};
 use crate::sampling::{Sample, Sampling, subdivided};
@@ -12,6 +12,7 @@ use crate::trace::RayCounts;
 use arrayvec::ArrayVec;
 use std::collections::HashMap;
 use strahl_accel::TraversalStats;
+use strahl_scene::WorkingSpace;
 
 /// What a film that is not finished has of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -152,7 +153,7 @@ impl Work {
             Stage::Corners { step } => one_to_one(tiles_of(region, edge(step), order), film),
             Stage::Refine(refinement) => {
                 if let Some(first) = &self.lattice {
-                    self.rough = first.rough(&refinement)?;
+                    self.rough = first.rough(&refinement, self.options.trace.space())?;
                 }
                 let rough = |x, y| self.rough[region.index(x, y)];
                 let all = tiles(film, order).into_iter();
@@ -181,6 +182,7 @@ impl Work {
         sink: Option<&mut (dyn Sink + '_)>,
     ) -> Ended {
         let (pass, options) = (self.pass(), self.options.clone());
+        let space = options.trace.space();
         let origin = (self.canvas.film.region.x, self.canvas.film.region.y);
         let known = match stage {
             Stage::First { step } | Stage::Corners { step } => self.known(step),
@@ -212,23 +214,21 @@ impl Work {
         };
         match stage {
             Stage::Pixels => turn.trace(
-                |tracer, tile| {
-                    tracer.first_pass(
-                        tile,
-                        |tracer, pixels| Some(tracer.blank(pixels)?.shown()),
-                        |tracer, x, y| tracer.pixel(0, x, y).shown(),
-                        |color| Samples::NONE.with(color.into()).shown(),
-                    )
-                },
+                |tracer, tile| tracer.centers(tile).with(|means| Shown::all(&means, space)),
                 |film, result, _| film.set_tile(result.tile, &result.values),
             ),
             Stage::First { step: 1 } if known.is_none() => turn.trace(
-                |tracer, tile| tracer.centers(tile),
+                |tracer, tile| {
+                    tracer.centers(tile).with(|samples| {
+                        let shown = Shown::all(&samples, space);
+                        samples.into_iter().zip(shown).collect()
+                    })
+                },
                 |film, result, _| {
-                    for (place, sample) in result.tile.positions().zip(result.values) {
+                    for (place, (sample, shown)) in result.tile.positions().zip(result.values) {
                         lattice.put(place, sample);
                         if film.region.contains(place.0, place.1) {
-                            film.set(place, sample);
+                            film.set(place, shown);
                         }
                     }
                 },
@@ -240,7 +240,7 @@ impl Work {
                         if keeps {
                             lattice.put(place, *sample);
                         }
-                        film.fill(block(place, step), *sample);
+                        film.fill(block(place, step), Shown::of(*sample, space));
                     }
                 },
             ),
@@ -260,8 +260,11 @@ impl Work {
                     for (place, sample) in result.places().zip(&result.values) {
                         lattice.put(place, *sample);
                     }
-                    for (x, y) in ready.iter().flat_map(|part| part.positions()) {
-                        film.set((x, y), mean_of_corners(lattice.around(x, y)));
+                    for part in ready {
+                        let means = part
+                            .positions()
+                            .map(|(x, y)| mean_of_corners(lattice.around(x, y)));
+                        film.set_tile(*part, &Shown::all(&means.collect::<Vec<_>>(), space));
                     }
                 },
             ),
@@ -270,7 +273,7 @@ impl Work {
                 |film, result, _| {
                     for (place, sample) in result.places().zip(&result.values) {
                         lattice.put(place, *sample);
-                        film.fill(block(place, step), *sample);
+                        film.fill(block(place, step), Shown::of(*sample, space));
                     }
                 },
             ),
@@ -278,11 +281,12 @@ impl Work {
                 let first = &*lattice;
                 turn.trace(
                     |tracer, tile| {
-                        tracer.tile(
+                        let means = tracer.tile(
                             tile,
-                            |_, _| None::<Shown>,
-                            |tracer, x, y| tracer.remaining(first.at(x, y), x, y).shown(),
-                        )
+                            |_, _| None,
+                            |tracer, x, y| tracer.remaining(first.at(x, y), x, y).sample(),
+                        );
+                        means.with(|means| Shown::all(&means, space))
                     },
                     |film, result, _| film.set_tile(result.tile, &result.values),
                 )
@@ -292,7 +296,7 @@ impl Work {
                 let is_rough = |x, y| rough[first.region.index(x, y)];
                 turn.trace(
                     |tracer, tile| tracer.refined(tile, is_rough, |x, y| first.at(x, y)),
-                    |film, result, _| set_some(film, result.tile, result.values),
+                    |film, result, _| set_some(film, result.tile, &result.values, space),
                 )
             }
             Stage::Divide(refinement) => {
@@ -309,14 +313,14 @@ impl Work {
                                     .iter()
                                     .any(|corner| corner.color != corners[0].color)
                                     .then(|| {
-                                        subdivided(corners, &refinement, &mut |places| {
+                                        subdivided(corners, &refinement, space, &mut |places| {
                                             tracer.samples(x, y, places)
                                         })
                                     })
                             },
                         )
                     },
-                    |film, result, _| set_some(film, result.tile, result.values),
+                    |film, result, _| set_some(film, result.tile, &result.values, space),
                 )
             }
         }
@@ -388,10 +392,14 @@ fn block((x, y): (u32, u32), step: u32) -> Region {
 }
 
 /// Writes the pixels that have a new value.
-fn set_some(film: &mut Film, tile: Region, values: Vec<Option<Sample>>) {
-    for (place, sample) in tile.positions().zip(values) {
-        if let Some(sample) = sample {
-            film.set(place, sample);
+fn set_some(film: &mut Film, tile: Region, values: &[Option<Sample>], space: WorkingSpace) {
+    let means: Vec<Sample> = values.iter().flatten().copied().collect();
+    let mut shown = Shown::all(&means, space).into_iter();
+    for (place, value) in tile.positions().zip(values) {
+        if value.is_some()
+            && let Some(shown) = shown.next()
+        {
+            film.set(place, shown);
         }
     }
 }

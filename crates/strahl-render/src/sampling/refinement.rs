@@ -4,6 +4,7 @@ use super::Sample;
 use arrayvec::ArrayVec;
 use std::{collections::HashMap, fmt, str::FromStr};
 use strahl_math::det;
+use strahl_scene::WorkingSpace;
 use strahl_shade::Color;
 
 /// When and how far pixels are refined: POV-Ray's `+A`, `+R` and `+AG`.
@@ -169,11 +170,12 @@ pub(crate) type Few = ArrayVec<Sample, 5>;
 pub(crate) type Take<'a> = dyn FnMut(&[(f64, f64)]) -> Few + 'a;
 
 /// The mean of a pixel with these samples at its corners (top left, top right, bottom left, bottom right): the mean of the corners if
-/// they are alike, or else that of the four quarters of the pixel (Whitted 1980). `sample` takes up to five places in the pixel, `0..=1` from its top left corner,
+/// they are alike in linear light, or else that of the four quarters of the pixel (Whitted 1980). `sample` takes up to five places in the pixel, `0..=1` from its top left corner,
 /// and returns their samples.
 pub(crate) fn subdivided(
     corners: [Sample; 4],
     refinement: &Refinement,
+    space: WorkingSpace,
     sample: &mut Take<'_>,
 ) -> Sample {
     let size = 1 << refinement.depth.saturating_sub(1);
@@ -181,6 +183,7 @@ pub(crate) fn subdivided(
         cell: 1.0 / f64::from(size),
         known: HashMap::new(),
         refinement,
+        space,
         sample,
     };
     division.square((0, 0), size, corners)
@@ -193,6 +196,7 @@ struct Division<'a> {
     /// Samples on borders that squares share, by their place in smallest squares.
     known: HashMap<(u32, u32), Sample>,
     refinement: &'a Refinement,
+    space: WorkingSpace,
     sample: &'a mut Take<'a>,
 }
 
@@ -218,7 +222,9 @@ impl Division<'_> {
     }
 
     fn differ(&self, corners: [Sample; 4]) -> bool {
-        let shown = Compared::few(&corners.map(|sample| sample.color), self.refinement);
+        let mut colors = corners.map(|sample| sample.color);
+        self.space.decode_all(&mut colors);
+        let shown = Compared::few(&colors, self.refinement);
         let pairs = [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)];
         pairs
             .iter()
@@ -310,7 +316,7 @@ mod tests {
             let step = step_at(0.7);
             let corners = [0.0, 1.0, 0.0, 1.0].map(|x| step(x, 0.0));
             let mut count = 0;
-            let color = subdivided(corners, &refinement, &mut |places| {
+            let color = subdivided(corners, &refinement, WorkingSpace::Linear, &mut |places| {
                 count += places.len();
                 let inside = |x: f64| (0.0..=1.0).contains(&x);
                 assert!(places.iter().all(|&(x, y)| inside(x) && inside(y)));
@@ -324,7 +330,12 @@ mod tests {
     fn alike_corners_need_no_rays() {
         let mut none = |_: &[(f64, f64)]| -> Few { unreachable!("no place is looked at") };
         let corners = [Sample::from(Color::gray(0.25)); 4];
-        let color = subdivided(corners, &Refinement::DEFAULT, &mut none);
+        let color = subdivided(
+            corners,
+            &Refinement::DEFAULT,
+            WorkingSpace::Linear,
+            &mut none,
+        );
         assert_eq!(color, Sample::from(Color::gray(0.25)));
     }
 }

@@ -4,7 +4,7 @@ use strahl_shade::Color;
 /// The light through a place of the picture, or a mean of such.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Sample {
-    /// The linear colour.
+    /// A colour of the scene's working space.
     pub(crate) color: Color,
     /// How much of what lies behind the picture shows, `0..=1`; kept for the alpha channel only.
     pub(crate) clear: f64,

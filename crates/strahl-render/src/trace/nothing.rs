@@ -1,6 +1,6 @@
 //! Primary rays that hit nothing: the background.
 
-use super::{Branch, SampleResult, TraceSettings, TreeTracer};
+use super::{Branch, SampleResult, TreeTracer};
 use crate::observer::RayKind;
 use crate::scene::RenderScene;
 use strahl_math::Ray;
@@ -8,7 +8,7 @@ use strahl_scene::Background;
 use strahl_shade::Color;
 
 /// The radiance along primary rays that hit nothing, if it is the same for all.
-pub(super) fn common(scene: &RenderScene, settings: &TraceSettings) -> Option<Color> {
+pub(super) fn common(scene: &RenderScene) -> Option<Color> {
     if scene.has_air() || scene.absorbs_around_the_eye() {
         return None;
     }
@@ -17,7 +17,7 @@ pub(super) fn common(scene: &RenderScene, settings: &TraceSettings) -> Option<Co
         Background::Sky(sky) => sky.same_everywhere()?,
         Background::Gradient { .. } => return None,
     };
-    Some(settings.decoded(color + Color::BLACK))
+    Some(color + Color::BLACK)
 }
 
 impl TreeTracer<'_> {
@@ -50,12 +50,7 @@ impl TreeTracer<'_> {
         if self.adds_light_on_the_way() {
             color += adds;
         }
-        self.settings.decoded(color)
-    }
-
-    /// A sum of light as colours are stored.
-    pub(crate) fn decoded(&self, color: Color) -> Color {
-        self.settings.decoded(color)
+        color
     }
 
     /// The radiance along primary rays that hit nothing, if it is the same for all; then `rays` rays are counted as traced.

@@ -1,6 +1,6 @@
 use crate::scene::RenderScene;
 use strahl_scene::WorkingSpace;
-use strahl_shade::{Color, ShadingModel};
+use strahl_shade::ShadingModel;
 
 /// How ray trees are grown.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -52,21 +52,11 @@ impl TraceSettings {
         }
     }
 
-    /// Colours in linear light; diagnostic pictures are not converted.
-    pub(super) fn decode_all(&self, colors: &mut [Color]) {
-        if !self
-            .force_shading
-            .is_some_and(|model| model.is_diagnostic())
-        {
-            self.working_space.decode_all(colors);
-        }
-    }
-
-    /// A colour in linear light; diagnostic pictures are not converted.
-    pub(super) fn decoded(&self, color: Color) -> Color {
+    /// The space of the colours of pixels: that of the scene. Diagnostic pictures show numbers, which are not converted.
+    pub(crate) fn space(&self) -> WorkingSpace {
         match self.force_shading {
-            Some(model) if model.is_diagnostic() => color,
-            _ => self.working_space.decode(color),
+            Some(model) if model.is_diagnostic() => WorkingSpace::Linear,
+            _ => self.working_space,
         }
     }
 }
