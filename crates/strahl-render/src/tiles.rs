@@ -54,6 +54,19 @@ pub(crate) fn tiles_of(region: Region, edge: u32, order: TileOrder) -> Vec<Regio
     all
 }
 
+/// The tiles of a picture that have pixels of a region, as one region.
+pub(crate) fn whole_tiles(region: Region, width: u32, height: u32) -> Region {
+    let start = |at: u32| at / TILE * TILE;
+    let end = |at: u32, size: u32| at.div_ceil(TILE).saturating_mul(TILE).min(size);
+    let (x, y) = (start(region.x), start(region.y));
+    Region {
+        x,
+        y,
+        width: end(region.x + region.width, width) - x,
+        height: end(region.y + region.height, height) - y,
+    }
+}
+
 /// Cuts an interval at the multiples of `edge`: start and length of each part.
 fn spans(start: u32, length: u32, edge: u32) -> impl Iterator<Item = (u32, u32)> {
     let mut from = start;

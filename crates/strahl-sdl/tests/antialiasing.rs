@@ -3,27 +3,32 @@
 mod common;
 
 use common::parse_with;
-use strahl_render::{CompileOptions, Region, RenderOptions, Sampling, compile, render};
+use strahl_render::{CompileOptions, Film, Region, RenderOptions, Sampling, compile, render};
 use strahl_sdl::MemoryHost;
 use strahl_shade::srgb;
 
-/// One pixel of a picture of 160x120, as PNG files hold it: 8-bit codes, not multiplied by alpha, and alpha.
-fn pixel(text: &str, at: (u32, u32), sampling: &str, alpha: bool) -> [u8; 4] {
+/// A picture of 160x120, or a part of it.
+fn film(text: &str, region: Option<Region>, sampling: &str, alpha: bool) -> Film {
     let scene = parse_with(&mut MemoryHost::new(), text).scene;
     let scene = compile(&scene.expect("a scene"), &CompileOptions::default()).expect("compiles");
     let mut options = RenderOptions::new(&scene, 160, 120);
     options.threads = 1;
     options.sampling = sampling.parse::<Sampling>().expect("a sampling");
     options.alpha = alpha;
-    let (x, y) = at;
+    options.region = region;
+    render(&scene, &options, &()).expect("a picture").film
+}
+
+/// One pixel of a picture of 160x120, as PNG files hold it: 8-bit codes, not multiplied by alpha, and alpha.
+fn pixel(text: &str, (x, y): (u32, u32), sampling: &str, alpha: bool) -> [u8; 4] {
     let (width, height) = (1, 1);
-    options.region = Some(Region {
+    let region = Region {
         x,
         y,
         width,
         height,
-    });
-    let film = render(&scene, &options, &()).expect("a picture").film;
+    };
+    let film = film(text, Some(region), sampling, alpha);
     let alpha = film.alpha.map_or(1.0, |alpha| alpha[0]);
     let [r, g, b] = film.pixels[0].map(|c| srgb::encode_u8(c / alpha));
     [r, g, b, (alpha * 255.0).round() as u8]
@@ -78,4 +83,51 @@ fn what_is_half_covered_keeps_its_colour() {
         pixel(&ball(glass), (120, 41), "center", true),
         [230, 128, 48, 191]
     );
+}
+
+/// Bright lines, a third of a pixel wide, which rise by a pixel in twenty. The centre of every third pixel or so along a line meets it.
+fn lines() -> String {
+    format!(
+        "{LINEAR}
+         camera {{ orthographic location -z look_at 0 right 160*x up 120*y }}
+         plane {{ z, 0 pigment {{ gradient y color_map {{ [1/60 rgb 1] [1/60 rgb 0.05] }} scale 20 matrix <1, 0.05, 0, 0, 1, 0, 0, 0, 1, 0, 0.4, 0> }}
+                 finish {{ emission 1 ambient 0 diffuse 0 }} }}"
+    )
+}
+
+#[test]
+fn thin_lines_have_no_gaps() {
+    let film = film(&lines(), None, "adaptive:0.3,3", false);
+    // The light of the lines in each column: six of them, a third of a pixel each.
+    let (mut gaps, mut sum) = (0, 0.0);
+    for x in 0..160 {
+        let column = (0..120).map(|y| f64::from(film.pixels[y * 160 + x][0]) - 0.05);
+        let light: f64 = column.sum::<f64>() / (6.0 * 0.95 / 3.0);
+        gaps += u32::from(light < 0.7);
+        sum += light;
+    }
+    assert!(gaps < 5 && (sum / 160.0 - 1.0).abs() < 0.05, "{gaps} {sum}");
+}
+
+#[test]
+fn a_part_of_a_picture_has_the_pixels_of_the_picture() {
+    let whole = film(&lines(), None, "adaptive:0.3,3", false);
+    for (x, y, width, height) in [(37, 21, 50, 40), (64, 32, 32, 64), (95, 70, 1, 1)] {
+        let region = Region {
+            x,
+            y,
+            width,
+            height,
+        };
+        let part = film(&lines(), Some(region), "adaptive:0.3,3", false);
+        for row in 0..height {
+            let at = |x: u32, y: u32, width: u32| (y * width + x) as usize;
+            let (start, own) = (at(x, y + row, 160), at(0, row, width));
+            let end = width as usize;
+            assert_eq!(
+                part.pixels[own..own + end],
+                whole.pixels[start..start + end]
+            );
+        }
+    }
 }

@@ -1,5 +1,6 @@
 //! Traces the pixels of tiles on one thread.
 
+use super::refine::Comparison;
 use super::{RenderOptions, Samples, TileResult};
 use crate::activity::Phase;
 use crate::camera::PrimaryRays;
@@ -263,52 +264,71 @@ impl PixelTracer<'_> {
         self.end_tile(tile, Some(points), values, costs)
     }
 
-    /// More samples of the rough pixels of a tile, whose first ones are known. Packets have samples of several pixels.
+    /// More samples of the rough pixels of a tile, whose first ones are known, and of those that differ from the mean of a refined neighbour in the
+    /// tile, until there are no more such pixels: so a thin line that the first samples meet here and there is followed.
     pub(super) fn refined(
         &mut self,
         tile: Region,
+        comparison: &Comparison<'_>,
         is_rough: impl Fn(u32, u32) -> bool,
         first: impl Fn(u32, u32) -> Sample,
     ) -> TileResult<Option<Sample>> {
-        if !self.together {
-            let more = |tracer: &mut Self, x, y| tracer.pixel(1, x, y).with(first(x, y)).sample();
-            return self.tile(
-                tile,
-                |_, _| None,
-                |tracer, x, y| is_rough(x, y).then(|| more(tracer, x, y)),
-            );
-        }
         self.start_tile();
         let sight = self.sight(tile);
-        let mut sums = vec![Samples::NONE; tile.pixels() as usize];
+        let count = tile.pixels() as usize;
+        let mut costs = vec![PixelCost::default(); if self.options.costs { count } else { 0 }];
+        let mut values = vec![None; count];
+        let all = squares(tile).flat_map(Region::positions);
+        let mut wanted: Vec<(u32, u32)> = all.filter(|&(x, y)| is_rough(x, y)).collect();
+        for &(x, y) in &wanted {
+            values[tile.index(x, y)] = Some(first(x, y));
+        }
+        while !wanted.is_empty() && self.refine(tile, &wanted, &sight, &mut values, &mut costs) {
+            wanted = comparison.want_beside(tile, &wanted, &mut values, &first);
+        }
+        self.end_tile(tile, None, values, costs)
+    }
+
+    /// Adds more samples to the first ones of some pixels, which `values` has; false if the tile is left before the end. Packets have samples of several pixels.
+    fn refine(
+        &mut self,
+        tile: Region,
+        pixels: &[(u32, u32)],
+        sight: &Sight,
+        values: &mut [Option<Sample>],
+        costs: &mut [PixelCost],
+    ) -> bool {
+        let mut sums = vec![Samples::NONE; pixels.len()];
         let mut packet = Packet::new();
         let options = self.options;
-        for square in squares(tile) {
-            if self.leaves() {
-                break;
+        for (number, &(x, y)) in pixels.iter().enumerate() {
+            if number.is_multiple_of(PACKET) && self.leaves() {
+                return false;
             }
-            for (x, y) in square.positions().filter(|&(x, y)| is_rough(x, y)) {
-                let index = tile.index(x, y);
-                self.blind = sight.is_empty(x, y);
-                if self.blind {
-                    sums[index] = self.pixel(1, x, y);
-                    continue;
-                }
-                for (dx, dy) in options.sampling.places(1, x, y, options.seed) {
-                    let ray = self.rays.ray(f64::from(x) + dx, f64::from(y) + dy);
-                    packet.push((index, ray));
-                    if packet.is_full() {
-                        self.trace_packet(&mut packet, |index, color| sums[index].add(color));
-                    }
+            self.blind = sight.is_empty(x, y);
+            if options.costs {
+                let cost = &mut costs[tile.index(x, y)];
+                (sums[number], *cost) = self.measured(|tracer| tracer.pixel(1, x, y));
+                continue;
+            }
+            if self.blind || !self.together {
+                sums[number] = self.pixel(1, x, y);
+                continue;
+            }
+            for (dx, dy) in options.sampling.places(1, x, y, options.seed) {
+                let ray = self.rays.ray(f64::from(x) + dx, f64::from(y) + dy);
+                packet.push((number, ray));
+                if packet.is_full() {
+                    self.trace_packet(&mut packet, |number, color| sums[number].add(color));
                 }
             }
         }
-        self.trace_packet(&mut packet, |index, color| sums[index].add(color));
-        let value = |((x, y), samples): ((u32, u32), Samples)| {
-            is_rough(x, y).then(|| samples.with(first(x, y)).sample())
-        };
-        let values = tile.positions().zip(sums).map(value).collect();
-        self.end_tile(tile, None, values, Vec::new())
+        self.trace_packet(&mut packet, |number, color| sums[number].add(color));
+        for (&(x, y), samples) in pixels.iter().zip(sums) {
+            let value = &mut values[tile.index(x, y)];
+            *value = value.map(|first| samples.with(first).sample());
+        }
+        true
     }
 
     /// Traces numbered rays in a packet, which is then empty.

@@ -2,12 +2,13 @@
 
 use super::crew::{Canvas, Ended, Part, TileList, Turn};
 use super::plan::{Stage, edge, points};
+use super::refine::Comparison;
 use super::{Crew, Lattice, RenderError, RenderOptions, Rendered, Shown, mean_of_corners};
 use crate::cost::PixelCost;
 use crate::film::{Film, Region, try_filled};
 use crate::sampling::{Sample, Sampling, subdivided};
 use crate::sink::{Pass, Sink};
-use crate::tiles::{TILE, tiles, tiles_of};
+use crate::tiles::{TILE, tiles, tiles_of, whole_tiles};
 use crate::trace::RayCounts;
 use arrayvec::ArrayVec;
 use std::collections::HashMap;
@@ -52,8 +53,11 @@ impl Work {
         let kept = match options.sampling {
             Sampling::Center => None,
             Sampling::Grid(_) => options.coarse_first.then_some(region),
-            // A margin of one pixel, so that what is refined does not depend on regions.
-            Sampling::Adaptive(_) => Some(region.grown(1, options.width, options.height)),
+            // The pixels that decide about those of a tile, so that what is refined does not depend on regions.
+            Sampling::Adaptive(_) => {
+                let (width, height) = (options.width, options.height);
+                Some(whole_tiles(region, width, height).grown(1, width, height))
+            }
             Sampling::Corners | Sampling::Recursive(_) => Some(Region {
                 width: region.width + 1,
                 height: region.height + 1,
@@ -153,16 +157,17 @@ impl Work {
             Stage::Corners { step } => one_to_one(tiles_of(region, edge(step), order), film),
             Stage::Refine(refinement) => {
                 if let Some(first) = &self.lattice {
-                    self.rough = first.rough(&refinement, self.options.trace.space())?;
+                    let comparison = Comparison::new(&refinement, self.options.trace.space());
+                    self.rough = first.rough(&comparison)?;
                 }
                 let rough = |x, y| self.rough[region.index(x, y)];
-                let all = tiles(film, order).into_iter();
-                let (wanted, rest) =
+                let (width, height) = (self.options.width, self.options.height);
+                let all = tiles(whole_tiles(film, width, height), order).into_iter();
+                let (wanted, rest): (Vec<Region>, Vec<Region>) =
                     all.partition(|tile| tile.positions().any(|(x, y)| rough(x, y)));
                 let mut list = one_to_one(wanted, film);
-                let rest: Vec<Region> = rest;
-                list.parts
-                    .extend(rest.into_iter().map(|tile| Part::new(tile, 0)));
+                let rest = rest.iter().filter_map(|tile| tile.intersection(&film));
+                list.parts.extend(rest.map(|part| Part::new(part, 0)));
                 list
             }
         })
@@ -291,11 +296,14 @@ impl Work {
                     |film, result, _| film.set_tile(result.tile, &result.values),
                 )
             }
-            Stage::Refine(_) => {
+            Stage::Refine(refinement) => {
                 let (first, rough) = (&*lattice, &*rough);
                 let is_rough = |x, y| rough[first.region.index(x, y)];
+                let comparison = Comparison::new(&refinement, space);
                 turn.trace(
-                    |tracer, tile| tracer.refined(tile, is_rough, |x, y| first.at(x, y)),
+                    |tracer, tile| {
+                        tracer.refined(tile, &comparison, is_rough, |x, y| first.at(x, y))
+                    },
                     |film, result, _| set_some(film, result.tile, &result.values, space),
                 )
             }
@@ -353,15 +361,6 @@ impl Work {
                 states[region.index(x, y)] = PixelState::Final;
             }
         }
-        if matches!(stage, Stage::Refine(_))
-            && let Some(first) = self.lattice.as_ref().filter(|_| !self.rough.is_empty())
-        {
-            for (x, y) in region.positions() {
-                if !self.rough[first.region.index(x, y)] {
-                    states[region.index(x, y)] = PixelState::Final;
-                }
-            }
-        }
         let parts = self.list.iter().flat_map(|list| &list.parts);
         for part in parts.filter(|part| part.waits == 0) {
             for (x, y) in part.region.positions() {
@@ -398,6 +397,7 @@ fn set_some(film: &mut Film, tile: Region, values: &[Option<Sample>], space: Wor
     for (place, value) in tile.positions().zip(values) {
         if value.is_some()
             && let Some(shown) = shown.next()
+            && film.region.contains(place.0, place.1)
         {
             film.set(place, shown);
         }
