@@ -36,6 +36,31 @@ fn numbered(
 }
 
 #[test]
+fn negative_transparency_takes_light_away() {
+    let scene = |bailout: f64| {
+        let objects = [-0.05, -0.2, -0.3, -0.5, -0.6, -0.8, -1.0, -1.5].iter().zip(0..).map(|(t, x)| {
+            format!(
+                "sphere {{ <{x}.5, 4.5, 0>, 0.45 pigment {{ rgb 0.3 transmit {t} }} finish {{ ambient 0.3 diffuse 0.5 reflection 0.2 * {t} }} }}
+                 disc {{ <{x}.5, 3, 0>, z, 0.45 pigment {{ rgb <0.3, 0.5, -0.9> filter {t} }} finish {{ emission 1 ambient 0 diffuse 0 }} }}
+                 disc {{ <{x}.5, 1.5, 0>, z, 0.45 pigment {{ rgb <0.3, -0.9, 0.5> filter {t} }} finish {{ emission 1 ambient 0 diffuse 0 }} }}"
+            )
+        });
+        let objects = objects.collect::<String>();
+        format!(
+            "{START} global_settings {{ adc_bailout {bailout} }} plane {{ z, 3 pigment {{ rgb <0.2, 0.4, 0.6> }} finish {{ ambient 0.2 diffuse 0.8 }} }} {objects}"
+        )
+    };
+    agree(
+        0.01,
+        &[
+            ("shadows and what is behind", scene(1.0 / 255.0)),
+            ("a large bailout", scene(0.25)),
+            ("a larger bailout", scene(0.55)),
+        ],
+    );
+}
+
+#[test]
 fn normals_begin_with_the_default_one() {
     let slopes = "slope_map { [0 <0, 1>] [0.5 <1, 1>] [0.5 <1, -1>] [1 <0, -1>] }";
     let scene = |default: &str, objects: &str| {

@@ -513,7 +513,8 @@ impl PlainTexture {
             passes *= Color::WHITE - reflectance;
         }
         stack.above *= passes;
-        if stack.above.gray_value() < out.bailout {
+        // Light may be taken away, too, by negative numbers.
+        if stack.above.gray_value().abs() < out.bailout {
             stack.above = Color::BLACK;
         }
     }

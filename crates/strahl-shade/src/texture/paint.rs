@@ -55,8 +55,8 @@ pub struct StackPoint {
     pub share: f64,
     /// The transmittance of all layers together, without the share.
     pub transmittance: Color,
-    /// The factor of the weight of the ray behind: the largest component of the transmittance, whatever the share (measured), times
-    /// the `refraction` of the finish.
+    /// The factor of the weight of the ray behind: the largest component of the transmittance without its sign, whatever the share (measured),
+    /// times the `refraction` of the finish.
     pub weight: f64,
 }
 
@@ -75,7 +75,7 @@ pub struct TexturePaint<'a> {
     pub filter_by_color: bool,
     /// What the scene says about films. Set by the owner.
     pub irid: IridSettings,
-    /// Nothing passes layers whose transmittance together has a grey value below this: what is behind, lower layers too, stays unseen
+    /// Nothing passes layers whose transmittance together has a grey value, without its sign, below this: what is behind, lower layers too, stays unseen
     /// (measured). Set by the owner.
     pub bailout: f64,
     /// The colour at the next point of a pigment that is a [fractal](crate::texture::Texture::fractal), if it is known already. Set by the
@@ -98,7 +98,7 @@ impl TexturePaint<'_> {
             normal,
             share: stack.share,
             transmittance: stack.above,
-            weight: stack.above.max_component(),
+            weight: stack.above.map(f64::abs).max_component(),
         });
     }
 
