@@ -1,36 +1,61 @@
-//! What of a pixel is background: the alpha channel.
+//! The background in a pixel: the alpha channel.
 
-use crate::observer::{RayKind, RayReport, TraceObserver};
+use crate::branch::Node;
+use crate::observer::RayKind;
+use crate::sampling::Sample;
+use strahl_math::DVec3;
 use strahl_scene::{Background, BackgroundAlpha};
 use strahl_shade::Color;
 
-/// Adds up how much of the background a primary ray sees, directly and through things that let light pass. Mirrors show the
+/// Adds up how much of the background primary rays see, directly and through things that let light pass. Mirrors show the
 /// background as part of themselves.
 ///
 /// As in POV-Ray (measured) what a surface lets pass counts as one number, the luminance of its coefficient.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(crate) struct Coverage {
-    nodes: Vec<Node>,
     /// What rays see that hit nothing.
     background: Background,
     /// What the alpha channel makes of it.
     alpha: BackgroundAlpha,
-    /// The light of the pixel without it.
-    pub(crate) color: Color,
-    /// How much of what lies behind the picture shows: 0 is opaque.
-    pub(crate) clear: f64,
+    /// By node of the trees, what its ray sees of the background.
+    nodes: Vec<Clear>,
 }
 
-/// A ray of the tree.
-#[derive(Debug)]
-struct Node {
-    parent: u32,
-    kind: RayKind,
-    taken: Color,
-    attenuation: Color,
-    /// The background's light in that of the ray that is left out of the picture.
-    background: Color,
-    clear: f64,
+/// What a ray sees of the background.
+#[derive(Clone, Copy, Debug)]
+struct Clear {
+    /// The part of the ray's light that is left out of the picture.
+    light: Color,
+    /// How much of what lies behind the picture shows: 0 is opaque.
+    share: f64,
+}
+
+impl Clear {
+    const NOTHING: Self = Self {
+        light: Color::BLACK,
+        share: 0.0,
+    };
+
+    /// The same behind a medium.
+    fn attenuated(self, attenuation: Color) -> Self {
+        Self {
+            light: self.light * attenuation,
+            share: self.share * luminance(attenuation),
+        }
+    }
+
+    /// Light along a primary ray without the background.
+    fn taken_from(self, color: Color) -> Sample {
+        Sample {
+            color: color - self.light,
+            clear: self.share,
+        }
+    }
+}
+
+/// How bright a coefficient is: 0.297 of red, 0.589 of green and 0.114 of blue. That of a grey is exactly the grey.
+fn luminance(c: Color) -> f64 {
+    c.g + 0.297 * (c.r - c.g) + 0.114 * (c.b - c.g)
 }
 
 impl Coverage {
@@ -39,61 +64,50 @@ impl Coverage {
         Self {
             background,
             alpha,
-            ..Self::default()
+            nodes: Vec::new(),
         }
     }
 
-    /// Begins another tree.
+    /// Begins other trees.
     pub(crate) fn restart(&mut self) {
         self.nodes.clear();
-        (self.color, self.clear) = (Color::BLACK, 0.0);
-    }
-}
-
-/// How bright a coefficient is.
-fn luminance(c: Color) -> f64 {
-    0.297 * c.r + 0.589 * c.g + 0.114 * c.b
-}
-
-impl TraceObserver for Coverage {
-    const DETAILED: bool = false;
-
-    fn ray(&mut self, report: RayReport) {
-        let nothing = (Color::BLACK, Color::BLACK);
-        let (background, clear) = report.background.map_or(nothing, |_| {
-            let direction = report.ray.direction;
-            self.background.left_out(direction, self.alpha)
-        });
-        self.nodes.push(Node {
-            parent: report.parent,
-            kind: report.kind,
-            taken: report.share.factor,
-            attenuation: report.attenuation,
-            background,
-            clear: luminance(clear),
-        });
     }
 
-    // Children come before their parents.
-    fn combined(&mut self, index: u32, _local: Color, total: Color) {
-        let Some(node) = self.nodes.get(index as usize) else {
-            return;
-        };
-        let background = node.background * node.attenuation;
-        let clear = node.clear * luminance(node.attenuation);
-        let (parent, taken) = (node.parent as usize, node.taken);
+    /// What a ray sees that hits nothing.
+    fn beyond(&self, direction: DVec3) -> Clear {
+        let (light, clear) = self.background.left_out(direction, self.alpha);
+        Clear {
+            light,
+            share: luminance(clear),
+        }
+    }
+
+    /// Light along a primary ray that hits nothing, without the background behind what attenuates it.
+    pub(crate) fn of_nothing(&self, direction: DVec3, attenuation: Color, color: Color) -> Sample {
+        let clear = self.beyond(direction).attenuated(attenuation);
+        clear.taken_from(color)
+    }
+
+    /// Takes note of the next node of the trees. Its ray hits something, or has this direction.
+    pub(crate) fn enter(&mut self, missing: Option<DVec3>) {
+        let clear = missing.map_or(Clear::NOTHING, |direction| self.beyond(direction));
+        self.nodes.push(clear);
+    }
+
+    /// Hands what a node's ray sees of the background to its parent, after all of its children. Returns the light along a primary ray, `total`,
+    /// without the background.
+    pub(crate) fn combine(&mut self, index: usize, node: &Node, total: Color) -> Sample {
+        let clear = self.nodes[index].attenuated(node.attenuation);
         match node.kind {
-            RayKind::Primary => {
-                self.color = total - background;
-                self.clear = clear;
-            }
+            RayKind::Primary => return clear.taken_from(total),
             RayKind::Refraction => {
-                if let Some(parent) = self.nodes.get_mut(parent) {
-                    parent.background += taken * background;
-                    parent.clear += luminance(taken) * clear;
-                }
+                let taken = node.share.factor;
+                let parent = &mut self.nodes[node.parent as usize];
+                parent.light += taken * clear.light;
+                parent.share += luminance(taken) * clear.share;
             }
             RayKind::Reflection | RayKind::Gather => {}
         }
+        Sample::from(total)
     }
 }

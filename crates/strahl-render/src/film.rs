@@ -4,7 +4,7 @@ pub use merge::MergeError;
 
 use crate::trace::SampleResult;
 use sha2::{Digest, Sha256};
-use strahl_shade::{Color, srgb};
+use strahl_shade::srgb;
 
 /// A rectangle of pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -209,15 +209,7 @@ impl Film {
                 of_height: height,
             });
         }
-        let none = PixelInfo::new(
-            &SampleResult {
-                color: Color::BLACK,
-                first: None,
-                depth: 0,
-                rays: 0,
-            },
-            0,
-        );
+        let none = PixelInfo::new(&SampleResult::NOTHING, 0);
         let pixels = try_filled(region, [0.0; 3])?;
         let alpha = None;
         let info = if info {

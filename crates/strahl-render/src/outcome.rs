@@ -1,4 +1,5 @@
 use crate::observer::RayKind;
+use crate::sampling::Sample;
 use strahl_math::DVec3;
 use strahl_shade::{Color, MaterialId};
 
@@ -92,6 +93,8 @@ pub struct FirstHit {
 pub struct SampleResult {
     /// The radiance, a colour of the scene's working space.
     pub color: Color,
+    /// How much of the background shows, `0..=1`, and is not part of the colour; 0 where no alpha channel is wanted.
+    pub clear: f64,
     /// The first hit.
     pub first: Option<FirstHit>,
     /// Deepest level of the tree reached.
@@ -104,8 +107,17 @@ impl SampleResult {
     /// The sample where the camera sends no ray.
     pub const NOTHING: Self = Self {
         color: Color::BLACK,
+        clear: 0.0,
         first: None,
         depth: 0,
         rays: 0,
     };
+
+    /// What the ray sees.
+    pub(crate) const fn sample(&self) -> Sample {
+        Sample {
+            color: self.color,
+            clear: self.clear,
+        }
+    }
 }

@@ -86,7 +86,7 @@ impl RenderOptions {
 
     /// Whether rays may be traced in packets at all: neither costs nor properties of single rays are asked for.
     const fn has_packets(&self) -> bool {
-        self.trace.packets && !self.costs && !self.info && !self.alpha
+        self.trace.packets && !self.costs && !self.info
     }
 }
 
@@ -284,17 +284,16 @@ impl Samples {
         clear: 0.0,
     };
 
-    /// Adds an opaque sample.
-    fn add(&mut self, color: Color) {
-        self.sum += color;
+    /// Adds a sample.
+    fn add(&mut self, sample: Sample) {
+        self.sum += sample.color;
+        self.clear += sample.clear;
         self.count += 1;
     }
 
     /// With one sample more.
     fn with(mut self, sample: Sample) -> Self {
-        self.sum += sample.color;
-        self.clear += sample.clear;
-        self.count += 1;
+        self.add(sample);
         self
     }
 

@@ -44,12 +44,14 @@ pub use settings::TraceSettings;
 use crate::activity::Phase;
 use crate::area::AreaMemory;
 use crate::branch::{Branch, Node};
+use crate::coverage::Coverage;
 use crate::hit::Hit;
 use crate::layers::{KnownPaints, Mirror, Passage};
 use crate::media::{MediaArena, MediaStack};
 use crate::observer::{RayKind, TraceObserver};
 use crate::query::Tracer;
 use crate::resolve::Uv;
+use crate::sampling::Sample;
 use crate::scene::RenderScene;
 use crate::surface::Surface;
 use crate::transport::Transport;
@@ -69,8 +71,10 @@ pub struct TreeTracer<'s> {
     pub(crate) settings: TraceSettings,
     /// What is asked besides the scene.
     transport: Transport,
-    /// The radiance along primary rays that hit nothing, if it is the same for all.
-    beyond: Option<Color>,
+    /// For the alpha channel.
+    coverage: Option<Coverage>,
+    /// What primary rays see that hit nothing, if it is the same for all.
+    beyond: Option<Sample>,
     uv: Uv,
     pub(crate) media: MediaArena,
     /// What the eye is in.
@@ -87,8 +91,8 @@ pub struct TreeTracer<'s> {
     blank: TexturePaint<'s>,
     /// The layers of textures of one colour.
     paints: KnownPaints<'s>,
-    /// The radiances of primary rays, by their numbers in the packet.
-    roots: [Color; PACKET],
+    /// What primary rays see, by their numbers in the packet.
+    roots: [Sample; PACKET],
     /// Whether somebody wants to know what a primary ray meets.
     keeps_first: bool,
     /// What the last primary ray met.
@@ -119,7 +123,8 @@ impl<'s> TreeTracer<'s> {
         tracer.remembers = settings.shadow_cache;
         Self {
             tracer,
-            beyond: nothing::common(scene),
+            coverage: None,
+            beyond: nothing::common(scene).map(Sample::from),
             uv: if uv_shown { Uv::Always } else { Uv::IfTextured },
             counts: RayCounts::default(),
             settings,
@@ -137,7 +142,7 @@ impl<'s> TreeTracer<'s> {
                 ..TexturePaint::default()
             },
             paints: KnownPaints::new(scene),
-            roots: [Color::BLACK; PACKET],
+            roots: [Sample::NOTHING; PACKET],
             keeps_first: false,
             first: None,
             deepest: 0,
@@ -164,16 +169,17 @@ impl<'s> TreeTracer<'s> {
         self.combine(observer);
         let nodes = (self.nodes.len() as u64).max(1);
         SampleResult {
-            color: self.roots[0],
+            color: self.roots[0].color,
+            clear: self.roots[0].clear,
             first: self.first,
             depth: self.deepest,
             rays: (nodes + self.counts.shadow - shadow_before) as u32,
         }
     }
 
-    /// Traces primary rays, at most [`PACKET`], with their trees, and returns their radiances; where there is no ray it is black. It pays
+    /// Traces primary rays, at most [`PACKET`], with their trees, and returns what they see; where there is no ray it is black. It pays
     /// if the rays are close to each other.
-    pub(crate) fn trace_packet(&mut self, rays: &[Option<Ray>]) -> &[Color] {
+    pub(crate) fn trace_packet(&mut self, rays: &[Option<Ray>]) -> &[Sample] {
         let mut traced = rays.iter().flatten();
         let Some(first) = traced.next().filter(|_| self.have_one_eye(rays)) else {
             return self.trace_each(rays);
@@ -199,14 +205,14 @@ impl<'s> TreeTracer<'s> {
     }
 
     /// Traces primary rays one after the other.
-    fn trace_each(&mut self, rays: &[Option<Ray>]) -> &[Color] {
-        let mut trace = |ray: &Ray| self.trace(ray, &mut ()).color;
-        let colors: ArrayVec<Color, PACKET> = rays
+    fn trace_each(&mut self, rays: &[Option<Ray>]) -> &[Sample] {
+        let mut trace = |ray: &Ray| self.trace(ray, &mut ()).sample();
+        let samples: ArrayVec<Sample, PACKET> = rays
             .iter()
-            .map(|ray| ray.as_ref().map_or(Color::BLACK, &mut trace))
+            .map(|ray| ray.as_ref().map_or(Sample::NOTHING, &mut trace))
             .collect();
-        let roots = &mut self.roots[..colors.len()];
-        roots.copy_from_slice(&colors);
+        let roots = &mut self.roots[..samples.len()];
+        roots.copy_from_slice(&samples);
         roots
     }
 
@@ -246,7 +252,10 @@ impl<'s> TreeTracer<'s> {
         self.nodes.clear();
         self.gathered.clear();
         (self.keeps_first, self.first, self.deepest) = (false, None, 0);
-        self.roots = [Color::BLACK; PACKET];
+        self.roots = [Sample::NOTHING; PACKET];
+        if let Some(coverage) = &mut self.coverage {
+            coverage.restart();
+        }
     }
 
     /// Sums the trees from their leaves, into the radiances of primary rays: every ray has the hit's own light, plus kr times the radiance along its reflection ray,
@@ -256,7 +265,7 @@ impl<'s> TreeTracer<'s> {
         if self.transport.gather.is_some() {
             self.gathered.resize(self.nodes.len(), Color::BLACK);
         }
-        let (mut sums, mut numbers) = (ArrayVec::<Color, PACKET>::new(), Lanes::new());
+        let (mut sums, mut numbers) = (ArrayVec::<Sample, PACKET>::new(), Lanes::new());
         for index in (0..self.nodes.len()).rev() {
             let node = &self.nodes[index];
             let mut sum = node.local + node.reflected + node.transmitted;
@@ -271,8 +280,12 @@ impl<'s> TreeTracer<'s> {
                 observer.combined(index as u32, node.local, total);
             }
             let (kind, parent) = (node.kind, node.parent as usize);
+            let sample = match &mut self.coverage {
+                Some(coverage) => coverage.combine(index, node, total),
+                None => Sample::from(total),
+            };
             if kind == RayKind::Primary {
-                sums.push(total);
+                sums.push(sample);
                 numbers.push(parent);
                 continue;
             }

@@ -5,7 +5,6 @@ use super::{RenderOptions, Samples, TileResult};
 use crate::activity::Phase;
 use crate::camera::PrimaryRays;
 use crate::cost::PixelCost;
-use crate::coverage::Coverage;
 use crate::film::{PixelInfo, Region};
 use crate::observer::RayKind;
 use crate::render::Progress;
@@ -61,8 +60,6 @@ pub(super) struct PixelTracer<'s> {
     blind: bool,
     /// Whether neighbouring rays are traced in packets.
     together: bool,
-    /// For the alpha channel: what the last sample showed of the background.
-    coverage: Option<Coverage>,
     /// Whether the last tile was left half done, because the render is cancelled.
     left: bool,
 }
@@ -80,6 +77,9 @@ impl<'s> PixelTracer<'s> {
             ..options.trace
         };
         let mut tree = TreeTracer::new(scene, settings).with_transport(&options.transport);
+        if options.alpha {
+            tree = tree.with_alpha();
+        }
         if let Some(activities) = progress.activities() {
             tree.tracer.slot = activities.slot();
             tree.tracer.slot.enter(Phase::Sampling);
@@ -93,9 +93,6 @@ impl<'s> PixelTracer<'s> {
             infos: Vec::new(),
             depth: 0,
             blind: false,
-            coverage: options
-                .alpha
-                .then(|| Coverage::new(scene.background.clone(), scene.background_alpha)),
             together: options.follows_together(rays),
             left: false,
         }
@@ -121,13 +118,13 @@ impl Drop for PixelTracer<'_> {
 
 impl PixelTracer<'_> {
     /// The pixels of a tile in the first pass: in packets where each has one ray, otherwise with `trace`. `shown` makes a value of a
-    /// colour; `blank` is that of [`PixelTracer::tile`].
+    /// sample; `blank` is that of [`PixelTracer::tile`].
     pub(super) fn first_pass<T: Clone>(
         &mut self,
         tile: Region,
         blank: impl Fn(&mut Self, u32) -> Option<T>,
         trace: impl Fn(&mut Self, u32, u32) -> T,
-        shown: impl Fn(Color) -> T,
+        shown: impl Fn(Sample) -> T,
     ) -> TileResult<T> {
         let place = self.options.sampling.common_place(0);
         let Some((dx, dy)) = place.filter(|_| self.together) else {
@@ -135,7 +132,7 @@ impl PixelTracer<'_> {
         };
         self.start_tile();
         let sight = self.sight(tile);
-        let mut values = vec![shown(Color::BLACK); tile.pixels() as usize];
+        let mut values = vec![shown(Sample::NOTHING); tile.pixels() as usize];
         for square in squares(tile) {
             if self.leaves() {
                 break;
@@ -156,9 +153,9 @@ impl PixelTracer<'_> {
                     .positions()
                     .map(|(x, y)| self.rays.ray(f64::from(x) + dx, f64::from(y) + dy)),
             );
-            let colors = self.tree.trace_packet(&rays);
-            for ((x, y), color) in square.positions().zip(colors) {
-                values[tile.index(x, y)] = shown(*color);
+            let samples = self.tree.trace_packet(&rays);
+            for ((x, y), sample) in square.positions().zip(samples) {
+                values[tile.index(x, y)] = shown(*sample);
             }
         }
         self.end_tile(tile, None, values, Vec::new())
@@ -210,7 +207,7 @@ impl PixelTracer<'_> {
             tile,
             |tracer, pixels| Some(tracer.blank(pixels)?.sample()),
             |tracer, x, y| tracer.pixel(0, x, y).sample(),
-            |color| Samples::NONE.with(color.into()).sample(),
+            |sample| Samples::NONE.with(sample).sample(),
         )
     }
 
@@ -245,7 +242,7 @@ impl PixelTracer<'_> {
             if self.together && !self.blind {
                 packet.push((index, self.rays.ray(place.0, place.1)));
                 if packet.is_full() {
-                    self.trace_packet(&mut packet, |index, color| values[index] = color.into());
+                    self.trace_packet(&mut packet, |index, sample| values[index] = sample);
                 }
             } else if options.costs {
                 let (value, cost) = self.measured(|tracer| tracer.sample(place.0, place.1, true));
@@ -255,7 +252,7 @@ impl PixelTracer<'_> {
                 values[index] = self.sample(place.0, place.1, true);
             }
         }
-        self.trace_packet(&mut packet, |index, color| values[index] = color.into());
+        self.trace_packet(&mut packet, |index, sample| values[index] = sample);
         if !corners {
             for value in &mut values {
                 *value = Samples::NONE.with(*value).sample();
@@ -319,11 +316,11 @@ impl PixelTracer<'_> {
                 let ray = self.rays.ray(f64::from(x) + dx, f64::from(y) + dy);
                 packet.push((number, ray));
                 if packet.is_full() {
-                    self.trace_packet(&mut packet, |number, color| sums[number].add(color));
+                    self.trace_packet(&mut packet, |number, sample| sums[number].add(sample));
                 }
             }
         }
-        self.trace_packet(&mut packet, |number, color| sums[number].add(color));
+        self.trace_packet(&mut packet, |number, sample| sums[number].add(sample));
         for (&(x, y), samples) in pixels.iter().zip(sums) {
             let value = &mut values[tile.index(x, y)];
             *value = value.map(|first| samples.with(first).sample());
@@ -332,12 +329,12 @@ impl PixelTracer<'_> {
     }
 
     /// Traces numbered rays in a packet, which is then empty.
-    fn trace_packet(&mut self, packet: &mut Packet, mut put: impl FnMut(usize, Color)) {
+    fn trace_packet(&mut self, packet: &mut Packet, mut put: impl FnMut(usize, Sample)) {
         let mut rays = ArrayVec::<Option<Ray>, PACKET>::new();
         rays.extend(packet.iter().map(|(_, ray)| *ray));
-        let colors = self.tree.trace_packet(&rays);
-        for ((index, _), color) in packet.drain(..).zip(colors) {
-            put(index, *color);
+        let samples = self.tree.trace_packet(&rays);
+        for ((index, _), sample) in packet.drain(..).zip(samples) {
+            put(index, *sample);
         }
     }
 
@@ -370,7 +367,7 @@ impl PixelTracer<'_> {
     /// rays.
     fn sight(&self, tile: Region) -> Sight {
         let options = self.options;
-        if options.trace.beams && !options.costs && !options.info && !options.alpha {
+        if options.trace.beams && !options.costs && !options.info {
             Sight::of(tile, self.tree.tracer.scene, self.rays)
         } else {
             Sight::all(tile)
@@ -415,13 +412,13 @@ impl PixelTracer<'_> {
         (value, cost)
     }
 
-    /// The samples of each of `pixels` pixels in the first pass, if all of them see the same background colour.
+    /// The samples of each of `pixels` pixels in the first pass, if all of them see the same of the background.
     pub(super) fn blank(&mut self, pixels: u32) -> Option<Samples> {
         let each = self.options.sampling.places(0, 0, 0, 0).len();
-        let color = self.tree.same_nothing(pixels as usize * each)?;
+        let sample = self.tree.same_nothing(pixels as usize * each)?;
         let mut samples = Samples::NONE;
         for _ in 0..each {
-            samples.add(color);
+            samples.add(sample);
         }
         Some(samples)
     }
@@ -440,9 +437,7 @@ impl PixelTracer<'_> {
         for (dx, dy) in places {
             let keep = pass == 0 && samples.count == 0;
             let sample = self.sample(f64::from(x) + dx, f64::from(y) + dy, keep);
-            samples.sum += sample.color;
-            samples.clear += sample.clear;
-            samples.count += 1;
+            samples.add(sample);
         }
         samples
     }
@@ -477,8 +472,8 @@ impl PixelTracer<'_> {
             let rays: ArrayVec<Option<Ray>, PACKET> = few
                 .map(|(dx, dy)| self.rays.ray(f64::from(x) + dx, f64::from(y) + dy))
                 .collect();
-            for color in self.tree.trace_packet(&rays) {
-                samples.add(*color);
+            for sample in self.tree.trace_packet(&rays) {
+                samples.add(*sample);
             }
         }
     }
@@ -492,8 +487,7 @@ impl PixelTracer<'_> {
                 self.rays.ray(x, y)
             };
             let rays: ArrayVec<Option<Ray>, PACKET> = places.iter().map(ray).collect();
-            let colors = self.tree.trace_packet(&rays);
-            return colors.iter().copied().map(Sample::from).collect();
+            return self.tree.trace_packet(&rays).iter().copied().collect();
         }
         let sample = |&place: &(f64, f64)| {
             let (x, y) = at(place);
@@ -509,38 +503,39 @@ impl PixelTracer<'_> {
 
     /// The radiance at a position in the picture; `keep` says whether to store the hit's other data for the pixel.
     pub(super) fn sample(&mut self, x: f64, y: f64, keep: bool) -> Sample {
+        let mut clear = (0.0, 0u32);
         if self.options.has_packets() && !self.blind {
-            let rays = self.rays;
-            let trace =
-                |rays: &[Option<Ray>]| self.tree.trace_packet(rays).iter().copied().collect();
-            if let Some(color) = rays.mean(x, y, trace) {
-                return color.into();
+            let tree = &mut self.tree;
+            let trace = |rays: &[Option<Ray>]| {
+                let samples = tree.trace_packet(rays);
+                for (sample, _) in samples.iter().zip(rays).filter(|(_, ray)| ray.is_some()) {
+                    clear = (clear.0 + sample.clear, clear.1 + 1);
+                }
+                samples.iter().map(|sample| sample.color).collect()
+            };
+            if let Some(color) = self.rays.mean(x, y, trace) {
+                return Sample {
+                    color,
+                    clear: clear.0 / f64::from(clear.1.max(1)),
+                };
             }
         }
-        let mut clear = (0.0, 0u32);
-        let mut coverage = self.coverage.take();
         let before = self.tree.tracer.stats.primitive_tests;
         let mut first = SampleResult::NOTHING;
         let (tree, depth, blind) = (&mut self.tree, &mut self.depth, self.blind);
         let color = self.rays.color(x, y, |ray| {
             let sample = if blind {
                 tree.nothing(ray)
-            } else if let Some(coverage) = &mut coverage {
-                coverage.restart();
-                let mut sample = tree.trace(ray, coverage);
-                sample.color = coverage.color;
-                clear = (clear.0 + coverage.clear, clear.1 + 1);
-                sample
             } else {
                 tree.trace(ray, &mut ())
             };
+            clear = (clear.0 + sample.clear, clear.1 + 1);
             *depth = (*depth).max(sample.depth);
             if first.rays == 0 {
                 first = sample;
             }
             sample.color
         });
-        self.coverage = coverage;
         if keep && self.options.info {
             let tests = self.tree.tracer.stats.primitive_tests - before;
             self.infos.push(PixelInfo::new(&first, tests));

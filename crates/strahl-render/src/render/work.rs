@@ -254,11 +254,9 @@ impl Work {
                     Some(_) => tracer.points(tile, points(tile, origin, 1, known), true),
                     None => tracer.first_pass(
                         tile,
-                        |tracer, corners| {
-                            Some(Sample::from(tracer.tree.same_nothing(corners as usize)?))
-                        },
+                        |tracer, corners| tracer.tree.same_nothing(corners as usize),
                         |tracer, x, y| tracer.corner(x, y),
-                        Sample::from,
+                        |sample| sample,
                     ),
                 },
                 |film, result, ready| {

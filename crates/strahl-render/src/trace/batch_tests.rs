@@ -2,11 +2,12 @@
 
 use super::{TraceSettings, TreeTracer};
 use crate::compile::{CompileOptions, compile};
+use crate::sampling::Sample;
 use crate::scene::RenderScene;
 use strahl_accel::PACKET;
 use strahl_geometry::{Cuboid, Plane, Sphere};
 use strahl_math::{DVec3, Ray};
-use strahl_scene::{Background, Camera, ObjectExt, Scene};
+use strahl_scene::{Background, BackgroundAlpha, Camera, ObjectExt, Scene};
 use strahl_shade::patterns::{Fractal, FractalKind, Pattern};
 use strahl_shade::pigment::{BlendMap, Pigment};
 use strahl_shade::pov_finish::PovFinish;
@@ -36,7 +37,8 @@ fn fractal(kind: FractalKind) -> Material {
 }
 
 /// Every kind of ray: glass in glass, mirrors that face each other, an area light, light through tinted balls; and fractals.
-fn scene() -> RenderScene {
+/// Without the wall behind them the balls stand in front of the background.
+fn scene(walled: bool) -> RenderScene {
     let mirror = Material::shiny(Color::gray(0.2), 0.3, 20.0).with_reflection(Color::gray(0.6));
     let tinted =
         Material::matte(Color::gray(0.2)).with_transparency(Color::new(0.9, 0.4, 0.3), 0.7, 0.1);
@@ -54,7 +56,6 @@ fn scene() -> RenderScene {
         .add(Plane::new(DVec3::Y * -1.0, DVec3::Y).material(mirror.clone()))
         .add(wall(-3.0))
         .add(wall(3.0))
-        .add(Plane::new(DVec3::Z * -3.0, DVec3::Z).material(fractal(FractalKind::Magnet1)))
         .add(Sphere::new(DVec3::ZERO, 1.0).material(Material::glass(1.5)))
         .add(Sphere::new(DVec3::ZERO, 0.5).material(Material::glass(1.2)))
         .light(lamp)
@@ -66,6 +67,11 @@ fn scene() -> RenderScene {
             DVec3::Y,
             0.8,
         ));
+    scene.background_alpha = BackgroundAlpha::LeftOut;
+    if walled {
+        let wall = Plane::new(DVec3::Z * -3.0, DVec3::Z);
+        scene = scene.add(wall.material(fractal(FractalKind::Magnet1)));
+    }
     for k in 0..12 {
         let turn = f64::from(k) * 0.6;
         let center = DVec3::new(2.0 * turn.sin(), -0.6, 2.0 * turn.cos());
@@ -79,10 +85,12 @@ fn scene() -> RenderScene {
     compile(&scene, &CompileOptions::default()).expect("a scene")
 }
 
-#[test]
-fn batches_of_any_size_have_the_same_bits() {
-    let scene = scene();
-    let settings = TraceSettings::of(&scene);
+/// Traces a picture of the scene one by one and in batches, and returns what its rays see.
+fn traced_in_batches<'s>(
+    scene: &'s RenderScene,
+    tracer: impl Fn(TraceSettings) -> TreeTracer<'s>,
+) -> Vec<Sample> {
+    let settings = TraceSettings::of(scene);
     let rays: Vec<Option<Ray>> = (0..32 * 24)
         .map(|k| {
             let (x, y) = (
@@ -99,17 +107,17 @@ fn batches_of_any_size_have_the_same_bits() {
         packets: false,
         ..settings
     };
-    let mut single = TreeTracer::new(&scene, one_by_one);
-    let alone: Vec<Color> = rays
+    let mut single = tracer(one_by_one);
+    let alone: Vec<Sample> = rays
         .iter()
         .map(|ray| match ray {
-            Some(ray) => single.trace(ray, &mut ()).color,
-            None => Color::BLACK,
+            Some(ray) => single.trace(ray, &mut ()).sample(),
+            None => Sample::NOTHING,
         })
         .collect();
     for size in [1, 2, 3, 7, PACKET] {
-        let mut tracer = TreeTracer::new(&scene, settings);
-        let together: Vec<Color> = rays
+        let mut tracer = tracer(settings);
+        let together: Vec<Sample> = rays
             .chunks(size)
             .flat_map(|batch| tracer.trace_packet(batch).to_vec())
             .collect();
@@ -117,4 +125,34 @@ fn batches_of_any_size_have_the_same_bits() {
         assert_eq!(tracer.counts, single.counts, "{size}");
     }
     assert!(single.counts.reflection > 500 && single.counts.refraction > 500);
+    alone
+}
+
+#[test]
+fn batches_of_any_size_have_the_same_bits() {
+    let scene = scene(true);
+    let samples = traced_in_batches(&scene, |settings| TreeTracer::new(&scene, settings));
+    assert!(samples.iter().all(|sample| sample.clear == 0.0));
+}
+
+#[test]
+fn batches_with_an_alpha_channel_have_the_same_bits() {
+    let scene = scene(false);
+    let tracer = |settings| TreeTracer::new(&scene, settings);
+    let opaque = traced_in_batches(&scene, tracer);
+    let clear = traced_in_batches(&scene, |settings| tracer(settings).with_alpha());
+    let counts = |low: f64, high: f64| {
+        let seen = clear.iter().filter(|s| s.clear >= low && s.clear < high);
+        seen.count()
+    };
+    // Beside all things, through one of them, and nothing.
+    assert!(counts(1.0, 2.0) > 100 && counts(0.01, 0.99) > 10 && counts(0.0, 1e-9) > 100);
+    let background = Color::new(0.1, 0.2, 0.4);
+    for (opaque, clear) in opaque.iter().zip(&clear) {
+        // Through coloured balls the shares of red and blue differ.
+        if clear.clear > 0.999 || clear.clear == 0.0 {
+            let missing = opaque.color - clear.color - background * clear.clear;
+            assert!(missing.map(f64::abs).max_component() < 1e-3, "{missing:?}");
+        }
+    }
 }

@@ -1,9 +1,11 @@
 //! Primary rays that hit nothing: the background.
 
 use super::{Branch, SampleResult, TreeTracer};
+use crate::coverage::Coverage;
 use crate::observer::RayKind;
+use crate::sampling::Sample;
 use crate::scene::RenderScene;
-use strahl_math::Ray;
+use strahl_math::{DVec3, Ray};
 use strahl_scene::Background;
 use strahl_shade::Color;
 
@@ -21,15 +23,27 @@ pub(super) fn common(scene: &RenderScene) -> Option<Color> {
 }
 
 impl TreeTracer<'_> {
-    /// The radiance along a primary ray that hits nothing.
+    /// With the alpha channel: the background is left out of what primary rays see, as far as it is see-through.
+    pub(crate) fn with_alpha(mut self) -> Self {
+        let scene = self.tracer.scene;
+        let coverage = Coverage::new(scene.background.clone(), scene.background_alpha);
+        // What is the same along all rays can be asked along any.
+        let without = |seen: Sample| coverage.of_nothing(DVec3::Y, Color::WHITE, seen.color);
+        self.beyond = self.beyond.map(without);
+        self.coverage = Some(coverage);
+        self
+    }
+
+    /// What a primary ray sees that hits nothing.
     pub(crate) fn nothing(&mut self, primary: &Ray) -> SampleResult {
         let eye = self.eye_media(primary.origin);
         self.put(0, primary, 0, eye);
         let points = std::mem::take(&mut self.points);
-        let color = self.nothing_along(&points[0].branch);
+        let Sample { color, clear } = self.nothing_along(&points[0].branch);
         self.points = points;
         SampleResult {
             color,
+            clear,
             first: None,
             depth: 1,
             rays: 1,
@@ -37,10 +51,10 @@ impl TreeTracer<'_> {
     }
 
     /// The same for a ray that is in a tree already.
-    pub(super) fn nothing_along(&mut self, primary: &Branch) -> Color {
+    pub(super) fn nothing_along(&mut self, primary: &Branch) -> Sample {
         self.counts.count(RayKind::Primary, false);
-        if let Some(color) = self.beyond {
-            return color;
+        if let Some(sample) = self.beyond {
+            return sample;
         }
         let scene = self.tracer.scene;
         let (keeps, adds) = self.in_front(primary, f64::INFINITY);
@@ -50,12 +64,15 @@ impl TreeTracer<'_> {
         if self.adds_light_on_the_way() {
             color += adds;
         }
-        color
+        match &self.coverage {
+            Some(coverage) => coverage.of_nothing(primary.ray.direction, keeps, color),
+            None => Sample::from(color),
+        }
     }
 
-    /// The radiance along primary rays that hit nothing, if it is the same for all; then `rays` rays are counted as traced.
+    /// What primary rays see that hit nothing, if it is the same for all; then `rays` rays are counted as traced.
     #[inline]
-    pub(crate) fn same_nothing(&mut self, rays: usize) -> Option<Color> {
+    pub(crate) fn same_nothing(&mut self, rays: usize) -> Option<Sample> {
         if self.beyond.is_some() {
             self.counts.primary += rays as u64;
         }

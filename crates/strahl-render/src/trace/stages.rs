@@ -167,6 +167,9 @@ impl<'s> TreeTracer<'s> {
             (*parent, *kind, *share) = (branch.parent, branch.kind, branch.share);
             (*local, *reflected, *transmitted) = (Color::BLACK, Color::BLACK, Color::BLACK);
             (*keeps, *adds) = (attenuation, fog);
+            if let Some(coverage) = &mut self.coverage {
+                coverage.enter(hit.is_none().then_some(branch.ray.direction));
+            }
             match hit {
                 Some(hit) => {
                     self.tracer.slot.enter_for(Phase::Surface, hit.id);
