@@ -1,11 +1,13 @@
 //! Where the rays of a pixel go through it.
 
+mod division;
 mod pattern;
 mod refinement;
 mod sample;
 
+pub(crate) use division::Division;
 pub use refinement::Refinement;
-pub(crate) use refinement::{Compared, Few, Slopes, subdivided};
+pub(crate) use refinement::{Compared, Slopes};
 pub(crate) use sample::Sample;
 
 use std::{fmt, str::FromStr};

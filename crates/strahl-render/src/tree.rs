@@ -3,7 +3,7 @@ use crate::observer::{
     BranchEnd, GatherTerm, LightDetail, LightTerm, RayKind, RayReport, ShadowReport, TraceObserver,
 };
 use crate::render::{RenderError, RenderOptions, is_refined, mean_of_corners};
-use crate::sampling::{Sample, Sampling, subdivided};
+use crate::sampling::{Division, Sample, Sampling};
 use crate::scene::RenderScene;
 use crate::trace::TreeTracer;
 use strahl_scene::Camera;
@@ -177,10 +177,12 @@ pub(crate) fn explain_from(
             let corners = corners.map(|(dx, dy)| Sample::from(sample(0, dx, dy)));
             let pixel = match &options.sampling {
                 Sampling::Recursive(refinement) => {
+                    let mut division = Division::new(refinement, options.trace.space());
+                    division.add((0, 0), corners);
                     let mut inner = |&(dx, dy): &(f64, f64)| Sample::from(sample(1, dx, dy));
-                    subdivided(corners, refinement, options.trace.space(), &mut |places| {
-                        places.iter().map(&mut inner).collect()
-                    })
+                    let means =
+                        division.means(|places| Some(places.iter().map(&mut inner).collect()));
+                    means.map_or(Sample::NOTHING, |means| means[0])
                 }
                 _ => mean_of_corners(corners),
             };

@@ -8,7 +8,7 @@ use crate::cost::PixelCost;
 use crate::film::{PixelInfo, Region};
 use crate::observer::RayKind;
 use crate::render::Progress;
-use crate::sampling::{Few, Sample};
+use crate::sampling::{Division, Refinement, Sample};
 use crate::scene::RenderScene;
 use crate::sight::{SQUARE, Sight};
 use crate::tiles::TILE;
@@ -328,6 +328,80 @@ impl PixelTracer<'_> {
         true
     }
 
+    /// The means of the pixels of a tile that are divided because their corners differ.
+    pub(super) fn divided(
+        &mut self,
+        tile: Region,
+        refinement: &Refinement,
+        corners: impl Fn(u32, u32) -> [Sample; 4],
+    ) -> TileResult<Option<Sample>> {
+        self.start_tile();
+        let space = self.options.trace.space();
+        let mut values = vec![None; tile.pixels() as usize];
+        let mut costs = Vec::new();
+        let differ = |&(x, y): &(u32, u32)| {
+            let corners = corners(x, y);
+            corners.iter().any(|c| c.color != corners[0].color)
+        };
+        // Most pixels have four equal corners.
+        let wanted: Vec<(u32, u32)> = tile.positions().filter(differ).collect();
+        let mut together = Division::pixels_at_once(refinement);
+        if self.options.costs {
+            // The cost of a pixel is that of its own rays.
+            together = 1;
+            costs = vec![PixelCost::default(); values.len()];
+        }
+        let sight = self.sight(tile);
+        for pixels in wanted.chunks(together) {
+            let mut division = Division::new(refinement, space);
+            for &(x, y) in pixels {
+                division.add((x - tile.x, y - tile.y), corners(x, y));
+            }
+            let (means, cost) = self.measured(|tracer| {
+                division.means(|places| tracer.samples_in(tile, &sight, places))
+            });
+            let Some(means) = means else {
+                break;
+            };
+            for (&(x, y), mean) in pixels.iter().zip(means) {
+                values[tile.index(x, y)] = Some(mean);
+                if let Some(place) = costs.get_mut(tile.index(x, y)) {
+                    *place = cost;
+                }
+            }
+        }
+        self.end_tile(tile, None, values, costs)
+    }
+
+    /// The samples at places in a tile, given in pixels from its top left corner; `None` if the tile is left.
+    fn samples_in(
+        &mut self,
+        tile: Region,
+        sight: &Sight,
+        places: &[(f64, f64)],
+    ) -> Option<Vec<Sample>> {
+        let mut samples = vec![Sample::NOTHING; places.len()];
+        let mut packet = Packet::new();
+        for (number, (dx, dy)) in places.iter().enumerate() {
+            if number.is_multiple_of(PACKET) && self.leaves() {
+                return None;
+            }
+            let (x, y) = (f64::from(tile.x) + dx, f64::from(tile.y) + dy);
+            let last = (tile.x + tile.width - 1, tile.y + tile.height - 1);
+            self.blind = sight.is_empty((x as u32).min(last.0), (y as u32).min(last.1));
+            if self.together && !self.blind {
+                packet.push((number, self.rays.ray(x, y)));
+                if packet.is_full() {
+                    self.trace_packet(&mut packet, |number, sample| samples[number] = sample);
+                }
+            } else {
+                samples[number] = self.sample(x, y, false);
+            }
+        }
+        self.trace_packet(&mut packet, |number, sample| samples[number] = sample);
+        Some(samples)
+    }
+
     /// Traces numbered rays in a packet, which is then empty.
     fn trace_packet(&mut self, packet: &mut Packet, mut put: impl FnMut(usize, Sample)) {
         let mut rays = ArrayVec::<Option<Ray>, PACKET>::new();
@@ -476,24 +550,6 @@ impl PixelTracer<'_> {
                 samples.add(*sample);
             }
         }
-    }
-
-    /// The samples at places of a pixel.
-    pub(super) fn samples(&mut self, x: u32, y: u32, places: &[(f64, f64)]) -> Few {
-        let at = |(dx, dy): (f64, f64)| (f64::from(x) + dx, f64::from(y) + dy);
-        if self.together && !self.blind && places.len() > 1 {
-            let ray = |&place: &(f64, f64)| {
-                let (x, y) = at(place);
-                self.rays.ray(x, y)
-            };
-            let rays: ArrayVec<Option<Ray>, PACKET> = places.iter().map(ray).collect();
-            return self.tree.trace_packet(&rays).iter().copied().collect();
-        }
-        let sample = |&place: &(f64, f64)| {
-            let (x, y) = at(place);
-            self.sample(x, y, false)
-        };
-        places.iter().map(sample).collect()
     }
 
     /// The colour at the corner of pixels, and what shows of the background.

@@ -6,7 +6,7 @@ use super::refine::Comparison;
 use super::{Crew, Lattice, RenderError, RenderOptions, Rendered, Shown, mean_of_corners};
 use crate::cost::PixelCost;
 use crate::film::{Film, Region, try_filled};
-use crate::sampling::{Sample, Sampling, subdivided};
+use crate::sampling::{Sample, Sampling};
 use crate::sink::{Pass, Sink};
 use crate::tiles::{TILE, tiles, tiles_of, whole_tiles};
 use crate::trace::RayCounts;
@@ -308,24 +308,7 @@ impl Work {
             Stage::Divide(refinement) => {
                 let lattice = &*lattice;
                 turn.trace(
-                    |tracer, tile| {
-                        tracer.tile(
-                            tile,
-                            |_, _| None,
-                            |tracer, x, y| {
-                                let corners = lattice.around(x, y);
-                                // Most pixels have four equal corners.
-                                corners
-                                    .iter()
-                                    .any(|corner| corner.color != corners[0].color)
-                                    .then(|| {
-                                        subdivided(corners, &refinement, space, &mut |places| {
-                                            tracer.samples(x, y, places)
-                                        })
-                                    })
-                            },
-                        )
-                    },
+                    |tracer, tile| tracer.divided(tile, &refinement, |x, y| lattice.around(x, y)),
                     |film, result, _| set_some(film, result.tile, &result.values, space),
                 )
             }

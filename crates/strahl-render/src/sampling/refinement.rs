@@ -1,10 +1,8 @@
-//! Where pixels differ so much that they are refined, and how a pixel is divided.
+//! Where pixels differ so much that they are refined.
 
-use super::Sample;
 use arrayvec::ArrayVec;
-use std::{collections::HashMap, fmt, str::FromStr};
+use std::{fmt, str::FromStr};
 use strahl_math::det;
-use strahl_scene::WorkingSpace;
 use strahl_shade::Color;
 
 /// When and how far pixels are refined: POV-Ray's `+A`, `+R` and `+AG`.
@@ -163,94 +161,9 @@ impl Slopes {
     }
 }
 
-/// The samples of a few places.
-pub(crate) type Few = ArrayVec<Sample, 5>;
-
-/// Takes samples at a few places.
-pub(crate) type Take<'a> = dyn FnMut(&[(f64, f64)]) -> Few + 'a;
-
-/// The mean of a pixel with these samples at its corners (top left, top right, bottom left, bottom right): the mean of the corners if
-/// they are alike in linear light, or else that of the four quarters of the pixel (Whitted 1980). `sample` takes up to five places in the pixel, `0..=1` from its top left corner,
-/// and returns their samples.
-pub(crate) fn subdivided(
-    corners: [Sample; 4],
-    refinement: &Refinement,
-    space: WorkingSpace,
-    sample: &mut Take<'_>,
-) -> Sample {
-    let size = 1 << refinement.depth.saturating_sub(1);
-    let mut division = Division {
-        cell: 1.0 / f64::from(size),
-        known: HashMap::new(),
-        refinement,
-        space,
-        sample,
-    };
-    division.square((0, 0), size, corners)
-}
-
-/// A pixel that is divided.
-struct Division<'a> {
-    /// Side of the smallest square, in pixels.
-    cell: f64,
-    /// Samples on borders that squares share, by their place in smallest squares.
-    known: HashMap<(u32, u32), Sample>,
-    refinement: &'a Refinement,
-    space: WorkingSpace,
-    sample: &'a mut Take<'a>,
-}
-
-impl Division<'_> {
-    fn square(&mut self, (i, j): (u32, u32), size: u32, corners: [Sample; 4]) -> Sample {
-        let [a, b, c, d] = corners;
-        if size == 1 || !self.differ(corners) {
-            return (a + b + c + d) / 4.0;
-        }
-        let half = size / 2;
-        let [top, left, middle, right, bottom] = self.at([
-            (i + half, j),
-            (i, j + half),
-            (i + half, j + half),
-            (i + size, j + half),
-            (i + half, j + size),
-        ]);
-        let quarters = self.square((i, j), half, [a, top, left, middle])
-            + self.square((i + half, j), half, [top, b, middle, right])
-            + self.square((i, j + half), half, [left, middle, c, bottom])
-            + self.square((i + half, j + half), half, [middle, right, bottom, d]);
-        quarters / 4.0
-    }
-
-    fn differ(&self, corners: [Sample; 4]) -> bool {
-        let mut colors = corners.map(|sample| sample.color);
-        self.space.decode_all(&mut colors);
-        let shown = Compared::few(&colors, self.refinement);
-        let pairs = [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)];
-        pairs
-            .iter()
-            .any(|&(a, b)| shown[a].differs(shown[b], self.refinement))
-    }
-
-    /// The samples at places in smallest squares; those that are not known are taken together.
-    fn at(&mut self, places: [(u32, u32); 5]) -> [Sample; 5] {
-        let new = places
-            .iter()
-            .filter(|place| !self.known.contains_key(place));
-        let new: ArrayVec<(u32, u32), 5> = new.copied().collect();
-        let place = |&(i, j): &(u32, u32)| (f64::from(i) * self.cell, f64::from(j) * self.cell);
-        let at: ArrayVec<(f64, f64), 5> = new.iter().map(place).collect();
-        self.known.extend(new.into_iter().zip((self.sample)(&at)));
-        places.map(|place| self.known[&place])
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    fn step_at(edge: f64) -> impl Fn(f64, f64) -> Sample {
-        move |x, _| Sample::from(if x < edge { Color::WHITE } else { Color::BLACK })
-    }
 
     /// POV-Ray 3.7 refines 0.5 beside 0.7 and not 0.5 beside 0.65, with `+A0.3`; with `+AG1` 0.5 beside 0.61.
     #[test]
@@ -303,39 +216,5 @@ mod tests {
                 "{gamma}: {surely} of {alike}"
             );
         }
-    }
-
-    /// POV-Ray's second method takes five rays more in a pixel with an edge for `+R2`, fourteen for `+R3`.
-    #[test]
-    fn squares_are_divided_where_their_corners_differ() {
-        for (depth, rays, share) in [(1, 0, 0.5), (2, 5, 0.75), (3, 14, 0.625)] {
-            let refinement = Refinement {
-                depth,
-                ..Refinement::DEFAULT
-            };
-            let step = step_at(0.7);
-            let corners = [0.0, 1.0, 0.0, 1.0].map(|x| step(x, 0.0));
-            let mut count = 0;
-            let color = subdivided(corners, &refinement, WorkingSpace::Linear, &mut |places| {
-                count += places.len();
-                let inside = |x: f64| (0.0..=1.0).contains(&x);
-                assert!(places.iter().all(|&(x, y)| inside(x) && inside(y)));
-                places.iter().map(|&(x, y)| step(x, y)).collect()
-            });
-            assert_eq!((count, color), (rays, Sample::from(Color::gray(share))));
-        }
-    }
-
-    #[test]
-    fn alike_corners_need_no_rays() {
-        let mut none = |_: &[(f64, f64)]| -> Few { unreachable!("no place is looked at") };
-        let corners = [Sample::from(Color::gray(0.25)); 4];
-        let color = subdivided(
-            corners,
-            &Refinement::DEFAULT,
-            WorkingSpace::Linear,
-            &mut none,
-        );
-        assert_eq!(color, Sample::from(Color::gray(0.25)));
     }
 }
