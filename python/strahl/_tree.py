@@ -89,6 +89,8 @@ class Sample(Node):
     """The pass of the sampling that asked for it."""
     lens_ray: int | None = None
     """The number of the ray, where a place has several."""
+    times: int
+    """How often its place counts in the mean of the pixel."""
     color: Triple
     """The linear colour it brings."""
     rays: list[TreeRay]

@@ -43,6 +43,8 @@ pub struct Sample {
     pub pass: u32,
     /// The number of the ray, where a place has several.
     pub lens_ray: Option<u32>,
+    /// How often its place counts in the mean of the pixel.
+    pub times: u32,
     /// The linear colour it brings.
     pub color: Triple,
     /// The rays in the order of tracing; the first is the primary ray.

@@ -3,12 +3,13 @@ mod pixels;
 mod plan;
 mod probe;
 mod refine;
+mod rounds;
 mod work;
 
 pub(crate) use crew::Crew;
 pub(crate) use pixels::Seen;
 pub(crate) use probe::{PixelProbe, probe_rows};
-pub(crate) use refine::is_refined;
+pub(crate) use refine::refined_quadrants;
 pub use work::PixelState;
 pub(crate) use work::Work;
 
@@ -294,6 +295,22 @@ impl Samples {
     /// With one sample more.
     fn with(mut self, sample: Sample) -> Self {
         self.add(sample);
+        self
+    }
+
+    /// With others.
+    fn plus(mut self, other: Self) -> Self {
+        self.sum += other.sum;
+        self.clear += other.clear;
+        self.count += other.count;
+        self
+    }
+
+    /// With a sample that counts several times.
+    fn with_many(mut self, sample: Sample, times: u32) -> Self {
+        self.sum += sample.color * f64::from(times);
+        self.clear += sample.clear * f64::from(times);
+        self.count += times;
         self
     }
 

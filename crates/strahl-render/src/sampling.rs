@@ -2,10 +2,12 @@
 
 mod division;
 mod pattern;
+mod quadrants;
 mod refinement;
 mod sample;
 
 pub(crate) use division::Division;
+pub(crate) use quadrants::Quadrants;
 pub use refinement::Refinement;
 pub(crate) use refinement::{Compared, Slopes};
 pub(crate) use sample::Sample;
@@ -25,7 +27,7 @@ pub enum Sampling {
     Grid(u32),
     /// One ray through the centre of each pixel. Where two neighbours (left and right, above and below) differ by more than the
     /// threshold, both pixels get so many more rays that their error is that of `depth` x `depth` rays: 3, 6 and 12 for depths of 2, 3 and 4,
-    /// else `depth` x `depth`. POV-Ray's first method.
+    /// else `depth` x `depth`. Those towards neighbours that look alike are left out, and the first sample stands for them. POV-Ray's first method.
     Adaptive(Refinement),
     /// Rays through the corners of the pixels. A pixel whose corners differ by more than the threshold is divided into four, and so
     /// on: `depth - 1` times at most. POV-Ray's second method.

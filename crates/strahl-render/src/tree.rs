@@ -2,8 +2,8 @@ use crate::camera::PrimaryRays;
 use crate::observer::{
     BranchEnd, GatherTerm, LightDetail, LightTerm, RayKind, RayReport, ShadowReport, TraceObserver,
 };
-use crate::render::{RenderError, RenderOptions, is_refined, mean_of_corners};
-use crate::sampling::{Division, Sample, Sampling};
+use crate::render::{RenderError, RenderOptions, mean_of_corners, refined_quadrants};
+use crate::sampling::{Division, Quadrants, Sample, Sampling};
 use crate::scene::RenderScene;
 use crate::trace::TreeTracer;
 use strahl_scene::Camera;
@@ -56,6 +56,9 @@ pub struct PixelSample {
     pub pass: u32,
     /// The number of the ray, where a place has several: rays through a lens, or of a camera made of meshes.
     pub ray: Option<u32>,
+    /// How often its place counts in the mean. The centre of a pixel that was refined towards some neighbours only stands for the places that were left out,
+    /// too.
+    pub times: u32,
     /// The radiance that it brings, in linear light. (The tree's total, of which the pixel's mean is made, is a colour of the scene's working space.)
     pub color: Color,
     /// Its tree.
@@ -69,8 +72,8 @@ pub struct PixelTree {
     pub samples: Vec<PixelSample>,
     /// How many places of the picture they belong to; the camera may see nothing through some.
     pub places: u32,
-    /// The pixel's linear colour before rounding: the mean over the places, or over the squares it was divided into, of colours of the scene's
-    /// working space.
+    /// The pixel's linear colour before rounding: the mean over the places (each counted [`PixelSample::times`]), or over the squares it was divided into, of
+    /// colours of the scene's working space.
     pub color: Color,
     /// The colour as it is in the film.
     pub film: [f32; 3],
@@ -151,7 +154,7 @@ pub(crate) fn explain_from(
     crate::Film::try_new(options.width, options.height, region, false)?;
     let rays = PrimaryRays::new(camera, options.width, options.height);
     let mut tracer = TreeTracer::new(scene, options.trace).with_transport(&options.transport);
-    let (mut samples, mut count) = (Vec::new(), 0);
+    let (mut samples, mut count, mut center_stands_for) = (Vec::new(), 0, 0);
     let mut sample = |pass: u32, dx: f64, dy: f64| {
         let place = (f64::from(x) + dx, f64::from(y) + dy);
         let mut number = 0;
@@ -164,6 +167,7 @@ pub(crate) fn explain_from(
                 place,
                 pass,
                 ray: (!rays.is_sharp()).then_some(number),
+                times: 1,
                 color: linear,
                 tree,
             });
@@ -190,28 +194,33 @@ pub(crate) fn explain_from(
         }
         sampling => {
             // Samples are summed pass by pass, as for the film: floating-point sums depend on the grouping.
-            let mut pass_sum = |pass| {
-                let places = sampling.places(pass, x, y, options.seed);
-                let (mut sum, mut count) = (Color::BLACK, 0u32);
-                for (dx, dy) in places {
-                    sum += sample(pass, dx, dy);
-                    count += 1;
+            let places = |pass| sampling.places(pass, x, y, options.seed);
+            let mut sum = Color::BLACK;
+            for (dx, dy) in places(0) {
+                sum += sample(0, dx, dy);
+            }
+            let mut all = places(0).len() as u32;
+            let quadrants = refined_quadrants(scene, &rays, options, x, y)?;
+            if !quadrants.is_none() {
+                let (mut more, mut traced) = (Color::BLACK, 0);
+                for quadrant in (0..Quadrants::COUNT).filter(|n| quadrants.has(*n)) {
+                    let mut part = Color::BLACK;
+                    for (dx, dy) in places(1).filter(|at| Quadrants::of(*at) == quadrant) {
+                        part += sample(1, dx, dy);
+                        traced += 1;
+                    }
+                    more += part;
                 }
-                (sum, count)
-            };
-            let (mut sum, mut count) = pass_sum(0);
-            if is_refined(scene, &rays, options, x, y)? {
-                let more = pass_sum(1);
-                sum = more.0 + sum;
-                count += more.1;
+                center_stands_for = places(1).len() as u32 - traced;
+                sum = more + sum * f64::from(1 + center_stands_for);
+                all += places(1).len() as u32;
             }
-            if count == 1 {
-                sum
-            } else {
-                sum / f64::from(count)
-            }
+            if all == 1 { sum } else { sum / f64::from(all) }
         }
     };
+    for sample in samples.iter_mut().filter(|sample| sample.pass == 0) {
+        sample.times += center_stands_for;
+    }
     let color = options.trace.space().decode(color);
     Ok(PixelTree {
         samples,

@@ -76,6 +76,42 @@ fn the_sum_of_the_tree_is_the_pixel_to_the_last_bit() {
     }
 }
 
+/// The centre of a pixel of an edge counts for the places that lie away from the edge.
+#[test]
+fn centers_stand_for_the_places_that_are_not_traced() {
+    let scene = compiled(&glass_and_mirrors());
+    let (mut in_part, mut whole) = (0, 0);
+    for depth in [2, 3, 4, 5] {
+        let sampling = Sampling::Adaptive(Refinement {
+            depth,
+            ..Refinement::DEFAULT
+        });
+        let picture = rendered(&scene, |o| o.sampling = sampling).film;
+        let options = RenderOptions {
+            sampling,
+            ..RenderOptions::new(&scene, 96, 64)
+        };
+        for x in 12..84 {
+            let pixel = explain(&scene, &options, x, 33).expect("exists");
+            assert_eq!(Some(pixel.film), picture.pixel(x, 33), "{depth}: {x}");
+            let all: u32 = pixel.samples.iter().map(|sample| sample.times).sum();
+            match pixel.samples.len() {
+                1 => assert_eq!(all, 1),
+                traced => {
+                    in_part += usize::from(traced < all as usize);
+                    whole += usize::from(traced == all as usize);
+                    let sum = pixel.samples.iter().fold(Color::BLACK, |sum, sample| {
+                        sum + sample.color * f64::from(sample.times)
+                    });
+                    let error = sum / f64::from(all) - pixel.color;
+                    assert!(error.map(f64::abs).max_component() < 1e-12);
+                }
+            }
+        }
+    }
+    assert!(in_part > 20 && whole > 20, "{in_part} {whole}");
+}
+
 #[test]
 fn branches_that_end_say_why() {
     let scene = compiled(&glass_and_mirrors());

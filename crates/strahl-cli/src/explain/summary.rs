@@ -49,6 +49,14 @@ impl Pixel<'_> {
     }
 }
 
+/// How often a sample counts in the mean of the pixel, if it is more than once.
+pub(super) fn counted(sample: &PixelSample) -> String {
+    match sample.times {
+        1 => String::new(),
+        times => format!(", counts {times} times"),
+    }
+}
+
 /// Writes a line for each sample.
 pub(super) fn write_samples(
     page: &mut Page,
@@ -66,11 +74,12 @@ pub(super) fn write_samples(
         let at = format!("({}, {})", digits.number(x), digits.number(y));
         let first = sample.tree.nodes.first();
         let line = format!(
-            "{:>6}  {at:<18}  {:>4}  {:<32}  {}",
+            "{:>6}  {at:<18}  {:>4}  {:<32}  {}{}",
             number + 1,
             Counts::of(&sample.tree).rays(),
             digits.color(sample.color),
             first.map_or_else(String::new, |node| seen(scene, node)),
+            counted(sample)
         );
         page.row(&line);
     }

@@ -1,7 +1,7 @@
 use super::lights::write_light;
 use super::names::object_at;
 use super::page::Page;
-use super::summary::{write_outline, write_pixel, write_samples};
+use super::summary::{counted, write_outline, write_pixel, write_samples};
 use super::tally::Tally;
 use super::terms::write_shading;
 use super::writer::{RAY, Writer};
@@ -47,10 +47,11 @@ fn heading(number: usize, sample: &PixelSample, digits: Digits) -> String {
         .ray
         .map_or_else(String::new, |k| format!(", ray {} through the lens", k + 1));
     format!(
-        "sample {} at ({}, {}){ray}",
+        "sample {} at ({}, {}){ray}{}",
         number + 1,
         digits.number(x),
-        digits.number(y)
+        digits.number(y),
+        counted(sample)
     )
 }
 

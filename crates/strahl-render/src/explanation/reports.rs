@@ -45,6 +45,7 @@ impl Sample {
             position: sample.place.into(),
             pass: sample.pass,
             lens_ray: sample.ray,
+            times: sample.times,
             color: color(sample.color),
             rays: nodes.map(|node| TreeRay::new(scene, node)).collect(),
         }

@@ -1,6 +1,5 @@
 //! Traces the pixels of tiles on one thread.
 
-use super::refine::Comparison;
 use super::{RenderOptions, Samples, TileResult};
 use crate::activity::Phase;
 use crate::camera::PrimaryRays;
@@ -27,10 +26,10 @@ pub(crate) struct Seen {
 }
 
 /// Rays with the numbers of what they are for.
-type Packet = ArrayVec<(usize, Option<Ray>), PACKET>;
+pub(super) type Packet = ArrayVec<(usize, Option<Ray>), PACKET>;
 
 /// The squares of a tile, row by row.
-fn squares(tile: Region) -> impl Iterator<Item = Region> {
+pub(super) fn squares(tile: Region) -> impl Iterator<Item = Region> {
     let (right, bottom) = (tile.x + tile.width, tile.y + tile.height);
     let rows = (tile.y..bottom).step_by(SQUARE as usize);
     let columns = (tile.x..right).step_by(SQUARE as usize);
@@ -49,17 +48,17 @@ const FEW: usize = 4;
 /// Traces pixels on one thread.
 pub(super) struct PixelTracer<'s> {
     pub(super) tree: TreeTracer<'s>,
-    rays: &'s PrimaryRays,
-    options: &'s RenderOptions,
+    pub(super) rays: &'s PrimaryRays,
+    pub(super) options: &'s RenderOptions,
     progress: &'s dyn Progress,
     /// Of the pixels of the tile so far.
     infos: Vec<PixelInfo>,
     /// Deepest level of the trees of the pixel so far.
     depth: u32,
     /// Whether beam culling has shown that no ray of the pixel hits anything.
-    blind: bool,
+    pub(super) blind: bool,
     /// Whether neighbouring rays are traced in packets.
-    together: bool,
+    pub(super) together: bool,
     /// Whether the last tile was left half done, because the render is cancelled.
     left: bool,
 }
@@ -104,7 +103,7 @@ impl<'s> PixelTracer<'s> {
     }
 
     /// Whether to leave the tile here: it may take seconds, and nobody wants it any more.
-    fn leaves(&mut self) -> bool {
+    pub(super) fn leaves(&mut self) -> bool {
         self.left |= self.progress.cancelled();
         self.left
     }
@@ -206,7 +205,7 @@ impl PixelTracer<'_> {
         self.first_pass(
             tile,
             |tracer, pixels| Some(tracer.blank(pixels)?.sample()),
-            |tracer, x, y| tracer.pixel(0, x, y).sample(),
+            |tracer, x, y| tracer.pixel(x, y).sample(),
             |sample| Samples::NONE.with(sample).sample(),
         )
     }
@@ -259,73 +258,6 @@ impl PixelTracer<'_> {
             }
         }
         self.end_tile(tile, Some(points), values, costs)
-    }
-
-    /// More samples of the rough pixels of a tile, whose first ones are known, and of those that differ from the mean of a refined neighbour in the
-    /// tile, until there are no more such pixels: so a thin line that the first samples meet here and there is followed.
-    pub(super) fn refined(
-        &mut self,
-        tile: Region,
-        comparison: &Comparison<'_>,
-        is_rough: impl Fn(u32, u32) -> bool,
-        first: impl Fn(u32, u32) -> Sample,
-    ) -> TileResult<Option<Sample>> {
-        self.start_tile();
-        let sight = self.sight(tile);
-        let count = tile.pixels() as usize;
-        let mut costs = vec![PixelCost::default(); if self.options.costs { count } else { 0 }];
-        let mut values = vec![None; count];
-        let all = squares(tile).flat_map(Region::positions);
-        let mut wanted: Vec<(u32, u32)> = all.filter(|&(x, y)| is_rough(x, y)).collect();
-        for &(x, y) in &wanted {
-            values[tile.index(x, y)] = Some(first(x, y));
-        }
-        while !wanted.is_empty() && self.refine(tile, &wanted, &sight, &mut values, &mut costs) {
-            wanted = comparison.want_beside(tile, &wanted, &mut values, &first);
-        }
-        self.end_tile(tile, None, values, costs)
-    }
-
-    /// Adds more samples to the first ones of some pixels, which `values` has; false if the tile is left before the end. Packets have samples of several pixels.
-    fn refine(
-        &mut self,
-        tile: Region,
-        pixels: &[(u32, u32)],
-        sight: &Sight,
-        values: &mut [Option<Sample>],
-        costs: &mut [PixelCost],
-    ) -> bool {
-        let mut sums = vec![Samples::NONE; pixels.len()];
-        let mut packet = Packet::new();
-        let options = self.options;
-        for (number, &(x, y)) in pixels.iter().enumerate() {
-            if number.is_multiple_of(PACKET) && self.leaves() {
-                return false;
-            }
-            self.blind = sight.is_empty(x, y);
-            if options.costs {
-                let cost = &mut costs[tile.index(x, y)];
-                (sums[number], *cost) = self.measured(|tracer| tracer.pixel(1, x, y));
-                continue;
-            }
-            if self.blind || !self.together {
-                sums[number] = self.pixel(1, x, y);
-                continue;
-            }
-            for (dx, dy) in options.sampling.places(1, x, y, options.seed) {
-                let ray = self.rays.ray(f64::from(x) + dx, f64::from(y) + dy);
-                packet.push((number, ray));
-                if packet.is_full() {
-                    self.trace_packet(&mut packet, |number, sample| sums[number].add(sample));
-                }
-            }
-        }
-        self.trace_packet(&mut packet, |number, sample| sums[number].add(sample));
-        for (&(x, y), samples) in pixels.iter().zip(sums) {
-            let value = &mut values[tile.index(x, y)];
-            *value = value.map(|first| samples.with(first).sample());
-        }
-        true
     }
 
     /// The means of the pixels of a tile that are divided because their corners differ.
@@ -403,7 +335,7 @@ impl PixelTracer<'_> {
     }
 
     /// Traces numbered rays in a packet, which is then empty.
-    fn trace_packet(&mut self, packet: &mut Packet, mut put: impl FnMut(usize, Sample)) {
+    pub(super) fn trace_packet(&mut self, packet: &mut Packet, mut put: impl FnMut(usize, Sample)) {
         let mut rays = ArrayVec::<Option<Ray>, PACKET>::new();
         rays.extend(packet.iter().map(|(_, ray)| *ray));
         let samples = self.tree.trace_packet(&rays);
@@ -413,13 +345,13 @@ impl PixelTracer<'_> {
     }
 
     /// Forgets what is known of the last tile.
-    fn start_tile(&mut self) {
+    pub(super) fn start_tile(&mut self) {
         self.tree.counts = RayCounts::default();
         self.tree.tracer.stats = TraversalStats::default();
         self.tree.tracer.forget_occluders();
     }
 
-    fn end_tile<T>(
+    pub(super) fn end_tile<T>(
         &mut self,
         tile: Region,
         points: Option<Vec<(u32, u32)>>,
@@ -439,7 +371,7 @@ impl PixelTracer<'_> {
 
     /// The pixels of a tile that may see something. All of them where costs are shown, since these are the costs of single
     /// rays.
-    fn sight(&self, tile: Region) -> Sight {
+    pub(super) fn sight(&self, tile: Region) -> Sight {
         let options = self.options;
         if options.trace.beams && !options.costs && !options.info {
             Sight::of(tile, self.tree.tracer.scene, self.rays)
@@ -470,7 +402,7 @@ impl PixelTracer<'_> {
     /// The value that `trace` returns, and its cost.
     // Inline: a value that is returned in parts and then loaded as a whole would wait for the stores.
     #[inline(always)]
-    fn measured<T>(&mut self, trace: impl FnOnce(&mut Self) -> T) -> (T, PixelCost) {
+    pub(super) fn measured<T>(&mut self, trace: impl FnOnce(&mut Self) -> T) -> (T, PixelCost) {
         let (before, start) = (self.spent(), self.progress.now());
         self.depth = 0;
         let value = trace(self);
@@ -497,21 +429,20 @@ impl PixelTracer<'_> {
         Some(samples)
     }
 
-    /// The samples of one pass of a pixel.
+    /// The samples of a pixel in the first pass.
     // Inline: a value that is returned in parts and then loaded as a whole would wait for the stores.
     #[inline(always)]
-    pub(super) fn pixel(&mut self, pass: u32, x: u32, y: u32) -> Samples {
+    pub(super) fn pixel(&mut self, x: u32, y: u32) -> Samples {
         let mut samples = Samples::NONE;
         let options = self.options;
-        let places = options.sampling.places(pass, x, y, options.seed);
+        let places = options.sampling.places(0, x, y, options.seed);
         if self.together && !self.blind && places.len() >= FEW {
             self.samples_together(x, y, places, &mut samples);
             return samples;
         }
         for (dx, dy) in places {
-            let keep = pass == 0 && samples.count == 0;
-            let sample = self.sample(f64::from(x) + dx, f64::from(y) + dy, keep);
-            samples.add(sample);
+            let keep = samples.count == 0;
+            samples.add(self.sample(f64::from(x) + dx, f64::from(y) + dy, keep));
         }
         samples
     }

@@ -3,7 +3,7 @@
 use super::{Lattice, PixelTracer, RenderError, RenderOptions};
 use crate::camera::PrimaryRays;
 use crate::film::{Region, try_filled};
-use crate::sampling::{Compared, Refinement, Sample, Sampling, Slopes};
+use crate::sampling::{Compared, Quadrants, Refinement, Sample, Sampling, Slopes};
 use crate::scene::RenderScene;
 use crate::tiles::{tiles, whole_tiles};
 use arrayvec::ArrayVec;
@@ -14,6 +14,8 @@ use strahl_shade::Color;
 pub(super) struct Comparison<'a> {
     refinement: &'a Refinement,
     slopes: Slopes,
+    /// For half of the threshold.
+    fine: Slopes,
     space: WorkingSpace,
 }
 
@@ -22,67 +24,49 @@ impl<'a> Comparison<'a> {
         Self {
             refinement,
             slopes: Slopes::new(refinement),
+            fine: Slopes::new(&Refinement {
+                threshold: 0.5 * refinement.threshold,
+                ..*refinement
+            }),
             space,
         }
     }
 
-    /// The pixels of a tile, without a value yet, whose first samples differ from the means of refined neighbours. They get the first sample as their
-    /// value. POV-Ray compares with such means of the neighbours to the left and above (measured).
-    pub(super) fn want_beside(
-        &self,
-        tile: Region,
-        refined: &[(u32, u32)],
-        values: &mut [Option<Sample>],
-        first: impl Fn(u32, u32) -> Sample,
-    ) -> Vec<(u32, u32)> {
-        let mut wanted = Vec::new();
-        for &(x, y) in refined {
-            let beside = [
-                (x.wrapping_sub(1), y),
-                (x + 1, y),
-                (x, y.wrapping_sub(1)),
-                (x, y + 1),
-            ];
-            let is_open =
-                |&(x, y): &(u32, u32)| tile.contains(x, y) && values[tile.index(x, y)].is_none();
-            let open: ArrayVec<(u32, u32), 4> = beside.into_iter().filter(is_open).collect();
-            let Some(mean) = values[tile.index(x, y)].filter(|_| !open.is_empty()) else {
-                continue;
-            };
-            let mut colors = ArrayVec::<Color, 5>::from_iter([mean.color]);
-            colors.extend(open.iter().map(|&(x, y)| first(x, y).color));
-            self.space.decode_all(&mut colors);
-            for (&(x, y), color) in open.iter().zip(&colors[1..]) {
-                if self.differ(colors[0], *color) {
-                    values[tile.index(x, y)] = Some(first(x, y));
-                    wanted.push((x, y));
-                }
-            }
-        }
-        wanted
+    /// Converts colours of the working space to linear light.
+    pub(super) fn decode(&self, colors: &mut [Color]) {
+        self.space.decode_all(colors);
     }
 
-    fn differ(&self, a: Color, b: Color) -> bool {
-        !self.slopes.surely_alike(a, b) && {
-            let shown = Compared::few(&[a, b], self.refinement);
-            shown[0].differs(shown[1], self.refinement)
+    /// Whether each of some pairs of colours in linear light differs.
+    pub(super) fn differ(&self, pairs: &[[Color; 2]]) -> Vec<bool> {
+        let mut differ = vec![false; pairs.len()];
+        let unsure = |n: &usize| !self.slopes.surely_alike(pairs[*n][0], pairs[*n][1]);
+        let doubtful: Vec<usize> = (0..pairs.len()).filter(unsure).collect();
+        for few in doubtful.chunks(Compared::FEW / 2) {
+            let colors: ArrayVec<Color, { Compared::FEW }> =
+                few.iter().flat_map(|n| pairs[*n]).collect();
+            let shown = Compared::few(&colors, self.refinement);
+            for (n, [a, b]) in few.iter().zip(shown.as_chunks().0) {
+                differ[*n] = a.differs(*b, self.refinement);
+            }
         }
+        differ
     }
 }
 
-/// Whether the second pass of [`Sampling::Adaptive`] takes more samples of pixel `(x, y)` of the picture.
-pub(crate) fn is_refined(
+/// The quadrants in which the second pass of [`Sampling::Adaptive`] takes more samples of pixel `(x, y)` of the picture.
+pub(crate) fn refined_quadrants(
     scene: &RenderScene,
     rays: &PrimaryRays,
     options: &RenderOptions,
     x: u32,
     y: u32,
-) -> Result<bool, RenderError> {
+) -> Result<Quadrants, RenderError> {
     let Sampling::Adaptive(refinement) = options.sampling else {
-        return Ok(false);
+        return Ok(Quadrants::NONE);
     };
     if refinement.depth < 2 {
-        return Ok(false);
+        return Ok(Quadrants::NONE);
     }
     let pixel = Region {
         x,
@@ -92,49 +76,45 @@ pub(crate) fn is_refined(
     };
     let comparison = Comparison::new(&refinement, options.trace.space());
     let mut tracer = PixelTracer::new(scene, rays, options, &());
-    // Few pixels decide about most; about the others the whole tile does.
     let tile = whole_tiles(pixel, options.width, options.height);
-    for region in [pixel, tile] {
-        let margin = region.grown(1, options.width, options.height);
-        let mut first = Lattice {
-            region: margin,
-            samples: try_filled(margin, Sample::NOTHING)?,
-        };
-        for tile in tiles(margin, options.tile_order) {
-            let result = tracer.centers(tile);
-            for (place, sample) in tile.positions().zip(result.values) {
-                first.put(place, sample);
-            }
-        }
-        let rough = first.rough(&comparison)?;
-        let result = tracer.refined(
-            region,
-            &comparison,
-            |x, y| rough[margin.index(x, y)],
-            |x, y| first.at(x, y),
-        );
-        if result.values[region.index(x, y)].is_some() {
-            return Ok(true);
+    let margin = tile.grown(1, options.width, options.height);
+    let mut first = Lattice {
+        region: margin,
+        samples: try_filled(margin, Sample::NOTHING)?,
+    };
+    for tile in tiles(margin, options.tile_order) {
+        let result = tracer.centers(tile);
+        for (place, sample) in tile.positions().zip(result.values) {
+            first.put(place, sample);
         }
     }
-    Ok(false)
+    let rough = first.rough(&comparison)?;
+    let result = tracer.refined(
+        tile,
+        &comparison,
+        |x, y| rough[margin.index(x, y)],
+        |x, y| first.at(x, y),
+    );
+    Ok(result.values[tile.index(x, y)].map_or(Quadrants::NONE, |(_, quadrants)| quadrants))
 }
 
 impl Lattice {
-    /// The pixels whose first sample differs from that of the one to the left, right, above or below.
-    pub(super) fn rough(&self, comparison: &Comparison<'_>) -> Result<Vec<bool>, RenderError> {
+    /// Of each pixel whose first sample differs from that of the one to the left, right, above or below, the quadrants that lie towards neighbours from
+    /// which it may differ by half of the threshold; none of the other pixels.
+    pub(super) fn rough(&self, comparison: &Comparison<'_>) -> Result<Vec<Quadrants>, RenderError> {
         let Comparison {
             refinement,
             slopes,
+            fine,
             space,
         } = comparison;
         let (region, space) = (self.region, *space);
-        let mut rough = try_filled(region, false)?;
+        let mut rough = try_filled(region, Quadrants::NONE)?;
         if refinement.depth < 2 {
             return Ok(rough);
         }
         if refinement.threshold == 0.0 {
-            rough.fill(true);
+            rough.fill(Quadrants::ALL);
             return Ok(rough);
         }
         let decoded = match space {
@@ -157,17 +137,24 @@ impl Lattice {
                 }
             }
         }
-        for few in doubtful.chunks(Compared::FEW / 2) {
-            let colors: ArrayVec<Color, { Compared::FEW }> =
-                few.iter().flatten().map(|&index| color(index)).collect();
-            let shown = Compared::few(&colors, refinement);
-            let (pairs, _) = shown.as_chunks();
-            for (&[here, neighbour], [a, b]) in few.iter().zip(pairs) {
-                if a.differs(*b, refinement) {
-                    rough[here] = true;
-                    rough[neighbour] = true;
-                }
+        let pairs: Vec<[Color; 2]> = doubtful.iter().map(|pair| pair.map(color)).collect();
+        for (pair, _) in doubtful
+            .iter()
+            .zip(comparison.differ(&pairs))
+            .filter(|(_, d)| *d)
+        {
+            for index in pair {
+                rough[*index] = Quadrants::ALL;
             }
+        }
+        let all = region.positions().zip(&mut rough);
+        for ((x, y), quadrants) in all.filter(|(_, quadrants)| !quadrants.is_none()) {
+            let here = color(region.index(x, y));
+            // Beyond the edge of the picture there is nothing to differ from.
+            *quadrants = Quadrants::towards(|right, down| {
+                let (x, y) = (x.wrapping_add_signed(right), y.wrapping_add_signed(down));
+                region.contains(x, y) && !fine.surely_alike(here, color(region.index(x, y)))
+            });
         }
         Ok(rough)
     }

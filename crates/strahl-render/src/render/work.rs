@@ -6,7 +6,7 @@ use super::refine::Comparison;
 use super::{Crew, Lattice, RenderError, RenderOptions, Rendered, Shown, mean_of_corners};
 use crate::cost::PixelCost;
 use crate::film::{Film, Region, try_filled};
-use crate::sampling::{Sample, Sampling};
+use crate::sampling::{Quadrants, Sample, Sampling};
 use crate::sink::{Pass, Sink};
 use crate::tiles::{TILE, tiles, tiles_of, whole_tiles};
 use crate::trace::RayCounts;
@@ -39,7 +39,7 @@ pub(crate) struct Work {
     /// The first samples of pixels, or those of corners, where a later pass needs them.
     lattice: Option<Lattice>,
     /// The pixels of the lattice that are refined.
-    rough: Vec<bool>,
+    rough: Vec<Quadrants>,
 }
 
 impl Work {
@@ -164,7 +164,7 @@ impl Work {
                 let (width, height) = (self.options.width, self.options.height);
                 let all = tiles(whole_tiles(film, width, height), order).into_iter();
                 let (wanted, rest): (Vec<Region>, Vec<Region>) =
-                    all.partition(|tile| tile.positions().any(|(x, y)| rough(x, y)));
+                    all.partition(|tile| tile.positions().any(|(x, y)| !rough(x, y).is_none()));
                 let mut list = one_to_one(wanted, film);
                 let rest = rest.iter().filter_map(|tile| tile.intersection(&film));
                 list.parts.extend(rest.map(|part| Part::new(part, 0)));
@@ -296,11 +296,16 @@ impl Work {
             }
             Stage::Refine(refinement) => {
                 let (first, rough) = (&*lattice, &*rough);
-                let is_rough = |x, y| rough[first.region.index(x, y)];
+                let quadrants = |x, y| rough[first.region.index(x, y)];
                 let comparison = Comparison::new(&refinement, space);
                 turn.trace(
                     |tracer, tile| {
-                        tracer.refined(tile, &comparison, is_rough, |x, y| first.at(x, y))
+                        let pixels =
+                            tracer.refined(tile, &comparison, quadrants, |x, y| first.at(x, y));
+                        pixels.with(|pixels| {
+                            let mean = |(mean, _)| mean;
+                            pixels.into_iter().map(|pixel| pixel.map(mean)).collect()
+                        })
                     },
                     |film, result, _| set_some(film, result.tile, &result.values, space),
                 )
