@@ -88,6 +88,17 @@ class Scene:
         return None if core is None else Camera(core)
 
     @property
+    def quality(self) -> int:
+        """How much pictures show, from 0 to 9, as ``--quality`` of `strahl render` has it; 9 is everything. A changed scene is compiled again."""
+        return self._core.quality()
+
+    @quality.setter
+    def quality(self, level: int) -> None:
+        if integer(level, "quality", 0) > 9:
+            raise ValueError(f"quality must be at most 9, not {level}")
+        self._core.set_quality(level)
+
+    @property
     def size(self) -> tuple[int, int]:
         """Width and height of a picture that has no size of its own."""
         return self._core.size()

@@ -65,6 +65,10 @@ class Pigment(Movable):
         """By the texture coordinates of surfaces: (u, v, 0) is the point."""
         return self._of(self._core.uv_mapped())
 
+    def quick(self, color: ColorLike) -> Pigment:
+        """With a colour that takes its place in pictures of a `Scene.quality` of 5 or less (``quick_color``)."""
+        return self._of(self._core.quick(color_ft(color, "color")))
+
 
 class Normal(Movable):
     """Makes smooth surfaces look rough: a pattern tilts the normal. It never changes; methods return new normals.

@@ -460,6 +460,20 @@ def test_shapes_of_formulas_remember_the_line_of_the_program() -> None:
     assert re.fullmatch(r".*test_builder.py:\d+", strahl.implicit("x*x + y*y + z*z - 0.5").source or "")
 
 
+def test_quick_colors_are_those_of_the_language() -> None:
+    built = _scene(strahl.sphere(material=Pigment.map(Pattern("bozo"), TWO).quick((0.2, 0.9, 0.4)).scale(0.3)))
+    written = strahl.parse(
+        f"#version 3.7; global_settings {{ assumed_gamma 1 }} {LAMP} {EYE} sphere {{ 0, 1 pigment {{ bozo {MAP} quick_color rgb <0.2, 0.9, 0.4> scale 0.3 }} }}"
+    )
+    full = _sha256(built)
+    assert full == _sha256(written) and built.quality == 9
+    built.quality = written.quality = 5
+    assert full != _sha256(built) == _sha256(written)
+    with pytest.raises(ValueError, match="at most 9"):
+        built.quality = 10
+
+
+
 def _variants(path: str, start: str) -> set[str]:
     """The variants of an enum of the Rust sources, or the rows of the table of shapes."""
     text = (ROOT / path).read_text()
@@ -503,7 +517,7 @@ SAME: dict[tuple[str, str], dict[str, Any]] = {
     },
     ("crates/strahl-shade/src/pigment.rs", "pub enum Pigment {\n"): {
         "Solid": Pigment, "ColorMap": Pigment.map, "PigmentMap": Pigment.map, "Blocks": Pigment.blocks, "Image": Pattern.image, "Average": Pigment.average,
-        "UvMapped": Pigment.uv_mapped,
+        "UvMapped": Pigment.uv_mapped, "Quick": Pigment.quick,
     },
     ("crates/strahl-shade/src/normal.rs", "pub enum NormalKind {\n"): {
         name: Normal for name in ("Bumps", "Dents", "Wrinkles", "Ripples", "Waves", "Quilted", "Height", "BumpMap", "Map", "Blocks", "Average")

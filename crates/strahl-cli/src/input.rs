@@ -13,6 +13,7 @@ use strahl::formats::scene::SceneFormat;
 use strahl::math::DVec3;
 use strahl::scene::Scene;
 use strahl::sdl::{Frame, Pinned, Stream, Texts, Value, Writing};
+use strahl::shade::Quality;
 use strahl::tracing::{Prepared, RenderOptions, RenderScene, Sampling};
 use strahl::{Format, Inputs, LoadOptions, Loaded, load_bytes, load_path};
 use strahl_farm::Bundle;
@@ -57,6 +58,7 @@ pub(crate) struct Input<'a> {
     /// Whether to keep what the scene consists of.
     records: bool,
     now: Option<f64>,
+    quality: Quality,
     /// The files that the scene may read, if it is bundled.
     pinned: Option<Pinned>,
     /// Texts that are read instead of files.
@@ -126,6 +128,7 @@ impl<'a> Input<'a> {
             staged: Cell::new(false),
             records: false,
             now: None,
+            quality: Quality::FULL,
             pinned: None,
             texts: Texts::new(),
             stop: None,
@@ -168,6 +171,14 @@ impl<'a> Input<'a> {
     /// Fixes the value of `now`.
     pub(crate) fn at_time(self, now: Option<f64>) -> Self {
         Self { now, ..self }
+    }
+
+    /// Leaves out what pictures of this quality don't show; `None` is the full quality.
+    pub(crate) fn at_quality(self, quality: Option<Quality>) -> Self {
+        Self {
+            quality: quality.unwrap_or_default(),
+            ..self
+        }
     }
 
     /// Reads only the files of a bundle.
@@ -259,14 +270,18 @@ impl<'a> Input<'a> {
     pub(crate) fn read(&self, moment: Moment, quiet: bool) -> Loaded {
         let options = self.options(moment, quiet);
         work::doing(format!("reading {}", self.name()));
-        match &self.place {
+        let mut loaded = match &self.place {
             Place::File(path) => load_path(path, options),
             Place::Text {
                 name,
                 format,
                 bytes,
             } => load_bytes(bytes.clone(), name, *format, options),
+        };
+        if let Some(scene) = &mut loaded.scene {
+            scene.settings.quality = self.quality;
         }
+        loaded
     }
 
     fn options(&self, moment: Moment, quiet: bool) -> LoadOptions {

@@ -165,7 +165,8 @@ impl Target {
     /// The scene of `render`, which the picture must not overwrite.
     pub(crate) fn input<'a>(&self, args: &'a RenderArgs) -> Result<Input<'a>, Failure> {
         let scene = args.scene.as_deref();
-        let input = Input::new(scene, args.format, &args.pov, args.picture.size)?;
+        let input = Input::new(scene, args.format, &args.pov, args.picture.size)?
+            .at_quality(args.picture.quality);
         self.spares(&input, args)?;
         Ok(input)
     }

@@ -57,6 +57,9 @@ pub(crate) fn settings(args: &RenderArgs, options: &RenderOptions, moment: Momen
     if let Some(model) = trace.force_shading {
         set("shading", format!("{model:?}"));
     }
+    if let Some(quality) = args.picture.quality.filter(|q| !q.is_full()) {
+        set("quality", quality.to_string());
+    }
     set("alpha", options.alpha.to_string());
     set("layers", options.info.to_string());
     if options.info {

@@ -21,7 +21,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 use strahl::prelude::{
     AcceleratorKind, CompileOptions, CsgOp, Interval, Outcome, Output, Pigment, PlainTexture,
-    Region, RenderScene, Texture, Tile, View,
+    Quality, Region, RenderScene, Texture, Tile, View,
 };
 use strahl::scene::{self, Children};
 use strahl::tracing::{self, Prepared, RenderError};
@@ -254,6 +254,15 @@ impl Scene {
     fn set_camera(&self, camera: &Camera) {
         self.change(|scene| scene.camera = Some(camera.0.clone()));
         lock(&self.state).assumed_camera = false;
+    }
+
+    /// The level of what pictures show.
+    fn quality(&self) -> u8 {
+        self.description().settings.quality.level()
+    }
+
+    fn set_quality(&self, level: u8) {
+        self.change(|scene| scene.settings.quality = Quality::new(level));
     }
 
     /// Whether the camera is the one that POV-Ray's language gives to scenes without any.

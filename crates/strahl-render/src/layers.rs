@@ -31,6 +31,9 @@ pub(crate) fn paint<'s>(
     let Some(texture) = material.texture_seen(surface.entering) else {
         paint.layers.clear();
         paint.stacks.clear();
+        if !scene.settings.quality.is_full() {
+            surface.reduce(scene.settings.quality);
+        }
         return;
     };
     // An interpolated normal that faces away from the viewer is turned round, as in POV-Ray.
@@ -72,6 +75,9 @@ fn evaluate<'s>(
         let look = &surface.resolved.look;
         let space = scene.texture_place(&mut place, hit, look, &mut made);
         texture.layers_in(space, &place, eta, paint);
+    }
+    if !scene.settings.quality.is_full() {
+        paint.reduce(scene.settings.quality);
     }
 
     surface.material.fresnel = false;

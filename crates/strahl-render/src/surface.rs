@@ -11,7 +11,7 @@ use crate::scene::RenderScene;
 use std::borrow::Cow;
 use strahl_math::{DVec3, Ray, error};
 use strahl_shade::{
-    Color, Finish, MaterialId, MaterialPoint, Refracted, ShadingModel, SpectralPart,
+    Color, Finish, MaterialId, MaterialPoint, Quality, Refracted, ShadingModel, SpectralPart,
     fresnel_dielectric, reflect, refract,
 };
 
@@ -272,6 +272,31 @@ impl<'s> Surface<'s> {
         }
         let highlight = model.highlight(self.n_shade, l, self.v, finish.shininess);
         (diffuse, finish.specular * arriving * highlight)
+    }
+
+    /// Leaves out what pictures of this quality don't show of a material without a texture. At the lowest, surfaces show the sum of the
+    /// coefficients of all light that they would send on.
+    #[cold]
+    pub(crate) fn reduce(&mut self, quality: Quality) {
+        let point = &mut self.material;
+        let finish = point.finish.to_mut();
+        if quality.is_unlit() {
+            let sum = finish.diffuse + finish.reflection + finish.transmission;
+            let sum = (sum + point.fresnel_reflection).map(|x| x.min(1.0));
+            *finish = Finish {
+                emission: if sum.is_black() { finish.emission } else { sum },
+                ..Finish::BLACK
+            };
+            self.shows_lights = false;
+        }
+        if !quality.has_reflection() {
+            // Without Fresnel's equations, light that is reflected totally is light that would have passed.
+            (finish.reflection, point.fresnel) = (Color::BLACK, false);
+            point.fresnel_reflection = Color::BLACK;
+        }
+        if !quality.has_transparency() {
+            finish.transmission = Color::BLACK;
+        }
     }
 
     /// Whether no light goes on from here: [`Surface::split`] is [`Split::NONE`].

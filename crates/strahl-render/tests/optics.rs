@@ -11,7 +11,7 @@ use strahl_render::{
 };
 use strahl_scene::{Background, Camera, Object, ObjectExt, Scene};
 use strahl_shade::interior::Interior;
-use strahl_shade::{Color, Finish, Light, Material, ShadingModel};
+use strahl_shade::{Color, Finish, Light, Material, Quality, ShadingModel};
 
 fn slab(x0: f64, x1: f64) -> Cuboid {
     Cuboid::new(DVec3::new(x0, -100.0, -100.0), DVec3::new(x1, 100.0, 100.0))
@@ -339,4 +339,49 @@ fn a_query_sees_both_surfaces_of_a_sphere_and_then_nothing() {
     );
     assert!(tracer.any_opaque(&ray, Interval::FORWARD, None));
     assert!(!tracer.any_opaque(&ray, Interval::new(0.0, 2.0f64.next_down()), None));
+}
+
+#[test]
+fn quality_leaves_out_light_shadows_transparency_and_reflection() {
+    // A slab is seen along x; a light in front of it is behind a filtering ball.
+    let filter = Finish {
+        transmission: Color::gray(0.5),
+        ..Finish::BLACK
+    };
+    let look = Finish {
+        emission: Color::gray(0.1),
+        diffuse: Color::gray(0.2),
+        reflection: Color::gray(0.25),
+        transmission: Color::gray(0.5),
+        ..Finish::BLACK
+    };
+    let scene = |level: u8| {
+        let mut scene = Scene::new()
+            .add(slab(1.0, 2.0).material(Material::with_finish(look)))
+            .add(
+                Sphere::new(DVec3::new(-2.0, 2.0, 0.0), 0.5)
+                    .material(Material::with_finish(filter)),
+            )
+            .light(Light::point(DVec3::new(-5.0, 4.0, 0.0), Color::WHITE))
+            .background(Background::Solid(Color::WHITE))
+            .camera(Camera::perspective(DVec3::ZERO, DVec3::X, DVec3::Y, 1.0));
+        scene.settings.quality = Quality::new(level);
+        scene
+    };
+    let ray = Ray::new(DVec3::ZERO, DVec3::X);
+    let trees = [0, 2, 4, 6, 8, 9].map(|level| follow(&scene(level), ray, |_| {}));
+    let seen = trees.each_ref().map(|(color, _)| color.r);
+    let rays = trees.each_ref().map(|(_, tree)| tree.nodes.len());
+    let cos = 6.0 / 52f64.sqrt();
+    let [unlit, lit, shadowed] = [0.95, 0.1 + 0.2 * cos, 0.1 + 0.2 * cos * 0.25];
+    for (seen, expected) in seen.iter().zip([unlit, lit, shadowed]) {
+        assert!((seen - expected).abs() < 1e-12, "{seen} is not {expected}");
+    }
+    assert_eq!(rays[..3], [1, 1, 1]);
+    // Straight through both faces, of which the second adds its own light.
+    let behind = 0.5 * (0.1 + 0.5);
+    assert!(seen[3] > shadowed + behind, "{}", seen[3]);
+    assert_eq!(rays[3], 3);
+    assert!(seen[4] > seen[3] + 0.25 && rays[4] > 4);
+    assert_eq!((seen[4], rays[4]), (seen[5], rays[5]));
 }

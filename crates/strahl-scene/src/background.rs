@@ -1,7 +1,7 @@
 use crate::SkySphere;
 use std::sync::Arc;
 use strahl_math::DVec3;
-use strahl_shade::Color;
+use strahl_shade::{Color, Quality};
 
 /// The radiance along rays that hit nothing.
 #[derive(Clone, Debug)]
@@ -53,6 +53,15 @@ impl Default for Background {
 }
 
 impl Background {
+    /// The background as pictures of this quality show it.
+    #[must_use]
+    pub fn of_quality(&self, quality: Quality) -> Self {
+        match self {
+            Self::Sky(sky) => Self::Sky(sky.of_quality(quality).map_or(Arc::clone(sky), Arc::new)),
+            other => other.clone(),
+        }
+    }
+
     /// The colour seen along a direction of any length.
     pub fn along(&self, direction: DVec3) -> Color {
         match self {

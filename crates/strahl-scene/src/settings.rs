@@ -1,6 +1,6 @@
 use crate::WorkingSpace;
-use strahl_shade::ShadingModel;
 use strahl_shade::pov_finish::IridSettings;
+use strahl_shade::{Quality, ShadingModel};
 
 /// Settings that a scene may choose; the caller may override each.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,6 +24,8 @@ pub struct Settings {
     pub filter_by_color: bool,
     /// The wavelengths and the noise of thin films.
     pub irid: IridSettings,
+    /// What pictures leave out to be quick; nothing by default.
+    pub quality: Quality,
 }
 
 impl Default for Settings {
@@ -37,6 +39,7 @@ impl Default for Settings {
             straight_counts: true,
             filter_by_color: false,
             irid: IridSettings::default(),
+            quality: Quality::FULL,
         }
     }
 }

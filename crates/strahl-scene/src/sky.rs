@@ -1,7 +1,7 @@
 use strahl_math::{DVec3, Transform};
 use strahl_shade::patterns::TexturePoint;
 use strahl_shade::pigment::Pigment;
-use strahl_shade::{Color, ColorFt};
+use strahl_shade::{Color, ColorFt, Quality};
 
 /// A sky made of pigments: the radiance along rays that hit nothing, infinitely far away.
 #[derive(Clone, Debug)]
@@ -52,6 +52,21 @@ impl SkySphere {
 }
 
 impl SkySphere {
+    /// The sky as pictures of this quality show it, if it is another one.
+    pub fn of_quality(&self, quality: Quality) -> Option<Self> {
+        let layers: Vec<_> = self.layers.iter().map(|p| p.of_quality(quality)).collect();
+        if layers.iter().all(Option::is_none) {
+            return None;
+        }
+        let mut sky = self.clone();
+        for (layer, other) in sky.layers.iter_mut().zip(layers) {
+            if let Some(other) = other {
+                *layer = other;
+            }
+        }
+        Some(sky)
+    }
+
     /// The colour seen along all directions, if no layer has a pattern.
     pub fn same_everywhere(&self) -> Option<Color> {
         let plain = |layer: &Pigment| matches!(layer, Pigment::Solid(..));

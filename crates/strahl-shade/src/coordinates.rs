@@ -47,6 +47,7 @@ impl Pigment {
             Self::Blocks(field, pigments) => field.uses_uv() || pigments.iter().any(Self::uses_uv),
             Self::Average(members, _) => members.iter().any(|(_, p)| p.uses_uv()),
             Self::UvMapped(_) => true,
+            Self::Quick(_, pigment) => pigment.uses_uv(),
         }
     }
 }

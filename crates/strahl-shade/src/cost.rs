@@ -55,7 +55,7 @@ impl Pigment {
                 .iter()
                 .fold(PATTERN, |sum, (_, pigment)| sum.and(pigment.cost()))
                 .around(),
-            Self::UvMapped(inner) => inner.cost().around(),
+            Self::UvMapped(inner) | Self::Quick(_, inner) => inner.cost().around(),
         }
     }
 }

@@ -129,6 +129,8 @@ pub enum Pigment {
     Average(Vec<(f64, Pigment)>, Box<Modifiers>),
     /// The pigment at the surface's own coordinates: (u, v, 0) takes the place of the point.
     UvMapped(Box<Pigment>),
+    /// A pigment with the colour that quick pictures show in its place (`quick_color`): see [`Pigment::of_quality`].
+    Quick(ColorFt, Box<Pigment>),
 }
 
 impl Default for Pigment {
@@ -155,7 +157,7 @@ impl Pigment {
             Self::Blocks(_, pigments) => pigments.iter().any(Self::may_transmit),
             Self::Image(..) => true,
             Self::Average(members, _) => members.iter().any(|(_, p)| p.may_transmit()),
-            Self::UvMapped(pigment) => pigment.may_transmit(),
+            Self::UvMapped(pigment) | Self::Quick(_, pigment) => pigment.may_transmit(),
         }
     }
 
@@ -200,6 +202,7 @@ impl Pigment {
                 }
             }
             Self::UvMapped(pigment) => pigment.color_at(&point.on_surface_but_normals()),
+            Self::Quick(_, pigment) => pigment.color_at(point),
         }
     }
 

@@ -132,6 +132,6 @@ pub mod prelude {
     pub use strahl_shade::pov_finish::PovFinish;
     pub use strahl_shade::texture::{PlainTexture, Texture};
     pub use strahl_shade::{
-        AreaLight, Color, ColorFt, Falloff, Light, Material, ShadingModel, Sides,
+        AreaLight, Color, ColorFt, Falloff, Light, Material, Quality, ShadingModel, Sides,
     };
 }

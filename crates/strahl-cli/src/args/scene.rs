@@ -8,7 +8,7 @@ use std::path::PathBuf;
 use strahl::Format;
 use strahl::accel::{AcceleratorKind, Bvh8Parameters, Level, Parameters, UnknownLevel};
 use strahl::geometry::SubdivisionScheme;
-use strahl::shade::ShadingModel;
+use strahl::shade::{Quality, ShadingModel};
 use strahl::tracing::Sampling;
 
 /// The scene and how to read it.
@@ -122,6 +122,10 @@ pub(crate) struct PictureArgs {
     /// Shading model of all objects: lambert, phong or blinn-phong; or, to inspect the geometry, normals, depth, object-id or uv
     #[arg(long, value_name = "MODEL")]
     pub(crate) shading: Option<ShadingModel>,
+    /// How much the picture shows, as with +Q of POV-Ray: from 2 ambient and diffuse light and highlights, from 4 shadows, from 5 those of area lights,
+    /// from 6 pigments without quick_color and transparency, from 8 reflection and normals, from 9 everything [default: 9]
+    #[arg(long, value_name = "N")]
+    pub(crate) quality: Option<Quality>,
 }
 
 /// The acceleration structure.

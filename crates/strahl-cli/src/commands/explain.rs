@@ -12,7 +12,8 @@ use strahl_view::{PicturePage, Text};
 /// `strahl explain`: prints the ray tree of a pixel.
 pub(crate) fn explain(args: &ExplainArgs) -> Result<(), Failure> {
     let (scene_file, format) = (Some(args.scene.as_path()), args.scene_format);
-    let input = Input::new(scene_file, format, &args.pov, args.picture.size)?;
+    let input = Input::new(scene_file, format, &args.pov, args.picture.size)?
+        .at_quality(args.picture.quality);
     let (scene, _) = input.compiled(input.still(), &args.accelerator, &Reporter::new(false))?;
     let options = render_options(&scene, &args.picture);
     let Some((x, y)) = args.pixel else {

@@ -12,6 +12,7 @@ use strahl::tracing::{PixelCost, Progress, RenderError, RenderScene, Sampling};
 pub(crate) fn heatmap(args: &HeatmapArgs) -> Result<(), Failure> {
     let format = ImageFormat::from_path(&args.output).map_err(Failure::new)?;
     let (input, reporter) = (Input::of(&args.scene)?, Reporter::new(false));
+    let input = input.at_quality(args.picture.quality);
     let (scene, _) = input.compiled(input.still(), &args.accelerator, &reporter)?;
     let mut options = render_options(&scene, &args.picture);
     // One ray per pixel shows its cost; antialiasing would blur it.

@@ -34,10 +34,11 @@ pub(crate) fn view(args: &ViewArgs) -> Result<(), Failure> {
         accelerator: args.accelerator.kind(),
         clock: args.pov.clock.unwrap_or(0.0),
     };
-    let (format, pov) = (args.format, args.pov.clone());
+    let (format, pov, quality) = (args.format, args.pov.clone(), picture.quality);
     let load = move |request: &Request, stop: &Arc<AtomicBool>| {
         let input = match Input::new(Some(&request.path), format, &pov, request.size) {
             Ok(input) => input
+                .at_quality(quality)
                 .recording(true)
                 .with_texts(request.texts.clone())
                 .stopped_by(Arc::clone(stop)),

@@ -237,6 +237,10 @@ fn divided(w: &Writer<'_>, hit: &HitReport, layers: &[LayerReport]) -> Option<St
 /// The formula of a layer's kr.
 fn reflection(w: &Writer<'_>, layer: &LayerReport, rise: f64) -> String {
     let d = w.digits;
+    let quality = w.scene.settings().quality;
+    if !quality.has_reflection() {
+        return format!("no reflection at quality {quality}: kr = 0");
+    }
     let r = &layer.finish.reflection;
     let tint = if r.metallic == 0.0 {
         ""

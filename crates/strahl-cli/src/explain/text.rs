@@ -7,7 +7,7 @@ use super::terms::write_shading;
 use super::writer::{RAY, Writer};
 use super::{Chosen, Digits, Pixel, Shown};
 use strahl::math::det;
-use strahl::shade::Color;
+use strahl::shade::{Color, Quality};
 use strahl::tracing::{
     BranchEnd, HitReport, PixelSample, RayKind, RayNode, RayTree, RenderScene, Shading,
 };
@@ -17,6 +17,9 @@ pub(crate) fn text(scene: &RenderScene, pixel: &Pixel<'_>, shown: &Shown) -> Str
     let mut page = Page::default();
     let digits = shown.digits;
     write_pixel(&mut page, pixel, digits);
+    if let Some(line) = left_out(scene.settings().quality) {
+        page.line(0, &line);
+    }
     let samples = &pixel.tree.samples;
     let chosen: Vec<usize> = match shown.sample {
         Some(Chosen::All) => (0..samples.len()).collect(),
@@ -39,6 +42,29 @@ pub(crate) fn text(scene: &RenderScene, pixel: &Pixel<'_>, shown: &Shown) -> Str
         write_sample(&mut page, scene, sample, shown);
     }
     page.finish()
+}
+
+/// What pictures of a reduced quality don't show.
+fn left_out(quality: Quality) -> Option<String> {
+    let all = [
+        (!quality.is_unlit(), "light"),
+        (quality.has_shadows(), "shadows"),
+        (quality.has_area_lights(), "the extent of lights"),
+        (
+            !quality.has_quick_colors(),
+            "pigments that have a quick_color",
+        ),
+        (quality.has_transparency(), "transparency"),
+        (quality.has_reflection(), "reflection"),
+        (quality.has_normals(), "normals of textures"),
+        (quality.has_air(), "fog and rainbows"),
+    ];
+    let left: Vec<&str> = all
+        .into_iter()
+        .filter(|(shown, _)| !shown)
+        .map(|(_, what)| what)
+        .collect();
+    (!left.is_empty()).then(|| format!("quality {quality} leaves out: {}", left.join(", ")))
 }
 
 fn heading(number: usize, sample: &PixelSample, digits: Digits) -> String {

@@ -275,6 +275,8 @@ mod tests {
         is("a.pov +Ob.jpeg +FJ Compression=1", "--output b.jpeg a.pov");
         is("a.pov +O-", "--output - a.pov");
         is("a.pov +O- +FP", "--output - --picture-format ppm a.pov");
+        is("a.pov +Q4", "--quality 4 a.pov");
+        is("a.pov +Q11", "a.pov");
         is("a.pov +HIx.inc", "--include x.inc a.pov");
     }
 

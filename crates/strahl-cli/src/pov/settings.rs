@@ -34,7 +34,9 @@ pub(super) struct Settings {
     version: Option<f64>,
     header: Option<String>,
     /// The quality of JPEG.
-    quality: Option<u8>,
+    jpeg_quality: Option<u8>,
+    /// The level of `+Q`.
+    quality: Option<u32>,
     alpha: bool,
     resume: bool,
     cyclic: bool,
@@ -141,18 +143,14 @@ impl Settings {
             "Subset_End_Frame" => self.time("--subset-end-frame", value)?,
             "Frame_Step" => self.time("--frame-step", value)?,
             "Clock" => self.time("--clock", value)?,
-            "Quality" if whole(value, 0, 11)? < 9 => {
-                let note =
-                    format!("quality {value} is ignored: pictures are rendered in full quality");
-                self.notes.push(note);
-            }
+            "Quality" => self.quality = Some(whole(value, 0, 11)?),
             "Output_Alpha" => self.alpha = is_on(value),
             "Create_Ini" if !is_off(value) => self.notes.push("no .ini file is written".into()),
             "Include_Header" => self.header = Some(file_name(value)?),
             "Compression" => {
                 // As in POV-Ray, 0 and 1 select the usual quality.
                 let quality = number(value)?.clamp(0.0, 100.0) as u8;
-                self.quality = (quality > 1).then_some(quality);
+                self.jpeg_quality = (quality > 1).then_some(quality);
             }
             "File_Gamma" if !value.eq_ignore_ascii_case("srgb") && number(value)? != 2.2 => {
                 self.note(
@@ -267,7 +265,10 @@ impl Settings {
         if let Some(header) = &self.header {
             add("--include", header.clone());
         }
-        if let Some(quality) = self.quality {
+        if let Some(quality) = self.quality.filter(|quality| *quality < 9) {
+            add("--quality", quality.to_string());
+        }
+        if let Some(quality) = self.jpeg_quality {
             add("--jpeg-quality", quality.to_string());
         }
         if let Some(output) = self.output()? {

@@ -19,11 +19,8 @@ fn povray_switches_render() {
     succeeds(f, &["render", "scene.pov", "+W20", "+H10", "+SC0.5", "+Oc"]);
     assert_eq!(size(f, "c.png"), (20, 10));
     fails(f, &["render", "scene.pov", "+Y3"], 2, &["+Y3", "--help"]);
-    let noted = succeeds(f, &["render", "scene.pov", "+W8", "+H6", "+Q3", "+UA"]);
-    assert!(
-        noted.contains("quality 3") && !noted.contains("alpha"),
-        "{noted}"
-    );
+    let noted = succeeds(f, &["render", "scene.pov", "+W8", "+H6", "+UA"]);
+    assert!(!noted.contains("alpha"), "{noted}");
     let bytes = std::fs::read(f.join("scene.png")).expect("written");
     assert_eq!(bytes[25], 6, "colours with alpha");
     fails(
@@ -164,5 +161,76 @@ fn what_is_left_out_is_noted() {
         &["+Iscene.pov", "+W4", "+H3", "Dither=on", "--strict"],
         3,
         &["--strict"],
+    );
+}
+
+#[test]
+fn quality_is_a_switch_and_an_option() {
+    let folder = folder();
+    let f = folder.path();
+    let text = "sphere { 0, 1 pigment { rgb 1 quick_color rgb <1, 0, 0> } finish { reflection 0.3 } }\n\
+                light_source { <3, 4, -5>, 1 } camera { location -3*z } background { rgb <0, 0, 1> }\n";
+    write(f, "quick.pov", text);
+    let picture = |name: &str, words: &[&str]| {
+        let output = format!("{name}.ppm");
+        let start = ["render", "quick.pov", "+W8", "+H6", "-A", "-o", &output];
+        let printed = succeeds(f, &[&start, words].concat());
+        assert!(!printed.contains("quality"), "{printed}");
+        std::fs::read(f.join(&output)).expect("written")
+    };
+    let full = picture("full", &[]);
+    for (name, words) in [
+        ("nine", ["+Q9"]),
+        ("eleven", ["+Q11"]),
+        ("ten", ["--quality=10"]),
+    ] {
+        assert_eq!(picture(name, &words), full);
+    }
+    let five = picture("five", &["+Q5"]);
+    assert_ne!(five, full);
+    for (name, words) in [
+        ("minus", ["-Q5"]),
+        ("key", ["Quality=5"]),
+        ("option", ["--quality=5"]),
+    ] {
+        assert_eq!(picture(name, &words), five);
+    }
+    // strahl's own option overrides the switch.
+    assert_eq!(picture("both", &["+Q2", "--quality", "5"]), five);
+    // The colour itself in the middle, the background at the edge.
+    let flat = picture("flat", &["+Q0"]);
+    let pixel = |x: usize, y: usize| flat[flat.len() - 144 + (8 * y + x) * 3..][..3].to_vec();
+    assert_eq!(
+        (pixel(4, 3), pixel(0, 0)),
+        (vec![255, 0, 0], vec![0, 0, 255])
+    );
+    let told = [
+        "explain",
+        "quick.pov",
+        "--size",
+        "8x6",
+        "--pixel",
+        "4,3",
+        "--quality",
+        "0",
+    ];
+    let told = String::from_utf8_lossy(&strahl(f, &told).stdout).into_owned();
+    assert!(
+        told.contains("(255, 0, 0)") && told.contains("quality 0 leaves out: light, shadows"),
+        "{told}"
+    );
+    for bad in ["+Q12", "+Qx", "+Q", "Quality=-1"] {
+        fails(
+            f,
+            &["render", "quick.pov", bad],
+            2,
+            &["Quality: expected a whole number from 0 to 11"],
+        );
+    }
+    fails(
+        f,
+        &["render", "quick.pov", "--quality", "12"],
+        2,
+        &["expected a quality from 0 to 11, found `12`"],
     );
 }

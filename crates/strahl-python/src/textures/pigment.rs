@@ -70,17 +70,27 @@ impl Pigment {
         Self(Of::UvMapped(Box::new(self.0.clone())))
     }
 
+    /// With a colour for quick pictures.
+    fn quick(&self, color: ColorNumbers) -> Self {
+        Self(Of::Quick(color.into(), Box::new(self.0.clone())))
+    }
+
     fn transformed(&self, map: &Map) -> Self {
         let mut pigment = self.0.clone();
-        match &mut pigment {
-            // Texture coordinates stay what they are.
-            Of::UvMapped(_) | Of::Solid(..) => {}
-            Of::ColorMap(field, _) | Of::PigmentMap(field, _) | Of::Blocks(field, _) => {
-                transform(&mut field.modifiers, &map.0);
-            }
-            Of::Image(_, modifiers) | Of::Average(_, modifiers) => transform(modifiers, &map.0),
-        }
+        transform_pigment(&mut pigment, map);
         Self(pigment)
+    }
+}
+
+fn transform_pigment(pigment: &mut Of, map: &Map) {
+    match pigment {
+        // Texture coordinates stay what they are.
+        Of::UvMapped(_) | Of::Solid(..) => {}
+        Of::Quick(_, inner) => transform_pigment(inner, map),
+        Of::ColorMap(field, _) | Of::PigmentMap(field, _) | Of::Blocks(field, _) => {
+            transform(&mut field.modifiers, &map.0);
+        }
+        Of::Image(_, modifiers) | Of::Average(_, modifiers) => transform(modifiers, &map.0),
     }
 }
 

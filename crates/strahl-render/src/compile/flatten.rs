@@ -73,7 +73,10 @@ const MOST_ERRORS: usize = 20;
 /// Makes the lists, or returns all errors.
 pub(super) fn flatten(scene: &Scene) -> Result<Flat, Vec<Diagnostic>> {
     let mut pass = Pass {
-        flat: Flat::default(),
+        flat: Flat {
+            materials: MaterialTable::new(scene.settings.quality),
+            ..Flat::default()
+        },
         errors: vec![],
         checked: HashSet::new(),
         in_world: false,

@@ -1,7 +1,8 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 use strahl_scene::Object;
-use strahl_shade::{Material, MaterialId};
+use strahl_shade::texture::Texture;
+use strahl_shade::{Material, MaterialId, Quality};
 
 /// The materials found so far, each `Arc` once.
 #[derive(Debug, Default)]
@@ -9,10 +10,23 @@ pub(super) struct MaterialTable {
     list: Vec<Arc<Material>>,
     known: HashMap<*const Material, MaterialId>,
     default: Option<Arc<Material>>,
+    quality: Quality,
+    /// Textures as this quality shows them, if they are others.
+    textures: HashMap<*const Texture, Option<Arc<Texture>>>,
+    /// The materials that others in the list stand for.
+    replaced: Vec<Arc<Material>>,
 }
 
-// The pointers are keys only, of `Arc`s that the list keeps alive; they are never followed.
+// The pointers are keys only, of `Arc`s that the lists keep alive; they are never followed.
 impl MaterialTable {
+    /// An empty table of materials as pictures of this quality show them.
+    pub(super) fn new(quality: Quality) -> Self {
+        Self {
+            quality,
+            ..Self::default()
+        }
+    }
+
     /// The number of a material; `None` is the default material.
     pub(super) fn id(&mut self, material: Option<&Arc<Material>>) -> MaterialId {
         let material = match material {
@@ -21,9 +35,22 @@ impl MaterialTable {
                 .default
                 .get_or_insert_with(|| Arc::new(Material::default().named("default"))),
         };
-        let list = &mut self.list;
+        let (list, quality) = (&mut self.list, self.quality);
+        let (textures, replaced) = (&mut self.textures, &mut self.replaced);
         *self.known.entry(Arc::as_ptr(material)).or_insert_with(|| {
-            list.push(Arc::clone(material));
+            let other = material.of_quality(quality, |texture| {
+                let known = textures.entry(Arc::as_ptr(texture));
+                known
+                    .or_insert_with(|| texture.of_quality(quality).map(Arc::new))
+                    .clone()
+            });
+            list.push(match other {
+                None => Arc::clone(material),
+                Some(other) => {
+                    replaced.push(Arc::clone(material));
+                    Arc::new(other)
+                }
+            });
             MaterialId(list.len() as u32 - 1)
         })
     }

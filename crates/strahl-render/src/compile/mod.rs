@@ -82,7 +82,11 @@ impl Prepared {
     pub fn new(scene: &Scene) -> Result<Self, Problems> {
         let mut flat = flatten::flatten(scene)?;
         spaces::open_spaces(&mut flat);
-        let mut masks = masks(scene, &flat.lights)?;
+        let quality = scene.settings.quality;
+        let mut masks = match quality.has_shadows() {
+            true => masks(scene, &flat.lights)?,
+            false => vec![],
+        };
         let groups = assemble::assemble(flat.groups, scene, &mut masks)?;
         let bounds = groups.last().map_or(Aabb::EMPTY, |world| world.bounds);
         let mut warnings = flat.diagnostics;
@@ -103,7 +107,14 @@ impl Prepared {
         let light_sets = flat
             .light_sets
             .finished(scene.lights.len(), flat.lights.len());
-        let (lights, ambient) = view::lights(scene, flat.lights, &camera, bounds);
+        let (mut lights, ambient) = view::lights(scene, flat.lights, &camera, bounds);
+        for light in &mut lights {
+            light.light = light.light.of_quality(quality);
+        }
+        let (fogs, rainbows) = match quality.has_air() {
+            true => (scene.fogs.clone(), scene.rainbows.clone()),
+            false => (vec![], vec![]),
+        };
         Ok(Self {
             groups,
             objects: flat.objects.completed(),
@@ -117,12 +128,12 @@ impl Prepared {
                 Some(_) => scene.background_alpha,
                 None => BackgroundAlpha::LeftOut,
             },
-            background: scene
-                .background
-                .clone()
-                .unwrap_or_else(|| view::background(scene, &camera)),
-            fogs: scene.fogs.clone(),
-            rainbows: scene.rainbows.clone(),
+            background: match &scene.background {
+                Some(background) => background.of_quality(quality),
+                None => view::background(scene, &camera),
+            },
+            fogs,
+            rainbows,
             camera,
             settings: scene.settings,
             sources: scene.sources.clone(),

@@ -5,6 +5,7 @@ use std::path::Path;
 use std::process::Command;
 use strahl_render::{CompileOptions, RenderOptions, compile, render};
 use strahl_sdl::MemoryHost;
+use strahl_shade::Quality;
 
 /// Width and height in pixels.
 pub(crate) const SIZE: (u32, u32) = (64, 48);
@@ -26,7 +27,7 @@ fn read_ppm(bytes: &[u8]) -> Pixels {
         .collect()
 }
 
-fn theirs(povray: &Path, folder: &Path, text: &str) -> Result<Pixels, String> {
+fn theirs(povray: &Path, folder: &Path, text: &str, quality: u8) -> Result<Pixels, String> {
     let scene = folder.join("scene.pov");
     std::fs::write(&scene, text).expect("writable");
     let (w, h) = SIZE;
@@ -44,6 +45,7 @@ fn theirs(povray: &Path, folder: &Path, text: &str) -> Result<Pixels, String> {
         .args([
             format!("+W{w}"),
             format!("+H{h}"),
+            format!("+Q{quality}"),
             "File_Gamma=1.0".to_owned(),
         ])
         .output()
@@ -56,12 +58,13 @@ fn theirs(povray: &Path, folder: &Path, text: &str) -> Result<Pixels, String> {
     Ok(read_ppm(&bytes))
 }
 
-fn ours(text: &str) -> Result<Pixels, String> {
+fn ours(text: &str, quality: u8) -> Result<Pixels, String> {
     let parsed = parse_with(&mut MemoryHost::new(), text);
     let messages: Vec<String> = parsed.diagnostics.iter().map(ToString::to_string).collect();
-    let scene = parsed
+    let mut scene = parsed
         .scene
         .ok_or_else(|| format!("{text}\n{}", messages.join("\n")))?;
+    scene.settings.quality = Quality::new(quality);
     let scene = compile(&scene, &CompileOptions::default()).map_err(|e| format!("{e:?}"))?;
     let mut options = RenderOptions::new(&scene, SIZE.0, SIZE.1);
     options.threads = 1;
@@ -75,21 +78,30 @@ fn ours(text: &str) -> Result<Pixels, String> {
 /// # Errors
 /// If one of the programs doesn't render it.
 pub(crate) fn pair(povray: &Path, text: &str) -> Result<(Pixels, Pixels), String> {
+    pair_at(povray, text, 9)
+}
+
+/// The same at a level of quality.
+fn pair_at(povray: &Path, text: &str, quality: u8) -> Result<(Pixels, Pixels), String> {
     let folder = tempfile::tempdir().expect("a folder");
-    let mut theirs = theirs(povray, folder.path(), text)?;
+    let mut theirs = theirs(povray, folder.path(), text, quality)?;
     // Without a gamma, a scene's colours are those of the display; POV-Ray writes them unchanged.
     if !text.contains("3.7") && !text.contains("assumed_gamma") {
         for pixel in &mut theirs {
             *pixel = pixel.map(strahl_shade::srgb::decode);
         }
     }
-    Ok((theirs, ours(text)?))
+    Ok((theirs, ours(text, quality)?))
 }
 
 /// Renders a scene with both programs; returns the mean difference of the channels and the share of pixels with a visible
 /// difference.
 pub(crate) fn compare(povray: &Path, text: &str) -> (f64, f64) {
-    let (a, b) = pair(povray, text).unwrap_or_else(|why| panic!("{why}"));
+    compare_at(povray, text, 9)
+}
+
+fn compare_at(povray: &Path, text: &str, quality: u8) -> (f64, f64) {
+    let (a, b) = pair_at(povray, text, quality).unwrap_or_else(|why| panic!("{why}"));
     assert_eq!(a.len(), b.len());
     let count = a.len() as f64;
     let (mut sum, mut off) = (0.0, 0);
@@ -112,15 +124,24 @@ pub(crate) fn agree(most_off: f64, scenes: &[(&str, String)]) {
 /// Checks that the pictures of all scenes have at most a mean difference `most_mean` and a share `most_off` of visibly different
 /// pixels.
 pub(crate) fn agree_within(most_mean: f64, most_off: f64, scenes: &[(&str, String)]) {
+    agree_all(most_mean, most_off, 9, scenes);
+}
+
+/// The same as [`agree`] at a level of quality.
+pub(crate) fn agree_at(quality: u8, most_off: f64, scenes: &[(&str, String)]) {
+    agree_all(0.5 / 255.0, most_off, quality, scenes);
+}
+
+fn agree_all(most_mean: f64, most_off: f64, quality: u8, scenes: &[(&str, String)]) {
     let Some(povray) = tool("povray") else {
         return;
     };
     let failed = each(scenes, |(name, text)| {
-        let (mean, off) = compare(&povray, text);
+        let (mean, off) = compare_at(&povray, text, quality);
         let agrees = mean < most_mean && off <= most_off;
         (!agrees).then(|| {
             format!(
-                "{name}: mean difference {:.3}/255, {:.2} % of pixels differ visibly",
+                "{name} at quality {quality}: mean difference {:.3}/255, {:.2} % of pixels differ visibly",
                 mean * 255.0,
                 off * 100.0
             )

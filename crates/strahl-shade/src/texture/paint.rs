@@ -2,8 +2,36 @@
 
 use strahl_math::DVec3;
 
-use crate::pov_finish::{FilmPoint, IridSettings, PovFinish};
-use crate::{Color, ColorFt};
+use crate::pov_finish::{FilmPoint, IridSettings, PovFinish, PovReflection};
+use crate::{Color, ColorFt, Quality};
+
+/// The finish of layers that show their colour as it is.
+static UNLIT: PovFinish = PovFinish {
+    ambient: Color::BLACK,
+    emission: Color::WHITE,
+    diffuse: 0.0,
+    diffuse_back: 0.0,
+    brilliance: 1.0,
+    phong: 0.0,
+    phong_size: 40.0,
+    specular: 0.0,
+    roughness: 0.05,
+    metallic: 0.0,
+    reflection: PovReflection {
+        min: Color::BLACK,
+        max: Color::BLACK,
+        fresnel: false,
+        falloff: 1.0,
+        exponent: 1.0,
+        metallic: 0.0,
+    },
+    conserve_energy: false,
+    crand: 0.0,
+    irid: None,
+    refraction: 1.0,
+    ior: None,
+    caustics: None,
+};
 
 /// One layer of a texture at a point, with all properties that only depend on the surface.
 ///
@@ -84,6 +112,41 @@ pub struct TexturePaint<'a> {
 }
 
 impl TexturePaint<'_> {
+    /// Leaves out what pictures of this quality don't show. The layers have been evaluated with a texture [of that
+    /// quality](crate::texture::Texture::of_quality).
+    pub fn reduce(&mut self, quality: Quality) {
+        if quality.is_unlit() {
+            self.show_colors();
+        }
+        if !quality.has_reflection() {
+            for layer in &mut self.layers {
+                (layer.reflectance, layer.reflection_weight) = (Color::BLACK, 0.0);
+            }
+        }
+        if !quality.has_transparency() {
+            self.transmission = Color::BLACK;
+            for stack in &mut self.stacks {
+                (stack.transmittance, stack.weight) = (Color::BLACK, 0.0);
+            }
+        }
+    }
+
+    /// Shows colours as they are: of each stack that of the lowest layer which is not covered, as in POV-Ray (measured).
+    fn show_colors(&mut self) {
+        let mut shown = None;
+        self.layers.reverse();
+        self.layers.retain_mut(|layer| {
+            if layer.above.is_black() || shown == Some(layer.stack) {
+                return false;
+            }
+            shown = Some(layer.stack);
+            layer.body = layer.color.rgb * layer.share;
+            (layer.above, layer.film, layer.finish) = (Color::WHITE, None, &UNLIT);
+            true
+        });
+        self.layers.reverse();
+    }
+
     /// Makes the layers from number `first` on a stack.
     pub(super) fn end_stack(&mut self, first: usize, stack: &Stack) {
         let number = self.stacks.len() as u32;

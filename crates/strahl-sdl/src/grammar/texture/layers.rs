@@ -48,6 +48,10 @@ fn straight_pigment(pigment: &mut Pigment) {
         }
         Pigment::Average(members, _) => members.iter_mut().for_each(|(_, p)| straight_pigment(p)),
         Pigment::UvMapped(inner) => straight_pigment(inner),
+        Pigment::Quick(color, inner) => {
+            straight_color(color);
+            straight_pigment(inner);
+        }
     }
 }
 

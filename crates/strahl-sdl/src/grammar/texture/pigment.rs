@@ -60,6 +60,8 @@ pub(super) struct Draft {
     chooser: Chooser,
     choice: Choice,
     pub(super) modifiers: Modifiers,
+    /// The colour for quick pictures.
+    quick: Option<ColorFt>,
 }
 
 /// A block pattern with the pigments of its blocks.
@@ -76,6 +78,7 @@ impl From<Pigment> for Draft {
             chooser,
             choice,
             modifiers,
+            quick: None,
         };
         let field = |field: Box<PatternField>, choice| {
             draft(Chooser::Pattern(field.pattern), choice, field.modifiers)
@@ -105,16 +108,30 @@ impl From<Pigment> for Draft {
                 Choice::Pigments(numbered(vec![*inner])),
                 Modifiers::default(),
             ),
+            Pigment::Quick(color, inner) => Self {
+                quick: Some(color),
+                ..Self::from(*inner)
+            },
         }
     }
 }
 
 impl Draft {
     pub(super) fn finish(self) -> Pigment {
+        let quick = self.quick;
+        let pigment = self.finish_without_quick();
+        match quick {
+            Some(color) => Pigment::Quick(color, Box::new(pigment)),
+            None => pigment,
+        }
+    }
+
+    fn finish_without_quick(self) -> Pigment {
         let Self {
             chooser,
             choice,
             modifiers,
+            ..
         } = self;
         match chooser {
             Chooser::Solid(color) => {
@@ -264,6 +281,7 @@ fn is_default_map(pattern: &Pattern, map: &BlendMap<ColorFt>) -> bool {
 pub(super) fn transform(pigment: &mut Pigment, by: &Transform) {
     match pigment {
         Pigment::UvMapped(_) => {}
+        Pigment::Quick(_, inner) => transform(inner, by),
         Pigment::Solid(_, kept) => {
             let kept = kept.get_or_insert_with(Box::default);
             modifiers::transform(&mut kept.warps, by);
@@ -410,10 +428,10 @@ impl Parser<'_> {
                 draft.chooser = Chooser::Average;
                 return Ok(());
             }
-            // A colour for quick previews, which don't exist here.
             Some(Word::QuickColor | Word::QuickColour) => {
                 self.take(token)?;
-                return self.color().map(|_| ());
+                draft.quick = Some(color_ft(self.color()?));
+                return Ok(());
             }
             Some(Word::UvMapping) => return Err(self.late_uv_mapping(token, "pigment")),
             _ => {}

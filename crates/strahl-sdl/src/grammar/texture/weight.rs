@@ -36,7 +36,9 @@ pub(super) fn of_pigment(pigment: &Pigment) -> Weight {
         Pigment::PigmentMap(_, map) => Weight::around(map.entries.iter().map(|e| of_pigment(&e.1))),
         Pigment::Average(list, _) => Weight::around(list.iter().map(|e| of_pigment(&e.1))),
         Pigment::Blocks(_, list) => Weight::around(list.iter().map(of_pigment)),
-        Pigment::UvMapped(inner) => Weight::around(std::iter::once(of_pigment(inner))),
+        Pigment::UvMapped(inner) | Pigment::Quick(_, inner) => {
+            Weight::around(std::iter::once(of_pigment(inner)))
+        }
     }
 }
 
