@@ -133,12 +133,19 @@ mod tests {
 
     #[test]
     fn a_section_adds_to_what_stands_before_the_first() {
-        let general = ["--size", "40x30", "--library-path", "my inc"];
+        let general = [
+            "--size",
+            "40x30",
+            "--sampling",
+            "center",
+            "--library-path",
+            "my inc",
+        ];
         assert_eq!(words_of(None).unwrap(), general);
         assert_eq!(words_of(Some("low")).unwrap()[1], "4x30");
         let high = words_of(Some("really high")).unwrap();
         assert_eq!(high[1], "40x90");
-        assert_eq!(high[4..], ["--output", "a;b.png", "scene.pov"]);
+        assert_eq!(high[6..], ["--output", "a;b.png", "scene.pov"]);
         let error = words_of(Some("none")).unwrap_err();
         assert!(error.contains("Low, Really High"), "{error}");
     }

@@ -151,16 +151,19 @@ mod tests {
         let is = |line: &str, expected: &str| assert_eq!(whole(line), Ok(expected.to_owned()));
         is(
             "strahl +Ia.pov +W64 +H48",
-            "strahl render --size 64x48 a.pov",
+            "strahl render --size 64x48 --sampling center a.pov",
         );
-        is("strahl -W8 a.pov", "strahl render --size 8x600 a.pov");
+        is(
+            "strahl -W8 a.pov",
+            "strahl render --size 8x600 --sampling center a.pov",
+        );
         is(
             "strahl Width=8 Input_File_Name=a.pov",
-            "strahl render --size 8x600 a.pov",
+            "strahl render --size 8x600 --sampling center a.pov",
         );
         is(
             "strahl --max-memory 1G --strict +Ia.pov",
-            "strahl --max-memory 1G --strict render a.pov",
+            "strahl --max-memory 1G --strict render --sampling center a.pov",
         );
         for line in ["strahl -?", "strahl +H", "strahl -help"] {
             is(line, "strahl --help");
@@ -189,8 +192,33 @@ mod tests {
     }
 
     #[track_caller]
+    /// Without `--sampling center` where the line asks for no sampling.
+    fn without_center(line: &str) -> Result<String, String> {
+        let words = translated(line)?;
+        Ok(match line.contains("+A") {
+            true => words,
+            false => words.replacen("--sampling center ", "", 1),
+        })
+    }
+
     fn is(line: &str, expected: &str) {
-        assert_eq!(translated(line), Ok(expected.to_owned()), "{line}");
+        assert_eq!(without_center(line), Ok(expected.to_owned()), "{line}");
+    }
+
+    #[test]
+    fn povrays_words_ask_for_no_antialiasing() {
+        for (line, expected) in [
+            ("a.pov +W9 +H9", "--size 9x9 --sampling center a.pov"),
+            ("a.pov +R3 +AM2", "--sampling center a.pov"),
+            ("a.pov Antialias=off", "--sampling center a.pov"),
+            (
+                "a.pov +P --sampling 2x2",
+                "--sampling center --sampling 2x2 a.pov",
+            ),
+            ("a.pov --seed 3", "a.pov --seed 3"),
+        ] {
+            assert_eq!(translated(line), Ok(expected.to_owned()), "{line}");
+        }
     }
 
     #[test]
@@ -282,7 +310,7 @@ mod tests {
 
     #[test]
     fn parts_of_the_picture_are_regions() {
-        let region = |line: &str| translated(&format!("a.pov +W80 +H60 {line}"));
+        let region = |line: &str| without_center(&format!("a.pov +W80 +H60 {line}"));
         let is = |line: &str, expected: &str| {
             let all = format!("--size 80x60 {expected}a.pov");
             assert_eq!(region(line), Ok(all), "{line}");

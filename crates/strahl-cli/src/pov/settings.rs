@@ -230,12 +230,12 @@ impl Settings {
             let region = format!("{},{},{}x{}", columns.0, rows.0, columns.1, rows.1);
             add("--region", region);
         }
-        if let Some(on) = self.antialias {
-            add(
-                "--sampling",
-                if on { self.sampling() } else { "center".into() },
-            );
-        }
+        // As in POV-Ray, there is no antialiasing unless it is asked for.
+        let sampling = match self.antialias {
+            Some(true) => self.sampling(),
+            _ => "center".into(),
+        };
+        add("--sampling", sampling);
         if let Some(n) = self.threads {
             add("--threads", n.to_string());
         }

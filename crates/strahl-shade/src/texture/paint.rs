@@ -1,37 +1,17 @@
 //! A texture evaluated at a point: its layers, in stacks.
 
+use crate::pov_finish::{FilmPoint, IridSettings, PovFinish};
+use crate::{Color, ColorFt, Quality};
+use std::sync::LazyLock;
 use strahl_math::DVec3;
 
-use crate::pov_finish::{FilmPoint, IridSettings, PovFinish, PovReflection};
-use crate::{Color, ColorFt, Quality};
-
 /// The finish of layers that show their colour as it is.
-static UNLIT: PovFinish = PovFinish {
+static UNLIT: LazyLock<PovFinish> = LazyLock::new(|| PovFinish {
     ambient: Color::BLACK,
     emission: Color::WHITE,
     diffuse: 0.0,
-    diffuse_back: 0.0,
-    brilliance: 1.0,
-    phong: 0.0,
-    phong_size: 40.0,
-    specular: 0.0,
-    roughness: 0.05,
-    metallic: 0.0,
-    reflection: PovReflection {
-        min: Color::BLACK,
-        max: Color::BLACK,
-        fresnel: false,
-        falloff: 1.0,
-        exponent: 1.0,
-        metallic: 0.0,
-    },
-    conserve_energy: false,
-    crand: 0.0,
-    irid: None,
-    refraction: 1.0,
-    ior: None,
-    caustics: None,
-};
+    ..PovFinish::default()
+});
 
 /// One layer of a texture at a point, with all properties that only depend on the surface.
 ///
