@@ -23,7 +23,7 @@ pub(crate) struct Coverage {
 
 /// What a ray sees of the background.
 #[derive(Clone, Copy, Debug)]
-struct Clear {
+pub(crate) struct Clear {
     /// The part of the ray's light that is left out of the picture.
     light: Color,
     /// How much of what lies behind the picture shows: 0 is opaque.
@@ -37,7 +37,7 @@ impl Clear {
     };
 
     /// The same behind a medium.
-    fn attenuated(self, attenuation: Color) -> Self {
+    pub(crate) fn attenuated(self, attenuation: Color) -> Self {
         Self {
             light: self.light * attenuation,
             share: self.share * luminance(attenuation),
@@ -45,7 +45,7 @@ impl Clear {
     }
 
     /// Light along a primary ray without the background.
-    fn taken_from(self, color: Color) -> Sample {
+    pub(crate) fn taken_from(self, color: Color) -> Sample {
         Sample {
             color: color - self.light,
             clear: self.share,
@@ -73,25 +73,23 @@ impl Coverage {
         self.nodes.clear();
     }
 
-    /// What a ray sees that hits nothing.
-    fn beyond(&self, direction: DVec3) -> Clear {
-        let (light, clear) = self.background.left_out(direction, self.alpha);
-        Clear {
-            light,
-            share: luminance(clear),
-        }
+    /// The light along a ray that hits nothing, and what of it is background.
+    pub(crate) fn beyond(&self, direction: DVec3) -> (Color, Clear) {
+        let [seen, light, clear] = self.background.seen(direction, self.alpha);
+        let share = luminance(clear);
+        (seen, Clear { light, share })
     }
 
-    /// Light along a primary ray that hits nothing, without the background behind what attenuates it.
-    pub(crate) fn of_nothing(&self, direction: DVec3, attenuation: Color, color: Color) -> Sample {
-        let clear = self.beyond(direction).attenuated(attenuation);
-        clear.taken_from(color)
+    /// Takes note of the next node of the trees, whose ray hits something.
+    pub(crate) fn enter(&mut self) {
+        self.nodes.push(Clear::NOTHING);
     }
 
-    /// Takes note of the next node of the trees. Its ray hits something, or has this direction.
-    pub(crate) fn enter(&mut self, missing: Option<DVec3>) {
-        let clear = missing.map_or(Clear::NOTHING, |direction| self.beyond(direction));
+    /// The same for a ray that hits nothing. Returns the light along it.
+    pub(crate) fn enter_nothing(&mut self, direction: DVec3) -> Color {
+        let (seen, clear) = self.beyond(direction);
         self.nodes.push(clear);
+        seen
     }
 
     /// Hands what a node's ray sees of the background to its parent, after all of its children. Returns the light along a primary ray, `total`,

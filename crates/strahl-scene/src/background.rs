@@ -79,19 +79,25 @@ impl Background {
         }
     }
 
-    /// The light along a direction that a picture with an alpha channel leaves out, and the transmittance for the light from behind
-    /// the picture, as measured with POV-Ray 3.7.
-    pub fn left_out(&self, direction: DVec3, alpha: BackgroundAlpha) -> (Color, Color) {
-        let BackgroundAlpha::Seen { filter, transmit } = alpha else {
-            return (self.along(direction), Color::WHITE);
+    /// The colour seen along a direction of any length; the part of it that a picture with an alpha channel leaves out; and the transmittance for the light from
+    /// behind the picture, as measured with POV-Ray 3.7.
+    pub fn seen(&self, direction: DVec3, alpha: BackgroundAlpha) -> [Color; 3] {
+        let (light, behind, passes) = match self {
+            Self::Sky(sky) => {
+                let (light, passes) = sky.seen(direction);
+                (light, sky.behind, passes)
+            }
+            _ => {
+                let light = self.along(direction);
+                (light, light, Color::WHITE)
+            }
         };
-        let (behind, passes) = match self {
-            Self::Sky(sky) => (sky.behind, sky.passes(direction)),
-            _ => (self.along(direction), Color::WHITE),
+        let BackgroundAlpha::Seen { filter, transmit } = alpha else {
+            return [light, light, Color::WHITE];
         };
         let hidden = behind * passes * (filter + transmit).clamp(0.0, 1.0);
         let clear = (behind * filter + Color::gray(transmit)).map(|c| c.clamp(0.0, 1.0));
-        (hidden, passes * clear)
+        [light, hidden, passes * clear]
     }
 }
 

@@ -25,29 +25,39 @@ impl SkySphere {
     /// multiplies the layers below it by `filter + transmit`, without tinting them, while `behind` is multiplied by the product
     /// of all `rgb · filter` plus that of all `transmit`.
     pub fn along(&self, direction: DVec3) -> Color {
+        self.seen(direction).0
+    }
+
+    /// What all layers let pass along a direction, layers tinting those below.
+    pub fn passes(&self, direction: DVec3) -> Color {
+        self.seen(direction).1
+    }
+
+    /// The colour [seen along](Self::along) a direction of any length, and what the layers [let pass](Self::passes).
+    pub fn seen(&self, direction: DVec3) -> (Color, Color) {
         let at = self
             .transform
             .point_to_object(direction.normalize_or(DVec3::Y));
         let point = TexturePoint::in_space(at);
-        let mut seen = Color::BLACK;
-        if self.tints_layers {
-            let mut passes = Color::WHITE;
-            for layer in self.layers.iter().rev() {
-                let color = layer.color_at(&point);
-                seen += color.rgb * self.emission * passes * color.opacity();
-                passes *= color.rgb * color.filter + Color::gray(color.transmit);
-            }
-            return seen + self.behind * passes;
-        }
-        let (mut passes, mut tint, mut clear) = (1.0, Color::WHITE, 1.0);
+        let (mut seen, mut passes) = (Color::BLACK, Color::WHITE);
+        let (mut untinted, mut tint, mut clear) = (1.0, Color::WHITE, 1.0);
         for layer in self.layers.iter().rev() {
             let color: ColorFt = layer.color_at(&point);
-            seen += color.rgb * self.emission * (color.opacity() * passes);
-            passes *= color.filter + color.transmit;
+            let light = color.rgb * self.emission;
+            seen += match self.tints_layers {
+                true => light * passes * color.opacity(),
+                false => light * (color.opacity() * untinted),
+            };
+            passes *= color.rgb * color.filter + Color::gray(color.transmit);
+            untinted *= color.filter + color.transmit;
             tint *= color.rgb * color.filter;
             clear *= color.transmit;
         }
-        seen + self.behind * (tint + Color::gray(clear))
+        let behind = match self.tints_layers {
+            true => passes,
+            false => tint + Color::gray(clear),
+        };
+        (seen + self.behind * behind, passes)
     }
 }
 
@@ -71,20 +81,6 @@ impl SkySphere {
     pub fn same_everywhere(&self) -> Option<Color> {
         let plain = |layer: &Pigment| matches!(layer, Pigment::Solid(..));
         self.layers.iter().all(plain).then(|| self.along(DVec3::Y))
-    }
-
-    /// What all layers let pass along a direction, layers tinting those below.
-    pub fn passes(&self, direction: DVec3) -> Color {
-        let at = self
-            .transform
-            .point_to_object(direction.normalize_or(DVec3::Y));
-        let point = TexturePoint::in_space(at);
-        let mut passes = Color::WHITE;
-        for layer in self.layers.iter().rev() {
-            let color = layer.color_at(&point);
-            passes *= color.rgb * color.filter + Color::gray(color.transmit);
-        }
-        passes
     }
 }
 

@@ -28,7 +28,8 @@ impl TreeTracer<'_> {
         let scene = self.tracer.scene;
         let coverage = Coverage::new(scene.background.clone(), scene.background_alpha);
         // What is the same along all rays can be asked along any.
-        let without = |seen: Sample| coverage.of_nothing(DVec3::Y, Color::WHITE, seen.color);
+        let (_, clear) = coverage.beyond(DVec3::Y);
+        let without = |seen: Sample| clear.taken_from(seen.color);
         self.beyond = self.beyond.map(without);
         self.coverage = Some(coverage);
         self
@@ -59,13 +60,21 @@ impl TreeTracer<'_> {
         let scene = self.tracer.scene;
         let (keeps, adds) = self.in_front(primary, f64::INFINITY);
         // The same sum as of a tree without branches, including the sign of zeros.
-        let mut color = scene.background.along(primary.ray.direction) + Color::BLACK;
+        let direction = primary.ray.direction;
+        let (seen, clear) = match &self.coverage {
+            Some(coverage) => {
+                let (seen, clear) = coverage.beyond(direction);
+                (seen, Some(clear))
+            }
+            None => (scene.background.along(direction), None),
+        };
+        let mut color = seen + Color::BLACK;
         color *= keeps;
         if self.adds_light_on_the_way() {
             color += adds;
         }
-        match &self.coverage {
-            Some(coverage) => coverage.of_nothing(primary.ray.direction, keeps, color),
+        match clear {
+            Some(clear) => clear.attenuated(keeps).taken_from(color),
             None => Sample::from(color),
         }
     }

@@ -167,11 +167,11 @@ impl<'s> TreeTracer<'s> {
             (*parent, *kind, *share) = (branch.parent, branch.kind, branch.share);
             (*local, *reflected, *transmitted) = (Color::BLACK, Color::BLACK, Color::BLACK);
             (*keeps, *adds) = (attenuation, fog);
-            if let Some(coverage) = &mut self.coverage {
-                coverage.enter(hit.is_none().then_some(branch.ray.direction));
-            }
             match hit {
                 Some(hit) => {
+                    if let Some(coverage) = &mut self.coverage {
+                        coverage.enter();
+                    }
                     self.tracer.slot.enter_for(Phase::Surface, hit.id);
                     point.hit = *hit;
                     point.length = length;
@@ -180,7 +180,13 @@ impl<'s> TreeTracer<'s> {
                         .find_sides(scene, branch, per_speed, hit, &self.media);
                     lanes.push(lane);
                 }
-                None => *local = scene.background.along(branch.ray.direction),
+                None => {
+                    let direction = branch.ray.direction;
+                    *local = match &mut self.coverage {
+                        Some(coverage) => coverage.enter_nothing(direction),
+                        None => scene.background.along(direction),
+                    };
+                }
             }
             if O::ACTIVE && hit.is_none() {
                 let seen = self.nodes[point.node as usize].local;
