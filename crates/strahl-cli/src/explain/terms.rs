@@ -239,7 +239,11 @@ fn reflection(w: &Writer<'_>, layer: &LayerReport, rise: f64) -> String {
     let d = w.digits;
     let quality = w.scene.settings().quality;
     if !quality.has_reflection() {
-        return format!("no reflection at quality {quality}: kr = 0");
+        let rest = match layer.finish.conserve_energy {
+            true => "kr only weakens kt (conserve_energy)",
+            false => "kr = 0",
+        };
+        return format!("no reflection at quality {quality}: {rest}");
     }
     let r = &layer.finish.reflection;
     let tint = if r.metallic == 0.0 {
