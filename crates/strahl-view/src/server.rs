@@ -134,7 +134,8 @@ const MOST_PAGES: usize = 64;
 ///
 /// # Errors
 /// [`ServeError`].
-pub fn serve(options: ViewOptions, ready: impl FnOnce(&Served)) -> Result<(), ServeError> {
+// `ready` is no type parameter, because the server would then be compiled with the crate that calls it.
+pub fn serve(options: ViewOptions, ready: &mut dyn FnMut(&Served)) -> Result<(), ServeError> {
     let runtime = tokio::runtime::Builder::new_current_thread()
         .enable_all()
         .build()?;

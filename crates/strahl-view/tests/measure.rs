@@ -51,7 +51,7 @@ fn start(scene: &Path) -> (Served, std::thread::JoinHandle<()>) {
     };
     let (said, heard) = mpsc::channel();
     let thread = std::thread::spawn(move || {
-        serve(options, |served| said.send(served.clone()).unwrap()).unwrap();
+        serve(options, &mut |served| said.send(served.clone()).unwrap()).unwrap();
     });
     (heard.recv().unwrap(), thread)
 }

@@ -82,7 +82,7 @@ fn serving(
     };
     let (said, heard) = mpsc::channel();
     let thread = std::thread::spawn(move || {
-        serve(options, |served| said.send(served.clone()).unwrap()).unwrap();
+        serve(options, &mut |served| said.send(served.clone()).unwrap()).unwrap();
     });
     Running {
         served: heard.recv().unwrap(),

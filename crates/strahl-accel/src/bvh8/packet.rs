@@ -79,37 +79,35 @@ impl Tree {
             self.bounds.bounds().center()
         };
         let point = point.as_vec3().to_array();
-        let (hulls, members) = match lanes.fill(isa, packet, &self.bounds, point) {
-            Some(Filled::Alike(hull, octant)) => {
+        let (mut octant, mut hull, mut members, others) =
+            match lanes.fill(isa, packet, &self.bounds, point) {
+                Some(Filled::Alike(hull, octant)) => (octant, hull, packet.alive(), None),
+                Some(Filled::Mixed(directions)) => {
+                    let octants = lanes.hulls(isa, &directions, packet.alive());
+                    (0, octants.0[0], octants.1[0], Some(octants))
+                }
+                None => {
+                    let octants = self.one_by_one(packet, point, &mut lanes);
+                    (0, octants.0[0], octants.1[0], Some(octants))
+                }
+            };
+        // The only call, because the traversal is inlined: a second one would double the program's largest functions.
+        loop {
+            if members != 0 {
                 let walk = Walk {
                     hull: HullSlabs::new(isa, &hull, point, octant),
                     octant,
                 };
-                let members = packet.alive();
                 self.walk_together(
                     isa, nodes, &walk, members, &mut lanes, packet, visitor, stats,
                 );
-                return;
             }
-            Some(Filled::Mixed(directions)) => lanes.hulls(isa, &directions, packet.alive()),
-            None => self.one_by_one(packet, point, &mut lanes),
-        };
-        for octant in 0..OCTANTS {
-            if members[octant] != 0 {
-                let walk = Walk {
-                    hull: HullSlabs::new(isa, &hulls[octant], point, octant),
-                    octant,
-                };
-                self.walk_together(
-                    isa,
-                    nodes,
-                    &walk,
-                    members[octant],
-                    &mut lanes,
-                    packet,
-                    visitor,
-                    stats,
-                );
+            octant += 1;
+            match &others {
+                Some((hulls, lanes)) if octant < OCTANTS => {
+                    (hull, members) = (hulls[octant], lanes[octant]);
+                }
+                _ => return,
             }
         }
     }
@@ -146,7 +144,7 @@ impl Tree {
     }
 
     #[inline(always)]
-    #[expect(clippy::too_many_arguments, reason = "inlined into its two callers")]
+    #[expect(clippy::too_many_arguments, reason = "inlined into its caller")]
     fn walk_together<I: Isa, V: PacketVisitor>(
         &self,
         isa: I,

@@ -60,7 +60,7 @@ pub(crate) fn view(args: &ViewArgs) -> Result<(), Failure> {
         editor: args.editor.clone(),
     };
     let mut printed = Ok(());
-    serve(options, |served| {
+    serve(options, &mut |served| {
         printed = announce(&served.address, args.open, &reporter);
         if printed.is_err() {
             served.end();
