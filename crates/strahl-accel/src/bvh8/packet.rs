@@ -165,25 +165,15 @@ impl Tree {
         'walk: loop {
             if mask & mask.wrapping_sub(1) == 0 && !current.is_leaf() {
                 let lane = mask.trailing_zeros() as usize % PACKET;
-                let slabs = lanes.slabs(isa, lane, walk.octant);
-                let range = Interval::new(packet.min, packet.t_max[lane]);
+                let before = packet.t_max[lane];
                 let mut one = One {
                     visitor: &mut *visitor,
                     lane,
                 };
-                let t_max = self.walk_from(
-                    isa,
-                    nodes,
-                    current,
-                    &slabs,
-                    lanes.clocks[lane],
-                    &packet.rays[lane],
-                    range,
-                    &mut one,
-                    &mut cost,
-                );
+                let alone = (current, walk.octant);
+                let t_max = self.walk_alone(isa, nodes, alone, lanes, packet, &mut one, &mut cost);
                 packet.t_max[lane] = t_max;
-                if t_max < range.max {
+                if t_max < before {
                     lanes.lower(lane, t_max);
                     farthest = lanes.farthest(members);
                     if t_max == f64::NEG_INFINITY {
@@ -243,6 +233,32 @@ impl Tree {
             }
         }
         *stats += cost;
+    }
+
+    /// Traverses a subtree with a ray that is left alone. A separate function: two such loops in one would compete for registers.
+    #[inline(never)]
+    fn walk_alone<I: Isa, V: PacketVisitor>(
+        &self,
+        isa: I,
+        nodes: &[Node],
+        (subtree, octant): (Child, usize),
+        lanes: &Lanes,
+        packet: &Packet<'_>,
+        one: &mut One<'_, V>,
+        stats: &mut TraversalStats,
+    ) -> f64 {
+        isa.call(
+            #[inline(always)]
+            || {
+                let lane = one.lane;
+                let slabs = lanes.slabs(isa, lane, octant);
+                let range = Interval::new(packet.min, packet.t_max[lane]);
+                let (clock, ray) = (lanes.clocks[lane], &packet.rays[lane]);
+                self.walk_from(
+                    isa, nodes, subtree, &slabs, clock, ray, range, one, stats,
+                )
+            },
+        )
     }
 }
 
