@@ -39,6 +39,9 @@ use strahl::memory::Bounded;
 static MEMORY: Bounded = Bounded::new();
 
 fn main() -> ExitCode {
+    if cfg!(panic = "abort") {
+        end_after_panics();
+    }
     // Making the description of the command line takes as long as tracing a thousand pixels, and so does dropping it.
     let mut command = ManuallyDrop::new(Cli::command());
     let translated = match pov::translate(std::env::args_os().collect(), &command) {
@@ -86,4 +89,16 @@ fn main() -> ExitCode {
             ExitCode::from(failure.code())
         }
     }
+}
+
+/// Adds to the message of a panic what the user can do, and ends the program with the exit code of panics that are not caught.
+fn end_after_panics() {
+    let usual = std::panic::take_hook();
+    std::panic::set_hook(Box::new(move |panic| {
+        usual(panic);
+        terminal::last_line(
+            "error: strahl itself has failed; please report this with the scene and the command",
+        );
+        interrupt::end(101);
+    }));
 }
