@@ -254,9 +254,7 @@ impl Tree {
                 let slabs = lanes.slabs(isa, lane, octant);
                 let range = Interval::new(packet.min, packet.t_max[lane]);
                 let (clock, ray) = (lanes.clocks[lane], &packet.rays[lane]);
-                self.walk_from(
-                    isa, nodes, subtree, &slabs, clock, ray, range, one, stats,
-                )
+                self.walk_from(isa, nodes, subtree, &slabs, clock, ray, range, one, stats)
             },
         )
     }
