@@ -237,6 +237,10 @@ impl Tree {
 
     /// Traverses a subtree with a ray that is left alone. A separate function: two such loops in one would compete for registers.
     #[inline(never)]
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "the state of a loop, most of which is passed in registers"
+    )]
     fn walk_alone<I: Isa, V: PacketVisitor>(
         &self,
         isa: I,
