@@ -104,8 +104,8 @@ impl Tree {
             }
             octant += 1;
             match &others {
-                Some((hulls, lanes)) if octant < OCTANTS => {
-                    (hull, members) = (hulls[octant], lanes[octant]);
+                Some((hulls, rays)) if octant < OCTANTS => {
+                    (hull, members) = (hulls[octant], rays[octant]);
                 }
                 _ => return,
             }
