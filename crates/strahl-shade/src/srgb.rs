@@ -57,8 +57,8 @@ pub fn decode_all(values: &mut [f64]) {
 
 /// The 8-bit code of linear light: clamped to `0..=1`, encoded, rounded half up; NaN is 0.
 ///
-/// A half is the number of single precision nearest to the light of a half: an encoded value that lies halfway between two codes, as 0.3, has the upper one
-/// after it was decoded and rounded.
+/// Each code begins at the single precision number nearest to the light of the encoded value halfway to the code before. So an encoded value that lies exactly
+/// halfway, such as 0.3, gets the upper code, although its light was rounded.
 #[inline]
 pub fn encode_u8(linear: f32) -> u8 {
     Codes::get().of(linear)
