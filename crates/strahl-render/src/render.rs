@@ -357,6 +357,15 @@ impl Lattice {
         self.samples[index] = sample;
     }
 
+    /// Writes the samples of a tile, which lies in the lattice.
+    fn put_tile(&mut self, tile: Region, samples: &[Sample]) {
+        let width = tile.width as usize;
+        for (y, row) in (tile.y..).zip(samples.chunks_exact(width)) {
+            let start = self.region.index(tile.x, y);
+            self.samples[start..start + width].copy_from_slice(row);
+        }
+    }
+
     /// The corners of a pixel: top left, top right, bottom left, bottom right.
     fn around(&self, x: u32, y: u32) -> [Sample; 4] {
         let at = |dx, dy| self.at(x + dx, y + dy);
@@ -386,11 +395,15 @@ impl Film {
         }
     }
 
-    /// Writes the pixels of a tile, which lies in the film.
+    /// Writes the pixels of a tile, as far as they lie in the film.
     fn set_tile(&mut self, tile: Region, values: &[Shown]) {
-        let width = tile.width as usize;
-        for (y, row) in (tile.y..).zip(values.chunks_exact(width)) {
-            let start = self.region.index(tile.x, y);
+        let Some(part) = tile.intersection(&self.region) else {
+            return;
+        };
+        let width = part.width as usize;
+        for y in part.y..part.y + part.height {
+            let row = &values[tile.index(part.x, y)..][..width];
+            let start = self.region.index(part.x, y);
             for (place, value) in self.pixels[start..start + width].iter_mut().zip(row) {
                 *place = value.color;
             }

@@ -14,8 +14,6 @@ use strahl_shade::Color;
 pub(super) struct Comparison<'a> {
     refinement: &'a Refinement,
     slopes: Slopes,
-    /// For half of the threshold.
-    fine: Slopes,
     space: WorkingSpace,
 }
 
@@ -24,10 +22,6 @@ impl<'a> Comparison<'a> {
         Self {
             refinement,
             slopes: Slopes::new(refinement),
-            fine: Slopes::new(&Refinement {
-                threshold: 0.5 * refinement.threshold,
-                ..*refinement
-            }),
             space,
         }
     }
@@ -100,12 +94,11 @@ pub(crate) fn refined_quadrants(
 
 impl Lattice {
     /// Of each pixel whose first sample differs from that of the one to the left, right, above or below, the quadrants that lie towards neighbours from
-    /// which it may differ by half of the threshold; none of the other pixels.
+    /// which it may differ (one of them across a corner); none of the other pixels.
     pub(super) fn rough(&self, comparison: &Comparison<'_>) -> Result<Vec<Quadrants>, RenderError> {
         let Comparison {
             refinement,
             slopes,
-            fine,
             space,
         } = comparison;
         let (region, space) = (self.region, *space);
@@ -127,13 +120,15 @@ impl Lattice {
         };
         let width = region.width as usize;
         let mut doubtful = Vec::<[usize; 2]>::new();
-        for index in 0..self.samples.len() {
-            let here = color(index);
-            let right = (!(index + 1).is_multiple_of(width)).then_some(index + 1);
-            for neighbour in [right, Some(index + width)].into_iter().flatten() {
-                let is_there = neighbour < self.samples.len();
-                if is_there && !slopes.surely_alike(here, color(neighbour)) {
-                    doubtful.push([index, neighbour]);
+        for start in (0..self.samples.len()).step_by(width) {
+            let (end, is_last) = (start + width, start + width == self.samples.len());
+            for index in start..end {
+                let here = color(index);
+                if index + 1 < end && !slopes.surely_alike(here, color(index + 1)) {
+                    doubtful.push([index, index + 1]);
+                }
+                if !is_last && !slopes.surely_alike(here, color(index + width)) {
+                    doubtful.push([index, index + width]);
                 }
             }
         }
@@ -153,7 +148,7 @@ impl Lattice {
             // Beyond the edge of the picture there is nothing to differ from.
             *quadrants = Quadrants::towards(|right, down| {
                 let (x, y) = (x.wrapping_add_signed(right), y.wrapping_add_signed(down));
-                region.contains(x, y) && !fine.surely_alike(here, color(region.index(x, y)))
+                region.contains(x, y) && !slopes.surely_alike(here, color(region.index(x, y)))
             });
         }
         Ok(rough)

@@ -226,15 +226,13 @@ impl Work {
                 |tracer, tile| {
                     tracer.centers(tile).with(|samples| {
                         let shown = Shown::all(&samples, space);
-                        samples.into_iter().zip(shown).collect()
+                        vec![(samples, shown)]
                     })
                 },
                 |film, result, _| {
-                    for (place, (sample, shown)) in result.tile.positions().zip(result.values) {
-                        lattice.put(place, sample);
-                        if film.region.contains(place.0, place.1) {
-                            film.set(place, shown);
-                        }
+                    for (samples, shown) in &result.values {
+                        lattice.put_tile(result.tile, samples);
+                        film.set_tile(result.tile, shown);
                     }
                 },
             ),

@@ -109,12 +109,14 @@ impl Compared {
 /// How steep the power is by which colours are compared: whether two of them are surely alike is seen without powers.
 ///
 /// Between a and b the function x^p grows by at most |a - b| times its largest slope there. For p <= 1 this is the slope at the lesser
-/// of the two.
+/// of the two; and it grows by at most |a - b|^p, because it is concave and zero at zero.
 pub(crate) struct Slopes {
     /// The largest slope in each step of numbers: from a quarter of a power of two to the next.
     steps: ArrayVec<f64, { Self::STEPS }>,
     /// Colours whose difference has a smaller bound are alike.
     alike: f64,
+    /// Colours are alike, too, if no channels differ by more.
+    near: f64,
 }
 
 impl Slopes {
@@ -137,7 +139,11 @@ impl Slopes {
         }
         // Less than the threshold by more than all rounding errors: compared numbers have single precision.
         let alike = 0.999 * refinement.threshold - 1e-4;
-        Self { steps, alike }
+        let near = match power <= 1.0 && alike > 0.0 {
+            true => 0.999 * det::pow(alike / 3.0, refinement.gamma),
+            false => -1.0,
+        };
+        Self { steps, alike, near }
     }
 
     /// The number of the step of a positive number.
@@ -146,7 +152,13 @@ impl Slopes {
     }
 
     /// Whether two colours surely don't differ. If not, they may or may not.
+    #[inline]
     pub(crate) fn surely_alike(&self, a: Color, b: Color) -> bool {
+        let differences = [a.r - b.r, a.g - b.g, a.b - b.b].map(f64::abs);
+        differences.iter().all(|d| *d <= self.near) || self.are_alike_by_slopes(a, b)
+    }
+
+    fn are_alike_by_slopes(&self, a: Color, b: Color) -> bool {
         let growth = |a: f64, b: f64| {
             if a == b {
                 return 0.0;
