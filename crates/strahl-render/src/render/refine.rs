@@ -14,6 +14,8 @@ use strahl_shade::Color;
 pub(super) struct Comparison<'a> {
     refinement: &'a Refinement,
     slopes: Slopes,
+    /// For [`Refinement::for_quadrants`].
+    quadrants: Slopes,
     space: WorkingSpace,
 }
 
@@ -22,6 +24,7 @@ impl<'a> Comparison<'a> {
         Self {
             refinement,
             slopes: Slopes::new(refinement),
+            quadrants: Slopes::new(&refinement.for_quadrants()),
             space,
         }
     }
@@ -94,11 +97,12 @@ pub(crate) fn refined_quadrants(
 
 impl Lattice {
     /// Of each pixel whose first sample differs from that of the one to the left, right, above or below, the quadrants that lie towards neighbours from
-    /// which it may differ (one of them across a corner); none of the other pixels.
+    /// which it may differ by the threshold for quadrants (one of them across a corner); none of the other pixels.
     pub(super) fn rough(&self, comparison: &Comparison<'_>) -> Result<Vec<Quadrants>, RenderError> {
         let Comparison {
             refinement,
             slopes,
+            quadrants: in_quadrants,
             space,
         } = comparison;
         let (region, space) = (self.region, *space);
@@ -148,7 +152,7 @@ impl Lattice {
             // Beyond the edge of the picture there is nothing to differ from.
             *quadrants = Quadrants::towards(|right, down| {
                 let (x, y) = (x.wrapping_add_signed(right), y.wrapping_add_signed(down));
-                region.contains(x, y) && !slopes.surely_alike(here, color(region.index(x, y)))
+                region.contains(x, y) && !in_quadrants.surely_alike(here, color(region.index(x, y)))
             });
         }
         Ok(rough)

@@ -23,6 +23,17 @@ impl Refinement {
         depth: 3,
         gamma: 2.5,
     };
+
+    /// With the threshold that decides in which quadrants of a refined pixel further samples are taken. The default threshold and larger ones stay as they are.
+    /// Smaller ones shrink with their square: where no samples are taken, the first one may be wrong by as much, and with small thresholds nothing else
+    /// is left of the error (docs/src/notes/speed.md, "Which pixels differ, row by row").
+    pub(crate) fn for_quadrants(self) -> Self {
+        let share = (self.threshold / Self::DEFAULT.threshold).min(1.0);
+        Self {
+            threshold: self.threshold * share * share,
+            ..self
+        }
+    }
 }
 
 impl Default for Refinement {
@@ -191,6 +202,19 @@ mod tests {
         assert!(differ(0.5, 0.7, 2.5) && !differ(0.5, 0.65, 2.5));
         assert!(differ(0.5, 0.61, 1.0) && !differ(0.5, 0.59, 1.0));
         assert!(differ(1.0, 3.0, 2.5) && !differ(-3.0, 0.0, 2.5));
+    }
+
+    #[test]
+    fn quadrants_have_finer_thresholds_below_the_default() {
+        let of = |threshold| {
+            let refinement = Refinement {
+                threshold,
+                ..Refinement::DEFAULT
+            };
+            refinement.for_quadrants().threshold
+        };
+        assert_eq!([of(0.3), of(1.0), of(0.0)], [0.3, 1.0, 0.0]);
+        assert!((of(0.1) - 0.1 / 9.0).abs() < 1e-12);
     }
 
     /// Colours that are surely alike don't differ, and most that don't differ are surely alike.
